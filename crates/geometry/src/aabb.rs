@@ -1,0 +1,73 @@
+//! Axis-aligned boxes.
+
+use crate::Point;
+
+/// An axis-aligned box: an interval, a rectangle or a cuboid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb<const D: usize> {
+    pub min: Point<D>,
+    pub max: Point<D>,
+}
+
+impl<const D: usize> Aabb<D> {
+    /// The box between two corners.
+    pub fn new(min: Point<D>, max: Point<D>) -> Self {
+        Self { min, max }
+    }
+
+    pub fn center(&self) -> Point<D> {
+        0.5 * (self.min + self.max)
+    }
+
+    pub fn size(&self) -> Point<D> {
+        self.max - self.min
+    }
+
+    /// Half the length of the diagonal.
+    pub fn radius(&self) -> f64 {
+        0.5 * self.size().norm()
+    }
+
+    pub fn volume(&self) -> f64 {
+        self.size().iter().product()
+    }
+
+    /// The point at relative coordinates `xi` in `[0, 1]^D`.
+    pub fn at(&self, xi: &Point<D>) -> Point<D> {
+        self.min + self.size().component_mul(xi)
+    }
+
+    pub fn contains(&self, x: &Point<D>) -> bool {
+        (0..D).all(|k| x[k] >= self.min[k] && x[k] <= self.max[k])
+    }
+
+    /// The point of the box nearest to `x`.
+    pub fn clamp(&self, x: &Point<D>) -> Point<D> {
+        Point::from_fn(|k, _| x[k].clamp(self.min[k], self.max[k]))
+    }
+
+    /// The box with every half-width multiplied by `factor`.
+    pub fn scaled(&self, factor: f64) -> Self {
+        let half = 0.5 * factor * self.size();
+        Self::new(self.center() - half, self.center() + half)
+    }
+
+    /// The box grown by `margin` on every side.
+    pub fn grown(&self, margin: f64) -> Self {
+        Self::new(self.min.add_scalar(-margin), self.max.add_scalar(margin))
+    }
+
+    /// Splits the box at a point into its `2^D` parts; parts without extent are left out.
+    pub fn split_at(&self, x: &Point<D>) -> Vec<Self> {
+        (0..1usize << D)
+            .map(|part| {
+                let upper = |k: usize| part >> k & 1 == 1;
+                Self::new(
+                    Point::from_fn(|k, _| if upper(k) { x[k] } else { self.min[k] }),
+                    Point::from_fn(|k, _| if upper(k) { self.max[k] } else { x[k] }),
+                )
+            })
+            .filter(|part| part.size().iter().all(|&s| s > 0.0))
+            .collect()
+    }
+}

@@ -1,0 +1,284 @@
+//! Closed oriented curves of the plane, as periodic splines.
+
+use crate::rule::gauss_legendre;
+use crate::spline::PeriodicBasis;
+use crate::{Point, Vector, polygon};
+
+/// Samples per knot interval, from which searches start.
+const SAMPLES_PER_KNOT: usize = 8;
+
+/// A closed curve. The inside lies to the left of the direction of travel, so an outer boundary runs counter-clockwise
+/// and a hole clockwise; the normal points to the right, out of the inside.
+#[derive(Clone, Debug)]
+pub struct ClosedCurve {
+    basis: PeriodicBasis,
+    coefficients: Vec<[f64; 2]>,
+    samples: Vec<Point<2>>,
+}
+
+/// A point of a curve with its frame.
+#[derive(Clone, Copy, Debug)]
+pub struct CurvePoint {
+    pub s: f64,
+    pub position: Point<2>,
+    /// Unit normal, to the right of the direction of travel.
+    pub normal: Vector<2>,
+    /// `div n`: positive where the inside is convex.
+    pub curvature: f64,
+    /// Length of the derivative of the position with respect to the parameter.
+    pub speed: f64,
+}
+
+impl ClosedCurve {
+    /// The curve of the given degree that passes through `points` at equal steps of its parameter.
+    pub fn through(points: &[Point<2>], degree: usize) -> Self {
+        let basis = PeriodicBasis { degree, count: points.len() };
+        let values: Vec<[f64; 2]> = points.iter().map(|p| [p[0], p[1]]).collect();
+        let coefficients = basis.interpolate(&values);
+        let mut curve = Self { basis, coefficients, samples: Vec::new() };
+        let n = points.len() * SAMPLES_PER_KNOT;
+        curve.samples = (0..n).map(|i| curve.position(i as f64 / n as f64)).collect();
+        curve
+    }
+
+    /// A smooth curve along a polyline: the polyline is averaged over each knot interval, so that the corners of a
+    /// sampled outline do not ripple the spline.
+    pub fn along(polyline: &[Point<2>], degree: usize, count: usize) -> Self {
+        let length = polygon::perimeter(polyline);
+        let fine = 8;
+        let total = count * fine;
+        let mut dense = Vec::with_capacity(total);
+        let mut walked = 0.0;
+        for (a, b) in polygon::edges(polyline) {
+            let step = (b - a).norm();
+            while dense.len() < total && length * dense.len() as f64 / total as f64 <= walked + step {
+                let t = (length * dense.len() as f64 / total as f64 - walked) / step.max(f64::MIN_POSITIVE);
+                dense.push(a + t.clamp(0.0, 1.0) * (b - a));
+            }
+            walked += step;
+        }
+        dense.resize(total, polyline[0]);
+        let averaged: Vec<Point<2>> = (0..count)
+            .map(|k| {
+                let window = (0..=fine).map(|j| dense[(k * fine + total + j - fine / 2) % total]);
+                window.sum::<Point<2>>() / (fine as f64 + 1.0)
+            })
+            .collect();
+        Self::through(&averaged, degree).by_arc_length(count)
+    }
+
+    /// The position at parameter `s` (period one).
+    pub fn position(&self, s: f64) -> Point<2> {
+        let b = self.basis.bumps(s);
+        (0..b.len).fold(Point::zeros(), |x, i| x + b.value[i] * Point::from(self.coefficients[self.basis.index(&b, i)]))
+    }
+
+    fn derivatives(&self, s: f64) -> [Point<2>; 3] {
+        let b = self.basis.bumps(s);
+        let mut d = [Point::zeros(); 3];
+        for i in 0..b.len {
+            let c = Point::<2>::from(self.coefficients[self.basis.index(&b, i)]);
+            d[0] += b.value[i] * c;
+            d[1] += b.d1[i] * c;
+            d[2] += b.d2[i] * c;
+        }
+        d
+    }
+
+    /// The point at parameter `s` with its frame.
+    pub fn point(&self, s: f64) -> CurvePoint {
+        let [position, d1, d2] = self.derivatives(s);
+        let speed = d1.norm().max(f64::MIN_POSITIVE);
+        CurvePoint {
+            s: s - s.floor(),
+            position,
+            normal: Vector::<2>::new(d1[1], -d1[0]) / speed,
+            curvature: (d1[0] * d2[1] - d1[1] * d2[0]) / speed.powi(3),
+            speed,
+        }
+    }
+
+    /// Points along the curve at equal steps of the parameter, eight for each knot interval.
+    pub fn samples(&self) -> &[Point<2>] {
+        &self.samples
+    }
+
+    /// Parameter of a sample.
+    pub fn sample_parameter(&self, i: usize) -> f64 {
+        i as f64 / self.samples.len() as f64
+    }
+
+    /// Number of knots.
+    pub fn knots(&self) -> usize {
+        self.basis.count
+    }
+
+    pub fn degree(&self) -> usize {
+        self.basis.degree
+    }
+
+    /// Integral of `f` over the curve with respect to arc length.
+    pub fn integrate(&self, f: impl Fn(&CurvePoint) -> f64) -> f64 {
+        let rule = gauss_legendre(self.basis.degree / 2 + 3);
+        let n = self.basis.count as f64;
+        (0..self.basis.count)
+            .flat_map(|k| rule.iter().map(move |&(x, w)| ((k as f64 + x) / n, w / n)))
+            .map(|(s, w)| {
+                let p = self.point(s);
+                w * p.speed * f(&p)
+            })
+            .sum()
+    }
+
+    pub fn length(&self) -> f64 {
+        self.integrate(|_| 1.0)
+    }
+
+    /// Enclosed area, negative for a curve that runs clockwise (Green's theorem).
+    pub fn signed_area(&self) -> f64 {
+        0.5 * self.integrate(|p| p.position.dot(&p.normal))
+    }
+
+    /// Whether the curve bounds a hole: whether it runs clockwise.
+    pub fn is_hole(&self) -> bool {
+        polygon::signed_area(&self.samples) < 0.0
+    }
+
+    /// The same curve with `count` knots at equal steps of arc length.
+    pub fn by_arc_length(&self, count: usize) -> Self {
+        let rule = gauss_legendre(self.basis.degree / 2 + 3);
+        let fine = 4 * self.basis.count;
+        let interval = |a: f64, b: f64| -> f64 {
+            rule.iter().map(|&(x, w)| w * (b - a) * self.point(a + x * (b - a)).speed).sum()
+        };
+        let knot = |k: usize| k as f64 / fine as f64;
+        let mut walked = vec![0.0];
+        for k in 0..fine {
+            walked.push(walked[k] + interval(knot(k), knot(k + 1)));
+        }
+        let total = walked[fine];
+        let mut k = 0;
+        let points: Vec<Point<2>> = (0..count)
+            .map(|i| {
+                let target = total * i as f64 / count as f64;
+                while k + 1 < fine && walked[k + 1] < target {
+                    k += 1;
+                }
+                // Newton on the arc length within the interval; the speed is its derivative.
+                let mut s = knot(k) + (target - walked[k]) / (walked[k + 1] - walked[k]).max(f64::MIN_POSITIVE) / fine as f64;
+                for _ in 0..20 {
+                    let step = (walked[k] + interval(knot(k), s) - target) / self.point(s).speed;
+                    s -= step;
+                    if step.abs() < 1e-15 {
+                        break;
+                    }
+                }
+                self.position(s)
+            })
+            .collect();
+        Self::through(&points, self.basis.degree)
+    }
+
+    /// The curve moved by `distance(s)` along its normal, on the same parameter.
+    ///
+    /// `knots` is the number of interpolation points of the new curve.
+    pub fn offset(&self, knots: usize, distance: impl Fn(f64) -> f64) -> Self {
+        let points: Vec<Point<2>> = (0..knots)
+            .map(|i| {
+                let p = self.point(i as f64 / knots as f64);
+                p.position + distance(p.s) * p.normal
+            })
+            .collect();
+        Self::through(&points, self.basis.degree)
+    }
+
+    /// The point nearest to `x`, searched from the nearest of the samples `seeds`.
+    ///
+    /// Newton on `(C(s) - x)·C'(s) = 0`, kept within the neighbouring samples of the seed.
+    pub fn closest(&self, x: &Point<2>, seeds: impl Iterator<Item = usize>) -> CurvePoint {
+        let seed = seeds
+            .map(|i| (i, (self.samples[i] - x).norm_squared()))
+            .fold((0, f64::INFINITY), |best, new| if new.1 < best.1 { new } else { best })
+            .0;
+        let width = 1.5 / self.samples.len() as f64;
+        let start = self.sample_parameter(seed);
+        let mut s = start;
+        for _ in 0..30 {
+            let [c, d1, d2] = self.derivatives(s);
+            let slope = (c - x).dot(&d1);
+            let full = d1.norm_squared() + (c - x).dot(&d2);
+            // Beyond the centre of curvature the full second derivative is not positive; Gauss-Newton still descends.
+            let second = if full > 0.1 * d1.norm_squared() { full } else { d1.norm_squared() };
+            let next = (s - slope / second).clamp(start - width, start + width);
+            let step = (next - s).abs();
+            s = next;
+            if step < 1e-15 {
+                break;
+            }
+        }
+        self.point(s)
+    }
+
+    /// Signed distance to the curve near `x`, negative on the inside, as `(x - C)·n` at the closest point.
+    pub fn signed_distance(&self, x: &Point<2>, seeds: impl Iterator<Item = usize>) -> (f64, CurvePoint) {
+        let foot = self.closest(x, seeds);
+        ((x - foot.position).dot(&foot.normal), foot)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    fn circle(radius: f64, degree: usize, count: usize) -> ClosedCurve {
+        let points: Vec<Point<2>> = (0..count)
+            .map(|i| {
+                let a = 2.0 * PI * i as f64 / count as f64;
+                Point::<2>::new(0.1 + radius * a.cos(), radius * a.sin())
+            })
+            .collect();
+        ClosedCurve::through(&points, degree)
+    }
+
+    #[test]
+    fn a_circle_has_its_length_area_curvature_and_normal() {
+        let c = circle(0.5, 9, 24);
+        assert!((c.length() - PI).abs() < 1e-10);
+        assert!((c.signed_area() - 0.25 * PI).abs() < 1e-10);
+        let p = c.point(0.3);
+        assert!((p.curvature - 2.0).abs() < 1e-7);
+        assert!((p.normal - (p.position - Point::<2>::new(0.1, 0.0)).normalize()).norm() < 1e-9);
+        assert!(!c.is_hole());
+    }
+
+    #[test]
+    fn closest_points_are_orthogonal_and_signed() {
+        let c = circle(0.5, 7, 24);
+        for i in 0..50 {
+            let a = 0.37 * i as f64;
+            let r = 0.5 + 0.2 * (1.7 * a).sin();
+            let x = Point::<2>::new(0.1 + r * a.cos(), r * a.sin());
+            let (d, foot) = c.signed_distance(&x, 0..c.samples().len());
+            assert!((d - (r - 0.5)).abs() < 1e-7, "{d} {r}");
+            let tangent = Vector::<2>::new(-foot.normal[1], foot.normal[0]);
+            assert!((x - foot.position).dot(&tangent).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn arc_length_equalises_the_speed_and_keeps_the_shape() {
+        let points: Vec<Point<2>> = (0..40)
+            .map(|i| {
+                let a = 2.0 * PI * (i as f64 / 40.0 + 0.05 * (2.0 * PI * i as f64 / 40.0).sin());
+                Point::<2>::new(a.cos(), 0.7 * a.sin())
+            })
+            .collect();
+        let raw = ClosedCurve::through(&points, 9);
+        let even = raw.by_arc_length(40);
+        assert!((raw.length() - even.length()).abs() < 1e-6);
+        let speeds: Vec<f64> = (0..100).map(|i| even.point(i as f64 / 100.0).speed).collect();
+        let (lo, hi) = speeds.iter().fold((f64::MAX, 0.0f64), |(l, h), &v| (l.min(v), h.max(v)));
+        assert!(hi / lo < 1.0 + 1e-4);
+    }
+}

@@ -1,0 +1,68 @@
+//! Shapes given by a function that is negative inside.
+
+use crate::{Point, Vector};
+
+/// A shape `{x : value(x) < 0}`; its boundary is where the value vanishes and the gradient does not.
+pub trait ImplicitShape<const D: usize>: Send + Sync {
+    /// Negative inside, positive outside.
+    fn value(&self, x: &Point<D>) -> f64;
+    /// Derivative of [`value`](Self::value); points outwards on the boundary.
+    fn gradient(&self, x: &Point<D>) -> Vector<D>;
+}
+
+/// An ellipse with its axes along the coordinate axes; a disc where both semi-axes agree.
+///
+/// The value is `(|x/a|² - 1) a_min / 2`, of unit slope at the ends of the minor axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Ellipse {
+    pub center: Point<2>,
+    pub semi_axes: [f64; 2],
+}
+
+impl Ellipse {
+    fn scaled(&self, x: &Point<2>) -> [f64; 2] {
+        std::array::from_fn(|k| (x[k] - self.center[k]) / self.semi_axes[k])
+    }
+
+    fn minor(&self) -> f64 {
+        self.semi_axes[0].min(self.semi_axes[1])
+    }
+}
+
+impl ImplicitShape<2> for Ellipse {
+    fn value(&self, x: &Point<2>) -> f64 {
+        let [s, t] = self.scaled(x);
+        0.5 * self.minor() * (s * s + t * t - 1.0)
+    }
+
+    fn gradient(&self, x: &Point<2>) -> Vector<2> {
+        let [s, t] = self.scaled(x);
+        self.minor() * Vector::<2>::new(s / self.semi_axes[0], t / self.semi_axes[1])
+    }
+}
+
+/// The half plane to the left of a directed line; the value is the signed distance.
+#[derive(Clone, Copy, Debug)]
+pub struct Line {
+    pub point: Point<2>,
+    /// Unit normal, out of the half plane.
+    pub normal: Vector<2>,
+}
+
+impl Line {
+    /// The line through two points; the half plane is to the left of the way from `a` to `b`.
+    pub fn through(a: &Point<2>, b: &Point<2>) -> Self {
+        let d = (b - a).normalize();
+        Self { point: *a, normal: Vector::<2>::new(d[1], -d[0]) }
+    }
+}
+
+impl ImplicitShape<2> for Line {
+    fn value(&self, x: &Point<2>) -> f64 {
+        (x - self.point).dot(&self.normal)
+    }
+
+    fn gradient(&self, _: &Point<2>) -> Vector<2> {
+        self.normal
+    }
+}

@@ -1,0 +1,33 @@
+//! Geometry for contact: curves, implicit shapes and closest points.
+//!
+//! Nothing here knows about contact, materials or files. The layer answers where things are: the value and the
+//! derivatives of a field, the closest point of a curve, the side on which a point lies, the outline of a level set.
+//!
+//! - [`jet`]: scalars that carry exact first and second derivatives.
+//! - [`implicit`]: shapes given by a function that is negative inside.
+//! - [`spline`]: periodic splines of any degree, the representation of a contact front.
+//! - [`closed_curve`]: closed oriented curves with closest point, winding number and arc length.
+//! - [`outline`]: closed outlines of a function sampled on a grid.
+//! - [`polygon`]: winding numbers, areas and crossings of polygons.
+
+pub mod aabb;
+pub mod closed_curve;
+pub mod implicit;
+pub mod jet;
+pub mod outline;
+pub mod polygon;
+pub mod rule;
+pub mod spline;
+
+pub use aabb::Aabb;
+pub use closed_curve::{ClosedCurve, CurvePoint};
+pub use implicit::{Ellipse, ImplicitShape, Line};
+pub use jet::{Jet, Real};
+pub use spline::PeriodicBasis;
+
+/// A vector of the plane or of space.
+pub type Vector<const D: usize> = nalgebra::SVector<f64, D>;
+/// A position; the same numbers as a [`Vector`], named for what it means.
+pub type Point<const D: usize> = nalgebra::SVector<f64, D>;
+/// A square matrix, such as a Hessian.
+pub type Matrix<const D: usize> = nalgebra::SMatrix<f64, D, D>;

@@ -1,0 +1,176 @@
+//! Uniform periodic B-splines: the space in which contact fronts and their modes live.
+
+/// The periodic B-splines of one degree on a uniform division of `[0, 1)`.
+///
+/// Basis function `k` is a bump centred at `k / count` for odd degrees, so a curve interpolates at the knots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PeriodicBasis {
+    pub degree: usize,
+    pub count: usize,
+}
+
+/// Highest degree supported: a membrane of degree 6 has a front of degree 13.
+pub const MAX_DEGREE: usize = 15;
+
+/// Values and first two derivatives, with respect to the parameter, of the `degree + 1` functions that live at a point.
+#[derive(Clone, Copy, Debug)]
+pub struct Bumps {
+    /// Index of the first function, to be taken modulo the count.
+    pub first: isize,
+    pub len: usize,
+    pub value: [f64; MAX_DEGREE + 1],
+    pub d1: [f64; MAX_DEGREE + 1],
+    pub d2: [f64; MAX_DEGREE + 1],
+}
+
+impl PeriodicBasis {
+    /// Evaluates the functions that do not vanish at `s` (any real number; the period is one).
+    pub fn bumps(&self, s: f64) -> Bumps {
+        let (p, n) = (self.degree, self.count as f64);
+        debug_assert!(p <= MAX_DEGREE);
+        let u = (s - s.floor()) * n;
+        // For even degrees the bumps are centred between the knots; a shift of half a cell keeps them at k / count.
+        let shift = if p % 2 == 0 { 0.5 } else { 0.0 };
+        let cell = (u + shift).floor();
+        let x = u + shift - cell;
+        let value = cardinal(p, x);
+        let (mut d1, mut d2) = ([0.0; MAX_DEGREE + 1], [0.0; MAX_DEGREE + 1]);
+        if p >= 1 {
+            difference(&cardinal(p - 1, x), p, n, &mut d1);
+        }
+        if p >= 2 {
+            let mut lower = [0.0; MAX_DEGREE + 1];
+            difference(&cardinal(p - 2, x), p - 1, n, &mut lower);
+            difference(&lower, p, n, &mut d2);
+        }
+        Bumps { first: cell as isize - (p as isize) / 2, len: p + 1, value, d1, d2 }
+    }
+
+    /// Index of the `i`-th function of [`Bumps`], brought into `0..count`.
+    pub fn index(&self, bumps: &Bumps, i: usize) -> usize {
+        (bumps.first + i as isize).rem_euclid(self.count as isize) as usize
+    }
+
+    /// Coefficients of the spline that takes `values[k]` at `k / count`.
+    ///
+    /// The interpolation matrix is circulant; it is solved by a real discrete Fourier sum, exact to round-off. Its
+    /// symbol is positive for every degree (Schoenberg), so the problem always has one solution.
+    pub fn interpolate<const M: usize>(&self, values: &[[f64; M]]) -> Vec<[f64; M]> {
+        let n = self.count;
+        debug_assert_eq!(values.len(), n);
+        let bumps = self.bumps(0.0);
+        let mut row = vec![0.0; n];
+        for i in 0..bumps.len {
+            row[self.index(&bumps, i)] += bumps.value[i];
+        }
+        // The inverse of a circulant is the circulant of the inverse symbol.
+        let cosines: Vec<f64> = (0..n).map(|k| (2.0 * std::f64::consts::PI * k as f64 / n as f64).cos()).collect();
+        let transform = |v: &[f64]| -> Vec<f64> {
+            (0..n).map(|k| v.iter().enumerate().map(|(j, v)| v * cosines[k * j % n]).sum()).collect()
+        };
+        let symbol: Vec<f64> = transform(&row).iter().map(|v| 1.0 / v).collect();
+        let inverse: Vec<f64> = transform(&symbol).iter().map(|v| v / n as f64).collect();
+        (0..n)
+            .map(|i| {
+                let mut c = [0.0; M];
+                for (j, v) in values.iter().enumerate() {
+                    let a = inverse[(n + i - j) % n];
+                    for m in 0..M {
+                        c[m] += a * v[m];
+                    }
+                }
+                c
+            })
+            .collect()
+    }
+}
+
+/// Values of the `p + 1` cardinal B-splines of degree `p` at `x` in `[0, 1)` of one knot cell (de Boor's recurrence).
+fn cardinal(p: usize, x: f64) -> [f64; MAX_DEGREE + 1] {
+    let mut b = [0.0; MAX_DEGREE + 1];
+    b[0] = 1.0;
+    for q in 1..=p {
+        let inv = 1.0 / q as f64;
+        let mut carried = 0.0;
+        for r in 0..q {
+            // Function r of the level below is split between functions r and r + 1 of this one.
+            let right = (r + 1) as f64 - x;
+            let left = x + (q - 1 - r) as f64;
+            let value = b[r] * inv;
+            b[r] = carried + right * value;
+            carried = left * value;
+        }
+        b[q] = carried;
+    }
+    b
+}
+
+/// Derivatives of degree-`p` bumps from values of degree `p - 1`: `B_p' = n (B_{p-1}(· ) - B_{p-1}(· - 1))`.
+fn difference(lower: &[f64; MAX_DEGREE + 1], p: usize, n: f64, out: &mut [f64; MAX_DEGREE + 1]) {
+    for i in 0..=p {
+        let from_left = if i > 0 { lower[i - 1] } else { 0.0 };
+        let from_right = if i < p { lower[i] } else { 0.0 };
+        out[i] = n * (from_left - from_right);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bumps_sum_to_one_and_their_derivatives_to_zero() {
+        for degree in 1..=13 {
+            let basis = PeriodicBasis { degree, count: 16 };
+            for i in 0..40 {
+                let b = basis.bumps(i as f64 * 0.0371 - 0.4);
+                assert!((b.value[..b.len].iter().sum::<f64>() - 1.0).abs() < 1e-13);
+                assert!(b.d1[..b.len].iter().sum::<f64>().abs() < 1e-11);
+                assert!(b.d2[..b.len].iter().sum::<f64>().abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn derivatives_are_those_of_the_values() {
+        let eval = |basis: &PeriodicBasis, c: &[f64], s: f64| {
+            let b = basis.bumps(s);
+            let sum = |v: &[f64]| (0..b.len).map(|i| v[i] * c[basis.index(&b, i)]).sum::<f64>();
+            (sum(&b.value), sum(&b.d1), sum(&b.d2))
+        };
+        for degree in [3, 4, 5, 9, 13] {
+            let basis = PeriodicBasis { degree, count: 20 };
+            let c: Vec<f64> = (0..20).map(|k| ((k * k) as f64 * 0.7).sin()).collect();
+            let e = 1e-5;
+            for i in 0..11 {
+                let s = 0.0917 * i as f64 + 0.003;
+                let (_, d1, d2) = eval(&basis, &c, s);
+                let (plus, minus) = (eval(&basis, &c, s + e), eval(&basis, &c, s - e));
+                assert!((d1 - (plus.0 - minus.0) / (2.0 * e)).abs() < 1e-5 * 20.0);
+                let fd = (plus.1 - minus.1) / (2.0 * e);
+                assert!((d2 - fd).abs() < 1e-4 * 400.0, "degree {degree}, s {s}: {d2} {fd}");
+            }
+        }
+    }
+
+    #[test]
+    fn interpolation_has_the_order_degree_plus_one() {
+        let f = |s: f64| (2.0 * std::f64::consts::PI * s).sin().exp();
+        let error = |degree: usize, count: usize| {
+            let basis = PeriodicBasis { degree, count };
+            let values: Vec<[f64; 1]> = (0..count).map(|k| [f(k as f64 / count as f64)]).collect();
+            let c = basis.interpolate(&values);
+            (0..200)
+                .map(|i| {
+                    let s = i as f64 / 200.0 + 0.001;
+                    let b = basis.bumps(s);
+                    ((0..b.len).map(|j| b.value[j] * c[basis.index(&b, j)][0]).sum::<f64>() - f(s)).abs()
+                })
+                .fold(0.0, f64::max)
+        };
+        for degree in [3, 5, 7] {
+            let order = (error(degree, 32) / error(degree, 64)).log2();
+            assert!((order - (degree as f64 + 1.0)).abs() < 0.6, "degree {degree}: order {order}");
+        }
+    }
+}

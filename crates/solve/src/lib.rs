@@ -1,0 +1,15 @@
+//! Linear and nonlinear solvers shared by all models.
+//!
+//! - [`sparse`]: symmetric sparse matrices assembled from element matrices.
+//! - [`cholesky`]: sparse factorisation with a residual check on every solve.
+//! - [`dense`]: small dense systems.
+//! - [`progress`]: what a solver reports while it works, and how it is interrupted.
+
+pub mod cholesky;
+pub mod dense;
+pub mod progress;
+pub mod sparse;
+
+pub use cholesky::{Factor, SolveError, Symbolic};
+pub use progress::{Iteration, Progress, Silent};
+pub use sparse::SymmetricMatrix;

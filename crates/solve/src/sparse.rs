@@ -1,0 +1,141 @@
+//! Symmetric sparse matrices, assembled from element matrices.
+
+/// The lower triangle of a symmetric matrix in compressed columns.
+#[derive(Clone, Debug, Default)]
+pub struct SymmetricMatrix {
+    pub(crate) column_start: Vec<usize>,
+    pub(crate) row: Vec<usize>,
+    pub(crate) value: Vec<f64>,
+}
+
+impl SymmetricMatrix {
+    /// A zero matrix of size `n` whose pattern couples all unknowns within each clique (the unknowns of an element).
+    pub fn from_cliques(n: usize, cliques: &[Vec<u32>]) -> Self {
+        // Cliques of each unknown, in compressed rows.
+        let mut start = vec![0usize; n + 1];
+        for &i in cliques.iter().flatten() {
+            start[i as usize + 1] += 1;
+        }
+        for i in 0..n {
+            start[i + 1] += start[i];
+        }
+        let mut fill = start.clone();
+        let mut member = vec![0u32; start[n]];
+        for (c, clique) in cliques.iter().enumerate() {
+            for &i in clique {
+                member[fill[i as usize]] = c as u32;
+                fill[i as usize] += 1;
+            }
+        }
+        let mut column_start = vec![0];
+        let mut row = Vec::new();
+        let mut seen = vec![usize::MAX; n];
+        for j in 0..n {
+            let begin = row.len();
+            for &c in &member[start[j]..start[j + 1]] {
+                for &i in &cliques[c as usize] {
+                    let i = i as usize;
+                    if i >= j && seen[i] != j {
+                        seen[i] = j;
+                        row.push(i);
+                    }
+                }
+            }
+            row[begin..].sort_unstable();
+            column_start.push(row.len());
+        }
+        let value = vec![0.0; row.len()];
+        Self { column_start, row, value }
+    }
+
+    /// Number of unknowns.
+    pub fn size(&self) -> usize {
+        self.column_start.len().saturating_sub(1)
+    }
+
+    /// Number of stored entries: those on and below the diagonal.
+    pub fn stored(&self) -> usize {
+        self.row.len()
+    }
+
+    /// Adds `scale` times a symmetric row-major element matrix. Unknowns may be named twice; their entries add up.
+    pub fn add(&mut self, unknowns: &[u32], matrix: &[f64], scale: f64) {
+        let n = unknowns.len();
+        for (b, &j) in unknowns.iter().enumerate() {
+            let range = self.column_start[j as usize]..self.column_start[j as usize + 1];
+            let rows = &self.row[range.clone()];
+            for (a, &i) in unknowns.iter().enumerate() {
+                if i >= j
+                    && let Ok(at) = rows.binary_search(&(i as usize))
+                {
+                    self.value[range.start + at] += scale * matrix[a * n + b];
+                }
+            }
+        }
+    }
+
+    /// The product with a vector.
+    pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; x.len()];
+        for j in 0..self.size() {
+            for k in self.column_start[j]..self.column_start[j + 1] {
+                let (i, v) = (self.row[k], self.value[k]);
+                y[i] += v * x[j];
+                if i != j {
+                    y[j] += v * x[i];
+                }
+            }
+        }
+        y
+    }
+
+    /// The largest absolute entry of each row, which bounds what round-off can do to it.
+    pub fn largest(&self) -> f64 {
+        self.value.iter().fold(0.0, |m, v| m.max(v.abs()))
+    }
+
+    /// Replaces unknown `j` by the given value: its equation becomes `d x_j = d value`, with `d` the diagonal entry, and
+    /// the right-hand side of the others is corrected.
+    pub fn prescribe(&mut self, prescribed: &[Option<f64>], rhs: &mut [f64]) {
+        for j in 0..self.size() {
+            for k in self.column_start[j]..self.column_start[j + 1] {
+                let i = self.row[k];
+                match (prescribed[i], prescribed[j]) {
+                    (Some(v), _) if i == j => rhs[j] = self.value[k] * v,
+                    (None, None) => {}
+                    (Some(v), None) => {
+                        rhs[j] -= self.value[k] * v;
+                        self.value[k] = 0.0;
+                    }
+                    (None, Some(v)) => {
+                        rhs[i] -= self.value[k] * v;
+                        self.value[k] = 0.0;
+                    }
+                    (Some(_), Some(_)) => self.value[k] = 0.0,
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn assembly_multiplication_and_prescribed_values() {
+        let element = [1.0, -1.0, -1.0, 1.0];
+        let cliques = vec![vec![0, 1], vec![1, 2], vec![2, 3]];
+        let mut a = SymmetricMatrix::from_cliques(4, &cliques);
+        for c in &cliques {
+            a.add(c, &element, 2.0);
+        }
+        assert_eq!(a.multiply(&[0.0, 1.0, 4.0, 9.0]), vec![-2.0, -4.0, -4.0, 10.0]);
+        let mut rhs = vec![0.0; 4];
+        a.prescribe(&[Some(1.0), None, None, Some(4.0)], &mut rhs);
+        let x = crate::cholesky::Symbolic::default().factor(&a).unwrap().solve(&rhs).unwrap();
+        for (i, v) in x.iter().enumerate() {
+            assert!((v - (i as f64 + 1.0)).abs() < 1e-14);
+        }
+    }
+}

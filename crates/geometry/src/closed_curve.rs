@@ -179,14 +179,14 @@ impl ClosedCurve {
         Self::through(&points, self.basis.degree)
     }
 
-    /// The curve moved by `distance(s)` along its normal, on the same parameter.
+    /// The curve moved by `distance` along its normal, on the same parameter.
     ///
     /// `knots` is the number of interpolation points of the new curve.
-    pub fn offset(&self, knots: usize, distance: impl Fn(f64) -> f64) -> Self {
+    pub fn offset(&self, knots: usize, distance: impl Fn(&CurvePoint) -> f64) -> Self {
         let points: Vec<Point<2>> = (0..knots)
             .map(|i| {
                 let p = self.point(i as f64 / knots as f64);
-                p.position + distance(p.s) * p.normal
+                p.position + distance(&p) * p.normal
             })
             .collect();
         Self::through(&points, self.basis.degree)

@@ -34,8 +34,8 @@ pub struct Symbolic {
 }
 
 impl Symbolic {
-    /// Factorises a matrix `A = L Lᵀ`.
-    pub fn factor<'a>(&mut self, a: &'a SymmetricMatrix) -> Result<Factor<'a>, SolveError> {
+    /// Factorises a matrix `A = L Lᵀ`, which is kept for the residuals.
+    pub fn factor(&mut self, a: SymmetricMatrix) -> Result<Factor, SolveError> {
         let size = a.size();
         let out_of_memory = |_| SolveError::OutOfMemory { size };
         let pattern = SymbolicSparseColMatRef::new_checked(size, size, &a.column_start, None, &a.row);
@@ -76,13 +76,18 @@ impl Symbolic {
 }
 
 /// A factorised matrix, with the matrix itself for residuals.
-pub struct Factor<'a> {
-    matrix: &'a SymmetricMatrix,
+pub struct Factor {
+    matrix: SymmetricMatrix,
     analysis: Arc<(Vec<usize>, Vec<usize>, SymbolicCholesky<usize>)>,
     values: Vec<f64>,
 }
 
-impl Factor<'_> {
+impl Factor {
+    /// Number of unknowns.
+    pub fn size(&self) -> usize {
+        self.matrix.size()
+    }
+
     /// Solves `A x = b`, with iterative refinement.
     pub fn solve(&self, b: &[f64]) -> Result<Vec<f64>, SolveError> {
         let size = self.matrix.size();
@@ -158,7 +163,7 @@ mod tests {
         let b = a.multiply(&x);
         let mut symbolic = Symbolic::default();
         for _ in 0..2 {
-            let y = symbolic.factor(&a).unwrap().solve(&b).unwrap();
+            let y = symbolic.factor(a.clone()).unwrap().solve(&b).unwrap();
             let error = x.iter().zip(&y).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
             assert!(error < 1e-9, "{error}");
         }
@@ -168,6 +173,6 @@ mod tests {
     fn an_indefinite_matrix_is_refused_by_name() {
         let mut a = laplacian(10);
         a.add(&[3], &[-100.0], 1.0);
-        assert!(matches!(Symbolic::default().factor(&a), Err(SolveError::NotPositiveDefinite { size: 100, .. })));
+        assert!(matches!(Symbolic::default().factor(a), Err(SolveError::NotPositiveDefinite { size: 100, .. })));
     }
 }

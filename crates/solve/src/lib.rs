@@ -2,14 +2,17 @@
 //!
 //! - [`sparse`]: symmetric sparse matrices assembled from element matrices.
 //! - [`cholesky`]: sparse factorisation with a residual check on every solve.
+//! - [`acceleration`]: Anderson's for fixed-point iterations.
 //! - [`dense`]: small dense systems.
 //! - [`progress`]: what a solver reports while it works, and how it is interrupted.
 
+pub mod acceleration;
 pub mod cholesky;
 pub mod dense;
 pub mod progress;
 pub mod sparse;
 
+pub use acceleration::Acceleration;
 pub use cholesky::{Factor, SolveError, Symbolic};
 pub use progress::{Iteration, Progress, Silent};
 pub use sparse::SymmetricMatrix;

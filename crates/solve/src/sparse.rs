@@ -133,7 +133,7 @@ mod tests {
         assert_eq!(a.multiply(&[0.0, 1.0, 4.0, 9.0]), vec![-2.0, -4.0, -4.0, 10.0]);
         let mut rhs = vec![0.0; 4];
         a.prescribe(&[Some(1.0), None, None, Some(4.0)], &mut rhs);
-        let x = crate::cholesky::Symbolic::default().factor(&a).unwrap().solve(&rhs).unwrap();
+        let x = crate::cholesky::Symbolic::default().factor(a).unwrap().solve(&rhs).unwrap();
         for (i, v) in x.iter().enumerate() {
             assert!((v - (i as f64 + 1.0)).abs() < 1e-14);
         }

@@ -1,0 +1,237 @@
+//! The classical method: linear elements whose nodes are kept above the floor, by a primal-dual active set.
+//!
+//! (Hintermüller, Ito & Kunisch, SIAM J. Optim. 13, 2002.) Its contact zone is a set of nodes: a staircase. It serves
+//! as a method of its own, to be set beside the level set, and to predict zones that are not one simple patch.
+
+use crate::equilibrium::{Elements, System, nitsche_flux};
+use crate::field::SharedField;
+use crate::problem::Membrane;
+use crate::quadrature::{Quadrature, unit_rule, whole_order};
+use crate::zone::Zone;
+use signorini_fem::lagrange::Tabulation;
+use signorini_geometry::{Point, Vector};
+use signorini_solve::{SolveError, Symbolic};
+
+/// Most changes of the active set on one grid.
+const MOST_CHANGES: usize = 200;
+/// Cells along the longer side of the coarsest grid of a nested start.
+const COARSEST: usize = 8;
+
+/// The nodal solution of a membrane of degree 1.
+#[derive(Clone, Debug)]
+pub struct NodalSolution<const D: usize> {
+    /// For each node of the grid: displacement, reaction of the floor, and whether it is in contact. None outside.
+    pub nodes: Vec<Option<Node>>,
+    /// Changes of the active set on the final grid.
+    pub iterations: usize,
+    /// Number of nodes that changed in each iteration.
+    pub changes: Vec<usize>,
+    pub converged: bool,
+    pub unknowns: usize,
+    /// Force of each support on the membrane.
+    pub support_forces: Vec<f64>,
+    /// Resultant of the load.
+    pub load_force: f64,
+    pub energy: f64,
+    cells: [usize; D],
+}
+
+/// One node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Node {
+    pub displacement: f64,
+    /// Force of the floor on the node.
+    pub reaction: f64,
+    pub in_contact: bool,
+    /// Whether the floor can touch the node: whether it lies in the membrane.
+    pub inside: bool,
+    /// Load on the node: its share of the membrane times the load there.
+    pub load: f64,
+}
+
+/// How the iteration begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NodalStart {
+    /// From the solution on a grid of half the cells, and so on.
+    Nested,
+    /// From the free solution.
+    Cold,
+}
+
+/// Solves a membrane, which must be of degree 1, over its floor.
+pub fn solve<const D: usize, Z: Zone<D>>(
+    membrane: &Membrane<D>,
+    floor: &SharedField<D>,
+    start: NodalStart,
+    interrupted: &dyn Fn() -> bool,
+) -> Result<NodalSolution<D>, SolveError> {
+    let cells = membrane.grid.cells();
+    let coarse = cells.iter().all(|n| n % 2 == 0) && cells.iter().max().is_some_and(|&n| n / 2 >= COARSEST);
+    let guess = if start == NodalStart::Nested && coarse {
+        let coarser = membrane.on_grid(cells.map(|n| n / 2), 1);
+        Some(solve::<D, Z>(&coarser, floor, start, interrupted)?)
+    } else {
+        None
+    };
+    let elements = Elements::new(membrane);
+    let zone = Z::empty(&membrane.grid);
+    let System { quadrature, unknowns, matrix, rhs } = System::assemble(membrane, &zone, &elements);
+    let mut node_of = vec![0usize; unknowns.count];
+    let mut nodes = Vec::new();
+    for (cell, regions) in unknowns.cells.iter().enumerate() {
+        membrane.grid.cell_nodes(cell, &mut nodes);
+        for (_, dofs) in regions {
+            for (&dof, &node) in dofs.iter().zip(&nodes) {
+                node_of[dof as usize] = node as usize;
+            }
+        }
+    }
+    let heights: Vec<Option<f64>> = node_of
+        .iter()
+        .map(|&node| {
+            let x = membrane.grid.node(node);
+            membrane.contains(&x).then(|| floor.value(&x))
+        })
+        .collect();
+    let mut active: Vec<bool> = node_of
+        .iter()
+        .zip(&heights)
+        .map(|(&node, h)| {
+            h.is_some() && guess.as_ref().is_some_and(|g| g.touches(membrane, &membrane.grid.node(node)))
+        })
+        .collect();
+    let mut symbolic = Symbolic::default();
+    let mut changes = Vec::new();
+    let mut converged = false;
+    let (mut u, mut reaction) = (Vec::new(), Vec::new());
+    while changes.len() < MOST_CHANGES && !interrupted() {
+        let mut constrained = matrix.clone();
+        let mut load = rhs.clone();
+        let prescribed: Vec<Option<f64>> = heights.iter().zip(&active).map(|(h, &a)| h.filter(|_| a)).collect();
+        constrained.prescribe(&prescribed, &mut load);
+        u = symbolic.factor(constrained)?.solve(&load)?;
+        reaction = matrix.multiply(&u);
+        for (r, b) in reaction.iter_mut().zip(&rhs) {
+            *r -= b;
+        }
+        let mut changed = 0;
+        for i in 0..u.len() {
+            let Some(h) = heights[i] else { continue };
+            // On active nodes the gap vanishes, on free ones the reaction: one of the two decides.
+            let now = if active[i] { reaction[i] > 0.0 } else { u[i] < h };
+            changed += usize::from(now != active[i]);
+            active[i] = now;
+        }
+        changes.push(changed);
+        if changed == 0 {
+            converged = true;
+            break;
+        }
+    }
+    let mut all = vec![None; membrane.grid.node_count()];
+    for i in 0..u.len() {
+        all[node_of[i]] = Some(Node {
+            displacement: u[i],
+            reaction: if active[i] { reaction[i] } else { 0.0 },
+            in_contact: active[i],
+            inside: heights[i].is_some(),
+            load: rhs[i],
+        });
+    }
+    let (support_forces, load_force, energy) = totals(membrane, &quadrature, &all);
+    Ok(NodalSolution {
+        nodes: all,
+        iterations: changes.len(),
+        changes,
+        converged,
+        unknowns: unknowns.count,
+        support_forces,
+        load_force,
+        energy,
+        cells,
+    })
+}
+
+/// Force of each support, resultant of the load, and the energy `∫ T/2 |∇u|² - f u`.
+fn totals<const D: usize>(
+    membrane: &Membrane<D>,
+    quadrature: &Quadrature<D>,
+    nodes: &[Option<Node>],
+) -> (Vec<f64>, f64, f64) {
+    let basis = membrane.grid.basis();
+    let size = membrane.grid.cell_size();
+    let mut t = Tabulation::default();
+    let mut numbers = Vec::new();
+    let mut evaluate = |cell: usize, x: &Point<D>| {
+        membrane.grid.cell_nodes(cell, &mut numbers);
+        basis.tabulate(&membrane.grid.local(cell, x), &size, &mut t);
+        let values = numbers.iter().map(|&node| nodes[node as usize].map_or(0.0, |n| n.displacement));
+        values.enumerate().fold((0.0, Vector::<D>::zeros()), |(u, g), (i, v)| (u + v * t.value[i], g + v * t.gradient[i]))
+    };
+    let (mut force, mut energy) = (0.0, 0.0);
+    let whole = unit_rule::<D>(whole_order(membrane.grid.degree()));
+    for cell in 0..quadrature.cells.len() {
+        for (_, points) in quadrature.volumes(membrane, cell, &whole) {
+            for p in points.iter() {
+                let (u, gradient) = evaluate(cell, &p.x);
+                let f = membrane.load.value(&p.x);
+                force += p.weight * f;
+                energy += p.weight * (0.5 * membrane.tension.value(&p.x) * gradient.norm_squared() - f * u);
+            }
+        }
+    }
+    let mut supports = vec![0.0; membrane.support_count];
+    for p in &quadrature.rim {
+        if let Some(support) = &membrane.supports[p.piece] {
+            let (u, gradient) = evaluate(p.cell, &p.x);
+            supports[support.index] += p.weight * nitsche_flux(membrane, &p.x, &p.normal, u - support.displacement.value(&p.x), &gradient);
+        }
+    }
+    (supports, force, energy)
+}
+
+impl<const D: usize> NodalSolution<D> {
+    /// Whether the node nearest to `x` is in contact.
+    fn touches(&self, membrane: &Membrane<D>, x: &Point<D>) -> bool {
+        let bounds = membrane.grid.bounds();
+        let mut node = 0;
+        for k in (0..D).rev() {
+            let t = (x[k] - bounds.min[k]) / bounds.size()[k] * self.cells[k] as f64;
+            node = node * (self.cells[k] + 1) + (t.round().max(0.0) as usize).min(self.cells[k]);
+        }
+        self.nodes[node].is_some_and(|n| n.in_contact)
+    }
+
+    /// A function that is negative in the predicted zone: the distance to its edge that the gap of a parabola tells,
+    /// `√(2 T g / p)`, interpolated between the nodes, and half a cell inwards at nodes in contact.
+    pub fn predictor<'a>(&'a self, membrane: &'a Membrane<D>, floor: &'a SharedField<D>) -> impl Fn(&Point<D>) -> f64 + 'a {
+        let h = membrane.grid.h();
+        let at_node: Vec<f64> = self
+            .nodes
+            .iter()
+            .enumerate()
+            .map(|(i, node)| match node {
+                Some(n) if n.in_contact => -0.5 * h,
+                Some(n) if n.inside => {
+                    let x = membrane.grid.node(i);
+                    let pressure = membrane.floor_pressure(floor, &x);
+                    let gap = (n.displacement - floor.value(&x)).max(0.0);
+                    let distance = (2.0 * membrane.tension.value(&x) * gap / pressure).sqrt();
+                    if pressure > 0.0 { distance.clamp(0.05 * h, 2.0 * h) } else { h }
+                }
+                _ => h,
+            })
+            .collect();
+        let basis = membrane.grid.basis();
+        let size = membrane.grid.cell_size();
+        move |x| {
+            let x = membrane.grid.bounds().clamp(x);
+            let cell = membrane.grid.cell_containing(&x);
+            let mut t = Tabulation::default();
+            let mut numbers = Vec::new();
+            membrane.grid.cell_nodes(cell, &mut numbers);
+            basis.tabulate(&membrane.grid.local(cell, &x), &size, &mut t);
+            numbers.iter().zip(&t.value).map(|(&n, v)| at_node[n as usize] * v).sum()
+        }
+    }
+}

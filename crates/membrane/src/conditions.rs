@@ -1,0 +1,116 @@
+//! The contact conditions, checked at every quadrature point, and the sets on which they fail.
+
+use crate::equilibrium::Equilibrium;
+use crate::field::SharedField;
+use crate::problem::Membrane;
+use crate::scales::Scales;
+use crate::zone::{Zone, contact_index, is_free};
+use signorini_geometry::Point;
+
+/// How far a state is from the contact conditions.
+#[derive(Clone, Debug)]
+pub struct Conditions<const D: usize> {
+    /// Least gap anywhere in the free membrane.
+    pub least_gap: f64,
+    /// Least gap away from the fronts, and where.
+    pub least_gap_outside: f64,
+    pub deepest: Point<D>,
+    /// Least pressure with which the floor would push where the free membrane penetrates.
+    pub least_pressure_below: f64,
+    /// Least and largest pressure in contact.
+    pub least_pressure: f64,
+    pub largest_pressure: f64,
+    pub most_pulled: Point<D>,
+}
+
+impl<const D: usize> Conditions<D> {
+    pub fn check<Z: Zone<D>>(equilibrium: &Equilibrium<'_, D>, zone: &Z, floor: &SharedField<D>) -> Self {
+        let membrane = equilibrium.membrane;
+        let band = 0.5 * membrane.grid.h();
+        let mut c = Self {
+            least_gap: f64::INFINITY,
+            least_gap_outside: f64::INFINITY,
+            deepest: Point::zeros(),
+            least_pressure_below: f64::INFINITY,
+            least_pressure: f64::INFINITY,
+            largest_pressure: f64::NEG_INFINITY,
+            most_pulled: Point::zeros(),
+        };
+        equilibrium.for_each_point(|cell, region, x, _| {
+            if is_free(region) {
+                let Some((u, _)) = equilibrium.evaluate(cell, region, x) else { return };
+                let gap = u - floor.value(x);
+                c.least_gap = c.least_gap.min(gap);
+                if gap < 0.0 {
+                    c.least_pressure_below = c.least_pressure_below.min(membrane.floor_pressure(floor, x));
+                }
+                if gap < c.least_gap_outside && zone.distance(x) > band {
+                    c.least_gap_outside = gap;
+                    c.deepest = *x;
+                }
+            } else if contact_index(region).is_some() {
+                let pressure = membrane.floor_pressure(floor, x);
+                c.largest_pressure = c.largest_pressure.max(pressure);
+                if pressure < c.least_pressure {
+                    c.least_pressure = pressure;
+                    c.most_pulled = *x;
+                }
+            }
+        });
+        c
+    }
+
+    pub fn penetrates(&self, scales: &Scales) -> bool {
+        self.least_gap_outside < -scales.gap_tolerance()
+    }
+
+    pub fn pulls(&self, scales: &Scales) -> bool {
+        self.least_pressure < -scales.pressure_tolerance()
+    }
+}
+
+/// The zone with the parts added where the free membrane penetrates a floor that can push, and the parts removed where
+/// the floor would have to pull.
+pub fn corrected<const D: usize, Z: Zone<D>>(
+    equilibrium: &Equilibrium<'_, D>,
+    zone: &Z,
+    floor: &SharedField<D>,
+    conditions: &Conditions<D>,
+    scales: &Scales,
+) -> Z {
+    let membrane = equilibrium.membrane;
+    let grid = &membrane.grid;
+    let mut result = zone.clone();
+    if conditions.pulls(scales) {
+        // First what pulls: added parts may then grow into its place.
+        result = result.reduced(grid, &mut |x| match contact_index(zone.region_at(x)) {
+            Some(_) => (membrane.floor_pressure(floor, x) - scales.pressure_tolerance()) / scales.pressure,
+            None => 1.0,
+        });
+    }
+    if conditions.penetrates(scales) {
+        let reach = 2.0 * grid.h();
+        let shift = 0.5 * scales.gap_tolerance();
+        let mut penetration = |x: &Point<D>| {
+            let Some(x) = inside(membrane, x, reach) else { return 1.0 };
+            if zone.distance(&x) <= 0.5 * grid.h() || contact_index(zone.region_at(&x)).is_some() {
+                return 1.0;
+            }
+            let Some(u) = equilibrium.displacement(zone, &x) else { return 1.0 };
+            let gap = (u - floor.value(&x) + shift) / scales.gap;
+            gap.max(-membrane.floor_pressure(floor, &x) / scales.pressure)
+        };
+        let before = result.counts();
+        result = result.united(grid, &mut penetration);
+        if result.counts() == before && conditions.least_gap_outside < -scales.gap_tolerance() {
+            // Too small for the raster to see.
+            result = result.seeded(grid, &conditions.deepest, 0.5 * grid.h());
+        }
+    }
+    result
+}
+
+/// The point itself if it belongs to the membrane, or a near one that does.
+fn inside<const D: usize>(membrane: &Membrane<D>, x: &Point<D>, reach: f64) -> Option<Point<D>> {
+    if membrane.contains(x) { Some(*x) } else { membrane.domain.domain.pulled_inside(x, reach) }
+}

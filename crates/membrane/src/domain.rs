@@ -1,0 +1,183 @@
+//! Where a membrane is: domains whose boundary either fits the background grid or cuts it.
+
+use signorini_fem::Grid;
+use signorini_geometry::{Aabb, ImplicitShape, Line, Point, Vector, polygon};
+use std::sync::Arc;
+
+/// What of a domain's boundary may cross a cell.
+pub struct BoundaryInCell<'a, const D: usize> {
+    pub sheets: Vec<Box<dyn ImplicitShape<D> + 'a>>,
+    /// Boundary piece of each sheet.
+    pub pieces: Vec<u32>,
+    pub features: Vec<Point<D>>,
+}
+
+/// The domain of a membrane.
+pub trait Domain<const D: usize>: Send + Sync {
+    /// Boundary that may cross the box.
+    fn boundary_in(&self, cell: &Aabb<D>) -> BoundaryInCell<'_, D>;
+    /// Whether a point is inside, given the values of the sheets of its cell.
+    fn contains(&self, x: &Point<D>, sheet_values: &[f64]) -> bool;
+    /// Number of pieces of the boundary.
+    fn pieces(&self) -> usize;
+    /// A point of the domain near a point outside it, within `reach`.
+    fn pulled_inside(&self, x: &Point<D>, reach: f64) -> Option<Point<D>>;
+    /// Whether the domain is its bounding box, so that the grid fits. Pieces are then the sides: lower and upper in
+    /// each direction.
+    fn is_box(&self) -> bool {
+        false
+    }
+}
+
+/// An interval or a rectangle that the grid fits.
+pub struct BoxDomain<const D: usize>(pub Aabb<D>);
+
+impl<const D: usize> Domain<D> for BoxDomain<D> {
+    fn boundary_in(&self, _: &Aabb<D>) -> BoundaryInCell<'_, D> {
+        BoundaryInCell { sheets: Vec::new(), pieces: Vec::new(), features: Vec::new() }
+    }
+    fn contains(&self, _: &Point<D>, _: &[f64]) -> bool {
+        true
+    }
+    fn pieces(&self) -> usize {
+        2 * D
+    }
+    fn pulled_inside(&self, x: &Point<D>, reach: f64) -> Option<Point<D>> {
+        let inside = self.0.clamp(x);
+        ((x - inside).amax() <= reach).then_some(inside)
+    }
+    fn is_box(&self) -> bool {
+        true
+    }
+}
+
+/// The inside of an implicit shape: a disc, an ellipse, or where an expression is negative.
+pub struct ImplicitDomain<S>(pub S);
+
+/// Lends a shape to a partition.
+pub(crate) struct Borrowed<'a, S>(pub &'a S);
+
+impl<const D: usize, S: ImplicitShape<D>> ImplicitShape<D> for Borrowed<'_, S> {
+    fn value(&self, x: &Point<D>) -> f64 {
+        self.0.value(x)
+    }
+    fn gradient(&self, x: &Point<D>) -> Vector<D> {
+        self.0.gradient(x)
+    }
+}
+
+impl<const D: usize, S: ImplicitShape<D>> Domain<D> for ImplicitDomain<S> {
+    fn boundary_in(&self, _: &Aabb<D>) -> BoundaryInCell<'_, D> {
+        BoundaryInCell { sheets: vec![Box::new(Borrowed(&self.0))], pieces: vec![0], features: Vec::new() }
+    }
+    fn contains(&self, x: &Point<D>, sheet_values: &[f64]) -> bool {
+        sheet_values.first().copied().unwrap_or_else(|| self.0.value(x)) < 0.0
+    }
+    fn pieces(&self) -> usize {
+        1
+    }
+    fn pulled_inside(&self, x: &Point<D>, reach: f64) -> Option<Point<D>> {
+        let mut y = *x;
+        for _ in 0..5 {
+            let value = self.0.value(&y);
+            if value < 0.0 {
+                return ((x - y).norm() <= reach).then_some(y);
+            }
+            let g = self.0.gradient(&y);
+            // A little further than the boundary, so that the next look finds the inside.
+            y -= g * ((value + 1e-3 * reach * g.norm()) / g.norm_squared().max(f64::MIN_POSITIVE));
+        }
+        None
+    }
+}
+
+/// A simple polygon, its corners counter-clockwise; each edge is a piece of the boundary.
+pub struct PolygonDomain(Vec<Point<2>>);
+
+impl PolygonDomain {
+    /// Orders the corners counter-clockwise.
+    pub fn new(mut corners: Vec<Point<2>>) -> Self {
+        if polygon::signed_area(&corners) < 0.0 {
+            corners.reverse();
+        }
+        Self(corners)
+    }
+
+    pub fn corners(&self) -> &[Point<2>] {
+        &self.0
+    }
+}
+
+impl Domain<2> for PolygonDomain {
+    fn boundary_in(&self, cell: &Aabb<2>) -> BoundaryInCell<'_, 2> {
+        let reach = cell.radius() * (1.0 + 1e-9);
+        let mut here = BoundaryInCell { sheets: Vec::new(), pieces: Vec::new(), features: Vec::new() };
+        for (i, (a, b)) in polygon::edges(&self.0).enumerate() {
+            if polygon::segment_distance(a, b, &cell.center()) <= reach {
+                here.sheets.push(Box::new(Line::through(a, b)));
+                here.pieces.push(i as u32);
+                here.features.push(*a);
+                here.features.push(*b);
+            }
+        }
+        here
+    }
+    fn contains(&self, x: &Point<2>, _: &[f64]) -> bool {
+        polygon::winding_number(&self.0, x) != 0
+    }
+    fn pieces(&self) -> usize {
+        self.0.len()
+    }
+    fn pulled_inside(&self, x: &Point<2>, reach: f64) -> Option<Point<2>> {
+        if self.contains(x, &[]) {
+            return Some(*x);
+        }
+        let nearest = polygon::edges(&self.0).map(|(a, b)| {
+            let d = b - a;
+            let t = ((x - a).dot(&d) / d.norm_squared()).clamp(1e-3, 1.0 - 1e-3);
+            a + t * d - 1e-3 * reach * Line::through(a, b).normal
+        });
+        nearest
+            .filter(|y| (x - y).norm() <= reach && self.contains(y, &[]))
+            .min_by(|a, b| (x - a).norm().total_cmp(&(x - b).norm()))
+    }
+}
+
+/// A domain on its grid: which cells its boundary can cross.
+#[derive(Clone)]
+pub struct DomainOnGrid<const D: usize> {
+    pub domain: Arc<dyn Domain<D>>,
+    /// For each cell, whether it lies inside, outside, or may be crossed.
+    pub status: Arc<Vec<CellStatus>>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CellStatus {
+    Inside,
+    Outside,
+    Crossed,
+}
+
+impl<const D: usize> DomainOnGrid<D> {
+    pub fn new(domain: Arc<dyn Domain<D>>, grid: &Grid<D>) -> Self {
+        let status = (0..grid.cell_count())
+            .map(|cell| {
+                let b = grid.cell_box(cell);
+                let boundary = domain.boundary_in(&b);
+                let partition = signorini_fem::cut::CellPartition {
+                    tags: boundary.pieces,
+                    sheets: boundary.sheets,
+                    features: boundary.features,
+                    region: Box::new(|x, values| u32::from(domain.contains(x, values))),
+                };
+                let rule = signorini_fem::cut::cut_cell(&partition, &b, 1);
+                match (rule.cut, rule.volumes.first()) {
+                    (true, _) => CellStatus::Crossed,
+                    (false, Some((1, _))) => CellStatus::Inside,
+                    _ => CellStatus::Outside,
+                }
+            })
+            .collect();
+        Self { domain, status: Arc::new(status) }
+    }
+}

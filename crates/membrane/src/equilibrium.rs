@@ -1,0 +1,487 @@
+//! Equilibrium of the free membrane outside a given contact zone: the one-sided formulation.
+//!
+//! In contact the displacement is the floor and the pressure is known, so only the free regions are solved for. On
+//! their boundary the displacement is imposed weakly by the symmetric method of Nitsche; a ghost penalty keeps cells
+//! that are cut to slivers stable. For every test function `v`
+//!
+//! ```text
+//! ∫ T ∇u·∇v - ∫_Γ T (∂_ν u v + ∂_ν v u) + (β T/h) ∫_Γ u v + s_h(u, v)
+//!     = ∫ f v - ∫_Γ T ∂_ν v G + (β T/h) ∫_Γ G v
+//! ```
+//!
+//! with `β = 8 p²`, and the flux `T ∂_n u_h + (β T/h)(u_h - G)` is the variational one: tested against smooth functions
+//! it converges with twice the order of the gradient. The matrix is symmetric and positive definite. Each connected
+//! free region has unknowns of its own, so a thin wall of contact between two of them couples nothing.
+
+use crate::problem::Membrane;
+use crate::quadrature::{Cell, Quadrature, RimPoint, unit_rule, whole_order};
+use crate::zone::{Zone, contact_index, is_free};
+use rayon::prelude::*;
+use signorini_fem::cut::{QuadraturePoint, RegionId};
+use signorini_fem::lagrange::Tabulation;
+use signorini_fem::{GhostPenalty, TensorBasis};
+use signorini_geometry::{Point, Vector};
+use signorini_solve::{Factor, SolveError, SymmetricMatrix, Symbolic};
+use std::collections::BTreeMap;
+
+/// Cells whose local systems are in memory at once.
+const CHUNK: usize = 4096;
+
+/// Penalty of Nitsche's method, to be divided by the cell size.
+fn nitsche_penalty(degree: usize) -> f64 {
+    8.0 * (degree * degree) as f64
+}
+
+/// Weight of the ghost penalty; smaller ones lose positive definiteness when a straight boundary cuts slivers only.
+fn ghost_weight(degree: usize) -> f64 {
+    if degree == 1 { 0.5 } else { 0.2 }
+}
+
+/// What does not change from one zone to the next: the element matrices of an undivided cell.
+pub struct Elements<const D: usize> {
+    whole_rule: Vec<QuadraturePoint<D>>,
+    tabulated: Vec<Tabulation<D>>,
+    /// Stiffness for unit tension, where the tension is constant and the measure plain.
+    stiffness: Option<Vec<f64>>,
+    ghost: GhostPenalty<D>,
+    tension_constant: Option<f64>,
+    symbolic: Symbolic,
+}
+
+impl<const D: usize> Elements<D> {
+    pub fn new(membrane: &Membrane<D>) -> Self {
+        let basis = membrane.grid.basis();
+        let size = membrane.grid.cell_size();
+        let whole_rule = unit_rule::<D>(whole_order(basis.degree()));
+        let tabulated: Vec<Tabulation<D>> = whole_rule
+            .iter()
+            .map(|p| {
+                let mut t = Tabulation::default();
+                basis.tabulate(&p.x, &size, &mut t);
+                t
+            })
+            .collect();
+        let tension_constant = membrane.tension.constant();
+        let plain = membrane.measure == crate::problem::Measure::Plain;
+        let stiffness = (tension_constant.is_some() && plain).then(|| {
+            let mut matrix = vec![0.0; basis.len() * basis.len()];
+            let volume: f64 = size.iter().product();
+            for (p, t) in whole_rule.iter().zip(&tabulated) {
+                add_stiffness(&mut matrix, t, p.weight * volume);
+            }
+            matrix
+        });
+        let ghost = GhostPenalty::new(basis, &size);
+        Self { whole_rule, tabulated, stiffness, ghost, tension_constant, symbolic: Symbolic::default() }
+    }
+}
+
+fn add_stiffness<const D: usize>(matrix: &mut [f64], t: &Tabulation<D>, weight: f64) {
+    let n = t.value.len();
+    for a in 0..n {
+        let g = weight * t.gradient[a];
+        for b in 0..=a {
+            let v = g.dot(&t.gradient[b]);
+            matrix[a * n + b] += v;
+            if a != b {
+                matrix[b * n + a] += v;
+            }
+        }
+    }
+}
+
+/// Unknowns of each cell and region.
+pub(crate) struct Unknowns {
+    pub cells: Vec<Vec<(RegionId, Vec<u32>)>>,
+    pub count: usize,
+}
+
+/// The state of a membrane with a given contact zone.
+pub struct Equilibrium<'a, const D: usize> {
+    pub membrane: &'a Membrane<D>,
+    pub quadrature: Quadrature<D>,
+    unknowns: Unknowns,
+    factor: Factor,
+    /// Values at the nodes of the free regions.
+    u: Vec<f64>,
+    whole_rule: Vec<QuadraturePoint<D>>,
+}
+
+/// A point of a surface where the displacement is imposed.
+struct Imposed<const D: usize> {
+    cell: usize,
+    region: RegionId,
+    x: Point<D>,
+    weight: f64,
+    /// Unit normal, out of the free region.
+    outward: Vector<D>,
+    value: f64,
+}
+
+/// The matrix and right-hand side of one region of one cell.
+type LocalSystem = Option<(Vec<f64>, Vec<f64>)>;
+
+impl<'a, const D: usize> Equilibrium<'a, D> {
+    /// Solves for the free membrane around a zone.
+    pub fn solve<Z: Zone<D>>(
+        membrane: &'a Membrane<D>,
+        zone: &Z,
+        elements: &mut Elements<D>,
+    ) -> Result<Self, SolveError> {
+        let System { quadrature, unknowns, matrix, rhs } = System::assemble(membrane, zone, elements);
+        let factor = elements.symbolic.factor(matrix)?;
+        let u = factor.solve(&rhs)?;
+        let whole_rule = elements.whole_rule.clone();
+        Ok(Self { membrane, quadrature, unknowns, factor, u, whole_rule })
+    }
+
+    /// Number of unknowns of the linear system.
+    pub fn size(&self) -> usize {
+        self.factor.size()
+    }
+
+    /// Displacement and its gradient at a point of a cell, by the polynomial of one of its regions.
+    pub fn evaluate(&self, cell: usize, region: RegionId, x: &Point<D>) -> Option<(f64, Vector<D>)> {
+        evaluate(self.membrane, &self.unknowns, &self.u, cell, region, x)
+    }
+
+    /// The regions with unknowns in a cell.
+    pub fn free_regions(&self, cell: usize) -> impl Iterator<Item = RegionId> + '_ {
+        self.unknowns.cells[cell].iter().map(|(region, _)| *region)
+    }
+
+    /// The floor under a membrane that has a contact zone.
+    fn floor_height(&self, x: &Point<D>) -> f64 {
+        self.membrane.floor.as_ref().map_or(0.0, |h| h.value(x))
+    }
+
+    /// Calls `visit(cell, region, x, weight)` at every volume point of the membrane.
+    pub fn for_each_point(&self, mut visit: impl FnMut(usize, RegionId, &Point<D>, f64)) {
+        for cell in 0..self.quadrature.cells.len() {
+            for (region, points) in self.quadrature.volumes(self.membrane, cell, &self.whole_rule) {
+                for p in points.iter() {
+                    visit(cell, region, &p.x, p.weight);
+                }
+            }
+        }
+    }
+
+    /// The slope with which the gap opens at each point of the fronts, `ρ = ∂_n u + (β/h)(u - h) - ∂_n h`.
+    pub fn slope_jump(&self) -> Vec<f64> {
+        let penalty = nitsche_penalty(self.membrane.grid.degree()) / self.membrane.grid.h();
+        let floor = self.membrane.floor.as_ref();
+        self.quadrature
+            .front
+            .iter()
+            .map(|p| {
+                let (u, gradient) = self.evaluate(p.cell, p.free, &p.x).unwrap_or((0.0, Vector::zeros()));
+                let h = floor.map_or(signorini_geometry::Real::constant(0.0), |h| h.jet(&p.x));
+                (gradient - h.gradient).dot(&p.normal) + penalty * (u - h.value)
+            })
+            .collect()
+    }
+
+    /// The flux `T ∂_ν u` out of the membrane at a point of its boundary; zero on a free edge.
+    pub fn support_flux(&self, p: &RimPoint<D>) -> f64 {
+        let Some(support) = &self.membrane.supports[p.piece] else { return 0.0 };
+        if is_free(p.region) {
+            let (u, gradient) = self.evaluate(p.cell, p.region, &p.x).unwrap_or((0.0, Vector::zeros()));
+            nitsche_flux(self.membrane, &p.x, &p.normal, u - support.displacement.value(&p.x), &gradient)
+        } else {
+            // In contact up to the support: the membrane follows the floor.
+            let slope = self.membrane.floor.as_ref().map_or(Vector::zeros(), |h| h.jet(&p.x).gradient);
+            self.membrane.tension.value(&p.x) * slope.dot(&p.normal)
+        }
+    }
+
+    /// The normal derivative, on the fronts, of the field that takes `data` there, vanishes on the supports and is in
+    /// equilibrium without load: the Dirichlet-to-Neumann map, from the factorisation at hand.
+    pub fn normal_derivative_of_extension(&self, data: &[f64]) -> Result<Vec<f64>, SolveError> {
+        let membrane = self.membrane;
+        let penalty = nitsche_penalty(membrane.grid.degree()) / membrane.grid.h();
+        let mut rhs = vec![0.0; self.unknowns.count];
+        let mut t = Tabulation::default();
+        for (p, &value) in self.quadrature.front.iter().zip(data) {
+            if value == 0.0 {
+                continue;
+            }
+            let Some(dofs) = self.unknowns.of(p.cell, p.free) else { continue };
+            tabulate(membrane.grid.basis(), membrane, p.cell, &p.x, &mut t);
+            let w = p.weight * membrane.tension.value(&p.x) * value;
+            for (a, &i) in dofs.iter().enumerate() {
+                rhs[i as usize] += w * (t.gradient[a].dot(&p.normal) + penalty * t.value[a]);
+            }
+        }
+        let z = self.factor.solve(&rhs)?;
+        Ok(self
+            .quadrature
+            .front
+            .iter()
+            .zip(data)
+            .map(|(p, &value)| {
+                let (v, gradient) =
+                    evaluate(membrane, &self.unknowns, &z, p.cell, p.free, &p.x).unwrap_or((0.0, Vector::zeros()));
+                gradient.dot(&p.normal) + penalty * (v - value)
+            })
+            .collect())
+    }
+
+    /// The displacement at a point in any region: the solution where free, the floor in contact, none outside.
+    pub fn displacement<Z: Zone<D>>(&self, zone: &Z, x: &Point<D>) -> Option<f64> {
+        if !self.membrane.contains(x) {
+            return None;
+        }
+        let cell = self.membrane.grid.cell_containing(x);
+        let region = match &self.quadrature.cells[cell] {
+            Cell::Whole(region) => *region,
+            _ => zone.region_at(x),
+        };
+        match contact_index(region) {
+            Some(_) => Some(self.floor_height(x)),
+            None => self.evaluate(cell, region, x).map(|v| v.0),
+        }
+    }
+}
+
+/// The variational flux `T (∂_ν u - (β/h)(u - G))` through a point where the displacement is imposed weakly.
+pub(crate) fn nitsche_flux<const D: usize>(
+    membrane: &Membrane<D>,
+    x: &Point<D>,
+    outward: &Vector<D>,
+    mismatch: f64,
+    gradient: &Vector<D>,
+) -> f64 {
+    let penalty = nitsche_penalty(membrane.grid.degree()) / membrane.grid.h();
+    membrane.tension.value(x) * (gradient.dot(outward) - penalty * mismatch)
+}
+
+/// The linear system of a membrane around a zone, before it is factorised.
+pub(crate) struct System<const D: usize> {
+    pub quadrature: Quadrature<D>,
+    pub unknowns: Unknowns,
+    pub matrix: SymmetricMatrix,
+    pub rhs: Vec<f64>,
+}
+
+impl<const D: usize> System<D> {
+    pub fn assemble<Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z, elements: &Elements<D>) -> Self {
+        let quadrature = Quadrature::new(membrane, zone);
+        let unknowns = number(membrane, &quadrature);
+        let pairs = ghost_pairs(membrane, &quadrature, &unknowns);
+        let mut cliques: Vec<Vec<u32>> = unknowns.cells.iter().flatten().map(|(_, dofs)| dofs.clone()).collect();
+        cliques.extend(pairs.iter().map(|pair| pair.dofs.clone()));
+        let mut matrix = SymmetricMatrix::from_cliques(unknowns.count, &cliques);
+        drop(cliques);
+        let mut rhs = vec![0.0; unknowns.count];
+
+        let imposed = imposed_points(membrane, &quadrature);
+        // Points come cell by cell, so those of one cell form a range.
+        let mut by_cell: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (i, p) in imposed.iter().enumerate() {
+            by_cell.entry(p.cell).or_default().push(i);
+        }
+        for begin in (0..quadrature.cells.len()).step_by(CHUNK) {
+            let end = (begin + CHUNK).min(quadrature.cells.len());
+            let local: Vec<Vec<LocalSystem>> = (begin..end)
+                .into_par_iter()
+                .map(|cell| {
+                    let points = by_cell.get(&cell).map_or(&[][..], Vec::as_slice);
+                    local_systems(membrane, elements, &quadrature, &unknowns, cell, &imposed, points)
+                })
+                .collect();
+            for (cell, systems) in (begin..end).zip(local) {
+                for ((_, dofs), system) in unknowns.cells[cell].iter().zip(systems) {
+                    let Some((local, load)) = system else { continue };
+                    match (&elements.stiffness, local.is_empty()) {
+                        (Some(stiffness), true) => matrix.add(dofs, stiffness, elements.tension_constant.unwrap_or(1.0)),
+                        _ => matrix.add(dofs, &local, 1.0),
+                    }
+                    for (&i, f) in dofs.iter().zip(&load) {
+                        rhs[i as usize] += f;
+                    }
+                }
+            }
+        }
+        let weight = ghost_weight(membrane.grid.degree());
+        for pair in &pairs {
+            matrix.add(&pair.dofs, elements.ghost.matrix(pair.direction), weight * pair.scale);
+        }
+        Self { quadrature, unknowns, matrix, rhs }
+    }
+}
+
+impl Unknowns {
+    pub fn of(&self, cell: usize, region: RegionId) -> Option<&[u32]> {
+        self.cells[cell].iter().find(|(r, _)| *r == region).map(|(_, dofs)| dofs.as_slice())
+    }
+}
+
+fn tabulate<const D: usize>(
+    basis: &TensorBasis<D>,
+    membrane: &Membrane<D>,
+    cell: usize,
+    x: &Point<D>,
+    out: &mut Tabulation<D>,
+) {
+    basis.tabulate(&membrane.grid.local(cell, x), &membrane.grid.cell_size(), out);
+}
+
+fn evaluate<const D: usize>(
+    membrane: &Membrane<D>,
+    unknowns: &Unknowns,
+    u: &[f64],
+    cell: usize,
+    region: RegionId,
+    x: &Point<D>,
+) -> Option<(f64, Vector<D>)> {
+    let dofs = unknowns.of(cell, region)?;
+    let mut t = Tabulation::default();
+    tabulate(membrane.grid.basis(), membrane, cell, x, &mut t);
+    Some(dofs.iter().enumerate().fold((0.0, Vector::zeros()), |(value, gradient), (a, &i)| {
+        let c = u[i as usize];
+        (value + c * t.value[a], gradient + c * t.gradient[a])
+    }))
+}
+
+/// Numbers the unknowns, cell by cell: one for each node and free region.
+fn number<const D: usize>(membrane: &Membrane<D>, quadrature: &Quadrature<D>) -> Unknowns {
+    let mut of_node: BTreeMap<RegionId, Vec<u32>> = BTreeMap::new();
+    let mut count = 0;
+    let mut nodes = Vec::new();
+    let cells = (0..quadrature.cells.len())
+        .map(|cell| {
+            let regions = quadrature.regions(cell).into_iter().filter(|r| is_free(*r));
+            regions
+                .map(|region| {
+                    membrane.grid.cell_nodes(cell, &mut nodes);
+                    let numbers = of_node.entry(region).or_insert_with(|| vec![u32::MAX; membrane.grid.node_count()]);
+                    let dofs = nodes.iter().map(|&node| {
+                        let number = &mut numbers[node as usize];
+                        if *number == u32::MAX {
+                            *number = count as u32;
+                            count += 1;
+                        }
+                        *number
+                    });
+                    (region, dofs.collect())
+                })
+                .collect()
+        })
+        .collect();
+    Unknowns { cells, count }
+}
+
+/// Two neighbouring cells whose polynomials a ghost penalty holds together.
+struct GhostPair {
+    direction: usize,
+    dofs: Vec<u32>,
+    scale: f64,
+}
+
+fn ghost_pairs<const D: usize>(
+    membrane: &Membrane<D>,
+    quadrature: &Quadrature<D>,
+    unknowns: &Unknowns,
+) -> Vec<GhostPair> {
+    let mut pairs = Vec::new();
+    let is_cut = |cell: usize| matches!(quadrature.cells[cell], Cell::Cut(_));
+    for lower in 0..quadrature.cells.len() {
+        for direction in 0..D {
+            let Some(upper) = membrane.grid.upper_neighbour(lower, direction) else { continue };
+            if !is_cut(lower) && !is_cut(upper) {
+                continue;
+            }
+            for (region, dofs) in &unknowns.cells[lower] {
+                let Some(others) = unknowns.of(upper, *region) else { continue };
+                // The coefficients where the region is; outside the membrane they may not be defined.
+                let x = [lower, upper]
+                    .iter()
+                    .find_map(|&cell| match &quadrature.cells[cell] {
+                        Cell::Whole(_) => Some(membrane.grid.cell_box(cell).center()),
+                        Cell::Cut(rule) => rule.volume(*region).first().map(|p| p.x),
+                        Cell::Outside => None,
+                    })
+                    .unwrap_or_else(|| membrane.grid.cell_box(lower).center());
+                let scale = membrane.tension.value(&x) * membrane.measure.weight(&x);
+                pairs.push(GhostPair { direction, dofs: [dofs.as_slice(), others].concat(), scale });
+            }
+        }
+    }
+    pairs
+}
+
+/// Where the displacement is imposed: on the fronts by the floor, on supported boundary by the support.
+fn imposed_points<const D: usize>(membrane: &Membrane<D>, quadrature: &Quadrature<D>) -> Vec<Imposed<D>> {
+    let fronts = quadrature.front.iter().map(|p| Imposed {
+        cell: p.cell,
+        region: p.free,
+        x: p.x,
+        weight: p.weight,
+        outward: -p.normal,
+        value: membrane.floor.as_ref().map_or(0.0, |h| h.value(&p.x)),
+    });
+    let rim = quadrature.rim.iter().filter(|p| is_free(p.region)).filter_map(|p| {
+        let support = membrane.supports[p.piece].as_ref()?;
+        let value = support.displacement.value(&p.x);
+        Some(Imposed { cell: p.cell, region: p.region, x: p.x, weight: p.weight, outward: p.normal, value })
+    });
+    fronts.chain(rim).collect()
+}
+
+/// The systems of a cell's regions. The matrix is left empty where it is that of an undivided cell.
+fn local_systems<const D: usize>(
+    membrane: &Membrane<D>,
+    elements: &Elements<D>,
+    quadrature: &Quadrature<D>,
+    unknowns: &Unknowns,
+    cell: usize,
+    imposed: &[Imposed<D>],
+    points: &[usize],
+) -> Vec<LocalSystem> {
+    let basis = membrane.grid.basis();
+    let n = basis.len();
+    let mut scratch = Tabulation::default();
+    let whole = matches!(quadrature.cells[cell], Cell::Whole(_));
+    let plain = whole && points.is_empty() && elements.stiffness.is_some();
+    let volumes = quadrature.volumes(membrane, cell, &elements.whole_rule);
+    unknowns.cells[cell]
+        .iter()
+        .map(|(region, _)| {
+            let mut matrix = if plain { Vec::new() } else { vec![0.0; n * n] };
+            let mut load = vec![0.0; n];
+            for (_, rule) in volumes.iter().filter(|(r, _)| r == region) {
+                for (i, p) in rule.iter().enumerate() {
+                    let t = if whole {
+                        &elements.tabulated[i]
+                    } else {
+                        tabulate(basis, membrane, cell, &p.x, &mut scratch);
+                        &scratch
+                    };
+                    if !plain {
+                        add_stiffness(&mut matrix, t, p.weight * membrane.tension.value(&p.x));
+                    }
+                    let f = p.weight * membrane.load.value(&p.x);
+                    for (l, v) in load.iter_mut().zip(&t.value) {
+                        *l += f * v;
+                    }
+                }
+            }
+            for p in points.iter().map(|&i| &imposed[i]).filter(|p| p.region == *region) {
+                tabulate(basis, membrane, cell, &p.x, &mut scratch);
+                let penalty = nitsche_penalty(basis.degree()) / membrane.grid.h();
+                let w = p.weight * membrane.tension.value(&p.x);
+                let flux: Vec<f64> = scratch.gradient.iter().map(|g| g.dot(&p.outward)).collect();
+                for a in 0..n {
+                    for b in 0..n {
+                        matrix[a * n + b] += w
+                            * (penalty * scratch.value[a] * scratch.value[b]
+                                - flux[a] * scratch.value[b]
+                                - flux[b] * scratch.value[a]);
+                    }
+                    load[a] += w * p.value * (penalty * scratch.value[a] - flux[a]);
+                }
+            }
+            Some((matrix, load))
+        })
+        .collect()
+}

@@ -1,0 +1,214 @@
+//! The slope jump on the fronts, and the Newton step that drives it to zero.
+
+use crate::equilibrium::Equilibrium;
+use crate::problem::Membrane;
+use crate::scales::Scales;
+use crate::zone::{FrontFrame, ModeSpace, Zone};
+use signorini_geometry::Real;
+use signorini_solve::{SolveError, dense};
+
+/// A floor pressure below this fraction of the reference pressure does not steer a local step any more.
+const WEAK_PRESSURE: f64 = 0.02;
+/// A local step longer than this fraction of the grid's resolution gives way to one with the response of the membrane.
+const LOCAL_REACH: f64 = 0.6;
+
+/// The fronts of a state: slope jump, floor pressure and tension at every quadrature point.
+pub struct Fronts<'a, const D: usize> {
+    equilibrium: &'a Equilibrium<'a, D>,
+    /// `ρ`: positive where the floor would have to pull, negative where the membrane penetrates.
+    pub slope_jump: Vec<f64>,
+    pub pressure: Vec<f64>,
+    tension: Vec<f64>,
+    /// `∂_n T`.
+    tension_slope: Vec<f64>,
+}
+
+/// The slope jump in a space of modes.
+pub struct Projection {
+    /// `‖P ρ‖` over the fronts: what the modes can still drive to zero.
+    pub norm: f64,
+    /// `‖ρ - P ρ‖`: what they cannot.
+    pub remainder: f64,
+}
+
+/// A proposed displacement of the fronts.
+pub struct Step {
+    pub space: ModeSpace,
+    pub coefficients: Vec<f64>,
+    pub action: &'static str,
+}
+
+impl<'a, const D: usize> Fronts<'a, D> {
+    pub fn new(equilibrium: &'a Equilibrium<'a, D>) -> Self {
+        let membrane: &Membrane<D> = equilibrium.membrane;
+        let points = &equilibrium.quadrature.front;
+        let floor = membrane.floor.as_ref();
+        let tension: Vec<_> = points.iter().map(|p| membrane.tension.jet(&p.x)).collect();
+        Self {
+            slope_jump: equilibrium.slope_jump(),
+            pressure: points.iter().map(|p| floor.map_or(0.0, |h| membrane.floor_pressure(h, &p.x))).collect(),
+            tension_slope: tension.iter().zip(points).map(|(t, p)| t.gradient.dot(&p.normal)).collect(),
+            tension: tension.iter().map(|t| t.value()).collect(),
+            equilibrium,
+        }
+    }
+
+    fn weights(&self) -> impl Iterator<Item = f64> + '_ {
+        self.equilibrium.quadrature.front.iter().map(|p| p.weight)
+    }
+
+    fn frames<Z: Zone<D>>(&self, zone: &Z, space: ModeSpace) -> Vec<FrontFrame> {
+        self.equilibrium.quadrature.front.iter().map(|p| zone.frame(p.front, &p.x, space)).collect()
+    }
+
+    /// The matrix `∫ c w_m ω_n` and the vector `∫ f ω_n`, row-major.
+    fn galerkin(&self, frames: &[FrontFrame], n: usize, c: &[f64], f: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let (mut matrix, mut vector) = (vec![0.0; n * n], vec![0.0; n]);
+        for (((frame, w), c), f) in frames.iter().zip(self.weights()).zip(c).zip(f) {
+            for &(i, vi) in &frame.modes {
+                vector[i] += w * f * vi;
+                for &(j, vj) in &frame.modes {
+                    matrix[i * n + j] += w * c * vi * vj;
+                }
+            }
+        }
+        (matrix, vector)
+    }
+
+    /// Stiffness for modes that live, wholly or in part, beyond the membrane, where nothing else determines them.
+    fn hold_modes_outside<Z: Zone<D>>(&self, zone: &Z, space: ModeSpace, matrix: &mut [f64], scale: f64) {
+        let offsets = zone.mode_offsets(space);
+        let n = offsets[zone.front_count()];
+        let h = self.equilibrium.membrane.grid.h();
+        let diagonal = (0..n).map(|i| matrix[i * n + i]).fold(0.0, f64::max);
+        for front in 0..zone.front_count() {
+            let weakest = (offsets[front]..offsets[front + 1]).map(|i| matrix[i * n + i]).fold(f64::INFINITY, f64::min);
+            if weakest < 1e-3 * diagonal {
+                zone.add_stiffness(space, front, 1e-3 * scale * h * h, matrix);
+                for i in offsets[front]..offsets[front + 1] {
+                    matrix[i * n + i] += 1e-10 * diagonal.max(f64::MIN_POSITIVE);
+                }
+            }
+        }
+    }
+
+    /// Splits the slope jump into what the modes see and what they do not.
+    pub fn project<Z: Zone<D>>(&self, zone: &Z, space: ModeSpace) -> Projection {
+        let n = zone.mode_offsets(space)[zone.front_count()];
+        let frames = self.frames(zone, space);
+        let ones = vec![1.0; frames.len()];
+        let (mut mass, b) = self.galerkin(&frames, n, &ones, &self.slope_jump);
+        self.hold_modes_outside(zone, space, &mut mass, 1.0);
+        let square: f64 = self.weights().zip(&self.slope_jump).map(|(w, r)| w * r * r).sum();
+        let seen = dense::solve(&mass, &b).map_or(square, |c| c.iter().zip(&b).map(|(c, b)| c * b).sum::<f64>());
+        Projection { norm: seen.max(0.0).sqrt(), remainder: (square - seen).max(0.0).sqrt() }
+    }
+
+    /// The fewest modes that see the better part of the slope jump.
+    fn leading_space<Z: Zone<D>>(&self, zone: &Z) -> ModeSpace {
+        let fine = zone.mode_offsets(ModeSpace::Fine)[zone.front_count()];
+        (3..)
+            .map(|k| ModeSpace::Coarse(1 << k))
+            .take_while(|&space| zone.mode_offsets(space)[zone.front_count()] < fine)
+            .find(|&space| {
+                let p = self.project(zone, space);
+                p.remainder < p.norm
+            })
+            .unwrap_or(ModeSpace::Fine)
+    }
+
+    /// The rate of change `ρ°` of the slope jump at the points of a front that moves with the normal speed `w`:
+    ///
+    /// `ρ°[w] = Λ_T(ρ w) - κ ρ w - (∂_n T / T) ρ w + (p / T) w`
+    ///
+    /// with the Dirichlet-to-Neumann map `Λ_T` of the free membrane.
+    pub fn slope_jump_rate<Z: Zone<D>>(&self, zone: &Z, speed: &[f64]) -> Result<Vec<f64>, SolveError> {
+        let data: Vec<f64> = self.slope_jump.iter().zip(speed).map(|(r, w)| -r * w).collect();
+        let response = self.equilibrium.normal_derivative_of_extension(&data)?;
+        let points = &self.equilibrium.quadrature.front;
+        Ok((0..points.len())
+            .map(|i| {
+                let p = &points[i];
+                let kappa = zone.frame(p.front, &p.x, ModeSpace::Fine).curvature
+                    + self.equilibrium.membrane.measure.curvature(&p.x, p.normal[0]);
+                let rho = self.slope_jump[i];
+                response[i]
+                    + speed[i] * (self.pressure[i] / self.tension[i] - rho * (kappa + self.tension_slope[i] / self.tension[i]))
+            })
+            .collect())
+    }
+
+    /// The Newton step on the shape.
+    ///
+    /// Near the solution only the local part of the derivative survives, `ρ° → (p/T) w`, and the step costs no solve.
+    /// Far from it, where the zone is too large by more than the grid resolves, the response of the membrane is kept,
+    /// in a few modes per front: one solve each with the factorisation at hand. Where the zone is too small (`ρ < 0`)
+    /// the response would take away the sign of the operator in short waves, and is left out.
+    pub fn newton_step<Z: Zone<D>>(&self, zone: &Z, scales: &Scales) -> Result<Step, SolveError> {
+        let floor_pressure = |p: f64| p.max(WEAK_PRESSURE * scales.pressure);
+        let local: Vec<f64> = self.pressure.iter().zip(&self.tension).map(|(p, t)| floor_pressure(*p) / t).collect();
+        let longest = self.slope_jump.iter().zip(&local).map(|(r, l)| r / l).fold(0.0, f64::max);
+        let far = longest > LOCAL_REACH * self.equilibrium.membrane.grid.h();
+        let space = self.leading_space(zone);
+        let n = zone.mode_offsets(space)[zone.front_count()];
+        let frames = self.frames(zone, space);
+        let (mut matrix, mut b) = self.galerkin(&frames, n, &local, &self.slope_jump);
+        let action = if far { "full step" } else { "local step" };
+        if far {
+            self.add_response(zone, space, &frames, n, &mut matrix)?;
+        }
+        self.hold_modes_outside(zone, space, &mut matrix, scales.pressure / scales.tension);
+        for v in &mut b {
+            *v = -*v;
+        }
+        // The matrix is the sum of a positive mass and a positive response; only a front without points is singular.
+        let coefficients = dense::solve(&matrix, &b).unwrap_or_else(|| vec![0.0; n]);
+        Ok(Step { space, coefficients, action })
+    }
+
+    /// Adds `∫ Λ_T(ρ⁺ w_m) ω_n`, and for fronts on which it stays safely positive `-∫ κ ρ⁺ w_m ω_n`.
+    fn add_response<Z: Zone<D>>(
+        &self,
+        zone: &Z,
+        space: ModeSpace,
+        frames: &[FrontFrame],
+        n: usize,
+        matrix: &mut [f64],
+    ) -> Result<(), SolveError> {
+        let points = &self.equilibrium.quadrature.front;
+        let positive: Vec<f64> = self.slope_jump.iter().map(|r| r.max(0.0)).collect();
+        let mut curvature_part = vec![0.0; n * n];
+        for mode in 0..n {
+            let speed: Vec<f64> = frames
+                .iter()
+                .map(|f| f.modes.iter().filter(|(i, _)| *i == mode).map(|(_, v)| v).sum::<f64>())
+                .collect();
+            let data: Vec<f64> = positive.iter().zip(&speed).map(|(r, w)| -r * w).collect();
+            if data.iter().all(|v| *v == 0.0) {
+                continue;
+            }
+            let response = self.equilibrium.normal_derivative_of_extension(&data)?;
+            for (i, p) in points.iter().enumerate() {
+                let kappa = frames[i].curvature + self.equilibrium.membrane.measure.curvature(&p.x, p.normal[0]);
+                for &(row, v) in &frames[i].modes {
+                    matrix[row * n + mode] += p.weight * v * response[i];
+                    curvature_part[row * n + mode] -= p.weight * v * kappa * positive[i] * speed[i];
+                }
+            }
+        }
+        let offsets = zone.mode_offsets(space);
+        for front in 0..zone.front_count() {
+            let range = offsets[front]..offsets[front + 1];
+            let mean = |m: &[f64]| range.clone().flat_map(|i| range.clone().map(move |j| (i, j))).map(|(i, j)| m[i * n + j]).sum::<f64>();
+            let (whole, part) = (mean(matrix), mean(&curvature_part));
+            if whole + part > 0.5 * whole {
+                for i in range.clone() {
+                    for j in range.clone() {
+                        matrix[i * n + j] += curvature_part[i * n + j];
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,173 @@
+//! Contact zones in one dimension: intervals.
+
+use crate::zone::{Advance, FrontFrame, FrontsInCell, ModeSpace, Zone, contact, free};
+use signorini_fem::Grid;
+use signorini_fem::cut::RegionId;
+use signorini_geometry::{Aabb, ImplicitShape, Point, Vector};
+
+/// Disjoint intervals in ascending order. An end beyond the membrane is not a front: there the zone reaches the end.
+#[derive(Clone, Debug)]
+pub struct LineZone {
+    pub intervals: Vec<[f64; 2]>,
+    grid: Grid<1>,
+}
+
+/// The signed distance to an end of an interval.
+struct End {
+    at: f64,
+    normal: f64,
+}
+
+impl ImplicitShape<1> for End {
+    fn value(&self, x: &Point<1>) -> f64 {
+        self.normal * (x[0] - self.at)
+    }
+    fn gradient(&self, _: &Point<1>) -> Vector<1> {
+        Vector::<1>::new(self.normal)
+    }
+}
+
+impl LineZone {
+    pub fn new(grid: &Grid<1>, mut intervals: Vec<[f64; 2]>) -> Self {
+        intervals.retain(|[a, b]| b > a);
+        intervals.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let mut merged: Vec<[f64; 2]> = Vec::new();
+        for [a, b] in intervals {
+            match merged.last_mut() {
+                Some(last) if a <= last[1] => last[1] = last[1].max(b),
+                _ => merged.push([a, b]),
+            }
+        }
+        Self { intervals: merged, grid: grid.clone() }
+    }
+
+    /// Front `2 i` is the left end of interval `i`, front `2 i + 1` its right end.
+    fn end(&self, front: usize) -> End {
+        End { at: self.intervals[front / 2][front % 2], normal: if front % 2 == 0 { -1.0 } else { 1.0 } }
+    }
+
+    fn bounds(&self) -> &Aabb<1> {
+        self.grid.bounds()
+    }
+
+    /// The intervals where a sampled function is negative, reaching beyond the ends where it is negative there.
+    fn where_negative(grid: &Grid<1>, f: &mut dyn FnMut(&Point<1>) -> f64) -> Vec<[f64; 2]> {
+        let (a, length) = (grid.bounds().min[0], grid.bounds().size()[0]);
+        let n = grid.cells()[0] * 8 * grid.degree();
+        let at = |i: usize| a + length * i as f64 / n as f64;
+        let values: Vec<f64> = (0..=n).map(|i| f(&Point::<1>::new(at(i)))).collect();
+        let mut found = Vec::new();
+        let mut begin = (values[0] < 0.0).then_some(a - length);
+        for i in 0..n {
+            let crossing = at(i) + (at(i + 1) - at(i)) * values[i] / (values[i] - values[i + 1]);
+            match (values[i] < 0.0, values[i + 1] < 0.0) {
+                (false, true) => begin = Some(crossing),
+                (true, false) => found.extend(begin.take().map(|b| [b, crossing])),
+                _ => {}
+            }
+        }
+        found.extend(begin.map(|b| [b, a + 2.0 * length]));
+        found
+    }
+
+    fn region_of(&self, x: f64) -> RegionId {
+        match self.intervals.iter().position(|[a, b]| (*a..*b).contains(&x)) {
+            Some(k) => contact(k),
+            None => free(self.intervals.iter().filter(|i| i[1] <= x).count()),
+        }
+    }
+}
+
+impl Zone<1> for LineZone {
+    fn empty(grid: &Grid<1>) -> Self {
+        Self::new(grid, Vec::new())
+    }
+    fn is_empty(&self) -> bool {
+        self.intervals.is_empty()
+    }
+    fn counts(&self) -> (usize, usize) {
+        (self.intervals.len(), 0)
+    }
+    fn holes_of(&self, _: usize) -> usize {
+        0
+    }
+
+    fn fronts_in_cell(&self, cell: usize) -> FrontsInCell<'_, 1> {
+        let b = self.grid.cell_box(cell);
+        let near: Vec<usize> = (0..self.front_count())
+            .filter(|&i| {
+                let at = self.end(i).at;
+                at >= b.min[0] && at <= b.max[0]
+            })
+            .collect();
+        let ends: Vec<f64> = near.iter().map(|&i| self.end(i).at).collect();
+        let normals: Vec<f64> = near.iter().map(|&i| self.end(i).normal).collect();
+        let center = b.center()[0];
+        FrontsInCell {
+            sheets: near.iter().map(|&i| Box::new(self.end(i)) as Box<dyn ImplicitShape<1>>).collect(),
+            features: Vec::new(),
+            region: Box::new(move |values| {
+                // The position follows from the distance to any of the ends.
+                self.region_of(ends.first().map_or(center, |at| at + normals[0] * values[0]))
+            }),
+            fronts: near,
+        }
+    }
+
+    fn frame(&self, front: usize, _: &Point<1>, _: ModeSpace) -> FrontFrame {
+        FrontFrame { curvature: 0.0, modes: vec![(front, 1.0)] }
+    }
+    fn front_count(&self) -> usize {
+        2 * self.intervals.len()
+    }
+    fn mode_offsets(&self, _: ModeSpace) -> Vec<usize> {
+        (0..=self.front_count()).collect()
+    }
+    fn add_stiffness(&self, _: ModeSpace, front: usize, weight: f64, matrix: &mut [f64]) {
+        // A point has no length; an end beyond the membrane stays where it is.
+        let n = self.front_count();
+        matrix[front * n + front] += weight;
+    }
+
+    fn advanced(&self, grid: &Grid<1>, _: ModeSpace, step: &[f64], reach: f64) -> Advance<Self> {
+        let step = |front: usize| step[front].clamp(-reach, reach);
+        let moved = self.intervals.iter().enumerate().map(|(i, [a, b])| [a - step(2 * i), b + step(2 * i + 1)]).collect();
+        let zone = Self::new(grid, moved);
+        Advance { topology_changed: zone.intervals.len() != self.intervals.len(), zone }
+    }
+
+    fn united(&self, grid: &Grid<1>, f: &mut dyn FnMut(&Point<1>) -> f64) -> Self {
+        let mut all = self.intervals.clone();
+        all.extend(Self::where_negative(grid, f));
+        Self::new(grid, all)
+    }
+    fn reduced(&self, grid: &Grid<1>, f: &mut dyn FnMut(&Point<1>) -> f64) -> Self {
+        let holes = Self::where_negative(grid, f);
+        let mut left = self.intervals.clone();
+        for [c, d] in holes {
+            left = left.iter().flat_map(|&[a, b]| [[a, b.min(c)], [a.max(d), b]]).filter(|[a, b]| b > a).collect();
+        }
+        Self::new(grid, left)
+    }
+    fn seeded(&self, grid: &Grid<1>, x: &Point<1>, radius: f64) -> Self {
+        let mut all = self.intervals.clone();
+        all.push([x[0] - radius, x[0] + radius]);
+        Self::new(grid, all)
+    }
+    fn distance(&self, x: &Point<1>) -> f64 {
+        (0..self.front_count()).map(|i| (self.end(i).at - x[0]).abs()).fold(f64::INFINITY, f64::min)
+    }
+    fn region_at(&self, x: &Point<1>) -> RegionId {
+        self.region_of(x[0])
+    }
+    fn sharpest(&self) -> f64 {
+        let shortest = self.intervals.iter().map(|[a, b]| b - a).fold(f64::INFINITY, f64::min);
+        2.0 / shortest
+    }
+    fn outlines(&self) -> Vec<Vec<Point<1>>> {
+        self.intervals
+            .iter()
+            .map(|i| i.iter().map(|&x| self.bounds().clamp(&Point::<1>::new(x))).collect())
+            .collect()
+    }
+}

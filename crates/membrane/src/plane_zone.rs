@@ -1,0 +1,438 @@
+//! Contact zones in the plane, bounded by smooth closed fronts.
+
+use crate::raster::Raster;
+use crate::zone::{Advance, FrontFrame, FrontsInCell, ModeSpace, Zone, contact, free};
+use signorini_fem::Grid;
+use signorini_fem::cut::RegionId;
+use signorini_geometry::{Aabb, ClosedCurve, CurvePoint, ImplicitShape, PeriodicBasis, Point, Vector, polygon};
+
+/// Fewest knots of a front.
+const FEWEST_KNOTS: usize = 8;
+/// Knots of a circle that is put where penetration is too small for the raster.
+const SEED_KNOTS: usize = 16;
+/// A front that encloses less than this multiple of `h²` after a step has collapsed.
+const COLLAPSED: f64 = 0.01;
+/// A step may not bring a front nearer to its centre of curvature than this fraction of its radius of curvature.
+const FOLD: f64 = 0.3;
+
+/// Zones bounded by closed curves: outer fronts run counter-clockwise, the rims of holes clockwise.
+#[derive(Clone, Debug)]
+pub struct PlaneZone {
+    curves: Vec<ClosedCurve>,
+    grid: Grid<2>,
+    /// Absolute areas: of the curves round a point, the smallest decides where it lies.
+    areas: Vec<f64>,
+    hole: Vec<bool>,
+    /// For each curve, its number among the outer fronts or among the holes.
+    number: Vec<usize>,
+    /// For each cell, pairs of curve and sample in or next to it.
+    near: Vec<Vec<(u32, u32)>>,
+    /// For each cell, the curves round its centre.
+    around: Vec<Vec<u32>>,
+}
+
+/// The signed distance to one front near a cell.
+struct FrontSheet<'a> {
+    curve: &'a ClosedCurve,
+    seeds: Vec<usize>,
+}
+
+impl FrontSheet<'_> {
+    fn foot(&self, x: &Point<2>) -> (f64, CurvePoint) {
+        self.curve.signed_distance(x, self.seeds.iter().copied())
+    }
+}
+
+impl ImplicitShape<2> for FrontSheet<'_> {
+    fn value(&self, x: &Point<2>) -> f64 {
+        self.foot(x).0
+    }
+    fn gradient(&self, x: &Point<2>) -> Vector<2> {
+        self.foot(x).1.normal
+    }
+}
+
+impl PlaneZone {
+    /// The zone bounded by the given curves, which neither cross each other nor themselves.
+    pub fn new(grid: &Grid<2>, curves: Vec<ClosedCurve>) -> Self {
+        let areas: Vec<f64> = curves.iter().map(|c| polygon::signed_area(c.samples())).collect();
+        let hole: Vec<bool> = areas.iter().map(|a| *a < 0.0).collect();
+        let mut counts = [0, 0];
+        let number = hole
+            .iter()
+            .map(|&h| {
+                counts[usize::from(h)] += 1;
+                counts[usize::from(h)] - 1
+            })
+            .collect();
+        let near = cells_near(grid, &curves);
+        let around = cells_around(grid, &curves);
+        Self { areas: areas.iter().map(|a| a.abs()).collect(), hole, number, near, around, curves, grid: grid.clone() }
+    }
+
+    pub fn curves(&self) -> &[ClosedCurve] {
+        &self.curves
+    }
+
+    /// Whether a curve is the rim of a hole.
+    pub fn is_hole(&self, curve: usize) -> bool {
+        self.hole[curve]
+    }
+
+    /// Degree of the front for a grid: `2 p + 1`, so that the geometry is as accurate as the slope jump, and at least 7,
+    /// so that a few knots suffice for a round front.
+    pub fn front_degree(grid: &Grid<2>) -> usize {
+        (2 * grid.degree() + 1).max(7)
+    }
+
+    /// As many knots as the slope jump can tell apart modes on a front of the given length. The front lives in the
+    /// space of its modes: what they do not see they could not smooth either.
+    fn knots(grid: &Grid<2>, length: f64) -> usize {
+        let spacing = match grid.degree() {
+            1 => std::env::var("S1").map_or(5.0, |v| v.parse().unwrap()),
+            2 => std::env::var("S2").map_or(2.5, |v| v.parse().unwrap()),
+            3 => std::env::var("S2").map_or(2.0, |v| v.parse().unwrap()),
+            _ => std::env::var("SP").map_or(1.5, |v| v.parse().unwrap()),
+        };
+        FEWEST_KNOTS.max((length / (spacing * grid.h())).ceil() as usize)
+    }
+
+    fn modes(&self, front: usize, space: ModeSpace) -> PeriodicBasis {
+        let curve = &self.curves[front];
+        match space {
+            ModeSpace::Coarse(count) if count < curve.knots() => PeriodicBasis { degree: 3, count },
+            _ => PeriodicBasis { degree: curve.degree(), count: curve.knots() },
+        }
+    }
+
+    fn seeds(&self, cell: usize, curve: usize) -> Vec<usize> {
+        self.near[cell].iter().filter(|(c, _)| *c as usize == curve).map(|(_, s)| *s as usize).collect()
+    }
+
+    fn curves_near(&self, cell: usize) -> Vec<usize> {
+        let mut found: Vec<usize> = self.near[cell].iter().map(|(c, _)| *c as usize).collect();
+        found.dedup();
+        found
+    }
+
+    /// The region inside the smallest of the curves that enclose a point.
+    fn region_within(&self, enclosing: impl Iterator<Item = usize>) -> RegionId {
+        match enclosing.min_by(|&a, &b| self.areas[a].total_cmp(&self.areas[b])) {
+            None => free(0),
+            Some(c) if self.hole[c] => free(1 + self.number[c]),
+            Some(c) => contact(self.number[c]),
+        }
+    }
+
+    /// Whether a signed distance to a curve means that the curve encloses the point.
+    fn encloses(&self, curve: usize, signed_distance: f64) -> bool {
+        (signed_distance < 0.0) != self.hole[curve]
+    }
+
+    /// Displacement of a front by coefficients of the modes, as a function of its parameter.
+    fn displacement<'a>(&self, front: usize, space: ModeSpace, step: &'a [f64]) -> impl Fn(f64) -> f64 + use<'a> {
+        let basis = self.modes(front, space);
+        let offset = self.mode_offsets(space)[front];
+        move |s| {
+            let b = basis.bumps(s);
+            (0..b.len).map(|i| b.value[i] * step[offset + basis.index(&b, i)]).sum()
+        }
+    }
+
+    /// The fronts moved by `step` on the same parameter, without any check: for derivatives with respect to the shape.
+    pub fn displaced(&self, space: ModeSpace, step: &[f64]) -> Self {
+        let curves = self
+            .curves
+            .iter()
+            .enumerate()
+            .map(|(i, c)| {
+                let w = self.displacement(i, space, step);
+                c.offset(4 * c.knots(), |p| w(p.s))
+            })
+            .collect();
+        Self::new(&self.grid, curves)
+    }
+
+    /// Whether the curves are simple, apart, and alternate between fronts and holes from the outside in.
+    fn is_valid(curves: &[ClosedCurve]) -> bool {
+        let boxes: Vec<Aabb<2>> = curves.iter().map(|c| bounding_box(c.samples())).collect();
+        let simple = |c: &ClosedCurve| polygon::self_crossing(c.samples()).is_none();
+        curves.iter().all(simple)
+            && curves.iter().enumerate().all(|(i, a)| {
+                let mut depth = 0;
+                for (j, b) in curves.iter().enumerate() {
+                    if i == j || (0..2).any(|k| boxes[i].max[k] < boxes[j].min[k] || boxes[j].max[k] < boxes[i].min[k]) {
+                        continue;
+                    }
+                    let mut inside = a.samples().iter().map(|x| polygon::winding_number(b.samples(), x));
+                    let first = inside.next().unwrap_or(0);
+                    if inside.any(|w| w != first) {
+                        return false;
+                    }
+                    depth += first;
+                }
+                depth == i32::from(a.is_hole())
+            })
+    }
+
+    /// The zone enclosed by outlines found on a raster; outlines too small to hold a front are dropped.
+    fn from_outlines(grid: &Grid<2>, mut kept: Vec<ClosedCurve>, outlines: &[Vec<Point<2>>], least: f64) -> Self {
+        for outline in outlines.iter().filter(|o| polygon::signed_area(o).abs() > least * grid.h().powi(2)) {
+            let knots = Self::knots(grid, polygon::perimeter(outline));
+            kept.push(ClosedCurve::along(outline, Self::front_degree(grid), knots));
+        }
+        Self::new(grid, kept)
+    }
+
+    /// Joins the raster of a function to the zone by `combine`, or adds its outlines as curves of their own where they
+    /// keep clear of the fronts.
+    fn combined(
+        &self,
+        grid: &Grid<2>,
+        f: &mut dyn FnMut(&Point<2>) -> f64,
+        reverse: bool,
+        combine: fn(f64, f64) -> f64,
+    ) -> Self {
+        let other = Raster::of_function(grid, f);
+        let mut outlines = other.outlines();
+        if reverse {
+            for outline in &mut outlines {
+                outline.reverse();
+            }
+        }
+        let clear = outlines.iter().flatten().all(|x| {
+            self.curves.iter().flat_map(|c| c.samples()).all(|y| (x - y).norm() > 0.75 * grid.h())
+        });
+        if clear {
+            let zone = Self::from_outlines(grid, self.curves.clone(), &outlines, 1e-3);
+            if Self::is_valid(&zone.curves) {
+                return zone;
+            }
+        }
+        let mut raster = Raster::of_curves(grid, &self.curves);
+        raster.combine(&other, combine);
+        Self::from_outlines(grid, Vec::new(), &raster.outlines(), COLLAPSED)
+    }
+}
+
+impl Zone<2> for PlaneZone {
+    fn empty(grid: &Grid<2>) -> Self {
+        Self::new(grid, Vec::new())
+    }
+    fn is_empty(&self) -> bool {
+        self.curves.is_empty()
+    }
+    fn counts(&self) -> (usize, usize) {
+        let holes = self.hole.iter().filter(|h| **h).count();
+        (self.curves.len() - holes, holes)
+    }
+    fn holes_of(&self, zone: usize) -> usize {
+        (0..self.curves.len())
+            .filter(|&i| self.hole[i])
+            .filter(|&i| {
+                let x = &self.curves[i].samples()[0];
+                let around = (0..self.curves.len()).filter(|&j| {
+                    j != i && polygon::winding_number(self.curves[j].samples(), x) != 0
+                });
+                self.region_within(around) == contact(zone)
+            })
+            .count()
+    }
+
+    fn fronts_in_cell(&self, cell: usize) -> FrontsInCell<'_, 2> {
+        let b = self.grid.cell_box(cell);
+        let near = self.curves_near(cell);
+        let mut far: Vec<usize> = self.around[cell].iter().map(|&c| c as usize).filter(|c| !near.contains(c)).collect();
+        let mut found = FrontsInCell { sheets: vec![], fronts: vec![], features: vec![], region: Box::new(|_| 0) };
+        for c in near {
+            let sheet = FrontSheet { curve: &self.curves[c], seeds: self.seeds(cell, c) };
+            let distance = sheet.value(&b.center());
+            if distance.abs() > b.radius() {
+                if self.encloses(c, distance) {
+                    far.push(c);
+                }
+                continue;
+            }
+            let own = bounding_box(self.curves[c].samples());
+            if (0..2).all(|k| own.min[k] > b.min[k] && own.max[k] < b.max[k]) {
+                found.features.push(own.center());
+            }
+            found.sheets.push(Box::new(sheet));
+            found.fronts.push(c);
+        }
+        let fronts = found.fronts.clone();
+        found.region = Box::new(move |values| {
+            let close = fronts.iter().zip(values).filter(|&(&c, &v)| self.encloses(c, v)).map(|(&c, _)| c);
+            self.region_within(far.iter().copied().chain(close))
+        });
+        found
+    }
+
+    fn frame(&self, front: usize, x: &Point<2>, space: ModeSpace) -> FrontFrame {
+        let seeds = self.seeds(self.grid.cell_containing(x), front);
+        let foot = match seeds.is_empty() {
+            true => self.curves[front].closest(x, 0..self.curves[front].samples().len()),
+            false => self.curves[front].closest(x, seeds.into_iter()),
+        };
+        let basis = self.modes(front, space);
+        let offset = self.mode_offsets(space)[front];
+        let b = basis.bumps(foot.s);
+        // Few modes meet themselves round the curve: their bumps are added up.
+        let mut modes: Vec<(usize, f64)> = Vec::with_capacity(b.len);
+        for i in 0..b.len {
+            let mode = offset + basis.index(&b, i);
+            match modes.iter_mut().find(|(m, _)| *m == mode) {
+                Some((_, v)) => *v += b.value[i],
+                None => modes.push((mode, b.value[i])),
+            }
+        }
+        FrontFrame { curvature: foot.curvature, modes }
+    }
+    fn front_count(&self) -> usize {
+        self.curves.len()
+    }
+    fn mode_offsets(&self, space: ModeSpace) -> Vec<usize> {
+        let mut offsets = vec![0];
+        for i in 0..self.curves.len() {
+            offsets.push(offsets[i] + self.modes(i, space).count);
+        }
+        offsets
+    }
+    fn add_stiffness(&self, space: ModeSpace, front: usize, weight: f64, matrix: &mut [f64]) {
+        let offsets = self.mode_offsets(space);
+        let (basis, offset, n) = (self.modes(front, space), offsets[front], offsets[self.curves.len()]);
+        let curve = &self.curves[front];
+        let points = curve.samples().len();
+        for k in 0..points {
+            let s = curve.sample_parameter(k);
+            let b = basis.bumps(s);
+            let speed = curve.point(s).speed;
+            for i in 0..b.len {
+                for j in 0..b.len {
+                    let at = (offset + basis.index(&b, i)) * n + offset + basis.index(&b, j);
+                    matrix[at] += weight * b.d1[i] * b.d1[j] / speed / points as f64;
+                }
+            }
+        }
+    }
+
+    fn advanced(&self, grid: &Grid<2>, space: ModeSpace, step: &[f64], reach: f64) -> Advance<Self> {
+        let moved: Vec<ClosedCurve> = self
+            .curves
+            .iter()
+            .enumerate()
+            .map(|(i, c)| {
+                let w = self.displacement(i, space, step);
+                let limited = |p: &CurvePoint| {
+                    // Towards the centre of curvature the front would fold.
+                    let room = (1.0 - FOLD) / p.curvature.abs().max(f64::MIN_POSITIVE);
+                    let (inward, outward) = if p.curvature > 0.0 { (room, reach) } else { (reach, room) };
+                    w(p.s).clamp(-inward.min(reach), outward.min(reach))
+                };
+                let moved = c.offset(4 * c.knots(), limited);
+                moved.by_arc_length(Self::knots(grid, polygon::perimeter(moved.samples())))
+            })
+            .collect();
+        let collapsed = |c: &ClosedCurve| polygon::signed_area(c.samples()).abs() < COLLAPSED * grid.h().powi(2);
+        let turned = moved.iter().zip(&self.hole).any(|(c, &hole)| c.is_hole() != hole);
+        if !turned && !moved.iter().any(collapsed) && Self::is_valid(&moved) {
+            return Advance { zone: Self::new(grid, moved), topology_changed: false };
+        }
+        let raster = Raster::of_curves(grid, &moved);
+        let zone = Self::from_outlines(grid, Vec::new(), &raster.outlines(), COLLAPSED);
+        Advance { zone, topology_changed: true }
+    }
+
+    fn united(&self, grid: &Grid<2>, f: &mut dyn FnMut(&Point<2>) -> f64) -> Self {
+        self.combined(grid, f, false, f64::min)
+    }
+    fn reduced(&self, grid: &Grid<2>, f: &mut dyn FnMut(&Point<2>) -> f64) -> Self {
+        self.combined(grid, f, true, |zone, removed| zone.max(-removed))
+    }
+    fn seeded(&self, grid: &Grid<2>, x: &Point<2>, radius: f64) -> Self {
+        let circle: Vec<Point<2>> = (0..SEED_KNOTS)
+            .map(|i| {
+                let (sin, cos) = (std::f64::consts::TAU * i as f64 / SEED_KNOTS as f64).sin_cos();
+                x + radius * Point::<2>::new(cos, sin)
+            })
+            .collect();
+        let mut curves = self.curves.clone();
+        curves.push(ClosedCurve::through(&circle, Self::front_degree(grid)));
+        if Self::is_valid(&curves) { Self::new(grid, curves) } else { self.clone() }
+    }
+    fn distance(&self, x: &Point<2>) -> f64 {
+        let near = &self.near[self.grid.cell_containing(x)];
+        near.iter().map(|&(c, s)| (self.curves[c as usize].samples()[s as usize] - x).norm()).fold(f64::INFINITY, f64::min)
+    }
+    fn region_at(&self, x: &Point<2>) -> RegionId {
+        let cell = self.grid.cell_containing(x);
+        let near = self.curves_near(cell);
+        let close = near.iter().copied().filter(|&c| {
+            let (d, _) = self.curves[c].signed_distance(x, self.seeds(cell, c).into_iter());
+            self.encloses(c, d)
+        });
+        let far = self.around[cell].iter().map(|&c| c as usize).filter(|c| !near.contains(c));
+        self.region_within(far.chain(close.collect::<Vec<_>>()))
+    }
+    fn sharpest(&self) -> f64 {
+        let curvature = |c: &ClosedCurve| {
+            (0..c.samples().len()).map(|i| c.point(c.sample_parameter(i)).curvature.abs()).fold(0.0, f64::max)
+        };
+        self.curves.iter().map(curvature).fold(0.0, f64::max)
+    }
+    fn outlines(&self) -> Vec<Vec<Point<2>>> {
+        self.curves.iter().map(|c| c.samples().to_vec()).collect()
+    }
+}
+
+/// The smallest box round points.
+fn bounding_box(points: &[Point<2>]) -> Aabb<2> {
+    points.iter().fold(Aabb::new(points[0], points[0]), |b, p| Aabb::new(b.min.inf(p), b.max.sup(p)))
+}
+
+/// For each cell, the samples within it and its neighbours.
+fn cells_near(grid: &Grid<2>, curves: &[ClosedCurve]) -> Vec<Vec<(u32, u32)>> {
+    let mut near = vec![Vec::new(); if curves.is_empty() { 0 } else { grid.cell_count() }];
+    near.resize(grid.cell_count(), Vec::new());
+    let (bounds, size, cells) = (grid.bounds(), grid.cell_size(), grid.cells());
+    for (c, curve) in curves.iter().enumerate() {
+        for (s, x) in curve.samples().iter().enumerate() {
+            let at: [isize; 2] = std::array::from_fn(|k| ((x[k] - bounds.min[k]) / size[k]).floor() as isize);
+            let range = |k: usize| (at[k] - 1).max(0)..(at[k] + 2).min(cells[k] as isize);
+            for j in range(1) {
+                for i in range(0) {
+                    near[grid.cell_at([i as usize, j as usize])].push((c as u32, s as u32));
+                }
+            }
+        }
+    }
+    near
+}
+
+/// For each cell, the curves round its centre, by the crossings of each curve with the lines through cell centres.
+fn cells_around(grid: &Grid<2>, curves: &[ClosedCurve]) -> Vec<Vec<u32>> {
+    let mut around = vec![Vec::new(); grid.cell_count()];
+    let cells = grid.cells();
+    let (bounds, size) = (grid.bounds(), grid.cell_size());
+    for (c, curve) in curves.iter().enumerate() {
+        let mut crossings = vec![Vec::new(); cells[1]];
+        for (a, b) in polygon::edges(curve.samples()) {
+            let row = |y: f64| ((y - bounds.min[1]) / size[1] - 0.5).ceil().max(0.0) as usize;
+            let (low, high) = (a[1].min(b[1]), a[1].max(b[1]));
+            for j in row(low)..row(high).min(cells[1]) {
+                let y = bounds.min[1] + (j as f64 + 0.5) * size[1];
+                crossings[j].push(a[0] + (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1]));
+            }
+        }
+        for (j, mut xs) in crossings.into_iter().enumerate() {
+            xs.sort_by(f64::total_cmp);
+            for pair in xs.chunks_exact(2) {
+                let column = |x: f64| ((x - bounds.min[0]) / size[0] - 0.5).ceil().max(0.0) as usize;
+                for i in column(pair[0])..column(pair[1]).min(cells[0]) {
+                    around[grid.cell_at([i, j])].push(c as u32);
+                }
+            }
+        }
+    }
+    around
+}

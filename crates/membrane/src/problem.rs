@@ -1,0 +1,107 @@
+//! A membrane at one instant: where it is, what pulls, pushes and holds it, and the floor below.
+
+use crate::domain::{CellStatus, DomainOnGrid};
+use crate::field::SharedField;
+use signorini_fem::Grid;
+use signorini_geometry::Point;
+
+/// What a unit of the coordinates measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// Length or area themselves.
+    Plain,
+    /// The coordinate is a radius: integrals run over the whole disc, with the weight `2π r`.
+    Axisymmetric,
+}
+
+impl Measure {
+    pub fn weight<const D: usize>(self, x: &Point<D>) -> f64 {
+        match self {
+            Measure::Plain => 1.0,
+            Measure::Axisymmetric => std::f64::consts::TAU * x[0],
+        }
+    }
+
+    /// What the measure adds to the divergence of a normal with component `n` along the first axis.
+    pub fn curvature<const D: usize>(self, x: &Point<D>, n: f64) -> f64 {
+        match self {
+            Measure::Plain => 0.0,
+            Measure::Axisymmetric => n / x[0],
+        }
+    }
+}
+
+/// What holds one piece of the boundary.
+#[derive(Clone)]
+pub struct Support<const D: usize> {
+    /// Which of the named supports this is.
+    pub index: usize,
+    /// The prescribed displacement.
+    pub displacement: SharedField<D>,
+}
+
+/// A membrane of tension `T` under the load `f`, over a floor of height `h`: find `u >= h` with
+/// `div(T ∇u) + f + p = 0`, `p >= 0`, `p (u - h) = 0`.
+#[derive(Clone)]
+pub struct Membrane<const D: usize> {
+    pub grid: Grid<D>,
+    pub domain: DomainOnGrid<D>,
+    pub measure: Measure,
+    /// Force per length.
+    pub tension: SharedField<D>,
+    /// Force per area along +z: negative where it presses downwards.
+    pub load: SharedField<D>,
+    /// Height of the floor; none where there is no floor.
+    pub floor: Option<SharedField<D>>,
+    /// What holds each piece of the boundary; a piece without support is a free edge.
+    pub supports: Vec<Option<Support<D>>>,
+    /// Number of named supports.
+    pub support_count: usize,
+}
+
+impl<const D: usize> Membrane<D> {
+    /// The pressure with which a floor in contact pushes up: `p = -div(T ∇h) - f`.
+    pub fn floor_pressure(&self, floor: &SharedField<D>, x: &Point<D>) -> f64 {
+        let h = floor.jet(x);
+        // In polar coordinates the Laplacian has one more term, h'/r, which tends to h'' at the axis.
+        let polar = match self.measure {
+            Measure::Axisymmetric if x[0] == 0.0 => h.hessian[(0, 0)],
+            measure => measure.curvature(x, h.gradient[0]),
+        };
+        let laplacian = h.laplacian() + polar;
+        let bend = match self.tension.constant() {
+            Some(t) => t * laplacian,
+            None => {
+                let t = self.tension.jet(x);
+                t.value * laplacian + t.gradient.dot(&h.gradient)
+            }
+        };
+        -bend - self.load.value(x)
+    }
+
+    /// Whether a point belongs to the membrane.
+    pub fn contains(&self, x: &Point<D>) -> bool {
+        let cell = self.grid.cell_containing(x);
+        match self.domain.status[cell] {
+            CellStatus::Inside => self.grid.bounds().contains(x),
+            CellStatus::Outside => false,
+            CellStatus::Crossed => {
+                let boundary = self.domain.domain.boundary_in(&self.grid.cell_box(cell));
+                let values: Vec<f64> = boundary.sheets.iter().map(|s| s.value(x)).collect();
+                self.domain.domain.contains(x, &values)
+            }
+        }
+    }
+
+    /// The largest extent of the grid.
+    pub fn size(&self) -> f64 {
+        self.grid.bounds().size().max()
+    }
+
+    /// The same membrane on a grid with other cells and degree.
+    pub fn on_grid(&self, cells: [usize; D], degree: usize) -> Self {
+        let grid = Grid::new(*self.grid.bounds(), cells, degree);
+        let domain = DomainOnGrid::new(self.domain.domain.clone(), &grid);
+        Self { grid, domain, ..self.clone() }
+    }
+}

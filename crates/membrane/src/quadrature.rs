@@ -1,0 +1,277 @@
+//! The cells of a membrane divided by its boundary and by the fronts of contact.
+
+use crate::domain::CellStatus;
+use crate::problem::Membrane;
+use crate::zone::{OUTSIDE, Zone, contact_index, is_free};
+use rayon::prelude::*;
+use signorini_fem::cut::{CellPartition, CellRule, QuadraturePoint, RegionId, cut_cell, scan_roots};
+use signorini_fem::gauss_legendre;
+use signorini_geometry::{Aabb, Point, Vector};
+
+/// Sheets of fronts are tagged above those of the boundary.
+const FRONT_TAG: u32 = 1 << 20;
+
+/// What a cell consists of.
+#[derive(Clone, Debug)]
+pub enum Cell<const D: usize> {
+    Outside,
+    /// The whole cell lies in one region.
+    Whole(RegionId),
+    Cut(CellRule<D>),
+}
+
+/// A quadrature point of a front.
+#[derive(Clone, Copy, Debug)]
+pub struct FrontPoint<const D: usize> {
+    pub cell: usize,
+    pub x: Point<D>,
+    pub weight: f64,
+    /// Unit normal, out of the zone into the free membrane.
+    pub normal: Vector<D>,
+    pub front: usize,
+    /// The zone on one side and the free region on the other.
+    pub zone: usize,
+    pub free: RegionId,
+}
+
+/// A quadrature point of the membrane's boundary.
+#[derive(Clone, Copy, Debug)]
+pub struct RimPoint<const D: usize> {
+    pub cell: usize,
+    pub x: Point<D>,
+    pub weight: f64,
+    /// Unit normal, out of the membrane.
+    pub normal: Vector<D>,
+    pub piece: usize,
+    /// The region inside.
+    pub region: RegionId,
+}
+
+/// All quadrature of a membrane with a given contact zone.
+#[derive(Clone, Debug)]
+pub struct Quadrature<const D: usize> {
+    pub cells: Vec<Cell<D>>,
+    pub front: Vec<FrontPoint<D>>,
+    pub rim: Vec<RimPoint<D>>,
+}
+
+/// Gauss points per direction in cells that are not cut.
+pub fn whole_order(degree: usize) -> usize {
+    degree + 3
+}
+
+/// Gauss points per direction and smooth piece in cut cells.
+pub fn cut_order(degree: usize) -> usize {
+    degree + 5
+}
+
+impl<const D: usize> Quadrature<D> {
+    pub fn new<Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z) -> Self {
+        let order = cut_order(membrane.grid.degree());
+        let cells: Vec<Cell<D>> = (0..membrane.grid.cell_count())
+            .into_par_iter()
+            .map(|cell| {
+                if membrane.domain.status[cell] == CellStatus::Outside {
+                    return Cell::Outside;
+                }
+                let b = membrane.grid.cell_box(cell);
+                let partition = partition(membrane, zone, cell, &b);
+                if partition.sheets.is_empty() {
+                    return Cell::Whole((partition.region)(&b.center(), &[]));
+                }
+                let mut rule = cut_cell(&partition, &b, order);
+                if !rule.cut {
+                    return rule.volumes.first().map_or(Cell::Outside, |(r, _)| match *r {
+                        OUTSIDE => Cell::Outside,
+                        region => Cell::Whole(region),
+                    });
+                }
+                rule.volumes.retain(|(region, _)| *region != OUTSIDE);
+                for p in rule.volumes.iter_mut().flat_map(|(_, points)| points) {
+                    p.weight *= membrane.measure.weight(&p.x);
+                }
+                for p in &mut rule.surfaces {
+                    p.weight *= membrane.measure.weight(&p.x);
+                }
+                Cell::Cut(rule)
+            })
+            .collect();
+        let mut quadrature = Self { cells, front: Vec::new(), rim: Vec::new() };
+        quadrature.collect_surfaces();
+        if membrane.domain.domain.is_box() {
+            quadrature.add_box_sides(membrane, zone);
+        }
+        quadrature
+    }
+
+    fn collect_surfaces(&mut self) {
+        for (cell, content) in self.cells.iter().enumerate() {
+            let Cell::Cut(rule) = content else { continue };
+            for p in &rule.surfaces {
+                if p.tag >= FRONT_TAG {
+                    if let (Some(zone), true) = (contact_index(p.minus), is_free(p.plus)) {
+                        self.front.push(FrontPoint {
+                            cell,
+                            x: p.x,
+                            weight: p.weight,
+                            normal: p.normal,
+                            front: (p.tag - FRONT_TAG) as usize,
+                            zone,
+                            free: p.plus,
+                        });
+                    }
+                } else {
+                    // The outside may lie on either side of a sheet that is the line through a polygon's edge.
+                    let (region, normal) = if p.plus == OUTSIDE { (p.minus, p.normal) } else { (p.plus, -p.normal) };
+                    let piece = p.tag as usize;
+                    self.rim.push(RimPoint { cell, x: p.x, weight: p.weight, normal, piece, region });
+                }
+            }
+        }
+    }
+
+    /// The sides of a domain that the grid fits lie on faces of cells.
+    fn add_box_sides<Z: Zone<D>>(&mut self, membrane: &Membrane<D>, zone: &Z) {
+        let grid = &membrane.grid;
+        let gauss = gauss_legendre(cut_order(grid.degree()));
+        for cell in 0..grid.cell_count() {
+            let index = grid.cell_index(cell);
+            for k in 0..D {
+                for upper in [false, true] {
+                    if index[k] != if upper { grid.cells()[k] - 1 } else { 0 } {
+                        continue;
+                    }
+                    let b = grid.cell_box(cell);
+                    let mut normal = Vector::zeros();
+                    normal[k] = if upper { 1.0 } else { -1.0 };
+                    let mut corner = b.min;
+                    corner[k] = if upper { b.max[k] } else { b.min[k] };
+                    let divided = partition(membrane, zone, cell, &b);
+                    let region = |x: &Point<D>| {
+                        let values: Vec<f64> = divided.sheets.iter().map(|s| s.value(x)).collect();
+                        (divided.region)(x, &values)
+                    };
+                    let mut push = |x: Point<D>, weight: f64, region: RegionId| {
+                        let weight = weight * membrane.measure.weight(&x);
+                        let piece = 2 * k + usize::from(upper);
+                        self.rim.push(RimPoint { cell, x, weight, normal, piece, region });
+                    };
+                    if D == 1 {
+                        push(corner, 1.0, region(&corner));
+                        continue;
+                    }
+                    let along = 1 - k;
+                    let at = |t: f64| {
+                        let mut x = corner;
+                        x[along] = t;
+                        x
+                    };
+                    let mut breaks = vec![b.min[along], b.max[along]];
+                    for sheet in &divided.sheets {
+                        breaks.extend(scan_roots(b.min[along], b.max[along], 9, |t| {
+                            let x = at(t);
+                            (sheet.value(&x), sheet.gradient(&x)[along])
+                        }));
+                    }
+                    breaks.sort_by(f64::total_cmp);
+                    for pair in breaks.windows(2).filter(|pair| pair[1] > pair[0]) {
+                        let width = pair[1] - pair[0];
+                        let here = region(&at(0.5 * (pair[0] + pair[1])));
+                        for &(t, w) in &gauss {
+                            push(at(pair[0] + t * width), w * width, here);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// The volume points of a cell, region by region; `whole` is the rule of an undivided cell on the unit cell.
+    pub fn volumes<'a>(
+        &'a self,
+        membrane: &'a Membrane<D>,
+        cell: usize,
+        whole: &'a [QuadraturePoint<D>],
+    ) -> Vec<(RegionId, std::borrow::Cow<'a, [QuadraturePoint<D>]>)> {
+        match &self.cells[cell] {
+            Cell::Outside => Vec::new(),
+            Cell::Whole(region) => {
+                let b = membrane.grid.cell_box(cell);
+                let points: Vec<QuadraturePoint<D>> = whole
+                    .iter()
+                    .map(|p| {
+                        let x = b.at(&p.x);
+                        QuadraturePoint { x, weight: p.weight * b.volume() * membrane.measure.weight(&x) }
+                    })
+                    .collect();
+                vec![(*region, points.into())]
+            }
+            Cell::Cut(rule) => rule.volumes.iter().map(|(r, points)| (*r, points.as_slice().into())).collect(),
+        }
+    }
+
+    /// The regions present in a cell, also where they only touch it.
+    pub fn regions(&self, cell: usize) -> Vec<RegionId> {
+        match &self.cells[cell] {
+            Cell::Outside => Vec::new(),
+            Cell::Whole(region) => vec![*region],
+            Cell::Cut(rule) => {
+                let mut regions: Vec<RegionId> = rule.volumes.iter().map(|(r, _)| *r).collect();
+                regions.extend(rule.surfaces.iter().flat_map(|p| [p.minus, p.plus]));
+                regions.sort_unstable();
+                regions.dedup();
+                regions.retain(|r| *r != OUTSIDE);
+                regions
+            }
+        }
+    }
+}
+
+/// The tensor-product Gauss rule on the unit cell.
+pub fn unit_rule<const D: usize>(order: usize) -> Vec<QuadraturePoint<D>> {
+    let gauss = gauss_legendre(order);
+    (0..order.pow(D as u32))
+        .map(|mut i| {
+            let mut weight = 1.0;
+            let x = Point::from_fn(|_, _| {
+                let (x, w) = gauss[i % order];
+                i /= order;
+                weight *= w;
+                x
+            });
+            QuadraturePoint { x, weight }
+        })
+        .collect()
+}
+
+/// What divides a cell: the boundary of the membrane, then the fronts.
+fn partition<'a, const D: usize, Z: Zone<D>>(
+    membrane: &'a Membrane<D>,
+    zone: &'a Z,
+    cell: usize,
+    b: &Aabb<D>,
+) -> CellPartition<'a, D> {
+    let domain = &membrane.domain.domain;
+    let crossed = membrane.domain.status[cell] == CellStatus::Crossed;
+    let fronts = zone.fronts_in_cell(cell);
+    let mut all = CellPartition {
+        sheets: fronts.sheets,
+        tags: fronts.fronts.iter().map(|&f| FRONT_TAG + f as u32).collect(),
+        features: fronts.features,
+        region: Box::new(|_, _| OUTSIDE),
+    };
+    let count = all.sheets.len();
+    if crossed {
+        let boundary = domain.boundary_in(b);
+        all.sheets.extend(boundary.sheets);
+        all.tags.extend(boundary.pieces);
+        all.features.extend(boundary.features);
+    }
+    all.region = Box::new(move |x, values| {
+        if crossed && !domain.contains(x, values.get(count..).unwrap_or(&[])) {
+            return OUTSIDE;
+        }
+        (fronts.region)(values.get(..count).unwrap_or(&[]))
+    });
+    all
+}

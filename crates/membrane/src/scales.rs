@@ -1,0 +1,78 @@
+//! The scales that a problem supplies itself: all tolerances are relative to them, so no unit is hidden anywhere.
+
+use crate::equilibrium::Equilibrium;
+use crate::problem::Membrane;
+use crate::zone::is_free;
+
+/// Reference gap, pressure, tension and length of a problem.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scales {
+    /// Span of the gap between free membrane and floor.
+    pub gap: f64,
+    /// The larger of the load and the pressure that would bend the membrane by the reference gap.
+    pub pressure: f64,
+    pub tension: f64,
+    /// Extent of the domain.
+    pub length: f64,
+    /// Cell size.
+    pub h: f64,
+    pub degree: usize,
+}
+
+impl Scales {
+    /// Reads the scales off the membrane without contact.
+    pub fn of_free<const D: usize>(free: &Equilibrium<'_, D>) -> Self {
+        let membrane: &Membrane<D> = free.membrane;
+        let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
+        let (mut load, mut tension) = (0.0f64, 0.0f64);
+        free.for_each_point(|cell, region, x, _| {
+            if is_free(region)
+                && let Some((u, _)) = free.evaluate(cell, region, x)
+            {
+                let gap = u - membrane.floor.as_ref().map_or(0.0, |h| h.value(x));
+                lowest = lowest.min(gap);
+                highest = highest.max(gap);
+                load = load.max(membrane.load.value(x).abs());
+                tension = tension.max(membrane.tension.value(x));
+            }
+        });
+        let length = membrane.size();
+        let gap = (highest - lowest).max(f64::MIN_POSITIVE);
+        Self {
+            gap,
+            pressure: load.max(tension * gap / (length * length)),
+            tension,
+            length,
+            h: membrane.grid.h(),
+            degree: membrane.grid.degree(),
+        }
+    }
+
+    fn relative_h(&self) -> f64 {
+        self.h / self.length
+    }
+
+    /// What the slope jump must fall below, in the norm of `L²` of the fronts: the solver's own accuracy, or a
+    /// thousandth of what the grid resolves where that is more.
+    pub fn slope_tolerance(&self) -> f64 {
+        let discretisation = self.relative_h().powi(2 * self.degree as i32);
+        (1e-3 * discretisation).max(1e-10) * self.pressure * self.length.powf(1.5) / self.tension
+    }
+
+    /// How large the part of the slope jump may be that the modes do not see.
+    pub fn unseen_slope_tolerance(&self) -> f64 {
+        self.relative_h().powi(self.degree as i32) * self.pressure * self.length.powf(1.5) / self.tension
+    }
+
+    /// Penetration that counts as none: a fraction of the cell's share of the gap, and what a polynomial of this degree
+    /// misses of a curved membrane.
+    pub fn gap_tolerance(&self) -> f64 {
+        let missed = 0.2 * self.pressure / self.tension * self.h.powi(2) * self.relative_h().powi(self.degree as i32 - 1);
+        1e-3 * self.relative_h().powi(2) * self.gap + missed
+    }
+
+    /// Suction that counts as none.
+    pub fn pressure_tolerance(&self) -> f64 {
+        1e-9 * self.pressure
+    }
+}

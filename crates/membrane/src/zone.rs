@@ -1,0 +1,106 @@
+//! What the method needs to know of a contact zone, in one dimension or two.
+
+use signorini_fem::Grid;
+use signorini_fem::cut::RegionId;
+use signorini_geometry::{ImplicitShape, Point};
+
+/// Beyond the membrane.
+pub const OUTSIDE: RegionId = 0;
+const CONTACT: RegionId = 1 << 24;
+const FREE: RegionId = 2 << 24;
+const INDEX: RegionId = (1 << 24) - 1;
+
+/// The region of the `k`-th connected zone of contact.
+pub fn contact(k: usize) -> RegionId {
+    CONTACT | k as u32
+}
+
+/// The region of the `k`-th connected part of the free membrane.
+pub fn free(k: usize) -> RegionId {
+    FREE | k as u32
+}
+
+/// The index of a region if it is one of contact.
+pub fn contact_index(region: RegionId) -> Option<usize> {
+    (region & !INDEX == CONTACT).then_some((region & INDEX) as usize)
+}
+
+/// Whether a region is free membrane.
+pub fn is_free(region: RegionId) -> bool {
+    region & !INDEX == FREE
+}
+
+/// The fronts that may cross one cell.
+pub struct FrontsInCell<'a, const D: usize> {
+    pub sheets: Vec<Box<dyn ImplicitShape<D> + 'a>>,
+    /// Front of each sheet.
+    pub fronts: Vec<usize>,
+    pub features: Vec<Point<D>>,
+    /// The region of a point inside the membrane, given the values of the sheets.
+    pub region: Box<dyn Fn(&[f64]) -> RegionId + 'a>,
+}
+
+/// A point of a front: curvature and the modes that do not vanish there.
+#[derive(Clone, Debug)]
+pub struct FrontFrame {
+    /// Divergence of the normal that points out of the zone.
+    pub curvature: f64,
+    /// Pairs of mode and value, the modes of all fronts numbered through.
+    pub modes: Vec<(usize, f64)>,
+}
+
+/// How finely fronts may move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ModeSpace {
+    /// At most so many modes for each front: for the first, long steps.
+    Coarse(usize),
+    /// As many as the grid can tell apart.
+    Fine,
+}
+
+/// What became of a zone whose fronts were moved.
+pub struct Advance<Z> {
+    pub zone: Z,
+    /// Whether zones or holes appeared, merged, split or vanished.
+    pub topology_changed: bool,
+}
+
+/// A contact zone: its connected parts, bounded by fronts.
+///
+/// Fronts are oriented with the zone on their left, so their normal points out of the zone into the free membrane.
+pub trait Zone<const D: usize>: Clone + Send + Sync {
+    /// No contact at all.
+    fn empty(grid: &Grid<D>) -> Self;
+    fn is_empty(&self) -> bool;
+    /// Number of connected zones and of holes in them.
+    fn counts(&self) -> (usize, usize);
+    /// Holes of one zone.
+    fn holes_of(&self, zone: usize) -> usize;
+
+    fn fronts_in_cell(&self, cell: usize) -> FrontsInCell<'_, D>;
+    fn frame(&self, front: usize, x: &Point<D>, modes: ModeSpace) -> FrontFrame;
+    fn front_count(&self) -> usize;
+    /// First mode of each front, and the number of all modes at the end.
+    fn mode_offsets(&self, modes: ModeSpace) -> Vec<usize>;
+    /// Adds `weight ∫ w_s v_s` over all fronts to a row-major matrix of the modes.
+    fn add_stiffness(&self, modes: ModeSpace, front: usize, weight: f64, matrix: &mut [f64]);
+
+    /// Moves the fronts by `step` (coefficients of the modes) along their normals, nowhere further than `reach` and
+    /// nowhere so far that they would fold.
+    fn advanced(&self, grid: &Grid<D>, modes: ModeSpace, step: &[f64], reach: f64) -> Advance<Self>;
+
+    /// Adds the set where `f < 0`, which lies outside the zone.
+    fn united(&self, grid: &Grid<D>, f: &mut dyn FnMut(&Point<D>) -> f64) -> Self;
+    /// Removes the set where `f < 0`.
+    fn reduced(&self, grid: &Grid<D>, f: &mut dyn FnMut(&Point<D>) -> f64) -> Self;
+    /// A small zone about a point, added.
+    fn seeded(&self, grid: &Grid<D>, x: &Point<D>, radius: f64) -> Self;
+    /// Distance from `x` to the nearest front.
+    fn distance(&self, x: &Point<D>) -> f64;
+    /// The region of a point of the membrane.
+    fn region_at(&self, x: &Point<D>) -> RegionId;
+    /// The largest curvature of any front, to judge whether the grid resolves it.
+    fn sharpest(&self) -> f64;
+    /// Points along every front, for pictures and files; one in one dimension.
+    fn outlines(&self) -> Vec<Vec<Point<D>>>;
+}

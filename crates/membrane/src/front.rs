@@ -33,6 +33,8 @@ pub struct Projection {
 
 /// A proposed displacement of the fronts.
 pub struct Step {
+    /// Root mean square of the displacement.
+    pub length: f64,
     pub space: ModeSpace,
     pub coefficients: Vec<f64>,
     pub action: &'static str,
@@ -163,7 +165,14 @@ impl<'a, const D: usize> Fronts<'a, D> {
         }
         // The matrix is the sum of a positive mass and a positive response; only a front without points is singular.
         let coefficients = dense::solve(&matrix, &b).unwrap_or_else(|| vec![0.0; n]);
-        Ok(Step { space, coefficients, action })
+        let total: f64 = self.weights().sum();
+        let square: f64 = frames
+            .iter()
+            .zip(self.weights())
+            .map(|(f, w)| w * f.modes.iter().map(|(i, v)| v * coefficients[*i]).sum::<f64>().powi(2))
+            .sum();
+        let length = (square / total.max(f64::MIN_POSITIVE)).sqrt();
+        Ok(Step { length, space, coefficients, action })
     }
 
     /// Adds `∫ Λ_T(ρ⁺ w_m) ω_n`, and for fronts on which it stays safely positive `-∫ κ ρ⁺ w_m ω_n`.

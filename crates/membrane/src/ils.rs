@@ -15,6 +15,11 @@ use signorini_solve::{Acceleration, Iteration, Progress, SolveError};
 const MOST_STEPS: usize = 30;
 /// Corrections of the zone after which it is given up.
 const MOST_SWEEPS: usize = 12;
+/// Fronts whose residual has not fallen for so many steps ...
+const PATIENCE: usize = 6;
+/// ... and that move by less than this fraction of a cell have settled: as a front crosses a grid line the discrete
+/// slope jump makes a jump of its own, of the size of the discretisation error, and no position makes it vanish.
+const SETTLED: f64 = 1e-3;
 /// A front moves at most this fraction of the membrane's extent in one step.
 const REACH: f64 = 0.15;
 
@@ -55,6 +60,8 @@ pub struct Solution<'a, const D: usize, Z> {
     pub unknowns: usize,
     /// Part of the slope jump that the modes do not see, relative to what is tolerated.
     pub unseen: f64,
+    /// Length of the last step relative to a cell, where the fronts settled on a jump of the discrete slope.
+    pub settled_within: Option<f64>,
 }
 
 /// Where an increment starts from.
@@ -84,6 +91,7 @@ pub fn solve<'a, const D: usize, Z: Zone<D>>(
             residuals: Vec::new(),
             unknowns: 0,
             unseen: 0.0,
+            settled_within: None,
         },
         membrane,
         elements,
@@ -178,6 +186,8 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
     /// Newton's iteration on the shape of the zone.
     fn settle_fronts(&mut self) -> Result<Fixed, SolveError> {
         let mut acceleration = Acceleration::default();
+        let (mut best, mut waited) = (f64::INFINITY, 0);
+        self.solution.settled_within = None;
         for _ in 0..MOST_STEPS {
             if self.progress.interrupted() {
                 return Ok(Fixed::Interrupted);
@@ -205,6 +215,15 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 return Ok(Fixed::AtRest);
             }
             let mut step = fronts.newton_step(zone, &scales)?;
+            waited = if residual < 0.7 * best { 0 } else { waited + 1 };
+            best = best.min(residual);
+            let relative_step = step.length / self.membrane.grid.h();
+            if waited >= PATIENCE && relative_step < SETTLED {
+                self.report(residual, "settled");
+                self.solution.settled_within = Some(relative_step);
+                self.solution.equilibrium = Some(equilibrium);
+                return Ok(Fixed::AtRest);
+            }
             if step.space == ModeSpace::Fine {
                 step.coefficients = acceleration.next(step.coefficients);
             } else {

@@ -11,5 +11,6 @@ pub mod plane_zone;
 pub mod problem;
 pub mod quadrature;
 mod raster;
+pub mod report;
 pub mod scales;
 pub mod zone;

@@ -6,8 +6,6 @@ use signorini_fem::Grid;
 use signorini_fem::cut::RegionId;
 use signorini_geometry::{Aabb, ClosedCurve, CurvePoint, ImplicitShape, PeriodicBasis, Point, Vector, polygon};
 
-/// Fewest knots of a front.
-const FEWEST_KNOTS: usize = 8;
 /// Knots of a circle that is put where penetration is too small for the raster.
 const SEED_KNOTS: usize = 16;
 /// A front that encloses less than this multiple of `h²` after a step has collapsed.
@@ -88,13 +86,12 @@ impl PlaneZone {
     /// As many knots as the slope jump can tell apart modes on a front of the given length. The front lives in the
     /// space of its modes: what they do not see they could not smooth either.
     fn knots(grid: &Grid<2>, length: f64) -> usize {
-        let spacing = match grid.degree() {
-            1 => std::env::var("S1").map_or(5.0, |v| v.parse().unwrap()),
-            2 => std::env::var("S2").map_or(2.5, |v| v.parse().unwrap()),
-            3 => std::env::var("S2").map_or(2.0, |v| v.parse().unwrap()),
-            _ => std::env::var("SP").map_or(1.5, |v| v.parse().unwrap()),
+        let (spacing, fewest) = match grid.degree() {
+            1 => (4.0, 8),
+            2 => (1.5, 12),
+            _ => (1.0, 12),
         };
-        FEWEST_KNOTS.max((length / (spacing * grid.h())).ceil() as usize)
+        fewest.max((length / (spacing * grid.h())).ceil() as usize)
     }
 
     fn modes(&self, front: usize, space: ModeSpace) -> PeriodicBasis {

@@ -56,7 +56,9 @@ impl Scales {
     /// thousandth of what the grid resolves where that is more.
     pub fn slope_tolerance(&self) -> f64 {
         let discretisation = self.relative_h().powi(2 * self.degree as i32);
-        (1e-3 * discretisation).max(1e-10) * self.pressure * self.length.powf(1.5) / self.tension
+        // The flux is a difference of displacements times the penalty over h, and inherits their round-off.
+        let round_off = 400.0 * f64::EPSILON * crate::equilibrium::nitsche_penalty(self.degree) / self.relative_h();
+        (1e-3 * discretisation).max(1e-10).max(round_off) * self.pressure * self.length.powf(1.5) / self.tension
     }
 
     /// How large the part of the slope jump may be that the modes do not see.

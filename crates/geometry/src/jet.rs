@@ -14,6 +14,8 @@ pub trait Real:
     fn constant(value: f64) -> Self;
     /// The value without derivatives.
     fn value(&self) -> f64;
+    /// Whether all derivatives vanish.
+    fn is_constant(&self) -> bool;
     /// A scalar function, given its value and first two derivatives at `self.value()`.
     fn chain(self, f: f64, df: f64, ddf: f64) -> Self;
 
@@ -36,6 +38,9 @@ impl Real for f64 {
     }
     fn value(&self) -> f64 {
         *self
+    }
+    fn is_constant(&self) -> bool {
+        true
     }
     fn chain(self, f: f64, _: f64, _: f64) -> Self {
         f
@@ -81,9 +86,12 @@ impl<const D: usize> Real for Jet<D> {
     fn value(&self) -> f64 {
         self.value
     }
+    fn is_constant(&self) -> bool {
+        self.gradient == Vector::<D>::zeros() && self.hessian == Matrix::<D>::zeros()
+    }
     fn chain(self, f: f64, df: f64, ddf: f64) -> Self {
         // A constant argument stays constant even where the derivative of the function is infinite.
-        if self.gradient == Vector::<D>::zeros() && self.hessian == Matrix::<D>::zeros() {
+        if self.is_constant() {
             return Self::constant(f);
         }
         Self {

@@ -45,8 +45,8 @@ pub struct Node {
     pub in_contact: bool,
     /// Whether the floor can touch the node: whether it lies in the membrane.
     pub inside: bool,
-    /// Load on the node: its share of the membrane times the load there.
-    pub load: f64,
+    /// Share of the membrane that belongs to the node: the integral of its shape function.
+    pub share: f64,
 }
 
 /// How the iteration begins.
@@ -128,6 +128,7 @@ pub fn solve<const D: usize, Z: Zone<D>>(
             break;
         }
     }
+    let shares = shares(membrane, &quadrature);
     let mut all = vec![None; membrane.grid.node_count()];
     for i in 0..u.len() {
         all[node_of[i]] = Some(Node {
@@ -135,7 +136,7 @@ pub fn solve<const D: usize, Z: Zone<D>>(
             reaction: if active[i] { reaction[i] } else { 0.0 },
             in_contact: active[i],
             inside: heights[i].is_some(),
-            load: rhs[i],
+            share: shares[node_of[i]],
         });
     }
     let (support_forces, load_force, energy) = totals(membrane, &quadrature, &all);
@@ -150,6 +151,28 @@ pub fn solve<const D: usize, Z: Zone<D>>(
         energy,
         cells,
     })
+}
+
+/// The integral of each node's shape function over the membrane.
+fn shares<const D: usize>(membrane: &Membrane<D>, quadrature: &Quadrature<D>) -> Vec<f64> {
+    let basis = membrane.grid.basis();
+    let size = membrane.grid.cell_size();
+    let whole = unit_rule::<D>(2);
+    let mut t = Tabulation::default();
+    let mut numbers = Vec::new();
+    let mut shares = vec![0.0; membrane.grid.node_count()];
+    for cell in 0..quadrature.cells.len() {
+        membrane.grid.cell_nodes(cell, &mut numbers);
+        for (_, points) in quadrature.volumes(membrane, cell, &whole) {
+            for p in points.iter() {
+                basis.tabulate(&membrane.grid.local(cell, &p.x), &size, &mut t);
+                for (&node, v) in numbers.iter().zip(&t.value) {
+                    shares[node as usize] += p.weight * v;
+                }
+            }
+        }
+    }
+    shares
 }
 
 /// Force of each support, resultant of the load, and the energy `∫ T/2 |∇u|² - f u`.
@@ -190,16 +213,31 @@ fn totals<const D: usize>(
     (supports, force, energy)
 }
 
+/// Interpolates nodal values linearly.
+fn interpolate<const D: usize>(membrane: &Membrane<D>, x: &Point<D>, at_node: impl Fn(usize) -> f64) -> f64 {
+    let x = membrane.grid.bounds().clamp(x);
+    let cell = membrane.grid.cell_containing(&x);
+    let mut t = Tabulation::default();
+    let mut numbers = Vec::new();
+    membrane.grid.cell_nodes(cell, &mut numbers);
+    membrane.grid.basis().tabulate(&membrane.grid.local(cell, &x), &membrane.grid.cell_size(), &mut t);
+    numbers.iter().zip(&t.value).map(|(&n, v)| at_node(n as usize) * v).sum()
+}
+
 impl<const D: usize> NodalSolution<D> {
     /// Whether the node nearest to `x` is in contact.
-    fn touches(&self, membrane: &Membrane<D>, x: &Point<D>) -> bool {
+    pub fn touches(&self, membrane: &Membrane<D>, x: &Point<D>) -> bool {
+        self.nodes[self.nearest(membrane, x)].is_some_and(|n| n.in_contact)
+    }
+
+    fn nearest(&self, membrane: &Membrane<D>, x: &Point<D>) -> usize {
         let bounds = membrane.grid.bounds();
         let mut node = 0;
         for k in (0..D).rev() {
             let t = (x[k] - bounds.min[k]) / bounds.size()[k] * self.cells[k] as f64;
             node = node * (self.cells[k] + 1) + (t.round().max(0.0) as usize).min(self.cells[k]);
         }
-        self.nodes[node].is_some_and(|n| n.in_contact)
+        node
     }
 
     /// A function that is negative in the predicted zone: the distance to its edge that the gap of a parabola tells,
@@ -222,16 +260,17 @@ impl<const D: usize> NodalSolution<D> {
                 _ => h,
             })
             .collect();
-        let basis = membrane.grid.basis();
-        let size = membrane.grid.cell_size();
-        move |x| {
-            let x = membrane.grid.bounds().clamp(x);
-            let cell = membrane.grid.cell_containing(&x);
-            let mut t = Tabulation::default();
-            let mut numbers = Vec::new();
-            membrane.grid.cell_nodes(cell, &mut numbers);
-            basis.tabulate(&membrane.grid.local(cell, &x), &size, &mut t);
-            numbers.iter().zip(&t.value).map(|(&n, v)| at_node[n as usize] * v).sum()
-        }
+        move |x| interpolate(membrane, x, |node| at_node[node])
+    }
+
+    /// Displacement at a point of the membrane.
+    pub fn displacement(&self, membrane: &Membrane<D>, x: &Point<D>) -> f64 {
+        interpolate(membrane, x, |node| self.nodes[node].map_or(0.0, |n| n.displacement))
+    }
+
+    /// Pressure at a point: that of the nearest node, its reaction over its share.
+    pub fn pressure(&self, membrane: &Membrane<D>, x: &Point<D>) -> f64 {
+        let node = self.nearest(membrane, x);
+        self.nodes[node].filter(|n| n.in_contact).map_or(0.0, |n| n.reaction / n.share.max(f64::MIN_POSITIVE))
     }
 }

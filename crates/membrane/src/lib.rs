@@ -13,4 +13,5 @@ pub mod quadrature;
 mod raster;
 pub mod report;
 pub mod scales;
+pub mod staircase;
 pub mod zone;

@@ -1,6 +1,6 @@
 //! Contact zones in one dimension: intervals.
 
-use crate::zone::{Advance, FrontFrame, FrontsInCell, ModeSpace, Zone, contact, free};
+use crate::zone::{Advance, Division, FrontFrame, FrontsInCell, ModeSpace, Zone, contact, free};
 use signorini_fem::Grid;
 use signorini_fem::cut::RegionId;
 use signorini_geometry::{Aabb, ImplicitShape, Point, Vector};
@@ -78,20 +78,7 @@ impl LineZone {
     }
 }
 
-impl Zone<1> for LineZone {
-    fn empty(grid: &Grid<1>) -> Self {
-        Self::new(grid, Vec::new())
-    }
-    fn is_empty(&self) -> bool {
-        self.intervals.is_empty()
-    }
-    fn counts(&self) -> (usize, usize) {
-        (self.intervals.len(), 0)
-    }
-    fn holes_of(&self, _: usize) -> usize {
-        0
-    }
-
+impl Division<1> for LineZone {
     fn fronts_in_cell(&self, cell: usize) -> FrontsInCell<'_, 1> {
         let b = self.grid.cell_box(cell);
         let near: Vec<usize> = (0..self.front_count())
@@ -112,6 +99,21 @@ impl Zone<1> for LineZone {
             }),
             fronts: near,
         }
+    }
+}
+
+impl Zone<1> for LineZone {
+    fn empty(grid: &Grid<1>) -> Self {
+        Self::new(grid, Vec::new())
+    }
+    fn is_empty(&self) -> bool {
+        self.intervals.is_empty()
+    }
+    fn counts(&self) -> (usize, usize) {
+        (self.intervals.len(), 0)
+    }
+    fn holes_of(&self, _: usize) -> usize {
+        0
     }
 
     fn frame(&self, front: usize, _: &Point<1>, _: ModeSpace) -> FrontFrame {

@@ -1,7 +1,7 @@
 //! Contact zones in the plane, bounded by smooth closed fronts.
 
 use crate::raster::Raster;
-use crate::zone::{Advance, FrontFrame, FrontsInCell, ModeSpace, Zone, contact, free};
+use crate::zone::{Advance, Division, FrontFrame, FrontsInCell, ModeSpace, Zone, contact, free};
 use signorini_fem::Grid;
 use signorini_fem::cut::RegionId;
 use signorini_geometry::{Aabb, ClosedCurve, CurvePoint, ImplicitShape, PeriodicBasis, Point, Vector, polygon};
@@ -212,30 +212,7 @@ impl PlaneZone {
     }
 }
 
-impl Zone<2> for PlaneZone {
-    fn empty(grid: &Grid<2>) -> Self {
-        Self::new(grid, Vec::new())
-    }
-    fn is_empty(&self) -> bool {
-        self.curves.is_empty()
-    }
-    fn counts(&self) -> (usize, usize) {
-        let holes = self.hole.iter().filter(|h| **h).count();
-        (self.curves.len() - holes, holes)
-    }
-    fn holes_of(&self, zone: usize) -> usize {
-        (0..self.curves.len())
-            .filter(|&i| self.hole[i])
-            .filter(|&i| {
-                let x = &self.curves[i].samples()[0];
-                let around = (0..self.curves.len()).filter(|&j| {
-                    j != i && polygon::winding_number(self.curves[j].samples(), x) != 0
-                });
-                self.region_within(around) == contact(zone)
-            })
-            .count()
-    }
-
+impl Division<2> for PlaneZone {
     fn fronts_in_cell(&self, cell: usize) -> FrontsInCell<'_, 2> {
         let b = self.grid.cell_box(cell);
         let near = self.curves_near(cell);
@@ -263,6 +240,31 @@ impl Zone<2> for PlaneZone {
             self.region_within(far.iter().copied().chain(close))
         });
         found
+    }
+}
+
+impl Zone<2> for PlaneZone {
+    fn empty(grid: &Grid<2>) -> Self {
+        Self::new(grid, Vec::new())
+    }
+    fn is_empty(&self) -> bool {
+        self.curves.is_empty()
+    }
+    fn counts(&self) -> (usize, usize) {
+        let holes = self.hole.iter().filter(|h| **h).count();
+        (self.curves.len() - holes, holes)
+    }
+    fn holes_of(&self, zone: usize) -> usize {
+        (0..self.curves.len())
+            .filter(|&i| self.hole[i])
+            .filter(|&i| {
+                let x = &self.curves[i].samples()[0];
+                let around = (0..self.curves.len()).filter(|&j| {
+                    j != i && polygon::winding_number(self.curves[j].samples(), x) != 0
+                });
+                self.region_within(around) == contact(zone)
+            })
+            .count()
     }
 
     fn frame(&self, front: usize, x: &Point<2>, space: ModeSpace) -> FrontFrame {

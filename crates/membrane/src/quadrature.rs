@@ -2,7 +2,7 @@
 
 use crate::domain::CellStatus;
 use crate::problem::Membrane;
-use crate::zone::{OUTSIDE, Zone, contact_index, is_free};
+use crate::zone::{Division, OUTSIDE, contact_index, is_free};
 use rayon::prelude::*;
 use signorini_fem::cut::{CellPartition, CellRule, QuadraturePoint, RegionId, cut_cell, scan_roots};
 use signorini_fem::gauss_legendre;
@@ -66,7 +66,7 @@ pub fn cut_order(degree: usize) -> usize {
 }
 
 impl<const D: usize> Quadrature<D> {
-    pub fn new<Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z) -> Self {
+    pub fn new<Z: Division<D>>(membrane: &Membrane<D>, zone: &Z) -> Self {
         let order = cut_order(membrane.grid.degree());
         let cells: Vec<Cell<D>> = (0..membrane.grid.cell_count())
             .into_par_iter()
@@ -131,7 +131,7 @@ impl<const D: usize> Quadrature<D> {
     }
 
     /// The sides of a domain that the grid fits lie on faces of cells.
-    fn add_box_sides<Z: Zone<D>>(&mut self, membrane: &Membrane<D>, zone: &Z) {
+    fn add_box_sides<Z: Division<D>>(&mut self, membrane: &Membrane<D>, zone: &Z) {
         let grid = &membrane.grid;
         let gauss = gauss_legendre(cut_order(grid.degree()));
         for cell in 0..grid.cell_count() {
@@ -245,7 +245,7 @@ pub fn unit_rule<const D: usize>(order: usize) -> Vec<QuadraturePoint<D>> {
 }
 
 /// What divides a cell: the boundary of the membrane, then the fronts.
-fn partition<'a, const D: usize, Z: Zone<D>>(
+fn partition<'a, const D: usize, Z: Division<D>>(
     membrane: &'a Membrane<D>,
     zone: &'a Z,
     cell: usize,

@@ -65,10 +65,24 @@ pub struct Advance<Z> {
     pub topology_changed: bool,
 }
 
+/// What divides a membrane into contact and free regions.
+pub trait Division<const D: usize>: Sync {
+    fn fronts_in_cell(&self, cell: usize) -> FrontsInCell<'_, D>;
+}
+
+/// A membrane without contact.
+pub struct NoZone;
+
+impl<const D: usize> Division<D> for NoZone {
+    fn fronts_in_cell(&self, _: usize) -> FrontsInCell<'_, D> {
+        FrontsInCell { sheets: vec![], fronts: vec![], features: vec![], region: Box::new(|_| free(0)) }
+    }
+}
+
 /// A contact zone: its connected parts, bounded by fronts.
 ///
 /// Fronts are oriented with the zone on their left, so their normal points out of the zone into the free membrane.
-pub trait Zone<const D: usize>: Clone + Send + Sync {
+pub trait Zone<const D: usize>: Division<D> + Clone + Send {
     /// No contact at all.
     fn empty(grid: &Grid<D>) -> Self;
     fn is_empty(&self) -> bool;
@@ -77,7 +91,6 @@ pub trait Zone<const D: usize>: Clone + Send + Sync {
     /// Holes of one zone.
     fn holes_of(&self, zone: usize) -> usize;
 
-    fn fronts_in_cell(&self, cell: usize) -> FrontsInCell<'_, D>;
     fn frame(&self, front: usize, x: &Point<D>, modes: ModeSpace) -> FrontFrame;
     fn front_count(&self) -> usize;
     /// First mode of each front, and the number of all modes at the end.

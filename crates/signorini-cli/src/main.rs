@@ -1,1 +1,118 @@
-fn main() {}
+//! The `signorini` command.
+
+mod bar;
+mod commands;
+
+use clap::{Parser, Subcommand};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+const EXAMPLES: &str = "Examples:
+  signorini gallery                                   list the gallery
+  signorini gallery run cosine_disc                   run one of its cases
+  signorini run case.toml                             results into ./case
+  signorini run case.toml -o out --set loads.press.normal=-0.3
+  signorini check case.toml                           is the case right, and how large is it?
+
+Exit status: 0 done, 1 the input is wrong, 2 not converged (results so far are on disk), 3 a fault of ours,
+130 interrupted.";
+
+/// Contact mechanics that puts geometry first.
+#[derive(Parser)]
+#[command(name = "signorini", version, after_help = EXAMPLES)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+    /// Print results and errors as JSON
+    #[arg(long, global = true)]
+    json: bool,
+    /// Number of threads (default: all); results do not depend on it
+    #[arg(long, global = true, value_name = "N")]
+    threads: Option<usize>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Run a case
+    #[command(after_help = "Example:\n  signorini run gallery/cosine_disc/case.toml -o out --set steps.0.to=0.3")]
+    Run {
+        /// The case file; - reads it from standard input
+        case: PathBuf,
+        #[command(flatten)]
+        options: RunOptions,
+    },
+    /// Check a case without running it
+    #[command(after_help = "Example:\n  signorini check case.toml --json")]
+    Check {
+        /// The case file; - reads it from standard input
+        case: PathBuf,
+        /// Replace or add a key
+        #[arg(long = "set", value_name = "KEY=VALUE", allow_hyphen_values = true)]
+        set: Vec<String>,
+    },
+    /// List the gallery, or run one of its cases
+    #[command(after_help = "Examples:\n  signorini gallery\n  signorini gallery run flat_disc\n  signorini gallery show flat_disc > case.toml")]
+    Gallery {
+        #[command(subcommand)]
+        action: Option<GalleryAction>,
+    },
+}
+
+#[derive(clap::Args)]
+struct RunOptions {
+    /// Folder for the results (default: the case's name in the current folder)
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Replace or add a key
+    #[arg(long = "set", value_name = "KEY=VALUE", allow_hyphen_values = true)]
+    set: Vec<String>,
+}
+
+#[derive(Subcommand)]
+enum GalleryAction {
+    /// Run a case of the gallery
+    #[command(after_help = "Example:\n  signorini gallery run cosine_square -o square")]
+    Run {
+        name: String,
+        #[command(flatten)]
+        options: RunOptions,
+    },
+    /// Print a case of the gallery
+    #[command(after_help = "Example:\n  signorini gallery show string > case.toml")]
+    Show { name: String },
+}
+
+fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            let _ = error.print();
+            // Asking for help is no error; a wrong command line is wrong input.
+            return ExitCode::from(u8::from(error.use_stderr()));
+        }
+    };
+    let threads = arguments.threads.unwrap_or(0);
+    if arguments.threads == Some(0) || threads > 1024 {
+        eprintln!("error: --threads {threads}: give a number from 1 to 1024");
+        return ExitCode::from(1);
+    }
+    // A pool that cannot be built leaves the default one.
+    let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    let json = arguments.json;
+    let result = std::panic::catch_unwind(|| match arguments.command {
+        Command::Run { case, options } => commands::run_file(&case, options.output, &options.set, json),
+        Command::Check { case, set } => commands::check(&case, &set, json),
+        Command::Gallery { action: None } => commands::gallery(json),
+        Command::Gallery { action: Some(GalleryAction::Run { name, options }) } => {
+            commands::run_example(&name, options.output, &options.set, json)
+        }
+        Command::Gallery { action: Some(GalleryAction::Show { name }) } => commands::show_example(&name, json),
+    });
+    match result {
+        Ok(code) => ExitCode::from(code),
+        Err(_) => {
+            eprintln!("signorini has a fault of its own: please report the case and the message above.");
+            ExitCode::from(3)
+        }
+    }
+}

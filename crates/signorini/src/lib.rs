@@ -1,1 +1,9 @@
-
+//! Contact mechanics that puts geometry first: the statement of a problem, its run, its results.
+pub mod case;
+pub mod exact;
+pub mod expression;
+pub mod gallery;
+pub mod output;
+pub mod plan;
+pub mod run;
+pub mod snapshot;

@@ -1,0 +1,69 @@
+//! Progress on the terminal, and the key that interrupts.
+
+use indicatif::{ProgressBar, ProgressStyle};
+use signorini::run::{Iteration, Progress};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
+
+/// A bar per increment, with the current residual; silent where nobody watches.
+pub struct Bar {
+    bar: ProgressBar,
+    stop: Arc<AtomicBool>,
+    json: bool,
+    started: std::time::Instant,
+    spoke: std::time::Instant,
+}
+
+impl Bar {
+    pub fn new(json: bool) -> Self {
+        let bar = if json { ProgressBar::hidden() } else { ProgressBar::new(1) };
+        let style = ProgressStyle::with_template("{bar:24.cyan/blue} {pos}/{len}  {msg}");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        let now = std::time::Instant::now();
+        Self { bar, stop: stop_flag(), json, started: now, spoke: now }
+    }
+
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// Set by Ctrl-C; a second one ends the program at once.
+fn stop_flag() -> Arc<AtomicBool> {
+    static FLAG: OnceLock<Arc<AtomicBool>> = OnceLock::new();
+    FLAG.get_or_init(|| {
+        let flag = Arc::new(AtomicBool::new(false));
+        let handler = flag.clone();
+        let _ = ctrlc::set_handler(move || {
+            if handler.swap(true, Ordering::SeqCst) {
+                std::process::exit(130);
+            }
+            eprintln!("stopping after this iteration; what is done stays on disk");
+        });
+        flag
+    })
+    .clone()
+}
+
+impl Progress for Bar {
+    fn step(&mut self, index: usize, count: usize, time: f64) {
+        self.bar.set_length(count as u64);
+        self.bar.set_position(index as u64);
+        self.bar.set_message(format!("t = {time}"));
+    }
+
+    fn iteration(&mut self, i: &Iteration) {
+        let figures: Vec<String> = i.figures.iter().map(|(n, v)| format!("{n} {v}")).collect();
+        let line = format!("t = {}  solve {}  residual {:.1e}  {}  {}", i.time, i.iteration, i.residual, i.action, figures.join("  "));
+        // Where no bar can be drawn, a line now and then says that work goes on.
+        if self.bar.is_hidden() && !self.json && self.spoke.elapsed().as_secs() >= 10 {
+            eprintln!("[{:.0} s] {line}", self.started.elapsed().as_secs_f64());
+            self.spoke = std::time::Instant::now();
+        }
+        self.bar.set_message(line);
+    }
+
+    fn interrupted(&self) -> bool {
+        self.stop.load(Ordering::SeqCst)
+    }
+}

@@ -1,0 +1,201 @@
+//! What the commands do. Each returns the exit status.
+
+use crate::bar::Bar;
+use serde_json::{Value, json};
+use signorini::case::{CaseError, Document};
+use signorini::gallery::{GALLERY, find};
+use signorini::plan::{self, Plan};
+use signorini::run::{Ending, RunError, run};
+use std::path::{Path, PathBuf};
+
+const DONE: u8 = 0;
+const WRONG_INPUT: u8 = 1;
+const NOT_CONVERGED: u8 = 2;
+const INTERRUPTED: u8 = 130;
+
+pub fn run_file(case: &Path, output: Option<PathBuf>, set: &[String], json: bool) -> u8 {
+    let (name, text) = match read(case) {
+        Ok(read) => read,
+        Err(error) => return report(&error, json),
+    };
+    // A case that lies in a folder of its own is called after the folder.
+    let stem = case.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let parent = case.parent().and_then(|p| p.file_name()).map(|p| p.to_string_lossy().into_owned());
+    let default = match (stem.as_str(), parent) {
+        ("case", Some(parent)) => parent,
+        ("" | "-", _) => "results".to_string(),
+        _ => stem,
+    };
+    let default = if Path::new(&default).is_file() { format!("{default}.results") } else { default };
+    execute(&name, &text, &output.unwrap_or_else(|| PathBuf::from(default)), set, json)
+}
+
+pub fn run_example(name: &str, output: Option<PathBuf>, set: &[String], json: bool) -> u8 {
+    match find(name) {
+        Some(example) => {
+            let folder = output.unwrap_or_else(|| PathBuf::from(name));
+            execute(&format!("{name}.toml"), example.case, &folder, set, json)
+        }
+        None => report(&unknown_example(name), json),
+    }
+}
+
+pub fn show_example(name: &str, json: bool) -> u8 {
+    match find(name) {
+        Some(example) if json => println!("{}", json!({"name": example.name, "about": example.about, "case": example.case})),
+        Some(example) => print!("{}", example.case),
+        None => return report(&unknown_example(name), json),
+    }
+    DONE
+}
+
+pub fn gallery(json: bool) -> u8 {
+    if json {
+        let list: Vec<Value> = GALLERY.iter().map(|e| json!({"name": e.name, "about": e.about})).collect();
+        println!("{}", Value::from(list));
+        return DONE;
+    }
+    for example in &GALLERY {
+        println!("{:14} {}", example.name, example.about);
+    }
+    println!("\nRun one with  signorini gallery run NAME");
+    DONE
+}
+
+pub fn check(case: &Path, set: &[String], json: bool) -> u8 {
+    let checked = read(case).and_then(|(name, text)| Document::parse(&name, &text, set)).and_then(|document| {
+        let sizes = match plan::plan(&document)? {
+            Plan::Line(plan) => sizes(&plan)?,
+            Plan::Plane(plan) => sizes(&plan)?,
+        };
+        Ok((document, sizes))
+    });
+    match checked {
+        Err(error) => report(&error, json),
+        Ok((document, sizes)) => {
+            if json {
+                println!("{sizes}");
+            } else {
+                println!("{}: the case is right.", document.name);
+                for (key, value) in sizes.as_object().into_iter().flatten() {
+                    println!("  {:22} {}", key.replace('_', " "), value.to_string().trim_matches('"'));
+                }
+            }
+            DONE
+        }
+    }
+}
+
+/// What a run would have to do, after checking the fields at its first and last time.
+fn sizes<const D: usize>(plan: &plan::MembranePlan<D>) -> Result<Value, CaseError> {
+    for &time in [plan.times.first(), plan.times.last()].into_iter().flatten() {
+        plan.check_fields(&plan.at(time), time)?;
+    }
+    let nodes = plan.grid.node_count();
+    Ok(json!({
+        "method": plan.method.name(),
+        "cells": plan.grid.cells().map(|n| n.to_string()).join(" x "),
+        "degree": plan.grid.degree(),
+        "unknowns_at_most": nodes,
+        "memory_at_most": format!("{:.2} GiB", plan::memory_estimate(nodes as f64, plan.grid.degree(), D) / f64::from(1u32 << 30)),
+        "increments": plan.times.len(),
+        "supports": plan.supports.len(),
+        "loads": plan.loads.len(),
+        "contact": plan.contact.as_ref().map_or("none".to_string(), |(n, f)| format!("{n}: {} on {}", plan.body, f.body)),
+        "warnings": plan.warnings,
+    }))
+}
+
+fn execute(name: &str, text: &str, folder: &Path, set: &[String], json: bool) -> u8 {
+    let document = match Document::parse(name, text, set) {
+        Ok(document) => document,
+        Err(error) => return report(&error, json),
+    };
+    let mut bar = Bar::new(json);
+    let result = run(&document, folder, &mut bar);
+    bar.finish();
+    match result {
+        Err(RunError::Case(error)) => report(&error, json),
+        Err(RunError::Output(error)) => {
+            let help = match &error {
+                signorini::output::OutputError::Foreign { .. } => "choose another folder with -o DIR, or empty this one",
+                _ => "is there space, and may this program write there? choose another folder with -o DIR",
+            };
+            report(&CaseError::new(error.to_string()).help(help), json)
+        }
+        Ok(outcome) => {
+            if json {
+                println!("{}", outcome.summary);
+            } else {
+                table(&outcome.summary);
+                println!("\nResults in {}: open pictures/deflection.png first, fields.pvd in ParaView; numbers in summary.json.", folder.display());
+            }
+            match outcome.ending {
+                Ending::Converged => DONE,
+                Ending::NotConverged => NOT_CONVERGED,
+                Ending::Interrupted => INTERRUPTED,
+            }
+        }
+    }
+}
+
+/// The increments as a table, the warnings, and the verdict.
+fn table(summary: &Value) {
+    println!("{}\n", summary["case"].as_str().unwrap_or(""));
+    println!("{:>9} {:>7} {:>16} {:>16} {:>6} {:>6} {:>10}", "t", "solves", "area", "force", "zones", "holes", "balance");
+    let steps = summary["steps"].as_array().cloned().unwrap_or_default();
+    for step in &steps {
+        let contact = step["contacts"].as_object().and_then(|c| c.values().next()).cloned().unwrap_or(Value::Null);
+        let number = |v: &Value| v.as_f64().map_or("-".to_string(), |v| format!("{v:.10}"));
+        println!(
+            "{:>9} {:>7} {:>16} {:>16} {:>6} {:>6} {:>10}",
+            step["time"],
+            step["iterations"],
+            number(&contact["area"]),
+            number(&contact["force"][2]),
+            contact["zones"],
+            contact["holes"],
+            step["equilibrium_residual"].as_f64().map_or("-".to_string(), |v| format!("{v:.1e}")),
+        );
+    }
+    println!();
+    for warning in summary["warnings"].as_array().into_iter().flatten() {
+        println!("warning: {}", warning.as_str().unwrap_or(""));
+    }
+    println!("{}", summary["verdict"].as_str().unwrap_or(""));
+}
+
+fn read(case: &Path) -> Result<(String, String), CaseError> {
+    if case == Path::new("-") {
+        let text = std::io::read_to_string(std::io::stdin())
+            .map_err(|e| CaseError::new(format!("cannot read standard input: {e}")))?;
+        return Ok(("standard input".into(), text));
+    }
+    let name = case.display().to_string();
+    match std::fs::read(case) {
+        Ok(bytes) => match String::from_utf8(bytes) {
+            Ok(text) => Ok((name, text)),
+            Err(_) => Err(CaseError::new(format!("`{name}` is not a text file")).help("a case file is TOML in UTF-8")),
+        },
+        Err(error) => Err(CaseError::new(format!("cannot read `{name}`: {error}"))
+            .help("signorini gallery show flat_disc > case.toml  gives a case to begin with")),
+    }
+}
+
+fn unknown_example(name: &str) -> CaseError {
+    let names: Vec<&str> = GALLERY.iter().map(|e| e.name).collect();
+    CaseError::new(format!("the gallery has no case `{name}`")).help(signorini::case::suggestion(name, &names))
+}
+
+fn report(error: &CaseError, json: bool) -> u8 {
+    if json {
+        let place = error.place.as_ref().map(|p| {
+            let (line, column) = p.line_and_column();
+            json!({"file": p.name, "line": line, "column": column})
+        });
+        println!("{}", json!({"error": error.message, "help": error.help, "place": place}));
+    } else {
+        eprintln!("{:?}", miette::Report::new(error.clone()));
+    }
+    WRONG_INPUT
+}

@@ -1,0 +1,417 @@
+//! The statement as it stands in a case file, key by key.
+//!
+//! Every variant is a table with one key, and unknown keys are refused, so an error is always reported at its own
+//! line and column. What a key means, and in which unit it stands, is said here once.
+
+use super::value::{Value, Values};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use toml::Spanned;
+
+/// A whole case file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Case {
+    /// Free text, repeated in the results.
+    #[serde(default)]
+    pub title: Option<String>,
+    /// Base units; without them numbers are in any consistent units.
+    #[serde(default)]
+    pub units: Option<Spanned<UnitsKey>>,
+    pub space: Spanned<Space>,
+    /// Named numbers for expressions.
+    #[serde(default)]
+    pub constants: BTreeMap<String, Value>,
+    /// Named functions of one argument, `t`.
+    #[serde(default)]
+    pub functions: BTreeMap<String, Spanned<FunctionKey>>,
+    pub bodies: BTreeMap<String, Spanned<Body>>,
+    #[serde(default)]
+    pub supports: BTreeMap<String, Spanned<Support>>,
+    #[serde(default)]
+    pub loads: BTreeMap<String, Spanned<Load>>,
+    #[serde(default)]
+    pub contacts: BTreeMap<String, Spanned<Contact>>,
+    #[serde(default)]
+    pub steps: Vec<Spanned<Step>>,
+    #[serde(default)]
+    pub output: Output,
+}
+
+/// A named system of units, or the names of the base units.
+#[derive(Clone, Debug)]
+pub enum UnitsKey {
+    System(String),
+    Base(BaseUnits),
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BaseUnits {
+    pub length: String,
+    pub force: String,
+    #[serde(default = "second")]
+    pub time: String,
+}
+
+fn second() -> String {
+    "s".into()
+}
+
+impl<'de> Deserialize<'de> for UnitsKey {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Reader;
+        impl<'de> serde::de::Visitor<'de> for Reader {
+            type Value = UnitsKey;
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("a system such as \"mm-N-MPa\", or { length = \"mm\", force = \"N\", time = \"s\" }")
+            }
+            fn visit_str<E>(self, v: &str) -> Result<UnitsKey, E> {
+                Ok(UnitsKey::System(v.to_string()))
+            }
+            fn visit_map<A: serde::de::MapAccess<'de>>(self, map: A) -> Result<UnitsKey, A::Error> {
+                BaseUnits::deserialize(serde::de::value::MapAccessDeserializer::new(map)).map(UnitsKey::Base)
+            }
+        }
+        deserializer.deserialize_any(Reader)
+    }
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum Space {
+    /// A string: one coordinate, x.
+    Line,
+    /// A round membrane: x is the radius.
+    Axisymmetric,
+    /// A membrane seen from above.
+    Plane,
+    PlaneStrain,
+    PlaneStress,
+    #[serde(rename = "3d")]
+    ThreeD,
+}
+
+/// A function of one argument: a table, or an expression in `t`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FunctionKey {
+    #[serde(default)]
+    pub table: Option<Spanned<Table>>,
+    #[serde(default)]
+    pub expression: Option<Value>,
+}
+
+/// A piecewise linear function.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Table {
+    pub t: Vec<f64>,
+    pub value: Vec<f64>,
+}
+
+/// Things that occupy space.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Body {
+    Membrane(Membrane),
+    Rigid(Rigid),
+    /// Elastic solids by finite elements.
+    Solid(toml::Table),
+    /// Solids on a background grid: implicit shapes, surfaces, images.
+    Cells(toml::Table),
+    Rope(toml::Table),
+    Beam(toml::Table),
+}
+
+/// A film under tension.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Membrane {
+    #[serde(default)]
+    pub domain: Option<Spanned<Domain>>,
+    pub mesh: Spanned<Mesh>,
+    /// Polynomial degree, 1 to 6.
+    #[serde(default)]
+    pub degree: Option<Spanned<i64>>,
+    /// Force per length; a value or an expression of position.
+    pub tension: Value,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Domain {
+    Disc(Disc),
+    Ellipse(EllipseKey),
+    Rectangle(Rectangle),
+    Polygon(Polygon),
+    Implicit(Implicit),
+    Interval(Interval),
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Disc {
+    pub radius: Value,
+    #[serde(default)]
+    pub center: Option<Values>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EllipseKey {
+    pub semi_axes: Values,
+    #[serde(default)]
+    pub center: Option<Values>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Rectangle {
+    pub min: Values,
+    pub max: Values,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Polygon {
+    pub points: Spanned<Vec<Values>>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Implicit {
+    pub negative_inside: Value,
+    pub min: Values,
+    pub max: Values,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Interval {
+    pub from: Value,
+    pub to: Value,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Mesh {
+    Grid(GridKey),
+    Gmsh(GmshKey),
+}
+
+/// A background grid: a number of cells in each direction, or their size.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GridKey {
+    #[serde(default)]
+    pub cells: Option<Spanned<Vec<Spanned<i64>>>>,
+    #[serde(default)]
+    pub cell_size: Option<Value>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GmshKey {
+    pub file: String,
+    #[serde(default)]
+    pub group: Option<String>,
+}
+
+/// A body that does not deform.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Rigid {
+    pub shape: Spanned<Shape>,
+    #[serde(default)]
+    pub side: Option<Spanned<Side>>,
+    #[serde(default)]
+    pub motion: Option<Spanned<Motion>>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    Outside,
+    Inside,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Shape {
+    /// A floor seen from above: its height as an expression of x and y.
+    Height(Value),
+    Plane(PlaneKey),
+    Sphere(toml::Table),
+    Cylinder(toml::Table),
+    Cone(toml::Table),
+    Ellipsoid(toml::Table),
+    Torus(toml::Table),
+    Paraboloid(toml::Table),
+    Nurbs(toml::Table),
+    Stl(toml::Table),
+    HeightMap(toml::Table),
+    LevelSet(toml::Table),
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlaneKey {
+    pub point: Values,
+    pub normal: Values,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Motion {
+    Fixed(Nothing),
+    Prescribed(Prescribed),
+    Free(Nothing),
+}
+
+/// A table without keys.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Nothing {}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Prescribed {
+    #[serde(default)]
+    pub displacement: Option<Values>,
+    #[serde(default)]
+    pub rotation: Option<Values>,
+}
+
+/// Where something is held or moved.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Support {
+    /// `BODY` or `BODY:GROUP`.
+    pub on: Spanned<String>,
+    #[serde(default)]
+    pub displacement: Option<Value>,
+    #[serde(default)]
+    pub normal: Option<Value>,
+    #[serde(default)]
+    pub uniform: Option<Spanned<bool>>,
+    #[serde(default)]
+    pub spring: Option<Spanned<toml::Value>>,
+}
+
+/// What pushes.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Load {
+    pub on: Spanned<String>,
+    /// Force per area along +z for a membrane.
+    #[serde(default)]
+    pub normal: Option<Value>,
+    #[serde(default)]
+    pub traction: Option<Values>,
+    #[serde(default)]
+    pub pressure: Option<Value>,
+    #[serde(default)]
+    pub force: Option<Values>,
+    #[serde(default)]
+    pub body_force: Option<Values>,
+}
+
+/// Who may touch whom.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Contact {
+    /// Two bodies, the one whose points are tested first.
+    #[serde(default)]
+    pub between: Option<Spanned<Vec<Spanned<String>>>>,
+    #[serde(default)]
+    pub within: Option<Spanned<String>>,
+    #[serde(default)]
+    pub all: Option<Spanned<bool>>,
+    #[serde(default)]
+    pub method: Option<Spanned<Method>>,
+    #[serde(default)]
+    pub adhesion: Option<Adhesion>,
+    #[serde(default)]
+    pub friction: Option<Spanned<toml::Table>>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    InequalityLevelSet(LevelSetKey),
+    ActiveSet(ActiveSetKey),
+    Mortar(toml::Table),
+    GaussPoint(toml::Table),
+    Node(toml::Table),
+}
+
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LevelSetKey {
+    #[serde(default)]
+    pub formulation: Option<Spanned<String>>,
+    #[serde(default)]
+    pub modes: Option<Spanned<String>>,
+    #[serde(default)]
+    pub front_degree: Option<Spanned<i64>>,
+    #[serde(default)]
+    pub initial_zone: Option<Spanned<toml::Value>>,
+}
+
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ActiveSetKey {
+    #[serde(default)]
+    pub start: Option<Spanned<ActiveSetStart>>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum ActiveSetStart {
+    Nested,
+    Cold,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Adhesion {
+    /// Energy per area.
+    pub energy: Value,
+}
+
+/// A part of the history.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Step {
+    /// Time at its end.
+    pub to: Value,
+    #[serde(default)]
+    pub increments: Option<Spanned<i64>>,
+    #[serde(default)]
+    pub control: Option<Spanned<Control>>,
+    #[serde(default)]
+    pub events: Option<Spanned<f64>>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Control {
+    Time(Nothing),
+    ArcLength(toml::Table),
+    Area(toml::Table),
+}
+
+/// What to write.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Output {
+    /// Increments between written fields.
+    #[serde(default)]
+    pub every: Option<Spanned<i64>>,
+    #[serde(default)]
+    pub pictures: Option<bool>,
+    /// Points whose histories are recorded.
+    #[serde(default)]
+    pub probes: BTreeMap<String, Values>,
+}

@@ -1,0 +1,138 @@
+//! Units: a quantity such as `"0.1 mm"` is turned into a number in the base units of the case.
+
+use std::collections::BTreeMap;
+
+/// Powers of length, force and time.
+pub type Dimension = [i32; 3];
+
+pub const NONE: Dimension = [0, 0, 0];
+pub const LENGTH: Dimension = [1, 0, 0];
+pub const FORCE_PER_LENGTH: Dimension = [-1, 1, 0];
+pub const PRESSURE: Dimension = [-2, 1, 0];
+pub const TIME: Dimension = [0, 0, 1];
+
+/// The base units of a case, in metres, newtons and seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Units {
+    pub length: f64,
+    pub force: f64,
+    pub time: f64,
+}
+
+const LENGTHS: [(&str, f64); 8] = [
+    ("m", 1.0), ("km", 1e3), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6), ("µm", 1e-6), ("nm", 1e-9), ("in", 0.0254),
+];
+const FORCES: [(&str, f64); 8] = [
+    ("N", 1.0), ("kN", 1e3), ("MN", 1e6), ("mN", 1e-3), ("uN", 1e-6), ("µN", 1e-6), ("nN", 1e-9), ("lbf", 4.4482216152605),
+];
+const TIMES: [(&str, f64); 5] = [("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("min", 60.0), ("h", 3600.0)];
+const PRESSURES: [(&str, f64); 8] = [
+    ("Pa", 1.0), ("hPa", 1e2), ("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9), ("mPa", 1e-3), ("bar", 1e5), ("mbar", 1e2),
+];
+const ENERGIES: [(&str, f64); 4] = [("J", 1.0), ("mJ", 1e-3), ("uJ", 1e-6), ("nJ", 1e-9)];
+
+/// All named units with their size and dimension.
+fn named() -> BTreeMap<&'static str, (f64, Dimension)> {
+    let of = |list: &'static [(&'static str, f64)], d: Dimension| list.iter().map(move |&(n, v)| (n, (v, d)));
+    of(&LENGTHS, LENGTH)
+        .chain(of(&FORCES, [0, 1, 0]))
+        .chain(of(&TIMES, TIME))
+        .chain(of(&PRESSURES, PRESSURE))
+        .chain(of(&ENERGIES, [1, 1, 0]))
+        .chain([("1", (1.0, NONE))])
+        .collect()
+}
+
+impl Units {
+    /// One of the named systems: `m-N-Pa`, `mm-N-MPa`, `um-uN-MPa`.
+    pub fn system(name: &str) -> Option<Self> {
+        Some(match name {
+            "m-N-Pa" => Self { length: 1.0, force: 1.0, time: 1.0 },
+            "mm-N-MPa" => Self { length: 1e-3, force: 1.0, time: 1.0 },
+            "um-uN-MPa" | "µm-µN-MPa" => Self { length: 1e-6, force: 1e-6, time: 1.0 },
+            _ => return None,
+        })
+    }
+
+    /// A system from the names of its base units.
+    pub fn from_names(length: &str, force: &str, time: &str) -> Result<Self, String> {
+        let find = |list: &[(&str, f64)], what: &str, name: &str| {
+            list.iter().find(|(n, _)| *n == name).map(|(_, v)| *v).ok_or_else(|| {
+                let known: Vec<&str> = list.iter().map(|(n, _)| *n).collect();
+                format!("`{name}` is not a unit of {what}: known are {}", known.join(", "))
+            })
+        };
+        Ok(Self {
+            length: find(&LENGTHS, "length", length)?,
+            force: find(&FORCES, "force", force)?,
+            time: find(&TIMES, "time", time)?,
+        })
+    }
+
+    /// The factor that turns a number in `unit` into base units, and the dimension of the unit.
+    pub fn factor(&self, unit: &str) -> Result<(f64, Dimension), String> {
+        let (size, dimension) = parse_unit(unit)?;
+        let base = self.length.powi(dimension[0]) * self.force.powi(dimension[1]) * self.time.powi(dimension[2]);
+        Ok((size / base, dimension))
+    }
+}
+
+/// Reads a product of powers of named units, such as `N/m`, `uN/um^2` or `N*m`.
+fn parse_unit(text: &str) -> Result<(f64, Dimension), String> {
+    let names = named();
+    let (mut size, mut dimension) = (1.0, NONE);
+    let mut sign = 1;
+    let mut rest = text.trim();
+    loop {
+        let end = rest.find(['*', '/', '·']).unwrap_or(rest.len());
+        let (word, power) = match rest[..end].trim().split_once('^') {
+            Some((word, power)) => {
+                let power = power.trim().parse::<i32>().ok().filter(|p| p.abs() <= 6);
+                (word.trim(), power.ok_or_else(|| format!("`{}` has no whole power", rest[..end].trim()))?)
+            }
+            None => (rest[..end].trim(), 1),
+        };
+        let Some((value, d)) = names.get(word) else {
+            let known: Vec<&str> = names.keys().copied().collect();
+            return Err(format!("unknown unit `{word}`: {}", super::suggestion(word, &known)));
+        };
+        size *= value.powi(sign * power);
+        for k in 0..3 {
+            dimension[k] += sign * power * d[k];
+        }
+        let Some(operator) = rest[end..].chars().next() else { return Ok((size, dimension)) };
+        sign = if operator == '/' { -1 } else { 1 };
+        rest = &rest[end + operator.len_utf8()..];
+    }
+}
+
+/// A dimension in words, with an example.
+pub fn describe(dimension: Dimension) -> &'static str {
+    match dimension {
+        NONE => "a pure number",
+        LENGTH => "a length, such as mm",
+        FORCE_PER_LENGTH => "a force per length, such as N/m",
+        PRESSURE => "a force per area, such as Pa",
+        TIME => "a time, such as s",
+        _ => "another dimension",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factors_and_dimensions() {
+        let mm = Units::system("mm-N-MPa").unwrap();
+        assert!((mm.factor("um").unwrap().0 - 1e-3).abs() < 1e-18);
+        assert_eq!(mm.factor("N/m").unwrap().1, FORCE_PER_LENGTH);
+        assert!((mm.factor("N/m").unwrap().0 - 1e-3).abs() < 1e-18);
+        assert!((mm.factor("MPa").unwrap().0 - 1.0).abs() < 1e-15);
+        let um = Units::system("um-uN-MPa").unwrap();
+        assert!((um.factor("uN/um^2").unwrap().0 - 1.0).abs() < 1e-12);
+        assert!((um.factor("J/m^2").unwrap().0 - 1.0).abs() < 1e-12);
+        assert!(mm.factor("furlong").unwrap_err().contains("unknown unit"));
+        assert!(mm.factor("mm^x").is_err() && mm.factor("").is_err());
+    }
+}

@@ -1,0 +1,31 @@
+//! The cases of the gallery, carried in the program so that anyone can run them.
+
+/// A case of the gallery.
+#[derive(Clone, Copy, Debug)]
+pub struct Example {
+    pub name: &'static str,
+    pub about: &'static str,
+    pub case: &'static str,
+}
+
+macro_rules! example {
+    ($name:literal, $about:literal) => {
+        Example { name: $name, about: $about, case: include_str!(concat!("../../../gallery/", $name, "/case.toml")) }
+    };
+}
+
+/// All cases, simplest first.
+pub const GALLERY: [Example; 7] = [
+    example!("string", "a string on a flat floor, beside the exact solution"),
+    example!("axisymmetric", "a round membrane by its radius, beside the exact solution"),
+    example!("flat_disc", "the same membrane in the plane, on a grid that its edge cuts"),
+    example!("cosine_disc", "four islands of contact merge to a ring and fill, as the load grows"),
+    example!("cosine_square", "a square membrane on the same floor"),
+    example!("tilted_floor", "a film in micrometres on a tilted, curved floor; tension and load vary"),
+    example!("active_set", "the classical nodal method, to be set beside cosine_square"),
+];
+
+/// The example of a name.
+pub fn find(name: &str) -> Option<&'static Example> {
+    GALLERY.iter().find(|e| e.name == name)
+}

@@ -1,0 +1,129 @@
+//! Drawing: SVG by `plotters`, PNG from the same SVG by `resvg`, with a font that travels along.
+
+use super::{Folder, OutputError};
+use base64::Engine as _;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use resvg::{tiny_skia, usvg};
+use std::sync::{Arc, OnceLock};
+
+/// The font of all pictures, and what a viewer takes if it does not have it.
+pub const FONT: &str = "Ubuntu, DejaVu Sans, sans-serif";
+/// Pixels of the PNG per unit of the SVG.
+const ZOOM: f32 = 1.5;
+
+/// A failure of the drawing library.
+pub fn failed(error: impl std::fmt::Display) -> OutputError {
+    OutputError::Picture(error.to_string())
+}
+
+/// Draws an SVG of the given size.
+pub fn svg(
+    size: (u32, u32),
+    draw: impl FnOnce(&DrawingArea<SVGBackend<'_>, Shift>) -> Result<(), OutputError>,
+) -> Result<String, OutputError> {
+    let mut text = String::new();
+    {
+        let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
+        root.fill(&WHITE).map_err(failed)?;
+        draw(&root)?;
+        root.present().map_err(failed)?;
+    }
+    Ok(text)
+}
+
+/// Writes a picture as SVG and as PNG.
+pub fn save(folder: &Folder, name: &str, svg: &str) -> Result<(), OutputError> {
+    folder.write(&format!("pictures/{name}.svg"), svg.as_bytes())?;
+    folder.write(&format!("pictures/{name}.png"), &png(svg)?)
+}
+
+fn options() -> &'static usvg::Options<'static> {
+    static OPTIONS: OnceLock<usvg::Options<'static>> = OnceLock::new();
+    OPTIONS.get_or_init(|| {
+        let mut fonts = usvg::fontdb::Database::new();
+        fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
+        fonts.set_sans_serif_family("Ubuntu");
+        usvg::Options { fontdb: Arc::new(fonts), font_family: "Ubuntu".into(), ..usvg::Options::default() }
+    })
+}
+
+fn png(svg: &str) -> Result<Vec<u8>, OutputError> {
+    let tree = usvg::Tree::from_str(svg, options()).map_err(failed)?;
+    let size = tree.size();
+    let (w, h) = ((size.width() * ZOOM) as u32, (size.height() * ZOOM) as u32);
+    let mut pixmap = tiny_skia::Pixmap::new(w, h).ok_or_else(|| failed("no memory for the picture"))?;
+    resvg::render(&tree, tiny_skia::Transform::from_scale(ZOOM, ZOOM), &mut pixmap.as_mut());
+    pixmap.encode_png().map_err(failed)
+}
+
+/// A raster to be laid under the axes of a chart.
+pub struct Image {
+    pixmap: tiny_skia::Pixmap,
+}
+
+impl Image {
+    pub fn new(width: u32, height: u32) -> Result<Self, OutputError> {
+        let pixmap = tiny_skia::Pixmap::new(width, height).ok_or_else(|| failed("no memory for the picture"))?;
+        Ok(Self { pixmap })
+    }
+
+    pub fn width(&self) -> usize {
+        self.pixmap.width() as usize
+    }
+
+    pub fn height(&self) -> usize {
+        self.pixmap.height() as usize
+    }
+
+    pub fn set(&mut self, x: usize, y: usize, color: RGBColor) {
+        let at = y * self.width() + x;
+        let premultiplied = tiny_skia::ColorU8::from_rgba(color.0, color.1, color.2, 255).premultiply();
+        if let Some(pixel) = self.pixmap.pixels_mut().get_mut(at) {
+            *pixel = premultiplied;
+        }
+    }
+
+    /// Puts the image into an SVG, above the background and below everything else.
+    pub fn insert(&self, svg: &mut String, x: (i32, i32), y: (i32, i32)) -> Result<(), OutputError> {
+        let data = base64::engine::general_purpose::STANDARD.encode(self.pixmap.encode_png().map_err(failed)?);
+        let element = format!(
+            "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" xlink:href=\"data:image/png;base64,{data}\" xmlns:xlink=\"http://www.w3.org/1999/xlink\"/>\n",
+            x.0,
+            y.0,
+            x.1 - x.0,
+            y.1 - y.0
+        );
+        // The background is the first rectangle.
+        let after = svg.find("<rect").and_then(|r| svg[r..].find("/>").map(|e| r + e + 2));
+        let Some(after) = after else { return Err(failed("the chart has no background")) };
+        svg.insert_str(after, &format!("\n{element}"));
+        Ok(())
+    }
+}
+
+/// The viridis colour map: even in lightness, and told apart by colour-blind eyes. `t` runs from 0 to 1.
+pub fn viridis(t: f64) -> RGBColor {
+    const STOPS: [(u8, u8, u8); 9] = [
+        (68, 1, 84), (71, 44, 122), (59, 81, 139), (44, 113, 142), (33, 144, 141),
+        (39, 173, 129), (92, 200, 99), (170, 220, 50), (253, 231, 37),
+    ];
+    let t = if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.0 } * (STOPS.len() - 1) as f64;
+    let i = (t as usize).min(STOPS.len() - 2);
+    let mix = |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * (t - i as f64)).round() as u8;
+    let (a, b) = (STOPS[i], STOPS[i + 1]);
+    RGBColor(mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
+}
+
+/// A number as a label: short, without trailing zeros.
+pub fn label(v: f64) -> String {
+    if v == 0.0 {
+        return "0".into();
+    }
+    if v.abs() >= 1e4 || v.abs() < 1e-3 {
+        let text = format!("{v:.1e}");
+        return text.replace(".0e", "e");
+    }
+    let text = format!("{v:.4}");
+    text.trim_end_matches('0').trim_end_matches('.').to_string()
+}

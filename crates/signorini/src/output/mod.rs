@@ -1,0 +1,9 @@
+//! Result files: each written under another name first and then renamed, so that a file is whole or absent.
+
+pub mod chart;
+pub mod folder;
+pub mod pictures;
+pub mod tables;
+pub mod vtk;
+
+pub use folder::{Folder, OutputError};

@@ -1,0 +1,411 @@
+//! The pictures a person would want to look at first.
+
+use super::chart::{FONT, Image, failed, label, save, svg, viridis};
+use super::{Folder, OutputError};
+use crate::case::statement::Space;
+use crate::exact;
+use crate::plan::MembranePlan;
+use crate::snapshot::{DisplayMesh, Snapshot};
+use plotters::prelude::*;
+use serde_json::Value;
+use signorini_geometry::{Aabb, Point};
+use signorini_verify::flat_floor::FlatFloor;
+
+const MEMBRANE: RGBColor = RGBColor(31, 81, 140);
+const FLOOR: RGBColor = RGBColor(110, 110, 110);
+const FRONT: RGBColor = RGBColor(213, 60, 40);
+const EXACT: RGBColor = RGBColor(20, 20, 20);
+
+/// Draws all pictures of a run.
+pub fn draw<const D: usize>(
+    folder: &Folder,
+    plan: &MembranePlan<D>,
+    mesh: &DisplayMesh<D>,
+    s: &Snapshot<D>,
+    steps: &[Value],
+) -> Result<(), OutputError> {
+    let units = Labels::new(plan);
+    let exact = exact::of(plan, s.time);
+    if D == 1 {
+        save(folder, "deflection", &profile(plan, mesh, s, exact, &units)?)?;
+        if s.has_floor {
+            save(folder, "gap_and_pressure", &gap_profile(mesh, s, &units)?)?;
+        }
+    } else {
+        save(folder, "deflection", &map(mesh, s, &s.displacement, "Deflection", &units.length("u"), exact, &units)?)?;
+        if s.has_floor {
+            save(folder, "gap", &map(mesh, s, &s.gap, "Gap", &units.length("gap"), None, &units)?)?;
+            save(folder, "pressure", &map(mesh, s, &s.pressure, "Contact pressure", &units.pressure("p"), None, &units)?)?;
+        }
+    }
+    save(folder, "convergence", &convergence(steps)?)?;
+    if steps.len() > 1
+        && let Some((name, _)) = &plan.contact
+    {
+        save(folder, "history", &history(steps, name, plan.space, &units)?)?;
+    }
+    Ok(())
+}
+
+/// Axis labels with the units of the case.
+struct Labels {
+    length: Option<String>,
+    force: Option<String>,
+}
+
+impl Labels {
+    fn new<const D: usize>(plan: &MembranePlan<D>) -> Self {
+        use crate::case::statement::UnitsKey;
+        let (length, force) = match plan.document.case.units.as_ref().map(|u| u.get_ref()) {
+            None => (None, None),
+            Some(UnitsKey::Base(b)) => (Some(b.length.clone()), Some(b.force.clone())),
+            Some(UnitsKey::System(name)) => {
+                let mut parts = name.split('-').map(str::to_string);
+                (parts.next(), parts.next())
+            }
+        };
+        Self { length, force }
+    }
+
+    fn with(&self, what: &str, unit: Option<String>) -> String {
+        unit.map_or_else(|| what.to_string(), |u| format!("{what} [{u}]"))
+    }
+
+    fn length(&self, what: &str) -> String {
+        self.with(what, self.length.clone())
+    }
+
+    fn area(&self, what: &str) -> String {
+        self.with(what, self.length.as_ref().map(|l| format!("{l}²")))
+    }
+
+    fn force(&self, what: &str) -> String {
+        self.with(what, self.force.clone())
+    }
+
+    fn pressure(&self, what: &str) -> String {
+        self.with(what, self.force.as_ref().zip(self.length.as_ref()).map(|(f, l)| format!("{f}/{l}²")))
+    }
+}
+
+fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let (lo, hi) = values.filter(|v| v.is_finite()).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    if lo > hi {
+        (0.0, 1.0)
+    } else if hi - lo <= 1e-14 * hi.abs().max(lo.abs()) {
+        // A constant field still has an axis.
+        let pad = 0.5 * hi.abs().max(f64::MIN_POSITIVE.sqrt());
+        (lo - pad, hi + pad)
+    } else {
+        (lo, hi)
+    }
+}
+
+fn padded((lo, hi): (f64, f64)) -> std::ops::Range<f64> {
+    let pad = 0.05 * (hi - lo);
+    lo - pad..hi + pad
+}
+
+/// A field as a colour map, with the contact outlined.
+fn map<const D: usize>(
+    mesh: &DisplayMesh<D>,
+    s: &Snapshot<D>,
+    values: &[f64],
+    title: &str,
+    value_label: &str,
+    exact: Option<FlatFloor>,
+    units: &Labels,
+) -> Result<String, OutputError> {
+    let bounds = mesh.points.iter().fold(Aabb::new(mesh.points[0], mesh.points[0]), |b, p| Aabb::new(b.min.inf(p), b.max.sup(p)));
+    let extent = bounds.size();
+    let (lo, hi) = range(values.iter().copied());
+    // The plot keeps the proportions of the domain.
+    let aspect = extent[1] / extent[0];
+    let (w, h) = if aspect < 1.0 { (600.0, (600.0 * aspect).max(120.0)) } else { ((600.0 / aspect).max(120.0), 600.0) };
+    let size = (w as u32 + 240, h as u32 + 110);
+    let mut pixels = ((0, 1), (0, 1));
+    let mut text = svg(size, |root| {
+        let (left, right) = root.split_horizontally(w as i32 + 90);
+        let caption = format!("{title}, t = {}", label(s.time));
+        let mut chart = ChartBuilder::on(&left)
+            .caption(caption, (FONT, 20))
+            .margin(8)
+            .x_label_area_size(45)
+            .y_label_area_size(65)
+            .build_cartesian_2d(bounds.min[0]..bounds.max[0], bounds.min[1]..bounds.max[1])
+            .map_err(failed)?;
+        chart
+            .configure_mesh()
+            .disable_mesh()
+            .x_desc(units.length("x"))
+            .y_desc(units.length("y"))
+            .x_labels(6)
+            .y_labels(6)
+            .x_label_formatter(&|v| label(*v))
+            .y_label_formatter(&|v| label(*v))
+            .label_style((FONT, 15))
+            .draw()
+            .map_err(failed)?;
+        let area = chart.plotting_area().get_pixel_range();
+        pixels = ((area.0.start, area.0.end), (area.1.start, area.1.end));
+        for outline in &s.outlines {
+            let closed = outline.iter().chain(outline.first()).map(|p| (p[0], p[1]));
+            chart.draw_series(LineSeries::new(closed, FRONT.stroke_width(3))).map_err(failed)?;
+        }
+        if let Some(radius) = exact.and_then(|e| e.contact_radius()) {
+            let c = bounds.center();
+            let dashes = (0..60).map(|k| {
+                let at = |j: f64| {
+                    let a = std::f64::consts::TAU * (f64::from(k) + j) / 60.0;
+                    (c[0] + radius * a.cos(), c[1] + radius * a.sin())
+                };
+                PathElement::new(vec![at(0.0), at(0.25), at(0.5)], EXACT.stroke_width(2))
+            });
+            chart.draw_series(dashes).map_err(failed)?;
+        }
+        colour_bar(&right, (lo, hi), value_label, s, exact.is_some_and(|e| e.contact_radius().is_some()))
+    })?;
+    let mut image = Image::new((pixels.0.1 - pixels.0.0).max(1) as u32 * 2, (pixels.1.1 - pixels.1.0).max(1) as u32 * 2)?;
+    fill(&mut image, mesh, values, &bounds, (lo, hi));
+    image.insert(&mut text, pixels.0, pixels.1)?;
+    Ok(text)
+}
+
+fn colour_bar<const D: usize>(
+    area: &DrawingArea<SVGBackend<'_>, plotters::coord::Shift>,
+    (lo, hi): (f64, f64),
+    value_label: &str,
+    s: &Snapshot<D>,
+    exact: bool,
+) -> Result<(), OutputError> {
+    let (_, height) = area.dim_in_pixel();
+    let (top, bottom) = (60, height as i32 - 110);
+    let style = (FONT, 15).into_font();
+    area.draw(&Text::new(value_label.to_string(), (10, 34), style.clone())).map_err(failed)?;
+    const BANDS: i32 = 64;
+    for k in 0..BANDS {
+        let y = |k: i32| bottom - (bottom - top) * k / BANDS;
+        let colour = viridis((f64::from(k) + 0.5) / f64::from(BANDS));
+        area.draw(&Rectangle::new([(10, y(k + 1)), (34, y(k) + 1)], colour.filled())).map_err(failed)?;
+    }
+    for k in 0..=4 {
+        let value = lo + (hi - lo) * f64::from(k) / 4.0;
+        let y = bottom - (bottom - top) * k / 4;
+        area.draw(&Text::new(label(value), (42, y - 8), style.clone())).map_err(failed)?;
+    }
+    let mut y = bottom + 22;
+    let mut entry = |colour: RGBColor, text: &str| -> Result<(), OutputError> {
+        area.draw(&PathElement::new(vec![(10, y), (34, y)], colour.stroke_width(3))).map_err(failed)?;
+        area.draw(&Text::new(text.to_string(), (42, y - 8), style.clone())).map_err(failed)?;
+        y += 22;
+        Ok(())
+    };
+    if !s.outlines.is_empty() {
+        entry(FRONT, "contact front")?;
+    }
+    if exact {
+        entry(EXACT, "exact front (dashed)")?;
+    }
+    Ok(())
+}
+
+/// Paints the cells of the display mesh, bilinear within each.
+fn fill<const D: usize>(image: &mut Image, mesh: &DisplayMesh<D>, values: &[f64], bounds: &Aabb<D>, (lo, hi): (f64, f64)) {
+    let size = bounds.size();
+    let (w, h) = (image.width(), image.height());
+    let pixel = |p: &Point<D>| ((p[0] - bounds.min[0]) / size[0] * w as f64, (bounds.max[1] - p[1]) / size[1] * h as f64);
+    for cell in &mesh.cells {
+        let corners: Vec<(f64, f64)> = cell.iter().map(|&i| pixel(&mesh.points[i as usize])).collect();
+        let (x0, x1) = range(corners.iter().map(|c| c.0));
+        let (y0, y1) = range(corners.iter().map(|c| c.1));
+        let value = |k: usize| values[cell[k] as usize];
+        for y in y0.floor().max(0.0) as usize..(y1.ceil() as usize).min(h) {
+            for x in x0.floor().max(0.0) as usize..(x1.ceil() as usize).min(w) {
+                let at = (x as f64 + 0.5, y as f64 + 0.5);
+                let inside = (0..4).all(|k| {
+                    let (a, b) = (corners[k], corners[(k + 1) % 4]);
+                    // Rows run downwards, so the corners run clockwise on the screen.
+                    (b.0 - a.0) * (at.1 - a.1) - (b.1 - a.1) * (at.0 - a.0) <= 1e-9
+                });
+                if inside {
+                    let s = ((at.0 - x0) / (x1 - x0)).clamp(0.0, 1.0);
+                    let t = ((y1 - at.1) / (y1 - y0)).clamp(0.0, 1.0);
+                    let v = (1.0 - t) * ((1.0 - s) * value(0) + s * value(1)) + t * ((1.0 - s) * value(3) + s * value(2));
+                    image.set(x, y, viridis((v - lo) / (hi - lo)));
+                }
+            }
+        }
+    }
+}
+
+/// Points of a line in order, with their values.
+fn in_order<const D: usize>(mesh: &DisplayMesh<D>, values: &[f64]) -> Vec<(f64, f64)> {
+    let mut points: Vec<(f64, f64)> = mesh.points.iter().zip(values).map(|(p, v)| (p[0], *v)).collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    points
+}
+
+/// Deflection of a string or of the radius of a round membrane.
+fn profile<const D: usize>(
+    plan: &MembranePlan<D>,
+    mesh: &DisplayMesh<D>,
+    s: &Snapshot<D>,
+    exact: Option<FlatFloor>,
+    units: &Labels,
+) -> Result<String, OutputError> {
+    let u = in_order(mesh, &s.displacement);
+    let floor = in_order(mesh, &s.floor);
+    let (lo, hi) = range(s.displacement.iter().chain(s.floor.iter().filter(|_| s.has_floor)).copied());
+    let x = range(u.iter().map(|p| p.0));
+    let axis = if plan.space == Space::Axisymmetric { "r" } else { "x" };
+    svg((900, 480), |root| {
+        let mut chart = ChartBuilder::on(root)
+            .caption(format!("Deflection, t = {}", label(s.time)), (FONT, 20))
+            .margin(10)
+            .x_label_area_size(45)
+            .y_label_area_size(75)
+            .build_cartesian_2d(x.0..x.1, padded((lo, hi)))
+            .map_err(failed)?;
+        chart
+            .configure_mesh()
+            .light_line_style(WHITE)
+            .x_desc(units.length(axis))
+            .y_desc(units.length("height"))
+            .x_label_formatter(&|v| label(*v))
+            .y_label_formatter(&|v| label(*v))
+            .label_style((FONT, 15))
+            .draw()
+            .map_err(failed)?;
+        if s.has_floor {
+            let base = lo - 0.05 * (hi - lo);
+            chart.draw_series(AreaSeries::new(floor.iter().copied(), base, FLOOR.mix(0.25)).border_style(FLOOR)).map_err(failed)?;
+        }
+        chart
+            .draw_series(LineSeries::new(u.iter().copied(), MEMBRANE.stroke_width(3)))
+            .map_err(failed)?
+            .label("membrane")
+            .legend(|(x, y)| PathElement::new(vec![(x, y), (x + 20, y)], MEMBRANE.stroke_width(3)));
+        if let Some(exact) = exact {
+            let middle = if plan.space == Space::Axisymmetric { 0.0 } else { plan.grid.bounds().center()[0] };
+            let marks = (0..=40).map(|k| {
+                let at = x.0 + (x.1 - x.0) * f64::from(k) / 40.0;
+                Circle::new((at, exact.displacement(at - middle)), 3, EXACT)
+            });
+            chart.draw_series(marks).map_err(failed)?.label("exact").legend(|(x, y)| Circle::new((x + 10, y), 3, EXACT));
+        }
+        let ends = s.outlines.iter().flatten().map(|p| {
+            let v = u.iter().min_by(|a, b| (a.0 - p[0]).abs().total_cmp(&(b.0 - p[0]).abs())).map_or(0.0, |q| q.1);
+            Circle::new((p[0], v), 6, FRONT.filled())
+        });
+        chart.draw_series(ends).map_err(failed)?.label("end of contact").legend(|(x, y)| Circle::new((x + 10, y), 5, FRONT.filled()));
+        chart.configure_series_labels().label_font((FONT, 15)).background_style(WHITE.mix(0.8)).border_style(FLOOR).draw().map_err(failed)
+    })
+}
+
+/// Gap and pressure along a line, one above the other.
+fn gap_profile<const D: usize>(mesh: &DisplayMesh<D>, s: &Snapshot<D>, units: &Labels) -> Result<String, OutputError> {
+    svg((900, 640), |root| {
+        let parts = root.split_evenly((2, 1));
+        for (part, values, title, y) in [
+            (&parts[0], &s.gap, "Gap", units.length("gap")),
+            (&parts[1], &s.pressure, "Contact pressure", units.pressure("p")),
+        ] {
+            let points = in_order(mesh, values);
+            let x = range(points.iter().map(|p| p.0));
+            let mut chart = ChartBuilder::on(part)
+                .caption(format!("{title}, t = {}", label(s.time)), (FONT, 18))
+                .margin(10)
+                .x_label_area_size(40)
+                .y_label_area_size(75)
+                .build_cartesian_2d(x.0..x.1, padded(range(values.iter().copied().chain([0.0]))))
+                .map_err(failed)?;
+            chart
+                .configure_mesh()
+                .light_line_style(WHITE)
+                .x_desc(units.length("x"))
+                .y_desc(y)
+                .x_label_formatter(&|v| label(*v))
+                .y_label_formatter(&|v| label(*v))
+                .label_style((FONT, 14))
+                .draw()
+                .map_err(failed)?;
+            chart.draw_series(AreaSeries::new(points, 0.0, MEMBRANE.mix(0.2)).border_style(MEMBRANE.stroke_width(2))).map_err(failed)?;
+        }
+        Ok(())
+    })
+}
+
+/// Residuals of all increments, relative to the tolerance.
+fn convergence(steps: &[Value]) -> Result<String, OutputError> {
+    let histories: Vec<Vec<(f64, f64)>> = steps
+        .iter()
+        .map(|s| {
+            let list = s["residual_history"].as_array().cloned().unwrap_or_default();
+            list.iter().enumerate().filter_map(|(i, v)| v.as_f64().filter(|v| *v > 0.0).map(|v| (i as f64 + 1.0, v))).collect()
+        })
+        .collect();
+    let longest = histories.iter().flatten().map(|p| p.0).fold(2.0, f64::max);
+    let (lo, hi) = histories.iter().flatten().map(|p| p.1).fold((0.1f64, 10.0f64), |(l, h), v| (l.min(v), h.max(v)));
+    svg((820, 460), |root| {
+        let mut chart = ChartBuilder::on(root)
+            .caption("Convergence of the contact front", (FONT, 20))
+            .margin(10)
+            .x_label_area_size(45)
+            .y_label_area_size(80)
+            .build_cartesian_2d(1.0..longest, (0.5 * lo..2.0 * hi).log_scale())
+            .map_err(failed)?;
+        chart
+            .configure_mesh()
+            .light_line_style(WHITE)
+            .x_desc("equilibrium solve")
+            .y_desc("residual / tolerance")
+            .x_labels(longest.min(12.0) as usize)
+            .x_label_formatter(&|v| format!("{v:.0}"))
+            .y_label_formatter(&|v| format!("{v:.0e}"))
+            .label_style((FONT, 15))
+            .draw()
+            .map_err(failed)?;
+        let count = histories.len();
+        for (i, history) in histories.iter().enumerate() {
+            let colour = viridis(0.85 * i as f64 / (count.max(2) - 1) as f64);
+            chart.draw_series(LineSeries::new(history.iter().copied(), colour.stroke_width(2))).map_err(failed)?;
+            chart.draw_series(history.iter().map(|p| Circle::new(*p, 4, colour.filled()))).map_err(failed)?;
+        }
+        chart.draw_series(LineSeries::new([(1.0, 1.0), (longest, 1.0)], FRONT.stroke_width(2))).map_err(failed).map(|_| ())
+    })
+}
+
+/// Area and force over time.
+fn history(steps: &[Value], contact: &str, space: Space, units: &Labels) -> Result<String, OutputError> {
+    let series = |f: &dyn Fn(&Value) -> Option<f64>| -> Vec<(f64, f64)> {
+        steps.iter().filter_map(|s| Some((s["time"].as_f64()?, f(&s["contacts"][contact])?))).collect()
+    };
+    let area = series(&|c| c["area"].as_f64());
+    let force = series(&|c| c["force"][2].as_f64());
+    let measure = if space == Space::Line { units.length("length of contact") } else { units.area("area of contact") };
+    svg((820, 640), |root| {
+        let parts = root.split_evenly((2, 1));
+        for (part, points, y) in [(&parts[0], &area, measure), (&parts[1], &force, units.force("force of the floor"))] {
+            let x = range(points.iter().map(|p| p.0));
+            let mut chart = ChartBuilder::on(part)
+                .margin(12)
+                .x_label_area_size(40)
+                .y_label_area_size(80)
+                .build_cartesian_2d(padded(x), padded(range(points.iter().map(|p| p.1).chain([0.0]))))
+                .map_err(failed)?;
+            chart
+                .configure_mesh()
+                .light_line_style(WHITE)
+                .x_desc("t")
+                .y_desc(y)
+                .x_label_formatter(&|v| label(*v))
+                .y_label_formatter(&|v| label(*v))
+                .label_style((FONT, 15))
+                .draw()
+                .map_err(failed)?;
+            chart.draw_series(LineSeries::new(points.iter().copied(), MEMBRANE.stroke_width(2))).map_err(failed)?;
+            chart.draw_series(points.iter().map(|p| Circle::new(*p, 4, MEMBRANE.filled()))).map_err(failed)?;
+        }
+        Ok(())
+    })
+}

@@ -1,0 +1,749 @@
+//! From the statement to the model: every key looked up, every value read, every contradiction named.
+
+mod domain;
+mod floor;
+
+use crate::case::statement::{self, Body, Control, Method, Space};
+use crate::case::units::{FORCE_PER_LENGTH, LENGTH, PRESSURE, TIME, Units};
+use crate::case::value::Reader;
+use crate::case::{CaseError, Document, Value, suggestion};
+use crate::expression::{Definition, Expression, Names, Scope};
+use signorini_fem::Grid;
+use signorini_geometry::{Jet, Point, Real};
+use signorini_membrane::active_set::NodalStart;
+use signorini_membrane::domain::DomainOnGrid;
+use signorini_membrane::field::{Constant, Field, Moved, SharedField, Sum};
+use signorini_membrane::problem::{Measure, Membrane, Support};
+use signorini_membrane::quadrature::{Quadrature, unit_rule, whole_order};
+use signorini_membrane::zone::NoZone;
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+pub use domain::{Pieces, memory_estimate};
+pub use floor::Floor;
+
+/// A problem that is ready to be solved.
+pub enum Plan {
+    Line(MembranePlan<1>),
+    Plane(MembranePlan<2>),
+}
+
+/// Which method finds the contact zone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MethodChoice {
+    InequalityLevelSet,
+    ActiveSet(NodalStart),
+}
+
+impl MethodChoice {
+    pub fn name(self) -> &'static str {
+        match self {
+            MethodChoice::InequalityLevelSet => "inequality_level_set",
+            MethodChoice::ActiveSet(_) => "active_set",
+        }
+    }
+}
+
+/// An expression and the place it comes from.
+#[derive(Clone)]
+pub struct Placed {
+    pub expression: Expression,
+    pub span: Range<usize>,
+    /// The key, for messages.
+    pub key: String,
+}
+
+/// A support: its name and the displacement it prescribes.
+#[derive(Clone)]
+pub struct PlannedSupport {
+    pub name: String,
+    pub displacement: Placed,
+    pub pieces: Vec<usize>,
+}
+
+/// A membrane, its floor and its history.
+pub struct MembranePlan<const D: usize> {
+    pub document: Document,
+    pub space: Space,
+    pub grid: Grid<D>,
+    pub domain: DomainOnGrid<D>,
+    pub tension: Placed,
+    pub loads: BTreeMap<String, Placed>,
+    pub supports: Vec<PlannedSupport>,
+    pub body: String,
+    /// Name of the contact, and the floor.
+    pub contact: Option<(String, Floor)>,
+    pub method: MethodChoice,
+    /// Ends of the increments.
+    pub times: Vec<f64>,
+    pub probes: BTreeMap<String, Point<D>>,
+    pub every: usize,
+    pub pictures: bool,
+    pub warnings: Vec<String>,
+}
+
+/// Reads a document into a plan.
+pub fn plan(document: &Document) -> Result<Plan, CaseError> {
+    match *document.case.space.get_ref() {
+        Space::Line | Space::Axisymmetric => Ok(Plan::Line(Planner::new(document)?.membrane::<1>()?)),
+        Space::Plane => Ok(Plan::Plane(Planner::new(document)?.membrane::<2>()?)),
+        _ => Err(document
+            .error(document.case.space.span(), "this version solves membranes only")
+            .help("space = \"line\", \"axisymmetric\" or \"plane\"")),
+    }
+}
+
+/// Reads values in the context of one document.
+pub(crate) struct Planner<'a> {
+    pub document: &'a Document,
+    pub reader: Reader<'a>,
+    pub space: Space,
+}
+
+/// Names of the position's coordinates, by space.
+fn coordinates(space: Space) -> &'static [&'static str] {
+    match space {
+        Space::Line | Space::Axisymmetric => &["x", "t"],
+        _ => &["x", "y", "t"],
+    }
+}
+
+impl<'a> Planner<'a> {
+    fn new(document: &'a Document) -> Result<Self, CaseError> {
+        let case = &document.case;
+        let units = match &case.units {
+            None => None,
+            Some(key) => Some(match key.get_ref() {
+                statement::UnitsKey::System(name) => Units::system(name).ok_or_else(|| {
+                    document
+                        .error(key.span(), format!("unknown system of units `{name}`"))
+                        .help(suggestion(name, &["m-N-Pa", "mm-N-MPa", "um-uN-MPa"]))
+                })?,
+                statement::UnitsKey::Base(b) => Units::from_names(&b.length, &b.force, &b.time)
+                    .map_err(|message| document.error(key.span(), message))?,
+            }),
+        };
+        let mut planner = Self {
+            document,
+            reader: Reader { document, units, names: Names::default() },
+            space: *case.space.get_ref(),
+        };
+        planner.define_constants()?;
+        planner.define_functions()?;
+        Ok(planner)
+    }
+
+    /// Constants may use each other in any order, but not in a circle.
+    fn define_constants(&mut self) -> Result<(), CaseError> {
+        let mut open: Vec<(&String, &Value)> = self.document.case.constants.iter().collect();
+        for (name, value) in &open {
+            self.check_name(name, value.span())?;
+        }
+        while !open.is_empty() {
+            let before = open.len();
+            let mut first_error = None;
+            let mut left = Vec::new();
+            for (name, value) in open {
+                match self.reader.any(value, &[]) {
+                    Ok((e, _)) => {
+                        let v = e.constant().unwrap_or(f64::NAN);
+                        if !v.is_finite() {
+                            return Err(self.document.error(value.span(), format!("the constant `{name}` is {v}, not a finite number")));
+                        }
+                        self.reader.names.constants.insert(name.clone(), v);
+                    }
+                    Err(error) => {
+                        first_error.get_or_insert(error);
+                        left.push((name, value));
+                    }
+                }
+            }
+            open = left;
+            if open.len() == before {
+                let circle = open.iter().all(|(_, v)| self.mentions(v, open.iter().map(|(n, _)| n.as_str())));
+                return Err(match first_error {
+                    Some(_) if circle => self
+                        .document
+                        .error(open[0].1.span(), format!("the constant `{}` is defined in a circle", open[0].0))
+                        .help("a constant may use others, but not itself by way of them"),
+                    Some(error) => error,
+                    None => CaseError::new("constants"),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Functions may use each other in any order, but not in a circle.
+    fn define_functions(&mut self) -> Result<(), CaseError> {
+        let document = self.document;
+        let mut open: Vec<_> = document.case.functions.iter().collect();
+        for (name, key) in &open {
+            self.check_name(name, key.span())?;
+            if self.reader.names.constants.contains_key(*name) {
+                return Err(document.error(key.span(), format!("`{name}` is both a constant and a function")));
+            }
+        }
+        while !open.is_empty() {
+            let before = open.len();
+            let mut first_error = None;
+            let mut left = Vec::new();
+            for (name, key) in open {
+                match self.function(name, key) {
+                    Ok(definition) => {
+                        self.reader.names.functions.insert(name.clone(), Arc::new(definition));
+                    }
+                    Err(error) => {
+                        first_error.get_or_insert(error);
+                        left.push((name, key));
+                    }
+                }
+            }
+            open = left;
+            if open.len() == before {
+                let names: Vec<&str> = open.iter().map(|(n, _)| n.as_str()).collect();
+                let circle = open.iter().find(|(_, k)| {
+                    k.get_ref().expression.as_ref().is_some_and(|v| self.mentions(v, names.iter().copied()))
+                });
+                return Err(match (circle, first_error) {
+                    (Some((name, key)), _) => document
+                        .error(key.span(), format!("the function `{name}` calls itself, directly or by way of others"))
+                        .help("functions may use each other, but not in a circle"),
+                    (None, Some(error)) => error,
+                    (None, None) => CaseError::new("functions"),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn function(&self, name: &str, key: &toml::Spanned<statement::FunctionKey>) -> Result<Definition, CaseError> {
+        let error = |span: Range<usize>, message: String| self.document.error(span, message);
+        match (&key.get_ref().table, &key.get_ref().expression) {
+            (Some(table), None) => {
+                let (t, value) = (&table.get_ref().t, &table.get_ref().value);
+                if t.is_empty() || t.len() != value.len() {
+                    return Err(error(table.span(), format!("`t` has {} entries and `value` {}", t.len(), value.len()))
+                        .help("both need the same number of entries, at least one"));
+                }
+                if t.iter().chain(value).any(|v| !v.is_finite()) {
+                    return Err(error(table.span(), "the table holds a number that is not finite".into()));
+                }
+                if let Some(i) = (1..t.len()).find(|&i| t[i] <= t[i - 1]) {
+                    return Err(error(table.span(), format!("`t` does not increase: {} follows {}", t[i], t[i - 1])));
+                }
+                Ok(Definition::Table { t: t.clone(), value: value.clone() })
+            }
+            (None, Some(value)) => Ok(Definition::Formula(self.reader.any(value, &["t"])?.0)),
+            _ => Err(error(key.span(), format!("the function `{name}` needs either `table` or `expression`"))),
+        }
+    }
+
+    /// Whether a value's text uses one of the names as a word.
+    fn mentions<'b>(&self, value: &Value, mut names: impl Iterator<Item = &'b str>) -> bool {
+        let crate::case::Literal::Text(text) = value.get_ref() else { return false };
+        let words: Vec<&str> = text.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
+        names.any(|n| words.contains(&n))
+    }
+
+    fn check_name(&self, name: &str, span: Range<usize>) -> Result<(), CaseError> {
+        let word = name.chars().all(|c| c.is_alphanumeric() || c == '_') && !name.starts_with(|c: char| c.is_ascii_digit());
+        let taken = ["x", "y", "z", "t", "pi", "e", "if"].contains(&name);
+        match (word, taken) {
+            (true, false) => Ok(()),
+            (true, true) => Err(self.document.error(span, format!("`{name}` already has a meaning in expressions"))),
+            (false, _) => Err(self
+                .document
+                .error(span, format!("`{name}` cannot be used in an expression"))
+                .help("a name consists of letters, digits and _, and does not begin with a digit")),
+        }
+    }
+
+    fn unavailable(&self, span: Range<usize>, what: &str) -> CaseError {
+        self.document.error(span, format!("{what} is not available in this version"))
+    }
+
+    fn placed(&self, key: String, value: &Value, dimension: [i32; 3]) -> Result<Placed, CaseError> {
+        let expression = self.reader.expression(value, dimension, coordinates(self.space))?;
+        Ok(Placed { expression, span: value.span(), key })
+    }
+
+    fn membrane<const D: usize>(&self) -> Result<MembranePlan<D>, CaseError>
+    where
+        Self: domain::ReadDomain<D>,
+    {
+        let document = self.document;
+        let case = &document.case;
+        let mut films = case.bodies.iter().filter_map(|(name, b)| match b.get_ref() {
+            Body::Membrane(film) => Some((name, b.span(), film)),
+            _ => None,
+        });
+        let Some((body, span, film)) = films.next() else {
+            return Err(document
+                .error(case.space.span(), "there is no membrane")
+                .help("add a body, for example  [bodies.film.membrane]"));
+        };
+        if let Some((_, span, _)) = films.next() {
+            return Err(self.unavailable(span, "more than one membrane"));
+        }
+        for (name, b) in &case.bodies {
+            let what = match b.get_ref() {
+                Body::Membrane(_) | Body::Rigid(_) => continue,
+                Body::Solid(_) => "solid",
+                Body::Cells(_) => "cells",
+                Body::Rope(_) => "rope",
+                Body::Beam(_) => "beam",
+            };
+            return Err(self.unavailable(b.span(), &format!("the body `{name}`: `{what}`")));
+        }
+        let degree = match &film.degree {
+            None => 2,
+            Some(d) if (1..=6).contains(d.get_ref()) => *d.get_ref() as usize,
+            Some(d) => {
+                return Err(document.error(d.span(), format!("degree {} is not between 1 and 6", d.get_ref())));
+            }
+        };
+        let (grid, domain, pieces) = domain::ReadDomain::<D>::domain(self, film, span.clone(), degree)?;
+        let tension = self.placed(format!("bodies.{body}.membrane.tension"), &film.tension, FORCE_PER_LENGTH)?;
+        let loads = self.loads(body)?;
+        let supports = self.supports(body, &pieces)?;
+        let contact = self.contact(body)?;
+        let mut warnings = Vec::new();
+        let (contact, method) = match contact {
+            None => (None, MethodChoice::InequalityLevelSet),
+            Some((name, floor, method)) => (Some((name, floor)), method),
+        };
+        if contact.is_none() && case.bodies.len() > 1 {
+            warnings.push("no contact is stated: the floor is ignored (add [contacts.NAME] between = [film, floor])".into());
+        }
+        let degree = if let MethodChoice::ActiveSet(_) = method { 1 } else { degree };
+        if degree != grid.degree() {
+            if film.degree.is_some() {
+                warnings.push("method.active_set works with degree 1; the stated degree is not used".into());
+            }
+            let grid = Grid::new(*grid.bounds(), grid.cells(), 1);
+            return self.finish(body, grid, domain, tension, loads, supports, contact, method, warnings);
+        }
+        self.finish(body, grid, domain, tension, loads, supports, contact, method, warnings)
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn finish<const D: usize>(
+        &self,
+        body: &str,
+        grid: Grid<D>,
+        domain: DomainOnGrid<D>,
+        tension: Placed,
+        loads: BTreeMap<String, Placed>,
+        supports: Vec<PlannedSupport>,
+        contact: Option<(String, Floor)>,
+        method: MethodChoice,
+        warnings: Vec<String>,
+    ) -> Result<MembranePlan<D>, CaseError> {
+        let output = &self.document.case.output;
+        let every = match &output.every {
+            None => 1,
+            Some(n) if *n.get_ref() >= 1 => *n.get_ref() as usize,
+            Some(n) => return Err(self.document.error(n.span(), "`every` must be at least 1")),
+        };
+        let mut probes = BTreeMap::new();
+        for (name, at) in &output.probes {
+            let x = if D == 1 && at.get_ref().len() == 2 { self.reader.numbers::<2>(at, LENGTH)?.to_vec() } else { self.reader.numbers::<D>(at, LENGTH)?.to_vec() };
+            probes.insert(name.clone(), Point::<D>::from_fn(|k, _| x[k]));
+        }
+        let plan = MembranePlan {
+            document: self.document.clone(),
+            space: self.space,
+            grid,
+            domain,
+            tension,
+            loads,
+            supports,
+            body: body.to_string(),
+            contact,
+            method,
+            times: self.times()?,
+            probes,
+            every,
+            pictures: output.pictures.unwrap_or(true),
+            warnings,
+        };
+        plan.check_time()?;
+        Ok(plan)
+    }
+
+    fn loads(&self, body: &str) -> Result<BTreeMap<String, Placed>, CaseError> {
+        let mut loads = BTreeMap::new();
+        for (name, load) in &self.document.case.loads {
+            let key = load.get_ref();
+            self.check_place(&key.on, body, &[])?;
+            let others = [
+                ("traction", key.traction.as_ref().map(|v| v.span())),
+                ("pressure", key.pressure.as_ref().map(|v| v.span())),
+                ("force", key.force.as_ref().map(|v| v.span())),
+                ("body_force", key.body_force.as_ref().map(|v| v.span())),
+            ];
+            if let Some((what, span)) = others.iter().find_map(|(w, s)| s.clone().map(|s| (w, s))) {
+                return Err(self
+                    .document
+                    .error(span, format!("a membrane has no `{what}`"))
+                    .help("its load is  normal = …  : force per area along +z, negative where it presses downwards"));
+            }
+            let Some(normal) = &key.normal else {
+                return Err(self.document.error(load.span(), format!("the load `{name}` says nothing")).help("add  normal = …"));
+            };
+            loads.insert(name.clone(), self.placed(format!("loads.{name}.normal"), normal, PRESSURE)?);
+        }
+        Ok(loads)
+    }
+
+    fn supports(&self, body: &str, pieces: &Pieces) -> Result<Vec<PlannedSupport>, CaseError> {
+        let mut supports: Vec<PlannedSupport> = Vec::new();
+        let groups: Vec<&str> = pieces.groups.iter().map(|(n, _)| n.as_str()).collect();
+        for (name, support) in &self.document.case.supports {
+            let key = support.get_ref();
+            let group = self.check_place(&key.on, body, &groups)?;
+            let Some(group) = group else {
+                return Err(self
+                    .document
+                    .error(key.on.span(), "a membrane is held at its boundary")
+                    .help(format!("write  on = \"{body}:boundary\"  or one of: {}", groups.join(", "))));
+            };
+            let others = [
+                ("normal", key.normal.as_ref().map(|v| v.span())),
+                ("uniform", key.uniform.as_ref().map(|v| v.span())),
+                ("spring", key.spring.as_ref().map(|v| v.span())),
+            ];
+            if let Some((what, span)) = others.iter().find_map(|(w, s)| s.clone().map(|s| (w, s))) {
+                return Err(self.unavailable(span, &format!("`{what}` on the support of a membrane")));
+            }
+            let Some(displacement) = &key.displacement else {
+                return Err(self.document.error(support.span(), format!("the support `{name}` prescribes nothing")).help("add  displacement = 0.0"));
+            };
+            let held = pieces.groups.iter().find(|(n, _)| *n == group).map(|(_, p)| p.clone()).unwrap_or_default();
+            if let Some(other) = supports.iter().find(|s| s.pieces.iter().any(|p| held.contains(p))) {
+                return Err(self
+                    .document
+                    .error(key.on.span(), format!("`{}` is already held by the support `{}`", key.on.get_ref(), other.name))
+                    .help("a part of the boundary has one support"));
+            }
+            supports.push(PlannedSupport {
+                name: name.clone(),
+                displacement: self.placed(format!("supports.{name}.displacement"), displacement, LENGTH)?,
+                pieces: held,
+            });
+        }
+        if supports.is_empty() {
+            return Err(self
+                .document
+                .error(self.document.case.space.span(), "nothing holds the membrane")
+                .help(format!("add  [supports.rim]  on = \"{body}:boundary\"  displacement = 0.0")));
+        }
+        Ok(supports)
+    }
+
+    /// Checks a `BODY` or `BODY:GROUP` and returns the group.
+    fn check_place(&self, on: &toml::Spanned<String>, body: &str, groups: &[&str]) -> Result<Option<String>, CaseError> {
+        let (name, group) = match on.get_ref().split_once(':') {
+            Some((name, group)) => (name, Some(group)),
+            None => (on.get_ref().as_str(), None),
+        };
+        let bodies: Vec<&str> = self.document.case.bodies.keys().map(String::as_str).collect();
+        if !bodies.contains(&name) {
+            return Err(self.document.error(on.span(), format!("there is no body `{name}`")).help(suggestion(name, &bodies)));
+        }
+        if name != body {
+            return Err(self.document.error(on.span(), format!("`{name}` is rigid: only `{body}` can be held or loaded")));
+        }
+        match group {
+            Some(g) if !groups.contains(&g) => {
+                Err(self.document.error(on.span(), format!("`{name}` has no group `{g}` here")).help(suggestion(g, groups)))
+            }
+            group => Ok(group.map(str::to_string)),
+        }
+    }
+
+    fn contact(&self, body: &str) -> Result<Option<(String, Floor, MethodChoice)>, CaseError> {
+        let document = self.document;
+        let mut contacts = document.case.contacts.iter();
+        let Some((name, contact)) = contacts.next() else { return Ok(None) };
+        if let Some((_, second)) = contacts.next() {
+            return Err(self.unavailable(second.span(), "more than one contact of a membrane"));
+        }
+        let key = contact.get_ref();
+        let rigid: Vec<&str> = document
+            .case
+            .bodies
+            .iter()
+            .filter(|(_, b)| matches!(b.get_ref(), Body::Rigid(_)))
+            .map(|(n, _)| n.as_str())
+            .collect();
+        let floor = match (&key.between, &key.within, &key.all) {
+            (Some(pair), None, None) => {
+                let list = pair.get_ref();
+                let bodies: Vec<&str> = document.case.bodies.keys().map(String::as_str).collect();
+                for b in list {
+                    let plain = b.get_ref().split(':').next().unwrap_or("");
+                    if !bodies.contains(&plain) {
+                        return Err(document.error(b.span(), format!("there is no body `{plain}`")).help(suggestion(plain, &bodies)));
+                    }
+                }
+                let other: Vec<_> = list.iter().filter(|b| b.get_ref() != body).collect();
+                match other[..] {
+                    [floor] if list.len() == 2 && rigid.contains(&floor.get_ref().as_str()) => floor.get_ref().clone(),
+                    _ => {
+                        return Err(document
+                            .error(pair.span(), "a membrane touches one rigid body")
+                            .help(format!("between = [\"{body}\", \"{}\"]", rigid.first().unwrap_or(&"floor"))));
+                    }
+                }
+            }
+            (None, None, Some(all)) if *all.get_ref() => match rigid[..] {
+                [floor] => floor.to_string(),
+                _ => return Err(document.error(all.span(), format!("there are {} rigid bodies: name one with `between`", rigid.len()))),
+            },
+            _ => {
+                return Err(document
+                    .error(contact.span(), "who touches whom is not said, or said twice")
+                    .help(format!("between = [\"{body}\", \"{}\"]", rigid.first().unwrap_or(&"floor"))));
+            }
+        };
+        if let Some(friction) = &key.friction {
+            return Err(self.unavailable(friction.span(), "friction of a membrane"));
+        }
+        if let Some(adhesion) = &key.adhesion
+            && self.reader.number(&adhesion.energy, [-1, 1, 0])? != 0.0
+        {
+            return Err(self.unavailable(adhesion.energy.span(), "adhesion"));
+        }
+        let method = self.method(key)?;
+        let Some(Body::Rigid(rigid)) = document.case.bodies.get(&floor).map(|b| b.get_ref()) else {
+            return Err(document.error(contact.span(), format!("`{floor}` is not rigid")));
+        };
+        Ok(Some((name.clone(), floor::read(self, &floor, rigid)?, method)))
+    }
+
+    fn method(&self, key: &statement::Contact) -> Result<MethodChoice, CaseError> {
+        let Some(method) = &key.method else { return Ok(MethodChoice::InequalityLevelSet) };
+        match method.get_ref() {
+            Method::InequalityLevelSet(k) => {
+                let only = |value: &Option<toml::Spanned<String>>, here: &str, later: &str| match value {
+                    Some(v) if v.get_ref() == later => Err(self.unavailable(v.span(), &format!("`{later}`"))),
+                    Some(v) if v.get_ref() != here => {
+                        Err(self.document.error(v.span(), format!("unknown word `{}`", v.get_ref())).help(format!("known here: {here}, {later}")))
+                    }
+                    _ => Ok(()),
+                };
+                only(&k.formulation, "one_sided", "published")?;
+                only(&k.modes, "local", "fourier")?;
+                if let Some(v) = &k.front_degree {
+                    return Err(self.unavailable(v.span(), "`front_degree`"));
+                }
+                if let Some(v) = &k.initial_zone {
+                    return Err(self.unavailable(v.span(), "`initial_zone`"));
+                }
+                Ok(MethodChoice::InequalityLevelSet)
+            }
+            Method::ActiveSet(k) => Ok(MethodChoice::ActiveSet(match k.start.as_ref().map(|s| *s.get_ref()) {
+                Some(statement::ActiveSetStart::Cold) => NodalStart::Cold,
+                _ => NodalStart::Nested,
+            })),
+            _ => Err(self
+                .document
+                .error(method.span(), "this method is for solids")
+                .help("membranes have  method.inequality_level_set = {}  and  method.active_set = {}")),
+        }
+    }
+
+    fn times(&self) -> Result<Vec<f64>, CaseError> {
+        let mut times = Vec::new();
+        let mut t = 0.0;
+        for step in &self.document.case.steps {
+            let key = step.get_ref();
+            let to = self.reader.number(&key.to, TIME)?;
+            if to <= t {
+                return Err(self.document.error(key.to.span(), format!("the step ends at t = {to}, not after t = {t}")));
+            }
+            let n = match &key.increments {
+                None => 1,
+                Some(n) if (1..=100_000).contains(n.get_ref()) => *n.get_ref() as usize,
+                Some(n) => return Err(self.document.error(n.span(), format!("{} increments: give a number from 1 to 100000", n.get_ref()))),
+            };
+            match key.control.as_ref().map(|c| (c.get_ref(), c.span())) {
+                None | Some((Control::Time(_), _)) => {}
+                Some((_, span)) => return Err(self.unavailable(span, "control by arc length or area")),
+            }
+            if let Some(events) = &key.events
+                && events.get_ref().is_nan()
+            {
+                return Err(self.document.error(events.span(), "the tolerance is not a number"));
+            }
+            times.extend((1..=n).map(|i| t + (to - t) * i as f64 / n as f64));
+            t = to;
+        }
+        if times.is_empty() {
+            times.push(0.0);
+        }
+        Ok(times)
+    }
+}
+
+/// An expression as a field, at a fixed time.
+struct ExpressionField(Expression);
+
+impl<const D: usize> Field<D> for ExpressionField {
+    fn value(&self, x: &Point<D>) -> f64 {
+        let position = std::array::from_fn(|k| if k < D { x[k] } else { 0.0 });
+        self.0.evaluate(&Scope { position, time: f64::NAN })
+    }
+    fn jet(&self, x: &Point<D>) -> Jet<D> {
+        let position = std::array::from_fn(|k| if k < D { Jet::variable(x[k], k) } else { Jet::constant(0.0) });
+        self.0.evaluate(&Scope { position, time: Jet::constant(f64::NAN) })
+    }
+    fn constant(&self) -> Option<f64> {
+        self.0.constant()
+    }
+}
+
+/// An expression at a time, as a field.
+pub(crate) fn field<const D: usize>(expression: &Expression, time: f64) -> SharedField<D> {
+    let fixed = expression.at_time(time);
+    match fixed.constant() {
+        Some(v) => Arc::new(Constant(v)),
+        None => Arc::new(ExpressionField(fixed)),
+    }
+}
+
+impl<const D: usize> MembranePlan<D> {
+    fn expressions(&self) -> impl Iterator<Item = &Placed> {
+        let floor = self.contact.iter().flat_map(|(_, f)| std::iter::once(&f.height).chain(&f.displacement));
+        std::iter::once(&self.tension).chain(self.loads.values()).chain(self.supports.iter().map(|s| &s.displacement)).chain(floor)
+    }
+
+    /// Something that depends on time needs steps.
+    fn check_time(&self) -> Result<(), CaseError> {
+        if !self.document.case.steps.is_empty() {
+            return Ok(());
+        }
+        match self.expressions().find(|p| p.expression.uses_time()) {
+            None => Ok(()),
+            Some(p) => Err(self
+                .document
+                .error(p.span.clone(), format!("`{}` depends on t, but there are no steps", p.key))
+                .help("add for example  [[steps]]  to = 1.0  increments = 10")),
+        }
+    }
+
+    /// The membrane at one time.
+    pub fn at(&self, time: f64) -> Membrane<D> {
+        let mut supports: Vec<Option<Support<D>>> = vec![None; self.domain.domain.pieces()];
+        for (index, support) in self.supports.iter().enumerate() {
+            for &piece in &support.pieces {
+                let displacement = field(&support.displacement.expression, time);
+                supports[piece] = Some(Support { index, displacement });
+            }
+        }
+        let loads: Vec<SharedField<D>> = self.loads.values().map(|l| field(&l.expression, time)).collect();
+        let load: SharedField<D> = match loads.as_slice() {
+            [one] => one.clone(),
+            _ => Arc::new(Sum(loads)),
+        };
+        Membrane {
+            grid: self.grid.clone(),
+            domain: self.domain.clone(),
+            measure: if self.space == Space::Axisymmetric { Measure::Axisymmetric } else { Measure::Plain },
+            tension: field(&self.tension.expression, time),
+            load,
+            floor: self.contact.as_ref().map(|(_, floor)| {
+                let height = field(&floor.height.expression, time);
+                let [x, y, z] = floor.displacement_at(time);
+                if [x, y, z] == [0.0; 3] {
+                    return height;
+                }
+                let shift = Point::from_fn(|k, _| if k == 0 { x } else { y });
+                Arc::new(Moved { field: height, shift, rise: z }) as SharedField<D>
+            }),
+            supports,
+            support_count: self.supports.len(),
+        }
+    }
+
+    /// The radius of a membrane that is stated as a disc.
+    pub fn disc_radius(&self) -> Option<f64> {
+        let Body::Membrane(film) = self.document.case.bodies.get(&self.body)?.get_ref() else { return None };
+        let statement::Domain::Disc(_) = film.domain.as_ref()?.get_ref() else { return None };
+        Some(0.5 * self.grid.bounds().size()[0] / domain::MARGIN)
+    }
+
+    /// The resultant of each load along z.
+    pub fn load_resultants(&self, membrane: &Membrane<D>, time: f64) -> BTreeMap<String, f64> {
+        let quadrature = Quadrature::new(membrane, &NoZone);
+        let whole = unit_rule::<D>(whole_order(membrane.grid.degree()));
+        let fields: Vec<SharedField<D>> = self.loads.values().map(|l| field(&l.expression, time)).collect();
+        let mut sums = vec![0.0; fields.len()];
+        for cell in 0..quadrature.cells.len() {
+            for (_, points) in quadrature.volumes(membrane, cell, &whole) {
+                for p in points.iter() {
+                    for (sum, f) in sums.iter_mut().zip(&fields) {
+                        *sum += p.weight * f.value(&p.x);
+                    }
+                }
+            }
+        }
+        self.loads.keys().cloned().zip(sums).collect()
+    }
+
+    /// Checks the fields of a membrane where they will be used: finite values, positive tension, a floor below the
+    /// supports.
+    pub fn check_fields(&self, membrane: &Membrane<D>, time: f64) -> Result<(), CaseError> {
+        let quadrature = Quadrature::new(membrane, &NoZone);
+        let whole = unit_rule::<D>(2);
+        let mut failure: Option<CaseError> = None;
+        let wrong = |p: &Placed, x: &Point<D>, v: f64, what: &str| {
+            let at: Vec<String> = x.iter().map(|c| format!("{c:.6}")).collect();
+            self.document.error(p.span.clone(), format!("`{}` is {v} at ({}), t = {time}: {what}", p.key, at.join(", ")))
+        };
+        let finite = "it must be a finite number everywhere in the membrane";
+        let fields: Vec<(&Placed, SharedField<D>, bool)> = std::iter::once((&self.tension, membrane.tension.clone(), true))
+            .chain(self.loads.values().map(|l| (l, field(&l.expression, time), false)))
+            .chain(self.contact.iter().map(|(_, f)| f).zip(&membrane.floor).map(|(f, h)| (&f.height, h.clone(), true)))
+            .collect();
+        for cell in 0..quadrature.cells.len() {
+            for (_, points) in quadrature.volumes(membrane, cell, &whole) {
+                for p in points.iter() {
+                    for (i, (placed, f, derivatives)) in fields.iter().enumerate() {
+                        let jet = if *derivatives { f.jet(&p.x) } else { Jet::constant(f.value(&p.x)) };
+                        if !jet.value.is_finite() {
+                            failure.get_or_insert_with(|| wrong(placed, &p.x, jet.value, finite));
+                        } else if !jet.is_finite() {
+                            failure.get_or_insert_with(|| wrong(placed, &p.x, jet.value, "its derivatives are not finite there"));
+                        } else if i == 0 && jet.value <= 0.0 {
+                            failure.get_or_insert_with(|| wrong(placed, &p.x, jet.value, "the tension must be positive"));
+                        }
+                    }
+                }
+            }
+            if let Some(error) = failure {
+                return Err(error);
+            }
+        }
+        for p in &quadrature.rim {
+            let Some(support) = &membrane.supports[p.piece] else { continue };
+            let planned = &self.supports[support.index];
+            let held = support.displacement.value(&p.x);
+            if !held.is_finite() {
+                return Err(wrong(&planned.displacement, &p.x, held, finite));
+            }
+            if let (Some(h), Some((_, floor))) = (&membrane.floor, &self.contact) {
+                let height = h.value(&p.x);
+                let slack = 1e-9 * (height.abs() + held.abs() + membrane.size() * 1e-6);
+                if height > held + slack {
+                    return Err(wrong(&floor.height, &p.x, height, &format!("the floor lies above the displacement {held} prescribed by the support `{}`", planned.name))
+                        .help("lower the floor there, or raise the support"));
+                }
+            }
+        }
+        Ok(())
+    }
+}

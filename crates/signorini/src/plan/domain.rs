@@ -1,0 +1,301 @@
+//! The domain of a membrane and its background grid.
+
+use super::Planner;
+use crate::case::CaseError;
+use crate::case::statement::{self, Domain, Mesh, Space};
+use crate::case::units::{LENGTH, NONE};
+use crate::expression::{Expression, Scope};
+use signorini_fem::Grid;
+use signorini_geometry::{Aabb, Ellipse, ImplicitShape, Jet, Point, Real, Vector, polygon};
+use signorini_membrane::domain::{BoxDomain, CellStatus, Domain as MembraneDomain, DomainOnGrid, ImplicitDomain, PolygonDomain};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The box of a grid that the boundary cuts is larger than the domain by this factor, so that no boundary runs along
+/// its edge.
+pub(super) const MARGIN: f64 = 1.03;
+/// Fraction of the free memory that a solve may use.
+const MEMORY_SHARE: f64 = 0.8;
+
+/// Named groups of boundary pieces.
+pub struct Pieces {
+    pub groups: Vec<(String, Vec<usize>)>,
+}
+
+impl Pieces {
+    fn new(groups: &[(&str, &[usize])]) -> Self {
+        Self { groups: groups.iter().map(|(n, p)| (n.to_string(), p.to_vec())).collect() }
+    }
+}
+
+/// Reads domains of one dimension.
+pub(crate) trait ReadDomain<const D: usize> {
+    /// The shape of the domain, its bounding box and its groups.
+    fn shape(&self, film: &statement::Membrane, span: Range<usize>) -> Result<(Arc<dyn MembraneDomain<D>>, Aabb<D>, Pieces), CaseError>;
+
+    fn planner(&self) -> &Planner<'_>;
+
+    /// The domain on its grid.
+    fn domain(
+        &self,
+        film: &statement::Membrane,
+        span: Range<usize>,
+        degree: usize,
+    ) -> Result<(Grid<D>, DomainOnGrid<D>, Pieces), CaseError> {
+        let planner = self.planner();
+        let (shape, bounds, pieces) = self.shape(film, span.clone())?;
+        let (cells, place) = planner.cells(film, &bounds)?;
+        planner.check_size(&cells, degree, place.clone())?;
+        let grid = Grid::new(bounds, cells, degree);
+        let domain = DomainOnGrid::new(shape, &grid);
+        if domain.status.iter().all(|s| *s == CellStatus::Outside) {
+            let span = film.domain.as_ref().map_or(span, |d| d.span());
+            return Err(planner
+                .document
+                .error(span, "the domain is empty: no point of it was found on the grid")
+                .help("check the sign (negative inside) and the bounds min, max, or use more cells"));
+        }
+        Ok((grid, domain, pieces))
+    }
+}
+
+impl Planner<'_> {
+    fn cells<const D: usize>(&self, film: &statement::Membrane, bounds: &Aabb<D>) -> Result<([usize; D], Range<usize>), CaseError> {
+        let document = self.document;
+        let grid = match film.mesh.get_ref() {
+            Mesh::Grid(grid) => grid,
+            Mesh::Gmsh(_) => return Err(self.unavailable(film.mesh.span(), "a Gmsh mesh for a membrane")),
+        };
+        match (&grid.cells, &grid.cell_size) {
+            (Some(cells), None) => {
+                let list = cells.get_ref();
+                if list.len() != D {
+                    return Err(document.error(cells.span(), format!("expected {D} numbers of cells, found {}", list.len())));
+                }
+                let mut out = [0; D];
+                for (o, n) in out.iter_mut().zip(list) {
+                    let count = *n.get_ref();
+                    if count < 1 {
+                        return Err(document.error(n.span(), format!("{count} cells: there must be at least one")));
+                    }
+                    *o = count as usize;
+                }
+                Ok((out, cells.span()))
+            }
+            (None, Some(size)) => {
+                let h = self.reader.positive(size, LENGTH)?;
+                let extent = bounds.size();
+                let mut out = [0; D];
+                for k in 0..D {
+                    out[k] = (extent[k] / h).round().clamp(1.0, 1e15) as usize;
+                }
+                Ok((out, size.span()))
+            }
+            _ => Err(document
+                .error(film.mesh.span(), "the grid needs either `cells` or `cell_size`")
+                .help("mesh.grid = { cells = [40, 40] }")),
+        }
+    }
+
+    /// Tells before memory ends.
+    fn check_size<const D: usize>(&self, cells: &[usize; D], degree: usize, span: Range<usize>) -> Result<(), CaseError> {
+        let nodes: f64 = cells.iter().map(|&n| (n * degree) as f64 + 1.0).product();
+        let bytes = memory_estimate(nodes, degree, D);
+        let free = free_memory();
+        if nodes < 2e9 && bytes < MEMORY_SHARE * free {
+            return Ok(());
+        }
+        let gib = |b: f64| b / f64::from(1 << 30);
+        Err(self
+            .document
+            .error(
+                span,
+                format!("{nodes:.1e} unknowns would need about {:.1} GiB, and {:.1} GiB are free", gib(bytes), gib(free)),
+            )
+            .help("use fewer cells, or a lower degree"))
+    }
+
+    fn center(&self, center: &Option<crate::case::Values>) -> Result<Point<2>, CaseError> {
+        match center {
+            None => Ok(Point::zeros()),
+            Some(v) => self.reader.numbers::<2>(v, LENGTH).map(Point::<2>::from),
+        }
+    }
+
+    fn box_of(&self, min: &crate::case::Values, max: &crate::case::Values) -> Result<Aabb<2>, CaseError> {
+        let b = Aabb::new(Point::<2>::from(self.reader.numbers::<2>(min, LENGTH)?), Point::<2>::from(self.reader.numbers::<2>(max, LENGTH)?));
+        if (0..2).all(|k| b.max[k] > b.min[k]) {
+            return Ok(b);
+        }
+        Err(self.document.error(max.span(), "the domain is empty: `max` must exceed `min` in both directions"))
+    }
+
+    fn domain_key<'f>(&self, film: &'f statement::Membrane, span: Range<usize>) -> Result<&'f toml::Spanned<Domain>, CaseError> {
+        film.domain.as_ref().ok_or_else(|| {
+            self.document.error(span, "missing key `domain`").help("add for example  domain.disc = { radius = 1.0 }")
+        })
+    }
+}
+
+/// Bytes that a solve with a sparse factorisation takes, measured on this program and rounded up.
+pub fn memory_estimate(unknowns: f64, degree: usize, dimension: usize) -> f64 {
+    if dimension == 1 {
+        return unknowns * 1e3;
+    }
+    let p = degree as f64;
+    unknowns * (600.0 + 120.0 * p * p) + unknowns * unknowns.max(1.0).log2() * 60.0
+}
+
+/// Memory that is free, as the system tells; 8 GiB where it does not.
+fn free_memory() -> f64 {
+    let text = std::fs::read_to_string("/proc/meminfo").unwrap_or_default();
+    let line = text.lines().find_map(|l| l.strip_prefix("MemAvailable:"));
+    let kib = line.and_then(|l| l.trim().trim_end_matches("kB").trim().parse::<f64>().ok());
+    kib.map_or(8.0 * f64::from(1 << 30), |k| k * 1024.0)
+}
+
+/// A shape by an expression that is negative inside.
+struct ExpressionShape(Expression);
+
+impl ImplicitShape<2> for ExpressionShape {
+    fn value(&self, x: &Point<2>) -> f64 {
+        self.0.evaluate(&Scope { position: [x[0], x[1], 0.0], time: f64::NAN })
+    }
+    fn gradient(&self, x: &Point<2>) -> Vector<2> {
+        let position = [Jet::<2>::variable(x[0], 0), Jet::variable(x[1], 1), Jet::constant(0.0)];
+        self.0.evaluate(&Scope { position, time: Jet::constant(f64::NAN) }).gradient
+    }
+}
+
+impl ReadDomain<1> for Planner<'_> {
+    fn planner(&self) -> &Planner<'_> {
+        self
+    }
+
+    fn shape(&self, film: &statement::Membrane, span: Range<usize>) -> Result<(Arc<dyn MembraneDomain<1>>, Aabb<1>, Pieces), CaseError> {
+        let key = self.domain_key(film, span)?;
+        let Domain::Interval(interval) = key.get_ref() else {
+            return Err(self
+                .document
+                .error(key.span(), "in one dimension the domain is an interval")
+                .help("domain.interval = { from = -1.0, to = 1.0 }, or space = \"plane\""));
+        };
+        let (from, to) = (self.reader.number(&interval.from, LENGTH)?, self.reader.number(&interval.to, LENGTH)?);
+        if to <= from {
+            return Err(self.document.error(interval.to.span(), format!("the domain is empty: {to} does not exceed {from}")));
+        }
+        let axisymmetric = self.space == Space::Axisymmetric;
+        if axisymmetric && from < 0.0 {
+            return Err(self.document.error(interval.from.span(), format!("a radius of {from} is negative")));
+        }
+        let pieces = if axisymmetric && from == 0.0 {
+            // The axis is not a boundary.
+            Pieces::new(&[("boundary", &[1]), ("right", &[1])])
+        } else {
+            Pieces::new(&[("boundary", &[0, 1]), ("left", &[0]), ("right", &[1])])
+        };
+        let bounds = Aabb::new(Point::<1>::new(from), Point::<1>::new(to));
+        Ok((Arc::new(BoxDomain(bounds)), bounds, pieces))
+    }
+}
+
+impl ReadDomain<2> for Planner<'_> {
+    fn planner(&self) -> &Planner<'_> {
+        self
+    }
+
+    fn shape(&self, film: &statement::Membrane, span: Range<usize>) -> Result<(Arc<dyn MembraneDomain<2>>, Aabb<2>, Pieces), CaseError> {
+        let document = self.document;
+        let key = self.domain_key(film, span)?;
+        let whole = || Pieces::new(&[("boundary", &[0])]);
+        let ellipse = |center: Point<2>, semi_axes: [f64; 2]| {
+            let half = Vector::<2>::from(semi_axes);
+            let bounds = Aabb::new(center - half, center + half).scaled(MARGIN);
+            (Arc::new(ImplicitDomain(Ellipse { center, semi_axes })) as Arc<dyn MembraneDomain<2>>, bounds, whole())
+        };
+        Ok(match key.get_ref() {
+            Domain::Disc(disc) => {
+                let radius = self.reader.positive(&disc.radius, LENGTH)?;
+                ellipse(self.center(&disc.center)?, [radius; 2])
+            }
+            Domain::Ellipse(e) => {
+                let semi_axes = self.reader.numbers::<2>(&e.semi_axes, LENGTH)?;
+                if semi_axes.iter().any(|a| *a <= 0.0) {
+                    return Err(document.error(e.semi_axes.span(), "both semi-axes must be positive"));
+                }
+                ellipse(self.center(&e.center)?, semi_axes)
+            }
+            Domain::Rectangle(r) => {
+                let bounds = self.box_of(&r.min, &r.max)?;
+                let pieces = Pieces::new(&[
+                    ("boundary", &[0, 1, 2, 3]),
+                    ("left", &[0]),
+                    ("right", &[1]),
+                    ("bottom", &[2]),
+                    ("top", &[3]),
+                ]);
+                (Arc::new(BoxDomain(bounds)), bounds, pieces)
+            }
+            Domain::Polygon(p) => self.polygon(&p.points)?,
+            Domain::Implicit(i) => {
+                let expression = self.reader.expression(&i.negative_inside, NONE, &["x", "y"]).or_else(|_| {
+                    self.reader.expression(&i.negative_inside, LENGTH, &["x", "y"])
+                })?;
+                let bounds = self.box_of(&i.min, &i.max)?;
+                let shape = ExpressionShape(expression);
+                for k in 0..=20 {
+                    for j in 0..=20 {
+                        let x = bounds.at(&Point::<2>::new(f64::from(j) / 20.0, f64::from(k) / 20.0));
+                        let v = shape.value(&x);
+                        if v.is_nan() {
+                            return Err(document.error(
+                                i.negative_inside.span(),
+                                format!("`negative_inside` is not a number at ({:.6}, {:.6})", x[0], x[1]),
+                            ));
+                        }
+                    }
+                }
+                (Arc::new(ImplicitDomain(shape)), bounds, whole())
+            }
+            Domain::Interval(_) => {
+                return Err(document
+                    .error(key.span(), "an interval is the domain of a string")
+                    .help("space = \"line\" or \"axisymmetric\", or domain.rectangle = { min, max }"));
+            }
+        })
+    }
+}
+
+impl Planner<'_> {
+    fn polygon(&self, points: &toml::Spanned<Vec<crate::case::Values>>) -> Result<(Arc<dyn MembraneDomain<2>>, Aabb<2>, Pieces), CaseError> {
+        let mut corners = Vec::new();
+        for p in points.get_ref() {
+            corners.push(Point::<2>::from(self.reader.numbers::<2>(p, LENGTH)?));
+        }
+        if corners.len() < 3 {
+            return Err(self.document.error(points.span(), format!("{} points make no polygon: there must be at least 3", corners.len())));
+        }
+        let n = corners.len();
+        if let Some(i) = (0..n).find(|&i| (corners[i] - corners[(i + 1) % n]).norm() == 0.0) {
+            return Err(self
+                .document
+                .error(points.get_ref()[i].span(), "two corners in a row are the same point")
+                .help("leave one out; the last corner is joined to the first by itself"));
+        }
+        if let Some((i, j)) = polygon::self_crossing(&corners) {
+            return Err(self
+                .document
+                .error(points.span(), format!("the sides {} and {} cross each other", i + 1, j + 1))
+                .help("list the corners in the order in which one walks round the domain"));
+        }
+        if polygon::signed_area(&corners) == 0.0 {
+            return Err(self.document.error(points.span(), "the domain is empty: the polygon has no area"));
+        }
+        let clockwise = polygon::signed_area(&corners) < 0.0;
+        let mut groups = vec![("boundary".to_string(), (0..n).collect::<Vec<_>>())];
+        // Sides are numbered as listed; a clockwise list is stored in reverse.
+        groups.extend((0..n).map(|i| (format!("side_{}", i + 1), vec![if clockwise { (2 * n - 2 - i) % n } else { i }])));
+        let bounds = corners.iter().fold(Aabb::new(corners[0], corners[0]), |b, p| Aabb::new(b.min.inf(p), b.max.sup(p)));
+        Ok((Arc::new(PolygonDomain::new(corners)), bounds.scaled(MARGIN), Pieces { groups }))
+    }
+}

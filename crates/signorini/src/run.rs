@@ -1,0 +1,254 @@
+//! From a plan to results: increments, files, the summary and the verdict.
+
+mod environment;
+mod increment;
+
+use crate::case::{CaseError, Document};
+use crate::output::{Folder, OutputError, pictures, tables, vtk};
+use crate::plan::{MembranePlan, MethodChoice, Plan, plan};
+use crate::snapshot::{DisplayMesh, Snapshot};
+use increment::{Engine, Increment};
+use serde_json::{Value, json};
+use signorini_membrane::line_zone::LineZone;
+use signorini_membrane::plane_zone::PlaneZone;
+use signorini_membrane::problem::Membrane;
+use signorini_membrane::zone::Zone;
+pub use signorini_solve::{Iteration, Progress};
+use std::path::Path;
+
+/// Version of the summary's keys.
+pub const SCHEMA: u32 = 1;
+
+/// Why a run has no summary.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    #[error(transparent)]
+    Case(#[from] Box<CaseError>),
+    #[error(transparent)]
+    Output(#[from] OutputError),
+}
+
+impl From<CaseError> for RunError {
+    fn from(error: CaseError) -> Self {
+        RunError::Case(Box::new(error))
+    }
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    Converged,
+    NotConverged,
+    Interrupted,
+}
+
+/// What a run leaves behind.
+pub struct Outcome {
+    pub summary: Value,
+    pub ending: Ending,
+}
+
+/// Runs a case and writes its results into a folder, with the threads of rayon's current pool.
+pub fn run(document: &Document, folder: &Path, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
+    let start = std::time::Instant::now();
+    match plan(document)? {
+        Plan::Line(p) => Runner::<1, LineZone>::new(p, folder)?.run(start, progress),
+        Plan::Plane(p) => Runner::<2, PlaneZone>::new(p, folder)?.run(start, progress),
+    }
+}
+
+struct Runner<const D: usize, Z> {
+    plan: MembranePlan<D>,
+    folder: Folder,
+    engine: Engine<D, Z>,
+    steps: Vec<Value>,
+    warnings: Vec<String>,
+    frames: Vec<(f64, String)>,
+    unknowns: usize,
+}
+
+/// Writes every iteration to the log on its way to the user's progress.
+struct Logged<'a> {
+    folder: &'a Folder,
+    inner: &'a mut dyn Progress,
+}
+
+impl Progress for Logged<'_> {
+    fn step(&mut self, index: usize, count: usize, time: f64) {
+        self.inner.step(index, count, time);
+    }
+    fn iteration(&mut self, i: &Iteration) {
+        let mut line = json!({
+            "event": "iteration", "step": i.step, "time": i.time, "iteration": i.iteration,
+            "residual": i.residual, "action": i.action,
+        });
+        for (name, value) in i.figures {
+            line[*name] = json!(value);
+        }
+        // A log that cannot be written will be told by the files that follow.
+        let _ = self.folder.log(&line);
+        self.inner.iteration(i);
+    }
+    fn interrupted(&self) -> bool {
+        self.inner.interrupted()
+    }
+}
+
+impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
+    fn new(plan: MembranePlan<D>, folder: &Path) -> Result<Self, RunError> {
+        // Everything that can be checked is checked before the folder is touched.
+        for &time in plan.times.iter().take(1) {
+            plan.check_fields(&plan.at(time), time)?;
+        }
+        let folder = Folder::create(folder)?;
+        folder.write("case.toml", plan.document.text.as_bytes())?;
+        let warnings = plan.warnings.clone();
+        Ok(Self { plan, folder, engine: Engine::new(), steps: vec![], warnings, frames: vec![], unknowns: 0 })
+    }
+
+    fn run(mut self, start: std::time::Instant, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
+        let times = self.plan.times.clone();
+        let mesh = DisplayMesh::new(&self.plan, &self.plan.at(times[0]));
+        let mut ending = Ending::Converged;
+        let mut reason = "converged".to_string();
+        let mut last: Option<Snapshot<D>> = None;
+        for (index, &time) in times.iter().enumerate() {
+            let membrane = self.plan.at(time);
+            let checked = if index > 0 { self.plan.check_fields(&membrane, time) } else { Ok(()) };
+            if let Err(error) = checked {
+                // What was found so far stays; the summary says how far it goes.
+                self.finish(Ending::NotConverged, "input", start, &mesh, last.as_ref())?;
+                return Err(error.into());
+            }
+            progress.step(index, times.len(), time);
+            let mut logged = Logged { folder: &self.folder, inner: progress };
+            let increment = self.engine.solve(&self.plan, &membrane, (index, time), &mut logged);
+            self.unknowns = self.unknowns.max(increment.unknowns);
+            for warning in &increment.warnings {
+                if !self.warnings.contains(warning) {
+                    self.warnings.push(warning.clone());
+                }
+            }
+            let snapshot = increment.snapshot(&mesh, &membrane, time);
+            self.record(index, time, &membrane, &increment);
+            if let Some(snapshot) = &snapshot
+                && (index % self.plan.every == self.plan.every - 1 || index + 1 == times.len() || !increment.converged)
+            {
+                self.write_fields(index, time, &mesh, snapshot)?;
+            }
+            last = snapshot.or(last);
+            if !increment.converged {
+                ending = if increment.reason == "interrupted" { Ending::Interrupted } else { Ending::NotConverged };
+                reason = increment.reason.clone();
+                break;
+            }
+            if index + 1 == times.len() && times.len() == 1 {
+                reason = increment.reason.clone();
+            }
+        }
+        let summary = self.finish(ending, &reason, start, &mesh, last.as_ref())?;
+        Ok(Outcome { summary, ending })
+    }
+
+    fn record(&mut self, index: usize, time: f64, membrane: &Membrane<D>, increment: &Increment<D>) {
+        let mut step = increment.to_json(&self.plan, &self.plan.load_resultants(membrane, time));
+        step["index"] = json!(index);
+        step["time"] = json!(time);
+        self.steps.push(step);
+    }
+
+    fn write_fields(&mut self, index: usize, time: f64, mesh: &DisplayMesh<D>, s: &Snapshot<D>) -> Result<(), OutputError> {
+        let name = format!("{index:05}");
+        self.folder.write(&format!("fields/fields_{name}.vtu"), &vtk::fields(mesh, s)?)?;
+        self.folder.write(&format!("contact/contact_{name}.vtp"), &vtk::outlines(s)?)?;
+        self.folder.write(&format!("contact/outlines_{name}.csv"), tables::outlines(s).as_bytes())?;
+        self.frames.push((time, name));
+        let list = |of: &dyn Fn(&str) -> String| -> Vec<(f64, String)> {
+            self.frames.iter().map(|(t, n)| (*t, of(n))).collect()
+        };
+        let fields = list(&|n| format!("fields/fields_{n}.vtu"));
+        let contact = list(&|n| format!("contact/contact_{n}.vtp"));
+        self.folder.write("fields.pvd", vtk::collection(&fields).as_bytes())?;
+        self.folder.write("contact.pvd", vtk::collection(&contact).as_bytes())
+    }
+
+    fn finish(
+        &self,
+        ending: Ending,
+        reason: &str,
+        start: std::time::Instant,
+        mesh: &DisplayMesh<D>,
+        last: Option<&Snapshot<D>>,
+    ) -> Result<Value, OutputError> {
+        let probes: Vec<String> = self.plan.probes.keys().cloned().collect();
+        let contact = self.plan.contact.as_ref().map(|(n, _)| n.as_str());
+        self.folder.write("history.csv", tables::history(&self.steps, contact, &probes).as_bytes())?;
+        if let (true, Some(snapshot)) = (self.plan.pictures, last) {
+            pictures::draw(&self.folder, &self.plan, mesh, snapshot, &self.steps)?;
+        }
+        let summary = json!({
+            "schema": SCHEMA,
+            "case": self.plan.document.case.title.clone().unwrap_or_else(|| self.plan.document.name.clone()),
+            "converged": ending == Ending::Converged,
+            "reason": reason,
+            "verdict": self.verdict(ending, reason),
+            "method": self.plan.method.name(),
+            "unknowns": self.unknowns,
+            "warnings": self.warnings,
+            "steps": self.steps,
+            "events": [],
+            "environment": environment::describe(start, rayon::current_num_threads(), &self.plan.document.text),
+        });
+        let text = serde_json::to_string_pretty(&summary).unwrap_or_default();
+        self.folder.write("summary.json", (text + "\n").as_bytes())?;
+        Ok(summary)
+    }
+
+    /// The result in a sentence, with what to try where there is none.
+    fn verdict(&self, ending: Ending, reason: &str) -> String {
+        let done = self.steps.iter().filter(|s| s["converged"] == true).count();
+        let count = self.plan.times.len();
+        match ending {
+            Ending::Interrupted => format!("Interrupted: {done} of {count} increments are done and on disk."),
+            Ending::NotConverged => {
+                let advice = match reason {
+                    "linear_solver" => "the equations could not be solved: check that the membrane is held and that its data are of one scale",
+                    "input" => "a value became invalid along the way",
+                    _ => "try more cells where the zones are small or close to each other, a lower degree, or smaller increments; method.active_set = {} shows a coarse picture of the zones",
+                };
+                let history = self.steps.last().and_then(|s| s["residual_history"].as_array()).map_or(String::new(), |r| {
+                    let last: Vec<String> = r.iter().rev().take(3).rev().map(|v| format!("{:.1e}", v.as_f64().unwrap_or(f64::NAN))).collect();
+                    format!(" (last residuals relative to the tolerance: {})", last.join(", "))
+                });
+                format!("Not converged in increment {} of {count}{history}: {advice}.", self.steps.len().max(1))
+            }
+            Ending::Converged => {
+                let Some(step) = self.steps.last() else { return "Nothing was asked.".into() };
+                let Some((name, _)) = &self.plan.contact else {
+                    return "The membrane is in equilibrium; no contact was stated.".into();
+                };
+                let c = &step["contacts"][name];
+                let zones = c["zones"].as_u64().unwrap_or(0);
+                if zones == 0 {
+                    return "The membrane does not touch the floor.".into();
+                }
+                let figure = |v: &Value| format!("{:.9}", v.as_f64().unwrap_or(f64::NAN));
+                let measure = if D == 1 && self.plan.space == crate::case::statement::Space::Line { "length" } else { "area" };
+                let holes = c["holes"].as_u64().unwrap_or(0);
+                let staircase = if let MethodChoice::ActiveSet(_) = self.plan.method { " (a staircase of nodes)" } else { "" };
+                format!(
+                    "In contact over {measure} {}{staircase} in {zones} zone{}{}, pushed up by {}; forces balance to {:.0e}.",
+                    figure(&c["area"]),
+                    if zones == 1 { "" } else { "s" },
+                    match holes {
+                        0 => String::new(),
+                        1 => " with 1 hole".into(),
+                        n => format!(" with {n} holes"),
+                    },
+                    figure(&c["force"][2]),
+                    step["equilibrium_residual"].as_f64().unwrap_or(f64::NAN),
+                )
+            }
+        }
+    }
+}

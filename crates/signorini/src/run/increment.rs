@@ -1,0 +1,307 @@
+//! One increment, by either method, and what of it goes into the summary.
+
+use crate::case::statement::Space;
+use crate::plan::{MembranePlan, MethodChoice};
+use crate::snapshot::{DisplayMesh, Sample, Snapshot};
+use serde_json::{Value, json};
+use signorini_geometry::Point;
+use signorini_membrane::active_set::{self, NodalSolution, NodalStart};
+use signorini_membrane::equilibrium::Elements;
+use signorini_membrane::ils::{self, Reason, Solution, Start};
+use signorini_membrane::problem::Membrane;
+use signorini_membrane::report::{Component, ContactReport, Report};
+use signorini_membrane::scales::Scales;
+use signorini_membrane::staircase::Staircase;
+use signorini_membrane::zone::{Zone, contact_index};
+use signorini_solve::{Iteration, Progress};
+use std::collections::BTreeMap;
+
+/// Curvature times cell size beyond which a front is not resolved.
+const RESOLVED: f64 = 0.5;
+
+/// Solves increments, each from the one before.
+pub struct Engine<const D: usize, Z> {
+    previous: Option<(Z, Scales)>,
+}
+
+type Sampler<'a, const D: usize> = Box<dyn Fn(&Point<D>) -> Option<Sample> + 'a>;
+
+/// The result of an increment.
+pub struct Increment<'a, const D: usize> {
+    pub converged: bool,
+    pub reason: String,
+    pub iterations: usize,
+    pub residuals: Vec<f64>,
+    pub unknowns: usize,
+    pub warnings: Vec<String>,
+    report: Option<Report<D>>,
+    outlines: Vec<Vec<Point<D>>>,
+    sample: Option<Sampler<'a, D>>,
+}
+
+impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
+    pub fn new() -> Self {
+        Self { previous: None }
+    }
+
+    pub fn solve<'a>(
+        &mut self,
+        plan: &MembranePlan<D>,
+        membrane: &'a Membrane<D>,
+        at: (usize, f64),
+        progress: &mut dyn Progress,
+    ) -> Increment<'a, D>
+    where
+        Z: 'a,
+    {
+        match plan.method {
+            MethodChoice::InequalityLevelSet => self.level_set(membrane, at, progress),
+            MethodChoice::ActiveSet(start) => active_set::<D, Z>(membrane, start, at, progress),
+        }
+    }
+
+    fn level_set<'a>(&mut self, membrane: &'a Membrane<D>, at: (usize, f64), progress: &mut dyn Progress) -> Increment<'a, D>
+    where
+        Z: 'a,
+    {
+        let start = match self.previous.take() {
+            Some((zone, scales)) => Start::Zone(zone, scales),
+            None => Start::Free,
+        };
+        let mut elements = Elements::new(membrane);
+        let mut solution: Solution<'a, D, Z> = ils::solve(membrane, &mut elements, start, at, progress);
+        let report = Report::new(&solution);
+        let converged = solution.reason.converged();
+        if let (true, Some(scales)) = (converged, solution.scales) {
+            self.previous = Some((solution.zone.clone(), scales));
+        }
+        let mut warnings = Vec::new();
+        let sharp = solution.zone.sharpest() * membrane.grid.h();
+        if D == 2 && !solution.zone.is_empty() && sharp > RESOLVED {
+            warnings.push(format!(
+                "a front has a radius of curvature of {:.2} cells at t = {}: the grid does not resolve it, use more cells",
+                1.0 / sharp,
+                at.1
+            ));
+        }
+        if let Some(step) = solution.settled_within {
+            warnings.push(format!("the fronts settled to {step:.0e} of a cell at t = {}, on a jump of the discrete slope", at.1));
+        }
+        let reason = match &solution.reason {
+            Reason::Converged => "converged".to_string(),
+            Reason::NoContact => "no_contact".to_string(),
+            Reason::IterationLimit => "iteration_limit".to_string(),
+            Reason::Interrupted => "interrupted".to_string(),
+            Reason::LinearSolver(message) => {
+                warnings.push(message.clone());
+                "linear_solver".to_string()
+            }
+        };
+        let outlines = solution.zone.outlines();
+        let residuals = std::mem::take(&mut solution.residuals);
+        let (iterations, unknowns) = (solution.iterations, solution.unknowns);
+        let sample: Option<Sampler<'a, D>> = solution.equilibrium.map(|equilibrium| {
+            let zone = solution.zone;
+            Box::new(move |x: &Point<D>| {
+                let displacement = equilibrium.displacement(&zone, x)?;
+                let in_contact = contact_index(zone.region_at(x)).is_some();
+                let pressure = match &membrane.floor {
+                    Some(floor) if in_contact => membrane.floor_pressure(floor, x),
+                    _ => 0.0,
+                };
+                Some(Sample { displacement, in_contact, pressure })
+            }) as Sampler<'a, D>
+        });
+        Increment { converged, reason, iterations, residuals, unknowns, warnings, report, outlines, sample }
+    }
+}
+
+fn active_set<'a, const D: usize, Z: Zone<D>>(
+    membrane: &'a Membrane<D>,
+    start: NodalStart,
+    at: (usize, f64),
+    progress: &mut dyn Progress,
+) -> Increment<'a, D> {
+    let failed = |reason: &str, warnings| Increment {
+        converged: false,
+        reason: reason.into(),
+        iterations: 0,
+        residuals: Vec::new(),
+        unknowns: 0,
+        warnings,
+        report: None,
+        outlines: Vec::new(),
+        sample: None,
+    };
+    let Some(floor) = &membrane.floor else {
+        return failed("linear_solver", vec!["method.active_set needs a floor".into()]);
+    };
+    let solved = {
+        let shared = &*progress;
+        active_set::solve::<D, Z>(membrane, floor, start, &|| shared.interrupted())
+    };
+    let solution = match solved {
+        Ok(solution) => solution,
+        Err(error) => return failed("linear_solver", vec![error.to_string()]),
+    };
+    let zones = Staircase::new(membrane, &solution);
+    for (i, changed) in solution.changes.iter().enumerate() {
+        progress.iteration(&Iteration {
+            step: at.0,
+            time: at.1,
+            iteration: i + 1,
+            residual: *changed as f64,
+            action: "active set",
+            figures: &[("zones", zones.components.len() as f64)],
+        });
+    }
+    let reason = match (solution.converged, progress.interrupted(), zones.components.is_empty()) {
+        (true, _, true) => "no_contact",
+        (true, ..) => "converged",
+        (false, true, _) => "interrupted",
+        (false, false, _) => "iteration_limit",
+    };
+    Increment {
+        converged: solution.converged,
+        reason: reason.into(),
+        iterations: solution.iterations,
+        residuals: solution.changes.iter().map(|c| *c as f64).collect(),
+        unknowns: solution.unknowns,
+        warnings: Vec::new(),
+        report: Some(nodal_report(membrane, &solution, &zones)),
+        outlines: zones.outlines,
+        sample: Some(Box::new(move |x| {
+            Some(Sample {
+                displacement: solution.displacement(membrane, x),
+                in_contact: solution.touches(membrane, x),
+                pressure: solution.pressure(membrane, x),
+            })
+        })),
+    }
+}
+
+fn nodal_report<const D: usize>(membrane: &Membrane<D>, solution: &NodalSolution<D>, zones: &Staircase<D>) -> Report<D> {
+    let inside = || solution.nodes.iter().enumerate().filter_map(|(i, n)| n.filter(|n| n.inside).map(|n| (i, n)));
+    let height = |i: usize| membrane.floor.as_ref().map_or(0.0, |h| h.value(&membrane.grid.node(i)));
+    let gaps = || inside().filter(|(_, n)| !n.in_contact).map(|(i, n)| n.displacement - height(i));
+    let pressures = || inside().filter(|(_, n)| n.in_contact).map(|(_, n)| n.reaction / n.share.max(f64::MIN_POSITIVE));
+    let force: f64 = zones.components.iter().map(|c| c.force).sum();
+    let supports: f64 = solution.support_forces.iter().sum();
+    let largest = force.abs().max(supports.abs()).max(solution.load_force.abs()).max(f64::MIN_POSITIVE);
+    let least = |v: f64| if v.is_finite() { v } else { 0.0 };
+    let length: f64 = zones
+        .outlines
+        .iter()
+        .map(|o| if D == 1 { 2.0 } else { o.iter().zip(o.iter().cycle().skip(1)).map(|(a, b)| (b - a).norm()).sum() })
+        .sum();
+    Report {
+        support_forces: solution.support_forces.clone(),
+        load_force: solution.load_force,
+        energy: solution.energy,
+        equilibrium_residual: (force + supports + solution.load_force).abs() / largest,
+        contact: ContactReport {
+            force,
+            area: zones.components.iter().map(|c| c.area).sum(),
+            components: zones.components.clone(),
+            holes: zones.components.iter().map(|c| c.holes).sum(),
+            boundary_length: length,
+            line_force: 0.0,
+            max_penetration: gaps().fold(0.0, |m: f64, g| m.max(-g)),
+            min_gap_outside: Some(gaps().fold(f64::INFINITY, f64::min)).filter(|g| g.is_finite()),
+            max_pressure: least(pressures().fold(f64::NEG_INFINITY, f64::max)),
+            min_pressure: least(pressures().fold(f64::INFINITY, f64::min)),
+        },
+    }
+}
+
+impl<const D: usize> Increment<'_, D> {
+    /// The state on the display mesh; none where nothing was solved.
+    pub fn snapshot(&self, mesh: &DisplayMesh<D>, membrane: &Membrane<D>, time: f64) -> Option<Snapshot<D>> {
+        let sample = self.sample.as_ref()?;
+        Some(Snapshot::new(mesh, membrane, time, self.outlines.clone(), sample))
+    }
+
+    /// The entry of the summary, without index and time.
+    pub fn to_json(&self, plan: &MembranePlan<D>, loads: &BTreeMap<String, f64>) -> Value {
+        let upward = |f: f64| json!([0.0, 0.0, f]);
+        let mut step = json!({
+            "converged": self.converged,
+            "reason": self.reason,
+            "iterations": self.iterations,
+            "residual_history": self.residuals,
+            "energy": self.report.as_ref().map(|r| r.energy),
+            "equilibrium_residual": self.report.as_ref().map(|r| r.equilibrium_residual),
+            "support_forces": {}, "load_forces": {}, "contacts": {}, "probes": {},
+        });
+        let Some(report) = &self.report else { return step };
+        for (support, force) in plan.supports.iter().zip(&report.support_forces) {
+            step["support_forces"][&support.name] = upward(*force);
+        }
+        for (name, force) in loads {
+            step["load_forces"][name] = upward(*force);
+        }
+        if let Some((name, _)) = &plan.contact {
+            step["contacts"][name] = self.contact_json(&report.contact, plan.space);
+        }
+        for (name, x) in &plan.probes {
+            let state = self.sample.as_ref().and_then(|s| s(x));
+            step["probes"][name] = match state {
+                Some(s) => json!({"displacement": s.displacement, "in_contact": s.in_contact, "pressure": s.pressure}),
+                None => Value::Null,
+            };
+        }
+        step
+    }
+
+    fn contact_json(&self, c: &ContactReport<D>, space: Space) -> Value {
+        let components: Vec<Value> = c
+            .components
+            .iter()
+            .map(|k: &Component<D>| {
+                json!({
+                    "area": k.area, "force": [0.0, 0.0, k.force], "holes": k.holes,
+                    "centroid": k.centroid.iter().copied().collect::<Vec<f64>>(),
+                })
+            })
+            .collect();
+        json!({
+            "force": [0.0, 0.0, c.force],
+            "area": c.area,
+            "zones": c.components.len(),
+            "holes": c.holes,
+            "components": components,
+            "boundary_length": c.boundary_length,
+            "max_penetration": c.max_penetration,
+            "min_gap_outside": c.min_gap_outside,
+            "max_pressure": c.max_pressure,
+            "min_pressure": c.min_pressure,
+            "line_force": c.line_force,
+            "radius": self.radius(c, space),
+            "stable": true,
+            "lowest_eigenvalue": null,
+            "other_states": [],
+            "stick_area": null,
+            "slip_area": null,
+            "max_friction_utilisation": null,
+        })
+    }
+
+    /// The radius of a zone that is a disc to two hundredths, or half the length of one that is an interval.
+    fn radius(&self, c: &ContactReport<D>, space: Space) -> Option<f64> {
+        let [component] = c.components.as_slice() else { return None };
+        let disc = (c.area / std::f64::consts::PI).sqrt();
+        match (space, D) {
+            (Space::Line, _) => Some(0.5 * c.area),
+            (Space::Axisymmetric, _) => {
+                let outer = self.outlines.first()?.last()?[0];
+                ((outer - disc).abs() < 0.02 * outer).then_some(disc)
+            }
+            _ => {
+                let [outline] = self.outlines.as_slice() else { return None };
+                let radii = outline.iter().map(|p| (p - component.centroid).norm());
+                let (lo, hi) = radii.fold((f64::INFINITY, 0.0f64), |(l, h), r| (l.min(r), h.max(r)));
+                (hi - lo < 0.02 * hi).then_some(disc)
+            }
+        }
+    }
+}

@@ -21,10 +21,12 @@ pub struct Conditions<const D: usize> {
     pub least_pressure: f64,
     pub largest_pressure: f64,
     pub most_pulled: Point<D>,
+    /// A point of a support that the zone covers although the floor there lies below.
+    pub torn_from_support: Option<Point<D>>,
 }
 
 impl<const D: usize> Conditions<D> {
-    pub fn check<Z: Zone<D>>(equilibrium: &Equilibrium<'_, D>, zone: &Z, floor: &SharedField<D>) -> Self {
+    pub fn check<Z: Zone<D>>(equilibrium: &Equilibrium<'_, D>, zone: &Z, floor: &SharedField<D>, scales: &Scales) -> Self {
         let membrane = equilibrium.membrane;
         let band = 0.5 * membrane.grid.h();
         let mut c = Self {
@@ -35,7 +37,16 @@ impl<const D: usize> Conditions<D> {
             least_pressure: f64::INFINITY,
             largest_pressure: f64::NEG_INFINITY,
             most_pulled: Point::zeros(),
+            torn_from_support: None,
         };
+        for p in &equilibrium.quadrature.rim {
+            if let (Some(support), true) = (&membrane.supports[p.piece], contact_index(p.region).is_some()) {
+                let apart = (support.displacement.value(&p.x) - floor.value(&p.x)).abs();
+                if apart > 1e-6 * scales.gap {
+                    c.torn_from_support = Some(p.x);
+                }
+            }
+        }
         equilibrium.for_each_point(|cell, region, x, _| {
             if is_free(region) {
                 let Some((u, _)) = equilibrium.evaluate(cell, region, x) else { return };
@@ -64,6 +75,11 @@ impl<const D: usize> Conditions<D> {
         self.least_gap_outside < -scales.gap_tolerance()
     }
 
+    /// Whether the contact conditions hold everywhere.
+    pub fn hold(&self, scales: &Scales) -> bool {
+        !self.penetrates(scales) && !self.pulls(scales) && self.torn_from_support.is_none()
+    }
+
     pub fn pulls(&self, scales: &Scales) -> bool {
         self.least_pressure < -scales.pressure_tolerance()
     }
@@ -87,6 +103,12 @@ pub fn corrected<const D: usize, Z: Zone<D>>(
             Some(_) => (membrane.floor_pressure(floor, x) - scales.pressure_tolerance()) / scales.pressure,
             None => 1.0,
         });
+    }
+    if conditions.torn_from_support.is_some() {
+        let h = grid.h();
+        let rim: Vec<Point<D>> =
+            equilibrium.quadrature.rim.iter().filter(|p| membrane.supports[p.piece].is_some()).map(|p| p.x).collect();
+        result = result.reduced(grid, &mut |x| rim.iter().map(|y| (x - y).norm()).fold(f64::INFINITY, f64::min) - 1.5 * h);
     }
     if conditions.penetrates(scales) {
         let reach = 2.0 * grid.h();

@@ -37,7 +37,25 @@ pub struct Step {
     pub length: f64,
     pub space: ModeSpace,
     pub coefficients: Vec<f64>,
-    pub action: &'static str,
+    pub kind: StepKind,
+}
+
+/// Which part of the derivative a step is made with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepKind {
+    /// The pressure of the floor alone: near the solution, where nothing else survives.
+    Local,
+    /// With the response of the membrane.
+    Full,
+}
+
+impl StepKind {
+    pub fn name(self) -> &'static str {
+        match self {
+            StepKind::Local => "local step",
+            StepKind::Full => "full step",
+        }
+    }
 }
 
 impl<'a, const D: usize> Fronts<'a, D> {
@@ -155,7 +173,7 @@ impl<'a, const D: usize> Fronts<'a, D> {
         let n = zone.mode_offsets(space)[zone.front_count()];
         let frames = self.frames(zone, space);
         let (mut matrix, mut b) = self.galerkin(&frames, n, &local, &self.slope_jump);
-        let action = if far { "full step" } else { "local step" };
+        let kind = if far { StepKind::Full } else { StepKind::Local };
         if far {
             self.add_response(zone, space, &frames, n, &mut matrix)?;
         }
@@ -172,7 +190,7 @@ impl<'a, const D: usize> Fronts<'a, D> {
             .map(|(f, w)| w * f.modes.iter().map(|(i, v)| v * coefficients[*i]).sum::<f64>().powi(2))
             .sum();
         let length = (square / total.max(f64::MIN_POSITIVE)).sqrt();
-        Ok(Step { length, space, coefficients, action })
+        Ok(Step { length, space, coefficients, kind })
     }
 
     /// Adds `∫ Λ_T(ρ⁺ w_m) ω_n`, and for fronts on which it stays safely positive `-∫ κ ρ⁺ w_m ω_n`.

@@ -5,7 +5,7 @@ use crate::active_set::{self, NodalStart};
 use crate::conditions::{Conditions, corrected};
 use crate::field::SharedField;
 use crate::equilibrium::{Elements, Equilibrium};
-use crate::front::Fronts;
+use crate::front::{Fronts, StepKind};
 use crate::problem::Membrane;
 use crate::scales::Scales;
 use crate::zone::{ModeSpace, Zone};
@@ -20,6 +20,8 @@ const PATIENCE: usize = 6;
 /// ... and that move by less than this fraction of a cell have settled: as a front crosses a grid line the discrete
 /// slope jump makes a jump of its own, of the size of the discretisation error, and no position makes it vanish.
 const SETTLED: f64 = 1e-3;
+/// A step of this fraction of a cell that does not improve on the last is round-off.
+const ROUND_OFF: f64 = 1e-8;
 /// A front moves at most this fraction of the membrane's extent in one step.
 const REACH: f64 = 0.15;
 
@@ -152,8 +154,8 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             let (Some(equilibrium), Some(scales)) = (&solution.equilibrium, &solution.scales) else {
                 return Ok(Reason::IterationLimit);
             };
-            let conditions = Conditions::check(equilibrium, &solution.zone, floor);
-            if !conditions.penetrates(scales) && !conditions.pulls(scales) {
+            let conditions = Conditions::check(equilibrium, &solution.zone, floor, scales);
+            if conditions.hold(scales) {
                 solution.conditions = Some(conditions);
                 return Ok(if solution.zone.is_empty() { Reason::NoContact } else { Reason::Converged });
             }
@@ -218,13 +220,19 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             waited = if residual < 0.7 * best { 0 } else { waited + 1 };
             best = best.min(residual);
             let relative_step = step.length / self.membrane.grid.h();
+            if waited >= 1 && relative_step < ROUND_OFF {
+                self.report(residual, "at rest");
+                self.solution.equilibrium = Some(equilibrium);
+                return Ok(Fixed::AtRest);
+            }
             if waited >= PATIENCE && relative_step < SETTLED {
                 self.report(residual, "settled");
                 self.solution.settled_within = Some(relative_step);
                 self.solution.equilibrium = Some(equilibrium);
                 return Ok(Fixed::AtRest);
             }
-            if step.space == ModeSpace::Fine {
+            // Far from the solution the steps are no linear iteration that could be extrapolated.
+            if step.space == ModeSpace::Fine && step.kind == StepKind::Local {
                 step.coefficients = acceleration.next(step.coefficients);
             } else {
                 acceleration = Acceleration::default();
@@ -234,7 +242,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             if advance.topology_changed || advance.zone.mode_offsets(ModeSpace::Fine) != zone.mode_offsets(ModeSpace::Fine) {
                 acceleration = Acceleration::default();
             }
-            let action = if advance.topology_changed { "topology changed" } else { step.action };
+            let action = if advance.topology_changed { "topology changed" } else { step.kind.name() };
             self.report(residual, action);
             self.solution.equilibrium = Some(equilibrium);
             self.solution.zone = advance.zone;

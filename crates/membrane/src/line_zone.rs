@@ -70,10 +70,11 @@ impl LineZone {
         found
     }
 
-    fn region_of(&self, x: f64) -> RegionId {
-        match self.intervals.iter().position(|[a, b]| (*a..*b).contains(&x)) {
+    /// The region of a point that lies on the inner side of the ends for which `inner` holds.
+    fn region_by(&self, inner: impl Fn(usize) -> bool) -> RegionId {
+        match (0..self.intervals.len()).find(|i| inner(2 * i) && inner(2 * i + 1)) {
             Some(k) => contact(k),
-            None => free(self.intervals.iter().filter(|i| i[1] <= x).count()),
+            None => free((0..self.intervals.len()).filter(|i| !inner(2 * i + 1)).count()),
         }
     }
 }
@@ -87,15 +88,17 @@ impl Division<1> for LineZone {
                 at >= b.min[0] && at <= b.max[0]
             })
             .collect();
-        let ends: Vec<f64> = near.iter().map(|&i| self.end(i).at).collect();
-        let normals: Vec<f64> = near.iter().map(|&i| self.end(i).normal).collect();
-        let center = b.center()[0];
+        let center = b.center();
+        let fronts = near.clone();
         FrontsInCell {
             sheets: near.iter().map(|&i| Box::new(self.end(i)) as Box<dyn ImplicitShape<1>>).collect(),
             features: Vec::new(),
             region: Box::new(move |values| {
-                // The position follows from the distance to any of the ends.
-                self.region_of(ends.first().map_or(center, |at| at + normals[0] * values[0]))
+                // On which side of each end: by its sheet where it is near, else as the centre of the cell.
+                self.region_by(|front| {
+                    let near = fronts.iter().position(|f| *f == front).and_then(|at| values.get(at));
+                    near.copied().unwrap_or_else(|| self.end(front).value(&center)) < 0.0
+                })
             }),
             fronts: near,
         }
@@ -160,7 +163,7 @@ impl Zone<1> for LineZone {
         (0..self.front_count()).map(|i| (self.end(i).at - x[0]).abs()).fold(f64::INFINITY, f64::min)
     }
     fn region_at(&self, x: &Point<1>) -> RegionId {
-        self.region_of(x[0])
+        self.region_by(|front| self.end(front).value(x) < 0.0)
     }
     fn sharpest(&self) -> f64 {
         let shortest = self.intervals.iter().map(|[a, b]| b - a).fold(f64::INFINITY, f64::min);

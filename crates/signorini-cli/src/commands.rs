@@ -149,12 +149,12 @@ fn table(summary: &Value) {
         let number = |v: &Value| v.as_f64().map_or("-".to_string(), |v| format!("{v:.10}"));
         println!(
             "{:>9} {:>7} {:>16} {:>16} {:>6} {:>6} {:>10}",
-            step["time"],
-            step["iterations"],
+            format!("{:.6}", step["time"].as_f64().unwrap_or(f64::NAN)),
+            step["iterations"].to_string(),
             number(&contact["area"]),
             number(&contact["force"][2]),
-            contact["zones"],
-            contact["holes"],
+            contact["zones"].to_string(),
+            contact["holes"].to_string(),
             step["equilibrium_residual"].as_f64().map_or("-".to_string(), |v| format!("{v:.1e}")),
         );
     }

@@ -579,7 +579,9 @@ impl<'a> Planner<'a> {
             {
                 return Err(self.document.error(events.span(), "the tolerance is not a number"));
             }
-            times.extend((1..=n).map(|i| t + (to - t) * i as f64 / n as f64));
+            // The last time is exactly the stated one.
+            times.extend((1..n).map(|i| t + (to - t) * i as f64 / n as f64));
+            times.push(to);
             t = to;
         }
         if times.is_empty() {

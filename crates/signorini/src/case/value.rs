@@ -138,14 +138,14 @@ impl Reader<'_> {
 fn split_unit(text: &str) -> (&str, Option<&str>) {
     let trimmed = text.trim_start();
     let offset = text.len() - trimmed.len();
-    let end = if trimmed.starts_with('(') {
+    let sign = usize::from(trimmed.starts_with(['-', '+']));
+    let end = if trimmed[sign..].starts_with('(') {
         let mut depth = 0;
-        trimmed.char_indices().find_map(|(i, c)| {
+        trimmed[sign..].char_indices().find_map(|(i, c)| {
             depth += i32::from(c == '(') - i32::from(c == ')');
-            (depth == 0).then_some(i + 1)
+            (depth == 0).then_some(sign + i + 1)
         })
     } else {
-        let sign = usize::from(trimmed.starts_with(['-', '+']));
         match crate::expression::number_length(&trimmed[sign..]) {
             0 => None,
             length => Some(sign + length),
@@ -167,6 +167,7 @@ mod tests {
         assert_eq!(split_unit("0.1 mm"), ("0.1", Some("mm")));
         assert_eq!(split_unit("-1e-3 N/m"), ("-1e-3", Some("N/m")));
         assert_eq!(split_unit("(2 + x) MPa"), ("(2 + x)", Some("MPa")));
+        assert_eq!(split_unit("-(2 + x) kPa"), ("-(2 + x)", Some("kPa")));
         assert_eq!(split_unit("(2 + x)*y"), ("(2 + x)*y", None));
         assert_eq!(split_unit("2*x"), ("2*x", None));
         assert_eq!(split_unit("x"), ("x", None));

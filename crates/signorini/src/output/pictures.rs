@@ -101,6 +101,11 @@ fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     }
 }
 
+/// A value whose digits below a thousandth of the range are dropped.
+fn rounded(v: f64, span: f64) -> f64 {
+    if v.abs() < 1e-3 * span { 0.0 } else { v }
+}
+
 fn padded((lo, hi): (f64, f64)) -> std::ops::Range<f64> {
     let pad = 0.05 * (hi - lo);
     lo - pad..hi + pad
@@ -189,7 +194,7 @@ fn colour_bar<const D: usize>(
         area.draw(&Rectangle::new([(10, y(k + 1)), (34, y(k) + 1)], colour.filled())).map_err(failed)?;
     }
     for k in 0..=4 {
-        let value = lo + (hi - lo) * f64::from(k) / 4.0;
+        let value = rounded(lo + (hi - lo) * f64::from(k) / 4.0, hi - lo);
         let y = bottom - (bottom - top) * k / 4;
         area.draw(&Text::new(label(value), (42, y - 8), style.clone())).map_err(failed)?;
     }
@@ -272,7 +277,7 @@ fn profile<const D: usize>(
             .x_desc(units.length(axis))
             .y_desc(units.length("height"))
             .x_label_formatter(&|v| label(*v))
-            .y_label_formatter(&|v| label(*v))
+            .y_label_formatter(&|v| label(rounded(*v, hi - lo)))
             .label_style((FONT, 15))
             .draw()
             .map_err(failed)?;
@@ -293,12 +298,13 @@ fn profile<const D: usize>(
             });
             chart.draw_series(marks).map_err(failed)?.label("exact").legend(|(x, y)| Circle::new((x + 10, y), 3, EXACT));
         }
-        let ends = s.outlines.iter().flatten().map(|p| {
+        let axis_point = |p: &&Point<D>| !(plan.space == Space::Axisymmetric && p[0] <= 0.0);
+        let ends = s.outlines.iter().flatten().filter(axis_point).map(|p| {
             let v = u.iter().min_by(|a, b| (a.0 - p[0]).abs().total_cmp(&(b.0 - p[0]).abs())).map_or(0.0, |q| q.1);
             Circle::new((p[0], v), 6, FRONT.filled())
         });
         chart.draw_series(ends).map_err(failed)?.label("end of contact").legend(|(x, y)| Circle::new((x + 10, y), 5, FRONT.filled()));
-        chart.configure_series_labels().label_font((FONT, 15)).background_style(WHITE.mix(0.8)).border_style(FLOOR).draw().map_err(failed)
+        chart.configure_series_labels().position(SeriesLabelPosition::UpperMiddle).label_font((FONT, 15)).background_style(WHITE.mix(0.8)).border_style(FLOOR).draw().map_err(failed)
     })
 }
 

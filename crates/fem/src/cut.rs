@@ -115,8 +115,7 @@ enum Search {
 impl<const D: usize> Cutter<'_, D> {
     fn split(&self, b: &Aabb<D>, sheets: &[usize], features: &[Point<D>], depth: usize, rule: &mut CellRule<D>) {
         let slack = 1e-9 * b.size();
-        let strictly_inside =
-            |x: &Point<D>| (0..D).all(|k| x[k] > b.min[k] + slack[k] && x[k] < b.max[k] - slack[k]);
+        let strictly_inside = |x: &Point<D>| (0..D).all(|k| x[k] > b.min[k] + slack[k] && x[k] < b.max[k] - slack[k]);
         if let Some(at) = features.iter().position(strictly_inside) {
             for part in b.split_at(&features[at]) {
                 self.split(&part, sheets, features, depth, rule);
@@ -391,7 +390,11 @@ fn bracketed_root(a: (f64, (f64, f64)), b: (f64, (f64, f64)), f: &mut impl FnMut
         if value == 0.0 {
             return t;
         }
-        if (value < 0.0) == negative_left { lo = t } else { hi = t }
+        if (value < 0.0) == negative_left {
+            lo = t
+        } else {
+            hi = t
+        }
         let newton = t - value / slope;
         let next = if newton > lo.min(hi) && newton < lo.max(hi) { newton } else { 0.5 * (lo + hi) };
         if (next - t).abs() <= tolerance {

@@ -1,7 +1,7 @@
 //! The volumetric ghost penalty (Preuss; Lehrenfeld & Olshanskii): two polynomials that meet at a face of a cut cell are
 //! held together by the difference of their extensions over both cells.
 
-use crate::lagrange::{TensorBasis, Tabulation};
+use crate::lagrange::{Tabulation, TensorBasis};
 use signorini_geometry::Point;
 use signorini_geometry::rule::gauss_legendre;
 
@@ -58,6 +58,12 @@ fn face_matrix<const D: usize>(basis: &TensorBasis<D>, size: &Point<D>, k: usize
                 }
             }
         }
+    }
+    // Constants are free, and their rows sum to zero; what round-off makes of it goes to the diagonal, or it would show
+    // up as a force without a cause: at degree 6 the extensions reach far, and the entries are large.
+    for a in 0..2 * n {
+        let row = &mut matrix[a * 2 * n..(a + 1) * 2 * n];
+        row[a] = -(0..2 * n).filter(|b| *b != a).map(|b| row[b]).sum::<f64>();
     }
     matrix
 }

@@ -58,9 +58,8 @@ impl<const D: usize> Grid<D> {
 
     pub fn cell_box(&self, cell: usize) -> Aabb<D> {
         let index = self.cell_index(cell);
-        let corner = |offset: usize| {
-            self.bounds.at(&Point::from_fn(|k, _| (index[k] + offset) as f64 / self.cells[k] as f64))
-        };
+        let corner =
+            |offset: usize| self.bounds.at(&Point::from_fn(|k, _| (index[k] + offset) as f64 / self.cells[k] as f64));
         Aabb::new(corner(0), corner(1))
     }
 

@@ -165,7 +165,8 @@ impl ClosedCurve {
                     k += 1;
                 }
                 // Newton on the arc length within the interval; the speed is its derivative.
-                let mut s = knot(k) + (target - walked[k]) / (walked[k + 1] - walked[k]).max(f64::MIN_POSITIVE) / fine as f64;
+                let mut s =
+                    knot(k) + (target - walked[k]) / (walked[k + 1] - walked[k]).max(f64::MIN_POSITIVE) / fine as f64;
                 for _ in 0..20 {
                     let step = (walked[k] + interval(knot(k), s) - target) / self.point(s).speed;
                     s -= step;

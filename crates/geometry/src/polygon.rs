@@ -52,8 +52,7 @@ pub fn self_crossing(corners: &[Point<2>]) -> Option<(usize, usize)> {
         let (a, b) = edge(i);
         (i + 2..n).filter(|&j| (j + 1) % n != i).find_map(|j| {
             let (c, d) = edge(j);
-            let apart = (0..2)
-                .any(|k| a[k].max(b[k]) < c[k].min(d[k]) || c[k].max(d[k]) < a[k].min(b[k]));
+            let apart = (0..2).any(|k| a[k].max(b[k]) < c[k].min(d[k]) || c[k].max(d[k]) < a[k].min(b[k]));
             (!apart && segments_cross(a, b, c, d)).then_some((i, j))
         })
     })

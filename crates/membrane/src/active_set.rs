@@ -96,9 +96,7 @@ pub fn solve<const D: usize, Z: Zone<D>>(
     let mut active: Vec<bool> = node_of
         .iter()
         .zip(&heights)
-        .map(|(&node, h)| {
-            h.is_some() && guess.as_ref().is_some_and(|g| g.touches(membrane, &membrane.grid.node(node)))
-        })
+        .map(|(&node, h)| h.is_some() && guess.as_ref().is_some_and(|g| g.touches(membrane, &membrane.grid.node(node))))
         .collect();
     let mut symbolic = Symbolic::default();
     let mut changes = Vec::new();
@@ -189,7 +187,9 @@ fn totals<const D: usize>(
         membrane.grid.cell_nodes(cell, &mut numbers);
         basis.tabulate(&membrane.grid.local(cell, x), &size, &mut t);
         let values = numbers.iter().map(|&node| nodes[node as usize].map_or(0.0, |n| n.displacement));
-        values.enumerate().fold((0.0, Vector::<D>::zeros()), |(u, g), (i, v)| (u + v * t.value[i], g + v * t.gradient[i]))
+        values
+            .enumerate()
+            .fold((0.0, Vector::<D>::zeros()), |(u, g), (i, v)| (u + v * t.value[i], g + v * t.gradient[i]))
     };
     let (mut force, mut energy) = (0.0, 0.0);
     let whole = unit_rule::<D>(whole_order(membrane.grid.degree()));
@@ -207,7 +207,8 @@ fn totals<const D: usize>(
     for p in &quadrature.rim {
         if let Some(support) = &membrane.supports[p.piece] {
             let (u, gradient) = evaluate(p.cell, &p.x);
-            supports[support.index] += p.weight * nitsche_flux(membrane, &p.x, &p.normal, u - support.displacement.value(&p.x), &gradient);
+            supports[support.index] +=
+                p.weight * nitsche_flux(membrane, &p.x, &p.normal, u - support.displacement.value(&p.x), &gradient);
         }
     }
     (supports, force, energy)
@@ -242,7 +243,11 @@ impl<const D: usize> NodalSolution<D> {
 
     /// A function that is negative in the predicted zone: the distance to its edge that the gap of a parabola tells,
     /// `√(2 T g / p)`, interpolated between the nodes, and half a cell inwards at nodes in contact.
-    pub fn predictor<'a>(&'a self, membrane: &'a Membrane<D>, floor: &'a SharedField<D>) -> impl Fn(&Point<D>) -> f64 + 'a {
+    pub fn predictor<'a>(
+        &'a self,
+        membrane: &'a Membrane<D>,
+        floor: &'a SharedField<D>,
+    ) -> impl Fn(&Point<D>) -> f64 + 'a {
         let h = membrane.grid.h();
         let at_node: Vec<f64> = self
             .nodes

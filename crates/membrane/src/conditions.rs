@@ -26,7 +26,12 @@ pub struct Conditions<const D: usize> {
 }
 
 impl<const D: usize> Conditions<D> {
-    pub fn check<Z: Zone<D>>(equilibrium: &Equilibrium<'_, D>, zone: &Z, floor: &SharedField<D>, scales: &Scales) -> Self {
+    pub fn check<Z: Zone<D>>(
+        equilibrium: &Equilibrium<'_, D>,
+        zone: &Z,
+        floor: &SharedField<D>,
+        scales: &Scales,
+    ) -> Self {
         let membrane = equilibrium.membrane;
         let band = 0.5 * membrane.grid.h();
         let mut c = Self {
@@ -108,7 +113,8 @@ pub fn corrected<const D: usize, Z: Zone<D>>(
         let h = grid.h();
         let rim: Vec<Point<D>> =
             equilibrium.quadrature.rim.iter().filter(|p| membrane.supports[p.piece].is_some()).map(|p| p.x).collect();
-        result = result.reduced(grid, &mut |x| rim.iter().map(|y| (x - y).norm()).fold(f64::INFINITY, f64::min) - 1.5 * h);
+        result =
+            result.reduced(grid, &mut |x| rim.iter().map(|y| (x - y).norm()).fold(f64::INFINITY, f64::min) - 1.5 * h);
     }
     if conditions.penetrates(scales) {
         let reach = 2.0 * grid.h();

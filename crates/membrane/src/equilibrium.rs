@@ -21,7 +21,7 @@ use signorini_fem::cut::{QuadraturePoint, RegionId};
 use signorini_fem::lagrange::Tabulation;
 use signorini_fem::{GhostPenalty, TensorBasis};
 use signorini_geometry::{Point, Vector};
-use signorini_solve::{Factor, SolveError, SymmetricMatrix, Symbolic};
+use signorini_solve::{Factor, SolveError, Symbolic, SymmetricMatrix};
 use std::collections::BTreeMap;
 
 /// Cells whose local systems are in memory at once.
@@ -130,7 +130,7 @@ impl<'a, const D: usize> Equilibrium<'a, D> {
     ) -> Result<Self, SolveError> {
         let System { quadrature, unknowns, matrix, rhs } = System::assemble(membrane, zone, elements);
         let factor = elements.symbolic.factor(matrix)?;
-        let u = factor.solve(&rhs)?;
+        let u = factor.solve_accurately(&rhs)?;
         let whole_rule = elements.whole_rule.clone();
         Ok(Self { membrane, quadrature, unknowns, factor, u, whole_rule })
     }
@@ -293,7 +293,9 @@ impl<const D: usize> System<D> {
                 for ((_, dofs), system) in unknowns.cells[cell].iter().zip(systems) {
                     let Some((local, load)) = system else { continue };
                     match (&elements.stiffness, local.is_empty()) {
-                        (Some(stiffness), true) => matrix.add(dofs, stiffness, elements.tension_constant.unwrap_or(1.0)),
+                        (Some(stiffness), true) => {
+                            matrix.add(dofs, stiffness, elements.tension_constant.unwrap_or(1.0))
+                        }
                         _ => matrix.add(dofs, &local, 1.0),
                     }
                     for (&i, f) in dofs.iter().zip(&load) {
@@ -404,7 +406,8 @@ fn ghost_pairs<const D: usize>(
                     .unwrap_or_else(|| membrane.grid.cell_box(lower).center());
                 // A full cell needs no help, a sliver all of it; in between the weight is continuous in the cut, so the
                 // slope jump is continuous in the front.
-                let missing = 1.0 - share(membrane, quadrature, lower, *region).min(share(membrane, quadrature, upper, *region));
+                let missing =
+                    1.0 - share(membrane, quadrature, lower, *region).min(share(membrane, quadrature, upper, *region));
                 let scale = missing.powi(2) * membrane.tension.value(&x) * membrane.measure.weight(&x);
                 pairs.push(GhostPair { direction, dofs: [dofs.as_slice(), others].concat(), scale });
             }

@@ -153,7 +153,8 @@ impl<'a, const D: usize> Fronts<'a, D> {
                     + self.equilibrium.membrane.measure.curvature(&p.x, p.normal[0]);
                 let rho = self.slope_jump[i];
                 response[i]
-                    + speed[i] * (self.pressure[i] / self.tension[i] - rho * (kappa + self.tension_slope[i] / self.tension[i]))
+                    + speed[i]
+                        * (self.pressure[i] / self.tension[i] - rho * (kappa + self.tension_slope[i] / self.tension[i]))
             })
             .collect())
     }
@@ -226,7 +227,9 @@ impl<'a, const D: usize> Fronts<'a, D> {
         let offsets = zone.mode_offsets(space);
         for front in 0..zone.front_count() {
             let range = offsets[front]..offsets[front + 1];
-            let mean = |m: &[f64]| range.clone().flat_map(|i| range.clone().map(move |j| (i, j))).map(|(i, j)| m[i * n + j]).sum::<f64>();
+            let mean = |m: &[f64]| {
+                range.clone().flat_map(|i| range.clone().map(move |j| (i, j))).map(|(i, j)| m[i * n + j]).sum::<f64>()
+            };
             let (whole, part) = (mean(matrix), mean(&curvature_part));
             if whole + part > 0.5 * whole {
                 for i in range.clone() {

@@ -3,8 +3,8 @@
 
 use crate::active_set::{self, NodalStart};
 use crate::conditions::{Conditions, corrected};
-use crate::field::SharedField;
 use crate::equilibrium::{Elements, Equilibrium};
+use crate::field::SharedField;
 use crate::front::{Fronts, StepKind};
 use crate::problem::Membrane;
 use crate::scales::Scales;
@@ -12,11 +12,13 @@ use crate::zone::{ModeSpace, Zone};
 use signorini_solve::{Acceleration, Iteration, Progress, SolveError};
 
 /// Steps after which fronts that do not come to rest are given up.
-const MOST_STEPS: usize = 30;
+const MOST_STEPS: usize = 40;
 /// Corrections of the zone after which it is given up.
 const MOST_SWEEPS: usize = 12;
 /// Fronts whose residual has not fallen for so many steps ...
 const PATIENCE: usize = 6;
+/// ... after half of which steps are damped ...
+const DAMPED_AFTER: usize = 3;
 /// ... and that move by less than this fraction of a cell have settled: as a front crosses a grid line the discrete
 /// slope jump makes a jump of its own, of the size of the discretisation error, and no position makes it vanish.
 const SETTLED: f64 = 1e-3;
@@ -190,7 +192,8 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         let mut acceleration = Acceleration::default();
         let (mut best, mut waited) = (f64::INFINITY, 0);
         self.solution.settled_within = None;
-        for _ in 0..MOST_STEPS {
+        for count in 1..=MOST_STEPS {
+            let last = count == MOST_STEPS;
             if self.progress.interrupted() {
                 return Ok(Fixed::Interrupted);
             }
@@ -225,21 +228,28 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 self.solution.equilibrium = Some(equilibrium);
                 return Ok(Fixed::AtRest);
             }
-            if waited >= PATIENCE && relative_step < SETTLED {
+            if (waited >= PATIENCE || last) && relative_step < SETTLED {
                 self.report(residual, "settled");
                 self.solution.settled_within = Some(relative_step);
                 self.solution.equilibrium = Some(equilibrium);
                 return Ok(Fixed::AtRest);
             }
             // Far from the solution the steps are no linear iteration that could be extrapolated.
-            if step.space == ModeSpace::Fine && step.kind == StepKind::Local {
+            if waited >= DAMPED_AFTER {
+                // The derivative does not fit the discrete slope jump here: shorter steps find where it vanishes.
+                acceleration = Acceleration::default();
+                let factor = 0.5f64.powi((waited / DAMPED_AFTER) as i32).max(0.1);
+                step.coefficients.iter_mut().for_each(|c| *c *= factor);
+            } else if step.space == ModeSpace::Fine && step.kind == StepKind::Local {
                 step.coefficients = acceleration.next(step.coefficients);
             } else {
                 acceleration = Acceleration::default();
             }
             let reach = REACH * scales.length;
             let advance = zone.advanced(&self.membrane.grid, step.space, &step.coefficients, reach);
-            if advance.topology_changed || advance.zone.mode_offsets(ModeSpace::Fine) != zone.mode_offsets(ModeSpace::Fine) {
+            if advance.topology_changed
+                || advance.zone.mode_offsets(ModeSpace::Fine) != zone.mode_offsets(ModeSpace::Fine)
+            {
                 acceleration = Acceleration::default();
             }
             let action = if advance.topology_changed { "topology changed" } else { step.kind.name() };

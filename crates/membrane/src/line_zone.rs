@@ -43,7 +43,7 @@ impl LineZone {
 
     /// Front `2 i` is the left end of interval `i`, front `2 i + 1` its right end.
     fn end(&self, front: usize) -> End {
-        End { at: self.intervals[front / 2][front % 2], normal: if front % 2 == 0 { -1.0 } else { 1.0 } }
+        End { at: self.intervals[front / 2][front % 2], normal: if front.is_multiple_of(2) { -1.0 } else { 1.0 } }
     }
 
     fn bounds(&self) -> &Aabb<1> {
@@ -136,7 +136,8 @@ impl Zone<1> for LineZone {
 
     fn advanced(&self, grid: &Grid<1>, _: ModeSpace, step: &[f64], reach: f64) -> Advance<Self> {
         let step = |front: usize| step[front].clamp(-reach, reach);
-        let moved = self.intervals.iter().enumerate().map(|(i, [a, b])| [a - step(2 * i), b + step(2 * i + 1)]).collect();
+        let moved =
+            self.intervals.iter().enumerate().map(|(i, [a, b])| [a - step(2 * i), b + step(2 * i + 1)]).collect();
         let zone = Self::new(grid, moved);
         Advance { topology_changed: zone.intervals.len() != self.intervals.len(), zone }
     }
@@ -170,9 +171,6 @@ impl Zone<1> for LineZone {
         2.0 / shortest
     }
     fn outlines(&self) -> Vec<Vec<Point<1>>> {
-        self.intervals
-            .iter()
-            .map(|i| i.iter().map(|&x| self.bounds().clamp(&Point::<1>::new(x))).collect())
-            .collect()
+        self.intervals.iter().map(|i| i.iter().map(|&x| self.bounds().clamp(&Point::<1>::new(x))).collect()).collect()
     }
 }

@@ -6,6 +6,8 @@ use signorini_fem::Grid;
 use signorini_fem::cut::RegionId;
 use signorini_geometry::{Aabb, ClosedCurve, CurvePoint, ImplicitShape, PeriodicBasis, Point, Vector, polygon};
 
+/// Fewest knots of a front, which still draw a circle to 3e-5 of its radius.
+const FEWEST_KNOTS: f64 = 5.0;
 /// Knots of a circle that is put where penetration is too small for the raster.
 const SEED_KNOTS: usize = 16;
 /// A front that encloses less than this multiple of `h²` after a step has collapsed.
@@ -86,12 +88,14 @@ impl PlaneZone {
     /// As many knots as the slope jump can tell apart modes on a front of the given length. The front lives in the
     /// space of its modes: what they do not see they could not smooth either.
     fn knots(grid: &Grid<2>, length: f64) -> usize {
-        let (spacing, fewest) = match grid.degree() {
-            1 => (4.0, 8),
-            2 => (1.5, 12),
-            _ => (1.0, 12),
+        let relative = length / grid.h();
+        let (spacing, enough) = match grid.degree() {
+            1 => (4.0, (relative / 2.0).clamp(FEWEST_KNOTS, 8.0)),
+            2 => (1.5, relative.clamp(FEWEST_KNOTS, 12.0)),
+            _ => (1.0, relative.clamp(FEWEST_KNOTS, 12.0)),
         };
-        fewest.max((length / (spacing * grid.h())).ceil() as usize)
+        // A short front has as many modes as its shape needs, a very short one no more than it has cells.
+        enough.max(relative / spacing).ceil() as usize
     }
 
     fn modes(&self, front: usize, space: ModeSpace) -> PeriodicBasis {
@@ -158,7 +162,8 @@ impl PlaneZone {
             && curves.iter().enumerate().all(|(i, a)| {
                 let mut depth = 0;
                 for (j, b) in curves.iter().enumerate() {
-                    if i == j || (0..2).any(|k| boxes[i].max[k] < boxes[j].min[k] || boxes[j].max[k] < boxes[i].min[k]) {
+                    if i == j || (0..2).any(|k| boxes[i].max[k] < boxes[j].min[k] || boxes[j].max[k] < boxes[i].min[k])
+                    {
                         continue;
                     }
                     let mut inside = a.samples().iter().map(|x| polygon::winding_number(b.samples(), x));
@@ -197,9 +202,10 @@ impl PlaneZone {
                 outline.reverse();
             }
         }
-        let clear = outlines.iter().flatten().all(|x| {
-            self.curves.iter().flat_map(|c| c.samples()).all(|y| (x - y).norm() > 0.75 * grid.h())
-        });
+        let clear = outlines
+            .iter()
+            .flatten()
+            .all(|x| self.curves.iter().flat_map(|c| c.samples()).all(|y| (x - y).norm() > 0.75 * grid.h()));
         if clear {
             let zone = Self::from_outlines(grid, self.curves.clone(), &outlines, 1e-3);
             if Self::is_valid(&zone.curves) {
@@ -259,9 +265,8 @@ impl Zone<2> for PlaneZone {
             .filter(|&i| self.hole[i])
             .filter(|&i| {
                 let x = &self.curves[i].samples()[0];
-                let around = (0..self.curves.len()).filter(|&j| {
-                    j != i && polygon::winding_number(self.curves[j].samples(), x) != 0
-                });
+                let around = (0..self.curves.len())
+                    .filter(|&j| j != i && polygon::winding_number(self.curves[j].samples(), x) != 0);
                 self.region_within(around) == contact(zone)
             })
             .count()
@@ -361,7 +366,9 @@ impl Zone<2> for PlaneZone {
     }
     fn distance(&self, x: &Point<2>) -> f64 {
         let near = &self.near[self.grid.cell_containing(x)];
-        near.iter().map(|&(c, s)| (self.curves[c as usize].samples()[s as usize] - x).norm()).fold(f64::INFINITY, f64::min)
+        near.iter()
+            .map(|&(c, s)| (self.curves[c as usize].samples()[s as usize] - x).norm())
+            .fold(f64::INFINITY, f64::min)
     }
     fn region_at(&self, x: &Point<2>) -> RegionId {
         let cell = self.grid.cell_containing(x);

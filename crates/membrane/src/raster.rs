@@ -41,9 +41,7 @@ impl Raster {
         let index = |v: f64, k: usize| (v - frame.min[k]) / size[k];
         let clamp = |v: f64, k: usize| (v.max(0.0) as usize).min(cells[k]);
         for (a, b) in curves.iter().flat_map(|c| polygon::edges(c.samples())) {
-            let range = |k: usize| {
-                clamp(index(a[k].min(b[k]), k) - 1.0, k)..=clamp(index(a[k].max(b[k]), k) + 2.0, k)
-            };
+            let range = |k: usize| clamp(index(a[k].min(b[k]), k) - 1.0, k)..=clamp(index(a[k].max(b[k]), k) + 2.0, k);
             for j in range(1) {
                 for i in range(0) {
                     let at = j * (cells[0] + 1) + i;

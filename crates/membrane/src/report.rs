@@ -54,8 +54,7 @@ impl<const D: usize> Report<D> {
         let membrane = equilibrium.membrane;
         let zone = &solution.zone;
         let count = zone.counts().0;
-        let mut components =
-            vec![Component { area: 0.0, force: 0.0, centroid: Point::zeros(), holes: 0 }; count];
+        let mut components = vec![Component { area: 0.0, force: 0.0, centroid: Point::zeros(), holes: 0 }; count];
         let (mut load_force, mut energy) = (0.0, 0.0);
         equilibrium.for_each_point(|cell, region, x, w| {
             let f = membrane.load.value(x);
@@ -100,7 +99,7 @@ impl<const D: usize> Report<D> {
             component.centroid /= component.area.max(f64::MIN_POSITIVE);
             component.holes = zone.holes_of(k);
         }
-        let force: f64 = components.iter().map(|c| c.force).sum();
+        let force: f64 = components.iter().map(|c| c.force).fold(0.0, |a, b| a + b);
         let supports: f64 = support_forces.iter().sum();
         let largest = force.abs().max(supports.abs()).max(load_force.abs()).max(f64::MIN_POSITIVE);
         let conditions = solution.conditions.as_ref();
@@ -111,14 +110,15 @@ impl<const D: usize> Report<D> {
             equilibrium_residual: (force + supports + load_force).abs() / largest,
             contact: ContactReport {
                 force,
-                area: components.iter().map(|c| c.area).sum(),
+                area: components.iter().map(|c| c.area).fold(0.0, |a, b| a + b),
                 holes: zone.counts().1,
                 boundary_length,
                 line_force,
                 max_penetration: conditions.map_or(0.0, |c| (-c.least_gap).max(0.0)),
                 min_gap_outside: conditions.map(|c| c.least_gap_outside).filter(|g| g.is_finite()),
                 max_pressure: conditions.map_or(0.0, |c| c.largest_pressure.max(0.0)),
-                min_pressure: conditions.map_or(0.0, |c| if c.least_pressure.is_finite() { c.least_pressure } else { 0.0 }),
+                min_pressure: conditions
+                    .map_or(0.0, |c| if c.least_pressure.is_finite() { c.least_pressure } else { 0.0 }),
                 components,
             },
         })

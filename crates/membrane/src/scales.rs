@@ -1,6 +1,6 @@
 //! The scales that a problem supplies itself: all tolerances are relative to them, so no unit is hidden anywhere.
 
-use crate::equilibrium::Equilibrium;
+use crate::equilibrium::{Equilibrium, nitsche_penalty};
 use crate::problem::Membrane;
 use crate::zone::is_free;
 
@@ -17,6 +17,7 @@ pub struct Scales {
     /// Cell size.
     pub h: f64,
     pub degree: usize,
+    pub dimension: usize,
 }
 
 impl Scales {
@@ -45,6 +46,7 @@ impl Scales {
             length,
             h: membrane.grid.h(),
             degree: membrane.grid.degree(),
+            dimension: D,
         }
     }
 
@@ -52,13 +54,21 @@ impl Scales {
         self.h / self.length
     }
 
-    /// What the slope jump must fall below, in the norm of `L²` of the fronts: the solver's own accuracy, or a
-    /// thousandth of what the grid resolves where that is more.
+    /// What the slope jump must fall below, in the norm of `L²` of the fronts: the solver's own accuracy, or at degree 1
+    /// a thousandth of what the grid resolves.
     pub fn slope_tolerance(&self) -> f64 {
-        let discretisation = self.relative_h().powi(2 * self.degree as i32);
-        // The flux is a difference of displacements times the penalty over h, and inherits their round-off.
-        let round_off = 400.0 * f64::EPSILON * crate::equilibrium::nitsche_penalty(self.degree) / self.relative_h();
-        (1e-3 * discretisation).max(1e-10).max(round_off) * self.pressure * self.length.powf(1.5) / self.tension
+        let slope = self.pressure * self.length / self.tension;
+        match (self.dimension, self.degree) {
+            // Fronts are points, and the norm has no length in it.
+            (1, 1) => 1e-3 * self.relative_h().powi(2) * slope,
+            (1, _) => 1e-11 * slope,
+            (_, 1) => 1e-3 * self.relative_h().powi(2) * slope * self.length.sqrt(),
+            _ => {
+                // The flux is a difference of displacements times the penalty over h, and inherits their round-off.
+                let round_off = 250.0 * f64::EPSILON * nitsche_penalty(self.degree) / self.relative_h();
+                round_off.max(1e-10) * slope * self.length.sqrt()
+            }
+        }
     }
 
     /// How large the part of the slope jump may be that the modes do not see.
@@ -69,7 +79,8 @@ impl Scales {
     /// Penetration that counts as none: a fraction of the cell's share of the gap, and what a polynomial of this degree
     /// misses of a curved membrane.
     pub fn gap_tolerance(&self) -> f64 {
-        let missed = 0.2 * self.pressure / self.tension * self.h.powi(2) * self.relative_h().powi(self.degree as i32 - 1);
+        let missed =
+            0.2 * self.pressure / self.tension * self.h.powi(2) * self.relative_h().powi(self.degree as i32 - 1);
         1e-3 * self.relative_h().powi(2) * self.gap + missed
     }
 

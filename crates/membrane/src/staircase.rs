@@ -20,8 +20,7 @@ impl<const D: usize> Staircase<D> {
         let (label, zones) = connected(&touches, &counts);
         let free: Vec<bool> = touches.iter().map(|t| !t).collect();
         let (hole_label, parts) = connected(&free, &counts);
-        let mut components =
-            vec![Component { area: 0.0, force: 0.0, centroid: Point::zeros(), holes: 0 }; zones];
+        let mut components = vec![Component { area: 0.0, force: 0.0, centroid: Point::zeros(), holes: 0 }; zones];
         for (i, node) in solution.nodes.iter().enumerate() {
             if let (Some(node), Some(k)) = (node, label[i]) {
                 components[k].area += node.share;

@@ -54,7 +54,14 @@ impl Progress for Bar {
 
     fn iteration(&mut self, i: &Iteration) {
         let figures: Vec<String> = i.figures.iter().map(|(n, v)| format!("{n} {v}")).collect();
-        let line = format!("t = {}  solve {}  residual {:.1e}  {}  {}", i.time, i.iteration, i.residual, i.action, figures.join("  "));
+        let line = format!(
+            "t = {}  solve {}  residual {:.1e}  {}  {}",
+            i.time,
+            i.iteration,
+            i.residual,
+            i.action,
+            figures.join("  ")
+        );
         // Where no bar can be drawn, a line now and then says that work goes on.
         if self.bar.is_hidden() && !self.json && self.spoke.elapsed().as_secs() >= 10 {
             eprintln!("[{:.0} s] {line}", self.started.elapsed().as_secs_f64());

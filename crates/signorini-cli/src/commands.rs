@@ -42,7 +42,9 @@ pub fn run_example(name: &str, output: Option<PathBuf>, set: &[String], json: bo
 
 pub fn show_example(name: &str, json: bool) -> u8 {
     match find(name) {
-        Some(example) if json => println!("{}", json!({"name": example.name, "about": example.about, "case": example.case})),
+        Some(example) if json => {
+            println!("{}", json!({"name": example.name, "about": example.about, "case": example.case}))
+        }
         Some(example) => print!("{}", example.case),
         None => return report(&unknown_example(name), json),
     }
@@ -118,7 +120,9 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], json: bool) ->
         Err(RunError::Case(error)) => report(&error, json),
         Err(RunError::Output(error)) => {
             let help = match &error {
-                signorini::output::OutputError::Foreign { .. } => "choose another folder with -o DIR, or empty this one",
+                signorini::output::OutputError::Foreign { .. } => {
+                    "choose another folder with -o DIR, or empty this one"
+                }
                 _ => "is there space, and may this program write there? choose another folder with -o DIR",
             };
             report(&CaseError::new(error.to_string()).help(help), json)
@@ -128,7 +132,10 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], json: bool) ->
                 println!("{}", outcome.summary);
             } else {
                 table(&outcome.summary);
-                println!("\nResults in {}: open pictures/deflection.png first, fields.pvd in ParaView; numbers in summary.json.", folder.display());
+                println!(
+                    "\nResults in {}: open pictures/deflection.png first, fields.pvd in ParaView; numbers in summary.json.",
+                    folder.display()
+                );
             }
             match outcome.ending {
                 Ending::Converged => DONE,
@@ -142,7 +149,10 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], json: bool) ->
 /// The increments as a table, the warnings, and the verdict.
 fn table(summary: &Value) {
     println!("{}\n", summary["case"].as_str().unwrap_or(""));
-    println!("{:>9} {:>7} {:>16} {:>16} {:>6} {:>6} {:>10}", "t", "solves", "area", "force", "zones", "holes", "balance");
+    println!(
+        "{:>9} {:>7} {:>16} {:>16} {:>6} {:>6} {:>10}",
+        "t", "solves", "area", "force", "zones", "holes", "balance"
+    );
     let steps = summary["steps"].as_array().cloned().unwrap_or_default();
     for step in &steps {
         let contact = step["contacts"].as_object().and_then(|c| c.values().next()).cloned().unwrap_or(Value::Null);

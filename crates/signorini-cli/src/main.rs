@@ -51,7 +51,9 @@ enum Command {
         set: Vec<String>,
     },
     /// List the gallery, or run one of its cases
-    #[command(after_help = "Examples:\n  signorini gallery\n  signorini gallery run flat_disc\n  signorini gallery show flat_disc > case.toml")]
+    #[command(
+        after_help = "Examples:\n  signorini gallery\n  signorini gallery run flat_disc\n  signorini gallery show flat_disc > case.toml"
+    )]
     Gallery {
         #[command(subcommand)]
         action: Option<GalleryAction>,

@@ -149,7 +149,9 @@ impl<'a> Planner<'a> {
                     Ok((e, _)) => {
                         let v = e.constant().unwrap_or(f64::NAN);
                         if !v.is_finite() {
-                            return Err(self.document.error(value.span(), format!("the constant `{name}` is {v}, not a finite number")));
+                            return Err(self
+                                .document
+                                .error(value.span(), format!("the constant `{name}` is {v}, not a finite number")));
                         }
                         self.reader.names.constants.insert(name.clone(), v);
                     }
@@ -224,8 +226,11 @@ impl<'a> Planner<'a> {
             (Some(table), None) => {
                 let (t, value) = (&table.get_ref().t, &table.get_ref().value);
                 if t.is_empty() || t.len() != value.len() {
-                    return Err(error(table.span(), format!("`t` has {} entries and `value` {}", t.len(), value.len()))
-                        .help("both need the same number of entries, at least one"));
+                    return Err(error(
+                        table.span(),
+                        format!("`t` has {} entries and `value` {}", t.len(), value.len()),
+                    )
+                    .help("both need the same number of entries, at least one"));
                 }
                 if t.iter().chain(value).any(|v| !v.is_finite()) {
                     return Err(error(table.span(), "the table holds a number that is not finite".into()));
@@ -248,7 +253,8 @@ impl<'a> Planner<'a> {
     }
 
     fn check_name(&self, name: &str, span: Range<usize>) -> Result<(), CaseError> {
-        let word = name.chars().all(|c| c.is_alphanumeric() || c == '_') && !name.starts_with(|c: char| c.is_ascii_digit());
+        let word =
+            name.chars().all(|c| c.is_alphanumeric() || c == '_') && !name.starts_with(|c: char| c.is_ascii_digit());
         let taken = ["x", "y", "z", "t", "pi", "e", "if"].contains(&name);
         match (word, taken) {
             (true, false) => Ok(()),
@@ -315,7 +321,9 @@ impl<'a> Planner<'a> {
             Some((name, floor, method)) => (Some((name, floor)), method),
         };
         if contact.is_none() && case.bodies.len() > 1 {
-            warnings.push("no contact is stated: the floor is ignored (add [contacts.NAME] between = [film, floor])".into());
+            warnings.push(
+                "no contact is stated: the floor is ignored (add [contacts.NAME] between = [film, floor])".into(),
+            );
         }
         let degree = if let MethodChoice::ActiveSet(_) = method { 1 } else { degree };
         if degree != grid.degree() {
@@ -349,7 +357,11 @@ impl<'a> Planner<'a> {
         };
         let mut probes = BTreeMap::new();
         for (name, at) in &output.probes {
-            let x = if D == 1 && at.get_ref().len() == 2 { self.reader.numbers::<2>(at, LENGTH)?.to_vec() } else { self.reader.numbers::<D>(at, LENGTH)?.to_vec() };
+            let x = if D == 1 && at.get_ref().len() == 2 {
+                self.reader.numbers::<2>(at, LENGTH)?.to_vec()
+            } else {
+                self.reader.numbers::<D>(at, LENGTH)?.to_vec()
+            };
             probes.insert(name.clone(), Point::<D>::from_fn(|k, _| x[k]));
         }
         let plan = MembranePlan {
@@ -391,7 +403,10 @@ impl<'a> Planner<'a> {
                     .help("its load is  normal = …  : force per area along +z, negative where it presses downwards"));
             }
             let Some(normal) = &key.normal else {
-                return Err(self.document.error(load.span(), format!("the load `{name}` says nothing")).help("add  normal = …"));
+                return Err(self
+                    .document
+                    .error(load.span(), format!("the load `{name}` says nothing"))
+                    .help("add  normal = …"));
             };
             loads.insert(name.clone(), self.placed(format!("loads.{name}.normal"), normal, PRESSURE)?);
         }
@@ -419,13 +434,19 @@ impl<'a> Planner<'a> {
                 return Err(self.unavailable(span, &format!("`{what}` on the support of a membrane")));
             }
             let Some(displacement) = &key.displacement else {
-                return Err(self.document.error(support.span(), format!("the support `{name}` prescribes nothing")).help("add  displacement = 0.0"));
+                return Err(self
+                    .document
+                    .error(support.span(), format!("the support `{name}` prescribes nothing"))
+                    .help("add  displacement = 0.0"));
             };
             let held = pieces.groups.iter().find(|(n, _)| *n == group).map(|(_, p)| p.clone()).unwrap_or_default();
             if let Some(other) = supports.iter().find(|s| s.pieces.iter().any(|p| held.contains(p))) {
                 return Err(self
                     .document
-                    .error(key.on.span(), format!("`{}` is already held by the support `{}`", key.on.get_ref(), other.name))
+                    .error(
+                        key.on.span(),
+                        format!("`{}` is already held by the support `{}`", key.on.get_ref(), other.name),
+                    )
                     .help("a part of the boundary has one support"));
             }
             supports.push(PlannedSupport {
@@ -444,22 +465,33 @@ impl<'a> Planner<'a> {
     }
 
     /// Checks a `BODY` or `BODY:GROUP` and returns the group.
-    fn check_place(&self, on: &toml::Spanned<String>, body: &str, groups: &[&str]) -> Result<Option<String>, CaseError> {
+    fn check_place(
+        &self,
+        on: &toml::Spanned<String>,
+        body: &str,
+        groups: &[&str],
+    ) -> Result<Option<String>, CaseError> {
         let (name, group) = match on.get_ref().split_once(':') {
             Some((name, group)) => (name, Some(group)),
             None => (on.get_ref().as_str(), None),
         };
         let bodies: Vec<&str> = self.document.case.bodies.keys().map(String::as_str).collect();
         if !bodies.contains(&name) {
-            return Err(self.document.error(on.span(), format!("there is no body `{name}`")).help(suggestion(name, &bodies)));
+            return Err(self
+                .document
+                .error(on.span(), format!("there is no body `{name}`"))
+                .help(suggestion(name, &bodies)));
         }
         if name != body {
-            return Err(self.document.error(on.span(), format!("`{name}` is rigid: only `{body}` can be held or loaded")));
+            return Err(self
+                .document
+                .error(on.span(), format!("`{name}` is rigid: only `{body}` can be held or loaded")));
         }
         match group {
-            Some(g) if !groups.contains(&g) => {
-                Err(self.document.error(on.span(), format!("`{name}` has no group `{g}` here")).help(suggestion(g, groups)))
-            }
+            Some(g) if !groups.contains(&g) => Err(self
+                .document
+                .error(on.span(), format!("`{name}` has no group `{g}` here"))
+                .help(suggestion(g, groups))),
             group => Ok(group.map(str::to_string)),
         }
     }
@@ -486,7 +518,9 @@ impl<'a> Planner<'a> {
                 for b in list {
                     let plain = b.get_ref().split(':').next().unwrap_or("");
                     if !bodies.contains(&plain) {
-                        return Err(document.error(b.span(), format!("there is no body `{plain}`")).help(suggestion(plain, &bodies)));
+                        return Err(document
+                            .error(b.span(), format!("there is no body `{plain}`"))
+                            .help(suggestion(plain, &bodies)));
                     }
                 }
                 let other: Vec<_> = list.iter().filter(|b| b.get_ref() != body).collect();
@@ -501,7 +535,12 @@ impl<'a> Planner<'a> {
             }
             (None, None, Some(all)) if *all.get_ref() => match rigid[..] {
                 [floor] => floor.to_string(),
-                _ => return Err(document.error(all.span(), format!("there are {} rigid bodies: name one with `between`", rigid.len()))),
+                _ => {
+                    return Err(document.error(
+                        all.span(),
+                        format!("there are {} rigid bodies: name one with `between`", rigid.len()),
+                    ));
+                }
             },
             _ => {
                 return Err(document
@@ -530,9 +569,10 @@ impl<'a> Planner<'a> {
             Method::InequalityLevelSet(k) => {
                 let only = |value: &Option<toml::Spanned<String>>, here: &str, later: &str| match value {
                     Some(v) if v.get_ref() == later => Err(self.unavailable(v.span(), &format!("`{later}`"))),
-                    Some(v) if v.get_ref() != here => {
-                        Err(self.document.error(v.span(), format!("unknown word `{}`", v.get_ref())).help(format!("known here: {here}, {later}")))
-                    }
+                    Some(v) if v.get_ref() != here => Err(self
+                        .document
+                        .error(v.span(), format!("unknown word `{}`", v.get_ref()))
+                        .help(format!("known here: {here}, {later}"))),
                     _ => Ok(()),
                 };
                 only(&k.formulation, "one_sided", "published")?;
@@ -563,12 +603,18 @@ impl<'a> Planner<'a> {
             let key = step.get_ref();
             let to = self.reader.number(&key.to, TIME)?;
             if to <= t {
-                return Err(self.document.error(key.to.span(), format!("the step ends at t = {to}, not after t = {t}")));
+                return Err(self
+                    .document
+                    .error(key.to.span(), format!("the step ends at t = {to}, not after t = {t}")));
             }
             let n = match &key.increments {
                 None => 1,
                 Some(n) if (1..=100_000).contains(n.get_ref()) => *n.get_ref() as usize,
-                Some(n) => return Err(self.document.error(n.span(), format!("{} increments: give a number from 1 to 100000", n.get_ref()))),
+                Some(n) => {
+                    return Err(self
+                        .document
+                        .error(n.span(), format!("{} increments: give a number from 1 to 100000", n.get_ref())));
+                }
             };
             match key.control.as_ref().map(|c| (c.get_ref(), c.span())) {
                 None | Some((Control::Time(_), _)) => {}
@@ -620,7 +666,10 @@ pub(crate) fn field<const D: usize>(expression: &Expression, time: f64) -> Share
 impl<const D: usize> MembranePlan<D> {
     fn expressions(&self) -> impl Iterator<Item = &Placed> {
         let floor = self.contact.iter().flat_map(|(_, f)| std::iter::once(&f.height).chain(&f.displacement));
-        std::iter::once(&self.tension).chain(self.loads.values()).chain(self.supports.iter().map(|s| &s.displacement)).chain(floor)
+        std::iter::once(&self.tension)
+            .chain(self.loads.values())
+            .chain(self.supports.iter().map(|s| &s.displacement))
+            .chain(floor)
     }
 
     /// Something that depends on time needs steps.
@@ -704,13 +753,17 @@ impl<const D: usize> MembranePlan<D> {
         let mut failure: Option<CaseError> = None;
         let wrong = |p: &Placed, x: &Point<D>, v: f64, what: &str| {
             let at: Vec<String> = x.iter().map(|c| format!("{c:.6}")).collect();
-            self.document.error(p.span.clone(), format!("`{}` is {v} at ({}), t = {time}: {what}", p.key, at.join(", ")))
+            self.document
+                .error(p.span.clone(), format!("`{}` is {v} at ({}), t = {time}: {what}", p.key, at.join(", ")))
         };
         let finite = "it must be a finite number everywhere in the membrane";
-        let fields: Vec<(&Placed, SharedField<D>, bool)> = std::iter::once((&self.tension, membrane.tension.clone(), true))
-            .chain(self.loads.values().map(|l| (l, field(&l.expression, time), false)))
-            .chain(self.contact.iter().map(|(_, f)| f).zip(&membrane.floor).map(|(f, h)| (&f.height, h.clone(), true)))
-            .collect();
+        let fields: Vec<(&Placed, SharedField<D>, bool)> =
+            std::iter::once((&self.tension, membrane.tension.clone(), true))
+                .chain(self.loads.values().map(|l| (l, field(&l.expression, time), false)))
+                .chain(
+                    self.contact.iter().map(|(_, f)| f).zip(&membrane.floor).map(|(f, h)| (&f.height, h.clone(), true)),
+                )
+                .collect();
         for cell in 0..quadrature.cells.len() {
             for (_, points) in quadrature.volumes(membrane, cell, &whole) {
                 for p in points.iter() {
@@ -719,9 +772,12 @@ impl<const D: usize> MembranePlan<D> {
                         if !jet.value.is_finite() {
                             failure.get_or_insert_with(|| wrong(placed, &p.x, jet.value, finite));
                         } else if !jet.is_finite() {
-                            failure.get_or_insert_with(|| wrong(placed, &p.x, jet.value, "its derivatives are not finite there"));
+                            failure.get_or_insert_with(|| {
+                                wrong(placed, &p.x, jet.value, "its derivatives are not finite there")
+                            });
                         } else if i == 0 && jet.value <= 0.0 {
-                            failure.get_or_insert_with(|| wrong(placed, &p.x, jet.value, "the tension must be positive"));
+                            failure
+                                .get_or_insert_with(|| wrong(placed, &p.x, jet.value, "the tension must be positive"));
                         }
                     }
                 }
@@ -741,8 +797,16 @@ impl<const D: usize> MembranePlan<D> {
                 let height = h.value(&p.x);
                 let slack = 1e-9 * (height.abs() + held.abs() + membrane.size() * 1e-6);
                 if height > held + slack {
-                    return Err(wrong(&floor.height, &p.x, height, &format!("the floor lies above the displacement {held} prescribed by the support `{}`", planned.name))
-                        .help("lower the floor there, or raise the support"));
+                    return Err(wrong(
+                        &floor.height,
+                        &p.x,
+                        height,
+                        &format!(
+                            "the floor lies above the displacement {held} prescribed by the support `{}`",
+                            planned.name
+                        ),
+                    )
+                    .help("lower the floor there, or raise the support"));
                 }
             }
         }

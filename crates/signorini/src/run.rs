@@ -157,7 +157,13 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         self.steps.push(step);
     }
 
-    fn write_fields(&mut self, index: usize, time: f64, mesh: &DisplayMesh<D>, s: &Snapshot<D>) -> Result<(), OutputError> {
+    fn write_fields(
+        &mut self,
+        index: usize,
+        time: f64,
+        mesh: &DisplayMesh<D>,
+        s: &Snapshot<D>,
+    ) -> Result<(), OutputError> {
         let name = format!("{index:05}");
         self.folder.write(&format!("fields/fields_{name}.vtu"), &vtk::fields(mesh, s)?)?;
         self.folder.write(&format!("contact/contact_{name}.vtp"), &vtk::outlines(s)?)?;
@@ -212,14 +218,25 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             Ending::Interrupted => format!("Interrupted: {done} of {count} increments are done and on disk."),
             Ending::NotConverged => {
                 let advice = match reason {
-                    "linear_solver" => "the equations could not be solved: check that the membrane is held and that its data are of one scale",
+                    "linear_solver" => {
+                        "the equations could not be solved: check that the membrane is held and that its data are of one scale"
+                    }
                     "input" => "a value became invalid along the way",
-                    _ => "try more cells where the zones are small or close to each other, a lower degree, or smaller increments; method.active_set = {} shows a coarse picture of the zones",
+                    _ => {
+                        "try more cells where the zones are small or close to each other, a lower degree, or smaller increments; method.active_set = {} shows a coarse picture of the zones"
+                    }
                 };
-                let history = self.steps.last().and_then(|s| s["residual_history"].as_array()).map_or(String::new(), |r| {
-                    let last: Vec<String> = r.iter().rev().take(3).rev().map(|v| format!("{:.1e}", v.as_f64().unwrap_or(f64::NAN))).collect();
-                    format!(" (last residuals relative to the tolerance: {})", last.join(", "))
-                });
+                let history =
+                    self.steps.last().and_then(|s| s["residual_history"].as_array()).map_or(String::new(), |r| {
+                        let last: Vec<String> = r
+                            .iter()
+                            .rev()
+                            .take(3)
+                            .rev()
+                            .map(|v| format!("{:.1e}", v.as_f64().unwrap_or(f64::NAN)))
+                            .collect();
+                        format!(" (last residuals relative to the tolerance: {})", last.join(", "))
+                    });
                 format!("Not converged in increment {} of {count}{history}: {advice}.", self.steps.len().max(1))
             }
             Ending::Converged => {
@@ -233,9 +250,11 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                     return "The membrane does not touch the floor.".into();
                 }
                 let figure = |v: &Value| format!("{:.9}", v.as_f64().unwrap_or(f64::NAN));
-                let measure = if D == 1 && self.plan.space == crate::case::statement::Space::Line { "length" } else { "area" };
+                let measure =
+                    if D == 1 && self.plan.space == crate::case::statement::Space::Line { "length" } else { "area" };
                 let holes = c["holes"].as_u64().unwrap_or(0);
-                let staircase = if let MethodChoice::ActiveSet(_) = self.plan.method { " (a staircase of nodes)" } else { "" };
+                let staircase =
+                    if let MethodChoice::ActiveSet(_) = self.plan.method { " (a staircase of nodes)" } else { "" };
                 format!(
                     "In contact over {measure} {}{staircase} in {zones} zone{}{}, pushed up by {}; forces balance to {:.0e}.",
                     figure(&c["area"]),

@@ -36,10 +36,8 @@ impl<const D: usize> DisplayMesh<D> {
                     rest /= fine;
                     v
                 });
-                let corners: Vec<[usize; D]> = corner_offsets::<D>()
-                    .iter()
-                    .map(|o| std::array::from_fn(|k| low[k] + o[k]))
-                    .collect();
+                let corners: Vec<[usize; D]> =
+                    corner_offsets::<D>().iter().map(|o| std::array::from_fn(|k| low[k] + o[k])).collect();
                 if !corners.iter().any(|c| membrane.contains(&at(*c))) {
                     continue;
                 }
@@ -49,7 +47,11 @@ impl<const D: usize> DisplayMesh<D> {
                     .map(|c| {
                         *number.entry(*c).or_insert_with(|| {
                             let x = at(*c);
-                            let x = if membrane.contains(&x) { Some(x) } else { plan.domain.domain.pulled_inside(&x, reach) }?;
+                            let x = if membrane.contains(&x) {
+                                Some(x)
+                            } else {
+                                plan.domain.domain.pulled_inside(&x, reach)
+                            }?;
                             mesh.points.push(x);
                             Some(mesh.points.len() as u32 - 1)
                         })

@@ -5,10 +5,10 @@
 
 use crate::sparse::SymmetricMatrix;
 use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::LltError;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
 };
-use faer::linalg::cholesky::llt::factor::LltError;
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 use std::sync::Arc;
@@ -107,6 +107,20 @@ impl Factor {
                 return if residual <= RESIDUAL { Ok(x) } else { Err(SolveError::Inaccurate { size, residual }) };
             }
             previous = residual;
+            self.substitute(&mut r)?;
+            for (x, r) in x.iter_mut().zip(&r) {
+                *x += r;
+            }
+        }
+        Ok(x)
+    }
+
+    /// Solves `A x = b` and refines the solution with residuals of twice the working precision: sums of its equations,
+    /// such as the balance of all forces, then hold to the round-off of the solution itself.
+    pub fn solve_accurately(&self, b: &[f64]) -> Result<Vec<f64>, SolveError> {
+        let mut x = self.solve(b)?;
+        for _ in 0..2 {
+            let mut r = self.matrix.residual_in_extended_precision(b, &x);
             self.substitute(&mut r)?;
             for (x, r) in x.iter_mut().zip(&r) {
                 *x += r;

@@ -89,6 +89,29 @@ impl SymmetricMatrix {
         y
     }
 
+    /// The residual `b - A x`, accumulated in twice the working precision (Dot2 of Ogita, Rump & Oishi 2005), so that
+    /// refinement can bring it down to the round-off of `x` itself.
+    pub fn residual_in_extended_precision(&self, b: &[f64], x: &[f64]) -> Vec<f64> {
+        let mut sum = b.to_vec();
+        let mut lost = vec![0.0; b.len()];
+        let mut subtract = |i: usize, a: f64, b: f64| {
+            let (product, error) = two_product(a, b);
+            let (total, error_of_sum) = two_sum(sum[i], -product);
+            sum[i] = total;
+            lost[i] += error_of_sum - error;
+        };
+        for j in 0..self.size() {
+            for k in self.column_start[j]..self.column_start[j + 1] {
+                let (i, v) = (self.row[k], self.value[k]);
+                subtract(i, v, x[j]);
+                if i != j {
+                    subtract(j, v, x[i]);
+                }
+            }
+        }
+        sum.iter().zip(&lost).map(|(s, l)| s + l).collect()
+    }
+
     /// The largest absolute entry of each row, which bounds what round-off can do to it.
     pub fn largest(&self) -> f64 {
         self.value.iter().fold(0.0, |m, v| m.max(v.abs()))
@@ -118,9 +141,37 @@ impl SymmetricMatrix {
     }
 }
 
+/// A sum and its rounding error (Knuth).
+fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let s = a + b;
+    let t = s - a;
+    (s, (a - (s - t)) + (b - t))
+}
+
+/// A product and its rounding error (Dekker, Veltkamp).
+fn two_product(a: f64, b: f64) -> (f64, f64) {
+    let split = |v: f64| {
+        let c = 134_217_729.0 * v;
+        let high = c - (c - v);
+        (high, v - high)
+    };
+    let (p, (ah, al), (bh, bl)) = (a * b, split(a), split(b));
+    (p, al * bl - (((p - ah * bh) - al * bh) - ah * bl))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn extended_precision_sees_what_cancels() {
+        let mut a = SymmetricMatrix::from_cliques(2, &[vec![0, 1]]);
+        a.add(&[0, 1], &[1e8, 1.0, 1.0, 1e8], 1.0);
+        let x = [1.0 + f64::EPSILON, -1e8];
+        // 1e8 (1 + eps) - 1e8 = 1e8 eps, which plain arithmetic rounds away or doubles.
+        let r = a.residual_in_extended_precision(&[0.0, 0.0], &x);
+        assert_eq!(r[0], -1e8 * f64::EPSILON);
+    }
 
     #[test]
     fn assembly_multiplication_and_prescribed_values() {

@@ -116,7 +116,8 @@ pub fn from_toml(name: &str, text: &str, error: &toml::de::Error) -> CaseError {
     }
     let span = error.span().unwrap_or(0..0);
     // An error in a table without a key of its own spans the whole table: its first line says enough.
-    let end = text[span.start.min(text.len())..span.end.min(text.len())].find('\n').map_or(span.end, |n| span.start + n);
+    let end =
+        text[span.start.min(text.len())..span.end.min(text.len())].find('\n').map_or(span.end, |n| span.start + n);
     ours.at(name, text, span.start..end.max(span.start))
 }
 

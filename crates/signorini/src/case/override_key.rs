@@ -6,9 +6,8 @@ use toml_edit::{DocumentMut, Item, Table, Value};
 
 /// Applies overrides to the text of a case file; the rest of the text stays as it is, so places stay right.
 pub fn apply(name: &str, text: &str, overrides: &[String]) -> Result<String, CaseError> {
-    let mut document = DocumentMut::from_str(text).map_err(|e| {
-        CaseError::new(e.message().to_string()).at(name, text, e.span().unwrap_or(0..0))
-    })?;
+    let mut document = DocumentMut::from_str(text)
+        .map_err(|e| CaseError::new(e.message().to_string()).at(name, text, e.span().unwrap_or(0..0)))?;
     for setting in overrides {
         let (key, value) = setting.split_once('=').ok_or_else(|| {
             CaseError::new(format!("`--set {setting}` has no `=`")).help("write  --set loads.press.normal=-0.3")
@@ -29,9 +28,8 @@ fn set(table: &mut Table, key: &str, value: Value) -> Result<(), String> {
     if parts.iter().any(|p| p.is_empty()) {
         return Err(format!("`{key}` is not a key"));
     }
-    let mut item: &mut Item = table
-        .entry(parts[0])
-        .or_insert_with(|| if parts.len() == 1 { Item::None } else { Item::Table(Table::new()) });
+    let mut item: &mut Item =
+        table.entry(parts[0]).or_insert_with(|| if parts.len() == 1 { Item::None } else { Item::Table(Table::new()) });
     for (i, part) in parts.iter().enumerate().skip(1) {
         let last = i + 1 == parts.len();
         if let (Some(list), Ok(index)) = (item.as_array_of_tables_mut().map(|l| l.len()), part.parse::<usize>()) {

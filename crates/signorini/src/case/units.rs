@@ -19,16 +19,21 @@ pub struct Units {
     pub time: f64,
 }
 
-const LENGTHS: [(&str, f64); 8] = [
-    ("m", 1.0), ("km", 1e3), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6), ("µm", 1e-6), ("nm", 1e-9), ("in", 0.0254),
-];
+const LENGTHS: [(&str, f64); 8] =
+    [("m", 1.0), ("km", 1e3), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6), ("µm", 1e-6), ("nm", 1e-9), ("in", 0.0254)];
 const FORCES: [(&str, f64); 8] = [
-    ("N", 1.0), ("kN", 1e3), ("MN", 1e6), ("mN", 1e-3), ("uN", 1e-6), ("µN", 1e-6), ("nN", 1e-9), ("lbf", 4.4482216152605),
+    ("N", 1.0),
+    ("kN", 1e3),
+    ("MN", 1e6),
+    ("mN", 1e-3),
+    ("uN", 1e-6),
+    ("µN", 1e-6),
+    ("nN", 1e-9),
+    ("lbf", 4.4482216152605),
 ];
 const TIMES: [(&str, f64); 5] = [("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("min", 60.0), ("h", 3600.0)];
-const PRESSURES: [(&str, f64); 8] = [
-    ("Pa", 1.0), ("hPa", 1e2), ("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9), ("mPa", 1e-3), ("bar", 1e5), ("mbar", 1e2),
-];
+const PRESSURES: [(&str, f64); 8] =
+    [("Pa", 1.0), ("hPa", 1e2), ("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9), ("mPa", 1e-3), ("bar", 1e5), ("mbar", 1e2)];
 const ENERGIES: [(&str, f64); 4] = [("J", 1.0), ("mJ", 1e-3), ("uJ", 1e-6), ("nJ", 1e-9)];
 
 /// All named units with their size and dimension.

@@ -55,7 +55,12 @@ impl Reader<'_> {
     }
 
     /// The expression of a value of the given dimension, in which the listed variables are known.
-    pub fn expression(&self, value: &Value, dimension: Dimension, variables: &[&'static str]) -> Result<Expression, CaseError> {
+    pub fn expression(
+        &self,
+        value: &Value,
+        dimension: Dimension,
+        variables: &[&'static str],
+    ) -> Result<Expression, CaseError> {
         let (expression, found) = self.any(value, variables)?;
         match found {
             Some(found) if found != dimension => Err(self
@@ -75,7 +80,8 @@ impl Reader<'_> {
         let (body, unit) = split_unit(text);
         let names = Names { variables: variables.to_vec(), ..self.names.clone() };
         let expression = parse(body, &names).map_err(|e| {
-            let error = self.error(self.place_in(value, text, e.span), format!("in the expression `{text}`: {}", e.message));
+            let error =
+                self.error(self.place_in(value, text, e.span), format!("in the expression `{text}`: {}", e.message));
             match e.help {
                 Some(help) => error.help(help),
                 None => error,

@@ -5,8 +5,8 @@
 
 mod parse;
 
-pub use parse::{Names, ParseError, parse};
 pub(crate) use parse::number_length;
+pub use parse::{Names, ParseError, parse};
 
 use signorini_geometry::Real;
 use std::sync::Arc;
@@ -100,7 +100,10 @@ enum PairFunction {
 pub enum Definition {
     Formula(Expression),
     /// Piecewise linear between the points, constant beyond them.
-    Table { t: Vec<f64>, value: Vec<f64> },
+    Table {
+        t: Vec<f64>,
+        value: Vec<f64>,
+    },
 }
 
 impl Definition {
@@ -223,7 +226,9 @@ impl Node {
             Node::Negate(a) => -a.evaluate(scope),
             Node::Not(a) => R::constant(f64::from(a.evaluate(scope).value() == 0.0)),
             Node::Binary(o, a, b) => binary(*o, a.evaluate(scope), b.evaluate(scope)),
-            Node::Compare(o, a, b) => R::constant(f64::from(compare(*o, a.evaluate(scope).value(), b.evaluate(scope).value()))),
+            Node::Compare(o, a, b) => {
+                R::constant(f64::from(compare(*o, a.evaluate(scope).value(), b.evaluate(scope).value())))
+            }
             Node::Call(f, a) => call(*f, a.evaluate(scope)),
             Node::Pair(f, a, b) => pair(*f, a.evaluate(scope), b.evaluate(scope)),
             // Only the branch that holds is evaluated: the other may be undefined here.
@@ -312,17 +317,25 @@ fn call<R: Real>(f: Function, a: R) -> R {
 fn pair<R: Real>(f: PairFunction, a: R, b: R) -> R {
     match f {
         // A number that is not one is not swallowed.
-        PairFunction::Min => if a.value().is_nan() || a.value() < b.value() { a } else { b },
-        PairFunction::Max => if a.value().is_nan() || a.value() > b.value() { a } else { b },
+        PairFunction::Min => {
+            if a.value().is_nan() || a.value() < b.value() {
+                a
+            } else {
+                b
+            }
+        }
+        PairFunction::Max => {
+            if a.value().is_nan() || a.value() > b.value() {
+                a
+            } else {
+                b
+            }
+        }
         PairFunction::Hypot => call(Function::Sqrt, a * a + b * b),
         PairFunction::Atan2 => {
             // The angle of (b, a), by the quotient that is regular there; the branch only adds a constant.
             let (y, x) = (a.value(), b.value());
-            let angle = if x.abs() > y.abs() {
-                call(Function::Atan, a / b)
-            } else {
-                -call(Function::Atan, b / a)
-            };
+            let angle = if x.abs() > y.abs() { call(Function::Atan, a / b) } else { -call(Function::Atan, b / a) };
             angle + R::constant(y.atan2(x) - angle.value())
         }
     }

@@ -49,9 +49,8 @@ pub fn parse(text: &str, names: &Names) -> Result<Expression, ParseError> {
     Ok(Expression { root: root.folded() })
 }
 
-const SYMBOLS: [&str; 20] = [
-    "<=", ">=", "==", "!=", "&&", "||", "**", "<", ">", "+", "-", "*", "/", "^", "(", ")", ",", "!", "·", "−",
-];
+const SYMBOLS: [&str; 20] =
+    ["<=", ">=", "==", "!=", "&&", "||", "**", "<", ">", "+", "-", "*", "/", "^", "(", ")", ",", "!", "·", "−"];
 
 fn tokenize(text: &str) -> Result<Vec<(Token, Range<usize>)>, ParseError> {
     let mut tokens = Vec::new();
@@ -256,9 +255,7 @@ impl Parser<'_> {
         let count = arguments.len();
         let mut arguments = arguments.into_iter().map(Box::new);
         let mut next = || arguments.next().unwrap_or_else(|| Box::new(Node::Number(f64::NAN)));
-        let wrong = |expected: &str| {
-            Err(error(format!("`{name}` takes {expected}, not {count}"), span.clone()))
-        };
+        let wrong = |expected: &str| Err(error(format!("`{name}` takes {expected}, not {count}"), span.clone()));
         if let Some(definition) = self.names.functions.get(name) {
             return if count == 1 { Ok(Node::User(definition.clone(), next())) } else { wrong("one argument") };
         }
@@ -276,7 +273,12 @@ impl Parser<'_> {
             "if" => return wrong("three arguments: if(condition, a, b)"),
             _ => {
                 let own = self.names.functions.keys().map(String::as_str);
-                let known: Vec<&str> = FUNCTIONS.iter().map(|f| f.0).chain(["min", "max", "atan2", "hypot", "pow", "if"]).chain(own).collect();
+                let known: Vec<&str> = FUNCTIONS
+                    .iter()
+                    .map(|f| f.0)
+                    .chain(["min", "max", "atan2", "hypot", "pow", "if"])
+                    .chain(own)
+                    .collect();
                 return Err(ParseError {
                     message: format!("unknown function `{name}`"),
                     help: Some(crate::case::suggestion(name, &known)),
@@ -350,7 +352,9 @@ mod tests {
     fn names() -> Names {
         let mut names = Names { variables: vec!["x", "y", "z", "t"], ..Names::default() };
         names.constants.insert("R".into(), 2.0);
-        names.functions.insert("cycle".into(), Arc::new(Definition::Table { t: vec![0., 1., 2.], value: vec![0., 1., 0.] }));
+        names
+            .functions
+            .insert("cycle".into(), Arc::new(Definition::Table { t: vec![0., 1., 2.], value: vec![0., 1., 0.] }));
         names
     }
 
@@ -404,9 +408,27 @@ mod tests {
     #[test]
     fn jets_of_every_function_agree_with_differences() {
         for text in [
-            "sin(x*y)", "cos(x)*tan(y)", "asin(x/3)", "acos(x*y/3)", "atan(x+y)", "sinh(x)*cosh(y)", "tanh(x-y)",
-            "exp(x*y)", "log(x+2)", "log10(y+3)", "sqrt(x^2+y^2)", "abs(x*y)*x", "atan2(y, x)", "atan2(x, y)",
-            "hypot(x, y)", "(x+2)^(y)", "x^3*y", "max(x, y)^2", "if(x > y, x^2, y^3)", "x/(y+3)", "cycle(x*y)^2",
+            "sin(x*y)",
+            "cos(x)*tan(y)",
+            "asin(x/3)",
+            "acos(x*y/3)",
+            "atan(x+y)",
+            "sinh(x)*cosh(y)",
+            "tanh(x-y)",
+            "exp(x*y)",
+            "log(x+2)",
+            "log10(y+3)",
+            "sqrt(x^2+y^2)",
+            "abs(x*y)*x",
+            "atan2(y, x)",
+            "atan2(x, y)",
+            "hypot(x, y)",
+            "(x+2)^(y)",
+            "x^3*y",
+            "max(x, y)^2",
+            "if(x > y, x^2, y^3)",
+            "x/(y+3)",
+            "cycle(x*y)^2",
         ] {
             let e = parse(text, &names()).unwrap();
             let at = |x: f64, y: f64| e.evaluate(&Scope { position: [x, y, 0.0], time: 0.0 });

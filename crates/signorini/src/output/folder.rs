@@ -8,7 +8,15 @@ pub const MARKER: &str = "log.jsonl";
 const FIRST_LINE: &str = "{\"event\":\"signorini\"";
 /// Everything a run writes.
 const OWN: [&str; 9] = [
-    "summary.json", "log.jsonl", "history.csv", "fields.pvd", "contact.pvd", "fields", "contact", "pictures", "case.toml",
+    "summary.json",
+    "log.jsonl",
+    "history.csv",
+    "fields.pvd",
+    "contact.pvd",
+    "fields",
+    "contact",
+    "pictures",
+    "case.toml",
 ];
 
 /// Results that could not be written.

@@ -7,6 +7,7 @@ use crate::exact;
 use crate::plan::MembranePlan;
 use crate::snapshot::{DisplayMesh, Snapshot};
 use plotters::prelude::*;
+use rayon::prelude::*;
 use serde_json::Value;
 use signorini_geometry::{Aabb, Point};
 use signorini_verify::flat_floor::FlatFloor;
@@ -24,27 +25,33 @@ pub fn draw<const D: usize>(
     s: &Snapshot<D>,
     steps: &[Value],
 ) -> Result<(), OutputError> {
-    let units = Labels::new(plan);
+    let units = &Labels::new(plan);
     let exact = exact::of(plan, s.time);
+    type Drawing<'a> = Box<dyn Fn() -> Result<String, OutputError> + Sync + 'a>;
+    let mut drawings: Vec<(&str, Drawing)> = Vec::new();
     if D == 1 {
-        save(folder, "deflection", &profile(plan, mesh, s, exact, &units)?)?;
+        drawings.push(("deflection", Box::new(|| profile(plan, mesh, s, exact, units))));
         if s.has_floor {
-            save(folder, "gap_and_pressure", &gap_profile(mesh, s, &units)?)?;
+            drawings.push(("gap_and_pressure", Box::new(|| gap_profile(mesh, s, units))));
         }
     } else {
-        save(folder, "deflection", &map(mesh, s, &s.displacement, "Deflection", &units.length("u"), exact, &units)?)?;
+        let field = |values, title, label, exact| map(mesh, s, values, title, label, exact, units);
+        drawings.push(("deflection", Box::new(move || field(&s.displacement, "Deflection", units.length("u"), exact))));
         if s.has_floor {
-            save(folder, "gap", &map(mesh, s, &s.gap, "Gap", &units.length("gap"), None, &units)?)?;
-            save(folder, "pressure", &map(mesh, s, &s.pressure, "Contact pressure", &units.pressure("p"), None, &units)?)?;
+            drawings.push(("gap", Box::new(move || field(&s.gap, "Gap", units.length("gap"), None))));
+            drawings.push((
+                "pressure",
+                Box::new(move || field(&s.pressure, "Contact pressure", units.pressure("p"), None)),
+            ));
         }
     }
-    save(folder, "convergence", &convergence(steps)?)?;
+    drawings.push(("convergence", Box::new(|| convergence(steps))));
     if steps.len() > 1
         && let Some((name, _)) = &plan.contact
     {
-        save(folder, "history", &history(steps, name, plan.space, &units)?)?;
+        drawings.push(("history", Box::new(|| history(steps, name, plan.space, units))));
     }
-    Ok(())
+    drawings.par_iter().map(|(name, draw)| save(folder, name, &draw()?)).collect()
 }
 
 /// Axis labels with the units of the case.
@@ -89,7 +96,8 @@ impl Labels {
 }
 
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let (lo, hi) = values.filter(|v| v.is_finite()).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    let (lo, hi) =
+        values.filter(|v| v.is_finite()).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
     if lo > hi {
         (0.0, 1.0)
     } else if hi - lo <= 1e-14 * hi.abs().max(lo.abs()) {
@@ -117,11 +125,14 @@ fn map<const D: usize>(
     s: &Snapshot<D>,
     values: &[f64],
     title: &str,
-    value_label: &str,
+    value_label: String,
     exact: Option<FlatFloor>,
     units: &Labels,
 ) -> Result<String, OutputError> {
-    let bounds = mesh.points.iter().fold(Aabb::new(mesh.points[0], mesh.points[0]), |b, p| Aabb::new(b.min.inf(p), b.max.sup(p)));
+    let bounds = mesh
+        .points
+        .iter()
+        .fold(Aabb::new(mesh.points[0], mesh.points[0]), |b, p| Aabb::new(b.min.inf(p), b.max.sup(p)));
     let extent = bounds.size();
     let (lo, hi) = range(values.iter().copied());
     // The plot keeps the proportions of the domain.
@@ -168,9 +179,9 @@ fn map<const D: usize>(
             });
             chart.draw_series(dashes).map_err(failed)?;
         }
-        colour_bar(&right, (lo, hi), value_label, s, exact.is_some_and(|e| e.contact_radius().is_some()))
+        colour_bar(&right, (lo, hi), &value_label, s, exact.is_some_and(|e| e.contact_radius().is_some()))
     })?;
-    let mut image = Image::new((pixels.0.1 - pixels.0.0).max(1) as u32 * 2, (pixels.1.1 - pixels.1.0).max(1) as u32 * 2)?;
+    let mut image = Image::new((pixels.0.1 - pixels.0.0).max(1) as u32, (pixels.1.1 - pixels.1.0).max(1) as u32)?;
     fill(&mut image, mesh, values, &bounds, (lo, hi));
     image.insert(&mut text, pixels.0, pixels.1)?;
     Ok(text)
@@ -215,10 +226,17 @@ fn colour_bar<const D: usize>(
 }
 
 /// Paints the cells of the display mesh, bilinear within each.
-fn fill<const D: usize>(image: &mut Image, mesh: &DisplayMesh<D>, values: &[f64], bounds: &Aabb<D>, (lo, hi): (f64, f64)) {
+fn fill<const D: usize>(
+    image: &mut Image,
+    mesh: &DisplayMesh<D>,
+    values: &[f64],
+    bounds: &Aabb<D>,
+    (lo, hi): (f64, f64),
+) {
     let size = bounds.size();
     let (w, h) = (image.width(), image.height());
-    let pixel = |p: &Point<D>| ((p[0] - bounds.min[0]) / size[0] * w as f64, (bounds.max[1] - p[1]) / size[1] * h as f64);
+    let pixel =
+        |p: &Point<D>| ((p[0] - bounds.min[0]) / size[0] * w as f64, (bounds.max[1] - p[1]) / size[1] * h as f64);
     for cell in &mesh.cells {
         let corners: Vec<(f64, f64)> = cell.iter().map(|&i| pixel(&mesh.points[i as usize])).collect();
         let (x0, x1) = range(corners.iter().map(|c| c.0));
@@ -235,7 +253,8 @@ fn fill<const D: usize>(image: &mut Image, mesh: &DisplayMesh<D>, values: &[f64]
                 if inside {
                     let s = ((at.0 - x0) / (x1 - x0)).clamp(0.0, 1.0);
                     let t = ((y1 - at.1) / (y1 - y0)).clamp(0.0, 1.0);
-                    let v = (1.0 - t) * ((1.0 - s) * value(0) + s * value(1)) + t * ((1.0 - s) * value(3) + s * value(2));
+                    let v =
+                        (1.0 - t) * ((1.0 - s) * value(0) + s * value(1)) + t * ((1.0 - s) * value(3) + s * value(2));
                     image.set(x, y, viridis((v - lo) / (hi - lo)));
                 }
             }
@@ -283,7 +302,9 @@ fn profile<const D: usize>(
             .map_err(failed)?;
         if s.has_floor {
             let base = lo - 0.05 * (hi - lo);
-            chart.draw_series(AreaSeries::new(floor.iter().copied(), base, FLOOR.mix(0.25)).border_style(FLOOR)).map_err(failed)?;
+            chart
+                .draw_series(AreaSeries::new(floor.iter().copied(), base, FLOOR.mix(0.25)).border_style(FLOOR))
+                .map_err(failed)?;
         }
         chart
             .draw_series(LineSeries::new(u.iter().copied(), MEMBRANE.stroke_width(3)))
@@ -296,15 +317,30 @@ fn profile<const D: usize>(
                 let at = x.0 + (x.1 - x.0) * f64::from(k) / 40.0;
                 Circle::new((at, exact.displacement(at - middle)), 3, EXACT)
             });
-            chart.draw_series(marks).map_err(failed)?.label("exact").legend(|(x, y)| Circle::new((x + 10, y), 3, EXACT));
+            chart
+                .draw_series(marks)
+                .map_err(failed)?
+                .label("exact")
+                .legend(|(x, y)| Circle::new((x + 10, y), 3, EXACT));
         }
         let axis_point = |p: &&Point<D>| !(plan.space == Space::Axisymmetric && p[0] <= 0.0);
         let ends = s.outlines.iter().flatten().filter(axis_point).map(|p| {
             let v = u.iter().min_by(|a, b| (a.0 - p[0]).abs().total_cmp(&(b.0 - p[0]).abs())).map_or(0.0, |q| q.1);
             Circle::new((p[0], v), 6, FRONT.filled())
         });
-        chart.draw_series(ends).map_err(failed)?.label("end of contact").legend(|(x, y)| Circle::new((x + 10, y), 5, FRONT.filled()));
-        chart.configure_series_labels().position(SeriesLabelPosition::UpperMiddle).label_font((FONT, 15)).background_style(WHITE.mix(0.8)).border_style(FLOOR).draw().map_err(failed)
+        chart
+            .draw_series(ends)
+            .map_err(failed)?
+            .label("end of contact")
+            .legend(|(x, y)| Circle::new((x + 10, y), 5, FRONT.filled()));
+        chart
+            .configure_series_labels()
+            .position(SeriesLabelPosition::UpperMiddle)
+            .label_font((FONT, 15))
+            .background_style(WHITE.mix(0.8))
+            .border_style(FLOOR)
+            .draw()
+            .map_err(failed)
     })
 }
 
@@ -335,7 +371,9 @@ fn gap_profile<const D: usize>(mesh: &DisplayMesh<D>, s: &Snapshot<D>, units: &L
                 .label_style((FONT, 14))
                 .draw()
                 .map_err(failed)?;
-            chart.draw_series(AreaSeries::new(points, 0.0, MEMBRANE.mix(0.2)).border_style(MEMBRANE.stroke_width(2))).map_err(failed)?;
+            chart
+                .draw_series(AreaSeries::new(points, 0.0, MEMBRANE.mix(0.2)).border_style(MEMBRANE.stroke_width(2)))
+                .map_err(failed)?;
         }
         Ok(())
     })
@@ -347,7 +385,10 @@ fn convergence(steps: &[Value]) -> Result<String, OutputError> {
         .iter()
         .map(|s| {
             let list = s["residual_history"].as_array().cloned().unwrap_or_default();
-            list.iter().enumerate().filter_map(|(i, v)| v.as_f64().filter(|v| *v > 0.0).map(|v| (i as f64 + 1.0, v))).collect()
+            list.iter()
+                .enumerate()
+                .filter_map(|(i, v)| v.as_f64().filter(|v| *v > 0.0).map(|v| (i as f64 + 1.0, v)))
+                .collect()
         })
         .collect();
     let longest = histories.iter().flatten().map(|p| p.0).fold(2.0, f64::max);
@@ -377,7 +418,10 @@ fn convergence(steps: &[Value]) -> Result<String, OutputError> {
             chart.draw_series(LineSeries::new(history.iter().copied(), colour.stroke_width(2))).map_err(failed)?;
             chart.draw_series(history.iter().map(|p| Circle::new(*p, 4, colour.filled()))).map_err(failed)?;
         }
-        chart.draw_series(LineSeries::new([(1.0, 1.0), (longest, 1.0)], FRONT.stroke_width(2))).map_err(failed).map(|_| ())
+        chart
+            .draw_series(LineSeries::new([(1.0, 1.0), (longest, 1.0)], FRONT.stroke_width(2)))
+            .map_err(failed)
+            .map(|_| ())
     })
 }
 

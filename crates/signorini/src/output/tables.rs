@@ -6,8 +6,16 @@ use serde_json::Value;
 /// One line per increment, from the steps of the summary.
 pub fn history(steps: &[Value], contact: Option<&str>, probes: &[String]) -> String {
     let mut header = vec!["index", "time", "converged", "iterations", "energy", "equilibrium_residual"].join(",");
-    const CONTACT: [&str; 8] =
-        ["area", "zones", "holes", "boundary_length", "max_penetration", "min_gap_outside", "max_pressure", "min_pressure"];
+    const CONTACT: [&str; 8] = [
+        "area",
+        "zones",
+        "holes",
+        "boundary_length",
+        "max_penetration",
+        "min_gap_outside",
+        "max_pressure",
+        "min_pressure",
+    ];
     if contact.is_some() {
         header += ",force,";
         header += &CONTACT.join(",");
@@ -18,8 +26,10 @@ pub fn history(steps: &[Value], contact: Option<&str>, probes: &[String]) -> Str
     let mut text = header + "\n";
     for step in steps {
         let cell = |v: &Value| if v.is_null() { String::new() } else { v.to_string().trim_matches('"').to_string() };
-        let mut row: Vec<String> =
-            ["index", "time", "converged", "iterations", "energy", "equilibrium_residual"].iter().map(|k| cell(&step[*k])).collect();
+        let mut row: Vec<String> = ["index", "time", "converged", "iterations", "energy", "equilibrium_residual"]
+            .iter()
+            .map(|k| cell(&step[*k]))
+            .collect();
         if let Some(name) = contact {
             let c = &step["contacts"][name];
             row.push(cell(&c["force"][2]));

@@ -4,11 +4,13 @@ use super::OutputError;
 use crate::snapshot::{DisplayMesh, Snapshot};
 use signorini_geometry::Point;
 use vtkio::model::{
-    Attribute, Attributes, ByteOrder, CellType, Cells, DataSet, PolyDataPiece, UnstructuredGridPiece, Version, VertexNumbers, Vtk,
+    Attribute, Attributes, ByteOrder, CellType, Cells, DataSet, PolyDataPiece, UnstructuredGridPiece, Version,
+    VertexNumbers, Vtk,
 };
 
 fn to_bytes(title: &str, data: DataSet) -> Result<Vec<u8>, OutputError> {
-    let vtk = Vtk { version: Version::Auto, title: title.into(), byte_order: ByteOrder::LittleEndian, data, file_path: None };
+    let vtk =
+        Vtk { version: Version::Auto, title: title.into(), byte_order: ByteOrder::LittleEndian, data, file_path: None };
     let mut bytes = Vec::new();
     vtk.write_xml(&mut bytes).map_err(|e| OutputError::Picture(format!("VTK: {e}")))?;
     Ok(bytes)
@@ -16,11 +18,7 @@ fn to_bytes(title: &str, data: DataSet) -> Result<Vec<u8>, OutputError> {
 
 /// Coordinates with `z` as the third, or the second in one dimension too: the membrane is drawn deflected along z.
 fn coordinates<const D: usize>(points: &[Point<D>], z: impl Fn(usize) -> f64) -> Vec<f64> {
-    points
-        .iter()
-        .enumerate()
-        .flat_map(|(i, p)| [p[0], if D > 1 { p[1] } else { 0.0 }, z(i)])
-        .collect()
+    points.iter().enumerate().flat_map(|(i, p)| [p[0], if D > 1 { p[1] } else { 0.0 }, z(i)]).collect()
 }
 
 /// The fields of a state on the undeflected membrane.

@@ -7,7 +7,9 @@ use crate::case::units::{LENGTH, NONE};
 use crate::expression::{Expression, Scope};
 use signorini_fem::Grid;
 use signorini_geometry::{Aabb, Ellipse, ImplicitShape, Jet, Point, Real, Vector, polygon};
-use signorini_membrane::domain::{BoxDomain, CellStatus, Domain as MembraneDomain, DomainOnGrid, ImplicitDomain, PolygonDomain};
+use signorini_membrane::domain::{
+    BoxDomain, CellStatus, Domain as MembraneDomain, DomainOnGrid, ImplicitDomain, PolygonDomain,
+};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -31,7 +33,11 @@ impl Pieces {
 /// Reads domains of one dimension.
 pub(crate) trait ReadDomain<const D: usize> {
     /// The shape of the domain, its bounding box and its groups.
-    fn shape(&self, film: &statement::Membrane, span: Range<usize>) -> Result<(Arc<dyn MembraneDomain<D>>, Aabb<D>, Pieces), CaseError>;
+    fn shape(
+        &self,
+        film: &statement::Membrane,
+        span: Range<usize>,
+    ) -> Result<(Arc<dyn MembraneDomain<D>>, Aabb<D>, Pieces), CaseError>;
 
     fn planner(&self) -> &Planner<'_>;
 
@@ -60,7 +66,11 @@ pub(crate) trait ReadDomain<const D: usize> {
 }
 
 impl Planner<'_> {
-    fn cells<const D: usize>(&self, film: &statement::Membrane, bounds: &Aabb<D>) -> Result<([usize; D], Range<usize>), CaseError> {
+    fn cells<const D: usize>(
+        &self,
+        film: &statement::Membrane,
+        bounds: &Aabb<D>,
+    ) -> Result<([usize; D], Range<usize>), CaseError> {
         let document = self.document;
         let grid = match film.mesh.get_ref() {
             Mesh::Grid(grid) => grid,
@@ -70,7 +80,9 @@ impl Planner<'_> {
             (Some(cells), None) => {
                 let list = cells.get_ref();
                 if list.len() != D {
-                    return Err(document.error(cells.span(), format!("expected {D} numbers of cells, found {}", list.len())));
+                    return Err(
+                        document.error(cells.span(), format!("expected {D} numbers of cells, found {}", list.len()))
+                    );
                 }
                 let mut out = [0; D];
                 for (o, n) in out.iter_mut().zip(list) {
@@ -98,7 +110,12 @@ impl Planner<'_> {
     }
 
     /// Tells before memory ends.
-    fn check_size<const D: usize>(&self, cells: &[usize; D], degree: usize, span: Range<usize>) -> Result<(), CaseError> {
+    fn check_size<const D: usize>(
+        &self,
+        cells: &[usize; D],
+        degree: usize,
+        span: Range<usize>,
+    ) -> Result<(), CaseError> {
         let nodes: f64 = cells.iter().map(|&n| (n * degree) as f64 + 1.0).product();
         let bytes = memory_estimate(nodes, degree, D);
         let free = free_memory();
@@ -110,7 +127,11 @@ impl Planner<'_> {
             .document
             .error(
                 span,
-                format!("{nodes:.1e} unknowns would need about {:.1} GiB, and {:.1} GiB are free", gib(bytes), gib(free)),
+                format!(
+                    "{nodes:.1e} unknowns would need about {:.1} GiB, and {:.1} GiB are free",
+                    gib(bytes),
+                    gib(free)
+                ),
             )
             .help("use fewer cells, or a lower degree"))
     }
@@ -123,14 +144,21 @@ impl Planner<'_> {
     }
 
     fn box_of(&self, min: &crate::case::Values, max: &crate::case::Values) -> Result<Aabb<2>, CaseError> {
-        let b = Aabb::new(Point::<2>::from(self.reader.numbers::<2>(min, LENGTH)?), Point::<2>::from(self.reader.numbers::<2>(max, LENGTH)?));
+        let b = Aabb::new(
+            Point::<2>::from(self.reader.numbers::<2>(min, LENGTH)?),
+            Point::<2>::from(self.reader.numbers::<2>(max, LENGTH)?),
+        );
         if (0..2).all(|k| b.max[k] > b.min[k]) {
             return Ok(b);
         }
         Err(self.document.error(max.span(), "the domain is empty: `max` must exceed `min` in both directions"))
     }
 
-    fn domain_key<'f>(&self, film: &'f statement::Membrane, span: Range<usize>) -> Result<&'f toml::Spanned<Domain>, CaseError> {
+    fn domain_key<'f>(
+        &self,
+        film: &'f statement::Membrane,
+        span: Range<usize>,
+    ) -> Result<&'f toml::Spanned<Domain>, CaseError> {
         film.domain.as_ref().ok_or_else(|| {
             self.document.error(span, "missing key `domain`").help("add for example  domain.disc = { radius = 1.0 }")
         })
@@ -172,7 +200,11 @@ impl ReadDomain<1> for Planner<'_> {
         self
     }
 
-    fn shape(&self, film: &statement::Membrane, span: Range<usize>) -> Result<(Arc<dyn MembraneDomain<1>>, Aabb<1>, Pieces), CaseError> {
+    fn shape(
+        &self,
+        film: &statement::Membrane,
+        span: Range<usize>,
+    ) -> Result<(Arc<dyn MembraneDomain<1>>, Aabb<1>, Pieces), CaseError> {
         let key = self.domain_key(film, span)?;
         let Domain::Interval(interval) = key.get_ref() else {
             return Err(self
@@ -182,7 +214,9 @@ impl ReadDomain<1> for Planner<'_> {
         };
         let (from, to) = (self.reader.number(&interval.from, LENGTH)?, self.reader.number(&interval.to, LENGTH)?);
         if to <= from {
-            return Err(self.document.error(interval.to.span(), format!("the domain is empty: {to} does not exceed {from}")));
+            return Err(self
+                .document
+                .error(interval.to.span(), format!("the domain is empty: {to} does not exceed {from}")));
         }
         let axisymmetric = self.space == Space::Axisymmetric;
         if axisymmetric && from < 0.0 {
@@ -204,7 +238,11 @@ impl ReadDomain<2> for Planner<'_> {
         self
     }
 
-    fn shape(&self, film: &statement::Membrane, span: Range<usize>) -> Result<(Arc<dyn MembraneDomain<2>>, Aabb<2>, Pieces), CaseError> {
+    fn shape(
+        &self,
+        film: &statement::Membrane,
+        span: Range<usize>,
+    ) -> Result<(Arc<dyn MembraneDomain<2>>, Aabb<2>, Pieces), CaseError> {
         let document = self.document;
         let key = self.domain_key(film, span)?;
         let whole = || Pieces::new(&[("boundary", &[0])]);
@@ -238,9 +276,10 @@ impl ReadDomain<2> for Planner<'_> {
             }
             Domain::Polygon(p) => self.polygon(&p.points)?,
             Domain::Implicit(i) => {
-                let expression = self.reader.expression(&i.negative_inside, NONE, &["x", "y"]).or_else(|_| {
-                    self.reader.expression(&i.negative_inside, LENGTH, &["x", "y"])
-                })?;
+                let expression = self
+                    .reader
+                    .expression(&i.negative_inside, NONE, &["x", "y"])
+                    .or_else(|_| self.reader.expression(&i.negative_inside, LENGTH, &["x", "y"]))?;
                 let bounds = self.box_of(&i.min, &i.max)?;
                 let shape = ExpressionShape(expression);
                 for k in 0..=20 {
@@ -267,13 +306,18 @@ impl ReadDomain<2> for Planner<'_> {
 }
 
 impl Planner<'_> {
-    fn polygon(&self, points: &toml::Spanned<Vec<crate::case::Values>>) -> Result<(Arc<dyn MembraneDomain<2>>, Aabb<2>, Pieces), CaseError> {
+    fn polygon(
+        &self,
+        points: &toml::Spanned<Vec<crate::case::Values>>,
+    ) -> Result<(Arc<dyn MembraneDomain<2>>, Aabb<2>, Pieces), CaseError> {
         let mut corners = Vec::new();
         for p in points.get_ref() {
             corners.push(Point::<2>::from(self.reader.numbers::<2>(p, LENGTH)?));
         }
         if corners.len() < 3 {
-            return Err(self.document.error(points.span(), format!("{} points make no polygon: there must be at least 3", corners.len())));
+            return Err(self
+                .document
+                .error(points.span(), format!("{} points make no polygon: there must be at least 3", corners.len())));
         }
         let n = corners.len();
         if let Some(i) = (0..n).find(|&i| (corners[i] - corners[(i + 1) % n]).norm() == 0.0) {
@@ -294,8 +338,10 @@ impl Planner<'_> {
         let clockwise = polygon::signed_area(&corners) < 0.0;
         let mut groups = vec![("boundary".to_string(), (0..n).collect::<Vec<_>>())];
         // Sides are numbered as listed; a clockwise list is stored in reverse.
-        groups.extend((0..n).map(|i| (format!("side_{}", i + 1), vec![if clockwise { (2 * n - 2 - i) % n } else { i }])));
-        let bounds = corners.iter().fold(Aabb::new(corners[0], corners[0]), |b, p| Aabb::new(b.min.inf(p), b.max.sup(p)));
+        groups
+            .extend((0..n).map(|i| (format!("side_{}", i + 1), vec![if clockwise { (2 * n - 2 - i) % n } else { i }])));
+        let bounds =
+            corners.iter().fold(Aabb::new(corners[0], corners[0]), |b, p| Aabb::new(b.min.inf(p), b.max.sup(p)));
         Ok((Arc::new(PolygonDomain::new(corners)), bounds.scaled(MARGIN), Pieces { groups }))
     }
 }

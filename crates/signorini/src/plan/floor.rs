@@ -50,11 +50,14 @@ pub(super) fn read(planner: &Planner<'_>, body: &str, rigid: &Rigid) -> Result<F
             if n[2] <= 0.0 {
                 return Err(document
                     .error(plane.normal.span(), format!("the normal {n:?} does not point upwards"))
-                    .help("the normal points out of the rigid body, towards the membrane: its last component is positive"));
+                    .help(
+                        "the normal points out of the rigid body, towards the membrane: its last component is positive",
+                    ));
             }
             let text = format!("({}) - ({})*(x - ({})) - ({})*(y - ({}))", p[2], n[0] / n[2], p[0], n[1] / n[2], p[1]);
             let names = crate::expression::Names { variables: vec!["x", "y"], ..Default::default() };
-            let expression = crate::expression::parse(&text, &names).map_err(|e| document.error(rigid.shape.span(), e.message))?;
+            let expression =
+                crate::expression::parse(&text, &names).map_err(|e| document.error(rigid.shape.span(), e.message))?;
             Placed { expression, span: rigid.shape.span(), key: format!("{key}.plane") }
         }
         _ => return Err(planner.unavailable(rigid.shape.span(), "this shape as the floor of a membrane")),
@@ -75,7 +78,11 @@ pub(super) fn read(planner: &Planner<'_>, body: &str, rigid: &Rigid) -> Result<F
                 let list = values.get_ref();
                 for (k, v) in list.iter().enumerate() {
                     let expression = planner.reader.expression(v, LENGTH, &["t"])?;
-                    displacement.push(Placed { expression, span: v.span(), key: format!("bodies.{body}.rigid.motion.prescribed.displacement[{k}]") });
+                    displacement.push(Placed {
+                        expression,
+                        span: v.span(),
+                        key: format!("bodies.{body}.rigid.motion.prescribed.displacement[{k}]"),
+                    });
                 }
                 if planner.space != Space::Plane && displacement.len() == 2 {
                     let mut still = displacement[0].clone();
@@ -87,7 +94,9 @@ pub(super) fn read(planner: &Planner<'_>, body: &str, rigid: &Rigid) -> Result<F
                 }
                 let sideways = |p: &Placed| p.expression.constant() != Some(0.0);
                 if planner.space == Space::Axisymmetric && displacement[..2].iter().any(sideways) {
-                    return Err(document.error(values.span(), "in an axisymmetric problem the floor moves along z only"));
+                    return Err(
+                        document.error(values.span(), "in an axisymmetric problem the floor moves along z only")
+                    );
                 }
             }
         }

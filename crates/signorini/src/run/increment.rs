@@ -60,7 +60,12 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         }
     }
 
-    fn level_set<'a>(&mut self, membrane: &'a Membrane<D>, at: (usize, f64), progress: &mut dyn Progress) -> Increment<'a, D>
+    fn level_set<'a>(
+        &mut self,
+        membrane: &'a Membrane<D>,
+        at: (usize, f64),
+        progress: &mut dyn Progress,
+    ) -> Increment<'a, D>
     where
         Z: 'a,
     {
@@ -79,13 +84,16 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         let sharp = solution.zone.sharpest() * membrane.grid.h();
         if D == 2 && !solution.zone.is_empty() && sharp > RESOLVED {
             warnings.push(format!(
-                "a front has a radius of curvature of {:.2} cells at t = {}: the grid does not resolve it, use more cells",
+                "a front has a radius of curvature of {:.2} cells at t = {}: below two cells its shape is approximate, use more cells",
                 1.0 / sharp,
                 at.1
             ));
         }
         if let Some(step) = solution.settled_within {
-            warnings.push(format!("the fronts settled to {step:.0e} of a cell at t = {}, on a jump of the discrete slope", at.1));
+            warnings.push(format!(
+                "the fronts settled to {step:.0e} of a cell at t = {}, on a jump of the discrete slope",
+                at.1
+            ));
         }
         let reason = match &solution.reason {
             Reason::Converged => "converged".to_string(),
@@ -180,7 +188,11 @@ fn active_set<'a, const D: usize, Z: Zone<D>>(
     }
 }
 
-fn nodal_report<const D: usize>(membrane: &Membrane<D>, solution: &NodalSolution<D>, zones: &Staircase<D>) -> Report<D> {
+fn nodal_report<const D: usize>(
+    membrane: &Membrane<D>,
+    solution: &NodalSolution<D>,
+    zones: &Staircase<D>,
+) -> Report<D> {
     let inside = || solution.nodes.iter().enumerate().filter_map(|(i, n)| n.filter(|n| n.inside).map(|n| (i, n)));
     let height = |i: usize| membrane.floor.as_ref().map_or(0.0, |h| h.value(&membrane.grid.node(i)));
     let gaps = || inside().filter(|(_, n)| !n.in_contact).map(|(i, n)| n.displacement - height(i));

@@ -1,0 +1,132 @@
+//! The derivatives of the method against central differences: slope jump and energy, with tension and load that vary.
+
+use signorini_fem::Grid;
+use signorini_geometry::{Aabb, ClosedCurve, Ellipse, Jet, Point, Real};
+use signorini_membrane::domain::{Domain, DomainOnGrid, ImplicitDomain};
+use signorini_membrane::equilibrium::{Elements, Equilibrium};
+use signorini_membrane::field::{Constant, Formula, SharedField};
+use signorini_membrane::front::Fronts;
+use signorini_membrane::plane_zone::PlaneZone;
+use signorini_membrane::problem::{Measure, Membrane, Support};
+use signorini_membrane::zone::{ModeSpace, Zone, contact_index, is_free};
+use std::sync::Arc;
+
+const SPACE: ModeSpace = ModeSpace::Coarse(6);
+
+/// A disc over a curved floor, with a tension and a load that vary.
+fn membrane(cells: usize, degree: usize) -> Membrane<2> {
+    let bounds = Aabb::new(Point::<2>::new(-1.03, -1.03), Point::<2>::new(1.03, 1.03));
+    let grid = Grid::new(bounds, [cells, cells], degree);
+    let domain: Arc<dyn Domain<2>> =
+        Arc::new(ImplicitDomain(Ellipse { center: Point::zeros(), semi_axes: [1.0, 1.0] }));
+    let c = |v: f64| Jet::<2>::constant(v);
+    let floor: SharedField<2> =
+        Arc::new(Formula(move |[x, y]: [Jet<2>; 2]| c(-0.1) - c(0.05) * x * x + c(0.03) * y * x - c(0.02) * y));
+    Membrane {
+        domain: DomainOnGrid::new(domain, &grid),
+        grid,
+        measure: Measure::Plain,
+        tension: Arc::new(Formula(move |[x, y]: [Jet<2>; 2]| c(1.0) + c(0.4) * x + c(0.2) * y * y)),
+        load: Arc::new(Formula(move |[x, y]: [Jet<2>; 2]| c(-1.0) - c(0.3) * y + c(0.2) * x * y)),
+        floor: Some(floor),
+        supports: vec![Some(Support { index: 0, displacement: Arc::new(Constant(0.0)) })],
+        support_count: 1,
+    }
+}
+
+/// An off-centre, bent front that is not the solution.
+fn zone(membrane: &Membrane<2>) -> PlaneZone {
+    let points: Vec<Point<2>> = (0..24)
+        .map(|i| {
+            let a = std::f64::consts::TAU * f64::from(i) / 24.0;
+            let r = 0.45 + 0.05 * (2.0 * a).cos() + 0.02 * (3.0 * a).sin();
+            Point::<2>::new(0.07 + r * a.cos(), -0.04 + r * a.sin())
+        })
+        .collect();
+    PlaneZone::new(&membrane.grid, vec![ClosedCurve::through(&points, 9)])
+}
+
+/// `∫ ρ ω_n dΓ` for all modes, with the modes carried along by the front.
+fn moments(membrane: &Membrane<2>, zone: &PlaneZone, modes: &PlaneZone) -> Vec<f64> {
+    let mut elements = Elements::new(membrane);
+    let equilibrium = Equilibrium::solve(membrane, zone, &mut elements).expect("an equilibrium");
+    let n = modes.mode_offsets(SPACE)[1];
+    let mut b = vec![0.0; n];
+    for (p, rho) in equilibrium.quadrature.front.iter().zip(equilibrium.slope_jump()) {
+        for (i, v) in zone.frame(p.front, &p.x, SPACE).modes {
+            b[i] += p.weight * rho * v;
+        }
+    }
+    b
+}
+
+/// The relative error of the predicted change of the slope jump.
+fn slope_jump_error(cells: usize, degree: usize) -> f64 {
+    let membrane = membrane(cells, degree);
+    let zone = zone(&membrane);
+    let mut elements = Elements::new(&membrane);
+    let equilibrium = Equilibrium::solve(&membrane, &zone, &mut elements).expect("an equilibrium");
+    let fronts = Fronts::new(&equilibrium);
+    let n = zone.mode_offsets(SPACE)[1];
+    let direction: Vec<f64> = (0..n).map(|i| 1.0 + (1.7 * i as f64).sin()).collect();
+    let frames: Vec<_> = equilibrium.quadrature.front.iter().map(|p| zone.frame(p.front, &p.x, SPACE)).collect();
+    let speed: Vec<f64> = frames.iter().map(|f| f.modes.iter().map(|(i, v)| v * direction[*i]).sum::<f64>()).collect();
+    let rate = fronts.slope_jump_rate(&zone, &speed).expect("a rate");
+    // d/dτ ∫ ρ ω dΓ = ∫ (ρ° + κ ρ w) ω dΓ for modes carried along the normal.
+    let mut predicted = vec![0.0; n];
+    for (i, p) in equilibrium.quadrature.front.iter().enumerate() {
+        let change = rate[i] + frames[i].curvature * fronts.slope_jump[i] * speed[i];
+        for (mode, v) in &frames[i].modes {
+            predicted[*mode] += p.weight * change * v;
+        }
+    }
+    signorini_verify::taylor::central_difference_error(&predicted, 1e-3, |step| {
+        let moved: Vec<f64> = direction.iter().map(|d| d * step).collect();
+        moments(&membrane, &zone.displaced(SPACE, &moved), &zone)
+    })
+}
+
+#[test]
+fn the_change_of_the_slope_jump_is_predicted() {
+    let errors: Vec<f64> = [1, 2, 4].iter().map(|&p| slope_jump_error(20, p)).collect();
+    assert!(errors[2] <= 1e-3, "{errors:?}");
+    assert!(errors[0] > errors[1] && errors[1] > errors[2], "{errors:?}");
+}
+
+#[test]
+fn the_change_of_the_energy_is_half_the_squared_slope_jump() {
+    let membrane = membrane(20, 4);
+    let zone = zone(&membrane);
+    let energy = |zone: &PlaneZone| {
+        let mut elements = Elements::new(&membrane);
+        let equilibrium = Equilibrium::solve(&membrane, zone, &mut elements).expect("an equilibrium");
+        let mut energy = 0.0;
+        equilibrium.for_each_point(|cell, region, x, w| {
+            let (u, gradient) = match contact_index(region) {
+                Some(_) => membrane.floor.as_ref().map(|h| h.jet(x)).map(|h| (h.value, h.gradient)).expect("a floor"),
+                None if is_free(region) => equilibrium.evaluate(cell, region, x).expect("a state"),
+                None => return,
+            };
+            energy += w * (0.5 * membrane.tension.value(x) * gradient.norm_squared() - membrane.load.value(x) * u);
+        });
+        (energy, equilibrium)
+    };
+    let n = zone.mode_offsets(SPACE)[1];
+    let direction: Vec<f64> = (0..n).map(|i| 1.0 + 0.5 * (2.3 * i as f64).cos()).collect();
+    let (_, equilibrium) = energy(&zone);
+    let predicted: f64 = equilibrium
+        .quadrature
+        .front
+        .iter()
+        .zip(equilibrium.slope_jump())
+        .map(|(p, rho)| {
+            let w: f64 = zone.frame(p.front, &p.x, SPACE).modes.iter().map(|(i, v)| v * direction[*i]).sum();
+            p.weight * 0.5 * membrane.tension.value(&p.x) * rho * rho * w
+        })
+        .sum();
+    let error = signorini_verify::taylor::central_difference_error(&[predicted], 1e-3, |step| {
+        let moved: Vec<f64> = direction.iter().map(|d| d * step).collect();
+        vec![energy(&zone.displaced(SPACE, &moved)).0]
+    });
+    assert!(error <= 1e-3, "{error}");
+}

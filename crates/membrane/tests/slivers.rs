@@ -1,0 +1,56 @@
+//! Cuts that leave only slivers: the system stays positive definite, whatever the degree.
+
+use signorini_fem::Grid;
+use signorini_geometry::{Aabb, Line, Point, Vector};
+use signorini_membrane::domain::{Domain, DomainOnGrid, ImplicitDomain};
+use signorini_membrane::equilibrium::{Elements, Equilibrium};
+use signorini_membrane::field::Constant;
+use signorini_membrane::plane_zone::PlaneZone;
+use signorini_membrane::problem::{Measure, Membrane, Support};
+use signorini_membrane::zone::Zone;
+use std::sync::Arc;
+
+/// A half plane cut by a straight edge; the other sides are free, so the solution is the height of the
+/// support.
+fn error(degree: usize, normal: Vector<2>, offset: f64) -> f64 {
+    let bounds = Aabb::new(Point::<2>::new(0.0, 0.0), Point::<2>::new(1.0, 1.0));
+    let grid = Grid::new(bounds, [8, 8], degree);
+    let edge = Line { point: Point::<2>::new(0.5, 0.5) + offset * normal, normal };
+    let domain: Arc<dyn Domain<2>> = Arc::new(ImplicitDomain(edge));
+    let exact = 0.3;
+    let displacement = Arc::new(Constant(exact));
+    let membrane = Membrane {
+        domain: DomainOnGrid::new(domain, &grid),
+        grid: grid.clone(),
+        measure: Measure::Plain,
+        tension: Arc::new(Constant(1.0)),
+        load: Arc::new(Constant(0.0)),
+        floor: None,
+        supports: vec![Some(Support { index: 0, displacement })],
+        support_count: 1,
+    };
+    let zone = PlaneZone::empty(&grid);
+    let mut elements = Elements::new(&membrane);
+    let state = Equilibrium::solve(&membrane, &zone, &mut elements)
+        .unwrap_or_else(|e| panic!("degree {degree}, offset {offset:e}: {e}"));
+    let mut worst = 0.0f64;
+    state.for_each_point(|cell, region, x, _| {
+        let u = state.evaluate(cell, region, x).map_or(f64::NAN, |v| v.0);
+        worst = worst.max((u - exact).abs());
+    });
+    worst
+}
+
+#[test]
+fn straight_cuts_of_every_thickness() {
+    let diagonal = Vector::<2>::new(1.0, 1.0).normalize();
+    let slanted = Vector::<2>::new(0.03, 1.0).normalize();
+    for degree in 1..=6 {
+        for normal in [Vector::<2>::new(1.0, 0.0), Vector::<2>::new(0.0, -1.0), diagonal, slanted] {
+            for offset in [1e-12, 1e-8, 1e-4, 1e-2, 0.03, 0.0625, 0.09, 0.12, 0.125 - 1e-9, -1e-10] {
+                let worst = error(degree, normal, offset);
+                assert!(worst < 1e-7, "degree {degree}, normal {normal:?}, offset {offset:e}: {worst:e}");
+            }
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! The cosine floor of Graveleau, Chevaugeon & Moës (2015), whose zones appear, merge and fill; areas and forces from a
+//! spectral boundary integral method.
+
+use super::{CELLS, DEGREE, example, last_step, number, reference, set, summary};
+use serde_json::Value;
+
+fn row(name: &str, f: f64) -> Value {
+    let reference = reference();
+    let rows = reference["wavy_floor"]["cases"].as_array().expect("rows").clone();
+    rows.into_iter().find(|r| r["name"] == name && number(&r["f"]) == f).expect("a row")
+}
+
+fn compare(contact: &Value, row: &Value, tolerance: f64) {
+    for (found, exact) in [(&contact["area"], &row["contact_area"]), (&contact["force"][2], &row["contact_force"])] {
+        let (found, exact) = (number(found), number(exact));
+        assert!((found / exact - 1.0).abs() <= tolerance, "{found} instead of {exact}: {:.1e}", found / exact - 1.0);
+    }
+    assert_eq!(contact["zones"], row["components"]);
+    assert_eq!(contact["holes"], row["free_holes_in_contact"]);
+}
+
+#[test]
+fn the_disc_as_its_load_grows() {
+    let summary = summary(example("cosine_disc"), &set(&[]));
+    assert!(summary["unknowns"].as_u64().expect("unknowns") <= 20_000);
+    last_step(&summary);
+    let steps = summary["steps"].as_array().expect("steps");
+    let zones: Vec<(u64, u64)> = steps
+        .iter()
+        .map(|s| &s["contacts"]["touch"])
+        .map(|c| (c["zones"].as_u64().unwrap_or(0), c["holes"].as_u64().unwrap_or(0)))
+        .collect();
+    assert_eq!(zones, [(4, 0), (1, 1), (1, 1), (1, 0)]);
+    assert!(steps.iter().all(|s| number(&s["equilibrium_residual"]) <= 1e-10));
+    compare(&steps[0]["contacts"]["touch"], &row("disc-wavy", 0.1), 1e-5);
+    compare(&steps[3]["contacts"]["touch"], &row("disc-wavy", 0.4), 1e-6);
+}
+
+#[test]
+fn the_square() {
+    let summary = summary(example("cosine_square"), &set(&[]));
+    assert!(summary["unknowns"].as_u64().expect("unknowns") <= 20_000);
+    compare(&last_step(&summary)["contacts"]["touch"], &row("square-wavy", 0.4), 1e-6);
+}
+
+/// Zones of the square at every load of the publication, and the force between the bounds of nodal methods.
+#[test]
+fn the_square_at_lower_loads() {
+    for (f, zones, holes, force) in [(0.1, 4, 0, 0.0905091), (0.2, 1, 1, 0.28712), (0.3, 1, 5, 0.540594)] {
+        let pairs = [("loads.press.normal", format!("{}", -f)), (CELLS, "[40,40]".into()), (DEGREE, "3".into())];
+        let summary = summary(example("cosine_square"), &set(&pairs));
+        let contact = &last_step(&summary)["contacts"]["touch"];
+        assert_eq!((contact["zones"].as_u64(), contact["holes"].as_u64()), (Some(zones), Some(holes)), "f = {f}");
+        assert!((number(&contact["force"][2]) - force).abs() < 2e-6, "f = {f}: {}", contact["force"][2]);
+    }
+}
+
+/// The nodal method on the same floor: the force is near, the area a staircase.
+#[test]
+fn the_nodal_method_nested_and_cold() {
+    let exact = row("square-wavy", 0.4);
+    let run = |start: &str| {
+        let case = example("active_set").replace("active_set = {}", &format!("active_set = {{ start = \"{start}\" }}"));
+        let summary = summary(&case, &set(&[]));
+        let step = last_step(&summary).clone();
+        (step["contacts"]["touch"].clone(), step["iterations"].as_u64().unwrap_or(0))
+    };
+    let ((nested, few), (cold, many)) = (run("nested"), run("cold"));
+    assert_eq!(nested["force"][2], cold["force"][2]);
+    assert!(few < many);
+    assert!((number(&nested["force"][2]) / number(&exact["contact_force"]) - 1.0).abs() < 1e-3);
+    assert!((number(&nested["area"]) / number(&exact["contact_area"]) - 1.0).abs() < 0.06);
+    assert_eq!((nested["zones"].as_u64(), nested["holes"].as_u64()), (Some(1), Some(0)));
+}
+
+/// The hemisphere of E. Bueler's obstacle problems: no load, boundary values from the exact solution.
+#[test]
+fn the_hemisphere_without_load() {
+    let case = r#"
+space = "plane"
+[bodies.film.membrane]
+domain.rectangle = { min = [-2, -2], max = [2, 2] }
+mesh.grid = { cells = [30, 30] }
+degree = 4
+tension = 1.0
+[bodies.ball.rigid]
+shape.height = "if(x^2 + y^2 < 0.81, sqrt(1 - min(x^2 + y^2, 0.9)), sqrt(0.19) - 0.9/sqrt(0.19)*(sqrt(x^2 + y^2) - 0.9))"
+[supports.frame]
+on = "film:boundary"
+displacement = "-0.680259411891717*log(sqrt(x^2 + y^2)) + 0.471519893402110"
+[contacts.touch]
+between = ["film", "ball"]
+"#;
+    let summary = summary(case, &set(&[]));
+    let contact = &last_step(&summary)["contacts"]["touch"];
+    assert!((number(&contact["radius"]) - 0.697965148223374).abs() < 1e-6, "{}", contact["radius"]);
+    let force = 2.0 * std::f64::consts::PI * 0.680259411891717;
+    assert!((number(&contact["force"][2]) - force).abs() < 1e-6);
+}

@@ -1,0 +1,31 @@
+//! Every case of the gallery runs, at a coarse size, and gives the numbers that its folder states.
+
+use super::{CELLS, last_step, number, set, summary};
+use serde_json::Value;
+
+fn expected(name: &str) -> Value {
+    let path = format!("{}/../../gallery/{name}/expected.json", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{path}: {e}"));
+    serde_json::from_str(&text).unwrap_or_else(|e| panic!("{path}: {e}"))
+}
+
+#[test]
+fn every_case_gives_its_expected_numbers() {
+    for example in signorini::gallery::GALLERY {
+        let expected = expected(example.name);
+        let mut pairs = Vec::new();
+        if let Some(cells) = expected.get("cells") {
+            pairs.push((CELLS, cells.to_string()));
+        }
+        let summary = summary(example.case, &set(&pairs));
+        let contact = &last_step(&summary)["contacts"]["touch"];
+        for key in ["area", "force"] {
+            let found = if key == "force" { number(&contact["force"][2]) } else { number(&contact[key]) };
+            let (value, tolerance) = (number(&expected[key]["value"]), number(&expected[key]["relative_tolerance"]));
+            assert!((found / value - 1.0).abs() <= tolerance, "{}: {key} is {found}, not {value}", example.name);
+        }
+        for key in ["zones", "holes"] {
+            assert_eq!(contact[key], expected[key], "{}: {key}", example.name);
+        }
+    }
+}

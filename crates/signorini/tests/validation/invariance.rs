@@ -1,0 +1,84 @@
+//! What must not change the answer: units, threads, the place of the problem on its grid.
+
+use super::{example, last_step, number, set, summary};
+use serde_json::Value;
+
+/// One physical problem, stated in three systems of units.
+fn in_units(system: &str, length: f64, pressure: f64) -> Value {
+    let case = format!(
+        r#"
+units = "{system}"
+space = "plane"
+[bodies.film.membrane]
+domain.disc = {{ radius = "0.5 mm" }}
+mesh.grid = {{ cells = [30, 30] }}
+degree = 2
+tension = "(40*(1 + 0.3*x/({length}))) N/m"
+[bodies.floor.rigid]
+shape.height = "(-4 - 0.8*cos(5*x/({length}))) um"
+[supports.rim]
+on = "film:boundary"
+displacement = "0 um"
+[loads.gas]
+on = "film"
+normal = "-({pressure})*4000*(1 + 0.2*y/({length}))"
+[contacts.touch]
+between = ["film", "floor"]
+"#
+    );
+    summary(&case, &set(&[]))
+}
+
+#[test]
+fn units_change_neither_digits_nor_iterations() {
+    // The length of 0.5 mm and the pressure of 1 Pa in each system.
+    let metre = in_units("m-N-Pa", 0.5e-3, 1.0);
+    let base = last_step(&metre);
+    let contact = &base["contacts"]["touch"];
+    assert!(number(&contact["area"]) > 0.0);
+    for (system, length, pressure, unit_length, unit_force) in
+        [("mm-N-MPa", 0.5, 1e-6, 1e-3, 1.0), ("um-uN-MPa", 500.0, 1e-6, 1e-6, 1e-6)]
+    {
+        let other = in_units(system, length, pressure);
+        let step = last_step(&other);
+        let here = &step["contacts"]["touch"];
+        assert_eq!(step["iterations"], base["iterations"], "{system}");
+        let same = |a: f64, b: f64| assert!((a / b - 1.0).abs() <= 1e-9, "{system}: {a} and {b}");
+        same(number(&here["area"]) * unit_length * unit_length, number(&contact["area"]));
+        same(number(&here["force"][2]) * unit_force, number(&contact["force"][2]));
+        same(number(&step["energy"]) * unit_length * unit_force, number(&base["energy"]));
+    }
+}
+
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        let mut summary = pool.install(|| summary(example("flat_disc"), &set(&[])));
+        summary["environment"] = Value::Null;
+        summary
+    };
+    assert_eq!(run(1), run(2));
+}
+
+#[test]
+fn moving_the_problem_over_its_grid_changes_less_than_the_discretisation_error() {
+    // The same disc in a box that is not centred on it.
+    let area = |dx: f64, dy: f64| {
+        let case = example("flat_disc").replace(
+            "domain.disc = { radius = 1.0 }",
+            &format!(
+                "domain.implicit = {{ negative_inside = \"x^2 + y^2 - 1\", min = [{}, {}], max = [{}, {}] }}",
+                -1.1 + dx,
+                -1.1 + dy,
+                1.1 + dx,
+                1.1 + dy
+            ),
+        );
+        number(&last_step(&summary(&case, &set(&[])))["contacts"]["touch"]["area"])
+    };
+    let exact = std::f64::consts::PI * 0.502474357083085f64.powi(2);
+    for (dx, dy) in [(0.0, 0.0), (0.031, -0.017), (0.05, 0.0499)] {
+        assert!((area(dx, dy) - exact).abs() < 1e-8, "shift {dx}, {dy}");
+    }
+}

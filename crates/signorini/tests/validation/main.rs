@@ -1,0 +1,65 @@
+//! Published and exact problems, run as a user runs them: from the case file to the summary.
+
+mod bad_input;
+mod cosine_floor;
+mod flat_floor;
+mod gallery;
+mod invariance;
+
+use serde_json::Value;
+use signorini::case::{CaseError, Document};
+use signorini::run::{RunError, run};
+use signorini_solve::Silent;
+
+/// Runs a case text with overrides and returns its summary.
+pub fn summary(case: &str, set: &[String]) -> Value {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let document = Document::parse("case.toml", case, set).unwrap_or_else(|e| panic!("{}", e.one_line()));
+    match run(&document, &folder.path().join("out"), &mut Silent) {
+        Ok(outcome) => outcome.summary,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// The error of a case that cannot run.
+pub fn error(case: &str) -> CaseError {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let document = match Document::parse("case.toml", case, &[]) {
+        Ok(document) => document,
+        Err(error) => return error,
+    };
+    match run(&document, &folder.path().join("out"), &mut Silent) {
+        Err(RunError::Case(error)) => *error,
+        Err(other) => panic!("{other}"),
+        Ok(outcome) => panic!("the case ran: {}", outcome.summary["verdict"]),
+    }
+}
+
+/// The overrides `KEY=VALUE` of a run without pictures.
+pub fn set(pairs: &[(&str, String)]) -> Vec<String> {
+    let pictures = ("output.pictures", "false".to_string());
+    pairs.iter().chain([&pictures]).map(|(k, v)| format!("{k}={v}")).collect()
+}
+
+/// The last step of a summary that must have converged.
+pub fn last_step(summary: &Value) -> &Value {
+    assert_eq!(summary["converged"], true, "{}", summary["verdict"]);
+    summary["steps"].as_array().and_then(|s| s.last()).expect("a step")
+}
+
+pub fn number(v: &Value) -> f64 {
+    v.as_f64().unwrap_or_else(|| panic!("{v} is not a number"))
+}
+
+/// Reference data, computed independently with spectral accuracy.
+pub fn reference() -> Value {
+    serde_json::from_str(include_str!("../data/membrane.json")).expect("reference data")
+}
+
+pub const CELLS: &str = "bodies.film.membrane.mesh.grid.cells";
+pub const DEGREE: &str = "bodies.film.membrane.degree";
+
+/// A gallery case by name.
+pub fn example(name: &str) -> &'static str {
+    signorini::gallery::find(name).expect("a gallery case").case
+}

@@ -159,8 +159,8 @@ mod tests {
             let jet = sin / (Jet::constant(2.0) + jx * jy) - s.powf(1.5);
             let (f, gradient, hessian) = num_dual::hessian(
                 |v| {
-                    let s = &v[0] * &v[0] + &v[1] * &v[1];
-                    s.sin() / (&v[0] * &v[1] + 2.0) - s.powf(1.5)
+                    let s = v[0] * v[0] + v[1] * v[1];
+                    s.sin() / (v[0] * v[1] + 2.0) - s.powf(1.5)
                 },
                 &nalgebra::SVector::<f64, 2>::new(x, y),
             );

@@ -167,8 +167,7 @@ impl Parser<'_> {
             return Err(error(format!("nested more than {MAX_DEPTH} deep"), self.peek().1.clone()));
         }
         let mut left = self.prefix()?;
-        loop {
-            let (Token::Symbol(symbol), _) = self.peek() else { break };
+        while let (Token::Symbol(symbol), _) = self.peek() {
             let symbol = *symbol;
             let Some((l, r)) = binding(symbol) else { break };
             if l < least {

@@ -5,7 +5,7 @@ use serde_json::Value;
 
 /// One line per increment, from the steps of the summary.
 pub fn history(steps: &[Value], contact: Option<&str>, probes: &[String]) -> String {
-    let mut header = vec!["index", "time", "converged", "iterations", "energy", "equilibrium_residual"].join(",");
+    let mut header = ["index", "time", "converged", "iterations", "energy", "equilibrium_residual"].join(",");
     const CONTACT: [&str; 8] = [
         "area",
         "zones",

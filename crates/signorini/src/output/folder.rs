@@ -116,4 +116,18 @@ mod tests {
         std::fs::write(other.join("summary.json"), "{}").unwrap();
         assert!(Folder::create(&other).is_err());
     }
+
+    /// Every write to /dev/full fails as on a full disk.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_disk_is_told_and_leaves_the_earlier_file() {
+        let root = tempfile::tempdir().unwrap();
+        let folder = Folder::create(&root.path().join("out")).unwrap();
+        folder.write("summary.json", b"earlier").unwrap();
+        std::os::unix::fs::symlink("/dev/full", folder.path().join("summary.json.part")).unwrap();
+        let error = folder.write("summary.json", b"later").unwrap_err();
+        assert!(error.to_string().contains("summary.json") && error.to_string().contains("space"), "{error}");
+        assert_eq!(std::fs::read(folder.path().join("summary.json")).unwrap(), b"earlier");
+        assert!(!folder.path().join("summary.json.part").exists());
+    }
 }

@@ -1,0 +1,131 @@
+//! The command as a user meets it: files, messages, exit status.
+
+use assert_cmd::Command;
+use serde_json::Value;
+use std::path::Path;
+
+fn signorini(folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_signorini"));
+    command.current_dir(folder).env("NO_COLOR", "1");
+    command
+}
+
+fn example(name: &str) -> String {
+    let path = format!("{}/../../gallery/{name}/case.toml", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(path).expect("a gallery case")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+#[test]
+fn a_run_leaves_everything_it_promises() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = signorini(folder.path()).args(["gallery", "run", "string"]).output().expect("a run");
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("In contact over length 1.1055728"));
+    let out = folder.path().join("string");
+    for file in [
+        "summary.json",
+        "fields.pvd",
+        "contact.pvd",
+        "history.csv",
+        "log.jsonl",
+        "case.toml",
+        "fields/fields_00000.vtu",
+        "contact/contact_00000.vtp",
+        "contact/outlines_00000.csv",
+        "pictures/deflection.png",
+        "pictures/deflection.svg",
+        "pictures/gap_and_pressure.png",
+        "pictures/convergence.png",
+    ] {
+        assert!(out.join(file).is_file(), "{file}");
+    }
+    let summary = std::fs::read_to_string(out.join("summary.json")).expect("a summary");
+    let summary: Value = serde_json::from_str(&summary).expect("JSON");
+    assert_eq!(summary["converged"], true);
+    // A second run takes the place of the first.
+    let again = signorini(folder.path()).args(["gallery", "run", "string"]).output().expect("a run");
+    assert_eq!(again.status.code(), Some(0));
+}
+
+#[test]
+fn wrong_input_ends_with_one_and_says_where() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("case.toml"), example("string").replace("tension", "tensoin")).expect("a file");
+    let output = signorini(folder.path()).args(["run", "case.toml"]).output().expect("a run");
+    assert_eq!(output.status.code(), Some(1));
+    let message = text(&output.stderr);
+    assert!(message.contains("case.toml:8:1") && message.contains("did you mean `tension`?"), "{message}");
+    let output = signorini(folder.path()).args(["check", "case.toml", "--json"]).output().expect("a check");
+    let error: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!((error["place"]["line"].as_u64(), error["place"]["column"].as_u64()), (Some(8), Some(1)));
+    for arguments in
+        [&["run", "missing.toml"][..], &["gallery", "run", "strnig"], &["run"], &["--threads", "0", "gallery"]]
+    {
+        let output = signorini(folder.path()).args(arguments).output().expect("a run");
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+        assert!(!text(&output.stderr).contains("panicked"));
+    }
+}
+
+#[test]
+fn a_folder_of_others_is_left_alone() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let precious = folder.path().join("string");
+    std::fs::create_dir(&precious).expect("a folder");
+    std::fs::write(precious.join("thesis.tex"), "precious").expect("a file");
+    let output = signorini(folder.path()).args(["gallery", "run", "string"]).output().expect("a run");
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stderr).contains("thesis.tex"));
+    assert_eq!(std::fs::read_dir(&precious).expect("a folder").count(), 1);
+    // Nor can a file be made a folder.
+    let output =
+        signorini(folder.path()).args(["gallery", "run", "string", "-o", "string/thesis.tex"]).output().expect("a run");
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
+}
+
+#[test]
+fn keys_are_set_and_cases_read_from_standard_input() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = signorini(folder.path())
+        .args(["run", "-", "-o", "out", "--json", "--set", "loads.press.normal=-0.3", "--set", "output.pictures=false"])
+        .write_stdin(example("axisymmetric"))
+        .output()
+        .expect("a run");
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let summary: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(summary["reason"], "no_contact");
+    assert!(!folder.path().join("out/pictures").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_keeps_what_is_done() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let case = example("cosine_disc").replace("increments = 4", "increments = 400").replace("[78, 78]", "[40, 40]");
+    std::fs::write(folder.path().join("long.toml"), case).expect("a file");
+    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_signorini"))
+        .current_dir(folder.path())
+        .args(["run", "long.toml", "--json"])
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .expect("a run");
+    // Wait for the first increments, then press Ctrl-C.
+    let fields = folder.path().join("long/fields.pvd");
+    for _ in 0..600 {
+        if fields.exists() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(100));
+    }
+    let killed = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
+    assert!(killed.success());
+    assert_eq!(child.wait().expect("an end").code(), Some(130));
+    let summary = std::fs::read_to_string(folder.path().join("long/summary.json")).expect("a summary");
+    let summary: Value = serde_json::from_str(&summary).expect("JSON");
+    assert_eq!((summary["converged"].as_bool(), summary["reason"].as_str()), (Some(false), Some("interrupted")));
+    assert!(summary["steps"].as_array().is_some_and(|s| !s.is_empty()));
+}

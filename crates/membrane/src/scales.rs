@@ -65,7 +65,7 @@ impl Scales {
             (_, 1) => 1e-3 * self.relative_h().powi(2) * slope * self.length.sqrt(),
             _ => {
                 // The flux is a difference of displacements times the penalty over h, and inherits their round-off.
-                let round_off = 250.0 * f64::EPSILON * nitsche_penalty(self.degree) / self.relative_h();
+                let round_off = 400.0 * f64::EPSILON * nitsche_penalty(self.degree) / self.relative_h();
                 round_off.max(1e-10) * slope * self.length.sqrt()
             }
         }

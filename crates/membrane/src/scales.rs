@@ -54,21 +54,19 @@ impl Scales {
         self.h / self.length
     }
 
-    /// What the slope jump must fall below, in the norm of `L²` of the fronts: the solver's own accuracy, or at degree 1
-    /// a thousandth of what the grid resolves.
+    /// What the slope jump must fall below, in the norm of `L²` of the fronts: the solver's own accuracy, or a
+    /// thousandth of what the grid resolves where that is more.
     pub fn slope_tolerance(&self) -> f64 {
         let slope = self.pressure * self.length / self.tension;
-        match (self.dimension, self.degree) {
-            // Fronts are points, and the norm has no length in it.
-            (1, 1) => 1e-3 * self.relative_h().powi(2) * slope,
-            (1, _) => 1e-11 * slope,
-            (_, 1) => 1e-3 * self.relative_h().powi(2) * slope * self.length.sqrt(),
-            _ => {
-                // The flux is a difference of displacements times the penalty over h, and inherits their round-off.
-                let round_off = 400.0 * f64::EPSILON * nitsche_penalty(self.degree) / self.relative_h();
-                round_off.max(1e-10) * slope * self.length.sqrt()
-            }
+        let resolved = 1e-3 * self.relative_h().powi(2 * self.degree as i32);
+        if self.dimension == 1 {
+            // Fronts are points: the norm has no length in it, and one more solve costs nothing.
+            let least = if self.degree == 1 { resolved } else { 1e-11 };
+            return least * slope;
         }
+        // The flux is a difference of displacements times the penalty over h, and inherits their round-off.
+        let round_off = 400.0 * f64::EPSILON * nitsche_penalty(self.degree) / self.relative_h();
+        resolved.max(round_off).max(1e-10) * slope * self.length.sqrt()
     }
 
     /// How large the part of the slope jump may be that the modes do not see.

@@ -16,8 +16,8 @@ const MOST_STEPS: usize = 40;
 /// Corrections of the zone after which it is given up.
 const MOST_SWEEPS: usize = 12;
 /// Fronts whose residual has not fallen for so many steps ...
-const PATIENCE: usize = 6;
-/// ... after half of which steps are damped ...
+const PATIENCE: usize = 9;
+/// ... after a third of which steps are damped ...
 const DAMPED_AFTER: usize = 3;
 /// ... and that move by less than this fraction of a cell have settled: as a front crosses a grid line the discrete
 /// slope jump makes a jump of its own, of the size of the discretisation error, and no position makes it vanish.

@@ -316,6 +316,10 @@ impl<'a> Planner<'a> {
         let supports = self.supports(body, &pieces)?;
         let contact = self.contact(body)?;
         let mut warnings = Vec::new();
+        if case.steps.iter().any(|s| s.get_ref().events.is_some()) {
+            warnings
+                .push("`events` are not located in this version: the zones of each increment are in its step".into());
+        }
         let (contact, method) = match contact {
             None => (None, MethodChoice::InequalityLevelSet),
             Some((name, floor, method)) => (Some((name, floor)), method),

@@ -102,6 +102,17 @@ impl Image {
     }
 }
 
+/// Adds a closed line on top of an SVG.
+pub fn closed_line(svg: &mut String, points: &[(f64, f64)], RGBColor(r, g, b): RGBColor) {
+    let path: Vec<String> = points.iter().map(|(x, y)| format!("{x:.2} {y:.2}")).collect();
+    let element = format!(
+        "<path d=\"M{}Z\" fill=\"none\" stroke=\"rgb({r},{g},{b})\" stroke-width=\"2.5\" stroke-linejoin=\"round\"/>\n",
+        path.join("L")
+    );
+    let end = svg.rfind("</svg>").unwrap_or(svg.len());
+    svg.insert_str(end, &element);
+}
+
 /// The viridis colour map: even in lightness, and told apart by colour-blind eyes. `t` runs from 0 to 1.
 pub fn viridis(t: f64) -> RGBColor {
     const STOPS: [(u8, u8, u8); 9] = [

@@ -1,6 +1,6 @@
 //! The pictures a person would want to look at first.
 
-use super::chart::{FONT, Image, failed, label, save, svg, viridis};
+use super::chart::{FONT, Image, closed_line, failed, label, save, svg, viridis};
 use super::{Folder, OutputError};
 use crate::case::statement::Space;
 use crate::exact;
@@ -25,6 +25,10 @@ pub fn draw<const D: usize>(
     s: &Snapshot<D>,
     steps: &[Value],
 ) -> Result<(), OutputError> {
+    if mesh.cells.is_empty() {
+        // A domain thinner than the display can show.
+        return Ok(());
+    }
     let units = &Labels::new(plan);
     let exact = exact::of(plan, s.time);
     type Drawing<'a> = Box<dyn Fn() -> Result<String, OutputError> + Sync + 'a>;
@@ -164,10 +168,6 @@ fn map<const D: usize>(
             .map_err(failed)?;
         let area = chart.plotting_area().get_pixel_range();
         pixels = ((area.0.start, area.0.end), (area.1.start, area.1.end));
-        for outline in &s.outlines {
-            let closed = outline.iter().chain(outline.first()).map(|p| (p[0], p[1]));
-            chart.draw_series(LineSeries::new(closed, FRONT.stroke_width(3))).map_err(failed)?;
-        }
         if let Some(radius) = exact.and_then(|e| e.contact_radius()) {
             let c = bounds.center();
             let dashes = (0..60).map(|k| {
@@ -184,6 +184,15 @@ fn map<const D: usize>(
     let mut image = Image::new((pixels.0.1 - pixels.0.0).max(1) as u32, (pixels.1.1 - pixels.1.0).max(1) as u32)?;
     fill(&mut image, mesh, values, &bounds, (lo, hi));
     image.insert(&mut text, pixels.0, pixels.1)?;
+    // The front is drawn in fractions of a pixel, which the chart's own lines are rounded to.
+    for outline in &s.outlines {
+        let at = |p: &Point<D>| {
+            let t = (p - bounds.min).component_div(&extent);
+            let (x, y) = (f64::from(pixels.0.1 - pixels.0.0), f64::from(pixels.1.1 - pixels.1.0));
+            (f64::from(pixels.0.0) + t[0] * x, f64::from(pixels.1.1) - t[1] * y)
+        };
+        closed_line(&mut text, &outline.iter().map(at).collect::<Vec<_>>(), FRONT);
+    }
     Ok(text)
 }
 

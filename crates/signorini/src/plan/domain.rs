@@ -116,7 +116,7 @@ impl Planner<'_> {
         degree: usize,
         span: Range<usize>,
     ) -> Result<(), CaseError> {
-        let nodes: f64 = cells.iter().map(|&n| (n * degree) as f64 + 1.0).product();
+        let nodes: f64 = cells.iter().map(|&n| n as f64 * degree as f64 + 1.0).product();
         let bytes = memory_estimate(nodes, degree, D);
         let free = free_memory();
         if nodes < 2e9 && bytes < MEMORY_SHARE * free {

@@ -33,6 +33,7 @@ fn each_mistake_is_told_at_its_place() {
         ("cells = [20, 20]", "cells = [0, 20]", "at least one", "0", ""),
         ("cells = [20, 20]", "cells = [20]", "expected 2", "[20]", ""),
         ("cells = [20, 20]", "cells = [1000000, 1000]", "GiB", "[1000000, 1000]", "fewer cells"),
+        ("cells = [20, 20]", "cells = [9223372036854775807, 9]", "GiB", "9223372036854775807", "fewer cells"),
         ("cells = [20, 20]", "", "`cells` or `cell_size`", "", "cells ="),
         ("radius = 1.0", "radius = -1.0", "must be positive", "-1.0", ""),
         ("domain.disc = { radius = 1.0 }", "domain.dsic = { radius = 1.0 }", "unknown key `dsic`", "dsic", "`disc`"),

@@ -308,6 +308,7 @@ impl<const D: usize> System<D> {
         for pair in &pairs {
             matrix.add(&pair.dofs, elements.ghost.matrix(pair.direction), weight * pair.scale);
         }
+        matrix.restore_row_sums(&row_sums(membrane, &unknowns, &imposed));
         Self { quadrature, unknowns, matrix, rhs }
     }
 }
@@ -443,6 +444,22 @@ fn imposed_points<const D: usize>(membrane: &Membrane<D>, quadrature: &Quadratur
         Some(Imposed { cell: p.cell, region: p.region, x: p.x, weight: p.weight, outward: p.normal, value })
     });
     fronts.chain(rim).collect()
+}
+
+/// What the rows of the matrix sum to: against a constant only the terms of Nitsche's method are left.
+fn row_sums<const D: usize>(membrane: &Membrane<D>, unknowns: &Unknowns, imposed: &[Imposed<D>]) -> Vec<f64> {
+    let penalty = nitsche_penalty(membrane.grid.degree()) / membrane.grid.h();
+    let mut sums = vec![0.0; unknowns.count];
+    let mut t = Tabulation::default();
+    for p in imposed {
+        let Some(dofs) = unknowns.of(p.cell, p.region) else { continue };
+        tabulate(membrane.grid.basis(), membrane, p.cell, &p.x, &mut t);
+        let w = p.weight * membrane.tension.value(&p.x);
+        for (a, &i) in dofs.iter().enumerate() {
+            sums[i as usize] += w * (penalty * t.value[a] - t.gradient[a].dot(&p.outward));
+        }
+    }
+    sums
 }
 
 /// The systems of a cell's regions. The matrix is left empty where it is that of an undivided cell.

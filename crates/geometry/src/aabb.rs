@@ -52,11 +52,6 @@ impl<const D: usize> Aabb<D> {
         Self::new(self.center() - half, self.center() + half)
     }
 
-    /// The box grown by `margin` on every side.
-    pub fn grown(&self, margin: f64) -> Self {
-        Self::new(self.min.add_scalar(-margin), self.max.add_scalar(margin))
-    }
-
     /// Splits the box at a point into its `2^D` parts; parts without extent are left out.
     pub fn split_at(&self, x: &Point<D>) -> Vec<Self> {
         (0..1usize << D)

@@ -102,10 +102,6 @@ impl PolygonDomain {
         }
         Self(corners)
     }
-
-    pub fn corners(&self) -> &[Point<2>] {
-        &self.0
-    }
 }
 
 impl Domain<2> for PolygonDomain {

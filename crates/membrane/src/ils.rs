@@ -62,8 +62,6 @@ pub struct Solution<'a, const D: usize, Z> {
     pub residuals: Vec<f64>,
     /// Size of the largest linear system.
     pub unknowns: usize,
-    /// Part of the slope jump that the modes do not see, relative to what is tolerated.
-    pub unseen: f64,
     /// Length of the last step relative to a cell, where the fronts settled on a jump of the discrete slope.
     pub settled_within: Option<f64>,
 }
@@ -94,7 +92,6 @@ pub fn solve<'a, const D: usize, Z: Zone<D>>(
             iterations: 0,
             residuals: Vec::new(),
             unknowns: 0,
-            unseen: 0.0,
             settled_within: None,
         },
         membrane,
@@ -213,7 +210,6 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             let fronts = Fronts::new(&equilibrium);
             let projection = fronts.project(zone, ModeSpace::Fine);
             let residual = projection.norm / scales.slope_tolerance();
-            self.solution.unseen = projection.remainder / scales.unseen_slope_tolerance();
             if residual <= 1.0 {
                 self.report(residual, "at rest");
                 self.solution.equilibrium = Some(equilibrium);

@@ -69,11 +69,6 @@ impl Scales {
         resolved.max(round_off).max(1e-10) * slope * self.length.sqrt()
     }
 
-    /// How large the part of the slope jump may be that the modes do not see.
-    pub fn unseen_slope_tolerance(&self) -> f64 {
-        self.relative_h().powi(self.degree as i32) * self.pressure * self.length.powf(1.5) / self.tension
-    }
-
     /// Penetration that counts as none: a fraction of the cell's share of the gap, and what a polynomial of this degree
     /// misses of a curved membrane.
     pub fn gap_tolerance(&self) -> f64 {

@@ -53,11 +53,6 @@ impl SymmetricMatrix {
         self.column_start.len().saturating_sub(1)
     }
 
-    /// Number of stored entries: those on and below the diagonal.
-    pub fn stored(&self) -> usize {
-        self.row.len()
-    }
-
     /// Adds `scale` times a symmetric row-major element matrix. Unknowns may be named twice; their entries add up.
     pub fn add(&mut self, unknowns: &[u32], matrix: &[f64], scale: f64) {
         let n = unknowns.len();

@@ -7,16 +7,21 @@
 //! - [`implicit`]: shapes given by a function that is negative inside.
 //! - [`spline`]: periodic splines of any degree, the representation of a contact front.
 //! - [`closed_curve`]: closed oriented curves with closest point, winding number and arc length.
+//! - [`shape`]: points, curves and surfaces of space with exact derivatives.
+//! - [`closest`]: closest points of any two of them, certified.
 //! - [`outline`]: closed outlines of a function sampled on a grid.
 //! - [`polygon`]: winding numbers, areas and crossings of polygons.
 
 pub mod aabb;
 pub mod closed_curve;
+pub mod closest;
 pub mod implicit;
 pub mod jet;
 pub mod outline;
+pub(crate) mod patch;
 pub mod polygon;
 pub mod rule;
+pub mod shape;
 pub mod spline;
 
 pub use aabb::Aabb;

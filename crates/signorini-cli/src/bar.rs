@@ -28,6 +28,35 @@ impl Bar {
     }
 }
 
+/// The number of queries answered so far.
+pub struct Counter {
+    bar: ProgressBar,
+    stop: Arc<AtomicBool>,
+}
+
+impl Counter {
+    pub fn new(json: bool) -> Self {
+        let bar = if json { ProgressBar::hidden() } else { ProgressBar::new_spinner() };
+        let style = ProgressStyle::with_template("{spinner} {pos} queries, {per_sec}");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
+        Self { bar, stop: stop_flag() }
+    }
+
+    /// Returns whether to go on.
+    pub fn show(&self, answered: usize) -> bool {
+        self.bar.set_position(answered as u64);
+        !self.interrupted()
+    }
+
+    pub fn interrupted(&self) -> bool {
+        self.stop.load(Ordering::SeqCst)
+    }
+
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
 /// Set by Ctrl-C; a second one ends the program at once.
 fn stop_flag() -> Arc<AtomicBool> {
     static FLAG: OnceLock<Arc<AtomicBool>> = OnceLock::new();

@@ -1,10 +1,11 @@
 //! What the commands do. Each returns the exit status.
 
-use crate::bar::Bar;
+use crate::bar::{Bar, Counter};
 use serde_json::{Value, json};
 use signorini::case::{CaseError, Document};
 use signorini::gallery::{GALLERY, find};
 use signorini::plan::{self, Plan};
+use signorini::queries::{Query, answer_file};
 use signorini::run::{Ending, RunError, run};
 use std::path::{Path, PathBuf};
 
@@ -85,6 +86,59 @@ pub fn check(case: &Path, set: &[String], json: bool) -> u8 {
             }
             DONE
         }
+    }
+}
+
+pub fn closest(queries: &Path, output: &Path, local_minima: bool, json: bool) -> u8 {
+    let query = Query { local_minima, ..Query::default() };
+    let counter = Counter::new(json);
+    let result = answer_file(queries, output, &query, &mut |answered| counter.show(answered));
+    counter.finish();
+    let report = match result {
+        Ok(report) => report,
+        Err(error) => {
+            if json {
+                println!("{}", json!({"error": error.to_string()}));
+            } else {
+                eprintln!("error: {error}");
+            }
+            return WRONG_INPUT;
+        }
+    };
+    let seconds = report.elapsed.as_secs_f64();
+    let slowest = report.slowest.as_ref().map(|(id, time)| (id.as_str(), time.as_secs_f64() * 1e3));
+    if json {
+        let summary = json!({
+            "answered": report.answered,
+            "wrong": report.wrong_count,
+            "errors": report.wrong,
+            "not_unique": report.not_unique,
+            "interrupted": counter.interrupted(),
+            "seconds": seconds,
+            "slowest": slowest.map(|(id, ms)| json!({"id": id, "milliseconds": ms})),
+            "answers": output.display().to_string(),
+        });
+        println!("{summary}");
+    } else {
+        for error in &report.wrong {
+            eprintln!("error: {error}");
+        }
+        if report.wrong_count > report.wrong.len() {
+            eprintln!("error: {} more, each with its reason in the answers", report.wrong_count - report.wrong.len());
+        }
+        println!(
+            "{} queries in {seconds:.2} s, {} of them wrong, {} not unique",
+            report.answered, report.wrong_count, report.not_unique
+        );
+        if let Some((id, ms)) = slowest {
+            println!("slowest: {id}, {ms:.2} ms");
+        }
+        println!("answers: {}", output.display());
+    }
+    match (counter.interrupted(), report.wrong_count) {
+        (true, _) => INTERRUPTED,
+        (false, 0) => DONE,
+        _ => WRONG_INPUT,
     }
 }
 

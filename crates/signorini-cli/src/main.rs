@@ -12,10 +12,19 @@ const EXAMPLES: &str = "Examples:
   signorini gallery run cosine_disc                   run one of its cases
   signorini run case.toml                             results into ./case
   signorini run case.toml -o out --set loads.press.normal=-0.3
+  signorini closest queries.json -o answers.json      closest points of pairs of shapes
   signorini check case.toml                           is the case right, and how large is it?
 
 Exit status: 0 done, 1 the input is wrong, 2 not converged (results so far are on disk), 3 a fault of ours,
 130 interrupted.";
+
+const CLOSEST_HELP: &str = r#"Example:
+  echo '{"format": "cpp-corpus-1", "cases": [{"id": "first",
+    "a": {"type": "point", "p": [0, 0, 2]},
+    "b": {"type": "segment", "p0": [1, 0, 0], "p1": [3, 0, 0]}}]}' > queries.json
+  signorini closest queries.json -o answers.json
+
+A wrong query gets an answer that says what is wrong, and the exit status 1; the others are answered."#;
 
 /// Contact mechanics that puts geometry first.
 #[derive(Parser)]
@@ -49,6 +58,18 @@ enum Command {
         /// Replace or add a key
         #[arg(long = "set", value_name = "KEY=VALUE", allow_hyphen_values = true)]
         set: Vec<String>,
+    },
+    /// Closest points of pairs of shapes
+    #[command(after_help = CLOSEST_HELP)]
+    Closest {
+        /// The queries, JSON in the form of docs/closest-points.md; - reads them from standard input
+        queries: PathBuf,
+        /// File for the answers
+        #[arg(short, long, value_name = "ANSWERS")]
+        output: PathBuf,
+        /// Find every local minimiser too
+        #[arg(long)]
+        local_minima: bool,
     },
     /// List the gallery, or run one of its cases
     #[command(
@@ -104,6 +125,7 @@ fn main() -> ExitCode {
     let result = std::panic::catch_unwind(|| match arguments.command {
         Command::Run { case, options } => commands::run_file(&case, options.output, &options.set, json),
         Command::Check { case, set } => commands::check(&case, &set, json),
+        Command::Closest { queries, output, local_minima } => commands::closest(&queries, &output, local_minima, json),
         Command::Gallery { action: None } => commands::gallery(json),
         Command::Gallery { action: Some(GalleryAction::Run { name, options }) } => {
             commands::run_example(&name, options.output, &options.set, json)

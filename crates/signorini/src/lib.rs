@@ -5,5 +5,6 @@ pub mod expression;
 pub mod gallery;
 pub mod output;
 pub mod plan;
+pub mod queries;
 pub mod run;
 pub mod snapshot;

@@ -1,0 +1,118 @@
+//! Closest points of two shapes: the global minimum of the distance, certified.
+//!
+//! [`closest`] answers for every pair of a point, curve or surface with another. It minimises `F = ½ D·D`, `D = x_A -
+//! x_B`, over the closed parameter domains. A few pairs have closed forms; all others go through a branch-and-bound
+//! [`search`] whose bounds prove that nothing is closer, with exact Newton at the end. The minimiser is
+//! found first and named afterwards ([`FeatureKind`]): faces, edges and vertices cover space without gaps because a
+//! global minimiser always exists.
+
+mod bounds;
+mod classify;
+mod newton;
+mod result;
+mod search;
+
+pub use result::{ClosestPair, Entity, Feature, FeatureKind, Foot, Projection, Uniqueness};
+
+use crate::patch::{Atlas, Chart, Piece, PointChart};
+use crate::shape::Shape;
+use crate::{Point, Vector};
+use classify::{Named, projection};
+use search::{Effort, search};
+
+/// What a query asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Query {
+    /// Minimisers whose distances differ by less than this share of the size are at the same distance.
+    pub tie: f64,
+    /// Whether to find every local minimiser, not only the global ones.
+    pub local_minima: bool,
+}
+
+impl Default for Query {
+    fn default() -> Self {
+        Query { tie: 1e-10, local_minima: false }
+    }
+}
+
+/// Closest points of two shapes.
+///
+/// ```
+/// use signorini_geometry::shape::{Axes, Curve, Shape};
+/// use signorini_geometry::{Point, closest::{Query, closest}};
+/// let circle = Curve::circle(Axes::standard(Point::<3>::zeros()), 2.0, [0.0, std::f64::consts::TAU], true).unwrap();
+/// let answer = closest(&Shape::Point(Point::<3>::new(0.0, 5.0, 4.0)), &circle.into(), &Query::default());
+/// assert!((answer.distance() - 5.0).abs() < 1e-15);
+/// ```
+pub fn closest(a: &Shape, b: &Shape, query: &Query) -> Projection {
+    match (a, b) {
+        (Shape::Point(p), Shape::Point(q)) => point_point(p, q),
+        (Shape::Point(p), Shape::Curve(c)) => general::<0, 1, 1, _, _>(&point_atlas(p), &c.atlas, query),
+        (Shape::Point(p), Shape::Surface(s)) => general::<0, 2, 2, _, _>(&point_atlas(p), &s.atlas, query),
+        (Shape::Curve(c), Shape::Curve(d)) => general::<1, 1, 2, _, _>(&c.atlas, &d.atlas, query),
+        (Shape::Curve(c), Shape::Surface(s)) => general::<1, 2, 3, _, _>(&c.atlas, &s.atlas, query),
+        (Shape::Surface(s), Shape::Surface(t)) => general::<2, 2, 4, _, _>(&s.atlas, &t.atlas, query),
+        _ => swapped(closest(b, a, query)),
+    }
+}
+
+fn swapped(mut projection: Projection) -> Projection {
+    projection.closest = projection.closest.swapped();
+    for other in &mut projection.others {
+        *other = other.swapped();
+    }
+    projection
+}
+
+fn point_atlas(p: &Point<3>) -> Atlas<0, PointChart> {
+    Atlas::new(vec![Piece::new(PointChart(*p), crate::patch::ParameterMap::Affine { low: [], high: [] }, [])])
+}
+
+/// The length of a vector without overflow or underflow.
+pub(crate) fn scaled_norm(d: &Vector<3>) -> f64 {
+    let largest = d.amax();
+    if largest == 0.0 || !largest.is_finite() { largest } else { largest * (d / largest).norm() }
+}
+
+/// The direction of a vector without overflow or underflow.
+pub(crate) fn scaled_direction(d: &Vector<3>) -> Option<Vector<3>> {
+    let largest = d.amax();
+    (largest > 0.0).then(|| (d / largest).normalize())
+}
+
+fn point_point(p: &Point<3>, q: &Point<3>) -> Projection {
+    let closest = ClosestPair {
+        distance: scaled_norm(&(p - q)),
+        a: Foot::of_point(*p),
+        b: Foot::of_point(*q),
+        lambda_min: f64::INFINITY,
+    };
+    Projection {
+        closest,
+        uniqueness: Uniqueness::Unique,
+        others: Vec::new(),
+        certified_to: 0.0,
+        margin: f64::INFINITY,
+        effort: 0,
+    }
+}
+
+fn general<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>(
+    a: &Atlas<A, CA>,
+    b: &Atlas<B, CB>,
+    query: &Query,
+) -> Projection
+where
+    Piece<A, CA>: Named<A>,
+    Piece<B, CB>: Named<B>,
+{
+    let magnitude = a.magnitude.max(b.magnitude).max(f64::MIN_POSITIVE);
+    let size = a.size.max(b.size);
+    let effort = Effort {
+        tie: if query.local_minima { f64::INFINITY } else { query.tie * size },
+        tolerance: 64.0 * f64::EPSILON * magnitude,
+        most_pairs: [0, 3_000, 6_000, 15_000, 40_000][N],
+        magnitude,
+    };
+    projection::<A, B, N, CA, CB>(a, b, query, size, search::<A, B, N, CA, CB>(a, b, effort))
+}

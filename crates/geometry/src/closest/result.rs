@@ -1,0 +1,185 @@
+//! What a closest-point query answers.
+
+use std::fmt;
+
+use crate::patch::Border;
+use crate::{Point, Vector};
+
+/// The kind of feature of a shape on which a closest point lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum FeatureKind {
+    Point,
+    Interior,
+    Edge,
+    Vertex,
+}
+
+impl fmt::Display for FeatureKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            FeatureKind::Point => "point",
+            FeatureKind::Interior => "interior",
+            FeatureKind::Edge => "edge",
+            FeatureKind::Vertex => "vertex",
+        })
+    }
+}
+
+/// Which feature of a shape, beyond its kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Entity {
+    /// The smooth interior, or a shape that is a point.
+    Whole,
+    /// A side of the parameter domain.
+    Border(Border),
+    /// The corner of two sides.
+    Corner(Border, Border),
+    /// An interior edge of a surface or an interior vertex of a curve; they are counted along the parameters.
+    Crease(u32),
+    /// Where an interior edge meets a side, or another interior edge.
+    CreaseEnd(u32),
+    /// A side that is a single point.
+    Collapsed(Border),
+    /// A side that is a smooth interior point.
+    Pole,
+}
+
+fn border_name(border: Border) -> &'static str {
+    match border {
+        Border::Start => "start",
+        Border::End => "end",
+        Border::U0 => "u0",
+        Border::U1 => "u1",
+        Border::V0 => "v0",
+        Border::V1 => "v1",
+        Border::Diagonal => "d",
+    }
+}
+
+impl fmt::Display for Entity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Entity::Whole => Ok(()),
+            Entity::Border(b) => f.write_str(border_name(*b)),
+            Entity::Corner(a, b) => write!(f, "{}+{}", border_name(*a), border_name(*b)),
+            Entity::Crease(k) => write!(f, "crease:{k}"),
+            Entity::CreaseEnd(k) => write!(f, "crease-end:{k}"),
+            Entity::Collapsed(b) => write!(f, "collapsed:{}", border_name(*b)),
+            Entity::Pole => f.write_str("pole"),
+        }
+    }
+}
+
+/// A feature of a shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Feature {
+    pub kind: FeatureKind,
+    pub entity: Entity,
+}
+
+impl Feature {
+    pub const POINT: Feature = Feature { kind: FeatureKind::Point, entity: Entity::Whole };
+    pub const INTERIOR: Feature = Feature { kind: FeatureKind::Interior, entity: Entity::Whole };
+
+    pub(crate) fn edge(border: Border) -> Self {
+        Feature { kind: FeatureKind::Edge, entity: Entity::Border(border) }
+    }
+
+    pub(crate) fn vertex(entity: Entity) -> Self {
+        Feature { kind: FeatureKind::Vertex, entity }
+    }
+}
+
+/// A closest point on one partner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foot {
+    pub point: Point<3>,
+    pub feature: Feature,
+    dimension: usize,
+    parameters: [f64; 2],
+}
+
+impl Foot {
+    pub(crate) fn new(point: Point<3>, feature: Feature, parameters: &[f64]) -> Self {
+        let mut filled = [0.0; 2];
+        filled[..parameters.len()].copy_from_slice(parameters);
+        Foot { point, feature, dimension: parameters.len(), parameters: filled }
+    }
+
+    pub(crate) fn of_point(point: Point<3>) -> Self {
+        Self::new(point, Feature::POINT, &[])
+    }
+
+    /// As many numbers as the shape has parameters.
+    pub fn parameters(&self) -> &[f64] {
+        &self.parameters[..self.dimension]
+    }
+}
+
+/// A minimiser of the distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClosestPair {
+    pub distance: f64,
+    pub a: Foot,
+    pub b: Foot,
+    /// Smallest eigenvalue of the Hessian of `½ D·D` in the metric of the shapes, over the parameters that are free:
+    /// positive at a strict minimum, zero on a focal set. For a point and a surface it is `1 - d κ`. Infinite where no
+    /// parameter is free, not a number where the parametrisation degenerates.
+    pub lambda_min: f64,
+}
+
+impl ClosestPair {
+    /// Unit vector from the closest point of `b` to that of `a`; `None` where they coincide.
+    pub fn direction(&self) -> Option<Vector<3>> {
+        crate::closest::scaled_direction(&(self.a.point - self.b.point))
+    }
+
+    pub(crate) fn swapped(self) -> Self {
+        ClosestPair { a: self.b, b: self.a, ..self }
+    }
+}
+
+/// Whether the closest pair of points is the only one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Uniqueness {
+    Unique,
+    /// Several separate minimisers at the same distance; all are listed.
+    Multiple,
+    /// A curve (1) or surface (2) of minimisers; the listed ones are samples of it.
+    Continuum {
+        dimension: usize,
+    },
+    /// One minimiser in double precision, in a valley this flat.
+    NearContinuum {
+        lambda: f64,
+    },
+}
+
+impl Uniqueness {
+    /// Whether one pair of points is closer than every other.
+    pub fn is_unique(self) -> bool {
+        matches!(self, Uniqueness::Unique | Uniqueness::NearContinuum { .. })
+    }
+}
+
+/// The answer to a closest-point query.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Projection {
+    /// A global minimiser.
+    pub closest: ClosestPair,
+    pub uniqueness: Uniqueness,
+    /// Further minimisers: those at the same distance, and every other local one where the query asked for them.
+    pub others: Vec<ClosestPair>,
+    /// No pair of points is closer than the distance less this; rounding, except where the minimum is degenerate.
+    pub certified_to: f64,
+    /// Away from the minimisers every pair of points is farther by at least this.
+    pub margin: f64,
+    /// Pairs of cells that were examined; zero for a closed form.
+    pub effort: usize,
+}
+
+impl Projection {
+    pub fn distance(&self) -> f64 {
+        self.closest.distance
+    }
+}

@@ -1,0 +1,461 @@
+//! Charts: the smooth maps of which every curve and surface is made, with derivatives and bounds on them.
+//!
+//! A chart maps `[-1, 1]^M` to space. Polynomial and rational pieces are kept in powers of the local parameters, where
+//! Horner's scheme gives value and derivatives for a few operations per coefficient; pieces of high degree are cut
+//! until the coefficients decay, which keeps this as accurate as Bernstein form.
+
+use super::bernstein::{Control, Net, about, derivative, largest, largest_weight, powers};
+use crate::{Point, Vector};
+
+/// Position and partial derivatives to second order.
+#[derive(Clone, Copy, Debug)]
+pub struct Jet2<const M: usize> {
+    pub x: Point<3>,
+    pub d: [Vector<3>; M],
+    pub dd: [[Vector<3>; M]; M],
+}
+
+/// Upper bounds of the second and third derivatives over a whole chart.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounds<const M: usize> {
+    pub second: [[f64; M]; M],
+    pub third: [[[f64; M]; M]; M],
+}
+
+/// A smooth map from `[-1, 1]^M` to space.
+pub trait Chart<const M: usize>: Send + Sync {
+    fn jet(&self, s: &[f64; M]) -> Jet2<M>;
+    fn position(&self, s: &[f64; M]) -> Point<3>;
+    fn bounds(&self) -> Bounds<M>;
+}
+
+/// The chart of a single point.
+#[derive(Clone, Copy, Debug)]
+pub struct PointChart(pub Point<3>);
+
+impl Chart<0> for PointChart {
+    fn jet(&self, _: &[f64; 0]) -> Jet2<0> {
+        Jet2 { x: self.0, d: [], dd: [] }
+    }
+
+    fn position(&self, _: &[f64; 0]) -> Point<3> {
+        self.0
+    }
+
+    fn bounds(&self) -> Bounds<0> {
+        Bounds { second: [], third: [] }
+    }
+}
+
+/// A curve piece.
+#[derive(Clone, Debug)]
+pub enum CurveChart {
+    /// Coefficients of the powers of `s`, homogeneous where `rational`.
+    Power { coefficients: Vec<Control>, rational: bool, bounds: Bounds<1> },
+    /// `origin + a cos t + b sin t + c t`, `t = middle + half s`, with `a` and `b` orthogonal: circle, ellipse, helix.
+    Harmonic { origin: Point<3>, a: Vector<3>, b: Vector<3>, c: Vector<3>, middle: f64, half: f64 },
+}
+
+/// The distance of two control values of which one may be a derivative: only the first three components count.
+fn xyz(c: &Control) -> Vector<3> {
+    Vector::<3>::new(c[0], c[1], c[2])
+}
+
+impl CurveChart {
+    /// A Bezier curve over `s` in `[-1, 1]`.
+    pub fn bezier(control: &[Control]) -> Self {
+        let rational = control.iter().any(|c| c[3] != control[0][3]);
+        let control: Vec<Control> =
+            if rational { control.to_vec() } else { control.iter().map(|c| c.map(|v| v / control[0][3])).collect() };
+        let bounds = curve_bounds(&control, rational);
+        let mut coefficients = powers(&control);
+        while !rational && coefficients.len() > 1 && coefficients.last() == Some(&[0.0; 4]) {
+            coefficients.pop();
+        }
+        CurveChart::Power { coefficients, rational, bounds }
+    }
+
+    /// Position and derivatives to third order with respect to `s`.
+    pub fn jet3(&self, s: f64) -> [Vector<3>; 4] {
+        match self {
+            CurveChart::Power { coefficients, rational, .. } => {
+                quotient_curve(horner_curve::<4>(coefficients, s), *rational)
+            }
+            CurveChart::Harmonic { origin, a, b, c, middle, half } => {
+                let (sin, cos) = (middle + half * s).sin_cos();
+                let h = *half;
+                [
+                    origin + a * cos + b * sin + c * (middle + h * s),
+                    (b * cos - a * sin + c) * h,
+                    -(a * cos + b * sin) * (h * h),
+                    (a * sin - b * cos) * (h * h * h),
+                ]
+            }
+        }
+    }
+}
+
+/// Taylor coefficients (value, derivative, second derivative / 2, ...) of a vector polynomial.
+#[inline]
+fn horner_curve<const K: usize>(c: &[Control], s: f64) -> [Control; K] {
+    let mut out = [[0.0; 4]; K];
+    for row in c.iter().rev() {
+        for k in (1..K).rev() {
+            for m in 0..4 {
+                out[k][m] = out[k][m] * s + out[k - 1][m];
+            }
+        }
+        for m in 0..4 {
+            out[0][m] = out[0][m] * s + row[m];
+        }
+    }
+    out
+}
+
+/// Derivatives of `P / w` from Taylor coefficients of both.
+#[inline]
+fn quotient_curve<const K: usize>(taylor: [Control; K], rational: bool) -> [Vector<3>; K] {
+    let mut x = [Vector::<3>::zeros(); K];
+    let mut factorial = 1.0;
+    let inverse = if rational { 1.0 / taylor[0][3] } else { 1.0 };
+    for k in 0..K {
+        let mut value = xyz(&taylor[k]);
+        if rational {
+            for j in 0..k {
+                value -= x[j] * taylor[k - j][3];
+            }
+        }
+        x[k] = value * inverse;
+    }
+    for (k, value) in x.iter_mut().enumerate() {
+        factorial *= k.max(1) as f64;
+        *value *= factorial;
+    }
+    x
+}
+
+impl Chart<1> for CurveChart {
+    #[inline]
+    fn jet(&self, s: &[f64; 1]) -> Jet2<1> {
+        match self {
+            CurveChart::Power { coefficients, rational, .. } => {
+                let [x, d, dd] = quotient_curve(horner_curve::<3>(coefficients, s[0]), *rational);
+                Jet2 { x, d: [d], dd: [[dd]] }
+            }
+            CurveChart::Harmonic { .. } => {
+                let [x, d, dd, _] = self.jet3(s[0]);
+                Jet2 { x, d: [d], dd: [[dd]] }
+            }
+        }
+    }
+
+    fn position(&self, s: &[f64; 1]) -> Point<3> {
+        match self {
+            CurveChart::Power { coefficients, rational, .. } => {
+                quotient_curve(horner_curve::<1>(coefficients, s[0]), *rational)[0]
+            }
+            CurveChart::Harmonic { .. } => self.jet3(s[0])[0],
+        }
+    }
+
+    fn bounds(&self) -> Bounds<1> {
+        match self {
+            CurveChart::Power { bounds, .. } => *bounds,
+            CurveChart::Harmonic { a, b, half, .. } => {
+                let r = a.norm().max(b.norm());
+                Bounds { second: [[r * half * half]], third: [[[r * half * half * half]]] }
+            }
+        }
+    }
+}
+
+fn curve_bounds(control: &[Control], rational: bool) -> Bounds<1> {
+    let centre = centre(control);
+    let mut net = about(control, &centre);
+    let w_min = control.iter().map(|c| c[3]).fold(f64::INFINITY, f64::min);
+    let (mut p, mut w) = ([0.0; 4], [0.0; 4]);
+    for k in 0..4 {
+        if k > 0 {
+            net = if net.len() > 1 { derivative(&net) } else { vec![[0.0; 4]] };
+        }
+        p[k] = largest(&net);
+        w[k] = largest_weight(&net);
+    }
+    if !rational {
+        return Bounds { second: [[p[2]]], third: [[[p[3]]]] };
+    }
+    let x0 = about(control, &centre).iter().map(|c| xyz(c).norm() / c[3]).fold(0.0, f64::max);
+    let x1 = (p[1] + w[1] * x0) / w_min;
+    let x2 = (p[2] + 2.0 * w[1] * x1 + w[2] * x0) / w_min;
+    let x3 = (p[3] + 3.0 * w[1] * x2 + 3.0 * w[2] * x1 + w[3] * x0) / w_min;
+    Bounds { second: [[x2]], third: [[[x3]]] }
+}
+
+fn centre(control: &[Control]) -> [f64; 3] {
+    let n = control.len() as f64;
+    std::array::from_fn(|k| control.iter().map(|c| c[k] / c[3]).sum::<f64>() / n)
+}
+
+/// A surface piece.
+#[derive(Clone, Debug)]
+pub enum SurfaceChart {
+    /// Coefficients of the powers of both parameters, homogeneous where `rational`.
+    Power { degree: [usize; 2], coefficients: Vec<Control>, rational: bool, bounds: Bounds<2> },
+    /// `origin + f(v) (a cos u + b sin u) + g(v) c` with orthogonal axes, `f = f0 + f1 v + f2 cos v`,
+    /// `g = g0 + g1 v + g2 sin v`: cylinder, cone, sphere, ellipsoid, torus.
+    Quadric { origin: Point<3>, axes: [Vector<3>; 3], f: [f64; 3], g: [f64; 3], middle: [f64; 2], half: [f64; 2] },
+    /// A profile curve (second parameter) turned about an axis by the angle `u = middle + half s`.
+    Revolved { origin: Point<3>, axis: Vector<3>, profile: CurveChart, middle: f64, half: f64, bounds: Bounds<2> },
+}
+
+/// Position and partial derivatives to third order of a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Jet3 {
+    pub x: Point<3>,
+    pub d: [Vector<3>; 2],
+    /// `uu, uv, vv`.
+    pub dd: [Vector<3>; 3],
+    /// `uuu, uuv, uvv, vvv`.
+    pub ddd: [Vector<3>; 4],
+}
+
+impl SurfaceChart {
+    pub fn bezier(net: &Net) -> Self {
+        let w0 = net.control[0][3];
+        let rational = net.control.iter().any(|c| c[3] != w0);
+        let net = if rational {
+            net.clone()
+        } else {
+            Net { degree: net.degree, control: net.control.iter().map(|c| c.map(|v| v / w0)).collect() }
+        };
+        let bounds = surface_bounds(&net, rational);
+        SurfaceChart::Power { degree: net.degree, coefficients: net.powers().control, rational, bounds }
+    }
+
+    pub fn revolved(origin: Point<3>, axis: Vector<3>, profile: CurveChart, middle: f64, half: f64) -> Self {
+        // |r_perp| and |P'| over the profile from its Taylor expansion at the middle.
+        let second = profile.bounds().second[0][0];
+        let [x, d, _, _] = profile.jet3(0.0);
+        let third = profile.bounds().third[0][0][0];
+        let off = x - origin;
+        let radius = (off - axis * off.dot(&axis)).norm() + d.norm() + 0.5 * second;
+        let speed = d.norm() + second;
+        let h = half;
+        let uu = radius * h * h;
+        let uuv = speed * h * h;
+        let uvv = second * h;
+        let bounds = Bounds {
+            second: [[uu, speed * h], [speed * h, second]],
+            third: [[[uu * h, uuv], [uuv, uvv]], [[uuv, uvv], [uvv, third]]],
+        };
+        SurfaceChart::Revolved { origin, axis, profile, middle, half, bounds }
+    }
+
+    /// Position and derivatives to third order with respect to the local parameters.
+    pub fn jet3(&self, s: &[f64; 2]) -> Jet3 {
+        match self {
+            SurfaceChart::Power { degree, coefficients, rational, .. } => {
+                let t = horner_surface::<4>(*degree, coefficients, s);
+                let x = quotient_surface(&t, *rational);
+                Jet3 {
+                    x: x[0][0],
+                    d: [x[1][0], x[0][1]],
+                    dd: [x[2][0] * 2.0, x[1][1], x[0][2] * 2.0],
+                    ddd: [x[3][0] * 6.0, x[2][1] * 2.0, x[1][2] * 2.0, x[0][3] * 6.0],
+                }
+            }
+            SurfaceChart::Quadric { origin, axes, f, g, middle, half } => {
+                let (u, v) = (middle[0] + half[0] * s[0], middle[1] + half[1] * s[1]);
+                let ((su, cu), (sv, cv)) = (u.sin_cos(), v.sin_cos());
+                let f = [f[0] + f[1] * v + f[2] * cv, f[1] - f[2] * sv, -f[2] * cv, f[2] * sv];
+                let g = [g[0] + g[1] * v + g[2] * sv, g[1] + g[2] * cv, -g[2] * sv, -g[2] * cv];
+                let e = axes[0] * cu + axes[1] * su;
+                let e1 = axes[1] * cu - axes[0] * su;
+                let c = axes[2];
+                let [h, k] = *half;
+                Jet3 {
+                    x: origin + e * f[0] + c * g[0],
+                    d: [e1 * (f[0] * h), (e * f[1] + c * g[1]) * k],
+                    dd: [e * (-f[0] * h * h), e1 * (f[1] * h * k), (e * f[2] + c * g[2]) * (k * k)],
+                    ddd: [
+                        e1 * (-f[0] * h * h * h),
+                        e * (-f[1] * h * h * k),
+                        e1 * (f[2] * h * k * k),
+                        (e * f[3] + c * g[3]) * (k * k * k),
+                    ],
+                }
+            }
+            SurfaceChart::Revolved { origin, axis, profile, middle, half, .. } => {
+                let [p, p1, p2, p3] = profile.jet3(s[1]);
+                let (sin, cos) = (middle + half * s[0]).sin_cos();
+                // The turned vector and its derivatives with respect to the angle.
+                let turn = |v: &Vector<3>| {
+                    let along = axis * v.dot(axis);
+                    let across = v - along;
+                    let third = axis.cross(&across);
+                    let e = across * cos + third * sin;
+                    let e1 = third * cos - across * sin;
+                    [along + e, e1, -e, -e1]
+                };
+                let (t0, t1, t2, t3) = (turn(&(p - origin)), turn(&p1), turn(&p2), turn(&p3));
+                let h = *half;
+                Jet3 {
+                    x: origin + t0[0],
+                    d: [t0[1] * h, t1[0]],
+                    dd: [t0[2] * (h * h), t1[1] * h, t2[0]],
+                    ddd: [t0[3] * (h * h * h), t1[2] * (h * h), t2[1] * h, t3[0]],
+                }
+            }
+        }
+    }
+}
+
+/// Taylor coefficients `out[a][b]` of order `a` in the first and `b` in the second parameter, `a + b < K`.
+#[inline]
+fn horner_surface<const K: usize>(degree: [usize; 2], c: &[Control], s: &[f64; 2]) -> [[Control; K]; K] {
+    let mut out = [[[0.0; 4]; K]; K];
+    for row in c.chunks_exact(degree[1] + 1).rev() {
+        let r = horner_curve::<K>(row, s[1]);
+        for a in (1..K).rev() {
+            for b in 0..K - a {
+                for m in 0..4 {
+                    out[a][b][m] = out[a][b][m] * s[0] + out[a - 1][b][m];
+                }
+            }
+        }
+        for b in 0..K {
+            for m in 0..4 {
+                out[0][b][m] = out[0][b][m] * s[0] + r[b][m];
+            }
+        }
+    }
+    out
+}
+
+/// Taylor coefficients of `P / w`.
+#[inline]
+fn quotient_surface<const K: usize>(t: &[[Control; K]; K], rational: bool) -> [[Vector<3>; K]; K] {
+    let mut x = [[Vector::<3>::zeros(); K]; K];
+    let inverse = if rational { 1.0 / t[0][0][3] } else { 1.0 };
+    for order in 0..K {
+        for a in 0..=order {
+            let b = order - a;
+            let mut value = xyz(&t[a][b]);
+            if rational {
+                for i in 0..=a {
+                    for j in 0..=b {
+                        if i + j < order {
+                            value -= x[i][j] * t[a - i][b - j][3];
+                        }
+                    }
+                }
+            }
+            x[a][b] = value * inverse;
+        }
+    }
+    x
+}
+
+impl Chart<2> for SurfaceChart {
+    #[inline]
+    fn jet(&self, s: &[f64; 2]) -> Jet2<2> {
+        match self {
+            SurfaceChart::Power { degree, coefficients, rational, .. } => {
+                let t = horner_surface::<3>(*degree, coefficients, s);
+                let x = quotient_surface(&t, *rational);
+                Jet2 { x: x[0][0], d: [x[1][0], x[0][1]], dd: [[x[2][0] * 2.0, x[1][1]], [x[1][1], x[0][2] * 2.0]] }
+            }
+            _ => {
+                let j = self.jet3(s);
+                Jet2 { x: j.x, d: j.d, dd: [[j.dd[0], j.dd[1]], [j.dd[1], j.dd[2]]] }
+            }
+        }
+    }
+
+    fn position(&self, s: &[f64; 2]) -> Point<3> {
+        match self {
+            SurfaceChart::Power { degree, coefficients, rational, .. } => {
+                quotient_surface(&horner_surface::<1>(*degree, coefficients, s), *rational)[0][0]
+            }
+            _ => self.jet3(s).x,
+        }
+    }
+
+    fn bounds(&self) -> Bounds<2> {
+        match self {
+            SurfaceChart::Power { bounds, .. } | SurfaceChart::Revolved { bounds, .. } => *bounds,
+            SurfaceChart::Quadric { axes, f, g, middle, half, .. } => {
+                let [h, k] = *half;
+                let v = middle[1].abs() + k;
+                let radial = axes[0].norm().max(axes[1].norm());
+                let f0 = f[0].abs() + f[1].abs() * v + f[2].abs();
+                // The cosine alone (sphere): bound it on the range, small near a pole.
+                let f0 = if f[0] == 0.0 && f[1] == 0.0 { f[2].abs() * largest_cosine(middle[1], k) } else { f0 };
+                let f1 = f[1].abs() + f[2].abs() * largest_sine(middle[1], k);
+                let f2 = f[2].abs() * largest_cosine(middle[1], k);
+                let f3 = f[2].abs() * largest_sine(middle[1], k);
+                let g2 = g[2].abs() * largest_sine(middle[1], k) * axes[2].norm();
+                let g3 = g[2].abs() * largest_cosine(middle[1], k) * axes[2].norm();
+                let uu = radial * f0 * h * h;
+                let uv = radial * f1 * h * k;
+                let vv = (radial * f2).hypot(g2) * k * k;
+                let (uuv, uvv) = (radial * f1 * h * h * k, radial * f2 * h * k * k);
+                Bounds {
+                    second: [[uu, uv], [uv, vv]],
+                    third: [[[uu * h, uuv], [uuv, uvv]], [[uuv, uvv], [uvv, (radial * f3).hypot(g3) * k * k * k]]],
+                }
+            }
+        }
+    }
+}
+
+fn largest_cosine(middle: f64, half: f64) -> f64 {
+    // |cos| grows towards multiples of pi.
+    let x = (middle / std::f64::consts::PI).round() * std::f64::consts::PI;
+    if (middle - x).abs() <= half { 1.0 } else { (middle - half).cos().abs().max((middle + half).cos().abs()) }
+}
+
+fn largest_sine(middle: f64, half: f64) -> f64 {
+    largest_cosine(middle - std::f64::consts::FRAC_PI_2, half)
+}
+
+fn surface_bounds(net: &Net, rational: bool) -> Bounds<2> {
+    let centre = centre(&net.control);
+    let shifted = Net { degree: net.degree, control: about(&net.control, &centre) };
+    let w_min = net.control.iter().map(|c| c[3]).fold(f64::INFINITY, f64::min);
+    let mut p = [[0.0; 4]; 4];
+    let mut w = [[0.0; 4]; 4];
+    let mut along = shifted.clone();
+    for a in 0..4 {
+        let mut net = along.clone();
+        for b in 0..4 - a {
+            p[a][b] = largest(&net.control);
+            w[a][b] = largest_weight(&net.control);
+            net = net.derivative(1);
+        }
+        along = along.derivative(0);
+    }
+    let mut x = p;
+    if rational {
+        x[0][0] = shifted.control.iter().map(|c| xyz(c).norm() / c[3]).fold(0.0, f64::max);
+        let binomial = [[1.0, 0.0, 0.0, 0.0], [1.0, 1.0, 0.0, 0.0], [1.0, 2.0, 1.0, 0.0], [1.0, 3.0, 3.0, 1.0]];
+        for order in 1..4 {
+            for a in 0..=order {
+                let b = order - a;
+                let mut sum = p[a][b];
+                for i in 0..=a {
+                    for j in 0..=b {
+                        if i + j < order {
+                            sum += binomial[a][i] * binomial[b][j] * w[a - i][b - j] * x[i][j];
+                        }
+                    }
+                }
+                x[a][b] = sum / w_min;
+            }
+        }
+    }
+    Bounds {
+        second: [[x[2][0], x[1][1]], [x[1][1], x[0][2]]],
+        third: [[[x[3][0], x[2][1]], [x[2][1], x[1][2]]], [[x[2][1], x[1][2]], [x[1][2], x[0][3]]]],
+    }
+}

@@ -1,0 +1,62 @@
+//! Points, curves and surfaces.
+
+mod curve;
+mod error;
+mod surface;
+
+pub(crate) use curve::CurveKind;
+pub use curve::{Curve, CurveJet};
+pub use error::{Axes, LARGEST_COORDINATE, ShapeError};
+pub(crate) use surface::SurfaceKind;
+pub use surface::{Surface, SurfaceJet};
+
+use crate::Point;
+
+/// A partner of a contact pair.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    Point(Point<3>),
+    Curve(Box<Curve>),
+    Surface(Box<Surface>),
+}
+
+impl Shape {
+    /// Number of parameters: 0, 1 or 2.
+    pub fn dimension(&self) -> usize {
+        match self {
+            Shape::Point(_) => 0,
+            Shape::Curve(_) => 1,
+            Shape::Surface(_) => 2,
+        }
+    }
+
+    /// Position at given parameters; those a shape does not have are ignored.
+    pub fn position(&self, parameters: [f64; 2]) -> Point<3> {
+        match self {
+            Shape::Point(p) => *p,
+            Shape::Curve(c) => c.position(parameters[0]),
+            Shape::Surface(s) => s.position(parameters[0], parameters[1]),
+        }
+    }
+
+    /// Diagonal of the bounding box; zero for a point.
+    pub fn size(&self) -> f64 {
+        match self {
+            Shape::Point(_) => 0.0,
+            Shape::Curve(c) => c.size(),
+            Shape::Surface(s) => s.size(),
+        }
+    }
+}
+
+impl From<Curve> for Shape {
+    fn from(curve: Curve) -> Self {
+        Shape::Curve(Box::new(curve))
+    }
+}
+
+impl From<Surface> for Shape {
+    fn from(surface: Surface) -> Self {
+        Shape::Surface(Box::new(surface))
+    }
+}

@@ -8,6 +8,8 @@
 
 mod bounds;
 mod classify;
+mod closed_form;
+mod ellipsoid;
 mod newton;
 mod result;
 mod search;
@@ -47,11 +49,15 @@ impl Default for Query {
 pub fn closest(a: &Shape, b: &Shape, query: &Query) -> Projection {
     match (a, b) {
         (Shape::Point(p), Shape::Point(q)) => point_point(p, q),
-        (Shape::Point(p), Shape::Curve(c)) => general::<0, 1, 1, _, _>(&point_atlas(p), &c.atlas, query),
-        (Shape::Point(p), Shape::Surface(s)) => general::<0, 2, 2, _, _>(&point_atlas(p), &s.atlas, query),
-        (Shape::Curve(c), Shape::Curve(d)) => general::<1, 1, 2, _, _>(&c.atlas, &d.atlas, query),
+        (Shape::Point(p), Shape::Curve(c)) => closed_form::point_curve(p, c, query)
+            .unwrap_or_else(|| general::<0, 1, 1, _, _>(&point_atlas(p), &c.atlas, query)),
+        (Shape::Point(p), Shape::Surface(s)) => closed_form::point_surface(p, s, query)
+            .unwrap_or_else(|| general::<0, 2, 2, _, _>(&point_atlas(p), &s.atlas, query)),
+        (Shape::Curve(c), Shape::Curve(d)) => closed_form::segment_segment(c, d, query)
+            .unwrap_or_else(|| general::<1, 1, 2, _, _>(&c.atlas, &d.atlas, query)),
         (Shape::Curve(c), Shape::Surface(s)) => general::<1, 2, 3, _, _>(&c.atlas, &s.atlas, query),
-        (Shape::Surface(s), Shape::Surface(t)) => general::<2, 2, 4, _, _>(&s.atlas, &t.atlas, query),
+        (Shape::Surface(s), Shape::Surface(t)) => closed_form::sphere_sphere(s, t)
+            .unwrap_or_else(|| general::<2, 2, 4, _, _>(&s.atlas, &t.atlas, query)),
         _ => swapped(closest(b, a, query)),
     }
 }

@@ -357,7 +357,13 @@ impl<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>
             return;
         }
         let start = std::array::from_fn(|k| 0.5 * (low[k] + high[k]));
-        let candidate = self.newton(piece, &low, &high, start);
+        let mut candidate = self.newton(piece, &low, &high, start);
+        let stopped = |z: f64, k: usize| z.abs() < 1.0 && (z == low[k] || z == high[k]);
+        if (0..A).any(|k| stopped(candidate.a[k], k)) || (0..B).any(|k| stopped(candidate.b[k], A + k)) {
+            // Where the cell ends but not the piece, the neighbours hold something better.
+            let z = std::array::from_fn(|k| if k < A { candidate.a[k] } else { candidate.b[k - A] });
+            candidate = self.newton(piece, &[-1.0; N], &[1.0; N], z);
+        }
         if candidate.distance > self.best + self.effort.tie {
             return;
         }

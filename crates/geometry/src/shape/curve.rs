@@ -21,6 +21,7 @@ pub struct CurveJet {
 pub(crate) enum CurveKind {
     Segment { p0: Point<3>, p1: Point<3> },
     Circle { axes: Axes, radius: f64 },
+    Ellipse { axes: Axes, a: f64, b: f64 },
     Other,
 }
 
@@ -152,7 +153,7 @@ impl Curve {
         positive("a", a)?;
         positive("b", b)?;
         closed_range(range, closed)?;
-        Self::harmonic(CurveKind::Other, axes.origin, [axes.ex * a, axes.ey * b, Vector::<3>::zeros()], range, closed)
+        Self::harmonic(CurveKind::Ellipse { axes, a, b }, axes.origin, [axes.ex * a, axes.ey * b, Vector::<3>::zeros()], range, closed)
     }
 
     /// `o + t ex + k t² ey`.

@@ -31,6 +31,7 @@ pub(crate) enum SurfaceKind {
     Cylinder { axes: Axes, radius: f64 },
     Cone { axes: Axes, sin: f64, cos: f64 },
     Sphere { axes: Axes, radius: f64 },
+    Ellipsoid { axes: Axes, semi_axes: [f64; 3] },
     Torus { axes: Axes, major: f64, minor: f64 },
     Triangle { nodes: [Point<3>; 3] },
     Other,
@@ -216,7 +217,7 @@ impl Surface {
         }
         latitude(range[1])?;
         let vectors = [axes.ex * semi_axes[0], axes.ey * semi_axes[1], axes.ez * semi_axes[2]];
-        Self::quadric(SurfaceKind::Other, axes.origin, vectors, [[0.0, 0.0, 1.0]; 2], range, [closed, false])
+        Self::quadric(SurfaceKind::Ellipsoid { axes, semi_axes }, axes.origin, vectors, [[0.0, 0.0, 1.0]; 2], range, [closed, false])
     }
 
     /// `o + (R + r cos v)(cos u ex + sin u ey) + r sin v ez`.

@@ -453,14 +453,13 @@ pub fn segment_segment(c: &Curve, d: &Curve, query: &Query) -> Option<Projection
         let unclamped = |q: &Point<3>| (q - p0).dot(&e) / ee;
         let (t0, t1) = (unclamped(q0), unclamped(q1));
         let (low, high) = (t0.min(t1).max(0.0), t0.max(t1).min(1.0));
-        if (high - low) * e.norm() > 1e-12 * size {
+        let ends = [low, high].map(|s| pair(s, project(s), 0.0));
+        let level = best.distance + 8.0 * f64::EPSILON * (size + best.distance);
+        // A tilt that rounding can see leaves one end closer than the other.
+        if (high - low) * e.norm() > 1e-12 * size && ends.iter().all(|p| p.distance <= level) {
             uniqueness = Uniqueness::Continuum { dimension: 1 };
-            let ends = [low, high].map(|s| pair(s, project(s), 0.0));
             let s = 0.5 * (low + high);
-            let middle = pair(s, project(s), 0.0);
-            if middle.distance <= best.distance + 8.0 * f64::EPSILON * (size + best.distance) {
-                closest = middle;
-            }
+            closest = pair(s, project(s), 0.0);
             others.extend(ends);
         }
     } else if !parallel && closest.lambda_min < 1e-6 {

@@ -77,7 +77,6 @@ impl<const N: usize> Difference<N> {
 pub struct Stationary<const N: usize> {
     pub z: [f64; N],
     pub distance: f64,
-    pub iterations: usize,
 }
 
 /// The most iterations; only quartic minima come near.
@@ -148,7 +147,7 @@ pub fn minimise<const A: usize, const B: usize, const N: usize>(
             break;
         }
     }
-    Stationary { z, distance: squared.sqrt(), iterations }
+    Stationary { z, distance: squared.sqrt() }
 }
 
 fn smaller_gradient<const N: usize>(there: &Difference<N>, here: &Difference<N>, free: &[bool; N]) -> bool {

@@ -9,7 +9,7 @@ pub mod bernstein;
 pub mod chart;
 
 use crate::{Point, Vector};
-pub use chart::{Bounds, Chart, CurveChart, Jet2, Jet3, PointChart, SurfaceChart};
+pub use chart::{Bounds, Chart, CurveChart, Jet3, PointChart, SurfaceChart};
 
 /// What lies behind one side of a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

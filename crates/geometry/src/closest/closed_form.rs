@@ -161,7 +161,8 @@ pub fn point_surface(p: &Point<3>, surface: &Surface, query: &Query) -> Option<P
                     let v = (y[2] / c).atan2(cu.hypot(su)).clamp(domain[1][0], domain[1][1]);
                     let u = domain[0][0] + (su.atan2(cu) - domain[0][0]).rem_euclid(TAU);
                     let feature = rectangle_feature([u, v], domain, [true, false], Some(Entity::Pole));
-                    let foot = Foot::new(axes.origin + axes.ex * y[0] + axes.ey * y[1] + axes.ez * y[2], feature, &[u, v]);
+                    let foot =
+                        Foot::new(axes.origin + axes.ex * y[0] + axes.ey * y[1] + axes.ez * y[2], feature, &[u, v]);
                     (foot, ellipsoid::lambda_min(semi_axes, y, &[x.x, x.y, x.z]))
                 })
                 .collect();

@@ -34,10 +34,8 @@ pub fn closest<const K: usize>(a: &[f64; K], x: &[f64; K]) -> Option<Vec<[f64; K
         }
     }
     let term = |t: f64, k: usize| a[k] * magnitude[k] / (t + a[k] * a[k]);
-    let mut t = (0..K)
-        .filter(|&k| magnitude[k] > 0.0)
-        .map(|k| a[k] * (magnitude[k] - a[k]))
-        .fold(f64::NEG_INFINITY, f64::max);
+    let mut t =
+        (0..K).filter(|&k| magnitude[k] > 0.0).map(|k| a[k] * (magnitude[k] - a[k])).fold(f64::NEG_INFINITY, f64::max);
     for _ in 0..60 {
         let (mut value, mut slope) = (-1.0, 0.0);
         for k in 0..K {

@@ -56,8 +56,9 @@ pub fn closest(a: &Shape, b: &Shape, query: &Query) -> Projection {
         (Shape::Curve(c), Shape::Curve(d)) => closed_form::segment_segment(c, d, query)
             .unwrap_or_else(|| general::<1, 1, 2, _, _>(&c.atlas, &d.atlas, query)),
         (Shape::Curve(c), Shape::Surface(s)) => general::<1, 2, 3, _, _>(&c.atlas, &s.atlas, query),
-        (Shape::Surface(s), Shape::Surface(t)) => closed_form::sphere_sphere(s, t)
-            .unwrap_or_else(|| general::<2, 2, 4, _, _>(&s.atlas, &t.atlas, query)),
+        (Shape::Surface(s), Shape::Surface(t)) => {
+            closed_form::sphere_sphere(s, t).unwrap_or_else(|| general::<2, 2, 4, _, _>(&s.atlas, &t.atlas, query))
+        }
         _ => swapped(closest(b, a, query)),
     }
 }

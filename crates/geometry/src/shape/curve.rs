@@ -153,7 +153,13 @@ impl Curve {
         positive("a", a)?;
         positive("b", b)?;
         closed_range(range, closed)?;
-        Self::harmonic(CurveKind::Ellipse { axes, a, b }, axes.origin, [axes.ex * a, axes.ey * b, Vector::<3>::zeros()], range, closed)
+        Self::harmonic(
+            CurveKind::Ellipse { axes, a, b },
+            axes.origin,
+            [axes.ex * a, axes.ey * b, Vector::<3>::zeros()],
+            range,
+            closed,
+        )
     }
 
     /// `o + t ex + k t² ey`.

@@ -217,7 +217,14 @@ impl Surface {
         }
         latitude(range[1])?;
         let vectors = [axes.ex * semi_axes[0], axes.ey * semi_axes[1], axes.ez * semi_axes[2]];
-        Self::quadric(SurfaceKind::Ellipsoid { axes, semi_axes }, axes.origin, vectors, [[0.0, 0.0, 1.0]; 2], range, [closed, false])
+        Self::quadric(
+            SurfaceKind::Ellipsoid { axes, semi_axes },
+            axes.origin,
+            vectors,
+            [[0.0, 0.0, 1.0]; 2],
+            range,
+            [closed, false],
+        )
     }
 
     /// `o + (R + r cos v)(cos u ex + sin u ey) + r sin v ez`.

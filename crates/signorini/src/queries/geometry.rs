@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use serde_json::{Map, Value};
-use signorini_geometry::shape::{Axes, Curve, Shape, ShapeError, Surface};
 use signorini_geometry::Point;
+use signorini_geometry::shape::{Axes, Curve, Shape, ShapeError, Surface};
 
 /// What is wrong with a shape: the path of the field, and what would be valid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -78,6 +78,18 @@ where
     let apart = |p: &ClosestPair, q: &ClosestPair| {
         scaled_norm(&(p.a.point - q.a.point)).max(scaled_norm(&(p.b.point - q.b.point)))
     };
+    // Where the Hessian is singular or undefined, rounding leaves the minimiser this uncertain.
+    let same = |p: &ClosestPair, q: &ClosestPair| {
+        let least = p.lambda_min.min(q.lambda_min);
+        let radius = if least < 1e-3 {
+            2e-2
+        } else if p.lambda_min.is_nan() || q.lambda_min.is_nan() {
+            1e-3
+        } else {
+            1e-6
+        };
+        apart(p, q) <= radius * size
+    };
     let best = found.isolated.iter().chain(&found.degenerate).map(|c| c.distance).fold(f64::INFINITY, f64::min);
     let rounding = 1e-13 * (size + best);
     let tie = query.tie * size + rounding;
@@ -86,15 +98,14 @@ where
     let mut flat: Vec<(ClosestPair, usize)> = Vec::new();
     for c in found.degenerate.iter().filter(|c| c.distance <= best + rounding) {
         let (pair, flat_directions) = describe(c);
-        if flat.iter().all(|(p, _)| apart(p, &pair) > 1e-3 * size) {
+        if !flat.iter().any(|(p, _)| same(p, &pair)) {
             flat.push((pair, flat_directions));
         }
     }
     let mut pairs: Vec<ClosestPair> = Vec::new();
     for c in &found.isolated {
         let (pair, _) = describe(c);
-        let merge = if flat.is_empty() { 1e-6 } else { 1e-3 } * size;
-        if pairs.iter().chain(flat.iter().map(|(p, _)| p)).all(|p| apart(p, &pair) > merge) {
+        if !pairs.iter().chain(flat.iter().map(|(p, _)| p)).any(|p| same(p, &pair)) {
             pairs.push(pair);
         }
     }

@@ -189,7 +189,8 @@ fn newton_step<const N: usize>(at: &Difference<N>, free: &[bool; N]) -> [f64; N]
     }
 }
 
-fn solve_positive_definite<const N: usize>(mut m: [[f64; N]; N], mut x: [f64; N]) -> Option<[f64; N]> {
+/// Solves by elimination; `None` where a pivot is not positive.
+pub fn solve_positive_definite<const N: usize>(mut m: [[f64; N]; N], mut x: [f64; N]) -> Option<[f64; N]> {
     for k in 0..N {
         let pivot = m[k][k];
         let floor = 1e-15 * m[k].iter().fold(0.0f64, |s, v| s.max(v.abs()));

@@ -174,7 +174,7 @@ impl<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>
             self.best = expansion.distance;
             self.nearest = Some(Pair { bound: 0.0, a, b });
         }
-        let bound = expansion.linear_bound(cell_a.rho2 + cell_b.rho2);
+        let bound = expansion.linear_bound(cell_a, cell_b);
         self.push_bound(Pair { bound, a, b });
     }
 
@@ -199,6 +199,9 @@ impl<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>
             if pairs > self.effort.most_pairs {
                 self.heap.push(pair);
                 break;
+            }
+            if pairs >= 8 && pairs.is_power_of_two() {
+                self.improve();
             }
             if let Some(left) = self.examine(pair) {
                 flat.push(left);
@@ -253,11 +256,17 @@ impl<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>
         for k in 0..B {
             free[A + k] = b.half[k] > 0.0;
         }
-        if second.is_convex(&free) {
+        // Where the Hessian moves more than it is, no certificate can succeed.
+        let settled = (0..N).map(|k| second.drift[k][k]).sum::<f64>()
+            < 2.0 * (0..N).map(|k| second.hessian[k][k].abs()).sum::<f64>();
+        if settled && second.is_convex(&free) {
             self.solve(pair);
             return None;
         }
         let width = a.radius() + b.radius();
+        if N > 1 && settled && second.excludes_stationary(&expansion.gram, &expansion.g, &free, &self.held(pair)) {
+            return None;
+        }
         if self.reduce(pair, &expansion, &second, &free) {
             return None;
         }
@@ -267,6 +276,23 @@ impl<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>
         }
         self.halve(Pair { bound, ..pair });
         None
+    }
+
+    /// Newton from the closest middles so far: a good upper bound lets bad cells go early.
+    fn improve(&mut self) {
+        let Some(pair) = self.nearest.filter(|p| p.bound == 0.0) else { return };
+        // Marked as used until something closer comes.
+        self.nearest = Some(Pair { bound: 1.0, ..pair });
+        let (a, b) = (self.a.cell(pair.a), self.b.cell(pair.b));
+        let piece = [a.piece, b.piece];
+        let start = std::array::from_fn(|k| if k < A { a.middle[k] } else { b.middle[k - A] });
+        let candidate = self.newton(piece, &[-1.0; N], &[1.0; N], start);
+        if candidate.distance < self.best {
+            self.best = candidate.distance;
+            if self.is_minimiser(&candidate) {
+                self.isolated.push(candidate);
+            }
+        }
     }
 
     fn halve(&mut self, pair: Pair) {
@@ -294,6 +320,23 @@ impl<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>
                 self.push(pair.a, child);
             }
         }
+    }
+
+    /// The sides of the cells behind which the shapes do not simply go on.
+    fn held(&self, pair: Pair) -> [[bool; 2]; N] {
+        let mut held = [[false; 2]; N];
+        let (a, b) = (self.a.cell(pair.a), self.b.cell(pair.b));
+        let sides = &self.a.atlas.pieces[a.piece as usize].sides;
+        for k in 0..A {
+            let [low, high] = a.range(k);
+            held[k] = [low == -1.0 && !sides[k][0].is_smooth(), high == 1.0 && !sides[k][1].is_smooth()];
+        }
+        let sides = &self.b.atlas.pieces[b.piece as usize].sides;
+        for k in 0..B {
+            let [low, high] = b.range(k);
+            held[A + k] = [low == -1.0 && !sides[k][0].is_smooth(), high == 1.0 && !sides[k][1].is_smooth()];
+        }
+        held
     }
 
     /// Uses a direction in which the distance certainly grows: the minimum lies on the low side of the cells, which

@@ -114,6 +114,24 @@ pub fn derivative(control: &[Control]) -> Vec<Control> {
     control.windows(2).map(|w| combine(factor, &w[1], -factor, &w[0])).collect()
 }
 
+/// Product with the linear function that is `at_start` at `s = -1` and `at_end` at `s = 1`, one degree higher.
+pub fn times_linear(control: &[Control], at_start: f64, at_end: f64) -> Vec<Control> {
+    let n = control.len();
+    (0..=n)
+        .map(|i| {
+            let low = if i < n { control[i] } else { [0.0; 4] };
+            let high = if i > 0 { control[i - 1] } else { [0.0; 4] };
+            combine((n - i) as f64 / n as f64 * at_start, &low, i as f64 / n as f64 * at_end, &high)
+        })
+        .collect()
+}
+
+/// Product with `s^power`, two degrees higher, for `power` up to 2.
+pub fn times_power(control: &[Control], power: usize) -> Vec<Control> {
+    let once = times_linear(control, if power > 0 { -1.0 } else { 1.0 }, 1.0);
+    times_linear(&once, if power > 1 { -1.0 } else { 1.0 }, 1.0)
+}
+
 /// Coefficients of the powers of `s` in `[-1, 1]`: the Taylor series about the middle.
 pub fn powers(control: &[Control]) -> Vec<Control> {
     let mut current = control.to_vec();
@@ -210,9 +228,4 @@ pub fn largest(control: &[Control]) -> f64 {
 /// The largest magnitude of the last component.
 pub fn largest_weight(control: &[Control]) -> f64 {
     control.iter().map(|c| c[3].abs()).fold(0.0, f64::max)
-}
-
-/// The control values about another origin: `w (x - centre)`.
-pub fn about(control: &[Control], centre: &[f64; 3]) -> Vec<Control> {
-    control.iter().map(|c| [c[0] - c[3] * centre[0], c[1] - c[3] * centre[1], c[2] - c[3] * centre[2], c[3]]).collect()
 }

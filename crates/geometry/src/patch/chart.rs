@@ -4,7 +4,7 @@
 //! Horner's scheme gives value and derivatives for a few operations per coefficient; pieces of high degree are cut
 //! until the coefficients decay, which keeps this as accurate as Bernstein form.
 
-use super::bernstein::{Control, Net, about, derivative, largest, largest_weight, powers};
+use super::bernstein::{Control, Net, derivative, largest, largest_weight, powers, times_power};
 use crate::{Point, Vector};
 
 /// Position and partial derivatives to second order.
@@ -169,31 +169,40 @@ impl Chart<1> for CurveChart {
     }
 }
 
+/// Bounds from control nets. For a rational curve the quadratic Taylor polynomial about the middle is subtracted first
+/// (times the weight, in the numerator): what is left has small lower derivatives, and the quotient rule stays tight.
 fn curve_bounds(control: &[Control], rational: bool) -> Bounds<1> {
-    let centre = centre(control);
-    let mut net = about(control, &centre);
-    let w_min = control.iter().map(|c| c[3]).fold(f64::INFINITY, f64::min);
-    let (mut p, mut w) = ([0.0; 4], [0.0; 4]);
-    for k in 0..4 {
-        if k > 0 {
+    if !rational {
+        let mut net = control.to_vec();
+        let mut p = [0.0; 4];
+        for value in &mut p {
+            *value = largest(&net);
             net = if net.len() > 1 { derivative(&net) } else { vec![[0.0; 4]] };
         }
-        p[k] = largest(&net);
-        w[k] = largest_weight(&net);
-    }
-    if !rational {
         return Bounds { second: [[p[2]]], third: [[[p[3]]]] };
     }
-    let x0 = about(control, &centre).iter().map(|c| xyz(c).norm() / c[3]).fold(0.0, f64::max);
+    let [x, d, dd, _] = quotient_curve(horner_curve::<4>(&powers(control), 0.0), true);
+    let mut numerator = times_power(control, 0);
+    for (power, term) in [x, d, dd * 0.5].iter().enumerate() {
+        for (value, c) in numerator.iter_mut().zip(times_power(control, power)) {
+            for k in 0..3 {
+                value[k] -= term[k] * c[3];
+            }
+        }
+    }
+    let w_min = control.iter().map(|c| c[3]).fold(f64::INFINITY, f64::min);
+    let mut p = [0.0; 4];
+    let mut w = [0.0; 4];
+    for k in 0..4 {
+        p[k] = largest(&numerator);
+        w[k] = largest_weight(&numerator);
+        numerator = derivative(&numerator);
+    }
+    let x0 = p[0] / w_min;
     let x1 = (p[1] + w[1] * x0) / w_min;
     let x2 = (p[2] + 2.0 * w[1] * x1 + w[2] * x0) / w_min;
     let x3 = (p[3] + 3.0 * w[1] * x2 + 3.0 * w[2] * x1 + w[3] * x0) / w_min;
-    Bounds { second: [[x2]], third: [[[x3]]] }
-}
-
-fn centre(control: &[Control]) -> [f64; 3] {
-    let n = control.len() as f64;
-    std::array::from_fn(|k| control.iter().map(|c| c[k] / c[3]).sum::<f64>() / n)
+    Bounds { second: [[dd.norm() + x3.min(x2)]], third: [[[x3]]] }
 }
 
 /// A surface piece.
@@ -419,13 +428,29 @@ fn largest_sine(middle: f64, half: f64) -> f64 {
     largest_cosine(middle - std::f64::consts::FRAC_PI_2, half)
 }
 
+/// See [`curve_bounds`].
 fn surface_bounds(net: &Net, rational: bool) -> Bounds<2> {
-    let centre = centre(&net.control);
-    let shifted = Net { degree: net.degree, control: about(&net.control, &centre) };
+    let mut numerator = net.clone();
+    let mut centre = [0.0; 3];
+    if rational {
+        let t = quotient_surface(&horner_surface::<3>(net.degree, &net.powers().control, &[0.0; 2]), true);
+        numerator = net.map_columns(|c| times_power(c, 0)).map_rows(|r| times_power(r, 0));
+        for a in 0..3 {
+            for b in 0..3 - a {
+                let product = net.map_columns(|c| times_power(c, a)).map_rows(|r| times_power(r, b));
+                for (value, c) in numerator.control.iter_mut().zip(&product.control) {
+                    for k in 0..3 {
+                        value[k] -= t[a][b][k] * c[3];
+                    }
+                }
+            }
+        }
+        centre = [2.0 * t[2][0].norm(), t[1][1].norm(), 2.0 * t[0][2].norm()];
+    }
     let w_min = net.control.iter().map(|c| c[3]).fold(f64::INFINITY, f64::min);
     let mut p = [[0.0; 4]; 4];
     let mut w = [[0.0; 4]; 4];
-    let mut along = shifted.clone();
+    let mut along = numerator;
     for a in 0..4 {
         let mut net = along.clone();
         for b in 0..4 - a {
@@ -437,7 +462,7 @@ fn surface_bounds(net: &Net, rational: bool) -> Bounds<2> {
     }
     let mut x = p;
     if rational {
-        x[0][0] = shifted.control.iter().map(|c| xyz(c).norm() / c[3]).fold(0.0, f64::max);
+        x[0][0] = p[0][0] / w_min;
         let binomial = [[1.0, 0.0, 0.0, 0.0], [1.0, 1.0, 0.0, 0.0], [1.0, 2.0, 1.0, 0.0], [1.0, 3.0, 3.0, 1.0]];
         for order in 1..4 {
             for a in 0..=order {
@@ -454,8 +479,9 @@ fn surface_bounds(net: &Net, rational: bool) -> Bounds<2> {
             }
         }
     }
+    let second = [x[2][0] + centre[0], x[1][1] + centre[1], x[0][2] + centre[2]];
     Bounds {
-        second: [[x[2][0], x[1][1]], [x[1][1], x[0][2]]],
+        second: [[second[0], second[1]], [second[1], second[2]]],
         third: [[[x[3][0], x[2][1]], [x[2][1], x[1][2]]], [[x[2][1], x[1][2]], [x[1][2], x[0][3]]]],
     }
 }

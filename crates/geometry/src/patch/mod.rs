@@ -123,12 +123,20 @@ pub struct Cell<const M: usize> {
     /// Lengths of `j` and `dd`.
     pub j_norm: [f64; M],
     pub dd_norm: [[f64; M]; M],
+    /// `j_a · dd_bc`.
+    pub j_dd: [[[f64; M]; M]; M],
     /// How far `j` moves over the cell.
     pub sigma: [f64; M],
+    /// How far `j` moves beyond its linear expansion.
+    pub eta: [f64; M],
     /// How far `dd` moves over the cell.
     pub tau: [[f64; M]; M],
     pub rho2: f64,
     pub rho3: f64,
+    /// Unit normal at the middle of a surface cell, else zero.
+    pub normal: Vector<3>,
+    /// A box that holds the cell, low and high corner; in the tree it is gathered from the leaves.
+    pub hull: [Point<3>; 2],
 }
 
 impl<const M: usize> Cell<M> {
@@ -145,11 +153,18 @@ impl<const M: usize> Cell<M> {
             dd: jet.dd,
             j_norm: [0.0; M],
             dd_norm: [[0.0; M]; M],
+            j_dd: [[[0.0; M]; M]; M],
             sigma: [0.0; M],
+            eta: [0.0; M],
             tau: [[0.0; M]; M],
             rho2: 0.0,
             rho3: 0.0,
+            normal: Vector::<3>::zeros(),
+            hull: [jet.x; 2],
         };
+        if M == 2 {
+            cell.normal = jet.d[0].cross(&jet.d[1]).try_normalize(0.0).unwrap_or_default();
+        }
         for a in 0..M {
             cell.j[a] *= half[a];
             cell.j_norm[a] = cell.j[a].norm();
@@ -163,29 +178,46 @@ impl<const M: usize> Cell<M> {
                 }
                 let tau = tau * area;
                 cell.tau[a][b] = tau;
+                cell.eta[a] += 0.5 * tau;
                 cell.sigma[a] += (second[a][b] * area).min(cell.dd_norm[a][b] + tau);
                 cell.rho3 += tau / 6.0;
             }
             cell.rho2 += 0.5 * cell.sigma[a];
         }
+        let mut extent = Vector::<3>::repeat(cell.rho2);
+        for j in &cell.j {
+            extent += j.abs();
+        }
+        cell.hull = [cell.x - extent, cell.x + extent];
+        for a in 0..M {
+            for b in 0..M {
+                for c in 0..M {
+                    cell.j_dd[a][b][c] = cell.j[a].dot(&cell.dd[b][c]);
+                }
+            }
+        }
         cell
     }
 
-    fn group(x: Point<3>, radius: f64, children: [u32; 2]) -> Self {
+    fn group(hull: [Point<3>; 2], radius: f64) -> Self {
         Cell {
             piece: GROUP,
-            children,
+            children: [0; 2],
             middle: [0.0; M],
             half: [0.0; M],
-            x,
+            x: (hull[0] + hull[1]) * 0.5,
             j: [Vector::<3>::zeros(); M],
             dd: [[Vector::<3>::zeros(); M]; M],
             j_norm: [0.0; M],
             dd_norm: [[0.0; M]; M],
+            j_dd: [[[0.0; M]; M]; M],
             sigma: [0.0; M],
+            eta: [0.0; M],
             tau: [[0.0; M]; M],
             rho2: radius,
             rho3: radius,
+            normal: Vector::<3>::zeros(),
+            hull,
         }
     }
 
@@ -242,6 +274,7 @@ impl<const M: usize, C: Chart<M>> Atlas<M, C> {
         for &place in &places {
             atlas.refine(place);
         }
+        atlas.gather_hulls();
         atlas
     }
 
@@ -260,6 +293,27 @@ impl<const M: usize, C: Chart<M>> Atlas<M, C> {
             queue.extend([first, first + 1]);
             count += 2;
         }
+    }
+
+    /// Boxes from the leaves upwards: those of large cells are far too wide. Children come after their parents.
+    fn gather_hulls(&mut self) {
+        for k in (0..self.nodes.len()).rev() {
+            let [left, right] = self.nodes[k].children;
+            if left == 0 {
+                continue;
+            }
+            let [p, q] = [left, right].map(|c| self.nodes[c as usize].hull);
+            let node = &mut self.nodes[k];
+            node.hull = [p[0].inf(&q[0]), p[1].sup(&q[1])];
+            if node.is_group() {
+                node.x = (node.hull[0] + node.hull[1]) * 0.5;
+                let radius = 0.5 * (node.hull[1] - node.hull[0]).norm();
+                (node.rho2, node.rho3) = (radius, radius);
+            }
+        }
+        let [low, high] = self.nodes[0].hull;
+        self.size = (high - low).norm();
+        self.magnitude = low.amax().max(high.amax());
     }
 
     /// The two halves of a cell of one piece.
@@ -309,7 +363,7 @@ fn gather<const M: usize>(order: &mut [u32], roots: &[Cell<M>], nodes: &mut Vec<
     let (low, high) = extent(&cells);
     let middle = (low + high) * 0.5;
     let radius = cells.iter().map(|c| (c.x - middle).norm() + c.radius()).fold(0.0, f64::max);
-    nodes.push(Cell::group(middle, radius.min(0.5 * (high - low).norm()), [0; 2]));
+    nodes.push(Cell::group([low, high], radius.min(0.5 * (high - low).norm())));
     let axis = (high - low).imax();
     order.sort_by(|&a, &b| {
         let key = |p: u32| roots[p as usize].x[axis];

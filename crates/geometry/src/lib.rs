@@ -9,14 +9,18 @@
 //! - [`closed_curve`]: closed oriented curves with closest point, winding number and arc length.
 //! - [`shape`]: points, curves and surfaces of space with exact derivatives.
 //! - [`closest`]: closest points of any two of them, certified.
+//! - [`frame`]: metric, curvature and frames of curves and surfaces.
+//! - [`measures`]: gap and coordinates of a contact pair with their first and second variations.
 //! - [`outline`]: closed outlines of a function sampled on a grid.
 //! - [`polygon`]: winding numbers, areas and crossings of polygons.
 
 pub mod aabb;
 pub mod closed_curve;
 pub mod closest;
+pub mod frame;
 pub mod implicit;
 pub mod jet;
+pub mod measures;
 pub mod outline;
 pub(crate) mod patch;
 pub mod polygon;

@@ -34,7 +34,11 @@ pub(super) fn settle(p: &Point<3>, candidates: &[Candidate], dimension: usize, s
         best = pairs[0];
         let tie = query.tie * size;
         for other in pairs.into_iter().skip(1) {
-            let same = |x: &ClosestPair| scaled_norm(&(x.b.point - other.b.point)) <= 1e-9 * size;
+            // At a centre of curvature rounding alone separates what is one foot.
+            let same = |x: &ClosestPair| {
+                let radius = if x.lambda_min.min(other.lambda_min) < 1e-3 { 2e-2 } else { 1e-9 };
+                scaled_norm(&(x.b.point - other.b.point)) <= radius * size
+            };
             if other.distance <= best.distance + tie && !same(&best) && !others.iter().any(same) {
                 others.push(other);
             }

@@ -11,16 +11,19 @@
 //! - [`closest`]: closest points of any two of them, certified.
 //! - [`frame`]: metric, curvature and frames of curves and surfaces.
 //! - [`measures`]: gap and coordinates of a contact pair with their first and second variations.
+//! - [`mesh`]: triangle meshes; [`bvh`]: the search tree under them.
 //! - [`outline`]: closed outlines of a function sampled on a grid.
 //! - [`polygon`]: winding numbers, areas and crossings of polygons.
 
 pub mod aabb;
+pub mod bvh;
 pub mod closed_curve;
 pub mod closest;
 pub mod frame;
 pub mod implicit;
 pub mod jet;
 pub mod measures;
+pub mod mesh;
 pub mod outline;
 pub(crate) mod patch;
 pub mod polygon;

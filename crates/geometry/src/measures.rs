@@ -110,8 +110,7 @@ impl<const N: usize> Measures<N> {
         let local = |k: usize| if k < of_a { k } else { k - of_a };
         let zero = Vector::<3>::zeros();
         let d = a.position() - b.position();
-        let j: [Vector<3>; N] =
-            std::array::from_fn(|p| if p < of_a { a.first(p) } else { -b.first(p - of_a) });
+        let j: [Vector<3>; N] = std::array::from_fn(|p| if p < of_a { a.first(p) } else { -b.first(p - of_a) });
         let d_ab: [[Vector<3>; N]; N] = std::array::from_fn(|p| {
             std::array::from_fn(|q| match same(&[p, q]) {
                 Some(true) => a.second(p, q),
@@ -186,9 +185,8 @@ impl<const N: usize> Measures<N> {
         let finite_gap = self.gap * bv.dot(&(self.inverse * bu));
         if N <= 2 {
             let curvature = wv.dot(&(self.inverse * self.curvature * self.inverse_metric * wu));
-            let mut across = v.d.dot(&u.d)
-                - self.normal.dot(&v.d) * self.normal.dot(&u.d)
-                - wv.dot(&(self.inverse_metric * wu));
+            let mut across =
+                v.d.dot(&u.d) - self.normal.dot(&v.d) * self.normal.dot(&u.d) - wv.dot(&(self.inverse_metric * wu));
             if N == 2 {
                 across = 0.0;
             }

@@ -104,10 +104,7 @@ fn check_surface(surface: &Surface, at: impl Fn(H3, H3) -> [H3; 3], name: &str) 
         let third = [(3, jet.uuu), (2, jet.uuv), (1, jet.uvv), (0, jet.vvv)];
         for (along_u, d3) in third {
             let share = |k: usize| if k < along_u { 1.0 } else { 0.0 };
-            let exact = at(
-                seed(u, std::array::from_fn(share)),
-                seed(v, std::array::from_fn(|k| 1.0 - share(k))),
-            );
+            let exact = at(seed(u, std::array::from_fn(share)), seed(v, std::array::from_fn(|k| 1.0 - share(k))));
             close(&d3, &V3::from_fn(|k, _| exact[k].eps1eps2eps3), name);
             let second = [jet.vv, jet.uv, jet.uu][usize::min(along_u, 2)];
             close(&second, &V3::from_fn(|k, _| exact[k].eps1eps2), name);
@@ -160,8 +157,7 @@ fn surfaces_have_exact_derivatives() {
     let on_sphere = |u: H3, v: H3| in_axes(&axes, v.cos() * u.cos() * 1.2, v.cos() * u.sin() * 1.2, v.sin() * 1.2);
     check_surface(&sphere, on_sphere, "sphere");
     let ellipsoid = Surface::ellipsoid(axes, [1.2, 0.5, 0.9], range, false).unwrap();
-    let on_ellipsoid =
-        |u: H3, v: H3| in_axes(&axes, v.cos() * u.cos() * 1.2, v.cos() * u.sin() * 0.5, v.sin() * 0.9);
+    let on_ellipsoid = |u: H3, v: H3| in_axes(&axes, v.cos() * u.cos() * 1.2, v.cos() * u.sin() * 0.5, v.sin() * 0.9);
     check_surface(&ellipsoid, on_ellipsoid, "ellipsoid");
     let torus = Surface::torus(axes, 1.2, 0.4, range, [false; 2]).unwrap();
     let on_torus = |u: H3, v: H3| {
@@ -171,7 +167,8 @@ fn surfaces_have_exact_derivatives() {
     check_surface(&torus, on_torus, "torus");
     let graph = Surface::graph(axes, [0.6, -0.4, 0.9], range).unwrap();
     check_surface(&graph, |u, v| in_axes(&axes, u, v, u * u * 0.6 - v * v * 0.4 + u * v * 0.9), "graph");
-    let profile = Curve::bezier(&[V3::new(0.5, 0.0, 0.0), V3::new(0.9, 0.0, 0.4), V3::new(0.4, 0.0, 1.0)], None).unwrap();
+    let profile =
+        Curve::bezier(&[V3::new(0.5, 0.0, 0.0), V3::new(0.9, 0.0, 0.4), V3::new(0.4, 0.0, 1.0)], None).unwrap();
     let turned = Surface::revolution(&profile, V3::zeros(), V3::z(), [0.1, 2.0], false).unwrap();
     let control: Vec<[H3; 3]> =
         [[0.5, 0.0, 0.0], [0.9, 0.0, 0.4], [0.4, 0.0, 1.0]].iter().map(|p| vector(&V3::from(*p))).collect();
@@ -202,7 +199,8 @@ fn surfaces_have_exact_derivatives() {
     let n: Vec<[H3; 3]> = nodes.iter().map(vector).collect();
     let on_triangle = |u: H3, v: H3| {
         let l = -(u + v) + 1.0;
-        let shape = [l * (l * 2.0 - 1.0), u * (u * 2.0 - 1.0), v * (v * 2.0 - 1.0), l * u * 4.0, u * v * 4.0, v * l * 4.0];
+        let shape =
+            [l * (l * 2.0 - 1.0), u * (u * 2.0 - 1.0), v * (v * 2.0 - 1.0), l * u * 4.0, u * v * 4.0, v * l * 4.0];
         let mut sum = vector(&V3::zeros());
         for k in 0..6 {
             sum = add(&sum, &shape[k], &n[k]);
@@ -217,12 +215,12 @@ fn surfaces_have_exact_derivatives() {
 #[test]
 fn frames_obey_gauss_weingarten_frenet_and_darboux() {
     let mut r = Random(3);
-    let points: Vec<Vec<Point<3>>> = (0..4)
-        .map(|i| (0..4).map(|j| V3::new(f64::from(i), f64::from(j), 0.0) + r.vector(0.3)).collect())
-        .collect();
+    let points: Vec<Vec<Point<3>>> =
+        (0..4).map(|i| (0..4).map(|j| V3::new(f64::from(i), f64::from(j), 0.0) + r.vector(0.3)).collect()).collect();
     let surface = Surface::bezier(&points, None).unwrap();
     // A curve in the parameter plane: u = 0.2 + 0.5 s + 0.2 s², v = 0.3 + 0.4 s - 0.1 s².
-    let parameters = |s: f64| ([0.2 + 0.5 * s + 0.2 * s * s, 0.3 + 0.4 * s - 0.1 * s * s], [0.5 + 0.4 * s, 0.4 - 0.2 * s]);
+    let parameters =
+        |s: f64| ([0.2 + 0.5 * s + 0.2 * s * s, 0.3 + 0.4 * s - 0.1 * s * s], [0.5 + 0.4 * s, 0.4 - 0.2 * s]);
     let frame_at = |s: f64| {
         let ([u, v], velocity) = parameters(s);
         let jet = surface.jet(u, v);
@@ -239,12 +237,16 @@ fn frames_obey_gauss_weingarten_frenet_and_darboux() {
         close(&sum, &second, "Gauss");
     }
     let [(k1, e1), (k2, e2)] = frame.principal_curvatures();
-    assert!((k1 * k2 - frame.gaussian_curvature()).abs() < 1e-12 && (k1 + k2 - 2.0 * frame.mean_curvature()).abs() < 1e-12);
+    assert!(
+        (k1 * k2 - frame.gaussian_curvature()).abs() < 1e-12 && (k1 + k2 - 2.0 * frame.mean_curvature()).abs() < 1e-12
+    );
     assert!(e1.dot(&e2).abs() < 1e-12 && e1.dot(&frame.normal).abs() < 1e-12);
     // Darboux: differentiate the frame along the curve by arc length; fourth-order differences.
     let h = 1e-3;
     let speed = (jet.u * velocity[0] + jet.v * velocity[1]).norm();
-    let rate = |f: &dyn Fn(f64) -> V3| (f(s - 2.0 * h) - f(s - h) * 8.0 + f(s + h) * 8.0 - f(s + 2.0 * h)) / (12.0 * h * speed);
+    let rate = |f: &dyn Fn(f64) -> V3| {
+        (f(s - 2.0 * h) - f(s - h) * 8.0 + f(s + h) * 8.0 - f(s + 2.0 * h)) / (12.0 * h * speed)
+    };
     let tolerance = 1e-8;
     let tangent = rate(&|s| frame_at(s).2.tangent);
     let expected = darboux.side * darboux.geodesic_curvature + darboux.normal * darboux.normal_curvature;

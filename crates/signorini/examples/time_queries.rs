@@ -31,7 +31,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mean = times.iter().map(|t| t.0).sum::<f64>() / n;
         let worst = times.iter().map(|t| t.0).fold(0.0, f64::max);
         let pairs = times.iter().map(|t| t.1).sum::<f64>() / n;
-        println!("{class:45} {n:4} {:>10.0}/s  mean {:>9.2} us  worst {:>9.2} us {pairs:>9.1} pairs", 1.0 / mean, mean * 1e6, worst * 1e6);
+        println!(
+            "{class:45} {n:4} {:>10.0}/s  mean {:>9.2} us  worst {:>9.2} us {pairs:>9.1} pairs",
+            1.0 / mean,
+            mean * 1e6,
+            worst * 1e6
+        );
     }
     Ok(())
 }

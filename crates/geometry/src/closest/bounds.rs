@@ -253,7 +253,13 @@ impl<const N: usize> SecondOrder<N> {
     /// The direction is that of Newton: `v = H⁻¹ g`, the test says that the Newton point lies outside by a margin. Where
     /// cells touch a side behind which there is no neighbour (`held[p]` is the outward sign), `-v` must not leave there;
     /// such parameters are taken out.
-    pub fn excludes_stationary(&self, gram: &[[f64; N]; N], g: &[f64; N], free: &[bool; N], held: &[[bool; 2]; N]) -> bool {
+    pub fn excludes_stationary(
+        &self,
+        gram: &[[f64; N]; N],
+        g: &[f64; N],
+        free: &[bool; N],
+        held: &[[bool; 2]; N],
+    ) -> bool {
         let mut used = *free;
         for _ in 0..=N {
             let Some(v) = self.descent(gram, g, &used) else { return false };

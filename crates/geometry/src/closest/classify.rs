@@ -167,8 +167,8 @@ where
     let lambda_min = at.lambda_min(&free);
     let pair = ClosestPair {
         distance: c.distance,
-        a: Foot::new(c.xa, piece_a.feature(&c.a), &piece_a.map.apply(&c.a)),
-        b: Foot::new(c.xb, piece_b.feature(&c.b), &piece_b.map.apply(&c.b)),
+        a: Foot::new(c.xa, piece_a.feature(&c.a), &piece_a.map.apply(&c.a)).on_element(c.piece[0] as usize),
+        b: Foot::new(c.xb, piece_b.feature(&c.b), &piece_b.map.apply(&c.b)).on_element(c.piece[1] as usize),
         lambda_min,
     };
     (pair, flat)

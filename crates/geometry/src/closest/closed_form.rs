@@ -415,7 +415,16 @@ pub fn segment_segment(c: &Curve, d: &Curve, query: &Query) -> Option<Projection
     if query.local_minima {
         return None;
     }
-    let size = c.size().max(d.size());
+    Some(segments(&[*p0, *p1], &[*q0, *q1], c.size().max(d.size())))
+}
+
+/// Parameters of the closest points of two segments.
+pub(crate) fn segment_parameters(p: &[Point<3>; 2], q: &[Point<3>; 2]) -> [f64; 2] {
+    let found = segments(p, q, 0.0).closest;
+    [found.a.parameters()[0], found.b.parameters()[0]]
+}
+
+fn segments([p0, p1]: &[Point<3>; 2], [q0, q1]: &[Point<3>; 2], size: f64) -> Projection {
     let (e, f) = (p1 - p0, q1 - q0);
     let pair = |s: f64, t: f64, lambda_min: f64| {
         let (x, y) = (along(p0, p1, s), along(q0, q1, t));
@@ -430,9 +439,16 @@ pub fn segment_segment(c: &Curve, d: &Curve, query: &Query) -> Option<Projection
     let project = |s: f64| segment_parameter(&along(p0, p1, s), q0, q1);
     let back = |t: f64| segment_parameter(&along(q0, q1, t), p0, p1);
     // F is convex: the minimum is a crossing inside both, or at an end of one of them.
-    let mut pairs: Vec<ClosestPair> = Vec::with_capacity(5);
-    for (s, t) in [(0.0, project(0.0)), (1.0, project(1.0)), (back(0.0), 0.0), (back(1.0), 1.0)] {
-        pairs.push(pair(s, t, lambda(s, t)));
+    let mut best = pair(0.0, project(0.0), f64::INFINITY);
+    best.lambda_min = lambda(0.0, best.b.parameters()[0]);
+    let offer = |best: &mut ClosestPair, s: f64, t: f64, lambda: f64| {
+        let other = pair(s, t, lambda);
+        if other.distance < best.distance {
+            *best = other;
+        }
+    };
+    for (s, t) in [(1.0, project(1.0)), (back(0.0), 0.0), (back(1.0), 1.0)] {
+        offer(&mut best, s, t, lambda(s, t));
     }
     let (ee, ff) = (e.norm_squared(), f.norm_squared());
     let cross = e.cross(&f);
@@ -446,10 +462,9 @@ pub fn segment_segment(c: &Curve, d: &Curve, query: &Query) -> Option<Projection
             let lambda = sine_squared / (1.0 + (1.0 - sine_squared).max(0.0).sqrt());
             // One more projection removes what the cross products of nearly parallel segments lose.
             let t = project(s);
-            pairs.push(pair(back(t), t, lambda));
+            offer(&mut best, back(t), t, lambda);
         }
     }
-    let best = pairs.iter().copied().reduce(|x, y| if y.distance < x.distance { y } else { x })?;
     let mut uniqueness = Uniqueness::Unique;
     let mut closest = best;
     let mut others = Vec::new();
@@ -470,7 +485,7 @@ pub fn segment_segment(c: &Curve, d: &Curve, query: &Query) -> Option<Projection
     } else if !parallel && closest.lambda_min < 1e-6 {
         uniqueness = Uniqueness::NearContinuum { lambda: closest.lambda_min };
     }
-    Some(Projection { closest, uniqueness, others, certified_to: 0.0, margin: 0.0, effort: 0 })
+    Projection { closest, uniqueness, others, certified_to: 0.0, margin: 0.0, effort: 0 }
 }
 
 /// Two whole spheres about the same centre touch nowhere more than elsewhere.

@@ -40,22 +40,22 @@ pub fn closest<const K: usize>(a: &[f64; K], x: &[f64; K]) -> Option<Vec<[f64; K
         let (mut value, mut slope) = (-1.0, 0.0);
         for k in 0..K {
             if magnitude[k] > 0.0 {
-                let q = term(t, k);
+                let q = term(s, k);
                 value += q * q;
-                slope -= 2.0 * q * q / (t + a[k] * a[k]);
+                slope -= 2.0 * q * q / (s + beyond[k]);
             }
         }
-        let next = t - value / slope;
+        let next = s - value / slope;
         // Rounding ends the monotone approach.
-        if next <= t || !next.is_finite() {
+        if next <= s || !next.is_finite() {
             break;
         }
-        t = next;
+        s = next;
     }
     let mut y = [0.0; K];
     for k in 0..K {
         if magnitude[k] > 0.0 {
-            y[k] = a[k] * a[k] * x[k] / (t + a[k] * a[k]);
+            y[k] = a[k] * a[k] * x[k] / (s + beyond[k]);
         }
     }
     Some(vec![y])

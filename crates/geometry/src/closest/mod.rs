@@ -14,8 +14,10 @@ mod newton;
 mod result;
 mod search;
 
+pub(crate) use closed_form::{segment_parameters, triangle as closest_on_triangle};
 pub use result::{ClosestPair, Entity, Feature, FeatureKind, Foot, Projection, Uniqueness};
 
+use crate::mesh::TriangleMesh;
 use crate::patch::{Atlas, Chart, Piece, PointChart};
 use crate::shape::Shape;
 use crate::{Point, Vector};
@@ -59,8 +61,54 @@ pub fn closest(a: &Shape, b: &Shape, query: &Query) -> Projection {
         (Shape::Surface(s), Shape::Surface(t)) => {
             closed_form::sphere_sphere(s, t).unwrap_or_else(|| general::<2, 2, 4, _, _>(&s.atlas, &t.atlas, query))
         }
+        (Shape::Point(p), Shape::Mesh(m)) if !query.local_minima => point_mesh(p, m, query),
+        (Shape::Point(p), Shape::Mesh(m)) => on_triangles(general::<0, 2, 2, _, _>(&point_atlas(p), m.atlas(), query)),
+        (Shape::Curve(c), Shape::Mesh(m)) => on_triangles(general::<1, 2, 3, _, _>(&c.atlas, m.atlas(), query)),
+        (Shape::Surface(s), Shape::Mesh(m)) => on_triangles(general::<2, 2, 4, _, _>(&s.atlas, m.atlas(), query)),
+        (Shape::Mesh(m), Shape::Mesh(n)) => mesh_mesh(m, n),
         _ => swapped(closest(b, a, query)),
     }
+}
+
+/// Every triangle of a mesh is three pieces of the general search, which counts them as elements.
+fn on_triangles(mut projection: Projection) -> Projection {
+    for pair in std::iter::once(&mut projection.closest).chain(&mut projection.others) {
+        pair.b.element /= 3;
+    }
+    projection
+}
+
+fn point_mesh(p: &Point<3>, mesh: &TriangleMesh, query: &Query) -> Projection {
+    let mut pairs = mesh.closest(p, query.tie * mesh.size()).into_iter().map(|foot| ClosestPair {
+        distance: foot.distance,
+        a: Foot::of_point(*p),
+        b: Foot::new(foot.point, foot.feature, &foot.parameters).on_element(foot.triangle),
+        lambda_min: if foot.feature.kind == FeatureKind::Vertex { f64::INFINITY } else { 1.0 },
+    });
+    let closest = pairs.next().expect("a mesh has a triangle");
+    let others: Vec<ClosestPair> = pairs.collect();
+    let uniqueness = if others.is_empty() { Uniqueness::Unique } else { Uniqueness::Multiple };
+    Projection { closest, uniqueness, others, certified_to: 0.0, margin: 0.0, effort: 0 }
+}
+
+/// The closest pair of two meshes. Flat faces that lie parallel share a whole area; one pair of it is returned, and
+/// uniqueness is judged at that pair alone.
+fn mesh_mesh(m: &TriangleMesh, n: &TriangleMesh) -> Projection {
+    let found = m.closest_to_mesh(n);
+    let foot = |mesh: &TriangleMesh, k: usize| {
+        let point = mesh.position(found.triangles[k], found.parameters[k]);
+        let feature = closed_form::triangle(&point, &mesh.corners(found.triangles[k])).1;
+        Foot::new(point, feature, &found.parameters[k]).on_element(found.triangles[k])
+    };
+    let closest = ClosestPair { distance: found.distance, a: foot(m, 0), b: foot(n, 1), lambda_min: f64::NAN };
+    let on_face = closest.a.feature.kind == FeatureKind::Interior && closest.b.feature.kind == FeatureKind::Interior;
+    let intersecting = found.distance <= 1e-15 * (m.size() + n.size());
+    let uniqueness = match (intersecting, on_face) {
+        (true, _) => Uniqueness::Continuum { dimension: 1 },
+        (_, true) => Uniqueness::Continuum { dimension: 2 },
+        _ => Uniqueness::Unique,
+    };
+    Projection { closest, uniqueness, others: Vec::new(), certified_to: 0.0, margin: 0.0, effort: 0 }
 }
 
 fn swapped(mut projection: Projection) -> Projection {

@@ -95,6 +95,8 @@ impl Feature {
 pub struct Foot {
     pub point: Point<3>,
     pub feature: Feature,
+    /// The triangle of a mesh; of other shapes the smooth piece, counted along the parameters, where the search used one.
+    pub element: usize,
     dimension: usize,
     parameters: [f64; 2],
 }
@@ -103,7 +105,11 @@ impl Foot {
     pub(crate) fn new(point: Point<3>, feature: Feature, parameters: &[f64]) -> Self {
         let mut filled = [0.0; 2];
         filled[..parameters.len()].copy_from_slice(parameters);
-        Foot { point, feature, dimension: parameters.len(), parameters: filled }
+        Foot { point, feature, element: 0, dimension: parameters.len(), parameters: filled }
+    }
+
+    pub(crate) fn on_element(self, element: usize) -> Self {
+        Foot { element, ..self }
     }
 
     pub(crate) fn of_point(point: Point<3>) -> Self {

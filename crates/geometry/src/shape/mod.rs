@@ -6,11 +6,13 @@ mod surface;
 
 pub(crate) use curve::CurveKind;
 pub use curve::{Curve, CurveJet};
+pub(crate) use error::position as check_position;
 pub use error::{Axes, LARGEST_COORDINATE, ShapeError};
 pub(crate) use surface::SurfaceKind;
 pub use surface::{Surface, SurfaceJet};
 
 use crate::Point;
+use crate::mesh::TriangleMesh;
 
 /// A partner of a contact pair.
 #[derive(Clone, Debug)]
@@ -18,6 +20,7 @@ pub enum Shape {
     Point(Point<3>),
     Curve(Box<Curve>),
     Surface(Box<Surface>),
+    Mesh(Box<TriangleMesh>),
 }
 
 impl Shape {
@@ -26,16 +29,20 @@ impl Shape {
         match self {
             Shape::Point(_) => 0,
             Shape::Curve(_) => 1,
-            Shape::Surface(_) => 2,
+            Shape::Surface(_) | Shape::Mesh(_) => 2,
         }
     }
 
-    /// Position at given parameters; those a shape does not have are ignored.
-    pub fn position(&self, parameters: [f64; 2]) -> Point<3> {
+    /// Position at given parameters; those a shape does not have are ignored. `element` is the triangle of a mesh.
+    ///
+    /// # Panics
+    /// If a mesh has no such element.
+    pub fn position(&self, element: usize, parameters: [f64; 2]) -> Point<3> {
         match self {
             Shape::Point(p) => *p,
             Shape::Curve(c) => c.position(parameters[0]),
             Shape::Surface(s) => s.position(parameters[0], parameters[1]),
+            Shape::Mesh(m) => m.position(element, parameters),
         }
     }
 
@@ -45,6 +52,7 @@ impl Shape {
             Shape::Point(_) => 0.0,
             Shape::Curve(c) => c.size(),
             Shape::Surface(s) => s.size(),
+            Shape::Mesh(m) => m.size(),
         }
     }
 }
@@ -58,5 +66,11 @@ impl From<Curve> for Shape {
 impl From<Surface> for Shape {
     fn from(surface: Surface) -> Self {
         Shape::Surface(Box::new(surface))
+    }
+}
+
+impl From<TriangleMesh> for Shape {
+    fn from(mesh: TriangleMesh) -> Self {
+        Shape::Mesh(Box::new(mesh))
     }
 }

@@ -541,6 +541,10 @@ impl Surface {
         Self::lagrange_triangle(&[n[0], n[3], n[1], n[5], n[4], n[2]])
     }
 
+    pub(crate) fn into_pieces(self) -> Vec<Piece<2, SurfaceChart>> {
+        self.atlas.pieces
+    }
+
     /// The ranges of both parameters; `[0, 1]` each for triangles.
     pub fn domain(&self) -> [[f64; 2]; 2] {
         self.domain

@@ -33,9 +33,15 @@ pub fn closest<const K: usize>(a: &[f64; K], x: &[f64; K]) -> Option<Vec<[f64; K
             return Some(vec![up, down]);
         }
     }
-    let term = |t: f64, k: usize| a[k] * magnitude[k] / (t + a[k] * a[k]);
-    let mut t =
-        (0..K).filter(|&k| magnitude[k] > 0.0).map(|k| a[k] * (magnitude[k] - a[k])).fold(f64::NEG_INFINITY, f64::max);
+    // With `s = t + least²` nothing cancels near the centre.
+    let beyond = a.map(|v| (v - least) * (v + least));
+    let term = |s: f64, k: usize| a[k] * magnitude[k] / (s + beyond[k]);
+    let mut s = f64::NEG_INFINITY;
+    for k in 0..K {
+        if magnitude[k] > 0.0 {
+            s = s.max(a[k] * magnitude[k] - beyond[k]);
+        }
+    }
     for _ in 0..60 {
         let (mut value, mut slope) = (-1.0, 0.0);
         for k in 0..K {

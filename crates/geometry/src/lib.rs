@@ -12,6 +12,7 @@
 //! - [`frame`]: metric, curvature and frames of curves and surfaces.
 //! - [`measures`]: gap and coordinates of a contact pair with their first and second variations.
 //! - [`mesh`]: triangle meshes; [`bvh`]: the search tree under them.
+//! - [`implicit_surface`]: bodies given by functions, with the exact closest point of their boundary.
 //! - [`outline`]: closed outlines of a function sampled on a grid.
 //! - [`polygon`]: winding numbers, areas and crossings of polygons.
 
@@ -21,6 +22,7 @@ pub mod closed_curve;
 pub mod closest;
 pub mod frame;
 pub mod implicit;
+pub mod implicit_surface;
 pub mod jet;
 pub mod measures;
 pub mod mesh;

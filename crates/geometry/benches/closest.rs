@@ -1,6 +1,6 @@
 //! Queries per second of certified closest points, one line per class: `cargo bench -p signorini-geometry`.
 
-use signorini_geometry::closest::{Query, closest};
+use signorini_geometry::closest::{Query, Step, Tracker, closest};
 use signorini_geometry::shape::{Axes, Curve, Shape, Surface};
 use signorini_geometry::{Point, Vector};
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -84,6 +84,31 @@ fn time(name: &str, queries: &[(usize, Shape)], shapes: &[Shape]) {
     );
 }
 
+/// A point that wanders slowly, followed with certificates.
+fn track(name: &str, shapes: &[Shape], r: &mut Random) {
+    let (mut steps, mut warm) = (0u64, 0u64);
+    let paths: Vec<(Vector<3>, Vector<3>)> = shapes.iter().map(|_| (r.vector(0.8), r.vector(0.0005))).collect();
+    let start = Instant::now();
+    while start.elapsed().as_secs_f64() < 0.4 {
+        for (shape, (from, velocity)) in shapes.iter().zip(&paths) {
+            let mut tracker = Tracker::new(Query::default());
+            let motion = velocity.norm() * 1.000001;
+            for k in 0..1000 {
+                let p = Shape::Point(from + velocity * f64::from(k));
+                let (_, step) = tracker.closest(&p, shape, [motion, 0.0]);
+                warm += u64::from(step == Step::Warm);
+                steps += 1;
+            }
+        }
+    }
+    let seconds = start.elapsed().as_secs_f64();
+    println!(
+        "{name:22} {:>12.3e} steps/s    {:>8.1} % warm",
+        steps as f64 / seconds,
+        100.0 * warm as f64 / steps as f64
+    );
+}
+
 fn main() {
     let mut r = Random(7);
     let mut run = |name: &str, partner: &str, make: &mut dyn FnMut(&mut Random, usize) -> Shape| {
@@ -128,4 +153,13 @@ fn main() {
     run("curve-curve NURBS", "curve", &mut |r, _| nurbs_curve(r, 0.0));
     run("curve-surface NURBS", "curve", &mut |r, _| nurbs_surface(r, 0.0));
     run("surface-surface NURBS", "surface", &mut |r, _| nurbs_surface(r, 0.0));
+    println!();
+    let curves: Vec<Shape> = (0..12).map(|_| nurbs_curve(&mut r, 0.0)).collect();
+    track("point-curve, warm", &curves, &mut r);
+    let quads: Vec<Shape> = (0..12).map(|_| Surface::lagrange_quad(&net(&mut r, 3, 3, 0.15)).unwrap().into()).collect();
+    track("point-quad9, warm", &quads, &mut r);
+    let cubic: Vec<Shape> = (0..12).map(|_| Surface::bezier(&net(&mut r, 4, 4, 0.2), None).unwrap().into()).collect();
+    track("point-bicubic, warm", &cubic, &mut r);
+    let surfaces: Vec<Shape> = (0..12).map(|_| nurbs_surface(&mut r, 0.0)).collect();
+    track("point-NURBS 6x7, warm", &surfaces, &mut r);
 }

@@ -11,15 +11,19 @@
 //! - [`closest`]: closest points of any two of them, certified.
 //! - [`frame`]: metric, curvature and frames of curves and surfaces.
 //! - [`measures`]: gap and coordinates of a contact pair with their first and second variations.
+//! - [`body`]: bodies of many shapes, and the closest pair between two.
+//! - [`existence`]: where projections exist and are unique.
 //! - [`mesh`]: triangle meshes; [`bvh`]: the search tree under them.
 //! - [`implicit_surface`]: bodies given by functions, with the exact closest point of their boundary.
 //! - [`outline`]: closed outlines of a function sampled on a grid.
 //! - [`polygon`]: winding numbers, areas and crossings of polygons.
 
 pub mod aabb;
+pub mod body;
 pub mod bvh;
 pub mod closed_curve;
 pub mod closest;
+pub mod existence;
 pub mod frame;
 pub mod implicit;
 pub mod implicit_surface;

@@ -146,7 +146,7 @@ where
 }
 
 /// A candidate in the parameters of the shapes, with the number of flat directions.
-fn describe<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>(
+pub fn describe<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>(
     a: &Atlas<A, CA>,
     b: &Atlas<B, CB>,
     c: &Candidate<A, B>,
@@ -162,13 +162,15 @@ where
         let sides = if k < A { &piece_a.sides[k] } else { &piece_b.sides[k - A] };
         side_at(sides, z[k]).is_none_or(Side::is_smooth)
     });
-    let eigenvalues = at.eigenvalues(&free);
+    let (eigenvalues, count) = at.eigenvalues(&free);
+    let eigenvalues = &eigenvalues[..count];
     let flat = eigenvalues.iter().filter(|&&e| e.abs() < FLAT).count();
-    let lambda_min = at.lambda_min(&free);
+    let least = eigenvalues.iter().copied().fold(f64::INFINITY, f64::min);
+    let lambda_min = if eigenvalues.iter().any(|e| e.is_nan()) { f64::NAN } else { least };
     let pair = ClosestPair {
         distance: c.distance,
-        a: Foot::new(c.xa, piece_a.feature(&c.a), &piece_a.map.apply(&c.a)).on_element(c.piece[0] as usize),
-        b: Foot::new(c.xb, piece_b.feature(&c.b), &piece_b.map.apply(&c.b)).on_element(c.piece[1] as usize),
+        a: Foot::new(c.xa, piece_a.feature(&c.a), &piece_a.map.apply(&c.a)).on_piece(c.piece[0] as usize, &c.a),
+        b: Foot::new(c.xb, piece_b.feature(&c.b), &piece_b.map.apply(&c.b)).on_piece(c.piece[1] as usize, &c.b),
         lambda_min,
     };
     (pair, flat)

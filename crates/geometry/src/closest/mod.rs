@@ -13,9 +13,12 @@ mod ellipsoid;
 mod newton;
 mod result;
 mod search;
+mod track;
 
 pub(crate) use closed_form::{segment_parameters, triangle as closest_on_triangle};
 pub use result::{ClosestPair, Entity, Feature, FeatureKind, Foot, Projection, Uniqueness};
+pub(crate) use track::clearance_of;
+pub use track::{Step, Tracker};
 
 use crate::mesh::TriangleMesh;
 use crate::patch::{Atlas, Chart, Piece, PointChart};

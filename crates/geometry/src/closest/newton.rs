@@ -46,29 +46,50 @@ impl<const N: usize> Difference<N> {
         Difference { d, j, hessian, g, metric }
     }
 
-    /// The smallest eigenvalue of `metric⁻¹ hessian` on the free parameters; infinite where none is free, not a number
-    /// where the parametrisation is degenerate.
-    pub fn lambda_min(&self, free: &[bool; N]) -> f64 {
-        self.eigenvalues(free).into_iter().fold(f64::INFINITY, f64::min)
-    }
-
-    /// The eigenvalues of `metric⁻¹ hessian` on the free parameters.
-    pub fn eigenvalues(&self, free: &[bool; N]) -> Vec<f64> {
-        let index: Vec<usize> = (0..N).filter(|&k| free[k]).collect();
-        let n = index.len();
-        if n == 0 {
-            return Vec::new();
-        }
-        let pick = |m: &[[f64; N]; N]| nalgebra::DMatrix::from_fn(n, n, |r, c| m[index[r]][index[c]]);
-        let (metric, hessian) = (pick(&self.metric), pick(&self.hessian));
-        match metric.cholesky() {
-            Some(cholesky) => {
-                let half = cholesky.l().solve_lower_triangular(&hessian).unwrap_or(hessian);
-                let whole = cholesky.l().solve_lower_triangular(&half.transpose()).unwrap_or(half);
-                whole.symmetric_eigenvalues().iter().copied().collect()
+    /// The eigenvalues of `metric⁻¹ hessian` on the free parameters, in no order; not numbers where the parametrisation
+    /// is degenerate. The second value counts them.
+    pub fn eigenvalues(&self, free: &[bool; N]) -> ([f64; N], usize) {
+        let mut index = [0; N];
+        let mut n = 0;
+        for k in 0..N {
+            if free[k] {
+                index[n] = k;
+                n += 1;
             }
-            None => vec![f64::NAN; n],
         }
+        let mut out = [f64::NAN; N];
+        let (m, h) = (
+            |r: usize, c: usize| self.metric[index[r]][index[c]],
+            |r: usize, c: usize| self.hessian[index[r]][index[c]],
+        );
+        match n {
+            0 => {}
+            1 => out[0] = h(0, 0) / m(0, 0),
+            2 => {
+                // The roots of det(H - λ M).
+                let det = m(0, 0) * m(1, 1) - m(0, 1) * m(0, 1);
+                let half_trace = 0.5 * (h(0, 0) * m(1, 1) + h(1, 1) * m(0, 0) - 2.0 * h(0, 1) * m(0, 1)) / det;
+                let product = (h(0, 0) * h(1, 1) - h(0, 1) * h(0, 1)) / det;
+                if det > 1e-24 * m(0, 0) * m(1, 1) {
+                    let root = (half_trace * half_trace - product).max(0.0).sqrt();
+                    let large = half_trace + root.copysign(half_trace);
+                    out[0] = large;
+                    out[1] = if large == 0.0 { 0.0 } else { product / large };
+                }
+            }
+            _ => {
+                let pick = |f: &dyn Fn(usize, usize) -> f64| nalgebra::DMatrix::from_fn(n, n, f);
+                if let Some(cholesky) = pick(&m).cholesky() {
+                    let hessian = pick(&h);
+                    let half = cholesky.l().solve_lower_triangular(&hessian).unwrap_or(hessian);
+                    let whole = cholesky.l().solve_lower_triangular(&half.transpose()).unwrap_or(half);
+                    for (value, found) in out.iter_mut().zip(whole.symmetric_eigenvalues().iter()) {
+                        *value = *found;
+                    }
+                }
+            }
+        }
+        (out, n)
     }
 }
 

@@ -99,13 +99,30 @@ pub struct Foot {
     pub element: usize,
     dimension: usize,
     parameters: [f64; 2],
+    /// Local parameters on the smooth piece.
+    local: [f64; 2],
 }
 
 impl Foot {
     pub(crate) fn new(point: Point<3>, feature: Feature, parameters: &[f64]) -> Self {
         let mut filled = [0.0; 2];
         filled[..parameters.len()].copy_from_slice(parameters);
-        Foot { point, feature, element: 0, dimension: parameters.len(), parameters: filled }
+        Foot { point, feature, element: 0, dimension: parameters.len(), parameters: filled, local: [0.0; 2] }
+    }
+
+    pub(crate) fn on_piece(mut self, piece: usize, local: &[f64]) -> Self {
+        self.element = piece;
+        self.local[..local.len()].copy_from_slice(local);
+        self
+    }
+
+    pub(crate) fn place(&mut self, (piece, local): (usize, [f64; 2])) {
+        self.element = piece;
+        self.local = local;
+    }
+
+    pub(crate) fn local(&self, k: usize) -> f64 {
+        self.local[k]
     }
 
     pub(crate) fn on_element(self, element: usize) -> Self {

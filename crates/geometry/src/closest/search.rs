@@ -55,7 +55,7 @@ pub struct Found<const A: usize, const B: usize> {
 }
 
 /// One shape in a search: its tree and the cells added below it.
-struct Partner<'a, const M: usize, C> {
+pub(super) struct Partner<'a, const M: usize, C> {
     atlas: &'a Atlas<M, C>,
     extra: Vec<Cell<M>>,
     /// Children of the leaves of the tree.
@@ -63,12 +63,12 @@ struct Partner<'a, const M: usize, C> {
 }
 
 impl<'a, const M: usize, C: Chart<M>> Partner<'a, M, C> {
-    fn new(atlas: &'a Atlas<M, C>) -> Self {
+    pub fn new(atlas: &'a Atlas<M, C>) -> Self {
         Partner { atlas, extra: Vec::new(), grown: HashMap::new() }
     }
 
     #[inline]
-    fn cell(&self, id: u32) -> &Cell<M> {
+    pub fn cell(&self, id: u32) -> &Cell<M> {
         let built = self.atlas.nodes.len();
         if (id as usize) < built { &self.atlas.nodes[id as usize] } else { &self.extra[id as usize - built] }
     }
@@ -78,7 +78,7 @@ impl<'a, const M: usize, C: Chart<M>> Partner<'a, M, C> {
         (self.atlas.nodes.len() + self.extra.len() - 1) as u32
     }
 
-    fn children(&mut self, id: u32) -> [u32; 2] {
+    pub fn children(&mut self, id: u32) -> [u32; 2] {
         let built = self.atlas.nodes.len();
         let cell = self.cell(id);
         if cell.children != [0; 2] {
@@ -104,10 +104,10 @@ impl<'a, const M: usize, C: Chart<M>> Partner<'a, M, C> {
 }
 
 #[derive(Clone, Copy)]
-struct Pair {
-    bound: f64,
-    a: u32,
-    b: u32,
+pub(super) struct Pair {
+    pub bound: f64,
+    pub a: u32,
+    pub b: u32,
 }
 
 impl PartialEq for Pair {

@@ -316,6 +316,11 @@ impl<const M: usize, C: Chart<M>> Atlas<M, C> {
         self.magnitude = low.amax().max(high.amax());
     }
 
+    /// The cell over any box of parameters of a piece.
+    pub fn cell(&self, piece: u32, middle: [f64; M], half: [f64; M]) -> Cell<M> {
+        Cell::new(piece, &self.pieces[piece as usize], middle, half)
+    }
+
     /// The two halves of a cell of one piece.
     pub fn halve(&self, cell: &Cell<M>) -> [Cell<M>; 2] {
         let axis = cell.axis();

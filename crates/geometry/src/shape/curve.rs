@@ -224,9 +224,8 @@ impl Curve {
             .collect();
         let curve = Self::assemble(CurveKind::Other, parts, closed);
         if closed {
-            let [from, to] = curve.domain;
             let last = curve.atlas.pieces.len() - 1;
-            let gap = curve.jet_of(0, from).x - curve.jet_of(last, to).x;
+            let gap = curve.local_jet(0, -1.0).x - curve.local_jet(last, 1.0).x;
             if gap.norm() > 1e-9 * (curve.atlas.size + curve.atlas.magnitude) {
                 return Err(ShapeError::new("closed", "the ends of the curve do not meet"));
             }
@@ -288,18 +287,24 @@ impl Curve {
         self.atlas.size
     }
 
-    /// Position and derivatives; parameters outside the domain are wrapped where the curve is closed, else clamped.
-    pub fn jet(&self, t: f64) -> CurveJet {
+    /// The piece in which a parameter lies, and its local parameter.
+    pub(crate) fn locate(&self, t: f64) -> (usize, f64) {
         let t = wrap(t, self.domain, self.closed);
         let pieces = &self.atlas.pieces;
         let k = pieces.partition_point(|p| affine(&p.map)[0][0] <= t).clamp(1, pieces.len()) - 1;
-        self.jet_of(k, t)
+        let [[from], [to]] = affine(&pieces[k].map);
+        (k, ((t - from) - (to - t)) / (to - from))
     }
 
-    fn jet_of(&self, piece: usize, t: f64) -> CurveJet {
+    /// Position and derivatives; parameters outside the domain are wrapped where the curve is closed, else clamped.
+    pub fn jet(&self, t: f64) -> CurveJet {
+        let (piece, s) = self.locate(t);
+        self.local_jet(piece, s)
+    }
+
+    fn local_jet(&self, piece: usize, s: f64) -> CurveJet {
         let [[from], [to]] = affine(&self.atlas.pieces[piece].map);
         let half = 0.5 * (to - from);
-        let s = ((t - from) - (to - t)) / (to - from);
         let [x, d1, d2, d3] = self.atlas.pieces[piece].chart.jet3(s);
         CurveJet { x, d1: d1 / half, d2: d2 / (half * half), d3: d3 / (half * half * half) }
     }

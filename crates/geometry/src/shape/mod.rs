@@ -11,8 +11,8 @@ pub use error::{Axes, LARGEST_COORDINATE, ShapeError};
 pub(crate) use surface::SurfaceKind;
 pub use surface::{Surface, SurfaceJet};
 
-use crate::Point;
 use crate::mesh::TriangleMesh;
+use crate::{Aabb, Point};
 
 /// A partner of a contact pair.
 #[derive(Clone, Debug)]
@@ -43,6 +43,17 @@ impl Shape {
             Shape::Curve(c) => c.position(parameters[0]),
             Shape::Surface(s) => s.position(parameters[0], parameters[1]),
             Shape::Mesh(m) => m.position(element, parameters),
+        }
+    }
+
+    /// A box that holds the shape; tight for points and meshes, a few percent wide for others.
+    pub fn bounds(&self) -> Aabb<3> {
+        let hull = |hull: &[Point<3>; 2]| Aabb::new(hull[0], hull[1]);
+        match self {
+            Shape::Point(p) => Aabb::new(*p, *p),
+            Shape::Curve(c) => hull(&c.atlas.nodes[0].hull),
+            Shape::Surface(s) => hull(&s.atlas.nodes[0].hull),
+            Shape::Mesh(m) => *m.bounds(),
         }
     }
 

@@ -571,18 +571,24 @@ impl Surface {
             let (u, v) = (u.clamp(0.0, 1.0), v.clamp(0.0, 1.0));
             return scaled(&chart.jet3(&[2.0 * u - 1.0, 2.0 * v - 1.0]), [0.5; 2]);
         }
-        let z = [wrap(u, self.domain[0], self.closed[0]), wrap(v, self.domain[1], self.closed[1])];
+        let (piece, s) = self.locate([u, v]);
+        let [low, high] = affine(&self.atlas.pieces[piece].map);
+        scaled(&self.atlas.pieces[piece].chart.jet3(&s), [0, 1].map(|k| 0.5 * (high[k] - low[k])))
+    }
+
+    /// The piece in which parameters lie, and its local parameters; not for triangles.
+    pub(crate) fn locate(&self, z: [f64; 2]) -> (usize, [f64; 2]) {
         let mut number = 0;
-        let (mut s, mut half) = ([0.0; 2], [0.0; 2]);
+        let mut s = [0.0; 2];
         for k in 0..2 {
+            let t = wrap(z[k], self.domain[k], self.closed[k]);
             let breaks = &self.breaks[k];
-            let interval = breaks.partition_point(|&b| b <= z[k]).clamp(1, breaks.len() - 1) - 1;
+            let interval = breaks.partition_point(|&b| b <= t).clamp(1, breaks.len() - 1) - 1;
             let [from, to] = [breaks[interval], breaks[interval + 1]];
-            s[k] = ((z[k] - from) - (to - z[k])) / (to - from);
-            half[k] = 0.5 * (to - from);
+            s[k] = ((t - from) - (to - t)) / (to - from);
             number = if k == 0 { interval * (self.breaks[1].len() - 1) } else { number + interval };
         }
-        scaled(&self.atlas.pieces[number].chart.jet3(&s), half)
+        (number, s)
     }
 
     /// Position.

@@ -7,7 +7,7 @@ mod shapes;
 
 use shapes::{CURVES, Random, SURFACES, Sample, curve, surface};
 use signorini_geometry::Point;
-use signorini_geometry::closest::{Query, closest};
+use signorini_geometry::closest::{Query, Step, Tracker, closest};
 use signorini_geometry::shape::Shape;
 
 fn multiplier() -> usize {
@@ -206,6 +206,61 @@ fn surfaces_and_surfaces() {
         let a = surface(&mut random, k % SURFACES);
         let b = surface(&mut random, k / SURFACES % SURFACES);
         check(&a, &b, 7, 8, &format!("surface-surface {k}"));
+    });
+}
+
+/// A point that wanders, followed with certificates, against a search at every step.
+#[test]
+fn tracked_points_are_those_of_a_search() {
+    let steps = std::sync::atomic::AtomicUsize::new(0);
+    let warm = std::sync::atomic::AtomicUsize::new(0);
+    in_parallel((CURVES + SURFACES) * 3 * multiplier(), |k| {
+        let mut random = Random(6_000_000_001 + k as u64);
+        let kind = k % (CURVES + SURFACES);
+        let sample = if kind < CURVES { curve(&mut random, kind) } else { surface(&mut random, kind - CURVES) };
+        let mut tracker = Tracker::new(Query::default());
+        let (mut p, mut velocity) = (query_point(&mut random, &sample), random.vector(0.002));
+        for step in 0..60 {
+            let before = p;
+            p += velocity;
+            velocity += random.vector(0.0003);
+            let moved = (p - before).norm() * (1.0 + 1e-12);
+            let (tracked, how) = tracker.closest(&Shape::Point(p), &sample.shape, [moved, 0.0]);
+            let searched = closest(&Shape::Point(p), &sample.shape, &Query::default());
+            let size = sample.shape.size() + p.norm();
+            assert!(
+                (tracked.distance() - searched.distance()).abs() <= 1e-13 * size,
+                "{k} {}: step {step}",
+                sample.name
+            );
+            if searched.effort > 0 {
+                steps.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+                warm.fetch_add(usize::from(how == Step::Warm), std::sync::atomic::Ordering::Relaxed);
+            }
+        }
+    });
+    let (steps, warm) = (steps.into_inner(), warm.into_inner());
+    assert!(2 * warm > steps, "{warm} warm of {steps}");
+}
+
+/// Two curves or surfaces, the second carried along a path.
+#[test]
+fn tracked_shapes_are_those_of_a_search() {
+    in_parallel(60 * multiplier(), |k| {
+        let mut random = Random(7_000_000_003 + k as u64);
+        let fixed = surface(&mut random, 7 + k % 7);
+        let points: Vec<Point<3>> =
+            (0..5).map(|i| Point::<3>::new(0.4 * i as f64 - 0.8, 0.0, 0.9) + random.vector(0.3)).collect();
+        let velocity = random.vector(0.004);
+        let mut tracker = Tracker::new(Query::default());
+        for step in 0..20 {
+            let moved: Vec<Point<3>> = points.iter().map(|p| p + velocity * f64::from(step)).collect();
+            let curve: Shape = signorini_geometry::shape::Curve::bezier(&moved, None).unwrap().into();
+            let motion = velocity.norm() * (1.0 + 1e-12);
+            let (tracked, _) = tracker.closest(&curve, &fixed.shape, [motion, 0.0]);
+            let searched = closest(&curve, &fixed.shape, &Query::default());
+            assert!((tracked.distance() - searched.distance()).abs() <= 1e-12, "{k}: step {step}");
+        }
     });
 }
 

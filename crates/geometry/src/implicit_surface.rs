@@ -116,6 +116,12 @@ pub struct ImplicitFoot {
 const MOST_CELLS: usize = 400;
 const ITERATIONS: usize = 40;
 
+impl std::fmt::Debug for ImplicitSurface {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ImplicitSurface").field("bounds", self.mesh.bounds()).field("cell", &self.cell).finish()
+    }
+}
+
 impl ImplicitSurface {
     /// The boundary of a body in a box, triangulated on `cells` cells along its longest side as the start of Newton.
     ///
@@ -137,6 +143,11 @@ impl ImplicitSurface {
 
     pub fn body(&self) -> &ImplicitBody {
         &self.body
+    }
+
+    /// Side of a cell of the triangulation.
+    pub fn cell(&self) -> f64 {
+        self.cell
     }
 
     /// The triangulation from which Newton starts.
@@ -449,7 +460,7 @@ impl SampledField {
             let n = count[axis];
             let mut line = vec![0.0; n];
             for start in 0..expected {
-                if start / strides[axis] % n != 0 {
+                if !(start / strides[axis]).is_multiple_of(n) {
                     continue;
                 }
                 for (m, value) in line.iter_mut().enumerate() {

@@ -264,7 +264,14 @@ impl TriangleMesh {
         parameters: [f64; 2],
         feature: Feature,
     ) -> MeshFoot {
-        let (number, normal) = match feature.entity {
+        let (number, normal) = self.numbered(triangle, feature);
+        let gap = self.quality.has_inside().then(|| if (p - point).dot(&normal) < 0.0 { -distance } else { distance });
+        MeshFoot { distance, point, triangle, parameters, feature, number, normal, gap }
+    }
+
+    /// Number and normal of a feature.
+    fn numbered(&self, triangle: usize, feature: Feature) -> (usize, Vector<3>) {
+        match feature.entity {
             Entity::Border(Border::V0) => self.edge(triangle, 0),
             Entity::Border(Border::U0) => self.edge(triangle, 1),
             Entity::Border(_) => self.edge(triangle, 2),
@@ -272,9 +279,7 @@ impl TriangleMesh {
             Entity::Corner(Border::V0, _) => self.vertex(triangle, 1),
             Entity::Corner(..) => self.vertex(triangle, 2),
             _ => (triangle, self.face_normals[triangle]),
-        };
-        let gap = self.quality.has_inside().then(|| if (p - point).dot(&normal) < 0.0 { -distance } else { distance });
-        MeshFoot { distance, point, triangle, parameters, feature, number, normal, gap }
+        }
     }
 
     fn edge(&self, triangle: usize, k: usize) -> (usize, Vector<3>) {
@@ -285,6 +290,11 @@ impl TriangleMesh {
     fn vertex(&self, triangle: usize, k: usize) -> (usize, Vector<3>) {
         let number = self.triangles[triangle][k] as usize;
         (number, self.vertex_normals[number])
+    }
+
+    /// The pseudo-normal at a feature of a triangle: a point is outside where it lies on its side.
+    pub(crate) fn normal_at(&self, triangle: usize, feature: Feature) -> Vector<3> {
+        self.numbered(triangle, feature).1
     }
 
     /// The closest pair of points of two meshes: distance, triangle and parameters on each.

@@ -10,11 +10,12 @@ use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = std::env::args().nth(1).ok_or("give a file of queries")?;
-    let mut scanner = Scanner::new(BufReader::new(std::fs::File::open(path)?));
+    let folder = std::path::Path::new(&path).parent().ok_or("a file, not a folder")?;
+    let mut scanner = Scanner::new(BufReader::new(std::fs::File::open(&path)?));
     let mut classes: BTreeMap<String, Vec<(f64, f64)>> = BTreeMap::new();
     while let Some(case) = scanner.next_case()? {
         let comments: Value = serde_json::from_slice(&case.text)?;
-        let query = parse(&case.text)?;
+        let query = parse(&case.text, folder)?;
         let class = comments["class"].as_str().unwrap_or("all").to_string();
         let mut repetitions = 0;
         let mut pairs = 0;

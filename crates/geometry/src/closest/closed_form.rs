@@ -317,8 +317,8 @@ fn revolution(p: &Point<3>, surface: &Surface, axes: &Axes, profile: &Profile, q
             });
             let feature = rectangle_feature([u, v], domain, closed, collapsed);
             let point = axes.origin + (axes.ex * cos + axes.ey * sin) * f + axes.ez * g;
-            let u_free = !(domain[0].contains(&u) && !closed[0]) && !collapses;
-            let v_free = !(domain[1].contains(&v) && !closed[1]);
+            let u_free = (closed[0] || !domain[0].contains(&u)) && !collapses;
+            let v_free = closed[1] || !domain[1].contains(&v);
             let mut lambda = f64::INFINITY;
             if u_free {
                 lambda = lambda.min(reach / f);

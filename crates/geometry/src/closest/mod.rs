@@ -20,6 +20,8 @@ pub use result::{ClosestPair, Entity, Feature, FeatureKind, Foot, Projection, Un
 pub(crate) use track::clearance_of;
 pub use track::{Step, Tracker};
 
+use crate::frame::SurfaceFrame;
+use crate::implicit_surface::ImplicitSurface;
 use crate::mesh::TriangleMesh;
 use crate::patch::{Atlas, Chart, Piece, PointChart};
 use crate::shape::Shape;
@@ -69,6 +71,12 @@ pub fn closest(a: &Shape, b: &Shape, query: &Query) -> Projection {
         (Shape::Curve(c), Shape::Mesh(m)) => on_triangles(general::<1, 2, 3, _, _>(&c.atlas, m.atlas(), query)),
         (Shape::Surface(s), Shape::Mesh(m)) => on_triangles(general::<2, 2, 4, _, _>(&s.atlas, m.atlas(), query)),
         (Shape::Mesh(m), Shape::Mesh(n)) => mesh_mesh(m, n),
+        (Shape::Point(p), Shape::Implicit(s)) => point_implicit(p, s),
+        (_, Shape::Implicit(s)) => {
+            // The triangulation stands for the surface: a share of a cell is what it can be off.
+            let mesh = Shape::Mesh(Box::new(s.mesh().clone()));
+            Projection { certified_to: s.cell(), ..closest(a, &mesh, query) }
+        }
         _ => swapped(closest(b, a, query)),
     }
 }
@@ -92,6 +100,34 @@ fn point_mesh(p: &Point<3>, mesh: &TriangleMesh, query: &Query) -> Projection {
     let others: Vec<ClosestPair> = pairs.collect();
     let uniqueness = if others.is_empty() { Uniqueness::Unique } else { Uniqueness::Multiple };
     Projection { closest, uniqueness, others, certified_to: 0.0, margin: 0.0, effort: 0 }
+}
+
+fn point_implicit(p: &Point<3>, surface: &ImplicitSurface) -> Projection {
+    let foot = surface.closest(p);
+    let closest = ClosestPair {
+        distance: foot.gap.abs(),
+        a: Foot::of_point(*p),
+        b: Foot::new(foot.point, Feature { kind: foot.feature, entity: Entity::Whole }, &[]),
+        lambda_min: f64::NAN,
+    };
+    let uniqueness = if foot.unique { Uniqueness::Unique } else { Uniqueness::Multiple };
+    Projection { closest, uniqueness, others: Vec::new(), certified_to: surface.cell(), margin: 0.0, effort: 0 }
+}
+
+/// The distance with the sign of the side of `b` on which the closest point of `a` lies: negative inside a closed mesh
+/// or an implicit body, and below a surface, seen along `r_u × r_v`. `None` where there is no side.
+pub fn signed_gap(pair: &ClosestPair, b: &Shape) -> Option<f64> {
+    let d = pair.a.point - pair.b.point;
+    let side = match b {
+        Shape::Surface(s) => {
+            let &[u, v] = pair.b.parameters() else { return None };
+            d.dot(&SurfaceFrame::new(&s.jet(u, v))?.normal)
+        }
+        Shape::Mesh(m) if m.quality().has_inside() => d.dot(&m.normal_at(pair.b.element, pair.b.feature)),
+        Shape::Implicit(s) => s.body().value(&pair.a.point),
+        _ => return None,
+    };
+    Some(if side < 0.0 { -pair.distance } else { pair.distance })
 }
 
 /// The closest pair of two meshes. Flat faces that lie parallel share a whole area; one pair of it is returned, and

@@ -51,11 +51,11 @@ pub struct Tracker {
 
 #[derive(Clone, Debug)]
 enum Certificates {
-    PointCurve(Certificate<0, 1, 1>),
-    PointSurface(Certificate<0, 2, 2>),
-    CurveCurve(Certificate<1, 1, 2>),
-    CurveSurface(Certificate<1, 2, 3>),
-    SurfaceSurface(Certificate<2, 2, 4>),
+    PointCurve(Box<Certificate<0, 1, 1>>),
+    PointSurface(Box<Certificate<0, 2, 2>>),
+    CurveCurve(Box<Certificate<1, 1, 2>>),
+    CurveSurface(Box<Certificate<1, 2, 3>>),
+    SurfaceSurface(Box<Certificate<2, 2, 4>>),
 }
 
 #[derive(Clone, Debug)]
@@ -84,7 +84,7 @@ impl Tracker {
     /// The closest points, given that since the last call no point of either shape has moved by more than `motion`
     /// (zero for a shape that is the same as then).
     pub fn closest(&mut self, a: &Shape, b: &Shape, motion: [f64; 2]) -> (Projection, Step) {
-        if a.dimension() > b.dimension() || matches!(a, Shape::Mesh(_)) {
+        if a.dimension() > b.dimension() {
             let (projection, step) = self.closest(b, a, [motion[1], motion[0]]);
             return (swapped(projection), step);
         }
@@ -119,17 +119,19 @@ impl Tracker {
             let found = &projection.closest;
             self.certificate = match (a, b) {
                 (Shape::Point(p), Shape::Curve(c)) => {
-                    certify(&point_atlas(p), &c.atlas, found).map(Certificates::PointCurve)
+                    certify(&point_atlas(p), &c.atlas, found).map(Box::new).map(Certificates::PointCurve)
                 }
                 (Shape::Point(p), Shape::Surface(s)) => {
-                    certify(&point_atlas(p), &s.atlas, found).map(Certificates::PointSurface)
+                    certify(&point_atlas(p), &s.atlas, found).map(Box::new).map(Certificates::PointSurface)
                 }
-                (Shape::Curve(c), Shape::Curve(d)) => certify(&c.atlas, &d.atlas, found).map(Certificates::CurveCurve),
+                (Shape::Curve(c), Shape::Curve(d)) => {
+                    certify(&c.atlas, &d.atlas, found).map(Box::new).map(Certificates::CurveCurve)
+                }
                 (Shape::Curve(c), Shape::Surface(s)) => {
-                    certify(&c.atlas, &s.atlas, found).map(Certificates::CurveSurface)
+                    certify(&c.atlas, &s.atlas, found).map(Box::new).map(Certificates::CurveSurface)
                 }
                 (Shape::Surface(s), Shape::Surface(t)) => {
-                    certify(&s.atlas, &t.atlas, found).map(Certificates::SurfaceSurface)
+                    certify(&s.atlas, &t.atlas, found).map(Box::new).map(Certificates::SurfaceSurface)
                 }
                 _ => None,
             };

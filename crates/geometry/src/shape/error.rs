@@ -117,17 +117,25 @@ impl Axes {
     /// Axes that are not orthonormal to 1e-8.
     pub fn with_third(origin: Point<3>, ex: Vector<3>, ey: Vector<3>, ez: Vector<3>) -> Result<Self, ShapeError> {
         position("o", &origin)?;
-        for (name, e) in [("ex", &ex), ("ey", &ey), ("ez", &ez)] {
+        let unit = |name: &'static str, e: &Vector<3>| {
             position(name, e)?;
             if (e.norm() - 1.0).abs() > 1e-8 {
                 return Err(ShapeError::new(name, format!("an axis of length {}, not 1", e.norm())));
             }
-        }
-        for (name, p, q) in [("ey", &ex, &ey), ("ez", &ex, &ez), ("ez", &ey, &ez)] {
+            Ok(())
+        };
+        let across = |name: &'static str, p: &Vector<3>, q: &Vector<3>| {
             if p.dot(q).abs() > 1e-8 {
                 return Err(ShapeError::new(name, "not at right angles to the other axes"));
             }
-        }
+            Ok(())
+        };
+        unit("ex", &ex)?;
+        unit("ey", &ey)?;
+        across("ey", &ex, &ey)?;
+        unit("ez", &ez)?;
+        across("ez", &ex, &ez)?;
+        across("ez", &ey, &ez)?;
         Ok(Axes { origin, ex, ey, ez })
     }
 

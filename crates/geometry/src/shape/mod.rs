@@ -11,8 +11,10 @@ pub use error::{Axes, LARGEST_COORDINATE, ShapeError};
 pub(crate) use surface::SurfaceKind;
 pub use surface::{Surface, SurfaceJet};
 
+use crate::implicit_surface::ImplicitSurface;
 use crate::mesh::TriangleMesh;
 use crate::{Aabb, Point};
+use std::sync::Arc;
 
 /// A partner of a contact pair.
 #[derive(Clone, Debug)]
@@ -21,29 +23,32 @@ pub enum Shape {
     Curve(Box<Curve>),
     Surface(Box<Surface>),
     Mesh(Box<TriangleMesh>),
+    Implicit(Arc<ImplicitSurface>),
 }
 
 impl Shape {
-    /// Number of parameters: 0, 1 or 2.
+    /// 0, 1 or 2: a point, a curve or a surface.
     pub fn dimension(&self) -> usize {
         match self {
             Shape::Point(_) => 0,
             Shape::Curve(_) => 1,
-            Shape::Surface(_) | Shape::Mesh(_) => 2,
+            Shape::Surface(_) | Shape::Mesh(_) | Shape::Implicit(_) => 2,
         }
     }
 
-    /// Position at given parameters; those a shape does not have are ignored. `element` is the triangle of a mesh.
+    /// Position at given parameters; those a shape does not have are ignored. `element` is the triangle of a mesh. An
+    /// implicit surface has no parameters: `None`.
     ///
     /// # Panics
     /// If a mesh has no such element.
-    pub fn position(&self, element: usize, parameters: [f64; 2]) -> Point<3> {
-        match self {
+    pub fn position(&self, element: usize, parameters: [f64; 2]) -> Option<Point<3>> {
+        Some(match self {
             Shape::Point(p) => *p,
             Shape::Curve(c) => c.position(parameters[0]),
             Shape::Surface(s) => s.position(parameters[0], parameters[1]),
             Shape::Mesh(m) => m.position(element, parameters),
-        }
+            Shape::Implicit(_) => return None,
+        })
     }
 
     /// A box that holds the shape; tight for points and meshes, a few percent wide for others.
@@ -54,6 +59,7 @@ impl Shape {
             Shape::Curve(c) => hull(&c.atlas.nodes[0].hull),
             Shape::Surface(s) => hull(&s.atlas.nodes[0].hull),
             Shape::Mesh(m) => *m.bounds(),
+            Shape::Implicit(s) => *s.mesh().bounds(),
         }
     }
 
@@ -64,6 +70,7 @@ impl Shape {
             Shape::Curve(c) => c.size(),
             Shape::Surface(s) => s.size(),
             Shape::Mesh(m) => m.size(),
+            Shape::Implicit(s) => s.mesh().size(),
         }
     }
 }
@@ -83,5 +90,11 @@ impl From<Surface> for Shape {
 impl From<TriangleMesh> for Shape {
     fn from(mesh: TriangleMesh) -> Self {
         Shape::Mesh(Box::new(mesh))
+    }
+}
+
+impl From<ImplicitSurface> for Shape {
+    fn from(surface: ImplicitSurface) -> Self {
+        Shape::Implicit(Arc::new(surface))
     }
 }

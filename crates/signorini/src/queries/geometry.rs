@@ -2,9 +2,17 @@
 
 use std::f64::consts::TAU;
 
+use std::path::Path;
+use std::sync::Arc;
+
+use crate::expression::{Names, Scope, parse};
+use crate::mesh_file;
 use serde_json::{Map, Value};
-use signorini_geometry::Point;
+use signorini_geometry::implicit_surface::{ImplicitBody, ImplicitSurface, SampledField};
+use signorini_geometry::jet::{Jet, Real};
+use signorini_geometry::mesh::TriangleMesh;
 use signorini_geometry::shape::{Axes, Curve, Shape, ShapeError, Surface};
+use signorini_geometry::{Aabb, Point};
 
 /// What is wrong with a shape: the path of the field, and what would be valid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -15,7 +23,7 @@ pub struct FieldError {
 }
 
 /// The types of shapes, in the order of the manual.
-pub const TYPES: [&str; 28] = [
+pub const TYPES: [&str; 30] = [
     "point",
     "segment",
     "polyline",
@@ -44,6 +52,8 @@ pub const TYPES: [&str; 28] = [
     "tri3",
     "tri6",
     "lagrange_triangle",
+    "triangle_mesh",
+    "implicit",
 ];
 
 /// The entries of an object, each taken once.
@@ -226,19 +236,19 @@ fn kind(value: &Value) -> String {
     }
 }
 
-/// Reads one partner of a query.
+/// Reads one partner of a query; files are looked for in `folder`.
 ///
 /// # Errors
 /// An unknown type or key, a missing or malformed field, or data that make no shape.
-pub fn shape(path: &str, value: &Value) -> Result<Shape, FieldError> {
+pub fn shape(path: &str, value: &Value, folder: &Path) -> Result<Shape, FieldError> {
     let mut f = Fields::new(path, value)?;
     let name = f.text("type")?;
-    let shape = read(name, &mut f)?;
+    let shape = read(name, &mut f, folder)?;
     f.finish(&[])?;
     Ok(shape)
 }
 
-fn read(name: &str, f: &mut Fields<'_>) -> Result<Shape, FieldError> {
+fn read(name: &str, f: &mut Fields<'_>, folder: &Path) -> Result<Shape, FieldError> {
     let optional_numbers = |f: &mut Fields<'_>| -> Result<Option<Vec<f64>>, FieldError> {
         f.optional("weights").filter(|v| !v.is_null()).map(|v| f.numbers_of("weights", v)).transpose()
     };
@@ -332,7 +342,7 @@ fn read(name: &str, f: &mut Fields<'_>) -> Result<Shape, FieldError> {
         "revolution" => {
             let profile = f.required("profile")?;
             let inner = f.error("profile", "").path;
-            let Shape::Curve(profile) = shape(&inner, profile)? else {
+            let Shape::Curve(profile) = shape(&inner, profile, folder)? else {
                 return Err(f.error("profile", "not a curve"));
             };
             let (o, axis) = (f.point("o")?, f.point("axis")?);
@@ -392,8 +402,125 @@ fn read(name: &str, f: &mut Fields<'_>) -> Result<Shape, FieldError> {
             let nodes = f.points("nodes")?;
             surface(f, Surface::lagrange_triangle(&nodes))
         }
+        "triangle_mesh" => mesh(f, folder).map(Shape::from),
+        "implicit" => {
+            let mut body = f.required("body")?;
+            let inner = f.error("body", "").path;
+            // A single function may stand for a body.
+            let wrapped;
+            if let Value::String(_) = body {
+                wrapped = serde_json::json!({ "value": body });
+                body = &wrapped;
+            }
+            let bounds = f.required("box")?;
+            let corners = f.points_of("box", bounds)?;
+            let [min, max] = corners.as_slice() else { return Err(f.error("box", "two corners wanted")) };
+            let bounds = Aabb::new(*min, *max);
+            let cells = f.optional("cells").map_or(Ok(40), |_| f.count("cells"))?;
+            let body = implicit(&inner, body, &bounds, cells, 0)?;
+            ImplicitSurface::new(body, bounds, cells).map(Shape::from).map_err(|e| f.shape_error(&e))
+        }
         other => Err(f.error("type", format!("`{other}` is no shape; valid are {}", TYPES.join(", ")))),
     }
+}
+
+/// A mesh in the query itself or in a file.
+fn mesh(f: &mut Fields<'_>, folder: &Path) -> Result<TriangleMesh, FieldError> {
+    if f.object.contains_key("file") {
+        let name = f.text("file")?;
+        return mesh_file::read(&folder.join(name)).map_err(|e| f.error("file", e.to_string()));
+    }
+    let vertices = f.points("vertices")?;
+    let value = f.required("triangles")?;
+    let mut triangles = Vec::new();
+    for (k, row) in f.array_of("triangles", value)?.iter().enumerate() {
+        let numbers: Option<Vec<u32>> =
+            row.as_array().and_then(|r| r.iter().map(|v| v.as_u64().and_then(|n| u32::try_from(n).ok())).collect());
+        let triangle = numbers.and_then(|n| <[u32; 3]>::try_from(n).ok());
+        triangles.push(
+            triangle.ok_or_else(|| f.error(&format!("triangles[{k}]"), format!("{row}, not three vertex numbers")))?,
+        );
+    }
+    TriangleMesh::new(vertices, &triangles).map_err(|e| f.shape_error(&e))
+}
+
+/// How deep bodies may be nested.
+const DEEPEST: usize = 16;
+
+/// A body: `{"value": EXPRESSION}`, `{"union": [...]}`, `{"intersection": [...]}`, `{"difference": [A, B]}`,
+/// `{"offset": BODY, "distance": d}` or `{"grid": {...}}`.
+fn implicit(
+    path: &str,
+    value: &Value,
+    bounds: &Aabb<3>,
+    cells: usize,
+    depth: usize,
+) -> Result<ImplicitBody, FieldError> {
+    let mut f = Fields::new(path, value)?;
+    if depth > DEEPEST {
+        return Err(FieldError { path: path.into(), message: format!("nested more than {DEEPEST} deep") });
+    }
+    const KINDS: [&str; 5] = ["value", "union", "intersection", "difference", "offset"];
+    let kind = KINDS.into_iter().chain(["grid"]).find(|k| f.object.contains_key(*k));
+    let parts = |f: &mut Fields<'_>, key: &'static str| -> Result<Vec<ImplicitBody>, FieldError> {
+        let entry = f.object.get(key).ok_or_else(|| f.error(key, "missing"))?;
+        f.taken.push(key);
+        let array = f.array_of(key, entry)?;
+        if array.is_empty() {
+            return Err(f.error(key, "empty"));
+        }
+        array
+            .iter()
+            .enumerate()
+            .map(|(k, v)| implicit(&f.error(&format!("{key}[{k}]"), "").path, v, bounds, cells, depth + 1))
+            .collect()
+    };
+    let body = match kind {
+        Some("value") => {
+            let text = f.text("value")?;
+            let names = Names { variables: vec!["x", "y", "z"], ..Default::default() };
+            let expression = parse(text, &names).map_err(|e| f.error("value", format!("`{text}`: {}", e.message)))?;
+            ImplicitBody::field(move |x: &Point<3>| {
+                let position = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));
+                expression.evaluate(&Scope { position, time: Jet::<3>::constant(0.0) })
+            })
+        }
+        Some("union") => ImplicitBody::Union(parts(&mut f, "union")?),
+        Some("intersection") => ImplicitBody::Intersection(parts(&mut f, "intersection")?),
+        Some("difference") => {
+            let two = parts(&mut f, "difference")?;
+            let [a, b] = <[ImplicitBody; 2]>::try_from(two)
+                .map_err(|t| f.error("difference", format!("{} bodies instead of 2", t.len())))?;
+            a.difference(b)
+        }
+        Some("offset") => {
+            let inner = f.required("offset")?;
+            let distance = f.number("distance")?;
+            let body = implicit(&f.error("offset", "").path, inner, bounds, cells, depth + 1)?;
+            let surface = ImplicitSurface::new(body, *bounds, cells).map_err(|e| f.shape_error(&e))?;
+            ImplicitBody::Offset(Arc::new(surface), distance)
+        }
+        Some("grid") => {
+            let grid = f.required("grid")?;
+            let mut g = Fields::new(&f.error("grid", "").path, grid)?;
+            let (origin, spacing, count) = (g.point("origin")?, g.numbers("spacing")?, g.numbers("count")?);
+            let spacing: [f64; 3] = g.fixed("spacing", spacing)?;
+            let count: [f64; 3] = g.fixed("count", count)?;
+            if count.iter().any(|n| n.fract() != 0.0 || !(4.0..=2000.0).contains(n)) {
+                return Err(g.error("count", format!("{count:?}, not whole numbers from 4 to 2000")));
+            }
+            let values = g.numbers("values")?;
+            let field = SampledField::new(origin, spacing, count.map(|n| n as usize), &values)
+                .map_err(|e| g.shape_error(&e))?;
+            g.finish(&[])?;
+            ImplicitBody::field(field)
+        }
+        _ => {
+            return Err(FieldError { path: path.into(), message: format!("one of {}, grid wanted", KINDS.join(", ")) });
+        }
+    };
+    f.finish(&[])?;
+    Ok(body)
 }
 
 /// Accepts `closed` only where it says no.

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use scanner::{RawCase, ScanError, Scanner};
 use serde_json::{Map, Value, json};
 pub use signorini_geometry::closest::Query;
-use signorini_geometry::closest::{ClosestPair, FeatureKind, Projection, Uniqueness, closest};
+use signorini_geometry::closest::{ClosestPair, FeatureKind, Projection, Uniqueness, closest, signed_gap};
 use signorini_geometry::shape::Shape;
 
 /// A query: two shapes with a name.
@@ -58,11 +58,11 @@ const QUOTED: usize = 20;
 /// Cases answered between two writes.
 const BATCH: usize = 512;
 
-/// Reads one case.
+/// Reads one case; files that it names are looked for in `folder`.
 ///
 /// # Errors
 /// What is wrong, with the path of the field.
-pub fn parse(text: &[u8]) -> Result<PairQuery, FieldError> {
+pub fn parse(text: &[u8], folder: &Path) -> Result<PairQuery, FieldError> {
     let value: Value = serde_json::from_slice(text).map_err(|e| {
         let text = String::from_utf8_lossy(text);
         let word = ["NaN", "Infinity"].into_iter().find(|w| text.contains(w));
@@ -75,7 +75,7 @@ pub fn parse(text: &[u8]) -> Result<PairQuery, FieldError> {
     let mut fields = Fields::new("", &value)?;
     let id = fields.text("id")?.to_string();
     let (a, b) = (fields.required("a")?, fields.required("b")?);
-    let (a, b) = (geometry::shape("a", a)?, geometry::shape("b", b)?);
+    let (a, b) = (geometry::shape("a", a, folder)?, geometry::shape("b", b, folder)?);
     if let Some(pair) = fields.optional("pair") {
         let name = |s: &Shape| ["point", "curve", "surface"][s.dimension()];
         let found = format!("{}-{}", name(&a), name(&b));
@@ -93,8 +93,16 @@ pub fn parse(text: &[u8]) -> Result<PairQuery, FieldError> {
 }
 
 /// The answer to a query as JSON.
-pub fn answer(projection: &Projection) -> Value {
+pub fn answer(projection: &Projection, query: &PairQuery) -> Value {
     let mut out = minimiser(&projection.closest);
+    if let Some(gap) = signed_gap(&projection.closest, &query.b) {
+        out["gap"] = json!(gap);
+    }
+    for (key, shape, foot) in [("a", &query.a, &projection.closest.a), ("b", &query.b, &projection.closest.b)] {
+        if matches!(shape, Shape::Mesh(_)) {
+            out[format!("triangle_{key}")] = json!(foot.element);
+        }
+    }
     let fields = out.as_object_mut().expect("an object");
     fields.insert("unique".into(), json!(projection.uniqueness.is_unique()));
     let (name, dimension) = match projection.uniqueness {
@@ -144,7 +152,8 @@ fn quoted_id(text: &str) -> Option<String> {
 struct Answered {
     id: String,
     line: usize,
-    result: Result<Projection, FieldError>,
+    /// The projection and what is written of it.
+    result: Result<(Projection, Value), FieldError>,
     time: Duration,
 }
 
@@ -168,6 +177,7 @@ pub fn answer_file(
         }
         Box::new(BufReader::with_capacity(1 << 20, std::fs::File::open(queries).map_err(open)?))
     };
+    let folder = queries.parent().unwrap_or(Path::new("")).to_path_buf();
     let mut part = answers.as_os_str().to_owned();
     part.push(".part");
     let part = PathBuf::from(part);
@@ -193,7 +203,7 @@ pub fn answer_file(
         }
         let last = batch.len() < BATCH;
         let mut done: Vec<Answered> = Vec::with_capacity(batch.len());
-        batch.par_iter().map(|case| answer_case(case, query)).collect_into_vec(&mut done);
+        batch.par_iter().map(|case| answer_case(case, query, &folder)).collect_into_vec(&mut done);
         for mut answered in done {
             if !names.insert(answered.id.clone()) {
                 answered.result = Err(FieldError { path: "id".into(), message: "given twice".into() });
@@ -202,7 +212,7 @@ pub fn answer_file(
             }
             report.note(&answered);
             let value = match &answered.result {
-                Ok(projection) => answer(projection),
+                Ok((_, answer)) => answer.clone(),
                 Err(error) => json!({ "error": error.to_string(), "line": answered.line }),
             };
             let separator = if first { "\n" } else { ",\n" };
@@ -223,12 +233,13 @@ pub fn answer_file(
     }
 }
 
-fn answer_case(case: &RawCase, query: &Query) -> Answered {
+fn answer_case(case: &RawCase, query: &Query, folder: &Path) -> Answered {
     let start = Instant::now();
-    let (id, result) = match parse(&case.text) {
+    let (id, result) = match parse(&case.text, folder) {
         Ok(pair) => {
             let projection = closest(&pair.a, &pair.b, query);
-            (pair.id, Ok(projection))
+            let value = answer(&projection, &pair);
+            (pair.id, Ok((projection, value)))
         }
         Err(error) => (name_of(case), Err(error)),
     };
@@ -239,7 +250,7 @@ impl Report {
     fn note(&mut self, answered: &Answered) {
         self.answered += 1;
         match &answered.result {
-            Ok(projection) => self.not_unique += usize::from(!projection.uniqueness.is_unique()),
+            Ok((projection, _)) => self.not_unique += usize::from(!projection.uniqueness.is_unique()),
             Err(error) => {
                 self.wrong_count += 1;
                 if self.wrong.len() < QUOTED {

@@ -84,7 +84,8 @@ impl<R: BufRead> Scanner<R> {
     /// The text of the next value: up to the bracket that closes it, or the end of a bare word.
     fn value(&mut self) -> Result<Vec<u8>, ScanError> {
         let mut text = Vec::new();
-        let mut depth = 0usize;
+        // Brackets that are open; one that is never closed ends with the bracket around it.
+        let mut open: Vec<u8> = Vec::new();
         let mut in_string = false;
         self.next_token()?;
         loop {
@@ -102,10 +103,10 @@ impl<R: BufRead> Scanner<R> {
                     text.push(byte);
                     if byte == b'"' && !escaped {
                         in_string = false;
-                        done = depth == 0;
+                        done = open.is_empty();
                     }
                 } else {
-                    if depth == 0 && !text.is_empty() && matches!(byte, b',' | b'}' | b']') {
+                    if open.is_empty() && !text.is_empty() && matches!(byte, b',' | b'}' | b']') {
                         done = true;
                         break;
                     }
@@ -113,10 +114,13 @@ impl<R: BufRead> Scanner<R> {
                     text.push(byte);
                     match byte {
                         b'"' => in_string = true,
-                        b'{' | b'[' => depth += 1,
+                        b'{' | b'[' => open.push(byte),
                         b'}' | b']' => {
-                            depth = depth.saturating_sub(1);
-                            done = depth == 0;
+                            let partner = if byte == b'}' { b'{' } else { b'[' };
+                            if let Some(at) = open.iter().rposition(|&b| b == partner) {
+                                open.truncate(at);
+                            }
+                            done = open.is_empty();
                         }
                         b'\n' => self.line += 1,
                         _ => {}

@@ -1,0 +1,237 @@
+//! Triangle meshes from files: STL (binary and ASCII), OBJ and PLY (ASCII and binary), told apart by their extension.
+
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::{BufReader, Cursor, Read};
+use std::path::{Path, PathBuf};
+
+use ply_rs_bw::parser::Parser;
+use ply_rs_bw::ply::{DefaultElement, Property};
+use signorini_geometry::Point;
+use signorini_geometry::mesh::TriangleMesh;
+
+/// A mesh file that cannot be used, and why.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {message}", path.display())]
+pub struct MeshFileError {
+    pub path: PathBuf,
+    pub message: String,
+}
+
+type Raw = (Vec<Point<3>>, Vec<[u32; 3]>);
+
+/// The largest file that is read.
+const LARGEST: u64 = 4 << 30;
+
+/// Reads a mesh. Corners at the same position are one vertex; polygons are cut into triangles from their first corner.
+///
+/// # Errors
+/// A file that cannot be read, of an unknown kind, damaged, or that makes no mesh.
+pub fn read(path: &Path) -> Result<TriangleMesh, MeshFileError> {
+    let fail = |message: String| MeshFileError { path: path.to_path_buf(), message };
+    let length = std::fs::metadata(path).map_err(|e| fail(format!("cannot read: {e}")))?.len();
+    if length > LARGEST {
+        return Err(fail(format!("{length} bytes, more than {} GiB", LARGEST >> 30)));
+    }
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let mut bytes = Vec::new();
+    if matches!(extension.as_str(), "stl" | "obj" | "ply") {
+        let file = File::open(path).map_err(|e| fail(format!("cannot read: {e}")))?;
+        BufReader::new(file).read_to_end(&mut bytes).map_err(|e| fail(format!("cannot read: {e}")))?;
+    }
+    let (vertices, triangles) = match extension.as_str() {
+        "stl" => stl(&bytes),
+        "obj" => obj(&bytes),
+        "ply" => ply(&bytes),
+        other => Err(format!("`{other}` is no mesh format; valid are stl, obj and ply")),
+    }
+    .map_err(fail)?;
+    let (vertices, triangles) = welded(&vertices, &triangles).map_err(fail)?;
+    TriangleMesh::new(vertices, &triangles).map_err(|e| fail(e.to_string()))
+}
+
+fn stl(bytes: &[u8]) -> Result<Raw, String> {
+    let mut cursor = Cursor::new(bytes);
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    let reader = stl_io::create_stl_reader(&mut cursor).map_err(|e| format!("no STL: {e}"))?;
+    for (k, triangle) in reader.enumerate() {
+        let triangle = triangle.map_err(|e| format!("damaged at triangle {k}: {e}"))?;
+        let first = vertices.len() as u32;
+        for v in triangle.vertices {
+            vertices.push(Point::<3>::new(v[0].into(), v[1].into(), v[2].into()));
+        }
+        triangles.push([first, first + 1, first + 2]);
+    }
+    Ok((vertices, triangles))
+}
+
+fn obj(bytes: &[u8]) -> Result<Raw, String> {
+    let options =
+        tobj::LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, ..Default::default() };
+    let materials = |_: &Path| Ok((Vec::new(), Default::default()));
+    let (models, _) =
+        tobj::load_obj_buf(&mut Cursor::new(bytes), &options, materials).map_err(|e| format!("no OBJ: {e}"))?;
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for model in models {
+        let first = vertices.len() as u32;
+        vertices.extend(model.mesh.positions.chunks_exact(3).map(|p| Point::<3>::new(p[0], p[1], p[2])));
+        triangles.extend(model.mesh.indices.chunks_exact(3).map(|t| [first + t[0], first + t[1], first + t[2]]));
+    }
+    Ok((vertices, triangles))
+}
+
+fn ply(bytes: &[u8]) -> Result<Raw, String> {
+    let parser = Parser::<DefaultElement>::new();
+    let ply = parser.read_ply(&mut Cursor::new(bytes)).map_err(|e| format!("no PLY: {e}"))?;
+    let mut vertices = Vec::new();
+    for (k, vertex) in ply.payload.get("vertex").ok_or("no element `vertex`")?.iter().enumerate() {
+        let mut x = [0.0; 3];
+        for (value, key) in x.iter_mut().zip(["x", "y", "z"]) {
+            *value = vertex.get(key).and_then(number).ok_or_else(|| format!("vertex {k} has no number `{key}`"))?;
+        }
+        vertices.push(Point::<3>::from(x));
+    }
+    let mut triangles = Vec::new();
+    for (k, face) in ply.payload.get("face").ok_or("no element `face`")?.iter().enumerate() {
+        let corners = face
+            .get("vertex_indices")
+            .or_else(|| face.get("vertex_index"))
+            .and_then(Property::to_u32_list)
+            .ok_or_else(|| format!("face {k} has no list `vertex_indices`"))?;
+        for pair in corners.windows(2).skip(1) {
+            triangles.push([corners[0], pair[0], pair[1]]);
+        }
+    }
+    Ok((vertices, triangles))
+}
+
+fn number(property: &Property) -> Option<f64> {
+    Some(match property {
+        Property::Char(v) => f64::from(*v),
+        Property::UChar(v) => f64::from(*v),
+        Property::Short(v) => f64::from(*v),
+        Property::UShort(v) => f64::from(*v),
+        Property::Int(v) => f64::from(*v),
+        Property::UInt(v) => f64::from(*v),
+        Property::Float(v) => f64::from(*v),
+        Property::Double(v) => *v,
+        _ => return None,
+    })
+}
+
+/// Joins vertices at the same position and drops those without a triangle.
+fn welded(vertices: &[Point<3>], triangles: &[[u32; 3]]) -> Result<Raw, String> {
+    let mut numbers: HashMap<[u64; 3], u32> = HashMap::new();
+    let mut kept = Vec::new();
+    let mut out = Vec::with_capacity(triangles.len());
+    for (k, t) in triangles.iter().enumerate() {
+        let mut corners = [0; 3];
+        for (corner, &v) in corners.iter_mut().zip(t) {
+            let x = vertices
+                .get(v as usize)
+                .ok_or_else(|| format!("triangle {k} has vertex {v}, but there are {}", vertices.len()))?;
+            // Zero has two signs and one position.
+            let key = [x.x + 0.0, x.y + 0.0, x.z + 0.0].map(f64::to_bits);
+            *corner = *numbers.entry(key).or_insert_with(|| {
+                kept.push(*x);
+                kept.len() as u32 - 1
+            });
+        }
+        out.push(corners);
+    }
+    Ok((kept, out))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FACES: [[u32; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+
+    fn corner(k: u32) -> [u32; 3] {
+        [k & 1, k >> 1 & 1, k >> 2]
+    }
+
+    fn write(name: &str, bytes: &[u8]) -> (tempfile::TempDir, PathBuf) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        (folder, path)
+    }
+
+    fn triangles() -> Vec<[u32; 3]> {
+        FACES.iter().flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]]).collect()
+    }
+
+    fn binary_stl() -> Vec<u8> {
+        let mut bytes = vec![0u8; 80];
+        bytes.extend(12u32.to_le_bytes());
+        for t in triangles() {
+            bytes.extend([0u8; 12]);
+            for v in t {
+                corner(v).iter().for_each(|&x| bytes.extend((x as f32).to_le_bytes()));
+            }
+            bytes.extend([0u8; 2]);
+        }
+        bytes
+    }
+
+    #[test]
+    fn the_same_cube_from_every_format() {
+        let mut ascii = String::from("solid cube\n");
+        for t in triangles() {
+            ascii += "facet normal 0 0 0\nouter loop\n";
+            for v in t {
+                let [x, y, z] = corner(v);
+                ascii += &format!("vertex {x} {y} {z}\n");
+            }
+            ascii += "endloop\nendfacet\n";
+        }
+        ascii += "endsolid cube\n";
+        let mut obj = String::new();
+        let mut ply = String::from(
+            "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\nelement face 6\nproperty list uchar int vertex_indices\nend_header\n",
+        );
+        for k in 0..8 {
+            let [x, y, z] = corner(k);
+            obj += &format!("v {x} {y} {z}\n");
+            ply += &format!("{x} {y} {z}\n");
+        }
+        for f in FACES {
+            obj += &format!("f {} {} {} {}\n", f[0] + 1, f[1] + 1, f[2] + 1, f[3] + 1);
+            ply += &format!("4 {} {} {} {}\n", f[0], f[1], f[2], f[3]);
+        }
+        let files: [(&str, Vec<u8>); 4] =
+            [("a.stl", binary_stl()), ("b.STL", ascii.into()), ("c.obj", obj.into()), ("d.ply", ply.into())];
+        for (name, bytes) in files {
+            let (_folder, path) = write(name, &bytes);
+            let mesh = read(&path).unwrap();
+            assert_eq!((mesh.vertices().len(), mesh.triangles().len(), mesh.edge_count()), (8, 12, 18), "{name}");
+            assert!(mesh.quality().has_inside(), "{name}");
+            assert_eq!(mesh.closest(&Point::<3>::new(0.5, 0.5, 0.9), 0.0)[0].gap, Some(0.9 - 1.0), "{name}");
+        }
+    }
+
+    #[test]
+    fn damaged_files_are_refused() {
+        let mut cut = binary_stl();
+        cut.truncate(200);
+        let mut huge = binary_stl();
+        huge[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
+        let cases: [(&str, &[u8]); 7] = [
+            ("a.stl", &cut),
+            ("b.stl", &huge),
+            ("c.stl", b""),
+            ("d.obj", b"v 0 0 0\nf 1 2 3\n"),
+            ("e.ply", b"ply\nformat ascii 1.0\nelement vertex 1\n"),
+            ("f.ply", b"ply\nformat ascii 1.0\nend_header\n"),
+            ("g.step", b"ISO-10303-21;"),
+        ];
+        for (name, bytes) in cases {
+            let (_folder, path) = write(name, bytes);
+            let error = read(&path).unwrap_err();
+            assert!(error.to_string().contains(name), "{error}");
+        }
+        assert!(read(Path::new("nothing.stl")).is_err());
+    }
+}

@@ -15,6 +15,7 @@
 //! - [`existence`]: where projections exist and are unique.
 //! - [`mesh`]: triangle meshes; [`bvh`]: the search tree under them.
 //! - [`implicit_surface`]: bodies given by functions, with the exact closest point of their boundary.
+//! - [`rigid`]: rigid motion of shapes.
 //! - [`outline`]: closed outlines of a function sampled on a grid.
 //! - [`polygon`]: winding numbers, areas and crossings of polygons.
 
@@ -33,6 +34,7 @@ pub mod mesh;
 pub mod outline;
 pub(crate) mod patch;
 pub mod polygon;
+pub mod rigid;
 pub mod rule;
 pub mod shape;
 pub mod spline;

@@ -2,11 +2,13 @@
 
 use crate::bar::{Bar, Counter};
 use serde_json::{Value, json};
-use signorini::case::{CaseError, Document};
-use signorini::gallery::{GALLERY, find};
+use signorini::case::{CaseError, Document, override_key};
+use signorini::gallery::{all, find};
+use signorini::output::OutputError;
 use signorini::plan::{self, Plan};
 use signorini::queries::{Query, answer_file};
 use signorini::run::{Ending, RunError, run};
+use signorini::scene::{self, Scene, SceneError};
 use std::path::{Path, PathBuf};
 
 const DONE: u8 = 0;
@@ -54,11 +56,11 @@ pub fn show_example(name: &str, json: bool) -> u8 {
 
 pub fn gallery(json: bool) -> u8 {
     if json {
-        let list: Vec<Value> = GALLERY.iter().map(|e| json!({"name": e.name, "about": e.about})).collect();
+        let list: Vec<Value> = all().map(|e| json!({"name": e.name, "about": e.about})).collect();
         println!("{}", Value::from(list));
         return DONE;
     }
-    for example in &GALLERY {
+    for example in all() {
         println!("{:14} {}", example.name, example.about);
     }
     println!("\nRun one with  signorini gallery run NAME");
@@ -66,6 +68,22 @@ pub fn gallery(json: bool) -> u8 {
 }
 
 pub fn check(case: &Path, set: &[String], json: bool) -> u8 {
+    if let Ok((name, text)) = read(case)
+        && scene::is_scene(&text)
+    {
+        return match read_scene(&name, &text, set) {
+            Err(error) => report(&error, json),
+            Ok(scene) => {
+                let sizes = json!({"bodies": scene.bodies.len(), "frames": scene.times.len()});
+                if json {
+                    println!("{sizes}")
+                } else {
+                    println!("{name}: the scene is right: {} frames.", scene.times.len())
+                }
+                DONE
+            }
+        };
+    }
     let checked = read(case).and_then(|(name, text)| Document::parse(&name, &text, set)).and_then(|document| {
         let sizes = match plan::plan(&document)? {
             Plan::Line(plan) => sizes(&plan)?,
@@ -84,6 +102,52 @@ pub fn check(case: &Path, set: &[String], json: bool) -> u8 {
                     println!("  {:22} {}", key.replace('_', " "), value.to_string().trim_matches('"'));
                 }
             }
+            DONE
+        }
+    }
+}
+
+/// An error of the results folder, with what to do.
+fn output_error(error: &OutputError) -> CaseError {
+    let help = match error {
+        OutputError::Foreign { .. } => "choose another folder with -o DIR, or empty this one",
+        _ => "is there space, and may this program write there? choose another folder with -o DIR",
+    };
+    CaseError::new(error.to_string()).help(help)
+}
+
+fn read_scene(name: &str, text: &str, set: &[String]) -> Result<Scene, CaseError> {
+    let text = if set.is_empty() { text.to_string() } else { override_key::apply(name, text, set)? };
+    Scene::parse(name, &text, Path::new(name).parent().unwrap_or(Path::new("")))
+}
+
+fn execute_scene(name: &str, text: &str, folder: &Path, set: &[String], json: bool) -> u8 {
+    let scene = match read_scene(name, text, set) {
+        Ok(scene) => scene,
+        Err(error) => return report(&error, json),
+    };
+    let mut bar = Bar::new(json);
+    let result = scene::run(&scene, folder, &mut bar);
+    bar.finish();
+    match result {
+        Err(SceneError::Case(error)) => report(&error, json),
+        Err(SceneError::Output(error)) => report(&output_error(&error), json),
+        Ok(summary) if json => {
+            println!("{summary}");
+            DONE
+        }
+        Ok(summary) => {
+            println!("{}: {} frames", scene.title, summary["frames"]);
+            for (kind, count) in summary["contact_pair_kinds"].as_object().into_iter().flatten() {
+                println!("  {kind:18} the contact in {count} frames");
+            }
+            let closest = &summary["closest"];
+            let text = |key: &str| closest["pair"][key].as_str().unwrap_or_default().to_string();
+            println!("closest at t = {}: {} to {}, gap {}", closest["time"], text("a"), text("b"), closest["gap"]);
+            println!(
+                "\nResults in {}: open pictures/scene.png (animated) in a browser, bodies.pvd and pairs.pvd in ParaView; numbers in pairs.csv.",
+                folder.display()
+            );
             DONE
         }
     }
@@ -163,6 +227,9 @@ fn sizes<const D: usize>(plan: &plan::MembranePlan<D>) -> Result<Value, CaseErro
 }
 
 fn execute(name: &str, text: &str, folder: &Path, set: &[String], json: bool) -> u8 {
+    if scene::is_scene(text) {
+        return execute_scene(name, text, folder, set, json);
+    }
     let document = match Document::parse(name, text, set) {
         Ok(document) => document,
         Err(error) => return report(&error, json),
@@ -172,15 +239,7 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], json: bool) ->
     bar.finish();
     match result {
         Err(RunError::Case(error)) => report(&error, json),
-        Err(RunError::Output(error)) => {
-            let help = match &error {
-                signorini::output::OutputError::Foreign { .. } => {
-                    "choose another folder with -o DIR, or empty this one"
-                }
-                _ => "is there space, and may this program write there? choose another folder with -o DIR",
-            };
-            report(&CaseError::new(error.to_string()).help(help), json)
-        }
+        Err(RunError::Output(error)) => report(&output_error(&error), json),
         Ok(outcome) => {
             if json {
                 println!("{}", outcome.summary);
@@ -247,7 +306,7 @@ fn read(case: &Path) -> Result<(String, String), CaseError> {
 }
 
 fn unknown_example(name: &str) -> CaseError {
-    let names: Vec<&str> = GALLERY.iter().map(|e| e.name).collect();
+    let names: Vec<&str> = all().map(|e| e.name).collect();
     CaseError::new(format!("the gallery has no case `{name}`")).help(signorini::case::suggestion(name, &names))
 }
 

@@ -14,7 +14,7 @@ macro_rules! example {
     };
 }
 
-/// All cases, simplest first.
+/// Cases with mechanics, simplest first.
 pub const GALLERY: [Example; 7] = [
     example!("string", "a string on a flat floor, beside the exact solution"),
     example!("axisymmetric", "a round membrane by its radius, beside the exact solution"),
@@ -25,7 +25,16 @@ pub const GALLERY: [Example; 7] = [
     example!("active_set", "the classical nodal method, to be set beside cosine_square"),
 ];
 
+/// Scenes: bodies that move, and their closest pairs.
+pub const SCENES: [Example; 1] =
+    [example!("swords", "two blades swung past each other: the contact pairs of all six kinds, animated")];
+
+/// Cases and scenes.
+pub fn all() -> impl Iterator<Item = &'static Example> {
+    GALLERY.iter().chain(&SCENES)
+}
+
 /// The example of a name.
 pub fn find(name: &str) -> Option<&'static Example> {
-    GALLERY.iter().find(|e| e.name == name)
+    all().find(|e| e.name == name)
 }

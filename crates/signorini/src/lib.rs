@@ -8,4 +8,5 @@ pub mod output;
 pub mod plan;
 pub mod queries;
 pub mod run;
+pub mod scene;
 pub mod snapshot;

@@ -272,6 +272,10 @@ impl Curve {
         Ok(Self::assemble(CurveKind::Other, parts, false))
     }
 
+    pub(crate) fn with(&self, kind: CurveKind, atlas: Atlas<1, CurveChart>) -> Self {
+        Curve { kind, atlas, ..*self }
+    }
+
     /// The parameter interval.
     pub fn domain(&self) -> [f64; 2] {
         self.domain

@@ -541,6 +541,15 @@ impl Surface {
         Self::lagrange_triangle(&[n[0], n[3], n[1], n[5], n[4], n[2]])
     }
 
+    pub(crate) fn with(
+        &self,
+        kind: SurfaceKind,
+        atlas: Atlas<2, SurfaceChart>,
+        chart: impl Fn(&SurfaceChart) -> SurfaceChart,
+    ) -> Self {
+        Surface { kind, atlas, breaks: self.breaks.clone(), triangle: self.triangle.as_ref().map(chart), ..*self }
+    }
+
     pub(crate) fn into_pieces(self) -> Vec<Piece<2, SurfaceChart>> {
         self.atlas.pieces
     }

@@ -49,12 +49,22 @@ fn options() -> &'static usvg::Options<'static> {
 }
 
 fn png(svg: &str) -> Result<Vec<u8>, OutputError> {
+    rendered(svg, ZOOM)?.encode_png().map_err(failed)
+}
+
+/// Width, height and RGBA of a picture.
+pub fn pixels(svg: &str, zoom: f32) -> Result<(u32, u32, Vec<u8>), OutputError> {
+    let pixmap = rendered(svg, zoom)?;
+    Ok((pixmap.width(), pixmap.height(), pixmap.take_demultiplied()))
+}
+
+fn rendered(svg: &str, zoom: f32) -> Result<tiny_skia::Pixmap, OutputError> {
     let tree = usvg::Tree::from_str(svg, options()).map_err(failed)?;
     let size = tree.size();
-    let (w, h) = ((size.width() * ZOOM) as u32, (size.height() * ZOOM) as u32);
+    let (w, h) = ((size.width() * zoom) as u32, (size.height() * zoom) as u32);
     let mut pixmap = tiny_skia::Pixmap::new(w, h).ok_or_else(|| failed("no memory for the picture"))?;
-    resvg::render(&tree, tiny_skia::Transform::from_scale(ZOOM, ZOOM), &mut pixmap.as_mut());
-    pixmap.encode_png().map_err(failed)
+    resvg::render(&tree, tiny_skia::Transform::from_scale(zoom, zoom), &mut pixmap.as_mut());
+    Ok(pixmap)
 }
 
 /// A raster to be laid under the axes of a chart.

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 pub const MARKER: &str = "log.jsonl";
 const FIRST_LINE: &str = "{\"event\":\"signorini\"";
 /// Everything a run writes.
-const OWN: [&str; 9] = [
+const OWN: [&str; 13] = [
     "summary.json",
     "log.jsonl",
     "history.csv",
@@ -17,6 +17,10 @@ const OWN: [&str; 9] = [
     "contact",
     "pictures",
     "case.toml",
+    "pairs.csv",
+    "frames",
+    "bodies.pvd",
+    "pairs.pvd",
 ];
 
 /// Results that could not be written.

@@ -8,7 +8,8 @@ use vtkio::model::{
     VertexNumbers, Vtk,
 };
 
-fn to_bytes(title: &str, data: DataSet) -> Result<Vec<u8>, OutputError> {
+/// A data set as an XML file.
+pub fn to_bytes(title: &str, data: DataSet) -> Result<Vec<u8>, OutputError> {
     let vtk =
         Vtk { version: Version::Auto, title: title.into(), byte_order: ByteOrder::LittleEndian, data, file_path: None };
     let mut bytes = Vec::new();

@@ -13,7 +13,7 @@ use signorini_membrane::line_zone::LineZone;
 use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::Membrane;
 use signorini_membrane::zone::Zone;
-pub use signorini_solve::{Iteration, Progress};
+pub use signorini_solve::{Iteration, Progress, Silent};
 use std::path::Path;
 
 /// Version of the summary's keys.

@@ -76,7 +76,7 @@ pub fn draw(scene: &Scene, frames: &[Frame], folder: &Folder) -> Result<(), Outp
         let inner = still.split_once('>').map_or("", |s| s.1);
         let (x, y) = ((k % 2) as f64 * SIZE.0, (k / 2) as f64 * SIZE.1);
         let _ =
-            write!(sheet, "<g transform=\"translate({x},{y})\">{}</g>\n", inner.trim_end().trim_end_matches("</svg>"));
+            writeln!(sheet, "<g transform=\"translate({x},{y})\">{}</g>", inner.trim_end().trim_end_matches("</svg>"));
     }
     sheet += "</svg>\n";
     crate::output::chart::save(folder, "kinds", &sheet)

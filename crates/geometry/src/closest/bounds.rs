@@ -253,12 +253,15 @@ impl<const N: usize> SecondOrder<N> {
     /// The direction is that of Newton: `v = H⁻¹ g`, the test says that the Newton point lies outside by a margin. Where
     /// cells touch a side behind which there is no neighbour (`held[p]` is the outward sign), `-v` must not leave there;
     /// such parameters are taken out.
+    ///
+    /// `motion[p]` is how far the gradient may move besides, through `∂F/∂t_p`: zero for the cells as they are.
     pub fn excludes_stationary(
         &self,
         gram: &[[f64; N]; N],
         g: &[f64; N],
         free: &[bool; N],
         held: &[[bool; 2]; N],
+        motion: &[f64; N],
     ) -> bool {
         let mut used = *free;
         for _ in 0..=N {
@@ -276,7 +279,7 @@ impl<const N: usize> SecondOrder<N> {
                     curvature += self.hessian[p][q] * v[q];
                     margin -= v[q].abs() * self.drift[p][q];
                 }
-                margin += g[p] * v[p] - curvature.abs();
+                margin += g[p] * v[p] - curvature.abs() - motion[p] * v[p].abs();
             }
             return margin > 0.0;
         }

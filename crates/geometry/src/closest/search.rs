@@ -128,6 +128,21 @@ impl Ord for Pair {
     }
 }
 
+/// The sides of a pair of cells behind which the shapes do not simply go on.
+pub(super) fn held<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>(
+    a: &Partner<'_, A, CA>,
+    b: &Partner<'_, B, CB>,
+    pair: Pair,
+) -> [[bool; 2]; N] {
+    fn sides<const M: usize, C: Chart<M>>(partner: &Partner<'_, M, C>, id: u32, k: usize) -> [bool; 2] {
+        let cell = partner.cell(id);
+        let sides = &partner.atlas.pieces[cell.piece as usize].sides[k];
+        let [low, high] = cell.range(k);
+        [low == -1.0 && !sides[0].is_smooth(), high == 1.0 && !sides[1].is_smooth()]
+    }
+    std::array::from_fn(|k| if k < A { sides(a, pair.a, k) } else { sides(b, pair.b, k - A) })
+}
+
 /// The number of cells sampled where the minimum is degenerate.
 const SAMPLES: usize = 48;
 
@@ -264,7 +279,16 @@ impl<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>
             return None;
         }
         let width = a.radius() + b.radius();
-        if N > 1 && settled && second.excludes_stationary(&expansion.gram, &expansion.g, &free, &self.held(pair)) {
+        if N > 1
+            && settled
+            && second.excludes_stationary(
+                &expansion.gram,
+                &expansion.g,
+                &free,
+                &held(&self.a, &self.b, pair),
+                &[0.0; N],
+            )
+        {
             return None;
         }
         if self.reduce(pair, &expansion, &second, &free) {
@@ -320,23 +344,6 @@ impl<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>
                 self.push(pair.a, child);
             }
         }
-    }
-
-    /// The sides of the cells behind which the shapes do not simply go on.
-    fn held(&self, pair: Pair) -> [[bool; 2]; N] {
-        let mut held = [[false; 2]; N];
-        let (a, b) = (self.a.cell(pair.a), self.b.cell(pair.b));
-        let sides = &self.a.atlas.pieces[a.piece as usize].sides;
-        for k in 0..A {
-            let [low, high] = a.range(k);
-            held[k] = [low == -1.0 && !sides[k][0].is_smooth(), high == 1.0 && !sides[k][1].is_smooth()];
-        }
-        let sides = &self.b.atlas.pieces[b.piece as usize].sides;
-        for k in 0..B {
-            let [low, high] = b.range(k);
-            held[A + k] = [low == -1.0 && !sides[k][0].is_smooth(), high == 1.0 && !sides[k][1].is_smooth()];
-        }
-        held
     }
 
     /// Uses a direction in which the distance certainly grows: the minimum lies on the low side of the cells, which

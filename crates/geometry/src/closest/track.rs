@@ -10,14 +10,14 @@ use std::collections::BinaryHeap;
 use super::bounds::PairExpansion;
 use super::classify::{Named, describe};
 use super::newton::minimise;
-use super::search::{Candidate, Pair, Partner};
+use super::search::{Candidate, Pair, Partner, held};
 use super::{ClosestPair, Projection, Query, Uniqueness, closest, point_atlas, swapped};
 use crate::Point;
 use crate::patch::{Atlas, Cell, Chart, CurveChart, Piece, PointChart, SurfaceChart};
 use crate::shape::Shape;
 
 /// Pairs of cells spent on the bound of the complement, per parameter.
-const CERTIFICATE_PAIRS: usize = 60;
+const CERTIFICATE_PAIRS: usize = 120;
 
 /// How a tracker came by its answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,6 +67,8 @@ struct Certificate<const A: usize, const B: usize, const N: usize> {
     cells: (Cell<A>, Cell<B>),
     /// Nothing outside the box was closer than this when the certificate was made.
     reach: f64,
+    /// How far a point may move before stationary points may appear outside; zero where only `reach` counts.
+    slack: f64,
     travelled: f64,
     magnitude: f64,
 }
@@ -227,21 +229,34 @@ fn certify<const A: usize, const B: usize, const N: usize, CA: Local<A>, CB: Loc
             return None;
         }
     };
-    let reach = complement_bound(a, b, piece, &low, &high);
+    let magnitude = a.magnitude.max(b.magnitude);
+    // A point that moves turns no stationary point up where the gradient is larger than its motion can change it: try
+    // for a long motion first. Shapes that move in other ways have bounds of the distance only.
+    let most = 0.2 * (0..B).map(|k| both.1.j_norm[k]).fold(f64::INFINITY, f64::min);
+    let mut slack = if A == 0 { most } else { 0.0 };
+    let reach = loop {
+        let reach = complement_bound(a, b, piece, &low, &high, slack, found.distance);
+        if reach >= found.distance + 2.0 * slack || slack <= 0.04 * most {
+            break reach;
+        }
+        slack *= 0.2;
+    };
     if reach <= found.distance {
         return None;
     }
-    let magnitude = a.magnitude.max(b.magnitude);
-    Some(Certificate { piece, low, high, z, cells: both, reach, travelled: 0.0, magnitude })
+    Some(Certificate { piece, low, high, z, cells: both, reach, slack, travelled: 0.0, magnitude })
 }
 
-/// A lower bound of the distance over all parameters outside a box.
+/// A lower bound of the distance over all parameters outside a box, those left out on which no minimiser can appear while
+/// the first partner, a point, moves by `slack`.
 fn complement_bound<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>(
     a: &Atlas<A, CA>,
     b: &Atlas<B, CB>,
     piece: [u32; 2],
     low: &[f64; N],
     high: &[f64; N],
+    slack: f64,
+    distance: f64,
 ) -> f64 {
     let (mut a, mut b) = (Partner::new(a), Partner::new(b));
     let mut heap = BinaryHeap::new();
@@ -260,10 +275,21 @@ fn complement_bound<const A: usize, const B: usize, const N: usize, CA: Chart<A>
     let mut spent = 0;
     while let Some(pair) = heap.pop() {
         spent += 1;
-        if spent > CERTIFICATE_PAIRS * N {
+        let enough = slack > 0.0 && pair.bound >= distance + 2.0 * slack;
+        if enough || spent > CERTIFICATE_PAIRS * N {
             return pair.bound;
         }
         let (p, q) = (a.cell(pair.a), b.cell(pair.b));
+        if slack > 0.0 && !q.is_group() {
+            let expansion = PairExpansion::<N>::new(p, q);
+            let second = expansion.second_order(p, q);
+            let free = std::array::from_fn(|k| q.half[k] > 0.0);
+            let motion = std::array::from_fn(|k| slack * (q.j_norm[k] + q.sigma[k]));
+            let held = held(&a, &b, pair);
+            if second.excludes_stationary(&expansion.gram, &expansion.g, &free, &held, &motion) {
+                continue;
+            }
+        }
         let wide = |group: bool, radius: f64| if group { 1e30 + radius } else { radius };
         if B == 0 || (A > 0 && wide(p.is_group(), p.radius()) >= wide(q.is_group(), q.radius())) {
             for child in a.children(pair.a) {
@@ -311,6 +337,9 @@ impl<const A: usize, const B: usize, const N: usize> Certificate<A, B, N> {
     {
         let (piece_a, piece_b) = (a.pieces.get(self.piece[0] as usize)?, b.pieces.get(self.piece[1] as usize)?);
         self.travelled += motion[0] + motion[1];
+        if self.slack > 0.0 && (motion[1] > 0.0 || self.travelled > self.slack) {
+            return None;
+        }
         // Written so that a motion that is not a number fails.
         if !(motion.iter().all(|m| *m >= 0.0) && self.travelled < self.reach) {
             return None;

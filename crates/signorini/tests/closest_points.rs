@@ -214,3 +214,39 @@ fn meshes_and_implicit_bodies_have_a_signed_gap() {
     assert!((answers["implicit"]["gap"].as_f64().unwrap() - 1.5).abs() < 1e-13);
     assert!((answers["curve"]["distance"].as_f64().unwrap() - 1.0).abs() < 1e-14);
 }
+
+/// Cases with a few bytes changed, dropped or doubled: read or refused, and answered, without a panic.
+#[test]
+fn mutilated_cases_are_read_or_refused() {
+    use signorini::queries::parse;
+    use signorini_geometry::closest::closest;
+    let cases: Value = serde_json::from_str(include_str!("data/closest_points.json")).unwrap();
+    let mut state = 7u64;
+    let mut random = |n: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((state >> 33) as usize) % n
+    };
+    let alphabet = b"0123456789.-+eE[]{},:\"anul";
+    let mut read = 0;
+    for case in cases["cases"].as_array().unwrap() {
+        let kept = json!({"id": case["id"], "a": case["a"], "b": case["b"]});
+        let text = kept.to_string().into_bytes();
+        for _ in 0..12 {
+            let mut bytes = text.clone();
+            for _ in 0..1 + random(3) {
+                let at = random(bytes.len());
+                match random(4) {
+                    0 => drop(bytes.remove(at)),
+                    1 => bytes.insert(at, alphabet[random(alphabet.len())]),
+                    _ => bytes[at] = alphabet[random(alphabet.len())],
+                }
+            }
+            if let Ok(query) = parse(&bytes, Path::new("")) {
+                let answer = closest(&query.a, &query.b, &Query::default());
+                assert!(answer.distance().is_finite(), "{}", String::from_utf8_lossy(&bytes));
+                read += 1;
+            }
+        }
+    }
+    assert!(read > 500, "{read} of the mutilated cases were still queries");
+}

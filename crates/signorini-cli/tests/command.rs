@@ -129,3 +129,35 @@ fn an_interrupt_keeps_what_is_done() {
     assert_eq!((summary["converged"].as_bool(), summary["reason"].as_str()), (Some(false), Some("interrupted")));
     assert!(summary["steps"].as_array().is_some_and(|s| !s.is_empty()));
 }
+
+#[test]
+fn queries_are_answered_and_wrong_ones_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let good = r#"{"id": "good", "a": {"type": "point", "p": [0, 0, 2]}, "b": {"type": "segment", "p0": [1, 0, 0], "p1": [3, 0, 0]}}"#;
+    let bad = r#"{"id": "bad", "a": {"type": "point", "p": [0, 0, 2]}, "b": {"type": "sphere"}}"#;
+    let corpus = |cases: &str| format!("{{\"format\": \"cpp-corpus-1\", \"cases\": [{cases}]}}");
+    std::fs::write(folder.path().join("q.json"), corpus(good)).expect("queries");
+    let output = signorini(folder.path()).args(["closest", "q.json", "-o", "a.json"]).output().expect("answers");
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("1 queries"), "{}", text(&output.stdout));
+    let answers: Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("a.json")).expect("answers")).unwrap();
+    assert_eq!(answers["good"]["feature_b"], "vertex");
+
+    // From standard input, with one wrong query and a report for programs.
+    let both = corpus(&format!("{good}, {bad}"));
+    let output = signorini(folder.path())
+        .args(["closest", "-", "-o", "b.json", "--json", "--local-minima"])
+        .write_stdin(both)
+        .output()
+        .expect("answers");
+    assert_eq!(output.status.code(), Some(1));
+    let report: Value = serde_json::from_slice(&output.stdout).expect("a report");
+    assert_eq!((report["answered"].as_u64(), report["wrong"].as_u64()), (Some(2), Some(1)));
+    assert!(report["errors"][0].as_str().unwrap().contains("bad (line 1): b.o: missing"), "{report}");
+
+    let output = signorini(folder.path()).args(["closest", "none.json", "-o", "c.json"]).output().expect("an error");
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stderr).contains("none.json"));
+    assert!(!folder.path().join("c.json").exists());
+}

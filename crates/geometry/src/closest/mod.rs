@@ -2,7 +2,7 @@
 //!
 //! [`closest`] answers for every pair of a point, curve or surface with another. It minimises `F = ½ D·D`, `D = x_A -
 //! x_B`, over the closed parameter domains. A few pairs have closed forms; all others go through a branch-and-bound
-//! [`search`] whose bounds prove that nothing is closer, with exact Newton at the end. The minimiser is
+//! search whose bounds prove that nothing is closer, with exact Newton at the end. The minimiser is
 //! found first and named afterwards ([`FeatureKind`]): faces, edges and vertices cover space without gaps because a
 //! global minimiser always exists.
 

@@ -26,6 +26,13 @@ pub struct SecondOrder<const N: usize> {
     cubic: f64,
 }
 
+/// The distance of the boxes around two cells.
+#[inline]
+pub fn box_bound<const A: usize, const B: usize>(a: &Cell<A>, b: &Cell<B>) -> f64 {
+    let apart = (a.hull[0] - b.hull[1]).sup(&(b.hull[0] - a.hull[1]));
+    apart.map(|x| x.max(0.0)).norm()
+}
+
 impl<const N: usize> PairExpansion<N> {
     #[inline]
     pub fn new<const A: usize, const B: usize>(a: &Cell<A>, b: &Cell<B>) -> Self {
@@ -51,11 +58,6 @@ impl<const N: usize> PairExpansion<N> {
     #[inline]
     pub fn linear_bound<const A: usize, const B: usize>(&self, a: &Cell<A>, b: &Cell<B>) -> f64 {
         let remainder = a.rho2 + b.rho2;
-        let apart = (a.hull[0] - b.hull[1]).sup(&(b.hull[0] - a.hull[1]));
-        let boxes = apart.map(|x| x.max(0.0)).norm();
-        if a.is_group() || b.is_group() {
-            return boxes;
-        }
         let quadratic = 2.0 * least(&self.g, &self.gram);
         let squared = self.distance * self.distance + quadratic;
         let mut bound = squared.max(0.0).sqrt();
@@ -77,7 +79,7 @@ impl<const N: usize> PairExpansion<N> {
                 bound = bound.max(normal.dot(&self.d).abs() - slope);
             }
         }
-        (bound - remainder).max(boxes)
+        bound - remainder
     }
 
     /// The bound of the plane with unit normal `e`, with the curvature of the cells seen along it.

@@ -8,7 +8,7 @@
 use std::cmp::Ordering;
 use std::collections::{BinaryHeap, HashMap};
 
-use super::bounds::{PairExpansion, SecondOrder};
+use super::bounds::{PairExpansion, SecondOrder, box_bound};
 use super::newton::{Difference, minimise};
 use crate::Point;
 use crate::patch::{Atlas, Cell, Chart};
@@ -184,12 +184,18 @@ pub fn search<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: 
 impl<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>> Search<'_, A, B, N, CA, CB> {
     fn push(&mut self, a: u32, b: u32) {
         let (cell_a, cell_b) = (self.a.cell(a), self.b.cell(b));
+        // Most pairs end here, before the rest of the cells is read.
+        let boxes = box_bound(cell_a, cell_b);
+        if boxes > self.best + self.effort.tie || cell_a.is_group() || cell_b.is_group() {
+            self.push_bound(Pair { bound: boxes, a, b });
+            return;
+        }
         let expansion = PairExpansion::<N>::new(cell_a, cell_b);
-        if !(cell_a.is_group() || cell_b.is_group()) && expansion.distance < self.best {
+        if expansion.distance < self.best {
             self.best = expansion.distance;
             self.nearest = Some(Pair { bound: 0.0, a, b });
         }
-        let bound = expansion.linear_bound(cell_a, cell_b);
+        let bound = expansion.linear_bound(cell_a, cell_b).max(boxes);
         self.push_bound(Pair { bound, a, b });
     }
 
@@ -258,6 +264,15 @@ impl<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>
             return None;
         }
         let expansion = PairExpansion::<N>::new(a, b);
+        // No expansion helps where it ends below what is known and the tangents turn by as much as they are.
+        let reaches = expansion.distance - a.rho3 - b.rho3 > self.best;
+        let turning =
+            |s: &[f64], j: &[f64]| (s.iter().map(|s| s * s).sum::<f64>(), j.iter().map(|j| j * j).sum::<f64>());
+        let ((sa, ja), (sb, jb)) = (turning(&a.sigma, &a.j_norm), turning(&b.sigma, &b.j_norm));
+        if N > 2 && !reaches && sa + sb > 0.25 * (ja + jb) {
+            self.halve(pair);
+            return None;
+        }
         let second = expansion.second_order(a, b);
         let bound = pair.bound.max(expansion.quadratic_bound(&second, a, b));
         if bound > self.best + self.effort.tie {

@@ -7,7 +7,7 @@
 
 use std::collections::BinaryHeap;
 
-use super::bounds::PairExpansion;
+use super::bounds::{PairExpansion, box_bound};
 use super::classify::{Named, describe};
 use super::newton::minimise;
 use super::search::{Candidate, Pair, Partner, held};
@@ -268,7 +268,10 @@ fn complement_bound<const A: usize, const B: usize, const N: usize, CA: Chart<A>
                 return;
             }
         }
-        let bound = PairExpansion::<N>::new(p, q).linear_bound(p, q);
+        let mut bound = box_bound(p, q);
+        if !(p.is_group() || q.is_group()) {
+            bound = bound.max(PairExpansion::<N>::new(p, q).linear_bound(p, q));
+        }
         heap.push(Pair { bound, a: i, b: j });
     };
     push(&mut heap, &a, &b, 0, 0);

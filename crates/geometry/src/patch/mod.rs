@@ -111,7 +111,11 @@ pub const GROUP: u32 = u32::MAX;
 /// With `t` in `[-1, 1]^M` the local coordinate of the cell, `x(t) = x + Σ j t + ½ Σ dd t t + R`, `|R| ≤ rho3`, and
 /// `|x(t) - x - Σ j t| ≤ rho2`.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Cell<const M: usize> {
+    /// A box that holds the cell, low and high corner; in the tree it is gathered from the leaves. It comes first, with
+    /// what else is read of every cell that is looked at.
+    pub hull: [Point<3>; 2],
     pub piece: u32,
     /// Numbers of the two halves; zero where the cell has not been split.
     pub children: [u32; 2],
@@ -135,8 +139,6 @@ pub struct Cell<const M: usize> {
     pub rho3: f64,
     /// Unit normal at the middle of a surface cell, else zero.
     pub normal: Vector<3>,
-    /// A box that holds the cell, low and high corner; in the tree it is gathered from the leaves.
-    pub hull: [Point<3>; 2],
 }
 
 impl<const M: usize> Cell<M> {

@@ -837,3 +837,41 @@ fn is_pole(charts: &[SurfaceChart], n: usize, m: usize, axis: usize, high: bool,
     }
     true
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn height_fields_pass_through_their_heights() {
+        let axes = Axes::standard(Point::<3>::new(1.0, 2.0, 3.0));
+        let heights: Vec<Vec<f64>> =
+            (0..7).map(|i| (0..9).map(|j| f64::from(i * i - 3 * j) + f64::from(i * j).sin()).collect()).collect();
+        for degree in 1..=5 {
+            let s = Surface::height_field(axes, [0.5, 0.25], &heights, degree).unwrap();
+            for (i, row) in heights.iter().enumerate() {
+                for (j, height) in row.iter().enumerate() {
+                    let (u, v) = (0.5 * i as f64, 0.25 * j as f64);
+                    let exact = Point::<3>::new(1.0 + u, 2.0 + v, 3.0 + height);
+                    assert!((s.position(u, v) - exact).norm() < 1e-11, "degree {degree}");
+                }
+            }
+        }
+        assert!(Surface::height_field(axes, [0.5, 0.0], &heights, 3).is_err());
+        assert!(Surface::height_field(axes, [0.5, 0.5], &heights, 9).is_err());
+        assert!(Surface::height_field(axes, [0.5, 0.5], &heights[..2], 3).is_err());
+    }
+
+    #[test]
+    fn poles_and_collapsed_sides_are_told_apart() {
+        use crate::patch::Side;
+        let axes = Axes::standard(Point::<3>::zeros());
+        let turn = [0.0, TAU];
+        let sphere = Surface::sphere(axes, 1.0, [turn, [-FRAC_PI_2, FRAC_PI_2]], true).unwrap();
+        assert_eq!(sphere.atlas.pieces[0].sides[1][0], Side::Pole);
+        let octant = Surface::sphere(axes, 1.0, [[0.0, FRAC_PI_2], [0.0, FRAC_PI_2]], false).unwrap();
+        assert_eq!(octant.atlas.pieces[0].sides[1][1], Side::Collapsed(Border::V1));
+        let cone = Surface::cone(axes, 0.6, 0.8, [turn, [0.0, 1.0]], true).unwrap();
+        assert_eq!(cone.atlas.pieces[0].sides[1][0], Side::Collapsed(Border::V0));
+    }
+}

@@ -181,7 +181,7 @@ fn points_and_surfaces() {
 
 #[test]
 fn curves_and_curves() {
-    in_parallel(CURVES * CURVES * 3 * multiplier(), |k| {
+    in_parallel(CURVES * CURVES * 2 * multiplier(), |k| {
         let mut random = Random(2_000_000_011 + k as u64);
         let a = curve(&mut random, k % CURVES);
         let b = curve(&mut random, k / CURVES % CURVES);
@@ -248,7 +248,7 @@ fn tracked_points_are_those_of_a_search() {
 fn tracked_shapes_are_those_of_a_search() {
     in_parallel(60 * multiplier(), |k| {
         let mut random = Random(7_000_000_003 + k as u64);
-        let fixed = surface(&mut random, 7 + k % 7);
+        let fixed = surface(&mut random, 7 + k % (SURFACES - 7));
         let points: Vec<Point<3>> =
             (0..5).map(|i| Point::<3>::new(0.4 * i as f64 - 0.8, 0.0, 0.9) + random.vector(0.3)).collect();
         let velocity = random.vector(0.004);

@@ -84,7 +84,8 @@ fn basis(knots: &[f64], degree: usize, i: usize, t: f64) -> f64 {
 
 fn basis_in(knots: &[f64], degree: usize, i: usize, t: f64, last: f64) -> f64 {
     if degree == 0 {
-        let inside = knots[i] <= t && (t < knots[i + 1] || (t == last && knots[i + 1] == last && knots[i] < last));
+        let inside =
+            if t == last { knots[i] < last && knots[i + 1] == last } else { knots[i] <= t && t < knots[i + 1] };
         return f64::from(u8::from(inside));
     }
     let mut value = 0.0;
@@ -121,7 +122,7 @@ fn clamped_knots(random: &mut Random, degree: usize, n: usize) -> Vec<f64> {
     knots
 }
 
-pub const CURVES: usize = 9;
+pub const CURVES: usize = 12;
 
 pub fn curve(random: &mut Random, kind: usize) -> Sample {
     let axes = random.axes();
@@ -195,6 +196,47 @@ pub fn curve(random: &mut Random, kind: usize) -> Sample {
                 sum / total
             })
         }
+        8 => {
+            let n = 2 + random.below(5);
+            let points: Vec<Point<3>> = (0..n).map(|_| random.vector(1.0)).collect();
+            let closed = random.unit() < 0.5;
+            let c = Curve::polyline(&points, closed).unwrap();
+            Sample::curve("polyline", c, move |t| {
+                let k = (t.floor() as usize).min(if closed { n - 1 } else { n - 2 });
+                let s = t - k as f64;
+                points[k] * (1.0 - s) + points[(k + 1) % n] * s
+            })
+        }
+        9 => {
+            let n = 2 + random.below(4);
+            let points: Vec<Point<3>> = (0..n).map(|_| random.vector(1.0)).collect();
+            let tangents: Vec<Vector<3>> = (0..n).map(|_| random.vector(1.5)).collect();
+            let c = Curve::hermite(&points, &tangents).unwrap();
+            Sample::curve("hermite", c, move |t| {
+                let k = (t.floor() as usize).min(n - 2);
+                let s = t - k as f64;
+                points[k] * (1.0 - 3.0 * s * s + 2.0 * s.powi(3))
+                    + tangents[k] * (s - 2.0 * s * s + s.powi(3))
+                    + points[k + 1] * (3.0 * s * s - 2.0 * s.powi(3))
+                    + tangents[k + 1] * (s.powi(3) - s * s)
+            })
+        }
+        10 => {
+            // A closed spline with uniform periodic knots.
+            let (degree, n) = (3, 5 + random.below(6));
+            let ring: Vec<Point<3>> = (0..n)
+                .map(|k| {
+                    let angle = TAU * k as f64 / n as f64;
+                    Point::<3>::new(angle.cos(), angle.sin(), 0.0) + random.vector(0.3)
+                })
+                .collect();
+            let points: Vec<Point<3>> = (0..n + degree).map(|k| ring[k % n]).collect();
+            let knots: Vec<f64> = (0..n + 2 * degree + 1).map(|k| k as f64).collect();
+            let c = Curve::nurbs(degree, &knots, &points, None, true).unwrap();
+            Sample::curve("closed nurbs", c, move |t| {
+                (0..points.len()).map(|i| points[i] * basis(&knots, degree, i, t)).sum()
+            })
+        }
         _ => {
             let n = 2 + random.below(4);
             let along = random.vector(1.0);
@@ -205,7 +247,7 @@ pub fn curve(random: &mut Random, kind: usize) -> Sample {
     }
 }
 
-pub const SURFACES: usize = 14;
+pub const SURFACES: usize = 17;
 
 pub fn surface(random: &mut Random, kind: usize) -> Sample {
     let axes = random.axes();
@@ -329,6 +371,64 @@ pub fn surface(random: &mut Random, kind: usize) -> Sample {
         12 => {
             let n: [Point<3>; 3] = [0; 3].map(|_| random.vector(1.0));
             Sample::surface("tri3", Surface::tri3(&n).unwrap(), move |u, v| n[0] * (1.0 - u - v) + n[1] * u + n[2] * v)
+        }
+        13 => {
+            // A profile that may meet the axis.
+            let touches = random.unit() < 0.3;
+            let mut profile: Vec<Point<3>> =
+                (0..4).map(|k| Point::<3>::new(0.6, 0.0, 0.5 * k as f64 - 0.7) + random.vector(0.4)).collect();
+            if touches {
+                profile[3] = Point::<3>::new(0.0, 0.0, 0.9);
+            }
+            let c = Curve::bezier(&profile, None).unwrap();
+            let s = Surface::revolution(&c, Point::<3>::zeros(), Vector::<3>::z(), turn, full).unwrap();
+            Sample::surface("revolution", s, move |u, v| {
+                let w = 1.0 - v;
+                let x = profile[0] * w.powi(3)
+                    + profile[1] * (3.0 * w * w * v)
+                    + profile[2] * (3.0 * w * v * v)
+                    + profile[3] * v.powi(3);
+                Point::<3>::new(x.x * u.cos() - x.y * u.sin(), x.x * u.sin() + x.y * u.cos(), x.z)
+            })
+        }
+        14 => {
+            let (n, m) = (4 + random.below(4), 4 + random.below(4));
+            let heights: Vec<Vec<f64>> = (0..n).map(|_| (0..m).map(|_| random.between(-0.4, 0.4)).collect()).collect();
+            let spacing = [random.between(0.2, 0.5), random.between(0.2, 0.5)];
+            let s = Surface::height_field(axes, spacing, &heights, 1).unwrap();
+            Sample::surface("height field", s, move |u, v| {
+                let (a, b) = (u / spacing[0], v / spacing[1]);
+                let (i, j) = ((a.floor() as usize).min(n - 2), (b.floor() as usize).min(m - 2));
+                let (s, t) = (a - i as f64, b - j as f64);
+                let h = heights[i][j] * (1.0 - s) * (1.0 - t)
+                    + heights[i + 1][j] * s * (1.0 - t)
+                    + heights[i][j + 1] * (1.0 - s) * t
+                    + heights[i + 1][j + 1] * s * t;
+                o + ex * u + ey * v + ez * h
+            })
+        }
+        15 => {
+            let n = 10;
+            let c: [Point<3>; 3] = [0; 3].map(|_| random.vector(1.0));
+            let mut nodes = Vec::with_capacity(n);
+            for j in 0..4 {
+                for i in 0..4 - j {
+                    let (u, v) = (i as f64 / 3.0, j as f64 / 3.0);
+                    nodes.push(c[0] * (1.0 - u - v) + c[1] * u + c[2] * v + random.vector(0.1));
+                }
+            }
+            let s = Surface::lagrange_triangle(&nodes).unwrap();
+            Sample::surface("tri10", s, move |u, v| {
+                let factor = |k: usize, x: f64| (0..k).map(|m| (3.0 * x - m as f64) / (k - m) as f64).product::<f64>();
+                let (mut sum, mut k) = (Vector::<3>::zeros(), 0);
+                for j in 0..4 {
+                    for i in 0..4 - j {
+                        sum += nodes[k] * (factor(i, u) * factor(j, v) * factor(3 - i - j, 1.0 - u - v));
+                        k += 1;
+                    }
+                }
+                sum
+            })
         }
         _ => {
             let c: [Point<3>; 3] = [0; 3].map(|_| random.vector(1.0));

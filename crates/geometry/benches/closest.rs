@@ -153,6 +153,19 @@ fn main() {
     run("curve-curve NURBS", "curve", &mut |r, _| nurbs_curve(r, 0.0));
     run("curve-surface NURBS", "curve", &mut |r, _| nurbs_surface(r, 0.0));
     run("surface-surface NURBS", "surface", &mut |r, _| nurbs_surface(r, 0.0));
+    let mut build = |name: &str, make: &mut dyn FnMut(&mut Random) -> Shape| {
+        let (mut count, start) = (0, Instant::now());
+        while start.elapsed().as_secs_f64() < 0.3 {
+            std::hint::black_box(make(&mut r));
+            count += 1;
+        }
+        println!("{name:22} {:>9.1} us to build", start.elapsed().as_secs_f64() / f64::from(count) * 1e6);
+    };
+    println!();
+    build("curve NURBS", &mut |r| nurbs_curve(r, 0.0));
+    build("quad9", &mut |r| Surface::lagrange_quad(&net(r, 3, 3, 0.25)).unwrap().into());
+    build("bicubic", &mut |r| Surface::bezier(&net(r, 4, 4, 0.4), None).unwrap().into());
+    build("surface NURBS 6x7", &mut |r| nurbs_surface(r, 0.0));
     println!();
     let curves: Vec<Shape> = (0..12).map(|_| nurbs_curve(&mut r, 0.0)).collect();
     track("point-curve, warm", &curves, &mut r);

@@ -53,7 +53,7 @@ impl RigidMotion {
             CurveChart::Power { coefficients, rational, bounds } => CurveChart::Power {
                 coefficients: self.coefficients(coefficients, *rational),
                 rational: *rational,
-                bounds: *bounds,
+                bounds: bounds.clone(),
             },
             CurveChart::Harmonic { origin, a, b, c, middle, half } => CurveChart::Harmonic {
                 origin: self.point(origin),
@@ -72,7 +72,7 @@ impl RigidMotion {
                 degree: *degree,
                 coefficients: self.coefficients(coefficients, *rational),
                 rational: *rational,
-                bounds: *bounds,
+                bounds: bounds.clone(),
             },
             SurfaceChart::Quadric { origin, axes, f, g, middle, half } => SurfaceChart::Quadric {
                 origin: self.point(origin),
@@ -147,10 +147,7 @@ impl RigidMotion {
 }
 
 fn moved<const M: usize, C>(pieces: &[Piece<M, C>], chart: impl Fn(&C) -> C) -> Vec<Piece<M, C>> {
-    pieces
-        .iter()
-        .map(|p| Piece { chart: chart(&p.chart), map: p.map.clone(), sides: p.sides, bounds: p.bounds })
-        .collect()
+    pieces.iter().map(|p| Piece { chart: chart(&p.chart), map: p.map.clone(), sides: p.sides }).collect()
 }
 
 #[cfg(test)]

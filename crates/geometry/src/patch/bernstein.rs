@@ -208,11 +208,53 @@ impl Net {
         })
     }
 
+    /// See the free function [`derivative`]; zero where the degree is.
     pub fn derivative(&self, axis: usize) -> Net {
-        if self.degree[axis] == 0 {
-            return Net { degree: self.degree, control: vec![[0.0; 4]; self.control.len()] };
+        let mut degree = self.degree;
+        if degree[axis] == 0 {
+            return Net { degree, control: vec![[0.0; 4]; self.control.len()] };
         }
-        if axis == 0 { self.map_columns(derivative) } else { self.map_rows(derivative) }
+        let factor = 0.5 * degree[axis] as f64;
+        degree[axis] -= 1;
+        let step = self.step(axis);
+        Net::from_fn(degree, |i, j| {
+            let at = i * self.step(0) + j;
+            combine(factor, &self.control[at + step], -factor, &self.control[at])
+        })
+    }
+
+    /// See [`times_power`].
+    pub fn times_power(&self, axis: usize, power: usize) -> Net {
+        let once = self.times_linear(axis, if power > 0 { -1.0 } else { 1.0 });
+        once.times_linear(axis, if power > 1 { -1.0 } else { 1.0 })
+    }
+
+    fn times_linear(&self, axis: usize, at_start: f64) -> Net {
+        let mut degree = self.degree;
+        degree[axis] += 1;
+        let (n, step) = (degree[axis], self.step(axis));
+        Net::from_fn(degree, |i, j| {
+            let k = [i, j][axis];
+            let at = i * self.step(0) + j;
+            let low = if k < n { self.control[at] } else { [0.0; 4] };
+            let high = if k > 0 { self.control[at - step] } else { [0.0; 4] };
+            combine((n - k) as f64 / n as f64 * at_start, &low, k as f64 / n as f64, &high)
+        })
+    }
+
+    fn from_fn(degree: [usize; 2], mut f: impl FnMut(usize, usize) -> Control) -> Net {
+        let mut control = Vec::with_capacity((degree[0] + 1) * (degree[1] + 1));
+        for i in 0..=degree[0] {
+            for j in 0..=degree[1] {
+                control.push(f(i, j));
+            }
+        }
+        Net { degree, control }
+    }
+
+    /// Distance of neighbours in one direction.
+    fn step(&self, axis: usize) -> usize {
+        if axis == 0 { self.degree[1] + 1 } else { 1 }
     }
 
     pub fn powers(&self) -> Net {

@@ -4,8 +4,9 @@
 //! Horner's scheme gives value and derivatives for a few operations per coefficient; pieces of high degree are cut
 //! until the coefficients decay, which keeps this as accurate as Bernstein form.
 
-use super::bernstein::{Control, Net, derivative, largest, largest_weight, powers, times_power};
+use super::bernstein::{Control, Net, derivative, halves, largest, largest_weight, powers, times_power};
 use crate::{Point, Vector};
+use std::array::from_fn;
 
 /// Position and partial derivatives to second order.
 #[derive(Clone, Copy, Debug)]
@@ -22,11 +23,73 @@ pub struct Bounds<const M: usize> {
     pub third: [[[f64; M]; M]; M],
 }
 
+impl<const M: usize> Bounds<M> {
+    /// Bounds that hold where either does.
+    fn or(&self, other: &Self) -> Self {
+        Bounds {
+            second: from_fn(|a| from_fn(|b| self.second[a][b].max(other.second[a][b]))),
+            third: from_fn(|a| from_fn(|b| from_fn(|c| self.third[a][b][c].max(other.third[a][b][c])))),
+        }
+    }
+
+    /// The bounds of a part of the domain in coordinates of its own, `scale` times as long, in those of the whole.
+    fn stretched(mut self, scale: [f64; M]) -> Self {
+        for a in 0..M {
+            for b in 0..M {
+                self.second[a][b] *= scale[a] * scale[b];
+                for c in 0..M {
+                    self.third[a][b][c] *= scale[a] * scale[b] * scale[c];
+                }
+            }
+        }
+        self
+    }
+}
+
+/// Bounds for the fields of a regular grid over `[-1, 1]^M`. Derivatives of free-form pieces peak in a corner, and one
+/// bound for the whole piece would be many times too large elsewhere.
+#[derive(Clone, Debug)]
+pub struct BoundsTable<const M: usize> {
+    fields: [usize; M],
+    bounds: Vec<Bounds<M>>,
+}
+
+impl<const M: usize> BoundsTable<M> {
+    /// The bounds over `middle ± half`.
+    fn over(&self, middle: &[f64; M], half: &[f64; M]) -> Bounds<M> {
+        if let [only] = &self.bounds[..] {
+            return *only;
+        }
+        let range = |k: usize| {
+            let n = self.fields[k];
+            let at = |s: f64| 0.5 * (s + 1.0) * n as f64;
+            let low = (at(middle[k] - half[k]) as usize).min(n - 1);
+            let high = (at(middle[k] + half[k]).ceil() as usize).clamp(low + 1, n);
+            low..high
+        };
+        let (first, last) = (range(0), range(M - 1));
+        let columns = if M == 1 { 0..1 } else { last };
+        let mut bounds = self.bounds[first.start * columns_of(self.fields) + columns.start];
+        for i in first {
+            for j in columns.clone() {
+                bounds = bounds.or(&self.bounds[i * columns_of(self.fields) + j]);
+            }
+        }
+        bounds
+    }
+}
+
+/// Fields per row of a table.
+fn columns_of<const M: usize>(fields: [usize; M]) -> usize {
+    if M == 1 { 1 } else { fields[M - 1] }
+}
+
 /// A smooth map from `[-1, 1]^M` to space.
 pub trait Chart<const M: usize>: Send + Sync {
     fn jet(&self, s: &[f64; M]) -> Jet2<M>;
     fn position(&self, s: &[f64; M]) -> Point<3>;
-    fn bounds(&self) -> Bounds<M>;
+    /// Bounds of the derivatives over `middle ± half`, which lies in the domain.
+    fn bounds(&self, middle: &[f64; M], half: &[f64; M]) -> Bounds<M>;
 }
 
 /// The chart of a single point.
@@ -42,7 +105,7 @@ impl Chart<0> for PointChart {
         self.0
     }
 
-    fn bounds(&self) -> Bounds<0> {
+    fn bounds(&self, _: &[f64; 0], _: &[f64; 0]) -> Bounds<0> {
         Bounds { second: [], third: [] }
     }
 }
@@ -51,7 +114,7 @@ impl Chart<0> for PointChart {
 #[derive(Clone, Debug)]
 pub enum CurveChart {
     /// Coefficients of the powers of `s`, homogeneous where `rational`.
-    Power { coefficients: Vec<Control>, rational: bool, bounds: Bounds<1> },
+    Power { coefficients: Vec<Control>, rational: bool, bounds: BoundsTable<1> },
     /// `origin + a cos t + b sin t + c t`, `t = middle + half s`, with `a` and `b` orthogonal: circle, ellipse, helix.
     Harmonic { origin: Point<3>, a: Vector<3>, b: Vector<3>, c: Vector<3>, middle: f64, half: f64 },
 }
@@ -67,7 +130,7 @@ impl CurveChart {
         let rational = control.iter().any(|c| c[3] != control[0][3]);
         let control: Vec<Control> =
             if rational { control.to_vec() } else { control.iter().map(|c| c.map(|v| v / control[0][3])).collect() };
-        let bounds = curve_bounds(&control, rational);
+        let bounds = curve_table(&control, rational);
         let mut coefficients = powers(&control);
         while !rational && coefficients.len() > 1 && coefficients.last() == Some(&[0.0; 4]) {
             coefficients.pop();
@@ -158,15 +221,51 @@ impl Chart<1> for CurveChart {
         }
     }
 
-    fn bounds(&self) -> Bounds<1> {
+    fn bounds(&self, middle: &[f64; 1], half: &[f64; 1]) -> Bounds<1> {
         match self {
-            CurveChart::Power { bounds, .. } => *bounds,
+            CurveChart::Power { bounds, .. } => bounds.over(middle, half),
             CurveChart::Harmonic { a, b, half, .. } => {
                 let r = a.norm().max(b.norm());
                 Bounds { second: [[r * half * half]], third: [[[r * half * half * half]]] }
             }
         }
     }
+}
+
+/// Fields in each direction of the tables of rational and of polynomial pieces of this degree.
+fn fields(degree: usize, rational: bool) -> usize {
+    match (rational, degree) {
+        (true, 2..) => 8,
+        (false, 3..) => 4,
+        _ => 1,
+    }
+}
+
+fn curve_table(control: &[Control], rational: bool) -> BoundsTable<1> {
+    let n = fields(control.len() - 1, rational);
+    let mut parts = vec![control.to_vec()];
+    while parts.len() < n {
+        parts = parts.iter().flat_map(|part| halves(part)).collect();
+    }
+    let bounds = parts.iter().map(|part| curve_bounds(part, rational).stretched([n as f64])).collect();
+    BoundsTable { fields: [n], bounds }
+}
+
+fn surface_table(net: &Net, rational: bool) -> BoundsTable<2> {
+    let fields = net.degree.map(|degree| fields(degree, rational));
+    let mut rows = vec![net.clone()];
+    while rows.len() < fields[0] {
+        rows = rows.iter().flat_map(|part| part.halves(0)).collect();
+    }
+    let mut bounds = Vec::with_capacity(fields[0] * fields[1]);
+    for row in rows {
+        let mut parts = vec![row];
+        while parts.len() < fields[1] {
+            parts = parts.iter().flat_map(|part| part.halves(1)).collect();
+        }
+        bounds.extend(parts.iter().map(|part| surface_bounds(part, rational).stretched(fields.map(|n| n as f64))));
+    }
+    BoundsTable { fields, bounds }
 }
 
 /// Bounds from control nets. For a rational curve the quadratic Taylor polynomial about the middle is subtracted first
@@ -209,7 +308,7 @@ fn curve_bounds(control: &[Control], rational: bool) -> Bounds<1> {
 #[derive(Clone, Debug)]
 pub enum SurfaceChart {
     /// Coefficients of the powers of both parameters, homogeneous where `rational`.
-    Power { degree: [usize; 2], coefficients: Vec<Control>, rational: bool, bounds: Bounds<2> },
+    Power { degree: [usize; 2], coefficients: Vec<Control>, rational: bool, bounds: BoundsTable<2> },
     /// `origin + f(v) (a cos u + b sin u) + g(v) c` with orthogonal axes, `f = f0 + f1 v + f2 cos v`,
     /// `g = g0 + g1 v + g2 sin v`: cylinder, cone, sphere, ellipsoid, torus.
     Quadric { origin: Point<3>, axes: [Vector<3>; 3], f: [f64; 3], g: [f64; 3], middle: [f64; 2], half: [f64; 2] },
@@ -237,15 +336,16 @@ impl SurfaceChart {
         } else {
             Net { degree: net.degree, control: net.control.iter().map(|c| c.map(|v| v / w0)).collect() }
         };
-        let bounds = surface_bounds(&net, rational);
+        let bounds = surface_table(&net, rational);
         SurfaceChart::Power { degree: net.degree, coefficients: net.powers().control, rational, bounds }
     }
 
     pub fn revolved(origin: Point<3>, axis: Vector<3>, profile: CurveChart, middle: f64, half: f64) -> Self {
         // |r_perp| and |P'| over the profile from its Taylor expansion at the middle.
-        let second = profile.bounds().second[0][0];
+        let bounds = profile.bounds(&[0.0], &[1.0]);
+        let second = bounds.second[0][0];
         let [x, d, _, _] = profile.jet3(0.0);
-        let third = profile.bounds().third[0][0][0];
+        let third = bounds.third[0][0][0];
         let off = x - origin;
         let radius = (off - axis * off.dot(&axis)).norm() + d.norm() + 0.5 * second;
         let speed = d.norm() + second;
@@ -390,9 +490,10 @@ impl Chart<2> for SurfaceChart {
         }
     }
 
-    fn bounds(&self) -> Bounds<2> {
+    fn bounds(&self, middle: &[f64; 2], half: &[f64; 2]) -> Bounds<2> {
         match self {
-            SurfaceChart::Power { bounds, .. } | SurfaceChart::Revolved { bounds, .. } => *bounds,
+            SurfaceChart::Power { bounds, .. } => bounds.over(middle, half),
+            SurfaceChart::Revolved { bounds, .. } => *bounds,
             SurfaceChart::Quadric { axes, f, g, middle, half, .. } => {
                 let [h, k] = *half;
                 let v = middle[1].abs() + k;
@@ -434,17 +535,21 @@ fn surface_bounds(net: &Net, rational: bool) -> Bounds<2> {
     let mut centre = [0.0; 3];
     if rational {
         let t = quotient_surface(&horner_surface::<3>(net.degree, &net.powers().control, &[0.0; 2]), true);
-        numerator = net.map_columns(|c| times_power(c, 0)).map_rows(|r| times_power(r, 0));
-        for a in 0..3 {
-            for b in 0..3 - a {
-                let product = net.map_columns(|c| times_power(c, a)).map_rows(|r| times_power(r, b));
-                for (value, c) in numerator.control.iter_mut().zip(&product.control) {
-                    for k in 0..3 {
-                        value[k] -= t[a][b][k] * c[3];
-                    }
-                }
+        let powers = [0, 1, 2].map(|a| net.times_power(0, a));
+        let less = |value: &mut Control, t: &Vector<3>, c: &Control| (0..3).for_each(|k| value[k] -= t[k] * c[3]);
+        // Sorted by the power of the second parameter.
+        let mut parts = [powers[0].clone(), powers[0].clone(), powers[0].clone()];
+        parts[1..].iter_mut().for_each(|part| part.control.fill([0.0; 4]));
+        for (b, part) in parts.iter_mut().enumerate() {
+            for a in 0..3 - b {
+                part.control.iter_mut().zip(&powers[a].control).for_each(|(value, c)| less(value, &t[a][b], c));
             }
         }
+        let [mut first, second, third] = [0, 1, 2].map(|b| parts[b].times_power(1, b));
+        for (value, (p, q)) in first.control.iter_mut().zip(second.control.iter().zip(&third.control)) {
+            (0..3).for_each(|k| value[k] += p[k] + q[k]);
+        }
+        numerator = first;
         centre = [2.0 * t[2][0].norm(), t[1][1].norm(), 2.0 * t[0][2].norm()];
     }
     let w_min = net.control.iter().map(|c| c[3]).fold(f64::INFINITY, f64::min);

@@ -93,13 +93,11 @@ pub struct Piece<const M: usize, C> {
     pub map: ParameterMap<M>,
     /// Low and high side of each direction.
     pub sides: [[Side; 2]; M],
-    pub bounds: Bounds<M>,
 }
 
 impl<const M: usize, C: Chart<M>> Piece<M, C> {
     pub fn new(chart: C, map: ParameterMap<M>, sides: [[Side; 2]; M]) -> Self {
-        let bounds = chart.bounds();
-        Piece { chart, map, sides, bounds }
+        Piece { chart, map, sides }
     }
 }
 
@@ -144,7 +142,7 @@ pub struct Cell<const M: usize> {
 impl<const M: usize> Cell<M> {
     fn new<C: Chart<M>>(number: u32, piece: &Piece<M, C>, middle: [f64; M], half: [f64; M]) -> Self {
         let jet = piece.chart.jet(&middle);
-        let Bounds { second, third } = &piece.bounds;
+        let Bounds { second, third } = &piece.chart.bounds(&middle, &half);
         let mut cell = Cell {
             piece: number,
             children: [0; 2],

@@ -14,6 +14,8 @@ use signorini_geometry::shape::{Curve, Shape, Surface};
 use signorini_geometry::{Aabb, Point};
 use std::hint::black_box;
 use std::time::Instant;
+use truck_geometry::prelude as truck;
+use truck_geometry::prelude::{ParametricCurve, ParametricSurface, SearchNearestParameter};
 
 struct Random(u64);
 
@@ -91,7 +93,8 @@ fn main() {
 
     let corners: Vec<[Point<3>; 3]> = (0..n).map(|_| [r.vector(1.0), r.vector(1.0), r.vector(1.0)]).collect();
     let own: Vec<Shape> = corners.iter().map(|c| Surface::tri3(c).unwrap().into()).collect();
-    let other: Vec<Triangle> = corners.iter().map(|c| Triangle::new(parry(&c[0]), parry(&c[1]), parry(&c[2]))).collect();
+    let other: Vec<Triangle> =
+        corners.iter().map(|c| Triangle::new(parry(&c[0]), parry(&c[1]), parry(&c[2]))).collect();
     compare(
         "point-triangle",
         "parry",
@@ -112,7 +115,11 @@ fn main() {
 
     let count = 24;
     let control: Vec<Vec<(Point<3>, f64)>> = (0..count)
-        .map(|_| (0..8).map(|i| (Point::<3>::new(i as f64 * 0.28 - 1.0, 0.0, 0.0) + r.vector(0.4), r.between(0.7, 1.4))).collect())
+        .map(|_| {
+            (0..8)
+                .map(|i| (Point::<3>::new(i as f64 * 0.28 - 1.0, 0.0, 0.0) + r.vector(0.4), r.between(0.7, 1.4)))
+                .collect()
+        })
         .collect();
     let own: Vec<Shape> = control
         .iter()
@@ -126,12 +133,33 @@ fn main() {
         .iter()
         .map(|c| NurbsCurve3D::try_new(3, c.iter().map(homogeneous).collect(), knots(8, 3)).unwrap())
         .collect();
+    let truck_point = |(p, w): &(Point<3>, f64)| truck::Vector4::new(p.x * w, p.y * w, p.z * w, *w);
+    let truck_knots = |n: usize| truck::KnotVec::from(knots(n, 3));
+    let truck_distance = |found: Option<truck::Point3>, p: &Point<3>| {
+        found.map_or(f64::NAN, |x| (Point::<3>::new(x.x, x.y, x.z) - p).norm())
+    };
+    let truck_curves: Vec<truck::NurbsCurve<truck::Vector4>> = control
+        .iter()
+        .map(|c| truck::NurbsCurve::new(truck::BSplineCurve::new(truck_knots(8), c.iter().map(truck_point).collect())))
+        .collect();
     let distance = |found: Option<Point3<f64>>, p: &Point<3>| found.map_or(f64::NAN, |x| (x.coords - p).norm());
     compare(
         "point-curve, NURBS",
         "curvo",
         rate(480, |k| closest(&as_shape[k], &own[k % count], &query).distance()),
         rate(480, |k| distance(other[k % count].find_closest_point(&Point3::from(points[k])).ok(), &points[k])),
+    );
+
+    compare(
+        "point-curve, NURBS",
+        "truck",
+        rate(480, |k| closest(&as_shape[k], &own[k % count], &query).distance()),
+        rate(480, |k| {
+            let (curve, p) = (&truck_curves[k % count], &points[k]);
+            let t = curve.search_nearest_parameter(truck::Point3::new(p.x, p.y, p.z), None, 100);
+            // Its Newton iteration may leave the curve and find a point of the polynomial beyond the end.
+            truck_distance(t.filter(|t| (0.0..=5.0).contains(t)).map(|t| curve.subs(t)), p)
+        }),
     );
 
     let nets: Vec<Vec<Vec<(Point<3>, f64)>>> = (0..count)
@@ -158,13 +186,39 @@ fn main() {
         .collect();
     let other: Vec<NurbsSurface3D<f64>> = nets
         .iter()
-        .map(|net| NurbsSurface3D::new(3, 3, knots(6, 3), knots(7, 3), net.iter().map(|row| row.iter().map(homogeneous).collect()).collect()))
+        .map(|net| {
+            NurbsSurface3D::new(
+                3,
+                3,
+                knots(6, 3),
+                knots(7, 3),
+                net.iter().map(|row| row.iter().map(homogeneous).collect()).collect(),
+            )
+        })
         .collect();
     compare(
         "point-surface, NURBS 6 x 7",
         "curvo",
         rate(240, |k| closest(&as_shape[k], &own[k % count], &query).distance()),
         rate(240, |k| distance(other[k % count].find_closest_point(&Point3::from(points[k]), None).ok(), &points[k])),
+    );
+    let truck_surfaces: Vec<truck::NurbsSurface<truck::Vector4>> = nets
+        .iter()
+        .map(|net| {
+            let points = net.iter().map(|row| row.iter().map(truck_point).collect()).collect();
+            truck::NurbsSurface::new(truck::BSplineSurface::new((truck_knots(6), truck_knots(7)), points))
+        })
+        .collect();
+    compare(
+        "point-surface, NURBS 6 x 7",
+        "truck",
+        rate(240, |k| closest(&as_shape[k], &own[k % count], &query).distance()),
+        rate(240, |k| {
+            let (surface, p) = (&truck_surfaces[k % count], &points[k]);
+            let found = surface.search_nearest_parameter(truck::Point3::new(p.x, p.y, p.z), None, 100);
+            let inside = |&(u, v): &(f64, f64)| (0.0..=3.0).contains(&u) && (0.0..=4.0).contains(&v);
+            truck_distance(found.filter(inside).map(|(u, v)| surface.subs(u, v)), p)
+        }),
     );
 
     println!();

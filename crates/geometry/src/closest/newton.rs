@@ -98,7 +98,12 @@ impl<const N: usize> Difference<N> {
 pub struct Stationary<const N: usize> {
     pub z: [f64; N],
     pub distance: f64,
+    /// Whether the derivatives vanish, or press against the bounds of the box.
+    pub stationary: bool,
 }
+
+/// Cosine of the angle between distance and tangent up to which a point counts as stationary.
+const STATIONARY: f64 = 1e-7;
 
 /// The most iterations; only quartic minima come near.
 const MOST_ITERATIONS: usize = 60;
@@ -139,15 +144,25 @@ pub fn minimise<const A: usize, const B: usize, const N: usize>(
         if done {
             break;
         }
-        let step = newton_step(&here, &free);
+        // Parameters on a bound that the step would leave through are held too.
+        let mut step = newton_step(&here, &free);
+        while let Some(k) = (0..N).find(|&k| free[k] && beyond(z[k], step[k], low[k], high[k])) {
+            free[k] = false;
+            step = newton_step(&here, &free);
+        }
+        // First the whole step, cut off at the bounds parameter by parameter; if that does not pay, along the straight
+        // line, which leads downhill, as far as the first bound.
         let mut length = 1.0;
+        let mut clamped = true;
         let mut moved = false;
-        for _ in 0..30 {
+        for _ in 0..40 {
             let mut next = z;
             let mut travel = Vector::<3>::zeros();
+            let mut slope = 0.0;
             for k in 0..N {
                 if free[k] {
                     next[k] = (z[k] + length * step[k]).clamp(low[k], high[k]);
+                    slope += here.g[k] * (next[k] - z[k]);
                     travel += here.j[k].map(f64::abs) * (next[k] - z[k]).abs();
                 }
             }
@@ -157,10 +172,20 @@ pub fn minimise<const A: usize, const B: usize, const N: usize>(
             let there = Difference::<N>::new(a, b, &next);
             let value = there.d.norm_squared();
             let slack = 4.0 * f64::EPSILON * (squared + magnitude * distance);
-            if value < squared || (length == 1.0 && value <= squared + slack && smaller_gradient(&there, &here, &free))
-            {
+            // |D|² falls by at least a share of what its slope, 2 g, promises.
+            let pays = value < squared && (!clamped || value <= squared + 0.02 * slope.min(0.0) && slope < 0.0);
+            if pays || (length == 1.0 && value <= squared + slack && smaller_gradient(&there, &here, &free)) {
                 (z, here, squared, moved) = (next, there, value, true);
                 break;
+            }
+            if clamped {
+                clamped = false;
+                let room = |k: usize| if step[k] > 0.0 { high[k] - z[k] } else { low[k] - z[k] } / step[k];
+                let first = (0..N).filter(|&k| free[k] && step[k] != 0.0).map(room).fold(f64::INFINITY, f64::min);
+                if first < 1.0 {
+                    length = first;
+                    continue;
+                }
             }
             length *= 0.5;
         }
@@ -168,7 +193,17 @@ pub fn minimise<const A: usize, const B: usize, const N: usize>(
             break;
         }
     }
-    Stationary { z, distance: squared.sqrt() }
+    let distance = squared.sqrt();
+    let stationary = (0..N).all(|k| {
+        let pressed = (z[k] <= low[k] && here.g[k] >= 0.0) || (z[k] >= high[k] && here.g[k] <= 0.0);
+        pressed || here.g[k].abs() <= STATIONARY * here.metric[k][k].sqrt() * (distance + 1e-3 * magnitude)
+    });
+    Stationary { z, distance, stationary }
+}
+
+/// Whether a step leaves the interval from one of its ends.
+fn beyond(z: f64, step: f64, low: f64, high: f64) -> bool {
+    (z <= low && step < 0.0) || (z >= high && step > 0.0)
 }
 
 fn smaller_gradient<const N: usize>(there: &Difference<N>, here: &Difference<N>, free: &[bool; N]) -> bool {

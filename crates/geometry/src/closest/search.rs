@@ -290,7 +290,14 @@ impl<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>
         let settled = (0..N).map(|k| second.drift[k][k]).sum::<f64>()
             < 2.0 * (0..N).map(|k| second.hessian[k][k].abs()).sum::<f64>();
         if settled && second.is_convex(&free) {
-            self.solve(pair);
+            let width = a.radius() + b.radius();
+            if self.solve(pair) {
+                return None;
+            }
+            if width <= self.effort.tolerance {
+                return Some(Pair { bound, ..pair });
+            }
+            self.halve(Pair { bound, ..pair });
             return None;
         }
         let width = a.radius() + b.radius();
@@ -325,7 +332,7 @@ impl<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>
         let (a, b) = (self.a.cell(pair.a), self.b.cell(pair.b));
         let piece = [a.piece, b.piece];
         let start = std::array::from_fn(|k| if k < A { a.middle[k] } else { b.middle[k - A] });
-        let candidate = self.newton(piece, &[-1.0; N], &[1.0; N], start);
+        let (candidate, _) = self.newton(piece, &[-1.0; N], &[1.0; N], start);
         if candidate.distance < self.best {
             self.best = candidate.distance;
             if self.is_minimiser(&candidate) {
@@ -407,8 +414,8 @@ impl<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>
         (low, high)
     }
 
-    /// The minimum of a pair of cells proved convex.
-    fn solve(&mut self, pair: Pair) {
+    /// The minimum of a pair of cells proved convex; false where Newton does not arrive at it.
+    fn solve(&mut self, pair: Pair) -> bool {
         let (a, b) = (self.a.cell(pair.a), self.b.cell(pair.b));
         let piece = [a.piece, b.piece];
         let (low, high) = self.range(pair);
@@ -419,32 +426,38 @@ impl<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>
                 && (0..B).all(|k| c.b[k] >= low[A + k] && c.b[k] <= high[A + k])
         };
         if self.isolated.iter().any(inside) {
-            return;
+            return true;
         }
         let start = std::array::from_fn(|k| 0.5 * (low[k] + high[k]));
-        let mut candidate = self.newton(piece, &low, &high, start);
+        let (mut candidate, stationary) = self.newton(piece, &low, &high, start);
+        if !stationary {
+            return false;
+        }
         let stopped = |z: f64, k: usize| z.abs() < 1.0 && (z == low[k] || z == high[k]);
         if (0..A).any(|k| stopped(candidate.a[k], k)) || (0..B).any(|k| stopped(candidate.b[k], A + k)) {
             // Where the cell ends but not the piece, the neighbours hold something better.
             let z = std::array::from_fn(|k| if k < A { candidate.a[k] } else { candidate.b[k - A] });
-            candidate = self.newton(piece, &[-1.0; N], &[1.0; N], z);
+            candidate = self.newton(piece, &[-1.0; N], &[1.0; N], z).0;
         }
         if candidate.distance > self.best + self.effort.tie {
-            return;
+            return true;
         }
         self.best = self.best.min(candidate.distance);
         if self.is_minimiser(&candidate) {
             self.isolated.push(candidate);
         }
+        true
     }
 
-    fn newton(&self, piece: [u32; 2], low: &[f64; N], high: &[f64; N], start: [f64; N]) -> Candidate<A, B> {
+    /// Newton inside a box, and whether it arrived.
+    fn newton(&self, piece: [u32; 2], low: &[f64; N], high: &[f64; N], start: [f64; N]) -> (Candidate<A, B>, bool) {
         let chart_a = &self.a.atlas.pieces[piece[0] as usize].chart;
         let chart_b = &self.b.atlas.pieces[piece[1] as usize].chart;
         let found = minimise::<A, B, N>(chart_a, chart_b, low, high, start, self.effort.magnitude);
         let a: [f64; A] = std::array::from_fn(|k| found.z[k]);
         let b: [f64; B] = std::array::from_fn(|k| found.z[A + k]);
-        Candidate { piece, a, b, xa: chart_a.position(&a), xb: chart_b.position(&b), distance: found.distance }
+        let (xa, xb) = (chart_a.position(&a), chart_b.position(&b));
+        (Candidate { piece, a, b, xa, xb, distance: found.distance }, found.stationary)
     }
 
     /// Whether the gradient vanishes, or presses against a side behind which the shape does not simply go on.
@@ -481,9 +494,9 @@ impl<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>
                 let (low, high) = self.range(pair);
                 let start = std::array::from_fn(|k| 0.5 * (low[k] + high[k]));
                 // First inside the cells, then wherever the piece allows: the cells may only touch the minimum.
-                let near = self.newton(piece, &low, &high, start);
+                let (near, _) = self.newton(piece, &low, &high, start);
                 let z = std::array::from_fn(|k| if k < A { near.a[k] } else { near.b[k - A] });
-                self.newton(piece, &[-1.0; N], &[1.0; N], z)
+                self.newton(piece, &[-1.0; N], &[1.0; N], z).0
             })
             .collect()
     }

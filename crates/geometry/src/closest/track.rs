@@ -367,7 +367,7 @@ impl<const A: usize, const B: usize, const N: usize> Certificate<A, B, N> {
             (z > self.low[k] || (z == -1.0 && !side(false).is_smooth()))
                 && (z < self.high[k] || (z == 1.0 && !side(true).is_smooth()))
         });
-        if !held || margin.is_nan() || margin <= 64.0 * f64::EPSILON * self.magnitude {
+        if !held || !found.stationary || margin.is_nan() || margin <= 64.0 * f64::EPSILON * self.magnitude {
             return None;
         }
         self.z = found.z;

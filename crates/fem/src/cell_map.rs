@@ -67,9 +67,12 @@ impl CellMap {
             let vertices = shape.vertices();
             let mut nodes = vertices.to_vec();
             if self.order == 2 {
-                nodes.extend(shape.edges().iter().map(|&[a, b]| -> Local {
-                    std::array::from_fn(|k| 0.5 * (vertices[a][k] + vertices[b][k]))
-                }));
+                nodes.extend(
+                    shape
+                        .edges()
+                        .iter()
+                        .map(|&[a, b]| -> Local { std::array::from_fn(|k| 0.5 * (vertices[a][k] + vertices[b][k])) }),
+                );
             }
             nodes
         };
@@ -82,9 +85,7 @@ impl CellMap {
             _ => {
                 let (n, dimension) = (self.order + 1, self.shape.dimension());
                 (0..self.len())
-                    .map(|i| {
-                        std::array::from_fn(|k| if k < dimension { line[i / n.pow(k as u32) % n] } else { 0.0 })
-                    })
+                    .map(|i| std::array::from_fn(|k| if k < dimension { line[i / n.pow(k as u32) % n] } else { 0.0 }))
                     .collect()
             }
         }
@@ -149,8 +150,7 @@ impl CellMap {
         if self.order == 2 {
             for &[a, b] in shape.edges() {
                 out.value.push(4.0 * lambda[a] * lambda[b]);
-                out.gradient
-                    .push(std::array::from_fn(|k| 4.0 * (lambda[a] * slopes[b][k] + lambda[b] * slopes[a][k])));
+                out.gradient.push(std::array::from_fn(|k| 4.0 * (lambda[a] * slopes[b][k] + lambda[b] * slopes[a][k])));
             }
         }
     }

@@ -61,7 +61,11 @@ impl HierarchicBasis {
         let most = if shape.is_tensor() { MAX_DEGREE } else { 2 };
         assert!((1..=most).contains(&degree), "degree {degree} on a {}", shape.name());
         let mut basis = HierarchicBasis { shape, degree, modes: Vec::new(), factors: Vec::new() };
-        if shape.is_tensor() { basis.tensor() } else { basis.simplex() }
+        if shape.is_tensor() {
+            basis.tensor()
+        } else {
+            basis.simplex()
+        }
         basis
     }
 
@@ -166,7 +170,8 @@ impl HierarchicBasis {
     pub fn tabulate(&self, x: &Local, out: &mut Values) {
         out.clear();
         if self.shape.is_tensor() {
-            let lines = [0, 1, 2].map(|k| if k < self.shape.dimension() { line(self.degree, x[k]) } else { Line::one() });
+            let lines =
+                [0, 1, 2].map(|k| if k < self.shape.dimension() { line(self.degree, x[k]) } else { LineValues::one() });
             for factors in &self.factors {
                 let Factors::Tensor(index) = *factors else { continue };
                 let f: [[f64; 2]; 3] = std::array::from_fn(|k| lines[k].0[index[k] as usize]);
@@ -215,28 +220,25 @@ pub fn spanned(shape: CellShape, corners: &[usize]) -> [usize; 2] {
 /// Barycentric coordinates and their gradients; of the triangle for a wedge.
 pub(crate) fn barycentric(shape: CellShape, x: &Local) -> ([f64; 4], [Local; 4]) {
     if shape == CellShape::Tetrahedron {
-        (
-            [1.0 - x[0] - x[1] - x[2], x[0], x[1], x[2]],
-            [[-1.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-        )
+        ([1.0 - x[0] - x[1] - x[2], x[0], x[1], x[2]], [[-1.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     } else {
         ([1.0 - x[0] - x[1], x[0], x[1], 0.0], [[-1.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0; 3]])
     }
 }
 
 /// Value and slope of the functions of one direction.
-struct Line([[f64; 2]; MAX_DEGREE + 1]);
+struct LineValues([[f64; 2]; MAX_DEGREE + 1]);
 
-impl Line {
+impl LineValues {
     fn one() -> Self {
-        let mut line = Line([[0.0; 2]; MAX_DEGREE + 1]);
+        let mut line = LineValues([[0.0; 2]; MAX_DEGREE + 1]);
         line.0[0] = [1.0, 0.0];
         line
     }
 }
 
-fn line(degree: usize, x: f64) -> Line {
-    let mut out = Line([[0.0; 2]; MAX_DEGREE + 1]);
+fn line(degree: usize, x: f64) -> LineValues {
+    let mut out = LineValues([[0.0; 2]; MAX_DEGREE + 1]);
     out.0[0] = [0.5 * (1.0 - x), -0.5];
     out.0[1] = [0.5 * (1.0 + x), 0.5];
     let (mut before, mut last) = (1.0, x);
@@ -286,7 +288,8 @@ mod tests {
                     assert!((difference - at.gradient[i][k]).abs() < 1e-8, "{:?}", basis.modes()[i]);
                 }
             }
-            let sum: f64 = at.value.iter().zip(basis.modes()).filter(|(_, m)| matches!(m, Mode::Vertex(_))).map(|v| v.0).sum();
+            let sum: f64 =
+                at.value.iter().zip(basis.modes()).filter(|(_, m)| matches!(m, Mode::Vertex(_))).map(|v| v.0).sum();
             assert!((sum - 1.0).abs() < 1e-14);
         }
     }

@@ -1,17 +1,32 @@
-//! Finite elements: bases, grids, quadrature and cut cells.
+//! Finite elements: bases, meshes, grids, quadrature and cut cells.
 //!
+//! - [`reference`]: the shapes of cells, with their edges and sides.
+//! - [`hierarchic`]: integrated Legendre functions, the unknowns of solids; [`dofs`] numbers them on a mesh.
+//! - [`cell_map`]: Lagrange functions that map reference cells to space; [`mesh`] and [`block`] are made of them.
+//! - [`rules`]: quadrature on reference cells.
 //! - [`lagrange`]: tensor-product Lagrange bases of any degree on Gauss-Lobatto points.
 //! - [`grid`]: uniform background grids in one, two and three dimensions, with their nodes.
 //! - [`cut`]: quadrature on cells that are divided by implicit surfaces: volume, surface and normal.
 //! - [`ghost`]: the ghost penalty that keeps small cuts stable.
 
+pub mod block;
+pub mod cell_map;
 pub mod cut;
+pub mod dofs;
 pub mod ghost;
 pub mod grid;
+pub mod hierarchic;
 pub mod lagrange;
+pub mod mesh;
+pub mod reference;
+pub mod rules;
+pub mod small;
 
 pub use cut::{CellRule, Partition, QuadraturePoint, SurfacePoint};
+pub use dofs::DofMap;
 pub use ghost::GhostPenalty;
 pub use grid::Grid;
 pub use lagrange::TensorBasis;
+pub use mesh::{Group, Mesh, MeshError, Side};
+pub use reference::{CellShape, Local};
 pub use signorini_geometry::rule::gauss_legendre;

@@ -1,7 +1,7 @@
 //! Quadrature on reference cells.
 
 use super::reference::{CellShape, Local};
-use signorini_geometry::gauss_legendre;
+use signorini_geometry::rule::gauss_legendre;
 
 /// Points and weights.
 pub type Rule = Vec<(Local, f64)>;

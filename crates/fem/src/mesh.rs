@@ -1,0 +1,226 @@
+//! Unstructured meshes: cells of all shapes, straight or curved, with named groups of cells, sides and vertices.
+
+use super::cell_map::CellMap;
+use super::hierarchic::Values;
+use super::reference::{CellShape, Local};
+use signorini_geometry::{Matrix, Point};
+use std::collections::{BTreeMap, HashMap};
+
+/// One side of a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Side {
+    pub cell: u32,
+    pub side: u8,
+}
+
+/// What a name of a mesh stands for.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Group {
+    pub cells: Vec<u32>,
+    pub sides: Vec<Side>,
+    pub vertices: Vec<u32>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    /// Number in `maps`.
+    map: u32,
+    /// First entry in `cell_nodes`.
+    first: u32,
+}
+
+/// A mesh of a body in `D` dimensions.
+#[derive(Clone, Debug)]
+pub struct Mesh<const D: usize> {
+    nodes: Vec<Point<D>>,
+    maps: Vec<CellMap>,
+    vertex_places: Vec<Vec<usize>>,
+    cells: Vec<Cell>,
+    cell_nodes: Vec<u32>,
+    groups: BTreeMap<String, Group>,
+}
+
+/// A mesh that cannot be used.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MeshError {
+    #[error("the mesh has no {dimension}-dimensional cells")]
+    Empty { dimension: usize },
+    #[error("cell {cell}, a {shape} at {position}, is {what} (Jacobian {jacobian:.3e})")]
+    BadCell { cell: usize, shape: &'static str, position: String, what: &'static str, jacobian: f64 },
+    #[error("node {node} of cell {cell} does not exist")]
+    NoNode { cell: usize, node: u64 },
+    #[error("node {node} is at {position}, which is not finite")]
+    NotFinite { node: usize, position: String },
+}
+
+/// A position for messages.
+pub(crate) fn position<const D: usize>(x: &Point<D>) -> String {
+    let list: Vec<String> = x.iter().map(|v| format!("{v:.6}")).collect();
+    format!("({})", list.join(", "))
+}
+
+impl<const D: usize> Mesh<D> {
+    pub fn new(nodes: Vec<Point<D>>) -> Self {
+        Mesh {
+            nodes,
+            maps: Vec::new(),
+            vertex_places: Vec::new(),
+            cells: Vec::new(),
+            cell_nodes: Vec::new(),
+            groups: BTreeMap::new(),
+        }
+    }
+
+    /// Adds a cell with its nodes in the order of [`CellMap`].
+    pub fn add_cell(&mut self, shape: CellShape, order: usize, nodes: &[u32]) -> u32 {
+        let found = self.maps.iter().position(|m| m.shape() == shape && m.order() == order);
+        let map = found.unwrap_or_else(|| {
+            let map = CellMap::new(shape, order);
+            self.vertex_places.push(map.vertex_nodes());
+            self.maps.push(map);
+            self.maps.len() - 1
+        });
+        debug_assert_eq!(nodes.len(), self.maps[map].len());
+        self.cells.push(Cell { map: map as u32, first: self.cell_nodes.len() as u32 });
+        self.cell_nodes.extend_from_slice(nodes);
+        (self.cells.len() - 1) as u32
+    }
+
+    pub fn group_mut(&mut self, name: &str) -> &mut Group {
+        self.groups.entry(name.to_string()).or_default()
+    }
+
+    pub fn groups(&self) -> &BTreeMap<String, Group> {
+        &self.groups
+    }
+
+    pub fn nodes(&self) -> &[Point<D>] {
+        &self.nodes
+    }
+
+    pub fn cell_count(&self) -> usize {
+        self.cells.len()
+    }
+
+    pub fn shape(&self, cell: usize) -> CellShape {
+        self.map(cell).shape()
+    }
+
+    /// The Lagrange functions that map the reference cell.
+    pub fn map(&self, cell: usize) -> &CellMap {
+        &self.maps[self.cells[cell].map as usize]
+    }
+
+    /// Number of the map of a cell, to tabulate once for all cells that share it.
+    pub fn map_number(&self, cell: usize) -> usize {
+        self.cells[cell].map as usize
+    }
+
+    pub fn cell_nodes(&self, cell: usize) -> &[u32] {
+        let first = self.cells[cell].first as usize;
+        &self.cell_nodes[first..first + self.map(cell).len()]
+    }
+
+    /// The nodes at the vertices of a cell.
+    pub fn vertices(&self, cell: usize) -> impl Iterator<Item = u32> + '_ {
+        let nodes = self.cell_nodes(cell);
+        self.vertex_places[self.cells[cell].map as usize].iter().map(move |&k| nodes[k])
+    }
+
+    /// The nodes at the vertices of a side, in the order of the side.
+    pub fn side_vertices(&self, side: Side) -> Vec<u32> {
+        let cell = side.cell as usize;
+        let places = &self.vertex_places[self.cells[cell].map as usize];
+        let nodes = self.cell_nodes(cell);
+        self.shape(cell).sides()[side.side as usize].iter().map(|&v| nodes[places[v]]).collect()
+    }
+
+    pub fn side_shape(&self, side: Side) -> CellShape {
+        CellShape::of_side(self.shape(side.cell as usize).sides()[side.side as usize].len())
+    }
+
+    /// Position and Jacobian `∂x_i/∂ξ_j` from tabulated functions of the cell's map.
+    pub fn jacobian(&self, cell: usize, at: &Values) -> (Point<D>, Matrix<D>) {
+        let mut x = Point::<D>::zeros();
+        let mut jacobian = Matrix::<D>::zeros();
+        for (&node, (value, gradient)) in self.cell_nodes(cell).iter().zip(at.value.iter().zip(&at.gradient)) {
+            let p = &self.nodes[node as usize];
+            x += p * *value;
+            for j in 0..D {
+                for i in 0..D {
+                    jacobian[(i, j)] += p[i] * gradient[j];
+                }
+            }
+        }
+        (x, jacobian)
+    }
+
+    /// Position and tangents of a point of a side.
+    pub fn on_side(&self, side: Side, s: &Local) -> (Point<D>, [Point<D>; 2]) {
+        let cell = side.cell as usize;
+        let (xi, directions) = self.shape(cell).on_side(side.side as usize, s);
+        let mut at = Values::default();
+        self.map(cell).tabulate(&xi, &mut at);
+        let (x, jacobian) = self.jacobian(cell, &at);
+        (x, directions.map(|d| jacobian * Point::<D>::from_fn(|k, _| d[k])))
+    }
+
+    /// Sides that belong to one cell only.
+    pub fn boundary(&self) -> Vec<Side> {
+        let mut open: HashMap<Vec<u32>, Option<Side>> = HashMap::new();
+        for side in self.all_sides() {
+            let mut key = self.side_vertices(side);
+            key.sort_unstable();
+            open.entry(key).and_modify(|s| *s = None).or_insert(Some(side));
+        }
+        let mut sides: Vec<Side> = open.into_values().flatten().collect();
+        sides.sort_unstable();
+        sides
+    }
+
+    /// Every side of every cell.
+    pub fn all_sides(&self) -> impl Iterator<Item = Side> + '_ {
+        (0..self.cells.len()).flat_map(|cell| {
+            (0..self.shape(cell).sides().len()).map(move |side| Side { cell: cell as u32, side: side as u8 })
+        })
+    }
+
+    /// Refuses what no computation can use: positions that are not finite, cells that are inverted or have no volume.
+    pub fn check(&self) -> Result<(), MeshError> {
+        if self.cells.is_empty() {
+            return Err(MeshError::Empty { dimension: D });
+        }
+        for (node, x) in self.nodes.iter().enumerate() {
+            if !x.iter().all(|v| v.is_finite()) {
+                return Err(MeshError::NotFinite { node, position: position(x) });
+            }
+        }
+        let mut tables: HashMap<usize, Vec<Values>> = HashMap::new();
+        for cell in 0..self.cells.len() {
+            if let Some(&node) = self.cell_nodes(cell).iter().find(|&&n| n as usize >= self.nodes.len()) {
+                return Err(MeshError::NoNode { cell, node: u64::from(node) });
+            }
+            let map = self.map(cell);
+            let tables = tables.entry(self.map_number(cell)).or_insert_with(|| {
+                (map.nodes().into_iter().chain([map.shape().centre()]))
+                    .map(|x| {
+                        let mut at = Values::default();
+                        map.tabulate(&x, &mut at);
+                        at
+                    })
+                    .collect()
+            });
+            for at in tables.iter() {
+                let (x, jacobian) = self.jacobian(cell, at);
+                let value = crate::small::determinant(&jacobian);
+                let size: f64 = jacobian.column_iter().map(|c| c.norm()).product();
+                if value.is_nan() || value <= 1e-10 * size {
+                    let what = if value < -1e-10 * size { "inverted" } else { "degenerate" };
+                    let shape = map.shape().name();
+                    return Err(MeshError::BadCell { cell, shape, position: position(&x), what, jacobian: value });
+                }
+            }
+        }
+        Ok(())
+    }
+}

@@ -69,6 +69,67 @@ impl SymmetricMatrix {
         }
     }
 
+    /// `Tᵀ A T` with the rows of `T` given as lists of columns and entries.
+    pub fn transformed<'a>(&self, columns: usize, row: impl Fn(usize) -> &'a [(u32, f64)]) -> Self {
+        let mut start = vec![0usize; columns + 1];
+        let each = |visit: &mut dyn FnMut(usize, usize, f64)| {
+            for j in 0..self.size() {
+                let of_j = row(j);
+                for k in self.column_start[j]..self.column_start[j + 1] {
+                    let (i, value) = (self.row[k], self.value[k]);
+                    for (a, ca) in row(i) {
+                        for (b, cb) in of_j {
+                            let twice = if i != j && a == b { 2.0 } else { 1.0 };
+                            // The diagonal blocks come with both orders of a and b: one of them is kept.
+                            if i == j && a < b {
+                                continue;
+                            }
+                            visit((*a).max(*b) as usize, (*a).min(*b) as usize, twice * ca * cb * value);
+                        }
+                    }
+                }
+            }
+        };
+        each(&mut |_, b, _| start[b + 1] += 1);
+        for b in 0..columns {
+            start[b + 1] += start[b];
+        }
+        let mut fill = start.clone();
+        let mut entries = vec![(0usize, 0.0); start[columns]];
+        each(&mut |a, b, value| {
+            entries[fill[b]] = (a, value);
+            fill[b] += 1;
+        });
+        let mut out = Self { column_start: vec![0], row: Vec::new(), value: Vec::new() };
+        for b in 0..columns {
+            let list = &mut entries[start[b]..start[b + 1]];
+            list.sort_by_key(|e| e.0);
+            let first = out.row.len();
+            for &(a, value) in list.iter() {
+                if out.row.len() > first && out.row.last() == Some(&a) {
+                    if let Some(last) = out.value.last_mut() {
+                        *last += value;
+                    }
+                } else {
+                    out.row.push(a);
+                    out.value.push(value);
+                }
+            }
+            out.column_start.push(out.row.len());
+        }
+        out
+    }
+
+    /// The entries of the diagonal.
+    pub fn diagonal(&self) -> Vec<f64> {
+        (0..self.size())
+            .map(|j| {
+                let range = self.column_start[j]..self.column_start[j + 1];
+                range.clone().find(|&k| self.row[k] == j).map_or(0.0, |k| self.value[k])
+            })
+            .collect()
+    }
+
     /// The product with a vector.
     pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; x.len()];
@@ -221,6 +282,25 @@ mod tests {
         let sums = a.residual_in_extended_precision(&[0.0; 4], &[1.0; 4]);
         assert!(sums.iter().all(|s| s.abs() < 1e-13), "{sums:?}");
         assert!(a.value.iter().zip(&before.value).all(|(a, b)| (a - b).abs() < 1e-9));
+    }
+
+    #[test]
+    fn a_transformation_is_that_of_the_dense_matrix() {
+        let mut a = SymmetricMatrix::from_cliques(3, &[vec![0, 1, 2]]);
+        let dense = [4.0, -1.0, 0.5, -1.0, 3.0, 0.25, 0.5, 0.25, 2.0];
+        a.add(&[0, 1, 2], &dense, 1.0);
+        let t: [Vec<(u32, f64)>; 3] = [vec![(0, 2.0), (1, -1.0)], vec![(1, 3.0)], vec![(0, 0.5), (1, 1.5)]];
+        let b = a.transformed(2, |i| &t[i]);
+        let entry = |i: usize, r: u32| t[i].iter().filter(|e| e.0 == r).map(|e| e.1).sum::<f64>();
+        for r in 0..2u32 {
+            let mut unit = vec![0.0; 2];
+            unit[r as usize] = 1.0;
+            let column = b.multiply(&unit);
+            for c in 0..2u32 {
+                let exact: f64 = (0..9).map(|k| entry(k / 3, c) * dense[k] * entry(k % 3, r)).sum();
+                assert!((column[c as usize] - exact).abs() < 1e-14);
+            }
+        }
     }
 
     #[test]

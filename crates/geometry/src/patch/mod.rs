@@ -69,7 +69,9 @@ impl<const M: usize> ParameterMap<M> {
                 } else if s[k] == -1.0 {
                     low[k]
                 } else {
-                    0.5 * (low[k] * (1.0 - s[k]) + high[k] * (1.0 + s[k]))
+                    // Rounding must not lead out of the domain.
+                    let value = 0.5 * (low[k] * (1.0 - s[k]) + high[k] * (1.0 + s[k]));
+                    value.clamp(low[k].min(high[k]), low[k].max(high[k]))
                 }
             }),
             ParameterMap::Bilinear(corners) => {

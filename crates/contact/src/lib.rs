@@ -1,0 +1,23 @@
+//! Contact: pairs, pressures, active sets, for any discretisation.
+//!
+//! Contact sees faces with positions and the functions that move them ([`surface`]); it does not know meshes.
+//!
+//! - [`multiplier`]: the nodes of the contact pressure and the normal field.
+//! - [`segments`]: where two surfaces, or a surface and a rigid body, face each other.
+//! - [`mortar`]: weighted gaps with dual functions.
+//! - [`active_set`]: which nodes carry.
+//!
+//! The gap is `(x_slave - x_master)·n` with the outward normal of the master, negative where the bodies penetrate; a
+//! pressure is positive.
+
+pub mod active_set;
+pub mod mortar;
+pub mod multiplier;
+pub mod segments;
+pub mod surface;
+
+pub use active_set::{ActiveSet, ActiveSetError, Compliance, ContactState, Spring};
+pub use mortar::{WeightedGap, weighted_gaps};
+pub use multiplier::PressureNodes;
+pub use segments::{GapPoint, rigid_points, segments};
+pub use surface::{ContactSurface, FacePoint};

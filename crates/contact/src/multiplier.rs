@@ -1,0 +1,149 @@
+//! Nodes of the contact pressure on the slave surface, and the normal field through them.
+//!
+//! The pressure lives on the Gauss-Lobatto nodes of the slave faces, as many per face as the displacement has functions
+//! there. A node on a feature edge, where normals differ by more than [`FEATURE_ANGLE`], exists once per side of it.
+
+use crate::surface::ContactSurface;
+use signorini_fem::cell_map::CellMap;
+use signorini_fem::hierarchic::Values;
+use signorini_fem::{CellShape, Local};
+use signorini_geometry::Point;
+use std::collections::HashMap;
+
+/// Cosine of the angle between face normals beyond which an edge is a feature: 30 degrees.
+pub const FEATURE_ANGLE: f64 = 0.866_025_403_784_438_6;
+
+/// Where a node sits, so that faces that meet find the same one.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Place {
+    Vertex(u32),
+    /// Lower and higher vertex, and the share of the way from the lower, in millionths.
+    Edge(u32, u32, u32),
+    Interior(u32, u32),
+}
+
+/// The nodes of a slave surface.
+pub struct PressureNodes<const D: usize> {
+    maps: Vec<CellMap>,
+    map_of: Vec<usize>,
+    /// Node number and unit normal, for every node of every face.
+    faces: Vec<Vec<(u32, Point<D>)>>,
+    pub positions: Vec<Point<D>>,
+}
+
+impl<const D: usize> PressureNodes<D> {
+    pub fn new(surface: &dyn ContactSurface<D>) -> Self {
+        let mut maps: Vec<CellMap> = Vec::new();
+        let mut map_of = Vec::new();
+        // Faces and local nodes at each place, with their unit normals.
+        let mut places: HashMap<Place, usize> = HashMap::new();
+        let mut members: Vec<Vec<(usize, usize, Point<D>)>> = Vec::new();
+        let mut positions_at = Vec::new();
+        for face in 0..surface.face_count() {
+            let (shape, degree) = (surface.shape(face), surface.degree(face));
+            let found = maps.iter().position(|m| m.shape() == shape && m.order() == degree);
+            let map = found.unwrap_or_else(|| {
+                maps.push(CellMap::new(shape, degree));
+                maps.len() - 1
+            });
+            map_of.push(map);
+            let vertices = surface.vertices(face);
+            for (k, s) in maps[map].nodes().iter().enumerate() {
+                let point = surface.at(face, s);
+                let normal = point.area_normal().normalize();
+                let at = *places.entry(place(shape, &vertices, face, k, s)).or_insert_with(|| {
+                    members.push(Vec::new());
+                    positions_at.push(point.x);
+                    members.len() - 1
+                });
+                members[at].push((face, k, normal));
+            }
+        }
+        let mut faces: Vec<Vec<(u32, Point<D>)>> =
+            map_of.iter().map(|&m| vec![(0, Point::<D>::zeros()); maps[m].len()]).collect();
+        let mut positions = Vec::new();
+        for (list, x) in members.iter().zip(positions_at) {
+            // Smooth neighbourhoods of the place, each with its mean normal.
+            let mut groups: Vec<Vec<usize>> = Vec::new();
+            for (m, (_, _, n)) in list.iter().enumerate() {
+                let smooth = |g: &Vec<usize>| g.iter().any(|&o| list[o].2.dot(n) >= FEATURE_ANGLE);
+                let mut joined = vec![m];
+                groups.retain(|g| {
+                    let joins = smooth(g);
+                    if joins {
+                        joined.extend(g);
+                    }
+                    !joins
+                });
+                groups.push(joined);
+            }
+            groups.sort();
+            for group in groups {
+                let number = positions.len() as u32;
+                positions.push(x);
+                let normal = group.iter().map(|&m| list[m].2).sum::<Point<D>>().normalize();
+                for m in group {
+                    let (face, k, _) = list[m];
+                    faces[face][k] = (number, normal);
+                }
+            }
+        }
+        PressureNodes { maps, map_of, faces, positions }
+    }
+
+    /// Number of nodes.
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.positions.is_empty()
+    }
+
+    pub fn face_count(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// Numbers of the nodes of a face, and the normals there.
+    pub fn of_face(&self, face: usize) -> &[(u32, Point<D>)] {
+        &self.faces[face]
+    }
+
+    pub fn map(&self, face: usize) -> &CellMap {
+        &self.maps[self.map_of[face]]
+    }
+
+    /// The normal field, not of unit length, and its derivatives.
+    pub fn normal(&self, face: usize, s: &Local, at: &mut Values) -> (Point<D>, [Point<D>; 2]) {
+        self.map(face).tabulate(s, at);
+        let mut normal = Point::<D>::zeros();
+        let mut slopes = [Point::<D>::zeros(); 2];
+        for ((_, n), (value, gradient)) in self.faces[face].iter().zip(at.value.iter().zip(&at.gradient)) {
+            normal += n * *value;
+            for k in 0..D - 1 {
+                slopes[k] += n * gradient[k];
+            }
+        }
+        (normal, slopes)
+    }
+}
+
+fn place(shape: CellShape, vertices: &[u32], face: usize, node: usize, s: &Local) -> Place {
+    let corners = shape.vertices();
+    let distance = |a: &Local, b: &Local| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+    if let Some(v) = corners.iter().position(|c| distance(c, s) < 1e-9) {
+        return Place::Vertex(vertices[v]);
+    }
+    if shape != CellShape::Line {
+        for &[a, b] in shape.edges() {
+            let (length, from, to) =
+                (distance(&corners[a], &corners[b]), distance(&corners[a], s), distance(&corners[b], s));
+            if (from + to - length).abs() < 1e-9 {
+                let (low, high) = (vertices[a].min(vertices[b]), vertices[a].max(vertices[b]));
+                let share = if vertices[a] == low { from / length } else { to / length };
+                return Place::Edge(low, high, (share * 1e6).round() as u32);
+            }
+        }
+    }
+    Place::Interior(face as u32, node as u32)
+}

@@ -1,0 +1,45 @@
+//! What contact sees of a discretised body: faces with positions, and the functions that move them.
+
+use signorini_fem::{CellShape, Local};
+use signorini_geometry::Point;
+
+/// A point of a face.
+#[derive(Clone, Copy, Debug)]
+pub struct FacePoint<const D: usize> {
+    pub x: Point<D>,
+    /// Derivatives of the position with respect to the coordinates of the face; the second is zero in the plane.
+    pub tangents: [Point<D>; 2],
+}
+
+impl<const D: usize> FacePoint<D> {
+    /// The outward normal, as long as the area per area of reference coordinates.
+    pub fn area_normal(&self) -> Point<D> {
+        let [a, b] = &self.tangents;
+        if D == 2 {
+            return Point::<D>::from_fn(|k, _| if k == 0 { a[1] } else { -a[0] });
+        }
+        Point::<D>::from_fn(|k, _| {
+            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+            a[i] * b[j] - a[j] * b[i]
+        })
+    }
+}
+
+/// The boundary of one or more deformable bodies.
+pub trait ContactSurface<const D: usize>: Sync {
+    fn face_count(&self) -> usize;
+    fn shape(&self, face: usize) -> CellShape;
+    /// Polynomial degree of the displacement.
+    fn degree(&self, face: usize) -> usize;
+    /// Polynomial degree of the geometry.
+    fn order(&self, face: usize) -> usize;
+    fn at(&self, face: usize, s: &Local) -> FacePoint<D>;
+    /// Appends the functions that move a point of a face: the first of their `D` unknowns, and their value.
+    fn trace(&self, face: usize, s: &Local, out: &mut Vec<(u32, f64)>);
+    /// Numbers of the vertices, in the order of the reference face; faces that meet share them.
+    fn vertices(&self, face: usize) -> Vec<u32>;
+    /// Thickness or circumference by which integrals are multiplied.
+    fn measure(&self, x: &Point<D>) -> f64;
+    /// Name of the body and number of the cell, for messages.
+    fn describe(&self, face: usize) -> String;
+}

@@ -1,0 +1,3 @@
+//! Elastic solids.
+pub mod material;
+pub mod stiffness;

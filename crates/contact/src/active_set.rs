@@ -7,7 +7,7 @@
 //! matter. Bodies that only contact holds are held by springs meanwhile, whose forces the same dense system takes away.
 
 use crate::mortar::WeightedGap;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn, FullPivLU};
 use signorini_solve::SolveError;
 use std::collections::{BTreeSet, HashMap};
 
@@ -31,6 +31,8 @@ pub enum ActiveSetError {
 pub trait Compliance {
     /// `K_c⁻¹ b`.
     fn solve(&self, b: &[f64]) -> Result<Vec<f64>, SolveError>;
+    /// The same, refined to the round-off of the solution.
+    fn solve_accurately(&self, b: &[f64]) -> Result<Vec<f64>, SolveError>;
     fn size(&self) -> usize;
 }
 
@@ -85,7 +87,7 @@ impl ActiveSet {
         report: &mut dyn FnMut(usize, usize) -> bool,
     ) -> Result<ContactState, ActiveSetError> {
         self.refresh(rows, springs);
-        let free = system.solve(load)?;
+        let free = system.solve_accurately(load)?;
         let free_at: Vec<f64> = self.touched.iter().map(|&i| free[i as usize]).collect();
         if self.active.is_empty() {
             self.active = start(rows, &free, springs);
@@ -95,7 +97,9 @@ impl ActiveSet {
         let mut last_flips = Vec::new();
         for iteration in 1..=MOST_ITERATIONS {
             let active: Vec<usize> = self.active.iter().copied().collect();
-            let (pressures, forces) = self.dense(system, rows, springs, &active, &free_at)?;
+            let dense = self.dense(system, rows, springs, &active)?;
+            let gaps_now = self.defects(rows, springs, &active, &free_at, &[]);
+            let (pressures, forces) = dense.solve(&gaps_now)?;
             let mut at = free_at.clone();
             for (&k, p) in active.iter().zip(&pressures) {
                 add(&mut at, &self.columns[&k], *p);
@@ -122,7 +126,15 @@ impl ActiveSet {
                 return Err(ActiveSetError::Interrupted);
             }
             if flips.is_empty() {
-                return self.finish(system, rows, springs, load, (&active, &pressures, &forces), gaps, iteration);
+                let mut found = ContactState {
+                    u: Vec::new(),
+                    pressure: vec![0.0; rows.len()],
+                    gap: gaps,
+                    active: (0..rows.len()).map(|k| self.active.contains(&k)).collect(),
+                    iterations: iteration,
+                };
+                self.refine(system, (rows, springs), load, &dense, (&active, pressures, forces), &mut found)?;
+                return Ok(found);
             }
             if seen.insert(active, iteration).is_some() {
                 let nodes = flips.iter().chain(&last_flips).map(|&k| rows[k].node).collect::<BTreeSet<_>>();
@@ -171,15 +183,14 @@ impl ActiveSet {
         Ok(())
     }
 
-    /// Pressures of the active rows and forces that undo the springs.
+    /// The dense system of the active rows and the springs.
     fn dense(
         &mut self,
         system: &dyn Compliance,
         rows: &[WeightedGap],
         springs: &[Spring],
         active: &[usize],
-        free_at: &[f64],
-    ) -> Result<(Vec<f64>, Vec<f64>), ActiveSetError> {
+    ) -> Result<Dense, ActiveSetError> {
         for &k in active {
             self.column(system, k, &rows[k].terms)?;
         }
@@ -187,68 +198,118 @@ impl ActiveSet {
             self.column(system, rows.len() + s, &[(spring.unknown, 1.0)])?;
         }
         let (n, m) = (active.len(), springs.len());
-        // Rows are scaled to lengths, pressures to the stiffness, so that pivots say something.
-        let terms: Vec<Vec<(u32, f64)>> = (active.iter())
-            .map(|&k| rows[k].terms.iter().map(|(i, c)| (*i, c / rows[k].weight)).collect())
-            .chain(springs.iter().map(|s| vec![(s.unknown, 1.0)]))
-            .collect();
+        // Gaps per weight are lengths, and forces of the same weight go with them: pivots say something.
+        let weights: Vec<f64> = active.iter().map(|&k| rows[k].weight).collect();
+        let scale = |k: usize| if k < n { 1.0 / weights[k] } else { 1.0 };
         let numbers: Vec<usize> = active.iter().copied().chain((0..m).map(|s| rows.len() + s)).collect();
         let mut matrix = DMatrix::<f64>::zeros(n + m, n + m);
-        let mut rhs = DVector::<f64>::zeros(n + m);
         for r in 0..n + m {
-            for c in 0..n + m {
-                let scale = if c < n { 1.0 / rows[active[c]].weight } else { 1.0 };
-                matrix[(r, c)] = scale * self.product(&terms[r], &self.columns[&numbers[c]]);
+            let spring;
+            let terms: &[(u32, f64)] = if r < n {
+                &rows[active[r]].terms
+            } else {
+                spring = [(springs[r - n].unknown, 1.0)];
+                &spring
+            };
+            for c in 0..=r {
+                let value = scale(r) * scale(c) * self.product(terms, &self.columns[&numbers[c]]);
+                matrix[(r, c)] = value;
+                matrix[(c, r)] = value;
             }
-            let gap = if r < n { rows[active[r]].gap / rows[active[r]].weight } else { 0.0 };
-            rhs[r] = -gap - self.product(&terms[r], free_at);
         }
         for (s, spring) in springs.iter().enumerate() {
             matrix[(n + s, n + s)] -= 1.0 / spring.stiffness;
         }
-        let x = if m == 0
-            && let Some(factor) = matrix.clone().cholesky()
-        {
-            factor.solve(&rhs)
-        } else {
-            let scale = matrix.amax();
-            let lu = matrix.full_piv_lu();
-            if lu.u().diagonal().iter().any(|p| p.abs() <= 1e-11 * scale) {
-                return Err(ActiveSetError::Free);
+        let factor = if m == 0 { matrix.clone().cholesky().map(Factored::Definite) } else { None };
+        let factor = match factor {
+            Some(factor) => factor,
+            None => {
+                let largest = matrix.amax();
+                let lu = matrix.full_piv_lu();
+                if lu.u().diagonal().iter().any(|p| p.abs() <= 1e-11 * largest) {
+                    return Err(ActiveSetError::Free);
+                }
+                Factored::Indefinite(Box::new(lu))
             }
-            lu.solve(&rhs).ok_or(ActiveSetError::Free)?
         };
-        let pressures = (0..n).map(|k| x[k] / rows[active[k]].weight).collect();
-        Ok((pressures, (0..m).map(|s| x[n + s]).collect()))
+        Ok(Dense { factor, weights })
     }
 
-    #[allow(clippy::too_many_arguments)]
-    fn finish(
+    /// Gaps per weight of the active rows, and what the springs lack, at displacements of the touched unknowns.
+    fn defects(
         &self,
-        system: &dyn Compliance,
         rows: &[WeightedGap],
         springs: &[Spring],
+        active: &[usize],
+        at: &[f64],
+        forces: &[f64],
+    ) -> Vec<f64> {
+        let gap = |k: usize| (rows[k].gap + self.product(&rows[k].terms, at)) / rows[k].weight;
+        let lack = |s: usize, spring: &Spring| {
+            self.product(&[(spring.unknown, 1.0)], at) - forces.get(s).copied().unwrap_or(0.0) / spring.stiffness
+        };
+        active.iter().map(|&k| gap(k)).chain(springs.iter().enumerate().map(|(s, spring)| lack(s, spring))).collect()
+    }
+
+    /// The displacement of all unknowns; what the closed gaps still lack by the round-off of the columns is made good.
+    fn refine(
+        &self,
+        system: &dyn Compliance,
+        (rows, springs): (&[WeightedGap], &[Spring]),
         load: &[f64],
-        (active, pressures, forces): (&[usize], &[f64], &[f64]),
-        mut gap: Vec<f64>,
-        iterations: usize,
-    ) -> Result<ContactState, ActiveSetError> {
-        let mut b = load.to_vec();
-        let mut pressure = vec![0.0; rows.len()];
-        let mut is_active = vec![false; rows.len()];
-        for (&k, p) in active.iter().zip(pressures) {
-            pressure[k] = *p;
-            is_active[k] = true;
-            gap[k] = 0.0;
-            for (i, c) in &rows[k].terms {
-                b[*i as usize] += c * p;
+        dense: &Dense,
+        (active, mut pressures, mut forces): (&[usize], Vec<f64>, Vec<f64>),
+        found: &mut ContactState,
+    ) -> Result<(), ActiveSetError> {
+        for round in 0..2 {
+            let mut b = load.to_vec();
+            for (&k, p) in active.iter().zip(&pressures) {
+                for (i, c) in &rows[k].terms {
+                    b[*i as usize] += c * p;
+                }
             }
+            for (spring, force) in springs.iter().zip(&forces) {
+                b[spring.unknown as usize] += force;
+            }
+            found.u = system.solve_accurately(&b)?;
+            if round == 1 || active.is_empty() {
+                break;
+            }
+            let at: Vec<f64> = self.touched.iter().map(|&i| found.u[i as usize]).collect();
+            let (more, others) = dense.solve(&self.defects(rows, springs, active, &at, &forces))?;
+            pressures.iter_mut().zip(more).for_each(|(p, m)| *p += m);
+            forces.iter_mut().zip(others).for_each(|(f, m)| *f += m);
         }
-        for (spring, force) in springs.iter().zip(forces) {
-            b[spring.unknown as usize] += force;
+        for (&k, p) in active.iter().zip(&pressures) {
+            found.pressure[k] = *p;
+            found.gap[k] = 0.0;
         }
-        let u = system.solve(&b)?;
-        Ok(ContactState { u, pressure, gap, active: is_active, iterations })
+        Ok(())
+    }
+}
+
+enum Factored {
+    Definite(Cholesky<f64, Dyn>),
+    Indefinite(Box<FullPivLU<f64, Dyn, Dyn>>),
+}
+
+/// The factorised dense system, rows and columns divided by the weights of the nodes.
+struct Dense {
+    factor: Factored,
+    weights: Vec<f64>,
+}
+
+impl Dense {
+    /// Pressures of the active rows and forces at the springs that bring the defects to zero.
+    fn solve(&self, defects: &[f64]) -> Result<(Vec<f64>, Vec<f64>), ActiveSetError> {
+        let rhs = -DVector::from_column_slice(defects);
+        let x = match &self.factor {
+            Factored::Definite(factor) => factor.solve(&rhs),
+            Factored::Indefinite(factor) => factor.solve(&rhs).ok_or(ActiveSetError::Free)?,
+        };
+        let n = self.weights.len();
+        let pressures = (0..n).map(|k| x[k] / self.weights[k]).collect();
+        Ok((pressures, x.iter().skip(n).copied().collect()))
     }
 }
 

@@ -38,16 +38,93 @@ pub fn segments<const D: usize>(
     reach: f64,
 ) -> Vec<Vec<GapPoint<D>>> {
     let candidates = candidates(slave, master, nodes, reach);
-    (0..slave.face_count())
+    let cut = |face: usize, extra: usize| {
+        let list = &candidates[face];
+        if D == 2 {
+            intervals(slave, master, nodes, face, list, reach, extra)
+        } else {
+            polygons(slave, master, nodes, face, list, reach, extra)
+        }
+    };
+    let mut points: Vec<Vec<GapPoint<D>>> = (0..slave.face_count()).map(|face| cut(face, 0)).collect();
+    // A constant pressure must load every function of both sides with its integral. On distorted faces the integrands
+    // are no polynomials: more points are used as long as they help.
+    let exact = [integrals(slave), integrals(master)];
+    let mut before = defects(&points, slave, master, &exact);
+    for extra in [2, 4, 8, 12] {
+        let poor = |face: usize| {
+            before[0][face] > ROUND_OFF
+                || points[face].iter().any(|p| p.master.is_some_and(|(m, _)| before[1][m as usize] > ROUND_OFF))
+        };
+        let again: Vec<usize> = (0..points.len()).filter(|&f| !points[f].is_empty() && poor(f)).collect();
+        if again.is_empty() {
+            break;
+        }
+        for face in again {
+            points[face] = cut(face, extra);
+        }
+        let now = defects(&points, slave, master, &exact);
+        let helps = (0..2).any(|side| now[side].iter().zip(&before[side]).any(|(n, b)| *b > ROUND_OFF && *n < 0.2 * b));
+        before = now;
+        if !helps {
+            break;
+        }
+    }
+    points
+}
+
+/// Relative error of integrals that counts as rounding.
+const ROUND_OFF: f64 = 1e-14;
+
+/// Integrals of the functions of every face.
+fn integrals<const D: usize>(surface: &dyn ContactSurface<D>) -> Vec<Vec<f64>> {
+    let mut trace = Vec::new();
+    (0..surface.face_count())
         .map(|face| {
-            let list = &candidates[face];
-            if D == 2 {
-                intervals(slave, master, nodes, face, list, reach)
-            } else {
-                polygons(slave, master, nodes, face, list, reach)
+            let mut out = Vec::new();
+            for (s, w) in rule(surface.shape(face), surface.degree(face) + surface.order(face) + 4) {
+                let point = surface.at(face, &s);
+                let w = w * point.area_normal().norm() * surface.measure(&point.x);
+                trace.clear();
+                surface.trace(face, &s, &mut trace);
+                out.resize(trace.len(), 0.0);
+                out.iter_mut().zip(&trace).for_each(|(sum, (_, v))| *sum += w * v);
             }
+            out
         })
         .collect()
+}
+
+/// For every slave and master face that is covered completely, the largest error of those integrals relative to its
+/// area; zero for the others, of which nothing can be said.
+fn defects<const D: usize>(
+    points: &[Vec<GapPoint<D>>],
+    slave: &dyn ContactSurface<D>,
+    master: &dyn ContactSurface<D>,
+    exact: &[Vec<Vec<f64>>; 2],
+) -> [Vec<f64>; 2] {
+    let mut sums = exact.clone();
+    sums.iter_mut().flatten().flatten().for_each(|v| *v = 0.0);
+    let mut trace = Vec::new();
+    let mut add = |sums: &mut Vec<f64>, surface: &dyn ContactSurface<D>, face: usize, s: &Local, w: f64| {
+        trace.clear();
+        surface.trace(face, s, &mut trace);
+        sums.iter_mut().zip(&trace).for_each(|(sum, (_, v))| *sum += w * v);
+    };
+    for (face, list) in points.iter().enumerate() {
+        for p in list {
+            add(&mut sums[0][face], slave, face, &p.s, p.weight);
+            if let Some((other, eta)) = &p.master {
+                add(&mut sums[1][*other as usize], master, *other as usize, eta, p.weight);
+            }
+        }
+    }
+    let worst = |sum: &Vec<f64>, exact: &Vec<f64>| {
+        let scale = exact.iter().map(|v| v.abs()).sum::<f64>();
+        let worst = sum.iter().zip(exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / scale;
+        if worst < 1e-2 { worst } else { 0.0 }
+    };
+    std::array::from_fn(|side| sums[side].iter().zip(&exact[side]).map(|(s, e)| worst(s, e)).collect())
 }
 
 /// The points of every slave face against a rigid body: `gap` gives the distance of a point and the outward normal.
@@ -204,6 +281,7 @@ fn intervals<const D: usize>(
     face: usize,
     candidates: &[usize],
     reach: f64,
+    extra: usize,
 ) -> Vec<GapPoint<D>> {
     let mut at = Values::default();
     let mut spans = Vec::new();
@@ -250,7 +328,7 @@ fn intervals<const D: usize>(
             })
             .min_by(|p, q| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1)));
         let Some((_, other)) = seen else { continue };
-        let n = slave.degree(face).max(master.degree(other)) + 2;
+        let n = slave.degree(face).max(master.degree(other)) + 2 + extra;
         for (s, w) in rule(CellShape::Line, n) {
             let s = [middle + 0.5 * (to - from) * s[0], 0.0, 0.0];
             let point = slave.at(face, &s);
@@ -277,9 +355,30 @@ struct Facet<const D: usize> {
     x: Vec<Point<D>>,
 }
 
-/// Facets of a face: one where it is of first order, else as many along each edge as its order.
+/// Whether a face is flat and has straight edges: its outline is then a polygon, whatever its inner map.
+fn is_polygon<const D: usize>(surface: &dyn ContactSurface<D>, face: usize) -> bool {
+    let shape = surface.shape(face);
+    let order = surface.order(face);
+    let corners: Vec<Point<D>> = shape.vertices().iter().map(|s| surface.at(face, s).x).collect();
+    let size = (corners[1] - corners[0]).norm().max((corners[2] - corners[0]).norm());
+    let normal = surface.at(face, &shape.centre()).area_normal().normalize();
+    let flat = |x: &Point<D>| normal.dot(&(x - corners[0])).abs() <= 1e-10 * size;
+    let straight = |&[a, b]: &[usize; 2]| {
+        (1..=order).all(|k| {
+            let t = k as f64 / (order + 1) as f64;
+            let (p, q) = (shape.vertices()[a], shape.vertices()[b]);
+            let x = surface.at(face, &std::array::from_fn(|i| p[i] + (q[i] - p[i]) * t)).x;
+            let chord = (corners[b] - corners[a]).normalize();
+            let off = x - corners[a];
+            flat(&x) && (off - chord * chord.dot(&off)).norm() <= 1e-10 * size
+        })
+    };
+    shape.edges().iter().all(straight) && flat(&surface.at(face, &shape.centre()).x)
+}
+
+/// Facets of a face: one where it is a polygon, else as many along each edge as its order.
 fn facets<const D: usize>(surface: &dyn ContactSurface<D>, face: usize) -> Vec<Facet<D>> {
-    let m = surface.order(face);
+    let m = if is_polygon(surface, face) { 1 } else { surface.order(face) };
     let mut out = Vec::new();
     let mut push = |corners: Vec<Local>| {
         let x = corners.iter().map(|s| surface.at(face, s).x).collect();
@@ -395,6 +494,32 @@ fn of_facet(corners: &[Local], local: &Local) -> (Local, f64) {
     (s, area(&flat) / reference)
 }
 
+/// Moves `s` to the point of a flat face at `x`; returns the area per reference area in the plane of `e1` and `e2`.
+fn onto_face<const D: usize>(
+    surface: &dyn ContactSurface<D>,
+    face: usize,
+    (e1, e2): (&Vector<3>, &Vector<3>),
+    x: &Vector<3>,
+    s: &mut Local,
+) -> f64 {
+    let space = |x: &Point<D>| Vector::<3>::from_fn(|k, _| x[k]);
+    let flat = |x: &Vector<3>| Flat::new(e1.dot(x), e2.dot(x));
+    let mut determinant = 0.0;
+    for _ in 0..40 {
+        let point = surface.at(face, s);
+        let [a, b] = point.tangents.map(|t| flat(&space(&t)));
+        determinant = a.perp(&b);
+        let d = flat(&(x - space(&point.x)));
+        let step = [d.perp(&b) / determinant, a.perp(&d) / determinant];
+        s[0] += step[0];
+        s[1] += step[1];
+        if step[0].abs().max(step[1].abs()) < 1e-15 {
+            break;
+        }
+    }
+    determinant
+}
+
 /// Quadrature points in the plane over a convex polygon.
 fn over(polygon: &[Flat], rule: &Rule) -> Vec<(Flat, f64)> {
     let mut out = Vec::new();
@@ -422,11 +547,13 @@ fn polygons<const D: usize>(
     face: usize,
     candidates: &[usize],
     reach: f64,
+    extra: usize,
 ) -> Vec<GapPoint<D>> {
     let space = |x: &Point<D>| Vector::<3>::from_fn(|k, _| x[k]);
     let mut at = Values::default();
     let mut points = Vec::new();
     let masters: Vec<(usize, Vec<Facet<D>>)> = candidates.iter().map(|&m| (m, facets(master, m))).collect();
+    let polygon_face = is_polygon(slave, face);
     for facet in facets(slave, face) {
         let x: Vec<Vector<3>> = facet.x.iter().map(space).collect();
         let centre = x.iter().sum::<Vector<3>>() / x.len() as f64;
@@ -437,7 +564,7 @@ fn polygons<const D: usize>(
         let own: Vec<Flat> = x.iter().map(flat).collect();
         let size = x.iter().map(|p| (p - centre).norm()).fold(0.0, f64::max);
         for (other, list) in &masters {
-            let rule = rule(CellShape::Triangle, slave.degree(face).max(master.degree(*other)) + 2);
+            let rule = rule(CellShape::Triangle, slave.degree(face).max(master.degree(*other)) + 2 + extra);
             for part in list {
                 let y: Vec<Vector<3>> = part.x.iter().map(space).collect();
                 if normal.dot(&flat_normal(&y)) > FACING {
@@ -453,7 +580,11 @@ fn polygons<const D: usize>(
                 let unreversed: Vec<Flat> = y.iter().map(flat).collect();
                 for (p, w) in over(&polygon, &rule) {
                     let (local, determinant) = inside(&own, &p);
-                    let (s, ratio) = of_facet(&facet.corners, &local);
+                    let (mut s, ratio) = of_facet(&facet.corners, &local);
+                    let mut density = ratio / determinant;
+                    if polygon_face {
+                        density = 1.0 / onto_face(slave, face, (&e1, &e2), &(centre + e1 * p.x + e2 * p.y), &mut s);
+                    }
                     let point = slave.at(face, &s);
                     let (n, _) = nodes.normal(face, &s, &mut at);
                     let n = n.normalize();
@@ -462,7 +593,7 @@ fn polygons<const D: usize>(
                     if gap.abs() > reach {
                         continue;
                     }
-                    let weight = w / determinant * ratio * point.area_normal().norm() * slave.measure(&point.x);
+                    let weight = w * density * point.area_normal().norm() * slave.measure(&point.x);
                     let magnitude = point.x.amax();
                     points.push(GapPoint {
                         s,

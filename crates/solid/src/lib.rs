@@ -1,3 +1,22 @@
-//! Elastic solids.
+//! Elastic solids in contact: bodies, supports, loads, and their equilibrium.
+//!
+//! - [`material`]: linear elasticity in the plane, around an axis and in space.
+//! - [`body`]: bodies and the parts of their boundary.
+//! - [`stiffness`]: cells, and how they avoid locking.
+//! - [`supports`]: what is prescribed, and the unknowns that remain; [`rigid_modes`]: what nothing holds.
+//! - [`loads`]: forces on sides and in volumes.
+//! - [`model`]: everything together, solved at one time.
+
+pub mod body;
+pub mod loads;
 pub mod material;
+pub mod model;
+pub mod rigid_modes;
 pub mod stiffness;
+pub mod supports;
+
+pub use body::{Bodies, Body, BodySurface};
+pub use loads::{Load, LoadKind};
+pub use material::{Elastic, Space, von_mises};
+pub use model::{Circumstances, Contact, ContactResult, Master, Model, RigidGap, State, StepError};
+pub use supports::{Support, SupportError, SupportKind};

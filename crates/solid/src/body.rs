@@ -1,0 +1,141 @@
+//! Bodies and their boundaries.
+
+use crate::material::{Elastic, Space};
+use signorini_contact::{ContactSurface, FacePoint};
+use signorini_fem::hierarchic::Values;
+use signorini_fem::{CellShape, DofMap, Local, Mesh, Side};
+use signorini_geometry::Point;
+use std::sync::Arc;
+
+/// An elastic body. Its unknowns are `first + D f + i`, function `f` in direction `i`.
+#[derive(Clone)]
+pub struct Body<const D: usize> {
+    pub name: String,
+    pub mesh: Arc<Mesh<D>>,
+    pub dofs: Arc<DofMap>,
+    pub degree: usize,
+    pub material: Elastic,
+    pub first: usize,
+}
+
+impl<const D: usize> Body<D> {
+    pub fn unknowns(&self) -> usize {
+        D * self.dofs.count()
+    }
+}
+
+/// All bodies of a problem.
+#[derive(Clone)]
+pub struct Bodies<const D: usize> {
+    pub space: Space,
+    pub list: Vec<Body<D>>,
+}
+
+impl<const D: usize> Bodies<D> {
+    pub fn new(space: Space) -> Self {
+        Bodies { space, list: Vec::new() }
+    }
+
+    /// Adds a body; returns its number.
+    pub fn add(&mut self, name: &str, mesh: Mesh<D>, degree: usize, material: Elastic) -> usize {
+        let dofs = DofMap::new(&mesh, degree);
+        let first = self.unknowns();
+        let (mesh, dofs) = (Arc::new(mesh), Arc::new(dofs));
+        self.list.push(Body { name: name.to_string(), mesh, dofs, degree, material, first });
+        self.list.len() - 1
+    }
+
+    /// Number of unknowns before supports.
+    pub fn unknowns(&self) -> usize {
+        self.list.last().map_or(0, |b| b.first + b.unknowns())
+    }
+
+    /// By what integrals over the section are multiplied.
+    pub fn measure(&self, x: &Point<D>) -> f64 {
+        if self.space == Space::Axisymmetric { std::f64::consts::TAU * x[0] } else { 1.0 }
+    }
+
+    /// The part of the boundary of a body that the sides make up, for contact.
+    pub fn surface(&self, body: usize, sides: Vec<Side>) -> BodySurface<D> {
+        let b = self.list[body].clone();
+        let functions = sides.iter().map(|s| b.dofs.on_side(*s)).collect();
+        BodySurface { axisymmetric: self.space == Space::Axisymmetric, functions, body: b, sides }
+    }
+}
+
+/// A part of the boundary of a body.
+pub struct BodySurface<const D: usize> {
+    axisymmetric: bool,
+    body: Body<D>,
+    pub sides: Vec<Side>,
+    /// Places of the functions of each side in the list of its cell.
+    functions: Vec<Vec<usize>>,
+}
+
+impl<const D: usize> BodySurface<D> {
+    /// The largest distance of its points, roughly.
+    pub fn size(&self) -> f64 {
+        let mut low = Point::<D>::repeat(f64::INFINITY);
+        let mut high = -low;
+        for side in &self.sides {
+            for v in self.body.mesh.side_vertices(*side) {
+                low = low.inf(&self.body.mesh.nodes()[v as usize]);
+                high = high.sup(&self.body.mesh.nodes()[v as usize]);
+            }
+        }
+        (high - low).norm()
+    }
+
+    pub fn body(&self) -> &Body<D> {
+        &self.body
+    }
+}
+
+impl<const D: usize> ContactSurface<D> for BodySurface<D> {
+    fn face_count(&self) -> usize {
+        self.sides.len()
+    }
+
+    fn shape(&self, face: usize) -> CellShape {
+        self.body.mesh.side_shape(self.sides[face])
+    }
+
+    fn degree(&self, _: usize) -> usize {
+        self.body.degree
+    }
+
+    fn order(&self, face: usize) -> usize {
+        self.body.mesh.map(self.sides[face].cell as usize).order()
+    }
+
+    fn at(&self, face: usize, s: &Local) -> FacePoint<D> {
+        let (x, tangents) = self.body.mesh.on_side(self.sides[face], s);
+        FacePoint { x, tangents }
+    }
+
+    fn trace(&self, face: usize, s: &Local, out: &mut Vec<(u32, f64)>) {
+        let side = self.sides[face];
+        let cell = side.cell as usize;
+        let basis = self.body.dofs.basis(cell);
+        let (xi, _) = basis.shape().on_side(side.side as usize, s);
+        let mut at = Values::default();
+        basis.tabulate(&xi, &mut at);
+        let list = self.body.dofs.cell(cell);
+        for &k in &self.functions[face] {
+            let (function, sign) = list[k];
+            out.push(((self.body.first + D * function as usize) as u32, sign * at.value[k]));
+        }
+    }
+
+    fn vertices(&self, face: usize) -> Vec<u32> {
+        self.body.mesh.side_vertices(self.sides[face])
+    }
+
+    fn measure(&self, x: &Point<D>) -> f64 {
+        if self.axisymmetric { std::f64::consts::TAU * x[0] } else { 1.0 }
+    }
+
+    fn describe(&self, face: usize) -> String {
+        format!("cell {} of `{}`", self.sides[face].cell, self.body.name)
+    }
+}

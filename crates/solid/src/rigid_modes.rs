@@ -1,0 +1,186 @@
+//! Motions that nothing resists: the rigid modes of every connected part that the supports leave free.
+
+use crate::body::Bodies;
+use crate::material::Space;
+use crate::supports::Reduction;
+use nalgebra::DMatrix;
+use signorini_geometry::Point;
+use std::collections::HashMap;
+
+/// A free rigid motion of a part of a body.
+#[derive(Clone, Debug)]
+pub struct FreeMode {
+    pub body: String,
+    /// In words, such as "to translate along x".
+    pub motion: String,
+    /// The unknown of the bodies that moves most, and does in no mode listed before.
+    pub unknown: usize,
+}
+
+/// The free rigid modes of all bodies, springs aside.
+pub fn free_modes<const D: usize>(bodies: &Bodies<D>, reduction: &Reduction<D>) -> Vec<FreeMode> {
+    let mut out = Vec::new();
+    for body in &bodies.list {
+        for part in parts(body) {
+            let functions: Vec<(u32, Point<D>)> = part
+                .iter()
+                .filter_map(|&node| Some((body.dofs.vertex(node)?, body.mesh.nodes()[node as usize])))
+                .collect();
+            let centre = functions.iter().map(|f| f.1).sum::<Point<D>>() / functions.len().max(1) as f64;
+            let size = functions.iter().map(|f| (f.1 - centre).norm()).fold(f64::MIN_POSITIVE, f64::max);
+            let modes = modes::<D>(bodies.space);
+            let n = functions.len() * D;
+            // Displacements of all modes, and their parts along what is held.
+            let mut motion = DMatrix::<f64>::zeros(n, modes.len());
+            for (row, (_, x)) in functions.iter().enumerate() {
+                for (m, mode) in modes.iter().enumerate() {
+                    let u = mode.at(&((x - centre) / size));
+                    for i in 0..D {
+                        motion[(row * D + i, m)] = u[i];
+                    }
+                }
+            }
+            // Held directions, and differences to the common displacement where points are tied.
+            let mut held = DMatrix::<f64>::zeros(modes.len(), modes.len());
+            let mut ties: HashMap<u32, Vec<f64>> = HashMap::new();
+            for (row, (f, _)) in functions.iter().enumerate() {
+                let unknown = |i: usize| body.first + *f as usize * D + i;
+                let rows: Vec<&[(u32, f64)]> = (0..D).map(|i| reduction.row(unknown(i))).collect();
+                // The projection of a motion on what the row space of T allows.
+                let columns: std::collections::BTreeSet<u32> =
+                    rows.iter().flat_map(|r| r.iter().map(|e| e.0)).collect();
+                let values: Vec<Point<D>> =
+                    (0..modes.len()).map(|m| Point::<D>::from_fn(|i, _| motion[(row * D + i, m)])).collect();
+                let mut rest = values.clone();
+                for column in columns {
+                    let t = Point::<D>::from_fn(|i, _| rows[i].iter().find(|e| e.0 == column).map_or(0.0, |e| e.1));
+                    for (r, v) in rest.iter_mut().zip(&values) {
+                        *r -= t * (t.dot(v) / t.norm_squared());
+                    }
+                    if column < reduction.tied() {
+                        let along: Vec<f64> = values.iter().map(|v| t.dot(v) / t.norm()).collect();
+                        match ties.get(&column) {
+                            None => {
+                                ties.insert(column, along);
+                            }
+                            Some(first) => {
+                                let difference: Vec<f64> = first.iter().zip(&along).map(|(a, b)| a - b).collect();
+                                for a in 0..modes.len() {
+                                    for b in 0..modes.len() {
+                                        held[(a, b)] += difference[a] * difference[b];
+                                    }
+                                }
+                            }
+                        }
+                    }
+                }
+                for a in 0..modes.len() {
+                    for b in 0..modes.len() {
+                        held[(a, b)] += rest[a].dot(&rest[b]);
+                    }
+                }
+            }
+            let eigen = held.symmetric_eigen();
+            let limit = 1e-12 * functions.len() as f64;
+            let mut used: Vec<DMatrix<f64>> = Vec::new();
+            for k in 0..modes.len() {
+                if eigen.eigenvalues[k] > limit {
+                    continue;
+                }
+                let combination = eigen.eigenvectors.column(k).into_owned();
+                let mut field = DMatrix::from_column_slice(n, 1, (&motion * &combination).as_slice());
+                for other in &used {
+                    // Modes before this one are held where they move most.
+                    let at = other.iamax_full().0;
+                    let factor = field[(at, 0)] / other[(at, 0)];
+                    field -= other * factor;
+                }
+                let at = field.iamax_full().0;
+                let largest = combination.iamax();
+                out.push(FreeMode {
+                    body: body.name.clone(),
+                    motion: modes[largest].name::<D>(),
+                    unknown: body.first + functions[at / D].0 as usize * D + at % D,
+                });
+                used.push(field);
+            }
+        }
+    }
+    out
+}
+
+enum Mode {
+    Translation(usize),
+    /// In the plane of two axes.
+    Rotation(usize, usize),
+}
+
+impl Mode {
+    fn at<const D: usize>(&self, x: &Point<D>) -> Point<D> {
+        let mut u = Point::<D>::zeros();
+        match *self {
+            Mode::Translation(i) => u[i] = 1.0,
+            Mode::Rotation(i, j) => (u[i], u[j]) = (-x[j], x[i]),
+        }
+        u
+    }
+
+    fn name<const D: usize>(&self) -> String {
+        let axis = ["x", "y", "z"];
+        match *self {
+            Mode::Translation(i) => format!("to translate along {}", axis[i]),
+            Mode::Rotation(..) if D == 2 => "to rotate".into(),
+            Mode::Rotation(i, j) => format!("to rotate about {}", axis[3 - i - j]),
+        }
+    }
+}
+
+fn modes<const D: usize>(space: Space) -> Vec<Mode> {
+    match (space, D) {
+        (Space::Axisymmetric, _) => vec![Mode::Translation(1)],
+        (_, 2) => vec![Mode::Translation(0), Mode::Translation(1), Mode::Rotation(0, 1)],
+        _ => vec![
+            Mode::Translation(0),
+            Mode::Translation(1),
+            Mode::Translation(2),
+            Mode::Rotation(1, 2),
+            Mode::Rotation(2, 0),
+            Mode::Rotation(0, 1),
+        ],
+    }
+}
+
+/// Vertices of every connected part of a body.
+fn parts<const D: usize>(body: &crate::body::Body<D>) -> Vec<Vec<u32>> {
+    let count = body.mesh.nodes().len();
+    let mut parent: Vec<u32> = (0..count as u32).collect();
+    fn root(parent: &mut [u32], mut v: u32) -> u32 {
+        while parent[v as usize] != v {
+            parent[v as usize] = parent[parent[v as usize] as usize];
+            v = parent[v as usize];
+        }
+        v
+    }
+    let mut used = vec![false; count];
+    for cell in 0..body.mesh.cell_count() {
+        let mut first = None;
+        for v in body.mesh.vertices(cell) {
+            used[v as usize] = true;
+            let r = root(&mut parent, v);
+            match first {
+                None => first = Some(r),
+                Some(f) => {
+                    let f = root(&mut parent, f);
+                    parent[r.max(f) as usize] = r.min(f);
+                }
+            }
+        }
+    }
+    let mut lists: std::collections::BTreeMap<u32, Vec<u32>> = Default::default();
+    for v in 0..count as u32 {
+        if used[v as usize] {
+            lists.entry(root(&mut parent, v)).or_default().push(v);
+        }
+    }
+    lists.into_values().collect()
+}

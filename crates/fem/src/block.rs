@@ -31,7 +31,7 @@ pub fn side_names(dimension: usize) -> &'static [[&'static str; 2]] {
 }
 
 /// A box of cells of the given order with groups for its sides and the whole `boundary`; `map` moves every node.
-pub fn block<const D: usize>(axes: &Axes<D>, order: usize, map: impl Fn(Point<D>) -> Point<D>) -> Mesh<D> {
+pub fn block<const D: usize>(axes: &Axes<D>, order: usize, mut map: impl FnMut(Point<D>) -> Point<D>) -> Mesh<D> {
     let shape = if D == 2 { CellShape::Quadrilateral } else { CellShape::Hexahedron };
     let line = super::lagrange::gauss_lobatto(order);
     // Node positions along each direction.

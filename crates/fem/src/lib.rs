@@ -3,6 +3,7 @@
 //! - [`reference`]: the shapes of cells, with their edges and sides.
 //! - [`hierarchic`]: integrated Legendre functions, the unknowns of solids; [`dofs`] numbers them on a mesh.
 //! - [`cell_map`]: Lagrange functions that map reference cells to space; [`mesh`] and [`block`] are made of them.
+//! - [`gmsh`]: meshes from files.
 //! - [`rules`]: quadrature on reference cells.
 //! - [`lagrange`]: tensor-product Lagrange bases of any degree on Gauss-Lobatto points.
 //! - [`grid`]: uniform background grids in one, two and three dimensions, with their nodes.
@@ -14,6 +15,7 @@ pub mod cell_map;
 pub mod cut;
 pub mod dofs;
 pub mod ghost;
+pub mod gmsh;
 pub mod grid;
 pub mod hierarchic;
 pub mod lagrange;

@@ -293,7 +293,7 @@ impl TriangleMesh {
     }
 
     /// The pseudo-normal at a feature of a triangle: a point is outside where it lies on its side.
-    pub(crate) fn normal_at(&self, triangle: usize, feature: Feature) -> Vector<3> {
+    pub fn normal_at(&self, triangle: usize, feature: Feature) -> Vector<3> {
         self.numbered(triangle, feature).1
     }
 

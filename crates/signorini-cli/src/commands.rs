@@ -88,6 +88,8 @@ pub fn check(case: &Path, set: &[String], json: bool) -> u8 {
         let sizes = match plan::plan(&document)? {
             Plan::Line(plan) => sizes(&plan)?,
             Plan::Plane(plan) => sizes(&plan)?,
+            Plan::PlaneSolids(plan) => signorini::run::solid_sizes(&plan)?,
+            Plan::Solids(plan) => signorini::run::solid_sizes(&plan)?,
         };
         Ok((document, sizes))
     });
@@ -245,8 +247,9 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], json: bool) ->
                 println!("{}", outcome.summary);
             } else {
                 table(&outcome.summary);
+                let first = if outcome.summary["method"] == "mortar" { "deformed" } else { "deflection" };
                 println!(
-                    "\nResults in {}: open pictures/deflection.png first, fields.pvd in ParaView; numbers in summary.json.",
+                    "\nResults in {}: open pictures/{first}.png first, fields.pvd in ParaView; numbers in summary.json.",
                     folder.display()
                 );
             }
@@ -262,6 +265,56 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], json: bool) ->
 /// The increments as a table, the warnings, and the verdict.
 fn table(summary: &Value) {
     println!("{}\n", summary["case"].as_str().unwrap_or(""));
+    if summary["method"] == "mortar" {
+        solid_table(summary);
+    } else {
+        membrane_table(summary);
+    }
+    println!();
+    for warning in summary["warnings"].as_array().into_iter().flatten() {
+        println!("warning: {}", warning.as_str().unwrap_or(""));
+    }
+    println!("{}", summary["verdict"].as_str().unwrap_or(""));
+}
+
+/// One line per increment and contact.
+fn solid_table(summary: &Value) {
+    println!(
+        "{:>9} {:>7}  {:14} {:>16} {:>14} {:>14} {:>6} {:>10}",
+        "t", "solves", "contact", "force", "area", "max pressure", "zones", "balance"
+    );
+    for step in summary["steps"].as_array().into_iter().flatten() {
+        let time = format!("{:.6}", step["time"].as_f64().unwrap_or(f64::NAN));
+        let balance = step["equilibrium_residual"].as_f64().map_or("-".to_string(), |v| format!("{v:.1e}"));
+        let number = |v: Option<f64>| v.map_or("-".to_string(), |v| format!("{v:.8}"));
+        for (name, contact) in step["contacts"].as_object().into_iter().flatten() {
+            let force = contact["force"]
+                .as_array()
+                .map(|f| f.iter().filter_map(Value::as_f64).map(|v| v * v).sum::<f64>().sqrt());
+            println!(
+                "{time:>9} {:>7}  {name:14} {:>16} {:>14} {:>14} {:>6} {balance:>10}",
+                step["iterations"].to_string(),
+                number(force),
+                number(contact["area"].as_f64()),
+                number(contact["max_pressure"].as_f64()),
+                contact["zones"].to_string(),
+            );
+        }
+        if step["contacts"].as_object().is_none_or(|c| c.is_empty()) {
+            println!(
+                "{time:>9} {:>7}  {:14} {:>16} {:>14} {:>14} {:>6} {balance:>10}",
+                step["iterations"].to_string(),
+                "-",
+                "-",
+                "-",
+                "-",
+                "-"
+            );
+        }
+    }
+}
+
+fn membrane_table(summary: &Value) {
     println!(
         "{:>9} {:>7} {:>16} {:>16} {:>6} {:>6} {:>10}",
         "t", "solves", "area", "force", "zones", "holes", "balance"
@@ -281,11 +334,6 @@ fn table(summary: &Value) {
             step["equilibrium_residual"].as_f64().map_or("-".to_string(), |v| format!("{v:.1e}")),
         );
     }
-    println!();
-    for warning in summary["warnings"].as_array().into_iter().flatten() {
-        println!("warning: {}", warning.as_str().unwrap_or(""));
-    }
-    println!("{}", summary["verdict"].as_str().unwrap_or(""));
 }
 
 fn read(case: &Path) -> Result<(String, String), CaseError> {

@@ -2,11 +2,13 @@
 
 mod domain;
 mod floor;
+mod rigid;
+pub mod solid;
 
 use crate::case::statement::{self, Body, Control, Method, Space};
 use crate::case::units::{FORCE_PER_LENGTH, LENGTH, PRESSURE, TIME, Units};
 use crate::case::value::Reader;
-use crate::case::{CaseError, Document, Value, suggestion};
+use crate::case::{CaseError, Document, OneOrMany, Value, suggestion};
 use crate::expression::{Definition, Expression, Names, Scope};
 use signorini_fem::Grid;
 use signorini_geometry::{Jet, Point, Real};
@@ -27,6 +29,8 @@ pub use floor::Floor;
 pub enum Plan {
     Line(MembranePlan<1>),
     Plane(MembranePlan<2>),
+    PlaneSolids(Box<solid::SolidPlan<2>>),
+    Solids(Box<solid::SolidPlan<3>>),
 }
 
 /// Which method finds the contact zone.
@@ -86,11 +90,15 @@ pub struct MembranePlan<const D: usize> {
 /// Reads a document into a plan.
 pub fn plan(document: &Document) -> Result<Plan, CaseError> {
     match *document.case.space.get_ref() {
+        Space::PlaneStrain | Space::PlaneStress => {
+            Ok(Plan::PlaneSolids(Box::new(Planner::new(document)?.solids::<2>()?)))
+        }
+        Space::ThreeD => Ok(Plan::Solids(Box::new(Planner::new(document)?.solids::<3>()?))),
+        Space::Axisymmetric if document.case.bodies.values().any(|b| matches!(b.get_ref(), Body::Solid(_))) => {
+            Ok(Plan::PlaneSolids(Box::new(Planner::new(document)?.solids::<2>()?)))
+        }
         Space::Line | Space::Axisymmetric => Ok(Plan::Line(Planner::new(document)?.membrane::<1>()?)),
         Space::Plane => Ok(Plan::Plane(Planner::new(document)?.membrane::<2>()?)),
-        _ => Err(document
-            .error(document.case.space.span(), "this version solves membranes only")
-            .help("space = \"line\", \"axisymmetric\" or \"plane\"")),
     }
 }
 
@@ -99,6 +107,16 @@ pub(crate) struct Planner<'a> {
     pub document: &'a Document,
     pub reader: Reader<'a>,
     pub space: Space,
+}
+
+/// The value of a key that could be a vector elsewhere.
+fn one(document: &Document, key: &toml::Spanned<OneOrMany>) -> Result<Value, CaseError> {
+    match key.get_ref() {
+        OneOrMany::One(literal) => Ok(toml::Spanned::new(key.span(), literal.clone())),
+        OneOrMany::Many(_) => Err(document
+            .error(key.span(), "the displacement of a membrane is one number")
+            .help("write for example  displacement = 0.0")),
+    }
 }
 
 /// Names of the position's coordinates, by space.
@@ -418,6 +436,7 @@ impl<'a> Planner<'a> {
     }
 
     fn supports(&self, body: &str, pieces: &Pieces) -> Result<Vec<PlannedSupport>, CaseError> {
+        let document = self.document;
         let mut supports: Vec<PlannedSupport> = Vec::new();
         let groups: Vec<&str> = pieces.groups.iter().map(|(n, _)| n.as_str()).collect();
         for (name, support) in &self.document.case.supports {
@@ -455,7 +474,11 @@ impl<'a> Planner<'a> {
             }
             supports.push(PlannedSupport {
                 name: name.clone(),
-                displacement: self.placed(format!("supports.{name}.displacement"), displacement, LENGTH)?,
+                displacement: self.placed(
+                    format!("supports.{name}.displacement"),
+                    &one(document, displacement)?,
+                    LENGTH,
+                )?,
                 pieces: held,
             });
         }

@@ -2,6 +2,7 @@
 
 mod environment;
 mod increment;
+pub(crate) mod solid;
 
 use crate::case::{CaseError, Document};
 use crate::output::{Folder, OutputError, pictures, tables, vtk};
@@ -15,6 +16,28 @@ use signorini_membrane::problem::Membrane;
 use signorini_membrane::zone::Zone;
 pub use signorini_solve::{Iteration, Progress, Silent};
 use std::path::Path;
+
+/// What a run of solids would have to do, after checking that their supports and contacts make sense.
+pub fn solid_sizes<const D: usize>(plan: &crate::plan::solid::SolidPlan<D>) -> Result<Value, CaseError> {
+    let model = solid::model(plan)?;
+    let free: Vec<String> = model
+        .free_modes()
+        .iter()
+        .map(|m| format!("`{}` is free {} until contact holds it", m.body, m.motion))
+        .collect();
+    Ok(json!({
+        "method": "mortar",
+        "bodies": plan.bodies.len(),
+        "cells": plan.bodies.iter().map(|b| b.mesh.cell_count()).sum::<usize>(),
+        "unknowns": model.unknowns(),
+        "increments": plan.times.len(),
+        "supports": plan.document.case.supports.len(),
+        "loads": plan.loads.len(),
+        "contacts": plan.contacts.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", "),
+        "free": free,
+        "warnings": plan.warnings,
+    }))
+}
 
 /// Version of the summary's keys.
 pub const SCHEMA: u32 = 1;
@@ -54,6 +77,8 @@ pub fn run(document: &Document, folder: &Path, progress: &mut dyn Progress) -> R
     match plan(document)? {
         Plan::Line(p) => Runner::<1, LineZone>::new(p, folder)?.run(start, progress),
         Plan::Plane(p) => Runner::<2, PlaneZone>::new(p, folder)?.run(start, progress),
+        Plan::PlaneSolids(p) => solid::run(*p, folder, start, progress),
+        Plan::Solids(p) => solid::run(*p, folder, start, progress),
     }
 }
 

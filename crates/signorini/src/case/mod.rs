@@ -8,7 +8,7 @@ pub mod value;
 
 pub use error::{CaseError, suggestion};
 pub use statement::Case;
-pub use value::{Literal, Value, Values};
+pub use value::{Literal, OneOrMany, Value, Values};
 
 use std::ops::Range;
 

@@ -3,7 +3,7 @@
 //! Every variant is a table with one key, and unknown keys are refused, so an error is always reported at its own
 //! line and column. What a key means, and in which unit it stands, is said here once.
 
-use super::value::{Value, Values};
+use super::value::{OneOrMany, Value, Values};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use toml::Spanned;
@@ -117,11 +117,76 @@ pub enum Body {
     Membrane(Membrane),
     Rigid(Rigid),
     /// Elastic solids by finite elements.
-    Solid(toml::Table),
+    Solid(Solid),
     /// Solids on a background grid: implicit shapes, surfaces, images.
     Cells(toml::Table),
     Rope(toml::Table),
     Beam(toml::Table),
+}
+
+/// An elastic solid.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Solid {
+    pub mesh: Spanned<SolidMesh>,
+    /// Polynomial degree: 1 to 8 on quadrilaterals and hexahedra, 1 or 2 on other cells.
+    #[serde(default)]
+    pub degree: Option<Spanned<i64>>,
+    pub material: Spanned<Material>,
+    /// `small`, or `finite`.
+    #[serde(default)]
+    pub strain: Option<Spanned<String>>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SolidMesh {
+    Box(BoxKey),
+    Gmsh(GmshKey),
+    Nurbs(toml::Table),
+}
+
+/// A box of cells: even between two corners, or graded along axes; every point may be moved by a map.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BoxKey {
+    #[serde(default)]
+    pub min: Option<Values>,
+    #[serde(default)]
+    pub max: Option<Values>,
+    #[serde(default)]
+    pub cells: Option<Spanned<Vec<Spanned<i64>>>>,
+    #[serde(default)]
+    pub axes: Option<Spanned<Vec<Spanned<AxisKey>>>>,
+    /// Expressions of x, y and z for the place of every point.
+    #[serde(default)]
+    pub map: Option<Values>,
+}
+
+/// One direction of a box: stretches that end at `to`, with so many cells, each `growth` times the one before.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AxisKey {
+    pub from: Value,
+    pub to: Values,
+    pub cells: Spanned<Vec<Spanned<i64>>>,
+    #[serde(default)]
+    pub growth: Option<Spanned<Vec<f64>>>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Material {
+    LinearElastic(ElasticKey),
+    NeoHooke(toml::Table),
+    SaintVenantKirchhoff(toml::Table),
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ElasticKey {
+    pub youngs_modulus: Value,
+    pub poissons_ratio: Value,
 }
 
 /// A film under tension.
@@ -213,7 +278,7 @@ pub struct GridKey {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GmshKey {
-    pub file: String,
+    pub file: Spanned<String>,
     #[serde(default)]
     pub group: Option<String>,
 }
@@ -242,14 +307,14 @@ pub enum Shape {
     /// A floor seen from above: its height as an expression of x and y.
     Height(Value),
     Plane(PlaneKey),
-    Sphere(toml::Table),
-    Cylinder(toml::Table),
-    Cone(toml::Table),
-    Ellipsoid(toml::Table),
-    Torus(toml::Table),
-    Paraboloid(toml::Table),
-    Nurbs(toml::Table),
-    Stl(toml::Table),
+    Sphere(SphereKey),
+    Cylinder(CylinderKey),
+    Cone(ConeKey),
+    Ellipsoid(EllipsoidKey),
+    Torus(TorusKey),
+    Paraboloid(ParaboloidKey),
+    Nurbs(FileKey),
+    Stl(FileKey),
     HeightMap(toml::Table),
     LevelSet(toml::Table),
 }
@@ -259,6 +324,65 @@ pub enum Shape {
 pub struct PlaneKey {
     pub point: Values,
     pub normal: Values,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SphereKey {
+    pub center: Values,
+    pub radius: Value,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CylinderKey {
+    pub point: Values,
+    /// In the plane a cylinder stands across it.
+    #[serde(default)]
+    pub axis: Option<Values>,
+    pub radius: Value,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ConeKey {
+    pub apex: Values,
+    /// Into the body.
+    pub axis: Values,
+    /// In radians.
+    pub half_angle: Value,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EllipsoidKey {
+    pub center: Values,
+    pub semi_axes: Values,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TorusKey {
+    pub center: Values,
+    pub axis: Values,
+    pub major_radius: Value,
+    pub minor_radius: Value,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ParaboloidKey {
+    pub apex: Values,
+    /// Into the body.
+    pub axis: Values,
+    /// Of curvature at the apex.
+    pub radius: Value,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FileKey {
+    pub file: Spanned<String>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -289,14 +413,18 @@ pub struct Prescribed {
 pub struct Support {
     /// `BODY` or `BODY:GROUP`.
     pub on: Spanned<String>,
+    /// A value for a membrane, a vector with `"free"` where free for a solid.
     #[serde(default)]
-    pub displacement: Option<Value>,
+    pub displacement: Option<Spanned<OneOrMany>>,
+    /// The displacement along the outward normal alone.
     #[serde(default)]
     pub normal: Option<Value>,
+    /// All points share one displacement in the components that are not prescribed.
     #[serde(default)]
     pub uniform: Option<Spanned<bool>>,
+    /// Stiffness per area of an elastic bed.
     #[serde(default)]
-    pub spring: Option<Spanned<toml::Value>>,
+    pub spring: Option<Values>,
 }
 
 /// What pushes.
@@ -341,7 +469,7 @@ pub struct Contact {
 pub enum Method {
     InequalityLevelSet(LevelSetKey),
     ActiveSet(ActiveSetKey),
-    Mortar(toml::Table),
+    Mortar(MortarKey),
     GaussPoint(toml::Table),
     Node(toml::Table),
 }
@@ -357,6 +485,22 @@ pub struct LevelSetKey {
     pub front_degree: Option<Spanned<i64>>,
     #[serde(default)]
     pub initial_zone: Option<Spanned<toml::Value>>,
+}
+
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MortarKey {
+    #[serde(default)]
+    pub enforcement: Option<Spanned<Enforcement>>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Enforcement {
+    Multiplier(Nothing),
+    AugmentedLagrangian(toml::Table),
+    Nitsche(toml::Table),
+    Penalty(toml::Table),
 }
 
 #[derive(Clone, Debug, Default, Deserialize)]

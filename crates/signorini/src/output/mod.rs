@@ -3,6 +3,8 @@
 pub mod chart;
 pub mod folder;
 pub mod pictures;
+pub mod solid_fields;
+pub mod solid_pictures;
 pub mod tables;
 pub mod vtk;
 

@@ -29,7 +29,7 @@ pub fn draw<const D: usize>(
         // A domain thinner than the display can show.
         return Ok(());
     }
-    let units = &Labels::new(plan);
+    let units = &Labels::new(&plan.document);
     let exact = exact::of(plan, s.time);
     type Drawing<'a> = Box<dyn Fn() -> Result<String, OutputError> + Sync + 'a>;
     let mut drawings: Vec<(&str, Drawing)> = Vec::new();
@@ -59,15 +59,15 @@ pub fn draw<const D: usize>(
 }
 
 /// Axis labels with the units of the case.
-struct Labels {
+pub(super) struct Labels {
     length: Option<String>,
     force: Option<String>,
 }
 
 impl Labels {
-    fn new<const D: usize>(plan: &MembranePlan<D>) -> Self {
+    pub fn new(document: &crate::case::Document) -> Self {
         use crate::case::statement::UnitsKey;
-        let (length, force) = match plan.document.case.units.as_ref().map(|u| u.get_ref()) {
+        let (length, force) = match document.case.units.as_ref().map(|u| u.get_ref()) {
             None => (None, None),
             Some(UnitsKey::Base(b)) => (Some(b.length.clone()), Some(b.force.clone())),
             Some(UnitsKey::System(name)) => {
@@ -82,19 +82,19 @@ impl Labels {
         unit.map_or_else(|| what.to_string(), |u| format!("{what} [{u}]"))
     }
 
-    fn length(&self, what: &str) -> String {
+    pub fn length(&self, what: &str) -> String {
         self.with(what, self.length.clone())
     }
 
-    fn area(&self, what: &str) -> String {
+    pub fn area(&self, what: &str) -> String {
         self.with(what, self.length.as_ref().map(|l| format!("{l}²")))
     }
 
-    fn force(&self, what: &str) -> String {
+    pub fn force(&self, what: &str) -> String {
         self.with(what, self.force.clone())
     }
 
-    fn pressure(&self, what: &str) -> String {
+    pub fn pressure(&self, what: &str) -> String {
         self.with(what, self.force.as_ref().zip(self.length.as_ref()).map(|(f, l)| format!("{f}/{l}²")))
     }
 }

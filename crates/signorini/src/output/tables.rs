@@ -52,3 +52,51 @@ pub fn outlines<const D: usize>(s: &Snapshot<D>) -> String {
     }
     text
 }
+
+/// One line per increment of solids: forces, area and largest pressure of every contact, forces of supports, probes.
+pub fn solid_history<const D: usize>(steps: &[Value], plan: &crate::plan::solid::SolidPlan<D>) -> String {
+    let axes = &["x", "y", "z"][..D];
+    let supports: std::collections::BTreeSet<&str> =
+        plan.supports.iter().map(|s| s.name.as_str()).filter(|n| *n != "axis").collect();
+    let mut header: Vec<String> =
+        ["index", "time", "converged", "iterations", "energy"].iter().map(|s| s.to_string()).collect();
+    for c in &plan.contacts {
+        header.extend(axes.iter().map(|a| format!("{}:force_{a}", c.name)));
+        header.extend(["area", "max_pressure", "max_penetration"].iter().map(|k| format!("{}:{k}", c.name)));
+    }
+    for s in &supports {
+        header.extend(axes.iter().map(|a| format!("{s}:force_{a}")));
+    }
+    for p in plan.probes.keys() {
+        header.extend(axes.iter().map(|a| format!("{p}:displacement_{a}")));
+    }
+    let mut text = header.join(",") + "\n";
+    let cell = |v: &Value| if v.is_null() { String::new() } else { v.to_string() };
+    for step in steps {
+        let mut row: Vec<String> =
+            ["index", "time", "converged", "iterations", "energy"].iter().map(|k| cell(&step[*k])).collect();
+        for c in &plan.contacts {
+            let c = &step["contacts"][&c.name];
+            row.extend((0..D).map(|k| cell(&c["force"][k])));
+            row.extend(["area", "max_pressure", "max_penetration"].iter().map(|k| cell(&c[*k])));
+        }
+        for s in &supports {
+            row.extend((0..D).map(|k| cell(&step["support_forces"][*s][k])));
+        }
+        for p in plan.probes.keys() {
+            row.extend((0..D).map(|k| cell(&step["probes"][p]["displacement"][k])));
+        }
+        text += &(row.join(",") + "\n");
+    }
+    text
+}
+
+/// Position, pressure, gap and status of every pressure node of a contact.
+pub fn pressure<const D: usize>(shown: &super::solid_fields::ContactDisplay<D>) -> String {
+    let mut text = ["x", "y", "z"][..D].join(",") + ",pressure,gap,in_contact\n";
+    for k in 0..shown.points.len() {
+        let x: Vec<String> = shown.points[k].iter().map(|v| format!("{v:.15e}")).collect();
+        text += &format!("{},{:e},{:e},{}\n", x.join(","), shown.pressure[k], shown.gap[k], u8::from(shown.active[k]));
+    }
+    text
+}

@@ -1,0 +1,358 @@
+//! Fields of solids on cells small enough to be drawn flat, for ParaView and for pictures.
+
+use super::OutputError;
+use super::vtk::to_bytes;
+use nalgebra::Matrix3;
+use signorini_contact::ContactSurface;
+use signorini_fem::{CellShape, Local};
+use signorini_geometry::Point;
+use signorini_solid::stiffness::displacement_at;
+use signorini_solid::{Contact, Model, State, von_mises};
+use std::collections::HashMap;
+use vtkio::model::{
+    Attribute, Attributes, CellType, Cells, DataSet, PolyDataPiece, UnstructuredGridPiece, VertexNumbers,
+};
+
+/// Points of all bodies, each with the cells it belongs to, and the flat cells between them.
+pub struct SolidDisplay<const D: usize> {
+    pub points: Vec<Point<D>>,
+    samples: Vec<Vec<(u32, u32, Local)>>,
+    body: Vec<u32>,
+    cells: Vec<(CellType, Vec<u32>)>,
+    /// What a picture shows: all cells in the plane, the boundary in space.
+    pub polygons: Vec<Vec<u32>>,
+}
+
+/// Values at the points of the display.
+pub struct SolidFields<const D: usize> {
+    pub displacement: Vec<Point<D>>,
+    pub stress: Vec<Matrix3<f64>>,
+    pub von_mises: Vec<f64>,
+}
+
+/// Local points of a shape divided `m` times along every edge, and its parts.
+fn lattice(shape: CellShape, m: usize) -> (Vec<Local>, Vec<(CellType, Vec<u32>)>) {
+    let share = |k: usize| k as f64 / m as f64;
+    let side = |k: usize| 2.0 * share(k) - 1.0;
+    let n = m + 1;
+    let mut points = Vec::new();
+    let mut cells = Vec::new();
+    match shape {
+        CellShape::Line => {
+            points.extend((0..n).map(|i| [side(i), 0.0, 0.0]));
+            cells.extend((0..m as u32).map(|i| (CellType::Line, vec![i, i + 1])));
+        }
+        CellShape::Quadrilateral => {
+            points.extend((0..n * n).map(|k| [side(k % n), side(k / n), 0.0]));
+            for k in 0..m * m {
+                let a = k / m * n + k % m;
+                cells.push((CellType::Quad, [a, a + 1, a + n + 1, a + n].map(|v| v as u32).to_vec()));
+            }
+        }
+        CellShape::Hexahedron => {
+            points.extend((0..n * n * n).map(|k| [side(k % n), side(k / n % n), side(k / (n * n))]));
+            for k in 0..m * m * m {
+                let a = k / (m * m) * n * n + k / m % m * n + k % m;
+                let base = [a, a + 1, a + n + 1, a + n];
+                let list = base.iter().chain(&base.map(|v| v + n * n)).map(|&v| v as u32).collect();
+                cells.push((CellType::Hexahedron, list));
+            }
+        }
+        CellShape::Triangle | CellShape::Wedge => {
+            let layers = if shape == CellShape::Wedge { n } else { 1 };
+            let mut number = HashMap::new();
+            for z in 0..layers {
+                for j in 0..n {
+                    for i in 0..n - j {
+                        number.insert((i, j, z), points.len() as u32);
+                        points.push([share(i), share(j), if shape == CellShape::Wedge { side(z) } else { 0.0 }]);
+                    }
+                }
+            }
+            let mut push = |corners: [(usize, usize); 3]| {
+                if shape == CellShape::Triangle {
+                    cells.push((CellType::Triangle, corners.map(|(i, j)| number[&(i, j, 0)]).to_vec()));
+                } else {
+                    for z in 0..m {
+                        let of = |z: usize| corners.map(|(i, j)| number[&(i, j, z)]);
+                        cells.push((CellType::Wedge, [of(z), of(z + 1)].concat()));
+                    }
+                }
+            };
+            for j in 0..m {
+                for i in 0..m - j {
+                    push([(i, j), (i + 1, j), (i, j + 1)]);
+                    if i + j + 1 < m {
+                        push([(i + 1, j), (i + 1, j + 1), (i, j + 1)]);
+                    }
+                }
+            }
+        }
+        CellShape::Tetrahedron => {
+            let vertices = shape.vertices();
+            points.extend_from_slice(vertices);
+            if m == 1 {
+                cells.push((CellType::Tetra, vec![0, 1, 2, 3]));
+            } else {
+                points.extend(
+                    shape
+                        .edges()
+                        .iter()
+                        .map(|&[a, b]| -> Local { std::array::from_fn(|k| 0.5 * (vertices[a][k] + vertices[b][k])) }),
+                );
+                // Edges 01, 12, 02, 03, 23, 13 are points 4 to 9; the octahedron is cut along 4-8.
+                for list in [
+                    [0, 4, 6, 7],
+                    [4, 1, 5, 9],
+                    [6, 5, 2, 8],
+                    [7, 9, 8, 3],
+                    [4, 6, 7, 8],
+                    [4, 7, 9, 8],
+                    [4, 9, 5, 8],
+                    [4, 5, 6, 8],
+                ] {
+                    cells.push((CellType::Tetra, list.to_vec()));
+                }
+            }
+        }
+    }
+    (points, cells)
+}
+
+impl<const D: usize> SolidDisplay<D> {
+    pub fn new(model: &Model<D>) -> Self {
+        let mut display = SolidDisplay {
+            points: Vec::new(),
+            samples: Vec::new(),
+            body: Vec::new(),
+            cells: Vec::new(),
+            polygons: Vec::new(),
+        };
+        for (number, body) in model.bodies.list.iter().enumerate() {
+            let mesh = &body.mesh;
+            let size = mesh.nodes().iter().map(|x| x.amax()).fold(f64::MIN_POSITIVE, f64::max);
+            let mut places: HashMap<[i64; D], u32> = HashMap::new();
+            let key = |x: &Point<D>| std::array::from_fn(|k| (x[k] / size * 1e8).round() as i64);
+            let parts_of = |cell: usize| body.degree.max(mesh.map(cell).order());
+            for cell in 0..mesh.cell_count() {
+                let (points, parts) = lattice(mesh.shape(cell), parts_of(cell));
+                let mut values = signorini_fem::hierarchic::Values::default();
+                let numbers: Vec<u32> = points
+                    .iter()
+                    .map(|xi| {
+                        mesh.map(cell).tabulate(xi, &mut values);
+                        let (x, _) = mesh.jacobian(cell, &values);
+                        let point = *places.entry(key(&x)).or_insert_with(|| {
+                            display.points.push(x);
+                            display.samples.push(Vec::new());
+                            display.body.push(number as u32);
+                            display.points.len() as u32 - 1
+                        });
+                        display.samples[point as usize].push((number as u32, cell as u32, *xi));
+                        point
+                    })
+                    .collect();
+                for (kind, list) in parts {
+                    let list: Vec<u32> = list.iter().map(|&k| numbers[k as usize]).collect();
+                    if D == 2 {
+                        display.polygons.push(list.clone());
+                    }
+                    display.cells.push((kind, list));
+                }
+            }
+            if D == 3 {
+                for side in mesh.boundary() {
+                    let (points, parts) = lattice(mesh.side_shape(side), parts_of(side.cell as usize));
+                    for (_, list) in parts {
+                        let polygon: Option<Vec<u32>> = list
+                            .iter()
+                            .map(|&k| places.get(&key(&mesh.on_side(side, &points[k as usize]).0)).copied())
+                            .collect();
+                        display.polygons.extend(polygon);
+                    }
+                }
+            }
+        }
+        display
+    }
+
+    /// Displacement and stress at all points; stress is the mean of the cells that meet.
+    pub fn fields(&self, model: &Model<D>, u: &[f64]) -> SolidFields<D> {
+        let mut fields = SolidFields { displacement: Vec::new(), stress: Vec::new(), von_mises: Vec::new() };
+        for list in &self.samples {
+            let mut stress = Matrix3::zeros();
+            let mut displacement = Point::<D>::zeros();
+            for (k, (number, cell, xi)) in list.iter().enumerate() {
+                let body = &model.bodies.list[*number as usize];
+                let own = &u[body.first..body.first + body.unknowns()];
+                let (_, moved, gradient) =
+                    displacement_at(&body.mesh, &body.dofs, model.bodies.space, *cell as usize, xi, own);
+                if k == 0 {
+                    displacement = moved;
+                }
+                stress += body.material.stress(model.bodies.space, &gradient) / list.len() as f64;
+            }
+            fields.displacement.push(displacement);
+            fields.von_mises.push(von_mises(&stress));
+            fields.stress.push(stress);
+        }
+        fields
+    }
+
+    /// A VTU with displacement, stress and its equivalent after von Mises.
+    pub fn vtu(&self, fields: &SolidFields<D>) -> Result<Vec<u8>, OutputError> {
+        let spatial = |list: &[Point<D>]| -> Vec<f64> {
+            list.iter().flat_map(|x| (0..3).map(|k| if k < D { x[k] } else { 0.0 })).collect()
+        };
+        let connectivity: Vec<u64> = self.cells.iter().flat_map(|c| c.1.iter().map(|&i| u64::from(i))).collect();
+        let offsets: Vec<u64> = self
+            .cells
+            .iter()
+            .scan(0, |at, c| {
+                *at += c.1.len() as u64;
+                Some(*at)
+            })
+            .collect();
+        let stress: Vec<f64> = (fields.stress.iter())
+            .flat_map(|s| [s[(0, 0)], s[(1, 1)], s[(2, 2)], s[(0, 1)], s[(1, 2)], s[(0, 2)]])
+            .collect();
+        let point = vec![
+            Attribute::vectors("displacement").with_data(spatial(&fields.displacement)),
+            Attribute::scalars("stress_xx_yy_zz_xy_yz_xz", 6).with_data(stress),
+            Attribute::scalars("von_mises", 1).with_data(fields.von_mises.clone()),
+            Attribute::scalars("body", 1).with_data(self.body.clone()),
+        ];
+        let piece = UnstructuredGridPiece {
+            points: spatial(&self.points).into(),
+            cells: Cells {
+                cell_verts: VertexNumbers::XML { connectivity, offsets },
+                types: self.cells.iter().map(|c| c.0).collect(),
+            },
+            data: Attributes { point, cell: Vec::new() },
+        };
+        to_bytes("solids", DataSet::inline(piece))
+    }
+}
+
+/// The slave side of a contact: its pressure nodes and the flat faces between them.
+pub struct ContactDisplay<const D: usize> {
+    pub points: Vec<Point<D>>,
+    pub displacement: Vec<Point<D>>,
+    pub pressure: Vec<f64>,
+    pub gap: Vec<f64>,
+    pub active: Vec<bool>,
+    pub faces: Vec<Vec<u32>>,
+}
+
+impl<const D: usize> ContactDisplay<D> {
+    pub fn new(contact: &Contact<D>, number: usize, state: &State<D>) -> Self {
+        let nodes = contact.nodes();
+        let count = nodes.len();
+        let mut display = ContactDisplay {
+            points: nodes.positions.clone(),
+            displacement: vec![Point::<D>::zeros(); count],
+            pressure: vec![0.0; count],
+            gap: vec![f64::NAN; count],
+            active: vec![false; count],
+            faces: Vec::new(),
+        };
+        for node in &state.contacts[number].nodes {
+            let k = node.number as usize;
+            (display.pressure[k], display.gap[k], display.active[k]) = (node.pressure, node.gap, node.active);
+        }
+        let mut trace = Vec::new();
+        for face in 0..nodes.face_count() {
+            let list = nodes.of_face(face);
+            for (s, (node, _)) in nodes.map(face).nodes().iter().zip(list) {
+                trace.clear();
+                contact.slave.trace(face, s, &mut trace);
+                display.displacement[*node as usize] =
+                    (trace.iter()).map(|(first, v)| Point::<D>::from_fn(|i, _| v * state.u[*first as usize + i])).sum();
+            }
+            let (shape, degree) = (nodes.map(face).shape(), nodes.map(face).order());
+            let parts: Vec<Vec<u32>> = match shape {
+                // Vertices first, then the middles of the edges.
+                CellShape::Triangle if degree == 2 => {
+                    vec![vec![0, 3, 5], vec![3, 1, 4], vec![5, 4, 2], vec![3, 4, 5]]
+                }
+                CellShape::Triangle => vec![vec![0, 1, 2]],
+                _ => lattice(shape, degree).1.into_iter().map(|p| p.1).collect(),
+            };
+            display
+                .faces
+                .extend(parts.into_iter().map(|p| p.iter().map(|&k| list[k as usize].0).collect::<Vec<u32>>()));
+        }
+        // Nodes without a gap of their own, such as those on a support, take that of a neighbour.
+        for face in &display.faces {
+            let known = face.iter().map(|&k| display.gap[k as usize]).find(|g| g.is_finite());
+            for &k in face {
+                if display.gap[k as usize].is_nan()
+                    && let Some(gap) = known
+                {
+                    display.gap[k as usize] = gap;
+                }
+            }
+        }
+        display
+    }
+
+    /// Zones of nodes in contact that faces connect: the nodes of each.
+    pub fn zones(&self) -> Vec<Vec<usize>> {
+        let mut zone: Vec<usize> = (0..self.points.len()).collect();
+        fn root(zone: &mut [usize], mut k: usize) -> usize {
+            while zone[k] != k {
+                zone[k] = zone[zone[k]];
+                k = zone[k];
+            }
+            k
+        }
+        for face in &self.faces {
+            let touching: Vec<usize> = face.iter().map(|&k| k as usize).filter(|&k| self.active[k]).collect();
+            for pair in touching.windows(2) {
+                let (a, b) = (root(&mut zone, pair[0]), root(&mut zone, pair[1]));
+                zone[a.max(b)] = a.min(b);
+            }
+        }
+        let mut lists: std::collections::BTreeMap<usize, Vec<usize>> = Default::default();
+        for k in (0..self.points.len()).filter(|&k| self.active[k]) {
+            lists.entry(root(&mut zone, k)).or_default().push(k);
+        }
+        lists.into_values().collect()
+    }
+
+    /// A VTP of the slave side with pressure, gap and status.
+    pub fn vtp(&self) -> Result<Vec<u8>, OutputError> {
+        let spatial = |list: &[Point<D>]| -> Vec<f64> {
+            list.iter().flat_map(|x| (0..3).map(|k| if k < D { x[k] } else { 0.0 })).collect()
+        };
+        let connectivity: Vec<u64> = self.faces.iter().flatten().map(|&k| u64::from(k)).collect();
+        let offsets: Vec<u64> = self
+            .faces
+            .iter()
+            .scan(0, |at, f| {
+                *at += f.len() as u64;
+                Some(*at)
+            })
+            .collect();
+        let topology = Some(VertexNumbers::XML { connectivity, offsets });
+        let scalar = |name: &str, values: Vec<f64>| Attribute::scalars(name, 1).with_data(values);
+        let finite = |v: &f64| if v.is_finite() { *v } else { 0.0 };
+        let point = vec![
+            Attribute::vectors("displacement").with_data(spatial(&self.displacement)),
+            scalar("contact_pressure", self.pressure.clone()),
+            scalar("gap", self.gap.iter().map(finite).collect()),
+            scalar("contact_status", self.active.iter().map(|a| f64::from(u8::from(*a))).collect()),
+        ];
+        let mut piece = PolyDataPiece {
+            points: spatial(&self.points).into(),
+            data: Attributes { point, cell: Vec::new() },
+            ..PolyDataPiece::default()
+        };
+        if D == 2 {
+            piece.lines = topology
+        } else {
+            piece.polys = topology
+        }
+        to_bytes("contact", DataSet::inline(piece))
+    }
+}

@@ -1,0 +1,334 @@
+//! Rigid bodies that solids press on: the gap to them and their outward normal, anywhere and at any time.
+
+use super::{Placed, Planner};
+use crate::case::statement::{Motion, Rigid, Shape, Side};
+use crate::case::units::{LENGTH, NONE};
+use crate::case::{CaseError, Values};
+use crate::expression::Scope;
+use crate::queries::geometry;
+use signorini_geometry::closest::{Query, closest, signed_gap};
+use signorini_geometry::frame::SurfaceFrame;
+use signorini_geometry::shape::{Axes, Shape as Geometry, Surface};
+use signorini_geometry::{Point, Vector};
+use std::f64::consts::{FRAC_PI_2, TAU};
+use std::sync::Arc;
+
+/// A rigid body and how it moves.
+#[derive(Clone)]
+pub struct RigidBody {
+    pub name: String,
+    form: Arc<Form>,
+    inside: bool,
+    /// Displacement along x, y, z as expressions of time; empty for a body at rest.
+    pub displacement: Vec<Placed>,
+}
+
+/// Shapes with closed forms, unbounded where they are; everything else through certified closest points.
+enum Form {
+    Plane {
+        point: Point<3>,
+        normal: Vector<3>,
+    },
+    Sphere {
+        center: Point<3>,
+        radius: f64,
+    },
+    Cylinder {
+        point: Point<3>,
+        axis: Vector<3>,
+        radius: f64,
+    },
+    Cone {
+        apex: Point<3>,
+        axis: Vector<3>,
+        sin: f64,
+        cos: f64,
+    },
+    Torus {
+        center: Point<3>,
+        axis: Vector<3>,
+        major: f64,
+        minor: f64,
+    },
+    /// Whether normals of the shape point out of the body.
+    General {
+        shape: Geometry,
+        outward: bool,
+    },
+}
+
+impl Form {
+    /// Distance, negative inside, and outward normal.
+    fn gap(&self, x: &Point<3>) -> (f64, Vector<3>) {
+        let unit = |v: Vector<3>, else_: Vector<3>| v.try_normalize(0.0).unwrap_or(else_);
+        match self {
+            Form::Plane { point, normal } => (normal.dot(&(x - point)), *normal),
+            Form::Sphere { center, radius } => {
+                let d = x - center;
+                (d.norm() - radius, unit(d, Vector::<3>::z()))
+            }
+            Form::Cylinder { point, axis, radius } => {
+                let d = x - point;
+                let across = d - axis * axis.dot(&d);
+                (across.norm() - radius, unit(across, any_normal(axis)))
+            }
+            Form::Cone { apex, axis, sin, cos } => {
+                let d = x - apex;
+                let along = axis.dot(&d);
+                let across = d - axis * along;
+                let e = unit(across, any_normal(axis));
+                let r = across.norm();
+                // Beyond the apex the apex itself is closest.
+                if along * cos + r * sin < 0.0 {
+                    return (d.norm(), unit(d, -axis));
+                }
+                (r * cos - along * sin, e * *cos - axis * *sin)
+            }
+            Form::Torus { center, axis, major, minor } => {
+                let d = x - center;
+                let across = d - axis * axis.dot(&d);
+                let e = unit(across, any_normal(axis));
+                let from_ring = d - e * *major;
+                (from_ring.norm() - minor, unit(from_ring, *axis))
+            }
+            Form::General { shape, outward } => {
+                let found = closest(&Geometry::Point(*x), shape, &Query::default()).closest;
+                let d = found.a.point - found.b.point;
+                let sign = if *outward { 1.0 } else { -1.0 };
+                let gap = sign * signed_gap(&found, shape).unwrap_or(found.distance);
+                let frame = || match (shape, found.b.parameters()) {
+                    (Geometry::Surface(s), &[u, v]) => SurfaceFrame::new(&s.jet(u, v)).map(|f| f.normal * sign),
+                    (Geometry::Mesh(m), _) => Some(m.normal_at(found.b.element, found.b.feature)),
+                    _ => None,
+                };
+                let scale = 1e-9 * shape.size();
+                let along = (gap.abs() > scale).then(|| d * (1.0 / gap));
+                (gap, along.or_else(frame).unwrap_or_else(|| unit(d, Vector::<3>::z())))
+            }
+        }
+    }
+}
+
+/// Some unit vector across another.
+fn any_normal(axis: &Vector<3>) -> Vector<3> {
+    let mut across = Vector::<3>::zeros();
+    across[axis.iamin()] = 1.0;
+    (across - axis * axis.dot(&across)).normalize()
+}
+
+impl RigidBody {
+    /// The displacement at a time.
+    pub fn displacement_at(&self, time: f64) -> [f64; 3] {
+        let at = |p: &Placed| p.expression.evaluate(&Scope { position: [f64::NAN; 3], time });
+        let mut out = [0.0; 3];
+        out.iter_mut().zip(&self.displacement).for_each(|(o, p)| *o = at(p));
+        out
+    }
+
+    /// The gap of a point and the outward normal at a time.
+    pub fn gap_at(&self, time: f64) -> impl Fn(&Point<3>) -> (f64, Vector<3>) + Sync + Send + 'static {
+        let moved = Vector::<3>::from(self.displacement_at(time));
+        let (form, inside) = (Arc::clone(&self.form), self.inside);
+        move |x| {
+            let (gap, normal) = form.gap(&(x - moved));
+            if inside { (-gap, -normal) } else { (gap, normal) }
+        }
+    }
+}
+
+/// Reads a rigid body; in the plane vectors have two components.
+pub(super) fn read<const D: usize>(planner: &Planner<'_>, name: &str, rigid: &Rigid) -> Result<RigidBody, CaseError> {
+    let document = planner.document;
+    let spatial = |values: &Values, dimension| -> Result<Vector<3>, CaseError> {
+        let list = planner.reader.numbers::<D>(values, dimension)?;
+        Ok(Vector::<3>::from_fn(|k, _| if k < D { list[k] } else { 0.0 }))
+    };
+    let direction = |values: &Values| -> Result<Vector<3>, CaseError> {
+        let v = spatial(values, NONE)?;
+        v.try_normalize(0.0).ok_or_else(|| document.error(values.span(), "the direction has no length"))
+    };
+    let only_in_space = |span: std::ops::Range<usize>, what: &str| {
+        if D == 3 {
+            return Ok(());
+        }
+        Err(document
+            .error(span, format!("a {what} is a shape in space"))
+            .help("in the plane: plane, sphere (a circle), cylinder, ellipsoid (an ellipse)"))
+    };
+    let whole = [[0.0, TAU], [-FRAC_PI_2, FRAC_PI_2]];
+    let wrong = |error: signorini_geometry::shape::ShapeError| document.error(rigid.shape.span(), error.to_string());
+    let form = match rigid.shape.get_ref() {
+        Shape::Plane(key) => Form::Plane { point: spatial(&key.point, LENGTH)?, normal: direction(&key.normal)? },
+        Shape::Sphere(key) => Form::Sphere {
+            center: spatial(&key.center, LENGTH)?,
+            radius: planner.reader.positive(&key.radius, LENGTH)?,
+        },
+        Shape::Cylinder(key) => {
+            let axis = match (&key.axis, D) {
+                (Some(axis), 3) => direction(axis)?,
+                (None, 2) => Vector::<3>::z(),
+                (Some(axis), _) => {
+                    return Err(
+                        document.error(axis.span(), "in the plane a cylinder stands across it: leave `axis` out")
+                    );
+                }
+                (None, _) => {
+                    return Err(document.error(rigid.shape.span(), "missing key `axis`").help("axis = [0, 1, 0]"));
+                }
+            };
+            Form::Cylinder {
+                point: spatial(&key.point, LENGTH)?,
+                axis,
+                radius: planner.reader.positive(&key.radius, LENGTH)?,
+            }
+        }
+        Shape::Cone(key) => {
+            only_in_space(rigid.shape.span(), "cone")?;
+            let angle = planner.reader.positive(&key.half_angle, NONE)?;
+            if angle >= FRAC_PI_2 {
+                return Err(document
+                    .error(key.half_angle.span(), format!("the half angle is {angle}"))
+                    .help("an angle in radians below pi/2"));
+            }
+            let (sin, cos) = angle.sin_cos();
+            Form::Cone { apex: spatial(&key.apex, LENGTH)?, axis: direction(&key.axis)?, sin, cos }
+        }
+        Shape::Torus(key) => {
+            only_in_space(rigid.shape.span(), "torus")?;
+            let major = planner.reader.positive(&key.major_radius, LENGTH)?;
+            let minor = planner.reader.positive(&key.minor_radius, LENGTH)?;
+            if minor >= major {
+                return Err(document.error(
+                    key.minor_radius.span(),
+                    format!("the minor radius {minor} is not smaller than the major radius {major}"),
+                ));
+            }
+            Form::Torus { center: spatial(&key.center, LENGTH)?, axis: direction(&key.axis)?, major, minor }
+        }
+        Shape::Ellipsoid(key) => {
+            let mut semi_axes = [0.0; 3];
+            for (o, v) in semi_axes.iter_mut().zip(planner.reader.numbers::<D>(&key.semi_axes, LENGTH)?) {
+                *o = v;
+            }
+            if D == 2 {
+                // Long across the plane, so that closest points stay in it.
+                semi_axes[2] = 10.0 * semi_axes[0].max(semi_axes[1]);
+            }
+            let axes = Axes::standard(spatial(&key.center, LENGTH)?);
+            let shape = Surface::ellipsoid(axes, semi_axes, whole, true).map_err(wrong)?;
+            Form::General { shape: shape.into(), outward: true }
+        }
+        Shape::Paraboloid(key) => {
+            only_in_space(rigid.shape.span(), "paraboloid")?;
+            let radius = planner.reader.positive(&key.radius, LENGTH)?;
+            let ez = direction(&key.axis)?;
+            let ex = any_normal(&ez);
+            let axes = Axes { origin: spatial(&key.apex, LENGTH)?, ex, ey: ez.cross(&ex), ez };
+            let range = [[-4.0 * radius, 4.0 * radius]; 2];
+            let shape = Surface::graph(axes, [0.5 / radius, 0.5 / radius, 0.0], range).map_err(wrong)?;
+            // The axis points into the body, so does the normal of the graph.
+            Form::General { shape: shape.into(), outward: false }
+        }
+        Shape::Stl(key) => {
+            only_in_space(rigid.shape.span(), "triangulated surface")?;
+            let path = planner.file(key.file.get_ref());
+            let mesh = crate::mesh_file::read(&path).map_err(|e| document.error(key.file.span(), e.to_string()))?;
+            if !mesh.quality().has_inside() {
+                return Err(document
+                    .error(key.file.span(), format!("the surface in `{}` is not closed", key.file.get_ref()))
+                    .help("a rigid body needs an inside: close the holes, or model it by another shape"));
+            }
+            Form::General { shape: mesh.into(), outward: true }
+        }
+        Shape::Nurbs(key) => {
+            only_in_space(rigid.shape.span(), "NURBS surface")?;
+            let path = planner.file(key.file.get_ref());
+            let text = std::fs::read_to_string(&path)
+                .map_err(|e| document.error(key.file.span(), format!("cannot read `{}`: {e}", path.display())))?;
+            let value: serde_json::Value = serde_json::from_str(&text)
+                .map_err(|e| document.error(key.file.span(), format!("`{}` is not JSON: {e}", path.display())))?;
+            let shape = geometry::shape("surface", &value, path.parent().unwrap_or(std::path::Path::new("")))
+                .map_err(|e| document.error(key.file.span(), format!("`{}`: {e}", path.display())))?;
+            if !matches!(shape, Geometry::Surface(_)) {
+                return Err(document.error(key.file.span(), format!("`{}` is not a surface", path.display())));
+            }
+            Form::General { shape, outward: true }
+        }
+        Shape::Height(_) | Shape::HeightMap(_) | Shape::LevelSet(_) => {
+            return Err(planner.unavailable(rigid.shape.span(), "this shape against a solid"));
+        }
+    };
+    let inside = rigid.side.as_ref().is_some_and(|s| *s.get_ref() == Side::Inside);
+    let mut displacement = Vec::new();
+    match rigid.motion.as_ref().map(|m| (m.get_ref(), m.span())) {
+        None | Some((Motion::Fixed(_), _)) => {}
+        Some((Motion::Free(_), span)) => return Err(planner.unavailable(span, "a rigid body that moves freely")),
+        Some((Motion::Prescribed(motion), _)) => {
+            for v in motion.rotation.iter().flat_map(|r| r.get_ref()) {
+                if planner.reader.expression(v, NONE, &["t"])?.constant() != Some(0.0) {
+                    return Err(planner.unavailable(v.span(), "rotation of a rigid body"));
+                }
+            }
+            if let Some(values) = &motion.displacement {
+                if values.get_ref().len() != D {
+                    let found = values.get_ref().len();
+                    return Err(document.error(values.span(), format!("expected {D} components, found {found}")));
+                }
+                for (k, v) in values.get_ref().iter().enumerate() {
+                    displacement.push(Placed {
+                        expression: planner.reader.expression(v, LENGTH, &["t"])?,
+                        span: v.span(),
+                        key: format!("bodies.{name}.rigid.motion.prescribed.displacement[{k}]"),
+                    });
+                }
+            }
+        }
+    }
+    Ok(RigidBody { name: name.to_string(), form: Arc::new(form), inside, displacement })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn normals_are_gradients_of_the_gap() {
+        let unit = |x: f64, y: f64, z: f64| Vector::<3>::new(x, y, z).normalize();
+        let axes = Axes::standard(Point::<3>::new(0.1, 0.2, -0.1));
+        let paraboloid = Surface::graph(axes, [0.5, 0.5, 0.0], [[-4.0, 4.0]; 2]).unwrap();
+        let forms = [
+            Form::Plane { point: Point::<3>::new(0.0, 0.0, 0.1), normal: unit(0.1, 0.2, 1.0) },
+            Form::Sphere { center: Point::<3>::new(0.1, 0.0, 0.3), radius: 0.4 },
+            Form::Cylinder { point: Point::<3>::zeros(), axis: unit(0.0, 1.0, 0.3), radius: 0.3 },
+            Form::Cone {
+                apex: Point::<3>::new(0.0, 0.0, -1.0),
+                axis: unit(0.1, 0.0, 1.0),
+                sin: 0.5,
+                cos: 0.75f64.sqrt(),
+            },
+            Form::Torus { center: Point::<3>::zeros(), axis: unit(0.0, 0.2, 1.0), major: 0.8, minor: 0.2 },
+            Form::General {
+                shape: Surface::ellipsoid(axes, [0.6, 0.4, 0.3], [[0.0, TAU], [-FRAC_PI_2, FRAC_PI_2]], true)
+                    .unwrap()
+                    .into(),
+                outward: true,
+            },
+            Form::General { shape: paraboloid.into(), outward: false },
+        ];
+        for (k, form) in forms.iter().enumerate() {
+            for x in
+                [Point::<3>::new(0.5, 0.4, 0.6), Point::<3>::new(0.45, -0.3, 0.2), Point::<3>::new(-0.3, 0.2, 0.05)]
+            {
+                let (_, normal) = form.gap(&x);
+                assert!((normal.norm() - 1.0).abs() < 1e-9, "form {k}");
+                for i in 0..3 {
+                    let h = 1e-6;
+                    let mut step = Vector::<3>::zeros();
+                    step[i] = h;
+                    let slope = (form.gap(&(x + step)).0 - form.gap(&(x - step)).0) / (2.0 * h);
+                    assert!((slope - normal[i]).abs() < 1e-7, "form {k} at {x:?}: {slope} and {}", normal[i]);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,612 @@
+//! From the statement to solids in contact.
+
+use super::rigid::{self, RigidBody};
+use super::{Placed, Planner};
+use crate::case::statement::{self, Body, Enforcement, Material, Method, SolidMesh, Space};
+use crate::case::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE};
+use crate::case::{CaseError, Document, Literal, OneOrMany, Value, Values, suggestion};
+use crate::expression::Scope;
+use signorini_fem::block::{block, graded};
+use signorini_fem::{Group, Mesh, Side};
+use signorini_geometry::Point;
+use signorini_solid::{Elastic, LoadKind, SupportKind};
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+
+/// A solid body.
+#[derive(Clone)]
+pub struct PlannedBody<const D: usize> {
+    pub name: String,
+    pub mesh: Mesh<D>,
+    pub degree: usize,
+    pub material: Elastic,
+}
+
+/// A support: where, what, and the expressions it prescribes.
+#[derive(Clone)]
+pub struct SolidSupport {
+    pub name: String,
+    pub body: usize,
+    pub group: Group,
+    pub kind: SupportKind,
+    /// By component, or along the normal.
+    pub values: Vec<Option<Placed>>,
+}
+
+/// A load: where, what, and its expressions.
+#[derive(Clone)]
+pub struct SolidLoad {
+    pub name: String,
+    pub body: usize,
+    pub group: Group,
+    pub kind: LoadKind,
+    pub values: Vec<Placed>,
+}
+
+/// The other side of a contact.
+#[derive(Clone)]
+pub enum Opposite {
+    Body { body: usize, sides: Vec<Side> },
+    Rigid(RigidBody),
+}
+
+/// Two sides that may touch.
+#[derive(Clone)]
+pub struct SolidContact {
+    pub name: String,
+    pub body: usize,
+    pub sides: Vec<Side>,
+    pub opposite: Opposite,
+}
+
+/// Solids, what holds and pushes them, and who may touch whom.
+pub struct SolidPlan<const D: usize> {
+    pub document: Document,
+    pub space: Space,
+    pub bodies: Vec<PlannedBody<D>>,
+    pub supports: Vec<SolidSupport>,
+    pub loads: Vec<SolidLoad>,
+    pub contacts: Vec<SolidContact>,
+    pub times: Vec<f64>,
+    pub probes: BTreeMap<String, (usize, Point<D>)>,
+    pub every: usize,
+    pub pictures: bool,
+    pub warnings: Vec<String>,
+}
+
+/// The value of an expression at a point and time, or an error that names it.
+pub fn evaluate<const D: usize>(
+    document: &Document,
+    placed: &Placed,
+    x: &Point<D>,
+    time: f64,
+) -> Result<f64, CaseError> {
+    let position = std::array::from_fn(|k| if k < D { x[k] } else { 0.0 });
+    let value = placed.expression.evaluate(&Scope { position, time });
+    if value.is_finite() {
+        return Ok(value);
+    }
+    let at: Vec<String> = x.iter().map(|v| format!("{v:.6}")).collect();
+    Err(document.error(
+        placed.span.clone(),
+        format!("`{}` is {value} at ({}), t = {time}: not a finite number", placed.key, at.join(", ")),
+    ))
+}
+
+impl Planner<'_> {
+    /// A file named in the case, beside the case.
+    pub(super) fn file(&self, name: &str) -> std::path::PathBuf {
+        let folder = std::path::Path::new(&self.document.name).parent();
+        folder.unwrap_or(std::path::Path::new("")).join(name)
+    }
+
+    fn coordinates<const D: usize>(&self) -> &'static [&'static str] {
+        if D == 2 { &["x", "y", "t"] } else { &["x", "y", "z", "t"] }
+    }
+
+    pub(super) fn solids<const D: usize>(&self) -> Result<SolidPlan<D>, CaseError> {
+        let document = self.document;
+        let case = &document.case;
+        let mut bodies = Vec::new();
+        let mut warnings = Vec::new();
+        for (name, body) in &case.bodies {
+            match body.get_ref() {
+                Body::Solid(key) => bodies.push(self.solid::<D>(name, key, body.span(), &mut warnings)?),
+                Body::Rigid(_) => {}
+                _ => {
+                    return Err(document
+                        .error(body.span(), format!("the body `{name}` cannot stand beside solids in this version"))
+                        .help("bodies here are `solid` or `rigid`"));
+                }
+            }
+        }
+        if bodies.is_empty() {
+            return Err(document
+                .error(case.space.span(), "there is no solid")
+                .help("add a body, for example  [bodies.block.solid]"));
+        }
+        let mut supports = self.solid_supports(&bodies)?;
+        let loads = self.solid_loads(&bodies)?;
+        let contacts = self.solid_contacts(&bodies)?;
+        if self.space == Space::Axisymmetric {
+            supports.extend(axis_supports(&bodies));
+        }
+        let mut probes = BTreeMap::new();
+        for (name, at) in &case.output.probes {
+            let x = self.reader.numbers::<D>(at, LENGTH)?;
+            let x = Point::<D>::from_fn(|k, _| x[k]);
+            // The vertex next to it.
+            let nearest = (bodies.iter().enumerate())
+                .map(|(k, b)| (b.mesh.nodes().iter().map(|n| (n - x).norm()).fold(f64::INFINITY, f64::min), k))
+                .min_by(|a, b| a.0.total_cmp(&b.0));
+            probes.insert(name.clone(), (nearest.map_or(0, |n| n.1), x));
+        }
+        let every = match &case.output.every {
+            None => 1,
+            Some(n) if *n.get_ref() >= 1 => *n.get_ref() as usize,
+            Some(n) => return Err(document.error(n.span(), "`every` must be at least 1")),
+        };
+        if contacts.is_empty() && case.bodies.len() > 1 {
+            warnings.push("no contact is stated: the bodies do not see each other (add [contacts.NAME])".into());
+        }
+        Ok(SolidPlan {
+            document: document.clone(),
+            space: self.space,
+            bodies,
+            supports,
+            loads,
+            contacts,
+            times: self.times()?,
+            probes,
+            every,
+            pictures: case.output.pictures.unwrap_or(true),
+            warnings,
+        })
+    }
+
+    fn solid<const D: usize>(
+        &self,
+        name: &str,
+        key: &statement::Solid,
+        span: Range<usize>,
+        warnings: &mut Vec<String>,
+    ) -> Result<PlannedBody<D>, CaseError> {
+        let document = self.document;
+        if let Some(strain) = &key.strain
+            && strain.get_ref() != "small"
+        {
+            return Err(match strain.get_ref().as_str() {
+                "finite" => self.unavailable(strain.span(), "finite strain"),
+                other => document.error(strain.span(), format!("unknown word `{other}`")).help("known here: small"),
+            });
+        }
+        let material = match key.material.get_ref() {
+            Material::LinearElastic(m) => {
+                let youngs_modulus = self.reader.positive(&m.youngs_modulus, PRESSURE)?;
+                let poissons_ratio = self.reader.number(&m.poissons_ratio, NONE)?;
+                if !(poissons_ratio > -1.0 && poissons_ratio < 0.5) {
+                    return Err(document
+                        .error(m.poissons_ratio.span(), format!("Poisson's ratio is {poissons_ratio}"))
+                        .help("above -1 and below 0.5; nearly incompressible is for example 0.4999"));
+                }
+                Elastic { youngs_modulus, poissons_ratio }
+            }
+            _ => return Err(self.unavailable(key.material.span(), "this material")),
+        };
+        let stated = match &key.degree {
+            None => None,
+            Some(d) if (1..=8).contains(d.get_ref()) => Some(*d.get_ref() as usize),
+            Some(d) => return Err(document.error(d.span(), format!("degree {} is not between 1 and 8", d.get_ref()))),
+        };
+        let mesh = match key.mesh.get_ref() {
+            SolidMesh::Box(b) => self.block::<D>(name, b, key.mesh.span(), stated.unwrap_or(1))?,
+            SolidMesh::Gmsh(g) => self.gmsh::<D>(g)?,
+            SolidMesh::Nurbs(_) => return Err(self.unavailable(key.mesh.span(), "a NURBS solid")),
+        };
+        mesh.check().map_err(|e| {
+            document
+                .error(key.mesh.span(), format!("the mesh of `{name}`: {e}"))
+                .help("every cell needs a positive volume; look at the place named, and at `map` where there is one")
+        })?;
+        let simplices = (0..mesh.cell_count()).any(|c| !mesh.shape(c).is_tensor());
+        let order = (0..mesh.cell_count()).map(|c| mesh.map(c).order()).max().unwrap_or(1);
+        let degree = stated.unwrap_or(order);
+        if simplices && degree > 2 {
+            let span = key.degree.as_ref().map_or(span, |d| d.span());
+            return Err(document
+                .error(span, format!("degree {degree} on a mesh with triangles, tetrahedra or wedges"))
+                .help("these have degree 1 or 2; quadrilaterals and hexahedra 1 to 8"));
+        }
+        let locks = |c: usize| signorini_solid::stiffness::locks(mesh.shape(c), degree, &material);
+        if (0..mesh.cell_count()).any(locks) {
+            warnings.push(format!(
+                "`{name}`: triangles or tetrahedra of degree 1 lock with Poisson's ratio {}: use degree 2",
+                material.poissons_ratio
+            ));
+        }
+        Ok(PlannedBody { name: name.to_string(), mesh, degree, material })
+    }
+
+    fn block<const D: usize>(
+        &self,
+        name: &str,
+        key: &statement::BoxKey,
+        span: Range<usize>,
+        degree: usize,
+    ) -> Result<Mesh<D>, CaseError> {
+        let document = self.document;
+        let count = |n: &toml::Spanned<i64>| match n.get_ref() {
+            1..=10_000 => Ok(*n.get_ref() as usize),
+            other => Err(document.error(n.span(), format!("{other} cells: give a number from 1 to 10000"))),
+        };
+        let mut axes: [Vec<f64>; D] = std::array::from_fn(|_| Vec::new());
+        match (&key.min, &key.max, &key.cells, &key.axes) {
+            (Some(min), Some(max), Some(cells), None) => {
+                let (low, high) = (self.reader.numbers::<D>(min, LENGTH)?, self.reader.numbers::<D>(max, LENGTH)?);
+                if cells.get_ref().len() != D {
+                    let found = cells.get_ref().len();
+                    return Err(document.error(cells.span(), format!("expected {D} numbers of cells, found {found}")));
+                }
+                for k in 0..D {
+                    if low[k] >= high[k] {
+                        return Err(
+                            document.error(max.span(), format!("`max` {:?} does not lie beyond `min` {:?}", high, low))
+                        );
+                    }
+                    axes[k] = vec![low[k]];
+                    axes[k].extend(graded(low[k], high[k], count(&cells.get_ref()[k])?, 1.0));
+                }
+            }
+            (None, None, None, Some(list)) => {
+                if list.get_ref().len() != D {
+                    let found = list.get_ref().len();
+                    return Err(document.error(list.span(), format!("expected {D} axes, found {found}")));
+                }
+                for (k, axis) in list.get_ref().iter().enumerate() {
+                    axes[k] = self.axis(axis, &count)?;
+                }
+            }
+            _ => {
+                return Err(document.error(span, format!("the box of `{name}` is not said, or said twice")).help(
+                    "either min, max and cells, or axes = [{ from = 0, to = [1, 4], cells = [8, 6], growth = [1, 1.2] }, …]",
+                ));
+            }
+        }
+        let cells: usize = axes.iter().map(|a| a.len() - 1).product();
+        if cells > 20_000_000 {
+            return Err(document.error(span, format!("{cells} cells are more than this program can take")));
+        }
+        let Some(map) = &key.map else { return Ok(block::<D>(&axes, 1, |x| x)) };
+        let list = map.get_ref();
+        if list.len() != D {
+            return Err(document.error(map.span(), format!("expected {D} expressions, found {}", list.len())));
+        }
+        let variables: &[&'static str] = if D == 2 { &["x", "y"] } else { &["x", "y", "z"] };
+        let mut placed = Vec::new();
+        for (k, v) in list.iter().enumerate() {
+            let expression = self.reader.expression(v, LENGTH, variables)?;
+            placed.push(Placed { expression, span: v.span(), key: format!("bodies.{name}.solid.mesh.box.map[{k}]") });
+        }
+        let mut failure: Option<CaseError> = None;
+        // The geometry is as curved as the displacement.
+        let mesh = block::<D>(&axes, degree, |x| {
+            let mut y = Point::<D>::zeros();
+            for k in 0..D {
+                match evaluate(document, &placed[k], &x, 0.0) {
+                    Ok(v) => y[k] = v,
+                    Err(error) => {
+                        failure.get_or_insert(error);
+                    }
+                }
+            }
+            y
+        });
+        match failure {
+            Some(error) => Err(error),
+            None => Ok(mesh),
+        }
+    }
+
+    fn axis(
+        &self,
+        axis: &toml::Spanned<statement::AxisKey>,
+        count: &dyn Fn(&toml::Spanned<i64>) -> Result<usize, CaseError>,
+    ) -> Result<Vec<f64>, CaseError> {
+        let document = self.document;
+        let key = axis.get_ref();
+        let mut from = self.reader.number(&key.from, LENGTH)?;
+        let (ends, cells) = (key.to.get_ref(), key.cells.get_ref());
+        let growth = key.growth.as_ref().map(|g| g.get_ref().clone()).unwrap_or(vec![1.0; ends.len()]);
+        if ends.is_empty() || ends.len() != cells.len() || ends.len() != growth.len() {
+            return Err(document.error(
+                axis.span(),
+                format!("`to` has {} entries, `cells` {}, `growth` {}", ends.len(), cells.len(), growth.len()),
+            ));
+        }
+        let mut out = vec![from];
+        for ((end, n), g) in ends.iter().zip(cells).zip(growth) {
+            let to = self.reader.number(end, LENGTH)?;
+            if to <= from {
+                return Err(document.error(end.span(), format!("the stretch ends at {to}, not after {from}")));
+            }
+            if !(g.is_finite() && (1e-3..=1e3).contains(&g)) {
+                return Err(document.error(axis.span(), format!("a growth of {g}: give a number from 0.001 to 1000")));
+            }
+            out.extend(graded(from, to, count(n)?, g));
+            from = to;
+        }
+        Ok(out)
+    }
+
+    /// Looks up `BODY` or `BODY:GROUP`.
+    fn solid_place<const D: usize>(
+        &self,
+        on: &toml::Spanned<String>,
+        bodies: &[PlannedBody<D>],
+    ) -> Result<(usize, Option<Group>), CaseError> {
+        let (name, group) = match on.get_ref().split_once(':') {
+            Some((name, group)) => (name, Some(group)),
+            None => (on.get_ref().as_str(), None),
+        };
+        let all: Vec<&str> = self.document.case.bodies.keys().map(String::as_str).collect();
+        let Some(body) = bodies.iter().position(|b| b.name == name) else {
+            if all.contains(&name) {
+                return Err(self.document.error(on.span(), format!("`{name}` is rigid: its motion is stated with it")));
+            }
+            return Err(self
+                .document
+                .error(on.span(), format!("there is no body `{name}`"))
+                .help(suggestion(name, &all)));
+        };
+        let Some(group) = group else { return Ok((body, None)) };
+        let groups = bodies[body].mesh.groups();
+        match groups.get(group) {
+            Some(found) => Ok((body, Some(found.clone()))),
+            None => {
+                let names: Vec<&str> = groups.keys().map(String::as_str).collect();
+                Err(self
+                    .document
+                    .error(on.span(), format!("`{name}` has no group `{group}`"))
+                    .help(suggestion(group, &names)))
+            }
+        }
+    }
+
+    fn solid_value<const D: usize>(&self, key: String, v: &Value, dimension: [i32; 3]) -> Result<Placed, CaseError> {
+        let expression = self.reader.expression(v, dimension, self.coordinates::<D>())?;
+        Ok(Placed { expression, span: v.span(), key })
+    }
+
+    fn vector<const D: usize>(&self, key: &str, list: &Values, dimension: [i32; 3]) -> Result<Vec<Placed>, CaseError> {
+        let values = list.get_ref();
+        if values.len() != D {
+            return Err(self.document.error(list.span(), format!("expected {D} components, found {}", values.len())));
+        }
+        values.iter().enumerate().map(|(k, v)| self.solid_value::<D>(format!("{key}[{k}]"), v, dimension)).collect()
+    }
+
+    fn solid_supports<const D: usize>(&self, bodies: &[PlannedBody<D>]) -> Result<Vec<SolidSupport>, CaseError> {
+        let document = self.document;
+        let mut out = Vec::new();
+        for (name, support) in &document.case.supports {
+            let key = support.get_ref();
+            let (body, group) = self.solid_place(&key.on, bodies)?;
+            let group = group.unwrap_or_else(|| Group {
+                cells: (0..bodies[body].mesh.cell_count() as u32).collect(),
+                ..Group::default()
+            });
+            let mut add =
+                |kind, values| out.push(SolidSupport { name: name.clone(), body, group: group.clone(), kind, values });
+            let mut said = false;
+            let mut prescribed = vec![false; D];
+            if let Some(displacement) = &key.displacement {
+                said = true;
+                let values = match displacement.get_ref() {
+                    OneOrMany::Many(values) if values.len() == D => values,
+                    OneOrMany::Many(values) => {
+                        return Err(document
+                            .error(displacement.span(), format!("expected {D} components, found {}", values.len())));
+                    }
+                    OneOrMany::One(_) => {
+                        return Err(document
+                            .error(displacement.span(), "the displacement of a solid is a vector")
+                            .help("for example  displacement = [0, \"free\", 0]"));
+                    }
+                };
+                let mut list = Vec::new();
+                for (k, v) in values.iter().enumerate() {
+                    let free = matches!(v.get_ref(), Literal::Text(text) if text.trim() == "free");
+                    prescribed[k] = !free;
+                    let path = format!("supports.{name}.displacement[{k}]");
+                    list.push(if free { None } else { Some(self.solid_value::<D>(path, v, LENGTH)?) });
+                }
+                if prescribed.iter().any(|p| *p) {
+                    add(SupportKind::Components(prescribed.clone()), list);
+                }
+            }
+            if let Some(normal) = &key.normal {
+                said = true;
+                if group.sides.is_empty() {
+                    return Err(document.error(key.on.span(), "`normal` needs a part of the boundary"));
+                }
+                let value = self.solid_value::<D>(format!("supports.{name}.normal"), normal, LENGTH)?;
+                add(SupportKind::Normal, vec![Some(value)]);
+            }
+            if key.uniform.as_ref().is_some_and(|u| *u.get_ref()) {
+                said = true;
+                add(SupportKind::Uniform(prescribed.iter().map(|p| !p).collect()), Vec::new());
+            }
+            if let Some(spring) = &key.spring {
+                said = true;
+                let stiffness = self.reader.numbers::<D>(spring, [-3, 1, 0])?;
+                if let Some(k) = stiffness.iter().position(|s| *s < 0.0) {
+                    return Err(document.error(spring.span(), format!("component {k} is negative: {}", stiffness[k])));
+                }
+                add(SupportKind::Spring(stiffness.to_vec()), Vec::new());
+            }
+            if !said {
+                return Err(document
+                    .error(support.span(), format!("the support `{name}` prescribes nothing"))
+                    .help("add  displacement = [0, 0]  or  normal = 0  or  uniform = true  or  spring = […]"));
+            }
+        }
+        Ok(out)
+    }
+
+    fn solid_loads<const D: usize>(&self, bodies: &[PlannedBody<D>]) -> Result<Vec<SolidLoad>, CaseError> {
+        let document = self.document;
+        let force: [i32; 3] = if self.space == Space::PlaneStrain || self.space == Space::PlaneStress {
+            FORCE_PER_LENGTH
+        } else {
+            [0, 1, 0]
+        };
+        let mut out = Vec::new();
+        for (name, load) in &document.case.loads {
+            let key = load.get_ref();
+            let (body, group) = self.solid_place(&key.on, bodies)?;
+            if let Some(normal) = &key.normal {
+                return Err(document
+                    .error(normal.span(), "`normal` is the load of a membrane")
+                    .help("solids take pressure (positive pushes inwards), traction, force, body_force"));
+            }
+            let path = |what: &str| format!("loads.{name}.{what}");
+            let mut list: Vec<(LoadKind, Vec<Placed>)> = Vec::new();
+            if let Some(v) = &key.pressure {
+                list.push((LoadKind::Pressure, vec![self.solid_value::<D>(path("pressure"), v, PRESSURE)?]));
+            }
+            if let Some(v) = &key.traction {
+                list.push((LoadKind::Traction, self.vector::<D>(&path("traction"), v, PRESSURE)?));
+            }
+            if let Some(v) = &key.force {
+                list.push((LoadKind::Force, self.vector::<D>(&path("force"), v, force)?));
+            }
+            if let Some(v) = &key.body_force {
+                list.push((LoadKind::BodyForce, self.vector::<D>(&path("body_force"), v, [-3, 1, 0])?));
+            }
+            let [(kind, values)] = <[_; 1]>::try_from(list).map_err(|list| {
+                document
+                    .error(load.span(), format!("the load `{name}` says {} things", list.len()))
+                    .help("exactly one of pressure, traction, force, body_force")
+            })?;
+            let group =
+                match (group, kind) {
+                    (Some(group), LoadKind::BodyForce) if !group.cells.is_empty() => group,
+                    (None, LoadKind::BodyForce) => {
+                        Group { cells: (0..bodies[body].mesh.cell_count() as u32).collect(), ..Group::default() }
+                    }
+                    (Some(group), _) if kind != LoadKind::BodyForce && !group.sides.is_empty() => group,
+                    _ => {
+                        let wanted = if kind == LoadKind::BodyForce { "cells" } else { "a part of the boundary" };
+                        let names: Vec<&str> = bodies[body].mesh.groups().keys().map(String::as_str).collect();
+                        return Err(document
+                            .error(key.on.span(), format!("this load acts on {wanted}"))
+                            .help(format!("`{}` has the groups {}", bodies[body].name, names.join(", "))));
+                    }
+                };
+            out.push(SolidLoad { name: name.clone(), body, group, kind, values });
+        }
+        Ok(out)
+    }
+
+    fn solid_contacts<const D: usize>(&self, bodies: &[PlannedBody<D>]) -> Result<Vec<SolidContact>, CaseError> {
+        let document = self.document;
+        let mut out = Vec::new();
+        for (name, contact) in &document.case.contacts {
+            let key = contact.get_ref();
+            if let Some(within) = &key.within {
+                return Err(self.unavailable(within.span(), "contact of a body with itself"));
+            }
+            if let Some(friction) = &key.friction {
+                return Err(self.unavailable(friction.span(), "friction of solids"));
+            }
+            if let Some(adhesion) = &key.adhesion
+                && self.reader.number(&adhesion.energy, [-1, 1, 0])? != 0.0
+            {
+                return Err(self.unavailable(adhesion.energy.span(), "adhesion of solids"));
+            }
+            match key.method.as_ref().map(|m| (m.get_ref(), m.span())) {
+                None => {}
+                Some((Method::Mortar(k), _)) => match k.enforcement.as_ref().map(|e| (e.get_ref(), e.span())) {
+                    None | Some((Enforcement::Multiplier(_), _)) => {}
+                    Some((_, span)) => return Err(self.unavailable(span, "this enforcement")),
+                },
+                Some((Method::GaussPoint(_) | Method::Node(_), span)) => {
+                    return Err(self.unavailable(span, "this method").help("method.mortar = {}"));
+                }
+                Some((_, span)) => {
+                    return Err(document
+                        .error(span, "this method is for membranes")
+                        .help("solids have  method.mortar = {}"));
+                }
+            }
+            let Some(pair) = key.between.as_ref().filter(|p| p.get_ref().len() == 2 && key.all.is_none()) else {
+                return Err(document
+                    .error(contact.span(), "who touches whom is not said")
+                    .help("between = [\"BODY:GROUP\", \"BODY:GROUP\"], the slave first; a rigid body comes second"));
+            };
+            let [first, second] = [&pair.get_ref()[0], &pair.get_ref()[1]];
+            let (body, group) = self.solid_place(first, bodies)?;
+            let sides = contact_sides(&bodies[body].mesh, group);
+            let rigid = match document.case.bodies.get(second.get_ref()).map(|b| b.get_ref()) {
+                Some(Body::Rigid(rigid)) => Some(rigid::read::<D>(self, second.get_ref(), rigid)?),
+                _ => None,
+            };
+            let opposite = match rigid {
+                Some(rigid) => Opposite::Rigid(rigid),
+                None => {
+                    let (other, group) = self.solid_place(second, bodies)?;
+                    let sides = contact_sides(&bodies[other].mesh, group);
+                    if sides.is_empty() {
+                        return Err(document.error(second.span(), "there are no sides of cells in this group"));
+                    }
+                    Opposite::Body { body: other, sides }
+                }
+            };
+            if sides.is_empty() {
+                return Err(document.error(first.span(), "there are no sides of cells in this group"));
+            }
+            out.push(SolidContact { name: name.clone(), body, sides, opposite });
+        }
+        Ok(out)
+    }
+}
+
+fn contact_sides<const D: usize>(mesh: &Mesh<D>, group: Option<Group>) -> Vec<Side> {
+    group.map_or_else(|| mesh.boundary(), |g| g.sides)
+}
+
+/// On the axis the radial displacement vanishes.
+fn axis_supports<const D: usize>(bodies: &[PlannedBody<D>]) -> Vec<SolidSupport> {
+    let mut out = Vec::new();
+    for (number, body) in bodies.iter().enumerate() {
+        let size = body.mesh.nodes().iter().map(|x| x.norm()).fold(0.0, f64::max);
+        let on_axis = |v: u32| body.mesh.nodes()[v as usize][0].abs() <= 1e-12 * size;
+        let sides: Vec<Side> = (body.mesh.boundary().into_iter())
+            .filter(|s| body.mesh.side_vertices(*s).into_iter().all(on_axis))
+            .collect();
+        let vertices: BTreeSet<u32> =
+            (0..body.mesh.cell_count()).flat_map(|c| body.mesh.vertices(c)).filter(|v| on_axis(*v)).collect();
+        if !vertices.is_empty() {
+            let zero =
+                Placed { expression: crate::expression::Expression::number(0.0), span: 0..0, key: "axis".into() };
+            out.push(SolidSupport {
+                name: "axis".into(),
+                body: number,
+                group: Group { cells: Vec::new(), sides, vertices: vertices.into_iter().collect() },
+                kind: SupportKind::Components((0..D).map(|k| k == 0).collect()),
+                values: (0..D).map(|k| (k == 0).then(|| zero.clone())).collect(),
+            });
+        }
+    }
+    out
+}
+
+impl Planner<'_> {
+    fn gmsh<const D: usize>(&self, key: &statement::GmshKey) -> Result<Mesh<D>, CaseError> {
+        let path = self.file(key.file.get_ref());
+        let fail = |message: String| self.document.error(key.file.span(), format!("`{}`: {message}", path.display()));
+        let bytes = std::fs::read(&path).map_err(|e| fail(format!("cannot be read: {e}")))?;
+        let file = signorini_fem::gmsh::GmshFile::parse(&bytes).map_err(|e| fail(e.to_string()))?;
+        file.mesh::<D>(key.group.as_deref()).map_err(|e| fail(e.to_string()))
+    }
+}

@@ -1,0 +1,438 @@
+//! Solids in contact: from the plan to results.
+
+use super::{Ending, Logged, Outcome, RunError, SCHEMA, environment};
+use crate::case::CaseError;
+use crate::case::statement::Space as Stated;
+use crate::output::solid_fields::{ContactDisplay, SolidDisplay, SolidFields};
+use crate::output::{Folder, OutputError, solid_pictures, tables, vtk};
+use crate::plan::solid::{Opposite, SolidPlan, evaluate};
+use serde_json::{Value, json};
+use signorini_geometry::Point;
+use signorini_solid::loads::{forces, resultant};
+use signorini_solid::{
+    Bodies, Circumstances, Contact, Load, LoadKind, Master, Model, RigidGap, Space, State, StepError, Support,
+    SupportKind,
+};
+use signorini_solve::{Iteration, Progress};
+use std::cell::RefCell;
+use std::path::Path;
+
+struct Runner<const D: usize> {
+    plan: SolidPlan<D>,
+    folder: Folder,
+    model: Model<D>,
+    steps: Vec<Value>,
+    warnings: Vec<String>,
+    frames: Vec<(f64, String)>,
+}
+
+/// A failure in words: the reason for the summary, what happened and what to try.
+struct Failure {
+    reason: &'static str,
+    text: String,
+}
+
+/// Runs a plan and writes its results.
+pub fn run<const D: usize>(
+    plan: SolidPlan<D>,
+    folder: &Path,
+    start: std::time::Instant,
+    progress: &mut dyn Progress,
+) -> Result<Outcome, RunError> {
+    // Everything that can be checked is checked before the folder is touched.
+    let model = model(&plan)?;
+    let runner = Runner {
+        warnings: plan.warnings.clone(),
+        plan,
+        model,
+        folder: Folder::create(folder)?,
+        steps: vec![],
+        frames: vec![],
+    };
+    runner.folder.write("case.toml", runner.plan.document.text.as_bytes())?;
+    runner.run(start, progress)
+}
+
+/// Bodies, supports and contacts of a plan.
+pub fn model<const D: usize>(plan: &SolidPlan<D>) -> Result<Model<D>, CaseError> {
+    let space = match plan.space {
+        Stated::PlaneStrain => Space::PlaneStrain,
+        Stated::PlaneStress => Space::PlaneStress,
+        Stated::Axisymmetric => Space::Axisymmetric,
+        _ => Space::Solid,
+    };
+    let mut bodies = Bodies::<D>::new(space);
+    for b in &plan.bodies {
+        bodies.add(&b.name, b.mesh.clone(), b.degree, b.material);
+    }
+    let supports = (plan.supports.iter())
+        .map(|s| Support { name: s.name.clone(), body: s.body, group: s.group.clone(), kind: s.kind.clone() })
+        .collect();
+    let contacts = (plan.contacts.iter())
+        .map(|c| {
+            let slave = bodies.surface(c.body, c.sides.clone());
+            let master = match &c.opposite {
+                Opposite::Body { body, sides } => Master::Surface(bodies.surface(*body, sides.clone())),
+                Opposite::Rigid(_) => Master::Rigid,
+            };
+            Contact::new(&c.name, slave, master)
+        })
+        .collect();
+    Model::new(bodies, supports, contacts).map_err(|error| {
+        let place = plan.document.case.space.span();
+        let place = match &error {
+            StepError::Support(signorini_solid::SupportError::NotFlat { support, .. }) => {
+                plan.document.case.supports.get(support).map_or(place, |s| s.span())
+            }
+            _ => place,
+        };
+        plan.document.error(place, error.to_string())
+    })
+}
+
+impl<const D: usize> Runner<D> {
+    fn run(mut self, start: std::time::Instant, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
+        let times = self.plan.times.clone();
+        let display = SolidDisplay::new(&self.model);
+        let mut ending = Ending::Converged;
+        let mut failure = None;
+        let mut last = None;
+        for (index, &time) in times.iter().enumerate() {
+            progress.step(index, times.len(), time);
+            let folder = self.folder.clone();
+            let mut logged = Logged { folder: &folder, inner: progress };
+            let state = match self.solve(index, time, &mut logged) {
+                Ok(Ok(state)) => state,
+                Ok(Err(failed)) => {
+                    ending = if failed.reason == "interrupted" { Ending::Interrupted } else { Ending::NotConverged };
+                    self.steps.push(json!({
+                        "index": index, "time": time, "converged": false, "reason": failed.reason,
+                        "iterations": 0, "residual_history": [], "contacts": {}, "support_forces": {},
+                        "load_forces": {}, "probes": {},
+                    }));
+                    failure = Some(failed);
+                    break;
+                }
+                Err(error) => {
+                    let failed = Failure { reason: "input", text: "a value became invalid along the way".into() };
+                    self.finish(Ending::NotConverged, Some(&failed), start, &display, last.as_ref())?;
+                    return Err(error.into());
+                }
+            };
+            let fields = display.fields(&self.model, &state.u);
+            let contacts: Vec<ContactDisplay<D>> =
+                self.model.contacts.iter().enumerate().map(|(k, c)| ContactDisplay::new(c, k, &state)).collect();
+            self.record(index, time, &state, &contacts, &display, &fields);
+            if index % self.plan.every == self.plan.every - 1 || index + 1 == times.len() {
+                self.write_fields(index, time, &display, &fields, &contacts)?;
+            }
+            last = Some((time, fields, contacts));
+        }
+        let summary = self.finish(ending, failure.as_ref(), start, &display, last.as_ref())?;
+        Ok(Outcome { summary, ending })
+    }
+
+    fn solve(
+        &mut self,
+        index: usize,
+        time: f64,
+        progress: &mut dyn Progress,
+    ) -> Result<Result<State<D>, Failure>, CaseError> {
+        let document = &self.plan.document;
+        let wrong: RefCell<Option<CaseError>> = RefCell::new(None);
+        let value = |placed: &crate::plan::Placed, x: &Point<D>| match evaluate(document, placed, x, time) {
+            Ok(v) => v,
+            Err(error) => {
+                wrong.borrow_mut().get_or_insert(error);
+                0.0
+            }
+        };
+        let mut load = vec![0.0; self.model.bodies.unknowns()];
+        for l in &self.plan.loads {
+            for (sum, f) in load.iter_mut().zip(self.load(l, &value)) {
+                *sum += f;
+            }
+        }
+        let supports = &self.plan.supports;
+        let displacement = |number: usize, x: &Point<D>| {
+            let support = &supports[number];
+            match support.kind {
+                SupportKind::Normal => {
+                    let along = support.values[0].as_ref().map_or(0.0, |p| value(p, x));
+                    Point::<D>::from_fn(|k, _| if k == 0 { along } else { 0.0 })
+                }
+                _ => Point::<D>::from_fn(|k, _| {
+                    support.values.get(k).and_then(|p| p.as_ref()).map_or(0.0, |p| value(p, x))
+                }),
+            }
+        };
+        let rigid: Vec<Option<RigidGap<D>>> = (self.plan.contacts.iter())
+            .map(|c| match &c.opposite {
+                Opposite::Rigid(body) => Some(flat_gap::<D>(body.gap_at(time))),
+                Opposite::Body { .. } => None,
+            })
+            .collect();
+        let mut stopped = false;
+        let mut report = |iteration: usize, changed: usize| {
+            progress.iteration(&Iteration {
+                step: index,
+                time,
+                iteration,
+                residual: changed as f64,
+                action: "active set",
+                figures: &[("nodes_changed", changed as f64)],
+            });
+            stopped = progress.interrupted();
+            !stopped
+        };
+        let now = Circumstances { displacement: &displacement, load, rigid };
+        let solved = self.model.solve(&now, &mut report);
+        if let Some(error) = wrong.borrow_mut().take() {
+            return Err(error);
+        }
+        Ok(solved.map_err(|error| failure(&error)))
+    }
+
+    fn load(
+        &self,
+        l: &crate::plan::solid::SolidLoad,
+        value: &dyn Fn(&crate::plan::Placed, &Point<D>) -> f64,
+    ) -> Vec<f64> {
+        let load = Load { name: l.name.clone(), body: l.body, group: l.group.clone(), kind: l.kind };
+        forces(&self.model.bodies, &load, &|x| {
+            Point::<D>::from_fn(|k, _| {
+                let k = if l.kind == LoadKind::Pressure { 0 } else { k };
+                l.values.get(k).map_or(0.0, |p| value(p, x))
+            })
+        })
+    }
+
+    fn record(
+        &mut self,
+        index: usize,
+        time: f64,
+        state: &State<D>,
+        contacts: &[ContactDisplay<D>],
+        display: &SolidDisplay<D>,
+        fields: &SolidFields<D>,
+    ) {
+        let vector = |x: &Point<D>| -> Vec<f64> { (0..3).map(|k| if k < D { x[k] } else { 0.0 }).collect() };
+        let mut step = json!({
+            "index": index, "time": time, "converged": true, "reason": "converged",
+            "iterations": state.iterations,
+            "residual_history": state.changes.iter().map(|c| *c as f64).collect::<Vec<f64>>(),
+            "energy": state.energy,
+            "equilibrium_residual": state.imbalance,
+            "support_forces": {}, "load_forces": {}, "contacts": {}, "probes": {},
+        });
+        // A support of several kinds is one for its reader.
+        let mut supports: std::collections::BTreeMap<&str, Point<D>> = Default::default();
+        let mut seen = std::collections::HashSet::new();
+        for (support, force) in self.plan.supports.iter().zip(&state.support_forces) {
+            if support.name == "axis" || !seen.insert((support.name.as_str(), support.body)) {
+                continue;
+            }
+            *supports.entry(&support.name).or_insert_with(Point::<D>::zeros) += force;
+        }
+        for (name, force) in supports {
+            step["support_forces"][name] = json!(vector(&force));
+        }
+        let value = |p: &crate::plan::Placed, x: &Point<D>| evaluate(&self.plan.document, p, x, time).unwrap_or(0.0);
+        for l in &self.plan.loads {
+            let total = resultant(&self.model.bodies, &self.load(l, &value));
+            step["load_forces"][&l.name] = json!(vector(&total));
+        }
+        for ((contact, result), shown) in self.plan.contacts.iter().zip(&state.contacts).zip(contacts) {
+            let weight: std::collections::HashMap<u32, f64> =
+                result.nodes.iter().map(|n| (n.number, n.weight)).collect();
+            let components: Vec<Value> = (shown.zones().iter())
+                .map(|zone| {
+                    let of = |k: usize| weight.get(&(k as u32)).copied().unwrap_or(0.0);
+                    let area: f64 = zone.iter().map(|&k| of(k)).sum();
+                    let centroid = zone.iter().map(|&k| shown.points[k] * of(k)).sum::<Point<D>>() / area;
+                    let force: f64 = zone.iter().map(|&k| of(k) * shown.pressure[k]).sum();
+                    json!({"area": area, "force": force, "centroid": vector(&centroid)})
+                })
+                .collect();
+            let open = || result.nodes.iter().filter(|n| !n.active);
+            step["contacts"][&contact.name] = json!({
+                "force": vector(&result.force),
+                "area": result.area,
+                "zones": components.len(),
+                "components": components,
+                "max_penetration": result.nodes.iter().map(|n| -n.gap).fold(0.0, f64::max),
+                "min_gap_outside": open().map(|n| n.gap).reduce(f64::min),
+                "max_pressure": result.nodes.iter().map(|n| n.pressure).fold(0.0, f64::max),
+                "min_pressure": result.nodes.iter().filter(|n| n.active).map(|n| n.pressure).reduce(f64::min),
+                "radius": radius(self.plan.space, result.area, components_len(shown)),
+            });
+        }
+        for (name, (_, x)) in &self.plan.probes {
+            let nearest = (0..display.points.len())
+                .min_by(|&a, &b| (display.points[a] - x).norm().total_cmp(&(display.points[b] - x).norm()));
+            if let Some(k) = nearest {
+                step["probes"][name] = json!({
+                    "at": vector(&display.points[k]),
+                    "displacement": vector(&fields.displacement[k]),
+                    "von_mises": fields.von_mises[k],
+                });
+            }
+        }
+        for (contact, result) in self.plan.contacts.iter().zip(&state.contacts) {
+            let message = if result.nodes.is_empty() {
+                format!(
+                    "contact `{}`: no part of the slave faces the master: do the normals look at each other?",
+                    contact.name
+                )
+            } else if result.area == 0.0 {
+                let gap = result.nodes.iter().map(|n| n.gap).fold(f64::INFINITY, f64::min);
+                format!("contact `{}`: the bodies do not touch at t = {time} (smallest gap {gap:.6e})", contact.name)
+            } else {
+                continue;
+            };
+            self.warnings.push(message);
+        }
+        self.steps.push(step);
+    }
+
+    fn write_fields(
+        &mut self,
+        index: usize,
+        time: f64,
+        display: &SolidDisplay<D>,
+        fields: &SolidFields<D>,
+        contacts: &[ContactDisplay<D>],
+    ) -> Result<(), OutputError> {
+        let name = format!("{index:05}");
+        self.folder.write(&format!("fields/fields_{name}.vtu"), &display.vtu(fields)?)?;
+        for (contact, shown) in self.plan.contacts.iter().zip(contacts) {
+            self.folder.write(&format!("contact/{}_{name}.vtp", contact.name), &shown.vtp()?)?;
+            self.folder.write(&format!("contact/{}_{name}.csv", contact.name), tables::pressure(shown).as_bytes())?;
+        }
+        self.frames.push((time, name));
+        let list: Vec<(f64, String)> =
+            self.frames.iter().map(|(t, n)| (*t, format!("fields/fields_{n}.vtu"))).collect();
+        self.folder.write("fields.pvd", vtk::collection(&list).as_bytes())?;
+        let list: Vec<(f64, String)> = (self.frames.iter())
+            .flat_map(|(t, n)| self.plan.contacts.iter().map(move |c| (*t, format!("contact/{}_{n}.vtp", c.name))))
+            .collect();
+        self.folder.write("contact.pvd", vtk::collection(&list).as_bytes())
+    }
+
+    fn finish(
+        &self,
+        ending: Ending,
+        failure: Option<&Failure>,
+        start: std::time::Instant,
+        display: &SolidDisplay<D>,
+        last: Option<&(f64, SolidFields<D>, Vec<ContactDisplay<D>>)>,
+    ) -> Result<Value, OutputError> {
+        self.folder.write("history.csv", tables::solid_history(&self.steps, &self.plan).as_bytes())?;
+        if let (true, Some((time, fields, contacts))) = (self.plan.pictures, last) {
+            solid_pictures::draw(&self.folder, &self.plan, *time, display, fields, contacts, &self.steps)?;
+        }
+        let summary = json!({
+            "schema": SCHEMA,
+            "case": self.plan.document.case.title.clone().unwrap_or_else(|| self.plan.document.name.clone()),
+            "converged": ending == Ending::Converged,
+            "reason": failure.map_or("converged", |f| f.reason),
+            "verdict": self.verdict(ending, failure),
+            "method": "mortar",
+            "unknowns": self.model.unknowns(),
+            "warnings": self.warnings,
+            "steps": self.steps,
+            "events": [],
+            "environment": environment::describe(start, rayon::current_num_threads(), &self.plan.document.text),
+        });
+        let text = serde_json::to_string_pretty(&summary).unwrap_or_default();
+        self.folder.write("summary.json", (text + "\n").as_bytes())?;
+        Ok(summary)
+    }
+
+    fn verdict(&self, ending: Ending, failure: Option<&Failure>) -> String {
+        let done = self.steps.iter().filter(|s| s["converged"] == true).count();
+        let count = self.plan.times.len();
+        match (ending, failure) {
+            (Ending::Interrupted, _) => format!("Interrupted: {done} of {count} increments are done and on disk."),
+            (Ending::NotConverged, failure) => {
+                format!("Increment {} of {count} has no solution: {}.", done + 1, failure.map_or("", |f| &f.text))
+            }
+            (Ending::Converged, _) => {
+                let Some(step) = self.steps.last() else { return "Nothing was asked.".into() };
+                if self.plan.contacts.is_empty() {
+                    return "The bodies are in equilibrium; no contact was stated.".into();
+                }
+                let list: Vec<String> = (self.plan.contacts.iter())
+                    .map(|c| {
+                        let found = &step["contacts"][&c.name];
+                        let figure = |v: &Value| v.as_f64().map_or("-".into(), |v| format!("{v:.6}"));
+                        let zones = found["zones"].as_u64().unwrap_or(0);
+                        if zones == 0 {
+                            return format!("`{}` is open", c.name);
+                        }
+                        let force: Vec<String> =
+                            found["force"].as_array().into_iter().flatten().take(D).map(figure).collect();
+                        format!(
+                            "`{}` carries ({}) over {} {} in {zones} zone{}, at most {}",
+                            c.name,
+                            force.join(", "),
+                            if D == 3 || self.plan.space == Stated::Axisymmetric { "area" } else { "length" },
+                            figure(&found["area"]),
+                            if zones == 1 { "" } else { "s" },
+                            figure(&found["max_pressure"]),
+                        )
+                    })
+                    .collect();
+                format!(
+                    "{}; forces balance to {:.0e}.",
+                    list.join("; "),
+                    step["equilibrium_residual"].as_f64().unwrap_or(f64::NAN)
+                )
+            }
+        }
+    }
+}
+
+fn components_len<const D: usize>(shown: &ContactDisplay<D>) -> usize {
+    shown.zones().len()
+}
+
+/// Half the length of one interval, or the radius of the disc of one area.
+fn radius(space: Stated, area: f64, zones: usize) -> Option<f64> {
+    match (zones, space) {
+        (1, Stated::PlaneStrain | Stated::PlaneStress) => Some(0.5 * area),
+        (1, _) => Some((area / std::f64::consts::PI).sqrt()),
+        _ => None,
+    }
+}
+
+fn flat_gap<const D: usize>(gap: impl Fn(&Point<3>) -> (f64, Point<3>) + Sync + Send + 'static) -> RigidGap<D> {
+    Box::new(move |x| {
+        let (gap, normal) = gap(&Point::<3>::from_fn(|k, _| if k < D { x[k] } else { 0.0 }));
+        (gap, Point::<D>::from_fn(|k, _| normal[k]))
+    })
+}
+
+fn failure(error: &StepError) -> Failure {
+    match error {
+        StepError::Interrupted => Failure { reason: "interrupted", text: "interrupted".into() },
+        StepError::Free { body, motion } => Failure {
+            reason: "free_body",
+            text: format!(
+                "body `{body}` is free {motion}: neither its supports nor the contact found hold it; add a support, or a spring"
+            ),
+        },
+        StepError::Solve(error) => Failure {
+            reason: "linear_solver",
+            text: format!("{error}; are all bodies held, and are their stiffnesses of one scale?"),
+        },
+        StepError::Support(error) => Failure { reason: "supports", text: error.to_string() },
+        StepError::Contact { contact, error, places } => Failure {
+            reason: "contact",
+            text: format!(
+                "contact `{contact}`: {error}{}; try more increments, or a finer mesh there",
+                if places.is_empty() { String::new() } else { format!(" ({})", places.join(", ")) }
+            ),
+        },
+    }
+}

@@ -29,9 +29,9 @@ pub enum ActiveSetError {
 
 /// The elastic system as the active set sees it: solves with the stiffness, springs included.
 pub trait Compliance {
-    /// `K_c⁻¹ b`.
-    fn solve(&self, b: &[f64]) -> Result<Vec<f64>, SolveError>;
-    /// The same, refined to the round-off of the solution.
+    /// `K_c⁻¹ b` for several right-hand sides, one after the other, to working precision.
+    fn solve_columns(&self, b: &mut [f64]) -> Result<(), SolveError>;
+    /// `K_c⁻¹ b`, refined to the round-off of the solution.
     fn solve_accurately(&self, b: &[f64]) -> Result<Vec<f64>, SolveError>;
     fn size(&self) -> usize;
 }
@@ -72,6 +72,8 @@ pub struct ContactState {
 }
 
 const MOST_ITERATIONS: usize = 60;
+/// Columns solved for at once.
+const COLUMNS: usize = 32;
 
 impl ActiveSet {
     /// Finds pressures `λ ≥ 0` with gaps `g + B u ≥ 0`, `λ (g + B u) = 0`, `K u = f + Bᵀλ`.
@@ -170,16 +172,21 @@ impl ActiveSet {
         terms.iter().map(|(i, c)| c * at[self.place[i]]).sum()
     }
 
-    fn column(&mut self, system: &dyn Compliance, number: usize, terms: &[(u32, f64)]) -> Result<(), SolveError> {
-        if self.columns.contains_key(&number) {
-            return Ok(());
+    /// Adds the columns that are still missing, several at a time.
+    fn add_columns(&mut self, system: &dyn Compliance, missing: &[(usize, &[(u32, f64)])]) -> Result<(), SolveError> {
+        let n = system.size();
+        for chunk in missing.chunks(COLUMNS) {
+            let mut b = vec![0.0; n * chunk.len()];
+            for (column, (_, terms)) in b.chunks_mut(n).zip(chunk) {
+                for (i, c) in *terms {
+                    column[*i as usize] += c;
+                }
+            }
+            system.solve_columns(&mut b)?;
+            for (column, (number, _)) in b.chunks(n).zip(chunk) {
+                self.columns.insert(*number, self.touched.iter().map(|&i| column[i as usize]).collect());
+            }
         }
-        let mut b = vec![0.0; system.size()];
-        for (i, c) in terms {
-            b[*i as usize] += c;
-        }
-        let x = system.solve(&b)?;
-        self.columns.insert(number, self.touched.iter().map(|&i| x[i as usize]).collect());
         Ok(())
     }
 
@@ -191,12 +198,11 @@ impl ActiveSet {
         springs: &[Spring],
         active: &[usize],
     ) -> Result<Dense, ActiveSetError> {
-        for &k in active {
-            self.column(system, k, &rows[k].terms)?;
-        }
-        for (s, spring) in springs.iter().enumerate() {
-            self.column(system, rows.len() + s, &[(spring.unknown, 1.0)])?;
-        }
+        let held: Vec<[(u32, f64); 1]> = springs.iter().map(|s| [(s.unknown, 1.0)]).collect();
+        let all = (active.iter().map(|&k| (k, &rows[k].terms[..])))
+            .chain(held.iter().enumerate().map(|(s, terms)| (rows.len() + s, &terms[..])));
+        let missing: Vec<(usize, &[(u32, f64)])> = all.filter(|(k, _)| !self.columns.contains_key(k)).collect();
+        self.add_columns(system, &missing)?;
         let (n, m) = (active.len(), springs.len());
         // Gaps per weight are lengths, and forces of the same weight go with them: pivots say something.
         let weights: Vec<f64> = active.iter().map(|&k| rows[k].weight).collect();

@@ -2,7 +2,7 @@
 
 use crate::material::{Elastic, Space};
 use signorini_contact::{ContactSurface, FacePoint};
-use signorini_fem::hierarchic::Values;
+use signorini_fem::hierarchic::{Mode, Values};
 use signorini_fem::{CellShape, DofMap, Local, Mesh, Side};
 use signorini_geometry::Point;
 use std::sync::Arc;
@@ -21,6 +21,29 @@ pub struct Body<const D: usize> {
 impl<const D: usize> Body<D> {
     pub fn unknowns(&self) -> usize {
         D * self.dofs.count()
+    }
+
+    /// Where every function has its vertex, or the middle of its edge, side or cell.
+    pub fn function_positions(&self) -> Vec<Point<D>> {
+        let mut out = vec![Point::<D>::zeros(); self.dofs.count()];
+        for cell in 0..self.mesh.cell_count() {
+            let shape = self.mesh.shape(cell);
+            let vertices: Vec<u32> = self.mesh.vertices(cell).collect();
+            let mean = |list: &[usize]| {
+                list.iter().map(|&v| self.mesh.nodes()[vertices[v] as usize]).sum::<Point<D>>() / list.len() as f64
+            };
+            let all: Vec<usize> = (0..vertices.len()).collect();
+            let modes = self.dofs.basis(cell).modes();
+            for ((f, _), mode) in self.dofs.cell(cell).iter().zip(modes) {
+                out[*f as usize] = match *mode {
+                    Mode::Vertex(v) => mean(&[v as usize]),
+                    Mode::Edge(e, _) => mean(&shape.edges()[e as usize]),
+                    Mode::Side(s, _) => mean(shape.sides()[s as usize]),
+                    Mode::Interior => mean(&all),
+                };
+            }
+        }
+        out
     }
 }
 

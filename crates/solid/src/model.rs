@@ -11,6 +11,7 @@ use signorini_contact::{
 };
 use signorini_geometry::Point;
 use signorini_solve::cholesky::Symbolic;
+use signorini_solve::dissection::nested_dissection;
 use signorini_solve::{Factor, SolveError, SymmetricMatrix};
 use std::collections::HashMap;
 
@@ -173,8 +174,8 @@ pub struct Circumstances<'a, const D: usize> {
 struct System<'a>(&'a Factor);
 
 impl Compliance for System<'_> {
-    fn solve(&self, b: &[f64]) -> Result<Vec<f64>, SolveError> {
-        self.0.solve(b)
+    fn solve_columns(&self, b: &mut [f64]) -> Result<(), SolveError> {
+        self.0.solve_columns(b)
     }
 
     fn solve_accurately(&self, b: &[f64]) -> Result<Vec<f64>, SolveError> {
@@ -202,7 +203,12 @@ impl<const D: usize> Model<D> {
             springs.push(Spring { unknown: *unknown, stiffness });
             reduced.add(&[*unknown], &[stiffness], 1.0);
         }
-        let factor = Symbolic::default().factor(reduced)?;
+        let mut symbolic = if D == 3 {
+            Symbolic::ordered(nested_dissection(&reduced, &positions(&bodies, &reduction)))
+        } else {
+            Symbolic::default()
+        };
+        let factor = symbolic.factor(reduced)?;
         Ok(Model {
             bodies,
             supports,
@@ -341,6 +347,21 @@ impl<const D: usize> Model<D> {
             None => StepError::Free { body: String::new(), motion: "to move".into() },
         }
     }
+}
+
+/// Where the unknowns that remain are.
+fn positions<const D: usize>(bodies: &Bodies<D>, reduction: &Reduction<D>) -> Vec<[f64; D]> {
+    let mut out = vec![[0.0; D]; reduction.unknowns];
+    for body in &bodies.list {
+        for (f, x) in body.function_positions().into_iter().enumerate() {
+            for i in 0..D {
+                for (unknown, _) in reduction.row(body.first + f * D + i) {
+                    out[*unknown as usize] = std::array::from_fn(|k| x[k]);
+                }
+            }
+        }
+    }
+    out
 }
 
 /// A row in the unknowns that remain.

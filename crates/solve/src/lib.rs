@@ -3,12 +3,14 @@
 //! - [`sparse`]: symmetric sparse matrices assembled from element matrices.
 //! - [`cholesky`]: sparse factorisation with a residual check on every solve.
 //! - [`acceleration`]: Anderson's for fixed-point iterations.
+//! - [`dissection`]: an order of elimination for meshes in space.
 //! - [`dense`]: small dense systems.
 //! - [`progress`]: what a solver reports while it works, and how it is interrupted.
 
 pub mod acceleration;
 pub mod cholesky;
 pub mod dense;
+pub mod dissection;
 pub mod progress;
 pub mod sparse;
 

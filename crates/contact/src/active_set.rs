@@ -204,9 +204,6 @@ impl ActiveSet {
         let missing: Vec<(usize, &[(u32, f64)])> = all.filter(|(k, _)| !self.columns.contains_key(k)).collect();
         self.add_columns(system, &missing)?;
         let (n, m) = (active.len(), springs.len());
-        // Gaps per weight are lengths, and forces of the same weight go with them: pivots say something.
-        let weights: Vec<f64> = active.iter().map(|&k| rows[k].weight).collect();
-        let scale = |k: usize| if k < n { 1.0 / weights[k] } else { 1.0 };
         let numbers: Vec<usize> = active.iter().copied().chain((0..m).map(|s| rows.len() + s)).collect();
         let mut matrix = DMatrix::<f64>::zeros(n + m, n + m);
         for r in 0..n + m {
@@ -218,13 +215,21 @@ impl ActiveSet {
                 &spring
             };
             for c in 0..=r {
-                let value = scale(r) * scale(c) * self.product(terms, &self.columns[&numbers[c]]);
+                let value = self.product(terms, &self.columns[&numbers[c]]);
                 matrix[(r, c)] = value;
                 matrix[(c, r)] = value;
             }
         }
+        // Compliances of bodies and springs may differ by orders of magnitude: with a diagonal of ones pivots say
+        // something.
+        let scale: Vec<f64> = (0..n + m).map(|k| 1.0 / matrix[(k, k)].sqrt()).collect();
         for (s, spring) in springs.iter().enumerate() {
             matrix[(n + s, n + s)] -= 1.0 / spring.stiffness;
+        }
+        for r in 0..n + m {
+            for c in 0..n + m {
+                matrix[(r, c)] *= scale[r] * scale[c];
+            }
         }
         let factor = if m == 0 { matrix.clone().cholesky().map(Factored::Definite) } else { None };
         let factor = match factor {
@@ -238,10 +243,10 @@ impl ActiveSet {
                 Factored::Indefinite(Box::new(lu))
             }
         };
-        Ok(Dense { factor, weights })
+        Ok(Dense { factor, scale, active: n })
     }
 
-    /// Gaps per weight of the active rows, and what the springs lack, at displacements of the touched unknowns.
+    /// Weighted gaps of the active rows, and what the springs lack, at displacements of the touched unknowns.
     fn defects(
         &self,
         rows: &[WeightedGap],
@@ -250,7 +255,7 @@ impl ActiveSet {
         at: &[f64],
         forces: &[f64],
     ) -> Vec<f64> {
-        let gap = |k: usize| (rows[k].gap + self.product(&rows[k].terms, at)) / rows[k].weight;
+        let gap = |k: usize| rows[k].gap + self.product(&rows[k].terms, at);
         let lack = |s: usize, spring: &Spring| {
             self.product(&[(spring.unknown, 1.0)], at) - forces.get(s).copied().unwrap_or(0.0) / spring.stiffness
         };
@@ -299,23 +304,24 @@ enum Factored {
     Indefinite(Box<FullPivLU<f64, Dyn, Dyn>>),
 }
 
-/// The factorised dense system, rows and columns divided by the weights of the nodes.
+/// The factorised dense system, with the factors of its rows and columns.
 struct Dense {
     factor: Factored,
-    weights: Vec<f64>,
+    scale: Vec<f64>,
+    active: usize,
 }
 
 impl Dense {
     /// Pressures of the active rows and forces at the springs that bring the defects to zero.
     fn solve(&self, defects: &[f64]) -> Result<(Vec<f64>, Vec<f64>), ActiveSetError> {
-        let rhs = -DVector::from_column_slice(defects);
+        let rhs = DVector::from_iterator(defects.len(), defects.iter().zip(&self.scale).map(|(d, s)| -d * s));
         let x = match &self.factor {
             Factored::Definite(factor) => factor.solve(&rhs),
             Factored::Indefinite(factor) => factor.solve(&rhs).ok_or(ActiveSetError::Free)?,
         };
-        let n = self.weights.len();
-        let pressures = (0..n).map(|k| x[k] / self.weights[k]).collect();
-        Ok((pressures, x.iter().skip(n).copied().collect()))
+        let mut x = x.iter().zip(&self.scale).map(|(x, s)| x * s);
+        let pressures = x.by_ref().take(self.active).collect();
+        Ok((pressures, x.collect()))
     }
 }
 

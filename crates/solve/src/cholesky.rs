@@ -6,10 +6,10 @@
 use crate::sparse::SymmetricMatrix;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltError;
+use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
 };
-use faer::perm::PermRef;
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 use std::sync::Arc;
@@ -61,13 +61,9 @@ impl Symbolic {
                     Some((order, place)) => SymmetricOrdering::Custom(PermRef::new_checked(order, place, size)),
                     None => SymmetricOrdering::Amd,
                 };
-                let symbolic = factorize_symbolic_cholesky(
-                    pattern,
-                    Side::Lower,
-                    ordering,
-                    CholeskySymbolicParams::default(),
-                )
-                .map_err(|_| SolveError::OutOfMemory { size })?;
+                let symbolic =
+                    factorize_symbolic_cholesky(pattern, Side::Lower, ordering, CholeskySymbolicParams::default())
+                        .map_err(|_| SolveError::OutOfMemory { size })?;
                 Arc::new((a.column_start.clone(), a.row.clone(), symbolic))
             }
         };

@@ -26,7 +26,10 @@ pub fn draw<const D: usize>(
     steps: &[Value],
 ) -> Result<(), OutputError> {
     let labels = Labels::new(&plan.document);
-    save(folder, "deformed", &deformed(plan, time, display, fields, contacts, &labels))?;
+    save(folder, "deformed", &deformed(plan, time, display, fields, contacts, &labels, None))?;
+    if let Some(window) = window(display, contacts) {
+        save(folder, "contact_zone", &deformed(plan, time, display, fields, contacts, &labels, Some(window)))?;
+    }
     for (contact, shown) in plan.contacts.iter().zip(contacts) {
         let name = if plan.contacts.len() == 1 { "pressure".into() } else { format!("pressure_{}", contact.name) };
         let picture = if D == 2 {
@@ -56,7 +59,7 @@ struct View<const D: usize> {
 impl<const D: usize> View<D> {
     fn new(towards: [f64; 3], points: impl Iterator<Item = Point<D>> + Clone) -> Self {
         let unit = |v: [f64; 3]| {
-            let n = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let n = v.iter().map(|x| x * x).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
             v.map(|x| x / n)
         };
         let cross = |a: [f64; 3], b: [f64; 3]| {
@@ -123,6 +126,37 @@ fn polygon(svg: &mut String, corners: &[(f64, f64)], colour: &str) {
     let _ = write!(svg, "<polygon points=\"{points}\" fill=\"{colour}\" stroke=\"{colour}\" stroke-width=\"0.5\"/>");
 }
 
+/// A polygon whose colour runs evenly between values at its three or four corners, in pieces of a few points each.
+fn shaded(svg: &mut String, corners: &[(f64, f64)], values: &[f64], colour: &dyn Fn(f64) -> RGBColor) {
+    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let size = (0..corners.len())
+        .map(|k| {
+            let (p, q) = (corners[k], corners[(k + 1) % corners.len()]);
+            (p.0 - q.0).hypot(p.1 - q.1)
+        })
+        .fold(0.0, f64::max);
+    let n = ((size / 6.0).min((high - low) * 24.0).ceil() as usize).clamp(1, 16);
+    if n == 1 || corners.len() < 3 {
+        polygon(svg, corners, &css(colour(values.iter().sum::<f64>() / values.len() as f64)));
+        return;
+    }
+    // Triangles are quadrilaterals with two corners in one.
+    let corner = |k: usize| k.min(corners.len() - 1);
+    let at = |s: f64, t: f64| {
+        let w = [(1.0 - s) * (1.0 - t), s * (1.0 - t), s * t, (1.0 - s) * t];
+        let sum = |f: &dyn Fn(usize) -> f64| (0..4).map(|k| w[k] * f(corner(k))).sum::<f64>();
+        (sum(&|k| corners[k].0), sum(&|k| corners[k].1), sum(&|k| values[k]))
+    };
+    for i in 0..n {
+        for j in 0..n {
+            let share = |k: usize| k as f64 / n as f64;
+            let p = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| at(share(i), share(j)));
+            let mean = p.iter().map(|p| p.2).sum::<f64>() / 4.0;
+            polygon(svg, &p.map(|p| (p.0, p.1)), &css(colour(mean)));
+        }
+    }
+}
+
 /// A colour bar with the smallest and largest value and some between.
 fn bar(svg: &mut String, range: (f64, f64), title: &str) {
     let (x, top, bottom) = (SIZE.0 - 95.0, 90.0, SIZE.1 - 70.0);
@@ -179,6 +213,25 @@ fn magnification<const D: usize>(display: &SolidDisplay<D>, fields: &SolidFields
     [5.0, 2.0, 1.0].into_iter().map(|d| d * power).find(|m| *m <= wanted).unwrap_or(1.0)
 }
 
+/// In the plane, the surroundings of the contact zone where it is small: low and high corner.
+fn window<const D: usize>(display: &SolidDisplay<D>, contacts: &[ContactDisplay<D>]) -> Option<[Point<D>; 2]> {
+    let zone: Vec<Point<D>> = (contacts.iter())
+        .flat_map(|c| (0..c.points.len()).filter(|&k| c.active[k]).map(|k| c.points[k] + c.displacement[k]))
+        .collect();
+    if D != 2 || zone.is_empty() {
+        return None;
+    }
+    let low = zone.iter().fold(zone[0], |l, x| l.inf(x));
+    let high = zone.iter().fold(zone[0], |h, x| h.sup(x));
+    let whole = display.points.iter().fold(0.0f64, |m, x| m.max((x - display.points[0]).norm()));
+    let size = (high - low).norm();
+    if size > 0.2 * whole || size == 0.0 {
+        return None;
+    }
+    let pad = Point::<D>::repeat(size);
+    Some([low - pad, high + pad])
+}
+
 /// The deformed bodies coloured by the equivalent stress; in the plane with the rigid bodies and the contact zone.
 fn deformed<const D: usize>(
     plan: &SolidPlan<D>,
@@ -187,12 +240,17 @@ fn deformed<const D: usize>(
     fields: &SolidFields<D>,
     contacts: &[ContactDisplay<D>],
     labels: &Labels,
+    window: Option<[Point<D>; 2]>,
 ) -> String {
     // Magnified displacements would push bodies through rigid ones, which do not deform.
     let touches_rigid = plan.contacts.iter().any(|c| matches!(c.opposite, Opposite::Rigid(_)));
     let factor = if touches_rigid || !plan.contacts.is_empty() { 1.0 } else { magnification(display, fields) };
     let moved: Vec<Point<D>> = display.points.iter().zip(&fields.displacement).map(|(x, u)| x + u * factor).collect();
-    let view = View::<D>::new(if D == 2 { [0.0, 0.0, 1.0] } else { [1.0, -1.6, 0.9] }, moved.iter().copied());
+    let towards = if D == 2 { [0.0, 0.0, 1.0] } else { [1.0, -1.6, if from_below(contacts) { -0.9 } else { 0.9 }] };
+    let view = match window {
+        Some(corners) => View::<D>::new(towards, corners.into_iter()),
+        None => View::<D>::new(towards, moved.iter().copied()),
+    };
     let mut title = format!("Equivalent stress (von Mises), t = {}", label(time));
     if factor != 1.0 {
         title += &format!(", displacements × {factor}");
@@ -202,14 +260,27 @@ fn deformed<const D: usize>(
         rigid_raster(&mut out, plan, time, &view);
     }
     let values = &fields.von_mises;
-    let range = values.iter().fold((f64::INFINITY, 0.0f64), |(l, h), v| (l.min(*v), h.max(*v)));
+    // Singular corners would take the whole colour bar for themselves.
+    let mut sorted = values.clone();
+    sorted.sort_by(f64::total_cmp);
+    let largest = sorted[sorted.len() - 1];
+    let quantile = sorted[(0.997 * (sorted.len() - 1) as f64) as usize];
+    let cut = largest > 1.5 * quantile;
+    let range = (sorted[0], if cut { quantile } else { largest });
     let span = (range.1 - range.0).max(f64::MIN_POSITIVE);
+    let [left, top, right, bottom] = view.area;
+    let _ = write!(
+        out,
+        "<clipPath id=\"c\"><rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{:.1}\"/></clipPath><g clip-path=\"url(#c)\">",
+        right - left,
+        bottom - top
+    );
+    let off_page = |p: &(f64, f64)| p.0 < left - 60.0 || p.0 > right + 60.0 || p.1 < top - 60.0 || p.1 > bottom + 60.0;
     let light = view.towards + view.up * 0.6 - view.right * 0.4;
     let mut list: Vec<(f64, String)> = Vec::new();
     for corners in &display.polygons {
         let x: Vec<Point<D>> = corners.iter().map(|&k| moved[k as usize]).collect();
-        let mean = corners.iter().map(|&k| values[k as usize]).sum::<f64>() / corners.len() as f64;
-        let mut colour = viridis((mean - range.0) / span);
+        let mut shade = 1.0;
         let mut depth = 0.0;
         if D == 3 {
             let (a, b) = (x[1] - x[0], x[x.len() - 1] - x[0]);
@@ -220,13 +291,22 @@ fn deformed<const D: usize>(
             if normal.dot(&view.towards) <= 0.0 {
                 continue;
             }
-            let shade = 0.72 + 0.28 * (normal.dot(&light) / (normal.norm() * light.norm())).max(0.0);
-            let dim = |c: u8| (f64::from(c) * shade) as u8;
-            colour = RGBColor(dim(colour.0), dim(colour.1), dim(colour.2));
+            shade = 0.72 + 0.28 * (normal.dot(&light) / (normal.norm() * light.norm())).max(0.0);
             depth = x.iter().map(|p| view.towards.dot(p)).sum::<f64>() / x.len() as f64;
         }
+        let page: Vec<(f64, f64)> = x.iter().map(|p| view.at(p)).collect();
+        if page.iter().all(off_page) {
+            continue;
+        }
+        let dim = |c: u8| (f64::from(c) * shade) as u8;
+        let colour = |t: f64| {
+            let c = viridis(t);
+            RGBColor(dim(c.0), dim(c.1), dim(c.2))
+        };
+        let relative: Vec<f64> =
+            corners.iter().map(|&k| ((values[k as usize] - range.0) / span).clamp(0.0, 1.0)).collect();
         let mut text = String::new();
-        polygon(&mut text, &x.iter().map(|p| view.at(p)).collect::<Vec<_>>(), &css(colour));
+        shaded(&mut text, &page, &relative, &colour);
         list.push((depth, text));
     }
     list.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -247,9 +327,40 @@ fn deformed<const D: usize>(
             }
         }
     }
+    out += "</g>";
     ruler(&mut out, &view, labels);
     bar(&mut out, range, &labels.pressure("σ"));
+    if cut {
+        let _ = write!(
+            out,
+            "<text x=\"{}\" y=\"{}\" font-family=\"{FONT}\" font-size=\"13\" text-anchor=\"end\">largest {}</text>",
+            SIZE.0 - 20.0,
+            SIZE.1 - 40.0,
+            short(largest)
+        );
+    }
     out + "</svg>\n"
+}
+
+/// Whether the contact zones in space look downwards.
+fn from_below<const D: usize>(contacts: &[ContactDisplay<D>]) -> bool {
+    D == 3 && contacts.iter().map(|c| mean_normal(c)[2]).sum::<f64>() < 0.0
+}
+
+/// The area normal of the part in contact, or of the whole slave side where nothing touches.
+fn mean_normal<const D: usize>(shown: &ContactDisplay<D>) -> [f64; 3] {
+    let touching = |f: &Vec<u32>| f.iter().any(|&k| shown.active[k as usize]);
+    let any = shown.faces.iter().any(touching);
+    let mut mean = [0.0; 3];
+    for face in shown.faces.iter().filter(|f| !any || touching(f)) {
+        let x: Vec<Point<D>> = face.iter().map(|&k| shown.points[k as usize]).collect();
+        let (a, b) = (x[1] - x[0], x[x.len() - 1] - x[0]);
+        for (k, m) in mean.iter_mut().enumerate() {
+            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+            *m += a[i] * b[j] - a[j] * b[i];
+        }
+    }
+    mean
 }
 
 /// Grey where a rigid body is.
@@ -384,18 +495,8 @@ fn profile<const D: usize>(
 
 /// Pressure on the slave side in space, seen from outside.
 fn map<const D: usize>(name: &str, time: f64, shown: &ContactDisplay<D>, labels: &Labels) -> String {
-    // The mean normal of the part in contact.
-    let mut mean = [0.0; 3];
     let touching = |f: &Vec<u32>| f.iter().any(|&k| shown.active[k as usize]);
     let any = shown.faces.iter().any(touching);
-    for face in shown.faces.iter().filter(|f| !any || touching(f)) {
-        let x: Vec<Point<D>> = face.iter().map(|&k| shown.points[k as usize]).collect();
-        let (a, b) = (x[1] - x[0], x[x.len() - 1] - x[0]);
-        for (k, m) in mean.iter_mut().enumerate() {
-            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-            *m += a[i] * b[j] - a[j] * b[i];
-        }
-    }
     let near: Vec<Point<D>> = if any {
         let zone: Vec<Point<D>> =
             (0..shown.points.len()).filter(|&k| shown.active[k]).map(|k| shown.points[k]).collect();
@@ -404,7 +505,7 @@ fn map<const D: usize>(name: &str, time: f64, shown: &ContactDisplay<D>, labels:
     } else {
         shown.points.clone()
     };
-    let view = View::<D>::new(mean, near.iter().copied());
+    let view = View::<D>::new(mean_normal(shown), near.iter().copied());
     let mut out = start(&format!("Contact pressure of `{name}`, t = {}", label(time)));
     let [left, top, right, bottom] = view.area;
     let _ = write!(
@@ -415,10 +516,13 @@ fn map<const D: usize>(name: &str, time: f64, shown: &ContactDisplay<D>, labels:
     );
     let most = shown.pressure.iter().fold(f64::MIN_POSITIVE, |m, p| m.max(*p));
     for face in &shown.faces {
-        let mean = face.iter().map(|&k| shown.pressure[k as usize]).sum::<f64>() / face.len() as f64;
-        let colour = if touching(face) { css(viridis(mean / most)) } else { "#e4e4e4".into() };
         let corners: Vec<(f64, f64)> = face.iter().map(|&k| view.at(&shown.points[k as usize])).collect();
-        polygon(&mut out, &corners, &colour);
+        if touching(face) {
+            let relative: Vec<f64> = face.iter().map(|&k| shown.pressure[k as usize] / most).collect();
+            shaded(&mut out, &corners, &relative, &viridis);
+        } else {
+            polygon(&mut out, &corners, "#e4e4e4");
+        }
     }
     out += "</g>";
     ruler(&mut out, &view, labels);

@@ -6,6 +6,7 @@
 //! - [`segments`]: where two surfaces, or a surface and a rigid body, face each other.
 //! - [`mortar`]: weighted gaps with dual functions.
 //! - [`active_set`]: which nodes carry.
+//! - [`recovery`]: the pressure as it is shown.
 //!
 //! The gap is `(x_slave - x_master)·n` with the outward normal of the master, negative where the bodies penetrate; a
 //! pressure is positive.
@@ -13,11 +14,13 @@
 pub mod active_set;
 pub mod mortar;
 pub mod multiplier;
+pub mod recovery;
 pub mod segments;
 pub mod surface;
 
 pub use active_set::{ActiveSet, ActiveSetError, Compliance, ContactState, Spring};
 pub use mortar::{WeightedGap, weighted_gaps};
 pub use multiplier::PressureNodes;
+pub use recovery::recovered;
 pub use segments::{GapPoint, rigid_points, segments};
 pub use surface::{ContactSurface, FacePoint};

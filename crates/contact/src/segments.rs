@@ -26,7 +26,7 @@ pub struct GapPoint<const D: usize> {
 }
 
 /// Breakpoints closer than this, in coordinates of the face, are one.
-const SNAP: f64 = 1e-8;
+const SNAP: f64 = 1e-13;
 /// Faces whose normals enclose less than 120 degrees do not face each other.
 const FACING: f64 = -0.5;
 

@@ -15,7 +15,7 @@ macro_rules! example {
 }
 
 /// Cases with mechanics, simplest first.
-pub const GALLERY: [Example; 7] = [
+pub const GALLERY: [Example; 14] = [
     example!("string", "a string on a flat floor, beside the exact solution"),
     example!("axisymmetric", "a round membrane by its radius, beside the exact solution"),
     example!("flat_disc", "the same membrane in the plane, on a grid that its edge cuts"),
@@ -23,6 +23,13 @@ pub const GALLERY: [Example; 7] = [
     example!("cosine_square", "a square membrane on the same floor"),
     example!("tilted_floor", "a film in micrometres on a tilted, curved floor; tension and load vary"),
     example!("active_set", "the classical nodal method, to be set beside cosine_square"),
+    example!("hertz", "an elastic cylinder on a rigid plane, beside a converged reference"),
+    example!("hertz_sphere", "an elastic sphere on a rigid plane, in space"),
+    example!("patch_test", "an interface of unlike meshes that passes a pressure on unchanged"),
+    example!("punch", "a flat punch: the pressure is singular at its edge"),
+    example!("cylinder_on_block", "NAFEMS CB-1 without friction: steel on aluminium, beside Hertz"),
+    example!("high_order_blocks", "a few cells of degree 6 on either side of a curved contact"),
+    example!("torus", "an elastic block on a rigid torus, exactly round"),
 ];
 
 /// Scenes: bodies that move, and their closest pairs.

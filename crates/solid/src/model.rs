@@ -6,8 +6,8 @@ use crate::stiffness::{Table, stiffness};
 use crate::supports::{Displacement, Reduction, Support, SupportError, beds};
 use rayon::prelude::*;
 use signorini_contact::{
-    ActiveSet, ActiveSetError, Compliance, GapPoint, PressureNodes, Spring, WeightedGap, rigid_points, segments,
-    weighted_gaps,
+    ActiveSet, ActiveSetError, Compliance, GapPoint, PressureNodes, Spring, WeightedGap, recovered, rigid_points,
+    segments, weighted_gaps,
 };
 use signorini_geometry::Point;
 use signorini_solve::cholesky::Symbolic;
@@ -124,6 +124,9 @@ pub struct ContactResult<const D: usize> {
 #[derive(Clone, Copy, Debug)]
 pub struct PressureNode<const D: usize> {
     pub x: Point<D>,
+    /// The multiplier: its product with the weight is the force of the node.
+    pub multiplier: f64,
+    /// The recovered pressure.
     pub pressure: f64,
     pub gap: f64,
     pub active: bool,
@@ -301,6 +304,7 @@ impl<const D: usize> Model<D> {
                 }
                 result.nodes.push(PressureNode {
                     x: contact.nodes.positions[row.node as usize],
+                    multiplier: pressure,
                     pressure,
                     gap: found.gap[first + k] / row.weight,
                     active,
@@ -309,6 +313,14 @@ impl<const D: usize> Model<D> {
                 });
             }
             first = end;
+            let count = contact.nodes.len();
+            let (mut multiplier, mut weight, mut active) = (vec![0.0; count], vec![0.0; count], vec![false; count]);
+            for node in &result.nodes {
+                let k = node.number as usize;
+                (multiplier[k], weight[k], active[k]) = (node.multiplier, node.weight, node.active);
+            }
+            let pressure = recovered(&contact.nodes, &contact.points, &multiplier, &weight, &active);
+            result.nodes.iter_mut().for_each(|node| node.pressure = pressure[node.number as usize]);
             results.push(result);
         }
         for ((force, load), contact) in forces.iter_mut().zip(&now.load).zip(&contact_force) {

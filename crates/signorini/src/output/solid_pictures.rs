@@ -266,7 +266,9 @@ fn deformed<const D: usize>(
     let largest = sorted[sorted.len() - 1];
     let quantile = sorted[(0.997 * (sorted.len() - 1) as f64) as usize];
     let cut = largest > 1.5 * quantile;
-    let range = (sorted[0], if cut { quantile } else { largest });
+    // A field that is even but for rounding is shown as even.
+    let even = largest - sorted[0] <= 1e-9 * largest;
+    let range = (if even { 0.0 } else { sorted[0] }, if cut { quantile } else { largest });
     let span = (range.1 - range.0).max(f64::MIN_POSITIVE);
     let [left, top, right, bottom] = view.area;
     let _ = write!(

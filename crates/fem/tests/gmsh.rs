@@ -57,7 +57,8 @@ fn check<const D: usize>(name: &str, shapes: &[CellShape], order: usize) {
     assert!((area(&mesh, &groups["front"].sides) - thickness).abs() < 1e-12, "{name}");
     let hole = 0.4 * std::f64::consts::PI * thickness;
     assert!((area(&mesh, &groups["hole"].sides) - hole).abs() < 5.0 * tolerance, "{name}");
-    let boundary = 4.0 * thickness + area(&mesh, &groups["hole"].sides) + if D == 3 { 2.0 * volume(&mesh) / 0.5 } else { 0.0 };
+    let boundary =
+        4.0 * thickness + area(&mesh, &groups["hole"].sides) + if D == 3 { 2.0 * volume(&mesh) / 0.5 } else { 0.0 };
     assert!((area(&mesh, &groups["boundary"].sides) - boundary).abs() < 1e-9, "{name}");
 }
 
@@ -87,7 +88,8 @@ fn all_versions_hold_the_same_mesh() {
             let names = |m: &Mesh<D>| m.groups().keys().cloned().collect::<Vec<_>>();
             assert_eq!(names(&first), names(&other));
             for cell in 0..first.cell_count() {
-                let nodes = |m: &Mesh<D>| m.cell_nodes(cell).iter().map(|&n| m.nodes()[n as usize]).collect::<Vec<Point<D>>>();
+                let nodes =
+                    |m: &Mesh<D>| m.cell_nodes(cell).iter().map(|&n| m.nodes()[n as usize]).collect::<Vec<Point<D>>>();
                 let (p, q) = (nodes(&first), nodes(&other));
                 assert!(p.iter().zip(&q).all(|(p, q)| (p - q).norm() < 1e-14), "{name}");
             }

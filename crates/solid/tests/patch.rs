@@ -3,9 +3,9 @@
 
 use nalgebra::Matrix3;
 use signorini_contact::ContactSurface;
-use signorini_fem::CellShape;
 use signorini_fem::block::block;
 use signorini_fem::rules::rule;
+use signorini_fem::{CellShape, Mesh, Side};
 use signorini_geometry::Point;
 use signorini_solid::stiffness::displacement_at;
 use signorini_solid::*;
@@ -224,6 +224,93 @@ fn partly_covered_faces() {
                     "degree {degree}, covered to {end}, {upper_is_slave}: {worst:e} in {iterations}"
                 );
             }
+        }
+    }
+}
+
+/// Every cell of a box cut into six tetrahedra (Kuhn), with the groups of the box.
+fn tetrahedra(box_mesh: &Mesh<3>, order: usize) -> Mesh<3> {
+    let mut out = Mesh::<3>::new(box_mesh.nodes().to_vec());
+    for cell in 0..box_mesh.cell_count() {
+        let nodes = box_mesh.cell_nodes(cell);
+        let n = box_mesh.map(cell).order();
+        let at = |c: [usize; 3]| nodes[c[0] + (n + 1) * (c[1] + (n + 1) * c[2])];
+        for axes in [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]] {
+            let mut corners = vec![[0usize; 3]];
+            for axis in axes {
+                let mut next = corners[corners.len() - 1];
+                next[axis] = n;
+                corners.push(next);
+            }
+            // Odd permutations turn the other way round.
+            if [[0, 2, 1], [2, 1, 0], [1, 0, 2]].contains(&axes) {
+                corners.swap(1, 2);
+            }
+            let mut list: Vec<u32> = corners.iter().map(|c| at(*c)).collect();
+            if order == 2 {
+                for &[a, b] in CellShape::Tetrahedron.edges() {
+                    list.push(at(std::array::from_fn(|k| (corners[a][k] + corners[b][k]) / 2)));
+                }
+            }
+            out.add_cell(CellShape::Tetrahedron, order, &list);
+        }
+    }
+    // Sides of the tetrahedra whose vertices all lie on a group of the box.
+    let boundary = out.boundary();
+    for (name, group) in box_mesh.groups() {
+        let on: std::collections::HashSet<u32> = group.sides.iter().flat_map(|s| box_mesh.side_vertices(*s)).collect();
+        let sides: Vec<Side> =
+            boundary.iter().copied().filter(|s| out.side_vertices(*s).iter().all(|v| on.contains(v))).collect();
+        out.group_mut(name).sides = sides;
+    }
+    out
+}
+
+/// Triangular faces on quadrilateral ones, of degree 1 and 2, either side slave.
+#[test]
+fn tetrahedra_on_hexahedra() {
+    for degree in [1, 2] {
+        for upper_is_slave in [false, true] {
+            let axes = |n: usize, low: f64, high: f64| [even(0.0, 1.0, n), even(0.0, 1.0, n), even(low, high, 2)];
+            let lower = block::<3>(&axes(2, 0.0, 0.5), 1, |x| x);
+            let upper = tetrahedra(&block::<3>(&axes(3, 0.5, 1.1), degree, |x| x), degree);
+            lower.check().unwrap();
+            upper.check().unwrap();
+            let groups = [lower.groups().clone(), upper.groups().clone()];
+            let mut bodies = Bodies::<3>::new(Space::Solid);
+            let material = Elastic { youngs_modulus: E, poissons_ratio: NU };
+            bodies.add("lower", lower, degree, material);
+            bodies.add("upper", upper, degree, material);
+            let normal = |body: usize, group: &str| Support {
+                name: group.into(),
+                body,
+                group: groups[body][group].clone(),
+                kind: SupportKind::Normal,
+            };
+            let mut supports = vec![normal(0, "bottom")];
+            supports.extend((0..2).flat_map(|b| [normal(b, "left"), normal(b, "front")]));
+            let press = Load { name: "p".into(), body: 1, group: groups[1]["top"].clone(), kind: LoadKind::Pressure };
+            let load = loads::forces(&bodies, &press, &|_| Point::<3>::repeat(PRESSURE));
+            let [low, high] =
+                [(0, "top"), (1, "bottom")].map(|(b, g): (usize, &str)| bodies.surface(b, groups[b][g].sides.clone()));
+            let (slave, master) = if upper_is_slave { (high, low) } else { (low, high) };
+            let contact = Contact::new("interface", slave, Master::Surface(master));
+            let mut model = Model::new(bodies, supports, vec![contact]).unwrap();
+            let now = Circumstances { displacement: &|_, _| Point::<3>::zeros(), load, rigid: vec![None] };
+            let state = model.solve(&now, &mut |_, _| true).unwrap();
+            let mut exact = Matrix3::zeros();
+            exact[(2, 2)] = -PRESSURE;
+            let mut worst = 0.0f64;
+            for body in &model.bodies.list {
+                for cell in 0..body.mesh.cell_count() {
+                    for (xi, _) in rule(body.mesh.shape(cell), 2) {
+                        let u = &state.u[body.first..body.first + body.unknowns()];
+                        let (_, _, gradient) = displacement_at(&body.mesh, &body.dofs, Space::Solid, cell, &xi, u);
+                        worst = worst.max((material.stress(Space::Solid, &gradient) - exact).amax() / PRESSURE);
+                    }
+                }
+            }
+            assert!(worst < 1e-12, "degree {degree}, {upper_is_slave}: {worst:e}");
         }
     }
 }

@@ -3,7 +3,7 @@
 //! Contact sees faces with positions and the functions that move them ([`surface`]); it does not know meshes.
 //!
 //! - [`multiplier`]: the nodes of the contact pressure and the normal field.
-//! - [`segments`]: where two surfaces, or a surface and a rigid body, face each other.
+//! - [`mod@segments`]: where two surfaces, or a surface and a rigid body, face each other.
 //! - [`mortar`]: weighted gaps with dual functions.
 //! - [`active_set`]: which nodes carry.
 //! - [`recovery`]: the pressure as it is shown.

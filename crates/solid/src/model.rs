@@ -94,6 +94,21 @@ impl<const D: usize> Contact<D> {
     }
 }
 
+/// Share of its size that a slave side may lie inside the master at the start.
+const DEEP: f64 = 0.05;
+
+impl<const D: usize> Contact<D> {
+    /// Refuses bodies that lie in each other by far more than small displacements could mend.
+    fn check_start(&self) -> Result<(), StepError> {
+        let depth = self.rows.iter().map(|r| -r.gap / r.weight).fold(0.0, f64::max);
+        let mean: f64 = self.rows.iter().map(|r| r.gap).sum();
+        if mean < 0.0 && depth > DEEP * self.slave.size() {
+            return Err(StepError::Deep { contact: self.name.clone(), depth });
+        }
+        Ok(())
+    }
+}
+
 /// Why a step has no solution.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum StepError {
@@ -105,6 +120,9 @@ pub enum StepError {
     Contact { contact: String, error: ActiveSetError, places: Vec<String> },
     #[error("body `{body}` is free {motion}")]
     Free { body: String, motion: String },
+    /// Most of the slave side is inside the master before anything moves.
+    #[error("contact `{contact}`: the bodies start {depth:.4e} deep in each other")]
+    Deep { contact: String, depth: f64 },
     #[error("interrupted")]
     Interrupted,
 }
@@ -163,6 +181,7 @@ pub struct Model<const D: usize> {
     springs: Vec<Spring>,
     free: Vec<FreeMode>,
     active: ActiveSet,
+    started: bool,
 }
 
 /// What may change with time.
@@ -222,6 +241,7 @@ impl<const D: usize> Model<D> {
             springs,
             free,
             active: ActiveSet::default(),
+            started: false,
         })
     }
 
@@ -252,6 +272,12 @@ impl<const D: usize> Model<D> {
             contact.search(&self.reduction, rigid.as_ref());
             rows.extend(contact.rows.iter().map(|row| reduced(row, &self.reduction, &offset)));
             ends.push(rows.len());
+        }
+        if !self.started {
+            for contact in &self.contacts {
+                contact.check_start()?;
+            }
+            self.started = true;
         }
         if rows.is_empty() && !self.free.is_empty() {
             return Err(self.free_body(0));

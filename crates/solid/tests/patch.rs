@@ -123,8 +123,8 @@ fn in_the_plane() {
                         let patch = Patch { degree, cells, distortion, upper_is_slave, angle };
                         let (worst, pressure) = deviation::<2>(&patch);
                         assert!(
-                            worst < 1e-12,
-                            "degree {degree} {cells:?} {distortion} {upper_is_slave} {angle}: {worst:e}"
+                            worst < 1e-12 && pressure < 1e-11,
+                            "degree {degree} {cells:?} {distortion} {upper_is_slave} {angle}: {worst:e} {pressure:e}"
                         );
                     }
                 }
@@ -142,12 +142,12 @@ fn in_space() {
                     let angle = if distortion == 0.0 { 0.0 } else { 0.4 };
                     let patch = Patch { degree, cells, distortion, upper_is_slave, angle };
                     let (worst, pressure) = deviation::<3>(&patch);
-                    println!("degree {degree} {cells:?} {distortion} {upper_is_slave} {angle}: {worst:e} {pressure:e}");
                     assert!(
-                        worst < 1e-12,
-                        "degree {degree} {cells:?} {distortion} {upper_is_slave} {angle}: {worst:e}"
+                        worst < 1e-12 && pressure < 1e-11,
+                        "degree {degree} {cells:?} {distortion} {upper_is_slave} {angle}: {worst:e} {pressure:e}"
                     );
                 }
+                // Skewed faces at degree 4 take a minute.
                 if degree == 4 {
                     break;
                 }

@@ -107,6 +107,12 @@ impl Planner<'_> {
     pub(super) fn solids<const D: usize>(&self) -> Result<SolidPlan<D>, CaseError> {
         let document = self.document;
         let case = &document.case;
+        let membrane = case.bodies.values().any(|b| matches!(b.get_ref(), Body::Membrane(_)));
+        if membrane && !case.bodies.values().any(|b| matches!(b.get_ref(), Body::Solid(_))) {
+            return Err(document
+                .error(case.space.span(), "this space is one of solids, and there is a membrane")
+                .help("of membranes: space = \"line\", \"axisymmetric\" or \"plane\""));
+        }
         let mut bodies = Vec::new();
         let mut warnings = Vec::new();
         for (name, body) in &case.bodies {

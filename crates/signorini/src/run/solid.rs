@@ -11,7 +11,7 @@ use signorini_geometry::Point;
 use signorini_solid::loads::{forces, resultant};
 use signorini_solid::{
     Bodies, Circumstances, Contact, Load, LoadKind, Master, Model, RigidGap, Space, State, StepError, Support,
-    SupportKind,
+    SupportError, SupportKind,
 };
 use signorini_solve::{Iteration, Progress};
 use std::cell::RefCell;
@@ -190,7 +190,25 @@ impl<const D: usize> Runner<D> {
         if let Some(error) = wrong.borrow_mut().take() {
             return Err(error);
         }
-        Ok(solved.map_err(|error| failure(&error)))
+        match solved {
+            Ok(state) => Ok(Ok(state)),
+            // What cannot be meant is an error of the case.
+            Err(StepError::Support(error)) => {
+                let name = match &error {
+                    SupportError::NotFlat { support, .. } => support,
+                    SupportError::Contradiction { second, .. } => second,
+                };
+                let place = document.case.supports.get(name).map_or(document.case.space.span(), |s| s.span());
+                Err(document.error(place, error.to_string()))
+            }
+            Err(StepError::Deep { contact, depth }) => {
+                let place = document.case.contacts.get(&contact).map_or(document.case.space.span(), |c| c.span());
+                Err(document
+                    .error(place, format!("the bodies of `{contact}` start {depth:.4e} deep in each other"))
+                    .help("move them apart; or does the normal of a rigid plane point into it, or `side` name the wrong side?"))
+            }
+            Err(error) => Ok(Err(failure(&error))),
+        }
     }
 
     fn load(
@@ -426,7 +444,7 @@ fn failure(error: &StepError) -> Failure {
             reason: "linear_solver",
             text: format!("{error}; are all bodies held, and are their stiffnesses of one scale?"),
         },
-        StepError::Support(error) => Failure { reason: "supports", text: error.to_string() },
+        StepError::Support(_) | StepError::Deep { .. } => Failure { reason: "input", text: error.to_string() },
         StepError::Contact { contact, error, places } => Failure {
             reason: "contact",
             text: format!(

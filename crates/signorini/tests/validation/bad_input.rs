@@ -65,7 +65,7 @@ fn each_mistake_is_told_at_its_place() {
         ("on = \"film:boundary\"", "on = \"flim:boundary\"", "no body `flim`", "\"flim:boundary\"", "`film`"),
         ("between = [\"film\", \"floor\"]", "between = [\"film\", \"flor\"]", "no body `flor`", "\"flor\"", "`floor`"),
         ("space = \"plane\"", "space = \"plain\"", "unknown key `plain`", "\"plain\"", "`plane`"),
-        ("space = \"plane\"", "space = \"3d\"", "membranes only", "\"3d\"", "plane"),
+        ("space = \"plane\"", "space = \"3d\"", "one of solids", "\"3d\"", "plane"),
         ("space = \"plane\"", "space = \"plane", "string", "", ""),
     ];
     for (from, to, word, place, help) in table {

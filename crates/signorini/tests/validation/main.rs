@@ -5,6 +5,7 @@ mod cosine_floor;
 mod flat_floor;
 mod gallery;
 mod invariance;
+mod solids;
 
 use serde_json::Value;
 use signorini::case::{CaseError, Document};

@@ -1,0 +1,147 @@
+//! Solids as a user states them: figures from case files, and answers to mistakes.
+
+use super::{error, example, last_step, number, set, summary};
+use serde_json::Value;
+
+/// Replaces a part of a gallery case, and returns the error with the text it points at.
+fn spoiled(name: &str, from: &str, to: &str) -> (String, String, String) {
+    let case = example(name);
+    assert!(case.contains(from), "`{from}` is not in the case");
+    let error = error(&case.replacen(from, to, 1));
+    let place = error.place.clone().unwrap_or_else(|| panic!("no place: {}", error.message));
+    let at = place.text[place.span.start..place.span.end.min(place.text.len())].to_string();
+    (error.message, at, error.help.unwrap_or_default())
+}
+
+#[test]
+fn each_mistake_is_told_at_its_place() {
+    let table = [
+        ("hertz", "\"block:top\"", "\"block:tpo\"", "has no group `tpo`", "block:tpo", "`top`"),
+        ("hertz", "\"block:left\"", "\"blok:left\"", "no body `blok`", "blok:left", "`block`"),
+        ("hertz", "youngs_modulus = 1000", "youngs_modulus = 0", "must be positive", "0", ""),
+        ("hertz", "poissons_ratio = 0.3", "poissons_ratio = 0.5", "ratio is 0.5", "0.5", "0.4999"),
+        ("hertz", "degree = 2", "degree = 9", "between 1 and 8", "9", ""),
+        ("hertz", "[0, \"-0.085*t\"]", "[0]", "expected 2 components", "[0]", ""),
+        ("hertz", "[0, \"-0.085*t\"]", "0", "is a vector", "0", "free"),
+        ("hertz", "\"-0.085*t\"", "\"-0.085/(t-t)\"", "not a finite number", "\"-0.085/(t-t)\"", ""),
+        ("hertz", "normal = [0, 1]", "normal = [0, 0]", "no length", "[0, 0]", ""),
+        ("hertz", "normal = [0, 1]", "normal = [0, -1]", "deep in each other", "[contacts.touch]", "normal"),
+        ("hertz", "map = [\"x\", ", "map = [\"-x\", ", "inverted", "mesh", "positive volume"),
+        ("hertz", "cells = [15, 16]", "cells = [15]", "`cells` 1", "{ from", ""),
+        (
+            "hertz",
+            "[\"block:bottom\", \"plane\"]",
+            "[\"plane\", \"block:bottom\"]",
+            "`plane` is rigid",
+            "\"plane\"",
+            "",
+        ),
+        (
+            "hertz",
+            "[\"block:bottom\", \"plane\"]",
+            "[\"block:bottom\"]",
+            "who touches whom",
+            "[contacts.touch]",
+            "slave first",
+        ),
+        (
+            "hertz",
+            "[contacts.touch]",
+            "[contacts.touch]\nfriction.coulomb = { mu = 0.3 }",
+            "not available",
+            "friction",
+            "",
+        ),
+        ("hertz", "[contacts.touch]", "[contacts.touch]\nmethod.active_set = {}", "for membranes", "method", "mortar"),
+        ("hertz", "space = \"plane_strain\"", "space = \"3d\"", "expected 3", "[", ""),
+        (
+            "hertz",
+            "[supports.symmetry]",
+            "[supports.other]\non = \"block:top\"\ndisplacement = [0.1, \"free\"]\n[supports.symmetry]",
+            "different displacements",
+            "[supports.",
+            "",
+        ),
+        ("hertz", "on = \"block:left\"", "on = \"block:bottom\"", "flat group", "[supports.symmetry]", ""),
+        ("punch", "force = [0, \"-10*t\"]", "normal = -1", "load of a membrane", "-1", "pressure"),
+        ("punch", "uniform = true", "", "prescribes nothing", "[supports.punch_head]", "uniform"),
+        ("torus", "minor_radius = 0.3", "minor_radius = 1.3", "not smaller", "1.3", ""),
+        ("hertz", "mesh.box", "mesh.gmsh = { file = \"none.msh\" }\n# mesh.box", "cannot be read", "none.msh", ""),
+    ];
+    for (name, from, to, message, at, help) in table {
+        // A table may spread over several lines; commenting its first out needs the rest gone too.
+        let (from, to) = if to.contains("gmsh") {
+            let case = example(name);
+            let start = case.find("mesh.box").unwrap();
+            let end = case.find("degree").unwrap();
+            (case[start..end].to_string(), "mesh.gmsh = { file = \"none.msh\" }\n".to_string())
+        } else {
+            (from.to_string(), to.to_string())
+        };
+        let (found, place, advice) = spoiled(name, &from, &to);
+        assert!(found.contains(message), "{to}: `{found}` has no `{message}`");
+        assert!(place.contains(at), "{to}: points at `{place}`, not `{at}`");
+        assert!(advice.contains(help), "{to}: `{advice}` has no `{help}`");
+    }
+}
+
+/// What nothing holds is named with its motion, what does not meet is said.
+#[test]
+fn failures_say_what_happened() {
+    let case = example("punch")
+        .replace("between = [\"punch:bottom\", \"block:top\"]", "between = [\"punch:top\", \"block:bottom\"]");
+    let found = summary(&case, &set(&[]));
+    assert_eq!(found["converged"], false);
+    let verdict = found["verdict"].as_str().unwrap();
+    assert!(found["reason"] == "free_body" && verdict.contains("`punch` is free to translate along y"), "{verdict}");
+
+    let far = example("hertz").replace("point = [0, 0]", "point = [0, -1]");
+    let found = summary(&far, &set(&[]));
+    let warnings = found["warnings"].to_string();
+    assert!(warnings.contains("do not touch") && warnings.contains("smallest gap"), "{warnings}");
+    assert!(found["verdict"].as_str().unwrap().contains("open"));
+}
+
+fn at(step: &Value, place: &str) -> f64 {
+    number(step.pointer(place).unwrap_or_else(|| panic!("{place} is not there")))
+}
+
+/// A force on a head that is kept straight is the force of the contact, and the same in all units.
+#[test]
+fn one_case_in_three_units() {
+    let plain = summary(example("cylinder_on_block"), &set(&[]));
+    let millimetres = last_step(&plain);
+    assert!((at(millimetres, "/contacts/touch/force/1") / 17500.0 - 1.0).abs() < 1e-9);
+    // NAFEMS CB-1: Hertz has 6.2146 mm and 3585.4 N/mm²; the finite bodies differ by what they are.
+    assert!((at(millimetres, "/contacts/touch/max_pressure") / 3585.37 - 1.0).abs() < 5e-3);
+    let case = example("cylinder_on_block")
+        .replace("\"mm-N-MPa\"", "\"m-N-Pa\"")
+        .replace("R = 50", "R = 0.05")
+        .replace("y/50*(50 - R", "y/0.05*(0.05 - R")
+        .replace("youngs_modulus = 70000", "youngs_modulus = \"70 GPa\"")
+        .replace("youngs_modulus = 210000", "youngs_modulus = \"210 GPa\"")
+        .replace("-17500*t", "(-17.5e6*t) N/m")
+        .replace("from = 0, to = [8, 100]", "from = 0, to = [\"8 mm\", \"100 mm\"]")
+        .replace("from = -200, to = [-5, 0]", "from = \"-200 mm\", to = [\"-5 mm\", 0]")
+        .replace("from = 0, to = [10, 45]", "from = 0, to = [\"10 mm\", \"45 mm\"]")
+        .replace("from = 0, to = [6, 50]", "from = 0, to = [\"6 mm\", \"50 mm\"]");
+    let other = summary(&case, &set(&[]));
+    let metres = last_step(&other);
+    for (place, factor) in
+        [("/contacts/touch/area", 1e3), ("/contacts/touch/max_pressure", 1e-6), ("/contacts/touch/force/1", 1e-3)]
+    {
+        let (a, b) = (at(millimetres, place), factor * at(metres, place));
+        assert!((a / b - 1.0).abs() < 1e-9, "{place}: {a} and {b}");
+    }
+    assert_eq!(millimetres["iterations"], metres["iterations"]);
+}
+
+/// Results do not depend on the number of threads.
+#[test]
+fn one_and_two_threads() {
+    let [one, two] = [1, 2].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| summary(example("torus"), &set(&[("bodies.block.solid.degree", "1".into())])))
+    });
+    assert_eq!(one["steps"], two["steps"]);
+}

@@ -1,6 +1,6 @@
 //! Finite elements: bases, meshes, grids, quadrature and cut cells.
 //!
-//! - [`reference`]: the shapes of cells, with their edges and sides.
+//! - [`mod@reference`]: the shapes of cells, with their edges and sides.
 //! - [`hierarchic`]: integrated Legendre functions, the unknowns of solids; [`dofs`] numbers them on a mesh.
 //! - [`cell_map`]: Lagrange functions that map reference cells to space; [`mesh`] and [`block`] are made of them.
 //! - [`gmsh`]: meshes from files.

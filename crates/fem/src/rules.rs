@@ -57,7 +57,7 @@ mod tests {
             let [i, j, k] = [i as u32, j as u32, k as u32];
             let simplex = factorial(i) * factorial(j) * factorial(k) / factorial(i + j + k + 3);
             assert!((sum(CellShape::Tetrahedron, n, &monomial) - simplex).abs() < 1e-15);
-            let line = |k: u32| if k % 2 == 0 { 2.0 / f64::from(k + 1) } else { 0.0 };
+            let line = |k: u32| if k.is_multiple_of(2) { 2.0 / f64::from(k + 1) } else { 0.0 };
             let triangle = factorial(i) * factorial(j) / factorial(i + j + 2);
             assert!((sum(CellShape::Wedge, n, &monomial) - triangle * line(k)).abs() < 1e-15);
             assert!((sum(CellShape::Hexahedron, n, &monomial) - line(i) * line(j) * line(k)).abs() < 1e-14);

@@ -43,6 +43,14 @@ pub struct Spring {
     pub stiffness: f64,
 }
 
+/// How a row gives way: `g + c (λ - shift) = 0` where it carries. Nothing for a hard contact; `c = w/ε` for a penalty
+/// `ε`, and with the pressure found before as the shift one step of the augmented Lagrangian.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Softness {
+    pub compliance: f64,
+    pub shift: f64,
+}
+
 /// Columns of the compliance, kept from step to step as long as the rows stay the same.
 #[derive(Default)]
 pub struct ActiveSet {
@@ -76,7 +84,8 @@ const MOST_ITERATIONS: usize = 60;
 const COLUMNS: usize = 32;
 
 impl ActiveSet {
-    /// Finds pressures `λ ≥ 0` with gaps `g + B u ≥ 0`, `λ (g + B u) = 0`, `K u = f + Bᵀλ`.
+    /// Finds pressures `λ ≥ 0` with gaps `g + B u ≥ 0`, `λ (g + B u) = 0`, `K u = f + Bᵀλ`; soft rows as
+    /// [`Softness`] says.
     ///
     /// `report` is called after every iteration with its number and how many nodes changed; it returns whether to go
     /// on.
@@ -84,10 +93,12 @@ impl ActiveSet {
         &mut self,
         system: &dyn Compliance,
         rows: &[WeightedGap],
+        soft: &[Softness],
         springs: &[Spring],
         load: &[f64],
         report: &mut dyn FnMut(usize, usize) -> bool,
     ) -> Result<ContactState, ActiveSetError> {
+        debug_assert_eq!(rows.len(), soft.len());
         self.refresh(rows, springs);
         let free = system.solve_accurately(load)?;
         let free_at: Vec<f64> = self.touched.iter().map(|&i| free[i as usize]).collect();
@@ -99,8 +110,8 @@ impl ActiveSet {
         let mut last_flips = Vec::new();
         for iteration in 1..=MOST_ITERATIONS {
             let active: Vec<usize> = self.active.iter().copied().collect();
-            let dense = self.dense(system, rows, springs, &active)?;
-            let gaps_now = self.defects(rows, springs, &active, &free_at, &[]);
+            let dense = self.dense(system, rows, soft, springs, &active)?;
+            let gaps_now = self.defects((rows, soft), springs, &active, &free_at, (&[], &[]));
             let (pressures, forces) = dense.solve(&gaps_now)?;
             let mut at = free_at.clone();
             for (&k, p) in active.iter().zip(&pressures) {
@@ -119,7 +130,8 @@ impl ActiveSet {
                 }
             }
             for (k, row) in rows.iter().enumerate() {
-                if !self.active.contains(&k) && gaps[k] / row.weight < -1e-13 * moved {
+                let open = (gaps[k] - soft[k].compliance * soft[k].shift) / row.weight;
+                if !self.active.contains(&k) && open < -1e-13 * moved {
                     next.insert(k);
                 }
             }
@@ -135,7 +147,7 @@ impl ActiveSet {
                     active: (0..rows.len()).map(|k| self.active.contains(&k)).collect(),
                     iterations: iteration,
                 };
-                self.refine(system, (rows, springs), load, &dense, (&active, pressures, forces), &mut found)?;
+                self.refine(system, (rows, soft, springs), load, &dense, (&active, pressures, forces), &mut found)?;
                 return Ok(found);
             }
             if seen.insert(active, iteration).is_some() {
@@ -195,6 +207,7 @@ impl ActiveSet {
         &mut self,
         system: &dyn Compliance,
         rows: &[WeightedGap],
+        soft: &[Softness],
         springs: &[Spring],
         active: &[usize],
     ) -> Result<Dense, ActiveSetError> {
@@ -226,6 +239,9 @@ impl ActiveSet {
         for (s, spring) in springs.iter().enumerate() {
             matrix[(n + s, n + s)] -= 1.0 / spring.stiffness;
         }
+        for (r, &k) in active.iter().enumerate() {
+            matrix[(r, r)] += soft[k].compliance;
+        }
         for r in 0..n + m {
             for c in 0..n + m {
                 matrix[(r, c)] *= scale[r] * scale[c];
@@ -249,24 +265,32 @@ impl ActiveSet {
     /// Weighted gaps of the active rows, and what the springs lack, at displacements of the touched unknowns.
     fn defects(
         &self,
-        rows: &[WeightedGap],
+        (rows, soft): (&[WeightedGap], &[Softness]),
         springs: &[Spring],
         active: &[usize],
         at: &[f64],
-        forces: &[f64],
+        (pressures, forces): (&[f64], &[f64]),
     ) -> Vec<f64> {
-        let gap = |k: usize| rows[k].gap + self.product(&rows[k].terms, at);
+        let gap = |(place, &k): (usize, &usize)| {
+            let carried = pressures.get(place).copied().unwrap_or(0.0) - soft[k].shift;
+            rows[k].gap + self.product(&rows[k].terms, at) + soft[k].compliance * carried
+        };
         let lack = |s: usize, spring: &Spring| {
             self.product(&[(spring.unknown, 1.0)], at) - forces.get(s).copied().unwrap_or(0.0) / spring.stiffness
         };
-        active.iter().map(|&k| gap(k)).chain(springs.iter().enumerate().map(|(s, spring)| lack(s, spring))).collect()
+        active
+            .iter()
+            .enumerate()
+            .map(gap)
+            .chain(springs.iter().enumerate().map(|(s, spring)| lack(s, spring)))
+            .collect()
     }
 
     /// The displacement of all unknowns; what the closed gaps still lack by the round-off of the columns is made good.
     fn refine(
         &self,
         system: &dyn Compliance,
-        (rows, springs): (&[WeightedGap], &[Spring]),
+        (rows, soft, springs): (&[WeightedGap], &[Softness], &[Spring]),
         load: &[f64],
         dense: &Dense,
         (active, mut pressures, mut forces): (&[usize], Vec<f64>, Vec<f64>),
@@ -287,13 +311,14 @@ impl ActiveSet {
                 break;
             }
             let at: Vec<f64> = self.touched.iter().map(|&i| found.u[i as usize]).collect();
-            let (more, others) = dense.solve(&self.defects(rows, springs, active, &at, &forces))?;
+            let (more, others) =
+                dense.solve(&self.defects((rows, soft), springs, active, &at, (&pressures, &forces)))?;
             pressures.iter_mut().zip(more).for_each(|(p, m)| *p += m);
             forces.iter_mut().zip(others).for_each(|(f, m)| *f += m);
         }
         for (&k, p) in active.iter().zip(&pressures) {
             found.pressure[k] = *p;
-            found.gap[k] = 0.0;
+            found.gap[k] = soft[k].compliance * (soft[k].shift - p);
         }
         Ok(())
     }

@@ -5,6 +5,7 @@
 //! - [`multiplier`]: the nodes of the contact pressure and the normal field.
 //! - [`mod@segments`]: where two surfaces, or a surface and a rigid body, face each other.
 //! - [`mortar`]: weighted gaps with dual functions.
+//! - [`points`]: nodes or quadrature points against the closest point of the master.
 //! - [`active_set`]: which nodes carry.
 //! - [`recovery`]: the pressure as it is shown.
 //!
@@ -14,13 +15,15 @@
 pub mod active_set;
 pub mod mortar;
 pub mod multiplier;
+pub mod points;
 pub mod recovery;
 pub mod segments;
 pub mod surface;
 
-pub use active_set::{ActiveSet, ActiveSetError, Compliance, ContactState, Spring};
+pub use active_set::{ActiveSet, ActiveSetError, Compliance, ContactState, Softness, Spring};
 pub use mortar::{WeightedGap, weighted_gaps};
 pub use multiplier::PressureNodes;
+pub use points::{MasterShapes, Meeting, TestPoints, point_rows};
 pub use recovery::recovered;
 pub use segments::{GapPoint, rigid_points, segments};
 pub use surface::{ContactSurface, FacePoint};

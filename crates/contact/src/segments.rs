@@ -204,13 +204,19 @@ fn onto_slave<const D: usize>(
     x: &Point<D>,
     at: &mut Values,
 ) -> Option<f64> {
-    let mut xi = 0.0;
+    let mut xi: f64 = 0.0;
     for _ in 0..60 {
-        let s = [xi, 0.0, 0.0];
+        // Beyond its ends the face goes on straight, with the normal of the end: polynomials would swing.
+        let inside = xi.clamp(-1.0, 1.0);
+        let s = [inside, 0.0, 0.0];
         let point = slave.at(face, &s);
-        let (normal, slopes) = nodes.normal(face, &s, at);
-        let value = cross2(&(x - point.x), &normal);
-        let slope = -cross2(&point.tangents[0], &normal) + cross2(&(x - point.x), &slopes[0]);
+        let (normal, mut slopes) = nodes.normal(face, &s, at);
+        if inside != xi {
+            slopes[0] = Point::<D>::zeros();
+        }
+        let d = x - (point.x + point.tangents[0] * (xi - inside));
+        let value = cross2(&d, &normal);
+        let slope = -cross2(&point.tangents[0], &normal) + cross2(&d, &slopes[0]);
         let step = value / slope;
         if !step.is_finite() {
             return None;

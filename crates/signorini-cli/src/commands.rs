@@ -247,7 +247,7 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], json: bool) ->
                 println!("{}", outcome.summary);
             } else {
                 table(&outcome.summary);
-                let first = if outcome.summary["method"] == "mortar" { "deformed" } else { "deflection" };
+                let first = if is_membrane(&outcome.summary) { "deflection" } else { "deformed" };
                 println!(
                     "\nResults in {}: open pictures/{first}.png first, fields.pvd in ParaView; numbers in summary.json.",
                     folder.display()
@@ -265,16 +265,20 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], json: bool) ->
 /// The increments as a table, the warnings, and the verdict.
 fn table(summary: &Value) {
     println!("{}\n", summary["case"].as_str().unwrap_or(""));
-    if summary["method"] == "mortar" {
-        solid_table(summary);
+    if is_membrane(summary) {
+        membrane_table(summary)
     } else {
-        membrane_table(summary);
+        solid_table(summary)
     }
     println!();
     for warning in summary["warnings"].as_array().into_iter().flatten() {
         println!("warning: {}", warning.as_str().unwrap_or(""));
     }
     println!("{}", summary["verdict"].as_str().unwrap_or(""));
+}
+
+fn is_membrane(summary: &Value) -> bool {
+    summary["method"] == "inequality_level_set" || summary["method"] == "active_set"
 }
 
 /// One line per increment and contact.

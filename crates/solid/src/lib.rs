@@ -18,5 +18,7 @@ pub mod supports;
 pub use body::{Bodies, Body, BodySurface};
 pub use loads::{Load, LoadKind};
 pub use material::{Elastic, Space, von_mises};
-pub use model::{Circumstances, Contact, ContactResult, Master, Model, RigidGap, State, StepError};
+pub use model::{
+    Circumstances, Contact, ContactResult, Enforcement, Master, Method, Model, RigidGap, State, StepError,
+};
 pub use supports::{Support, SupportError, SupportKind};

@@ -6,9 +6,11 @@ use crate::stiffness::{Table, stiffness};
 use crate::supports::{Displacement, Reduction, Support, SupportError, beds};
 use rayon::prelude::*;
 use signorini_contact::{
-    ActiveSet, ActiveSetError, Compliance, GapPoint, PressureNodes, Spring, WeightedGap, recovered, rigid_points,
-    segments, weighted_gaps,
+    ActiveSet, ActiveSetError, Compliance, ContactState, ContactSurface, GapPoint, MasterShapes, Meeting,
+    PressureNodes, Softness, Spring, TestPoints, WeightedGap, point_rows, recovered, rigid_points, segments,
+    weighted_gaps,
 };
+use signorini_fem::hierarchic::Values;
 use signorini_geometry::Point;
 use signorini_solve::cholesky::Symbolic;
 use signorini_solve::dissection::nested_dissection;
@@ -24,20 +26,109 @@ pub enum Master<const D: usize> {
     Rigid,
 }
 
+/// Where the contact conditions are tested.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// In the mean, with dual functions on cut faces.
+    Mortar,
+    /// At the pressure nodes of the slave side.
+    Node,
+    /// At its quadrature points.
+    GaussPoint,
+}
+
+/// How the contact conditions are kept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Enforcement {
+    /// Exactly.
+    Multiplier,
+    /// Exactly in the limit of outer iterations with a penalty.
+    AugmentedLagrangian,
+    /// Up to a penetration: the one wanted, or what a hundred times the stiffness of the adjacent cells leaves.
+    Penalty { wanted_penetration: Option<f64> },
+}
+
 /// Two sides that may touch.
 pub struct Contact<const D: usize> {
     pub name: String,
     pub slave: BodySurface<D>,
     pub master: Master<D>,
+    pub method: Method,
+    pub enforcement: Enforcement,
     nodes: PressureNodes<D>,
     points: Vec<Vec<GapPoint<D>>>,
     rows: Vec<WeightedGap>,
+    /// Face and coordinates of the rows of [`Method::GaussPoint`].
+    places: Vec<(usize, signorini_fem::Local)>,
+    /// Pressure per penetration of the cells behind each row.
+    stiffness: Vec<f64>,
 }
 
 impl<const D: usize> Contact<D> {
     pub fn new(name: &str, slave: BodySurface<D>, master: Master<D>) -> Self {
         let nodes = PressureNodes::new(&slave);
-        Contact { name: name.to_string(), slave, master, nodes, points: Vec::new(), rows: Vec::new() }
+        Contact {
+            name: name.to_string(),
+            slave,
+            master,
+            method: Method::Mortar,
+            enforcement: Enforcement::Multiplier,
+            nodes,
+            points: Vec::new(),
+            rows: Vec::new(),
+            places: Vec::new(),
+            stiffness: Vec::new(),
+        }
+    }
+
+    /// The rows of points against closest points of the master.
+    fn search_points(&mut self, test: TestPoints, rigid: Option<&RigidGap<D>>) -> Result<(), StepError> {
+        let reach = 0.5 * self.slave.size();
+        let found = match &self.master {
+            Master::Surface(surface) => {
+                if !self.rows.is_empty() {
+                    return Ok(());
+                }
+                let shapes = MasterShapes::new(surface)
+                    .map_err(|error| StepError::Shape { contact: self.name.clone(), message: error.to_string() })?;
+                point_rows(&self.slave, &self.nodes, test, reach, Some(surface), &|x| shapes.meet(surface, x))
+            }
+            Master::Rigid => point_rows(&self.slave, &self.nodes, test, reach, None, &|x| {
+                let (gap, normal) = rigid?(x);
+                Some(Meeting { gap, normal, foot: None })
+            }),
+        };
+        (self.rows, self.places) = (found.rows, found.places);
+        Ok(())
+    }
+
+    /// Young's modulus over the depth of the cell behind each row.
+    fn find_stiffness(&mut self) {
+        let body = self.slave.body();
+        let of_face: Vec<f64> = (0..self.slave.sides.len())
+            .map(|face| {
+                let side = self.slave.sides[face];
+                let shape = self.slave.shape(face);
+                let middle = self.slave.at(face, &shape.centre());
+                let normal = middle.area_normal().normalize();
+                let depth = (body.mesh.vertices(side.cell as usize))
+                    .map(|v| normal.dot(&(middle.x - body.mesh.nodes()[v as usize])))
+                    .fold(0.0, f64::max);
+                body.material.youngs_modulus / depth.max(f64::MIN_POSITIVE)
+            })
+            .collect();
+        let mut of_node = vec![0.0f64; self.nodes.len()];
+        for face in 0..self.nodes.face_count() {
+            for (node, _) in self.nodes.of_face(face) {
+                of_node[*node as usize] = of_node[*node as usize].max(of_face[face]);
+            }
+        }
+        self.stiffness = (self.rows.iter().enumerate())
+            .map(|(k, row)| match self.method {
+                Method::GaussPoint => of_face[self.places[k].0],
+                _ => of_node[row.node as usize],
+            })
+            .collect();
     }
 
     pub fn nodes(&self) -> &PressureNodes<D> {
@@ -54,14 +145,24 @@ impl<const D: usize> Contact<D> {
     }
 
     /// Finds out what faces what. `rigid` is where a rigid master is now.
-    fn search(&mut self, reduction: &Reduction<D>, rigid: Option<&RigidGap<D>>) {
+    fn search(&mut self, reduction: &Reduction<D>, rigid: Option<&RigidGap<D>>) -> Result<(), StepError> {
+        match self.method {
+            Method::Mortar => self.search_segments(reduction, rigid),
+            Method::Node => self.search_points(TestPoints::Nodes, rigid)?,
+            Method::GaussPoint => self.search_points(TestPoints::Gauss, rigid)?,
+        }
+        self.find_stiffness();
+        Ok(())
+    }
+
+    fn search_segments(&mut self, reduction: &Reduction<D>, rigid: Option<&RigidGap<D>>) {
         let master = match &self.master {
             Master::Surface(surface) => {
                 if self.points.is_empty() {
                     let reach = 0.5 * self.slave.size().max(surface.size());
                     self.points = segments(&self.slave, surface, &self.nodes, reach);
                 }
-                Some(surface as &dyn signorini_contact::ContactSurface<D>)
+                Some(surface as &dyn ContactSurface<D>)
             }
             Master::Rigid => {
                 self.points = match rigid {
@@ -77,7 +178,7 @@ impl<const D: usize> Contact<D> {
         for face in 0..self.slave.sides.len() {
             let map = self.nodes.map(face);
             let places = map.vertex_nodes();
-            let vertices = signorini_contact::ContactSurface::vertices(&self.slave, face);
+            let vertices = self.slave.vertices(face);
             for (v, place) in places.into_iter().enumerate() {
                 let (node, normal) = self.nodes.of_face(face)[place];
                 normals[node as usize] = normal;
@@ -120,6 +221,8 @@ pub enum StepError {
     Contact { contact: String, error: ActiveSetError, places: Vec<String> },
     #[error("body `{body}` is free {motion}")]
     Free { body: String, motion: String },
+    #[error("contact `{contact}`: a face of the master makes no shape: {message}")]
+    Shape { contact: String, message: String },
     /// Most of the slave side is inside the master before anything moves.
     #[error("contact `{contact}`: the bodies start {depth:.4e} deep in each other")]
     Deep { contact: String, depth: f64 },
@@ -269,7 +372,7 @@ impl<const D: usize> Model<D> {
         let mut rows = Vec::new();
         let mut ends = Vec::new();
         for (contact, rigid) in self.contacts.iter_mut().zip(&now.rigid) {
-            contact.search(&self.reduction, rigid.as_ref());
+            contact.search(&self.reduction, rigid.as_ref())?;
             rows.extend(contact.rows.iter().map(|row| reduced(row, &self.reduction, &offset)));
             ends.push(rows.len());
         }
@@ -287,8 +390,7 @@ impl<const D: usize> Model<D> {
             changes.push(changed);
             report(iteration, changed)
         };
-        let found = self.active.solve(&System(&self.factor), &rows, &self.springs, &load, &mut logged);
-        let found = match found {
+        let found = match self.solve_enforced(&rows, &ends, &load, &mut logged) {
             Ok(found) => found,
             Err(ActiveSetError::Interrupted) => return Err(StepError::Interrupted),
             Err(ActiveSetError::Free) => return Err(self.free_body(0)),
@@ -328,15 +430,22 @@ impl<const D: usize> Model<D> {
                 if active {
                     result.area += row.weight;
                 }
-                result.nodes.push(PressureNode {
-                    x: contact.nodes.positions[row.node as usize],
-                    multiplier: pressure,
-                    pressure,
-                    gap: found.gap[first + k] / row.weight,
-                    active,
-                    weight: row.weight,
-                    number: row.node,
-                });
+                if contact.method != Method::GaussPoint {
+                    result.nodes.push(PressureNode {
+                        x: contact.nodes.positions[row.node as usize],
+                        multiplier: pressure,
+                        pressure,
+                        gap: found.gap[first + k] / row.weight,
+                        active,
+                        weight: row.weight,
+                        number: row.node,
+                    });
+                }
+            }
+            if contact.method == Method::GaussPoint {
+                let range = first..end;
+                result.nodes =
+                    contact.averaged(&found.pressure[range.clone()], &found.gap[range.clone()], &found.active[range]);
             }
             first = end;
             let count = contact.nodes.len();
@@ -345,7 +454,10 @@ impl<const D: usize> Model<D> {
                 let k = node.number as usize;
                 (multiplier[k], weight[k], active[k]) = (node.multiplier, node.weight, node.active);
             }
-            let pressure = recovered(&contact.nodes, &contact.points, &multiplier, &weight, &active);
+            let pressure = match contact.method {
+                Method::Mortar => recovered(&contact.nodes, &contact.points, &multiplier, &weight, &active),
+                _ => multiplier,
+            };
             result.nodes.iter_mut().for_each(|node| node.pressure = pressure[node.number as usize]);
             results.push(result);
         }
@@ -379,6 +491,64 @@ impl<const D: usize> Model<D> {
         })
     }
 
+    /// The active set, with outer iterations where the enforcement asks for them.
+    fn solve_enforced(
+        &mut self,
+        rows: &[WeightedGap],
+        ends: &[usize],
+        load: &[f64],
+        report: &mut dyn FnMut(usize, usize) -> bool,
+    ) -> Result<ContactState, ActiveSetError> {
+        let mut soft = vec![Softness::default(); rows.len()];
+        let system = System(&self.factor);
+        let range = |k: usize| if k == 0 { 0..ends[0] } else { ends[k - 1]..ends[k] };
+        // Multiples of the stiffness of the cells.
+        let mut factor = vec![100.0; self.contacts.len()];
+        let mut total = 0;
+        for outer in 0..MOST_OUTER {
+            for (k, contact) in self.contacts.iter().enumerate() {
+                if contact.enforcement == Enforcement::Multiplier {
+                    continue;
+                }
+                for (row, stiffness) in range(k).zip(&contact.stiffness) {
+                    soft[row].compliance = rows[row].weight / (factor[k] * stiffness);
+                }
+            }
+            let mut found = self.active.solve(&system, rows, &soft, &self.springs, load, report)?;
+            total += found.iterations;
+            found.iterations = total;
+            let mut again = false;
+            for (k, contact) in self.contacts.iter().enumerate() {
+                let deepest = |rows_of: &mut dyn Iterator<Item = usize>| {
+                    rows_of.map(|r| -found.gap[r] / rows[r].weight).fold(0.0, f64::max)
+                };
+                match contact.enforcement {
+                    Enforcement::Multiplier | Enforcement::Penalty { wanted_penetration: None } => {}
+                    Enforcement::Penalty { wanted_penetration: Some(wanted) } => {
+                        let reached = deepest(&mut range(k));
+                        if reached > 0.0 && !(0.98..=1.02).contains(&(reached / wanted)) {
+                            factor[k] *= reached / wanted;
+                            again = true;
+                        }
+                    }
+                    Enforcement::AugmentedLagrangian => {
+                        let moved = found.u.iter().fold(0.0f64, |m, u| m.max(u.abs()));
+                        let mut open = range(k).filter(|&r| found.active[r]);
+                        let worst = open.by_ref().map(|r| (found.gap[r] / rows[r].weight).abs()).fold(0.0, f64::max);
+                        if worst > 1e-11 * moved {
+                            range(k).for_each(|r| soft[r].shift = found.pressure[r]);
+                            again = true;
+                        }
+                    }
+                }
+            }
+            if !again || outer + 1 == MOST_OUTER {
+                return if again { Err(ActiveSetError::TooMany { iterations: total }) } else { Ok(found) };
+            }
+        }
+        Err(ActiveSetError::TooMany { iterations: total })
+    }
+
     fn free_body(&self, number: usize) -> StepError {
         match self.free.get(number) {
             Some(mode) => StepError::Free { body: mode.body.clone(), motion: mode.motion.clone() },
@@ -401,6 +571,44 @@ fn positions<const D: usize>(bodies: &Bodies<D>, reduction: &Reduction<D>) -> Ve
     }
     out
 }
+
+impl<const D: usize> Contact<D> {
+    /// Pressures and gaps of quadrature points as means over the pressure nodes.
+    fn averaged(&self, pressure: &[f64], gap: &[f64], active: &[bool]) -> Vec<PressureNode<D>> {
+        let count = self.nodes.len();
+        let (mut weight, mut force, mut gaps, mut carries) =
+            (vec![0.0; count], vec![0.0; count], vec![0.0; count], vec![false; count]);
+        let mut at = Values::default();
+        for (k, (face, s)) in self.places.iter().enumerate() {
+            self.nodes.map(*face).tabulate(s, &mut at);
+            for ((node, _), v) in self.nodes.of_face(*face).iter().zip(&at.value) {
+                let (n, w) = (*node as usize, v * self.rows[k].weight);
+                weight[n] += w;
+                force[n] += w * pressure[k];
+                gaps[n] += v * gap[k];
+                carries[n] |= active[k] && *v > 0.1;
+            }
+        }
+        (0..count)
+            .filter(|&n| weight[n] > 0.0)
+            .map(|n| {
+                let mean = (force[n] / weight[n]).max(0.0);
+                PressureNode {
+                    x: self.nodes.positions[n],
+                    multiplier: mean,
+                    pressure: mean,
+                    gap: gaps[n] / weight[n],
+                    active: carries[n],
+                    weight: weight[n],
+                    number: n as u32,
+                }
+            })
+            .collect()
+    }
+}
+
+/// The most outer iterations of a penalty that is adjusted, or of an augmented Lagrangian.
+const MOST_OUTER: usize = 60;
 
 /// A row in the unknowns that remain.
 fn reduced<const D: usize>(row: &WeightedGap, reduction: &Reduction<D>, offset: &[f64]) -> WeightedGap {

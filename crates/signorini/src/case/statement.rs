@@ -469,9 +469,9 @@ pub struct Contact {
 pub enum Method {
     InequalityLevelSet(LevelSetKey),
     ActiveSet(ActiveSetKey),
-    Mortar(MortarKey),
-    GaussPoint(toml::Table),
-    Node(toml::Table),
+    Mortar(EnforcedKey),
+    GaussPoint(EnforcedKey),
+    Node(EnforcedKey),
 }
 
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -489,7 +489,7 @@ pub struct LevelSetKey {
 
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct MortarKey {
+pub struct EnforcedKey {
     #[serde(default)]
     pub enforcement: Option<Spanned<Enforcement>>,
 }
@@ -498,9 +498,17 @@ pub struct MortarKey {
 #[serde(rename_all = "snake_case")]
 pub enum Enforcement {
     Multiplier(Nothing),
-    AugmentedLagrangian(toml::Table),
+    AugmentedLagrangian(Nothing),
     Nitsche(toml::Table),
-    Penalty(toml::Table),
+    Penalty(PenaltyKey),
+}
+
+/// A penalty is stated by what it may leave, never as a number of its own.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PenaltyKey {
+    #[serde(default)]
+    pub wanted_penetration: Option<Value>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize)]

@@ -9,7 +9,7 @@ use crate::expression::Scope;
 use signorini_fem::block::{block, graded};
 use signorini_fem::{Group, Mesh, Side};
 use signorini_geometry::Point;
-use signorini_solid::{Elastic, LoadKind, SupportKind};
+use signorini_solid::{Elastic, LoadKind, Method as ContactMethod, SupportKind};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
@@ -57,6 +57,8 @@ pub struct SolidContact {
     pub body: usize,
     pub sides: Vec<Side>,
     pub opposite: Opposite,
+    pub method: ContactMethod,
+    pub enforcement: signorini_solid::Enforcement,
 }
 
 /// Solids, what holds and pushes them, and who may touch whom.
@@ -514,6 +516,46 @@ impl Planner<'_> {
         Ok(out)
     }
 
+    fn solid_method(
+        &self,
+        key: &statement::Contact,
+    ) -> Result<(ContactMethod, signorini_solid::Enforcement), CaseError> {
+        use signorini_solid::Enforcement as Kept;
+        let Some(method) = &key.method else { return Ok((ContactMethod::Mortar, Kept::Multiplier)) };
+        let (which, stated) = match method.get_ref() {
+            Method::Mortar(k) => (ContactMethod::Mortar, &k.enforcement),
+            Method::Node(k) => (ContactMethod::Node, &k.enforcement),
+            Method::GaussPoint(k) => (ContactMethod::GaussPoint, &k.enforcement),
+            _ => {
+                return Err(self
+                    .document
+                    .error(method.span(), "this method is for membranes")
+                    .help("solids have  method.mortar = {},  method.node = {}  and  method.gauss_point = {}"));
+            }
+        };
+        let kept = match stated.as_ref().map(|e| (e.get_ref(), e.span())) {
+            None if which == ContactMethod::GaussPoint => Kept::Penalty { wanted_penetration: None },
+            None => Kept::Multiplier,
+            Some((Enforcement::Multiplier(_), span)) if which == ContactMethod::GaussPoint => {
+                return Err(self
+                    .document
+                    .error(span, "a multiplier at every quadrature point holds the surface too tightly")
+                    .help("enforcement.penalty = {}, or method.mortar = {}"));
+            }
+            Some((Enforcement::Multiplier(_), _)) => Kept::Multiplier,
+            Some((Enforcement::AugmentedLagrangian(_), _)) => Kept::AugmentedLagrangian,
+            Some((Enforcement::Penalty(k), _)) => Kept::Penalty {
+                wanted_penetration: k
+                    .wanted_penetration
+                    .as_ref()
+                    .map(|v| self.reader.positive(v, LENGTH))
+                    .transpose()?,
+            },
+            Some((Enforcement::Nitsche(_), span)) => return Err(self.unavailable(span, "Nitsche's method for solids")),
+        };
+        Ok((which, kept))
+    }
+
     fn solid_contacts<const D: usize>(&self, bodies: &[PlannedBody<D>]) -> Result<Vec<SolidContact>, CaseError> {
         let document = self.document;
         let mut out = Vec::new();
@@ -530,21 +572,7 @@ impl Planner<'_> {
             {
                 return Err(self.unavailable(adhesion.energy.span(), "adhesion of solids"));
             }
-            match key.method.as_ref().map(|m| (m.get_ref(), m.span())) {
-                None => {}
-                Some((Method::Mortar(k), _)) => match k.enforcement.as_ref().map(|e| (e.get_ref(), e.span())) {
-                    None | Some((Enforcement::Multiplier(_), _)) => {}
-                    Some((_, span)) => return Err(self.unavailable(span, "this enforcement")),
-                },
-                Some((Method::GaussPoint(_) | Method::Node(_), span)) => {
-                    return Err(self.unavailable(span, "this method").help("method.mortar = {}"));
-                }
-                Some((_, span)) => {
-                    return Err(document
-                        .error(span, "this method is for membranes")
-                        .help("solids have  method.mortar = {}"));
-                }
-            }
+            let (method, enforcement) = self.solid_method(key)?;
             let Some(pair) = key.between.as_ref().filter(|p| p.get_ref().len() == 2 && key.all.is_none()) else {
                 return Err(document
                     .error(contact.span(), "who touches whom is not said")
@@ -571,7 +599,7 @@ impl Planner<'_> {
             if sides.is_empty() {
                 return Err(document.error(first.span(), "there are no sides of cells in this group"));
             }
-            out.push(SolidContact { name: name.clone(), body, sides, opposite });
+            out.push(SolidContact { name: name.clone(), body, sides, opposite, method, enforcement });
         }
         Ok(out)
     }

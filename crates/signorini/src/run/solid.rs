@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use signorini_geometry::Point;
 use signorini_solid::loads::{forces, resultant};
 use signorini_solid::{
-    Bodies, Circumstances, Contact, Load, LoadKind, Master, Model, RigidGap, Space, State, StepError, Support,
+    Bodies, Circumstances, Contact, Load, LoadKind, Master, Method, Model, RigidGap, Space, State, StepError, Support,
     SupportError, SupportKind,
 };
 use signorini_solve::{Iteration, Progress};
@@ -75,7 +75,9 @@ pub fn model<const D: usize>(plan: &SolidPlan<D>) -> Result<Model<D>, CaseError>
                 Opposite::Body { body, sides } => Master::Surface(bodies.surface(*body, sides.clone())),
                 Opposite::Rigid(_) => Master::Rigid,
             };
-            Contact::new(&c.name, slave, master)
+            let mut contact = Contact::new(&c.name, slave, master);
+            (contact.method, contact.enforcement) = (c.method, c.enforcement);
+            contact
         })
         .collect();
     Model::new(bodies, supports, contacts).map_err(|error| {
@@ -355,7 +357,7 @@ impl<const D: usize> Runner<D> {
             "converged": ending == Ending::Converged,
             "reason": failure.map_or("converged", |f| f.reason),
             "verdict": self.verdict(ending, failure),
-            "method": "mortar",
+            "method": method(&self.plan),
             "unknowns": self.model.unknowns(),
             "warnings": self.warnings,
             "steps": self.steps,
@@ -411,6 +413,18 @@ impl<const D: usize> Runner<D> {
     }
 }
 
+/// The method of the contacts, all names where there are several.
+fn method<const D: usize>(plan: &SolidPlan<D>) -> String {
+    let name = |m: Method| match m {
+        Method::Mortar => "mortar",
+        Method::Node => "node",
+        Method::GaussPoint => "gauss_point",
+    };
+    let mut list: Vec<&str> = plan.contacts.iter().map(|c| name(c.method)).collect();
+    list.dedup();
+    if list.is_empty() { "none".into() } else { list.join(", ") }
+}
+
 fn components_len<const D: usize>(shown: &ContactDisplay<D>) -> usize {
     shown.zones().len()
 }
@@ -444,7 +458,9 @@ fn failure(error: &StepError) -> Failure {
             reason: "linear_solver",
             text: format!("{error}; are all bodies held, and are their stiffnesses of one scale?"),
         },
-        StepError::Support(_) | StepError::Deep { .. } => Failure { reason: "input", text: error.to_string() },
+        StepError::Support(_) | StepError::Deep { .. } | StepError::Shape { .. } => {
+            Failure { reason: "input", text: error.to_string() }
+        }
         StepError::Contact { contact, error, places } => Failure {
             reason: "contact",
             text: format!(

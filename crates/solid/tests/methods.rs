@@ -1,0 +1,183 @@
+//! Contact in the mean, at nodes and at quadrature points; kept exactly, by augmented Lagrangians and by penalties.
+
+use signorini_fem::block::block;
+use signorini_geometry::Point;
+use signorini_solid::*;
+
+fn even(from: f64, to: f64, n: usize) -> Vec<f64> {
+    (0..=n).map(|k| from + (to - from) * k as f64 / n as f64).collect()
+}
+
+/// Two blocks with a gap between a wavy and a skewed surface, side by side in part.
+fn blocks<const D: usize>(degree: usize, method: Method, gap: f64) -> Model<D> {
+    let up = D - 1;
+    let mesh = |low: f64, high: f64, n: usize, wave: f64| {
+        let axes: [Vec<f64>; D] = std::array::from_fn(|k| if k == up { even(low, high, 1) } else { even(0.0, 1.0, n) });
+        block::<D>(&axes, 1, |mut x| {
+            x[0] += 0.1 * wave * (3.0 * x[up]).sin() + wave;
+            x[up] += wave * (2.0 * x[0] + x[D - 2]).sin();
+            x
+        })
+    };
+    let (lower, upper) = (mesh(0.0, 0.5, 3, 0.0), mesh(0.5 + gap, 1.0, 2, 0.08));
+    let groups = [lower.groups().clone(), upper.groups().clone()];
+    let mut bodies = Bodies::<D>::new(if D == 2 { Space::PlaneStrain } else { Space::Solid });
+    let material = Elastic { youngs_modulus: 1.0, poissons_ratio: 0.3 };
+    bodies.add("lower", lower, degree, material);
+    bodies.add("upper", upper, degree, material);
+    let fixed = |body: usize, group: &str| Support {
+        name: group.into(),
+        body,
+        group: groups[body][group].clone(),
+        kind: SupportKind::Components(vec![true; D]),
+    };
+    let supports = vec![fixed(0, "bottom"), fixed(1, "top")];
+    let slave = bodies.surface(1, groups[1]["bottom"].sides.clone());
+    let master = bodies.surface(0, groups[0]["top"].sides.clone());
+    let mut contact = Contact::new("touch", slave, Master::Surface(master));
+    contact.method = method;
+    if method == Method::GaussPoint {
+        contact.enforcement = Enforcement::Penalty { wanted_penetration: None };
+    }
+    Model::new(bodies, supports, vec![contact]).unwrap()
+}
+
+/// Unit pressures make forces without resultant and moment, at any gap: they do no work on rigid motions.
+fn balance<const D: usize>() {
+    for degree in [1, 2, 5] {
+        for method in [Method::Mortar, Method::Node, Method::GaussPoint] {
+            for gap in [0.0, 0.03, 0.15] {
+                if D == 3 && degree == 5 {
+                    continue;
+                }
+                let mut model = blocks::<D>(degree, method, gap);
+                let now = Circumstances {
+                    displacement: &|_, _| Point::<D>::zeros(),
+                    load: vec![0.0; model.bodies.unknowns()],
+                    rigid: vec![None],
+                };
+                model.solve(&now, &mut |_, _| true).unwrap();
+                let mut modes: Vec<Box<dyn Fn(&Point<D>) -> Point<D>>> = Vec::new();
+                for i in 0..D {
+                    modes.push(Box::new(move |_| Point::<D>::from_fn(|k, _| f64::from(u8::from(k == i)))));
+                    for j in 0..i {
+                        modes.push(Box::new(move |x| {
+                            let mut u = Point::<D>::zeros();
+                            (u[i], u[j]) = (x[j], -x[i]);
+                            u
+                        }));
+                    }
+                }
+                let rows = model.contacts[0].rows();
+                assert!(!rows.is_empty());
+                for mode in modes {
+                    // On straight cells a rigid motion is carried by the vertices alone.
+                    let mut u = vec![0.0; model.bodies.unknowns()];
+                    for body in &model.bodies.list {
+                        for (node, x) in body.mesh.nodes().iter().enumerate() {
+                            let Some(f) = body.dofs.vertex(node as u32) else { continue };
+                            let moved = mode(x);
+                            for k in 0..D {
+                                u[body.first + f as usize * D + k] = moved[k];
+                            }
+                        }
+                    }
+                    for row in rows {
+                        let work: f64 = row.terms.iter().map(|(i, c)| c * u[*i as usize]).sum();
+                        assert!(
+                            work.abs() < 1e-12 * row.weight.abs().max(1e-3),
+                            "{method:?}, degree {degree}, gap {gap}: {work:e}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn forces_balance_at_any_gap_in_the_plane() {
+    balance::<2>();
+}
+
+#[test]
+fn forces_balance_at_any_gap_in_space() {
+    balance::<3>();
+}
+
+/// The weighted gaps are linear in the displacement of the slave, and the gap itself where nothing turns: the upper
+/// block lowered as a whole.
+#[test]
+fn gaps_close_as_the_bodies_approach() {
+    for method in [Method::Mortar, Method::Node] {
+        let [far, near] = [0.10, 0.04].map(|gap| {
+            let mut model = blocks::<2>(1, method, gap);
+            let now = Circumstances {
+                displacement: &|_, _| Point::<2>::zeros(),
+                load: vec![0.0; model.bodies.unknowns()],
+                rigid: vec![None],
+            };
+            let state = model.solve(&now, &mut |_, _| true).unwrap();
+            state.contacts[0].nodes.iter().map(|n| n.gap).fold(f64::INFINITY, f64::min)
+        });
+        assert!(near < far && (far - near - 0.06).abs() < 0.01, "{method:?}: {far} and {near}");
+    }
+}
+
+/// A block pressed on a rigid sphere: all ways to keep the conditions agree as the penetration vanishes.
+#[test]
+fn enforcements_agree() {
+    let solve = |method: Method, enforcement: Enforcement| {
+        let mesh = block::<2>(&[even(0.0, 1.0, 16), even(0.0, 1.0, 8)], 1, |x| x);
+        let groups = mesh.groups().clone();
+        let mut bodies = Bodies::<2>::new(Space::Axisymmetric);
+        bodies.add("block", mesh, 2, Elastic { youngs_modulus: 10.0, poissons_ratio: 0.3 });
+        let supports = vec![
+            Support {
+                name: "top".into(),
+                body: 0,
+                group: groups["top"].clone(),
+                kind: SupportKind::Components(vec![false, true]),
+            },
+            Support { name: "axis".into(), body: 0, group: groups["left"].clone(), kind: SupportKind::Normal },
+        ];
+        let slave = bodies.surface(0, groups["bottom"].sides.clone());
+        let mut contact = Contact::new("touch", slave, Master::Rigid);
+        (contact.method, contact.enforcement) = (method, enforcement);
+        let mut model = Model::new(bodies, supports, vec![contact]).unwrap();
+        let centre = Point::<2>::new(0.0, -2.0);
+        let now = Circumstances {
+            displacement: &|s, _| Point::<2>::new(0.0, if s == 0 { -0.02 } else { 0.0 }),
+            load: vec![0.0; model.bodies.unknowns()],
+            rigid: vec![Some(Box::new(move |x: &Point<2>| {
+                let d = x - centre;
+                (d.norm() - 2.0, d.normalize())
+            }))],
+        };
+        let state = model.solve(&now, &mut |_, _| true).unwrap();
+        let deepest = state.contacts[0].nodes.iter().map(|n| -n.gap).fold(0.0, f64::max);
+        assert!(state.imbalance < 1e-10);
+        (state.contacts[0].force[1], deepest)
+    };
+    let (exact, _) = solve(Method::Mortar, Enforcement::Multiplier);
+    let (lagrangian, open) = solve(Method::Mortar, Enforcement::AugmentedLagrangian);
+    assert!((lagrangian / exact - 1.0).abs() < 1e-8 && open < 1e-10);
+    for method in [Method::Mortar, Method::Node, Method::GaussPoint] {
+        let mut before = f64::INFINITY;
+        for wanted in [1e-4, 1e-5, 1e-6] {
+            let (force, deepest) = solve(method, Enforcement::Penalty { wanted_penetration: Some(wanted) });
+            if method != Method::GaussPoint {
+                assert!((deepest / wanted - 1.0).abs() < 0.03, "{method:?}: {deepest} for {wanted}");
+            }
+            let error = (force / exact - 1.0).abs();
+            if method == Method::GaussPoint {
+                // A stiff penalty at every quadrature point holds more than the functions can follow.
+                assert!(error < 0.02);
+                continue;
+            }
+            assert!(error < before || error < 3e-3, "{method:?}: {error:e} at {wanted}");
+            before = error;
+        }
+        assert!(method == Method::GaussPoint || before < 5e-3, "{method:?}: {before:e}");
+    }
+}

@@ -15,7 +15,7 @@ macro_rules! example {
 }
 
 /// Cases with mechanics, simplest first.
-pub const GALLERY: [Example; 14] = [
+pub const GALLERY: [Example; 15] = [
     example!("string", "a string on a flat floor, beside the exact solution"),
     example!("axisymmetric", "a round membrane by its radius, beside the exact solution"),
     example!("flat_disc", "the same membrane in the plane, on a grid that its edge cuts"),
@@ -30,7 +30,13 @@ pub const GALLERY: [Example; 14] = [
     example!("cylinder_on_block", "NAFEMS CB-1 without friction: steel on aluminium, beside Hertz"),
     example!("high_order_blocks", "a few cells of degree 6 on either side of a curved contact"),
     example!("torus", "an elastic block on a rigid torus, exactly round"),
+    example!("die", "a NURBS die pressed into an elastic block"),
 ];
+
+/// A file that a case of the gallery names.
+pub fn asset(name: &str) -> Option<&'static str> {
+    (name == "die.json").then_some(include_str!("../../../gallery/die/die.json"))
+}
 
 /// Scenes: bodies that move, and their closest pairs.
 pub const SCENES: [Example; 1] =

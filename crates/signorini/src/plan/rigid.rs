@@ -231,7 +231,7 @@ pub(super) fn read<const D: usize>(planner: &Planner<'_>, name: &str, rigid: &Ri
         }
         Shape::Stl(key) => {
             only_in_space(rigid.shape.span(), "triangulated surface")?;
-            let path = planner.file(key.file.get_ref());
+            let (path, _) = planner.read_file(&key.file)?;
             let mesh = crate::mesh_file::read(&path).map_err(|e| document.error(key.file.span(), e.to_string()))?;
             if !mesh.quality().has_inside() {
                 return Err(document
@@ -242,10 +242,8 @@ pub(super) fn read<const D: usize>(planner: &Planner<'_>, name: &str, rigid: &Ri
         }
         Shape::Nurbs(key) => {
             only_in_space(rigid.shape.span(), "NURBS surface")?;
-            let path = planner.file(key.file.get_ref());
-            let text = std::fs::read_to_string(&path)
-                .map_err(|e| document.error(key.file.span(), format!("cannot read `{}`: {e}", path.display())))?;
-            let value: serde_json::Value = serde_json::from_str(&text)
+            let (path, bytes) = planner.read_file(&key.file)?;
+            let value: serde_json::Value = serde_json::from_slice(&bytes)
                 .map_err(|e| document.error(key.file.span(), format!("`{}` is not JSON: {e}", path.display())))?;
             let shape = geometry::shape("surface", &value, path.parent().unwrap_or(std::path::Path::new("")))
                 .map_err(|e| document.error(key.file.span(), format!("`{}`: {e}", path.display())))?;

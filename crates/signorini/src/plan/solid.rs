@@ -96,10 +96,17 @@ pub fn evaluate<const D: usize>(
 }
 
 impl Planner<'_> {
-    /// A file named in the case, beside the case.
-    pub(super) fn file(&self, name: &str) -> std::path::PathBuf {
+    /// A file named in the case, beside the case; the files of the gallery are carried in the program.
+    pub(super) fn read_file(&self, name: &toml::Spanned<String>) -> Result<(std::path::PathBuf, Vec<u8>), CaseError> {
         let folder = std::path::Path::new(&self.document.name).parent();
-        folder.unwrap_or(std::path::Path::new("")).join(name)
+        let path = folder.unwrap_or(std::path::Path::new("")).join(name.get_ref());
+        match (std::fs::read(&path), crate::gallery::asset(name.get_ref())) {
+            (Ok(bytes), _) => Ok((path, bytes)),
+            (Err(_), Some(text)) => Ok((path, text.as_bytes().to_vec())),
+            (Err(e), None) => {
+                Err(self.document.error(name.span(), format!("`{}`: cannot be read: {e}", path.display())))
+            }
+        }
     }
 
     fn coordinates<const D: usize>(&self) -> &'static [&'static str] {
@@ -637,9 +644,8 @@ fn axis_supports<const D: usize>(bodies: &[PlannedBody<D>]) -> Vec<SolidSupport>
 
 impl Planner<'_> {
     fn gmsh<const D: usize>(&self, key: &statement::GmshKey) -> Result<Mesh<D>, CaseError> {
-        let path = self.file(key.file.get_ref());
+        let (path, bytes) = self.read_file(&key.file)?;
         let fail = |message: String| self.document.error(key.file.span(), format!("`{}`: {message}", path.display()));
-        let bytes = std::fs::read(&path).map_err(|e| fail(format!("cannot be read: {e}")))?;
         let file = signorini_fem::gmsh::GmshFile::parse(&bytes).map_err(|e| fail(e.to_string()))?;
         file.mesh::<D>(key.group.as_deref()).map_err(|e| fail(e.to_string()))
     }

@@ -27,6 +27,7 @@ use crate::patch::{Atlas, Chart, Piece, PointChart};
 use crate::shape::Shape;
 use crate::{Point, Vector};
 use classify::{Named, projection};
+use rayon::prelude::*;
 use search::{Effort, search};
 
 /// What a query asks for.
@@ -42,6 +43,29 @@ impl Default for Query {
     fn default() -> Self {
         Query { tie: 1e-10, local_minima: false }
     }
+}
+
+/// Closest points of many points to one shape, in the order of the points, on all threads of the current pool. The answers
+/// do not depend on their number.
+///
+/// ```
+/// use signorini_geometry::shape::{Axes, Shape, Surface};
+/// use signorini_geometry::{Point, closest::{Query, closest_points}};
+/// let torus = Surface::torus(Axes::standard(Point::<3>::zeros()), 2.0, 0.5, [[0.0, std::f64::consts::TAU]; 2], [true; 2]);
+/// let points = [Point::<3>::new(3.0, 0.0, 0.0), Point::<3>::new(0.0, -2.0, 1.0)];
+/// let answers = closest_points(&points, &torus.unwrap().into(), &Query::default());
+/// assert!(answers.iter().all(|a| (a.distance() - 0.5).abs() < 1e-15));
+/// ```
+pub fn closest_points(points: &[Point<3>], shape: &Shape, query: &Query) -> Vec<Projection> {
+    points.par_iter().map(|p| closest(&Shape::Point(*p), shape, query)).collect()
+}
+
+/// Closest points of many pairs of shapes, given by their numbers in two lists, as [`closest_points`] does.
+///
+/// # Panics
+/// If a number is not one of a list.
+pub fn closest_pairs(a: &[Shape], b: &[Shape], pairs: &[(usize, usize)], query: &Query) -> Vec<Projection> {
+    pairs.par_iter().map(|&(i, j)| closest(&a[i], &b[j], query)).collect()
 }
 
 /// Closest points of two shapes.
@@ -209,4 +233,31 @@ where
         magnitude,
     };
     projection::<A, B, N, CA, CB>(a, b, query, size, search::<A, B, N, CA, CB>(a, b, effort))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::Curve;
+
+    #[test]
+    fn batches_are_single_queries_in_order() {
+        let shapes: Vec<Shape> = (0..4)
+            .map(|k| {
+                let x = f64::from(k);
+                Curve::segment(Point::<3>::new(x, 0.0, 0.0), Point::<3>::new(x, 1.0, x)).unwrap().into()
+            })
+            .collect();
+        let points: Vec<Point<3>> = (0..50).map(|k| Point::<3>::repeat(f64::from(k) * 0.1)).collect();
+        let query = Query::default();
+        let batch = closest_points(&points, &shapes[2], &query);
+        for (p, answer) in points.iter().zip(&batch) {
+            assert_eq!(answer.closest, closest(&Shape::Point(*p), &shapes[2], &query).closest);
+        }
+        let pairs = [(0, 3), (3, 1), (1, 2)];
+        let batch = closest_pairs(&shapes, &shapes, &pairs, &query);
+        for (p, answer) in pairs.iter().zip(&batch) {
+            assert_eq!(answer.distance(), closest(&shapes[p.0], &shapes[p.1], &query).distance());
+        }
+    }
 }

@@ -316,7 +316,7 @@ pub enum Shape {
     Nurbs(FileKey),
     Stl(FileKey),
     HeightMap(toml::Table),
-    LevelSet(toml::Table),
+    LevelSet(LevelSetShapeKey),
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -377,6 +377,18 @@ pub struct ParaboloidKey {
     pub axis: Values,
     /// Of curvature at the apex.
     pub radius: Value,
+}
+
+/// A body where an expression of x, y and z is negative, within a box.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LevelSetShapeKey {
+    pub negative_inside: Value,
+    pub min: Values,
+    pub max: Values,
+    /// Cells of the grid from which closest points are searched, along the longest side; 64 if left out.
+    #[serde(default)]
+    pub cells: Option<Spanned<i64>>,
 }
 
 #[derive(Clone, Debug, Deserialize)]

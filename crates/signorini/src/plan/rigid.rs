@@ -4,12 +4,14 @@ use super::{Placed, Planner};
 use crate::case::statement::{Motion, Rigid, Shape, Side};
 use crate::case::units::{LENGTH, NONE};
 use crate::case::{CaseError, Values};
-use crate::expression::Scope;
+use crate::expression::{Expression, Scope};
 use crate::queries::geometry;
 use signorini_geometry::closest::{Query, closest, signed_gap};
 use signorini_geometry::frame::SurfaceFrame;
-use signorini_geometry::shape::{Axes, Shape as Geometry, Surface};
-use signorini_geometry::{Point, Vector};
+use signorini_geometry::implicit_surface::{ImplicitBody, ImplicitSurface};
+use signorini_geometry::rigid::RigidMotion;
+use signorini_geometry::shape::{Axes, Shape as Geometry, ShapeError, Surface};
+use signorini_geometry::{Aabb, Jet, Point, Real, Vector};
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
 
@@ -21,6 +23,9 @@ pub struct RigidBody {
     inside: bool,
     /// Displacement along x, y, z as expressions of time; empty for a body at rest.
     pub displacement: Vec<Placed>,
+    /// Rotation vector in radians, about the centre.
+    pub rotation: Vec<Placed>,
+    centre: Point<3>,
 }
 
 /// Shapes with closed forms, unbounded where they are; everything else through certified closest points.
@@ -50,6 +55,7 @@ enum Form {
         major: f64,
         minor: f64,
     },
+    Implicit(Box<ImplicitSurface>),
     /// Whether normals of the shape point out of the body.
     General {
         shape: Geometry,
@@ -91,6 +97,10 @@ impl Form {
                 let from_ring = d - e * *major;
                 (from_ring.norm() - minor, unit(from_ring, *axis))
             }
+            Form::Implicit(surface) => {
+                let foot = surface.closest(x);
+                (foot.gap, foot.normal)
+            }
             Form::General { shape, outward } => {
                 let found = closest(&Geometry::Point(*x), shape, &Query::default()).closest;
                 let d = found.a.point - found.b.point;
@@ -117,27 +127,39 @@ fn any_normal(axis: &Vector<3>) -> Vector<3> {
 }
 
 impl RigidBody {
-    /// The displacement at a time.
-    pub fn displacement_at(&self, time: f64) -> [f64; 3] {
+    /// Displacement and rotation vector at a time.
+    pub fn motion_at(&self, time: f64) -> [Vector<3>; 2] {
         let at = |p: &Placed| p.expression.evaluate(&Scope { position: [f64::NAN; 3], time });
-        let mut out = [0.0; 3];
-        out.iter_mut().zip(&self.displacement).for_each(|(o, p)| *o = at(p));
-        out
+        let vector = |list: &[Placed]| Vector::<3>::from_fn(|k, _| list.get(k).map_or(0.0, at));
+        // In the plane the one rotation there is turns about the axis across it.
+        let rotation =
+            if let [angle] = &self.rotation[..] { Vector::<3>::z() * at(angle) } else { vector(&self.rotation) };
+        [vector(&self.displacement), rotation]
     }
 
     /// The gap of a point and the outward normal at a time.
     pub fn gap_at(&self, time: f64) -> impl Fn(&Point<3>) -> (f64, Vector<3>) + Sync + Send + 'static {
-        let moved = Vector::<3>::from(self.displacement_at(time));
+        let [moved, turned] = self.motion_at(time);
+        let back = RigidMotion::new(-turned, self.centre, Vector::<3>::zeros());
+        let forth = RigidMotion::new(turned, self.centre, Vector::<3>::zeros());
         let (form, inside) = (Arc::clone(&self.form), self.inside);
         move |x| {
-            let (gap, normal) = form.gap(&(x - moved));
+            let (gap, normal) = form.gap(&back.point(&(x - moved)));
+            let normal = forth.vector(&normal);
             if inside { (-gap, -normal) } else { (gap, normal) }
         }
     }
 }
 
 /// Reads a rigid body; in the plane vectors have two components.
-pub(super) fn read<const D: usize>(planner: &Planner<'_>, name: &str, rigid: &Rigid) -> Result<RigidBody, CaseError> {
+///
+/// `around` is the box of the solids, within which a height is known.
+pub(super) fn read<const D: usize>(
+    planner: &Planner<'_>,
+    name: &str,
+    rigid: &Rigid,
+    around: &Aabb<3>,
+) -> Result<RigidBody, CaseError> {
     let document = planner.document;
     let spatial = |values: &Values, dimension| -> Result<Vector<3>, CaseError> {
         let list = planner.reader.numbers::<D>(values, dimension)?;
@@ -156,7 +178,7 @@ pub(super) fn read<const D: usize>(planner: &Planner<'_>, name: &str, rigid: &Ri
             .help("in the plane: plane, sphere (a circle), cylinder, ellipsoid (an ellipse)"))
     };
     let whole = [[0.0, TAU], [-FRAC_PI_2, FRAC_PI_2]];
-    let wrong = |error: signorini_geometry::shape::ShapeError| document.error(rigid.shape.span(), error.to_string());
+    let wrong = |error: ShapeError| document.error(rigid.shape.span(), error.to_string());
     let form = match rigid.shape.get_ref() {
         Shape::Plane(key) => Form::Plane { point: spatial(&key.point, LENGTH)?, normal: direction(&key.normal)? },
         Shape::Sphere(key) => Form::Sphere {
@@ -252,19 +274,63 @@ pub(super) fn read<const D: usize>(planner: &Planner<'_>, name: &str, rigid: &Ri
             }
             Form::General { shape, outward: true }
         }
-        Shape::Height(_) | Shape::HeightMap(_) | Shape::LevelSet(_) => {
-            return Err(planner.unavailable(rigid.shape.span(), "this shape against a solid"));
+        Shape::LevelSet(key) => {
+            let (low, high) = (spatial(&key.min, LENGTH)?, spatial(&key.max, LENGTH)?);
+            let cells = match &key.cells {
+                None => 64,
+                Some(n) if (2..=512).contains(n.get_ref()) => *n.get_ref() as usize,
+                Some(n) => return Err(document.error(n.span(), "give a number of cells from 2 to 512")),
+            };
+            let variables: &[&'static str] = if D == 2 { &["x", "y"] } else { &["x", "y", "z"] };
+            let expression = planner.reader.expression(&key.negative_inside, LENGTH, variables)?;
+            implicit(expression, flat_box::<D>(low, high), cells).map_err(wrong)?
         }
+        Shape::Height(value) => {
+            // The body below the height: z - h(x, y), or y - h(x) in the plane.
+            let variables: &[&'static str] = if D == 2 { &["x"] } else { &["x", "y"] };
+            let height = planner.reader.expression(value, LENGTH, variables)?;
+            let up = D - 1;
+            let field = move |x: &Point<3>| {
+                let position = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));
+                position[up] - height.evaluate(&Scope { position, time: Jet::<3>::constant(0.0) })
+            };
+            let surface = ImplicitSurface::new(ImplicitBody::field(field), *around, 64).map_err(|e| {
+                wrong(e).help("the height must cross the box around the solids, twice as long as they are")
+            })?;
+            Form::Implicit(Box::new(surface))
+        }
+        Shape::HeightMap(_) => return Err(planner.unavailable(rigid.shape.span(), "a height map against a solid")),
+    };
+    let centre = match &form {
+        Form::Plane { point, .. } | Form::Cylinder { point, .. } => *point,
+        Form::Sphere { center, .. } | Form::Torus { center, .. } => *center,
+        Form::Cone { apex, .. } => *apex,
+        Form::Implicit(_) | Form::General { .. } => match rigid.shape.get_ref() {
+            Shape::Ellipsoid(key) => spatial(&key.center, LENGTH)?,
+            Shape::Paraboloid(key) => spatial(&key.apex, LENGTH)?,
+            _ => Point::<3>::zeros(),
+        },
     };
     let inside = rigid.side.as_ref().is_some_and(|s| *s.get_ref() == Side::Inside);
-    let mut displacement = Vec::new();
+    let (mut displacement, mut rotation) = (Vec::new(), Vec::new());
     match rigid.motion.as_ref().map(|m| (m.get_ref(), m.span())) {
         None | Some((Motion::Fixed(_), _)) => {}
         Some((Motion::Free(_), span)) => return Err(planner.unavailable(span, "a rigid body that moves freely")),
         Some((Motion::Prescribed(motion), _)) => {
-            for v in motion.rotation.iter().flat_map(|r| r.get_ref()) {
-                if planner.reader.expression(v, NONE, &["t"])?.constant() != Some(0.0) {
-                    return Err(planner.unavailable(v.span(), "rotation of a rigid body"));
+            if let Some(values) = &motion.rotation {
+                let wanted = if D == 2 { 1 } else { 3 };
+                if values.get_ref().len() != wanted {
+                    let found = values.get_ref().len();
+                    return Err(document
+                        .error(values.span(), format!("expected {wanted} components of the rotation, found {found}"))
+                        .help("in the plane [angle], in space a rotation vector, in radians"));
+                }
+                for (k, v) in values.get_ref().iter().enumerate() {
+                    rotation.push(Placed {
+                        expression: planner.reader.expression(v, NONE, &["t"])?,
+                        span: v.span(),
+                        key: format!("bodies.{name}.rigid.motion.prescribed.rotation[{k}]"),
+                    });
                 }
             }
             if let Some(values) = &motion.displacement {
@@ -282,12 +348,48 @@ pub(super) fn read<const D: usize>(planner: &Planner<'_>, name: &str, rigid: &Ri
             }
         }
     }
-    Ok(RigidBody { name: name.to_string(), form: Arc::new(form), inside, displacement })
+    Ok(RigidBody { name: name.to_string(), form: Arc::new(form), inside, displacement, rotation, centre })
+}
+
+/// A body where an expression is negative.
+fn implicit(expression: Expression, bounds: Aabb<3>, cells: usize) -> Result<Form, ShapeError> {
+    let field = move |x: &Point<3>| {
+        let position = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));
+        expression.evaluate(&Scope { position, time: Jet::<3>::constant(0.0) })
+    };
+    Ok(Form::Implicit(Box::new(ImplicitSurface::new(ImplicitBody::field(field), bounds, cells)?)))
+}
+
+/// In the plane bodies reach across it on both sides, so that closest points stay in it.
+pub(super) fn flat_box<const D: usize>(low: Vector<3>, high: Vector<3>) -> Aabb<3> {
+    let (mut low, mut high) = (low, high);
+    if D == 2 {
+        let depth = 0.1 * (high - low).norm();
+        (low[2], high[2]) = (-depth, depth);
+    }
+    Aabb::new(low, high)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_turned_body_turns_its_gap_and_normal() {
+        let number = |v: f64| Placed { expression: Expression::number(v), span: 0..0, key: String::new() };
+        let form = Form::Plane { point: Point::<3>::new(1.0, 0.0, 0.0), normal: Vector::<3>::y() };
+        let body = RigidBody {
+            name: "plane".into(),
+            form: Arc::new(form),
+            inside: false,
+            displacement: vec![number(0.0), number(0.5)],
+            rotation: vec![number(FRAC_PI_2)],
+            centre: Point::<3>::new(1.0, 0.0, 0.0),
+        };
+        // A quarter turn lets the plane look along -x, through (1, 0.5, 0).
+        let (gap, normal) = body.gap_at(0.0)(&Point::<3>::new(0.25, 7.0, 0.0));
+        assert!((gap - 0.75).abs() < 1e-14 && (normal + Vector::<3>::x()).norm() < 1e-14, "{gap} {normal:?}");
+    }
 
     #[test]
     fn normals_are_gradients_of_the_gap() {
@@ -312,6 +414,16 @@ mod tests {
                 outward: true,
             },
             Form::General { shape: paraboloid.into(), outward: false },
+            implicit(
+                crate::expression::parse(
+                    "x^2 + 2*y^2 + 3*z^2 - 0.2",
+                    &crate::expression::Names { variables: vec!["x", "y", "z"], ..Default::default() },
+                )
+                .unwrap(),
+                Aabb::new(Point::<3>::repeat(-1.0), Point::<3>::repeat(1.0)),
+                40,
+            )
+            .unwrap(),
         ];
         for (k, form) in forms.iter().enumerate() {
             for x in

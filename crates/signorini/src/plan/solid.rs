@@ -565,6 +565,7 @@ impl Planner<'_> {
 
     fn solid_contacts<const D: usize>(&self, bodies: &[PlannedBody<D>]) -> Result<Vec<SolidContact>, CaseError> {
         let document = self.document;
+        let around = around(bodies);
         let mut out = Vec::new();
         for (name, contact) in &document.case.contacts {
             let key = contact.get_ref();
@@ -589,7 +590,7 @@ impl Planner<'_> {
             let (body, group) = self.solid_place(first, bodies)?;
             let sides = contact_sides(&bodies[body].mesh, group);
             let rigid = match document.case.bodies.get(second.get_ref()).map(|b| b.get_ref()) {
-                Some(Body::Rigid(rigid)) => Some(rigid::read::<D>(self, second.get_ref(), rigid)?),
+                Some(Body::Rigid(rigid)) => Some(rigid::read::<D>(self, second.get_ref(), rigid, &around)?),
                 _ => None,
             };
             let opposite = match rigid {
@@ -610,6 +611,16 @@ impl Planner<'_> {
         }
         Ok(out)
     }
+}
+
+/// The box around all bodies, twice as long.
+fn around<const D: usize>(bodies: &[PlannedBody<D>]) -> signorini_geometry::Aabb<3> {
+    let all = || bodies.iter().flat_map(|b| b.mesh.nodes());
+    let low = all().fold(Point::<D>::repeat(f64::INFINITY), |l, x| l.inf(x));
+    let high = all().fold(Point::<D>::repeat(f64::NEG_INFINITY), |h, x| h.sup(x));
+    let pad = 0.5 * (high - low).amax();
+    let spatial = |x: &Point<D>, by: f64| Point::<3>::from_fn(|k, _| if k < D { x[k] + by } else { 0.0 });
+    rigid::flat_box::<D>(spatial(&low, -pad), spatial(&high, pad))
 }
 
 fn contact_sides<const D: usize>(mesh: &Mesh<D>, group: Option<Group>) -> Vec<Side> {

@@ -145,3 +145,37 @@ fn one_and_two_threads() {
     });
     assert_eq!(one["steps"], two["steps"]);
 }
+
+/// A parabola as a height and as a level set, and the circle and the ellipse that osculate it, press a block alike; a
+/// rotation about its own centre does not move a circle.
+#[test]
+fn rigid_shapes_of_one_curvature_agree() {
+    let case = |shape: &str, motion: &str| {
+        format!(
+            "space = \"plane_strain\"\n[bodies.block.solid]\n\
+             mesh.box = {{ min = [-1, 0], max = [1, 1], cells = [40, 10] }}\ndegree = 2\n\
+             material.linear_elastic = {{ youngs_modulus = 10, poissons_ratio = 0.3 }}\n\
+             [bodies.bump.rigid]\n{shape}\n{motion}\n\
+             [supports.top]\non = \"block:top\"\ndisplacement = [0, \"-0.02*t\"]\n\
+             [contacts.touch]\nbetween = [\"block:bottom\", \"bump\"]\n[[steps]]\nto = 1\n"
+        )
+    };
+    let force =
+        |shape: &str, motion: &str| at(last_step(&summary(&case(shape, motion), &set(&[]))), "/contacts/touch/force/1");
+    let height = force("shape.height = \"-0.3*x^2\"", "");
+    let level_set = "shape.level_set = { negative_inside = \"y + 0.3*x^2\", min = [-2, -2], max = [2, 1] }";
+    assert!((force(level_set, "") / height - 1.0).abs() < 1e-9);
+    let circle = "shape.cylinder = { point = [0, -1.6666666666666667], radius = 1.6666666666666667 }";
+    let plain = force(circle, "");
+    assert!((plain / height - 1.0).abs() < 1e-3);
+    assert!((force(circle, "motion.prescribed = { rotation = [\"2*t\"] }") / plain - 1.0).abs() < 1e-10);
+    let ellipse = "shape.ellipsoid = { center = [0, -1], semi_axes = [1.2909944487358056, 1] }";
+    assert!((force(ellipse, "") / height - 1.0).abs() < 1e-3);
+    // Upside down it is itself too, on its side it is not.
+    let turned = |angle: f64| force(ellipse, &format!("motion.prescribed = {{ rotation = [\"{angle}*t\"] }}"));
+    assert!((turned(std::f64::consts::PI) / force(ellipse, "") - 1.0).abs() < 1e-8);
+    assert_eq!(turned(0.0), force(ellipse, ""));
+    // Lifted by a hundredth instead of the block lowered by as much more.
+    let lifted = force(circle, "motion.prescribed = { displacement = [0, \"0.01*t\"] }");
+    assert!(lifted > 1.3 * plain);
+}

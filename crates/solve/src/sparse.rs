@@ -95,29 +95,34 @@ impl SymmetricMatrix {
             start[b + 1] += start[b];
         }
         let mut fill = start.clone();
-        let mut entries = vec![(0usize, 0.0); start[columns]];
+        let mut rows = vec![0usize; start[columns]];
+        let mut values = vec![0.0; start[columns]];
         each(&mut |a, b, value| {
-            entries[fill[b]] = (a, value);
+            (rows[fill[b]], values[fill[b]]) = (a, value);
             fill[b] += 1;
         });
-        let mut out = Self { column_start: vec![0], row: Vec::new(), value: Vec::new() };
+        // Columns are sorted one by one, and what meets is added up on the way to the front.
+        let mut column_start = vec![0];
+        let mut end = 0;
+        let mut list: Vec<(usize, f64)> = Vec::new();
         for b in 0..columns {
-            let list = &mut entries[start[b]..start[b + 1]];
+            list.clear();
+            list.extend((start[b]..start[b + 1]).map(|k| (rows[k], values[k])));
             list.sort_by_key(|e| e.0);
-            let first = out.row.len();
-            for &(a, value) in list.iter() {
-                if out.row.len() > first && out.row.last() == Some(&a) {
-                    if let Some(last) = out.value.last_mut() {
-                        *last += value;
-                    }
+            let first = end;
+            for &(a, value) in &list {
+                if end > first && rows[end - 1] == a {
+                    values[end - 1] += value;
                 } else {
-                    out.row.push(a);
-                    out.value.push(value);
+                    (rows[end], values[end]) = (a, value);
+                    end += 1;
                 }
             }
-            out.column_start.push(out.row.len());
+            column_start.push(end);
         }
-        out
+        rows.truncate(end);
+        values.truncate(end);
+        Self { column_start, row: rows, value: values }
     }
 
     /// The entries of the diagonal.

@@ -4,10 +4,13 @@
 //! - [`body`]: bodies and the parts of their boundary.
 //! - [`stiffness`]: cells, and how they avoid locking.
 //! - [`supports`]: what is prescribed, and the unknowns that remain; [`rigid_modes`]: what nothing holds.
+//! - [`contact`]: two sides that may touch.
 //! - [`loads`]: forces on sides and in volumes.
 //! - [`model`]: everything together, solved at one time.
 
+mod assembly;
 pub mod body;
+pub mod contact;
 pub mod loads;
 pub mod material;
 pub mod model;
@@ -16,9 +19,8 @@ pub mod stiffness;
 pub mod supports;
 
 pub use body::{Bodies, Body, BodySurface};
+pub use contact::{Contact, ContactResult, Enforcement, Master, Method, PressureNode, RigidGap};
 pub use loads::{Load, LoadKind};
 pub use material::{Elastic, Space, von_mises};
-pub use model::{
-    Circumstances, Contact, ContactResult, Enforcement, Master, Method, Model, RigidGap, State, StepError,
-};
+pub use model::{Circumstances, Model, State, StepError};
 pub use supports::{Support, SupportError, SupportKind};

@@ -1,0 +1,80 @@
+//! The stiffness of all bodies, and where its unknowns are.
+
+use crate::body::Bodies;
+use crate::stiffness::{Table, stiffness};
+use crate::supports::{Reduction, Support, beds};
+use rayon::prelude::*;
+use signorini_solve::SymmetricMatrix;
+use std::collections::HashMap;
+
+/// Where the unknowns that remain are.
+pub(crate) fn positions<const D: usize>(bodies: &Bodies<D>, reduction: &Reduction<D>) -> Vec<[f64; D]> {
+    let mut out = vec![[0.0; D]; reduction.unknowns];
+    for body in &bodies.list {
+        for (f, x) in body.function_positions().into_iter().enumerate() {
+            for i in 0..D {
+                for (unknown, _) in reduction.row(body.first + f * D + i) {
+                    out[*unknown as usize] = std::array::from_fn(|k| x[k]);
+                }
+            }
+        }
+    }
+    out
+}
+
+/// The stiffness of all bodies and elastic beds.
+pub(crate) fn assemble<const D: usize>(bodies: &Bodies<D>, supports: &[Support]) -> SymmetricMatrix {
+    let mut cliques: Vec<Vec<u32>> = Vec::new();
+    for body in &bodies.list {
+        for cell in 0..body.mesh.cell_count() {
+            let unknowns = body
+                .dofs
+                .cell(cell)
+                .iter()
+                .flat_map(|(f, _)| (0..D).map(move |i| (body.first + *f as usize * D + i) as u32));
+            cliques.push(unknowns.collect());
+        }
+    }
+    let beds = beds(bodies, supports);
+    let cells = cliques.len();
+    cliques.extend(beds.iter().map(|b| b.0.clone()));
+    let mut matrix = SymmetricMatrix::from_cliques(bodies.unknowns(), &cliques);
+    for ((unknowns, values), _) in beds.iter().zip(cells..) {
+        matrix.add(unknowns, values, 1.0);
+    }
+    let mut number = 0;
+    for body in &bodies.list {
+        let mut tables: HashMap<(usize, usize), Table> = HashMap::new();
+        for cell in 0..body.mesh.cell_count() {
+            let key = (body.mesh.map_number(cell), body.dofs.basis_number(cell));
+            tables.entry(key).or_insert_with(|| Table::new(&body.mesh, &body.dofs, cell));
+        }
+        // Matrices in parallel, sums in order.
+        let all: Vec<usize> = (0..body.mesh.cell_count()).collect();
+        for chunk in all.chunks(512) {
+            let matrices: Vec<Vec<f64>> = chunk
+                .par_iter()
+                .map(|&cell| {
+                    let table = &tables[&(body.mesh.map_number(cell), body.dofs.basis_number(cell))];
+                    let basis = body.dofs.basis(cell);
+                    let k = stiffness(&body.mesh, cell, table, basis, &body.material, bodies.space);
+                    let signs: Vec<f64> =
+                        body.dofs.cell(cell).iter().flat_map(|(_, s)| std::iter::repeat_n(*s, D)).collect();
+                    let n = signs.len();
+                    let mut out = vec![0.0; n * n];
+                    for a in 0..n {
+                        for b in 0..n {
+                            out[a * n + b] = signs[a] * signs[b] * k[(a, b)];
+                        }
+                    }
+                    out
+                })
+                .collect();
+            for values in matrices {
+                matrix.add(&cliques[number], &values, 1.0);
+                number += 1;
+            }
+        }
+    }
+    matrix
+}

@@ -26,6 +26,8 @@ pub struct WeightedGap {
 
 /// Faces covered less than this keep the plain Lagrange functions; nodes covered less give theirs away.
 const WEAK: f64 = 0.25;
+/// Share of the area of its faces, per node, below which a node has no weight.
+const WEIGHTLESS: f64 = 1e-6;
 /// Share of a mid-edge function of a quadratic triangle that goes to each corner.
 const SHARE: f64 = 0.2;
 
@@ -38,10 +40,11 @@ pub fn weighted_gaps<const D: usize>(
     nodes: &PressureNodes<D>,
     points: &[Vec<GapPoint<D>>],
     folded: &dyn Fn(u32) -> bool,
-) -> Vec<WeightedGap> {
+) -> WeightedGaps {
     let mut rows =
         Rows { entries: vec![Vec::new(); nodes.len()], gap: vec![0.0; nodes.len()], weight: vec![0.0; nodes.len()] };
     let mut whole = vec![0.0; nodes.len()];
+    let mut share_of_area = vec![0.0; nodes.len()];
     let mut at = Values::default();
     let mut trace = Vec::new();
     for (face, list) in points.iter().enumerate() {
@@ -60,6 +63,9 @@ pub fn weighted_gaps<const D: usize>(
             for ((node, _), v) in nodes.of_face(face).iter().zip(&values) {
                 whole[*node as usize] += w * v;
             }
+        }
+        for (node, _) in nodes.of_face(face) {
+            share_of_area[*node as usize] += area / n as f64;
         }
         if list.is_empty() {
             continue;
@@ -100,12 +106,32 @@ pub fn weighted_gaps<const D: usize>(
             compress(&mut rows.entries[*node as usize]);
         }
     }
-    fold(nodes, &mut rows, &whole, folded);
+    // On the axis of a body of revolution a vertex of quadratic faces has no weight at all.
+    let weightless: Vec<bool> = whole.iter().zip(&share_of_area).map(|(w, a)| *w < WEIGHTLESS * a).collect();
+    let given = fold(nodes, &mut rows, &whole, &|k| weightless[k as usize] || folded(k));
     let Rows { entries, gap, weight } = rows;
-    (entries.into_iter().enumerate())
+    let rows = (entries.into_iter().enumerate())
         .filter(|(k, terms)| weight[*k] > 0.0 && !terms.is_empty())
         .map(|(k, terms)| WeightedGap { gap: gap[k], weight: weight[k], terms, node: k as u32 })
-        .collect()
+        .collect();
+    let given = given.into_iter().map(|[from, to]| Given { from, to, weightless: weightless[from as usize] }).collect();
+    WeightedGaps { rows, given }
+}
+
+/// The rows of a surface, and the nodes without rows of their own.
+#[derive(Clone, Debug, Default)]
+pub struct WeightedGaps {
+    pub rows: Vec<WeightedGap>,
+    pub given: Vec<Given>,
+}
+
+/// A node that gave its function to another and shares its pressure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Given {
+    pub from: u32,
+    pub to: u32,
+    /// Because its function has no weight anywhere.
+    pub weightless: bool,
 }
 
 struct Rows {
@@ -164,13 +190,19 @@ fn changed(edges: &Option<&'static [[usize; 2]]>, values: &[f64]) -> Vec<f64> {
 
 /// Nodes that are hardly covered, or must have no pressure of their own, give their function to the nearest node of one
 /// of their faces that keeps its own; the functions still sum to one.
-fn fold<const D: usize>(nodes: &PressureNodes<D>, rows: &mut Rows, whole: &[f64], folded: &dyn Fn(u32) -> bool) {
+fn fold<const D: usize>(
+    nodes: &PressureNodes<D>,
+    rows: &mut Rows,
+    whole: &[f64],
+    folded: &dyn Fn(u32) -> bool,
+) -> Vec<[u32; 2]> {
+    let mut given = Vec::new();
     let count = nodes.len();
     let weak: Vec<bool> = (0..count)
         .map(|k| rows.weight[k] < WEAK * whole[k] || (!rows.entries[k].is_empty() && folded(k as u32)))
         .collect();
     if !weak.iter().any(|w| *w) {
-        return;
+        return given;
     }
     let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); count];
     for face in 0..nodes.face_count() {
@@ -208,5 +240,7 @@ fn fold<const D: usize>(nodes: &PressureNodes<D>, rows: &mut Rows, whole: &[f64]
         rows.gap[target] += std::mem::take(&mut rows.gap[k]);
         rows.weight[target] += std::mem::take(&mut rows.weight[k]);
         compress(&mut rows.entries[target]);
+        given.push([k as u32, target as u32]);
     }
+    given
 }

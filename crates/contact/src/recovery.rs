@@ -9,13 +9,15 @@ use signorini_fem::hierarchic::Values;
 use signorini_solve::SymmetricMatrix;
 use signorini_solve::cholesky::Symbolic;
 
-/// The recovered pressure of every node of a surface, from the multipliers, weights and states by node.
+/// The recovered pressure of every node of a surface, from the multipliers, weights and states by node; `weightless` says
+/// which nodes take part although their function has no weight.
 pub fn recovered<const D: usize>(
     nodes: &PressureNodes<D>,
     points: &[Vec<GapPoint<D>>],
     multiplier: &[f64],
     weight: &[f64],
     active: &[bool],
+    weightless: &[bool],
 ) -> Vec<f64> {
     let mut out = multiplier.to_vec();
     let quadratic = |face: usize| nodes.map(face).order() == 2 && nodes.map(face).shape().is_tensor();
@@ -24,7 +26,7 @@ pub fn recovered<const D: usize>(
     for face in (0..nodes.face_count()).filter(|&f| quadratic(f)) {
         for (node, _) in nodes.of_face(face) {
             let k = *node as usize;
-            if active[k] && weight[k] > 0.0 && number[k] == u32::MAX {
+            if active[k] && (weight[k] > 0.0 || weightless[k]) && number[k] == u32::MAX {
                 number[k] = list.len() as u32;
                 list.push(k);
             }

@@ -4,8 +4,8 @@ use crate::body::BodySurface;
 use crate::model::StepError;
 use crate::supports::Reduction;
 use signorini_contact::{
-    ContactSurface, GapPoint, MasterShapes, Meeting, PressureNodes, TestPoints, WeightedGap, point_rows, rigid_points,
-    segments, weighted_gaps,
+    ContactSurface, GapPoint, Given, MasterShapes, Meeting, PressureNodes, TestPoints, WeightedGap, point_rows,
+    rigid_points, segments, weighted_gaps,
 };
 use signorini_fem::hierarchic::Values;
 use signorini_geometry::Point;
@@ -51,6 +51,8 @@ pub struct Contact<const D: usize> {
     pub(crate) nodes: PressureNodes<D>,
     pub(crate) points: Vec<Vec<GapPoint<D>>>,
     pub(crate) rows: Vec<WeightedGap>,
+    /// Nodes that share the pressure of another.
+    pub(crate) given: Vec<Given>,
     /// Face and coordinates of the rows of [`Method::GaussPoint`].
     places: Vec<(usize, signorini_fem::Local)>,
     /// Pressure per penetration of the cells behind each row.
@@ -69,6 +71,7 @@ impl<const D: usize> Contact<D> {
             nodes,
             points: Vec::new(),
             rows: Vec::new(),
+            given: Vec::new(),
             places: Vec::new(),
             stiffness: Vec::new(),
         }
@@ -184,7 +187,8 @@ impl<const D: usize> Contact<D> {
             let normal = normals[node as usize];
             (0..D).all(|i| normal[i].abs() < 1e-6 || reduction.is_held(first + f as usize * D + i))
         };
-        self.rows = weighted_gaps(&self.slave, master, &self.nodes, &self.points, &folded);
+        let found = weighted_gaps(&self.slave, master, &self.nodes, &self.points, &folded);
+        (self.rows, self.given) = (found.rows, found.given);
     }
 }
 

@@ -228,12 +228,22 @@ impl<const D: usize> Model<D> {
             first = end;
             let count = contact.nodes.len();
             let (mut multiplier, mut weight, mut active) = (vec![0.0; count], vec![0.0; count], vec![false; count]);
+            let mut weightless = vec![false; count];
+            for given in &contact.given {
+                // A node may have given its function on to one that gave its own away.
+                let Some(to) = result.nodes.iter().find(|n| n.number == given.to).copied() else { continue };
+                let x = contact.nodes().positions[given.from as usize];
+                weightless[given.from as usize] = given.weightless;
+                result.nodes.push(PressureNode { x, weight: 0.0, number: given.from, ..to });
+            }
             for node in &result.nodes {
                 let k = node.number as usize;
                 (multiplier[k], weight[k], active[k]) = (node.multiplier, node.weight, node.active);
             }
             let pressure = match contact.method {
-                Method::Mortar => recovered(&contact.nodes, &contact.points, &multiplier, &weight, &active),
+                Method::Mortar => {
+                    recovered(&contact.nodes, &contact.points, &multiplier, &weight, &active, &weightless)
+                }
                 _ => multiplier,
             };
             result.nodes.iter_mut().for_each(|node| node.pressure = pressure[node.number as usize]);

@@ -179,3 +179,37 @@ fn rigid_shapes_of_one_curvature_agree() {
     let lifted = force(circle, "motion.prescribed = { displacement = [0, \"0.01*t\"] }");
     assert!(lifted > 1.3 * plain);
 }
+
+/// An elastic ball on an elastic block, bodies of revolution: Hertz (1882) has p0 = 1492.2719 for a force of 500.
+#[test]
+fn hertz_between_elastic_bodies() {
+    let pressure = |degree: usize, n: usize| {
+        let growing = (1..).find(|&m| 0.6 / n as f64 * 6.0 * (1.2f64.powi(m) - 1.0) >= 16.0).unwrap();
+        let case = format!(
+            "space = \"axisymmetric\"\n[constants]\nR = 10\n\
+             [bodies.block.solid]\nmesh.box = {{ axes = [\
+             {{ from = 0, to = [0.6, 16], cells = [{n}, {growing}], growth = [1, 1.2] }}, \
+             {{ from = -16, to = [-0.3, 0], cells = [{growing}, {half}], growth = [0.8333333333333334, 1] }} ] }}\n\
+             degree = {degree}\nmaterial.linear_elastic = {{ youngs_modulus = 70000, poissons_ratio = 0.33 }}\n\
+             [bodies.ball.solid]\nmesh.box = {{ axes = [\
+             {{ from = 0, to = [0.6, 8], cells = [{n}, {growing}], growth = [1, 1.2] }}, \
+             {{ from = 0, to = [0.3, 10], cells = [{half}, {growing}], growth = [1, 1.2] }} ], \
+             map = [\"x\", \"R - sqrt(R^2 - x^2) + y/10*sqrt(R^2 - x^2)\"] }}\n\
+             degree = {degree}\nmaterial.linear_elastic = {{ youngs_modulus = 210000, poissons_ratio = 0.3 }}\n\
+             [supports.base]\non = \"block:bottom\"\nnormal = 0\n\
+             [supports.head]\non = \"ball:top\"\ndisplacement = [\"free\", \"free\"]\nuniform = true\n\
+             [loads.press]\non = \"ball:top\"\nforce = [0, -500]\n\
+             [contacts.touch]\nbetween = [\"ball:bottom\", \"block:top\"]\n",
+            half = n / 2
+        );
+        let found = summary(&case, &set(&[]));
+        let step = last_step(&found);
+        assert!((at(step, "/contacts/touch/force/1") / 500.0 - 1.0).abs() < 1e-8);
+        at(step, "/contacts/touch/max_pressure") / 1492.271904049647 - 1.0
+    };
+    let errors = [6, 12, 24].map(|n| pressure(1, n).abs());
+    let orders = [(errors[0] / errors[1]).log2(), (errors[1] / errors[2]).log2()];
+    assert!(orders.iter().all(|o| *o > 1.4), "{errors:?} {orders:?}");
+    let quadratic = pressure(2, 12);
+    assert!(quadratic.abs() < 3e-3, "{quadratic:e}");
+}

@@ -19,8 +19,8 @@ pub enum ActiveSetError {
     #[error("the contact found does not hold the bodies")]
     Free,
     /// Rows that change from one state to the other for ever.
-    #[error("the contact state alternates at {} nodes", nodes.len())]
-    Chatter { nodes: Vec<u32> },
+    #[error("the contact state alternates at {} points", rows.len())]
+    Chatter { rows: Vec<usize> },
     #[error("no contact state was found in {iterations} iterations")]
     TooMany { iterations: usize },
     #[error("interrupted")]
@@ -151,8 +151,8 @@ impl ActiveSet {
                 return Ok(found);
             }
             if seen.insert(active, iteration).is_some() {
-                let nodes = flips.iter().chain(&last_flips).map(|&k| rows[k].node).collect::<BTreeSet<_>>();
-                return Err(ActiveSetError::Chatter { nodes: nodes.into_iter().collect() });
+                let rows: BTreeSet<usize> = flips.into_iter().chain(last_flips).collect();
+                return Err(ActiveSetError::Chatter { rows: rows.into_iter().collect() });
             }
             last_flips = flips;
             self.active = next;

@@ -21,7 +21,7 @@ pub mod segments;
 pub mod surface;
 
 pub use active_set::{ActiveSet, ActiveSetError, Compliance, ContactState, Softness, Spring};
-pub use mortar::{Given, WeightedGap, WeightedGaps, weighted_gaps};
+pub use mortar::{Given, WeightedGap, WeightedGaps, compress, weighted_gaps};
 pub use multiplier::PressureNodes;
 pub use points::{MasterShapes, Meeting, TestPoints, point_rows};
 pub use recovery::recovered;

@@ -141,7 +141,7 @@ struct Rows {
 }
 
 /// Adds up entries of the same unknown.
-fn compress(list: &mut Vec<(u32, f64)>) {
+pub fn compress(list: &mut Vec<(u32, f64)>) {
     list.sort_by_key(|e| e.0);
     list.dedup_by(|next, kept| {
         let same = next.0 == kept.0;

@@ -135,6 +135,15 @@ impl<'a> Source<'a> {
         Ok(count as usize)
     }
 
+    /// The head of a section of version 4.1: the number of its blocks, then three that are not needed.
+    fn blocks(&mut self) -> Result<usize, GmshError> {
+        let blocks = self.size()?;
+        for _ in 0..3 {
+            self.size()?;
+        }
+        self.count(blocks)
+    }
+
     /// Moves behind the next line that is exactly this one; false at the end of the file.
     fn skip_to(&mut self, line: &str) -> bool {
         let mut at = self.at;
@@ -268,12 +277,7 @@ impl GmshFile {
 
     fn nodes_41(&mut self, s: &mut Source<'_>, binary: bool) -> Result<(), GmshError> {
         s.binary = binary;
-        let blocks = s.size()?;
-        let blocks = s.count(blocks)?;
-        for _ in 0..3 {
-            s.size()?;
-        }
-        for _ in 0..blocks {
+        for _ in 0..s.blocks()? {
             let dimension = s.integer()?;
             s.integer()?;
             let parametric = s.integer()? != 0;
@@ -341,12 +345,7 @@ impl GmshFile {
         entities: &HashMap<(i64, i64), Vec<i64>>,
     ) -> Result<(), GmshError> {
         s.binary = binary;
-        let blocks = s.size()?;
-        let blocks = s.count(blocks)?;
-        for _ in 0..3 {
-            s.size()?;
-        }
-        for _ in 0..blocks {
+        for _ in 0..s.blocks()? {
             let (dimension, entity, kind) = (s.integer()?, s.integer()?, s.integer()?);
             let n = s.size()?;
             let groups = entities.get(&(dimension, entity)).cloned().unwrap_or_default();

@@ -82,9 +82,6 @@ impl<const D: usize> Contact<D> {
         let reach = 0.5 * self.slave.size();
         let found = match &self.master {
             Master::Surface(surface) => {
-                if !self.rows.is_empty() {
-                    return Ok(());
-                }
                 let shapes = MasterShapes::new(surface)
                     .map_err(|error| StepError::Shape { contact: self.name.clone(), message: error.to_string() })?;
                 point_rows(&self.slave, &self.nodes, test, reach, Some(surface), &|x| shapes.meet(surface, x))
@@ -142,6 +139,10 @@ impl<const D: usize> Contact<D> {
 
     /// Finds out what faces what. `rigid` is where a rigid master is now.
     pub(crate) fn search(&mut self, reduction: &Reduction<D>, rigid: Option<&RigidGap<D>>) -> Result<(), StepError> {
+        // Between bodies everything is at rest: what was found once stays.
+        if matches!(self.master, Master::Surface(_)) && !self.rows.is_empty() {
+            return Ok(());
+        }
         match self.method {
             Method::Mortar => self.search_segments(reduction, rigid),
             Method::Node => self.search_points(TestPoints::Nodes, rigid)?,
@@ -154,10 +155,8 @@ impl<const D: usize> Contact<D> {
     fn search_segments(&mut self, reduction: &Reduction<D>, rigid: Option<&RigidGap<D>>) {
         let master = match &self.master {
             Master::Surface(surface) => {
-                if self.points.is_empty() {
-                    let reach = 0.5 * self.slave.size().max(surface.size());
-                    self.points = segments(&self.slave, surface, &self.nodes, reach);
-                }
+                let reach = 0.5 * self.slave.size().max(surface.size());
+                self.points = segments(&self.slave, surface, &self.nodes, reach);
                 Some(surface as &dyn ContactSurface<D>)
             }
             Master::Rigid => {
@@ -196,6 +195,14 @@ impl<const D: usize> Contact<D> {
 const DEEP: f64 = 0.05;
 
 impl<const D: usize> Contact<D> {
+    /// Where a row is.
+    pub(crate) fn position(&self, row: usize) -> Point<D> {
+        match self.method {
+            Method::GaussPoint => self.slave.at(self.places[row].0, &self.places[row].1).x,
+            _ => self.nodes.positions[self.rows[row].node as usize],
+        }
+    }
+
     /// Refuses bodies that lie in each other by far more than small displacements could mend.
     pub(crate) fn check_start(&self) -> Result<(), StepError> {
         let depth = self.rows.iter().map(|r| -r.gap / r.weight).fold(0.0, f64::max);

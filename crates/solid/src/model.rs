@@ -4,9 +4,9 @@ use crate::assembly::{assemble, positions};
 use crate::body::Bodies;
 use crate::contact::{Contact, ContactResult, Enforcement, Method, PressureNode, RigidGap};
 use crate::rigid_modes::{FreeMode, free_modes};
-use crate::supports::{Displacement, Reduction, Support, SupportError, beds};
+use crate::supports::{Displacement, Reduction, Support, SupportError};
 use signorini_contact::{
-    ActiveSet, ActiveSetError, Compliance, ContactState, Softness, Spring, WeightedGap, recovered,
+    ActiveSet, ActiveSetError, Compliance, ContactState, Softness, Spring, WeightedGap, compress, recovered,
 };
 use signorini_geometry::Point;
 use signorini_solve::cholesky::Symbolic;
@@ -95,7 +95,7 @@ impl<const D: usize> Model<D> {
     pub fn new(bodies: Bodies<D>, supports: Vec<Support>, contacts: Vec<Contact<D>>) -> Result<Self, StepError> {
         let reduction = Reduction::new(&bodies, &supports)?;
         let stiffness = assemble(&bodies, &supports);
-        let free = if beds(&bodies, &supports).is_empty() { free_modes(&bodies, &reduction) } else { Vec::new() };
+        let free = free_modes(&bodies, &supports, &reduction);
         let mut reduced = stiffness.transformed(reduction.unknowns, |i| reduction.row(i));
         let diagonal = reduced.diagonal();
         let mut springs: Vec<Spring> = Vec::new();
@@ -161,7 +161,7 @@ impl<const D: usize> Model<D> {
             self.started = true;
         }
         if rows.is_empty() && !self.free.is_empty() {
-            return Err(self.free_body(0));
+            return Err(self.free_body());
         }
         let mut changes = Vec::new();
         let mut logged = |iteration: usize, changed: usize| {
@@ -171,15 +171,8 @@ impl<const D: usize> Model<D> {
         let found = match self.solve_enforced(&rows, &ends, &load, &mut logged) {
             Ok(found) => found,
             Err(ActiveSetError::Interrupted) => return Err(StepError::Interrupted),
-            Err(ActiveSetError::Free) => return Err(self.free_body(0)),
-            Err(error) => {
-                let places = match &error {
-                    ActiveSetError::Chatter { nodes } => nodes.iter().map(|n| format!("node {n}")).collect(),
-                    _ => Vec::new(),
-                };
-                let contact = self.contacts.first().map(|c| c.name.clone()).unwrap_or_default();
-                return Err(StepError::Contact { contact, error, places });
-            }
+            Err(ActiveSetError::Free) => return Err(self.free_body()),
+            Err(error) => return Err(self.contact_error(error, &ends)),
         };
         let u = self.reduction.expand(&found.u, &offset);
         let mut forces = self.stiffness.multiply(&u);
@@ -337,11 +330,31 @@ impl<const D: usize> Model<D> {
         Err(ActiveSetError::TooMany { iterations: total })
     }
 
-    fn free_body(&self, number: usize) -> StepError {
-        match self.free.get(number) {
+    fn free_body(&self) -> StepError {
+        match self.free.first() {
             Some(mode) => StepError::Free { body: mode.body.clone(), motion: mode.motion.clone() },
             None => StepError::Free { body: String::new(), motion: "to move".into() },
         }
+    }
+
+    /// The contact that has no state, and where. `ends` are the ends of the rows of each contact.
+    fn contact_error(&self, error: ActiveSetError, ends: &[usize]) -> StepError {
+        let mut names: Vec<&str> = Vec::new();
+        let mut places = Vec::new();
+        if let ActiveSetError::Chatter { rows } = &error {
+            for &row in rows {
+                let which = ends.iter().position(|end| row < *end).unwrap_or(0);
+                let contact = &self.contacts[which];
+                let first = if which == 0 { 0 } else { ends[which - 1] };
+                names.push(&contact.name);
+                let x: Vec<String> = contact.position(row - first).iter().map(|v| format!("{v:.6}")).collect();
+                places.push(format!("({})", x.join(", ")));
+            }
+        } else {
+            names.extend(self.contacts.iter().map(|c| c.name.as_str()));
+        }
+        names.dedup();
+        StepError::Contact { contact: names.join("`, `"), error, places }
     }
 }
 
@@ -356,13 +369,6 @@ fn reduced<const D: usize>(row: &WeightedGap, reduction: &Reduction<D>, offset: 
         gap += c * offset[*unknown as usize];
         terms.extend(reduction.row(*unknown as usize).iter().map(|(k, t)| (*k, c * t)));
     }
-    terms.sort_by_key(|t| t.0);
-    terms.dedup_by(|next, kept| {
-        let same = next.0 == kept.0;
-        if same {
-            kept.1 += next.1;
-        }
-        same
-    });
+    compress(&mut terms);
     WeightedGap { gap, weight: row.weight, terms, node: row.node }
 }

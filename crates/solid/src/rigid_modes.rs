@@ -2,10 +2,10 @@
 
 use crate::body::Bodies;
 use crate::material::Space;
-use crate::supports::Reduction;
+use crate::supports::{Reduction, Support, SupportKind};
 use nalgebra::DMatrix;
 use signorini_geometry::Point;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// A free rigid motion of a part of a body.
 #[derive(Clone, Debug)]
@@ -17,9 +17,18 @@ pub struct FreeMode {
     pub unknown: usize,
 }
 
-/// The free rigid modes of all bodies, springs aside.
-pub fn free_modes<const D: usize>(bodies: &Bodies<D>, reduction: &Reduction<D>) -> Vec<FreeMode> {
+/// The free rigid modes of all bodies. Elastic beds hold as supports do.
+pub fn free_modes<const D: usize>(bodies: &Bodies<D>, supports: &[Support], reduction: &Reduction<D>) -> Vec<FreeMode> {
     let mut out = Vec::new();
+    // Directions in which beds hold, by the unknowns of the vertices on them.
+    let mut on_beds: HashSet<usize> = HashSet::new();
+    for (support, vertices) in supports.iter().zip(&reduction.reactions) {
+        if let SupportKind::Spring(stiffness) = &support.kind {
+            for i in (0..D).filter(|&i| stiffness[i] > 0.0) {
+                on_beds.extend(vertices.iter().map(|f| *f as usize * D + i));
+            }
+        }
+    }
     for body in &bodies.list {
         for part in parts(body) {
             let functions: Vec<(u32, Point<D>)> = part
@@ -77,6 +86,9 @@ pub fn free_modes<const D: usize>(bodies: &Bodies<D>, reduction: &Reduction<D>) 
                 for a in 0..modes.len() {
                     for b in 0..modes.len() {
                         held[(a, b)] += rest[a].dot(&rest[b]);
+                        for i in (0..D).filter(|&i| on_beds.contains(&unknown(i))) {
+                            held[(a, b)] += values[a][i] * values[b][i];
+                        }
                     }
                 }
             }

@@ -157,6 +157,16 @@ fn shaded(svg: &mut String, corners: &[(f64, f64)], values: &[f64], colour: &dyn
     }
 }
 
+/// Begins a group of which nothing outside the area is drawn.
+fn clip_to(svg: &mut String, [left, top, right, bottom]: [f64; 4]) {
+    let _ = write!(
+        svg,
+        "<clipPath id=\"c\"><rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{:.1}\"/></clipPath><g clip-path=\"url(#c)\">",
+        right - left,
+        bottom - top
+    );
+}
+
 /// A colour bar with the smallest and largest value and some between.
 fn bar(svg: &mut String, range: (f64, f64), title: &str) {
     let (x, top, bottom) = (SIZE.0 - 95.0, 90.0, SIZE.1 - 70.0);
@@ -271,12 +281,7 @@ fn deformed<const D: usize>(
     let range = (if even { 0.0 } else { sorted[0] }, if cut { quantile } else { largest });
     let span = (range.1 - range.0).max(f64::MIN_POSITIVE);
     let [left, top, right, bottom] = view.area;
-    let _ = write!(
-        out,
-        "<clipPath id=\"c\"><rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{:.1}\"/></clipPath><g clip-path=\"url(#c)\">",
-        right - left,
-        bottom - top
-    );
+    clip_to(&mut out, view.area);
     let off_page = |p: &(f64, f64)| p.0 < left - 60.0 || p.0 > right + 60.0 || p.1 < top - 60.0 || p.1 > bottom + 60.0;
     let light = view.towards + view.up * 0.6 - view.right * 0.4;
     let mut list: Vec<(f64, String)> = Vec::new();
@@ -369,7 +374,7 @@ fn mean_normal<const D: usize>(shown: &ContactDisplay<D>) -> [f64; 3] {
 fn rigid_raster<const D: usize>(out: &mut String, plan: &SolidPlan<D>, time: f64, view: &View<D>) {
     let bodies: Vec<_> = (plan.contacts.iter())
         .filter_map(|c| match &c.opposite {
-            Opposite::Rigid(body) => Some(body.gap_at(time)),
+            Opposite::Rigid(body) => body.gap_at(&plan.document, time).ok(),
             Opposite::Body { .. } => None,
         })
         .collect();
@@ -509,13 +514,7 @@ fn map<const D: usize>(name: &str, time: f64, shown: &ContactDisplay<D>, labels:
     };
     let view = View::<D>::new(mean_normal(shown), near.iter().copied());
     let mut out = start(&format!("Contact pressure of `{name}`, t = {}", label(time)));
-    let [left, top, right, bottom] = view.area;
-    let _ = write!(
-        out,
-        "<clipPath id=\"c\"><rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{:.1}\"/></clipPath><g clip-path=\"url(#c)\">",
-        right - left,
-        bottom - top
-    );
+    clip_to(&mut out, view.area);
     let most = shown.pressure.iter().fold(f64::MIN_POSITIVE, |m, p| m.max(*p));
     for face in &shown.faces {
         let corners: Vec<(f64, f64)> = face.iter().map(|&k| view.at(&shown.points[k as usize])).collect();

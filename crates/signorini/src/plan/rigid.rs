@@ -3,7 +3,7 @@
 use super::{Placed, Planner};
 use crate::case::statement::{Motion, Rigid, Shape, Side};
 use crate::case::units::{LENGTH, NONE};
-use crate::case::{CaseError, Values};
+use crate::case::{CaseError, Document, Values};
 use crate::expression::{Expression, Scope};
 use crate::queries::geometry;
 use signorini_geometry::closest::{Query, closest, signed_gap};
@@ -127,27 +127,38 @@ fn any_normal(axis: &Vector<3>) -> Vector<3> {
 }
 
 impl RigidBody {
-    /// Displacement and rotation vector at a time.
-    pub fn motion_at(&self, time: f64) -> [Vector<3>; 2] {
+    /// Displacement and rotation vector at a time; an error where the motion is not a number.
+    fn motion_at(&self, document: &Document, time: f64) -> Result<[Vector<3>; 2], CaseError> {
         let at = |p: &Placed| p.expression.evaluate(&Scope { position: [f64::NAN; 3], time });
+        if let Some(p) = self.displacement.iter().chain(&self.rotation).find(|p| !at(p).is_finite()) {
+            let message = format!("`{}` is {} at t = {time}: not a finite number", p.key, at(p));
+            return Err(document.error(p.span.clone(), message));
+        }
         let vector = |list: &[Placed]| Vector::<3>::from_fn(|k, _| list.get(k).map_or(0.0, at));
         // In the plane the one rotation there is turns about the axis across it.
         let rotation =
             if let [angle] = &self.rotation[..] { Vector::<3>::z() * at(angle) } else { vector(&self.rotation) };
-        [vector(&self.displacement), rotation]
+        Ok([vector(&self.displacement), rotation])
     }
 
     /// The gap of a point and the outward normal at a time.
-    pub fn gap_at(&self, time: f64) -> impl Fn(&Point<3>) -> (f64, Vector<3>) + Sync + Send + 'static {
-        let [moved, turned] = self.motion_at(time);
+    ///
+    /// # Errors
+    /// A motion that is not a number then.
+    pub fn gap_at(
+        &self,
+        document: &Document,
+        time: f64,
+    ) -> Result<impl Fn(&Point<3>) -> (f64, Vector<3>) + Sync + Send + 'static, CaseError> {
+        let [moved, turned] = self.motion_at(document, time)?;
         let back = RigidMotion::new(-turned, self.centre, Vector::<3>::zeros());
         let forth = RigidMotion::new(turned, self.centre, Vector::<3>::zeros());
         let (form, inside) = (Arc::clone(&self.form), self.inside);
-        move |x| {
+        Ok(move |x: &Point<3>| {
             let (gap, normal) = form.gap(&back.point(&(x - moved)));
             let normal = forth.vector(&normal);
             if inside { (-gap, -normal) } else { (gap, normal) }
-        }
+        })
     }
 }
 
@@ -387,7 +398,8 @@ mod tests {
             centre: Point::<3>::new(1.0, 0.0, 0.0),
         };
         // A quarter turn lets the plane look along -x, through (1, 0.5, 0).
-        let (gap, normal) = body.gap_at(0.0)(&Point::<3>::new(0.25, 7.0, 0.0));
+        let document = Document::parse("case", "space = \"3d\"\n[bodies]\n", &[]).unwrap();
+        let (gap, normal) = body.gap_at(&document, 0.0).unwrap()(&Point::<3>::new(0.25, 7.0, 0.0));
         assert!((gap - 0.75).abs() < 1e-14 && (normal + Vector::<3>::x()).norm() < 1e-14, "{gap} {normal:?}");
     }
 

@@ -170,10 +170,10 @@ impl<const D: usize> Runner<D> {
         };
         let rigid: Vec<Option<RigidGap<D>>> = (self.plan.contacts.iter())
             .map(|c| match &c.opposite {
-                Opposite::Rigid(body) => Some(flat_gap::<D>(body.gap_at(time))),
-                Opposite::Body { .. } => None,
+                Opposite::Rigid(body) => Ok(Some(flat_gap::<D>(body.gap_at(document, time)?))),
+                Opposite::Body { .. } => Ok(None),
             })
-            .collect();
+            .collect::<Result<_, CaseError>>()?;
         let mut stopped = false;
         let mut report = |iteration: usize, changed: usize| {
             progress.iteration(&Iteration {
@@ -284,7 +284,7 @@ impl<const D: usize> Runner<D> {
                 "min_gap_outside": open().map(|n| n.gap).reduce(f64::min),
                 "max_pressure": result.nodes.iter().map(|n| n.pressure).fold(0.0, f64::max),
                 "min_pressure": result.nodes.iter().filter(|n| n.active).map(|n| n.pressure).reduce(f64::min),
-                "radius": radius(self.plan.space, result.area, components_len(shown)),
+                "radius": radius(self.plan.space, result.area, components.len()),
             });
         }
         for (name, (_, x)) in &self.plan.probes {
@@ -423,10 +423,6 @@ fn method<const D: usize>(plan: &SolidPlan<D>) -> String {
     let mut list: Vec<&str> = plan.contacts.iter().map(|c| name(c.method)).collect();
     list.dedup();
     if list.is_empty() { "none".into() } else { list.join(", ") }
-}
-
-fn components_len<const D: usize>(shown: &ContactDisplay<D>) -> usize {
-    shown.zones().len()
 }
 
 /// Half the length of one interval, or the radius of the disc of one area.

@@ -84,6 +84,11 @@ const MOST_ITERATIONS: usize = 60;
 const COLUMNS: usize = 32;
 
 impl ActiveSet {
+    /// Begins with these rows; with none, with those that the displacement without contact closes.
+    pub fn starting_with(rows: impl IntoIterator<Item = usize>) -> Self {
+        ActiveSet { active: rows.into_iter().collect(), ..Self::default() }
+    }
+
     /// Finds pressures `λ ≥ 0` with gaps `g + B u ≥ 0`, `λ (g + B u) = 0`, `K u = f + Bᵀλ`; soft rows as
     /// [`Softness`] says.
     ///
@@ -169,7 +174,7 @@ impl ActiveSet {
             return;
         }
         self.columns.clear();
-        if self.rows.len() != rows.len() {
+        if self.rows.len() != rows.len() && !self.rows.is_empty() {
             self.active.clear();
         }
         self.rows = rows.iter().map(|r| r.terms.clone()).collect();

@@ -5,7 +5,9 @@
 //! - [`multiplier`]: the nodes of the contact pressure and the normal field.
 //! - [`mod@segments`]: where two surfaces, or a surface and a rigid body, face each other.
 //! - [`mortar`]: weighted gaps with dual functions.
-//! - [`points`]: nodes or quadrature points against the closest point of the master.
+//! - [`kinematics`]: the gap of a pair with its variations, for any shape functions.
+//! - [`obstacle`]: the closest point of a slave point, on faces, edges and vertices, or on a rigid body.
+//! - [`points`]: the points under test, their rows, and the one assembler of residual and tangent.
 //! - [`active_set`]: which nodes carry.
 //! - [`recovery`]: the pressure as it is shown.
 //!
@@ -13,17 +15,21 @@
 //! pressure is positive.
 
 pub mod active_set;
+pub mod kinematics;
 pub mod mortar;
 pub mod multiplier;
+pub mod obstacle;
 pub mod points;
 pub mod recovery;
 pub mod segments;
 pub mod surface;
 
 pub use active_set::{ActiveSet, ActiveSetError, Compliance, ContactState, Softness, Spring};
-pub use mortar::{Given, WeightedGap, WeightedGaps, compress, weighted_gaps};
+pub use kinematics::{GapJet, Kinematics, Partner, ShapeFunction};
+pub use mortar::{Given, Shares, WeightedGap, compress, shares, weighted_gaps};
 pub use multiplier::PressureNodes;
-pub use points::{MasterShapes, Meeting, TestPoints, point_rows};
+pub use obstacle::{Faces, Obstacle, Rigid};
+pub use points::{Measured, TestPoint, TestRow, Tests};
 pub use recovery::recovered;
 pub use segments::{GapPoint, rigid_points, segments};
-pub use surface::{ContactSurface, FacePoint};
+pub use surface::{ContactSurface, FacePoint, Moved};

@@ -31,22 +31,30 @@ const WEIGHTLESS: f64 = 1e-6;
 /// Share of a mid-edge function of a quadratic triangle that goes to each corner.
 const SHARE: f64 = 0.2;
 
-/// The weighted gaps of all pressure nodes that the points cover.
+/// How much every point counts in the weighted gap of which pressure node.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Shares {
+    /// For every point of every face: nodes, and value of the dual function times the weight of the point.
+    pub of_point: Vec<Vec<Vec<(u32, f64)>>>,
+    /// `∫ ψ_k` over the covered part, by node; zero for nodes without a row of their own.
+    pub weight: Vec<f64>,
+    pub given: Vec<Given>,
+}
+
+/// The dual functions of all pressure nodes at the points.
 ///
 /// `folded` says which nodes must not have a pressure of their own, for example where the displacement is prescribed.
-pub fn weighted_gaps<const D: usize>(
+pub fn shares<const D: usize>(
     slave: &dyn ContactSurface<D>,
-    master: Option<&dyn ContactSurface<D>>,
     nodes: &PressureNodes<D>,
     points: &[Vec<GapPoint<D>>],
     folded: &dyn Fn(u32) -> bool,
-) -> WeightedGaps {
-    let mut rows =
-        Rows { entries: vec![Vec::new(); nodes.len()], gap: vec![0.0; nodes.len()], weight: vec![0.0; nodes.len()] };
+) -> Shares {
+    let mut out = Shares { of_point: Vec::new(), weight: vec![0.0; nodes.len()], given: Vec::new() };
     let mut whole = vec![0.0; nodes.len()];
     let mut share_of_area = vec![0.0; nodes.len()];
+    let mut covered = vec![false; nodes.len()];
     let mut at = Values::default();
-    let mut trace = Vec::new();
     for (face, list) in points.iter().enumerate() {
         let map = nodes.map(face);
         let n = map.len();
@@ -66,11 +74,8 @@ pub fn weighted_gaps<const D: usize>(
         }
         for (node, _) in nodes.of_face(face) {
             share_of_area[*node as usize] += area / n as f64;
+            covered[*node as usize] |= !list.is_empty();
         }
-        if list.is_empty() {
-            continue;
-        }
-        let covered: f64 = list.iter().map(|p| p.weight).sum();
         let mut functions = DMatrix::<f64>::zeros(n, list.len());
         for (q, p) in list.iter().enumerate() {
             map.tabulate(&p.s, &mut at);
@@ -78,51 +83,79 @@ pub fn weighted_gaps<const D: usize>(
                 functions[(k, q)] = v;
             }
         }
-        let dual = dual(&functions, list, covered / area);
-        for (q, p) in list.iter().enumerate() {
+        let cover: f64 = list.iter().map(|p| p.weight).sum();
+        let dual = if list.is_empty() { functions } else { dual(&functions, list, cover / area) };
+        let of_face = (list.iter().enumerate())
+            .map(|(q, p)| {
+                let values = nodes.of_face(face).iter().enumerate();
+                values.map(|(k, (node, _))| (*node, p.weight * dual[(k, q)])).collect::<Vec<_>>()
+            })
+            .inspect(|list| list.iter().for_each(|(node, share)| out.weight[*node as usize] += share))
+            .collect();
+        out.of_point.push(of_face);
+    }
+    // On the axis of a body of revolution a vertex of quadratic faces has no weight at all.
+    let weightless: Vec<bool> = whole.iter().zip(&share_of_area).map(|(w, a)| *w < WEIGHTLESS * a).collect();
+    let weak: Vec<bool> = (0..nodes.len())
+        .map(|k| out.weight[k] < WEAK * whole[k] || covered[k] && (weightless[k] || folded(k as u32)))
+        .collect();
+    for [from, to] in fold(nodes, &weak, &covered) {
+        out.weight[to as usize] += std::mem::take(&mut out.weight[from as usize]);
+        out.given.push(Given { from, to, weightless: weightless[from as usize] });
+    }
+    if !out.given.is_empty() {
+        let mut target: Vec<u32> = (0..nodes.len() as u32).collect();
+        out.given.iter().for_each(|g| target[g.from as usize] = g.to);
+        for list in out.of_point.iter_mut().flatten() {
+            list.iter_mut().for_each(|(node, _)| *node = target[*node as usize]);
+            compress(list);
+        }
+    }
+    out
+}
+
+/// The weighted gaps of all pressure nodes that the points cover, at rest.
+pub fn weighted_gaps<const D: usize>(
+    slave: &dyn ContactSurface<D>,
+    master: Option<&dyn ContactSurface<D>>,
+    points: &[Vec<GapPoint<D>>],
+    shares: &Shares,
+) -> Vec<WeightedGap> {
+    let mut rows: Vec<WeightedGap> = (0u32..)
+        .zip(&shares.weight)
+        .map(|(node, weight)| WeightedGap { gap: 0.0, weight: *weight, terms: Vec::new(), node })
+        .collect();
+    let mut trace = Vec::new();
+    for (face, list) in points.iter().enumerate() {
+        let mut touched: Vec<u32> = Vec::new();
+        for (p, of_point) in list.iter().zip(&shares.of_point[face]) {
             trace.clear();
             slave.trace(face, &p.s, &mut trace);
             let of_slave = trace.len();
             if let (Some((other, eta)), Some(master)) = (&p.master, master) {
                 master.trace(*other as usize, eta, &mut trace);
             }
-            for (k, (node, _)) in nodes.of_face(face).iter().enumerate() {
-                let row = *node as usize;
-                let share = p.weight * dual[(k, q)];
-                rows.gap[row] += share * p.gap;
-                rows.weight[row] += share;
+            for (node, share) in of_point {
+                let row = &mut rows[*node as usize];
+                row.gap += share * p.gap;
+                touched.push(*node);
                 for (m, (unknown, value)) in trace.iter().enumerate() {
-                    let sign = if m < of_slave { share } else { -share };
+                    let sign = if m < of_slave { *share } else { -share };
                     for i in 0..D {
                         if p.direction[i] != 0.0 {
-                            rows.entries[row].push((unknown + i as u32, sign * value * p.direction[i]));
+                            row.terms.push((unknown + i as u32, sign * value * p.direction[i]));
                         }
                     }
                 }
             }
         }
         // Entries of one face are added up at once, so that lists stay short.
-        for (node, _) in nodes.of_face(face) {
-            compress(&mut rows.entries[*node as usize]);
-        }
+        touched.sort_unstable();
+        touched.dedup();
+        touched.into_iter().for_each(|node| compress(&mut rows[node as usize].terms));
     }
-    // On the axis of a body of revolution a vertex of quadratic faces has no weight at all.
-    let weightless: Vec<bool> = whole.iter().zip(&share_of_area).map(|(w, a)| *w < WEIGHTLESS * a).collect();
-    let given = fold(nodes, &mut rows, &whole, &|k| weightless[k as usize] || folded(k));
-    let Rows { entries, gap, weight } = rows;
-    let rows = (entries.into_iter().enumerate())
-        .filter(|(k, terms)| weight[*k] > 0.0 && !terms.is_empty())
-        .map(|(k, terms)| WeightedGap { gap: gap[k], weight: weight[k], terms, node: k as u32 })
-        .collect();
-    let given = given.into_iter().map(|[from, to]| Given { from, to, weightless: weightless[from as usize] }).collect();
-    WeightedGaps { rows, given }
-}
-
-/// The rows of a surface, and the nodes without rows of their own.
-#[derive(Clone, Debug, Default)]
-pub struct WeightedGaps {
-    pub rows: Vec<WeightedGap>,
-    pub given: Vec<Given>,
+    rows.retain(|row| row.weight > 0.0 && !row.terms.is_empty());
+    rows
 }
 
 /// A node that gave its function to another and shares its pressure.
@@ -132,12 +165,6 @@ pub struct Given {
     pub to: u32,
     /// Because its function has no weight anywhere.
     pub weightless: bool,
-}
-
-struct Rows {
-    entries: Vec<Vec<(u32, f64)>>,
-    gap: Vec<f64>,
-    weight: Vec<f64>,
 }
 
 /// Adds up entries of the same unknown.
@@ -190,18 +217,10 @@ fn changed(edges: &Option<&'static [[usize; 2]]>, values: &[f64]) -> Vec<f64> {
 
 /// Nodes that are hardly covered, or must have no pressure of their own, give their function to the nearest node of one
 /// of their faces that keeps its own; the functions still sum to one.
-fn fold<const D: usize>(
-    nodes: &PressureNodes<D>,
-    rows: &mut Rows,
-    whole: &[f64],
-    folded: &dyn Fn(u32) -> bool,
-) -> Vec<[u32; 2]> {
+fn fold<const D: usize>(nodes: &PressureNodes<D>, weak: &[bool], covered: &[bool]) -> Vec<[u32; 2]> {
     let mut given = Vec::new();
     let count = nodes.len();
-    let weak: Vec<bool> = (0..count)
-        .map(|k| rows.weight[k] < WEAK * whole[k] || (!rows.entries[k].is_empty() && folded(k as u32)))
-        .collect();
-    if !weak.iter().any(|w| *w) {
+    if !weak.iter().zip(covered).any(|(w, c)| *w && *c) {
         return given;
     }
     let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); count];
@@ -210,10 +229,7 @@ fn fold<const D: usize>(
             neighbours[*a as usize].extend(nodes.of_face(face).iter().map(|(b, _)| *b).filter(|b| b != a));
         }
     }
-    for k in 0..count {
-        if !weak[k] || rows.entries[k].is_empty() {
-            continue;
-        }
+    for k in (0..count).filter(|&k| weak[k] && covered[k]) {
         // Breadth first over faces, the nearest of the first ring that has a strong node.
         let mut seen = vec![k as u32];
         let mut ring = vec![k as u32];
@@ -226,7 +242,7 @@ fn fold<const D: usize>(
                 break None;
             }
             let distance = |n: &u32| (nodes.positions[*n as usize] - nodes.positions[k]).norm();
-            let strong = (next.iter().copied().filter(|&n| !weak[n as usize] && !rows.entries[n as usize].is_empty()))
+            let strong = (next.iter().copied().filter(|&n| !weak[n as usize] && covered[n as usize]))
                 .min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)));
             if strong.is_some() {
                 break strong;
@@ -234,13 +250,9 @@ fn fold<const D: usize>(
             seen.extend(&next);
             ring = next;
         };
-        let Some(target) = target.map(|t| t as usize) else { continue };
-        let entries = std::mem::take(&mut rows.entries[k]);
-        rows.entries[target].extend(entries);
-        rows.gap[target] += std::mem::take(&mut rows.gap[k]);
-        rows.weight[target] += std::mem::take(&mut rows.weight[k]);
-        compress(&mut rows.entries[target]);
-        given.push([k as u32, target as u32]);
+        if let Some(target) = target {
+            given.push([k as u32, target]);
+        }
     }
     given
 }

@@ -1,223 +1,174 @@
-//! Contact at points: the nodes or the quadrature points of the slave side against the closest point of the master.
+//! Slave points under test, and the rows of pressures and gaps that they make.
 //!
-//! The closest point comes from the certified search of `geometry`, over all faces, edges and vertices: it is handed from
-//! face to edge to vertex without gaps, and no point is lost or counted twice. On a face the gap is measured along its
-//! normal, at an edge or vertex along the line to it.
+//! A row is a pressure unknown with its gap: that of a node or a quadrature point, or the mean gap of a dual function over
+//! many points. Rows are linear combinations of the gaps of points, so one assembler serves all of them: with the
+//! pressures `λ` of the rows, the force on a point is `p = Σ λ share`, the residual is `-Σ p δg`, and its tangent
+//! `-Σ p Δδg` beside the rows themselves.
 
-use crate::mortar::WeightedGap;
+use crate::kinematics::Kinematics;
+use crate::mortar::{Shares, WeightedGap, compress};
 use crate::multiplier::PressureNodes;
+use crate::obstacle::{Obstacle, shape_functions};
+use crate::segments::GapPoint;
 use crate::surface::ContactSurface;
+use rayon::prelude::*;
+use signorini_fem::Local;
 use signorini_fem::rules::rule;
-use signorini_fem::{CellShape, Local};
-use signorini_geometry::body::Body;
-use signorini_geometry::closest::{FeatureKind, Query};
-use signorini_geometry::shape::{Curve, Shape, ShapeError, Surface};
-use signorini_geometry::{Point, Vector};
-use std::collections::HashMap;
 
-/// Which points of the slave side are tested.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TestPoints {
-    /// The pressure nodes, each with the area of its Lagrange function.
-    Nodes,
-    /// The quadrature points.
-    Gauss,
+/// A point of the slave side, and how much its gap counts in which rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TestPoint {
+    pub face: usize,
+    pub s: Local,
+    /// Rows, with weights (area included).
+    pub shares: Vec<(u32, f64)>,
 }
 
-/// Where a point meets the master: distance (negative inside), outward normal, and face and coordinates of a body.
-#[derive(Clone, Copy, Debug)]
-pub struct Meeting<const D: usize> {
-    pub gap: f64,
-    pub normal: Point<D>,
-    pub foot: Option<(usize, Local)>,
+/// A row of a pressure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TestRow {
+    /// Number of the pressure node, or of the quadrature point.
+    pub number: u32,
+    /// Area.
+    pub weight: f64,
+    /// Face and coordinates of a row that is one point.
+    pub place: Option<(usize, Local)>,
 }
 
-/// A master surface ready for closest points.
-pub struct MasterShapes {
-    body: Body,
-    /// Faces around each vertex.
-    around: HashMap<u32, Vec<usize>>,
-    vertices: Vec<Vec<u32>>,
-    size: f64,
+/// The points and the rows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tests {
+    pub points: Vec<TestPoint>,
+    pub rows: Vec<TestRow>,
 }
 
-impl MasterShapes {
-    /// # Errors
-    /// Faces that make no shape.
-    pub fn new<const D: usize>(master: &dyn ContactSurface<D>) -> Result<Self, ShapeError> {
-        let mut shapes = Vec::new();
-        let mut around: HashMap<u32, Vec<usize>> = HashMap::new();
-        let mut vertices = Vec::new();
-        for face in 0..master.face_count() {
-            shapes.push(shape(master, face)?);
-            let list = master.vertices(face);
-            list.iter().for_each(|v| around.entry(*v).or_default().push(face));
-            vertices.push(list);
+impl Tests {
+    /// One row for each pressure node, at the node, with the area of its Lagrange function.
+    pub fn at_nodes<const D: usize>(slave: &dyn ContactSurface<D>, nodes: &PressureNodes<D>) -> Self {
+        let mut weight = vec![0.0; nodes.len()];
+        let mut place: Vec<Option<(usize, Local)>> = vec![None; nodes.len()];
+        let mut at = signorini_fem::hierarchic::Values::default();
+        for face in 0..nodes.face_count() {
+            let map = nodes.map(face);
+            for (s, w) in rule(map.shape(), map.order() + 2) {
+                map.tabulate(&s, &mut at);
+                let point = slave.at(face, &s);
+                let w = w * point.area_normal().norm() * slave.measure(&point.x);
+                for ((node, _), v) in nodes.of_face(face).iter().zip(&at.value) {
+                    weight[*node as usize] += w * v;
+                }
+            }
+            for ((node, _), s) in nodes.of_face(face).iter().zip(map.nodes()) {
+                place[*node as usize].get_or_insert((face, s));
+            }
         }
-        let size = shapes.iter().map(Shape::size).fold(0.0, f64::max);
-        Ok(MasterShapes { body: Body::new(shapes), around, vertices, size })
+        let mut out = Tests::default();
+        for (node, place) in place.into_iter().enumerate() {
+            if let Some((face, s)) = place {
+                out.add(node as u32, face, s, weight[node]);
+            }
+        }
+        out
     }
 
-    /// The closest point of the master; `None` if it has no faces.
-    pub fn meet<const D: usize>(&self, master: &dyn ContactSurface<D>, x: &Point<D>) -> Option<Meeting<D>> {
-        let found = self.body.closest_to_point(&spatial(x), &Query::default())?;
-        let face = found.shapes[1];
-        let foot = found.projection.closest.b;
-        let mut s = [0.0; 3];
-        s.iter_mut().zip(foot.parameters()).for_each(|(s, p)| *s = *p);
-        let d = x - master.at(face, &s).x;
-        // The mean normal of all faces that meet at the foot tells outside from inside.
-        let faces: Vec<usize> = if foot.feature.kind == FeatureKind::Interior {
-            vec![face]
-        } else {
-            self.meeting(face, master.shape(face), &s)
-        };
-        let mean = faces
-            .iter()
-            .map(|f| master.at(*f, &nearest(master, *f, face, &s)).area_normal().normalize())
-            .sum::<Point<D>>();
-        let mean = mean.normalize();
-        let distance = d.norm();
-        if foot.feature.kind == FeatureKind::Interior || distance <= 1e-9 * self.size {
-            return Some(Meeting { gap: d.dot(&mean), normal: mean, foot: Some((face, s)) });
+    /// One row for each quadrature point.
+    pub fn at_quadrature_points<const D: usize>(slave: &dyn ContactSurface<D>) -> Self {
+        let mut out = Tests::default();
+        for face in 0..slave.face_count() {
+            for (s, w) in rule(slave.shape(face), slave.degree(face) + 1) {
+                let point = slave.at(face, &s);
+                let weight = w * point.area_normal().norm() * slave.measure(&point.x);
+                out.add(out.rows.len() as u32, face, s, weight);
+            }
         }
-        let sign = if d.dot(&mean) < 0.0 { -1.0 } else { 1.0 };
-        Some(Meeting { gap: sign * distance, normal: d * (sign / distance), foot: Some((face, s)) })
+        out
     }
 
-    /// The faces that share the edge or vertex of a face at `s`.
-    fn meeting(&self, face: usize, shape: CellShape, s: &Local) -> Vec<usize> {
-        let corners = shape.vertices();
-        let at = |c: &Local| (0..3).all(|k| (c[k] - s[k]).abs() < 1e-9);
-        if let Some(v) = corners.iter().position(at) {
-            return self.around[&self.vertices[face][v]].clone();
-        }
-        for &[a, b] in shape.edges() {
-            let along: f64 = (0..3).map(|k| (corners[b][k] - corners[a][k]).powi(2)).sum::<f64>().sqrt();
-            let part = |c: &Local| (0..3).map(|k| (c[k] - s[k]).powi(2)).sum::<f64>().sqrt();
-            if (part(&corners[a]) + part(&corners[b]) - along).abs() < 1e-9 {
-                let [p, q] = [a, b].map(|v| &self.around[&self.vertices[face][v]]);
-                return p.iter().copied().filter(|f| q.contains(f)).collect();
+    /// One row for each dual function, over the points of the segments.
+    pub fn in_the_mean<const D: usize>(points: &[Vec<GapPoint<D>>], shares: &Shares) -> Self {
+        let mut out = Tests::default();
+        let mut row = vec![None; shares.weight.len()];
+        for (node, &weight) in shares.weight.iter().enumerate() {
+            if weight > 0.0 {
+                row[node] = Some(out.rows.len() as u32);
+                out.rows.push(TestRow { number: node as u32, weight, place: None });
             }
         }
-        vec![face]
+        for (face, list) in points.iter().enumerate() {
+            for (p, of_point) in list.iter().zip(&shares.of_point[face]) {
+                let shares = of_point.iter().filter_map(|(node, v)| Some((row[*node as usize]?, *v))).collect();
+                out.points.push(TestPoint { face, s: p.s, shares });
+            }
+        }
+        out
+    }
+
+    fn add(&mut self, number: u32, face: usize, s: Local, weight: f64) {
+        if weight > 0.0 {
+            self.points.push(TestPoint { face, s, shares: vec![(self.rows.len() as u32, weight)] });
+            self.rows.push(TestRow { number, weight, place: Some((face, s)) });
+        }
+    }
+
+    /// Measures the gaps of all points no farther from the obstacle than `reach`.
+    ///
+    /// `slave` is where it is now; with `second` the second variations come along.
+    pub fn measure<const D: usize>(
+        &self,
+        slave: &dyn ContactSurface<D>,
+        obstacle: &dyn Obstacle<D>,
+        reach: f64,
+        second: bool,
+    ) -> Measured {
+        let kinematics = (self.points.par_iter())
+            .map(|point| {
+                let functions = shape_functions(slave, point.face, &point.s);
+                let found = obstacle.meet(&slave.at(point.face, &point.s).x, &functions, second)?;
+                (found.gap.abs() <= reach).then_some(found)
+            })
+            .collect();
+        Measured { kinematics }
     }
 }
 
-/// The coordinates on another face of a point shared with it; its middle tells the normal well enough.
-fn nearest<const D: usize>(master: &dyn ContactSurface<D>, other: usize, face: usize, s: &Local) -> Local {
-    if other == face { *s } else { master.shape(other).centre() }
+/// The gaps of test points at one configuration.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    kinematics: Vec<Option<Kinematics>>,
 }
 
-fn spatial<const D: usize>(x: &Point<D>) -> Vector<3> {
-    Vector::<3>::from_fn(|k, _| if k < D { x[k] } else { 0.0 })
-}
-
-/// A face as a shape of `geometry`, with the same coordinates.
-fn shape<const D: usize>(surface: &dyn ContactSurface<D>, face: usize) -> Result<Shape, ShapeError> {
-    let n = surface.order(face);
-    let at = |s: Local| spatial(&surface.at(face, &s).x);
-    let share = |k: usize| k as f64 / n as f64;
-    let side = |k: usize| 2.0 * share(k) - 1.0;
-    Ok(match surface.shape(face) {
-        CellShape::Line => {
-            let nodes: Vec<Point<3>> = (0..=n).map(|i| at([side(i), 0.0, 0.0])).collect();
-            Curve::lagrange(&nodes)?.into()
-        }
-        CellShape::Triangle => {
-            let nodes: Vec<Point<3>> = (0..=n)
-                .flat_map(|j| (0..=n - j).map(move |i| (i, j)))
-                .map(|(i, j)| at([share(i), share(j), 0.0]))
-                .collect();
-            Surface::lagrange_triangle(&nodes)?.into()
-        }
-        _ => {
-            let grid: Vec<Vec<Point<3>>> =
-                (0..=n).map(|i| (0..=n).map(|j| at([side(i), side(j), 0.0])).collect()).collect();
-            Surface::lagrange_quad(&grid)?.into()
-        }
-    })
-}
-
-/// One row per point: its gap times its area. The rows' `node` counts the points; positions and, for quadrature points,
-/// face and coordinates come along.
-pub struct PointRows<const D: usize> {
-    pub rows: Vec<WeightedGap>,
-    /// Face and coordinates of every row.
-    pub places: Vec<(usize, Local)>,
-}
-
-/// The rows of all points no farther from the master than `reach`.
-pub fn point_rows<const D: usize>(
-    slave: &dyn ContactSurface<D>,
-    nodes: &PressureNodes<D>,
-    test: TestPoints,
-    reach: f64,
-    master: Option<&dyn ContactSurface<D>>,
-    meet: &dyn Fn(&Point<D>) -> Option<Meeting<D>>,
-) -> PointRows<D> {
-    let mut out = PointRows { rows: Vec::new(), places: Vec::new() };
-    let mut trace = Vec::new();
-    let mut add = |number: u32, face: usize, s: Local, weight: f64, out: &mut PointRows<D>| {
-        let x = slave.at(face, &s).x;
-        let Some(meeting) = meet(&x) else { return };
-        if meeting.gap > reach || weight <= 0.0 {
-            return;
-        }
-        trace.clear();
-        slave.trace(face, &s, &mut trace);
-        let of_slave = trace.len();
-        if let (Some((other, eta)), Some(master)) = (&meeting.foot, master) {
-            master.trace(*other, eta, &mut trace);
-        }
-        let mut terms = Vec::new();
-        for (k, (unknown, value)) in trace.iter().enumerate() {
-            let sign = if k < of_slave { weight } else { -weight };
-            for i in 0..D {
-                let c = sign * value * meeting.normal[i];
-                if c != 0.0 {
-                    terms.push((unknown + i as u32, c));
-                }
+impl Measured {
+    /// The rows: weighted gaps and their derivatives; those that meet something, with their place in the list of the
+    /// tests.
+    pub fn rows(&self, tests: &Tests) -> Vec<(usize, WeightedGap)> {
+        let mut rows: Vec<WeightedGap> = (tests.rows.iter())
+            .map(|row| WeightedGap { gap: 0.0, weight: 0.0, terms: Vec::new(), node: row.number })
+            .collect();
+        for (point, found) in tests.points.iter().zip(&self.kinematics) {
+            let Some(found) = found else { continue };
+            for (number, share) in &point.shares {
+                let row = &mut rows[*number as usize];
+                row.gap += share * found.gap;
+                row.weight += share;
+                let terms = found.unknowns.iter().zip(&found.gradient).filter(|(_, d)| **d != 0.0);
+                row.terms.extend(terms.map(|(unknown, d)| (*unknown, share * d)));
             }
         }
-        out.rows.push(WeightedGap { gap: weight * meeting.gap, weight, terms, node: number });
-        out.places.push((face, s));
-    };
-    match test {
-        TestPoints::Gauss => {
-            for face in 0..slave.face_count() {
-                for (s, w) in rule(slave.shape(face), slave.degree(face) + 1) {
-                    let point = slave.at(face, &s);
-                    let weight = w * point.area_normal().norm() * slave.measure(&point.x);
-                    let number = out.rows.len() as u32;
-                    add(number, face, s, weight, &mut out);
-                }
-            }
-        }
-        TestPoints::Nodes => {
-            let mut weight = vec![0.0; nodes.len()];
-            let mut place: Vec<Option<(usize, Local)>> = vec![None; nodes.len()];
-            let mut at = signorini_fem::hierarchic::Values::default();
-            for face in 0..nodes.face_count() {
-                let map = nodes.map(face);
-                for (s, w) in rule(map.shape(), map.order() + 2) {
-                    map.tabulate(&s, &mut at);
-                    let point = slave.at(face, &s);
-                    let w = w * point.area_normal().norm() * slave.measure(&point.x);
-                    for ((node, _), v) in nodes.of_face(face).iter().zip(&at.value) {
-                        weight[*node as usize] += w * v;
-                    }
-                }
-                for ((node, _), s) in nodes.of_face(face).iter().zip(map.nodes()) {
-                    place[*node as usize].get_or_insert((face, s));
-                }
-            }
-            for (node, place) in place.into_iter().enumerate() {
-                if let Some((face, s)) = place {
-                    add(node as u32, face, s, weight[node], &mut out);
-                }
-            }
-        }
+        rows.iter_mut().for_each(|row| compress(&mut row.terms));
+        rows.into_iter().enumerate().filter(|(_, row)| row.weight > 0.0 && !row.terms.is_empty()).collect()
     }
-    out
+
+    /// What the turning normals add to the tangent under the pressures of all rows: `-Σ p Δδg`, as symmetric matrices
+    /// of a few unknowns each.
+    pub fn curvature(&self, tests: &Tests, pressure: &[f64]) -> Vec<(Vec<u32>, Vec<f64>)> {
+        let mut out = Vec::new();
+        for (point, found) in tests.points.iter().zip(&self.kinematics) {
+            let Some(found) = found else { continue };
+            let force: f64 = point.shares.iter().map(|(row, share)| pressure[*row as usize] * share).sum();
+            if force != 0.0 && found.hessian.iter().any(|h| *h != 0.0) {
+                out.push((found.unknowns.clone(), found.hessian.iter().map(|h| -force * h).collect()));
+            }
+        }
+        out
+    }
 }

@@ -7,6 +7,7 @@
 mod plane;
 mod space;
 
+use crate::kinematics::GapJet;
 use crate::multiplier::PressureNodes;
 use crate::surface::ContactSurface;
 use plane::intervals;
@@ -132,10 +133,10 @@ fn defects<const D: usize>(
     std::array::from_fn(|side| sums[side].iter().zip(&exact[side]).map(|(s, e)| worst(s, e)).collect())
 }
 
-/// The points of every slave face against a rigid body: `gap` gives the distance of a point and the outward normal.
+/// The points of every slave face against a rigid body.
 pub fn rigid_points<const D: usize>(
     slave: &dyn ContactSurface<D>,
-    gap: &dyn Fn(&Point<D>) -> (f64, Point<D>),
+    gap: &dyn Fn(&Point<D>) -> GapJet<D>,
 ) -> Vec<Vec<GapPoint<D>>> {
     (0..slave.face_count())
         .map(|face| {
@@ -144,7 +145,7 @@ pub fn rigid_points<const D: usize>(
                 .into_iter()
                 .map(|(s, w)| {
                     let at = slave.at(face, &s);
-                    let (gap, normal) = gap(&at.x);
+                    let GapJet { gap, normal, .. } = gap(&at.x);
                     let weight = w * at.area_normal().norm() * slave.measure(&at.x);
                     GapPoint { s, weight, master: None, direction: normal, gap }
                 })

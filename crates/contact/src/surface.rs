@@ -36,10 +36,72 @@ pub trait ContactSurface<const D: usize>: Sync {
     fn at(&self, face: usize, s: &Local) -> FacePoint<D>;
     /// Appends the functions that move a point of a face: the first of their `D` unknowns, and their value.
     fn trace(&self, face: usize, s: &Local, out: &mut Vec<(u32, f64)>);
+    /// Appends the derivatives of those functions with respect to the coordinates of the face, in the same order.
+    fn slopes(&self, face: usize, s: &Local, out: &mut Vec<[f64; 2]>);
     /// Numbers of the vertices, in the order of the reference face; faces that meet share them.
     fn vertices(&self, face: usize) -> Vec<u32>;
     /// Thickness or circumference by which integrals are multiplied.
     fn measure(&self, x: &Point<D>) -> f64;
     /// Name of the body and number of the cell, for messages.
     fn describe(&self, face: usize) -> String;
+}
+
+/// A surface where its displacement has brought it.
+pub struct Moved<'a, const D: usize> {
+    pub surface: &'a dyn ContactSurface<D>,
+    /// Values of all unknowns.
+    pub u: &'a [f64],
+}
+
+impl<const D: usize> ContactSurface<D> for Moved<'_, D> {
+    fn face_count(&self) -> usize {
+        self.surface.face_count()
+    }
+
+    fn shape(&self, face: usize) -> CellShape {
+        self.surface.shape(face)
+    }
+
+    fn degree(&self, face: usize) -> usize {
+        self.surface.degree(face)
+    }
+
+    fn order(&self, face: usize) -> usize {
+        self.surface.order(face).max(self.surface.degree(face))
+    }
+
+    fn at(&self, face: usize, s: &Local) -> FacePoint<D> {
+        let mut point = self.surface.at(face, s);
+        let (mut trace, mut slopes) = (Vec::new(), Vec::new());
+        self.surface.trace(face, s, &mut trace);
+        self.surface.slopes(face, s, &mut slopes);
+        for ((unknown, value), slope) in trace.iter().zip(&slopes) {
+            let u = Point::<D>::from_fn(|i, _| self.u[*unknown as usize + i]);
+            point.x += u * *value;
+            for a in 0..D - 1 {
+                point.tangents[a] += u * slope[a];
+            }
+        }
+        point
+    }
+
+    fn trace(&self, face: usize, s: &Local, out: &mut Vec<(u32, f64)>) {
+        self.surface.trace(face, s, out);
+    }
+
+    fn slopes(&self, face: usize, s: &Local, out: &mut Vec<[f64; 2]>) {
+        self.surface.slopes(face, s, out);
+    }
+
+    fn vertices(&self, face: usize) -> Vec<u32> {
+        self.surface.vertices(face)
+    }
+
+    fn measure(&self, x: &Point<D>) -> f64 {
+        self.surface.measure(x)
+    }
+
+    fn describe(&self, face: usize) -> String {
+        self.surface.describe(face)
+    }
 }

@@ -24,7 +24,8 @@ pub enum PartnerJet<'a> {
 }
 
 impl PartnerJet<'_> {
-    fn dimension(&self) -> usize {
+    /// Number of coordinates.
+    pub fn dimension(&self) -> usize {
         match self {
             PartnerJet::Point(_) => 0,
             PartnerJet::Curve(_) => 1,
@@ -197,6 +198,32 @@ impl<const N: usize> Measures<N> {
             let tangential = v.d.dot(&u.d) - self.normal.dot(&v.d) * self.normal.dot(&u.d);
             (tangential - wv.dot(&(self.inverse * wu))) / self.gap - rotation - finite_gap
         }
+    }
+
+    /// `Δδg` of all pairs out of a list of variations, row by row: a symmetric matrix.
+    pub fn gap_hessian(&self, list: &[Variation<N>]) -> Vec<f64> {
+        let n = list.len();
+        let w: Vec<SVector<f64, N>> = list.iter().map(|v| self.w(v)).collect();
+        let beta: Vec<SVector<f64, N>> = list.iter().map(|v| self.beta(v)).collect();
+        let inverse_beta: Vec<SVector<f64, N>> = beta.iter().map(|b| self.inverse * b).collect();
+        let shape = self.inverse * self.curvature * self.inverse_metric;
+        let curved: Vec<SVector<f64, N>> = w.iter().map(|w| shape * w).collect();
+        let mut out = vec![0.0; n * n];
+        for r in 0..n {
+            for c in 0..=r {
+                let value = if N == 2 {
+                    w[r].dot(&curved[c])
+                        - w[r].dot(&inverse_beta[c])
+                        - inverse_beta[r].dot(&w[c])
+                        - self.gap * beta[r].dot(&inverse_beta[c])
+                } else {
+                    self.gap_second_variation(&list[r], &list[c])
+                };
+                out[r * n + c] = value;
+                out[c * n + r] = value;
+            }
+        }
+        out
     }
 
     /// `Δδξ` for two variations that are linear in the unknowns.

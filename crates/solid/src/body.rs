@@ -150,6 +150,20 @@ impl<const D: usize> ContactSurface<D> for BodySurface<D> {
         }
     }
 
+    fn slopes(&self, face: usize, s: &Local, out: &mut Vec<[f64; 2]>) {
+        let side = self.sides[face];
+        let cell = side.cell as usize;
+        let basis = self.body.dofs.basis(cell);
+        let (xi, along) = basis.shape().on_side(side.side as usize, s);
+        let mut at = Values::default();
+        basis.tabulate(&xi, &mut at);
+        let list = self.body.dofs.cell(cell);
+        for &k in &self.functions[face] {
+            let slope = |a: &Local| (0..3).map(|i| at.gradient[k][i] * a[i]).sum::<f64>();
+            out.push([list[k].1 * slope(&along[0]), list[k].1 * slope(&along[1])]);
+        }
+    }
+
     fn vertices(&self, face: usize) -> Vec<u32> {
         self.body.mesh.side_vertices(self.sides[face])
     }

@@ -4,14 +4,15 @@ use crate::body::BodySurface;
 use crate::model::StepError;
 use crate::supports::Reduction;
 use signorini_contact::{
-    ContactSurface, GapPoint, Given, MasterShapes, Meeting, PressureNodes, TestPoints, WeightedGap, point_rows,
-    rigid_points, segments, weighted_gaps,
+    ContactSurface, Faces, GapJet, GapPoint, Given, Measured, Moved, Obstacle, PressureNodes, Rigid, Tests, WeightedGap,
+    rigid_points, segments, shares, weighted_gaps,
 };
 use signorini_fem::hierarchic::Values;
 use signorini_geometry::Point;
+use std::collections::HashMap;
 
-/// The gap of a point to a rigid body, and the outward normal of that body.
-pub type RigidGap<const D: usize> = Box<dyn Fn(&Point<D>) -> (f64, Point<D>) + Sync>;
+/// The gap of a point to a rigid body with its derivatives.
+pub type RigidGap<const D: usize> = Box<dyn Fn(&Point<D>) -> GapJet<D> + Sync>;
 
 /// The other side of a contact.
 pub enum Master<const D: usize> {
@@ -41,6 +42,15 @@ pub enum Enforcement {
     Penalty { wanted_penetration: Option<f64> },
 }
 
+/// How far the sides may slide along each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sliding {
+    /// Little against the cells and radii: what faces what, and along which normal, stays as it is at rest.
+    Small,
+    /// Any way: gaps are measured where the bodies are, with the exact second variations in the tangent.
+    Finite,
+}
+
 /// Two sides that may touch.
 pub struct Contact<const D: usize> {
     pub name: String,
@@ -48,12 +58,19 @@ pub struct Contact<const D: usize> {
     pub master: Master<D>,
     pub method: Method,
     pub enforcement: Enforcement,
+    pub sliding: Sliding,
     pub(crate) nodes: PressureNodes<D>,
     pub(crate) points: Vec<Vec<GapPoint<D>>>,
     pub(crate) rows: Vec<WeightedGap>,
     /// Nodes that share the pressure of another.
     pub(crate) given: Vec<Given>,
-    /// Face and coordinates of the rows of [`Method::GaussPoint`].
+    /// Normal and displacement function of the pressure nodes at vertices.
+    vertex_nodes: HashMap<u32, (Point<D>, u32)>,
+    /// Points under test where there are some.
+    tests: Tests,
+    /// Their gaps at the last configuration.
+    measured: Option<Measured>,
+    /// Face and coordinates of the rows that are points.
     places: Vec<(usize, signorini_fem::Local)>,
     /// Pressure per penetration of the cells behind each row.
     pub(crate) stiffness: Vec<f64>,
@@ -62,37 +79,139 @@ pub struct Contact<const D: usize> {
 impl<const D: usize> Contact<D> {
     pub fn new(name: &str, slave: BodySurface<D>, master: Master<D>) -> Self {
         let nodes = PressureNodes::new(&slave);
+        let mut vertex_nodes = HashMap::new();
+        for face in 0..slave.sides.len() {
+            let vertices = slave.vertices(face);
+            for (v, place) in nodes.map(face).vertex_nodes().into_iter().enumerate() {
+                let (node, normal) = nodes.of_face(face)[place];
+                if let Some(function) = slave.body().dofs.vertex(vertices[v]) {
+                    vertex_nodes.insert(node, (normal, function));
+                }
+            }
+        }
         Contact {
             name: name.to_string(),
             slave,
             master,
             method: Method::Mortar,
             enforcement: Enforcement::Multiplier,
+            sliding: Sliding::Small,
             nodes,
             points: Vec::new(),
             rows: Vec::new(),
             given: Vec::new(),
+            vertex_nodes,
+            tests: Tests::default(),
+            measured: None,
             places: Vec::new(),
             stiffness: Vec::new(),
         }
     }
 
-    /// The rows of points against closest points of the master.
-    fn search_points(&mut self, test: TestPoints, rigid: Option<&RigidGap<D>>) -> Result<(), StepError> {
-        let reach = 0.5 * self.slave.size();
-        let found = match &self.master {
-            Master::Surface(surface) => {
-                let shapes = MasterShapes::new(surface)
-                    .map_err(|error| StepError::Shape { contact: self.name.clone(), message: error.to_string() })?;
-                point_rows(&self.slave, &self.nodes, test, reach, Some(surface), &|x| shapes.meet(surface, x))
-            }
-            Master::Rigid => point_rows(&self.slave, &self.nodes, test, reach, None, &|x| {
-                let (gap, normal) = rigid?(x);
-                Some(Meeting { gap, normal, foot: None })
-            }),
-        };
-        (self.rows, self.places) = (found.rows, found.places);
+    /// Finds out what faces what with the bodies displaced by `u`. `rigid` is where a rigid master is now.
+    ///
+    /// With small sliding `u` is not read, and rows between bodies are found once.
+    pub(crate) fn search(
+        &mut self,
+        reduction: &Reduction<D>,
+        rigid: Option<&RigidGap<D>>,
+        u: &[f64],
+    ) -> Result<(), StepError> {
+        match (self.sliding, self.method) {
+            // Between bodies everything is at rest: what was found once stays.
+            (Sliding::Small, _) if matches!(self.master, Master::Surface(_)) && !self.rows.is_empty() => return Ok(()),
+            (Sliding::Small, Method::Mortar) => self.search_segments(reduction, rigid),
+            (Sliding::Small, _) => self.search_points(reduction, rigid, None)?,
+            (Sliding::Finite, _) => self.search_points(reduction, rigid, Some(u))?,
+        }
+        self.find_stiffness();
         Ok(())
+    }
+
+    /// The rows of points against closest points of the master; with a displacement, gaps are linear around it.
+    fn search_points(
+        &mut self,
+        reduction: &Reduction<D>,
+        rigid: Option<&RigidGap<D>>,
+        u: Option<&[f64]>,
+    ) -> Result<(), StepError> {
+        let moved = |surface| u.map(|u| Moved { surface, u });
+        let slave = moved(&self.slave);
+        let slave: &dyn ContactSurface<D> = slave.as_ref().map_or(&self.slave as _, |m| m as _);
+        let master = match &self.master {
+            Master::Surface(surface) => Some((surface, moved(surface as _))),
+            Master::Rigid => None,
+        };
+        let master: Option<&dyn ContactSurface<D>> =
+            master.as_ref().map(|(surface, moved)| moved.as_ref().map_or(*surface as _, |m| m as _));
+        if self.method == Method::Mortar {
+            if let Some(master) = master {
+                let reach = 0.5 * self.slave.size().max(self.master_size());
+                let normals = PressureNodes::new(slave);
+                self.points = segments(slave, master, &normals, reach);
+                // Pressures count per area at rest.
+                for (face, list) in self.points.iter_mut().enumerate() {
+                    for p in list {
+                        let area = |s: &dyn ContactSurface<D>| s.at(face, &p.s).area_normal().norm();
+                        p.weight *= area(&self.slave) / area(slave);
+                    }
+                }
+            } else if self.points.is_empty()
+                && let Some(rigid) = rigid
+            {
+                self.points = rigid_points(&self.slave, &|x| rigid(x));
+            }
+            let shares = shares(&self.slave, &self.nodes, &self.points, &|k| self.is_folded(reduction, k));
+            self.tests = Tests::in_the_mean(&self.points, &shares);
+            self.given = shares.given;
+        } else if self.tests.points.is_empty() {
+            self.tests = match self.method {
+                Method::GaussPoint => Tests::at_quadrature_points(&self.slave),
+                _ => Tests::at_nodes(&self.slave, &self.nodes),
+            };
+        }
+        let faces;
+        let body;
+        let (obstacle, reach): (&dyn Obstacle<D>, f64) = match (master, rigid) {
+            (Some(master), _) => {
+                faces = Faces::new(master)
+                    .map_err(|error| StepError::Shape { contact: self.name.clone(), message: error.to_string() })?;
+                (&faces, 0.5 * self.slave.size())
+            }
+            (None, Some(rigid)) => {
+                body = Rigid(rigid);
+                (&body, f64::INFINITY)
+            }
+            (None, None) => return Ok(()),
+        };
+        let measured = self.tests.measure(slave, obstacle, reach, u.is_some());
+        let rows = measured.rows(&self.tests);
+        self.places = rows.iter().filter_map(|(k, _)| self.tests.rows[*k].place).collect();
+        self.rows = rows.into_iter().map(|(_, row)| row).collect();
+        if let Some(u) = u {
+            for row in &mut self.rows {
+                row.gap -= row.terms.iter().map(|(k, c)| c * u[*k as usize]).sum::<f64>();
+            }
+        }
+        self.measured = Some(measured);
+        Ok(())
+    }
+
+    /// What the turning normals add to the tangent under the pressures of the rows, by the numbers of the rows.
+    pub(crate) fn curvature(&self, pressure: &HashMap<u32, f64>) -> Vec<(Vec<u32>, Vec<f64>)> {
+        let Some(measured) = self.measured.as_ref().filter(|_| self.sliding == Sliding::Finite) else {
+            return Vec::new();
+        };
+        let of_row: Vec<f64> =
+            self.tests.rows.iter().map(|row| pressure.get(&row.number).copied().unwrap_or(0.0)).collect();
+        measured.curvature(&self.tests, &of_row)
+    }
+
+    fn master_size(&self) -> f64 {
+        match &self.master {
+            Master::Surface(surface) => surface.size(),
+            Master::Rigid => 0.0,
+        }
     }
 
     /// Young's modulus over the depth of the cell behind each row.
@@ -137,21 +256,6 @@ impl<const D: usize> Contact<D> {
         &self.rows
     }
 
-    /// Finds out what faces what. `rigid` is where a rigid master is now.
-    pub(crate) fn search(&mut self, reduction: &Reduction<D>, rigid: Option<&RigidGap<D>>) -> Result<(), StepError> {
-        // Between bodies everything is at rest: what was found once stays.
-        if matches!(self.master, Master::Surface(_)) && !self.rows.is_empty() {
-            return Ok(());
-        }
-        match self.method {
-            Method::Mortar => self.search_segments(reduction, rigid),
-            Method::Node => self.search_points(TestPoints::Nodes, rigid)?,
-            Method::GaussPoint => self.search_points(TestPoints::Gauss, rigid)?,
-        }
-        self.find_stiffness();
-        Ok(())
-    }
-
     fn search_segments(&mut self, reduction: &Reduction<D>, rigid: Option<&RigidGap<D>>) {
         let master = match &self.master {
             Master::Surface(surface) => {
@@ -167,27 +271,16 @@ impl<const D: usize> Contact<D> {
                 None
             }
         };
-        // A node whose displacement is prescribed along the normal cannot have a pressure of its own.
-        let mut normals = vec![Point::<D>::zeros(); self.nodes.len()];
-        let mut functions: Vec<Option<u32>> = vec![None; self.nodes.len()];
-        for face in 0..self.slave.sides.len() {
-            let map = self.nodes.map(face);
-            let places = map.vertex_nodes();
-            let vertices = self.slave.vertices(face);
-            for (v, place) in places.into_iter().enumerate() {
-                let (node, normal) = self.nodes.of_face(face)[place];
-                normals[node as usize] = normal;
-                functions[node as usize] = self.slave.body().dofs.vertex(vertices[v]);
-            }
-        }
-        let first = self.slave.body().first;
-        let folded = |node: u32| {
-            let Some(f) = functions[node as usize] else { return false };
-            let normal = normals[node as usize];
-            (0..D).all(|i| normal[i].abs() < 1e-6 || reduction.is_held(first + f as usize * D + i))
-        };
-        let found = weighted_gaps(&self.slave, master, &self.nodes, &self.points, &folded);
-        (self.rows, self.given) = (found.rows, found.given);
+        let shares = shares(&self.slave, &self.nodes, &self.points, &|node| self.is_folded(reduction, node));
+        self.rows = weighted_gaps(&self.slave, master, &self.points, &shares);
+        self.given = shares.given;
+    }
+
+    /// Whether the displacement of a pressure node is prescribed along its normal: it cannot have a pressure then.
+    fn is_folded(&self, reduction: &Reduction<D>, node: u32) -> bool {
+        let Some((normal, function)) = self.vertex_nodes.get(&node) else { return false };
+        let first = self.slave.body().first + *function as usize * D;
+        (0..D).all(|i| normal[i].abs() < 1e-6 || reduction.is_held(first + i))
     }
 }
 

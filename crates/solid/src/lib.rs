@@ -6,7 +6,8 @@
 //! - [`supports`]: what is prescribed, and the unknowns that remain; [`rigid_modes`]: what nothing holds.
 //! - [`contact`]: two sides that may touch.
 //! - [`loads`]: forces on sides and in volumes.
-//! - [`model`]: everything together, solved at one time.
+//! - [`model`]: everything together, solved at one time; [`mod@sliding`]: Newton's method where contacts slide far.
+//! - [`state`]: what comes out.
 
 mod assembly;
 pub mod body;
@@ -15,12 +16,15 @@ pub mod loads;
 pub mod material;
 pub mod model;
 pub mod rigid_modes;
+pub mod sliding;
+pub mod state;
 pub mod stiffness;
 pub mod supports;
 
 pub use body::{Bodies, Body, BodySurface};
-pub use contact::{Contact, ContactResult, Enforcement, Master, Method, PressureNode, RigidGap};
+pub use contact::{Contact, ContactResult, Enforcement, Master, Method, PressureNode, RigidGap, Sliding};
 pub use loads::{Load, LoadKind};
 pub use material::{Elastic, Space, von_mises};
-pub use model::{Circumstances, Model, State, StepError};
+pub use model::{Circumstances, Model, StepError};
+pub use state::State;
 pub use supports::{Support, SupportError, SupportKind};

@@ -2,13 +2,14 @@
 
 use crate::assembly::{assemble, positions};
 use crate::body::Bodies;
-use crate::contact::{Contact, ContactResult, Enforcement, Method, PressureNode, RigidGap};
+use crate::contact::{Contact, Enforcement, RigidGap, Sliding};
 use crate::rigid_modes::{FreeMode, free_modes};
+use crate::sliding::Settled;
+use crate::state::{Found, State};
 use crate::supports::{Displacement, Reduction, Support, SupportError};
 use signorini_contact::{
-    ActiveSet, ActiveSetError, Compliance, ContactState, Softness, Spring, WeightedGap, compress, recovered,
+    ActiveSet, ActiveSetError, Compliance, ContactState, Softness, Spring, WeightedGap, compress,
 };
-use signorini_geometry::Point;
 use signorini_solve::cholesky::Symbolic;
 use signorini_solve::dissection::nested_dissection;
 use signorini_solve::{Factor, SolveError, SymmetricMatrix};
@@ -29,26 +30,11 @@ pub enum StepError {
     /// Most of the slave side is inside the master before anything moves.
     #[error("contact `{contact}`: the bodies start {depth:.4e} deep in each other")]
     Deep { contact: String, depth: f64 },
+    /// Newton's method with finite sliding: what was left after each iteration, and the contact that lacked most.
+    #[error("contact `{contact}`: Newton's method did not converge in {} iterations", history.len())]
+    Newton { contact: String, history: Vec<f64>, place: String },
     #[error("interrupted")]
     Interrupted,
-}
-
-/// The solution at one time.
-#[derive(Clone, Debug)]
-pub struct State<const D: usize> {
-    /// Unknowns of all bodies.
-    pub u: Vec<f64>,
-    pub contacts: Vec<ContactResult<D>>,
-    pub iterations: usize,
-    /// Nodes that changed in each iteration.
-    pub changes: Vec<usize>,
-    /// Force of each support on the bodies.
-    pub support_forces: Vec<Point<D>>,
-    /// Largest unbalanced force relative to the largest of all.
-    pub imbalance: f64,
-    /// Strain energy.
-    pub energy: f64,
-    pub unknowns: usize,
 }
 
 /// Bodies, supports and contacts.
@@ -56,13 +42,18 @@ pub struct Model<const D: usize> {
     pub bodies: Bodies<D>,
     pub supports: Vec<Support>,
     pub contacts: Vec<Contact<D>>,
-    reduction: Reduction<D>,
-    stiffness: SymmetricMatrix,
+    pub(crate) reduction: Reduction<D>,
+    pub(crate) stiffness: SymmetricMatrix,
+    /// The stiffness of the unknowns that remain, springs included; kept where contact adds to it.
+    pub(crate) reduced: Option<SymmetricMatrix>,
+    pub(crate) symbolic: Symbolic,
     factor: Factor,
-    springs: Vec<Spring>,
+    pub(crate) springs: Vec<Spring>,
     free: Vec<FreeMode>,
     active: ActiveSet,
     started: bool,
+    /// The last state found with finite sliding, from which the next one starts.
+    pub(crate) settled: Option<Settled>,
 }
 
 /// What may change with time.
@@ -111,6 +102,8 @@ impl<const D: usize> Model<D> {
         } else {
             Symbolic::default()
         };
+        let sliding = contacts.iter().any(|c| c.sliding == Sliding::Finite);
+        let kept = sliding.then(|| reduced.clone());
         let factor = symbolic.factor(reduced)?;
         Ok(Model {
             bodies,
@@ -118,11 +111,14 @@ impl<const D: usize> Model<D> {
             contacts,
             reduction,
             stiffness,
+            reduced: kept,
+            symbolic,
             factor,
             springs,
             free,
             active: ActiveSet::default(),
             started: false,
+            settled: None,
         })
     }
 
@@ -136,23 +132,54 @@ impl<const D: usize> Model<D> {
         self.reduction.unknowns
     }
 
-    /// Solves for the displacement at one time. `report` gets the iteration and how many nodes changed, and says
-    /// whether to go on.
+    /// Solves for the displacement at one time. `report` gets the iteration and what is left (see
+    /// [`State::residuals`]), and says whether to go on.
+    ///
+    /// With finite sliding the solution starts from the last one found; after an error that is still the one before.
     pub fn solve(
         &mut self,
         now: &Circumstances<'_, D>,
-        report: &mut dyn FnMut(usize, usize) -> bool,
+        report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<State<D>, StepError> {
         let offset = self.reduction.offset(&self.bodies, &self.supports, now.displacement)?;
+        if self.slides() {
+            return self.solve_sliding(now, &offset, report);
+        }
         let moved = self.stiffness.multiply(&offset);
         let load: Vec<f64> = now.load.iter().zip(&moved).map(|(f, m)| f - m).collect();
         let load = self.reduction.restrict(&load);
-        let mut rows = Vec::new();
+        let ends = self.search(now, &[])?;
+        let rows: Vec<WeightedGap> = (self.contacts.iter())
+            .flat_map(|contact| contact.rows.iter().map(|row| reduced(row, &self.reduction, &offset)))
+            .collect();
+        let mut residuals = Vec::new();
+        let mut logged = |iteration: usize, changed: usize| {
+            residuals.push(changed as f64);
+            report(iteration, changed as f64)
+        };
+        let mut active = std::mem::take(&mut self.active);
+        let found = self.solve_enforced(&self.factor, &mut active, &rows, &ends, &load, &mut logged);
+        self.active = active;
+        let (found, _) = found.map_err(|error| self.explained(error, &ends))?;
+        let u = self.reduction.expand(&found.u, &offset);
+        let ContactState { pressure, gap, active, iterations, .. } = found;
+        Ok(self.state(Found { u, pressure, gap, active, iterations, residuals }, &now.load, &ends))
+    }
+
+    /// Whether a contact slides finitely.
+    pub fn slides(&self) -> bool {
+        self.reduced.is_some()
+    }
+
+    /// Finds the rows of all contacts, with the bodies displaced by `u` where contacts slide finitely; the ends of those of
+    /// each contact in the list of all.
+    pub(crate) fn search(&mut self, now: &Circumstances<'_, D>, u: &[f64]) -> Result<Vec<usize>, StepError> {
         let mut ends = Vec::new();
+        let mut count = 0;
         for (contact, rigid) in self.contacts.iter_mut().zip(&now.rigid) {
-            contact.search(&self.reduction, rigid.as_ref())?;
-            rows.extend(contact.rows.iter().map(|row| reduced(row, &self.reduction, &offset)));
-            ends.push(rows.len());
+            contact.search(&self.reduction, rigid.as_ref(), u)?;
+            count += contact.rows.len();
+            ends.push(count);
         }
         if !self.started {
             for contact in &self.contacts {
@@ -160,128 +187,24 @@ impl<const D: usize> Model<D> {
             }
             self.started = true;
         }
-        if rows.is_empty() && !self.free.is_empty() {
+        if count == 0 && !self.free.is_empty() {
             return Err(self.free_body());
         }
-        let mut changes = Vec::new();
-        let mut logged = |iteration: usize, changed: usize| {
-            changes.push(changed);
-            report(iteration, changed)
-        };
-        let found = match self.solve_enforced(&rows, &ends, &load, &mut logged) {
-            Ok(found) => found,
-            Err(ActiveSetError::Interrupted) => return Err(StepError::Interrupted),
-            Err(ActiveSetError::Free) => return Err(self.free_body()),
-            Err(error) => return Err(self.contact_error(error, &ends)),
-        };
-        let u = self.reduction.expand(&found.u, &offset);
-        let mut forces = self.stiffness.multiply(&u);
-        let energy = 0.5 * forces.iter().zip(&u).map(|(f, u)| f * u).sum::<f64>();
-        let mut results = Vec::new();
-        let mut first = 0;
-        let mut contact_force = vec![0.0; forces.len()];
-        for (contact, end) in self.contacts.iter().zip(ends) {
-            let mut result = ContactResult::<D> { nodes: Vec::new(), force: Point::<D>::zeros(), area: 0.0 };
-            let body = contact.slave.body();
-            let vertices: std::collections::HashSet<u32> = (contact.slave.sides.iter())
-                .flat_map(|s| body.mesh.side_vertices(*s))
-                .filter_map(|v| body.dofs.vertex(v))
-                .map(|f| (body.first + D * f as usize) as u32)
-                .collect();
-            for (k, row) in contact.rows.iter().enumerate() {
-                let pressure = found.pressure[first + k];
-                for (unknown, c) in &row.terms {
-                    contact_force[*unknown as usize] += c * pressure;
-                    let i = *unknown as usize % D;
-                    if vertices.contains(&(unknown - i as u32)) {
-                        result.force[i] += c * pressure;
-                    }
-                }
-                let active = found.active[first + k];
-                if active {
-                    result.area += row.weight;
-                }
-                if contact.method != Method::GaussPoint {
-                    result.nodes.push(PressureNode {
-                        x: contact.nodes.positions[row.node as usize],
-                        multiplier: pressure,
-                        pressure,
-                        gap: found.gap[first + k] / row.weight,
-                        active,
-                        weight: row.weight,
-                        number: row.node,
-                    });
-                }
-            }
-            if contact.method == Method::GaussPoint {
-                let range = first..end;
-                result.nodes =
-                    contact.averaged(&found.pressure[range.clone()], &found.gap[range.clone()], &found.active[range]);
-            }
-            first = end;
-            let count = contact.nodes.len();
-            let (mut multiplier, mut weight, mut active) = (vec![0.0; count], vec![0.0; count], vec![false; count]);
-            let mut weightless = vec![false; count];
-            for given in &contact.given {
-                // A node may have given its function on to one that gave its own away.
-                let Some(to) = result.nodes.iter().find(|n| n.number == given.to).copied() else { continue };
-                let x = contact.nodes().positions[given.from as usize];
-                weightless[given.from as usize] = given.weightless;
-                result.nodes.push(PressureNode { x, weight: 0.0, number: given.from, ..to });
-            }
-            for node in &result.nodes {
-                let k = node.number as usize;
-                (multiplier[k], weight[k], active[k]) = (node.multiplier, node.weight, node.active);
-            }
-            let pressure = match contact.method {
-                Method::Mortar => {
-                    recovered(&contact.nodes, &contact.points, &multiplier, &weight, &active, &weightless)
-                }
-                _ => multiplier,
-            };
-            result.nodes.iter_mut().for_each(|node| node.pressure = pressure[node.number as usize]);
-            results.push(result);
-        }
-        for ((force, load), contact) in forces.iter_mut().zip(&now.load).zip(&contact_force) {
-            *force -= load + contact;
-        }
-        // What is left are the reactions, and nothing on free unknowns.
-        let unbalanced = self.reduction.restrict(&forces);
-        let scale = forces.iter().chain(&contact_force).chain(&now.load).fold(f64::MIN_POSITIVE, |m, f| m.max(f.abs()));
-        let imbalance = unbalanced.iter().fold(0.0f64, |m, f| m.max(f.abs())) / scale;
-        let support_forces = (self.reduction.reactions.iter())
-            .map(|list| {
-                let mut sum = Point::<D>::zeros();
-                for f in list {
-                    for i in 0..D {
-                        sum[i] += forces[*f as usize * D + i];
-                    }
-                }
-                sum
-            })
-            .collect();
-        Ok(State {
-            u,
-            contacts: results,
-            iterations: found.iterations,
-            changes,
-            support_forces,
-            imbalance,
-            energy,
-            unknowns: self.reduction.unknowns,
-        })
+        Ok(ends)
     }
 
-    /// The active set, with outer iterations where the enforcement asks for them.
-    fn solve_enforced(
-        &mut self,
+    /// The active set, with outer iterations where the enforcement asks for them; and how the rows gave way in the end.
+    pub(crate) fn solve_enforced(
+        &self,
+        factor_of_bodies: &Factor,
+        active: &mut ActiveSet,
         rows: &[WeightedGap],
         ends: &[usize],
         load: &[f64],
         report: &mut dyn FnMut(usize, usize) -> bool,
-    ) -> Result<ContactState, ActiveSetError> {
+    ) -> Result<(ContactState, Vec<Softness>), ActiveSetError> {
         let mut soft = vec![Softness::default(); rows.len()];
-        let system = System(&self.factor);
+        let system = System(factor_of_bodies);
         let range = |k: usize| if k == 0 { 0..ends[0] } else { ends[k - 1]..ends[k] };
         // Multiples of the stiffness of the cells.
         let mut factor = vec![100.0; self.contacts.len()];
@@ -295,7 +218,7 @@ impl<const D: usize> Model<D> {
                     soft[row].compliance = rows[row].weight / (factor[k] * stiffness);
                 }
             }
-            let mut found = self.active.solve(&system, rows, &soft, &self.springs, load, report)?;
+            let mut found = active.solve(&system, rows, &soft, &self.springs, load, report)?;
             total += found.iterations;
             found.iterations = total;
             let mut again = false;
@@ -324,13 +247,22 @@ impl<const D: usize> Model<D> {
                 }
             }
             if !again || outer + 1 == MOST_OUTER {
-                return if again { Err(ActiveSetError::TooMany { iterations: total }) } else { Ok(found) };
+                return if again { Err(ActiveSetError::TooMany { iterations: total }) } else { Ok((found, soft)) };
             }
         }
         Err(ActiveSetError::TooMany { iterations: total })
     }
 
-    fn free_body(&self) -> StepError {
+    /// What failed, in terms of bodies and contacts.
+    pub(crate) fn explained(&self, error: ActiveSetError, ends: &[usize]) -> StepError {
+        match error {
+            ActiveSetError::Interrupted => StepError::Interrupted,
+            ActiveSetError::Free => self.free_body(),
+            error => self.contact_error(error, ends),
+        }
+    }
+
+    pub(crate) fn free_body(&self) -> StepError {
         match self.free.first() {
             Some(mode) => StepError::Free { body: mode.body.clone(), motion: mode.motion.clone() },
             None => StepError::Free { body: String::new(), motion: "to move".into() },
@@ -362,7 +294,7 @@ impl<const D: usize> Model<D> {
 const MOST_OUTER: usize = 60;
 
 /// A row in the unknowns that remain.
-fn reduced<const D: usize>(row: &WeightedGap, reduction: &Reduction<D>, offset: &[f64]) -> WeightedGap {
+pub(crate) fn reduced<const D: usize>(row: &WeightedGap, reduction: &Reduction<D>, offset: &[f64]) -> WeightedGap {
     let mut terms: Vec<(u32, f64)> = Vec::with_capacity(row.terms.len());
     let mut gap = row.gap;
     for (unknown, c) in &row.terms {

@@ -53,7 +53,7 @@ fn solve(degree: usize, h: f64, growth: f64, length: f64, modulus: f64, angle: f
     let now = Circumstances {
         displacement: &|s, _| if s == 0 { up * (-0.085 * length) } else { Point::<2>::zeros() },
         load: vec![0.0; model.bodies.unknowns()],
-        rigid: vec![Some(Box::new(move |x: &Point<2>| (x.dot(&up), up)))],
+        rigid: vec![Some(Box::new(move |x: &Point<2>| signorini_contact::GapJet::flat(x.dot(&up), up)))],
     };
     let state = model.solve(&now, &mut |_, _| true).unwrap();
     let c = &state.contacts[0];

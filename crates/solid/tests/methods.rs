@@ -149,10 +149,7 @@ fn enforcements_agree() {
         let now = Circumstances {
             displacement: &|s, _| Point::<2>::new(0.0, if s == 0 { -0.02 } else { 0.0 }),
             load: vec![0.0; model.bodies.unknowns()],
-            rigid: vec![Some(Box::new(move |x: &Point<2>| {
-                let d = x - centre;
-                (d.norm() - 2.0, d.normalize())
-            }))],
+            rigid: vec![Some(Box::new(move |x: &Point<2>| signorini_contact::GapJet::ball(x, &centre, 2.0)))],
         };
         let state = model.solve(&now, &mut |_, _| true).unwrap();
         let deepest = state.contacts[0].nodes.iter().map(|n| -n.gap).fold(0.0, f64::max);

@@ -69,6 +69,28 @@ impl SymmetricMatrix {
         }
     }
 
+    /// The sum of two matrices of the same size, with the entries of both patterns.
+    ///
+    /// # Panics
+    /// If their sizes differ.
+    pub fn plus(&self, other: &Self) -> Self {
+        assert_eq!(self.size(), other.size(), "matrices of one size");
+        let mut out = Self { column_start: vec![0], row: Vec::new(), value: Vec::new() };
+        for j in 0..self.size() {
+            let [mut a, mut b] = [self, other].map(|m| (m.column_start[j]..m.column_start[j + 1]).peekable());
+            loop {
+                let next = [a.peek().map(|&k| self.row[k]), b.peek().map(|&k| other.row[k])];
+                let Some(i) = next.into_iter().flatten().min() else { break };
+                let of_a = a.next_if(|&k| self.row[k] == i).map_or(0.0, |k| self.value[k]);
+                let of_b = b.next_if(|&k| other.row[k] == i).map_or(0.0, |k| other.value[k]);
+                out.row.push(i);
+                out.value.push(of_a + of_b);
+            }
+            out.column_start.push(out.row.len());
+        }
+        out
+    }
+
     /// `Tᵀ A T` with the rows of `T` given as lists of columns and entries.
     pub fn transformed<'a>(&self, columns: usize, row: impl Fn(usize) -> &'a [(u32, f64)]) -> Self {
         let mut start = vec![0usize; columns + 1];

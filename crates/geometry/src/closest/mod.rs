@@ -10,12 +10,14 @@ mod bounds;
 mod classify;
 mod closed_form;
 mod ellipsoid;
+mod hessian;
 mod newton;
 mod result;
 mod search;
 mod track;
 
 pub(crate) use closed_form::{segment_parameters, triangle as closest_on_triangle};
+pub use hessian::gap_hessian;
 pub use result::{ClosestPair, Entity, Feature, FeatureKind, Foot, Projection, Uniqueness};
 pub(crate) use track::clearance_of;
 pub use track::{Step, Tracker};

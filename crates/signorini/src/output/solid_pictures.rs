@@ -394,7 +394,7 @@ fn rigid_raster<const D: usize>(out: &mut String, plan: &SolidPlan<D>, time: f64
                     view.low[0] + (x + 0.5 * step - left) / view.scale,
                     view.low[1] + (bottom - y - 0.5 * step) / view.scale,
                 ];
-                bodies.iter().any(|gap| gap(&Point::<3>::new(p[0], p[1], 0.0)).0 < 0.0)
+                bodies.iter().any(|gap| gap(&Point::<3>::new(p[0], p[1], 0.0)).gap < 0.0)
             };
             match (inside, from) {
                 (true, None) => from = Some(x),

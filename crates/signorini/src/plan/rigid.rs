@@ -6,12 +6,13 @@ use crate::case::units::{LENGTH, NONE};
 use crate::case::{CaseError, Document, Values};
 use crate::expression::{Expression, Scope};
 use crate::queries::geometry;
-use signorini_geometry::closest::{Query, closest, signed_gap};
+use signorini_contact::GapJet;
+use signorini_geometry::closest::{Query, closest, gap_hessian, signed_gap};
 use signorini_geometry::frame::SurfaceFrame;
 use signorini_geometry::implicit_surface::{ImplicitBody, ImplicitSurface};
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::shape::{Axes, Shape as Geometry, ShapeError, Surface};
-use signorini_geometry::{Aabb, Jet, Point, Real, Vector};
+use signorini_geometry::{Aabb, Jet, Matrix, Point, Real, Vector};
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
 
@@ -64,19 +65,30 @@ enum Form {
 }
 
 impl Form {
-    /// Distance, negative inside, and outward normal.
-    fn gap(&self, x: &Point<3>) -> (f64, Vector<3>) {
+    /// Distance, negative inside, with its derivatives.
+    fn gap(&self, x: &Point<3>) -> GapJet<3> {
         let unit = |v: Vector<3>, else_: Vector<3>| v.try_normalize(0.0).unwrap_or(else_);
+        // Level sets around a point: all directions across the normal are curved alike.
+        let round = |distance: f64, gap: f64, normal: Vector<3>| GapJet {
+            gap,
+            normal,
+            hessian: (Matrix::<3>::identity() - normal * normal.transpose()) * inverse(distance),
+        };
         match self {
-            Form::Plane { point, normal } => (normal.dot(&(x - point)), *normal),
+            Form::Plane { point, normal } => {
+                GapJet { gap: normal.dot(&(x - point)), normal: *normal, hessian: Matrix::<3>::zeros() }
+            }
             Form::Sphere { center, radius } => {
                 let d = x - center;
-                (d.norm() - radius, unit(d, Vector::<3>::z()))
+                round(d.norm(), d.norm() - radius, unit(d, Vector::<3>::z()))
             }
             Form::Cylinder { point, axis, radius } => {
                 let d = x - point;
                 let across = d - axis * axis.dot(&d);
-                (across.norm() - radius, unit(across, any_normal(axis)))
+                let normal = unit(across, any_normal(axis));
+                let around = axis.cross(&normal);
+                let hessian = around * around.transpose() * inverse(across.norm());
+                GapJet { gap: across.norm() - radius, normal, hessian }
             }
             Form::Cone { apex, axis, sin, cos } => {
                 let d = x - apex;
@@ -86,20 +98,27 @@ impl Form {
                 let r = across.norm();
                 // Beyond the apex the apex itself is closest.
                 if along * cos + r * sin < 0.0 {
-                    return (d.norm(), unit(d, -axis));
+                    return round(d.norm(), d.norm(), unit(d, -axis));
                 }
-                (r * cos - along * sin, e * *cos - axis * *sin)
+                let around = axis.cross(&e);
+                let hessian = around * around.transpose() * (cos * inverse(r));
+                GapJet { gap: r * cos - along * sin, normal: e * *cos - axis * *sin, hessian }
             }
             Form::Torus { center, axis, major, minor } => {
                 let d = x - center;
                 let across = d - axis * axis.dot(&d);
                 let e = unit(across, any_normal(axis));
                 let from_ring = d - e * *major;
-                (from_ring.norm() - minor, unit(from_ring, *axis))
+                let normal = unit(from_ring, *axis);
+                let around = axis.cross(&e);
+                let tube = around.cross(&normal);
+                let hessian = tube * tube.transpose() * inverse(from_ring.norm())
+                    + around * around.transpose() * (normal.dot(&e) * inverse(across.norm()));
+                GapJet { gap: from_ring.norm() - minor, normal, hessian }
             }
             Form::Implicit(surface) => {
                 let foot = surface.closest(x);
-                (foot.gap, foot.normal)
+                GapJet { gap: foot.gap, normal: foot.normal, hessian: foot.hessian }
             }
             Form::General { shape, outward } => {
                 let found = closest(&Geometry::Point(*x), shape, &Query::default()).closest;
@@ -113,10 +132,16 @@ impl Form {
                 };
                 let scale = 1e-9 * shape.size();
                 let along = (gap.abs() > scale).then(|| d * (1.0 / gap));
-                (gap, along.or_else(frame).unwrap_or_else(|| unit(d, Vector::<3>::z())))
+                let normal = along.or_else(frame).unwrap_or_else(|| unit(d, Vector::<3>::z()));
+                GapJet { gap, normal, hessian: gap_hessian(&found, shape, &normal) }
             }
         }
     }
+}
+
+/// Curvatures are left out where they are infinite.
+fn inverse(radius: f64) -> f64 {
+    if radius > 0.0 { 1.0 / radius } else { 0.0 }
 }
 
 /// Some unit vector across another.
@@ -141,7 +166,7 @@ impl RigidBody {
         Ok([vector(&self.displacement), rotation])
     }
 
-    /// The gap of a point and the outward normal at a time.
+    /// The gap of a point with its derivatives at a time.
     ///
     /// # Errors
     /// A motion that is not a number then.
@@ -149,15 +174,20 @@ impl RigidBody {
         &self,
         document: &Document,
         time: f64,
-    ) -> Result<impl Fn(&Point<3>) -> (f64, Vector<3>) + Sync + Send + 'static, CaseError> {
+    ) -> Result<impl Fn(&Point<3>) -> GapJet<3> + Sync + Send + 'static, CaseError> {
         let [moved, turned] = self.motion_at(document, time)?;
         let back = RigidMotion::new(-turned, self.centre, Vector::<3>::zeros());
         let forth = RigidMotion::new(turned, self.centre, Vector::<3>::zeros());
         let (form, inside) = (Arc::clone(&self.form), self.inside);
         Ok(move |x: &Point<3>| {
-            let (gap, normal) = form.gap(&back.point(&(x - moved)));
-            let normal = forth.vector(&normal);
-            if inside { (-gap, -normal) } else { (gap, normal) }
+            let found = form.gap(&back.point(&(x - moved)));
+            let turn = forth.rotation;
+            let sign = if inside { -1.0 } else { 1.0 };
+            GapJet {
+                gap: sign * found.gap,
+                normal: turn * found.normal * sign,
+                hessian: turn * found.hessian * turn.transpose() * sign,
+            }
         })
     }
 }
@@ -399,12 +429,18 @@ mod tests {
         };
         // A quarter turn lets the plane look along -x, through (1, 0.5, 0).
         let document = Document::parse("case", "space = \"3d\"\n[bodies]\n", &[]).unwrap();
-        let (gap, normal) = body.gap_at(&document, 0.0).unwrap()(&Point::<3>::new(0.25, 7.0, 0.0));
+        let GapJet { gap, normal, .. } = body.gap_at(&document, 0.0).unwrap()(&Point::<3>::new(0.25, 7.0, 0.0));
         assert!((gap - 0.75).abs() < 1e-14 && (normal + Vector::<3>::x()).norm() < 1e-14, "{gap} {normal:?}");
     }
 
+    fn tetrahedron() -> signorini_geometry::mesh::TriangleMesh {
+        let corners = [[0.0, 0.0, 0.0], [0.4, 0.0, 0.1], [0.0, 0.3, 0.0], [0.1, 0.1, 0.5]].map(Point::<3>::from);
+        let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+        signorini_geometry::mesh::TriangleMesh::new(corners.to_vec(), &faces).unwrap()
+    }
+
     #[test]
-    fn normals_are_gradients_of_the_gap() {
+    fn normals_and_curvatures_are_derivatives_of_the_gap() {
         let unit = |x: f64, y: f64, z: f64| Vector::<3>::new(x, y, z).normalize();
         let axes = Axes::standard(Point::<3>::new(0.1, 0.2, -0.1));
         let paraboloid = Surface::graph(axes, [0.5, 0.5, 0.0], [[-4.0, 4.0]; 2]).unwrap();
@@ -426,6 +462,7 @@ mod tests {
                 outward: true,
             },
             Form::General { shape: paraboloid.into(), outward: false },
+            Form::General { shape: tetrahedron().into(), outward: true },
             implicit(
                 crate::expression::parse(
                     "x^2 + 2*y^2 + 3*z^2 - 0.2",
@@ -439,16 +476,21 @@ mod tests {
         ];
         for (k, form) in forms.iter().enumerate() {
             for x in
-                [Point::<3>::new(0.5, 0.4, 0.6), Point::<3>::new(0.45, -0.3, 0.2), Point::<3>::new(-0.3, 0.2, 0.05)]
+                [Point::<3>::new(0.5, 0.4, 0.6), Point::<3>::new(0.45, -0.3, 0.2), Point::<3>::new(-0.3, 0.2, 0.05),
+                Point::<3>::new(0.0, -0.4, 0.3), Point::<3>::new(0.2, 0.4, -0.1)]
             {
-                let (_, normal) = form.gap(&x);
+                let GapJet { normal, hessian, .. } = form.gap(&x);
                 assert!((normal.norm() - 1.0).abs() < 1e-9, "form {k}");
                 for i in 0..3 {
                     let h = 1e-6;
                     let mut step = Vector::<3>::zeros();
                     step[i] = h;
-                    let slope = (form.gap(&(x + step)).0 - form.gap(&(x - step)).0) / (2.0 * h);
+                    let [after, before] = [form.gap(&(x + step)), form.gap(&(x - step))];
+                    let slope = (after.gap - before.gap) / (2.0 * h);
                     assert!((slope - normal[i]).abs() < 1e-7, "form {k} at {x:?}: {slope} and {}", normal[i]);
+                    let turn = (after.normal - before.normal) / (2.0 * h);
+                    let error = (turn - hessian.column(i)).norm();
+                    assert!(error < 1e-6 * (1.0 + hessian.norm()), "form {k} at {x:?}: {turn:?} and {hessian:?}");
                 }
             }
         }

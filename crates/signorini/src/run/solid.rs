@@ -7,6 +7,7 @@ use crate::output::solid_fields::{ContactDisplay, SolidDisplay, SolidFields};
 use crate::output::{Folder, OutputError, solid_pictures, tables, vtk};
 use crate::plan::solid::{Opposite, SolidPlan, evaluate};
 use serde_json::{Value, json};
+use signorini_contact::GapJet;
 use signorini_geometry::Point;
 use signorini_solid::loads::{forces, resultant};
 use signorini_solid::{
@@ -175,14 +176,16 @@ impl<const D: usize> Runner<D> {
             })
             .collect::<Result<_, CaseError>>()?;
         let mut stopped = false;
-        let mut report = |iteration: usize, changed: usize| {
+        let (action, figure) =
+            if self.model.slides() { ("newton", "residual") } else { ("active set", "nodes_changed") };
+        let mut report = |iteration: usize, residual: f64| {
             progress.iteration(&Iteration {
                 step: index,
                 time,
                 iteration,
-                residual: changed as f64,
-                action: "active set",
-                figures: &[("nodes_changed", changed as f64)],
+                residual,
+                action,
+                figures: &[(figure, residual)],
             });
             stopped = progress.interrupted();
             !stopped
@@ -240,7 +243,7 @@ impl<const D: usize> Runner<D> {
         let mut step = json!({
             "index": index, "time": time, "converged": true, "reason": "converged",
             "iterations": state.iterations,
-            "residual_history": state.changes.iter().map(|c| *c as f64).collect::<Vec<f64>>(),
+            "residual_history": state.residuals,
             "energy": state.energy,
             "equilibrium_residual": state.imbalance,
             "support_forces": {}, "load_forces": {}, "contacts": {}, "probes": {},
@@ -434,10 +437,14 @@ fn radius(space: Stated, area: f64, zones: usize) -> Option<f64> {
     }
 }
 
-fn flat_gap<const D: usize>(gap: impl Fn(&Point<3>) -> (f64, Point<3>) + Sync + Send + 'static) -> RigidGap<D> {
+fn flat_gap<const D: usize>(gap: impl Fn(&Point<3>) -> GapJet<3> + Sync + Send + 'static) -> RigidGap<D> {
     Box::new(move |x| {
-        let (gap, normal) = gap(&Point::<3>::from_fn(|k, _| if k < D { x[k] } else { 0.0 }));
-        (gap, Point::<D>::from_fn(|k, _| normal[k]))
+        let found = gap(&Point::<3>::from_fn(|k, _| if k < D { x[k] } else { 0.0 }));
+        GapJet {
+            gap: found.gap,
+            normal: Point::<D>::from_fn(|k, _| found.normal[k]),
+            hessian: signorini_geometry::Matrix::<D>::from_fn(|r, c| found.hessian[(r, c)]),
+        }
     })
 }
 
@@ -457,6 +464,13 @@ fn failure(error: &StepError) -> Failure {
         StepError::Support(_) | StepError::Deep { .. } | StepError::Shape { .. } => {
             Failure { reason: "input", text: error.to_string() }
         }
+        StepError::Newton { history, place, .. } => Failure {
+            reason: "newton",
+            text: format!(
+                "{error}, worst at {place}; what was left after each: {}; try more increments, or a finer mesh there",
+                history.iter().map(|r| format!("{r:.1e}")).collect::<Vec<_>>().join(", ")
+            ),
+        },
         StepError::Contact { contact, error, places } => Failure {
             reason: "contact",
             text: format!(

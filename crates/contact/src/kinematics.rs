@@ -1,0 +1,126 @@
+//! The kinematics of a contact pair: its gap with first and second variations in the unknowns that move both partners.
+//!
+//! One template for all pairs (Konyukhov & Schweizerhof 2013). Geometry supplies the measures at the closest points;
+//! here the shape functions of the partners are inserted, whatever they are: low or high order, or splines. A pair knows
+//! neither pressures nor penalties.
+
+use signorini_geometry::measures::{Measures, PartnerJet, Variation};
+use signorini_geometry::{Point, Vector};
+
+/// A function that moves a point of a partner: the first of its unknowns, its value and its slopes along the
+/// coordinates of the partner (those beyond the number of its coordinates are not read).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeFunction {
+    pub unknown: u32,
+    pub value: f64,
+    pub slopes: [f64; 2],
+}
+
+/// A partner of a pair: its jet at the closest point and the functions that move it. A rigid partner has none.
+#[derive(Clone, Copy, Debug)]
+pub struct Partner<'a> {
+    pub jet: PartnerJet<'a>,
+    pub functions: &'a [ShapeFunction],
+}
+
+/// The gap of a pair and its variations.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Kinematics {
+    pub gap: f64,
+    /// Unknowns that the gap depends on, and its derivatives.
+    pub unknowns: Vec<u32>,
+    pub gradient: Vec<f64>,
+    /// Second derivatives, row by row; empty where they were not asked for.
+    pub hessian: Vec<f64>,
+}
+
+impl Kinematics {
+    /// The pair of two partners at their closest points, with `normal` the unit vector along which the gap counts.
+    /// `D` unknowns belong to each function; in the plane those along z are left out.
+    ///
+    /// `None` where the coordinates of the pair do not exist: on a focal set, or along parallel tangents.
+    ///
+    /// # Panics
+    /// If `N` is not the number of coordinates of both partners.
+    pub fn of_pair<const D: usize, const N: usize>(
+        a: Partner<'_>,
+        b: Partner<'_>,
+        normal: Vector<3>,
+        second: bool,
+    ) -> Option<Self> {
+        let measures = Measures::<N>::new(a.jet, b.jet, normal)?;
+        let of_a = a.jet.dimension();
+        let zero = Vector::<3>::zeros();
+        let mut out = Kinematics { gap: measures.gap, ..Self::default() };
+        let mut variations = Vec::new();
+        for (partner, first, sign) in [(&a, 0, 1.0), (&b, of_a, -1.0)] {
+            for f in partner.functions {
+                for i in 0..D {
+                    let along = axis(i) * sign;
+                    let mut v = Variation::<N> { d: along * f.value, d_a: [zero; N], d_ab: [[zero; N]; N] };
+                    for (slope, d_a) in f.slopes.iter().zip(&mut v.d_a[first..first + partner.jet.dimension()]) {
+                        *d_a = along * *slope;
+                    }
+                    out.unknowns.push(f.unknown + i as u32);
+                    out.gradient.push(measures.gap_variation(&v));
+                    variations.push(v);
+                }
+            }
+        }
+        if second {
+            out.hessian = measures.gap_hessian(&variations);
+        }
+        Some(out)
+    }
+
+    /// The pair of a point and a rigid body whose gap has a value, gradient and Hessian in the position of the point.
+    pub fn of_rigid<const D: usize>(functions: &[ShapeFunction], rigid: &GapJet<D>, second: bool) -> Self {
+        let mut out = Kinematics { gap: rigid.gap, ..Self::default() };
+        for f in functions {
+            for i in 0..D {
+                out.unknowns.push(f.unknown + i as u32);
+                out.gradient.push(f.value * rigid.normal[i]);
+            }
+        }
+        if second {
+            let n = out.unknowns.len();
+            out.hessian = vec![0.0; n * n];
+            for (r, row) in out.hessian.chunks_mut(n.max(1)).enumerate() {
+                for (c, entry) in row.iter_mut().enumerate() {
+                    *entry = functions[r / D].value * functions[c / D].value * rigid.hessian[(r % D, c % D)];
+                }
+            }
+        }
+        out
+    }
+}
+
+/// The gap of a point to a rigid body, negative inside, its gradient (the outward normal) and its Hessian.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GapJet<const D: usize> {
+    pub gap: f64,
+    pub normal: Point<D>,
+    pub hessian: signorini_geometry::Matrix<D>,
+}
+
+impl<const D: usize> GapJet<D> {
+    /// A flat boundary; or one whose curvature is not needed, as with small sliding.
+    pub fn flat(gap: f64, normal: Point<D>) -> Self {
+        GapJet { gap, normal, hessian: signorini_geometry::Matrix::<D>::zeros() }
+    }
+
+    /// A ball, or in the plane a disc.
+    pub fn ball(x: &Point<D>, centre: &Point<D>, radius: f64) -> Self {
+        let d = x - centre;
+        let distance = d.norm();
+        let normal = d / distance;
+        let across = signorini_geometry::Matrix::<D>::identity() - normal * normal.transpose();
+        GapJet { gap: distance - radius, normal, hessian: across / distance }
+    }
+}
+
+fn axis(i: usize) -> Vector<3> {
+    let mut e = Vector::<3>::zeros();
+    e[i] = 1.0;
+    e
+}

@@ -1,0 +1,139 @@
+//! What one time came to: displacement, pressures, forces.
+
+use crate::contact::{Contact, ContactResult, Method, PressureNode};
+use crate::model::Model;
+use signorini_contact::recovered;
+use signorini_geometry::Point;
+
+/// The solution at one time.
+#[derive(Clone, Debug)]
+pub struct State<const D: usize> {
+    /// Unknowns of all bodies.
+    pub u: Vec<f64>,
+    pub contacts: Vec<ContactResult<D>>,
+    pub iterations: usize,
+    /// After each iteration: how many nodes changed; with finite sliding what is left of force and gap, relative.
+    pub residuals: Vec<f64>,
+    /// Force of each support on the bodies.
+    pub support_forces: Vec<Point<D>>,
+    /// Largest unbalanced force relative to the largest of all.
+    pub imbalance: f64,
+    /// Strain energy.
+    pub energy: f64,
+    pub unknowns: usize,
+}
+
+/// Displacement of all unknowns, and pressure, weighted gap and status of all rows.
+pub(crate) struct Found {
+    pub u: Vec<f64>,
+    pub pressure: Vec<f64>,
+    pub gap: Vec<f64>,
+    pub active: Vec<bool>,
+    pub iterations: usize,
+    pub residuals: Vec<f64>,
+}
+
+impl<const D: usize> Model<D> {
+    /// Forces and results of a solution. `ends` are the ends of the rows of each contact.
+    pub(crate) fn state(&self, found: Found, load: &[f64], ends: &[usize]) -> State<D> {
+        let u = found.u;
+        let mut forces = self.stiffness.multiply(&u);
+        let energy = 0.5 * forces.iter().zip(&u).map(|(f, u)| f * u).sum::<f64>();
+        let mut results = Vec::new();
+        let mut first = 0;
+        let mut contact_force = vec![0.0; forces.len()];
+        for (contact, &end) in self.contacts.iter().zip(ends) {
+            let rows = first..end;
+            let (pressure, gap, active) =
+                (&found.pressure[rows.clone()], &found.gap[rows.clone()], &found.active[rows]);
+            first = end;
+            results.push(result(contact, pressure, gap, active, &mut contact_force));
+        }
+        for ((force, load), contact) in forces.iter_mut().zip(load).zip(&contact_force) {
+            *force -= load + contact;
+        }
+        // What is left are the reactions, and nothing on free unknowns.
+        let unbalanced = self.reduction.restrict(&forces);
+        let scale = forces.iter().chain(&contact_force).chain(load).fold(f64::MIN_POSITIVE, |m, f| m.max(f.abs()));
+        let imbalance = unbalanced.iter().fold(0.0f64, |m, f| m.max(f.abs())) / scale;
+        let support_forces = (self.reduction.reactions.iter())
+            .map(|list| {
+                let of = |f: &u32| Point::<D>::from_fn(|i, _| forces[*f as usize * D + i]);
+                list.iter().map(of).sum::<Point<D>>()
+            })
+            .collect();
+        State {
+            u,
+            contacts: results,
+            iterations: found.iterations,
+            residuals: found.residuals,
+            support_forces,
+            imbalance,
+            energy,
+            unknowns: self.reduction.unknowns,
+        }
+    }
+}
+
+/// The result of a contact; its forces are added to those on the unknowns.
+fn result<const D: usize>(
+    contact: &Contact<D>,
+    pressures: &[f64],
+    gaps: &[f64],
+    actives: &[bool],
+    contact_force: &mut [f64],
+) -> ContactResult<D> {
+    let mut result = ContactResult::<D> { nodes: Vec::new(), force: Point::<D>::zeros(), area: 0.0 };
+    let body = contact.slave.body();
+    let vertices: std::collections::HashSet<u32> = (contact.slave.sides.iter())
+        .flat_map(|s| body.mesh.side_vertices(*s))
+        .filter_map(|v| body.dofs.vertex(v))
+        .map(|f| (body.first + D * f as usize) as u32)
+        .collect();
+    for (k, row) in contact.rows.iter().enumerate() {
+        for (unknown, c) in &row.terms {
+            contact_force[*unknown as usize] += c * pressures[k];
+            let i = *unknown as usize % D;
+            if vertices.contains(&(unknown - i as u32)) {
+                result.force[i] += c * pressures[k];
+            }
+        }
+        if actives[k] {
+            result.area += row.weight;
+        }
+        if contact.method != Method::GaussPoint {
+            result.nodes.push(PressureNode {
+                x: contact.nodes.positions[row.node as usize],
+                multiplier: pressures[k],
+                pressure: pressures[k],
+                gap: gaps[k] / row.weight,
+                active: actives[k],
+                weight: row.weight,
+                number: row.node,
+            });
+        }
+    }
+    if contact.method == Method::GaussPoint {
+        result.nodes = contact.averaged(pressures, gaps, actives);
+    }
+    let count = contact.nodes.len();
+    let (mut multiplier, mut weight, mut active) = (vec![0.0; count], vec![0.0; count], vec![false; count]);
+    let mut weightless = vec![false; count];
+    for given in &contact.given {
+        // A node may have given its function on to one that gave its own away.
+        let Some(to) = result.nodes.iter().find(|n| n.number == given.to).copied() else { continue };
+        let x = contact.nodes().positions[given.from as usize];
+        weightless[given.from as usize] = given.weightless;
+        result.nodes.push(PressureNode { x, weight: 0.0, number: given.from, ..to });
+    }
+    for node in &result.nodes {
+        let k = node.number as usize;
+        (multiplier[k], weight[k], active[k]) = (node.multiplier, node.weight, node.active);
+    }
+    let pressure = match contact.method {
+        Method::Mortar => recovered(&contact.nodes, &contact.points, &multiplier, &weight, &active, &weightless),
+        _ => multiplier,
+    };
+    result.nodes.iter_mut().for_each(|node| node.pressure = pressure[node.number as usize]);
+    result
+}

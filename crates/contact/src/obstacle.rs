@@ -137,9 +137,7 @@ impl<'a, const D: usize> Faces<'a, D> {
             x: jet.x,
             d1: jet.u * p + jet.v * q,
             d2: jet.uu * (p * p) + jet.uv * (2.0 * p * q) + jet.vv * (q * q),
-            d3: jet.uuu * p.powi(3)
-                + (jet.uuv * (p * p * q) + jet.uvv * (p * q * q)) * 3.0
-                + jet.vvv * q.powi(3),
+            d3: jet.uuu * p.powi(3) + (jet.uuv * (p * p * q) + jet.uvv * (p * q * q)) * 3.0 + jet.vvv * q.powi(3),
         };
         functions.iter_mut().for_each(|f| f.slopes = [f.slopes[0] * p + f.slopes[1] * q, 0.0]);
         let master = Partner { jet: PartnerJet::Curve(&edge), functions: &functions };
@@ -201,17 +199,11 @@ impl Place {
 }
 
 /// The functions that move a point of a face.
-pub fn shape_functions<const D: usize>(
-    surface: &dyn ContactSurface<D>,
-    face: usize,
-    s: &Local,
-) -> Vec<ShapeFunction> {
+pub fn shape_functions<const D: usize>(surface: &dyn ContactSurface<D>, face: usize, s: &Local) -> Vec<ShapeFunction> {
     let (mut trace, mut slopes) = (Vec::new(), Vec::new());
     surface.trace(face, s, &mut trace);
     surface.slopes(face, s, &mut slopes);
-    (trace.into_iter().zip(slopes))
-        .map(|((unknown, value), slopes)| ShapeFunction { unknown, value, slopes })
-        .collect()
+    (trace.into_iter().zip(slopes)).map(|((unknown, value), slopes)| ShapeFunction { unknown, value, slopes }).collect()
 }
 
 fn strip(curve: &CurveJet) -> SurfaceJet {

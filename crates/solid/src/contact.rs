@@ -4,8 +4,8 @@ use crate::body::BodySurface;
 use crate::model::StepError;
 use crate::supports::Reduction;
 use signorini_contact::{
-    ContactSurface, Faces, GapJet, GapPoint, Given, Measured, Moved, Obstacle, PressureNodes, Rigid, Tests, WeightedGap,
-    rigid_points, segments, shares, weighted_gaps,
+    ContactSurface, Faces, GapJet, GapPoint, Given, Measured, Moved, Obstacle, PressureNodes, Rigid, Tests,
+    WeightedGap, rigid_points, segments, shares, weighted_gaps,
 };
 use signorini_fem::hierarchic::Values;
 use signorini_geometry::Point;
@@ -110,19 +110,21 @@ impl<const D: usize> Contact<D> {
 
     /// Finds out what faces what with the bodies displaced by `u`. `rigid` is where a rigid master is now.
     ///
-    /// With small sliding `u` is not read, and rows between bodies are found once.
+    /// With small sliding `u` is not read, and rows between bodies are found once. `near` says that `u` is so near the
+    /// solution that the cuts of the faces may stay; what each point faces is found anew all the same.
     pub(crate) fn search(
         &mut self,
         reduction: &Reduction<D>,
         rigid: Option<&RigidGap<D>>,
         u: &[f64],
+        near: bool,
     ) -> Result<(), StepError> {
         match (self.sliding, self.method) {
             // Between bodies everything is at rest: what was found once stays.
             (Sliding::Small, _) if matches!(self.master, Master::Surface(_)) && !self.rows.is_empty() => return Ok(()),
             (Sliding::Small, Method::Mortar) => self.search_segments(reduction, rigid),
-            (Sliding::Small, _) => self.search_points(reduction, rigid, None)?,
-            (Sliding::Finite, _) => self.search_points(reduction, rigid, Some(u))?,
+            (Sliding::Small, _) => self.search_points(reduction, rigid, None, false)?,
+            (Sliding::Finite, _) => self.search_points(reduction, rigid, Some(u), near)?,
         }
         self.find_stiffness();
         Ok(())
@@ -134,6 +136,7 @@ impl<const D: usize> Contact<D> {
         reduction: &Reduction<D>,
         rigid: Option<&RigidGap<D>>,
         u: Option<&[f64]>,
+        near: bool,
     ) -> Result<(), StepError> {
         let moved = |surface| u.map(|u| Moved { surface, u });
         let slave = moved(&self.slave);
@@ -144,7 +147,7 @@ impl<const D: usize> Contact<D> {
         };
         let master: Option<&dyn ContactSurface<D>> =
             master.as_ref().map(|(surface, moved)| moved.as_ref().map_or(*surface as _, |m| m as _));
-        if self.method == Method::Mortar {
+        if self.method == Method::Mortar && !near {
             if let Some(master) = master {
                 let reach = 0.5 * self.slave.size().max(self.master_size());
                 let normals = PressureNodes::new(slave);
@@ -164,7 +167,7 @@ impl<const D: usize> Contact<D> {
             let shares = shares(&self.slave, &self.nodes, &self.points, &|k| self.is_folded(reduction, k));
             self.tests = Tests::in_the_mean(&self.points, &shares);
             self.given = shares.given;
-        } else if self.tests.points.is_empty() {
+        } else if self.method != Method::Mortar && self.tests.points.is_empty() {
             self.tests = match self.method {
                 Method::GaussPoint => Tests::at_quadrature_points(&self.slave),
                 _ => Tests::at_nodes(&self.slave, &self.nodes),

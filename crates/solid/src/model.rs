@@ -7,9 +7,7 @@ use crate::rigid_modes::{FreeMode, free_modes};
 use crate::sliding::Settled;
 use crate::state::{Found, State};
 use crate::supports::{Displacement, Reduction, Support, SupportError};
-use signorini_contact::{
-    ActiveSet, ActiveSetError, Compliance, ContactState, Softness, Spring, WeightedGap, compress,
-};
+use signorini_contact::{ActiveSet, ActiveSetError, Compliance, ContactState, Softness, Spring, WeightedGap, compress};
 use signorini_solve::cholesky::Symbolic;
 use signorini_solve::dissection::nested_dissection;
 use signorini_solve::{Factor, SolveError, SymmetricMatrix};
@@ -148,7 +146,7 @@ impl<const D: usize> Model<D> {
         let moved = self.stiffness.multiply(&offset);
         let load: Vec<f64> = now.load.iter().zip(&moved).map(|(f, m)| f - m).collect();
         let load = self.reduction.restrict(&load);
-        let ends = self.search(now, &[])?;
+        let ends = self.search(now, &[], false)?;
         let rows: Vec<WeightedGap> = (self.contacts.iter())
             .flat_map(|contact| contact.rows.iter().map(|row| reduced(row, &self.reduction, &offset)))
             .collect();
@@ -173,11 +171,16 @@ impl<const D: usize> Model<D> {
 
     /// Finds the rows of all contacts, with the bodies displaced by `u` where contacts slide finitely; the ends of those of
     /// each contact in the list of all.
-    pub(crate) fn search(&mut self, now: &Circumstances<'_, D>, u: &[f64]) -> Result<Vec<usize>, StepError> {
+    pub(crate) fn search(
+        &mut self,
+        now: &Circumstances<'_, D>,
+        u: &[f64],
+        near: bool,
+    ) -> Result<Vec<usize>, StepError> {
         let mut ends = Vec::new();
         let mut count = 0;
         for (contact, rigid) in self.contacts.iter_mut().zip(&now.rigid) {
-            contact.search(&self.reduction, rigid.as_ref(), u)?;
+            contact.search(&self.reduction, rigid.as_ref(), u, near)?;
             count += contact.rows.len();
             ends.push(count);
         }

@@ -30,6 +30,9 @@ const MOST_HALVINGS: i32 = 6;
 /// Force relative to the largest of all, and gap relative to the displacement, that are left in the end.
 const TOLERANCE: f64 = 1e-10;
 
+/// What is left when the cuts of the faces move no more: they change integrals by the square of it.
+const NEAR: f64 = 1e-3;
+
 /// A displacement with the gaps around it, linear in the unknowns of the bodies.
 struct Around {
     u: Vec<f64>,
@@ -55,7 +58,7 @@ impl<const D: usize> Model<D> {
     ) -> Result<State<D>, StepError> {
         let zero = || Settled { u: vec![0.0; self.bodies.unknowns()], pressure: HashMap::new() };
         let Settled { u, mut pressure } = self.settled.clone().unwrap_or_else(zero);
-        let mut around = self.around(u, now)?;
+        let mut around = self.around(u, now, false)?;
         let mut history: Vec<f64> = Vec::new();
         let mut iterations = 0;
         let mut worst = 0;
@@ -64,10 +67,11 @@ impl<const D: usize> Model<D> {
             iterations += step.solves;
             // The first step takes the prescribed displacements along and has nothing to compare with.
             let before = history.last().map(|rest| (*rest, self.merit(&around, &step, now)));
+            let near = history.last().is_some_and(|rest| *rest < NEAR);
             let mut share = 1.0;
             let (reached, rest) = loop {
                 let along = around.u.iter().zip(&step.u).map(|(a, b)| a + share * (b - a)).collect();
-                let reached = self.around(along, now)?;
+                let reached = self.around(along, now, near)?;
                 let (rest, row) = self.rest(&reached, &step, now);
                 worst = row;
                 let fine = before.is_none_or(|(r, merit)| rest < r || self.merit(&reached, &step, now) < merit);
@@ -111,8 +115,8 @@ impl<const D: usize> Model<D> {
     }
 
     /// Measures all gaps at a displacement.
-    fn around(&mut self, u: Vec<f64>, now: &Circumstances<'_, D>) -> Result<Around, StepError> {
-        let ends = self.search(now, &u)?;
+    fn around(&mut self, u: Vec<f64>, now: &Circumstances<'_, D>, near: bool) -> Result<Around, StepError> {
+        let ends = self.search(now, &u, near)?;
         let rows = (self.contacts.iter().enumerate())
             .flat_map(|(k, contact)| contact.rows.iter().map(move |row| ((k, row.node), row.clone())))
             .collect();

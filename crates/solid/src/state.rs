@@ -55,6 +55,9 @@ impl<const D: usize> Model<D> {
         // What is left are the reactions, and nothing on free unknowns.
         let unbalanced = self.reduction.restrict(&forces);
         let scale = forces.iter().chain(&contact_force).chain(load).fold(f64::MIN_POSITIVE, |m, f| m.max(f.abs()));
+        // Where no force acts what is left is the rounding of the displacement.
+        let moved = u.iter().fold(0.0f64, |m, u| m.max(u.abs()));
+        let scale = scale.max(1e-8 * self.stiffness.largest() * moved);
         let imbalance = unbalanced.iter().fold(0.0f64, |m, f| m.max(f.abs())) / scale;
         let support_forces = (self.reduction.reactions.iter())
             .map(|list| {

@@ -470,10 +470,20 @@ pub struct Contact {
     pub all: Option<Spanned<bool>>,
     #[serde(default)]
     pub method: Option<Spanned<Method>>,
+    /// How far solids slide along each other: little, or any way.
+    #[serde(default)]
+    pub sliding: Option<Spanned<Sliding>>,
     #[serde(default)]
     pub adhesion: Option<Adhesion>,
     #[serde(default)]
     pub friction: Option<Spanned<toml::Table>>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum Sliding {
+    Small,
+    Finite,
 }
 
 #[derive(Clone, Debug, Deserialize)]

@@ -475,10 +475,13 @@ mod tests {
             .unwrap(),
         ];
         for (k, form) in forms.iter().enumerate() {
-            for x in
-                [Point::<3>::new(0.5, 0.4, 0.6), Point::<3>::new(0.45, -0.3, 0.2), Point::<3>::new(-0.3, 0.2, 0.05),
-                Point::<3>::new(0.0, -0.4, 0.3), Point::<3>::new(0.2, 0.4, -0.1)]
-            {
+            for x in [
+                Point::<3>::new(0.5, 0.4, 0.6),
+                Point::<3>::new(0.45, -0.3, 0.2),
+                Point::<3>::new(-0.3, 0.2, 0.05),
+                Point::<3>::new(0.0, -0.4, 0.3),
+                Point::<3>::new(0.2, 0.4, -0.1),
+            ] {
                 let GapJet { normal, hessian, .. } = form.gap(&x);
                 assert!((normal.norm() - 1.0).abs() < 1e-9, "form {k}");
                 for i in 0..3 {

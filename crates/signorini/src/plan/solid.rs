@@ -60,6 +60,7 @@ pub struct SolidContact {
     pub opposite: Opposite,
     pub method: ContactMethod,
     pub enforcement: signorini_solid::Enforcement,
+    pub sliding: signorini_solid::Sliding,
 }
 
 /// Solids, what holds and pushes them, and who may touch whom.
@@ -497,7 +498,11 @@ impl Planner<'_> {
             if sides.is_empty() {
                 return Err(document.error(first.span(), "there are no sides of cells in this group"));
             }
-            out.push(SolidContact { name: name.clone(), body, sides, opposite, method, enforcement });
+            let sliding = match key.sliding.as_ref().map(|s| *s.get_ref()) {
+                Some(statement::Sliding::Finite) => signorini_solid::Sliding::Finite,
+                _ => signorini_solid::Sliding::Small,
+            };
+            out.push(SolidContact { name: name.clone(), body, sides, opposite, method, enforcement, sliding });
         }
         Ok(out)
     }

@@ -18,6 +18,9 @@ use signorini_solve::{Iteration, Progress};
 use std::cell::RefCell;
 use std::path::Path;
 
+/// Share of an increment below which it is not cut any more.
+const SMALLEST_INCREMENT: f64 = 1e-3;
+
 struct Runner<const D: usize> {
     plan: SolidPlan<D>,
     folder: Folder,
@@ -77,7 +80,7 @@ pub fn model<const D: usize>(plan: &SolidPlan<D>) -> Result<Model<D>, CaseError>
                 Opposite::Rigid(_) => Master::Rigid,
             };
             let mut contact = Contact::new(&c.name, slave, master);
-            (contact.method, contact.enforcement) = (c.method, c.enforcement);
+            (contact.method, contact.enforcement, contact.sliding) = (c.method, c.enforcement, c.sliding);
             contact
         })
         .collect();
@@ -104,7 +107,8 @@ impl<const D: usize> Runner<D> {
             progress.step(index, times.len(), time);
             let folder = self.folder.clone();
             let mut logged = Logged { folder: &folder, inner: progress };
-            let state = match self.solve(index, time, &mut logged) {
+            let before = if index == 0 { 0.0 } else { times[index - 1] };
+            let state = match self.advance(index, [before, time], &mut logged) {
                 Ok(Ok(state)) => state,
                 Ok(Err(failed)) => {
                     ending = if failed.reason == "interrupted" { Ending::Interrupted } else { Ending::NotConverged };
@@ -133,6 +137,41 @@ impl<const D: usize> Runner<D> {
         }
         let summary = self.finish(ending, failure.as_ref(), start, &display, last.as_ref())?;
         Ok(Outcome { summary, ending })
+    }
+
+    /// Solves for the end of an increment. With finite sliding an increment that has no solution at once is cut: after an
+    /// error the model still has the state before, from which the next try starts.
+    fn advance(
+        &mut self,
+        index: usize,
+        [before, time]: [f64; 2],
+        progress: &mut dyn Progress,
+    ) -> Result<Result<State<D>, Failure>, CaseError> {
+        let (mut reached, mut size) = (before, time - before);
+        let mut iterations = 0;
+        let mut residuals = Vec::new();
+        loop {
+            let last = reached + size >= time - 1e-9 * (time - before);
+            let target = if last { time } else { reached + size };
+            match self.solve(index, target, progress)? {
+                Ok(mut state) => {
+                    iterations += state.iterations;
+                    residuals.append(&mut state.residuals);
+                    if last {
+                        return Ok(Ok(State { iterations, residuals, ..state }));
+                    }
+                    reached = target;
+                    size *= 1.5;
+                }
+                Err(failed) => {
+                    let curable = matches!(failed.reason, "newton" | "contact" | "linear_solver" | "free_body");
+                    if !self.model.slides() || !curable || size <= SMALLEST_INCREMENT * (time - before) {
+                        return Ok(Err(failed));
+                    }
+                    size *= 0.25;
+                }
+            }
+        }
     }
 
     fn solve(

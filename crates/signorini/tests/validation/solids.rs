@@ -229,3 +229,45 @@ fn hertz_between_elastic_bodies() {
     let quadratic = pressure(2, 12);
     assert!(quadratic.abs() < 3e-3, "{quadratic:e}");
 }
+
+/// A block with a parabolic end on a rigid plane, against the half plane of Hertz: for R = 8, E = 200, ν = 0.3 and a line
+/// load of 35 the half width is 1.27362 and the pressure 17.4948. Both go with the root of the load; with a ten-thousandth
+/// of it the theory holds to what is measured here.
+#[test]
+fn hertz_of_a_cylinder_on_a_plane() {
+    let scale = 1e-2;
+    let (half_width, pressure) = (1.2736197156108244 * scale, 17.4947763133355 * scale);
+    let solve = |degree: usize, n: usize| {
+        let (near, far) = (1.5 * half_width, 150.0 * half_width);
+        // Everything is refined, also where cells grow.
+        let growth = 1.5f64.powf(12.0 / n as f64);
+        let reach = |m: i32| near / n as f64 * growth * (growth.powi(m) - 1.0) / (growth - 1.0);
+        let growing = (1..).find(|&m| reach(m) >= far - near).unwrap();
+        let case = format!(
+            "space = \"plane_strain\"\n[bodies.block.solid]\nmesh.box = {{ axes = [\
+             {{ from = 0, to = [{near}, {far}], cells = [{n}, {growing}], growth = [1, {growth}] }}, \
+             {{ from = 0, to = [{low}, {far}], cells = [{third}, {growing}], growth = [1, {growth}] }} ], \
+             map = [\"x\", \"y + x^2/16*(1 - y/{far})\"] }}\ndegree = {degree}\n\
+             material.linear_elastic = {{ youngs_modulus = 200, poissons_ratio = 0.3 }}\n\
+             [bodies.plane.rigid]\nshape.plane = {{ point = [0, 0], normal = [0, 1] }}\n\
+             [supports.symmetry]\non = \"block:left\"\nnormal = 0\n\
+             [supports.head]\non = \"block:top\"\ndisplacement = [\"free\", \"free\"]\nuniform = true\n\
+             [loads.press]\non = \"block:top\"\nforce = [0, {force}]\n\
+             [contacts.touch]\nbetween = [\"block:bottom\", \"plane\"]\n",
+            low = near / 3.0,
+            third = n / 3,
+            force = -17.5 * scale * scale,
+        );
+        let found = summary(&case, &set(&[]));
+        let step = last_step(&found);
+        assert!((at(step, "/contacts/touch/force/1") / (17.5 * scale * scale) - 1.0).abs() < 1e-8);
+        [at(step, "/contacts/touch/max_pressure") / pressure - 1.0, at(step, "/contacts/touch/area") / half_width - 1.0]
+    };
+    let errors = [12, 24, 48].map(|n| solve(1, n)[0].abs());
+    let orders = [(errors[0] / errors[1]).log2(), (errors[1] / errors[2]).log2()];
+    println!("linear {errors:?}, orders {orders:?}; quadratic {:?}", solve(2, 24));
+    assert!(orders.iter().all(|o| *o > 1.4), "{errors:?} {orders:?}");
+    let [peak, width] = solve(2, 24);
+    // The edge is known to the distance of two nodes.
+    assert!(peak.abs() < 5e-4 && width.abs() < 0.05, "{peak:e} {width:e}");
+}

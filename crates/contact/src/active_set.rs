@@ -54,8 +54,8 @@ pub struct Softness {
 /// Columns of the compliance, kept from step to step as long as the rows stay the same.
 #[derive(Default)]
 pub struct ActiveSet {
-    /// Terms of every row, to see whether they changed.
-    rows: Vec<Vec<(u32, f64)>>,
+    /// Terms and forces of every row, to see whether they changed.
+    rows: Vec<[Vec<(u32, f64)>; 2]>,
     springs: Vec<Spring>,
     /// Unknowns that rows and springs touch, and their places.
     touched: Vec<u32>,
@@ -169,7 +169,7 @@ impl ActiveSet {
     fn refresh(&mut self, rows: &[WeightedGap], springs: &[Spring]) {
         let same = self.rows.len() == rows.len()
             && self.springs == springs
-            && self.rows.iter().zip(rows).all(|(a, b)| *a == b.terms);
+            && self.rows.iter().zip(rows).all(|(a, b)| a[0] == b.terms && a[1] == b.forces);
         if same {
             return;
         }
@@ -177,7 +177,7 @@ impl ActiveSet {
         if self.rows.len() != rows.len() && !self.rows.is_empty() {
             self.active.clear();
         }
-        self.rows = rows.iter().map(|r| r.terms.clone()).collect();
+        self.rows = rows.iter().map(|r| [r.terms.clone(), r.forces.clone()]).collect();
         self.springs = springs.to_vec();
         let touched: BTreeSet<u32> =
             rows.iter().flat_map(|r| r.terms.iter().map(|t| t.0)).chain(springs.iter().map(|s| s.unknown)).collect();
@@ -217,12 +217,13 @@ impl ActiveSet {
         active: &[usize],
     ) -> Result<Dense, ActiveSetError> {
         let held: Vec<[(u32, f64); 1]> = springs.iter().map(|s| [(s.unknown, 1.0)]).collect();
-        let all = (active.iter().map(|&k| (k, &rows[k].terms[..])))
+        let all = (active.iter().map(|&k| (k, rows[k].push())))
             .chain(held.iter().enumerate().map(|(s, terms)| (rows.len() + s, &terms[..])));
         let missing: Vec<(usize, &[(u32, f64)])> = all.filter(|(k, _)| !self.columns.contains_key(k)).collect();
         self.add_columns(system, &missing)?;
         let (n, m) = (active.len(), springs.len());
         let numbers: Vec<usize> = active.iter().copied().chain((0..m).map(|s| rows.len() + s)).collect();
+        let symmetric = active.iter().all(|&k| rows[k].forces.is_empty());
         let mut matrix = DMatrix::<f64>::zeros(n + m, n + m);
         for r in 0..n + m {
             let spring;
@@ -232,15 +233,18 @@ impl ActiveSet {
                 spring = [(springs[r - n].unknown, 1.0)];
                 &spring
             };
-            for c in 0..=r {
+            for c in 0..if symmetric { r + 1 } else { n + m } {
                 let value = self.product(terms, &self.columns[&numbers[c]]);
                 matrix[(r, c)] = value;
-                matrix[(c, r)] = value;
+                if symmetric {
+                    matrix[(c, r)] = value;
+                }
             }
         }
         // Compliances of bodies and springs may differ by orders of magnitude: with a diagonal of ones pivots say
         // something.
-        let scale: Vec<f64> = (0..n + m).map(|k| 1.0 / matrix[(k, k)].sqrt()).collect();
+        let own = |k: usize| matrix[(k, k)].abs() + active.get(k).map_or(0.0, |r| soft[*r].compliance);
+        let scale: Vec<f64> = (0..n + m).map(|k| 1.0 / own(k).sqrt()).collect();
         for (s, spring) in springs.iter().enumerate() {
             matrix[(n + s, n + s)] -= 1.0 / spring.stiffness;
         }
@@ -252,7 +256,7 @@ impl ActiveSet {
                 matrix[(r, c)] *= scale[r] * scale[c];
             }
         }
-        let factor = if m == 0 { matrix.clone().cholesky().map(Factored::Definite) } else { None };
+        let factor = if m == 0 && symmetric { matrix.clone().cholesky().map(Factored::Definite) } else { None };
         let factor = match factor {
             Some(factor) => factor,
             None => {
@@ -304,7 +308,7 @@ impl ActiveSet {
         for round in 0..2 {
             let mut b = load.to_vec();
             for (&k, p) in active.iter().zip(&pressures) {
-                for (i, c) in &rows[k].terms {
+                for (i, c) in rows[k].push() {
                     b[*i as usize] += c * p;
                 }
             }

@@ -20,8 +20,22 @@ pub struct WeightedGap {
     /// `∫ ψ_k` over the covered part.
     pub weight: f64,
     pub terms: Vec<(u32, f64)>,
+    /// Forces under a unit pressure where they are others than `terms`; else empty.
+    pub forces: Vec<(u32, f64)>,
     /// Node of [`PressureNodes`].
     pub node: u32,
+}
+
+impl WeightedGap {
+    /// The weighted gap at a displacement.
+    pub fn at(&self, u: &[f64]) -> f64 {
+        self.gap + self.terms.iter().map(|(unknown, c)| c * u[*unknown as usize]).sum::<f64>()
+    }
+
+    /// The forces under a unit pressure.
+    pub fn push(&self) -> &[(u32, f64)] {
+        if self.forces.is_empty() { &self.terms } else { &self.forces }
+    }
 }
 
 /// Faces covered less than this keep the plain Lagrange functions; nodes covered less give theirs away.
@@ -123,7 +137,7 @@ pub fn weighted_gaps<const D: usize>(
 ) -> Vec<WeightedGap> {
     let mut rows: Vec<WeightedGap> = (0u32..)
         .zip(&shares.weight)
-        .map(|(node, weight)| WeightedGap { gap: 0.0, weight: *weight, terms: Vec::new(), node })
+        .map(|(node, weight)| WeightedGap { gap: 0.0, weight: *weight, terms: Vec::new(), forces: Vec::new(), node })
         .collect();
     let mut trace = Vec::new();
     for (face, list) in points.iter().enumerate() {

@@ -75,7 +75,7 @@ impl Tests {
     pub fn at_quadrature_points<const D: usize>(slave: &dyn ContactSurface<D>) -> Self {
         let mut out = Tests::default();
         for face in 0..slave.face_count() {
-            for (s, w) in rule(slave.shape(face), slave.degree(face) + 1) {
+            for (s, w) in rule(slave.shape(face), slave.degree(face) + 2) {
                 let point = slave.at(face, &s);
                 let weight = w * point.area_normal().norm() * slave.measure(&point.x);
                 out.add(out.rows.len() as u32, face, s, weight);
@@ -142,7 +142,7 @@ impl Measured {
     /// tests.
     pub fn rows(&self, tests: &Tests) -> Vec<(usize, WeightedGap)> {
         let mut rows: Vec<WeightedGap> = (tests.rows.iter())
-            .map(|row| WeightedGap { gap: 0.0, weight: 0.0, terms: Vec::new(), node: row.number })
+            .map(|row| WeightedGap { gap: 0.0, weight: 0.0, terms: Vec::new(), forces: Vec::new(), node: row.number })
             .collect();
         for (point, found) in tests.points.iter().zip(&self.kinematics) {
             let Some(found) = found else { continue };

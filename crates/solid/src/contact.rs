@@ -1,11 +1,12 @@
 //! Two sides that may touch: how their contact is tested and kept, and what it came to.
 
-use crate::body::BodySurface;
+use crate::body::{Bodies, BodySurface};
 use crate::model::StepError;
+use crate::stiffness::{Table, normal_stress};
 use crate::supports::Reduction;
 use signorini_contact::{
     ContactSurface, Faces, GapJet, GapPoint, Given, Measured, Moved, Obstacle, PressureNodes, Rigid, Tests,
-    WeightedGap, rigid_points, segments, shares, weighted_gaps,
+    WeightedGap, compress, rigid_points, segments, shares, weighted_gaps,
 };
 use signorini_fem::hierarchic::Values;
 use signorini_geometry::Point;
@@ -38,6 +39,10 @@ pub enum Enforcement {
     Multiplier,
     /// Exactly in the limit of outer iterations with a penalty.
     AugmentedLagrangian,
+    /// By the stress of the slave side, consistently and without unknowns of its own (Nitsche 1971, for contact Chouly &
+    /// Hild 2013), skew-symmetric: `p = max(0, -n·σ n - c g)` at every quadrature point, with `c` the stiffness of the
+    /// adjacent cells. Small sliding only.
+    Nitsche,
     /// Up to a penetration: the one wanted, or what a hundred times the stiffness of the adjacent cells leaves.
     Penalty { wanted_penetration: Option<f64> },
 }
@@ -74,6 +79,9 @@ pub struct Contact<const D: usize> {
     places: Vec<(usize, signorini_fem::Local)>,
     /// Pressure per penetration of the cells behind each row.
     pub(crate) stiffness: Vec<f64>,
+    /// With Nitsche's method: the rows without the stress, and the stress at their points.
+    pub(crate) bare: Vec<WeightedGap>,
+    stresses: Vec<Vec<(u32, f64)>>,
 }
 
 impl<const D: usize> Contact<D> {
@@ -105,6 +113,8 @@ impl<const D: usize> Contact<D> {
             measured: None,
             places: Vec::new(),
             stiffness: Vec::new(),
+            bare: Vec::new(),
+            stresses: Vec::new(),
         }
     }
 
@@ -122,11 +132,15 @@ impl<const D: usize> Contact<D> {
         match (self.sliding, self.method) {
             // Between bodies everything is at rest: what was found once stays.
             (Sliding::Small, _) if matches!(self.master, Master::Surface(_)) && !self.rows.is_empty() => return Ok(()),
+            (Sliding::Small, Method::Mortar) if self.enforcement == Enforcement::Nitsche => self.point_rows(rigid),
             (Sliding::Small, Method::Mortar) => self.search_segments(reduction, rigid),
             (Sliding::Small, _) => self.search_points(reduction, rigid, None, false)?,
             (Sliding::Finite, _) => self.search_points(reduction, rigid, Some(u), near)?,
         }
         self.find_stiffness();
+        if self.enforcement == Enforcement::Nitsche {
+            self.add_stresses();
+        }
         Ok(())
     }
 
@@ -240,7 +254,7 @@ impl<const D: usize> Contact<D> {
         }
         self.stiffness = (self.rows.iter().enumerate())
             .map(|(k, row)| match self.method {
-                Method::GaussPoint => of_face[self.places[k].0],
+                _ if self.at_points() => of_face[self.places[k].0],
                 _ => of_node[row.node as usize],
             })
             .collect();
@@ -259,20 +273,23 @@ impl<const D: usize> Contact<D> {
         &self.rows
     }
 
-    fn search_segments(&mut self, reduction: &Reduction<D>, rigid: Option<&RigidGap<D>>) {
-        let master = match &self.master {
-            Master::Surface(surface) => {
+    /// Where the master faces the slave side.
+    fn cut(&self, rigid: Option<&RigidGap<D>>) -> Vec<Vec<GapPoint<D>>> {
+        match (&self.master, rigid) {
+            (Master::Surface(surface), _) => {
                 let reach = 0.5 * self.slave.size().max(surface.size());
-                self.points = segments(&self.slave, surface, &self.nodes, reach);
-                Some(surface as &dyn ContactSurface<D>)
+                segments(&self.slave, surface, &self.nodes, reach)
             }
-            Master::Rigid => {
-                self.points = match rigid {
-                    Some(gap) => rigid_points(&self.slave, &|x| gap(x)),
-                    None => Vec::new(),
-                };
-                None
-            }
+            (Master::Rigid, Some(gap)) => rigid_points(&self.slave, &|x| gap(x)),
+            (Master::Rigid, None) => Vec::new(),
+        }
+    }
+
+    fn search_segments(&mut self, reduction: &Reduction<D>, rigid: Option<&RigidGap<D>>) {
+        self.points = self.cut(rigid);
+        let master = match &self.master {
+            Master::Surface(surface) => Some(surface as &dyn ContactSurface<D>),
+            Master::Rigid => None,
         };
         let shares = shares(&self.slave, &self.nodes, &self.points, &|node| self.is_folded(reduction, node));
         self.rows = weighted_gaps(&self.slave, master, &self.points, &shares);
@@ -287,6 +304,109 @@ impl<const D: usize> Contact<D> {
     }
 }
 
+/// Nitsche's method.
+impl<const D: usize> Contact<D> {
+    /// Whether every row is a quadrature point.
+    pub(crate) fn at_points(&self) -> bool {
+        self.method == Method::GaussPoint || self.enforcement == Enforcement::Nitsche
+    }
+
+    /// `c` over the stiffness of the adjacent cells.
+    pub(crate) fn nitsche_factor(&self) -> f64 {
+        (self.slave.body().degree as f64).powi(2)
+    }
+
+    /// One row for every point of the segments.
+    fn point_rows(&mut self, rigid: Option<&RigidGap<D>>) {
+        self.points = self.cut(rigid);
+        (self.rows, self.places) = (Vec::new(), Vec::new());
+        let mut trace = Vec::new();
+        for (face, list) in self.points.iter().enumerate() {
+            for p in list {
+                trace.clear();
+                self.slave.trace(face, &p.s, &mut trace);
+                let of_slave = trace.len();
+                if let (Some((other, eta)), Master::Surface(master)) = (&p.master, &self.master) {
+                    master.trace(*other as usize, eta, &mut trace);
+                }
+                let mut terms = Vec::new();
+                for (k, (unknown, value)) in trace.iter().enumerate() {
+                    let c = if k < of_slave { p.weight * value } else { -p.weight * value };
+                    terms.extend((0..D).map(|i| (unknown + i as u32, c * p.direction[i])));
+                }
+                let node = self.rows.len() as u32;
+                let (gap, weight) = (p.weight * p.gap, p.weight);
+                self.rows.push(WeightedGap { gap, weight, terms, forces: Vec::new(), node });
+                self.places.push((face, p.s));
+            }
+        }
+    }
+
+    /// `1/c ∫ δσ σ` over all points, which the method adds to the stiffness; nothing with other enforcements. Between
+    /// bodies this finds what faces what; on a rigid body the points do not depend on where it is.
+    pub(crate) fn stress_terms(
+        &mut self,
+        bodies: &Bodies<D>,
+        reduction: &Reduction<D>,
+    ) -> Result<Vec<(Vec<u32>, Vec<f64>)>, StepError> {
+        if self.enforcement != Enforcement::Nitsche {
+            return Ok(Vec::new());
+        }
+        let far: RigidGap<D> = Box::new(|_| GapJet::flat(1.0, Point::<D>::from_element(1.0).normalize()));
+        let rigid = matches!(self.master, Master::Rigid).then_some(&far);
+        match self.method {
+            Method::Mortar => self.point_rows(rigid),
+            _ => self.search_points(reduction, rigid, None, false)?,
+        }
+        self.find_stiffness();
+        let body = self.slave.body();
+        self.stresses = Vec::with_capacity(self.places.len());
+        let mut tables: HashMap<(usize, usize), Table> = HashMap::new();
+        let mut out = Vec::new();
+        for (k, (face, s)) in self.places.iter().enumerate() {
+            let side = self.slave.sides[*face];
+            let cell = side.cell as usize;
+            let basis = body.dofs.basis(cell);
+            let key = (body.mesh.map_number(cell), body.dofs.basis_number(cell));
+            let table = tables.entry(key).or_insert_with(|| Table::new(&body.mesh, &body.dofs, cell));
+            let (xi, _) = basis.shape().on_side(side.side as usize, s);
+            let normal = self.slave.at(*face, s).area_normal().normalize();
+            let along = normal_stress(&body.mesh, cell, table, basis, (&body.material, bodies.space), (&xi, &normal));
+            let stress: Vec<(u32, f64)> = (body.dofs.cell(cell).iter().enumerate())
+                .flat_map(|(a, (f, sign))| {
+                    let first = body.first + *f as usize * D;
+                    let along = &along;
+                    (0..D).map(move |i| ((first + i) as u32, sign * along[a * D + i]))
+                })
+                .collect();
+            let factor = self.rows[k].weight / (self.nitsche_factor() * self.stiffness[k]);
+            let matrix = (stress.iter().flat_map(|(_, a)| stress.iter().map(move |(_, b)| factor * a * b))).collect();
+            out.push((stress.iter().map(|(unknown, _)| *unknown).collect(), matrix));
+            self.stresses.push(stress);
+        }
+        // Where a rigid body is counts from now on.
+        self.rows.retain(|_| rigid.is_none());
+        if rigid.is_none() {
+            self.add_stresses();
+        }
+        Ok(out)
+    }
+
+    /// Rows of `g - σ/c` with `σ = -n·σ n`, whose pressures push with `g + σ/c`: the skew-symmetric variant.
+    fn add_stresses(&mut self) {
+        self.bare = self.rows.clone();
+        let factor = self.nitsche_factor();
+        for ((row, stress), stiffness) in self.rows.iter_mut().zip(&self.stresses).zip(&self.stiffness) {
+            let share = row.weight / (factor * stiffness);
+            row.forces = row.terms.clone();
+            row.terms.extend(stress.iter().map(|(unknown, c)| (*unknown, share * c)));
+            row.forces.extend(stress.iter().map(|(unknown, c)| (*unknown, -share * c)));
+            compress(&mut row.terms);
+            compress(&mut row.forces);
+        }
+    }
+}
+
 /// Share of its size that a slave side may lie inside the master at the start.
 const DEEP: f64 = 0.05;
 
@@ -294,7 +414,7 @@ impl<const D: usize> Contact<D> {
     /// Where a row is.
     pub(crate) fn position(&self, row: usize) -> Point<D> {
         match self.method {
-            Method::GaussPoint => self.slave.at(self.places[row].0, &self.places[row].1).x,
+            _ if self.at_points() => self.slave.at(self.places[row].0, &self.places[row].1).x,
             _ => self.nodes.positions[self.rows[row].node as usize],
         }
     }

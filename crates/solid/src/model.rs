@@ -31,6 +31,8 @@ pub enum StepError {
     /// Newton's method with finite sliding: what was left after each iteration, and the contact that lacked most.
     #[error("contact `{contact}`: Newton's method did not converge in {} iterations", history.len())]
     Newton { contact: String, history: Vec<f64>, place: String },
+    #[error("contact `{contact}`: Nitsche's method is for small sliding")]
+    NitscheSlides { contact: String },
     #[error("interrupted")]
     Interrupted,
 }
@@ -42,6 +44,8 @@ pub struct Model<const D: usize> {
     pub contacts: Vec<Contact<D>>,
     pub(crate) reduction: Reduction<D>,
     pub(crate) stiffness: SymmetricMatrix,
+    /// What Nitsche's method adds to it.
+    pub(crate) added: Option<SymmetricMatrix>,
     /// The stiffness of the unknowns that remain, springs included; kept where contact adds to it.
     pub(crate) reduced: Option<SymmetricMatrix>,
     pub(crate) symbolic: Symbolic,
@@ -83,9 +87,19 @@ impl<const D: usize> Model<D> {
     /// Assembles and factorises the stiffness.
     pub fn new(bodies: Bodies<D>, supports: Vec<Support>, contacts: Vec<Contact<D>>) -> Result<Self, StepError> {
         let reduction = Reduction::new(&bodies, &supports)?;
+        let mut contacts = contacts;
+        let mut added = Vec::new();
+        for contact in &mut contacts {
+            if contact.enforcement == Enforcement::Nitsche && contact.sliding == Sliding::Finite {
+                return Err(StepError::NitscheSlides { contact: contact.name.clone() });
+            }
+            added.extend(contact.stress_terms(&bodies, &reduction)?);
+        }
         let stiffness = assemble(&bodies, &supports);
+        let added = (!added.is_empty()).then(|| SymmetricMatrix::of_cliques(bodies.unknowns(), &added));
         let free = free_modes(&bodies, &supports, &reduction);
-        let mut reduced = stiffness.transformed(reduction.unknowns, |i| reduction.row(i));
+        let whole = added.as_ref().map(|a| stiffness.plus(a));
+        let mut reduced = whole.as_ref().unwrap_or(&stiffness).transformed(reduction.unknowns, |i| reduction.row(i));
         let diagonal = reduced.diagonal();
         let mut springs: Vec<Spring> = Vec::new();
         for mode in &free {
@@ -109,6 +123,7 @@ impl<const D: usize> Model<D> {
             contacts,
             reduction,
             stiffness,
+            added,
             reduced: kept,
             symbolic,
             factor,
@@ -143,8 +158,10 @@ impl<const D: usize> Model<D> {
         if self.slides() {
             return self.solve_sliding(now, &offset, report);
         }
-        let moved = self.stiffness.multiply(&offset);
-        let load: Vec<f64> = now.load.iter().zip(&moved).map(|(f, m)| f - m).collect();
+        let mut load = now.load.clone();
+        for matrix in std::iter::once(&self.stiffness).chain(&self.added) {
+            load.iter_mut().zip(matrix.multiply(&offset)).for_each(|(f, m)| *f -= m);
+        }
         let load = self.reduction.restrict(&load);
         let ends = self.search(now, &[], false)?;
         let rows: Vec<WeightedGap> = (self.contacts.iter())
@@ -214,11 +231,13 @@ impl<const D: usize> Model<D> {
         let mut total = 0;
         for outer in 0..MOST_OUTER {
             for (k, contact) in self.contacts.iter().enumerate() {
-                if contact.enforcement == Enforcement::Multiplier {
-                    continue;
-                }
+                let factor = match contact.enforcement {
+                    Enforcement::Multiplier => continue,
+                    Enforcement::Nitsche => contact.nitsche_factor(),
+                    _ => factor[k],
+                };
                 for (row, stiffness) in range(k).zip(&contact.stiffness) {
-                    soft[row].compliance = rows[row].weight / (factor[k] * stiffness);
+                    soft[row].compliance = rows[row].weight / (factor * stiffness);
                 }
             }
             let mut found = active.solve(&system, rows, &soft, &self.springs, load, report)?;
@@ -230,7 +249,9 @@ impl<const D: usize> Model<D> {
                     rows_of.map(|r| -found.gap[r] / rows[r].weight).fold(0.0, f64::max)
                 };
                 match contact.enforcement {
-                    Enforcement::Multiplier | Enforcement::Penalty { wanted_penetration: None } => {}
+                    Enforcement::Multiplier
+                    | Enforcement::Nitsche
+                    | Enforcement::Penalty { wanted_penetration: None } => {}
                     Enforcement::Penalty { wanted_penetration: Some(wanted) } => {
                         let reached = deepest(&mut range(k));
                         if reached > 0.0 && !(0.98..=1.02).contains(&(reached / wanted)) {
@@ -298,12 +319,14 @@ const MOST_OUTER: usize = 60;
 
 /// A row in the unknowns that remain.
 pub(crate) fn reduced<const D: usize>(row: &WeightedGap, reduction: &Reduction<D>, offset: &[f64]) -> WeightedGap {
-    let mut terms: Vec<(u32, f64)> = Vec::with_capacity(row.terms.len());
-    let mut gap = row.gap;
-    for (unknown, c) in &row.terms {
-        gap += c * offset[*unknown as usize];
-        terms.extend(reduction.row(*unknown as usize).iter().map(|(k, t)| (*k, c * t)));
-    }
-    compress(&mut terms);
-    WeightedGap { gap, weight: row.weight, terms, node: row.node }
+    let list = |full: &[(u32, f64)]| {
+        let mut out: Vec<(u32, f64)> = Vec::with_capacity(full.len());
+        for (unknown, c) in full {
+            out.extend(reduction.row(*unknown as usize).iter().map(|(k, t)| (*k, c * t)));
+        }
+        compress(&mut out);
+        out
+    };
+    let gap = row.gap + row.terms.iter().map(|(unknown, c)| c * offset[*unknown as usize]).sum::<f64>();
+    WeightedGap { gap, terms: list(&row.terms), forces: list(&row.forces), ..*row }
 }

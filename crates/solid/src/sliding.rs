@@ -93,7 +93,7 @@ impl<const D: usize> Model<D> {
                 let pressures: Vec<f64> = around.rows.iter().map(|(key, _)| of(key)).collect();
                 let found = Found {
                     u: around.u.clone(),
-                    gap: around.rows.iter().map(|(_, row)| gap(row, &around.u)).collect(),
+                    gap: around.rows.iter().map(|(_, row)| row.at(&around.u)).collect(),
                     active: pressures.iter().map(|p| *p > 0.0).collect(),
                     pressure: pressures,
                     iterations,
@@ -137,9 +137,7 @@ impl<const D: usize> Model<D> {
                 pressure.iter().filter(|((c, _), _)| *c == k).map(|((_, number), p)| (*number, *p)).collect();
             cliques.extend(contact.curvature(&of));
         }
-        let lists: Vec<Vec<u32>> = cliques.iter().map(|c| c.0.clone()).collect();
-        let mut curvature = SymmetricMatrix::from_cliques(around.u.len(), &lists);
-        cliques.iter().for_each(|(unknowns, values)| curvature.add(unknowns, values, 1.0));
+        let mut curvature = SymmetricMatrix::of_cliques(around.u.len(), &cliques);
         let Some(stiffness) = &self.reduced else { return Err(self.free_body()) };
         let with = |curvature: &SymmetricMatrix| {
             stiffness.plus(&curvature.transformed(self.reduction.unknowns, |i| self.reduction.row(i)))
@@ -182,7 +180,7 @@ impl<const D: usize> Model<D> {
         let energy: f64 = around.u.iter().zip(ku).zip(&now.load).map(|((u, ku), f)| u * (0.5 * ku - f)).sum();
         let most = step.pressure.values().fold(0.0f64, |m, p| m.max(*p));
         let of_row = |(key, row): &(Key, WeightedGap)| {
-            let gap = gap(row, &around.u);
+            let gap = row.at(&around.u);
             let soft = step.soft.get(key).copied().unwrap_or_default();
             if soft.compliance > 0.0 {
                 return 0.5 * soft.compliance * (soft.shift - gap / soft.compliance).max(0.0).powi(2);
@@ -206,7 +204,7 @@ impl<const D: usize> Model<D> {
                 scale = scale.max((c * pressure).abs());
             }
             let soft = step.soft.get(key).copied().unwrap_or_default();
-            let open = gap(row, &around.u) + soft.compliance * (pressure - soft.shift);
+            let open = row.at(&around.u) + soft.compliance * (pressure - soft.shift);
             let lacks = if pressure > 0.0 { open.abs() } else { (-open).max(0.0) } / row.weight;
             let relative = lacks / moved.max(1e-4 * self.contacts[key.0].slave.size());
             if !(relative <= lack) {
@@ -218,9 +216,4 @@ impl<const D: usize> Model<D> {
         let unbalanced = self.reduction.restrict(&forces).iter().fold(0.0f64, |m, f| m.max(f.abs())) / scale;
         (if lack.is_nan() || unbalanced.is_nan() { f64::NAN } else { lack.max(unbalanced) }, worst)
     }
-}
-
-/// A weighted gap at a displacement.
-fn gap(row: &WeightedGap, u: &[f64]) -> f64 {
-    row.gap + row.terms.iter().map(|(unknown, c)| c * u[*unknown as usize]).sum::<f64>()
 }

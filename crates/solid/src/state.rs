@@ -47,7 +47,13 @@ impl<const D: usize> Model<D> {
             let (pressure, gap, active) =
                 (&found.pressure[rows.clone()], &found.gap[rows.clone()], &found.active[rows]);
             first = end;
+            // With Nitsche's method rows hold the stress too.
+            let bare: Vec<f64> = contact.bare.iter().zip(gap).map(|(row, _)| row.at(&u)).collect();
+            let gap = if contact.bare.is_empty() { gap } else { &bare };
             results.push(result(contact, pressure, gap, active, &mut contact_force));
+        }
+        if let Some(added) = &self.added {
+            contact_force.iter_mut().zip(added.multiply(&u)).for_each(|(f, a)| *f -= a);
         }
         for ((force, load), contact) in forces.iter_mut().zip(load).zip(&contact_force) {
             *force -= load + contact;
@@ -88,13 +94,13 @@ fn result<const D: usize>(
 ) -> ContactResult<D> {
     let mut result = ContactResult::<D> { nodes: Vec::new(), force: Point::<D>::zeros(), area: 0.0 };
     let body = contact.slave.body();
-    let vertices: std::collections::HashSet<u32> = (contact.slave.sides.iter())
-        .flat_map(|s| body.mesh.side_vertices(*s))
+    // Functions of vertices sum to one: the sum of their forces is the resultant.
+    let vertices: std::collections::HashSet<u32> = (0..body.mesh.nodes().len() as u32)
         .filter_map(|v| body.dofs.vertex(v))
         .map(|f| (body.first + D * f as usize) as u32)
         .collect();
     for (k, row) in contact.rows.iter().enumerate() {
-        for (unknown, c) in &row.terms {
+        for (unknown, c) in row.push() {
             contact_force[*unknown as usize] += c * pressures[k];
             let i = *unknown as usize % D;
             if vertices.contains(&(unknown - i as u32)) {
@@ -104,7 +110,7 @@ fn result<const D: usize>(
         if actives[k] {
             result.area += row.weight;
         }
-        if contact.method != Method::GaussPoint {
+        if !contact.at_points() {
             result.nodes.push(PressureNode {
                 x: contact.nodes.positions[row.node as usize],
                 multiplier: pressures[k],
@@ -116,7 +122,7 @@ fn result<const D: usize>(
             });
         }
     }
-    if contact.method == Method::GaussPoint {
+    if contact.at_points() {
         result.nodes = contact.averaged(pressures, gaps, actives);
     }
     let count = contact.nodes.len();
@@ -134,7 +140,9 @@ fn result<const D: usize>(
         (multiplier[k], weight[k], active[k]) = (node.multiplier, node.weight, node.active);
     }
     let pressure = match contact.method {
-        Method::Mortar => recovered(&contact.nodes, &contact.points, &multiplier, &weight, &active, &weightless),
+        Method::Mortar if !contact.at_points() => {
+            recovered(&contact.nodes, &contact.points, &multiplier, &weight, &active, &weightless)
+        }
         _ => multiplier,
     };
     result.nodes.iter_mut().for_each(|node| node.pressure = pressure[node.number as usize]);

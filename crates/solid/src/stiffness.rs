@@ -55,6 +55,63 @@ pub fn projects(basis: &HierarchicBasis, material: &Elastic, space: Space) -> bo
     if basis.shape().is_tensor() { basis.degree() == 1 || nearly } else { basis.degree() > 1 && nearly }
 }
 
+/// Derivatives of all functions at the quadrature points of a cell, in space.
+struct Derivatives<const D: usize> {
+    gradients: Vec<DMatrix<f64>>,
+    /// Hoop strain per radial displacement, where there is one.
+    hoop: DMatrix<f64>,
+    /// Divergence of each unknown.
+    divergence: DMatrix<f64>,
+    weights: Vec<f64>,
+}
+
+impl<const D: usize> Derivatives<D> {
+    fn new(mesh: &Mesh<D>, cell: usize, table: &Table, basis: &HierarchicBasis, space: Space) -> Self {
+        let n = basis.len();
+        let count = table.points.len();
+        let mut gradients = vec![DMatrix::<f64>::zeros(n, count); D];
+        let mut hoop = DMatrix::<f64>::zeros(if space == Space::Axisymmetric { n } else { 0 }, count);
+        let mut weights = vec![0.0; count];
+        for q in 0..count {
+            let (x, jacobian) = mesh.jacobian(cell, &table.map[q]);
+            weights[q] = table.points[q].1 * determinant(&jacobian);
+            let inverse = inverse(&jacobian);
+            for (a, gradient) in table.basis[q].gradient.iter().enumerate() {
+                for i in 0..D {
+                    gradients[i][(a, q)] = (0..D).map(|k| gradient[k] * inverse[(k, i)]).sum();
+                }
+            }
+            if space == Space::Axisymmetric {
+                weights[q] *= std::f64::consts::TAU * x[0];
+                for (a, value) in table.basis[q].value.iter().enumerate() {
+                    hoop[(a, q)] = value / x[0];
+                }
+            }
+        }
+        let mut divergence = DMatrix::<f64>::zeros(n * D, count);
+        for q in 0..count {
+            for a in 0..n {
+                for i in 0..D {
+                    divergence[(a * D + i, q)] = gradients[i][(a, q)];
+                }
+                if space == Space::Axisymmetric {
+                    divergence[(a * D, q)] += hoop[(a, q)];
+                }
+            }
+        }
+        Derivatives { gradients, hoop, divergence, weights }
+    }
+
+    /// Columns times the weights of their points.
+    fn weighted(&self, m: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut m = m.clone();
+        for (q, mut column) in m.column_iter_mut().enumerate() {
+            column *= self.weights[q];
+        }
+        m
+    }
+}
+
 /// Stiffness matrix of a cell, row-major over (function, component), functions in the order and sign of the basis.
 pub(crate) fn stiffness<const D: usize>(
     mesh: &Mesh<D>,
@@ -65,41 +122,14 @@ pub(crate) fn stiffness<const D: usize>(
     space: Space,
 ) -> DMatrix<f64> {
     let n = basis.len();
-    let count = table.points.len();
     let (lambda, mu) = material.lame(space);
-    // Gradients, and the hoop strain per radial displacement, at all points.
-    let mut gradients = vec![DMatrix::<f64>::zeros(n, count); D];
-    let mut hoop = DMatrix::<f64>::zeros(if space == Space::Axisymmetric { n } else { 0 }, count);
-    let mut weights = vec![0.0; count];
-    for q in 0..count {
-        let (x, jacobian) = mesh.jacobian(cell, &table.map[q]);
-        weights[q] = table.points[q].1 * determinant(&jacobian);
-        let inverse = inverse(&jacobian);
-        for (a, gradient) in table.basis[q].gradient.iter().enumerate() {
-            for i in 0..D {
-                gradients[i][(a, q)] = (0..D).map(|k| gradient[k] * inverse[(k, i)]).sum();
-            }
-        }
-        if space == Space::Axisymmetric {
-            weights[q] *= std::f64::consts::TAU * x[0];
-            for (a, value) in table.basis[q].value.iter().enumerate() {
-                hoop[(a, q)] = value / x[0];
-            }
-        }
-    }
-    let scaled = |m: &DMatrix<f64>| {
-        let mut m = m.clone();
-        for (q, mut column) in m.column_iter_mut().enumerate() {
-            column *= weights[q];
-        }
-        m
-    };
+    let at = Derivatives::new(mesh, cell, table, basis, space);
     let mut stiffness = DMatrix::<f64>::zeros(n * D, n * D);
-    let weighted: Vec<DMatrix<f64>> = gradients.iter().map(scaled).collect();
+    let weighted: Vec<DMatrix<f64>> = at.gradients.iter().map(|m| at.weighted(m)).collect();
     let mut trace = DMatrix::<f64>::zeros(n, n);
     for i in 0..D {
         for j in 0..D {
-            let product = &weighted[i] * gradients[j].transpose();
+            let product = &weighted[i] * at.gradients[j].transpose();
             if i == j {
                 trace += &product;
             }
@@ -119,29 +149,17 @@ pub(crate) fn stiffness<const D: usize>(
         }
     }
     if space == Space::Axisymmetric {
-        let product = scaled(&hoop) * hoop.transpose();
+        let product = at.weighted(&at.hoop) * at.hoop.transpose();
         for a in 0..n {
             for b in 0..n {
                 stiffness[(a * D, b * D)] += 2.0 * mu * product[(a, b)];
             }
         }
     }
-    // Divergence of each unknown at the points.
-    let mut divergence = DMatrix::<f64>::zeros(n * D, count);
-    for q in 0..count {
-        for a in 0..n {
-            for i in 0..D {
-                divergence[(a * D + i, q)] = gradients[i][(a, q)];
-            }
-            if space == Space::Axisymmetric {
-                divergence[(a * D, q)] += hoop[(a, q)];
-            }
-        }
-    }
-    let weighted = scaled(&divergence);
+    let weighted = at.weighted(&at.divergence);
     if projects(basis, material, space) {
         let psi = pressures::<D>(basis, table);
-        let mass = scaled(&psi) * psi.transpose();
+        let mass = at.weighted(&psi) * psi.transpose();
         let moments = &weighted * psi.transpose();
         if let Some(factor) = mass.cholesky() {
             let half = factor.l().solve_lower_triangular(&moments.transpose()).unwrap_or_default();
@@ -149,8 +167,44 @@ pub(crate) fn stiffness<const D: usize>(
             return stiffness;
         }
     }
-    stiffness += weighted * divergence.transpose() * lambda;
+    stiffness += weighted * at.divergence.transpose() * lambda;
     stiffness
+}
+
+/// The normal stress `n·σ n` at a point of a cell as a combination of its unknowns, (function, component) in the order
+/// and sign of the basis; with the divergence projected where the stiffness has it so.
+pub(crate) fn normal_stress<const D: usize>(
+    mesh: &Mesh<D>,
+    cell: usize,
+    table: &Table,
+    basis: &HierarchicBasis,
+    (material, space): (&Elastic, Space),
+    (xi, normal): (&Local, &Point<D>),
+) -> Vec<f64> {
+    let (lambda, mu) = material.lame(space);
+    let n = basis.len();
+    let mut here = Table { points: vec![(*xi, 1.0)], map: vec![Values::default()], basis: vec![Values::default()] };
+    mesh.map(cell).tabulate(xi, &mut here.map[0]);
+    basis.tabulate(xi, &mut here.basis[0]);
+    let at = Derivatives::new(mesh, cell, &here, basis, space);
+    let mut divergence: Vec<f64> = at.divergence.iter().copied().collect();
+    if projects(basis, material, space) {
+        let whole = Derivatives::new(mesh, cell, table, basis, space);
+        let psi = pressures::<D>(basis, table);
+        let mass = whole.weighted(&psi) * psi.transpose();
+        let moments = whole.weighted(&whole.divergence) * psi.transpose();
+        if let Some(factor) = mass.cholesky() {
+            divergence = (moments * factor.solve(&pressures::<D>(basis, &here))).iter().copied().collect();
+        }
+    }
+    let mut out = vec![0.0; n * D];
+    for a in 0..n {
+        let along: f64 = (0..D).map(|i| at.gradients[i][(a, 0)] * normal[i]).sum();
+        for i in 0..D {
+            out[a * D + i] = 2.0 * mu * along * normal[i] + lambda * divergence[a * D + i];
+        }
+    }
+    out
 }
 
 /// Polynomials on which the divergence is projected, at the quadrature points.

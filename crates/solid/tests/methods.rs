@@ -127,8 +127,8 @@ fn gaps_close_as_the_bodies_approach() {
 /// A block pressed on a rigid sphere: all ways to keep the conditions agree as the penetration vanishes.
 #[test]
 fn enforcements_agree() {
-    let solve = |method: Method, enforcement: Enforcement| {
-        let mesh = block::<2>(&[even(0.0, 1.0, 16), even(0.0, 1.0, 8)], 1, |x| x);
+    let solve_on = |n: usize, method: Method, enforcement: Enforcement| {
+        let mesh = block::<2>(&[even(0.0, 1.0, 2 * n), even(0.0, 1.0, n)], 1, |x| x);
         let groups = mesh.groups().clone();
         let mut bodies = Bodies::<2>::new(Space::Axisymmetric);
         bodies.add("block", mesh, 2, Elastic { youngs_modulus: 10.0, poissons_ratio: 0.3 });
@@ -156,7 +156,14 @@ fn enforcements_agree() {
         assert!(state.imbalance < 1e-10);
         (state.contacts[0].force[1], deepest)
     };
+    let solve = |method, enforcement| solve_on(8, method, enforcement);
     let (exact, _) = solve(Method::Mortar, Enforcement::Multiplier);
+    // Nitsche's method has the error of the discretisation.
+    let (fine, _) = solve_on(32, Method::Mortar, Enforcement::Multiplier);
+    for method in [Method::Mortar, Method::GaussPoint] {
+        let errors = [8, 16].map(|n| (solve_on(n, method, Enforcement::Nitsche).0 / fine - 1.0).abs());
+        assert!(errors[1] < 0.5 * errors[0] && errors[1] < 5e-3, "{method:?}: {errors:?}");
+    }
     let (lagrangian, open) = solve(Method::Mortar, Enforcement::AugmentedLagrangian);
     assert!((lagrangian / exact - 1.0).abs() < 1e-8 && open < 1e-10);
     for method in [Method::Mortar, Method::Node, Method::GaussPoint] {

@@ -31,6 +31,7 @@ struct Patch {
     distortion: f64,
     upper_is_slave: bool,
     angle: f64,
+    enforcement: Enforcement,
 }
 
 /// Largest deviation of any stress component at any quadrature point, and of the pressure at any node, relative to the
@@ -79,7 +80,8 @@ fn deviation<const D: usize>(patch: &Patch) -> (f64, f64) {
         [bodies.surface(0, groups[0]["top"].sides.clone()), bodies.surface(1, groups[1]["bottom"].sides.clone())];
     let [low, high] = surfaces;
     let (slave, master) = if patch.upper_is_slave { (high, low) } else { (low, high) };
-    let contact = Contact::new("interface", slave, Master::Surface(master));
+    let mut contact = Contact::new("interface", slave, Master::Surface(master));
+    contact.enforcement = patch.enforcement;
     let mut load = vec![0.0; bodies.unknowns()];
     let mut press = |body: usize, group: signorini_fem::Group| {
         let load_of = Load { name: "p".into(), body, group, kind: LoadKind::Pressure };
@@ -120,7 +122,14 @@ fn in_the_plane() {
             for distortion in [0.0, 1e-15, 1e-10, 1e-3, 0.05] {
                 for upper_is_slave in [false, true] {
                     for angle in [0.0, 0.6] {
-                        let patch = Patch { degree, cells, distortion, upper_is_slave, angle };
+                        let patch = Patch {
+                            degree,
+                            cells,
+                            distortion,
+                            upper_is_slave,
+                            angle,
+                            enforcement: Enforcement::Multiplier,
+                        };
                         let (worst, pressure) = deviation::<2>(&patch);
                         assert!(
                             worst < 1e-12 && pressure < 1e-11,
@@ -140,7 +149,14 @@ fn in_space() {
             for distortion in [0.0, 1e-12, 0.05] {
                 for upper_is_slave in [false, true] {
                     let angle = if distortion == 0.0 { 0.0 } else { 0.4 };
-                    let patch = Patch { degree, cells, distortion, upper_is_slave, angle };
+                    let patch = Patch {
+                        degree,
+                        cells,
+                        distortion,
+                        upper_is_slave,
+                        angle,
+                        enforcement: Enforcement::Multiplier,
+                    };
                     let (worst, pressure) = deviation::<3>(&patch);
                     assert!(
                         worst < 1e-12 && pressure < 1e-11,
@@ -311,6 +327,23 @@ fn tetrahedra_on_hexahedra() {
                 }
             }
             assert!(worst < 1e-12, "degree {degree}, {upper_is_slave}: {worst:e}");
+        }
+    }
+}
+
+/// By Nitsche's method the stress of the slave side stands for the pressure, on the same points.
+#[test]
+fn by_nitsches_method() {
+    for degree in [1, 2, 4] {
+        for (distortion, upper_is_slave, angle) in [(0.0, false, 0.0), (0.05, true, 0.6), (1e-10, false, 0.6)] {
+            let enforcement = Enforcement::Nitsche;
+            let plane = Patch { degree, cells: [3, 4], distortion, upper_is_slave, angle, enforcement };
+            let (worst, pressure) = deviation::<2>(&plane);
+            assert!(worst < 1e-11 && pressure < 1e-11, "{degree} {distortion}: {worst:e} {pressure:e}");
+            if degree < 4 {
+                let (worst, pressure) = deviation::<3>(&Patch { cells: [2, 3], ..plane });
+                assert!(worst < 1e-11 && pressure < 1e-11, "{degree} {distortion}: {worst:e} {pressure:e}");
+            }
         }
     }
 }

@@ -48,6 +48,14 @@ impl SymmetricMatrix {
         Self { column_start, row, value }
     }
 
+    /// The sum of symmetric row-major matrices of a few unknowns each.
+    pub fn of_cliques(n: usize, cliques: &[(Vec<u32>, Vec<f64>)]) -> Self {
+        let lists: Vec<Vec<u32>> = cliques.iter().map(|c| c.0.clone()).collect();
+        let mut out = Self::from_cliques(n, &lists);
+        cliques.iter().for_each(|(unknowns, values)| out.add(unknowns, values, 1.0));
+        out
+    }
+
     /// Number of unknowns.
     pub fn size(&self) -> usize {
         self.column_start.len().saturating_sub(1)

@@ -521,7 +521,7 @@ pub struct EnforcedKey {
 pub enum Enforcement {
     Multiplier(Nothing),
     AugmentedLagrangian(Nothing),
-    Nitsche(toml::Table),
+    Nitsche(Nothing),
     Penalty(PenaltyKey),
 }
 

@@ -449,7 +449,16 @@ impl Planner<'_> {
                     .map(|v| self.reader.positive(v, LENGTH))
                     .transpose()?,
             },
-            Some((Enforcement::Nitsche(_), span)) => return Err(self.unavailable(span, "Nitsche's method for solids")),
+            Some((Enforcement::Nitsche(_), span)) => {
+                let slides = key.sliding.as_ref().is_some_and(|s| *s.get_ref() == statement::Sliding::Finite);
+                if slides || which == ContactMethod::Node {
+                    return Err(self
+                        .document
+                        .error(span, "Nitsche's method is for small sliding, in the mean or at quadrature points")
+                        .help("method.mortar = { enforcement.nitsche = {} }  without `sliding`"));
+                }
+                Kept::Nitsche
+            }
         };
         Ok((which, kept))
     }

@@ -500,7 +500,7 @@ fn failure(error: &StepError) -> Failure {
             reason: "linear_solver",
             text: format!("{error}; are all bodies held, and are their stiffnesses of one scale?"),
         },
-        StepError::Support(_) | StepError::Deep { .. } | StepError::Shape { .. } => {
+        StepError::Support(_) | StepError::Deep { .. } | StepError::Shape { .. } | StepError::NitscheSlides { .. } => {
             Failure { reason: "input", text: error.to_string() }
         }
         StepError::Newton { history, place, .. } => Failure {

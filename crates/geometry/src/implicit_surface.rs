@@ -5,15 +5,14 @@
 //! starts from a triangulation of the boundary on a grid, which makes the answer global up to features smaller than a
 //! cell.
 
-mod sampled;
 mod triangulate;
 
 use std::sync::Arc;
 
-pub use sampled::SampledField;
 use triangulate::triangulate;
 
 use crate::closest::{FeatureKind, scaled_norm};
+use crate::grid_spline::GridSpline;
 use crate::jet::Jet;
 use crate::mesh::TriangleMesh;
 use crate::shape::ShapeError;
@@ -27,6 +26,12 @@ pub trait ScalarField: Send + Sync {
     /// The value alone.
     fn value(&self, x: &Point<3>) -> f64 {
         self.jet(x).value
+    }
+}
+
+impl ScalarField for GridSpline<3> {
+    fn jet(&self, x: &Point<3>) -> Jet<3> {
+        GridSpline::jet(self, x)
     }
 }
 

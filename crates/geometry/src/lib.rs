@@ -16,6 +16,7 @@
 //! - [`mesh`]: triangle meshes; [`bvh`]: the search tree under them.
 //! - [`implicit_surface`]: bodies given by functions, with the exact closest point of their boundary.
 //! - [`rigid`]: rigid motion of shapes.
+//! - [`grid_spline`]: functions given by values on a grid.
 //! - [`outline`]: closed outlines of a function sampled on a grid.
 //! - [`polygon`]: winding numbers, areas and crossings of polygons.
 
@@ -26,6 +27,7 @@ pub mod closed_curve;
 pub mod closest;
 pub mod existence;
 pub mod frame;
+pub mod grid_spline;
 pub mod implicit;
 pub mod implicit_surface;
 pub mod jet;

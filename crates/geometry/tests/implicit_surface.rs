@@ -1,7 +1,8 @@
 //! Implicit bodies against distances that are known.
 
 use signorini_geometry::closest::FeatureKind;
-use signorini_geometry::implicit_surface::{ImplicitBody, ImplicitSurface, SampledField, ScalarField};
+use signorini_geometry::grid_spline::GridSpline;
+use signorini_geometry::implicit_surface::{ImplicitBody, ImplicitSurface, ScalarField};
 use signorini_geometry::jet::Jet;
 use signorini_geometry::{Aabb, Matrix, Point, Vector};
 
@@ -107,7 +108,7 @@ fn sampled_fields_converge_with_fourth_order() {
                 }
             }
         }
-        let field = SampledField::new(Point::<3>::repeat(-2.0), [h; 3], [n; 3], &values).unwrap();
+        let field = GridSpline::new(Point::<3>::repeat(-2.0), [h; 3], [n; 3], values).unwrap();
         let step = 1e-5;
         let x = Point::<3>::new(0.123, -0.234, 0.345);
         let jet = field.jet(&x);
@@ -125,8 +126,8 @@ fn sampled_fields_converge_with_fourth_order() {
     };
     let (coarse, fine) = (error(17), error(33));
     assert!((coarse / fine).log2() > 3.7, "{coarse:e} {fine:e}");
-    assert!(SampledField::new(Point::<3>::zeros(), [1.0; 3], [3; 3], &[0.0; 27]).is_err());
-    assert!(SampledField::new(Point::<3>::zeros(), [1.0; 3], [4; 3], &[0.0; 27]).is_err());
+    assert!(GridSpline::new(Point::<3>::zeros(), [1.0; 3], [3; 3], vec![0.0; 27]).is_err());
+    assert!(GridSpline::new(Point::<3>::zeros(), [1.0; 3], [4; 3], vec![0.0; 27]).is_err());
 }
 
 #[test]

@@ -3,6 +3,7 @@ pub mod case;
 pub mod exact;
 pub mod expression;
 pub mod gallery;
+pub mod height_map;
 pub mod mesh_file;
 pub mod output;
 pub mod plan;

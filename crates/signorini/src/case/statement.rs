@@ -315,8 +315,23 @@ pub enum Shape {
     Paraboloid(ParaboloidKey),
     Nurbs(FileKey),
     Stl(FileKey),
-    HeightMap(toml::Table),
+    HeightMap(HeightMapKey),
     LevelSet(LevelSetShapeKey),
+}
+
+/// Heights on a grid, from a file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HeightMapKey {
+    pub file: Spanned<String>,
+    /// Distance of the columns (along x) and of the rows (along y).
+    pub spacing: Values,
+    /// Where the first height is.
+    #[serde(default)]
+    pub origin: Option<Values>,
+    /// The height that one unit of the file stands for.
+    #[serde(default)]
+    pub scale: Option<Value>,
 }
 
 #[derive(Clone, Debug, Deserialize)]

@@ -8,6 +8,7 @@ mod parse;
 pub(crate) use parse::number_length;
 pub use parse::{Names, ParseError, parse};
 
+use crate::height_map::HeightMap;
 use signorini_geometry::Real;
 use std::sync::Arc;
 
@@ -42,6 +43,8 @@ enum Node {
     Pair(PairFunction, Box<Node>, Box<Node>),
     If(Box<Node>, Box<Node>, Box<Node>),
     User(Arc<Definition>, Box<Node>),
+    /// The height of a map over x and y.
+    Map(Arc<HeightMap>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,6 +139,11 @@ impl Expression {
         Self { root: Node::Number(value) }
     }
 
+    /// The height of a map over x and y.
+    pub fn height_map(map: HeightMap) -> Self {
+        Self { root: Node::Map(Arc::new(map)) }
+    }
+
     /// The expression multiplied by a number: a unit.
     pub fn scaled(self, factor: f64) -> Self {
         if factor == 1.0 {
@@ -165,7 +173,11 @@ impl Expression {
 
     /// Whether the expression depends on a coordinate (0, 1, 2).
     pub fn uses_position(&self, axis: usize) -> bool {
-        self.root.any(&|n| matches!(n, Node::Position(k) if *k == axis))
+        self.root.any(&|n| match n {
+            Node::Position(k) => *k == axis,
+            Node::Map(_) => axis < 2,
+            _ => false,
+        })
     }
 
     /// The expression at a fixed time.
@@ -177,7 +189,7 @@ impl Expression {
 impl Node {
     fn children(&self) -> Vec<&Node> {
         match self {
-            Node::Number(_) | Node::Position(_) | Node::Time => vec![],
+            Node::Number(_) | Node::Position(_) | Node::Time | Node::Map(_) => vec![],
             Node::Negate(a) | Node::Not(a) | Node::Call(_, a) | Node::User(_, a) => vec![a],
             Node::Binary(_, a, b) | Node::Compare(_, a, b) | Node::Pair(_, a, b) => vec![a, b],
             Node::If(a, b, c) => vec![a, b, c],
@@ -191,7 +203,7 @@ impl Node {
     fn map(&self, f: &impl Fn(&Node) -> Node) -> Node {
         let sub = |n: &Node| Box::new(f(n));
         match self {
-            Node::Number(_) | Node::Position(_) | Node::Time => self.clone(),
+            Node::Number(_) | Node::Position(_) | Node::Time | Node::Map(_) => self.clone(),
             Node::Negate(a) => Node::Negate(sub(a)),
             Node::Not(a) => Node::Not(sub(a)),
             Node::Call(g, a) => Node::Call(*g, sub(a)),
@@ -212,7 +224,7 @@ impl Node {
 
     /// Parts without position and time replaced by their value.
     fn folded(self) -> Node {
-        if self.any(&|n| matches!(n, Node::Position(_) | Node::Time)) {
+        if self.any(&|n| matches!(n, Node::Position(_) | Node::Time | Node::Map(_))) {
             return self.map(&|n| n.clone().folded());
         }
         Node::Number(self.evaluate(&Scope { position: [f64::NAN; 3], time: f64::NAN }))
@@ -237,6 +249,7 @@ impl Node {
                 branch.evaluate(scope)
             }
             Node::User(f, a) => f.evaluate(a.evaluate(scope)),
+            Node::Map(map) => map.evaluate(scope.position[0], scope.position[1]),
         }
     }
 }

@@ -4,7 +4,7 @@ use super::{Placed, Planner, coordinates};
 use crate::case::CaseError;
 use crate::case::statement::{Motion, Rigid, Shape, Side, Space};
 use crate::case::units::{LENGTH, NONE};
-use crate::expression::Scope;
+use crate::expression::{Expression, Scope};
 
 /// A floor seen from above.
 #[derive(Clone)]
@@ -60,6 +60,16 @@ pub(super) fn read(planner: &Planner<'_>, body: &str, rigid: &Rigid) -> Result<F
                 crate::expression::parse(&text, &names).map_err(|e| document.error(rigid.shape.span(), e.message))?;
             Placed { expression, span: rigid.shape.span(), key: format!("{key}.plane") }
         }
+        Shape::HeightMap(map) if planner.space == Space::Plane => Placed {
+            expression: Expression::height_map(planner.height_map(map)?),
+            span: map.file.span(),
+            key: format!("{key}.height_map"),
+        },
+        Shape::HeightMap(_) => {
+            return Err(document
+                .error(rigid.shape.span(), "a height map is a floor under a membrane seen from above")
+                .help("on a line the height is a function of x:  shape.height = \"…\""));
+        }
         _ => return Err(planner.unavailable(rigid.shape.span(), "this shape as the floor of a membrane")),
     };
     let mut displacement = Vec::new();
@@ -86,7 +96,7 @@ pub(super) fn read(planner: &Planner<'_>, body: &str, rigid: &Rigid) -> Result<F
                 }
                 if planner.space != Space::Plane && displacement.len() == 2 {
                     let mut still = displacement[0].clone();
-                    still.expression = crate::expression::Expression::number(0.0);
+                    still.expression = Expression::number(0.0);
                     displacement.insert(1, still);
                 }
                 if displacement.len() != 3 {

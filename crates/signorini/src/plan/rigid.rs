@@ -340,7 +340,29 @@ pub(super) fn read<const D: usize>(
             })?;
             Form::Implicit(Box::new(surface))
         }
-        Shape::HeightMap(_) => return Err(planner.unavailable(rigid.shape.span(), "a height map against a solid")),
+        Shape::HeightMap(key) => {
+            only_in_space(rigid.shape.span(), "height map")?;
+            let map = planner.height_map(key)?;
+            // Beyond its rectangle the map is not known.
+            let [low, high] = map.bounds();
+            let bounds = Aabb::new(
+                Point::<3>::new(around.min[0].max(low[0]), around.min[1].max(low[1]), around.min[2]),
+                Point::<3>::new(around.max[0].min(high[0]), around.max[1].min(high[1]), around.max[2]),
+            );
+            let misses = wrong(ShapeError::new("height_map", "it does not lie under the solids".to_string()))
+                .help("see `origin`");
+            if (0..2).any(|k| bounds.min[k] >= bounds.max[k]) {
+                return Err(misses);
+            }
+            let field = move |x: &Point<3>| {
+                let [x, y, z] = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));
+                z - map.evaluate(x, y)
+            };
+            let surface = ImplicitSurface::new(ImplicitBody::field(field), bounds, 96).map_err(|e| {
+                wrong(e).help("the heights must lie within the box around the solids, twice as long as they are")
+            })?;
+            Form::Implicit(Box::new(surface))
+        }
     };
     let centre = match &form {
         Form::Plane { point, .. } | Form::Cylinder { point, .. } => *point,

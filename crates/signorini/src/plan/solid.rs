@@ -111,6 +111,19 @@ impl Planner<'_> {
         }
     }
 
+    /// The heights of a map.
+    pub(super) fn height_map(&self, key: &statement::HeightMapKey) -> Result<crate::height_map::HeightMap, CaseError> {
+        let (path, bytes) = self.read_file(&key.file)?;
+        let spacing = self.reader.numbers::<2>(&key.spacing, LENGTH)?;
+        if spacing.iter().any(|h| *h <= 0.0) {
+            return Err(self.document.error(key.spacing.span(), format!("the spacing {spacing:?} is not positive")));
+        }
+        let origin = key.origin.as_ref().map(|o| self.reader.numbers::<2>(o, LENGTH)).transpose()?.unwrap_or_default();
+        let scale = key.scale.as_ref().map(|s| self.reader.number(s, LENGTH)).transpose()?.unwrap_or(1.0);
+        crate::height_map::HeightMap::read(&path, &bytes, origin, spacing, scale)
+            .map_err(|message| self.document.error(key.file.span(), format!("`{}`: {message}", path.display())))
+    }
+
     fn coordinates<const D: usize>(&self) -> &'static [&'static str] {
         if D == 2 { &["x", "y", "t"] } else { &["x", "y", "z", "t"] }
     }

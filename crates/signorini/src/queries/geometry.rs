@@ -8,7 +8,8 @@ use std::sync::Arc;
 use crate::expression::{Names, Scope, parse};
 use crate::mesh_file;
 use serde_json::{Map, Value};
-use signorini_geometry::implicit_surface::{ImplicitBody, ImplicitSurface, SampledField};
+use signorini_geometry::grid_spline::GridSpline;
+use signorini_geometry::implicit_surface::{ImplicitBody, ImplicitSurface};
 use signorini_geometry::jet::{Jet, Real};
 use signorini_geometry::mesh::TriangleMesh;
 use signorini_geometry::shape::{Axes, Curve, Shape, ShapeError, Surface};
@@ -510,8 +511,8 @@ fn implicit(
                 return Err(g.error("count", format!("{count:?}, not whole numbers from 4 to 2000")));
             }
             let values = g.numbers("values")?;
-            let field = SampledField::new(origin, spacing, count.map(|n| n as usize), &values)
-                .map_err(|e| g.shape_error(&e))?;
+            let field =
+                GridSpline::new(origin, spacing, count.map(|n| n as usize), values).map_err(|e| g.shape_error(&e))?;
             g.finish(&[])?;
             ImplicitBody::field(field)
         }

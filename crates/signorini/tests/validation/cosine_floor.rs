@@ -97,3 +97,23 @@ between = ["film", "ball"]
     let force = 2.0 * std::f64::consts::PI * 0.680259411891717;
     assert!((number(&contact["force"][2]) - force).abs() < 1e-6);
 }
+
+/// The floor from a height map: the area of contact goes to that on the exact floor with the fourth power of the spacing.
+#[test]
+fn sampled_floors_converge() {
+    let area = |shape: &str| {
+        let height = "shape.height = \"-(15 + 5*cos(2*pi*x)*cos(2*pi*y))/1000\"";
+        let case = example("cosine_square").replace(height, shape);
+        assert!(case.contains(shape));
+        let found = summary(&case, &set(&[(DEGREE, "3".into())]));
+        last_step(&found).pointer("/contacts/touch/area").and_then(serde_json::Value::as_f64).unwrap()
+    };
+    let exact = area("shape.height = \"-(15 + 5*cos(2*pi*x)*cos(2*pi*y))/1000\"");
+    let folder = tempfile::tempdir().unwrap();
+    let errors = [65, 129].map(|n| {
+        let pi = std::f64::consts::PI;
+        let height = |x: f64, y: f64| -(15.0 + 5.0 * (2.0 * pi * x).cos() * (2.0 * pi * y).cos()) / 1000.0;
+        (area(&crate::solids::height_map(folder.path(), n, 1.2, height)) / exact - 1.0).abs()
+    });
+    assert!(errors[1] < 1e-6 && errors[1] < errors[0] / 8.0, "{errors:?}");
+}

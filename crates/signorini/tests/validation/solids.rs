@@ -271,3 +271,35 @@ fn hertz_of_a_cylinder_on_a_plane() {
     // The edge is known to the distance of two nodes.
     assert!(peak.abs() < 5e-4 && width.abs() < 0.05, "{peak:e} {width:e}");
 }
+
+/// The heights of a function on a grid, as a CSV file; the entry of a case that names it.
+pub fn height_map(folder: &std::path::Path, n: usize, half: f64, height: impl Fn(f64, f64) -> f64) -> String {
+    let at = |k: usize| half * (2.0 * k as f64 / (n - 1) as f64 - 1.0);
+    let row = |j: usize| (0..n).map(|i| height(at(i), at(j)).to_string()).collect::<Vec<_>>().join(",");
+    let path = folder.join(format!("map{n}.csv"));
+    std::fs::write(&path, (0..n).map(|j| row(j) + "\n").collect::<String>()).unwrap();
+    let h = 2.0 * half / (n - 1) as f64;
+    format!("shape.height_map = {{ file = {path:?}, spacing = [{h}, {h}], origin = [{}, {}] }}", -half, -half)
+}
+
+/// A height map presses a block as the height does that it samples.
+#[test]
+fn height_maps_against_solids() {
+    let case = |shape: &str| {
+        format!(
+            "space = \"3d\"\n[bodies.block.solid]\n\
+             mesh.box = {{ min = [-1, -1, 0], max = [1, 1, 1], cells = [8, 8, 4] }}\ndegree = 2\n\
+             material.linear_elastic = {{ youngs_modulus = 10, poissons_ratio = 0.3 }}\n\
+             [bodies.ground.rigid]\n{shape}\n[supports.top]\non = \"block:top\"\ndisplacement = [0, 0, -0.1]\n\
+             [contacts.touch]\nbetween = [\"block:bottom\", \"ground\"]\n"
+        )
+    };
+    let force = |shape: &str| at(last_step(&summary(&case(shape), &set(&[]))), "/contacts/touch/force/2");
+    let exact = force("shape.height = \"0.05*(cos(2*x)*cos(3*y) - 1)\"");
+    let folder = tempfile::tempdir().unwrap();
+    let errors = [12, 24].map(|n| {
+        let map = height_map(folder.path(), n, 1.3, |x, y| 0.05 * ((2.0 * x).cos() * (3.0 * y).cos() - 1.0));
+        (force(&map) / exact - 1.0).abs()
+    });
+    assert!(errors.iter().all(|e| *e < 2e-5), "{errors:?}");
+}

@@ -1,0 +1,293 @@
+//! Height maps from files: CSV, NPY, and 16-bit TIFF.
+//!
+//! The first value is the height at the origin; columns run along x, rows along y. The values are joined by a bicubic
+//! spline, which passes through all of them and has continuous curvature.
+
+use signorini_geometry::grid_spline::GridSpline;
+use signorini_geometry::{Jet, Real, Vector};
+use std::path::Path;
+
+/// A height above a rectangle.
+#[derive(Debug)]
+pub struct HeightMap {
+    spline: GridSpline<2>,
+}
+
+/// The most values of a map.
+const MOST: usize = 64 << 20;
+
+/// Rows of heights as a file has them.
+struct Table {
+    rows: usize,
+    columns: usize,
+    values: Vec<f64>,
+}
+
+impl HeightMap {
+    /// Reads a map from the bytes of a file, whose kind its extension tells. `scale` is what one unit of the file stands
+    /// for.
+    ///
+    /// # Errors
+    /// In words: files of another kind, damaged or ragged ones, numbers that are missing or not finite, fewer than four
+    /// rows or columns, images of another depth than 16 bits.
+    pub fn read(path: &Path, bytes: &[u8], origin: [f64; 2], spacing: [f64; 2], scale: f64) -> Result<Self, String> {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+        let table = match extension.as_str() {
+            "csv" | "txt" => csv(bytes),
+            "npy" => npy(bytes),
+            "tif" | "tiff" => tiff(bytes),
+            other => Err(format!("`{other}` is no format of height maps; valid are csv, npy and tif")),
+        }?;
+        let Table { rows, columns, values } = table;
+        if rows < 4 || columns < 4 {
+            return Err(format!("{rows} rows of {columns} heights: at least 4 of each are needed"));
+        }
+        if let Some(k) = values.iter().position(|v| !v.is_finite()) {
+            let (row, column) = (k / columns + 1, k % columns + 1);
+            return Err(format!("row {row}, column {column} is {}: fill the gap, or crop the map", values[k]));
+        }
+        // The first index of the spline is that along x.
+        let mut turned = Vec::with_capacity(values.len());
+        for i in 0..columns {
+            turned.extend((0..rows).map(|j| scale * values[j * columns + i]));
+        }
+        let spline = GridSpline::new(Vector::<2>::from(origin), spacing, [columns, rows], turned);
+        Ok(HeightMap { spline: spline.map_err(|e| e.to_string())? })
+    }
+
+    /// The height at a place, with derivatives where the place is a jet.
+    pub fn evaluate<R: Real>(&self, x: R, y: R) -> R {
+        let at = Vector::<2>::new(x.value(), y.value());
+        if !at.iter().all(|v| v.is_finite()) {
+            return R::constant(f64::NAN);
+        }
+        let Jet { value, gradient: g, hessian: h } = self.spline.jet(&at);
+        // Jets end with the second order, and so does this.
+        let (dx, dy) = (x - R::constant(at[0]), y - R::constant(at[1]));
+        let c = R::constant;
+        c(value)
+            + c(g[0]) * dx
+            + c(g[1]) * dy
+            + c(0.5 * h[(0, 0)]) * dx * dx
+            + c(h[(0, 1)]) * dx * dy
+            + c(0.5 * h[(1, 1)]) * dy * dy
+    }
+
+    /// The corners of the rectangle.
+    pub fn bounds(&self) -> [[f64; 2]; 2] {
+        self.spline.bounds().map(|x| [x[0], x[1]])
+    }
+}
+
+/// Numbers in lines, between commas, semicolons, tabs or blanks; lines that begin with `#` are skipped.
+fn csv(bytes: &[u8]) -> Result<Table, String> {
+    let text = std::str::from_utf8(bytes).map_err(|e| format!("no text: {e}"))?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let (mut values, mut columns, mut rows) = (Vec::new(), 0, 0);
+    for (number, line) in text.lines().enumerate() {
+        let line = line.trim();
+        if line.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        let before = values.len();
+        let separated = line.contains([',', ';', '\t']);
+        let entries: Vec<&str> =
+            if separated { line.split([',', ';', '\t']).collect() } else { line.split_whitespace().collect() };
+        for (column, entry) in entries.iter().enumerate() {
+            let entry = entry.trim();
+            let value: f64 = entry.parse().map_err(|_| {
+                let what = if entry.is_empty() { "is empty".to_string() } else { format!("`{entry}` is no number") };
+                format!("line {}, column {}: {what}", number + 1, column + 1)
+            })?;
+            values.push(value);
+        }
+        let found = values.len() - before;
+        if rows > 0 && found != columns {
+            return Err(format!("line {}: {found} numbers where the lines before have {columns}", number + 1));
+        }
+        (columns, rows) = (found, rows + 1);
+        if values.len() > MOST {
+            return Err(format!("more than {MOST} heights"));
+        }
+    }
+    Ok(Table { rows, columns, values })
+}
+
+/// A two-dimensional array of numbers as NumPy saves it (format 1 to 3).
+fn npy(bytes: &[u8]) -> Result<Table, String> {
+    if bytes.len() < 10 || !bytes.starts_with(b"\x93NUMPY") {
+        return Err("no NPY: its first bytes are not those of one".into());
+    }
+    let at = |k: usize| bytes.get(k).copied().map_or(0, usize::from);
+    let (start, length): (usize, usize) = if bytes[6] == 1 {
+        (10, at(8) + (at(9) << 8))
+    } else {
+        (12, at(8) + (at(9) << 8) + (at(10) << 16) + (at(11) << 24))
+    };
+    let header = bytes.get(start..start.saturating_add(length)).ok_or("the header is cut off")?;
+    let header = std::str::from_utf8(header).map_err(|e| format!("the header is no text: {e}"))?;
+    let field = |name: &str| {
+        let after = header.split(&format!("'{name}'")).nth(1)?;
+        Some(after.trim_start().strip_prefix(':')?.trim_start())
+    };
+    let kind = field("descr").and_then(|d| d.split('\'').nth(1)).ok_or("the header has no kind of number")?;
+    let by_columns = field("fortran_order").is_some_and(|f| f.starts_with("True"));
+    let shape = field("shape").and_then(|s| s.strip_prefix('(')?.split(')').next()).ok_or("the header has no shape")?;
+    let shape: Vec<usize> = (shape.split(',').map(str::trim).filter(|s| !s.is_empty()))
+        .map(|s| s.parse().map_err(|_| format!("`{s}` is no number of rows or columns")))
+        .collect::<Result<_, _>>()?;
+    let &[rows, columns] = &shape[..] else {
+        return Err(format!("an array of {} dimensions: a height map has two", shape.len()));
+    };
+    let count =
+        rows.checked_mul(columns).filter(|n| *n <= MOST).ok_or(format!("{rows} x {columns} heights are too many"))?;
+    let unknown = || format!("numbers of kind `{kind}` are not known; save as float64");
+    let width: usize =
+        kind.get(2..).and_then(|w| w.parse().ok()).filter(|w| (1..=8).contains(w)).ok_or_else(unknown)?;
+    let data = &bytes[start + length..];
+    if data.len() < count.saturating_mul(width) {
+        return Err(format!("{count} numbers of {width} bytes are announced, the file ends before"));
+    }
+    let big = kind.starts_with('>');
+    let number = |k: usize| -> Option<f64> {
+        let mut raw = [0u8; 8];
+        let piece = &data[k * width..(k + 1) * width];
+        for (i, b) in piece.iter().enumerate() {
+            raw[if big { width - 1 - i } else { i }] = *b;
+        }
+        let [a, b, c, d, ..] = raw;
+        Some(match kind.get(1..)? {
+            "f8" => f64::from_le_bytes(raw),
+            "f4" => f64::from(f32::from_le_bytes([a, b, c, d])),
+            "u1" => f64::from(a),
+            "u2" => f64::from(u16::from_le_bytes([a, b])),
+            "u4" => f64::from(u32::from_le_bytes([a, b, c, d])),
+            "i1" => f64::from(a as i8),
+            "i2" => f64::from(i16::from_le_bytes([a, b])),
+            "i4" => f64::from(i32::from_le_bytes([a, b, c, d])),
+            "i8" => i64::from_le_bytes(raw) as f64,
+            "u8" => u64::from_le_bytes(raw) as f64,
+            _ => return None,
+        })
+    };
+    let place = |k: usize| if by_columns { k % columns * rows + k / columns } else { k };
+    let values = (0..count).map(|k| number(place(k))).collect::<Option<Vec<f64>>>();
+    let values = values.ok_or_else(unknown)?;
+    Ok(Table { rows, columns, values })
+}
+
+/// A grey image of 16 bits.
+fn tiff(bytes: &[u8]) -> Result<Table, String> {
+    let wrong = |e: tiff::TiffError| format!("no TIFF that can be read: {e}");
+    let mut decoder = tiff::decoder::Decoder::new(std::io::Cursor::new(bytes)).map_err(wrong)?;
+    let (columns, rows) = decoder.dimensions().map_err(wrong)?;
+    let (columns, rows) = (columns as usize, rows as usize);
+    if rows.saturating_mul(columns) > MOST {
+        return Err(format!("{rows} x {columns} heights are too many"));
+    }
+    match decoder.colortype().map_err(wrong)? {
+        tiff::ColorType::Gray(16) => {}
+        other => {
+            return Err(format!("the image is {other:?}: 16 bits of grey are wanted, 8 are too coarse for heights"));
+        }
+    }
+    let values = match decoder.read_image().map_err(wrong)? {
+        tiff::decoder::DecodingResult::U16(values) => values.into_iter().map(f64::from).collect::<Vec<f64>>(),
+        tiff::decoder::DecodingResult::I16(values) => values.into_iter().map(f64::from).collect(),
+        _ => return Err("the image does not hold integers of 16 bits".into()),
+    };
+    if values.len() != rows * columns {
+        return Err(format!("{} heights where {rows} x {columns} are announced", values.len()));
+    }
+    Ok(Table { rows, columns, values })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn plane(i: usize, j: usize) -> f64 {
+        2.0 * i as f64 - 3.0 * j as f64 + 100.0
+    }
+
+    fn npy_bytes(kind: &str, order: &str, values: &[u8]) -> Vec<u8> {
+        let header = format!("{{'descr': '{kind}', 'fortran_order': {order}, 'shape': (5, 6), }}\n");
+        let mut out = b"\x93NUMPY\x01\x00".to_vec();
+        out.extend((header.len() as u16).to_le_bytes());
+        out.extend(header.bytes());
+        out.extend(values);
+        out
+    }
+
+    fn tiff_bytes() -> Vec<u8> {
+        let mut out = std::io::Cursor::new(Vec::new());
+        let image: Vec<u16> = (0..5).flat_map(|j| (0..6).map(move |i| plane(i, j) as u16)).collect();
+        let mut encoder = tiff::encoder::TiffEncoder::new(&mut out).unwrap();
+        encoder.write_image::<tiff::encoder::colortype::Gray16>(6, 5, &image).unwrap();
+        out.into_inner()
+    }
+
+    /// Five rows of six heights of a plane, in all formats.
+    fn files() -> Vec<(&'static str, Vec<u8>)> {
+        let rows = |sep: &str| -> Vec<u8> {
+            let line = |j| (0..6).map(|i| plane(i, j).to_string()).collect::<Vec<_>>().join(sep);
+            format!("# a comment\n{}\n", (0..5).map(line).collect::<Vec<_>>().join("\n")).into_bytes()
+        };
+        let by_rows = |j: usize, i: usize| plane(i, j);
+        let c: Vec<u8> = (0..30).flat_map(|k| by_rows(k / 6, k % 6).to_le_bytes()).collect();
+        let f: Vec<u8> = (0..30).flat_map(|k| (by_rows(k % 5, k / 5) as i16).to_be_bytes()).collect();
+        vec![
+            ("map.csv", rows(",")),
+            ("map.csv", rows("; ")),
+            ("map.txt", rows(" ")),
+            ("map.npy", npy_bytes("<f8", "False", &c)),
+            ("map.npy", npy_bytes(">i2", "True", &f)),
+            ("map.tif", tiff_bytes()),
+        ]
+    }
+
+    #[test]
+    fn all_formats_say_the_same() {
+        for (name, bytes) in files() {
+            let map = HeightMap::read(Path::new(name), &bytes, [1.0, 2.0], [0.5, 0.25], 0.1).unwrap();
+            let jet = map.evaluate(Jet::<3>::variable(2.2, 0), Jet::<3>::variable(2.6, 1));
+            assert!((jet.value - 0.1 * (2.0 * 2.4 - 3.0 * 2.4 + 100.0)).abs() < 1e-12, "{name}: {}", jet.value);
+            assert!((jet.gradient - Vector::<3>::new(0.4, -1.2, 0.0)).norm() < 1e-12, "{name}");
+            assert_eq!(map.bounds(), [[1.0, 2.0], [3.5, 3.0]]);
+        }
+    }
+
+    #[test]
+    fn bad_maps_are_refused_in_words() {
+        let read =
+            |name: &str, bytes: &[u8]| HeightMap::read(Path::new(name), bytes, [0.0; 2], [1.0; 2], 1.0).unwrap_err();
+        assert!(read("a.csv", b"1,2,3,4\n1,2,,4\n").contains("line 2, column 3: is empty"));
+        assert!(read("a.csv", b"1,2,3,4\n1,2,x,4\n").contains("`x` is no number"));
+        assert!(read("a.csv", b"1,2,3,4\n1,2\n").contains("2 numbers where the lines before have 4"));
+        assert!(read("a.csv", b"1 2 3 4\n").contains("1 rows"));
+        assert!(read("a.csv", b"1 2 3 4\n1 2 nan 4\n1 2 3 4\n1 2 3 4\n").contains("row 2, column 3 is NaN"));
+        assert!(read("a.npy", b"1 2 3 4\n").contains("no NPY"));
+        assert!(read("a.npy", &npy_bytes("<f8", "False", &[0; 16])).contains("the file ends before"));
+        assert!(read("a.npy", &npy_bytes("<c16", "False", &[0; 480])).contains("not known"));
+        assert!(read("a.tif", b"1 2 3 4\n").contains("TIFF"));
+        assert!(read("a.xyz", b"").contains("valid are csv, npy and tif"));
+        let mut out = std::io::Cursor::new(Vec::new());
+        let mut encoder = tiff::encoder::TiffEncoder::new(&mut out).unwrap();
+        encoder.write_image::<tiff::encoder::colortype::Gray8>(4, 4, &[0; 16]).unwrap();
+        assert!(read("a.tif", &out.into_inner()).contains("16 bits"));
+    }
+
+    proptest! {
+        #[test]
+        fn damaged_files_do_no_harm(which in 0usize..6, cut in 0.0..1.0f64, changes in prop::collection::vec((0.0..1.0f64, any::<u8>()), 0..8)) {
+            let (name, mut bytes) = files().swap_remove(which);
+            for (at, value) in changes {
+                let k = (at * bytes.len() as f64) as usize;
+                bytes[k] = value;
+            }
+            bytes.truncate((cut * 2.0 * bytes.len() as f64) as usize);
+            let _ = HeightMap::read(Path::new(name), &bytes, [0.0; 2], [1.0; 2], 1.0);
+        }
+    }
+}

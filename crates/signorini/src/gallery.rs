@@ -15,7 +15,7 @@ macro_rules! example {
 }
 
 /// Cases with mechanics, simplest first.
-pub const GALLERY: [Example; 15] = [
+pub const GALLERY: [Example; 16] = [
     example!("string", "a string on a flat floor, beside the exact solution"),
     example!("axisymmetric", "a round membrane by its radius, beside the exact solution"),
     example!("flat_disc", "the same membrane in the plane, on a grid that its edge cuts"),
@@ -30,6 +30,7 @@ pub const GALLERY: [Example; 15] = [
     example!("cylinder_on_block", "NAFEMS CB-1 without friction: steel on aluminium, beside Hertz"),
     example!("high_order_blocks", "a few cells of degree 6 on either side of a curved contact"),
     example!("torus", "an elastic block on a rigid torus, exactly round"),
+    example!("ironing", "an elastic shoe drawn over an elastic block: finite sliding"),
     example!("die", "a NURBS die pressed into an elastic block"),
 ];
 

@@ -27,6 +27,8 @@ pub struct Partner<'a> {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Kinematics {
     pub gap: f64,
+    /// Unit vector along which the gap counts.
+    pub normal: Vector<3>,
     /// Unknowns that the gap depends on, and its derivatives.
     pub unknowns: Vec<u32>,
     pub gradient: Vec<f64>,
@@ -51,7 +53,7 @@ impl Kinematics {
         let measures = Measures::<N>::new(a.jet, b.jet, normal)?;
         let of_a = a.jet.dimension();
         let zero = Vector::<3>::zeros();
-        let mut out = Kinematics { gap: measures.gap, ..Self::default() };
+        let mut out = Kinematics { gap: measures.gap, normal, ..Self::default() };
         let mut variations = Vec::new();
         for (partner, first, sign) in [(&a, 0, 1.0), (&b, of_a, -1.0)] {
             for f in partner.functions {
@@ -75,7 +77,8 @@ impl Kinematics {
 
     /// The pair of a point and a rigid body whose gap has a value, gradient and Hessian in the position of the point.
     pub fn of_rigid<const D: usize>(functions: &[ShapeFunction], rigid: &GapJet<D>, second: bool) -> Self {
-        let mut out = Kinematics { gap: rigid.gap, ..Self::default() };
+        let normal = Vector::<3>::from_fn(|k, _| if k < D { rigid.normal[k] } else { 0.0 });
+        let mut out = Kinematics { gap: rigid.gap, normal, ..Self::default() };
         for f in functions {
             for i in 0..D {
                 out.unknowns.push(f.unknown + i as u32);

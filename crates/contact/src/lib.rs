@@ -32,4 +32,4 @@ pub use obstacle::{Faces, Obstacle, Rigid};
 pub use points::{Measured, TestPoint, TestRow, Tests};
 pub use recovery::recovered;
 pub use segments::{GapPoint, rigid_points, segments};
-pub use surface::{ContactSurface, FacePoint, Moved};
+pub use surface::{ContactSurface, FacePoint, Moved, looks_at};

@@ -10,10 +10,11 @@ use crate::mortar::{Shares, WeightedGap, compress};
 use crate::multiplier::PressureNodes;
 use crate::obstacle::{Obstacle, shape_functions};
 use crate::segments::GapPoint;
-use crate::surface::ContactSurface;
+use crate::surface::{ContactSurface, looks_at};
 use rayon::prelude::*;
 use signorini_fem::Local;
 use signorini_fem::rules::rule;
+use signorini_geometry::Point;
 
 /// A point of the slave side, and how much its gap counts in which rows.
 #[derive(Clone, Debug, PartialEq)]
@@ -110,7 +111,8 @@ impl Tests {
         }
     }
 
-    /// Measures the gaps of all points no farther from the obstacle than `reach`.
+    /// Measures the gaps of all points no farther from the obstacle than `reach`; points that look away from it cannot
+    /// touch it.
     ///
     /// `slave` is where it is now; with `second` the second variations come along.
     pub fn measure<const D: usize>(
@@ -123,8 +125,10 @@ impl Tests {
         let kinematics = (self.points.par_iter())
             .map(|point| {
                 let functions = shape_functions(slave, point.face, &point.s);
-                let found = obstacle.meet(&slave.at(point.face, &point.s).x, &functions, second)?;
-                (found.gap.abs() <= reach).then_some(found)
+                let at = slave.at(point.face, &point.s);
+                let found = obstacle.meet(&at.x, &functions, second)?;
+                let looks = looks_at(&at.area_normal(), &Point::<D>::from_fn(|k, _| found.normal[k]));
+                (found.gap.abs() <= reach && looks).then_some(found)
             })
             .collect();
         Measured { kinematics }

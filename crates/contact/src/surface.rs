@@ -46,6 +46,12 @@ pub trait ContactSurface<const D: usize>: Sync {
     fn describe(&self, face: usize) -> String;
 }
 
+/// Whether a surface with this outward normal, of any length, looks at something whose outward unit normal is the other:
+/// a pressure can only push it inwards.
+pub fn looks_at<const D: usize>(own: &Point<D>, other: &Point<D>) -> bool {
+    own.dot(other) < -1e-6 * own.norm()
+}
+
 /// A surface where its displacement has brought it.
 pub struct Moved<'a, const D: usize> {
     pub surface: &'a dyn ContactSurface<D>,

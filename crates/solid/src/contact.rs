@@ -6,9 +6,10 @@ use crate::stiffness::{Table, normal_stress};
 use crate::supports::Reduction;
 use signorini_contact::{
     ContactSurface, Faces, GapJet, GapPoint, Given, Measured, Moved, Obstacle, PressureNodes, Rigid, Tests,
-    WeightedGap, compress, rigid_points, segments, shares, weighted_gaps,
+    WeightedGap, compress, looks_at, rigid_points, segments, shares, weighted_gaps,
 };
 use signorini_fem::hierarchic::Values;
+use signorini_fem::{Local, Side};
 use signorini_geometry::Point;
 use std::collections::HashMap;
 
@@ -56,6 +57,24 @@ pub enum Sliding {
     Finite,
 }
 
+/// The sides of a surface that look at another one: over the closest point of the other, against its normal. So that of
+/// two thin bodies on each other only the faces between them meet.
+///
+/// # Errors
+/// Faces that make no shape, in words.
+pub fn facing<const D: usize>(surface: &BodySurface<D>, other: &BodySurface<D>) -> Result<Vec<Side>, String> {
+    let faces = Faces::new(other).map_err(|e| e.to_string())?;
+    Ok((0..surface.sides.len())
+        .filter(|&face| {
+            let at = surface.at(face, &surface.shape(face).centre());
+            let own = at.area_normal();
+            let found = faces.meet(&at.x, &[], false);
+            found.is_some_and(|found| looks_at(&own, &Point::<D>::from_fn(|k, _| found.normal[k])))
+        })
+        .map(|face| surface.sides[face])
+        .collect())
+}
+
 /// Two sides that may touch.
 pub struct Contact<const D: usize> {
     pub name: String,
@@ -76,7 +95,7 @@ pub struct Contact<const D: usize> {
     /// Their gaps at the last configuration.
     measured: Option<Measured>,
     /// Face and coordinates of the rows that are points.
-    places: Vec<(usize, signorini_fem::Local)>,
+    places: Vec<(usize, Local)>,
     /// Pressure per penetration of the cells behind each row.
     pub(crate) stiffness: Vec<f64>,
     /// With Nitsche's method: the rows without the stress, and the stress at their points.
@@ -137,6 +156,7 @@ impl<const D: usize> Contact<D> {
             (Sliding::Small, _) => self.search_points(reduction, rigid, None, false)?,
             (Sliding::Finite, _) => self.search_points(reduction, rigid, Some(u), near)?,
         }
+        self.check_side(rigid)?;
         self.find_stiffness();
         if self.enforcement == Enforcement::Nitsche {
             self.add_stresses();
@@ -231,10 +251,10 @@ impl<const D: usize> Contact<D> {
         }
     }
 
-    /// Young's modulus over the depth of the cell behind each row.
-    fn find_stiffness(&mut self) {
+    /// Young's modulus over the depth of the cell behind each face.
+    fn face_stiffness(&self) -> Vec<f64> {
         let body = self.slave.body();
-        let of_face: Vec<f64> = (0..self.slave.sides.len())
+        (0..self.slave.sides.len())
             .map(|face| {
                 let side = self.slave.sides[face];
                 let shape = self.slave.shape(face);
@@ -245,7 +265,12 @@ impl<const D: usize> Contact<D> {
                     .fold(0.0, f64::max);
                 body.material.youngs_modulus / depth.max(f64::MIN_POSITIVE)
             })
-            .collect();
+            .collect()
+    }
+
+    /// That of the cell behind each row.
+    fn find_stiffness(&mut self) {
+        let of_face = self.face_stiffness();
         let mut of_node = vec![0.0f64; self.nodes.len()];
         for face in 0..self.nodes.face_count() {
             for (node, _) in self.nodes.of_face(face) {
@@ -287,6 +312,15 @@ impl<const D: usize> Contact<D> {
 
     fn search_segments(&mut self, reduction: &Reduction<D>, rigid: Option<&RigidGap<D>>) {
         self.points = self.cut(rigid);
+        if matches!(self.master, Master::Rigid) {
+            // Faces that look away from a rigid body cannot touch it.
+            for (face, list) in self.points.iter_mut().enumerate() {
+                let looks = |p: &GapPoint<D>| looks_at(&self.slave.at(face, &p.s).area_normal(), &p.direction);
+                if !list.iter().any(looks) {
+                    list.clear();
+                }
+            }
+        }
         let master = match &self.master {
             Master::Surface(surface) => Some(surface as &dyn ContactSurface<D>),
             Master::Rigid => None,
@@ -316,13 +350,20 @@ impl<const D: usize> Contact<D> {
         (self.slave.body().degree as f64).powi(2)
     }
 
-    /// One row for every point of the segments.
+    /// One row for every point of the segments that looks at a rigid master, or faces another body; rows have the number
+    /// of their point.
     fn point_rows(&mut self, rigid: Option<&RigidGap<D>>) {
         self.points = self.cut(rigid);
         (self.rows, self.places) = (Vec::new(), Vec::new());
         let mut trace = Vec::new();
+        let mut number = 0;
         for (face, list) in self.points.iter().enumerate() {
             for p in list {
+                let node = number;
+                number += 1;
+                if p.master.is_none() && !looks_at(&self.slave.at(face, &p.s).area_normal(), &p.direction) {
+                    continue;
+                }
                 trace.clear();
                 self.slave.trace(face, &p.s, &mut trace);
                 let of_slave = trace.len();
@@ -334,7 +375,6 @@ impl<const D: usize> Contact<D> {
                     let c = if k < of_slave { p.weight * value } else { -p.weight * value };
                     terms.extend((0..D).map(|i| (unknown + i as u32, c * p.direction[i])));
                 }
-                let node = self.rows.len() as u32;
                 let (gap, weight) = (p.weight * p.gap, p.weight);
                 self.rows.push(WeightedGap { gap, weight, terms, forces: Vec::new(), node });
                 self.places.push((face, p.s));
@@ -342,35 +382,33 @@ impl<const D: usize> Contact<D> {
         }
     }
 
-    /// `1/c ∫ δσ σ` over all points, which the method adds to the stiffness; nothing with other enforcements. Between
-    /// bodies this finds what faces what; on a rigid body the points do not depend on where it is.
-    pub(crate) fn stress_terms(
-        &mut self,
-        bodies: &Bodies<D>,
-        reduction: &Reduction<D>,
-    ) -> Result<Vec<(Vec<u32>, Vec<f64>)>, StepError> {
+    /// `1/c ∫ δσ σ` over all points, which the method adds to the stiffness; nothing with other enforcements. The points
+    /// do not depend on where a rigid master is.
+    pub(crate) fn stress_terms(&mut self, bodies: &Bodies<D>) -> Vec<(Vec<u32>, Vec<f64>)> {
         if self.enforcement != Enforcement::Nitsche {
-            return Ok(Vec::new());
+            return Vec::new();
         }
-        let far: RigidGap<D> = Box::new(|_| GapJet::flat(1.0, Point::<D>::from_element(1.0).normalize()));
-        let rigid = matches!(self.master, Master::Rigid).then_some(&far);
-        match self.method {
-            Method::Mortar => self.point_rows(rigid),
-            _ => self.search_points(reduction, rigid, None, false)?,
-        }
-        self.find_stiffness();
+        let points: Vec<(usize, Local, f64)> = if self.method == Method::Mortar {
+            let far: RigidGap<D> = Box::new(|_| GapJet::flat(1.0, Point::<D>::zeros()));
+            let cut = self.cut(matches!(self.master, Master::Rigid).then_some(&far));
+            cut.iter().enumerate().flat_map(|(face, list)| list.iter().map(move |p| (face, p.s, p.weight))).collect()
+        } else {
+            let tests = Tests::at_quadrature_points(&self.slave);
+            tests.points.iter().zip(&tests.rows).map(|(point, row)| (point.face, point.s, row.weight)).collect()
+        };
         let body = self.slave.body();
-        self.stresses = Vec::with_capacity(self.places.len());
+        let stiffness = self.face_stiffness();
+        let mut stresses = Vec::with_capacity(points.len());
         let mut tables: HashMap<(usize, usize), Table> = HashMap::new();
         let mut out = Vec::new();
-        for (k, (face, s)) in self.places.iter().enumerate() {
-            let side = self.slave.sides[*face];
+        for (face, s, weight) in points {
+            let side = self.slave.sides[face];
             let cell = side.cell as usize;
             let basis = body.dofs.basis(cell);
             let key = (body.mesh.map_number(cell), body.dofs.basis_number(cell));
             let table = tables.entry(key).or_insert_with(|| Table::new(&body.mesh, &body.dofs, cell));
-            let (xi, _) = basis.shape().on_side(side.side as usize, s);
-            let normal = self.slave.at(*face, s).area_normal().normalize();
+            let (xi, _) = basis.shape().on_side(side.side as usize, &s);
+            let normal = self.slave.at(face, &s).area_normal().normalize();
             let along = normal_stress(&body.mesh, cell, table, basis, (&body.material, bodies.space), (&xi, &normal));
             let stress: Vec<(u32, f64)> = (body.dofs.cell(cell).iter().enumerate())
                 .flat_map(|(a, (f, sign))| {
@@ -379,24 +417,21 @@ impl<const D: usize> Contact<D> {
                     (0..D).map(move |i| ((first + i) as u32, sign * along[a * D + i]))
                 })
                 .collect();
-            let factor = self.rows[k].weight / (self.nitsche_factor() * self.stiffness[k]);
+            let factor = weight / (self.nitsche_factor() * stiffness[face]);
             let matrix = (stress.iter().flat_map(|(_, a)| stress.iter().map(move |(_, b)| factor * a * b))).collect();
             out.push((stress.iter().map(|(unknown, _)| *unknown).collect(), matrix));
-            self.stresses.push(stress);
+            stresses.push(stress);
         }
-        // Where a rigid body is counts from now on.
-        self.rows.retain(|_| rigid.is_none());
-        if rigid.is_none() {
-            self.add_stresses();
-        }
-        Ok(out)
+        self.stresses = stresses;
+        out
     }
 
     /// Rows of `g - σ/c` with `σ = -n·σ n`, whose pressures push with `g + σ/c`: the skew-symmetric variant.
     fn add_stresses(&mut self) {
         self.bare = self.rows.clone();
         let factor = self.nitsche_factor();
-        for ((row, stress), stiffness) in self.rows.iter_mut().zip(&self.stresses).zip(&self.stiffness) {
+        for (row, stiffness) in self.rows.iter_mut().zip(&self.stiffness) {
+            let stress = &self.stresses[row.node as usize];
             let share = row.weight / (factor * stiffness);
             row.forces = row.terms.clone();
             row.terms.extend(stress.iter().map(|(unknown, c)| (*unknown, share * c)));
@@ -417,6 +452,21 @@ impl<const D: usize> Contact<D> {
             _ if self.at_points() => self.slave.at(self.places[row].0, &self.places[row].1).x,
             _ => self.nodes.positions[self.rows[row].node as usize],
         }
+    }
+
+    /// Refuses a rigid body around the whole slave side that no part of it looks at: its normal points inwards, or the
+    /// wrong side of it was named.
+    fn check_side(&self, rigid: Option<&RigidGap<D>>) -> Result<(), StepError> {
+        let Some(rigid) = rigid.filter(|_| self.rows.is_empty()) else { return Ok(()) };
+        let depths = (0..self.slave.sides.len()).map(|face| {
+            let centre = self.slave.shape(face).centre();
+            -rigid(&self.slave.at(face, &centre).x).gap
+        });
+        let (least, most) = depths.fold((f64::INFINITY, 0.0f64), |(l, m), depth| (l.min(depth), m.max(depth)));
+        if least > 0.0 && most.is_finite() && most > 0.0 {
+            return Err(StepError::Deep { contact: self.name.clone(), depth: most });
+        }
+        Ok(())
     }
 
     /// Refuses bodies that lie in each other by far more than small displacements could mend.

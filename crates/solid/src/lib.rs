@@ -22,7 +22,7 @@ pub mod stiffness;
 pub mod supports;
 
 pub use body::{Bodies, Body, BodySurface};
-pub use contact::{Contact, ContactResult, Enforcement, Master, Method, PressureNode, RigidGap, Sliding};
+pub use contact::{Contact, ContactResult, Enforcement, Master, Method, PressureNode, RigidGap, Sliding, facing};
 pub use loads::{Load, LoadKind};
 pub use material::{Elastic, Space, von_mises};
 pub use model::{Circumstances, Model, StepError};

@@ -93,7 +93,7 @@ impl<const D: usize> Model<D> {
             if contact.enforcement == Enforcement::Nitsche && contact.sliding == Sliding::Finite {
                 return Err(StepError::NitscheSlides { contact: contact.name.clone() });
             }
-            added.extend(contact.stress_terms(&bodies, &reduction)?);
+            added.extend(contact.stress_terms(&bodies));
         }
         let stiffness = assemble(&bodies, &supports);
         let added = (!added.is_empty()).then(|| SymmetricMatrix::of_cliques(bodies.unknowns(), &added));

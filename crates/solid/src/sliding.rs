@@ -207,7 +207,7 @@ impl<const D: usize> Model<D> {
             let open = row.at(&around.u) + soft.compliance * (pressure - soft.shift);
             let lacks = if pressure > 0.0 { open.abs() } else { (-open).max(0.0) } / row.weight;
             let relative = lacks / moved.max(1e-4 * self.contacts[key.0].slave.size());
-            if !(relative <= lack) {
+            if relative > lack || relative.is_nan() {
                 (lack, worst) = (relative, k);
             }
         }

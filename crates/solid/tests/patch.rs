@@ -347,3 +347,46 @@ fn by_nitsches_method() {
         }
     }
 }
+
+/// Two plates of one body behind each other: the one behind is not met.
+#[test]
+fn masters_behind_each_other() {
+    let plates = |gap: f64| {
+        let mesh = |low: f64, high: f64, n: usize| {
+            block::<3>(&[even(0.0, 1.0, n), even(0.0, 1.0, n), even(low, high, 1)], 1, |x| x)
+        };
+        let upper = mesh(0.5, 1.0, 2);
+        // One mesh of two blocks, 0.1 and 0.2 thick, one over the other.
+        let parts = [mesh(0.0, 0.1, 3), mesh(0.1 + gap, 0.5, 3)];
+        let mut nodes = parts[0].nodes().to_vec();
+        nodes.extend_from_slice(parts[1].nodes());
+        let mut lower = signorini_fem::Mesh::<3>::new(nodes);
+        for (part, shift) in parts.iter().zip([0, parts[0].nodes().len() as u32]) {
+            for cell in 0..part.cell_count() {
+                let list: Vec<u32> = part.cell_nodes(cell).iter().map(|n| n + shift).collect();
+                lower.add_cell(part.shape(cell), 1, &list);
+            }
+        }
+        let tops: Vec<_> = (lower.boundary().into_iter())
+            .filter(|s| {
+                let (x, [a, b]) = lower.on_side(*s, &[0.0; 3]);
+                let up = a[0] * b[1] - a[1] * b[0];
+                up > 0.0 && x[2] > 0.05
+            })
+            .collect();
+        (upper, lower, tops)
+    };
+    let (upper, lower, tops) = plates(0.1);
+    assert_eq!(tops.len(), 18);
+    let bottom = upper.groups()["bottom"].sides.clone();
+    let mut bodies = Bodies::<3>::new(Space::Solid);
+    let material = Elastic { youngs_modulus: E, poissons_ratio: NU };
+    bodies.add("lower", lower, 1, material);
+    bodies.add("upper", upper, 1, material);
+    let (slave, master) = (bodies.surface(1, bottom), bodies.surface(0, tops));
+    let nodes = signorini_contact::PressureNodes::new(&slave);
+    let points = signorini_contact::segments(&slave, &master, &nodes, 1.0);
+    let area: f64 = points.iter().flatten().map(|p| p.weight).sum();
+    assert!((area - 1.0).abs() < 1e-12, "{area}");
+    assert!(points.iter().flatten().all(|p| p.gap.abs() < 1e-12));
+}

@@ -265,7 +265,40 @@ pub(super) fn polygons<const D: usize>(
             }
         }
     }
+    let area: f64 = rule(slave.shape(face), slave.degree(face).max(slave.order(face)) + 3)
+        .iter()
+        .map(|(s, w)| w * slave.at(face, s).area_normal().norm() * slave.measure(&slave.at(face, s).x))
+        .sum();
+    if points.iter().map(|p| p.weight).sum::<f64>() > area * (1.0 + 1e-6) {
+        // Masters lie behind each other: of those on a line the nearest counts.
+        points.retain(|p| !is_hidden(slave, master, face, candidates, p));
+    }
     points
+}
+
+/// Whether another face of the master is on the line of a point, and nearer.
+fn is_hidden<const D: usize>(
+    slave: &dyn ContactSurface<D>,
+    master: &dyn ContactSurface<D>,
+    face: usize,
+    candidates: &[usize],
+    point: &GapPoint<D>,
+) -> bool {
+    let x = slave.at(face, &point.s).x;
+    let n = -point.direction;
+    let own = point.master.map(|m| m.0 as usize);
+    candidates.iter().filter(|m| Some(**m) != own).any(|&m| {
+        let shape = master.shape(m);
+        let Some((eta, gap)) = onto_master(master, m, &x, &n, shape.centre()) else { return false };
+        let within = if shape == CellShape::Triangle {
+            eta[0] > -1e-9 && eta[1] > -1e-9 && eta[0] + eta[1] < 1.0 + 1e-9
+        } else {
+            eta[0].abs().max(eta[1].abs()) < 1.0 + 1e-9
+        };
+        // Faces that meet have the same gap along their edge.
+        let nearer = point.gap.abs() - gap.abs() > 1e-6 * (point.gap.abs() + gap.abs());
+        within && nearer && master.at(m, &eta).area_normal().normalize().dot(&n) < FACING
+    })
 }
 
 /// Unit normal of a triangle or of the mean plane of a quadrilateral.

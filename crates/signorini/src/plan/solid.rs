@@ -47,7 +47,7 @@ pub struct SolidLoad {
 /// The other side of a contact.
 #[derive(Clone)]
 pub enum Opposite {
-    Body { body: usize, sides: Vec<Side> },
+    Body { body: usize, sides: Vec<Side>, whole: bool },
     Rigid(RigidBody),
 }
 
@@ -57,6 +57,8 @@ pub struct SolidContact {
     pub name: String,
     pub body: usize,
     pub sides: Vec<Side>,
+    /// Whether `sides` are all of the body: only those that look at the other body count then.
+    pub whole: bool,
     pub opposite: Opposite,
     pub method: ContactMethod,
     pub enforcement: signorini_solid::Enforcement,
@@ -476,6 +478,21 @@ impl Planner<'_> {
         Ok((which, kept))
     }
 
+    /// The sides of a place, and whether they are all of the body.
+    fn contact_side<const D: usize>(
+        &self,
+        on: &toml::Spanned<String>,
+        bodies: &[PlannedBody<D>],
+    ) -> Result<(usize, Vec<Side>, bool), CaseError> {
+        let (body, group) = self.solid_place(on, bodies)?;
+        let whole = group.is_none();
+        let sides = group.map_or_else(|| bodies[body].mesh.boundary(), |g| g.sides);
+        if sides.is_empty() {
+            return Err(self.document.error(on.span(), "there are no sides of cells in this group"));
+        }
+        Ok((body, sides, whole))
+    }
+
     fn solid_contacts<const D: usize>(&self, bodies: &[PlannedBody<D>]) -> Result<Vec<SolidContact>, CaseError> {
         let document = self.document;
         let around = around(bodies);
@@ -494,37 +511,49 @@ impl Planner<'_> {
                 return Err(self.unavailable(adhesion.energy.span(), "adhesion of solids"));
             }
             let (method, enforcement) = self.solid_method(key)?;
-            let Some(pair) = key.between.as_ref().filter(|p| p.get_ref().len() == 2 && key.all.is_none()) else {
-                return Err(document
-                    .error(contact.span(), "who touches whom is not said")
-                    .help("between = [\"BODY:GROUP\", \"BODY:GROUP\"], the slave first; a rigid body comes second"));
-            };
-            let [first, second] = [&pair.get_ref()[0], &pair.get_ref()[1]];
-            let (body, group) = self.solid_place(first, bodies)?;
-            let sides = contact_sides(&bodies[body].mesh, group);
-            let rigid = match document.case.bodies.get(second.get_ref()).map(|b| b.get_ref()) {
-                Some(Body::Rigid(rigid)) => Some(rigid::read::<D>(self, second.get_ref(), rigid, &around)?),
-                _ => None,
-            };
-            let opposite = match rigid {
-                Some(rigid) => Opposite::Rigid(rigid),
-                None => {
-                    let (other, group) = self.solid_place(second, bodies)?;
-                    let sides = contact_sides(&bodies[other].mesh, group);
-                    if sides.is_empty() {
-                        return Err(document.error(second.span(), "there are no sides of cells in this group"));
-                    }
-                    Opposite::Body { body: other, sides }
-                }
-            };
-            if sides.is_empty() {
-                return Err(document.error(first.span(), "there are no sides of cells in this group"));
-            }
             let sliding = match key.sliding.as_ref().map(|s| *s.get_ref()) {
                 Some(statement::Sliding::Finite) => signorini_solid::Sliding::Finite,
                 _ => signorini_solid::Sliding::Small,
             };
-            out.push(SolidContact { name: name.clone(), body, sides, opposite, method, enforcement, sliding });
+            let mut add = |name: String, (body, sides, whole): (usize, Vec<Side>, bool), opposite| {
+                out.push(SolidContact { name, body, sides, whole, opposite, method, enforcement, sliding });
+            };
+            match (&key.between, &key.all) {
+                (Some(pair), None) if pair.get_ref().len() == 2 => {
+                    let [first, second] = [&pair.get_ref()[0], &pair.get_ref()[1]];
+                    let opposite = match document.case.bodies.get(second.get_ref()).map(|b| b.get_ref()) {
+                        Some(Body::Rigid(rigid)) => {
+                            Opposite::Rigid(rigid::read::<D>(self, second.get_ref(), rigid, &around)?)
+                        }
+                        _ => {
+                            let (body, sides, whole) = self.contact_side(second, bodies)?;
+                            Opposite::Body { body, sides, whole }
+                        }
+                    };
+                    add(name.clone(), self.contact_side(first, bodies)?, opposite);
+                }
+                (None, Some(all)) if *all.get_ref() => {
+                    let side = |k: usize| (k, bodies[k].mesh.boundary(), true);
+                    for slave in 0..bodies.len() {
+                        for master in slave + 1..bodies.len() {
+                            let (body, sides, whole) = side(master);
+                            let name = format!("{name}_{}_{}", bodies[slave].name, bodies[master].name);
+                            add(name, side(slave), Opposite::Body { body, sides, whole });
+                        }
+                        for (other, body) in &document.case.bodies {
+                            if let Body::Rigid(rigid) = body.get_ref() {
+                                let rigid = Opposite::Rigid(rigid::read::<D>(self, other, rigid, &around)?);
+                                add(format!("{name}_{}_{other}", bodies[slave].name), side(slave), rigid);
+                            }
+                        }
+                    }
+                }
+                _ => {
+                    return Err(document.error(contact.span(), "who touches whom is not said").help(
+                        "between = [\"BODY:GROUP\", \"BODY:GROUP\"], the slave first; a rigid body comes second; or  all = true",
+                    ));
+                }
+            }
         }
         Ok(out)
     }
@@ -538,10 +567,6 @@ fn around<const D: usize>(bodies: &[PlannedBody<D>]) -> signorini_geometry::Aabb
     let pad = 0.5 * (high - low).amax();
     let spatial = |x: &Point<D>, by: f64| Point::<3>::from_fn(|k, _| if k < D { x[k] + by } else { 0.0 });
     rigid::flat_box::<D>(spatial(&low, -pad), spatial(&high, pad))
-}
-
-fn contact_sides<const D: usize>(mesh: &Mesh<D>, group: Option<Group>) -> Vec<Side> {
-    group.map_or_else(|| mesh.boundary(), |g| g.sides)
 }
 
 /// On the axis the radial displacement vanishes.

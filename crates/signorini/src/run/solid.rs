@@ -11,8 +11,8 @@ use signorini_contact::GapJet;
 use signorini_geometry::Point;
 use signorini_solid::loads::{forces, resultant};
 use signorini_solid::{
-    Bodies, Circumstances, Contact, Load, LoadKind, Master, Method, Model, RigidGap, Space, State, StepError, Support,
-    SupportError, SupportKind,
+    Bodies, Circumstances, Contact, Load, LoadKind, Master, Method, Model, RigidGap, Sliding, Space, State, StepError,
+    Support, SupportError, SupportKind, facing,
 };
 use signorini_solve::{Iteration, Progress};
 use std::cell::RefCell;
@@ -74,9 +74,20 @@ pub fn model<const D: usize>(plan: &SolidPlan<D>) -> Result<Model<D>, CaseError>
         .collect();
     let contacts = (plan.contacts.iter())
         .map(|c| {
-            let slave = bodies.surface(c.body, c.sides.clone());
+            let mut slave = bodies.surface(c.body, c.sides.clone());
             let master = match &c.opposite {
-                Opposite::Body { body, sides } => Master::Surface(bodies.surface(*body, sides.clone())),
+                Opposite::Body { body, sides, whole } => {
+                    let mut master = bodies.surface(*body, sides.clone());
+                    // Where bodies may slide, any part may come to meet any other.
+                    if c.sliding == Sliding::Small {
+                        let looking = |a: &_, b: &_| facing(a, b).ok().filter(|list| !list.is_empty());
+                        let of_slave = c.whole.then(|| looking(&slave, &master)).flatten();
+                        let of_master = whole.then(|| looking(&master, &slave)).flatten();
+                        slave = of_slave.map_or(slave, |list| bodies.surface(c.body, list));
+                        master = of_master.map_or(master, |list| bodies.surface(*body, list));
+                    }
+                    Master::Surface(master)
+                }
                 Opposite::Rigid(_) => Master::Rigid,
             };
             let mut contact = Contact::new(&c.name, slave, master);
@@ -341,6 +352,10 @@ impl<const D: usize> Runner<D> {
             }
         }
         for (contact, result) in self.plan.contacts.iter().zip(&state.contacts) {
+            // Of pairs that were not named most never meet.
+            if !self.plan.document.case.contacts.contains_key(&contact.name) {
+                continue;
+            }
             let message = if result.nodes.is_empty() {
                 format!(
                     "contact `{}`: no part of the slave faces the master: do the normals look at each other?",

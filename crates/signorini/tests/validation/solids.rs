@@ -303,3 +303,34 @@ fn height_maps_against_solids() {
     });
     assert!(errors.iter().all(|e| *e < 2e-5), "{errors:?}");
 }
+
+/// Whole bodies, and all bodies: only sides that look at each other meet, however thin the bodies are; and of two plates
+/// that lie behind each other the nearer one is met.
+#[test]
+fn only_what_looks_at_each_other_meets() {
+    let case = |height: f64, contacts: &str| {
+        format!(
+            "space = \"3d\"\n\
+             [bodies.lower.solid]\nmesh.box = {{ min = [0, 0, 0], max = [1, 1, {height}], cells = [3, 3, 1] }}\n\
+             material.linear_elastic = {{ youngs_modulus = 1000, poissons_ratio = 0.3 }}\n\
+             [bodies.upper.solid]\nmesh.box = {{ min = [0, 0, {height}], max = [1, 1, {top}], cells = [2, 2, 1] }}\n\
+             material.linear_elastic = {{ youngs_modulus = 1000, poissons_ratio = 0.3 }}\n\
+             [bodies.floor.rigid]\nshape.plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}\n\
+             [supports.x]\non = \"lower:left\"\ndisplacement = [0, 0, \"free\"]\n\
+             [supports.y]\non = \"upper:left\"\ndisplacement = [0, 0, \"free\"]\n\
+             [loads.press]\non = \"upper:top\"\npressure = 10\n{contacts}",
+            top = 2.0 * height
+        )
+    };
+    let named = "[contacts.a]\nbetween = [\"upper\", \"lower\"]\n[contacts.b]\nbetween = [\"lower\", \"floor\"]\n";
+    for height in [0.5, 0.1] {
+        let found = summary(&case(height, named), &set(&[]));
+        assert!((at(last_step(&found), "/contacts/a/force/2") - 10.0).abs() < 1e-9);
+        assert!((at(last_step(&found), "/contacts/b/force/2") - 10.0).abs() < 1e-9);
+        let found = summary(&case(height, "[contacts.any]\nall = true\n"), &set(&[]));
+        assert!((at(last_step(&found), "/contacts/any_lower_upper/force/2") + 10.0).abs() < 1e-9);
+        assert!((at(last_step(&found), "/contacts/any_lower_floor/force/2") - 10.0).abs() < 1e-9);
+        assert_eq!(at(last_step(&found), "/contacts/any_upper_floor/area"), 0.0);
+        assert_eq!(found["warnings"].as_array().map(Vec::len), Some(0));
+    }
+}

@@ -19,7 +19,7 @@ pub enum ActiveSetError {
     #[error("the contact found does not hold the bodies")]
     Free,
     /// Rows that change from one state to the other for ever.
-    #[error("the contact state alternates at {} points", rows.len())]
+    #[error("the contact state alternates between open and closed at {} points", rows.len())]
     Chatter { rows: Vec<usize> },
     #[error("no contact state was found in {iterations} iterations")]
     TooMany { iterations: usize },

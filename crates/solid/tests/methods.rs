@@ -185,3 +185,89 @@ fn enforcements_agree() {
         assert!(method == Method::GaussPoint || before < 5e-3, "{method:?}: {before:e}");
     }
 }
+
+/// The equations of Nitsche's method at the solution, integrated anew: `∫ σ(u):ε(v) - ∫ p (δg + δσ/c) + ∫ σ δσ/c = 0` with
+/// `p = max(0, σ - c g)`, `σ = -n·σ n`, for any `v` that the supports allow.
+#[test]
+fn nitsches_equations_hold() {
+    use signorini_fem::rules::rule;
+    use signorini_solid::stiffness::displacement_at;
+    let mesh = block::<2>(&[even(0.0, 1.0, 6), even(0.0, 1.0, 5)], 1, |x| {
+        Point::<2>::new(x[0] + 0.05 * (3.0 * x[1]).sin(), x[1] + 0.02 * (5.0 * x[0]).sin())
+    });
+    let groups = mesh.groups().clone();
+    let material = Elastic { youngs_modulus: 10.0, poissons_ratio: 0.3 };
+    let mut bodies = Bodies::<2>::new(Space::PlaneStrain);
+    bodies.add("block", mesh, 2, material);
+    let kind = SupportKind::Components(vec![true, true]);
+    let supports = vec![Support { name: "top".into(), body: 0, group: groups["top"].clone(), kind }];
+    let slave = bodies.surface(0, groups["bottom"].sides.clone());
+    let mut contact = Contact::new("touch", slave, Master::Rigid);
+    contact.enforcement = Enforcement::Nitsche;
+    let mut model = Model::new(bodies, supports, vec![contact]).unwrap();
+    let centre = Point::<2>::new(0.5, -2.0);
+    let ball = move |x: &Point<2>| signorini_contact::GapJet::ball(x, &centre, 2.0);
+    let now = Circumstances {
+        displacement: &|_, _| Point::<2>::new(0.0, -0.03),
+        load: vec![0.0; model.bodies.unknowns()],
+        rigid: vec![Some(Box::new(ball))],
+    };
+    let state = model.solve(&now, &mut |_, _| true).unwrap();
+    let body = &model.bodies.list[0];
+    let held: std::collections::HashSet<u32> = (groups["top"].sides.iter())
+        .flat_map(|s| {
+            let list = body.dofs.cell(s.cell as usize);
+            body.dofs.on_side(*s).into_iter().map(|k| list[k].0)
+        })
+        .collect();
+    for seed in 1..4 {
+        let v: Vec<f64> = (0..body.unknowns())
+            .map(|i| if held.contains(&(i as u32 / 2)) { 0.0 } else { ((seed * i) as f64 * 0.731).sin() })
+            .collect();
+        let at = |cell: usize, xi: &signorini_fem::Local, u: &[f64]| {
+            let (x, displacement, gradient) = displacement_at(&body.mesh, &body.dofs, Space::PlaneStrain, cell, xi, u);
+            (x, displacement, gradient, material.stress(Space::PlaneStrain, &gradient))
+        };
+        let mut work = 0.0;
+        let mut scale = 0.0;
+        for cell in 0..body.mesh.cell_count() {
+            let mut map = signorini_fem::hierarchic::Values::default();
+            for (xi, w) in rule(body.mesh.shape(cell), 3) {
+                body.mesh.map(cell).tabulate(&xi, &mut map);
+                let (_, jacobian) = body.mesh.jacobian(cell, &map);
+                let (stress, strain) = (at(cell, &xi, &state.u).3, at(cell, &xi, &v).2);
+                let density = stress.component_mul(&strain).sum() * w * jacobian.determinant();
+                work += density;
+                scale += density.abs();
+            }
+        }
+        let mut pressed = 0;
+        for side in &groups["bottom"].sides {
+            let cell = side.cell as usize;
+            // Young's modulus over the depth of the cell along the normal, times the square of the degree.
+            let (middle, [tangent, _]) = body.mesh.on_side(*side, &[0.0; 3]);
+            let across = Point::<2>::new(tangent[1], -tangent[0]).normalize();
+            let depth = (body.mesh.vertices(cell))
+                .map(|n| across.dot(&(middle - body.mesh.nodes()[n as usize])))
+                .fold(0.0, f64::max);
+            let c = 4.0 * 10.0 / depth;
+            for (s, w) in rule(signorini_fem::CellShape::Line, 4) {
+                let (_, [tangent, _]) = body.mesh.on_side(*side, &s);
+                let n = Point::<2>::new(tangent[1], -tangent[0]).normalize();
+                let n = nalgebra::Vector3::new(n[0], n[1], 0.0);
+                let (xi, _) = body.mesh.shape(cell).on_side(side.side as usize, &s);
+                let (x, displacement, _, stress) = at(cell, &xi, &state.u);
+                let (_, moved, _, change) = at(cell, &xi, &v);
+                let found = ball(&x);
+                let (sigma, delta_sigma) = (-n.dot(&(stress * n)), -n.dot(&(change * n)));
+                let gap = found.gap + found.normal.dot(&displacement);
+                let p = (sigma - c * gap).max(0.0);
+                pressed += usize::from(p > 0.0);
+                let delta_gap = found.normal.dot(&moved);
+                work += w * tangent.norm() * (-p * (delta_gap + delta_sigma / c) + sigma * delta_sigma / c);
+            }
+        }
+        assert!(pressed > 4);
+        assert!(work.abs() < 1e-10 * scale, "{work:e} of {scale:e}");
+    }
+}

@@ -271,6 +271,12 @@ fn table(summary: &Value) {
         solid_table(summary)
     }
     println!();
+    for event in summary["events"].as_array().into_iter().flatten() {
+        let number = |v: &Value| v.as_f64().map_or(String::new(), |v| format!("{v:.6}"));
+        let at: Vec<String> = event["at"].as_array().into_iter().flatten().map(number).collect();
+        let kind = event["kind"].as_str().unwrap_or("").replace('_', " ");
+        println!("t = {}: {kind} at ({})", number(&event["time"]), at.join(", "));
+    }
     for warning in summary["warnings"].as_array().into_iter().flatten() {
         println!("warning: {}", warning.as_str().unwrap_or(""));
     }

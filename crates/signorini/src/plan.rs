@@ -81,6 +81,8 @@ pub struct MembranePlan<const D: usize> {
     pub method: MethodChoice,
     /// Ends of the increments.
     pub times: Vec<f64>,
+    /// For each increment the tolerance in time with which changes of topology are located; none where they are not.
+    pub events: Vec<Option<f64>>,
     pub probes: BTreeMap<String, Point<D>>,
     pub every: usize,
     pub pictures: bool,
@@ -334,10 +336,6 @@ impl<'a> Planner<'a> {
         let supports = self.supports(body, &pieces)?;
         let contact = self.contact(body)?;
         let mut warnings = Vec::new();
-        if case.steps.iter().any(|s| s.get_ref().events.is_some()) {
-            warnings
-                .push("`events` are not located in this version: the zones of each increment are in its step".into());
-        }
         let (contact, method) = match contact {
             None => (None, MethodChoice::InequalityLevelSet),
             Some((name, floor, method)) => (Some((name, floor)), method),
@@ -397,7 +395,8 @@ impl<'a> Planner<'a> {
             body: body.to_string(),
             contact,
             method,
-            times: self.times()?,
+            times: self.times()?.into_iter().map(|(t, _)| t).collect(),
+            events: self.times()?.into_iter().map(|(_, tolerance)| tolerance).collect(),
             probes,
             every,
             pictures: output.pictures.unwrap_or(true),
@@ -623,7 +622,8 @@ impl<'a> Planner<'a> {
         }
     }
 
-    fn times(&self) -> Result<Vec<f64>, CaseError> {
+    /// The ends of all increments, and the tolerance with which changes of topology are located within.
+    fn times(&self) -> Result<Vec<(f64, Option<f64>)>, CaseError> {
         let mut times = Vec::new();
         let mut t = 0.0;
         for step in &self.document.case.steps {
@@ -647,18 +647,23 @@ impl<'a> Planner<'a> {
                 None | Some((Control::Time(_), _)) => {}
                 Some((_, span)) => return Err(self.unavailable(span, "control by arc length or area")),
             }
+            let tolerance = key.events.as_ref().map(|e| *e.get_ref());
             if let Some(events) = &key.events
-                && events.get_ref().is_nan()
+                && !(*events.get_ref() > 0.0 && events.get_ref().is_finite())
             {
-                return Err(self.document.error(events.span(), "the tolerance is not a number"));
+                let message = format!("{} is no tolerance of time", events.get_ref());
+                return Err(self
+                    .document
+                    .error(events.span(), message)
+                    .help("a number greater than zero, such as 1e-3"));
             }
             // The last time is exactly the stated one.
-            times.extend((1..n).map(|i| t + (to - t) * i as f64 / n as f64));
-            times.push(to);
+            times.extend((1..n).map(|i| (t + (to - t) * i as f64 / n as f64, tolerance)));
+            times.push((to, tolerance));
             t = to;
         }
         if times.is_empty() {
-            times.push(0.0);
+            times.push((0.0, None));
         }
         Ok(times)
     }

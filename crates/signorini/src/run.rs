@@ -1,6 +1,7 @@
 //! From a plan to results: increments, files, the summary and the verdict.
 
 mod environment;
+mod events;
 mod increment;
 pub(crate) mod solid;
 
@@ -8,11 +9,13 @@ use crate::case::{CaseError, Document};
 use crate::output::{Folder, OutputError, pictures, tables, vtk};
 use crate::plan::{MembranePlan, MethodChoice, Plan, plan};
 use crate::snapshot::{DisplayMesh, Snapshot};
+use events::{Between, Event, Known, locate};
 use increment::{Engine, Increment};
 use serde_json::{Value, json};
 use signorini_membrane::line_zone::LineZone;
 use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::Membrane;
+use signorini_membrane::scales::Scales;
 use signorini_membrane::zone::Zone;
 pub use signorini_solve::{Iteration, Progress, Silent};
 use std::path::Path;
@@ -90,6 +93,7 @@ struct Runner<const D: usize, Z> {
     warnings: Vec<String>,
     frames: Vec<(f64, String)>,
     unknowns: usize,
+    events: Vec<Event>,
 }
 
 /// Writes every iteration to the log on its way to the user's progress.
@@ -128,7 +132,16 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         let folder = Folder::create(folder)?;
         folder.write("case.toml", plan.document.text.as_bytes())?;
         let warnings = plan.warnings.clone();
-        Ok(Self { plan, folder, engine: Engine::new(), steps: vec![], warnings, frames: vec![], unknowns: 0 })
+        Ok(Self {
+            plan,
+            folder,
+            engine: Engine::new(),
+            steps: vec![],
+            warnings,
+            frames: vec![],
+            unknowns: 0,
+            events: vec![],
+        })
     }
 
     fn run(mut self, start: std::time::Instant, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
@@ -146,8 +159,11 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                 return Err(error.into());
             }
             progress.step(index, times.len(), time);
-            let mut logged = Logged { folder: &self.folder, inner: progress };
+            let folder = self.folder.clone();
+            let mut logged = Logged { folder: &folder, inner: progress };
+            let before = self.known(&times, index, &mut logged);
             let increment = self.engine.solve(&self.plan, &membrane, (index, time), &mut logged);
+            let after = self.engine.state().filter(|_| increment.converged);
             self.unknowns = self.unknowns.max(increment.unknowns);
             for warning in &increment.warnings {
                 if !self.warnings.contains(warning) {
@@ -156,6 +172,10 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             }
             let snapshot = increment.snapshot(&mesh, &membrane, time);
             self.record(index, time, &membrane, &increment);
+            if let (Some(before), Some((zone, scales))) = (before, after) {
+                let after = Known { time, zone };
+                self.find_events(index, &before, &after, scales, &mut logged);
+            }
             if let Some(snapshot) = &snapshot
                 && (index % self.plan.every == self.plan.every - 1 || index + 1 == times.len() || !increment.converged)
             {
@@ -173,6 +193,54 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         }
         let summary = self.finish(ending, &reason, start, &mesh, last.as_ref())?;
         Ok(Outcome { summary, ending })
+    }
+
+    /// The zone at the beginning of an increment whose events are wanted: that of the one before, or at t = 0.
+    fn known(&mut self, times: &[f64], index: usize, progress: &mut dyn Progress) -> Option<Known<Z>> {
+        self.plan.events[index]?;
+        if index > 0 {
+            return Some(Known { time: times[index - 1], zone: self.engine.state()?.0 });
+        }
+        let start = self.plan.at(0.0);
+        if self.plan.check_fields(&start, 0.0).is_err() || times[0] <= 0.0 {
+            return None;
+        }
+        let found = self.engine.solve(&self.plan, &start, (0, 0.0), progress).converged;
+        let (zone, _) = self.engine.state().filter(|_| found)?;
+        Some(Known { time: 0.0, zone })
+    }
+
+    /// Locates the changes of topology within an increment.
+    fn find_events(&mut self, index: usize, a: &Known<Z>, b: &Known<Z>, scales: Scales, progress: &mut dyn Progress) {
+        let Some(tolerance) = self.plan.events[index] else { return };
+        let (plan, engine) = (&self.plan, &mut self.engine);
+        let mut found = Vec::new();
+        let mut solve = |time: f64, [before, after]: [&Z; 2]| {
+            let membrane = plan.at(time);
+            if progress.interrupted() || plan.check_fields(&membrane, time).is_err() {
+                return Between::Unknown;
+            }
+            engine.start_from(before.clone(), scales);
+            let converged = engine.solve(plan, &membrane, (index, time), progress).converged;
+            match engine.state().filter(|_| converged) {
+                Some((zone, _)) => Between::Zone(zone),
+                None if engine.counts() == after.counts() => Between::AsLater,
+                None if engine.counts() == before.counts() => Between::AsEarlier,
+                None if engine.counts().0 > before.counts().0 && before.is_empty() => Between::AsLater,
+                None => Between::Unknown,
+            }
+        };
+        locate(&plan.grid, a, b, tolerance, &mut solve, &mut found);
+        self.engine.start_from(b.zone.clone(), scales);
+        if let Some(coarse) = found.iter().find(|e| e.within > tolerance) {
+            let [from, to] = [-0.5, 0.5].map(|s| coarse.time + s * coarse.within);
+            self.warnings.push(format!("an event between t = {from} and {to} could not be located more closely"));
+        }
+        self.events.extend(found);
+    }
+
+    fn event_times(&self) -> Vec<(f64, &'static str)> {
+        self.events.iter().map(|e| (e.time, e.kind)).collect()
     }
 
     fn record(&mut self, index: usize, time: f64, membrane: &Membrane<D>, increment: &Increment<D>) {
@@ -215,7 +283,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         let contact = self.plan.contact.as_ref().map(|(n, _)| n.as_str());
         self.folder.write("history.csv", tables::history(&self.steps, contact, &probes).as_bytes())?;
         if let (true, Some(snapshot)) = (self.plan.pictures, last) {
-            pictures::draw(&self.folder, &self.plan, mesh, snapshot, &self.steps)?;
+            pictures::draw(&self.folder, &self.plan, mesh, snapshot, &self.steps, &self.event_times())?;
         }
         let summary = json!({
             "schema": SCHEMA,
@@ -227,7 +295,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             "unknowns": self.unknowns,
             "warnings": self.warnings,
             "steps": self.steps,
-            "events": [],
+            "events": self.events.iter().map(|e| e.to_json(contact.unwrap_or(""))).collect::<Vec<_>>(),
             "environment": environment::describe(start, rayon::current_num_threads(), &self.plan.document.text),
         });
         let text = serde_json::to_string_pretty(&summary).unwrap_or_default();

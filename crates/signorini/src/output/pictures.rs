@@ -24,6 +24,7 @@ pub fn draw<const D: usize>(
     mesh: &DisplayMesh<D>,
     s: &Snapshot<D>,
     steps: &[Value],
+    events: &[(f64, &'static str)],
 ) -> Result<(), OutputError> {
     if mesh.cells.is_empty() {
         // A domain thinner than the display can show.
@@ -53,7 +54,7 @@ pub fn draw<const D: usize>(
     if steps.len() > 1
         && let Some((name, _)) = &plan.contact
     {
-        drawings.push(("history", Box::new(|| history(steps, name, plan.space, units))));
+        drawings.push(("history", Box::new(|| history(steps, events, name, plan.space, units))));
     }
     drawings.par_iter().map(|(name, draw)| save(folder, name, &draw()?)).collect()
 }
@@ -434,8 +435,27 @@ fn convergence(steps: &[Value]) -> Result<String, OutputError> {
     })
 }
 
-/// Area and force over time.
-fn history(steps: &[Value], contact: &str, space: Space, units: &Labels) -> Result<String, OutputError> {
+/// Area and force over time, with the changes of topology.
+fn history(
+    steps: &[Value],
+    events: &[(f64, &'static str)],
+    contact: &str,
+    space: Space,
+    units: &Labels,
+) -> Result<String, OutputError> {
+    // Changes at one time are one line.
+    let mut marks: Vec<(f64, String)> = Vec::new();
+    for (time, kind) in events {
+        let word = kind.replace('_', " ");
+        match marks.last_mut() {
+            Some((t, words)) if *t == *time => {
+                if !words.contains(&word) {
+                    *words += &format!(", {word}");
+                }
+            }
+            _ => marks.push((*time, word)),
+        }
+    }
     let series = |f: &dyn Fn(&Value) -> Option<f64>| -> Vec<(f64, f64)> {
         steps.iter().filter_map(|s| Some((s["time"].as_f64()?, f(&s["contacts"][contact])?))).collect()
     };
@@ -462,6 +482,14 @@ fn history(steps: &[Value], contact: &str, space: Space, units: &Labels) -> Resu
                 .label_style((FONT, 15))
                 .draw()
                 .map_err(failed)?;
+            let (low, high) = (chart.y_range().start, chart.y_range().end);
+            let style = TextStyle::from((FONT, 12).into_font()).color(&FRONT).transform(FontTransform::Rotate90);
+            for (time, words) in &marks {
+                let line = [(*time, low), (*time, high)];
+                chart.draw_series(LineSeries::new(line, FRONT.stroke_width(1))).map_err(failed)?;
+                let text = Text::new(words.clone(), (*time, high), style.clone());
+                chart.draw_series(std::iter::once(text)).map_err(failed)?;
+            }
             chart.draw_series(LineSeries::new(points.iter().copied(), MEMBRANE.stroke_width(2))).map_err(failed)?;
             chart.draw_series(points.iter().map(|p| Circle::new(*p, 4, MEMBRANE.filled()))).map_err(failed)?;
         }

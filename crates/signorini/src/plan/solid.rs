@@ -188,7 +188,7 @@ impl Planner<'_> {
             supports,
             loads,
             contacts,
-            times: self.times()?,
+            times: self.times()?.into_iter().map(|(t, _)| t).collect(),
             probes,
             every,
             pictures: case.output.pictures.unwrap_or(true),

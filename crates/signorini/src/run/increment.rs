@@ -22,6 +22,7 @@ const RESOLVED: f64 = 0.5;
 /// Solves increments, each from the one before.
 pub struct Engine<const D: usize, Z> {
     previous: Option<(Z, Scales)>,
+    counts: (usize, usize),
 }
 
 type Sampler<'a, const D: usize> = Box<dyn Fn(&Point<D>) -> Option<Sample> + 'a>;
@@ -41,7 +42,22 @@ pub struct Increment<'a, const D: usize> {
 
 impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
     pub fn new() -> Self {
-        Self { previous: None }
+        Self { previous: None, counts: (0, 0) }
+    }
+
+    /// The zone of the last increment if it converged, and the scales of the problem.
+    pub fn state(&self) -> Option<(Z, Scales)> {
+        self.previous.clone()
+    }
+
+    /// Starts the next increment from another zone.
+    pub fn start_from(&mut self, zone: Z, scales: Scales) {
+        self.previous = Some((zone, scales));
+    }
+
+    /// Zones and holes at the end of the last increment, whether it converged or not.
+    pub fn counts(&self) -> (usize, usize) {
+        self.counts
     }
 
     pub fn solve<'a>(
@@ -75,6 +91,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         };
         let mut elements = Elements::new(membrane);
         let mut solution: Solution<'a, D, Z> = ils::solve(membrane, &mut elements, start, at, progress);
+        self.counts = solution.zone.counts();
         let report = Report::new(&solution);
         let converged = solution.reason.converged();
         if let (true, Some(scales)) = (converged, solution.scales) {

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod cosine_floor;
+mod events;
 mod flat_floor;
 mod gallery;
 mod invariance;

@@ -1,0 +1,212 @@
+//! Changes of topology along a load path: which, where, and at what load.
+//!
+//! An increment between whose ends the numbers of zones or holes differ is halved until the change lies within the
+//! tolerance that its step states. A zone that comes and another that goes within one increment, or a zone that comes and
+//! goes, are seen only if the ends of a part differ.
+
+use serde_json::{Value, json};
+use signorini_fem::Grid;
+use signorini_geometry::Point;
+use signorini_membrane::zone::{Zone, contact_index};
+
+/// One change of topology.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    pub kind: &'static str,
+    /// The middle of the interval of time that holds the change, and its length.
+    pub time: f64,
+    pub within: f64,
+    pub at: Vec<f64>,
+    /// Zones and holes before and after.
+    pub before: (usize, usize),
+    pub after: (usize, usize),
+}
+
+impl Event {
+    pub fn to_json(&self, contact: &str) -> Value {
+        json!({
+            "contact": contact, "kind": self.kind, "time": self.time, "within": self.within, "at": self.at,
+            "zones_before": self.before.0, "zones_after": self.after.0,
+            "holes_before": self.before.1, "holes_after": self.after.1,
+        })
+    }
+}
+
+/// A zone at a time.
+pub struct Known<Z> {
+    pub time: f64,
+    pub zone: Z,
+}
+
+/// What a time between two others has.
+pub enum Between<Z> {
+    Zone(Z),
+    /// No state that converged, as where zones are smaller than the grid can tell, but as many zones and holes as before
+    /// or after.
+    AsEarlier,
+    AsLater,
+    Unknown,
+}
+
+/// Finds the events between two times. `solve` looks at a time between, knowing the zones before and after; where it finds
+/// nothing the events are known to that interval.
+pub fn locate<const D: usize, Z: Zone<D>>(
+    grid: &Grid<D>,
+    a: &Known<Z>,
+    b: &Known<Z>,
+    tolerance: f64,
+    solve: &mut dyn FnMut(f64, [&Z; 2]) -> Between<Z>,
+    out: &mut Vec<Event>,
+) {
+    if a.zone.counts() == b.zone.counts() {
+        return;
+    }
+    let time = 0.5 * (a.time + b.time);
+    let between = if b.time - a.time > tolerance { solve(time, [&a.zone, &b.zone]) } else { Between::Unknown };
+    match between {
+        Between::AsEarlier => {
+            let earlier = Known { time, zone: a.zone.clone() };
+            locate(grid, &earlier, b, tolerance, solve, out);
+        }
+        Between::AsLater => {
+            let later = Known { time, zone: b.zone.clone() };
+            locate(grid, a, &later, tolerance, solve, out);
+        }
+        Between::Zone(zone) => {
+            let middle = Known { time, zone };
+            locate(grid, a, &middle, tolerance, solve, out);
+            locate(grid, &middle, b, tolerance, solve, out);
+        }
+        Between::Unknown => out.extend(differences(grid, a, b)),
+    }
+}
+
+/// The changes between two zones that differ little.
+fn differences<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Known<Z>, b: &Known<Z>) -> Vec<Event> {
+    let (parts_a, parts_b) = (parts(grid, &a.zone), parts(grid, &b.zone));
+    let overlap = overlaps(grid, &a.zone, &b.zone, [parts_a.len(), parts_b.len()]);
+    let mut out = Vec::new();
+    let mut add = |kind, at: Point<D>| {
+        out.push(Event {
+            kind,
+            time: 0.5 * (a.time + b.time),
+            within: b.time - a.time,
+            at: at.iter().copied().collect(),
+            before: a.zone.counts(),
+            after: b.zone.counts(),
+        });
+    };
+    for (j, part) in parts_b.iter().enumerate() {
+        let from: Vec<&Vec<Point<D>>> = (0..parts_a.len()).filter(|&i| overlap[i][j]).map(|i| &parts_a[i]).collect();
+        if from.is_empty() {
+            add("nucleation", mean(part));
+        }
+        bridges(&from).into_iter().for_each(|x| add("merge", x));
+    }
+    for (i, part) in parts_a.iter().enumerate() {
+        let into: Vec<&Vec<Point<D>>> = (0..parts_b.len()).filter(|&j| overlap[i][j]).map(|j| &parts_b[j]).collect();
+        if into.is_empty() {
+            add("release", mean(part));
+        }
+        bridges(&into).into_iter().for_each(|x| add("split", x));
+    }
+    let (holes_a, holes_b) = (holes(&a.zone), holes(&b.zone));
+    unmatched(&holes_b, &holes_a).into_iter().for_each(|x| add("hole_opened", x));
+    unmatched(&holes_a, &holes_b).into_iter().for_each(|x| add("hole_closed", x));
+    out
+}
+
+/// Points of the fronts of every connected zone.
+fn parts<const D: usize, Z: Zone<D>>(grid: &Grid<D>, zone: &Z) -> Vec<Vec<Point<D>>> {
+    let mut out = vec![Vec::new(); zone.counts().0];
+    for (k, outline) in zone.outlines().into_iter().enumerate() {
+        // In one dimension every outline is an interval; in two the zone lies on the left of its fronts.
+        let of = if D == 1 { Some(k) } else { inside(grid, zone, &outline) };
+        if let Some(part) = of.and_then(|k| out.get_mut(k)) {
+            part.extend(outline);
+        }
+    }
+    out
+}
+
+/// The zone beside an outline.
+fn inside<const D: usize, Z: Zone<D>>(grid: &Grid<D>, zone: &Z, outline: &[Point<D>]) -> Option<usize> {
+    let step = 1e-3 * grid.h();
+    outline.iter().zip(outline.iter().skip(1)).find_map(|(p, q)| {
+        let along = (q - p).try_normalize(0.0)?;
+        let left = Point::<D>::from_fn(|k, _| if k == 0 { -along[D - 1] } else { along[0] });
+        contact_index(zone.region_at(&((p + q) * 0.5 + left * step)))
+    })
+}
+
+/// Which zones of both states share points of a grid of samples.
+fn overlaps<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Z, b: &Z, counts: [usize; 2]) -> Vec<Vec<bool>> {
+    const FINE: usize = 4;
+    let mut out = vec![vec![false; counts[1]]; counts[0]];
+    let n = grid.cells().map(|n| n * FINE);
+    for k in 0..n.iter().product::<usize>() {
+        let mut rest = k;
+        let x = grid.bounds().at(&Point::<D>::from_fn(|axis, _| {
+            let i = rest % n[axis];
+            rest /= n[axis];
+            (i as f64 + 0.5) / n[axis] as f64
+        }));
+        let [i, j] = [a, b].map(|zone| contact_index(zone.region_at(&x)));
+        if let (Some(i), Some(j)) = (i, j)
+            && let Some(cell) = out.get_mut(i).and_then(|row| row.get_mut(j))
+        {
+            *cell = true;
+        }
+    }
+    out
+}
+
+/// The narrowest places between parts, one less than there are parts: those of the shortest tree that joins them.
+fn bridges<const D: usize>(parts: &[&Vec<Point<D>>]) -> Vec<Point<D>> {
+    let narrowest = |p: &[Point<D>], q: &[Point<D>]| {
+        let pairs = p.iter().flat_map(|x| q.iter().map(move |y| ((x - y).norm(), (x + y) * 0.5)));
+        pairs.min_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let mut out = Vec::new();
+    let mut joined = vec![0];
+    while joined.len() < parts.len() {
+        let next = (0..parts.len())
+            .filter(|k| !joined.contains(k))
+            .flat_map(|k| {
+                joined.iter().filter_map(move |&j| Some((k, narrowest(parts[j], parts[k])?))).collect::<Vec<_>>()
+            })
+            .min_by(|a, b| a.1.0.total_cmp(&b.1.0));
+        let Some((k, (_, x))) = next else { break };
+        joined.push(k);
+        out.push(x);
+    }
+    out
+}
+
+fn mean<const D: usize>(points: &[Point<D>]) -> Point<D> {
+    points.iter().sum::<Point<D>>() / points.len().max(1) as f64
+}
+
+/// Centres of the holes: their fronts run clockwise.
+fn holes<const D: usize, Z: Zone<D>>(zone: &Z) -> Vec<Point<D>> {
+    if D == 1 {
+        return Vec::new();
+    }
+    let clockwise = |outline: &Vec<Point<D>>| {
+        let next = outline.iter().cycle().skip(1);
+        outline.iter().zip(next).map(|(p, q)| p[0] * q[D - 1] - p[D - 1] * q[0]).sum::<f64>() < 0.0
+    };
+    zone.outlines().iter().filter(|o| clockwise(o)).map(|o| mean(o)).collect()
+}
+
+/// The places of a list that have none of the other list as their nearest partner.
+fn unmatched<const D: usize>(list: &[Point<D>], other: &[Point<D>]) -> Vec<Point<D>> {
+    let mut left = list.to_vec();
+    for x in other {
+        let nearest = (0..left.len()).min_by(|&i, &j| (left[i] - x).norm().total_cmp(&(left[j] - x).norm()));
+        if let Some(k) = nearest {
+            left.remove(k);
+        }
+    }
+    left
+}

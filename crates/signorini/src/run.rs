@@ -9,7 +9,7 @@ use crate::case::{CaseError, Document};
 use crate::output::{Folder, OutputError, pictures, tables, vtk};
 use crate::plan::{MembranePlan, MethodChoice, Plan, plan};
 use crate::snapshot::{DisplayMesh, Snapshot};
-use events::{Between, Event, Known, locate};
+use events::{Between, Bounded, Event, Known, locate};
 use increment::{Engine, Increment};
 use serde_json::{Value, json};
 use signorini_membrane::line_zone::LineZone;
@@ -220,13 +220,17 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             if progress.interrupted() || plan.check_fields(&membrane, time).is_err() {
                 return Between::Unknown;
             }
-            engine.start_from(before.clone(), scales);
-            let converged = engine.solve(plan, &membrane, (index, time), progress).converged;
+            // Whether a membrane without contact stays clear of the floor is seen at once.
+            engine.start_from(if after.is_empty() { after.clone() } else { before.clone() }, scales);
+            let mut bounded = Bounded { inner: progress, solves: 0 };
+            let converged = engine.solve(plan, &membrane, (index, time), &mut bounded).converged;
+            if progress.interrupted() {
+                return Between::Unknown;
+            }
             match engine.state().filter(|_| converged) {
                 Some((zone, _)) => Between::Zone(zone),
-                None if engine.counts() == after.counts() => Between::AsLater,
-                None if engine.counts() == before.counts() => Between::AsEarlier,
-                None if engine.counts().0 > before.counts().0 && before.is_empty() => Between::AsLater,
+                // The free membrane penetrates the floor then.
+                None if before.is_empty() && engine.counts().0 > 0 => Between::AsLater,
                 None => Between::Unknown,
             }
         };

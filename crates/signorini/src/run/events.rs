@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use signorini_fem::Grid;
 use signorini_geometry::Point;
 use signorini_membrane::zone::{Zone, contact_index};
+use signorini_solve::{Iteration, Progress};
 
 /// One change of topology.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,12 +39,30 @@ pub struct Known<Z> {
     pub zone: Z,
 }
 
+/// Equilibrium solves that one time between may take: beside a merger, where fronts nearly touch, a state may take
+/// hundreds.
+const MOST_SOLVES: usize = 100;
+
+/// A progress that asks to stop after [`MOST_SOLVES`].
+pub struct Bounded<'a> {
+    pub inner: &'a mut dyn Progress,
+    pub solves: usize,
+}
+
+impl Progress for Bounded<'_> {
+    fn iteration(&mut self, iteration: &Iteration) {
+        self.solves += 1;
+        self.inner.iteration(iteration);
+    }
+    fn interrupted(&self) -> bool {
+        self.solves >= MOST_SOLVES || self.inner.interrupted()
+    }
+}
+
 /// What a time between two others has.
 pub enum Between<Z> {
     Zone(Z),
-    /// No state that converged, as where zones are smaller than the grid can tell, but as many zones and holes as before
-    /// or after.
-    AsEarlier,
+    /// Contact where the earlier time has none, in zones smaller than the grid can tell.
     AsLater,
     Unknown,
 }
@@ -64,10 +83,6 @@ pub fn locate<const D: usize, Z: Zone<D>>(
     let time = 0.5 * (a.time + b.time);
     let between = if b.time - a.time > tolerance { solve(time, [&a.zone, &b.zone]) } else { Between::Unknown };
     match between {
-        Between::AsEarlier => {
-            let earlier = Known { time, zone: a.zone.clone() };
-            locate(grid, &earlier, b, tolerance, solve, out);
-        }
         Between::AsLater => {
             let later = Known { time, zone: b.zone.clone() };
             locate(grid, a, &later, tolerance, solve, out);

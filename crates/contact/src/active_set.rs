@@ -367,9 +367,8 @@ fn add(at: &mut [f64], column: &[f64], factor: f64) {
 
 /// The rows that the free displacement closes; where springs hold a body, also those that are nearly closest.
 fn start(rows: &[WeightedGap], free: &[f64], springs: &[Spring]) -> BTreeSet<usize> {
-    let gap = |r: &WeightedGap| (r.gap + r.terms.iter().map(|(i, c)| c * free[*i as usize]).sum::<f64>()) / r.weight;
     if springs.is_empty() {
-        return (0..rows.len()).filter(|&k| gap(&rows[k]) < 0.0).collect();
+        return (0..rows.len()).filter(|&k| rows[k].at(free) < 0.0).collect();
     }
     let gaps: Vec<f64> = rows.iter().map(|r| r.gap / r.weight).collect();
     let least = gaps.iter().copied().fold(f64::INFINITY, f64::min);

@@ -112,13 +112,15 @@ impl<const D: usize> GapJet<D> {
         GapJet { gap, normal, hessian: signorini_geometry::Matrix::<D>::zeros() }
     }
 
-    /// A ball, or in the plane a disc.
+    /// A ball, or in the plane a disc. At its centre the normal is that along the last axis, without curvature.
     pub fn ball(x: &Point<D>, centre: &Point<D>, radius: f64) -> Self {
         let d = x - centre;
         let distance = d.norm();
-        let normal = d / distance;
+        let last = Point::<D>::from_fn(|k, _| f64::from(u8::from(k + 1 == D)));
+        let normal = d.try_normalize(0.0).unwrap_or(last);
         let across = signorini_geometry::Matrix::<D>::identity() - normal * normal.transpose();
-        GapJet { gap: distance - radius, normal, hessian: across / distance }
+        let curvature = if distance > 0.0 { 1.0 / distance } else { 0.0 };
+        GapJet { gap: distance - radius, normal, hessian: across * curvature }
     }
 }
 

@@ -80,10 +80,6 @@ impl<'a, const D: usize> Faces<'a, D> {
         list.into_iter().map(of).sum::<Point<D>>().normalize()
     }
 
-    fn functions(&self, face: usize, s: &Local) -> Vec<ShapeFunction> {
-        shape_functions(self.surface, face, s)
-    }
-
     /// The pair with a face.
     fn with_face(
         &self,
@@ -93,7 +89,7 @@ impl<'a, const D: usize> Faces<'a, D> {
         normal: &Point<D>,
         second: bool,
     ) -> Option<Kinematics> {
-        let functions = self.functions(face, s);
+        let functions = self.surface.functions(face, s);
         let jet = match &self.body.shapes()[face] {
             Shape::Surface(surface) => surface.jet(s[0], s[1]),
             // In the plane a face is a strip that reaches across it.
@@ -113,7 +109,7 @@ impl<'a, const D: usize> Faces<'a, D> {
         normal: &Point<D>,
         second: bool,
     ) -> Option<Kinematics> {
-        let mut functions = self.functions(face, s);
+        let mut functions = self.surface.functions(face, s);
         let normal = spatial(normal);
         let x = spatial(&self.surface.at(face, s).x);
         if D == 2 {
@@ -196,14 +192,6 @@ impl Place {
         }
         Place::Interior
     }
-}
-
-/// The functions that move a point of a face.
-pub fn shape_functions<const D: usize>(surface: &dyn ContactSurface<D>, face: usize, s: &Local) -> Vec<ShapeFunction> {
-    let (mut trace, mut slopes) = (Vec::new(), Vec::new());
-    surface.trace(face, s, &mut trace);
-    surface.slopes(face, s, &mut slopes);
-    (trace.into_iter().zip(slopes)).map(|((unknown, value), slopes)| ShapeFunction { unknown, value, slopes }).collect()
 }
 
 fn strip(curve: &CurveJet) -> SurfaceJet {

@@ -8,7 +8,7 @@
 use crate::kinematics::Kinematics;
 use crate::mortar::{Shares, WeightedGap, compress};
 use crate::multiplier::PressureNodes;
-use crate::obstacle::{Obstacle, shape_functions};
+use crate::obstacle::Obstacle;
 use crate::segments::GapPoint;
 use crate::surface::{ContactSurface, looks_at};
 use rayon::prelude::*;
@@ -124,7 +124,7 @@ impl Tests {
     ) -> Measured {
         let kinematics = (self.points.par_iter())
             .map(|point| {
-                let functions = shape_functions(slave, point.face, &point.s);
+                let functions = slave.functions(point.face, &point.s);
                 let at = slave.at(point.face, &point.s);
                 let found = obstacle.meet(&at.x, &functions, second)?;
                 let looks = looks_at(&at.area_normal(), &Point::<D>::from_fn(|k, _| found.normal[k]));

@@ -1,5 +1,6 @@
 //! What contact sees of a discretised body: faces with positions, and the functions that move them.
 
+use crate::kinematics::ShapeFunction;
 use signorini_fem::{CellShape, Local};
 use signorini_geometry::Point;
 
@@ -36,8 +37,8 @@ pub trait ContactSurface<const D: usize>: Sync {
     fn at(&self, face: usize, s: &Local) -> FacePoint<D>;
     /// Appends the functions that move a point of a face: the first of their `D` unknowns, and their value.
     fn trace(&self, face: usize, s: &Local, out: &mut Vec<(u32, f64)>);
-    /// Appends the derivatives of those functions with respect to the coordinates of the face, in the same order.
-    fn slopes(&self, face: usize, s: &Local, out: &mut Vec<[f64; 2]>);
+    /// Those functions with their slopes, in the same order.
+    fn functions(&self, face: usize, s: &Local) -> Vec<ShapeFunction>;
     /// Numbers of the vertices, in the order of the reference face; faces that meet share them.
     fn vertices(&self, face: usize) -> Vec<u32>;
     /// Thickness or circumference by which integrals are multiplied.
@@ -78,14 +79,11 @@ impl<const D: usize> ContactSurface<D> for Moved<'_, D> {
 
     fn at(&self, face: usize, s: &Local) -> FacePoint<D> {
         let mut point = self.surface.at(face, s);
-        let (mut trace, mut slopes) = (Vec::new(), Vec::new());
-        self.surface.trace(face, s, &mut trace);
-        self.surface.slopes(face, s, &mut slopes);
-        for ((unknown, value), slope) in trace.iter().zip(&slopes) {
-            let u = Point::<D>::from_fn(|i, _| self.u[*unknown as usize + i]);
-            point.x += u * *value;
+        for f in self.surface.functions(face, s) {
+            let u = Point::<D>::from_fn(|i, _| self.u[f.unknown as usize + i]);
+            point.x += u * f.value;
             for a in 0..D - 1 {
-                point.tangents[a] += u * slope[a];
+                point.tangents[a] += u * f.slopes[a];
             }
         }
         point
@@ -95,8 +93,8 @@ impl<const D: usize> ContactSurface<D> for Moved<'_, D> {
         self.surface.trace(face, s, out);
     }
 
-    fn slopes(&self, face: usize, s: &Local, out: &mut Vec<[f64; 2]>) {
-        self.surface.slopes(face, s, out);
+    fn functions(&self, face: usize, s: &Local) -> Vec<ShapeFunction> {
+        self.surface.functions(face, s)
     }
 
     fn vertices(&self, face: usize) -> Vec<u32> {

@@ -340,6 +340,9 @@ impl<'a> Planner<'a> {
             None => (None, MethodChoice::InequalityLevelSet),
             Some((name, floor, method)) => (Some((name, floor)), method),
         };
+        if method != MethodChoice::InequalityLevelSet && case.steps.iter().any(|s| s.get_ref().events.is_some()) {
+            warnings.push("`events` are located by method.inequality_level_set only".into());
+        }
         if contact.is_none() && case.bodies.len() > 1 {
             warnings.push(
                 "no contact is stated: the floor is ignored (add [contacts.NAME] between = [film, floor])".into(),
@@ -384,6 +387,7 @@ impl<'a> Planner<'a> {
             };
             probes.insert(name.clone(), Point::<D>::from_fn(|k, _| x[k]));
         }
+        let (times, events) = self.times()?.into_iter().unzip();
         let plan = MembranePlan {
             document: self.document.clone(),
             space: self.space,
@@ -395,8 +399,8 @@ impl<'a> Planner<'a> {
             body: body.to_string(),
             contact,
             method,
-            times: self.times()?.into_iter().map(|(t, _)| t).collect(),
-            events: self.times()?.into_iter().map(|(_, tolerance)| tolerance).collect(),
+            times,
+            events,
             probes,
             every,
             pictures: output.pictures.unwrap_or(true),

@@ -1,7 +1,7 @@
 //! Bodies and their boundaries.
 
 use crate::material::{Elastic, Space};
-use signorini_contact::{ContactSurface, FacePoint};
+use signorini_contact::{ContactSurface, FacePoint, ShapeFunction};
 use signorini_fem::hierarchic::{Mode, Values};
 use signorini_fem::{CellShape, DofMap, Local, Mesh, Side};
 use signorini_geometry::Point;
@@ -21,6 +21,18 @@ pub struct Body<const D: usize> {
 impl<const D: usize> Body<D> {
     pub fn unknowns(&self) -> usize {
         D * self.dofs.count()
+    }
+
+    /// The first unknown of each function of a vertex. These functions sum to one: the sum of the forces on them is the
+    /// resultant.
+    pub fn vertex_unknowns(&self) -> impl Iterator<Item = usize> + '_ {
+        let vertices = 0..self.mesh.nodes().len() as u32;
+        vertices.filter_map(|v| self.dofs.vertex(v)).map(|f| self.first + D * f as usize)
+    }
+
+    /// The resultant of forces on the unknowns of all bodies, those on this one.
+    pub fn resultant(&self, forces: &[f64]) -> Point<D> {
+        self.vertex_unknowns().map(|k| Point::<D>::from_fn(|i, _| forces[k + i])).sum()
     }
 
     /// Where every function has its vertex, or the middle of its edge, side or cell.
@@ -150,7 +162,7 @@ impl<const D: usize> ContactSurface<D> for BodySurface<D> {
         }
     }
 
-    fn slopes(&self, face: usize, s: &Local, out: &mut Vec<[f64; 2]>) {
+    fn functions(&self, face: usize, s: &Local) -> Vec<ShapeFunction> {
         let side = self.sides[face];
         let cell = side.cell as usize;
         let basis = self.body.dofs.basis(cell);
@@ -158,10 +170,14 @@ impl<const D: usize> ContactSurface<D> for BodySurface<D> {
         let mut at = Values::default();
         basis.tabulate(&xi, &mut at);
         let list = self.body.dofs.cell(cell);
-        for &k in &self.functions[face] {
-            let slope = |a: &Local| (0..3).map(|i| at.gradient[k][i] * a[i]).sum::<f64>();
-            out.push([list[k].1 * slope(&along[0]), list[k].1 * slope(&along[1])]);
-        }
+        (self.functions[face].iter())
+            .map(|&k| {
+                let (function, sign) = list[k];
+                let slope = |a: &Local| sign * (0..3).map(|i| at.gradient[k][i] * a[i]).sum::<f64>();
+                let unknown = (self.body.first + D * function as usize) as u32;
+                ShapeFunction { unknown, value: sign * at.value[k], slopes: [slope(&along[0]), slope(&along[1])] }
+            })
+            .collect()
     }
 
     fn vertices(&self, face: usize) -> Vec<u32> {

@@ -1,12 +1,11 @@
 //! Two sides that may touch: how their contact is tested and kept, and what it came to.
 
-use crate::body::{Bodies, BodySurface};
+use crate::body::BodySurface;
 use crate::model::StepError;
-use crate::stiffness::{Table, normal_stress};
 use crate::supports::Reduction;
 use signorini_contact::{
     ContactSurface, Faces, GapJet, GapPoint, Given, Measured, Moved, Obstacle, PressureNodes, Rigid, Tests,
-    WeightedGap, compress, looks_at, rigid_points, segments, shares, weighted_gaps,
+    WeightedGap, looks_at, rigid_points, segments, shares, weighted_gaps,
 };
 use signorini_fem::hierarchic::Values;
 use signorini_fem::{Local, Side};
@@ -20,6 +19,16 @@ pub type RigidGap<const D: usize> = Box<dyn Fn(&Point<D>) -> GapJet<D> + Sync>;
 pub enum Master<const D: usize> {
     Surface(BodySurface<D>),
     Rigid,
+}
+
+impl<const D: usize> Master<D> {
+    /// The faces; a rigid body has none.
+    pub(crate) fn surface(&self) -> Option<&dyn ContactSurface<D>> {
+        match self {
+            Master::Surface(surface) => Some(surface),
+            Master::Rigid => None,
+        }
+    }
 }
 
 /// Where the contact conditions are tested.
@@ -95,12 +104,13 @@ pub struct Contact<const D: usize> {
     /// Their gaps at the last configuration.
     measured: Option<Measured>,
     /// Face and coordinates of the rows that are points.
-    places: Vec<(usize, Local)>,
-    /// Pressure per penetration of the cells behind each row.
+    pub(crate) places: Vec<(usize, Local)>,
+    /// Pressure per penetration of the cells behind each face, and behind each row.
+    pub(crate) face_stiffness: Vec<f64>,
     pub(crate) stiffness: Vec<f64>,
     /// With Nitsche's method: the rows without the stress, and the stress at their points.
     pub(crate) bare: Vec<WeightedGap>,
-    stresses: Vec<Vec<(u32, f64)>>,
+    pub(crate) stresses: Vec<Vec<(u32, f64)>>,
 }
 
 impl<const D: usize> Contact<D> {
@@ -116,6 +126,7 @@ impl<const D: usize> Contact<D> {
                 }
             }
         }
+        let face_stiffness = (0..slave.sides.len()).map(|face| face_stiffness(&slave, face)).collect();
         Contact {
             name: name.to_string(),
             slave,
@@ -131,6 +142,7 @@ impl<const D: usize> Contact<D> {
             tests: Tests::default(),
             measured: None,
             places: Vec::new(),
+            face_stiffness,
             stiffness: Vec::new(),
             bare: Vec::new(),
             stresses: Vec::new(),
@@ -175,17 +187,12 @@ impl<const D: usize> Contact<D> {
         let moved = |surface| u.map(|u| Moved { surface, u });
         let slave = moved(&self.slave);
         let slave: &dyn ContactSurface<D> = slave.as_ref().map_or(&self.slave as _, |m| m as _);
-        let master = match &self.master {
-            Master::Surface(surface) => Some((surface, moved(surface as _))),
-            Master::Rigid => None,
-        };
+        let master = self.master.surface().map(|surface| (surface, moved(surface)));
         let master: Option<&dyn ContactSurface<D>> =
-            master.as_ref().map(|(surface, moved)| moved.as_ref().map_or(*surface as _, |m| m as _));
+            master.as_ref().map(|(surface, moved)| moved.as_ref().map_or(*surface, |m| m as _));
         if self.method == Method::Mortar && !near {
             if let Some(master) = master {
-                let reach = 0.5 * self.slave.size().max(self.master_size());
-                let normals = PressureNodes::new(slave);
-                self.points = segments(slave, master, &normals, reach);
+                self.points = self.cut(slave, Some(master), &PressureNodes::new(slave), rigid);
                 // Pressures count per area at rest.
                 for (face, list) in self.points.iter_mut().enumerate() {
                     for p in list {
@@ -193,10 +200,8 @@ impl<const D: usize> Contact<D> {
                         p.weight *= area(&self.slave) / area(slave);
                     }
                 }
-            } else if self.points.is_empty()
-                && let Some(rigid) = rigid
-            {
-                self.points = rigid_points(&self.slave, &|x| rigid(x));
+            } else if self.points.is_empty() {
+                self.points = self.cut(&self.slave, None, &self.nodes, rigid);
             }
             let shares = shares(&self.slave, &self.nodes, &self.points, &|k| self.is_folded(reduction, k));
             self.tests = Tests::in_the_mean(&self.points, &shares);
@@ -235,42 +240,17 @@ impl<const D: usize> Contact<D> {
     }
 
     /// What the turning normals add to the tangent under the pressures of the rows, by the numbers of the rows.
-    pub(crate) fn curvature(&self, pressure: &HashMap<u32, f64>) -> Vec<(Vec<u32>, Vec<f64>)> {
+    pub(crate) fn curvature(&self, pressure: &dyn Fn(u32) -> f64) -> Vec<(Vec<u32>, Vec<f64>)> {
         let Some(measured) = self.measured.as_ref().filter(|_| self.sliding == Sliding::Finite) else {
             return Vec::new();
         };
-        let of_row: Vec<f64> =
-            self.tests.rows.iter().map(|row| pressure.get(&row.number).copied().unwrap_or(0.0)).collect();
+        let of_row: Vec<f64> = self.tests.rows.iter().map(|row| pressure(row.number)).collect();
         measured.curvature(&self.tests, &of_row)
     }
 
-    fn master_size(&self) -> f64 {
-        match &self.master {
-            Master::Surface(surface) => surface.size(),
-            Master::Rigid => 0.0,
-        }
-    }
-
-    /// Young's modulus over the depth of the cell behind each face.
-    fn face_stiffness(&self) -> Vec<f64> {
-        let body = self.slave.body();
-        (0..self.slave.sides.len())
-            .map(|face| {
-                let side = self.slave.sides[face];
-                let shape = self.slave.shape(face);
-                let middle = self.slave.at(face, &shape.centre());
-                let normal = middle.area_normal().normalize();
-                let depth = (body.mesh.vertices(side.cell as usize))
-                    .map(|v| normal.dot(&(middle.x - body.mesh.nodes()[v as usize])))
-                    .fold(0.0, f64::max);
-                body.material.youngs_modulus / depth.max(f64::MIN_POSITIVE)
-            })
-            .collect()
-    }
-
-    /// That of the cell behind each row.
+    /// The stiffness of the cell behind each row.
     fn find_stiffness(&mut self) {
-        let of_face = self.face_stiffness();
+        let of_face = &self.face_stiffness;
         let mut of_node = vec![0.0f64; self.nodes.len()];
         for face in 0..self.nodes.face_count() {
             for (node, _) in self.nodes.of_face(face) {
@@ -298,20 +278,30 @@ impl<const D: usize> Contact<D> {
         &self.rows
     }
 
-    /// Where the master faces the slave side.
-    fn cut(&self, rigid: Option<&RigidGap<D>>) -> Vec<Vec<GapPoint<D>>> {
-        match (&self.master, rigid) {
-            (Master::Surface(surface), _) => {
-                let reach = 0.5 * self.slave.size().max(surface.size());
-                segments(&self.slave, surface, &self.nodes, reach)
+    /// Where a master faces the slave side, both as they are given; `normals` are those of the slave.
+    fn cut(
+        &self,
+        slave: &dyn ContactSurface<D>,
+        master: Option<&dyn ContactSurface<D>>,
+        normals: &PressureNodes<D>,
+        rigid: Option<&RigidGap<D>>,
+    ) -> Vec<Vec<GapPoint<D>>> {
+        match (&self.master, master, rigid) {
+            (Master::Surface(surface), Some(master), _) => {
+                segments(slave, master, normals, 0.5 * self.slave.size().max(surface.size()))
             }
-            (Master::Rigid, Some(gap)) => rigid_points(&self.slave, &|x| gap(x)),
-            (Master::Rigid, None) => Vec::new(),
+            (_, _, Some(gap)) => rigid_points(slave, &|x| gap(x)),
+            (_, _, None) => Vec::new(),
         }
     }
 
+    /// The same at rest.
+    pub(crate) fn cut_at_rest(&self, rigid: Option<&RigidGap<D>>) -> Vec<Vec<GapPoint<D>>> {
+        self.cut(&self.slave, self.master.surface(), &self.nodes, rigid)
+    }
+
     fn search_segments(&mut self, reduction: &Reduction<D>, rigid: Option<&RigidGap<D>>) {
-        self.points = self.cut(rigid);
+        self.points = self.cut_at_rest(rigid);
         if matches!(self.master, Master::Rigid) {
             // Faces that look away from a rigid body cannot touch it.
             for (face, list) in self.points.iter_mut().enumerate() {
@@ -321,12 +311,8 @@ impl<const D: usize> Contact<D> {
                 }
             }
         }
-        let master = match &self.master {
-            Master::Surface(surface) => Some(surface as &dyn ContactSurface<D>),
-            Master::Rigid => None,
-        };
         let shares = shares(&self.slave, &self.nodes, &self.points, &|node| self.is_folded(reduction, node));
-        self.rows = weighted_gaps(&self.slave, master, &self.points, &shares);
+        self.rows = weighted_gaps(&self.slave, self.master.surface(), &self.points, &shares);
         self.given = shares.given;
     }
 
@@ -335,110 +321,6 @@ impl<const D: usize> Contact<D> {
         let Some((normal, function)) = self.vertex_nodes.get(&node) else { return false };
         let first = self.slave.body().first + *function as usize * D;
         (0..D).all(|i| normal[i].abs() < 1e-6 || reduction.is_held(first + i))
-    }
-}
-
-/// Nitsche's method.
-impl<const D: usize> Contact<D> {
-    /// Whether every row is a quadrature point.
-    pub(crate) fn at_points(&self) -> bool {
-        self.method == Method::GaussPoint || self.enforcement == Enforcement::Nitsche
-    }
-
-    /// `c` over the stiffness of the adjacent cells.
-    pub(crate) fn nitsche_factor(&self) -> f64 {
-        (self.slave.body().degree as f64).powi(2)
-    }
-
-    /// One row for every point of the segments that looks at a rigid master, or faces another body; rows have the number
-    /// of their point.
-    fn point_rows(&mut self, rigid: Option<&RigidGap<D>>) {
-        self.points = self.cut(rigid);
-        (self.rows, self.places) = (Vec::new(), Vec::new());
-        let mut trace = Vec::new();
-        let mut number = 0;
-        for (face, list) in self.points.iter().enumerate() {
-            for p in list {
-                let node = number;
-                number += 1;
-                if p.master.is_none() && !looks_at(&self.slave.at(face, &p.s).area_normal(), &p.direction) {
-                    continue;
-                }
-                trace.clear();
-                self.slave.trace(face, &p.s, &mut trace);
-                let of_slave = trace.len();
-                if let (Some((other, eta)), Master::Surface(master)) = (&p.master, &self.master) {
-                    master.trace(*other as usize, eta, &mut trace);
-                }
-                let mut terms = Vec::new();
-                for (k, (unknown, value)) in trace.iter().enumerate() {
-                    let c = if k < of_slave { p.weight * value } else { -p.weight * value };
-                    terms.extend((0..D).map(|i| (unknown + i as u32, c * p.direction[i])));
-                }
-                let (gap, weight) = (p.weight * p.gap, p.weight);
-                self.rows.push(WeightedGap { gap, weight, terms, forces: Vec::new(), node });
-                self.places.push((face, p.s));
-            }
-        }
-    }
-
-    /// `1/c ∫ δσ σ` over all points, which the method adds to the stiffness; nothing with other enforcements. The points
-    /// do not depend on where a rigid master is.
-    pub(crate) fn stress_terms(&mut self, bodies: &Bodies<D>) -> Vec<(Vec<u32>, Vec<f64>)> {
-        if self.enforcement != Enforcement::Nitsche {
-            return Vec::new();
-        }
-        let points: Vec<(usize, Local, f64)> = if self.method == Method::Mortar {
-            let far: RigidGap<D> = Box::new(|_| GapJet::flat(1.0, Point::<D>::zeros()));
-            let cut = self.cut(matches!(self.master, Master::Rigid).then_some(&far));
-            cut.iter().enumerate().flat_map(|(face, list)| list.iter().map(move |p| (face, p.s, p.weight))).collect()
-        } else {
-            let tests = Tests::at_quadrature_points(&self.slave);
-            tests.points.iter().zip(&tests.rows).map(|(point, row)| (point.face, point.s, row.weight)).collect()
-        };
-        let body = self.slave.body();
-        let stiffness = self.face_stiffness();
-        let mut stresses = Vec::with_capacity(points.len());
-        let mut tables: HashMap<(usize, usize), Table> = HashMap::new();
-        let mut out = Vec::new();
-        for (face, s, weight) in points {
-            let side = self.slave.sides[face];
-            let cell = side.cell as usize;
-            let basis = body.dofs.basis(cell);
-            let key = (body.mesh.map_number(cell), body.dofs.basis_number(cell));
-            let table = tables.entry(key).or_insert_with(|| Table::new(&body.mesh, &body.dofs, cell));
-            let (xi, _) = basis.shape().on_side(side.side as usize, &s);
-            let normal = self.slave.at(face, &s).area_normal().normalize();
-            let along = normal_stress(&body.mesh, cell, table, basis, (&body.material, bodies.space), (&xi, &normal));
-            let stress: Vec<(u32, f64)> = (body.dofs.cell(cell).iter().enumerate())
-                .flat_map(|(a, (f, sign))| {
-                    let first = body.first + *f as usize * D;
-                    let along = &along;
-                    (0..D).map(move |i| ((first + i) as u32, sign * along[a * D + i]))
-                })
-                .collect();
-            let factor = weight / (self.nitsche_factor() * stiffness[face]);
-            let matrix = (stress.iter().flat_map(|(_, a)| stress.iter().map(move |(_, b)| factor * a * b))).collect();
-            out.push((stress.iter().map(|(unknown, _)| *unknown).collect(), matrix));
-            stresses.push(stress);
-        }
-        self.stresses = stresses;
-        out
-    }
-
-    /// Rows of `g - σ/c` with `σ = -n·σ n`, whose pressures push with `g + σ/c`: the skew-symmetric variant.
-    fn add_stresses(&mut self) {
-        self.bare = self.rows.clone();
-        let factor = self.nitsche_factor();
-        for (row, stiffness) in self.rows.iter_mut().zip(&self.stiffness) {
-            let stress = &self.stresses[row.node as usize];
-            let share = row.weight / (factor * stiffness);
-            row.forces = row.terms.clone();
-            row.terms.extend(stress.iter().map(|(unknown, c)| (*unknown, share * c)));
-            row.forces.extend(stress.iter().map(|(unknown, c)| (*unknown, -share * c)));
-            compress(&mut row.terms);
-            compress(&mut row.forces);
-        }
     }
 }
 
@@ -478,6 +360,17 @@ impl<const D: usize> Contact<D> {
         }
         Ok(())
     }
+}
+
+/// Young's modulus over the depth of the cell behind a face.
+fn face_stiffness<const D: usize>(slave: &BodySurface<D>, face: usize) -> f64 {
+    let body = slave.body();
+    let middle = slave.at(face, &slave.shape(face).centre());
+    let normal = middle.area_normal().normalize();
+    let depth = (body.mesh.vertices(slave.sides[face].cell as usize))
+        .map(|v| normal.dot(&(middle.x - body.mesh.nodes()[v as usize])))
+        .fold(0.0, f64::max);
+    body.material.youngs_modulus / depth.max(f64::MIN_POSITIVE)
 }
 
 /// What a contact came to.

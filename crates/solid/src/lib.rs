@@ -15,6 +15,7 @@ pub mod contact;
 pub mod loads;
 pub mod material;
 pub mod model;
+mod nitsche;
 pub mod rigid_modes;
 pub mod sliding;
 pub mod state;

@@ -90,15 +90,5 @@ fn volume<const D: usize>(bodies: &Bodies<D>, load: &Load, value: &dyn Fn(&Point
 
 /// The sum of forces on the unknowns of the bodies: those of the vertex functions, which add up to one.
 pub fn resultant<const D: usize>(bodies: &Bodies<D>, forces: &[f64]) -> Point<D> {
-    let mut sum = Point::<D>::zeros();
-    for body in &bodies.list {
-        for node in 0..body.mesh.nodes().len() as u32 {
-            if let Some(f) = body.dofs.vertex(node) {
-                for i in 0..D {
-                    sum[i] += forces[body.first + f as usize * D + i];
-                }
-            }
-        }
-    }
-    sum
+    bodies.list.iter().map(|body| body.resultant(forces)).sum()
 }

@@ -327,6 +327,5 @@ pub(crate) fn reduced<const D: usize>(row: &WeightedGap, reduction: &Reduction<D
         compress(&mut out);
         out
     };
-    let gap = row.gap + row.terms.iter().map(|(unknown, c)| c * offset[*unknown as usize]).sum::<f64>();
-    WeightedGap { gap, terms: list(&row.terms), forces: list(&row.forces), ..*row }
+    WeightedGap { gap: row.at(offset), terms: list(&row.terms), forces: list(&row.forces), ..*row }
 }

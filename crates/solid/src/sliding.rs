@@ -133,9 +133,7 @@ impl<const D: usize> Model<D> {
     ) -> Result<Step, StepError> {
         let mut cliques = Vec::new();
         for (k, contact) in self.contacts.iter().enumerate() {
-            let of: HashMap<u32, f64> =
-                pressure.iter().filter(|((c, _), _)| *c == k).map(|((_, number), p)| (*number, *p)).collect();
-            cliques.extend(contact.curvature(&of));
+            cliques.extend(contact.curvature(&|number| pressure.get(&(k, number)).copied().unwrap_or(0.0)));
         }
         let mut curvature = SymmetricMatrix::of_cliques(around.u.len(), &cliques);
         let Some(stiffness) = &self.reduced else { return Err(self.free_body()) };

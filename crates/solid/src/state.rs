@@ -48,7 +48,7 @@ impl<const D: usize> Model<D> {
                 (&found.pressure[rows.clone()], &found.gap[rows.clone()], &found.active[rows]);
             first = end;
             // With Nitsche's method rows hold the stress too.
-            let bare: Vec<f64> = contact.bare.iter().zip(gap).map(|(row, _)| row.at(&u)).collect();
+            let bare: Vec<f64> = contact.bare.iter().map(|row| row.at(&u)).collect();
             let gap = if contact.bare.is_empty() { gap } else { &bare };
             results.push(result(contact, pressure, gap, active, &mut contact_force));
         }
@@ -93,19 +93,10 @@ fn result<const D: usize>(
     contact_force: &mut [f64],
 ) -> ContactResult<D> {
     let mut result = ContactResult::<D> { nodes: Vec::new(), force: Point::<D>::zeros(), area: 0.0 };
-    let body = contact.slave.body();
-    // Functions of vertices sum to one: the sum of their forces is the resultant.
-    let vertices: std::collections::HashSet<u32> = (0..body.mesh.nodes().len() as u32)
-        .filter_map(|v| body.dofs.vertex(v))
-        .map(|f| (body.first + D * f as usize) as u32)
-        .collect();
+    let mut own = vec![0.0; contact_force.len()];
     for (k, row) in contact.rows.iter().enumerate() {
         for (unknown, c) in row.push() {
-            contact_force[*unknown as usize] += c * pressures[k];
-            let i = *unknown as usize % D;
-            if vertices.contains(&(unknown - i as u32)) {
-                result.force[i] += c * pressures[k];
-            }
+            own[*unknown as usize] += c * pressures[k];
         }
         if actives[k] {
             result.area += row.weight;
@@ -122,6 +113,8 @@ fn result<const D: usize>(
             });
         }
     }
+    result.force = contact.slave.body().resultant(&own);
+    contact_force.iter_mut().zip(&own).for_each(|(sum, f)| *sum += f);
     if contact.at_points() {
         result.nodes = contact.averaged(pressures, gaps, actives);
     }

@@ -12,7 +12,7 @@ use signorini_geometry::frame::SurfaceFrame;
 use signorini_geometry::implicit_surface::{ImplicitBody, ImplicitSurface};
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::shape::{Axes, Shape as Geometry, ShapeError, Surface};
-use signorini_geometry::{Aabb, Jet, Matrix, Point, Real, Vector};
+use signorini_geometry::{Aabb, Jet, Point, Real, Vector};
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
 
@@ -68,20 +68,9 @@ impl Form {
     /// Distance, negative inside, with its derivatives.
     fn gap(&self, x: &Point<3>) -> GapJet<3> {
         let unit = |v: Vector<3>, else_: Vector<3>| v.try_normalize(0.0).unwrap_or(else_);
-        // Level sets around a point: all directions across the normal are curved alike.
-        let round = |distance: f64, gap: f64, normal: Vector<3>| GapJet {
-            gap,
-            normal,
-            hessian: (Matrix::<3>::identity() - normal * normal.transpose()) * inverse(distance),
-        };
         match self {
-            Form::Plane { point, normal } => {
-                GapJet { gap: normal.dot(&(x - point)), normal: *normal, hessian: Matrix::<3>::zeros() }
-            }
-            Form::Sphere { center, radius } => {
-                let d = x - center;
-                round(d.norm(), d.norm() - radius, unit(d, Vector::<3>::z()))
-            }
+            Form::Plane { point, normal } => GapJet::flat(normal.dot(&(x - point)), *normal),
+            Form::Sphere { center, radius } => GapJet::ball(x, center, *radius),
             Form::Cylinder { point, axis, radius } => {
                 let d = x - point;
                 let across = d - axis * axis.dot(&d);
@@ -98,7 +87,7 @@ impl Form {
                 let r = across.norm();
                 // Beyond the apex the apex itself is closest.
                 if along * cos + r * sin < 0.0 {
-                    return round(d.norm(), d.norm(), unit(d, -axis));
+                    return GapJet::ball(x, apex, 0.0);
                 }
                 let around = axis.cross(&e);
                 let hessian = around * around.transpose() * (cos * inverse(r));
@@ -349,10 +338,9 @@ pub(super) fn read<const D: usize>(
                 Point::<3>::new(around.min[0].max(low[0]), around.min[1].max(low[1]), around.min[2]),
                 Point::<3>::new(around.max[0].min(high[0]), around.max[1].min(high[1]), around.max[2]),
             );
-            let misses = wrong(ShapeError::new("height_map", "it does not lie under the solids".to_string()))
-                .help("see `origin`");
             if (0..2).any(|k| bounds.min[k] >= bounds.max[k]) {
-                return Err(misses);
+                let misses = ShapeError::new("height_map", "it does not lie under the solids".to_string());
+                return Err(wrong(misses).help("see `origin`"));
             }
             let field = move |x: &Point<3>| {
                 let [x, y, z] = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));

@@ -181,6 +181,9 @@ impl Planner<'_> {
         if contacts.is_empty() && case.bodies.len() > 1 {
             warnings.push("no contact is stated: the bodies do not see each other (add [contacts.NAME])".into());
         }
+        if case.steps.iter().any(|s| s.get_ref().events.is_some()) {
+            warnings.push("`events` are located for membranes only".into());
+        }
         Ok(SolidPlan {
             document: document.clone(),
             space: self.space,

@@ -80,9 +80,9 @@ impl<const D: usize> Conditions<D> {
         self.least_gap_outside < -scales.gap_tolerance()
     }
 
-    /// Whether the contact conditions hold everywhere.
-    pub fn hold(&self, scales: &Scales) -> bool {
-        !self.penetrates(scales) && !self.pulls(scales) && self.torn_from_support.is_none()
+    /// Whether the contact conditions hold everywhere. Where the floor is sticky it may pull.
+    pub fn hold(&self, scales: &Scales, sticky: bool) -> bool {
+        !self.penetrates(scales) && (sticky || !self.pulls(scales)) && self.torn_from_support.is_none()
     }
 
     pub fn pulls(&self, scales: &Scales) -> bool {
@@ -98,11 +98,12 @@ pub fn corrected<const D: usize, Z: Zone<D>>(
     floor: &SharedField<D>,
     conditions: &Conditions<D>,
     scales: &Scales,
+    sticky: bool,
 ) -> Z {
     let membrane = equilibrium.membrane;
     let grid = &membrane.grid;
     let mut result = zone.clone();
-    if conditions.pulls(scales) {
+    if conditions.pulls(scales) && !sticky {
         // First what pulls: added parts may then grow into its place.
         result = result.reduced(grid, &mut |x| match contact_index(zone.region_at(x)) {
             Some(_) => (membrane.floor_pressure(floor, x) - scales.pressure_tolerance()) / scales.pressure,
@@ -136,6 +137,39 @@ pub fn corrected<const D: usize, Z: Zone<D>>(
         }
     }
     result
+}
+
+/// The least gap of a membrane without contact, and where it is: from the lowest quadrature point downhill.
+pub fn least_free_gap<const D: usize, Z: Zone<D>>(
+    free: &Equilibrium<'_, D>,
+    zone: &Z,
+    floor: &SharedField<D>,
+) -> (f64, Point<D>) {
+    let mut best = (f64::INFINITY, Point::zeros());
+    free.for_each_point(|cell, region, x, _| {
+        if let Some((u, _)) = free.evaluate(cell, region, x).filter(|_| is_free(region)) {
+            let gap = u - floor.value(x);
+            if gap < best.0 {
+                best = (gap, *x);
+            }
+        }
+    });
+    let bounds = free.membrane.grid.bounds();
+    let mut step = 0.5 * free.membrane.grid.h();
+    let least = 1e-8 * free.membrane.grid.h();
+    while step > least && best.0.is_finite() {
+        let around = (0..2 * D).map(|k| {
+            let mut x = best.1;
+            x[k / 2] += if k % 2 == 0 { step } else { -step };
+            bounds.clamp(&x)
+        });
+        let lower = around.filter_map(|x| Some((free.displacement(zone, &x)? - floor.value(&x), x)));
+        match lower.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|a| a.0 < best.0) {
+            Some(lower) => best = lower,
+            None => step *= 0.5,
+        }
+    }
+    best
 }
 
 /// The point itself if it belongs to the membrane, or a near one that does.

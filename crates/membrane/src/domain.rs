@@ -18,6 +18,8 @@ pub trait Domain<const D: usize>: Send + Sync {
     fn boundary_in(&self, cell: &Aabb<D>) -> BoundaryInCell<'_, D>;
     /// Whether a point is inside, given the values of the sheets of its cell.
     fn contains(&self, x: &Point<D>, sheet_values: &[f64]) -> bool;
+    /// A function that is negative inside and continuous everywhere.
+    fn level(&self, x: &Point<D>) -> f64;
     /// Number of pieces of the boundary.
     fn pieces(&self) -> usize;
     /// A point of the domain near a point outside it, within `reach`.
@@ -38,6 +40,9 @@ impl<const D: usize> Domain<D> for BoxDomain<D> {
     }
     fn contains(&self, _: &Point<D>, _: &[f64]) -> bool {
         true
+    }
+    fn level(&self, x: &Point<D>) -> f64 {
+        (0..D).map(|k| (self.0.min[k] - x[k]).max(x[k] - self.0.max[k])).fold(f64::NEG_INFINITY, f64::max)
     }
     fn pieces(&self) -> usize {
         2 * D
@@ -72,6 +77,9 @@ impl<const D: usize, S: ImplicitShape<D>> Domain<D> for ImplicitDomain<S> {
     }
     fn contains(&self, x: &Point<D>, sheet_values: &[f64]) -> bool {
         sheet_values.first().copied().unwrap_or_else(|| self.0.value(x)) < 0.0
+    }
+    fn level(&self, x: &Point<D>) -> f64 {
+        self.0.value(x)
     }
     fn pieces(&self) -> usize {
         1
@@ -120,6 +128,11 @@ impl Domain<2> for PolygonDomain {
     }
     fn contains(&self, x: &Point<2>, _: &[f64]) -> bool {
         polygon::winding_number(&self.0, x) != 0
+    }
+    fn level(&self, x: &Point<2>) -> f64 {
+        let distance =
+            polygon::edges(&self.0).map(|(a, b)| polygon::segment_distance(a, b, x)).fold(f64::INFINITY, f64::min);
+        if self.contains(x, &[]) { -distance } else { distance }
     }
     fn pieces(&self) -> usize {
         self.0.len()

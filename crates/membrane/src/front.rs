@@ -1,7 +1,9 @@
 //! The slope jump on the fronts, and the Newton step that drives it to zero.
 
 use crate::equilibrium::Equilibrium;
+use crate::field::SharedField;
 use crate::problem::Membrane;
+use crate::quadrature::FrontPoint;
 use crate::scales::Scales;
 use crate::zone::{FrontFrame, ModeSpace, Zone};
 use signorini_geometry::Real;
@@ -14,13 +16,16 @@ const LOCAL_REACH: f64 = 0.6;
 
 /// The fronts of a state: slope jump, floor pressure and tension at every quadrature point.
 pub struct Fronts<'a, const D: usize> {
-    equilibrium: &'a Equilibrium<'a, D>,
+    pub(crate) equilibrium: &'a Equilibrium<'a, D>,
     /// `ρ`: positive where the floor would have to pull, negative where the membrane penetrates.
     pub slope_jump: Vec<f64>,
     pub pressure: Vec<f64>,
-    tension: Vec<f64>,
+    pub(crate) tension: Vec<f64>,
     /// `∂_n T`.
-    tension_slope: Vec<f64>,
+    pub(crate) tension_slope: Vec<f64>,
+    /// The slope at which adhesion holds the front, and its normal derivative; zero without.
+    pub(crate) adhesive_slope: Vec<f64>,
+    pub(crate) adhesive_slope_rate: Vec<f64>,
 }
 
 /// The slope jump in a space of modes.
@@ -38,6 +43,8 @@ pub struct Step {
     pub space: ModeSpace,
     pub coefficients: Vec<f64>,
     pub kind: StepKind,
+    /// How far the fronts may move at most.
+    pub reach: f64,
 }
 
 /// Which part of the derivative a step is made with.
@@ -47,6 +54,10 @@ pub enum StepKind {
     Local,
     /// With the response of the membrane.
     Full,
+    /// Towards the slope at which adhesion holds, with all of the derivative.
+    Adhesive,
+    /// Down the energy, where the state is unstable.
+    Descent,
 }
 
 impl StepKind {
@@ -54,21 +65,31 @@ impl StepKind {
         match self {
             StepKind::Local => "local step",
             StepKind::Full => "full step",
+            StepKind::Adhesive => "adhesive step",
+            StepKind::Descent => "unstable: down the energy",
         }
     }
 }
 
 impl<'a, const D: usize> Fronts<'a, D> {
-    pub fn new(equilibrium: &'a Equilibrium<'a, D>) -> Self {
+    /// The fronts of a state, held by `adhesion` or by nothing.
+    pub fn new(equilibrium: &'a Equilibrium<'a, D>, adhesion: Option<&SharedField<D>>) -> Self {
         let membrane: &Membrane<D> = equilibrium.membrane;
         let points = &equilibrium.quadrature.front;
         let floor = membrane.floor.as_ref();
         let tension: Vec<_> = points.iter().map(|p| membrane.tension.jet(&p.x)).collect();
+        let held = |p: &FrontPoint<D>| adhesion.map_or((0.0, 0.0), |energy| {
+            let (slope, gradient) = membrane.adhesive_slope(energy, &p.x);
+            (slope, gradient.dot(&p.normal))
+        });
+        let (adhesive_slope, adhesive_slope_rate) = points.iter().map(held).unzip();
         Self {
             slope_jump: equilibrium.slope_jump(),
             pressure: points.iter().map(|p| floor.map_or(0.0, |h| membrane.floor_pressure(h, &p.x))).collect(),
             tension_slope: tension.iter().zip(points).map(|(t, p)| t.gradient.dot(&p.normal)).collect(),
             tension: tension.iter().map(|t| t.value()).collect(),
+            adhesive_slope,
+            adhesive_slope_rate,
             equilibrium,
         }
     }
@@ -77,7 +98,12 @@ impl<'a, const D: usize> Fronts<'a, D> {
         self.equilibrium.quadrature.front.iter().map(|p| p.weight)
     }
 
-    fn frames<Z: Zone<D>>(&self, zone: &Z, space: ModeSpace) -> Vec<FrontFrame> {
+    /// `ρ - ρ_a`: what the fronts still lack.
+    fn excess(&self) -> Vec<f64> {
+        self.slope_jump.iter().zip(&self.adhesive_slope).map(|(r, a)| r - a).collect()
+    }
+
+    pub(crate) fn frames<Z: Zone<D>>(&self, zone: &Z, space: ModeSpace) -> Vec<FrontFrame> {
         self.equilibrium.quadrature.front.iter().map(|p| zone.frame(p.front, &p.x, space)).collect()
     }
 
@@ -96,30 +122,43 @@ impl<'a, const D: usize> Fronts<'a, D> {
     }
 
     /// Stiffness for modes that live, wholly or in part, beyond the membrane, where nothing else determines them.
-    fn hold_modes_outside<Z: Zone<D>>(&self, zone: &Z, space: ModeSpace, matrix: &mut [f64], scale: f64) {
+    pub(crate) fn hold_modes_outside<Z: Zone<D>>(
+        &self,
+        zone: &Z,
+        space: ModeSpace,
+        frames: &[FrontFrame],
+        matrix: &mut [f64],
+        scale: f64,
+    ) {
         let offsets = zone.mode_offsets(space);
         let n = offsets[zone.front_count()];
         let h = self.equilibrium.membrane.grid.h();
-        let diagonal = (0..n).map(|i| matrix[i * n + i]).fold(0.0, f64::max);
+        let diagonal = (0..n).map(|i| matrix[i * n + i].abs()).fold(f64::MIN_POSITIVE, f64::max);
+        let mut weight = vec![0.0; n];
+        for (frame, w) in frames.iter().zip(self.weights()) {
+            frame.modes.iter().for_each(|(i, v)| weight[*i] += w * v * v);
+        }
+        let heaviest = weight.iter().fold(0.0f64, |m, w| m.max(*w));
         for front in 0..zone.front_count() {
-            let weakest = (offsets[front]..offsets[front + 1]).map(|i| matrix[i * n + i]).fold(f64::INFINITY, f64::min);
-            if weakest < 1e-3 * diagonal {
+            let lightest = weight[offsets[front]..offsets[front + 1]].iter().fold(f64::INFINITY, |m, w| m.min(*w));
+            if lightest < 1e-3 * heaviest {
                 zone.add_stiffness(space, front, 1e-3 * scale * h * h, matrix);
                 for i in offsets[front]..offsets[front + 1] {
-                    matrix[i * n + i] += 1e-10 * diagonal.max(f64::MIN_POSITIVE);
+                    matrix[i * n + i] += 1e-10 * diagonal;
                 }
             }
         }
     }
 
-    /// Splits the slope jump into what the modes see and what they do not.
+    /// Splits what the slope jump lacks into what the modes see and what they do not.
     pub fn project<Z: Zone<D>>(&self, zone: &Z, space: ModeSpace) -> Projection {
+        let excess = self.excess();
         let n = zone.mode_offsets(space)[zone.front_count()];
         let frames = self.frames(zone, space);
         let ones = vec![1.0; frames.len()];
-        let (mut mass, b) = self.galerkin(&frames, n, &ones, &self.slope_jump);
-        self.hold_modes_outside(zone, space, &mut mass, 1.0);
-        let square: f64 = self.weights().zip(&self.slope_jump).map(|(w, r)| w * r * r).sum();
+        let (mut mass, b) = self.galerkin(&frames, n, &ones, &excess);
+        self.hold_modes_outside(zone, space, &frames, &mut mass, 1.0);
+        let square: f64 = self.weights().zip(&excess).map(|(w, r)| w * r * r).sum();
         let seen = dense::solve(&mass, &b).map_or(square, |c| c.iter().zip(&b).map(|(c, b)| c * b).sum::<f64>());
         Projection { norm: seen.max(0.0).sqrt(), remainder: (square - seen).max(0.0).sqrt() }
     }
@@ -178,7 +217,7 @@ impl<'a, const D: usize> Fronts<'a, D> {
         if far {
             self.add_response(zone, space, &frames, n, &mut matrix)?;
         }
-        self.hold_modes_outside(zone, space, &mut matrix, scales.pressure / scales.tension);
+        self.hold_modes_outside(zone, space, &frames, &mut matrix, scales.pressure / scales.tension);
         for v in &mut b {
             *v = -*v;
         }
@@ -191,7 +230,7 @@ impl<'a, const D: usize> Fronts<'a, D> {
             .map(|(f, w)| w * f.modes.iter().map(|(i, v)| v * coefficients[*i]).sum::<f64>().powi(2))
             .sum();
         let length = (square / total.max(f64::MIN_POSITIVE)).sqrt();
-        Ok(Step { length, space, coefficients, kind })
+        Ok(Step { length, space, coefficients, kind, reach: f64::INFINITY })
     }
 
     /// Adds `∫ Λ_T(ρ⁺ w_m) ω_n`, and for fronts on which it stays safely positive `-∫ κ ρ⁺ w_m ω_n`.
@@ -207,10 +246,7 @@ impl<'a, const D: usize> Fronts<'a, D> {
         let positive: Vec<f64> = self.slope_jump.iter().map(|r| r.max(0.0)).collect();
         let mut curvature_part = vec![0.0; n * n];
         for mode in 0..n {
-            let speed: Vec<f64> = frames
-                .iter()
-                .map(|f| f.modes.iter().filter(|(i, _)| *i == mode).map(|(_, v)| v).sum::<f64>())
-                .collect();
+            let speed: Vec<f64> = frames.iter().map(|f| f.value(mode)).collect();
             let data: Vec<f64> = positive.iter().zip(&speed).map(|(r, w)| -r * w).collect();
             if data.iter().all(|v| *v == 0.0) {
                 continue;

@@ -2,7 +2,8 @@
 //! conditions.
 
 use crate::active_set::{self, NodalStart};
-use crate::conditions::{Conditions, corrected};
+use crate::adhesion::Branch;
+use crate::conditions::{Conditions, corrected, least_free_gap};
 use crate::equilibrium::{Elements, Equilibrium};
 use crate::field::SharedField;
 use crate::front::{Fronts, StepKind};
@@ -24,6 +25,12 @@ const DAMPED_AFTER: usize = 3;
 const SETTLED: f64 = 1e-3;
 /// A step of this fraction of a cell that does not improve on the last is round-off.
 const ROUND_OFF: f64 = 1e-8;
+/// Steps down the energy before a jump is given up.
+const MOST_DESCENTS: usize = 200;
+/// An eigenvalue of the second variation below this fraction of the pressure's share is negative.
+const UNSTABLE: f64 = -1e-6;
+/// A gap of this fraction of the scale counts as none: without contact nothing but round-off disturbs it.
+const FREE: f64 = -1e-10;
 /// A front moves at most this fraction of the membrane's extent in one step.
 const REACH: f64 = 0.15;
 
@@ -34,6 +41,8 @@ pub enum Reason {
     Converged,
     /// The membrane does not reach the floor.
     NoContact,
+    /// No equilibrium with contact was found near the zone that was asked for.
+    NoSuchState,
     /// The fronts did not come to rest.
     IterationLimit,
     /// The linear solver failed; its message.
@@ -62,6 +71,13 @@ pub struct Solution<'a, const D: usize, Z> {
     pub residuals: Vec<f64>,
     /// Size of the largest linear system.
     pub unknowns: usize,
+    /// With adhesion, the lowest eigenvalue of the second variation of the energy: stable where it is positive.
+    pub lowest_eigenvalue: Option<f64>,
+    /// Whether the way led through unstable states: adhesion let the contact jump.
+    pub jumped: bool,
+    /// With adhesion, how far the state is from its loss: the square of the lowest eigenvalue, or the least gap of a free
+    /// membrane. Near that loss it vanishes linearly in the load.
+    pub margin: Option<f64>,
     /// Length of the last step relative to a cell, where the fronts settled on a jump of the discrete slope.
     pub settled_within: Option<f64>,
 }
@@ -72,6 +88,8 @@ pub enum Start<Z> {
     Free,
     /// A zone from an earlier increment, with its scales.
     Zone(Z, Scales),
+    /// A zone that someone asked for, and which of the equilibria near it is wanted.
+    Asked(Z, Branch),
 }
 
 /// Solves one increment.
@@ -92,22 +110,32 @@ pub fn solve<'a, const D: usize, Z: Zone<D>>(
             iterations: 0,
             residuals: Vec::new(),
             unknowns: 0,
+            lowest_eigenvalue: None,
+            jumped: false,
+            margin: None,
             settled_within: None,
         },
+        branch: Branch::Stable,
+        adhering: false,
         membrane,
         elements,
         at,
         progress,
     };
-    if let Start::Zone(zone, scales) = start
-        && !zone.is_empty()
-    {
-        run.solution.zone = zone;
-        run.solution.scales = Some(scales);
-    }
-    let reason = run.sweep().unwrap_or_else(|error| Reason::LinearSolver(error.to_string()));
+    let reason = run.from(start).unwrap_or_else(|error| Reason::LinearSolver(error.to_string()));
     run.solution.reason = reason;
     run.solution
+}
+
+/// Whether a membrane without contact would penetrate its floor.
+pub fn reaches_floor<const D: usize, Z: Zone<D>>(
+    membrane: &Membrane<D>,
+    elements: &mut Elements<D>,
+) -> Result<bool, SolveError> {
+    let Some(floor) = &membrane.floor else { return Ok(false) };
+    let none = Z::empty(&membrane.grid);
+    let free = Equilibrium::solve(membrane, &none, elements)?;
+    Ok(least_free_gap(&free, &none, floor).0 < FREE * Scales::of_free(&free).gap)
 }
 
 struct Run<'a, 'b, const D: usize, Z> {
@@ -115,6 +143,9 @@ struct Run<'a, 'b, const D: usize, Z> {
     elements: &'b mut Elements<D>,
     at: (usize, f64),
     progress: &'b mut dyn Progress,
+    branch: Branch,
+    /// Whether adhesion holds the fronts, or is left out.
+    adhering: bool,
     solution: Solution<'a, D, Z>,
 }
 
@@ -126,12 +157,77 @@ enum Fixed {
 }
 
 impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
-    /// Corrects the zone until the contact conditions hold everywhere.
-    fn sweep(&mut self) -> Result<Reason, SolveError> {
+    fn from(&mut self, start: Start<Z>) -> Result<Reason, SolveError> {
         let Some(floor) = &self.membrane.floor else {
             self.settle_fronts()?;
             return Ok(Reason::NoContact);
         };
+        match start {
+            Start::Zone(zone, scales) if !zone.is_empty() => {
+                self.solution.zone = zone;
+                self.solution.scales = Some(scales);
+            }
+            Start::Free | Start::Zone(..) => {}
+            Start::Asked(zone, branch) => {
+                // Without contact, for the scales.
+                self.settle_fronts()?;
+                self.solution.zone = zone;
+                self.branch = branch;
+            }
+        }
+        if self.membrane.adhesion.is_none() {
+            return self.sweep(floor);
+        }
+        if self.solution.zone.is_empty()
+            && let Some(ended) = self.nucleate(floor)?
+        {
+            return Ok(ended);
+        }
+        self.adhering = true;
+        let before = self.solution.zone.counts();
+        let reason = self.sweep(floor)?;
+        self.solution.jumped |= self.solution.zone.counts() != before;
+        self.solution.margin = self.solution.lowest_eigenvalue.map(|v| v.max(0.0).powi(2));
+        if let (Reason::NoContact, Some(equilibrium)) = (&reason, &self.solution.equilibrium) {
+            self.solution.margin = Some(least_free_gap(equilibrium, &self.solution.zone, floor).0);
+        }
+        Ok(match reason {
+            Reason::NoContact | Reason::IterationLimit if self.branch == Branch::Nearest => Reason::NoSuchState,
+            other => other,
+        })
+    }
+
+    /// Where the free membrane reaches the floor: the zone without adhesion, from which adhesion then spreads; or a seed
+    /// where that is smaller than the grid can tell. Adhesion acts at no distance: a membrane that stays clear of the
+    /// floor is free.
+    fn nucleate(&mut self, floor: &SharedField<D>) -> Result<Option<Reason>, SolveError> {
+        if let Fixed::Interrupted = self.settle_fronts()? {
+            return Ok(Some(Reason::Interrupted));
+        }
+        let solution = &mut self.solution;
+        let (Some(equilibrium), Some(scales)) = (&solution.equilibrium, solution.scales) else {
+            return Ok(Some(Reason::IterationLimit));
+        };
+        let (gap, deepest) = least_free_gap(equilibrium, &solution.zone, floor);
+        if gap >= FREE * scales.gap {
+            solution.margin = Some(gap);
+            solution.conditions = Some(Conditions::check(equilibrium, &solution.zone, floor, &scales));
+            return Ok(Some(Reason::NoContact));
+        }
+        match self.sweep(floor)? {
+            Reason::Converged => {}
+            Reason::Interrupted => return Ok(Some(Reason::Interrupted)),
+            _ => {
+                let grid = &self.membrane.grid;
+                self.solution.zone = Z::empty(grid).seeded(grid, &deepest, 0.5 * grid.h());
+            }
+        }
+        self.solution.jumped = true;
+        Ok(None)
+    }
+
+    /// Corrects the zone until the contact conditions hold everywhere.
+    fn sweep(&mut self, floor: &SharedField<D>) -> Result<Reason, SolveError> {
         let mut predicted = false;
         let mut sweeps = 0;
         loop {
@@ -140,7 +236,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 return Ok(Reason::Interrupted);
             }
             let astray = !matches!(settled, Ok(Fixed::AtRest)) || sweeps > MOST_SWEEPS;
-            if astray && predicted {
+            if astray && (predicted || self.adhering) {
                 return settled.map(|_| Reason::IterationLimit);
             }
             if astray {
@@ -154,16 +250,19 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 return Ok(Reason::IterationLimit);
             };
             let conditions = Conditions::check(equilibrium, &solution.zone, floor, scales);
-            if conditions.hold(scales) {
+            let first = solution.zone.is_empty();
+            if conditions.hold(scales, self.adhering) {
                 solution.conditions = Some(conditions);
                 return Ok(if solution.zone.is_empty() { Reason::NoContact } else { Reason::Converged });
             }
-            let first = solution.zone.is_empty();
-            let zone = corrected(equilibrium, &solution.zone, floor, &conditions, scales);
+            if self.branch == Branch::Nearest && first {
+                return Ok(Reason::NoContact);
+            }
+            let zone = corrected(equilibrium, &solution.zone, floor, &conditions, scales, self.adhering);
             let simple = zone.counts() == (1, 0) && conditions.least_pressure_below > 0.0;
             solution.conditions = Some(conditions);
             solution.zone = zone;
-            if first && !simple && !predicted {
+            if first && !simple && !predicted && !self.adhering {
                 predicted = true;
                 self.predict(floor)?;
             }
@@ -189,7 +288,10 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         let mut acceleration = Acceleration::default();
         let (mut best, mut waited) = (f64::INFINITY, 0);
         self.solution.settled_within = None;
-        for count in 1..=MOST_STEPS {
+        self.solution.lowest_eigenvalue = None;
+        let (mut count, mut descents) = (0, 0);
+        while count < MOST_STEPS && descents < MOST_DESCENTS {
+            count += 1;
             let last = count == MOST_STEPS;
             if self.progress.interrupted() {
                 return Ok(Fixed::Interrupted);
@@ -207,28 +309,47 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 self.solution.equilibrium = Some(equilibrium);
                 return Ok(Fixed::AtRest);
             }
-            let fronts = Fronts::new(&equilibrium);
+            let h = self.membrane.grid.h();
+            let adhesion = self.membrane.adhesion.as_ref().filter(|_| self.adhering);
+            let fronts = Fronts::new(&equilibrium, adhesion);
             let projection = fronts.project(zone, ModeSpace::Fine);
             let residual = projection.norm / scales.slope_tolerance();
-            if residual <= 1.0 {
-                self.report(residual, "at rest");
-                self.solution.equilibrium = Some(equilibrium);
-                return Ok(Fixed::AtRest);
-            }
-            let mut step = fronts.newton_step(zone, &scales)?;
-            waited = if residual < 0.7 * best { 0 } else { waited + 1 };
+            let linearised = adhesion.map(|_| fronts.linearise(zone, &scales)).transpose()?;
+            let mut step = match &linearised {
+                Some(linearised) => linearised.step(self.branch, &scales),
+                None => fronts.newton_step(zone, &scales)?,
+            };
+            waited = if residual < 0.7 * best || step.kind == StepKind::Descent { 0 } else { waited + 1 };
             best = best.min(residual);
-            let relative_step = step.length / self.membrane.grid.h();
-            if waited >= 1 && relative_step < ROUND_OFF {
-                self.report(residual, "at rest");
+            let relative_step = step.length / h;
+            let settled = (waited >= PATIENCE || last) && relative_step < SETTLED && step.kind != StepKind::Descent;
+            if residual <= 1.0 || (waited >= 1 && relative_step < ROUND_OFF) || settled {
+                if let Some(linearised) = &linearised {
+                    let spectrum = linearised.spectrum();
+                    let lowest = spectrum.as_ref().and_then(|s| s.values.first().copied());
+                    if let (Some(spectrum), Some(lowest), Branch::Stable) = (&spectrum, lowest, self.branch)
+                        && lowest < UNSTABLE * linearised.scale
+                        && descents < MOST_DESCENTS
+                    {
+                        let kick = linearised.kick(spectrum, h);
+                        let advance = zone.advanced(&self.membrane.grid, ModeSpace::Fine, &kick, h);
+                        self.report(residual, "at rest, but unstable");
+                        (count, descents, best) = (0, descents + 10, f64::INFINITY);
+                        self.solution.jumped = true;
+                        self.solution.equilibrium = Some(equilibrium);
+                        self.solution.zone = advance.zone;
+                        continue;
+                    }
+                    self.solution.lowest_eigenvalue = lowest;
+                }
+                self.report(residual, if settled && residual > 1.0 { "settled" } else { "at rest" });
+                self.solution.settled_within = (settled && residual > 1.0).then_some(relative_step);
                 self.solution.equilibrium = Some(equilibrium);
                 return Ok(Fixed::AtRest);
             }
-            if (waited >= PATIENCE || last) && relative_step < SETTLED {
-                self.report(residual, "settled");
-                self.solution.settled_within = Some(relative_step);
-                self.solution.equilibrium = Some(equilibrium);
-                return Ok(Fixed::AtRest);
+            if step.kind == StepKind::Descent {
+                (count, descents, best) = (0, descents + 1, f64::INFINITY);
+                self.solution.jumped = true;
             }
             // Far from the solution the steps are no linear iteration that could be extrapolated.
             if waited >= DAMPED_AFTER {
@@ -241,7 +362,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             } else {
                 acceleration = Acceleration::default();
             }
-            let reach = REACH * scales.length;
+            let reach = step.reach.min(REACH * scales.length);
             let advance = zone.advanced(&self.membrane.grid, step.space, &step.coefficients, reach);
             if advance.topology_changed
                 || advance.zone.mode_offsets(ModeSpace::Fine) != zone.mode_offsets(ModeSpace::Fine)

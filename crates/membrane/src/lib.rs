@@ -1,5 +1,6 @@
 //! Membranes on rigid floors by the inequality level-set method.
 pub mod active_set;
+pub mod adhesion;
 pub mod conditions;
 pub mod domain;
 pub mod equilibrium;

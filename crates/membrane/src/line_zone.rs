@@ -29,7 +29,8 @@ impl ImplicitShape<1> for End {
 
 impl LineZone {
     pub fn new(grid: &Grid<1>, mut intervals: Vec<[f64; 2]>) -> Self {
-        intervals.retain(|[a, b]| b > a);
+        let bounds = grid.bounds();
+        intervals.retain(|[a, b]| b > a && *b > bounds.min[0] && *a < bounds.max[0]);
         intervals.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let mut merged: Vec<[f64; 2]> = Vec::new();
         for [a, b] in intervals {

@@ -3,7 +3,7 @@
 use crate::domain::{CellStatus, DomainOnGrid};
 use crate::field::SharedField;
 use signorini_fem::Grid;
-use signorini_geometry::Point;
+use signorini_geometry::{Point, Vector};
 
 /// What a unit of the coordinates measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,6 +53,8 @@ pub struct Membrane<const D: usize> {
     pub load: SharedField<D>,
     /// Height of the floor; none where there is no floor.
     pub floor: Option<SharedField<D>>,
+    /// Energy that each area of contact gives back, where the floor is sticky.
+    pub adhesion: Option<SharedField<D>>,
     /// What holds each piece of the boundary; a piece without support is a free edge.
     pub supports: Vec<Option<Support<D>>>,
     /// Number of named supports.
@@ -77,6 +79,17 @@ impl<const D: usize> Membrane<D> {
             }
         };
         -bend - self.load.value(x)
+    }
+
+    /// The slope at which adhesion holds a front, `ρ_a = √(2γ/T)`, and its gradient.
+    pub fn adhesive_slope(&self, adhesion: &SharedField<D>, x: &Point<D>) -> (f64, Vector<D>) {
+        let (energy, tension) = (adhesion.jet(x), self.tension.jet(x));
+        if energy.value <= 0.0 {
+            return (0.0, Vector::zeros());
+        }
+        let slope = (2.0 * energy.value / tension.value).sqrt();
+        // The derivative of a logarithm, halved.
+        (slope, (energy.gradient / energy.value - tension.gradient / tension.value) * (0.5 * slope))
     }
 
     /// Whether a point belongs to the membrane.

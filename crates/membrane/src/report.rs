@@ -25,6 +25,8 @@ pub struct ContactReport<const D: usize> {
     pub boundary_length: f64,
     /// Part of the force that acts as a line load on the fronts; it vanishes with the slope jump.
     pub line_force: f64,
+    /// What adhesion gives back over the zone, `∫ γ`.
+    pub adhesion_energy: f64,
     /// Zero where the least gap is positive.
     pub max_penetration: f64,
     /// Least gap further than half a cell from the fronts; none without free membrane.
@@ -42,6 +44,8 @@ pub struct Report<const D: usize> {
     pub load_force: f64,
     /// `∫ T/2 |∇u|² - f u`.
     pub energy: f64,
+    /// `∫ u`, the volume between the membrane and its plane.
+    pub volume: f64,
     /// Sum of all forces, relative to the largest.
     pub equilibrium_residual: f64,
     pub contact: ContactReport<D>,
@@ -55,7 +59,7 @@ impl<const D: usize> Report<D> {
         let zone = &solution.zone;
         let count = zone.counts().0;
         let mut components = vec![Component { area: 0.0, force: 0.0, centroid: Point::zeros(), holes: 0 }; count];
-        let (mut load_force, mut energy) = (0.0, 0.0);
+        let (mut load_force, mut energy, mut volume, mut adhesion_energy) = (0.0, 0.0, 0.0, 0.0);
         equilibrium.for_each_point(|cell, region, x, w| {
             let f = membrane.load.value(x);
             load_force += w * f;
@@ -68,11 +72,13 @@ impl<const D: usize> Report<D> {
                     component.force -= w * f;
                     component.centroid += w * x;
                 }
+                adhesion_energy += membrane.adhesion.as_ref().map_or(0.0, |energy| w * energy.value(x));
                 let h = floor.jet(x);
                 (h.value, h.gradient)
             } else {
                 return;
             };
+            volume += w * u;
             energy += w * (0.5 * membrane.tension.value(x) * gradient.norm_squared() - f * u);
         });
         let (mut boundary_length, mut line_force) = (0.0, 0.0);
@@ -107,6 +113,7 @@ impl<const D: usize> Report<D> {
             support_forces,
             load_force,
             energy,
+            volume,
             equilibrium_residual: (force + supports + load_force).abs() / largest,
             contact: ContactReport {
                 force,
@@ -114,6 +121,7 @@ impl<const D: usize> Report<D> {
                 holes: zone.counts().1,
                 boundary_length,
                 line_force,
+                adhesion_energy,
                 max_penetration: conditions.map_or(0.0, |c| (-c.least_gap).max(0.0)),
                 min_gap_outside: conditions.map(|c| c.least_gap_outside).filter(|g| g.is_finite()),
                 max_pressure: conditions.map_or(0.0, |c| c.largest_pressure.max(0.0)),

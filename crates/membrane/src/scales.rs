@@ -7,7 +7,7 @@ use crate::zone::is_free;
 /// Reference gap, pressure, tension and length of a problem.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales {
-    /// Span of the gap between free membrane and floor.
+    /// Span of the gap between free membrane and floor; the gap itself where adhesion may bridge it.
     pub gap: f64,
     /// The larger of the load and the pressure that would bend the membrane by the reference gap.
     pub pressure: f64,
@@ -38,7 +38,9 @@ impl Scales {
             }
         });
         let length = membrane.size();
-        let gap = (highest - lowest).max(f64::MIN_POSITIVE);
+        let span = highest - lowest;
+        let bridged = if membrane.adhesion.is_some() { span.max(highest.abs()) } else { span };
+        let gap = bridged.max(f64::MIN_POSITIVE);
         Self {
             gap,
             pressure: load.max(tension * gap / (length * length)),

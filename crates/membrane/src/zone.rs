@@ -49,6 +49,13 @@ pub struct FrontFrame {
     pub modes: Vec<(usize, f64)>,
 }
 
+impl FrontFrame {
+    /// The value of one mode.
+    pub fn value(&self, mode: usize) -> f64 {
+        self.modes.iter().filter(|(i, _)| *i == mode).map(|(_, v)| v).sum()
+    }
+}
+
 /// How finely fronts may move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ModeSpace {

@@ -29,6 +29,7 @@ fn membrane(cells: usize, degree: usize) -> Membrane<2> {
         tension: Arc::new(Formula(move |[x, y]: [Jet<2>; 2]| c(1.0) + c(0.4) * x + c(0.2) * y * y)),
         load: Arc::new(Formula(move |[x, y]: [Jet<2>; 2]| c(-1.0) - c(0.3) * y + c(0.2) * x * y)),
         floor: Some(floor),
+        adhesion: None,
         supports: vec![Some(Support { index: 0, displacement: Arc::new(Constant(0.0)) })],
         support_count: 1,
     }
@@ -66,7 +67,7 @@ fn slope_jump_error(cells: usize, degree: usize) -> f64 {
     let zone = zone(&membrane);
     let mut elements = Elements::new(&membrane);
     let equilibrium = Equilibrium::solve(&membrane, &zone, &mut elements).expect("an equilibrium");
-    let fronts = Fronts::new(&equilibrium);
+    let fronts = Fronts::new(&equilibrium, None);
     let n = zone.mode_offsets(SPACE)[1];
     let direction: Vec<f64> = (0..n).map(|i| 1.0 + (1.7 * i as f64).sin()).collect();
     let frames: Vec<_> = equilibrium.quadrature.front.iter().map(|p| zone.frame(p.front, &p.x, SPACE)).collect();

@@ -26,6 +26,7 @@ fn error(degree: usize, normal: Vector<2>, offset: f64) -> f64 {
         tension: Arc::new(Constant(1.0)),
         load: Arc::new(Constant(0.0)),
         floor: None,
+        adhesion: None,
         supports: vec![Some(Support { index: 0, displacement })],
         support_count: 1,
     };

@@ -4,7 +4,8 @@ use crate::case::statement::Space;
 use crate::plan::MembranePlan;
 use signorini_verify::flat_floor::{FlatFloor, Kind};
 
-/// The flat-floor solution at a time, if the case is a string or round membrane with constant data, held at zero.
+/// The flat-floor solution at a time, if the case is a string or round membrane with constant data, held at
+/// zero, without adhesion.
 ///
 /// The centre of the domain is the middle of its grid.
 pub fn of<const D: usize>(plan: &MembranePlan<D>, time: f64) -> Option<FlatFloor> {
@@ -12,6 +13,9 @@ pub fn of<const D: usize>(plan: &MembranePlan<D>, time: f64) -> Option<FlatFloor
     let tension = constant(&plan.tension.expression)?;
     let load: f64 = plan.loads.values().map(|l| constant(&l.expression)).sum::<Option<f64>>()?;
     let (_, floor) = plan.contact.as_ref()?;
+    if floor.adhesion.is_some() {
+        return None;
+    }
     let height = constant(&floor.height.expression)? + floor.displacement_at(time)[2];
     let held: Vec<usize> = plan.supports.iter().flat_map(|s| s.pieces.clone()).collect();
     if plan.supports.iter().any(|s| constant(&s.displacement.expression) != Some(0.0)) {

@@ -13,7 +13,7 @@ use crate::expression::{Definition, Expression, Names, Scope};
 use signorini_fem::Grid;
 use signorini_geometry::{Jet, Point, Real};
 use signorini_membrane::active_set::NodalStart;
-use signorini_membrane::domain::DomainOnGrid;
+use signorini_membrane::domain::{Domain, DomainOnGrid};
 use signorini_membrane::field::{Constant, Field, Moved, SharedField, Sum};
 use signorini_membrane::problem::{Measure, Membrane, Support};
 use signorini_membrane::quadrature::{Quadrature, unit_rule, whole_order};
@@ -79,6 +79,8 @@ pub struct MembranePlan<const D: usize> {
     /// Name of the contact, and the floor.
     pub contact: Option<(String, Floor)>,
     pub method: MethodChoice,
+    /// The zone that the first increment starts from, where the case asks for one.
+    pub initial_zone: Option<Arc<dyn Domain<D>>>,
     /// Ends of the increments.
     pub times: Vec<f64>,
     /// For each increment the tolerance in time with which changes of topology are located; none where they are not.
@@ -359,6 +361,14 @@ impl<'a> Planner<'a> {
         self.finish(body, grid, domain, tension, loads, supports, contact, method, warnings)
     }
 
+    /// The zone that a contact asks to start from.
+    fn initial_zone_key(&self) -> Option<&toml::Spanned<statement::Domain>> {
+        self.document.case.contacts.values().find_map(|c| match c.get_ref().method.as_ref()?.get_ref() {
+            Method::InequalityLevelSet(k) => k.initial_zone.as_ref(),
+            _ => None,
+        })
+    }
+
     #[allow(clippy::too_many_arguments)]
     fn finish<const D: usize>(
         &self,
@@ -371,7 +381,10 @@ impl<'a> Planner<'a> {
         contact: Option<(String, Floor)>,
         method: MethodChoice,
         warnings: Vec<String>,
-    ) -> Result<MembranePlan<D>, CaseError> {
+    ) -> Result<MembranePlan<D>, CaseError>
+    where
+        Self: domain::ReadDomain<D>,
+    {
         let output = &self.document.case.output;
         let every = match &output.every {
             None => 1,
@@ -387,6 +400,10 @@ impl<'a> Planner<'a> {
             };
             probes.insert(name.clone(), Point::<D>::from_fn(|k, _| x[k]));
         }
+        let initial_zone = match (self.initial_zone_key(), &contact) {
+            (Some(key), Some(_)) => Some(domain::ReadDomain::<D>::initial_zone(self, key, &grid)?),
+            _ => None,
+        };
         let (times, events) = self.times()?.into_iter().unzip();
         let plan = MembranePlan {
             document: self.document.clone(),
@@ -399,6 +416,7 @@ impl<'a> Planner<'a> {
             body: body.to_string(),
             contact,
             method,
+            initial_zone,
             times,
             events,
             probes,
@@ -581,16 +599,25 @@ impl<'a> Planner<'a> {
         if let Some(friction) = &key.friction {
             return Err(self.unavailable(friction.span(), "friction of a membrane"));
         }
-        if let Some(adhesion) = &key.adhesion
-            && self.reader.number(&adhesion.energy, [-1, 1, 0])? != 0.0
-        {
-            return Err(self.unavailable(adhesion.energy.span(), "adhesion"));
-        }
+        let adhesion = match &key.adhesion {
+            None => None,
+            Some(adhesion) => {
+                let key = format!("contacts.{name}.adhesion.energy");
+                let placed = self.placed(key, &adhesion.energy, FORCE_PER_LENGTH)?;
+                (placed.expression.constant() != Some(0.0)).then_some(placed)
+            }
+        };
         let method = self.method(key)?;
+        if let (Some(adhesion), MethodChoice::ActiveSet(_)) = (&adhesion, method) {
+            return Err(document
+                .error(adhesion.span.clone(), "method.active_set knows no adhesion")
+                .help("method.inequality_level_set = {}"));
+        }
         let Some(Body::Rigid(rigid)) = document.case.bodies.get(&floor).map(|b| b.get_ref()) else {
             return Err(document.error(contact.span(), format!("`{floor}` is not rigid")));
         };
-        Ok(Some((name.clone(), floor::read(self, &floor, rigid)?, method)))
+        let floor = Floor { adhesion, ..floor::read(self, &floor, rigid)? };
+        Ok(Some((name.clone(), floor, method)))
     }
 
     fn method(&self, key: &statement::Contact) -> Result<MethodChoice, CaseError> {
@@ -609,9 +636,6 @@ impl<'a> Planner<'a> {
                 only(&k.modes, "local", "fourier")?;
                 if let Some(v) = &k.front_degree {
                     return Err(self.unavailable(v.span(), "`front_degree`"));
-                }
-                if let Some(v) = &k.initial_zone {
-                    return Err(self.unavailable(v.span(), "`initial_zone`"));
                 }
                 Ok(MethodChoice::InequalityLevelSet)
             }
@@ -701,7 +725,7 @@ pub(crate) fn field<const D: usize>(expression: &Expression, time: f64) -> Share
 
 impl<const D: usize> MembranePlan<D> {
     fn expressions(&self) -> impl Iterator<Item = &Placed> {
-        let floor = self.contact.iter().flat_map(|(_, f)| std::iter::once(&f.height).chain(&f.displacement));
+        let floor = self.contact.iter().flat_map(|(_, f)| std::iter::once(&f.height).chain(&f.displacement).chain(&f.adhesion));
         std::iter::once(&self.tension)
             .chain(self.loads.values())
             .chain(self.supports.iter().map(|s| &s.displacement))
@@ -742,6 +766,11 @@ impl<const D: usize> MembranePlan<D> {
             measure: if self.space == Space::Axisymmetric { Measure::Axisymmetric } else { Measure::Plain },
             tension: field(&self.tension.expression, time),
             load,
+            adhesion: self
+                .contact
+                .as_ref()
+                .and_then(|(_, floor)| floor.adhesion.as_ref())
+                .map(|adhesion| field(&adhesion.expression, time)),
             floor: self.contact.as_ref().map(|(_, floor)| {
                 let height = field(&floor.height.expression, time);
                 let [x, y, z] = floor.displacement_at(time);
@@ -799,6 +828,13 @@ impl<const D: usize> MembranePlan<D> {
                 .chain(
                     self.contact.iter().map(|(_, f)| f).zip(&membrane.floor).map(|(f, h)| (&f.height, h.clone(), true)),
                 )
+                .chain(
+                    self.contact
+                        .iter()
+                        .filter_map(|(_, f)| f.adhesion.as_ref())
+                        .zip(&membrane.adhesion)
+                        .map(|(placed, energy)| (placed, energy.clone(), true)),
+                )
                 .collect();
         for cell in 0..quadrature.cells.len() {
             for (_, points) in quadrature.volumes(membrane, cell, &whole) {
@@ -814,6 +850,10 @@ impl<const D: usize> MembranePlan<D> {
                         } else if i == 0 && jet.value <= 0.0 {
                             failure
                                 .get_or_insert_with(|| wrong(placed, &p.x, jet.value, "the tension must be positive"));
+                        } else if jet.value < 0.0 && placed.key.ends_with("adhesion.energy") {
+                            failure.get_or_insert_with(|| {
+                                wrong(placed, &p.x, jet.value, "the energy that adhesion gives is not negative")
+                            });
                         }
                     }
                 }

@@ -9,13 +9,12 @@ use crate::case::{CaseError, Document};
 use crate::output::{Folder, OutputError, pictures, tables, vtk};
 use crate::plan::{MembranePlan, MethodChoice, Plan, plan};
 use crate::snapshot::{DisplayMesh, Snapshot};
-use events::{Between, Bounded, Event, Known, locate};
+use events::{Between, Bounded, Event, Known, jump, locate, locate_jump};
 use increment::{Engine, Increment};
 use serde_json::{Value, json};
 use signorini_membrane::line_zone::LineZone;
 use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::Membrane;
-use signorini_membrane::scales::Scales;
 use signorini_membrane::zone::Zone;
 pub use signorini_solve::{Iteration, Progress, Silent};
 use std::path::Path;
@@ -133,9 +132,9 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         folder.write("case.toml", plan.document.text.as_bytes())?;
         let warnings = plan.warnings.clone();
         Ok(Self {
+            engine: Engine::new(&plan),
             plan,
             folder,
-            engine: Engine::new(),
             steps: vec![],
             warnings,
             frames: vec![],
@@ -150,6 +149,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         let mut ending = Ending::Converged;
         let mut reason = "converged".to_string();
         let mut last: Option<Snapshot<D>> = None;
+        let mut known: Option<Known<Z>> = None;
         for (index, &time) in times.iter().enumerate() {
             let membrane = self.plan.at(time);
             let checked = if index > 0 { self.plan.check_fields(&membrane, time) } else { Ok(()) };
@@ -161,9 +161,28 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             progress.step(index, times.len(), time);
             let folder = self.folder.clone();
             let mut logged = Logged { folder: &folder, inner: progress };
-            let before = self.known(&times, index, &mut logged);
-            let increment = self.engine.solve(&self.plan, &membrane, (index, time), &mut logged);
-            let after = self.engine.state().filter(|_| increment.converged);
+            let before = self.known(index, known.clone(), &mut logged);
+            let mut increment = self.engine.solve(&self.plan, &membrane, (index, time), &mut logged);
+            let mut after = self.engine.known(time, &increment);
+            if let (Some(before), Some(_)) = (&before, &membrane.adhesion) {
+                let mut from = before.clone();
+                while let (true, Some(state)) = (increment.stability.jumped, &after)
+                    && let Some(landed) = self.find_jump(index, &from, state, &mut logged)
+                {
+                    // On from where the jump ended.
+                    self.engine.start_from(landed.zone.clone());
+                    from = landed;
+                    increment = self.engine.solve(&self.plan, &membrane, (index, time), &mut logged);
+                    after = self.engine.known(time, &increment);
+                }
+            } else if increment.stability.jumped && index > 0 {
+                let a = known.as_ref().map_or(0.0, |k| k.area);
+                self.warnings.push(format!(
+                    "the contact jumped to another state on the way to t = {time}: its area went from {a:.6} to {:.6}; \
+                     `events` in the step locates where",
+                    increment.area()
+                ));
+            }
             self.unknowns = self.unknowns.max(increment.unknowns);
             for warning in &increment.warnings {
                 if !self.warnings.contains(warning) {
@@ -172,10 +191,10 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             }
             let snapshot = increment.snapshot(&mesh, &membrane, time);
             self.record(index, time, &membrane, &increment);
-            if let (Some(before), Some((zone, scales))) = (before, after) {
-                let after = Known { time, zone };
-                self.find_events(index, &before, &after, scales, &mut logged);
+            if let (Some(before), Some(after), None) = (&before, &after, &membrane.adhesion) {
+                self.find_events(index, before, after, &mut logged);
             }
+            known = after;
             if let Some(snapshot) = &snapshot
                 && (index % self.plan.every == self.plan.every - 1 || index + 1 == times.len() || !increment.converged)
             {
@@ -195,23 +214,47 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         Ok(Outcome { summary, ending })
     }
 
-    /// The zone at the beginning of an increment whose events are wanted: that of the one before, or at t = 0.
-    fn known(&mut self, times: &[f64], index: usize, progress: &mut dyn Progress) -> Option<Known<Z>> {
+    /// The state at the beginning of an increment whose events are wanted: that of the one before, or at t = 0.
+    fn known(&mut self, index: usize, last: Option<Known<Z>>, progress: &mut dyn Progress) -> Option<Known<Z>> {
         self.plan.events[index]?;
-        if index > 0 {
-            return Some(Known { time: times[index - 1], zone: self.engine.state()?.0 });
+        if index > 0 || self.engine.is_asked() || self.plan.times[0] <= 0.0 {
+            return last;
         }
         let start = self.plan.at(0.0);
-        if self.plan.check_fields(&start, 0.0).is_err() || times[0] <= 0.0 {
+        if self.plan.check_fields(&start, 0.0).is_err() {
             return None;
         }
-        let found = self.engine.solve(&self.plan, &start, (0, 0.0), progress).converged;
-        let (zone, _) = self.engine.state().filter(|_| found)?;
-        Some(Known { time: 0.0, zone })
+        let increment = self.engine.solve(&self.plan, &start, (0, 0.0), progress);
+        self.engine.known(0.0, &increment)
+    }
+
+    /// Locates the jump between two states, and tells where it landed; none if that is where the second state is.
+    fn find_jump(
+        &mut self,
+        index: usize,
+        a: &Known<Z>,
+        b: &Known<Z>,
+        progress: &mut dyn Progress,
+    ) -> Option<Known<Z>> {
+        let tolerance = self.plan.events[index]?;
+        let (plan, engine) = (&self.plan, &mut self.engine);
+        let mut follow = |time: f64, zone: &Z| {
+            let membrane = plan.at(time);
+            if progress.interrupted() || plan.check_fields(&membrane, time).is_err() {
+                return None;
+            }
+            engine.start_from(zone.clone());
+            let increment = engine.solve(plan, &membrane, (index, time), progress);
+            Some((engine.known(time, &increment)?, increment.stability.jumped))
+        };
+        let [before, after] = locate_jump(a.clone(), b.clone(), tolerance, &mut follow);
+        self.add_events(tolerance, jump(&self.plan.grid, &before, &after));
+        self.engine.start_from(b.zone.clone());
+        (after.time < b.time).then_some(after)
     }
 
     /// Locates the changes of topology within an increment.
-    fn find_events(&mut self, index: usize, a: &Known<Z>, b: &Known<Z>, scales: Scales, progress: &mut dyn Progress) {
+    fn find_events(&mut self, index: usize, a: &Known<Z>, b: &Known<Z>, progress: &mut dyn Progress) {
         let Some(tolerance) = self.plan.events[index] else { return };
         let (plan, engine) = (&self.plan, &mut self.engine);
         let mut found = Vec::new();
@@ -220,22 +263,29 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             if progress.interrupted() || plan.check_fields(&membrane, time).is_err() {
                 return Between::Unknown;
             }
-            // Whether a membrane without contact stays clear of the floor is seen at once.
-            engine.start_from(if after.is_empty() { after.clone() } else { before.clone() }, scales);
+            engine.start_from(before.clone());
             let mut bounded = Bounded { inner: progress, solves: 0 };
-            let converged = engine.solve(plan, &membrane, (index, time), &mut bounded).converged;
+            let increment = engine.solve(plan, &membrane, (index, time), &mut bounded);
             if progress.interrupted() {
                 return Between::Unknown;
             }
-            match engine.state().filter(|_| converged) {
-                Some((zone, _)) => Between::Zone(zone),
-                // The free membrane penetrates the floor then.
-                None if before.is_empty() && engine.counts().0 > 0 => Between::AsLater,
-                None => Between::Unknown,
+            let state = engine.known(time, &increment);
+            if (before.is_empty() || after.is_empty()) && state.as_ref().is_none_or(|s| s.zone.is_empty()) {
+                // A zone too small for the grid is told by the membrane without contact.
+                match engine.reaches_floor(&membrane) {
+                    Some(true) if before.is_empty() => return Between::AsLater,
+                    Some(true) => return Between::AsEarlier,
+                    _ => {}
+                }
             }
+            state.map_or(Between::Unknown, Between::State)
         };
         locate(&plan.grid, a, b, tolerance, &mut solve, &mut found);
-        self.engine.start_from(b.zone.clone(), scales);
+        self.engine.start_from(b.zone.clone());
+        self.add_events(tolerance, found);
+    }
+
+    fn add_events(&mut self, tolerance: f64, found: Vec<Event>) {
         if let Some(coarse) = found.iter().find(|e| e.within > tolerance) {
             let [from, to] = [-0.5, 0.5].map(|s| coarse.time + s * coarse.within);
             self.warnings.push(format!("an event between t = {from} and {to} could not be located more closely"));

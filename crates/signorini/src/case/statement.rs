@@ -520,8 +520,9 @@ pub struct LevelSetKey {
     pub modes: Option<Spanned<String>>,
     #[serde(default)]
     pub front_degree: Option<Spanned<i64>>,
+    /// Where the search for the zone begins, in the shapes of a domain.
     #[serde(default)]
-    pub initial_zone: Option<Spanned<toml::Value>>,
+    pub initial_zone: Option<Spanned<Domain>>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize)]

@@ -32,12 +32,35 @@ impl Pieces {
 
 /// Reads domains of one dimension.
 pub(crate) trait ReadDomain<const D: usize> {
-    /// The shape of the domain, its bounding box and its groups.
-    fn shape(
+    /// A shape, its bounding box and its groups.
+    fn shape(&self, key: &toml::Spanned<Domain>) -> Result<(Arc<dyn MembraneDomain<D>>, Aabb<D>, Pieces), CaseError>;
+
+    /// The zone of contact that a case asks for, as a shape; sides that reach the membrane's own reach beyond it.
+    fn initial_zone(
         &self,
-        film: &statement::Membrane,
-        span: Range<usize>,
-    ) -> Result<(Arc<dyn MembraneDomain<D>>, Aabb<D>, Pieces), CaseError>;
+        key: &toml::Spanned<Domain>,
+        grid: &Grid<D>,
+    ) -> Result<Arc<dyn MembraneDomain<D>>, CaseError> {
+        let (shape, bounds, _) = self.shape(key)?;
+        let whole = grid.bounds();
+        if (0..D).any(|k| bounds.max[k] <= whole.min[k] || bounds.min[k] >= whole.max[k]) {
+            return Err(self.planner().document.error(key.span(), "the initial zone lies beside the membrane"));
+        }
+        if !shape.is_box() {
+            return Ok(shape);
+        }
+        let mut reaching = bounds;
+        for k in 0..D {
+            let size = whole.size()[k];
+            if bounds.min[k] <= whole.min[k] {
+                reaching.min[k] = whole.min[k] - size;
+            }
+            if bounds.max[k] >= whole.max[k] {
+                reaching.max[k] = whole.max[k] + size;
+            }
+        }
+        Ok(Arc::new(BoxDomain(reaching)))
+    }
 
     fn planner(&self) -> &Planner<'_>;
 
@@ -49,7 +72,7 @@ pub(crate) trait ReadDomain<const D: usize> {
         degree: usize,
     ) -> Result<(Grid<D>, DomainOnGrid<D>, Pieces), CaseError> {
         let planner = self.planner();
-        let (shape, bounds, pieces) = self.shape(film, span.clone())?;
+        let (shape, bounds, pieces) = self.shape(planner.domain_key(film, span.clone())?)?;
         let (cells, place) = planner.cells(film, &bounds)?;
         planner.check_size(&cells, degree, place.clone())?;
         let grid = Grid::new(bounds, cells, degree);
@@ -200,17 +223,12 @@ impl ReadDomain<1> for Planner<'_> {
         self
     }
 
-    fn shape(
-        &self,
-        film: &statement::Membrane,
-        span: Range<usize>,
-    ) -> Result<(Arc<dyn MembraneDomain<1>>, Aabb<1>, Pieces), CaseError> {
-        let key = self.domain_key(film, span)?;
+    fn shape(&self, key: &toml::Spanned<Domain>) -> Result<(Arc<dyn MembraneDomain<1>>, Aabb<1>, Pieces), CaseError> {
         let Domain::Interval(interval) = key.get_ref() else {
             return Err(self
                 .document
-                .error(key.span(), "in one dimension the domain is an interval")
-                .help("domain.interval = { from = -1.0, to = 1.0 }, or space = \"plane\""));
+                .error(key.span(), "in one dimension this is an interval")
+                .help("interval = { from = -1.0, to = 1.0 }, or space = \"plane\""));
         };
         let (from, to) = (self.reader.number(&interval.from, LENGTH)?, self.reader.number(&interval.to, LENGTH)?);
         if to <= from {
@@ -238,13 +256,8 @@ impl ReadDomain<2> for Planner<'_> {
         self
     }
 
-    fn shape(
-        &self,
-        film: &statement::Membrane,
-        span: Range<usize>,
-    ) -> Result<(Arc<dyn MembraneDomain<2>>, Aabb<2>, Pieces), CaseError> {
+    fn shape(&self, key: &toml::Spanned<Domain>) -> Result<(Arc<dyn MembraneDomain<2>>, Aabb<2>, Pieces), CaseError> {
         let document = self.document;
-        let key = self.domain_key(film, span)?;
         let whole = || Pieces::new(&[("boundary", &[0])]);
         let ellipse = |center: Point<2>, semi_axes: [f64; 2]| {
             let half = Vector::<2>::from(semi_axes);
@@ -298,8 +311,8 @@ impl ReadDomain<2> for Planner<'_> {
             }
             Domain::Interval(_) => {
                 return Err(document
-                    .error(key.span(), "an interval is the domain of a string")
-                    .help("space = \"line\" or \"axisymmetric\", or domain.rectangle = { min, max }"));
+                    .error(key.span(), "an interval belongs to a string")
+                    .help("space = \"line\" or \"axisymmetric\", or rectangle = { min, max }"));
             }
         })
     }

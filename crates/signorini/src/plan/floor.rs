@@ -13,6 +13,8 @@ pub struct Floor {
     pub height: Placed,
     /// Displacement along x, y, z as expressions of time; empty for a floor at rest.
     pub displacement: Vec<Placed>,
+    /// Energy of adhesion per area, where it is sticky.
+    pub adhesion: Option<Placed>,
 }
 
 impl Floor {
@@ -111,5 +113,5 @@ pub(super) fn read(planner: &Planner<'_>, body: &str, rigid: &Rigid) -> Result<F
             }
         }
     }
-    Ok(Floor { body: body.to_string(), height, displacement })
+    Ok(Floor { body: body.to_string(), height, displacement, adhesion: None })
 }

@@ -21,6 +21,8 @@ pub struct Event {
     /// Zones and holes before and after.
     pub before: (usize, usize),
     pub after: (usize, usize),
+    /// Energy set free by a jump, told once where one jump is several events; none without adhesion.
+    pub energy_released: Option<f64>,
 }
 
 impl Event {
@@ -29,14 +31,20 @@ impl Event {
             "contact": contact, "kind": self.kind, "time": self.time, "within": self.within, "at": self.at,
             "zones_before": self.before.0, "zones_after": self.after.0,
             "holes_before": self.before.1, "holes_after": self.after.1,
+            "energy_released": self.energy_released,
         })
     }
 }
 
-/// A zone at a time.
+/// A state on the path.
+#[derive(Clone)]
 pub struct Known<Z> {
     pub time: f64,
     pub zone: Z,
+    pub area: f64,
+    pub energy_total: f64,
+    /// How far an adhesive state is from its loss.
+    pub margin: Option<f64>,
 }
 
 /// Equilibrium solves that one time between may take: beside a merger, where fronts nearly touch, a state may take
@@ -61,8 +69,9 @@ impl Progress for Bounded<'_> {
 
 /// What a time between two others has.
 pub enum Between<Z> {
-    Zone(Z),
-    /// Contact where the earlier time has none, in zones smaller than the grid can tell.
+    State(Known<Z>),
+    /// Contact as at the earlier or the later time, in zones smaller than the grid can tell.
+    AsEarlier,
     AsLater,
     Unknown,
 }
@@ -83,17 +92,90 @@ pub fn locate<const D: usize, Z: Zone<D>>(
     let time = 0.5 * (a.time + b.time);
     let between = if b.time - a.time > tolerance { solve(time, [&a.zone, &b.zone]) } else { Between::Unknown };
     match between {
-        Between::AsLater => {
-            let later = Known { time, zone: b.zone.clone() };
-            locate(grid, a, &later, tolerance, solve, out);
-        }
-        Between::Zone(zone) => {
-            let middle = Known { time, zone };
+        Between::AsLater => locate(grid, a, &Known { time, ..b.clone() }, tolerance, solve, out),
+        Between::AsEarlier => locate(grid, &Known { time, ..a.clone() }, b, tolerance, solve, out),
+        Between::State(middle) => {
             locate(grid, a, &middle, tolerance, solve, out);
             locate(grid, &middle, b, tolerance, solve, out);
         }
         Between::Unknown => out.extend(differences(grid, a, b)),
     }
+}
+
+/// States tried on the way to a jump.
+const MOST_TRIALS: usize = 120;
+
+/// Closes in on the jump between a state and the next: its last state before, and the first after. `follow` continues from
+/// a zone to a time, and says whether the contact jumped on the way.
+///
+/// The margin of a state vanishes linearly in time as the jump draws near, which tells where to look.
+pub fn locate_jump<Z: Clone>(
+    mut before: Known<Z>,
+    mut after: Known<Z>,
+    tolerance: f64,
+    follow: &mut dyn FnMut(f64, &Z) -> Option<(Known<Z>, bool)>,
+) -> [Known<Z>; 2] {
+    let mut last: Option<(f64, f64)> = None;
+    for trial in 0..MOST_TRIALS {
+        let (a, b) = (before.time, after.time);
+        if b - a <= tolerance {
+            break;
+        }
+        let predicted = match (last, before.margin) {
+            (Some((t, m)), Some(now)) if m != now => Some(a + now * (a - t) / (m - now)),
+            _ => None,
+        };
+        // Just before the prediction, just after it, and now and then in the middle, lest it mislead.
+        let near = predicted.and_then(|p| [p - 0.3 * tolerance, p + 0.3 * tolerance].into_iter().find(|t| a < *t && *t < b));
+        let time = near.filter(|_| trial % 3 != 2).unwrap_or(0.5 * (a + b));
+        match follow(time, &before.zone) {
+            Some((state, true)) => after = state,
+            Some((state, false)) => {
+                last = before.margin.map(|m| (a, m));
+                before = state;
+            }
+            None => break,
+        }
+    }
+    [before, after]
+}
+
+/// The events of one jump.
+pub fn jump<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Known<Z>, b: &Known<Z>) -> Vec<Event> {
+    let mut events = differences(grid, a, b);
+    for event in &mut events {
+        event.kind = match event.kind {
+            "nucleation" => "snap_in",
+            "release" => "pull_off",
+            other => other,
+        };
+    }
+    if events.is_empty() {
+        events.push(Event {
+            kind: if b.area > a.area { "snap_in" } else { "pull_off" },
+            time: 0.5 * (a.time + b.time),
+            within: b.time - a.time,
+            at: moved(grid, &a.zone, &b.zone).iter().copied().collect(),
+            before: a.zone.counts(),
+            after: b.zone.counts(),
+            energy_released: None,
+        });
+    }
+    for (k, event) in events.iter_mut().enumerate() {
+        event.energy_released = Some(if k == 0 { a.energy_total - b.energy_total } else { 0.0 });
+    }
+    events
+}
+
+/// The middle of what one of two zones covers and the other does not.
+fn moved<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Z, b: &Z) -> Point<D> {
+    let mut out = Vec::new();
+    for_each_sample(grid, |x| {
+        if contact_index(a.region_at(&x)).is_some() != contact_index(b.region_at(&x)).is_some() {
+            out.push(x);
+        }
+    });
+    mean(&out)
 }
 
 /// The changes between two zones that differ little.
@@ -109,6 +191,7 @@ fn differences<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Known<Z>, b: &Kno
             at: at.iter().copied().collect(),
             before: a.zone.counts(),
             after: b.zone.counts(),
+            energy_released: None,
         });
     };
     for (j, part) in parts_b.iter().enumerate() {
@@ -156,24 +239,29 @@ fn inside<const D: usize, Z: Zone<D>>(grid: &Grid<D>, zone: &Z, outline: &[Point
 
 /// Which zones of both states share points of a grid of samples.
 fn overlaps<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Z, b: &Z, counts: [usize; 2]) -> Vec<Vec<bool>> {
-    const FINE: usize = 4;
     let mut out = vec![vec![false; counts[1]]; counts[0]];
-    let n = grid.cells().map(|n| n * FINE);
-    for k in 0..n.iter().product::<usize>() {
-        let mut rest = k;
-        let x = grid.bounds().at(&Point::<D>::from_fn(|axis, _| {
-            let i = rest % n[axis];
-            rest /= n[axis];
-            (i as f64 + 0.5) / n[axis] as f64
-        }));
+    for_each_sample(grid, |x| {
         let [i, j] = [a, b].map(|zone| contact_index(zone.region_at(&x)));
         if let (Some(i), Some(j)) = (i, j)
             && let Some(cell) = out.get_mut(i).and_then(|row| row.get_mut(j))
         {
             *cell = true;
         }
-    }
+    });
     out
+}
+
+/// Visits the points of a grid of samples, four to each side of a cell.
+fn for_each_sample<const D: usize>(grid: &Grid<D>, mut visit: impl FnMut(Point<D>)) {
+    let n = grid.cells().map(|n| n * 4);
+    for k in 0..n.iter().product::<usize>() {
+        let mut rest = k;
+        visit(grid.bounds().at(&Point::<D>::from_fn(|axis, _| {
+            let i = rest % n[axis];
+            rest /= n[axis];
+            (i as f64 + 0.5) / n[axis] as f64
+        })));
+    }
 }
 
 /// The narrowest places between parts, one less than there are parts: those of the shortest tree that joins them.

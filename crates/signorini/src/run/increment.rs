@@ -1,11 +1,13 @@
 //! One increment, by either method, and what of it goes into the summary.
 
 use crate::case::statement::Space;
+use super::events::Known;
 use crate::plan::{MembranePlan, MethodChoice};
 use crate::snapshot::{DisplayMesh, Sample, Snapshot};
 use serde_json::{Value, json};
 use signorini_geometry::Point;
 use signorini_membrane::active_set::{self, NodalSolution, NodalStart};
+use signorini_membrane::adhesion::Branch;
 use signorini_membrane::equilibrium::Elements;
 use signorini_membrane::ils::{self, Reason, Solution, Start};
 use signorini_membrane::problem::Membrane;
@@ -22,7 +24,10 @@ const RESOLVED: f64 = 0.5;
 /// Solves increments, each from the one before.
 pub struct Engine<const D: usize, Z> {
     previous: Option<(Z, Scales)>,
-    counts: (usize, usize),
+    /// The zone that the case asks to start from, until the first increment.
+    asked: Option<Z>,
+    /// The scales of the problem, once they are known.
+    scales: Option<Scales>,
 }
 
 type Sampler<'a, const D: usize> = Box<dyn Fn(&Point<D>) -> Option<Sample> + 'a>;
@@ -38,26 +43,54 @@ pub struct Increment<'a, const D: usize> {
     report: Option<Report<D>>,
     outlines: Vec<Vec<Point<D>>>,
     sample: Option<Sampler<'a, D>>,
+    pub stability: Stability,
+}
+
+/// What adhesion makes of a state.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Stability {
+    /// Lowest eigenvalue of the second variation of the energy; none without adhesion.
+    pub lowest_eigenvalue: Option<f64>,
+    /// Whether the contact jumped to get there.
+    pub jumped: bool,
+    /// How far the state is from its loss; see [`Solution::margin`].
+    pub margin: Option<f64>,
 }
 
 impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
-    pub fn new() -> Self {
-        Self { previous: None, counts: (0, 0) }
+    pub fn new(plan: &MembranePlan<D>) -> Self {
+        let asked = plan.initial_zone.as_ref().map(|shape| {
+            let grid = &plan.grid;
+            Z::empty(grid).united(grid, &mut |x| shape.level(x))
+        });
+        Self { previous: None, asked, scales: None }
     }
 
-    /// The zone of the last increment if it converged, and the scales of the problem.
-    pub fn state(&self) -> Option<(Z, Scales)> {
-        self.previous.clone()
+    /// The state that the last increment converged to.
+    pub fn known(&self, time: f64, increment: &Increment<'_, D>) -> Option<Known<Z>> {
+        let (zone, _) = self.previous.as_ref().filter(|_| increment.converged)?;
+        Some(Known {
+            time,
+            zone: zone.clone(),
+            area: increment.area(),
+            energy_total: increment.energy_total(),
+            margin: increment.stability.margin,
+        })
     }
 
     /// Starts the next increment from another zone.
-    pub fn start_from(&mut self, zone: Z, scales: Scales) {
-        self.previous = Some((zone, scales));
+    pub fn start_from(&mut self, zone: Z) {
+        self.previous = self.scales.map(|scales| (zone, scales));
     }
 
-    /// Zones and holes at the end of the last increment, whether it converged or not.
-    pub fn counts(&self) -> (usize, usize) {
-        self.counts
+    /// Whether a membrane without contact would penetrate its floor; none where that cannot be computed.
+    pub fn reaches_floor(&self, membrane: &Membrane<D>) -> Option<bool> {
+        ils::reaches_floor::<D, Z>(membrane, &mut Elements::new(membrane)).ok()
+    }
+
+    /// Whether the case asks for a zone that no increment has started from yet.
+    pub fn is_asked(&self) -> bool {
+        self.asked.is_some()
     }
 
     pub fn solve<'a>(
@@ -85,13 +118,14 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
     where
         Z: 'a,
     {
-        let start = match self.previous.take() {
-            Some((zone, scales)) => Start::Zone(zone, scales),
-            None => Start::Free,
+        let start = match (self.asked.take(), self.previous.take()) {
+            (Some(zone), _) => Start::Asked(zone, Branch::Nearest),
+            (None, Some((zone, scales))) => Start::Zone(zone, scales),
+            (None, None) => Start::Free,
         };
         let mut elements = Elements::new(membrane);
         let mut solution: Solution<'a, D, Z> = ils::solve(membrane, &mut elements, start, at, progress);
-        self.counts = solution.zone.counts();
+        self.scales = solution.scales.or(self.scales);
         let report = Report::new(&solution);
         let converged = solution.reason.converged();
         if let (true, Some(scales)) = (converged, solution.scales) {
@@ -115,6 +149,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         let reason = match &solution.reason {
             Reason::Converged => "converged".to_string(),
             Reason::NoContact => "no_contact".to_string(),
+            Reason::NoSuchState => "no_such_state".to_string(),
             Reason::IterationLimit => "iteration_limit".to_string(),
             Reason::Interrupted => "interrupted".to_string(),
             Reason::LinearSolver(message) => {
@@ -125,6 +160,11 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         let outlines = solution.zone.outlines();
         let residuals = std::mem::take(&mut solution.residuals);
         let (iterations, unknowns) = (solution.iterations, solution.unknowns);
+        let stability = Stability {
+            lowest_eigenvalue: solution.lowest_eigenvalue,
+            jumped: solution.jumped && converged,
+            margin: solution.margin,
+        };
         let sample: Option<Sampler<'a, D>> = solution.equilibrium.map(|equilibrium| {
             let zone = solution.zone;
             Box::new(move |x: &Point<D>| {
@@ -137,7 +177,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
                 Some(Sample { displacement, in_contact, pressure })
             }) as Sampler<'a, D>
         });
-        Increment { converged, reason, iterations, residuals, unknowns, warnings, report, outlines, sample }
+        Increment { converged, reason, iterations, residuals, unknowns, warnings, report, outlines, sample, stability }
     }
 }
 
@@ -157,6 +197,7 @@ fn active_set<'a, const D: usize, Z: Zone<D>>(
         report: None,
         outlines: Vec::new(),
         sample: None,
+        stability: Stability::default(),
     };
     let Some(floor) = &membrane.floor else {
         return failed("linear_solver", vec!["method.active_set needs a floor".into()]);
@@ -195,6 +236,7 @@ fn active_set<'a, const D: usize, Z: Zone<D>>(
         warnings: Vec::new(),
         report: Some(nodal_report(membrane, &solution, &zones)),
         outlines: zones.outlines,
+        stability: Stability::default(),
         sample: Some(Box::new(move |x| {
             Some(Sample {
                 displacement: solution.displacement(membrane, x),
@@ -227,6 +269,7 @@ fn nodal_report<const D: usize>(
         support_forces: solution.support_forces.clone(),
         load_force: solution.load_force,
         energy: solution.energy,
+        volume: solution.nodes.iter().flatten().map(|n| n.share * n.displacement).sum(),
         equilibrium_residual: (force + supports + solution.load_force).abs() / largest,
         contact: ContactReport {
             force,
@@ -235,6 +278,7 @@ fn nodal_report<const D: usize>(
             holes: zones.components.iter().map(|c| c.holes).sum(),
             boundary_length: length,
             line_force: 0.0,
+            adhesion_energy: 0.0,
             max_penetration: gaps().fold(0.0, |m: f64, g| m.max(-g)),
             min_gap_outside: Some(gaps().fold(f64::INFINITY, f64::min)).filter(|g| g.is_finite()),
             max_pressure: least(pressures().fold(f64::NEG_INFINITY, f64::max)),
@@ -244,6 +288,16 @@ fn nodal_report<const D: usize>(
 }
 
 impl<const D: usize> Increment<'_, D> {
+    /// Area of contact.
+    pub fn area(&self) -> f64 {
+        self.report.as_ref().map_or(0.0, |r| r.contact.area)
+    }
+
+    /// Energy with that of adhesion.
+    pub fn energy_total(&self) -> f64 {
+        self.report.as_ref().map_or(f64::NAN, |r| r.energy - r.contact.adhesion_energy)
+    }
+
     /// The state on the display mesh; none where nothing was solved.
     pub fn snapshot(&self, mesh: &DisplayMesh<D>, membrane: &Membrane<D>, time: f64) -> Option<Snapshot<D>> {
         let sample = self.sample.as_ref()?;
@@ -259,6 +313,8 @@ impl<const D: usize> Increment<'_, D> {
             "iterations": self.iterations,
             "residual_history": self.residuals,
             "energy": self.report.as_ref().map(|r| r.energy),
+            "energy_total": self.report.as_ref().map(|r| r.energy - r.contact.adhesion_energy),
+            "volume": self.report.as_ref().map(|r| r.volume),
             "equilibrium_residual": self.report.as_ref().map(|r| r.equilibrium_residual),
             "support_forces": {}, "load_forces": {}, "contacts": {}, "probes": {},
         });
@@ -305,9 +361,10 @@ impl<const D: usize> Increment<'_, D> {
             "max_pressure": c.max_pressure,
             "min_pressure": c.min_pressure,
             "line_force": c.line_force,
+            "adhesion_energy": c.adhesion_energy,
             "radius": self.radius(c, space),
-            "stable": true,
-            "lowest_eigenvalue": null,
+            "stable": self.stability.lowest_eigenvalue.is_none_or(|v| v > 0.0),
+            "lowest_eigenvalue": self.stability.lowest_eigenvalue,
             "other_states": [],
             "stick_area": null,
             "slip_area": null,

@@ -69,7 +69,8 @@ impl<const D: usize> Fronts<'_, D> {
             self.slope_jump.iter().zip(&self.adhesive_slope).map(|(r, a)| r.max(*a).max(1e-3 * largest)).collect();
         let own: Vec<f64> = (0..points.len())
             .map(|i| {
-                let kappa = frames[i].curvature + equilibrium.membrane.measure.curvature(&points[i].x, points[i].normal[0]);
+                let kappa =
+                    frames[i].curvature + equilibrium.membrane.measure.curvature(&points[i].x, points[i].normal[0]);
                 self.pressure[i] / self.tension[i]
                     - slope[i] * (kappa + self.tension_slope[i] / self.tension[i])
                     - self.adhesive_slope_rate[i]
@@ -169,7 +170,8 @@ impl Linearised {
     /// Root mean square of a displacement of the fronts.
     fn size(&self, coefficients: &[f64]) -> f64 {
         let n = self.n;
-        let square: f64 = (0..n).map(|i| coefficients[i] * (0..n).map(|j| self.mass[i * n + j] * coefficients[j]).sum::<f64>()).sum();
+        let square: f64 =
+            (0..n).map(|i| coefficients[i] * (0..n).map(|j| self.mass[i * n + j] * coefficients[j]).sum::<f64>()).sum();
         let total: f64 = self.growth.iter().sum();
         (square.max(0.0) / total.max(f64::MIN_POSITIVE)).sqrt()
     }

@@ -78,10 +78,12 @@ impl<'a, const D: usize> Fronts<'a, D> {
         let points = &equilibrium.quadrature.front;
         let floor = membrane.floor.as_ref();
         let tension: Vec<_> = points.iter().map(|p| membrane.tension.jet(&p.x)).collect();
-        let held = |p: &FrontPoint<D>| adhesion.map_or((0.0, 0.0), |energy| {
-            let (slope, gradient) = membrane.adhesive_slope(energy, &p.x);
-            (slope, gradient.dot(&p.normal))
-        });
+        let held = |p: &FrontPoint<D>| {
+            adhesion.map_or((0.0, 0.0), |energy| {
+                let (slope, gradient) = membrane.adhesive_slope(energy, &p.x);
+                (slope, gradient.dot(&p.normal))
+            })
+        };
         let (adhesive_slope, adhesive_slope_rate) = points.iter().map(held).unzip();
         Self {
             slope_jump: equilibrium.slope_jump(),
@@ -98,8 +100,25 @@ impl<'a, const D: usize> Fronts<'a, D> {
         self.equilibrium.quadrature.front.iter().map(|p| p.weight)
     }
 
+    /// `∫ f ω_n` in the finest modes.
+    pub(crate) fn moments<Z: Zone<D>>(&self, zone: &Z, f: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; zone.mode_offsets(ModeSpace::Fine)[zone.front_count()]];
+        for ((frame, w), f) in self.frames(zone, ModeSpace::Fine).iter().zip(self.weights()).zip(f) {
+            frame.modes.iter().for_each(|(i, v)| out[*i] += w * f * v);
+        }
+        out
+    }
+
+    /// Mean over the fronts of `T (ρ² - ρ_a²)/2`, the energy to be gained from a smaller zone.
+    pub fn drive(&self) -> f64 {
+        let slopes = self.slope_jump.iter().zip(&self.adhesive_slope);
+        let force = slopes.zip(&self.tension).map(|((r, a), t)| 0.5 * t * (r * r.abs() - a * a));
+        let (sum, total) = force.zip(self.weights()).fold((0.0, 0.0), |(s, t), (f, w)| (s + w * f, t + w));
+        sum / f64::max(total, f64::MIN_POSITIVE)
+    }
+
     /// `ρ - ρ_a`: what the fronts still lack.
-    fn excess(&self) -> Vec<f64> {
+    pub(crate) fn excess(&self) -> Vec<f64> {
         self.slope_jump.iter().zip(&self.adhesive_slope).map(|(r, a)| r - a).collect()
     }
 

@@ -86,8 +86,8 @@ pub struct Solution<'a, const D: usize, Z> {
 pub enum Start<Z> {
     /// The membrane without contact.
     Free,
-    /// A zone from an earlier increment, with its scales.
-    Zone(Z, Scales),
+    /// A zone from an earlier increment, with its scales, and which of the equilibria near it is wanted.
+    Zone(Z, Scales, Branch),
     /// A zone that someone asked for, and which of the equilibria near it is wanted.
     Asked(Z, Branch),
 }
@@ -135,7 +135,16 @@ pub fn reaches_floor<const D: usize, Z: Zone<D>>(
     let Some(floor) = &membrane.floor else { return Ok(false) };
     let none = Z::empty(&membrane.grid);
     let free = Equilibrium::solve(membrane, &none, elements)?;
-    Ok(least_free_gap(&free, &none, floor).0 < FREE * Scales::of_free(&free).gap)
+    Ok(!is_clear(&free, &none, floor))
+}
+
+/// Whether a membrane without contact stays clear of the floor.
+pub(crate) fn is_clear<const D: usize, Z: Zone<D>>(
+    free: &Equilibrium<'_, D>,
+    none: &Z,
+    floor: &SharedField<D>,
+) -> bool {
+    least_free_gap(free, none, floor).0 >= FREE * Scales::of_free(free).gap
 }
 
 struct Run<'a, 'b, const D: usize, Z> {
@@ -163,9 +172,10 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             return Ok(Reason::NoContact);
         };
         match start {
-            Start::Zone(zone, scales) if !zone.is_empty() => {
+            Start::Zone(zone, scales, branch) if !zone.is_empty() => {
                 self.solution.zone = zone;
                 self.solution.scales = Some(scales);
+                self.branch = branch;
             }
             Start::Free | Start::Zone(..) => {}
             Start::Asked(zone, branch) => {

@@ -1,7 +1,9 @@
 //! Membranes on rigid floors by the inequality level-set method.
 pub mod active_set;
 pub mod adhesion;
+pub mod coexisting;
 pub mod conditions;
+pub mod continuation;
 pub mod domain;
 pub mod equilibrium;
 pub mod field;

@@ -210,7 +210,7 @@ pub fn closest(queries: &Path, output: &Path, local_minima: bool, json: bool) ->
 
 /// What a run would have to do, after checking the fields at its first and last time.
 fn sizes<const D: usize>(plan: &plan::MembranePlan<D>) -> Result<Value, CaseError> {
-    for &time in [plan.times.first(), plan.times.last()].into_iter().flatten() {
+    for time in [plan.increments.first(), plan.increments.last()].into_iter().flatten().map(|i| i.time) {
         plan.check_fields(&plan.at(time), time)?;
     }
     let nodes = plan.grid.node_count();
@@ -220,7 +220,7 @@ fn sizes<const D: usize>(plan: &plan::MembranePlan<D>) -> Result<Value, CaseErro
         "degree": plan.grid.degree(),
         "unknowns_at_most": nodes,
         "memory_at_most": format!("{:.2} GiB", plan::memory_estimate(nodes as f64, plan.grid.degree(), D) / f64::from(1u32 << 30)),
-        "increments": plan.times.len(),
+        "increments": plan.increments.len(),
         "supports": plan.supports.len(),
         "loads": plan.loads.len(),
         "contact": plan.contact.as_ref().map_or("none".to_string(), |(n, f)| format!("{n}: {} on {}", plan.body, f.body)),

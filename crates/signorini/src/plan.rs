@@ -2,11 +2,12 @@
 
 mod domain;
 mod floor;
+mod history;
 mod rigid;
 pub mod solid;
 
-use crate::case::statement::{self, Body, Control, Method, Space};
-use crate::case::units::{FORCE_PER_LENGTH, LENGTH, PRESSURE, TIME, Units};
+use crate::case::statement::{self, Body, Method, Space};
+use crate::case::units::{FORCE_PER_LENGTH, LENGTH, PRESSURE, Units};
 use crate::case::value::Reader;
 use crate::case::{CaseError, Document, OneOrMany, Value, suggestion};
 use crate::expression::{Definition, Expression, Names, Scope};
@@ -24,6 +25,7 @@ use std::sync::Arc;
 
 pub use domain::{Pieces, memory_estimate};
 pub use floor::Floor;
+pub use history::{Control, PlannedIncrement};
 
 /// A problem that is ready to be solved.
 pub enum Plan {
@@ -81,10 +83,7 @@ pub struct MembranePlan<const D: usize> {
     pub method: MethodChoice,
     /// The zone that the first increment starts from, where the case asks for one.
     pub initial_zone: Option<Arc<dyn Domain<D>>>,
-    /// Ends of the increments.
-    pub times: Vec<f64>,
-    /// For each increment the tolerance in time with which changes of topology are located; none where they are not.
-    pub events: Vec<Option<f64>>,
+    pub increments: Vec<PlannedIncrement>,
     pub probes: BTreeMap<String, Point<D>>,
     pub every: usize,
     pub pictures: bool,
@@ -404,7 +403,7 @@ impl<'a> Planner<'a> {
             (Some(key), Some(_)) => Some(domain::ReadDomain::<D>::initial_zone(self, key, &grid)?),
             _ => None,
         };
-        let (times, events) = self.times()?.into_iter().unzip();
+        let increments = self.increments(D, contact.as_ref().map(|(name, _)| name.as_str()))?;
         let plan = MembranePlan {
             document: self.document.clone(),
             space: self.space,
@@ -417,8 +416,7 @@ impl<'a> Planner<'a> {
             contact,
             method,
             initial_zone,
-            times,
-            events,
+            increments,
             probes,
             every,
             pictures: output.pictures.unwrap_or(true),
@@ -649,52 +647,6 @@ impl<'a> Planner<'a> {
                 .help("membranes have  method.inequality_level_set = {}  and  method.active_set = {}")),
         }
     }
-
-    /// The ends of all increments, and the tolerance with which changes of topology are located within.
-    fn times(&self) -> Result<Vec<(f64, Option<f64>)>, CaseError> {
-        let mut times = Vec::new();
-        let mut t = 0.0;
-        for step in &self.document.case.steps {
-            let key = step.get_ref();
-            let to = self.reader.number(&key.to, TIME)?;
-            if to <= t {
-                return Err(self
-                    .document
-                    .error(key.to.span(), format!("the step ends at t = {to}, not after t = {t}")));
-            }
-            let n = match &key.increments {
-                None => 1,
-                Some(n) if (1..=100_000).contains(n.get_ref()) => *n.get_ref() as usize,
-                Some(n) => {
-                    return Err(self
-                        .document
-                        .error(n.span(), format!("{} increments: give a number from 1 to 100000", n.get_ref())));
-                }
-            };
-            match key.control.as_ref().map(|c| (c.get_ref(), c.span())) {
-                None | Some((Control::Time(_), _)) => {}
-                Some((_, span)) => return Err(self.unavailable(span, "control by arc length or area")),
-            }
-            let tolerance = key.events.as_ref().map(|e| *e.get_ref());
-            if let Some(events) = &key.events
-                && !(*events.get_ref() > 0.0 && events.get_ref().is_finite())
-            {
-                let message = format!("{} is no tolerance of time", events.get_ref());
-                return Err(self
-                    .document
-                    .error(events.span(), message)
-                    .help("a number greater than zero, such as 1e-3"));
-            }
-            // The last time is exactly the stated one.
-            times.extend((1..n).map(|i| (t + (to - t) * i as f64 / n as f64, tolerance)));
-            times.push((to, tolerance));
-            t = to;
-        }
-        if times.is_empty() {
-            times.push((0.0, None));
-        }
-        Ok(times)
-    }
 }
 
 /// An expression as a field, at a fixed time.
@@ -725,7 +677,8 @@ pub(crate) fn field<const D: usize>(expression: &Expression, time: f64) -> Share
 
 impl<const D: usize> MembranePlan<D> {
     fn expressions(&self) -> impl Iterator<Item = &Placed> {
-        let floor = self.contact.iter().flat_map(|(_, f)| std::iter::once(&f.height).chain(&f.displacement).chain(&f.adhesion));
+        let floor =
+            self.contact.iter().flat_map(|(_, f)| std::iter::once(&f.height).chain(&f.displacement).chain(&f.adhesion));
         std::iter::once(&self.tension)
             .chain(self.loads.values())
             .chain(self.supports.iter().map(|s| &s.displacement))
@@ -790,6 +743,15 @@ impl<const D: usize> MembranePlan<D> {
         let Body::Membrane(film) = self.document.case.bodies.get(&self.body)?.get_ref() else { return None };
         let statement::Domain::Disc(_) = film.domain.as_ref()?.get_ref() else { return None };
         Some(0.5 * self.grid.bounds().size()[0] / domain::MARGIN)
+    }
+
+    /// The area of the membrane.
+    pub fn area(&self) -> f64 {
+        let membrane = self.at(self.increments[0].range[0]);
+        let quadrature = Quadrature::new(&membrane, &NoZone);
+        let whole = unit_rule::<D>(whole_order(self.grid.degree()));
+        let cells = (0..quadrature.cells.len()).flat_map(|cell| quadrature.volumes(&membrane, cell, &whole));
+        cells.flat_map(|(_, points)| points.iter().map(|p| p.weight).collect::<Vec<_>>()).sum()
     }
 
     /// The resultant of each load along z.

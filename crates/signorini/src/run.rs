@@ -3,19 +3,24 @@
 mod environment;
 mod events;
 mod increment;
+mod path;
 pub(crate) mod solid;
 
 use crate::case::{CaseError, Document};
 use crate::output::{Folder, OutputError, pictures, tables, vtk};
-use crate::plan::{MembranePlan, MethodChoice, Plan, plan};
+use crate::plan::{Control, MembranePlan, MethodChoice, Plan, PlannedIncrement, plan};
 use crate::snapshot::{DisplayMesh, Snapshot};
 use events::{Between, Bounded, Event, Known, jump, locate, locate_jump};
 use increment::{Engine, Increment};
+use path::{Along, Follower};
 use serde_json::{Value, json};
+use signorini_membrane::adhesion::Branch;
+use signorini_membrane::coexisting::{OtherState, others};
 use signorini_membrane::line_zone::LineZone;
 use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::Membrane;
 use signorini_membrane::zone::Zone;
+use signorini_solve::SolveError;
 pub use signorini_solve::{Iteration, Progress, Silent};
 use std::path::Path;
 
@@ -40,6 +45,10 @@ pub fn solid_sizes<const D: usize>(plan: &crate::plan::solid::SolidPlan<D>) -> R
         "warnings": plan.warnings,
     }))
 }
+
+/// Told once where a state that was asked for is not stable.
+const UNSTABLE: &str =
+    "unstable states are among the results, where they were asked for: `stable` in the summary tells which";
 
 /// Version of the summary's keys.
 pub const SCHEMA: u32 = 1;
@@ -93,6 +102,7 @@ struct Runner<const D: usize, Z> {
     frames: Vec<(f64, String)>,
     unknowns: usize,
     events: Vec<Event>,
+    path: Option<Follower<Z>>,
 }
 
 /// Writes every iteration to the log on its way to the user's progress.
@@ -125,9 +135,9 @@ impl Progress for Logged<'_> {
 impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
     fn new(plan: MembranePlan<D>, folder: &Path) -> Result<Self, RunError> {
         // Everything that can be checked is checked before the folder is touched.
-        for &time in plan.times.iter().take(1) {
-            plan.check_fields(&plan.at(time), time)?;
-        }
+        let first = &plan.increments[0];
+        let time = if first.control == Control::Time { first.time } else { first.range[0] };
+        plan.check_fields(&plan.at(time), time)?;
         let folder = Folder::create(folder)?;
         folder.write("case.toml", plan.document.text.as_bytes())?;
         let warnings = plan.warnings.clone();
@@ -140,17 +150,44 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             frames: vec![],
             unknowns: 0,
             events: vec![],
+            path: None,
         })
     }
 
     fn run(mut self, start: std::time::Instant, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
-        let times = self.plan.times.clone();
-        let mesh = DisplayMesh::new(&self.plan, &self.plan.at(times[0]));
+        let increments = self.plan.increments.clone();
+        let mesh = DisplayMesh::new(&self.plan, &self.plan.at(increments[0].range[0]));
         let mut ending = Ending::Converged;
         let mut reason = "converged".to_string();
         let mut last: Option<Snapshot<D>> = None;
         let mut known: Option<Known<Z>> = None;
-        for (index, &time) in times.iter().enumerate() {
+        for (index, planned) in increments.iter().enumerate() {
+            if self.path.as_ref().is_some_and(|p| p.done && p.step == planned.step) {
+                continue;
+            }
+            progress.step(index, increments.len(), planned.time);
+            let folder = self.folder.clone();
+            let mut logged = Logged { folder: &folder, inner: progress };
+            let mut time = planned.time;
+            let mut solves = 0;
+            if planned.control != Control::Time {
+                match self.along(planned, known.as_ref(), &mut logged)? {
+                    Along::State { zone, time: found, solves: taken } => {
+                        (time, solves) = (found, taken);
+                        self.engine.start_near(zone, Branch::Nearest);
+                    }
+                    Along::Ended(why) => {
+                        self.warnings.push(why);
+                        continue;
+                    }
+                    Along::Failed(why) => {
+                        self.warnings.push(why);
+                        ending = if logged.interrupted() { Ending::Interrupted } else { Ending::NotConverged };
+                        reason = if logged.interrupted() { "interrupted".into() } else { "path_lost".into() };
+                        break;
+                    }
+                }
+            }
             let membrane = self.plan.at(time);
             let checked = if index > 0 { self.plan.check_fields(&membrane, time) } else { Ok(()) };
             if let Err(error) = checked {
@@ -158,13 +195,13 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                 self.finish(Ending::NotConverged, "input", start, &mesh, last.as_ref())?;
                 return Err(error.into());
             }
-            progress.step(index, times.len(), time);
-            let folder = self.folder.clone();
-            let mut logged = Logged { folder: &folder, inner: progress };
             let before = self.known(index, known.clone(), &mut logged);
             let mut increment = self.engine.solve(&self.plan, &membrane, (index, time), &mut logged);
+            increment.iterations += solves;
             let mut after = self.engine.known(time, &increment);
-            if let (Some(before), Some(_)) = (&before, &membrane.adhesion) {
+            if planned.control != Control::Time {
+                // Nothing jumps along a path.
+            } else if let (Some(before), Some(_)) = (&before, &membrane.adhesion) {
                 let mut from = before.clone();
                 while let (true, Some(state)) = (increment.stability.jumped, &after)
                     && let Some(landed) = self.find_jump(index, &from, state, &mut logged)
@@ -190,13 +227,17 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                 }
             }
             let snapshot = increment.snapshot(&mesh, &membrane, time);
-            self.record(index, time, &membrane, &increment);
+            let last_of_step = increments.get(index + 1).is_none_or(|next| next.step != planned.step);
+            let others = self.other_states(&membrane, &increment, D == 1 || last_of_step);
+            self.record(time, &membrane, &increment, others);
             if let (Some(before), Some(after), None) = (&before, &after, &membrane.adhesion) {
                 self.find_events(index, before, after, &mut logged);
             }
             known = after;
             if let Some(snapshot) = &snapshot
-                && (index % self.plan.every == self.plan.every - 1 || index + 1 == times.len() || !increment.converged)
+                && (index % self.plan.every == self.plan.every - 1
+                    || index + 1 == increments.len()
+                    || !increment.converged)
             {
                 self.write_fields(index, time, &mesh, snapshot)?;
             }
@@ -206,7 +247,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                 reason = increment.reason.clone();
                 break;
             }
-            if index + 1 == times.len() && times.len() == 1 {
+            if increments.len() == 1 {
                 reason = increment.reason.clone();
             }
         }
@@ -216,8 +257,9 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
 
     /// The state at the beginning of an increment whose events are wanted: that of the one before, or at t = 0.
     fn known(&mut self, index: usize, last: Option<Known<Z>>, progress: &mut dyn Progress) -> Option<Known<Z>> {
-        self.plan.events[index]?;
-        if index > 0 || self.engine.is_asked() || self.plan.times[0] <= 0.0 {
+        let planned = &self.plan.increments[index];
+        planned.events?;
+        if index > 0 || self.engine.is_asked() || planned.time <= 0.0 {
             return last;
         }
         let start = self.plan.at(0.0);
@@ -228,15 +270,45 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         self.engine.known(0.0, &increment)
     }
 
-    /// Locates the jump between two states, and tells where it landed; none if that is where the second state is.
-    fn find_jump(
+    /// One increment along a path of equilibria.
+    fn along(
         &mut self,
-        index: usize,
-        a: &Known<Z>,
-        b: &Known<Z>,
+        planned: &PlannedIncrement,
+        known: Option<&Known<Z>>,
         progress: &mut dyn Progress,
-    ) -> Option<Known<Z>> {
-        let tolerance = self.plan.events[index]?;
+    ) -> Result<Along<Z>, RunError> {
+        let lost = |e: SolveError| Along::Failed(e.to_string());
+        let mut follower = match self.path.take().filter(|p| p.step == planned.step) {
+            Some(follower) => follower,
+            None => {
+                let (zone, time) = match known {
+                    Some(state) => (state.zone.clone(), state.time),
+                    None => {
+                        let time = planned.range[0];
+                        let membrane = self.plan.at(time);
+                        let reason = self.engine.solve(&self.plan, &membrane, (0, time), progress).reason;
+                        let Some(zone) = self.engine.zone() else { return Ok(Along::Failed(reason)) };
+                        (zone, time)
+                    }
+                };
+                let Some(scales) = self.engine.scales() else {
+                    return Ok(Along::Failed("no state to begin at".into()));
+                };
+                match Follower::begin(&self.plan, planned, zone, time, scales) {
+                    Ok(follower) => follower,
+                    Err(e) => return Ok(lost(e)),
+                }
+            }
+        };
+        let along = follower.advance(&self.plan, planned, progress).unwrap_or_else(lost);
+        follower.done |= matches!(along, Along::Ended(_));
+        self.path = Some(follower);
+        Ok(along)
+    }
+
+    /// Locates the jump between two states, and tells where it landed; none if that is where the second state is.
+    fn find_jump(&mut self, index: usize, a: &Known<Z>, b: &Known<Z>, progress: &mut dyn Progress) -> Option<Known<Z>> {
+        let tolerance = self.plan.increments[index].events?;
         let (plan, engine) = (&self.plan, &mut self.engine);
         let mut follow = |time: f64, zone: &Z| {
             let membrane = plan.at(time);
@@ -255,7 +327,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
 
     /// Locates the changes of topology within an increment.
     fn find_events(&mut self, index: usize, a: &Known<Z>, b: &Known<Z>, progress: &mut dyn Progress) {
-        let Some(tolerance) = self.plan.events[index] else { return };
+        let Some(tolerance) = self.plan.increments[index].events else { return };
         let (plan, engine) = (&self.plan, &mut self.engine);
         let mut found = Vec::new();
         let mut solve = |time: f64, [before, after]: [&Z; 2]| {
@@ -297,9 +369,27 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         self.events.iter().map(|e| (e.time, e.kind)).collect()
     }
 
-    fn record(&mut self, index: usize, time: f64, membrane: &Membrane<D>, increment: &Increment<D>) {
+    /// Other equilibria of an adhesive membrane; with `zones` those with contact too, which are searched for.
+    fn other_states(&mut self, membrane: &Membrane<D>, increment: &Increment<D>, zones: bool) -> Vec<OtherState> {
+        if membrane.adhesion.is_none() || !increment.converged {
+            return Vec::new();
+        }
+        if increment.stability.lowest_eigenvalue.is_some_and(|v| v <= 0.0)
+            && !self.warnings.iter().any(|w| w == UNSTABLE)
+        {
+            self.warnings.push(UNSTABLE.into());
+        }
+        others::<D, Z>(membrane, increment.area(), zones).unwrap_or_default()
+    }
+
+    fn record(&mut self, time: f64, membrane: &Membrane<D>, increment: &Increment<D>, others: Vec<OtherState>) {
         let mut step = increment.to_json(&self.plan, &self.plan.load_resultants(membrane, time));
-        step["index"] = json!(index);
+        if let (Some((name, _)), false) = (&self.plan.contact, others.is_empty()) {
+            let list =
+                others.iter().map(|o| json!({"area": o.area, "energy_total": o.energy_total, "stable": o.stable}));
+            step["contacts"][name]["other_states"] = list.collect();
+        }
+        step["index"] = json!(self.steps.len());
         step["time"] = json!(time);
         self.steps.push(step);
     }
@@ -360,7 +450,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
     /// The result in a sentence, with what to try where there is none.
     fn verdict(&self, ending: Ending, reason: &str) -> String {
         let done = self.steps.iter().filter(|s| s["converged"] == true).count();
-        let count = self.plan.times.len();
+        let count = self.plan.increments.len();
         match ending {
             Ending::Interrupted => format!("Interrupted: {done} of {count} increments are done and on disk."),
             Ending::NotConverged => {
@@ -369,6 +459,10 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                         "the equations could not be solved: check that the membrane is held and that its data are of one scale"
                     }
                     "input" => "a value became invalid along the way",
+                    "no_such_state" => {
+                        "there is no equilibrium with contact near `initial_zone`: at this load adhesion may hold none; try another zone, a larger adhesion energy, or the load at which the contact exists"
+                    }
+                    "path_lost" => "the last warning says where; try smaller increments, or more cells",
                     _ => {
                         "try more cells where the zones are small or close to each other, a lower degree, or smaller increments; method.active_set = {} shows a coarse picture of the zones"
                     }
@@ -403,7 +497,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                 let staircase =
                     if let MethodChoice::ActiveSet(_) = self.plan.method { " (a staircase of nodes)" } else { "" };
                 format!(
-                    "In contact over {measure} {}{staircase} in {zones} zone{}{}, pushed up by {}; forces balance to {:.0e}.",
+                    "In contact over {measure} {}{staircase} in {zones} zone{}{}, pushed up by {}; forces balance to {:.0e}.{}",
                     figure(&c["area"]),
                     if zones == 1 { "" } else { "s" },
                     match holes {
@@ -413,6 +507,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                     },
                     figure(&c["force"][2]),
                     step["equilibrium_residual"].as_f64().unwrap_or(f64::NAN),
+                    if c["stable"] == false { " This equilibrium is unstable." } else { "" },
                 )
             }
         }

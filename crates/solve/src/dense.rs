@@ -30,7 +30,9 @@ mod tests {
     #[test]
     fn eigenvectors_satisfy_their_equation() {
         let (a, b) = ([2.0, 1.0, 0.0, 1.0, -3.0, 0.5, 0.0, 0.5, 1.0], [2.0, 0.3, 0.0, 0.3, 1.0, 0.1, 0.0, 0.1, 0.5]);
-        let times = |m: &[f64; 9], x: &[f64]| -> Vec<f64> { (0..3).map(|i| (0..3).map(|j| m[3 * i + j] * x[j]).sum()).collect() };
+        let times = |m: &[f64; 9], x: &[f64]| -> Vec<f64> {
+            (0..3).map(|i| (0..3).map(|j| m[3 * i + j] * x[j]).sum()).collect()
+        };
         let (values, vectors) = super::symmetric_eigen(&a, &b).unwrap();
         assert!(values.is_sorted());
         for (value, x) in values.iter().zip(&vectors) {

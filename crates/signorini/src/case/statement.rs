@@ -588,8 +588,26 @@ pub struct Step {
 #[serde(rename_all = "snake_case")]
 pub enum Control {
     Time(Nothing),
-    ArcLength(toml::Table),
-    Area(toml::Table),
+    /// Along the path of equilibria, through its folds.
+    ArcLength(ArcKey),
+    Area(AreaKey),
+}
+
+/// A step along a path of equilibria.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ArcKey {
+    /// Length of an increment, where the area of the membrane and the time that the step takes have length one.
+    pub size: Spanned<f64>,
+}
+
+/// A step in which the area of contact is given, and the time at which it is reached is sought.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AreaKey {
+    /// Name of the contact.
+    pub of: Spanned<String>,
+    pub to: Value,
 }
 
 /// What to write.

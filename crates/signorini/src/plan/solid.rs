@@ -191,7 +191,7 @@ impl Planner<'_> {
             supports,
             loads,
             contacts,
-            times: self.times()?.into_iter().map(|(t, _)| t).collect(),
+            times: self.times()?,
             probes,
             every,
             pictures: case.output.pictures.unwrap_or(true),

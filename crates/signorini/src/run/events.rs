@@ -126,7 +126,8 @@ pub fn locate_jump<Z: Clone>(
             _ => None,
         };
         // Just before the prediction, just after it, and now and then in the middle, lest it mislead.
-        let near = predicted.and_then(|p| [p - 0.3 * tolerance, p + 0.3 * tolerance].into_iter().find(|t| a < *t && *t < b));
+        let near =
+            predicted.and_then(|p| [p - 0.3 * tolerance, p + 0.3 * tolerance].into_iter().find(|t| a < *t && *t < b));
         let time = near.filter(|_| trial % 3 != 2).unwrap_or(0.5 * (a + b));
         match follow(time, &before.zone) {
             Some((state, true)) => after = state,

@@ -1,7 +1,7 @@
 //! One increment, by either method, and what of it goes into the summary.
 
-use crate::case::statement::Space;
 use super::events::Known;
+use crate::case::statement::Space;
 use crate::plan::{MembranePlan, MethodChoice};
 use crate::snapshot::{DisplayMesh, Sample, Snapshot};
 use serde_json::{Value, json};
@@ -23,7 +23,7 @@ const RESOLVED: f64 = 0.5;
 
 /// Solves increments, each from the one before.
 pub struct Engine<const D: usize, Z> {
-    previous: Option<(Z, Scales)>,
+    previous: Option<(Z, Scales, Branch)>,
     /// The zone that the case asks to start from, until the first increment.
     asked: Option<Z>,
     /// The scales of the problem, once they are known.
@@ -68,7 +68,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
 
     /// The state that the last increment converged to.
     pub fn known(&self, time: f64, increment: &Increment<'_, D>) -> Option<Known<Z>> {
-        let (zone, _) = self.previous.as_ref().filter(|_| increment.converged)?;
+        let (zone, ..) = self.previous.as_ref().filter(|_| increment.converged)?;
         Some(Known {
             time,
             zone: zone.clone(),
@@ -78,9 +78,24 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         })
     }
 
-    /// Starts the next increment from another zone.
+    /// The zone that the last increment converged to.
+    pub fn zone(&self) -> Option<Z> {
+        self.previous.as_ref().map(|(zone, ..)| zone.clone())
+    }
+
+    /// Starts the next increment from another zone, in search of the stable state that follows.
     pub fn start_from(&mut self, zone: Z) {
-        self.previous = self.scales.map(|scales| (zone, scales));
+        self.start_near(zone, Branch::Stable);
+    }
+
+    /// Starts the next increment from another zone.
+    pub fn start_near(&mut self, zone: Z, branch: Branch) {
+        self.previous = self.scales.map(|scales| (zone, scales, branch));
+    }
+
+    /// The scales of the problem, once a state is known.
+    pub fn scales(&self) -> Option<Scales> {
+        self.scales
     }
 
     /// Whether a membrane without contact would penetrate its floor; none where that cannot be computed.
@@ -120,7 +135,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
     {
         let start = match (self.asked.take(), self.previous.take()) {
             (Some(zone), _) => Start::Asked(zone, Branch::Nearest),
-            (None, Some((zone, scales))) => Start::Zone(zone, scales),
+            (None, Some((zone, scales, branch))) => Start::Zone(zone, scales, branch),
             (None, None) => Start::Free,
         };
         let mut elements = Elements::new(membrane);
@@ -129,7 +144,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         let report = Report::new(&solution);
         let converged = solution.reason.converged();
         if let (true, Some(scales)) = (converged, solution.scales) {
-            self.previous = Some((solution.zone.clone(), scales));
+            self.previous = Some((solution.zone.clone(), scales, Branch::Stable));
         }
         let mut warnings = Vec::new();
         let sharp = solution.zone.sharpest() * membrane.grid.h();

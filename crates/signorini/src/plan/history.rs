@@ -1,0 +1,138 @@
+//! The history of a case: its steps cut into increments, and what is given in each.
+
+use super::Planner;
+use crate::case::CaseError;
+use crate::case::statement;
+use crate::case::units::TIME;
+
+/// One increment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlannedIncrement {
+    /// Number of the step.
+    pub step: usize,
+    /// Time at the beginning of the step and at its end.
+    pub range: [f64; 2],
+    /// Time at the end of the increment, where that is given.
+    pub time: f64,
+    pub control: Control,
+    /// Tolerance in time with which changes of topology are located; none where they are not.
+    pub events: Option<f64>,
+}
+
+/// What is given in an increment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Control {
+    Time,
+    /// The length of the way along the path of equilibria.
+    ArcLength(f64),
+    /// The area of contact at the end of the step, which the increment approaches by so many parts of so many.
+    Area {
+        to: f64,
+        part: usize,
+        parts: usize,
+    },
+}
+
+impl Planner<'_> {
+    /// The ends of all increments of a history in which time is given.
+    pub(super) fn times(&self) -> Result<Vec<f64>, CaseError> {
+        for step in &self.document.case.steps {
+            match step.get_ref().control.as_ref().map(|c| (c.get_ref(), c.span())) {
+                None | Some((statement::Control::Time(_), _)) => {}
+                Some((_, span)) => return Err(self.unavailable(span, "control of solids by arc length or area")),
+            }
+        }
+        Ok(self.increments(0, None)?.into_iter().map(|i| i.time).collect())
+    }
+
+    /// The increments of a membrane of a dimension, whose contact has a name.
+    pub(super) fn increments(
+        &self,
+        dimension: usize,
+        contact: Option<&str>,
+    ) -> Result<Vec<PlannedIncrement>, CaseError> {
+        let mut out = Vec::new();
+        let mut t = 0.0;
+        for (step, key) in self.document.case.steps.iter().enumerate() {
+            let key = key.get_ref();
+            let to = self.reader.number(&key.to, TIME)?;
+            if to <= t {
+                return Err(self
+                    .document
+                    .error(key.to.span(), format!("the step ends at t = {to}, not after t = {t}")));
+            }
+            let n = match &key.increments {
+                None => 1,
+                Some(n) if (1..=100_000).contains(n.get_ref()) => *n.get_ref() as usize,
+                Some(n) => {
+                    return Err(self
+                        .document
+                        .error(n.span(), format!("{} increments: give a number from 1 to 100000", n.get_ref())));
+                }
+            };
+            let events = key.events.as_ref().map(|e| *e.get_ref());
+            if let Some(events) = &key.events
+                && !(*events.get_ref() > 0.0 && events.get_ref().is_finite())
+            {
+                let message = format!("{} is no tolerance of time", events.get_ref());
+                return Err(self
+                    .document
+                    .error(events.span(), message)
+                    .help("a number greater than zero, such as 1e-3"));
+            }
+            for part in 1..=n {
+                // The last time is exactly the stated one.
+                let time = if part == n { to } else { t + (to - t) * part as f64 / n as f64 };
+                let control = self.control(key, dimension, contact, part, n)?;
+                out.push(PlannedIncrement { step, range: [t, to], time, control, events });
+            }
+            t = to;
+        }
+        if out.is_empty() {
+            out.push(PlannedIncrement { step: 0, range: [0.0; 2], time: 0.0, control: Control::Time, events: None });
+        }
+        Ok(out)
+    }
+
+    fn control(
+        &self,
+        key: &statement::Step,
+        dimension: usize,
+        contact: Option<&str>,
+        part: usize,
+        parts: usize,
+    ) -> Result<Control, CaseError> {
+        let Some(control) = &key.control else { return Ok(Control::Time) };
+        if let (None, statement::Control::ArcLength(_) | statement::Control::Area(_)) = (contact, control.get_ref()) {
+            return Err(self.document.error(control.span(), "there is no contact to control"));
+        }
+        match control.get_ref() {
+            statement::Control::Time(_) => Ok(Control::Time),
+            statement::Control::ArcLength(arc) => {
+                let size = *arc.size.get_ref();
+                if !(size > 0.0 && size <= 1.0) {
+                    return Err(self
+                        .document
+                        .error(arc.size.span(), format!("an increment of {size} is not between 0 and 1"))
+                        .help("1 is the area of the membrane, or the time that the step takes: try 0.02"));
+                }
+                Ok(Control::ArcLength(size))
+            }
+            statement::Control::Area(area) => {
+                if contact != Some(area.of.get_ref().as_str()) {
+                    return Err(self
+                        .document
+                        .error(area.of.span(), format!("there is no contact `{}`", area.of.get_ref()))
+                        .help(format!("of = \"{}\"", contact.unwrap_or(""))));
+                }
+                // On a line the area is a length; of a round membrane it is that of the disc.
+                let power = if self.space == statement::Space::Line { 1 } else { 2 };
+                let to = self.reader.number(&area.to, [power, 0, 0])?;
+                if !(to > 0.0 && to.is_finite()) || dimension == 0 {
+                    return Err(self.document.error(area.to.span(), format!("an area of {to} is not positive")));
+                }
+                Ok(Control::Area { to, part, parts })
+            }
+        }
+    }
+}

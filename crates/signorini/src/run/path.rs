@@ -1,0 +1,158 @@
+//! Increments along a path of equilibria, given by its arc length or by the area of contact.
+
+use crate::plan::{Control, MembranePlan, PlannedIncrement};
+use signorini_membrane::coexisting::zone_of_area;
+use signorini_membrane::continuation::{Constraint, Path, PathState};
+use signorini_membrane::scales::Scales;
+use signorini_membrane::zone::Zone;
+use signorini_solve::{Progress, SolveError};
+
+/// Halvings of an increment of arc length before the path is given up.
+const MOST_HALVINGS: usize = 7;
+
+/// Where a path stands within its step.
+pub struct Follower<Z> {
+    pub step: usize,
+    /// The last state; none before the first where the membrane is free.
+    state: Option<PathState<Z>>,
+    /// Area and time at the beginning of the step.
+    begin: [f64; 2],
+    /// Scales of area and time.
+    size: [f64; 2],
+    scales: Scales,
+    /// Whether the step has come to its end.
+    pub done: bool,
+}
+
+/// What came of an increment.
+pub enum Along<Z> {
+    State {
+        zone: Z,
+        time: f64,
+        solves: usize,
+    },
+    /// The path ends here, for a reason.
+    Ended(String),
+    Failed(String),
+}
+
+impl<Z> Follower<Z> {
+    /// Begins a step at a state of equilibrium, or at a free membrane.
+    pub fn begin<const D: usize>(
+        plan: &MembranePlan<D>,
+        planned: &PlannedIncrement,
+        zone: Z,
+        time: f64,
+        scales: Scales,
+    ) -> Result<Self, SolveError>
+    where
+        Z: Zone<D>,
+    {
+        let [from, to] = planned.range;
+        let size = [plan.area(), to - from];
+        let path = Path { membrane: &|t| plan.at(t), scales, size };
+        let state = if zone.is_empty() { None } else { Some(path.begin(zone, time, (to - time).signum())?) };
+        let area = state.as_ref().map_or(0.0, |s| s.area);
+        Ok(Self { step: planned.step, state, begin: [area, time], size, scales, done: false })
+    }
+
+    /// One increment on.
+    pub fn advance<const D: usize>(
+        &mut self,
+        plan: &MembranePlan<D>,
+        planned: &PlannedIncrement,
+        progress: &dyn Progress,
+    ) -> Result<Along<Z>, SolveError>
+    where
+        Z: Zone<D>,
+    {
+        let path = Path { membrane: &|t| plan.at(t), scales: self.scales, size: self.size };
+        match planned.control {
+            Control::ArcLength(size) => self.by_arc_length(&path, size, planned.range[1], progress),
+            Control::Area { to, part, parts } => {
+                let target = self.begin[0] + (to - self.begin[0]) * part as f64 / parts as f64;
+                self.by_area(&path, target, (to - self.begin[0]).signum(), progress)
+            }
+            Control::Time => Ok(Along::Failed("the time is given".into())),
+        }
+    }
+
+    fn by_area<const D: usize>(
+        &mut self,
+        path: &Path<'_, D>,
+        target: f64,
+        sense: f64,
+        progress: &dyn Progress,
+    ) -> Result<Along<Z>, SolveError>
+    where
+        Z: Zone<D>,
+    {
+        let constraint = Constraint { weights: [1.0, 0.0], value: target };
+        let (zone, time) = match &self.state {
+            Some(state) => path.predict(state, &constraint)?,
+            None => match zone_of_area(&(path.membrane)(self.begin[1]), target)? {
+                Some(zone) => (zone, self.begin[1]),
+                None => return Ok(Along::Failed(format!("no zone of the area {target} was found to begin with"))),
+            },
+        };
+        let (found, solves) = path.correct(zone, time, constraint, [sense, 0.0], progress)?;
+        Ok(match found {
+            Some(state) => self.accept(state, solves),
+            None => Along::Failed(format!("no equilibrium with a contact area of {target} was found")),
+        })
+    }
+
+    fn by_arc_length<const D: usize>(
+        &mut self,
+        path: &Path<'_, D>,
+        size: f64,
+        to: f64,
+        progress: &dyn Progress,
+    ) -> Result<Along<Z>, SolveError>
+    where
+        Z: Zone<D>,
+    {
+        let Some(state) = self.state.clone() else {
+            return Ok(Along::Failed(
+                "control.arc_length begins at a state with contact: lead there by a step of time or of area, or by `initial_zone`".into(),
+            ));
+        };
+        let mut ds = size;
+        let mut total = 0;
+        let mut vanishing = false;
+        for _ in 0..MOST_HALVINGS {
+            let constraint = path.constraint(&state, ds);
+            let (zone, time) = path.predict(&state, &constraint)?;
+            vanishing = zone.is_empty();
+            let (found, solves) = path.correct(zone, time, constraint, state.tangent, progress)?;
+            total += solves;
+            if let Some(next) = found {
+                if (next.time - to) * (state.time - to) > 0.0 {
+                    return Ok(self.accept(next, total));
+                }
+                // The last increment ends where the step does.
+                let constraint = Constraint { weights: [0.0, 1.0], value: to };
+                let (zone, time) = path.predict(&state, &constraint)?;
+                let (last, solves) = path.correct(zone, time, constraint, next.tangent, progress)?;
+                self.done = true;
+                return Ok(self.accept(last.unwrap_or(next), total + solves));
+            }
+            ds *= 0.5;
+        }
+        let (area, time) = (state.area, state.time);
+        Ok(if vanishing || (state.tangent[0] < 0.0 && area < 0.5 * size * self.size[0]) {
+            Along::Ended(format!("the path ends near t = {time}, where the zone, of area {area}, vanishes"))
+        } else {
+            Along::Failed(format!("the path was lost after t = {time}, at a contact area of {area}"))
+        })
+    }
+
+    fn accept(&mut self, state: PathState<Z>, solves: usize) -> Along<Z>
+    where
+        Z: Clone,
+    {
+        let (zone, time) = (state.zone.clone(), state.time);
+        self.state = Some(state);
+        Along::State { zone, time, solves }
+    }
+}

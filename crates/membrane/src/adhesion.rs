@@ -19,8 +19,13 @@ use signorini_solve::{SolveError, dense};
 
 /// A mode whose stiffness is less than this fraction of that of the pressure alone is on the verge of instability.
 const VERGE: f64 = 0.02;
+/// Down the energy no mode counts as softer than this, lest fronts creep past a state that has just been lost.
+const SOFTEST: f64 = 1e-4;
 /// On the verge fronts move by two cells or this fraction of the extent, lest they leap over the next equilibrium.
 const CAREFUL: f64 = 0.03;
+
+/// Modes beyond the membrane are that much stiffer than others, so that none of them is the softest.
+const OUTSIDE_STIFFNESS: f64 = 1e6;
 
 /// Which equilibrium is wanted where adhesion admits several.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -116,7 +121,7 @@ impl<const D: usize> Fronts<'_, D> {
         }
         out.scale /= total.max(f64::MIN_POSITIVE);
         self.hold_modes_outside(zone, space, &frames, &mut out.rate, scales.pressure / scales.tension);
-        self.hold_modes_outside(zone, space, &frames, &mut out.second_variation, out.scale);
+        self.hold_modes_outside(zone, space, &frames, &mut out.second_variation, OUTSIDE_STIFFNESS * out.scale);
         self.hold_modes_outside(zone, space, &frames, &mut out.mass, 1.0);
         Ok(out)
     }
@@ -133,27 +138,35 @@ impl Linearised {
     pub fn step(&self, branch: Branch, scales: &Scales) -> Step {
         let careful = (CAREFUL * scales.length).max(2.0 * scales.h);
         let verge = VERGE * self.scale;
-        let spectrum = if branch == Branch::Stable { self.spectrum() } else { None };
-        let unstable = spectrum.filter(|s| s.values.first().is_some_and(|v| *v < verge));
         let newton = || {
             let negative: Vec<f64> = self.residual.iter().map(|r| -r).collect();
             dense::solve(&self.rate, &negative).unwrap_or_else(|| vec![0.0; self.n])
         };
-        let (coefficients, kind, reach) = match &unstable {
-            Some(s) if s.values[0] <= 0.0 => (self.descent(s, verge), StepKind::Descent, careful),
-            Some(_) => (newton(), StepKind::Adhesive, careful),
-            None => (newton(), StepKind::Adhesive, f64::INFINITY),
+        let step = |coefficients: Vec<f64>, kind, reach| {
+            let length = self.size(&coefficients);
+            Step { length, space: ModeSpace::Fine, coefficients, kind, reach }
         };
-        let length = self.size(&coefficients);
-        Step { length, space: ModeSpace::Fine, coefficients, kind, reach }
+        let spectrum = if branch == Branch::Stable { self.spectrum() } else { None };
+        let Some(spectrum) = spectrum else { return step(newton(), StepKind::Adhesive, f64::INFINITY) };
+        let lowest = spectrum.values.first().copied().unwrap_or(0.0);
+        if lowest <= 0.0 {
+            return step(self.descent(&spectrum), StepKind::Descent, careful);
+        }
+        let coefficients = newton();
+        // On a zone of the size of a cell the two derivatives may contradict each other; the energy has the last word.
+        let far = self.size(&coefficients) > 0.1 * scales.h;
+        if far && coefficients.iter().zip(&self.force).map(|(w, f)| w * f).sum::<f64>() > 0.0 {
+            return step(self.descent(&spectrum), StepKind::Descent, careful);
+        }
+        step(coefficients, StepKind::Adhesive, if lowest < verge { careful } else { f64::INFINITY })
     }
 
     /// Down the energy: along every eigenvector by its force over the size of its stiffness.
-    fn descent(&self, spectrum: &Spectrum, verge: f64) -> Vec<f64> {
+    fn descent(&self, spectrum: &Spectrum) -> Vec<f64> {
         let mut step = vec![0.0; self.n];
         for (value, vector) in spectrum.values.iter().zip(&spectrum.vectors) {
             let force: f64 = vector.iter().zip(&self.force).map(|(v, f)| v * f).sum();
-            let amount = -force / value.abs().max(verge);
+            let amount = -force / value.abs().max(SOFTEST * self.scale);
             step.iter_mut().zip(vector).for_each(|(s, v)| *s += amount * v);
         }
         step

@@ -99,10 +99,12 @@ fn families<const D: usize, Z: Zone<D>>(
     let none = Z::empty(grid);
     let mut out = Vec::new();
     for_each_level::<D, Z>(membrane, free, elements, &mut |level, [low, high]| {
-        let family = (1..=SIZES[D - 1]).map(|k| {
-            // Levels closer to each other for small zones, whose size grows with the root.
-            let part = (k as f64 / (SIZES[D - 1] + 1) as f64).powi(2);
-            let s = low + part * (high - low);
+        // In one dimension very small zones too, which cost little there.
+        let least = 1.0 / (SIZES[D - 1] + 1) as f64;
+        let tiny = (1..=if D == 1 { 4 } else { 0 }).rev().map(|k| least * 0.5f64.powi(k));
+        let family = tiny.chain((1..=SIZES[D - 1]).map(|k| k as f64 * least)).map(|part| {
+            // The size of a small zone grows with the root of the level.
+            let s = low + part * part * (high - low);
             none.united(grid, &mut |x| level(x).map_or(1.0, |v| (v - s) / (high - low)))
         });
         out.push(family.filter(|z| !z.is_empty()).collect());

@@ -117,6 +117,18 @@ impl<'a, const D: usize> Fronts<'a, D> {
         sum / f64::max(total, f64::MIN_POSITIVE)
     }
 
+    /// Of each connected zone the force `∫ T (ρ² - ρ_a²)/2` on its fronts, which shrinks it where positive.
+    pub(crate) fn drive_of_zones(&self, zones: usize) -> Vec<f64> {
+        let mut out = vec![0.0; zones];
+        for (i, p) in self.equilibrium.quadrature.front.iter().enumerate() {
+            let (rho, held) = (self.slope_jump[i], self.adhesive_slope[i]);
+            if let Some(force) = out.get_mut(p.zone) {
+                *force += p.weight * 0.5 * self.tension[i] * (rho * rho.abs() - held * held);
+            }
+        }
+        out
+    }
+
     /// `ρ - ρ_a`: what the fronts still lack.
     pub(crate) fn excess(&self) -> Vec<f64> {
         self.slope_jump.iter().zip(&self.adhesive_slope).map(|(r, a)| r - a).collect()

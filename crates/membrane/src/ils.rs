@@ -9,7 +9,7 @@ use crate::field::SharedField;
 use crate::front::{Fronts, StepKind};
 use crate::problem::Membrane;
 use crate::scales::Scales;
-use crate::zone::{ModeSpace, Zone};
+use crate::zone::{ModeSpace, Zone, contact_index};
 use signorini_solve::{Acceleration, Iteration, Progress, SolveError};
 
 /// Steps after which fronts that do not come to rest are given up.
@@ -31,6 +31,10 @@ const MOST_DESCENTS: usize = 200;
 const UNSTABLE: f64 = -1e-6;
 /// A gap of this fraction of the scale counts as none: without contact nothing but round-off disturbs it.
 const FREE: f64 = -1e-10;
+/// A zone of less than this part of a cell has no shape.
+const SMALL: f64 = 0.7;
+/// Adhesive steps shorter than this fraction of a cell are extrapolated.
+const NEAR: f64 = 0.1;
 /// A front moves at most this fraction of the membrane's extent in one step.
 const REACH: f64 = 0.15;
 
@@ -145,6 +149,20 @@ pub(crate) fn is_clear<const D: usize, Z: Zone<D>>(
     floor: &SharedField<D>,
 ) -> bool {
     least_free_gap(free, none, floor).0 >= FREE * Scales::of_free(free).gap
+}
+
+/// A zone smaller than a cell that shrinks: there is nothing that would stop it.
+fn lost<const D: usize>(equilibrium: &Equilibrium<'_, D>, fronts: &Fronts<'_, D>, zones: usize) -> Option<usize> {
+    let mut area = vec![0.0; zones];
+    equilibrium.for_each_point(|_, region, x, w| {
+        // As large as it is drawn, whatever it weighs.
+        if let Some(a) = contact_index(region).and_then(|k| area.get_mut(k)) {
+            *a += w / equilibrium.membrane.measure.weight(x);
+        }
+    });
+    let cell = equilibrium.membrane.grid.h().powi(D as i32);
+    let drive = fronts.drive_of_zones(zones);
+    (0..zones).find(|&k| area[k] < SMALL * cell && drive[k] > 0.0)
 }
 
 struct Run<'a, 'b, const D: usize, Z> {
@@ -322,6 +340,17 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             let h = self.membrane.grid.h();
             let adhesion = self.membrane.adhesion.as_ref().filter(|_| self.adhering);
             let fronts = Fronts::new(&equilibrium, adhesion);
+            if let (Some(_), Branch::Stable) = (adhesion, self.branch)
+                && let Some(part) = lost(&equilibrium, &fronts, zone.counts().0)
+            {
+                let zone = zone.without(&self.membrane.grid, part);
+                self.report(0.0, "zone lost");
+                (count, descents, best) = (0, descents + 1, f64::INFINITY);
+                self.solution.jumped = true;
+                self.solution.equilibrium = Some(equilibrium);
+                self.solution.zone = zone;
+                continue;
+            }
             let projection = fronts.project(zone, ModeSpace::Fine);
             let residual = projection.norm / scales.slope_tolerance();
             let linearised = adhesion.map(|_| fronts.linearise(zone, &scales)).transpose()?;
@@ -367,7 +396,9 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 acceleration = Acceleration::default();
                 let factor = 0.5f64.powi((waited / DAMPED_AFTER) as i32).max(0.1);
                 step.coefficients.iter_mut().for_each(|c| *c *= factor);
-            } else if step.space == ModeSpace::Fine && step.kind == StepKind::Local {
+            } else if step.space == ModeSpace::Fine
+                && (step.kind == StepKind::Local || (step.kind == StepKind::Adhesive && relative_step < NEAR))
+            {
                 step.coefficients = acceleration.next(step.coefficients);
             } else {
                 acceleration = Acceleration::default();

@@ -156,6 +156,10 @@ impl Zone<1> for LineZone {
         }
         Self::new(grid, left)
     }
+    fn without(&self, grid: &Grid<1>, part: usize) -> Self {
+        let kept = self.intervals.iter().enumerate().filter(|(i, _)| *i != part).map(|(_, interval)| *interval);
+        Self::new(grid, kept.collect())
+    }
     fn seeded(&self, grid: &Grid<1>, x: &Point<1>, radius: f64) -> Self {
         let mut all = self.intervals.clone();
         all.push([x[0] - radius, x[0] + radius]);

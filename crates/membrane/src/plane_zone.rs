@@ -353,6 +353,16 @@ impl Zone<2> for PlaneZone {
     fn reduced(&self, grid: &Grid<2>, f: &mut dyn FnMut(&Point<2>) -> f64) -> Self {
         self.combined(grid, f, true, |zone, removed| zone.max(-removed))
     }
+    fn without(&self, grid: &Grid<2>, part: usize) -> Self {
+        let Some(outer) = (0..self.curves.len()).find(|&i| !self.hole[i] && self.number[i] == part) else {
+            return self.clone();
+        };
+        let within = |i: usize| {
+            self.hole[i] && polygon::winding_number(self.curves[outer].samples(), &self.curves[i].samples()[0]) != 0
+        };
+        let kept = (0..self.curves.len()).filter(|&i| i != outer && !within(i));
+        Self::new(grid, kept.map(|i| self.curves[i].clone()).collect())
+    }
     fn seeded(&self, grid: &Grid<2>, x: &Point<2>, radius: f64) -> Self {
         let circle: Vec<Point<2>> = (0..SEED_KNOTS)
             .map(|i| {

@@ -113,6 +113,8 @@ pub trait Zone<const D: usize>: Division<D> + Clone + Send {
     fn united(&self, grid: &Grid<D>, f: &mut dyn FnMut(&Point<D>) -> f64) -> Self;
     /// Removes the set where `f < 0`.
     fn reduced(&self, grid: &Grid<D>, f: &mut dyn FnMut(&Point<D>) -> f64) -> Self;
+    /// The zone without one of its parts.
+    fn without(&self, grid: &Grid<D>, part: usize) -> Self;
     /// A small zone about a point, added.
     fn seeded(&self, grid: &Grid<D>, x: &Point<D>, radius: f64) -> Self;
     /// Distance from `x` to the nearest front.

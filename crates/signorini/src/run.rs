@@ -1,7 +1,7 @@
 //! From a plan to results: increments, files, the summary and the verdict.
 
 mod environment;
-mod events;
+pub(crate) mod events;
 mod increment;
 mod path;
 pub(crate) mod solid;
@@ -365,10 +365,6 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         self.events.extend(found);
     }
 
-    fn event_times(&self) -> Vec<(f64, &'static str)> {
-        self.events.iter().map(|e| (e.time, e.kind)).collect()
-    }
-
     /// Other equilibria of an adhesive membrane; with `zones` those with contact too, which are searched for.
     fn other_states(&mut self, membrane: &Membrane<D>, increment: &Increment<D>, zones: bool) -> Vec<OtherState> {
         if membrane.adhesion.is_none() || !increment.converged {
@@ -427,7 +423,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         let contact = self.plan.contact.as_ref().map(|(n, _)| n.as_str());
         self.folder.write("history.csv", tables::history(&self.steps, contact, &probes).as_bytes())?;
         if let (true, Some(snapshot)) = (self.plan.pictures, last) {
-            pictures::draw(&self.folder, &self.plan, mesh, snapshot, &self.steps, &self.event_times())?;
+            pictures::draw(&self.folder, &self.plan, mesh, snapshot, &self.steps, &self.events)?;
         }
         let summary = json!({
             "schema": SCHEMA,

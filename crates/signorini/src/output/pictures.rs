@@ -5,6 +5,7 @@ use super::{Folder, OutputError};
 use crate::case::statement::Space;
 use crate::exact;
 use crate::plan::MembranePlan;
+use crate::run::events::Event;
 use crate::snapshot::{DisplayMesh, Snapshot};
 use plotters::prelude::*;
 use rayon::prelude::*;
@@ -24,7 +25,7 @@ pub fn draw<const D: usize>(
     mesh: &DisplayMesh<D>,
     s: &Snapshot<D>,
     steps: &[Value],
-    events: &[(f64, &'static str)],
+    events: &[Event],
 ) -> Result<(), OutputError> {
     if mesh.cells.is_empty() {
         // A domain thinner than the display can show.
@@ -55,6 +56,13 @@ pub fn draw<const D: usize>(
         && let Some((name, _)) = &plan.contact
     {
         drawings.push(("history", Box::new(|| history(steps, events, name, plan.space, units))));
+    }
+    if steps.len() > 1
+        && let Some((name, floor)) = &plan.contact
+        && floor.adhesion.is_some()
+        && let Some(drive) = Drive::of(plan, steps, units)
+    {
+        drawings.push(("loop", Box::new(move || loop_of_states(&drive, steps, events, name, plan.space, units))));
     }
     drawings.par_iter().map(|(name, draw)| save(folder, name, &draw()?)).collect()
 }
@@ -435,17 +443,119 @@ fn convergence(steps: &[Value]) -> Result<String, OutputError> {
     })
 }
 
+/// What drives a membrane along its history: the resultant of the loads, or the height of the floor.
+struct Drive<'a> {
+    at: Box<dyn Fn(f64) -> f64 + Sync + 'a>,
+    label: String,
+}
+
+impl<'a> Drive<'a> {
+    /// The first of the two that changes.
+    fn of<const D: usize>(plan: &'a MembranePlan<D>, steps: &[Value], units: &Labels) -> Option<Self> {
+        let load = move |t: f64| -plan.load_resultants(&plan.at(t), t).values().sum::<f64>();
+        let height = move |t: f64| plan.contact.as_ref().map_or(0.0, |(_, floor)| floor.displacement_at(t)[2]);
+        let changes = |f: &dyn Fn(f64) -> f64| {
+            let times = steps.iter().filter_map(|s| s["time"].as_f64());
+            let (low, high) = times.map(f).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+            high - low > 1e-12 * high.abs().max(low.abs())
+        };
+        if changes(&load) {
+            Some(Self { at: Box::new(load), label: units.force("load, downwards") })
+        } else if changes(&height) {
+            Some(Self { at: Box::new(height), label: units.length("displacement of the floor") })
+        } else {
+            None
+        }
+    }
+}
+
+/// Area and force over what drives the membrane: stable states filled, unstable ones open, jumps as arrows.
+fn loop_of_states(
+    drive: &Drive,
+    steps: &[Value],
+    events: &[Event],
+    contact: &str,
+    space: Space,
+    units: &Labels,
+) -> Result<String, OutputError> {
+    let measure = if space == Space::Line { units.length("length of contact") } else { units.area("area of contact") };
+    type Reading = fn(&Value) -> Option<f64>;
+    let readings: [(Reading, fn(&Event) -> [f64; 2], String); 2] = [
+        (|c| c["area"].as_f64(), |e| e.area, measure),
+        (|c| c["force"][2].as_f64(), |e| e.force, units.force("force of the floor")),
+    ];
+    let jumps: Vec<&Event> = events.iter().filter(|e| e.energy_released.is_some_and(|v| v != 0.0)).collect();
+    svg((820, 720), |root| {
+        for (part, (read, ends, y)) in root.split_evenly((2, 1)).iter().zip(&readings) {
+            let states: Vec<(f64, f64, bool, f64)> = steps
+                .iter()
+                .filter_map(|s| {
+                    let (t, c) = (s["time"].as_f64()?, &s["contacts"][contact]);
+                    Some(((drive.at)(t), read(c)?, c["stable"] != false, t))
+                })
+                .collect();
+            let arrows: Vec<[(f64, f64); 2]> = jumps.iter().map(|e| ends(e).map(|v| ((drive.at)(e.time), v))).collect();
+            let all = || states.iter().map(|s| (s.0, s.1)).chain(arrows.iter().flatten().copied());
+            let [wide, high] = [range(all().map(|p| p.0)), range(all().map(|p| p.1).chain([0.0]))];
+            let mut chart = ChartBuilder::on(part)
+                .margin(12)
+                .x_label_area_size(42)
+                .y_label_area_size(80)
+                .build_cartesian_2d(padded(wide), padded(high))
+                .map_err(failed)?;
+            chart
+                .configure_mesh()
+                .light_line_style(WHITE)
+                .x_desc(&drive.label)
+                .y_desc(y)
+                .x_label_formatter(&|v| label(rounded(*v, wide.1 - wide.0)))
+                .y_label_formatter(&|v| label(rounded(*v, high.1 - high.0)))
+                .label_style((FONT, 15))
+                .draw()
+                .map_err(failed)?;
+            // Between two states the path is a line, broken where it jumps.
+            for pair in states.windows(2) {
+                let (a, b) = (&pair[0], &pair[1]);
+                let mut at = (a.0, a.1);
+                for (event, [before, after]) in jumps.iter().zip(&arrows) {
+                    if a.3 < event.time && event.time < b.3 {
+                        chart.draw_series(LineSeries::new([at, *before], MEMBRANE.stroke_width(2))).map_err(failed)?;
+                        at = *after;
+                    }
+                }
+                chart.draw_series(LineSeries::new([at, (b.0, b.1)], MEMBRANE.stroke_width(2))).map_err(failed)?;
+            }
+            let (height, width) = (chart.y_range(), chart.x_range());
+            let (dx, dy) = (0.006 * (width.end - width.start), 0.04 * (height.end - height.start));
+            for [before, after] in &arrows {
+                let down = if after.1 < before.1 { -1.0 } else { 1.0 };
+                let tip = [(after.0 - dx, after.1 - down * dy), *after, (after.0 + dx, after.1 - down * dy)];
+                chart.draw_series(LineSeries::new([*before, *after], FRONT.stroke_width(1))).map_err(failed)?;
+                chart.draw_series(LineSeries::new(tip, FRONT.stroke_width(2))).map_err(failed)?;
+            }
+            let dot = |s: &(f64, f64, bool, f64), fill: ShapeStyle| Circle::new((s.0, s.1), 4, fill);
+            chart.draw_series(states.iter().map(|s| dot(s, WHITE.filled()))).map_err(failed)?;
+            chart
+                .draw_series(
+                    states.iter().map(|s| dot(s, if s.2 { MEMBRANE.filled() } else { MEMBRANE.stroke_width(1) })),
+                )
+                .map_err(failed)?;
+        }
+        Ok(())
+    })
+}
+
 /// Area and force over time, with the changes of topology.
 fn history(
     steps: &[Value],
-    events: &[(f64, &'static str)],
+    events: &[Event],
     contact: &str,
     space: Space,
     units: &Labels,
 ) -> Result<String, OutputError> {
     // Changes at one time are one line.
     let mut marks: Vec<(f64, String)> = Vec::new();
-    for (time, kind) in events {
+    for Event { time, kind, .. } in events {
         let word = kind.replace('_', " ");
         match marks.last_mut() {
             Some((t, words)) if *t == *time => {
@@ -466,19 +576,20 @@ fn history(
         let parts = root.split_evenly((2, 1));
         for (part, points, y) in [(&parts[0], &area, measure), (&parts[1], &force, units.force("force of the floor"))] {
             let x = range(points.iter().map(|p| p.0));
+            let height = range(points.iter().map(|p| p.1).chain([0.0]));
             let mut chart = ChartBuilder::on(part)
                 .margin(12)
                 .x_label_area_size(40)
                 .y_label_area_size(80)
-                .build_cartesian_2d(padded(x), padded(range(points.iter().map(|p| p.1).chain([0.0]))))
+                .build_cartesian_2d(padded(x), padded(height))
                 .map_err(failed)?;
             chart
                 .configure_mesh()
                 .light_line_style(WHITE)
                 .x_desc("t")
                 .y_desc(y)
-                .x_label_formatter(&|v| label(*v))
-                .y_label_formatter(&|v| label(*v))
+                .x_label_formatter(&|v| label(rounded(*v, x.1 - x.0)))
+                .y_label_formatter(&|v| label(rounded(*v, height.1 - height.0)))
                 .label_style((FONT, 15))
                 .draw()
                 .map_err(failed)?;

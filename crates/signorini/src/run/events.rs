@@ -21,6 +21,9 @@ pub struct Event {
     /// Zones and holes before and after.
     pub before: (usize, usize),
     pub after: (usize, usize),
+    /// Area of contact and force of the floor before and after.
+    pub area: [f64; 2],
+    pub force: [f64; 2],
     /// Energy set free by a jump, told once where one jump is several events; none without adhesion.
     pub energy_released: Option<f64>,
 }
@@ -31,6 +34,8 @@ impl Event {
             "contact": contact, "kind": self.kind, "time": self.time, "within": self.within, "at": self.at,
             "zones_before": self.before.0, "zones_after": self.after.0,
             "holes_before": self.before.1, "holes_after": self.after.1,
+            "area_before": self.area[0], "area_after": self.area[1],
+            "force_before": self.force[0], "force_after": self.force[1],
             "energy_released": self.energy_released,
         })
     }
@@ -42,6 +47,8 @@ pub struct Known<Z> {
     pub time: f64,
     pub zone: Z,
     pub area: f64,
+    /// Force of the floor on the membrane along z.
+    pub force: f64,
     pub energy_total: f64,
     /// How far an adhesive state is from its loss.
     pub margin: Option<f64>,
@@ -159,6 +166,8 @@ pub fn jump<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Known<Z>, b: &Known<
             at: moved(grid, &a.zone, &b.zone).iter().copied().collect(),
             before: a.zone.counts(),
             after: b.zone.counts(),
+            area: [a.area, b.area],
+            force: [a.force, b.force],
             energy_released: None,
         });
     }
@@ -192,6 +201,8 @@ fn differences<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Known<Z>, b: &Kno
             at: at.iter().copied().collect(),
             before: a.zone.counts(),
             after: b.zone.counts(),
+            area: [a.area, b.area],
+            force: [a.force, b.force],
             energy_released: None,
         });
     };

@@ -73,6 +73,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             time,
             zone: zone.clone(),
             area: increment.area(),
+            force: increment.report.as_ref().map_or(0.0, |r| r.contact.force),
             energy_total: increment.energy_total(),
             margin: increment.stability.margin,
         })

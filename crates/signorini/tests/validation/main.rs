@@ -1,5 +1,6 @@
 //! Published and exact problems, run as a user runs them: from the case file to the summary.
 
+mod adhesion;
 mod bad_input;
 mod cosine_floor;
 mod events;

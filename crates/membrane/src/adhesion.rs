@@ -38,6 +38,7 @@ pub enum Branch {
 
 /// The front condition and its derivatives in the modes of the fronts.
 pub struct Linearised {
+    space: ModeSpace,
     n: usize,
     /// `∫ (ρ - ρ_a) ω_n`.
     pub residual: Vec<f64>,
@@ -60,9 +61,8 @@ pub struct Spectrum {
 }
 
 impl<const D: usize> Fronts<'_, D> {
-    /// Linearises the front condition in the finest modes: one solve for each, with the factorisation at hand.
-    pub fn linearise<Z: Zone<D>>(&self, zone: &Z, scales: &Scales) -> Result<Linearised, SolveError> {
-        let space = ModeSpace::Fine;
+    /// Linearises the front condition in a space of modes: one solve for each, with the factorisation at hand.
+    pub fn linearise<Z: Zone<D>>(&self, zone: &Z, space: ModeSpace, scales: &Scales) -> Result<Linearised, SolveError> {
         let n = zone.mode_offsets(space)[zone.front_count()];
         let equilibrium: &Equilibrium<D> = self.equilibrium;
         let points = &equilibrium.quadrature.front;
@@ -91,6 +91,7 @@ impl<const D: usize> Fronts<'_, D> {
             })
             .collect::<Result<_, SolveError>>()?;
         let mut out = Linearised {
+            space,
             n,
             residual: vec![0.0; n],
             rate: vec![0.0; n * n],
@@ -134,6 +135,13 @@ impl Linearised {
         Some(Spectrum { values, vectors })
     }
 
+    /// The second variation of the energy along a displacement of the fronts.
+    pub fn second_variation(&self, displacement: &[f64]) -> f64 {
+        let n = self.n;
+        let row = |i: usize| (0..n).map(|j| self.second_variation[i * n + j] * displacement[j]).sum::<f64>();
+        (0..n).map(|i| displacement[i] * row(i)).sum()
+    }
+
     /// A step towards the wanted equilibrium.
     pub fn step(&self, branch: Branch, scales: &Scales) -> Step {
         let careful = (CAREFUL * scales.length).max(2.0 * scales.h);
@@ -144,7 +152,7 @@ impl Linearised {
         };
         let step = |coefficients: Vec<f64>, kind, reach| {
             let length = self.size(&coefficients);
-            Step { length, space: ModeSpace::Fine, coefficients, kind, reach }
+            Step { length, space: self.space, coefficients, kind, reach }
         };
         let spectrum = if branch == Branch::Stable { self.spectrum() } else { None };
         let Some(spectrum) = spectrum else { return step(newton(), StepKind::Adhesive, f64::INFINITY) };

@@ -118,7 +118,7 @@ impl<const D: usize> Path<'_, D> {
         let membrane = (self.membrane)(time);
         let equilibrium = Equilibrium::solve(&membrane, zone, &mut Elements::new(&membrane))?;
         let fronts = Fronts::new(&equilibrium, membrane.adhesion.as_ref());
-        let linearised = fronts.linearise(zone, &self.scales)?;
+        let linearised = fronts.linearise(zone, ModeSpace::Fine, &self.scales)?;
         let error = fronts.project(zone, ModeSpace::Fine).norm / self.scales.slope_tolerance();
         // The same zone a little later: its quadrature is the same.
         let dt = 1e-5 * self.size[1];

@@ -353,7 +353,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             }
             let projection = fronts.project(zone, ModeSpace::Fine);
             let residual = projection.norm / scales.slope_tolerance();
-            let linearised = adhesion.map(|_| fronts.linearise(zone, &scales)).transpose()?;
+            let linearised = adhesion.map(|_| fronts.linearise(zone, ModeSpace::Fine, &scales)).transpose()?;
             let mut step = match &linearised {
                 Some(linearised) => linearised.step(self.branch, &scales),
                 None => fronts.newton_step(zone, &scales)?,

@@ -2,13 +2,17 @@
 
 use signorini_fem::Grid;
 use signorini_geometry::{Aabb, ClosedCurve, Ellipse, Jet, Point, Real};
+use signorini_membrane::adhesion::Branch;
 use signorini_membrane::domain::{Domain, DomainOnGrid, ImplicitDomain};
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::field::{Constant, Formula, SharedField};
 use signorini_membrane::front::Fronts;
+use signorini_membrane::ils::{Reason, Start, solve};
 use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::{Measure, Membrane, Support};
+use signorini_membrane::scales::Scales;
 use signorini_membrane::zone::{ModeSpace, Zone, contact_index, is_free};
+use signorini_solve::Silent;
 use std::sync::Arc;
 
 const SPACE: ModeSpace = ModeSpace::Coarse(6);
@@ -37,10 +41,14 @@ fn membrane(cells: usize, degree: usize) -> Membrane<2> {
 
 /// An off-centre, bent front that is not the solution.
 fn zone(membrane: &Membrane<2>) -> PlaneZone {
+    zone_of(membrane, 0.45)
+}
+
+fn zone_of(membrane: &Membrane<2>, radius: f64) -> PlaneZone {
     let points: Vec<Point<2>> = (0..24)
         .map(|i| {
             let a = std::f64::consts::TAU * f64::from(i) / 24.0;
-            let r = 0.45 + 0.05 * (2.0 * a).cos() + 0.02 * (3.0 * a).sin();
+            let r = radius + 0.05 * (2.0 * a).cos() + 0.02 * (3.0 * a).sin();
             Point::<2>::new(0.07 + r * a.cos(), -0.04 + r * a.sin())
         })
         .collect();
@@ -130,4 +138,96 @@ fn the_change_of_the_energy_is_half_the_squared_slope_jump() {
         vec![energy(&zone.displaced(SPACE, &moved)).0]
     });
     assert!(error <= 1e-3, "{error}");
+}
+
+/// An adhesion that varies.
+fn sticky(cells: usize, degree: usize) -> Membrane<2> {
+    let c = |v: f64| Jet::<2>::constant(v);
+    let energy = move |[x, y]: [Jet<2>; 2]| c(0.002) + c(0.001) * x - c(0.0008) * y * y;
+    Membrane { adhesion: Some(Arc::new(Formula(energy))), ..membrane(cells, degree) }
+}
+
+#[test]
+fn the_change_of_the_adhesive_condition_is_predicted() {
+    let membrane = sticky(20, 4);
+    // Too large a zone, which the floor would have to hold.
+    let zone = zone_of(&membrane, 0.72);
+    let excess = |zone: &PlaneZone| {
+        let mut elements = Elements::new(&membrane);
+        let equilibrium = Equilibrium::solve(&membrane, zone, &mut elements).expect("an equilibrium");
+        let scales = Scales::of_free(&equilibrium);
+        let fronts = Fronts::new(&equilibrium, membrane.adhesion.as_ref());
+        let linearised = fronts.linearise(zone, SPACE, &scales).expect("a derivative");
+        // The front itself becomes longer, which the method leaves out: it vanishes with the residual.
+        let n = zone.mode_offsets(SPACE)[1];
+        let mut stretch = vec![0.0; n * n];
+        for (p, rho) in equilibrium.quadrature.front.iter().zip(&fronts.slope_jump) {
+            let energy = membrane.adhesion.as_ref().expect("an adhesion");
+            let residual = rho - membrane.adhesive_slope(energy, &p.x).0;
+            assert!(residual > 0.0, "the zone is too small for this test");
+            let frame = zone.frame(p.front, &p.x, SPACE);
+            for &(i, v) in &frame.modes {
+                for &(j, w) in &frame.modes {
+                    stretch[i * n + j] += p.weight * frame.curvature * residual * v * w;
+                }
+            }
+        }
+        (linearised.residual, linearised.rate, stretch)
+    };
+    let (residual, rate, stretch) = excess(&zone);
+    let n = residual.len();
+    let direction: Vec<f64> = (0..n).map(|i| 1.0 + (1.7 * i as f64).sin()).collect();
+    let predicted: Vec<f64> =
+        (0..n).map(|i| (0..n).map(|j| (rate[i * n + j] + stretch[i * n + j]) * direction[j]).sum()).collect();
+    let error = signorini_verify::taylor::central_difference_error(&predicted, 1e-3, |step| {
+        let moved: Vec<f64> = direction.iter().map(|d| d * step).collect();
+        excess(&zone.displaced(SPACE, &moved)).0
+    });
+    assert!(error <= 5e-3, "{error}");
+}
+
+#[test]
+fn stability_is_the_second_change_of_the_energy() {
+    let membrane = sticky(20, 4);
+    let mut elements = Elements::new(&membrane);
+    let start: Start<PlaneZone> = Start::Asked(zone_of(&membrane, 0.6), Branch::Nearest);
+    let solution = solve(&membrane, &mut elements, start, (0, 0.0), &mut Silent);
+    assert_eq!(solution.reason, Reason::Converged);
+    let energy = |zone: &PlaneZone| {
+        let state = Equilibrium::solve(&membrane, zone, &mut Elements::new(&membrane)).expect("an equilibrium");
+        let mut sum = 0.0;
+        state.for_each_point(|cell, region, x, w| {
+            let (u, gradient, stuck) = match contact_index(region) {
+                Some(_) => {
+                    let h = membrane.floor.as_ref().expect("a floor").jet(x);
+                    (h.value, h.gradient, membrane.adhesion.as_ref().expect("an adhesion").value(x))
+                }
+                None if is_free(region) => {
+                    let (u, gradient) = state.evaluate(cell, region, x).expect("a state");
+                    (u, gradient, 0.0)
+                }
+                None => return,
+            };
+            let elastic = 0.5 * membrane.tension.value(x) * gradient.norm_squared();
+            sum += w * (elastic - membrane.load.value(x) * u - stuck);
+        });
+        sum
+    };
+    let zone = &solution.zone;
+    let equilibrium = solution.equilibrium.as_ref().expect("a state");
+    let scales = solution.scales.expect("scales");
+    let fronts = Fronts::new(equilibrium, membrane.adhesion.as_ref());
+    let linearised = fronts.linearise(zone, ModeSpace::Fine, &scales).expect("a derivative");
+    let n = zone.mode_offsets(ModeSpace::Fine)[1];
+    for frequency in [0.0, 1.0, 2.0] {
+        let mode = |i: usize| (std::f64::consts::TAU * frequency * i as f64 / n as f64).cos();
+        let direction: Vec<f64> = (0..n).map(mode).collect();
+        let step = 4e-3;
+        let at =
+            |s: f64| energy(&zone.displaced(ModeSpace::Fine, &direction.iter().map(|d| d * s).collect::<Vec<_>>()));
+        let change = (at(step) - 2.0 * energy(zone) + at(-step)) / (step * step);
+        let predicted = linearised.second_variation(&direction);
+        assert!((change / predicted - 1.0).abs() < 1e-2, "{frequency}: {change} {predicted}");
+        assert!(predicted > 0.0);
+    }
 }

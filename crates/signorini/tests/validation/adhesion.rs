@@ -238,14 +238,14 @@ fn the_disc_from_above() {
         assert_eq!(touch(step)["stable"], near != Some(0.2));
     }
     let unload = "[[steps]]\nto = 0.4\n[[steps]]\nto = 1\nincrements = 2\nevents = 1e-5\n";
-    let found = summary(&disc(20, "-(0.5 - 0.3*t)", "0.01", Some(0.3), unload), &set(&[]));
+    let found = summary(&disc(24, "-(0.5 - 0.3*t)", "0.01", Some(0.3), unload), &set(&[]));
     let events = found["events"].as_array().expect("events");
     assert!(events.len() == 1 && events[0]["kind"] == "pull_off", "{events:?}");
     let load = 0.5 - 0.3 * number(&events[0]["time"]);
     assert!((load - 0.26214333098).abs() < 1e-5, "{load}");
     // At f = 0.2 no adhesion below 0.0158929… holds a contact.
     let weaken = "[[steps]]\nto = 0.01\n[[steps]]\nto = 1\nincrements = 2\nevents = 1e-4\n";
-    let found = summary(&disc(20, "-0.2", "0.03 - 0.02*t", Some(0.5), weaken), &set(&[]));
+    let found = summary(&disc(24, "-0.2", "0.03 - 0.02*t", Some(0.5), weaken), &set(&[]));
     let events = found["events"].as_array().expect("events");
     assert!(events.len() == 1 && events[0]["kind"] == "pull_off", "{events:?}");
     let energy = 0.03 - 0.02 * number(&events[0]["time"]);

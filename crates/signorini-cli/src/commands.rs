@@ -3,6 +3,7 @@
 use crate::bar::{Bar, Counter};
 use serde_json::{Value, json};
 use signorini::case::{CaseError, Document, override_key};
+use signorini::fit::fit;
 use signorini::gallery::{all, find};
 use signorini::output::OutputError;
 use signorini::plan::{self, Plan};
@@ -21,6 +22,38 @@ pub fn run_file(case: &Path, output: Option<PathBuf>, set: &[String], json: bool
         Ok(read) => read,
         Err(error) => return report(&error, json),
     };
+    execute(&name, &text, &output.unwrap_or_else(|| default_folder(case)), set, json)
+}
+
+pub fn fit_file(case: &Path, output: Option<PathBuf>, set: &[String], json: bool) -> u8 {
+    let document = match read(case).and_then(|(name, text)| Document::parse(&name, &text, set)) {
+        Ok(document) => document,
+        Err(error) => return report(&error, json),
+    };
+    let folder = output.unwrap_or_else(|| default_folder(case));
+    match fit(&document, &folder) {
+        Err(RunError::Case(error)) => report(&error, json),
+        Err(RunError::Output(error)) => report(&output_error(&error), json),
+        Ok(fitted) => {
+            if json {
+                println!("{}", fitted.summary);
+            } else {
+                for warning in fitted.summary["warnings"].as_array().into_iter().flatten() {
+                    println!("warning: {}", warning.as_str().unwrap_or(""));
+                }
+                println!("{}", fitted.summary["verdict"].as_str().unwrap_or(""));
+                println!(
+                    "\nResults in {}: open pictures/fit.png; numbers in summary.json and fit.csv.",
+                    folder.display()
+                );
+            }
+            if fitted.converged { DONE } else { NOT_CONVERGED }
+        }
+    }
+}
+
+/// The folder called after a case.
+fn default_folder(case: &Path) -> PathBuf {
     // A case that lies in a folder of its own is called after the folder.
     let stem = case.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let parent = case.parent().and_then(|p| p.file_name()).map(|p| p.to_string_lossy().into_owned());
@@ -29,8 +62,7 @@ pub fn run_file(case: &Path, output: Option<PathBuf>, set: &[String], json: bool
         ("" | "-", _) => "results".to_string(),
         _ => stem,
     };
-    let default = if Path::new(&default).is_file() { format!("{default}.results") } else { default };
-    execute(&name, &text, &output.unwrap_or_else(|| PathBuf::from(default)), set, json)
+    PathBuf::from(if Path::new(&default).is_file() { format!("{default}.results") } else { default })
 }
 
 pub fn run_example(name: &str, output: Option<PathBuf>, set: &[String], json: bool) -> u8 {

@@ -13,6 +13,7 @@ const EXAMPLES: &str = "Examples:
   signorini run case.toml                             results into ./case
   signorini run case.toml -o out --set loads.press.normal=-0.3
   signorini closest queries.json -o answers.json      closest points of pairs of shapes
+  signorini fit blister.toml                          adhesion from measurements
   signorini check case.toml                           is the case right, and how large is it?
 
 Exit status: 0 done, 1 the input is wrong, 2 not converged (results so far are on disk), 3 a fault of ours,
@@ -58,6 +59,16 @@ enum Command {
         /// Replace or add a key
         #[arg(long = "set", value_name = "KEY=VALUE", allow_hyphen_values = true)]
         set: Vec<String>,
+    },
+    /// Find out the energy of adhesion from measured loads and contact radii
+    #[command(
+        after_help = "Example:\n  signorini gallery show blister > case.toml    and add a table [fit]: see docs/fit.md"
+    )]
+    Fit {
+        /// The case file, with a table [fit]
+        case: PathBuf,
+        #[command(flatten)]
+        options: RunOptions,
     },
     /// Closest points of pairs of shapes
     #[command(after_help = CLOSEST_HELP)]
@@ -125,6 +136,7 @@ fn main() -> ExitCode {
     let result = std::panic::catch_unwind(|| match arguments.command {
         Command::Run { case, options } => commands::run_file(&case, options.output, &options.set, json),
         Command::Check { case, set } => commands::check(&case, &set, json),
+        Command::Fit { case, options } => commands::fit_file(&case, options.output, &options.set, json),
         Command::Closest { queries, output, local_minima } => commands::closest(&queries, &output, local_minima, json),
         Command::Gallery { action: None } => commands::gallery(json),
         Command::Gallery { action: Some(GalleryAction::Run { name, options }) } => {

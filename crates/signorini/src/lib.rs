@@ -2,6 +2,7 @@
 pub mod case;
 pub mod exact;
 pub mod expression;
+pub mod fit;
 pub mod gallery;
 pub mod height_map;
 pub mod mesh_file;

@@ -36,6 +36,49 @@ pub struct Case {
     pub steps: Vec<Spanned<Step>>,
     #[serde(default)]
     pub output: Output,
+    /// What `signorini fit` is to find out from measurements.
+    #[serde(default)]
+    pub fit: Option<Spanned<FitKey>>,
+}
+
+/// Measurements of a contact, and what they are to tell.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FitKey {
+    /// A CSV file with a line of names above its columns.
+    pub data: Spanned<String>,
+    /// Column of the time, of which loads and motions of the case are functions.
+    pub time: Spanned<String>,
+    /// Column of the radius of contact, or of its half length.
+    #[serde(default)]
+    pub radius: Option<Spanned<String>>,
+    /// Column of the area of contact, in place of the radius.
+    #[serde(default)]
+    pub area: Option<Spanned<String>>,
+    /// `adhesion`, and if wanted `tension`.
+    #[serde(default)]
+    pub unknown: Option<Spanned<Vec<Spanned<FitUnknown>>>>,
+    /// Whether the scatter of the measurements is relative to their size.
+    #[serde(default)]
+    pub noise: Option<Noise>,
+    /// Confidence of the intervals, 0.95 if left out.
+    #[serde(default)]
+    pub confidence: Option<Spanned<f64>>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum FitUnknown {
+    Adhesion,
+    Tension,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum Noise {
+    #[default]
+    Relative,
+    Absolute,
 }
 
 /// A named system of units, or the names of the base units.

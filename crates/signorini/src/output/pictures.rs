@@ -108,7 +108,7 @@ impl Labels {
     }
 }
 
-fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+pub(crate) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (lo, hi) =
         values.filter(|v| v.is_finite()).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
     if lo > hi {
@@ -123,11 +123,11 @@ fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
 }
 
 /// A value whose digits below a thousandth of the range are dropped.
-fn rounded(v: f64, span: f64) -> f64 {
+pub(crate) fn rounded(v: f64, span: f64) -> f64 {
     if v.abs() < 1e-3 * span { 0.0 } else { v }
 }
 
-fn padded((lo, hi): (f64, f64)) -> std::ops::Range<f64> {
+pub(crate) fn padded((lo, hi): (f64, f64)) -> std::ops::Range<f64> {
     let pad = 0.05 * (hi - lo);
     lo - pad..hi + pad
 }

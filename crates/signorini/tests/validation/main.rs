@@ -4,6 +4,7 @@ mod adhesion;
 mod bad_input;
 mod cosine_floor;
 mod events;
+mod fit;
 mod flat_floor;
 mod gallery;
 mod invariance;

@@ -1,0 +1,135 @@
+//! What measurements tell of a contact: the energy of adhesion, and if wanted the tension, from loads and contact radii.
+//!
+//! A membrane is linear while its zone stays the same. So the slope with which it leaves the floor at the radius `c` is
+//! `ρ(c) = ρ₀(c) + ρ₁(c)/τ`, of the floor and of the load, for `τ` times the tension stated; both parts are computed once
+//! for every measurement and many radii. The radius that the model predicts is the stable root of
+//! `ρ(c) = √(2γ/(τT))`, and least squares in the logarithms of the unknowns do the rest.
+
+mod data;
+mod estimate;
+mod model;
+mod picture;
+
+pub use data::Measurements;
+pub use estimate::{Estimate, Parameter};
+pub use model::{Model, Quantity};
+
+use crate::case::statement::{FitUnknown, Noise, Space};
+use crate::case::{CaseError, Document};
+use crate::output::{Folder, OutputError};
+use crate::plan::{Plan, plan};
+use crate::run::RunError;
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// What was found.
+pub struct Fitted {
+    pub summary: Value,
+    /// Whether the search for the least squares ended.
+    pub converged: bool,
+}
+
+/// Fits the unknowns of a case to its measurements, and writes the results into a folder.
+pub fn fit(document: &Document, folder: &Path) -> Result<Fitted, RunError> {
+    let Some(key) = &document.case.fit else {
+        return Err(CaseError::new(format!("{} has no table [fit]", document.name))
+            .help("add  [fit]  data = \"measured.csv\"  time = \"pressure\"  radius = \"radius\"")
+            .into());
+    };
+    let settings = key.get_ref();
+    let Plan::Line(planned) = plan(document)? else {
+        let space = &document.case.space;
+        return Err(document
+            .error(space.span(), "a fit needs a zone that one number describes")
+            .help("space = \"axisymmetric\" for a round membrane, \"line\" for a strip")
+            .into());
+    };
+    if planned.contact.is_none() {
+        return Err(document.error(key.span(), "there is no contact to measure").into());
+    }
+    if planned.space == Space::Axisymmetric && planned.grid.bounds().min[0] != 0.0 {
+        return Err(document.error(document.case.space.span(), "a fit needs a disc: its radius begins at 0").into());
+    }
+    let confidence = settings.confidence.as_ref().map_or(0.95, |c| *c.get_ref());
+    if let Some(c) = &settings.confidence
+        && !(confidence > 0.0 && confidence < 1.0)
+    {
+        return Err(document.error(c.span(), format!("a confidence of {confidence} is not between 0 and 1")).into());
+    }
+    let unknown: Vec<FitUnknown> = match &settings.unknown {
+        None => vec![FitUnknown::Adhesion],
+        Some(list) => list.get_ref().iter().map(|u| *u.get_ref()).collect(),
+    };
+    let with_tension = unknown.contains(&FitUnknown::Tension);
+    if !unknown.contains(&FitUnknown::Adhesion) {
+        let span = settings.unknown.as_ref().map_or(key.span(), |u| u.span());
+        return Err(document
+            .error(span, "the energy of adhesion is what the contact tells")
+            .help("unknown = [\"adhesion\"], or [\"adhesion\", \"tension\"]")
+            .into());
+    }
+    let (quantity, column) = match (&settings.radius, &settings.area) {
+        (Some(column), None) => (Quantity::Radius, column),
+        (None, Some(column)) => (Quantity::Area, column),
+        _ => {
+            return Err(document
+                .error(key.span(), "the fit needs either `radius` or `area`")
+                .help("radius = \"NAME OF THE COLUMN\"")
+                .into());
+        }
+    };
+    let measured = data::read(document, settings, column)?;
+    let parameters = 1 + usize::from(with_tension);
+    if measured.time.len() <= parameters {
+        return Err(document
+            .error(
+                settings.data.span(),
+                format!("{} measurements are too few for {parameters} unknowns", measured.time.len()),
+            )
+            .help("at least one more than there are unknowns")
+            .into());
+    }
+    for &time in &measured.time {
+        planned.check_fields(&planned.at(time), time)?;
+    }
+    let model = Model::new(&planned, quantity, &measured.time)
+        .map_err(|e| document.error(key.span(), format!("the membrane cannot be solved: {e}")))?;
+    model.check(document, settings, &measured)?;
+    let relative = settings.noise.unwrap_or_default() == Noise::Relative;
+    let estimate = Estimate::new(&model, &measured.value, with_tension, relative, confidence);
+    let folder = Folder::create(folder)?;
+    write(document, &folder, &measured, &estimate, confidence).map_err(RunError::from)
+}
+
+fn write(
+    document: &Document,
+    folder: &Folder,
+    measured: &Measurements,
+    estimate: &Estimate,
+    confidence: f64,
+) -> Result<Fitted, OutputError> {
+    let entry = |p: &Parameter| json!({"value": p.value, "interval": p.interval, "relative_error": p.relative_error});
+    let summary = json!({
+        "schema": crate::run::SCHEMA,
+        "case": document.case.title.clone().unwrap_or_else(|| document.name.clone()),
+        "converged": estimate.converged,
+        "measurements": measured.time.len(),
+        "confidence": confidence,
+        "adhesion_energy": entry(&estimate.adhesion),
+        "tension_factor": estimate.tension.as_ref().map(entry),
+        "correlation": estimate.correlation,
+        "scatter": estimate.scatter,
+        "warnings": estimate.warnings,
+        "verdict": estimate.verdict(confidence),
+    });
+    let mut rows = String::from("time,measured,fitted,residual\n");
+    for (i, t) in measured.time.iter().enumerate() {
+        rows += &format!("{t},{},{},{}\n", measured.value[i], estimate.fitted[i], estimate.residuals[i]);
+    }
+    folder.write("case.toml", document.text.as_bytes())?;
+    folder.write("fit.csv", rows.as_bytes())?;
+    crate::output::chart::save(folder, "fit", &picture::draw(measured, estimate)?)?;
+    let text = serde_json::to_string_pretty(&summary).unwrap_or_default() + "\n";
+    folder.write("summary.json", text.as_bytes())?;
+    Ok(Fitted { summary, converged: estimate.converged })
+}

@@ -107,7 +107,9 @@ impl<const D: usize> Report<D> {
         }
         let force: f64 = components.iter().map(|c| c.force).fold(0.0, |a, b| a + b);
         let supports: f64 = support_forces.iter().sum();
-        let largest = force.abs().max(supports.abs()).max(load_force.abs()).max(f64::MIN_POSITIVE);
+        // Without load the two parts of the contact force may cancel.
+        let parts = force.abs().max(line_force.abs());
+        let largest = parts.max(supports.abs()).max(load_force.abs()).max(f64::MIN_POSITIVE);
         let conditions = solution.conditions.as_ref();
         Some(Self {
             support_forces,

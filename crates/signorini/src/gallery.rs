@@ -15,9 +15,13 @@ macro_rules! example {
 }
 
 /// Cases with mechanics, simplest first.
-pub const GALLERY: [Example; 16] = [
+pub const GALLERY: [Example; 20] = [
     example!("string", "a string on a flat floor, beside the exact solution"),
     example!("axisymmetric", "a round membrane by its radius, beside the exact solution"),
+    example!("snap_in", "a sticky membrane: snap-in, pull-off, and the loop between them"),
+    example!("fold", "the same along its path of equilibria, stable and unstable"),
+    example!("ball", "a sticky ball under a membrane, by the area of contact"),
+    example!("blister", "a constrained blister; with measurements for `signorini fit`"),
     example!("flat_disc", "the same membrane in the plane, on a grid that its edge cuts"),
     example!("cosine_disc", "four islands of contact merge to a ring and fill, as the load grows"),
     example!("cosine_square", "a square membrane on the same floor"),

@@ -7,6 +7,7 @@ mod path;
 pub(crate) mod solid;
 
 use crate::case::{CaseError, Document};
+use crate::output::film::Film;
 use crate::output::{Folder, OutputError, pictures, tables, vtk};
 use crate::plan::{Control, MembranePlan, MethodChoice, Plan, PlannedIncrement, plan};
 use crate::snapshot::{DisplayMesh, Snapshot};
@@ -103,6 +104,7 @@ struct Runner<const D: usize, Z> {
     unknowns: usize,
     events: Vec<Event>,
     path: Option<Follower<Z>>,
+    film: Film<D>,
 }
 
 /// Writes every iteration to the log on its way to the user's progress.
@@ -151,6 +153,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             unknowns: 0,
             events: vec![],
             path: None,
+            film: Film::default(),
         })
     }
 
@@ -240,6 +243,9 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                     || !increment.converged)
             {
                 self.write_fields(index, time, &mesh, snapshot)?;
+            }
+            if let (Some(snapshot), true) = (&snapshot, self.plan.pictures && increments.len() > 1) {
+                self.film.add(snapshot);
             }
             last = snapshot.or(last);
             if !increment.converged {
@@ -423,6 +429,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         let contact = self.plan.contact.as_ref().map(|(n, _)| n.as_str());
         self.folder.write("history.csv", tables::history(&self.steps, contact, &probes).as_bytes())?;
         if let (true, Some(snapshot)) = (self.plan.pictures, last) {
+            self.film.write(&self.folder, &self.plan, mesh)?;
             pictures::draw(&self.folder, &self.plan, mesh, snapshot, &self.steps, &self.events)?;
         }
         let summary = json!({

@@ -33,15 +33,17 @@ pub fn draw<const D: usize>(
     }
     let units = &Labels::new(&plan.document);
     let exact = exact::of(plan, s.time);
+    let own = |values: &[f64]| range(values.iter().copied());
     type Drawing<'a> = Box<dyn Fn() -> Result<String, OutputError> + Sync + 'a>;
     let mut drawings: Vec<(&str, Drawing)> = Vec::new();
     if D == 1 {
-        drawings.push(("deflection", Box::new(|| profile(plan, mesh, s, exact, units))));
+        drawings.push(("deflection", Box::new(|| profile(plan, mesh, s, exact, units, heights(s)))));
         if s.has_floor {
             drawings.push(("gap_and_pressure", Box::new(|| gap_profile(mesh, s, units))));
         }
     } else {
-        let field = |values, title, label, exact| map(mesh, s, values, title, label, exact, units);
+        let field =
+            |values: &Vec<f64>, title, label, exact| map(mesh, s, values, title, label, exact, units, own(values));
         drawings.push(("deflection", Box::new(move || field(&s.displacement, "Deflection", units.length("u"), exact))));
         if s.has_floor {
             drawings.push(("gap", Box::new(move || field(&s.gap, "Gap", units.length("gap"), None))));
@@ -132,7 +134,40 @@ pub(crate) fn padded((lo, hi): (f64, f64)) -> std::ops::Range<f64> {
     lo - pad..hi + pad
 }
 
+/// One frame of a film: the deflection on a line, the gap in the plane, over a range that holds for all frames.
+pub(super) fn frame<const D: usize>(
+    plan: &MembranePlan<D>,
+    mesh: &DisplayMesh<D>,
+    s: &Snapshot<D>,
+    (lo, hi): (f64, f64),
+) -> Result<String, OutputError> {
+    let units = &Labels::new(&plan.document);
+    if D == 1 {
+        return profile(plan, mesh, s, None, units, (lo, hi));
+    }
+    let (values, title, label) = match s.has_floor {
+        true => (&s.gap, "Gap", units.length("gap")),
+        false => (&s.displacement, "Deflection", units.length("u")),
+    };
+    map(mesh, s, values, title, label, None, units, (lo, hi))
+}
+
+/// The range of what a frame shows.
+pub(super) fn frame_range<const D: usize>(s: &Snapshot<D>) -> (f64, f64) {
+    match (D, s.has_floor) {
+        (1, _) => heights(s),
+        (_, true) => range(s.gap.iter().copied()),
+        (_, false) => range(s.displacement.iter().copied()),
+    }
+}
+
+/// The range of membrane and floor.
+fn heights<const D: usize>(s: &Snapshot<D>) -> (f64, f64) {
+    range(s.displacement.iter().chain(s.floor.iter().filter(|_| s.has_floor)).copied())
+}
+
 /// A field as a colour map, with the contact outlined.
+#[allow(clippy::too_many_arguments)]
 fn map<const D: usize>(
     mesh: &DisplayMesh<D>,
     s: &Snapshot<D>,
@@ -141,13 +176,13 @@ fn map<const D: usize>(
     value_label: String,
     exact: Option<FlatFloor>,
     units: &Labels,
+    (lo, hi): (f64, f64),
 ) -> Result<String, OutputError> {
     let bounds = mesh
         .points
         .iter()
         .fold(Aabb::new(mesh.points[0], mesh.points[0]), |b, p| Aabb::new(b.min.inf(p), b.max.sup(p)));
     let extent = bounds.size();
-    let (lo, hi) = range(values.iter().copied());
     // The plot keeps the proportions of the domain.
     let aspect = extent[1] / extent[0];
     let (w, h) = if aspect < 1.0 { (600.0, (600.0 * aspect).max(120.0)) } else { ((600.0 / aspect).max(120.0), 600.0) };
@@ -294,10 +329,10 @@ fn profile<const D: usize>(
     s: &Snapshot<D>,
     exact: Option<FlatFloor>,
     units: &Labels,
+    (lo, hi): (f64, f64),
 ) -> Result<String, OutputError> {
     let u = in_order(mesh, &s.displacement);
     let floor = in_order(mesh, &s.floor);
-    let (lo, hi) = range(s.displacement.iter().chain(s.floor.iter().filter(|_| s.has_floor)).copied());
     let x = range(u.iter().map(|p| p.0));
     let axis = if plan.space == Space::Axisymmetric { "r" } else { "x" };
     svg((900, 480), |root| {

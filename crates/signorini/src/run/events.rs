@@ -209,14 +209,14 @@ fn differences<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Known<Z>, b: &Kno
     for (j, part) in parts_b.iter().enumerate() {
         let from: Vec<&Vec<Point<D>>> = (0..parts_a.len()).filter(|&i| overlap[i][j]).map(|i| &parts_a[i]).collect();
         if from.is_empty() {
-            add("nucleation", mean(part));
+            add("nucleation", middle(grid, part));
         }
         bridges(&from).into_iter().for_each(|x| add("merge", x));
     }
     for (i, part) in parts_a.iter().enumerate() {
         let into: Vec<&Vec<Point<D>>> = (0..parts_b.len()).filter(|&j| overlap[i][j]).map(|j| &parts_b[j]).collect();
         if into.is_empty() {
-            add("release", mean(part));
+            add("release", middle(grid, part));
         }
         bridges(&into).into_iter().for_each(|x| add("split", x));
     }
@@ -296,6 +296,12 @@ fn bridges<const D: usize>(parts: &[&Vec<Point<D>>]) -> Vec<Point<D>> {
         out.push(x);
     }
     out
+}
+
+/// The middle of a zone; of one that reaches the lower end of a line that end, which is the axis of a round membrane.
+fn middle<const D: usize>(grid: &Grid<D>, part: &[Point<D>]) -> Point<D> {
+    let low = grid.bounds().min;
+    if D == 1 && part.iter().any(|x| x[0] <= low[0]) { low } else { mean(part) }
 }
 
 fn mean<const D: usize>(points: &[Point<D>]) -> Point<D> {

@@ -7,8 +7,8 @@ use signorini_membrane::scales::Scales;
 use signorini_membrane::zone::Zone;
 use signorini_solve::{Progress, SolveError};
 
-/// Halvings of an increment of arc length before the path is given up.
-const MOST_HALVINGS: usize = 7;
+/// Halvings of an increment before the path is given up.
+const MOST_HALVINGS: i32 = 7;
 
 /// Where a path stands within its step.
 pub struct Follower<Z> {
@@ -87,19 +87,35 @@ impl<Z> Follower<Z> {
     where
         Z: Zone<D>,
     {
-        let constraint = Constraint { weights: [1.0, 0.0], value: target };
-        let (zone, time) = match &self.state {
-            Some(state) => path.predict(state, &constraint)?,
-            None => match zone_of_area(&(path.membrane)(self.begin[1]), target)? {
-                Some(zone) => (zone, self.begin[1]),
-                None => return Ok(Along::Failed(format!("no zone of the area {target} was found to begin with"))),
-            },
-        };
-        let (found, solves) = path.correct(zone, time, constraint, [sense, 0.0], progress)?;
-        Ok(match found {
-            Some(state) => self.accept(state, solves),
-            None => Along::Failed(format!("no equilibrium with a contact area of {target} was found")),
-        })
+        let mut total = 0;
+        let mut part = 1.0;
+        for _ in 0..1 << MOST_HALVINGS {
+            let from = self.state.as_ref().map_or(0.0, |s| s.area);
+            let value = if part < 1.0 { from + part * (target - from) } else { target };
+            let constraint = Constraint { weights: [1.0, 0.0], value };
+            let (zone, time) = match &self.state {
+                Some(state) => path.predict(state, &constraint)?,
+                None => match zone_of_area(&(path.membrane)(self.begin[1]), target)? {
+                    Some(zone) => (zone, self.begin[1]),
+                    None => return Ok(Along::Failed(format!("no zone of the area {target} was found to begin with"))),
+                },
+            };
+            let (found, solves) = path.correct(zone, time, constraint, [sense, 0.0], progress)?;
+            total += solves;
+            match found {
+                Some(state) if value == target => return Ok(self.accept(state, total)),
+                Some(state) => {
+                    self.state = Some(state);
+                    part = (2.0 * part).min(1.0);
+                }
+                None if self.state.is_none() || progress.interrupted() => break,
+                None => part *= 0.5,
+            }
+            if part < 0.5f64.powi(MOST_HALVINGS) {
+                break;
+            }
+        }
+        Ok(Along::Failed(format!("no equilibrium with a contact area of {target} was found")))
     }
 
     fn by_arc_length<const D: usize>(

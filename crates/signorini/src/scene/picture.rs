@@ -6,7 +6,7 @@ use signorini_geometry::{Point, Vector};
 
 use super::output::Tessellation;
 use super::{Frame, KINDS, Scene};
-use crate::output::chart::{FONT, failed, pixels};
+use crate::output::chart::{FONT, animation};
 use crate::output::{Folder, OutputError};
 
 const SIZE: (f64, f64) = (860.0, 430.0);
@@ -55,7 +55,7 @@ impl View {
 pub fn draw(scene: &Scene, frames: &[Frame], folder: &Folder) -> Result<(), OutputError> {
     let view = View::new(scene, frames);
     let drawn: Vec<String> = frames.iter().map(|f| frame(scene, &view, f)).collect();
-    folder.write("pictures/scene.png", &animation(&drawn)?)?;
+    folder.write("pictures/scene.png", &animation(&drawn, 1.0, (1, 15))?)?;
     // The closest moment of every kind of contact.
     let stills: Vec<&String> = (0..KINDS.len())
         .filter_map(|kind| {
@@ -173,22 +173,4 @@ fn frame(scene: &Scene, view: &View, frame: &Frame) -> String {
         text(&mut svg, x + 16.0, y + 19.0, 12.0, "#444", &format!("{}  to  {}", part(0), part(1)));
     }
     svg + "</svg>"
-}
-
-/// Frames as an animated PNG.
-fn animation(frames: &[String]) -> Result<Vec<u8>, OutputError> {
-    let mut bytes = Vec::new();
-    let (width, height, first) = pixels(&frames[0], 1.0)?;
-    let mut encoder = png::Encoder::new(&mut bytes, width, height);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_animated(frames.len() as u32, 0).map_err(failed)?;
-    encoder.set_frame_delay(1, 15).map_err(failed)?;
-    let mut writer = encoder.write_header().map_err(failed)?;
-    writer.write_image_data(&first).map_err(failed)?;
-    for frame in &frames[1..] {
-        writer.write_image_data(&pixels(frame, 1.0)?.2).map_err(failed)?;
-    }
-    writer.finish().map_err(failed)?;
-    Ok(bytes)
 }

@@ -62,7 +62,7 @@ enum Command {
     },
     /// Find out the energy of adhesion from measured loads and contact radii
     #[command(
-        after_help = "Example:\n  signorini gallery show blister > case.toml    and add a table [fit]: see docs/fit.md"
+        after_help = "Example:\n  signorini fit gallery/blister/case.toml -o fitted"
     )]
     Fit {
         /// The case file, with a table [fit]

@@ -7,6 +7,9 @@ use crate::scales::Scales;
 use crate::zone::{Zone, contact_index, is_free};
 use signorini_geometry::Point;
 
+/// Times the tolerance, a penetration that may be put up with where the grid cannot tell whether zones touch.
+const NEARLY: f64 = 30.0;
+
 /// How far a state is from the contact conditions.
 #[derive(Clone, Debug)]
 pub struct Conditions<const D: usize> {
@@ -78,6 +81,12 @@ impl<const D: usize> Conditions<D> {
 
     pub fn penetrates(&self, scales: &Scales) -> bool {
         self.least_gap_outside < -scales.gap_tolerance()
+    }
+
+    /// Whether all that is wrong is a penetration not much larger than what counts as none.
+    pub fn nearly_hold(&self, scales: &Scales, sticky: bool) -> bool {
+        let slight = self.least_gap_outside >= -NEARLY * scales.gap_tolerance();
+        slight && (sticky || !self.pulls(scales)) && self.torn_from_support.is_none()
     }
 
     /// Whether the contact conditions hold everywhere. Where the floor is sticky it may pull.

@@ -23,6 +23,10 @@ const DAMPED_AFTER: usize = 3;
 /// ... and that move by less than this fraction of a cell have settled: as a front crosses a grid line the discrete
 /// slope jump makes a jump of its own, of the size of the discretisation error, and no position makes it vanish.
 const SETTLED: f64 = 1e-3;
+/// ... or, where a front is sharper than a cell, by less than this.
+const SETTLED_SHARP: f64 = 0.03;
+/// A front sharper than this, relative to a cell, is no front any more.
+const SHARPEST: f64 = 10.0;
 /// A step of this fraction of a cell that does not improve on the last is round-off.
 const ROUND_OFF: f64 = 1e-8;
 /// Steps down the energy before a jump is given up.
@@ -82,6 +86,8 @@ pub struct Solution<'a, const D: usize, Z> {
     /// With adhesion, how far the state is from its loss: the square of the lowest eigenvalue, or the least gap of a free
     /// membrane. Near that loss it vanishes linearly in the load.
     pub margin: Option<f64>,
+    /// Penetration that was put up with where zones come so near to each other that the grid cannot tell whether they touch.
+    pub unresolved: Option<f64>,
     /// Length of the last step relative to a cell, where the fronts settled on a jump of the discrete slope.
     pub settled_within: Option<f64>,
 }
@@ -117,6 +123,7 @@ pub fn solve<'a, const D: usize, Z: Zone<D>>(
             lowest_eigenvalue: None,
             jumped: false,
             margin: None,
+            unresolved: None,
             settled_within: None,
         },
         branch: Branch::Stable,
@@ -258,6 +265,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
     fn sweep(&mut self, floor: &SharedField<D>) -> Result<Reason, SolveError> {
         let mut predicted = false;
         let mut sweeps = 0;
+        let mut seen: Vec<((usize, usize), f64)> = Vec::new();
         loop {
             let settled = self.settle_fronts();
             if let Ok(Fixed::Interrupted) = settled {
@@ -283,6 +291,15 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 solution.conditions = Some(conditions);
                 return Ok(if solution.zone.is_empty() { Reason::NoContact } else { Reason::Converged });
             }
+            // Corrected and settled again it would come back to itself: the grid cannot tell whether zones touch.
+            let state = (solution.zone.counts(), conditions.least_gap_outside);
+            let again = |(counts, gap): &((usize, usize), f64)| *counts == state.0 && (gap / state.1 - 1.0).abs() < 0.1;
+            if !first && conditions.nearly_hold(scales, self.adhering) && seen.iter().any(again) {
+                solution.unresolved = Some(-conditions.least_gap_outside);
+                solution.conditions = Some(conditions);
+                return Ok(Reason::Converged);
+            }
+            seen.push(state);
             if self.branch == Branch::Nearest && first {
                 return Ok(Reason::NoContact);
             }
@@ -361,7 +378,9 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             waited = if residual < 0.7 * best || step.kind == StepKind::Descent { 0 } else { waited + 1 };
             best = best.min(residual);
             let relative_step = step.length / h;
-            let settled = (waited >= PATIENCE || last) && relative_step < SETTLED && step.kind != StepKind::Descent;
+            let sharp = D > 1 && (1.0..SHARPEST).contains(&(zone.sharpest() * h));
+            let enough = if sharp { SETTLED_SHARP } else { SETTLED };
+            let settled = (waited >= PATIENCE || last) && relative_step < enough && step.kind != StepKind::Descent;
             if residual <= 1.0 || (waited >= 1 && relative_step < ROUND_OFF) || settled {
                 if let Some(linearised) = &linearised {
                     let spectrum = linearised.spectrum();

@@ -143,6 +143,18 @@ impl Zone<1> for LineZone {
         Advance { topology_changed: zone.intervals.len() != self.intervals.len(), zone }
     }
 
+    fn extrapolated(&self, grid: &Grid<1>, before: &[(&Self, f64)]) -> Option<Self> {
+        if before.iter().any(|(zone, _)| zone.intervals.len() != self.intervals.len()) {
+            return None;
+        }
+        let ahead = |k: usize, side: usize| {
+            let now = self.intervals[k][side];
+            now + before.iter().map(|(zone, multiple)| multiple * (now - zone.intervals[k][side])).sum::<f64>()
+        };
+        let moved = (0..self.intervals.len()).map(|k| [ahead(k, 0), ahead(k, 1)]).collect();
+        Some(Self::new(grid, moved)).filter(|zone| zone.intervals.len() == self.intervals.len())
+    }
+
     fn united(&self, grid: &Grid<1>, f: &mut dyn FnMut(&Point<1>) -> f64) -> Self {
         let mut all = self.intervals.clone();
         all.extend(Self::where_negative(grid, f));

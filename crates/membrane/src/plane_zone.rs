@@ -347,6 +347,33 @@ impl Zone<2> for PlaneZone {
         Advance { zone, topology_changed: true }
     }
 
+    fn extrapolated(&self, grid: &Grid<2>, before: &[(&Self, f64)]) -> Option<Self> {
+        if before.iter().any(|(zone, _)| zone.hole != self.hole) {
+            return None;
+        }
+        let mut moved = Vec::with_capacity(self.curves.len());
+        for (i, now) in self.curves.iter().enumerate() {
+            let ahead = |x: &Point<2>| -> f64 {
+                let way = |zone: &Self| {
+                    let then = &zone.curves[i];
+                    then.signed_distance(x, 0..then.samples().len()).0
+                };
+                before.iter().map(|(zone, multiple)| multiple * way(zone)).sum()
+            };
+            // Fronts that have little to do with each other, or sharp ones, are better left where they are.
+            let small = |p: &CurvePoint| {
+                let w = ahead(&p.position).abs();
+                w < 2.0 * grid.h() && w * p.curvature.abs() < FOLD
+            };
+            if !(0..now.samples().len()).all(|k| small(&now.point(now.sample_parameter(k)))) {
+                return None;
+            }
+            let curve = now.offset(4 * now.knots(), |p| ahead(&p.position));
+            moved.push(curve.by_arc_length(Self::knots(grid, polygon::perimeter(curve.samples()))));
+        }
+        Self::is_valid(&moved).then(|| Self::new(grid, moved))
+    }
+
     fn united(&self, grid: &Grid<2>, f: &mut dyn FnMut(&Point<2>) -> f64) -> Self {
         self.combined(grid, f, false, f64::min)
     }

@@ -109,6 +109,10 @@ pub trait Zone<const D: usize>: Division<D> + Clone + Send {
     /// nowhere so far that they would fold.
     fn advanced(&self, grid: &Grid<D>, modes: ModeSpace, step: &[f64], reach: f64) -> Advance<Self>;
 
+    /// The zone with its fronts moved by a sum of multiples of the ways that they have come since earlier zones; none where
+    /// these differ in more than the place of the fronts.
+    fn extrapolated(&self, grid: &Grid<D>, before: &[(&Self, f64)]) -> Option<Self>;
+
     /// Adds the set where `f < 0`, which lies outside the zone.
     fn united(&self, grid: &Grid<D>, f: &mut dyn FnMut(&Point<D>) -> f64) -> Self;
     /// Removes the set where `f < 0`.

@@ -61,9 +61,7 @@ enum Command {
         set: Vec<String>,
     },
     /// Find out the energy of adhesion from measured loads and contact radii
-    #[command(
-        after_help = "Example:\n  signorini fit gallery/blister/case.toml -o fitted"
-    )]
+    #[command(after_help = "Example:\n  signorini fit gallery/blister/case.toml -o fitted")]
     Fit {
         /// The case file, with a table [fit]
         case: PathBuf,

@@ -51,6 +51,9 @@ pub fn solid_sizes<const D: usize>(plan: &crate::plan::solid::SolidPlan<D>) -> R
 const UNSTABLE: &str =
     "unstable states are among the results, where they were asked for: `stable` in the summary tells which";
 
+/// An increment is cut to this fraction of itself before it is given up.
+const SMALLEST_INCREMENT: f64 = 1.0 / 32.0;
+
 /// Version of the summary's keys.
 pub const SCHEMA: u32 = 1;
 
@@ -200,6 +203,12 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             }
             let before = self.known(index, known.clone(), &mut logged);
             let mut increment = self.engine.solve(&self.plan, &membrane, (index, time), &mut logged);
+            if let (false, Control::Time, Some(from)) = (increment.converged, planned.control, &known)
+                && let Some(taken) = self.approach(index, from, time, &mut logged)
+            {
+                solves += increment.iterations + taken;
+                increment = self.engine.solve(&self.plan, &membrane, (index, time), &mut logged);
+            }
             increment.iterations += solves;
             let mut after = self.engine.known(time, &increment);
             if planned.control != Control::Time {
@@ -274,6 +283,33 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         }
         let increment = self.engine.solve(&self.plan, &start, (0, 0.0), progress);
         self.engine.known(0.0, &increment)
+    }
+
+    /// Leads from a state towards a time at which no state was found, by smaller increments that are cut as they need;
+    /// tells the equilibrium solves it took, or none where that does not help either.
+    fn approach(&mut self, index: usize, from: &Known<Z>, time: f64, progress: &mut dyn Progress) -> Option<usize> {
+        let whole = time - from.time;
+        let (mut reached, mut size) = (from.clone(), 0.5 * whole);
+        let mut solves = 0;
+        loop {
+            let target = reached.time + size;
+            if target >= time - 1e-9 * whole {
+                self.engine.start_from(reached.zone);
+                return Some(solves);
+            }
+            if progress.interrupted() || size < SMALLEST_INCREMENT * whole {
+                return None;
+            }
+            let membrane = self.plan.at(target);
+            self.plan.check_fields(&membrane, target).ok()?;
+            self.engine.start_from(reached.zone.clone());
+            let increment = self.engine.solve(&self.plan, &membrane, (index, target), progress);
+            solves += increment.iterations;
+            match self.engine.known(target, &increment) {
+                Some(state) => reached = state,
+                None => size *= 0.5,
+            }
+        }
     }
 
     /// One increment along a path of equilibria.

@@ -21,6 +21,9 @@ use std::collections::BTreeMap;
 /// Curvature times cell size beyond which a front is not resolved.
 const RESOLVED: f64 = 0.5;
 
+/// States that tell where a path goes on.
+const TRAIL: usize = 3;
+
 /// Solves increments, each from the one before.
 pub struct Engine<const D: usize, Z> {
     previous: Option<(Z, Scales, Branch)>,
@@ -28,6 +31,8 @@ pub struct Engine<const D: usize, Z> {
     asked: Option<Z>,
     /// The scales of the problem, once they are known.
     scales: Option<Scales>,
+    /// The last states of the path and their times, as long as it goes on steadily.
+    trail: Vec<(f64, Z)>,
 }
 
 type Sampler<'a, const D: usize> = Box<dyn Fn(&Point<D>) -> Option<Sample> + 'a>;
@@ -63,7 +68,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             let grid = &plan.grid;
             Z::empty(grid).united(grid, &mut |x| shape.level(x))
         });
-        Self { previous: None, asked, scales: None }
+        Self { previous: None, asked, scales: None, trail: Vec::new() }
     }
 
     /// The state that the last increment converged to.
@@ -89,8 +94,27 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         self.start_near(zone, Branch::Stable);
     }
 
+    /// Where the fronts will be if they go on as they did: by the polynomial in time through the last states.
+    fn ahead(&self, membrane: &Membrane<D>, time: f64) -> Option<Z> {
+        let ((last, zone), before) = self.trail.split_last()?;
+        let step = last - before.last()?.0;
+        if (time - last) / step <= 0.0 || (time - last) / step > 1.5 {
+            return None;
+        }
+        let times: Vec<f64> = self.trail.iter().map(|(t, _)| *t).collect();
+        let multiples: Vec<(&Z, f64)> = before
+            .iter()
+            .map(|(t, zone)| {
+                let others = times.iter().filter(|o| *o != t);
+                (zone, -others.map(|o| (time - o) / (t - o)).product::<f64>())
+            })
+            .collect();
+        zone.extrapolated(&membrane.grid, &multiples)
+    }
+
     /// Starts the next increment from another zone.
     pub fn start_near(&mut self, zone: Z, branch: Branch) {
+        self.trail.clear();
         self.previous = self.scales.map(|scales| (zone, scales, branch));
     }
 
@@ -136,7 +160,9 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
     {
         let start = match (self.asked.take(), self.previous.take()) {
             (Some(zone), _) => Start::Asked(zone, Branch::Nearest),
-            (None, Some((zone, scales, branch))) => Start::Zone(zone, scales, branch),
+            (None, Some((zone, scales, branch))) => {
+                Start::Zone(self.ahead(membrane, at.1).unwrap_or(zone), scales, branch)
+            }
             (None, None) => Start::Free,
         };
         let mut elements = Elements::new(membrane);
@@ -146,6 +172,16 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         let converged = solution.reason.converged();
         if let (true, Some(scales)) = (converged, solution.scales) {
             self.previous = Some((solution.zone.clone(), scales, Branch::Stable));
+            if self.trail.last().is_some_and(|(_, z)| z.counts() != solution.zone.counts()) || solution.zone.is_empty()
+            {
+                self.trail.clear();
+            }
+            if self.trail.len() == TRAIL {
+                self.trail.remove(0);
+            }
+            if !solution.zone.is_empty() {
+                self.trail.push((at.1, solution.zone.clone()));
+            }
         }
         let mut warnings = Vec::new();
         let sharp = solution.zone.sharpest() * membrane.grid.h();
@@ -158,7 +194,18 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         }
         if let Some(step) = solution.settled_within {
             warnings.push(format!(
-                "the fronts settled to {step:.0e} of a cell at t = {}, on a jump of the discrete slope",
+                "the fronts settled to {step:.0e} of a cell at t = {}, {}",
+                at.1,
+                if step < 1e-3 {
+                    "on a jump of the discrete slope"
+                } else {
+                    "where they are sharper than the grid: zones, areas and forces are known to that only"
+                }
+            ));
+        }
+        if let Some(depth) = solution.unresolved {
+            warnings.push(format!(
+                "the grid cannot tell whether zones touch at t = {}: the membrane penetrates the floor by {depth:.0e} between them",
                 at.1
             ));
         }

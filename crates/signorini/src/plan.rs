@@ -4,6 +4,7 @@ mod domain;
 mod floor;
 mod history;
 mod rigid;
+mod shapes;
 pub mod solid;
 
 use crate::case::statement::{self, Body, Method, Space};

@@ -72,7 +72,10 @@ pub(super) fn read(planner: &Planner<'_>, body: &str, rigid: &Rigid) -> Result<F
                 .error(rigid.shape.span(), "a height map is a floor under a membrane seen from above")
                 .help("on a line the height is a function of x:  shape.height = \"…\""));
         }
-        _ => return Err(planner.unavailable(rigid.shape.span(), "this shape as the floor of a membrane")),
+        _ => match super::shapes::height(planner, rigid)? {
+            Some((expression, shape)) => Placed { expression, span: rigid.shape.span(), key: format!("{key}.{shape}") },
+            None => return Err(planner.unavailable(rigid.shape.span(), "this shape as the floor of a membrane")),
+        },
     };
     let mut displacement = Vec::new();
     match rigid.motion.as_ref().map(|m| (m.get_ref(), m.span())) {

@@ -6,6 +6,7 @@ mod cosine_floor;
 mod events;
 mod fit;
 mod flat_floor;
+mod floors;
 mod gallery;
 mod invariance;
 mod solids;

@@ -2,8 +2,7 @@
 
 use super::{Estimate, Measurements};
 use crate::output::OutputError;
-use crate::output::chart::{FONT, failed, label, svg};
-use crate::output::pictures::{padded, range, rounded};
+use crate::output::chart::{Axes, axes, failed, padded, range, svg};
 use plotters::prelude::*;
 
 const MEASURED: RGBColor = RGBColor(31, 81, 140);
@@ -22,22 +21,7 @@ pub(super) fn draw(measured: &Measurements, estimate: &Estimate) -> Result<Strin
             (&lower, range(left.iter().map(|p| p.1).chain([0.0])), "residual"),
         ];
         for (k, (part, y, name)) in ends.into_iter().enumerate() {
-            let mut chart = ChartBuilder::on(part)
-                .margin(12)
-                .x_label_area_size(40)
-                .y_label_area_size(80)
-                .build_cartesian_2d(padded(x), padded(y))
-                .map_err(failed)?;
-            chart
-                .configure_mesh()
-                .light_line_style(WHITE)
-                .x_desc(&measured.names[0])
-                .y_desc(name)
-                .x_label_formatter(&|v| label(rounded(*v, x.1 - x.0)))
-                .y_label_formatter(&|v| label(rounded(*v, y.1 - y.0)))
-                .label_style((FONT, 15))
-                .draw()
-                .map_err(failed)?;
+            let mut chart = axes(part, &Axes { x, y, x_name: &measured.names[0], y_name: name })?;
             if k == 0 {
                 chart.draw_series(LineSeries::new(line.iter().copied(), FITTED.stroke_width(2))).map_err(failed)?;
                 chart.draw_series(points.iter().map(|p| Circle::new(*p, 4, MEASURED.filled()))).map_err(failed)?;

@@ -3,6 +3,7 @@
 use super::{Folder, OutputError};
 use base64::Engine as _;
 use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use rayon::prelude::*;
 use resvg::{tiny_skia, usvg};
@@ -89,6 +90,39 @@ fn rendered(svg: &str, zoom: f32) -> Result<tiny_skia::Pixmap, OutputError> {
     let mut pixmap = tiny_skia::Pixmap::new(w, h).ok_or_else(|| failed("no memory for the picture"))?;
     resvg::render(&tree, tiny_skia::Transform::from_scale(zoom, zoom), &mut pixmap.as_mut());
     Ok(pixmap)
+}
+
+/// Axes of a chart: the ranges of both, and what they are called.
+pub struct Axes<'a> {
+    pub x: (f64, f64),
+    pub y: (f64, f64),
+    pub x_name: &'a str,
+    pub y_name: &'a str,
+}
+
+/// A chart with two linear axes.
+pub type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+/// Draws axes a little wider than their ranges.
+pub fn axes<'a, 'b>(part: &'a DrawingArea<SVGBackend<'b>, Shift>, axes: &Axes) -> Result<Chart<'a, 'b>, OutputError> {
+    let (x, y) = (axes.x, axes.y);
+    let mut chart = ChartBuilder::on(part)
+        .margin(12)
+        .x_label_area_size(42)
+        .y_label_area_size(80)
+        .build_cartesian_2d(padded(x), padded(y))
+        .map_err(failed)?;
+    chart
+        .configure_mesh()
+        .light_line_style(WHITE)
+        .x_desc(axes.x_name)
+        .y_desc(axes.y_name)
+        .x_label_formatter(&|v| label(rounded(*v, x.1 - x.0)))
+        .y_label_formatter(&|v| label(rounded(*v, y.1 - y.0)))
+        .label_style((FONT, 15))
+        .draw()
+        .map_err(failed)?;
+    Ok(chart)
 }
 
 /// A raster to be laid under the axes of a chart.
@@ -178,4 +212,29 @@ pub fn label(v: f64) -> String {
     }
     let text = format!("{v:.4}");
     text.trim_end_matches('0').trim_end_matches('.').to_string()
+}
+
+/// The range of finite values; one of some width even where they are all the same.
+pub fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let (lo, hi) =
+        values.filter(|v| v.is_finite()).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    if lo > hi {
+        (0.0, 1.0)
+    } else if hi - lo <= 1e-14 * hi.abs().max(lo.abs()) {
+        // A constant field still has an axis.
+        let pad = 0.5 * hi.abs().max(f64::MIN_POSITIVE.sqrt());
+        (lo - pad, hi + pad)
+    } else {
+        (lo, hi)
+    }
+}
+
+/// A value whose digits below a thousandth of the range are dropped.
+pub fn rounded(v: f64, span: f64) -> f64 {
+    if v.abs() < 1e-3 * span { 0.0 } else { v }
+}
+
+pub fn padded((lo, hi): (f64, f64)) -> std::ops::Range<f64> {
+    let pad = 0.05 * (hi - lo);
+    lo - pad..hi + pad
 }

@@ -1,6 +1,6 @@
 //! The pictures a person would want to look at first.
 
-use super::chart::{FONT, Image, closed_line, failed, label, save, svg, viridis};
+use super::chart::{Axes, FONT, Image, axes, closed_line, failed, label, padded, range, rounded, save, svg, viridis};
 use super::{Folder, OutputError};
 use crate::case::statement::Space;
 use crate::exact;
@@ -108,30 +108,6 @@ impl Labels {
     pub fn pressure(&self, what: &str) -> String {
         self.with(what, self.force.as_ref().zip(self.length.as_ref()).map(|(f, l)| format!("{f}/{l}²")))
     }
-}
-
-pub(crate) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let (lo, hi) =
-        values.filter(|v| v.is_finite()).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-    if lo > hi {
-        (0.0, 1.0)
-    } else if hi - lo <= 1e-14 * hi.abs().max(lo.abs()) {
-        // A constant field still has an axis.
-        let pad = 0.5 * hi.abs().max(f64::MIN_POSITIVE.sqrt());
-        (lo - pad, hi + pad)
-    } else {
-        (lo, hi)
-    }
-}
-
-/// A value whose digits below a thousandth of the range are dropped.
-pub(crate) fn rounded(v: f64, span: f64) -> f64 {
-    if v.abs() < 1e-3 * span { 0.0 } else { v }
-}
-
-pub(crate) fn padded((lo, hi): (f64, f64)) -> std::ops::Range<f64> {
-    let pad = 0.05 * (hi - lo);
-    lo - pad..hi + pad
 }
 
 /// One frame of a film: the deflection on a line, the gap in the plane, over a range that holds for all frames.
@@ -532,22 +508,7 @@ fn loop_of_states(
             let arrows: Vec<[(f64, f64); 2]> = jumps.iter().map(|e| ends(e).map(|v| ((drive.at)(e.time), v))).collect();
             let all = || states.iter().map(|s| (s.0, s.1)).chain(arrows.iter().flatten().copied());
             let [wide, high] = [range(all().map(|p| p.0)), range(all().map(|p| p.1).chain([0.0]))];
-            let mut chart = ChartBuilder::on(part)
-                .margin(12)
-                .x_label_area_size(42)
-                .y_label_area_size(80)
-                .build_cartesian_2d(padded(wide), padded(high))
-                .map_err(failed)?;
-            chart
-                .configure_mesh()
-                .light_line_style(WHITE)
-                .x_desc(&drive.label)
-                .y_desc(y)
-                .x_label_formatter(&|v| label(rounded(*v, wide.1 - wide.0)))
-                .y_label_formatter(&|v| label(rounded(*v, high.1 - high.0)))
-                .label_style((FONT, 15))
-                .draw()
-                .map_err(failed)?;
+            let mut chart = axes(part, &Axes { x: wide, y: high, x_name: &drive.label, y_name: y })?;
             // Between two states the path is a line, broken where it jumps.
             for pair in states.windows(2) {
                 let (a, b) = (&pair[0], &pair[1]);
@@ -612,22 +573,7 @@ fn history(
         for (part, points, y) in [(&parts[0], &area, measure), (&parts[1], &force, units.force("force of the floor"))] {
             let x = range(points.iter().map(|p| p.0));
             let height = range(points.iter().map(|p| p.1).chain([0.0]));
-            let mut chart = ChartBuilder::on(part)
-                .margin(12)
-                .x_label_area_size(40)
-                .y_label_area_size(80)
-                .build_cartesian_2d(padded(x), padded(height))
-                .map_err(failed)?;
-            chart
-                .configure_mesh()
-                .light_line_style(WHITE)
-                .x_desc("t")
-                .y_desc(y)
-                .x_label_formatter(&|v| label(rounded(*v, x.1 - x.0)))
-                .y_label_formatter(&|v| label(rounded(*v, height.1 - height.0)))
-                .label_style((FONT, 15))
-                .draw()
-                .map_err(failed)?;
+            let mut chart = axes(part, &Axes { x, y: height, x_name: "t", y_name: &y })?;
             let (low, high) = (chart.y_range().start, chart.y_range().end);
             let style = TextStyle::from((FONT, 12).into_font()).color(&FRONT).transform(FontTransform::Rotate90);
             for (time, words) in &marks {

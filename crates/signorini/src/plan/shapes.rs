@@ -14,7 +14,7 @@ const ALIGNED: f64 = 1e-9;
 
 /// The height of a shape at (x, y) as an expression; none for shapes that have another reading.
 pub(super) fn height(planner: &Planner<'_>, rigid: &Rigid) -> Result<Option<(Expression, &'static str)>, CaseError> {
-    let above = Above { planner, rigid, lineal: planner.space != Space::Plane };
+    let above = Above { planner, lineal: planner.space != Space::Plane };
     let (text, key) = match rigid.shape.get_ref() {
         Shape::Sphere(s) => {
             let c = above.place(&s.center)?;
@@ -82,7 +82,6 @@ pub(super) fn height(planner: &Planner<'_>, rigid: &Rigid) -> Result<Option<(Exp
 
 struct Above<'a, 'b> {
     planner: &'a Planner<'b>,
-    rigid: &'a Rigid,
     /// Whether positions have one coordinate beside the height.
     lineal: bool,
 }

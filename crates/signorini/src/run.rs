@@ -242,7 +242,9 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             let last_of_step = increments.get(index + 1).is_none_or(|next| next.step != planned.step);
             let others = self.other_states(&membrane, &increment, D == 1 || last_of_step);
             self.record(time, &membrane, &increment, others);
-            if let (Some(before), Some(after), None) = (&before, &after, &membrane.adhesion) {
+            if let (Control::Time, Some(before), Some(after), None) =
+                (planned.control, &before, &after, &membrane.adhesion)
+            {
                 self.find_events(index, before, after, &mut logged);
             }
             known = after;

@@ -335,7 +335,11 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                         (zone, time)
                     }
                 };
-                let Some(scales) = self.engine.scales() else {
+                let scales = match zone.is_empty() {
+                    true => self.engine.measure(&self.plan.at(planned.range[1])),
+                    false => self.engine.scales(),
+                };
+                let Some(scales) = scales else {
                     return Ok(Along::Failed("no state to begin at".into()));
                 };
                 match Follower::begin(&self.plan, planned, zone, time, scales) {

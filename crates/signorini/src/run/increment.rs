@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use signorini_geometry::Point;
 use signorini_membrane::active_set::{self, NodalSolution, NodalStart};
 use signorini_membrane::adhesion::Branch;
-use signorini_membrane::equilibrium::Elements;
+use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::ils::{self, Reason, Solution, Start};
 use signorini_membrane::problem::Membrane;
 use signorini_membrane::report::{Component, ContactReport, Report};
@@ -82,6 +82,13 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             energy_total: increment.energy_total(),
             margin: increment.stability.margin,
         })
+    }
+
+    /// Takes the scales from another time, where those of the beginning say nothing: before any load there are none.
+    pub fn measure(&mut self, membrane: &Membrane<D>) -> Option<Scales> {
+        let free = Equilibrium::solve(membrane, &Z::empty(&membrane.grid), &mut Elements::new(membrane)).ok()?;
+        self.scales = Some(Scales::of_free(&free));
+        self.scales
     }
 
     /// The zone that the last increment converged to.

@@ -300,6 +300,23 @@ fn a_ball_pulls_off_at_a_force_of_its_own() {
     assert!((least + PI * energy * ball).abs() < 1e-8);
 }
 
+/// Without adhesion too the area may be given: a string at the load at which so much of it touches.
+#[test]
+fn a_string_by_the_length_of_contact() {
+    let rest = "[[steps]]\nto = 1\nincrements = 4\ncontrol.area = { of = \"touch\", to = 1.0 }\n";
+    let case = round("-t", 0.1, "0", None, rest)
+        .replace("axisymmetric", "line")
+        .replace("from = 0.0, to = 1.0", "from = -1.0, to = 1.0");
+    let found = summary(&case, &set(&[(CELLS, "[40]".into())]));
+    last_step(&found);
+    for (k, step) in found["steps"].as_array().expect("steps").iter().enumerate() {
+        let half = 0.125 * (k + 1) as f64;
+        assert!((number(&touch(step)["area"]) - 2.0 * half).abs() < 1e-9, "{step}");
+        // A parabola that meets the floor at the end of contact: f (1 - half)² / 2 = depth.
+        assert!((number(&step["time"]) - 0.2 / (1.0 - half).powi(2)).abs() < 1e-8, "{step}");
+    }
+}
+
 /// Along the arc length, through the fold, from the stable branch to the end of the unstable one.
 #[test]
 fn a_path_through_the_fold() {

@@ -101,12 +101,13 @@ impl<const D: usize> Fronts<'_, D> {
             mass: vec![0.0; n * n],
             scale: 0.0,
         };
+        let excess = self.excess();
         let mut total = 0.0;
         for (i, p) in points.iter().enumerate() {
             let (weight, stiffness) = (p.weight, self.tension[i] * slope[i]);
             total += weight;
             out.scale += weight * slope[i] * scales.pressure;
-            let residual = self.slope_jump[i] - self.adhesive_slope[i];
+            let residual = excess[i];
             for &(row, v) in &frames[i].modes {
                 out.residual[row] += weight * residual * v;
                 out.force[row] += weight * stiffness * residual * v;

@@ -23,6 +23,8 @@ pub struct PathState<Z> {
     pub area: f64,
     /// Direction of the path in area and time, of unit length in their scales.
     pub tangent: [f64; 2],
+    /// The front condition there, from which the path goes on.
+    linear: Linear,
 }
 
 /// What a step along a path prescribes: `weights · (area, time) = value`.
@@ -41,6 +43,7 @@ pub struct Path<'a, const D: usize> {
 }
 
 /// The front condition at a state, linearised in fronts and time.
+#[derive(Clone, Debug)]
 struct Linear {
     n: usize,
     residual: Vec<f64>,
@@ -82,7 +85,7 @@ impl<const D: usize> Path<'_, D> {
             let scale = a.abs() * self.size[0] + t.abs() * self.size[1];
             if linear.error <= 0.5 && lacking.abs() <= 1e-10 * scale {
                 let tangent = linear.tangent(forward, self.size);
-                return Ok((Some(PathState { zone, time, area: linear.area, tangent }), solves));
+                return Ok((Some(PathState { zone, time, area: linear.area, tangent, linear }), solves));
             }
             let Some((step, mut tau)) = linear.solve(constraint.weights, lacking) else { break };
             let reach = TIME_REACH * self.size[1];
@@ -98,20 +101,19 @@ impl<const D: usize> Path<'_, D> {
     pub fn begin<Z: Zone<D>>(&self, zone: Z, time: f64, sense: f64) -> Result<PathState<Z>, SolveError> {
         let linear = self.linearise(&zone, time)?;
         let tangent = linear.tangent([0.0, sense], self.size);
-        Ok(PathState { zone, time, area: linear.area, tangent })
+        Ok(PathState { zone, time, area: linear.area, tangent, linear })
     }
 
     /// A zone and a time that satisfy a constraint, ahead of a state: the start of the next correction.
-    pub fn predict<Z: Zone<D>>(&self, from: &PathState<Z>, constraint: &Constraint) -> Result<(Z, f64), SolveError> {
-        let linear = self.linearise(&from.zone, from.time)?;
-        let Some((step, tau)) = linear.direction(constraint.weights) else {
-            return Ok((from.zone.clone(), from.time));
+    pub fn predict<Z: Zone<D>>(&self, from: &PathState<Z>, constraint: &Constraint) -> (Z, f64) {
+        let Some((step, tau)) = from.linear.direction(constraint.weights) else {
+            return (from.zone.clone(), from.time);
         };
         let ds = constraint.value - constraint.weights[0] * from.area - constraint.weights[1] * from.time;
         let step: Vec<f64> = step.iter().map(|w| w * ds).collect();
         let grid = (self.membrane)(from.time).grid;
         let zone = from.zone.advanced(&grid, ModeSpace::Fine, &step, REACH * self.scales.length).zone;
-        Ok((zone, from.time + tau * ds))
+        (zone, from.time + tau * ds)
     }
 
     fn linearise<Z: Zone<D>>(&self, zone: &Z, time: f64) -> Result<Linear, SolveError> {

@@ -111,9 +111,8 @@ impl<'a, const D: usize> Fronts<'a, D> {
 
     /// Mean over the fronts of `T (ρ² - ρ_a²)/2`, the energy to be gained from a smaller zone.
     pub fn drive(&self) -> f64 {
-        let slopes = self.slope_jump.iter().zip(&self.adhesive_slope);
-        let force = slopes.zip(&self.tension).map(|((r, a), t)| 0.5 * t * (r * r.abs() - a * a));
-        let (sum, total) = force.zip(self.weights()).fold((0.0, 0.0), |(s, t), (f, w)| (s + w * f, t + w));
+        let points = self.weights().enumerate();
+        let (sum, total) = points.fold((0.0, 0.0), |(s, t), (i, w)| (s + w * self.shrinking_force(i), t + w));
         sum / f64::max(total, f64::MIN_POSITIVE)
     }
 
@@ -121,12 +120,17 @@ impl<'a, const D: usize> Fronts<'a, D> {
     pub(crate) fn drive_of_zones(&self, zones: usize) -> Vec<f64> {
         let mut out = vec![0.0; zones];
         for (i, p) in self.equilibrium.quadrature.front.iter().enumerate() {
-            let (rho, held) = (self.slope_jump[i], self.adhesive_slope[i]);
             if let Some(force) = out.get_mut(p.zone) {
-                *force += p.weight * 0.5 * self.tension[i] * (rho * rho.abs() - held * held);
+                *force += p.weight * self.shrinking_force(i);
             }
         }
         out
+    }
+
+    /// `T (ρ² - ρ_a²)/2` at a point of the fronts; a membrane that penetrates drives them outwards.
+    fn shrinking_force(&self, i: usize) -> f64 {
+        let (rho, held) = (self.slope_jump[i], self.adhesive_slope[i]);
+        0.5 * self.tension[i] * (rho * rho.abs() - held * held)
     }
 
     /// `ρ - ρ_a`: what the fronts still lack.

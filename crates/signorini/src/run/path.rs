@@ -94,7 +94,7 @@ impl<Z> Follower<Z> {
             let value = if part < 1.0 { from + part * (target - from) } else { target };
             let constraint = Constraint { weights: [1.0, 0.0], value };
             let (zone, time) = match &self.state {
-                Some(state) => path.predict(state, &constraint)?,
+                Some(state) => path.predict(state, &constraint),
                 None => match zone_of_area(&(path.membrane)(self.begin[1]), target)? {
                     Some(zone) => (zone, self.begin[1]),
                     None => return Ok(Along::Failed(format!("no zone of the area {target} was found to begin with"))),
@@ -138,7 +138,7 @@ impl<Z> Follower<Z> {
         let mut vanishing = false;
         for _ in 0..MOST_HALVINGS {
             let constraint = path.constraint(&state, ds);
-            let (zone, time) = path.predict(&state, &constraint)?;
+            let (zone, time) = path.predict(&state, &constraint);
             vanishing = zone.is_empty();
             let (found, solves) = path.correct(zone, time, constraint, state.tangent, progress)?;
             total += solves;
@@ -148,7 +148,7 @@ impl<Z> Follower<Z> {
                 }
                 // The last increment ends where the step does.
                 let constraint = Constraint { weights: [0.0, 1.0], value: to };
-                let (zone, time) = path.predict(&state, &constraint)?;
+                let (zone, time) = path.predict(&state, &constraint);
                 let (last, solves) = path.correct(zone, time, constraint, next.tangent, progress)?;
                 self.done = true;
                 return Ok(self.accept(last.unwrap_or(next), total + solves));

@@ -7,11 +7,13 @@
 //! - [`rules`]: quadrature on reference cells.
 //! - [`lagrange`]: tensor-product Lagrange bases of any degree on Gauss-Lobatto points.
 //! - [`grid`]: uniform background grids in one, two and three dimensions, with their nodes.
+//! - [`cells`]: what a membrane is computed on, whatever kind of cells.
 //! - [`cut`]: quadrature on cells that are divided by implicit surfaces: volume, surface and normal.
 //! - [`ghost`]: the ghost penalty that keeps small cuts stable.
 
 pub mod block;
 pub mod cell_map;
+pub mod cells;
 pub mod cut;
 pub mod dofs;
 pub mod ghost;
@@ -20,15 +22,18 @@ pub mod grid;
 pub mod hierarchic;
 pub mod lagrange;
 pub mod mesh;
+pub mod mesh_cells;
 pub mod reference;
 pub mod rules;
 pub mod small;
 
+pub use cells::Cells;
 pub use cut::{CellRule, Partition, QuadraturePoint, SurfacePoint};
 pub use dofs::DofMap;
-pub use ghost::GhostPenalty;
+pub use ghost::ghost_penalty;
 pub use grid::Grid;
 pub use lagrange::TensorBasis;
+pub use mesh_cells::MeshCells;
 pub use mesh::{Group, Mesh, MeshError, Side};
 pub use reference::{CellShape, Local};
 pub use signorini_geometry::rule::gauss_legendre;

@@ -6,7 +6,7 @@
 use crate::equilibrium::{Elements, System, nitsche_flux};
 use crate::field::SharedField;
 use crate::problem::Membrane;
-use crate::quadrature::{Quadrature, unit_rule, whole_order};
+use crate::quadrature::Quadrature;
 use crate::zone::Zone;
 use signorini_fem::lagrange::Tabulation;
 use signorini_geometry::{Point, Vector};
@@ -14,8 +14,6 @@ use signorini_solve::{SolveError, Symbolic};
 
 /// Most changes of the active set on one grid.
 const MOST_CHANGES: usize = 200;
-/// Cells along the longer side of the coarsest grid of a nested start.
-const COARSEST: usize = 8;
 
 /// The nodal solution of a membrane of degree 1.
 #[derive(Clone, Debug)]
@@ -33,7 +31,6 @@ pub struct NodalSolution<const D: usize> {
     /// Resultant of the load.
     pub load_force: f64,
     pub energy: f64,
-    cells: [usize; D],
 }
 
 /// One node.
@@ -65,13 +62,13 @@ pub fn solve<const D: usize, Z: Zone<D>>(
     start: NodalStart,
     interrupted: &dyn Fn() -> bool,
 ) -> Result<NodalSolution<D>, SolveError> {
-    let cells = membrane.grid.cells();
-    let coarse = cells.iter().all(|n| n % 2 == 0) && cells.iter().max().is_some_and(|&n| n / 2 >= COARSEST);
-    let guess = if start == NodalStart::Nested && coarse {
-        let coarser = membrane.on_grid(cells.map(|n| n / 2), 1);
-        Some(solve::<D, Z>(&coarser, floor, start, interrupted)?)
-    } else {
-        None
+    let coarser = match start {
+        NodalStart::Nested => membrane.cells.coarser().map(|cells| membrane.on(cells)),
+        NodalStart::Cold => None,
+    };
+    let guess = match &coarser {
+        Some(coarser) => Some((solve::<D, Z>(coarser, floor, start, interrupted)?, coarser)),
+        None => None,
     };
     let elements = Elements::new(membrane);
     let zone = Z::empty(&membrane.grid);
@@ -79,7 +76,7 @@ pub fn solve<const D: usize, Z: Zone<D>>(
     let mut node_of = vec![0usize; unknowns.count];
     let mut nodes = Vec::new();
     for (cell, regions) in unknowns.cells.iter().enumerate() {
-        membrane.grid.cell_nodes(cell, &mut nodes);
+        membrane.cells.functions(cell, &mut nodes);
         for (_, dofs) in regions {
             for (&dof, &node) in dofs.iter().zip(&nodes) {
                 node_of[dof as usize] = node as usize;
@@ -89,14 +86,14 @@ pub fn solve<const D: usize, Z: Zone<D>>(
     let heights: Vec<Option<f64>> = node_of
         .iter()
         .map(|&node| {
-            let x = membrane.grid.node(node);
+            let x = membrane.cells.node(node);
             membrane.contains(&x).then(|| floor.value(&x))
         })
         .collect();
     let mut active: Vec<bool> = node_of
         .iter()
         .zip(&heights)
-        .map(|(&node, h)| h.is_some() && guess.as_ref().is_some_and(|g| g.touches(membrane, &membrane.grid.node(node))))
+        .map(|(&node, h)| h.is_some() && guess.as_ref().is_some_and(|(g, coarser)| g.touches(coarser, &membrane.cells.node(node))))
         .collect();
     let mut symbolic = Symbolic::default();
     let mut changes = Vec::new();
@@ -127,7 +124,7 @@ pub fn solve<const D: usize, Z: Zone<D>>(
         }
     }
     let shares = shares(membrane, &quadrature);
-    let mut all = vec![None; membrane.grid.node_count()];
+    let mut all = vec![None; membrane.cells.function_count()];
     for i in 0..u.len() {
         all[node_of[i]] = Some(Node {
             displacement: u[i],
@@ -147,23 +144,19 @@ pub fn solve<const D: usize, Z: Zone<D>>(
         support_forces,
         load_force,
         energy,
-        cells,
     })
 }
 
 /// The integral of each node's shape function over the membrane.
 fn shares<const D: usize>(membrane: &Membrane<D>, quadrature: &Quadrature<D>) -> Vec<f64> {
-    let basis = membrane.grid.basis();
-    let size = membrane.grid.cell_size();
-    let whole = unit_rule::<D>(2);
     let mut t = Tabulation::default();
     let mut numbers = Vec::new();
-    let mut shares = vec![0.0; membrane.grid.node_count()];
+    let mut shares = vec![0.0; membrane.cells.function_count()];
     for cell in 0..quadrature.cells.len() {
-        membrane.grid.cell_nodes(cell, &mut numbers);
-        for (_, points) in quadrature.volumes(membrane, cell, &whole) {
+        membrane.cells.functions(cell, &mut numbers);
+        for (_, points) in quadrature.volumes(membrane, cell) {
             for p in points.iter() {
-                basis.tabulate(&membrane.grid.local(cell, &p.x), &size, &mut t);
+                membrane.cells.tabulate(cell, &p.x, &mut t);
                 for (&node, v) in numbers.iter().zip(&t.value) {
                     shares[node as usize] += p.weight * v;
                 }
@@ -179,22 +172,19 @@ fn totals<const D: usize>(
     quadrature: &Quadrature<D>,
     nodes: &[Option<Node>],
 ) -> (Vec<f64>, f64, f64) {
-    let basis = membrane.grid.basis();
-    let size = membrane.grid.cell_size();
     let mut t = Tabulation::default();
     let mut numbers = Vec::new();
     let mut evaluate = |cell: usize, x: &Point<D>| {
-        membrane.grid.cell_nodes(cell, &mut numbers);
-        basis.tabulate(&membrane.grid.local(cell, x), &size, &mut t);
+        membrane.cells.functions(cell, &mut numbers);
+        membrane.cells.tabulate(cell, x, &mut t);
         let values = numbers.iter().map(|&node| nodes[node as usize].map_or(0.0, |n| n.displacement));
         values
             .enumerate()
             .fold((0.0, Vector::<D>::zeros()), |(u, g), (i, v)| (u + v * t.value[i], g + v * t.gradient[i]))
     };
     let (mut force, mut energy) = (0.0, 0.0);
-    let whole = unit_rule::<D>(whole_order(membrane.grid.degree()));
     for cell in 0..quadrature.cells.len() {
-        for (_, points) in quadrature.volumes(membrane, cell, &whole) {
+        for (_, points) in quadrature.volumes(membrane, cell) {
             for p in points.iter() {
                 let (u, gradient) = evaluate(cell, &p.x);
                 let f = membrane.load.value(&p.x);
@@ -208,37 +198,44 @@ fn totals<const D: usize>(
         if let Some(support) = &membrane.supports[p.piece] {
             let (u, gradient) = evaluate(p.cell, &p.x);
             supports[support.index] +=
-                p.weight * nitsche_flux(membrane, &p.x, &p.normal, u - support.displacement.value(&p.x), &gradient);
+                p.weight * nitsche_flux(membrane, p.cell, &p.x, &p.normal, u - support.displacement.value(&p.x), &gradient);
         }
     }
     (supports, force, energy)
 }
 
-/// Interpolates nodal values linearly.
-fn interpolate<const D: usize>(membrane: &Membrane<D>, x: &Point<D>, at_node: impl Fn(usize) -> f64) -> f64 {
+/// The nodes round a point with the values of their functions there; none beyond the cells.
+fn shape_functions<const D: usize>(membrane: &Membrane<D>, x: &Point<D>) -> Vec<(usize, f64)> {
     let x = membrane.grid.bounds().clamp(x);
-    let cell = membrane.grid.cell_containing(&x);
+    let Some(cell) = membrane.cells.containing(&x) else { return Vec::new() };
     let mut t = Tabulation::default();
     let mut numbers = Vec::new();
-    membrane.grid.cell_nodes(cell, &mut numbers);
-    membrane.grid.basis().tabulate(&membrane.grid.local(cell, &x), &membrane.grid.cell_size(), &mut t);
-    numbers.iter().zip(&t.value).map(|(&n, v)| at_node(n as usize) * v).sum()
+    membrane.cells.functions(cell, &mut numbers);
+    membrane.cells.tabulate(cell, &x, &mut t);
+    numbers.into_iter().map(|n| n as usize).zip(t.value).collect()
+}
+
+/// Interpolates nodal values linearly; `beyond` is the value where there are no cells.
+fn interpolate<const D: usize>(
+    membrane: &Membrane<D>,
+    x: &Point<D>,
+    beyond: f64,
+    at_node: impl Fn(usize) -> f64,
+) -> f64 {
+    let around = shape_functions(membrane, x);
+    if around.is_empty() { beyond } else { around.into_iter().map(|(node, v)| at_node(node) * v).sum() }
 }
 
 impl<const D: usize> NodalSolution<D> {
     /// Whether the node nearest to `x` is in contact.
     pub fn touches(&self, membrane: &Membrane<D>, x: &Point<D>) -> bool {
-        self.nodes[self.nearest(membrane, x)].is_some_and(|n| n.in_contact)
+        self.nearest(membrane, x).is_some_and(|n| n.in_contact)
     }
 
-    fn nearest(&self, membrane: &Membrane<D>, x: &Point<D>) -> usize {
-        let bounds = membrane.grid.bounds();
-        let mut node = 0;
-        for k in (0..D).rev() {
-            let t = (x[k] - bounds.min[k]) / bounds.size()[k] * self.cells[k] as f64;
-            node = node * (self.cells[k] + 1) + (t.round().max(0.0) as usize).min(self.cells[k]);
-        }
-        node
+    /// The node whose function is largest at a point.
+    fn nearest(&self, membrane: &Membrane<D>, x: &Point<D>) -> Option<Node> {
+        let around = shape_functions(membrane, x).into_iter();
+        around.max_by(|a, b| a.1.total_cmp(&b.1)).and_then(|(node, _)| self.nodes[node])
     }
 
     /// A function that is negative in the predicted zone: the distance to its edge that the gap of a parabola tells,
@@ -256,7 +253,7 @@ impl<const D: usize> NodalSolution<D> {
             .map(|(i, node)| match node {
                 Some(n) if n.in_contact => -0.5 * h,
                 Some(n) if n.inside => {
-                    let x = membrane.grid.node(i);
+                    let x = membrane.cells.node(i);
                     let pressure = membrane.floor_pressure(floor, &x);
                     let gap = (n.displacement - floor.value(&x)).max(0.0);
                     let distance = (2.0 * membrane.tension.value(&x) * gap / pressure).sqrt();
@@ -265,17 +262,16 @@ impl<const D: usize> NodalSolution<D> {
                 _ => h,
             })
             .collect();
-        move |x| interpolate(membrane, x, |node| at_node[node])
+        move |x| interpolate(membrane, x, h, |node| at_node[node])
     }
 
     /// Displacement at a point of the membrane.
     pub fn displacement(&self, membrane: &Membrane<D>, x: &Point<D>) -> f64 {
-        interpolate(membrane, x, |node| self.nodes[node].map_or(0.0, |n| n.displacement))
+        interpolate(membrane, x, 0.0, |node| self.nodes[node].map_or(0.0, |n| n.displacement))
     }
 
     /// Pressure at a point: that of the nearest node, its reaction over its share.
     pub fn pressure(&self, membrane: &Membrane<D>, x: &Point<D>) -> f64 {
-        let node = self.nearest(membrane, x);
-        self.nodes[node].filter(|n| n.in_contact).map_or(0.0, |n| n.reaction / n.share.max(f64::MIN_POSITIVE))
+        self.nearest(membrane, x).filter(|n| n.in_contact).map_or(0.0, |n| n.reaction / n.share.max(f64::MIN_POSITIVE))
     }
 }

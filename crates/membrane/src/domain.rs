@@ -1,6 +1,6 @@
 //! Where a membrane is: domains whose boundary either fits the background grid or cuts it.
 
-use signorini_fem::Grid;
+use signorini_fem::{Cells, MeshCells};
 use signorini_geometry::{Aabb, ImplicitShape, Line, Point, Vector, polygon};
 use std::sync::Arc;
 
@@ -24,10 +24,13 @@ pub trait Domain<const D: usize>: Send + Sync {
     fn pieces(&self) -> usize;
     /// A point of the domain near a point outside it, within `reach`.
     fn pulled_inside(&self, x: &Point<D>, reach: f64) -> Option<Point<D>>;
-    /// Whether the domain is its bounding box, so that the grid fits. Pieces are then the sides: lower and upper in
-    /// each direction.
+    /// Whether the domain is its bounding box. Pieces are then the sides: lower and upper in each direction.
     fn is_box(&self) -> bool {
         false
+    }
+    /// Whether cells fit the domain, so that its boundary consists of their sides.
+    fn is_fitted(&self) -> bool {
+        self.is_box()
     }
 }
 
@@ -152,9 +155,35 @@ impl Domain<2> for PolygonDomain {
     }
 }
 
-/// A domain on its grid: which cells its boundary can cross.
+/// The cells of a mesh: each side on the boundary belongs to one of its pieces.
+pub struct MeshDomain(pub Arc<MeshCells>);
+
+impl Domain<2> for MeshDomain {
+    fn boundary_in(&self, _: &Aabb<2>) -> BoundaryInCell<'_, 2> {
+        BoundaryInCell { sheets: Vec::new(), pieces: Vec::new(), features: Vec::new() }
+    }
+    fn contains(&self, x: &Point<2>, _: &[f64]) -> bool {
+        self.0.containing(x).is_some()
+    }
+    fn level(&self, x: &Point<2>) -> f64 {
+        let reach = 2.0 * self.0.bounds().radius();
+        let distance = self.0.closest_on_boundary(x, reach).map_or(reach, |y| (x - y).norm());
+        if self.contains(x, &[]) { -distance } else { distance }
+    }
+    fn pieces(&self) -> usize {
+        self.0.pieces()
+    }
+    fn pulled_inside(&self, x: &Point<2>, reach: f64) -> Option<Point<2>> {
+        if self.contains(x, &[]) { Some(*x) } else { self.0.closest_on_boundary(x, reach) }
+    }
+    fn is_fitted(&self) -> bool {
+        true
+    }
+}
+
+/// A domain on its cells: which of them its boundary can cross.
 #[derive(Clone)]
-pub struct DomainOnGrid<const D: usize> {
+pub struct DomainOnCells<const D: usize> {
     pub domain: Arc<dyn Domain<D>>,
     /// For each cell, whether it lies inside, outside, or may be crossed.
     pub status: Arc<Vec<CellStatus>>,
@@ -167,11 +196,14 @@ pub enum CellStatus {
     Crossed,
 }
 
-impl<const D: usize> DomainOnGrid<D> {
-    pub fn new(domain: Arc<dyn Domain<D>>, grid: &Grid<D>) -> Self {
-        let status = (0..grid.cell_count())
+impl<const D: usize> DomainOnCells<D> {
+    pub fn new(domain: Arc<dyn Domain<D>>, cells: &dyn Cells<D>) -> Self {
+        if domain.is_fitted() {
+            return Self { domain, status: Arc::new(vec![CellStatus::Inside; cells.count()]) };
+        }
+        let status = (0..cells.count())
             .map(|cell| {
-                let b = grid.cell_box(cell);
+                let b = cells.bounds_of(cell);
                 let boundary = domain.boundary_in(&b);
                 let partition = signorini_fem::cut::CellPartition {
                     tags: boundary.pieces,
@@ -179,7 +211,7 @@ impl<const D: usize> DomainOnGrid<D> {
                     features: boundary.features,
                     region: Box::new(|x, values| u32::from(domain.contains(x, values))),
                 };
-                let rule = signorini_fem::cut::cut_cell(&partition, &b, 1);
+                let rule = cells.cut(cell, &partition, 1);
                 match (rule.cut, rule.volumes.first()) {
                     (true, _) => CellStatus::Crossed,
                     (false, Some((1, _))) => CellStatus::Inside,

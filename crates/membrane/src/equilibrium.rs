@@ -14,12 +14,13 @@
 //! free region has unknowns of its own, so a thin wall of contact between two of them couples nothing.
 
 use crate::problem::Membrane;
-use crate::quadrature::{Cell, Quadrature, RimPoint, unit_rule, whole_order};
+use crate::quadrature::{Cell, Quadrature, RimPoint};
 use crate::zone::{Zone, contact_index, is_free};
 use rayon::prelude::*;
-use signorini_fem::cut::{QuadraturePoint, RegionId};
+use signorini_fem::cells::Neighbours;
+use signorini_fem::cut::RegionId;
 use signorini_fem::lagrange::Tabulation;
-use signorini_fem::{GhostPenalty, TensorBasis};
+use signorini_fem::ghost_penalty;
 use signorini_geometry::{Point, Vector};
 use signorini_solve::{Factor, SolveError, Symbolic, SymmetricMatrix};
 use std::collections::BTreeMap;
@@ -32,47 +33,82 @@ pub(crate) fn nitsche_penalty(degree: usize) -> f64 {
     8.0 * (degree * degree) as f64 + 4.0
 }
 
+/// The penalty in a cell, `β/h`.
+fn penalty<const D: usize>(membrane: &Membrane<D>, cell: usize) -> f64 {
+    nitsche_penalty(membrane.cells.degree()) / membrane.cells.size(cell)
+}
+
 /// Weight of the ghost penalty at a sliver; smaller ones lose positive definiteness when a straight boundary cuts slivers only.
 fn ghost_weight(degree: usize) -> f64 {
     if degree == 1 { 0.5 } else { 0.2 }
 }
 
-/// What does not change from one zone to the next: the element matrices of an undivided cell.
+/// What does not change from one zone to the next: the matrices of cells that are not divided.
 pub struct Elements<const D: usize> {
-    whole_rule: Vec<QuadraturePoint<D>>,
-    tabulated: Vec<Tabulation<D>>,
-    /// Stiffness for unit tension, where the tension is constant and the measure plain.
-    stiffness: Option<Vec<f64>>,
-    ghost: GhostPenalty<D>,
+    /// For each kind of cell.
+    kinds: Vec<Element<D>>,
+    neighbours: Vec<Neighbours>,
+    /// For each kind of neighbours.
+    ghosts: Vec<Option<Vec<f64>>>,
     tension_constant: Option<f64>,
     symbolic: Symbolic,
 }
 
+/// A cell that is not divided.
+struct Element<const D: usize> {
+    tabulated: Vec<Tabulation<D>>,
+    /// Stiffness for unit tension, where the tension is constant and the measure plain.
+    stiffness: Option<Vec<f64>>,
+}
+
 impl<const D: usize> Elements<D> {
     pub fn new(membrane: &Membrane<D>) -> Self {
-        let basis = membrane.grid.basis();
-        let size = membrane.grid.cell_size();
-        let whole_rule = unit_rule::<D>(whole_order(basis.degree()));
-        let tabulated: Vec<Tabulation<D>> = whole_rule
-            .iter()
-            .map(|p| {
-                let mut t = Tabulation::default();
-                basis.tabulate(&p.x, &size, &mut t);
-                t
-            })
-            .collect();
+        let cells = &*membrane.cells;
         let tension_constant = membrane.tension.constant();
-        let plain = membrane.measure == crate::problem::Measure::Plain;
-        let stiffness = (tension_constant.is_some() && plain).then(|| {
-            let mut matrix = vec![0.0; basis.len() * basis.len()];
-            let volume: f64 = size.iter().product();
-            for (p, t) in whole_rule.iter().zip(&tabulated) {
-                add_stiffness(&mut matrix, t, p.weight * volume);
+        let plain = tension_constant.is_some() && membrane.measure == crate::problem::Measure::Plain;
+        let element = |cell: usize| {
+            let rule = cells.rule(cell);
+            let tabulated: Vec<Tabulation<D>> = rule
+                .iter()
+                .map(|p| {
+                    let mut t = Tabulation::default();
+                    cells.tabulate(cell, &p.x, &mut t);
+                    t
+                })
+                .collect();
+            let n = tabulated.first().map_or(0, |t| t.value.len());
+            let stiffness = plain.then(|| {
+                let mut matrix = vec![0.0; n * n];
+                for (p, t) in rule.iter().zip(&tabulated) {
+                    add_stiffness(&mut matrix, t, p.weight);
+                }
+                matrix
+            });
+            Element { tabulated, stiffness }
+        };
+        let neighbours = cells.neighbours();
+        let mut ghosts: Vec<Option<Vec<f64>>> = Vec::new();
+        for pair in &neighbours {
+            let Some(kind) = pair.kind else { continue };
+            if ghosts.len() <= kind {
+                ghosts.resize(kind + 1, None);
             }
-            matrix
-        });
-        let ghost = GhostPenalty::new(basis, &size);
-        Self { whole_rule, tabulated, stiffness, ghost, tension_constant, symbolic: Symbolic::default() }
+            ghosts[kind].get_or_insert_with(|| ghost_penalty(cells, pair));
+        }
+        Self {
+            kinds: cells.kinds().into_iter().map(element).collect(),
+            neighbours,
+            ghosts,
+            tension_constant,
+            symbolic: Symbolic::default(),
+        }
+    }
+}
+
+impl<const D: usize> Elements<D> {
+    /// The element of a cell that has others of its kind.
+    fn of(&self, membrane: &Membrane<D>, cell: usize) -> Option<&Element<D>> {
+        membrane.cells.kind(cell).map(|kind| &self.kinds[kind])
     }
 }
 
@@ -104,7 +140,6 @@ pub struct Equilibrium<'a, const D: usize> {
     factor: Factor,
     /// Values at the nodes of the free regions.
     u: Vec<f64>,
-    whole_rule: Vec<QuadraturePoint<D>>,
 }
 
 /// A point of a surface where the displacement is imposed.
@@ -131,8 +166,7 @@ impl<'a, const D: usize> Equilibrium<'a, D> {
         let System { quadrature, unknowns, matrix, rhs } = System::assemble(membrane, zone, elements);
         let factor = elements.symbolic.factor(matrix)?;
         let u = factor.solve_accurately(&rhs)?;
-        let whole_rule = elements.whole_rule.clone();
-        Ok(Self { membrane, quadrature, unknowns, factor, u, whole_rule })
+        Ok(Self { membrane, quadrature, unknowns, factor, u })
     }
 
     /// Number of unknowns of the linear system.
@@ -158,7 +192,7 @@ impl<'a, const D: usize> Equilibrium<'a, D> {
     /// Calls `visit(cell, region, x, weight)` at every volume point of the membrane.
     pub fn for_each_point(&self, mut visit: impl FnMut(usize, RegionId, &Point<D>, f64)) {
         for cell in 0..self.quadrature.cells.len() {
-            for (region, points) in self.quadrature.volumes(self.membrane, cell, &self.whole_rule) {
+            for (region, points) in self.quadrature.volumes(self.membrane, cell) {
                 for p in points.iter() {
                     visit(cell, region, &p.x, p.weight);
                 }
@@ -168,7 +202,6 @@ impl<'a, const D: usize> Equilibrium<'a, D> {
 
     /// The slope with which the gap opens at each point of the fronts, `ρ = ∂_n u + (β/h)(u - h) - ∂_n h`.
     pub fn slope_jump(&self) -> Vec<f64> {
-        let penalty = nitsche_penalty(self.membrane.grid.degree()) / self.membrane.grid.h();
         let floor = self.membrane.floor.as_ref();
         self.quadrature
             .front
@@ -176,7 +209,7 @@ impl<'a, const D: usize> Equilibrium<'a, D> {
             .map(|p| {
                 let (u, gradient) = self.evaluate(p.cell, p.free, &p.x).unwrap_or((0.0, Vector::zeros()));
                 let h = floor.map_or(signorini_geometry::Real::constant(0.0), |h| h.jet(&p.x));
-                (gradient - h.gradient).dot(&p.normal) + penalty * (u - h.value)
+                (gradient - h.gradient).dot(&p.normal) + penalty(self.membrane, p.cell) * (u - h.value)
             })
             .collect()
     }
@@ -186,7 +219,7 @@ impl<'a, const D: usize> Equilibrium<'a, D> {
         let Some(support) = &self.membrane.supports[p.piece] else { return 0.0 };
         if is_free(p.region) {
             let (u, gradient) = self.evaluate(p.cell, p.region, &p.x).unwrap_or((0.0, Vector::zeros()));
-            nitsche_flux(self.membrane, &p.x, &p.normal, u - support.displacement.value(&p.x), &gradient)
+            nitsche_flux(self.membrane, p.cell, &p.x, &p.normal, u - support.displacement.value(&p.x), &gradient)
         } else {
             // In contact up to the support: the membrane follows the floor.
             let slope = self.membrane.floor.as_ref().map_or(Vector::zeros(), |h| h.jet(&p.x).gradient);
@@ -198,7 +231,6 @@ impl<'a, const D: usize> Equilibrium<'a, D> {
     /// equilibrium without load: the Dirichlet-to-Neumann map, from the factorisation at hand.
     pub fn normal_derivative_of_extension(&self, data: &[f64]) -> Result<Vec<f64>, SolveError> {
         let membrane = self.membrane;
-        let penalty = nitsche_penalty(membrane.grid.degree()) / membrane.grid.h();
         let mut rhs = vec![0.0; self.unknowns.count];
         let mut t = Tabulation::default();
         for (p, &value) in self.quadrature.front.iter().zip(data) {
@@ -206,7 +238,8 @@ impl<'a, const D: usize> Equilibrium<'a, D> {
                 continue;
             }
             let Some(dofs) = self.unknowns.of(p.cell, p.free) else { continue };
-            tabulate(membrane.grid.basis(), membrane, p.cell, &p.x, &mut t);
+            membrane.cells.tabulate(p.cell, &p.x, &mut t);
+            let penalty = penalty(membrane, p.cell);
             let w = p.weight * membrane.tension.value(&p.x) * value;
             for (a, &i) in dofs.iter().enumerate() {
                 rhs[i as usize] += w * (t.gradient[a].dot(&p.normal) + penalty * t.value[a]);
@@ -221,7 +254,7 @@ impl<'a, const D: usize> Equilibrium<'a, D> {
             .map(|(p, &value)| {
                 let (v, gradient) =
                     evaluate(membrane, &self.unknowns, &z, p.cell, p.free, &p.x).unwrap_or((0.0, Vector::zeros()));
-                gradient.dot(&p.normal) + penalty * (v - value)
+                gradient.dot(&p.normal) + penalty(membrane, p.cell) * (v - value)
             })
             .collect())
     }
@@ -231,7 +264,7 @@ impl<'a, const D: usize> Equilibrium<'a, D> {
         if !self.membrane.contains(x) {
             return None;
         }
-        let cell = self.membrane.grid.cell_containing(x);
+        let cell = self.membrane.cells.containing(x)?;
         let region = match &self.quadrature.cells[cell] {
             Cell::Whole(region) => *region,
             _ => zone.region_at(x),
@@ -246,13 +279,13 @@ impl<'a, const D: usize> Equilibrium<'a, D> {
 /// The variational flux `T (∂_ν u - (β/h)(u - G))` through a point where the displacement is imposed weakly.
 pub(crate) fn nitsche_flux<const D: usize>(
     membrane: &Membrane<D>,
+    cell: usize,
     x: &Point<D>,
     outward: &Vector<D>,
     mismatch: f64,
     gradient: &Vector<D>,
 ) -> f64 {
-    let penalty = nitsche_penalty(membrane.grid.degree()) / membrane.grid.h();
-    membrane.tension.value(x) * (gradient.dot(outward) - penalty * mismatch)
+    membrane.tension.value(x) * (gradient.dot(outward) - penalty(membrane, cell) * mismatch)
 }
 
 /// The linear system of a membrane around a zone, before it is factorised.
@@ -267,7 +300,7 @@ impl<const D: usize> System<D> {
     pub fn assemble<Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z, elements: &Elements<D>) -> Self {
         let quadrature = Quadrature::new(membrane, zone);
         let unknowns = number(membrane, &quadrature);
-        let pairs = ghost_pairs(membrane, &quadrature, &unknowns);
+        let pairs = ghost_pairs(membrane, elements, &quadrature, &unknowns);
         let mut cliques: Vec<Vec<u32>> = unknowns.cells.iter().flatten().map(|(_, dofs)| dofs.clone()).collect();
         cliques.extend(pairs.iter().map(|pair| pair.dofs.clone()));
         let mut matrix = SymmetricMatrix::from_cliques(unknowns.count, &cliques);
@@ -292,8 +325,8 @@ impl<const D: usize> System<D> {
             for (cell, systems) in (begin..end).zip(local) {
                 for ((_, dofs), system) in unknowns.cells[cell].iter().zip(systems) {
                     let Some((local, load)) = system else { continue };
-                    match (&elements.stiffness, local.is_empty()) {
-                        (Some(stiffness), true) => {
+                    match elements.of(membrane, cell).and_then(|e| e.stiffness.as_ref()) {
+                        Some(stiffness) if local.is_empty() => {
                             matrix.add(dofs, stiffness, elements.tension_constant.unwrap_or(1.0))
                         }
                         _ => matrix.add(dofs, &local, 1.0),
@@ -304,9 +337,15 @@ impl<const D: usize> System<D> {
                 }
             }
         }
-        let weight = ghost_weight(membrane.grid.degree());
+        let weight = ghost_weight(membrane.cells.degree());
         for pair in &pairs {
-            matrix.add(&pair.dofs, elements.ghost.matrix(pair.direction), weight * pair.scale);
+            match pair.neighbours.kind.and_then(|kind| elements.ghosts[kind].as_ref()) {
+                Some(ghost) => matrix.add(&pair.dofs, ghost, weight * pair.scale),
+                None => {
+                    let ghost = ghost_penalty(&*membrane.cells, pair.neighbours);
+                    matrix.add(&pair.dofs, &ghost, weight * pair.scale);
+                }
+            }
         }
         matrix.restore_row_sums(&row_sums(membrane, &unknowns, &imposed));
         Self { quadrature, unknowns, matrix, rhs }
@@ -319,16 +358,6 @@ impl Unknowns {
     }
 }
 
-fn tabulate<const D: usize>(
-    basis: &TensorBasis<D>,
-    membrane: &Membrane<D>,
-    cell: usize,
-    x: &Point<D>,
-    out: &mut Tabulation<D>,
-) {
-    basis.tabulate(&membrane.grid.local(cell, x), &membrane.grid.cell_size(), out);
-}
-
 fn evaluate<const D: usize>(
     membrane: &Membrane<D>,
     unknowns: &Unknowns,
@@ -339,7 +368,7 @@ fn evaluate<const D: usize>(
 ) -> Option<(f64, Vector<D>)> {
     let dofs = unknowns.of(cell, region)?;
     let mut t = Tabulation::default();
-    tabulate(membrane.grid.basis(), membrane, cell, x, &mut t);
+    membrane.cells.tabulate(cell, x, &mut t);
     Some(dofs.iter().enumerate().fold((0.0, Vector::zeros()), |(value, gradient), (a, &i)| {
         let c = u[i as usize];
         (value + c * t.value[a], gradient + c * t.gradient[a])
@@ -356,8 +385,9 @@ fn number<const D: usize>(membrane: &Membrane<D>, quadrature: &Quadrature<D>) ->
             let regions = quadrature.regions(cell).into_iter().filter(|r| is_free(*r));
             regions
                 .map(|region| {
-                    membrane.grid.cell_nodes(cell, &mut nodes);
-                    let numbers = of_node.entry(region).or_insert_with(|| vec![u32::MAX; membrane.grid.node_count()]);
+                    membrane.cells.functions(cell, &mut nodes);
+                    let numbers =
+                        of_node.entry(region).or_insert_with(|| vec![u32::MAX; membrane.cells.function_count()]);
                     let dofs = nodes.iter().map(|&node| {
                         let number = &mut numbers[node as usize];
                         if *number == u32::MAX {
@@ -375,43 +405,42 @@ fn number<const D: usize>(membrane: &Membrane<D>, quadrature: &Quadrature<D>) ->
 }
 
 /// Two neighbouring cells whose polynomials a ghost penalty holds together.
-struct GhostPair {
-    direction: usize,
+struct GhostPair<'a> {
+    neighbours: &'a Neighbours,
     dofs: Vec<u32>,
     scale: f64,
 }
 
-fn ghost_pairs<const D: usize>(
+fn ghost_pairs<'a, const D: usize>(
     membrane: &Membrane<D>,
+    elements: &'a Elements<D>,
     quadrature: &Quadrature<D>,
     unknowns: &Unknowns,
-) -> Vec<GhostPair> {
+) -> Vec<GhostPair<'a>> {
     let mut pairs = Vec::new();
     let is_cut = |cell: usize| matches!(quadrature.cells[cell], Cell::Cut(_));
-    for lower in 0..quadrature.cells.len() {
-        for direction in 0..D {
-            let Some(upper) = membrane.grid.upper_neighbour(lower, direction) else { continue };
-            if !is_cut(lower) && !is_cut(upper) {
-                continue;
-            }
-            for (region, dofs) in &unknowns.cells[lower] {
-                let Some(others) = unknowns.of(upper, *region) else { continue };
-                // The coefficients where the region is; outside the membrane they may not be defined.
-                let x = [lower, upper]
-                    .iter()
-                    .find_map(|&cell| match &quadrature.cells[cell] {
-                        Cell::Whole(_) => Some(membrane.grid.cell_box(cell).center()),
-                        Cell::Cut(rule) => rule.volume(*region).first().map(|p| p.x),
-                        Cell::Outside => None,
-                    })
-                    .unwrap_or_else(|| membrane.grid.cell_box(lower).center());
-                // A full cell needs no help, a sliver all of it; in between the weight is continuous in the cut, so the
-                // slope jump is continuous in the front.
-                let missing =
-                    1.0 - share(membrane, quadrature, lower, *region).min(share(membrane, quadrature, upper, *region));
-                let scale = missing.powi(2) * membrane.tension.value(&x) * membrane.measure.weight(&x);
-                pairs.push(GhostPair { direction, dofs: [dofs.as_slice(), others].concat(), scale });
-            }
+    for neighbours in &elements.neighbours {
+        let [lower, upper] = neighbours.cells;
+        if !is_cut(lower) && !is_cut(upper) {
+            continue;
+        }
+        for (region, dofs) in &unknowns.cells[lower] {
+            let Some(others) = unknowns.of(upper, *region) else { continue };
+            // The coefficients where the region is; outside the membrane they may not be defined.
+            let x = [lower, upper]
+                .iter()
+                .find_map(|&cell| match &quadrature.cells[cell] {
+                    Cell::Whole(_) => Some(membrane.cells.bounds_of(cell).center()),
+                    Cell::Cut(rule) => rule.volume(*region).first().map(|p| p.x),
+                    Cell::Outside => None,
+                })
+                .unwrap_or_else(|| membrane.cells.bounds_of(lower).center());
+            // A full cell needs no help, a sliver all of it; in between the weight is continuous in the cut, so the
+            // slope jump is continuous in the front.
+            let missing =
+                1.0 - share(membrane, quadrature, lower, *region).min(share(membrane, quadrature, upper, *region));
+            let scale = missing.powi(2) * membrane.tension.value(&x) * membrane.measure.weight(&x);
+            pairs.push(GhostPair { neighbours, dofs: [dofs.as_slice(), others].concat(), scale });
         }
     }
     pairs
@@ -422,7 +451,7 @@ fn share<const D: usize>(membrane: &Membrane<D>, quadrature: &Quadrature<D>, cel
     match &quadrature.cells[cell] {
         Cell::Cut(rule) => {
             let volume: f64 = rule.volume(region).iter().map(|p| p.weight / membrane.measure.weight(&p.x)).sum();
-            (volume / membrane.grid.cell_box(cell).volume()).min(1.0)
+            (volume / membrane.cells.volume(cell)).min(1.0)
         }
         _ => 1.0,
     }
@@ -448,12 +477,12 @@ fn imposed_points<const D: usize>(membrane: &Membrane<D>, quadrature: &Quadratur
 
 /// What the rows of the matrix sum to: against a constant only the terms of Nitsche's method are left.
 fn row_sums<const D: usize>(membrane: &Membrane<D>, unknowns: &Unknowns, imposed: &[Imposed<D>]) -> Vec<f64> {
-    let penalty = nitsche_penalty(membrane.grid.degree()) / membrane.grid.h();
     let mut sums = vec![0.0; unknowns.count];
     let mut t = Tabulation::default();
     for p in imposed {
         let Some(dofs) = unknowns.of(p.cell, p.region) else { continue };
-        tabulate(membrane.grid.basis(), membrane, p.cell, &p.x, &mut t);
+        membrane.cells.tabulate(p.cell, &p.x, &mut t);
+        let penalty = penalty(membrane, p.cell);
         let w = p.weight * membrane.tension.value(&p.x);
         for (a, &i) in dofs.iter().enumerate() {
             sums[i as usize] += w * (penalty * t.value[a] - t.gradient[a].dot(&p.outward));
@@ -472,24 +501,25 @@ fn local_systems<const D: usize>(
     imposed: &[Imposed<D>],
     points: &[usize],
 ) -> Vec<LocalSystem> {
-    let basis = membrane.grid.basis();
-    let n = basis.len();
+    let cells = &*membrane.cells;
+    let element = elements.of(membrane, cell).filter(|_| matches!(quadrature.cells[cell], Cell::Whole(_)));
+    let plain = points.is_empty() && element.is_some_and(|e| e.stiffness.is_some());
     let mut scratch = Tabulation::default();
-    let whole = matches!(quadrature.cells[cell], Cell::Whole(_));
-    let plain = whole && points.is_empty() && elements.stiffness.is_some();
-    let volumes = quadrature.volumes(membrane, cell, &elements.whole_rule);
+    let volumes = quadrature.volumes(membrane, cell);
     unknowns.cells[cell]
         .iter()
-        .map(|(region, _)| {
+        .map(|(region, dofs)| {
+            let n = dofs.len();
             let mut matrix = if plain { Vec::new() } else { vec![0.0; n * n] };
             let mut load = vec![0.0; n];
             for (_, rule) in volumes.iter().filter(|(r, _)| r == region) {
                 for (i, p) in rule.iter().enumerate() {
-                    let t = if whole {
-                        &elements.tabulated[i]
-                    } else {
-                        tabulate(basis, membrane, cell, &p.x, &mut scratch);
-                        &scratch
+                    let t = match element {
+                        Some(element) => &element.tabulated[i],
+                        None => {
+                            cells.tabulate(cell, &p.x, &mut scratch);
+                            &scratch
+                        }
                     };
                     if !plain {
                         add_stiffness(&mut matrix, t, p.weight * membrane.tension.value(&p.x));
@@ -501,8 +531,8 @@ fn local_systems<const D: usize>(
                 }
             }
             for p in points.iter().map(|&i| &imposed[i]).filter(|p| p.region == *region) {
-                tabulate(basis, membrane, cell, &p.x, &mut scratch);
-                let penalty = nitsche_penalty(basis.degree()) / membrane.grid.h();
+                cells.tabulate(cell, &p.x, &mut scratch);
+                let penalty = penalty(membrane, cell);
                 let w = p.weight * membrane.tension.value(&p.x);
                 let flux: Vec<f64> = scratch.gradient.iter().map(|g| g.dot(&p.outward)).collect();
                 for a in 0..n {

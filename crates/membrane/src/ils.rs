@@ -317,8 +317,8 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
     /// Replaces the zone by the prediction of the nodal method on linear elements, which is cheap, and cannot go astray
     /// however the zone is connected. Its front is true to a fraction of a cell.
     fn predict(&mut self, floor: &SharedField<D>) -> Result<(), SolveError> {
-        let finer = if self.membrane.grid.degree() >= 3 { 2 } else { 1 };
-        let nodal = self.membrane.on_grid(self.membrane.grid.cells().map(|n| n * finer), 1);
+        let finer = if self.membrane.cells.degree() >= 3 { 2 } else { 1 };
+        let nodal = self.membrane.on(self.membrane.cells.linear(finer));
         let progress = &*self.progress;
         let solution = active_set::solve::<D, Z>(&nodal, floor, NodalStart::Nested, &|| progress.interrupted())?;
         let predictor = solution.predictor(&nodal, floor);

@@ -81,8 +81,7 @@ impl LineZone {
 }
 
 impl Division<1> for LineZone {
-    fn fronts_in_cell(&self, cell: usize) -> FrontsInCell<'_, 1> {
-        let b = self.grid.cell_box(cell);
+    fn fronts_in(&self, b: &Aabb<1>) -> FrontsInCell<'_, 1> {
         let near: Vec<usize> = (0..self.front_count())
             .filter(|&i| {
                 let at = self.end(i).at;

@@ -110,6 +110,30 @@ impl PlaneZone {
         self.near[cell].iter().filter(|(c, _)| *c as usize == curve).map(|(_, s)| *s as usize).collect()
     }
 
+    /// The curves near a box, each with its samples there.
+    fn near_box(&self, b: &Aabb<2>) -> Vec<(usize, Vec<usize>)> {
+        let inset = 1e-9 * self.grid.cell_size();
+        let [low, high] = [b.min + inset, b.max - inset].map(|x| self.grid.cell_index(self.grid.cell_containing(&x)));
+        let mut found: Vec<(usize, Vec<usize>)> = Vec::new();
+        for j in low[1]..=high[1] {
+            for i in low[0]..=high[0] {
+                for &(c, s) in &self.near[self.grid.cell_at([i, j])] {
+                    match found.iter_mut().find(|(curve, _)| *curve == c as usize) {
+                        Some((_, seeds)) => seeds.push(s as usize),
+                        None => found.push((c as usize, vec![s as usize])),
+                    }
+                }
+            }
+        }
+        if low != high {
+            for (_, seeds) in &mut found {
+                seeds.sort_unstable();
+                seeds.dedup();
+            }
+        }
+        found
+    }
+
     fn curves_near(&self, cell: usize) -> Vec<usize> {
         let mut found: Vec<usize> = self.near[cell].iter().map(|(c, _)| *c as usize).collect();
         found.dedup();
@@ -219,13 +243,14 @@ impl PlaneZone {
 }
 
 impl Division<2> for PlaneZone {
-    fn fronts_in_cell(&self, cell: usize) -> FrontsInCell<'_, 2> {
-        let b = self.grid.cell_box(cell);
-        let near = self.curves_near(cell);
-        let mut far: Vec<usize> = self.around[cell].iter().map(|&c| c as usize).filter(|c| !near.contains(c)).collect();
+    fn fronts_in(&self, b: &Aabb<2>) -> FrontsInCell<'_, 2> {
+        let near = self.near_box(b);
+        let around = &self.around[self.grid.cell_containing(&b.center())];
+        let is_near = |c: &usize| near.iter().any(|(n, _)| n == c);
+        let mut far: Vec<usize> = around.iter().map(|&c| c as usize).filter(|c| !is_near(c)).collect();
         let mut found = FrontsInCell { sheets: vec![], fronts: vec![], features: vec![], region: Box::new(|_| 0) };
-        for c in near {
-            let sheet = FrontSheet { curve: &self.curves[c], seeds: self.seeds(cell, c) };
+        for (c, seeds) in near {
+            let sheet = FrontSheet { curve: &self.curves[c], seeds };
             let distance = sheet.value(&b.center());
             if distance.abs() > b.radius() {
                 if self.encloses(c, distance) {

@@ -1,9 +1,10 @@
 //! A membrane at one instant: where it is, what pulls, pushes and holds it, and the floor below.
 
-use crate::domain::{CellStatus, DomainOnGrid};
+use crate::domain::{CellStatus, DomainOnCells};
 use crate::field::SharedField;
-use signorini_fem::Grid;
+use signorini_fem::{Cells, Grid};
 use signorini_geometry::{Point, Vector};
+use std::sync::Arc;
 
 /// What a unit of the coordinates measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,8 +45,11 @@ pub struct Support<const D: usize> {
 /// `div(T ∇u) + f + p = 0`, `p >= 0`, `p (u - h) = 0`.
 #[derive(Clone)]
 pub struct Membrane<const D: usize> {
+    /// What the displacement is computed on.
+    pub cells: Arc<dyn Cells<D>>,
+    /// Where zones are told apart: the cells themselves, or a grid of about their size.
     pub grid: Grid<D>,
-    pub domain: DomainOnGrid<D>,
+    pub domain: DomainOnCells<D>,
     pub measure: Measure,
     /// Force per length.
     pub tension: SharedField<D>,
@@ -94,12 +98,12 @@ impl<const D: usize> Membrane<D> {
 
     /// Whether a point belongs to the membrane.
     pub fn contains(&self, x: &Point<D>) -> bool {
-        let cell = self.grid.cell_containing(x);
+        let Some(cell) = self.cells.containing(x) else { return false };
         match self.domain.status[cell] {
             CellStatus::Inside => self.grid.bounds().contains(x),
             CellStatus::Outside => false,
             CellStatus::Crossed => {
-                let boundary = self.domain.domain.boundary_in(&self.grid.cell_box(cell));
+                let boundary = self.domain.domain.boundary_in(&self.cells.bounds_of(cell));
                 let values: Vec<f64> = boundary.sheets.iter().map(|s| s.value(x)).collect();
                 self.domain.domain.contains(x, &values)
             }
@@ -111,10 +115,9 @@ impl<const D: usize> Membrane<D> {
         self.grid.bounds().size().max()
     }
 
-    /// The same membrane on a grid with other cells and degree.
-    pub fn on_grid(&self, cells: [usize; D], degree: usize) -> Self {
-        let grid = Grid::new(*self.grid.bounds(), cells, degree);
-        let domain = DomainOnGrid::new(self.domain.domain.clone(), &grid);
-        Self { grid, domain, ..self.clone() }
+    /// The same membrane on other cells.
+    pub fn on(&self, cells: Arc<dyn Cells<D>>) -> Self {
+        let domain = DomainOnCells::new(self.domain.domain.clone(), &*cells);
+        Self { cells, domain, ..self.clone() }
     }
 }

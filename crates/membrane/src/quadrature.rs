@@ -4,7 +4,8 @@ use crate::domain::CellStatus;
 use crate::problem::Membrane;
 use crate::zone::{Division, OUTSIDE, contact_index, is_free};
 use rayon::prelude::*;
-use signorini_fem::cut::{CellPartition, CellRule, QuadraturePoint, RegionId, cut_cell, scan_roots};
+use signorini_fem::cells::SidePoint;
+use signorini_fem::cut::{CellPartition, CellRule, QuadraturePoint, RegionId, scan_roots};
 use signorini_fem::gauss_legendre;
 use signorini_geometry::{Aabb, Point, Vector};
 
@@ -55,11 +56,6 @@ pub struct Quadrature<const D: usize> {
     pub rim: Vec<RimPoint<D>>,
 }
 
-/// Gauss points per direction in cells that are not cut.
-pub fn whole_order(degree: usize) -> usize {
-    degree + 3
-}
-
 /// Gauss points per direction and smooth piece in cut cells.
 pub fn cut_order(degree: usize) -> usize {
     degree + 5
@@ -67,19 +63,19 @@ pub fn cut_order(degree: usize) -> usize {
 
 impl<const D: usize> Quadrature<D> {
     pub fn new<Z: Division<D>>(membrane: &Membrane<D>, zone: &Z) -> Self {
-        let order = cut_order(membrane.grid.degree());
-        let cells: Vec<Cell<D>> = (0..membrane.grid.cell_count())
+        let order = cut_order(membrane.cells.degree());
+        let cells: Vec<Cell<D>> = (0..membrane.cells.count())
             .into_par_iter()
             .map(|cell| {
                 if membrane.domain.status[cell] == CellStatus::Outside {
                     return Cell::Outside;
                 }
-                let b = membrane.grid.cell_box(cell);
+                let b = membrane.cells.bounds_of(cell);
                 let partition = partition(membrane, zone, cell, &b);
                 if partition.sheets.is_empty() {
                     return Cell::Whole((partition.region)(&b.center(), &[]));
                 }
-                let mut rule = cut_cell(&partition, &b, order);
+                let mut rule = membrane.cells.cut(cell, &partition, order);
                 if !rule.cut {
                     return rule.volumes.first().map_or(Cell::Outside, |(r, _)| match *r {
                         OUTSIDE => Cell::Outside,
@@ -98,8 +94,8 @@ impl<const D: usize> Quadrature<D> {
             .collect();
         let mut quadrature = Self { cells, front: Vec::new(), rim: Vec::new() };
         quadrature.collect_surfaces();
-        if membrane.domain.domain.is_box() {
-            quadrature.add_box_sides(membrane, zone);
+        if membrane.domain.domain.is_fitted() {
+            quadrature.add_sides(membrane, zone);
         }
         quadrature
     }
@@ -130,80 +126,65 @@ impl<const D: usize> Quadrature<D> {
         }
     }
 
-    /// The sides of a domain that the grid fits lie on faces of cells.
-    fn add_box_sides<Z: Division<D>>(&mut self, membrane: &Membrane<D>, zone: &Z) {
-        let grid = &membrane.grid;
-        let gauss = gauss_legendre(cut_order(grid.degree()));
-        for cell in 0..grid.cell_count() {
-            let index = grid.cell_index(cell);
-            for k in 0..D {
-                for upper in [false, true] {
-                    if index[k] != if upper { grid.cells()[k] - 1 } else { 0 } {
-                        continue;
-                    }
-                    let b = grid.cell_box(cell);
-                    let mut normal = Vector::zeros();
-                    normal[k] = if upper { 1.0 } else { -1.0 };
-                    let mut corner = b.min;
-                    corner[k] = if upper { b.max[k] } else { b.min[k] };
-                    let divided = partition(membrane, zone, cell, &b);
-                    let region = |x: &Point<D>| {
-                        let values: Vec<f64> = divided.sheets.iter().map(|s| s.value(x)).collect();
-                        (divided.region)(x, &values)
-                    };
-                    let mut push = |x: Point<D>, weight: f64, region: RegionId| {
-                        let weight = weight * membrane.measure.weight(&x);
-                        let piece = 2 * k + usize::from(upper);
-                        self.rim.push(RimPoint { cell, x, weight, normal, piece, region });
-                    };
-                    if D == 1 {
-                        push(corner, 1.0, region(&corner));
-                        continue;
-                    }
-                    let along = 1 - k;
-                    let at = |t: f64| {
-                        let mut x = corner;
-                        x[along] = t;
-                        x
-                    };
-                    let mut breaks = vec![b.min[along], b.max[along]];
-                    for sheet in &divided.sheets {
-                        breaks.extend(scan_roots(b.min[along], b.max[along], 9, |t| {
-                            let x = at(t);
-                            (sheet.value(&x), sheet.gradient(&x)[along])
-                        }));
-                    }
-                    breaks.sort_by(f64::total_cmp);
-                    for pair in breaks.windows(2).filter(|pair| pair[1] > pair[0]) {
-                        let width = pair[1] - pair[0];
-                        let here = region(&at(0.5 * (pair[0] + pair[1])));
-                        for &(t, w) in &gauss {
-                            push(at(pair[0] + t * width), w * width, here);
-                        }
-                    }
+    /// The boundary of a domain that the cells fit.
+    fn add_sides<Z: Division<D>>(&mut self, membrane: &Membrane<D>, zone: &Z) {
+        let cells = &*membrane.cells;
+        let gauss = gauss_legendre(cut_order(cells.degree()));
+        for side in cells.boundary_sides() {
+            let divided = partition(membrane, zone, side.cell, &cells.bounds_of(side.cell));
+            let region = |x: &Point<D>| {
+                let values: Vec<f64> = divided.sheets.iter().map(|s| s.value(x)).collect();
+                (divided.region)(x, &values)
+            };
+            let mut push = |p: SidePoint<D>, weight: f64, region: RegionId| {
+                let weight = weight * membrane.measure.weight(&p.x);
+                self.rim.push(RimPoint {
+                    cell: side.cell,
+                    x: p.x,
+                    weight,
+                    normal: p.normal,
+                    piece: side.piece,
+                    region,
+                });
+            };
+            let at = |t: f64| cells.on_side(&side, t);
+            if D == 1 {
+                let corner = at(0.0);
+                push(corner, 1.0, region(&corner.x));
+                continue;
+            }
+            let mut breaks = vec![0.0, 1.0];
+            for sheet in &divided.sheets {
+                breaks.extend(scan_roots(0.0, 1.0, 9, |t| {
+                    let p = at(t);
+                    (sheet.value(&p.x), sheet.gradient(&p.x).dot(&p.tangent))
+                }));
+            }
+            breaks.sort_by(f64::total_cmp);
+            for pair in breaks.windows(2).filter(|pair| pair[1] > pair[0]) {
+                let width = pair[1] - pair[0];
+                let here = region(&at(0.5 * (pair[0] + pair[1])).x);
+                for &(t, w) in &gauss {
+                    let p = at(pair[0] + t * width);
+                    push(p, w * width * p.tangent.norm(), here);
                 }
             }
         }
     }
 
-    /// The volume points of a cell, region by region; `whole` is the rule of an undivided cell on the unit cell.
+    /// The volume points of a cell, region by region.
     pub fn volumes<'a>(
         &'a self,
         membrane: &'a Membrane<D>,
         cell: usize,
-        whole: &'a [QuadraturePoint<D>],
     ) -> Vec<(RegionId, std::borrow::Cow<'a, [QuadraturePoint<D>]>)> {
         match &self.cells[cell] {
             Cell::Outside => Vec::new(),
             Cell::Whole(region) => {
-                let b = membrane.grid.cell_box(cell);
-                let points: Vec<QuadraturePoint<D>> = whole
-                    .iter()
-                    .map(|p| {
-                        let x = b.at(&p.x);
-                        QuadraturePoint { x, weight: p.weight * b.volume() * membrane.measure.weight(&x) }
-                    })
-                    .collect();
+                let mut points = membrane.cells.rule(cell);
+                for p in &mut points {
+                    p.weight *= membrane.measure.weight(&p.x);
+                }
                 vec![(*region, points.into())]
             }
             Cell::Cut(rule) => rule.volumes.iter().map(|(r, points)| (*r, points.as_slice().into())).collect(),
@@ -227,23 +208,6 @@ impl<const D: usize> Quadrature<D> {
     }
 }
 
-/// The tensor-product Gauss rule on the unit cell.
-pub fn unit_rule<const D: usize>(order: usize) -> Vec<QuadraturePoint<D>> {
-    let gauss = gauss_legendre(order);
-    (0..order.pow(D as u32))
-        .map(|mut i| {
-            let mut weight = 1.0;
-            let x = Point::from_fn(|_, _| {
-                let (x, w) = gauss[i % order];
-                i /= order;
-                weight *= w;
-                x
-            });
-            QuadraturePoint { x, weight }
-        })
-        .collect()
-}
-
 /// What divides a cell: the boundary of the membrane, then the fronts.
 fn partition<'a, const D: usize, Z: Division<D>>(
     membrane: &'a Membrane<D>,
@@ -253,7 +217,7 @@ fn partition<'a, const D: usize, Z: Division<D>>(
 ) -> CellPartition<'a, D> {
     let domain = &membrane.domain.domain;
     let crossed = membrane.domain.status[cell] == CellStatus::Crossed;
-    let fronts = zone.fronts_in_cell(cell);
+    let fronts = zone.fronts_in(b);
     let mut all = CellPartition {
         sheets: fronts.sheets,
         tags: fronts.fronts.iter().map(|&f| FRONT_TAG + f as u32).collect(),

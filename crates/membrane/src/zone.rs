@@ -2,7 +2,7 @@
 
 use signorini_fem::Grid;
 use signorini_fem::cut::RegionId;
-use signorini_geometry::{ImplicitShape, Point};
+use signorini_geometry::{Aabb, ImplicitShape, Point};
 
 /// Beyond the membrane.
 pub const OUTSIDE: RegionId = 0;
@@ -30,7 +30,7 @@ pub fn is_free(region: RegionId) -> bool {
     region & !INDEX == FREE
 }
 
-/// The fronts that may cross one cell.
+/// The fronts that may cross a box.
 pub struct FrontsInCell<'a, const D: usize> {
     pub sheets: Vec<Box<dyn ImplicitShape<D> + 'a>>,
     /// Front of each sheet.
@@ -74,14 +74,15 @@ pub struct Advance<Z> {
 
 /// What divides a membrane into contact and free regions.
 pub trait Division<const D: usize>: Sync {
-    fn fronts_in_cell(&self, cell: usize) -> FrontsInCell<'_, D>;
+    /// The fronts that may cross a box.
+    fn fronts_in(&self, bounds: &Aabb<D>) -> FrontsInCell<'_, D>;
 }
 
 /// A membrane without contact.
 pub struct NoZone;
 
 impl<const D: usize> Division<D> for NoZone {
-    fn fronts_in_cell(&self, _: usize) -> FrontsInCell<'_, D> {
+    fn fronts_in(&self, _: &Aabb<D>) -> FrontsInCell<'_, D> {
         FrontsInCell { sheets: vec![], fronts: vec![], features: vec![], region: Box::new(|_| free(0)) }
     }
 }

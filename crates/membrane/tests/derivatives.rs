@@ -3,7 +3,7 @@
 use signorini_fem::Grid;
 use signorini_geometry::{Aabb, ClosedCurve, Ellipse, Jet, Point, Real};
 use signorini_membrane::adhesion::Branch;
-use signorini_membrane::domain::{Domain, DomainOnGrid, ImplicitDomain};
+use signorini_membrane::domain::{Domain, DomainOnCells, ImplicitDomain};
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::field::{Constant, Formula, SharedField};
 use signorini_membrane::front::Fronts;
@@ -27,7 +27,8 @@ fn membrane(cells: usize, degree: usize) -> Membrane<2> {
     let floor: SharedField<2> =
         Arc::new(Formula(move |[x, y]: [Jet<2>; 2]| c(-0.1) - c(0.05) * x * x + c(0.03) * y * x - c(0.02) * y));
     Membrane {
-        domain: DomainOnGrid::new(domain, &grid),
+        domain: DomainOnCells::new(domain, &grid),
+        cells: Arc::new(grid.clone()),
         grid,
         measure: Measure::Plain,
         tension: Arc::new(Formula(move |[x, y]: [Jet<2>; 2]| c(1.0) + c(0.4) * x + c(0.2) * y * y)),

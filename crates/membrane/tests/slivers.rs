@@ -2,7 +2,7 @@
 
 use signorini_fem::Grid;
 use signorini_geometry::{Aabb, Line, Point, Vector};
-use signorini_membrane::domain::{Domain, DomainOnGrid, ImplicitDomain};
+use signorini_membrane::domain::{Domain, DomainOnCells, ImplicitDomain};
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::field::Constant;
 use signorini_membrane::plane_zone::PlaneZone;
@@ -20,7 +20,8 @@ fn error(degree: usize, normal: Vector<2>, offset: f64) -> f64 {
     let exact = 0.3;
     let displacement = Arc::new(Constant(exact));
     let membrane = Membrane {
-        domain: DomainOnGrid::new(domain, &grid),
+        domain: DomainOnCells::new(domain, &grid),
+        cells: Arc::new(grid.clone()),
         grid: grid.clone(),
         measure: Measure::Plain,
         tension: Arc::new(Constant(1.0)),

@@ -12,13 +12,13 @@ use crate::case::units::{FORCE_PER_LENGTH, LENGTH, PRESSURE, Units};
 use crate::case::value::Reader;
 use crate::case::{CaseError, Document, OneOrMany, Value, suggestion};
 use crate::expression::{Definition, Expression, Names, Scope};
-use signorini_fem::Grid;
+use signorini_fem::{Cells, Grid};
 use signorini_geometry::{Jet, Point, Real};
 use signorini_membrane::active_set::NodalStart;
-use signorini_membrane::domain::{Domain, DomainOnGrid};
+use signorini_membrane::domain::{Domain, DomainOnCells};
 use signorini_membrane::field::{Constant, Field, Moved, SharedField, Sum};
 use signorini_membrane::problem::{Measure, Membrane, Support};
-use signorini_membrane::quadrature::{Quadrature, unit_rule, whole_order};
+use signorini_membrane::quadrature::Quadrature;
 use signorini_membrane::zone::NoZone;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -73,8 +73,11 @@ pub struct PlannedSupport {
 pub struct MembranePlan<const D: usize> {
     pub document: Document,
     pub space: Space,
+    /// What the displacement is computed on.
+    pub cells: Arc<dyn Cells<D>>,
+    /// Where zones are told apart.
     pub grid: Grid<D>,
-    pub domain: DomainOnGrid<D>,
+    pub domain: DomainOnCells<D>,
     pub tension: Placed,
     pub loads: BTreeMap<String, Placed>,
     pub supports: Vec<PlannedSupport>,
@@ -325,17 +328,10 @@ impl<'a> Planner<'a> {
             };
             return Err(self.unavailable(b.span(), &format!("the body `{name}`: `{what}`")));
         }
-        let degree = match &film.degree {
-            None => 2,
-            Some(d) if (1..=6).contains(d.get_ref()) => *d.get_ref() as usize,
-            Some(d) => {
-                return Err(document.error(d.span(), format!("degree {} is not between 1 and 6", d.get_ref())));
-            }
-        };
-        let (grid, domain, pieces) = domain::ReadDomain::<D>::domain(self, film, span.clone(), degree)?;
+        let mut on = domain::ReadDomain::<D>::domain(self, film, span.clone())?;
         let tension = self.placed(format!("bodies.{body}.membrane.tension"), &film.tension, FORCE_PER_LENGTH)?;
         let loads = self.loads(body)?;
-        let supports = self.supports(body, &pieces)?;
+        let supports = self.supports(body, &on.pieces)?;
         let contact = self.contact(body)?;
         let mut warnings = Vec::new();
         let (contact, method) = match contact {
@@ -350,15 +346,19 @@ impl<'a> Planner<'a> {
                 "no contact is stated: the floor is ignored (add [contacts.NAME] between = [film, floor])".into(),
             );
         }
-        let degree = if let MethodChoice::ActiveSet(_) = method { 1 } else { degree };
-        if degree != grid.degree() {
-            if film.degree.is_some() {
+        if let MethodChoice::ActiveSet(_) = method {
+            if let statement::Mesh::Gmsh(key) = film.mesh.get_ref() {
+                return Err(document
+                    .error(key.file.span(), "method.active_set works on a grid")
+                    .help("mesh.grid = { cells = [40, 40] }, or method.inequality_level_set = {}"));
+            }
+            if on.grid.degree() != 1 && film.degree.is_some() {
                 warnings.push("method.active_set works with degree 1; the stated degree is not used".into());
             }
-            let grid = Grid::new(*grid.bounds(), grid.cells(), 1);
-            return self.finish(body, grid, domain, tension, loads, supports, contact, method, warnings);
+            on.grid = Grid::new(*on.grid.bounds(), on.grid.cells(), 1);
+            on.cells = Arc::new(on.grid.clone());
         }
-        self.finish(body, grid, domain, tension, loads, supports, contact, method, warnings)
+        self.finish(body, on, tension, loads, supports, contact, method, warnings)
     }
 
     /// The zone that a contact asks to start from.
@@ -373,8 +373,7 @@ impl<'a> Planner<'a> {
     fn finish<const D: usize>(
         &self,
         body: &str,
-        grid: Grid<D>,
-        domain: DomainOnGrid<D>,
+        on: domain::OnCells<D>,
         tension: Placed,
         loads: BTreeMap<String, Placed>,
         supports: Vec<PlannedSupport>,
@@ -401,15 +400,16 @@ impl<'a> Planner<'a> {
             probes.insert(name.clone(), Point::<D>::from_fn(|k, _| x[k]));
         }
         let initial_zone = match (self.initial_zone_key(), &contact) {
-            (Some(key), Some(_)) => Some(domain::ReadDomain::<D>::initial_zone(self, key, &grid)?),
+            (Some(key), Some(_)) => Some(domain::ReadDomain::<D>::initial_zone(self, key, &on.grid)?),
             _ => None,
         };
         let increments = self.increments(D, contact.as_ref().map(|(name, _)| name.as_str()))?;
         let plan = MembranePlan {
             document: self.document.clone(),
             space: self.space,
-            grid,
-            domain,
+            cells: on.cells,
+            grid: on.grid,
+            domain: on.domain,
             tension,
             loads,
             supports,
@@ -715,6 +715,7 @@ impl<const D: usize> MembranePlan<D> {
             _ => Arc::new(Sum(loads)),
         };
         Membrane {
+            cells: self.cells.clone(),
             grid: self.grid.clone(),
             domain: self.domain.clone(),
             measure: if self.space == Space::Axisymmetric { Measure::Axisymmetric } else { Measure::Plain },
@@ -750,19 +751,17 @@ impl<const D: usize> MembranePlan<D> {
     pub fn area(&self) -> f64 {
         let membrane = self.at(self.increments[0].range[0]);
         let quadrature = Quadrature::new(&membrane, &NoZone);
-        let whole = unit_rule::<D>(whole_order(self.grid.degree()));
-        let cells = (0..quadrature.cells.len()).flat_map(|cell| quadrature.volumes(&membrane, cell, &whole));
+        let cells = (0..quadrature.cells.len()).flat_map(|cell| quadrature.volumes(&membrane, cell));
         cells.flat_map(|(_, points)| points.iter().map(|p| p.weight).collect::<Vec<_>>()).sum()
     }
 
     /// The resultant of each load along z.
     pub fn load_resultants(&self, membrane: &Membrane<D>, time: f64) -> BTreeMap<String, f64> {
         let quadrature = Quadrature::new(membrane, &NoZone);
-        let whole = unit_rule::<D>(whole_order(membrane.grid.degree()));
         let fields: Vec<SharedField<D>> = self.loads.values().map(|l| field(&l.expression, time)).collect();
         let mut sums = vec![0.0; fields.len()];
         for cell in 0..quadrature.cells.len() {
-            for (_, points) in quadrature.volumes(membrane, cell, &whole) {
+            for (_, points) in quadrature.volumes(membrane, cell) {
                 for p in points.iter() {
                     for (sum, f) in sums.iter_mut().zip(&fields) {
                         *sum += p.weight * f.value(&p.x);
@@ -777,7 +776,6 @@ impl<const D: usize> MembranePlan<D> {
     /// supports.
     pub fn check_fields(&self, membrane: &Membrane<D>, time: f64) -> Result<(), CaseError> {
         let quadrature = Quadrature::new(membrane, &NoZone);
-        let whole = unit_rule::<D>(2);
         let mut failure: Option<CaseError> = None;
         let wrong = |p: &Placed, x: &Point<D>, v: f64, what: &str| {
             let at: Vec<String> = x.iter().map(|c| format!("{c:.6}")).collect();
@@ -800,7 +798,7 @@ impl<const D: usize> MembranePlan<D> {
                 )
                 .collect();
         for cell in 0..quadrature.cells.len() {
-            for (_, points) in quadrature.volumes(membrane, cell, &whole) {
+            for (_, points) in quadrature.volumes(membrane, cell) {
                 for p in points.iter() {
                     for (i, (placed, f, derivatives)) in fields.iter().enumerate() {
                         let jet = if *derivatives { f.jet(&p.x) } else { Jet::constant(f.value(&p.x)) };

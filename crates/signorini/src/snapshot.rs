@@ -4,54 +4,44 @@ use crate::plan::MembranePlan;
 use signorini_geometry::Point;
 use signorini_membrane::domain::CellStatus;
 use signorini_membrane::problem::Membrane;
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 
 /// Samples along the longer side of the domain that pictures and files aim at.
 const RESOLUTION: usize = 200;
 
-/// Points and cells for display: a line in one dimension, quadrilaterals that follow the boundary in two.
+/// Points and cells for display: lines in one dimension, in two what follows the boundary.
 #[derive(Clone, Debug)]
 pub struct DisplayMesh<const D: usize> {
     pub points: Vec<Point<D>>,
-    /// Two or four points each.
+    /// Two to four points each.
     pub cells: Vec<Vec<u32>>,
 }
 
 impl<const D: usize> DisplayMesh<D> {
     pub fn new(plan: &MembranePlan<D>, membrane: &Membrane<D>) -> Self {
-        let grid = &plan.grid;
-        let longest = grid.cells().into_iter().max().unwrap_or(1);
-        let fine = (RESOLUTION / longest).clamp(1, 8).max(grid.degree().min(3));
-        let counts = grid.cells().map(|n| n * fine);
-        let at = |index: [usize; D]| grid.bounds().at(&Point::from_fn(|k, _| index[k] as f64 / counts[k] as f64));
-        let reach = 1.5 * grid.cell_size().max() / fine as f64;
+        let cells = &*plan.cells;
+        let bounds = plan.grid.bounds();
+        let longest = plan.grid.cells().into_iter().max().unwrap_or(1);
+        let fine = (RESOLUTION / longest).clamp(1, 8).max(cells.degree().min(3));
         let mut mesh = Self { points: Vec::new(), cells: Vec::new() };
-        let mut number: BTreeMap<[usize; D], Option<u32>> = BTreeMap::new();
-        for cell in (0..grid.cell_count()).filter(|&c| plan.domain.status[c] != CellStatus::Outside) {
-            let base = grid.cell_index(cell);
-            for sub in 0..fine.pow(D as u32) {
-                let mut rest = sub;
-                let low: [usize; D] = std::array::from_fn(|k| {
-                    let v = base[k] * fine + rest % fine;
-                    rest /= fine;
-                    v
-                });
-                let corners: Vec<[usize; D]> =
-                    corner_offsets::<D>().iter().map(|o| std::array::from_fn(|k| low[k] + o[k])).collect();
-                if !corners.iter().any(|c| membrane.contains(&at(*c))) {
-                    continue;
-                }
+        // Points of neighbouring cells agree to round-off.
+        let key = |x: &Point<D>| -> [i64; D] {
+            std::array::from_fn(|k| ((x[k] - bounds.min[k]) / bounds.size()[k] * 1e9).round() as i64)
+        };
+        let mut number: HashMap<[i64; D], Option<u32>> = HashMap::new();
+        for cell in (0..cells.count()).filter(|&c| plan.domain.status[c] != CellStatus::Outside) {
+            let whole = plan.domain.status[cell] == CellStatus::Inside;
+            let reach = 1.5 * cells.bounds_of(cell).size().max() / fine as f64;
+            let divided = cells.divided(cell, fine);
+            let inside: Vec<bool> = divided.points.iter().map(|x| whole || membrane.contains(x)).collect();
+            for part in divided.parts.iter().filter(|part| part.iter().any(|&i| inside[i])) {
                 // Corners beyond the boundary are drawn onto it.
-                let ids: Option<Vec<u32>> = corners
+                let ids: Option<Vec<u32>> = part
                     .iter()
-                    .map(|c| {
-                        *number.entry(*c).or_insert_with(|| {
-                            let x = at(*c);
-                            let x = if membrane.contains(&x) {
-                                Some(x)
-                            } else {
-                                plan.domain.domain.pulled_inside(&x, reach)
-                            }?;
+                    .map(|&i| {
+                        let x = divided.points[i];
+                        *number.entry(key(&x)).or_insert_with(|| {
+                            let x = if inside[i] { x } else { plan.domain.domain.pulled_inside(&x, reach)? };
                             mesh.points.push(x);
                             Some(mesh.points.len() as u32 - 1)
                         })
@@ -62,12 +52,6 @@ impl<const D: usize> DisplayMesh<D> {
         }
         mesh
     }
-}
-
-/// Corners of a unit cell, round it.
-fn corner_offsets<const D: usize>() -> Vec<[usize; D]> {
-    let round: &[[usize; 2]] = if D == 1 { &[[0, 0], [1, 0]] } else { &[[0, 0], [1, 0], [1, 1], [0, 1]] };
-    round.iter().map(|o| std::array::from_fn(|k| o[k])).collect()
 }
 
 /// Fields at the points of a display mesh, and the edge of the contact.

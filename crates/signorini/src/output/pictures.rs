@@ -266,24 +266,22 @@ fn fill<const D: usize>(
     let (w, h) = (image.width(), image.height());
     let pixel =
         |p: &Point<D>| ((p[0] - bounds.min[0]) / size[0] * w as f64, (bounds.max[1] - p[1]) / size[1] * h as f64);
-    for cell in &mesh.cells {
-        let corners: Vec<(f64, f64)> = cell.iter().map(|&i| pixel(&mesh.points[i as usize])).collect();
-        let (x0, x1) = range(corners.iter().map(|c| c.0));
-        let (y0, y1) = range(corners.iter().map(|c| c.1));
-        let value = |k: usize| values[cell[k] as usize];
+    let triangles = mesh.cells.iter().flat_map(|cell| (2..cell.len()).map(|k| [cell[0], cell[k - 1], cell[k]]));
+    for corners in triangles {
+        let [a, b, c] = corners.map(|i| pixel(&mesh.points[i as usize]));
+        let (x0, x1) = range([a.0, b.0, c.0].into_iter());
+        let (y0, y1) = range([a.1, b.1, c.1].into_iter());
+        let twice = |p: (f64, f64), q: (f64, f64), r: (f64, f64)| (q.0 - p.0) * (r.1 - p.1) - (q.1 - p.1) * (r.0 - p.0);
+        let whole = twice(a, b, c);
+        if whole == 0.0 {
+            continue;
+        }
         for y in y0.floor().max(0.0) as usize..(y1.ceil() as usize).min(h) {
             for x in x0.floor().max(0.0) as usize..(x1.ceil() as usize).min(w) {
                 let at = (x as f64 + 0.5, y as f64 + 0.5);
-                let inside = (0..4).all(|k| {
-                    let (a, b) = (corners[k], corners[(k + 1) % 4]);
-                    // Rows run downwards, so the corners run clockwise on the screen.
-                    (b.0 - a.0) * (at.1 - a.1) - (b.1 - a.1) * (at.0 - a.0) <= 1e-9
-                });
-                if inside {
-                    let s = ((at.0 - x0) / (x1 - x0)).clamp(0.0, 1.0);
-                    let t = ((y1 - at.1) / (y1 - y0)).clamp(0.0, 1.0);
-                    let v =
-                        (1.0 - t) * ((1.0 - s) * value(0) + s * value(1)) + t * ((1.0 - s) * value(3) + s * value(2));
+                let shares = [twice(at, b, c), twice(a, at, c), twice(a, b, at)].map(|s| s / whole);
+                if shares.iter().all(|s| *s >= -1e-9) {
+                    let v: f64 = shares.iter().zip(&corners).map(|(s, &i)| s * values[i as usize]).sum();
                     image.set(x, y, viridis((v - lo) / (hi - lo)));
                 }
             }

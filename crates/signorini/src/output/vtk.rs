@@ -33,7 +33,12 @@ pub fn fields<const D: usize>(mesh: &DisplayMesh<D>, s: &Snapshot<D>) -> Result<
             Some(*at)
         })
         .collect();
-    let kind = if D == 1 { CellType::Line } else { CellType::Quad };
+    let kind = |corners: &Vec<u32>| match corners.len() {
+        2 => CellType::Line,
+        3 => CellType::Triangle,
+        _ => CellType::Quad,
+    };
+    let types = mesh.cells.iter().map(kind).collect();
     let scalar = |name: &str, values: Vec<f64>| Attribute::scalars(name, 1).with_data(values);
     let vector: Vec<f64> = s.displacement.iter().flat_map(|u| [0.0, 0.0, *u]).collect();
     let mut point = vec![Attribute::vectors("displacement").with_data(vector)];
@@ -44,7 +49,7 @@ pub fn fields<const D: usize>(mesh: &DisplayMesh<D>, s: &Snapshot<D>) -> Result<
     }
     let piece = UnstructuredGridPiece {
         points: coordinates(&mesh.points, |_| 0.0).into(),
-        cells: Cells { cell_verts: VertexNumbers::XML { connectivity, offsets }, types: vec![kind; mesh.cells.len()] },
+        cells: Cells { cell_verts: VertexNumbers::XML { connectivity, offsets }, types },
         data: Attributes { point, cell: Vec::new() },
     };
     to_bytes("membrane", DataSet::inline(piece))

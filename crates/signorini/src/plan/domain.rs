@@ -1,14 +1,14 @@
-//! The domain of a membrane and its background grid.
+//! The domain of a membrane and its cells: a background grid, or a mesh from a file.
 
 use super::Planner;
 use crate::case::CaseError;
 use crate::case::statement::{self, Domain, Mesh, Space};
 use crate::case::units::{LENGTH, NONE};
 use crate::expression::{Expression, Scope};
-use signorini_fem::Grid;
+use signorini_fem::{Cells, Grid, MeshCells};
 use signorini_geometry::{Aabb, Ellipse, ImplicitShape, Jet, Point, Real, Vector, polygon};
 use signorini_membrane::domain::{
-    BoxDomain, CellStatus, Domain as MembraneDomain, DomainOnGrid, ImplicitDomain, PolygonDomain,
+    BoxDomain, CellStatus, Domain as MembraneDomain, DomainOnCells, ImplicitDomain, MeshDomain, PolygonDomain,
 };
 use std::ops::Range;
 use std::sync::Arc;
@@ -64,19 +64,22 @@ pub(crate) trait ReadDomain<const D: usize> {
 
     fn planner(&self) -> &Planner<'_>;
 
-    /// The domain on its grid.
-    fn domain(
-        &self,
-        film: &statement::Membrane,
-        span: Range<usize>,
-        degree: usize,
-    ) -> Result<(Grid<D>, DomainOnGrid<D>, Pieces), CaseError> {
+    /// The cells of a mesh from a file.
+    fn mesh(&self, key: &statement::GmshKey, film: &statement::Membrane) -> Result<OnCells<D>, CaseError>;
+
+    /// The domain on its cells.
+    fn domain(&self, film: &statement::Membrane, span: Range<usize>) -> Result<OnCells<D>, CaseError> {
         let planner = self.planner();
+        let grid = match film.mesh.get_ref() {
+            Mesh::Gmsh(key) => return self.mesh(key, film),
+            Mesh::Grid(grid) => grid,
+        };
+        let degree = planner.degree(film)?.unwrap_or(2);
         let (shape, bounds, pieces) = self.shape(planner.domain_key(film, span.clone())?)?;
-        let (cells, place) = planner.cells(film, &bounds)?;
+        let (cells, place) = planner.cells(film, grid, &bounds)?;
         planner.check_size(&cells, degree, place.clone())?;
         let grid = Grid::new(bounds, cells, degree);
-        let domain = DomainOnGrid::new(shape, &grid);
+        let domain = DomainOnCells::new(shape, &grid);
         if domain.status.iter().all(|s| *s == CellStatus::Outside) {
             let span = film.domain.as_ref().map_or(span, |d| d.span());
             return Err(planner
@@ -84,21 +87,37 @@ pub(crate) trait ReadDomain<const D: usize> {
                 .error(span, "the domain is empty: no point of it was found on the grid")
                 .help("check the sign (negative inside) and the bounds min, max, or use more cells"));
         }
-        Ok((grid, domain, pieces))
+        Ok(OnCells { cells: Arc::new(grid.clone()), grid, domain, pieces })
     }
 }
 
+/// A domain with its cells.
+pub(crate) struct OnCells<const D: usize> {
+    pub cells: Arc<dyn Cells<D>>,
+    pub grid: Grid<D>,
+    pub domain: DomainOnCells<D>,
+    pub pieces: Pieces,
+}
+
 impl Planner<'_> {
+    /// The degree that a membrane states.
+    fn degree(&self, film: &statement::Membrane) -> Result<Option<usize>, CaseError> {
+        match &film.degree {
+            None => Ok(None),
+            Some(d) if (1..=6).contains(d.get_ref()) => Ok(Some(*d.get_ref() as usize)),
+            Some(d) => {
+                Err(self.document.error(d.span(), format!("degree {} is not between 1 and 6", d.get_ref())))
+            }
+        }
+    }
+
     fn cells<const D: usize>(
         &self,
         film: &statement::Membrane,
+        grid: &statement::GridKey,
         bounds: &Aabb<D>,
     ) -> Result<([usize; D], Range<usize>), CaseError> {
         let document = self.document;
-        let grid = match film.mesh.get_ref() {
-            Mesh::Grid(grid) => grid,
-            Mesh::Gmsh(_) => return Err(self.unavailable(film.mesh.span(), "a Gmsh mesh for a membrane")),
-        };
         match (&grid.cells, &grid.cell_size) {
             (Some(cells), None) => {
                 let list = cells.get_ref();
@@ -139,7 +158,10 @@ impl Planner<'_> {
         degree: usize,
         span: Range<usize>,
     ) -> Result<(), CaseError> {
-        let nodes: f64 = cells.iter().map(|&n| n as f64 * degree as f64 + 1.0).product();
+        self.check_unknowns::<D>(cells.iter().map(|&n| n as f64 * degree as f64 + 1.0).product(), degree, span)
+    }
+
+    fn check_unknowns<const D: usize>(&self, nodes: f64, degree: usize, span: Range<usize>) -> Result<(), CaseError> {
         let bytes = memory_estimate(nodes, degree, D);
         let free = free_memory();
         if nodes < 2e9 && bytes < MEMORY_SHARE * free {
@@ -223,6 +245,13 @@ impl ReadDomain<1> for Planner<'_> {
         self
     }
 
+    fn mesh(&self, key: &statement::GmshKey, _: &statement::Membrane) -> Result<OnCells<1>, CaseError> {
+        Err(self
+            .document
+            .error(key.file.span(), "a mesh from a file belongs to a membrane in the plane")
+            .help("space = \"plane\", or mesh.grid = { cells = [100] }"))
+    }
+
     fn shape(&self, key: &toml::Spanned<Domain>) -> Result<(Arc<dyn MembraneDomain<1>>, Aabb<1>, Pieces), CaseError> {
         let Domain::Interval(interval) = key.get_ref() else {
             return Err(self
@@ -254,6 +283,33 @@ impl ReadDomain<1> for Planner<'_> {
 impl ReadDomain<2> for Planner<'_> {
     fn planner(&self) -> &Planner<'_> {
         self
+    }
+
+    fn mesh(&self, key: &statement::GmshKey, film: &statement::Membrane) -> Result<OnCells<2>, CaseError> {
+        let document = self.document;
+        if let Some(domain) = &film.domain {
+            return Err(document
+                .error(domain.span(), "the mesh from a file is the domain")
+                .help("leave `domain` out, or take mesh.grid"));
+        }
+        let mesh = self.gmsh::<2>(key)?;
+        mesh.check().map_err(|e| {
+            document.error(key.file.span(), format!("the mesh: {e}")).help("every cell needs a positive area")
+        })?;
+        let order = (0..mesh.cell_count()).map(|c| mesh.map(c).order()).max().unwrap_or(1);
+        let degree = self.degree(film)?.unwrap_or(order);
+        let triangles = (0..mesh.cell_count()).any(|c| !mesh.shape(c).is_tensor());
+        if triangles && degree > 2 {
+            let span = film.degree.as_ref().map_or(key.file.span(), |d| d.span());
+            return Err(document
+                .error(span, format!("degree {degree} on a mesh with triangles"))
+                .help("triangles have degree 1 or 2, quadrilaterals 1 to 6"));
+        }
+        self.check_unknowns::<2>(mesh.cell_count() as f64 * (degree * degree) as f64, degree, key.file.span())?;
+        let cells = Arc::new(MeshCells::new(mesh, degree));
+        let pieces = Pieces { groups: cells.groups().to_vec() };
+        let domain = DomainOnCells::new(Arc::new(MeshDomain(cells.clone())), &*cells);
+        Ok(OnCells { grid: cells.grid(), cells, domain, pieces })
     }
 
     fn shape(&self, key: &toml::Spanned<Domain>) -> Result<(Arc<dyn MembraneDomain<2>>, Aabb<2>, Pieces), CaseError> {

@@ -122,7 +122,7 @@ impl Planner<'_> {
         Ok(out)
     }
 
-    pub(super) fn gmsh<const D: usize>(&self, key: &statement::GmshKey) -> Result<Mesh<D>, CaseError> {
+    pub(in crate::plan) fn gmsh<const D: usize>(&self, key: &statement::GmshKey) -> Result<Mesh<D>, CaseError> {
         let (path, bytes) = self.read_file(&key.file)?;
         let fail = |message: String| self.document.error(key.file.span(), format!("`{}`: {message}", path.display()));
         let file = signorini_fem::gmsh::GmshFile::parse(&bytes).map_err(|e| fail(e.to_string()))?;

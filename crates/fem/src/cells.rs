@@ -1,0 +1,224 @@
+//! What a membrane is computed on: cells with functions, of which a boundary or a front may cut any.
+
+use crate::cut::{CellPartition, CellRule, QuadraturePoint, cut_cell};
+use crate::grid::Grid;
+use crate::lagrange::Tabulation;
+use signorini_geometry::rule::gauss_legendre;
+use signorini_geometry::{Aabb, Point, Vector};
+use std::sync::Arc;
+
+/// Cells along the longer side of the coarsest grid.
+const COARSEST: usize = 8;
+
+/// Gauss points per direction in cells that are not cut.
+pub fn whole_order(degree: usize) -> usize {
+    degree + 3
+}
+
+/// Two cells that share a side, or part of one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Neighbours {
+    pub cells: [usize; 2],
+    /// Extent of the cells across the side.
+    pub width: f64,
+    /// Pairs of one kind differ in their place only.
+    pub kind: Option<usize>,
+}
+
+/// A side of a cell on the boundary of a domain that the cells fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BoundarySide {
+    pub cell: usize,
+    /// Number of the side within its cell.
+    pub side: usize,
+    /// The piece of the boundary.
+    pub piece: usize,
+}
+
+/// A point of a side.
+#[derive(Clone, Copy, Debug)]
+pub struct SidePoint<const D: usize> {
+    pub x: Point<D>,
+    /// Derivative of the position along the side.
+    pub tangent: Vector<D>,
+    /// Unit normal, out of the cell.
+    pub normal: Vector<D>,
+}
+
+/// Cells and the continuous functions on them.
+///
+/// Functions are known by position, also beyond their cell, where their polynomial goes on.
+pub trait Cells<const D: usize>: Send + Sync {
+    fn degree(&self) -> usize;
+    fn count(&self) -> usize;
+    /// The smallest box round a cell.
+    fn bounds_of(&self, cell: usize) -> Aabb<D>;
+    /// The least extent of a cell.
+    fn size(&self, cell: usize) -> f64;
+    fn volume(&self, cell: usize) -> f64;
+    /// The cell that contains a point; where cells fill a box, the nearest one for a point outside.
+    fn containing(&self, x: &Point<D>) -> Option<usize>;
+    /// Number of functions.
+    fn function_count(&self) -> usize;
+    /// The functions that do not vanish in a cell, in the order of [`Cells::tabulate`].
+    fn functions(&self, cell: usize, out: &mut Vec<u32>);
+    fn tabulate(&self, cell: usize, x: &Point<D>, out: &mut Tabulation<D>);
+    /// The node of a function of degree 1.
+    fn node(&self, function: usize) -> Point<D>;
+    /// The same cells, each divided into `finer` ones in each direction where that is easy, with functions of degree 1.
+    fn linear(&self, finer: usize) -> Arc<dyn Cells<D>>;
+    /// Half as many cells in each direction, with functions of degree 1.
+    fn coarser(&self) -> Option<Arc<dyn Cells<D>>>;
+    /// Quadrature of a cell that is not cut.
+    fn rule(&self, cell: usize) -> Vec<QuadraturePoint<D>>;
+    /// Quadrature of a cell that is divided.
+    fn cut(&self, cell: usize, partition: &CellPartition<'_, D>, order: usize) -> CellRule<D>;
+    /// Cells of one kind differ in their place only.
+    fn kind(&self, cell: usize) -> Option<usize>;
+    /// One cell of each kind.
+    fn kinds(&self) -> Vec<usize>;
+    /// All pairs of neighbours.
+    fn neighbours(&self) -> Vec<Neighbours>;
+    /// Sides on the boundary of a domain that the cells fit.
+    fn boundary_sides(&self) -> Vec<BoundarySide>;
+    /// A point of a side, for `t` from 0 to 1.
+    fn on_side(&self, side: &BoundarySide, t: f64) -> SidePoint<D>;
+    /// A cell divided for display into `n` parts along each side.
+    fn divided(&self, cell: usize, n: usize) -> Divided<D>;
+}
+
+/// Points, and segments, triangles or quadrilaterals between them.
+#[derive(Clone, Debug, Default)]
+pub struct Divided<const D: usize> {
+    pub points: Vec<Point<D>>,
+    pub parts: Vec<Vec<usize>>,
+}
+
+impl<const D: usize> Cells<D> for Grid<D> {
+    fn degree(&self) -> usize {
+        Grid::degree(self)
+    }
+    fn count(&self) -> usize {
+        self.cell_count()
+    }
+    fn bounds_of(&self, cell: usize) -> Aabb<D> {
+        self.cell_box(cell)
+    }
+    fn size(&self, _: usize) -> f64 {
+        self.h()
+    }
+    fn volume(&self, _: usize) -> f64 {
+        self.cell_size().iter().product()
+    }
+    fn containing(&self, x: &Point<D>) -> Option<usize> {
+        Some(self.cell_containing(x))
+    }
+    fn function_count(&self) -> usize {
+        self.node_count()
+    }
+    fn functions(&self, cell: usize, out: &mut Vec<u32>) {
+        self.cell_nodes(cell, out);
+    }
+    fn tabulate(&self, cell: usize, x: &Point<D>, out: &mut Tabulation<D>) {
+        self.basis().tabulate(&self.local(cell, x), &self.cell_size(), out);
+    }
+    fn node(&self, function: usize) -> Point<D> {
+        Grid::node(self, function)
+    }
+    fn linear(&self, finer: usize) -> Arc<dyn Cells<D>> {
+        Arc::new(Grid::new(*self.bounds(), self.cells().map(|n| n * finer), 1))
+    }
+    fn coarser(&self) -> Option<Arc<dyn Cells<D>>> {
+        let cells = self.cells();
+        let enough = cells.iter().all(|n| n % 2 == 0) && cells.iter().any(|&n| n / 2 >= COARSEST);
+        enough.then(|| -> Arc<dyn Cells<D>> { Arc::new(Grid::new(*self.bounds(), cells.map(|n| n / 2), 1)) })
+    }
+    fn rule(&self, cell: usize) -> Vec<QuadraturePoint<D>> {
+        box_rule(&self.cell_box(cell), whole_order(Grid::degree(self)))
+    }
+    fn cut(&self, cell: usize, partition: &CellPartition<'_, D>, order: usize) -> CellRule<D> {
+        cut_cell(partition, &self.cell_box(cell), order)
+    }
+    fn kind(&self, _: usize) -> Option<usize> {
+        Some(0)
+    }
+    fn kinds(&self) -> Vec<usize> {
+        vec![0]
+    }
+    fn neighbours(&self) -> Vec<Neighbours> {
+        let size = self.cell_size();
+        let across = |cell: usize, k: usize| {
+            let upper = self.upper_neighbour(cell, k)?;
+            Some(Neighbours { cells: [cell, upper], width: size[k], kind: Some(k) })
+        };
+        (0..self.cell_count()).flat_map(|cell| (0..D).filter_map(move |k| across(cell, k))).collect()
+    }
+    fn boundary_sides(&self) -> Vec<BoundarySide> {
+        let cells = self.cells();
+        (0..self.cell_count())
+            .flat_map(|cell| {
+                let index = self.cell_index(cell);
+                (0..2 * D)
+                    .filter(move |side| index[side / 2] == if side % 2 == 1 { cells[side / 2] - 1 } else { 0 })
+                    .map(move |side| BoundarySide { cell, side, piece: side })
+            })
+            .collect()
+    }
+    fn on_side(&self, side: &BoundarySide, t: f64) -> SidePoint<D> {
+        on_box_side(&self.cell_box(side.cell), side.side, t)
+    }
+    fn divided(&self, cell: usize, n: usize) -> Divided<D> {
+        divided_box(&self.cell_box(cell), n)
+    }
+}
+
+/// A box divided evenly.
+pub(crate) fn divided_box<const D: usize>(b: &Aabb<D>, n: usize) -> Divided<D> {
+    let points = (0..(n + 1).pow(D as u32)).map(|i| {
+        b.at(&Point::from_fn(|k, _| (i / (n + 1).pow(k as u32) % (n + 1)) as f64 / n as f64))
+    });
+    let parts = match D {
+        1 => (0..n).map(|i| vec![i, i + 1]).collect(),
+        _ => quadrilaterals(n),
+    };
+    Divided { points: points.collect(), parts }
+}
+
+/// The quadrilaterals between the points of a square lattice.
+pub(crate) fn quadrilaterals(n: usize) -> Vec<Vec<usize>> {
+    let corner = |i: usize| i / n * (n + 1) + i % n;
+    (0..n * n).map(|i| [0, 1, n + 2, n + 1].map(|o| corner(i) + o).to_vec()).collect()
+}
+
+/// The tensor-product Gauss rule of a box.
+pub fn box_rule<const D: usize>(b: &Aabb<D>, order: usize) -> Vec<QuadraturePoint<D>> {
+    let gauss = gauss_legendre(order);
+    (0..order.pow(D as u32))
+        .map(|mut i| {
+            let mut weight = b.volume();
+            let x = Point::from_fn(|_, _| {
+                let (x, w) = gauss[i % order];
+                i /= order;
+                weight *= w;
+                x
+            });
+            QuadraturePoint { x: b.at(&x), weight }
+        })
+        .collect()
+}
+
+/// A point of a side of a box: lower and upper in each direction.
+pub(crate) fn on_box_side<const D: usize>(b: &Aabb<D>, side: usize, t: f64) -> SidePoint<D> {
+    let (k, upper) = (side / 2, side % 2 == 1);
+    let mut normal = Vector::zeros();
+    normal[k] = if upper { 1.0 } else { -1.0 };
+    let mut x = b.min;
+    x[k] = if upper { b.max[k] } else { b.min[k] };
+    let mut tangent = Vector::zeros();
+    if D > 1 {
+        let along = 1 - k;
+        tangent[along] = b.size()[along];
+        x[along] += t * tangent[along];
+    }
+    SidePoint { x, tangent, normal }
+}

@@ -58,11 +58,24 @@ pub trait Cells<const D: usize>: Send + Sync {
     fn volume(&self, cell: usize) -> f64;
     /// The cell that contains a point; where cells fill a box, the nearest one for a point outside.
     fn containing(&self, x: &Point<D>) -> Option<usize>;
+    /// Whether the functions add up to one, as those of Lagrange do.
+    fn sum_to_one(&self) -> bool {
+        true
+    }
     /// Number of functions.
     fn function_count(&self) -> usize;
     /// The functions that do not vanish in a cell, in the order of [`Cells::tabulate`].
     fn functions(&self, cell: usize, out: &mut Vec<u32>);
     fn tabulate(&self, cell: usize, x: &Point<D>, out: &mut Tabulation<D>);
+    /// What the functions of a cell are beyond it, and whether they are the same within.
+    fn extension<'a>(&'a self, cell: usize) -> Extension<'a, D> {
+        let mut t = Tabulation::default();
+        let values = move |x: &Point<D>, out: &mut Vec<f64>| {
+            self.tabulate(cell, x, &mut t);
+            out.clone_from(&t.value);
+        };
+        Extension { values: Box::new(values), is_own: true }
+    }
     /// The node of a function of degree 1.
     fn node(&self, function: usize) -> Point<D>;
     /// The same cells, each divided into `finer` ones in each direction where that is easy, with functions of degree 1.
@@ -85,6 +98,14 @@ pub trait Cells<const D: usize>: Send + Sync {
     fn on_side(&self, side: &BoundarySide, t: f64) -> SidePoint<D>;
     /// A cell divided for display into `n` parts along each side.
     fn divided(&self, cell: usize, n: usize) -> Divided<D>;
+}
+
+/// The functions of a cell, carried on beyond it.
+pub struct Extension<'a, const D: usize> {
+    /// Writes the values of all functions at a point.
+    pub values: Box<dyn FnMut(&Point<D>, &mut Vec<f64>) + 'a>,
+    /// Whether these are the functions themselves; otherwise polynomials close to them.
+    pub is_own: bool,
 }
 
 /// Points, and segments, triangles or quadrilaterals between them.
@@ -174,9 +195,8 @@ impl<const D: usize> Cells<D> for Grid<D> {
 
 /// A box divided evenly.
 pub(crate) fn divided_box<const D: usize>(b: &Aabb<D>, n: usize) -> Divided<D> {
-    let points = (0..(n + 1).pow(D as u32)).map(|i| {
-        b.at(&Point::from_fn(|k, _| (i / (n + 1).pow(k as u32) % (n + 1)) as f64 / n as f64))
-    });
+    let points = (0..(n + 1).pow(D as u32))
+        .map(|i| b.at(&Point::from_fn(|k, _| (i / (n + 1).pow(k as u32) % (n + 1)) as f64 / n as f64)));
     let parts = match D {
         1 => (0..n).map(|i| vec![i, i + 1]).collect(),
         _ => quadrilaterals(n),

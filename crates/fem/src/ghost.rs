@@ -4,34 +4,53 @@
 use crate::cells::{Cells, Neighbours};
 use crate::lagrange::Tabulation;
 
-/// The matrix of `width⁻² ∫_{K1 ∪ K2} (E u1 - E u2)(E v1 - E v2)`, row by row.
+/// The matrix of `width⁻² ∫_{K1 ∪ K2} (E u1 - E u2)(E v1 - E v2)`, row by row. Where the functions of a cell are no
+/// polynomials, `E` extends the polynomial closest to them, and `u - E u` is penalised likewise within the cell.
 ///
 /// The unknowns are those of the first cell followed by those of the second, the shared ones in both: because both
 /// polynomials agree there, assembling them twice is right.
 pub fn ghost_penalty<const D: usize>(cells: &dyn Cells<D>, pair: &Neighbours) -> Vec<f64> {
-    let [first, second] = pair.cells;
-    let (mut one, mut other) = (Tabulation::default(), Tabulation::default());
+    let mut extensions = pair.cells.map(|cell| cells.extension(cell));
+    let mut values = [Vec::new(), Vec::new()];
+    let mut own = Tabulation::default();
     let mut matrix = Vec::new();
-    let mut jump = Vec::new();
-    for p in cells.rule(first).into_iter().chain(cells.rule(second)) {
-        cells.tabulate(first, &p.x, &mut one);
-        cells.tabulate(second, &p.x, &mut other);
-        jump.clear();
-        jump.extend_from_slice(&one.value);
-        jump.extend(other.value.iter().map(|v| -v));
+    let mut jump: Vec<f64> = Vec::new();
+    let mut add = |jump: &[f64], weight: f64| {
         let n = jump.len();
         matrix.resize(n * n, 0.0);
-        let weight = p.weight / (pair.width * pair.width);
-        for a in 0..n {
-            let scaled = weight * jump[a];
-            for (m, b) in matrix[a * n..(a + 1) * n].iter_mut().zip(&jump) {
+        for a in (0..n).filter(|a| jump[*a] != 0.0) {
+            let scaled = weight * jump[a] / (pair.width * pair.width);
+            for (m, b) in matrix[a * n..(a + 1) * n].iter_mut().zip(jump) {
                 *m += scaled * b;
             }
         }
+    };
+    for (here, &cell) in pair.cells.iter().enumerate() {
+        for p in cells.rule(cell) {
+            for (extension, v) in extensions.iter_mut().zip(&mut values) {
+                (extension.values)(&p.x, v);
+            }
+            jump.clear();
+            jump.extend_from_slice(&values[0]);
+            jump.extend(values[1].iter().map(|v| -v));
+            add(&jump, p.weight);
+            if !extensions[here].is_own {
+                cells.tabulate(cell, &p.x, &mut own);
+                jump.fill(0.0);
+                let first = here * values[0].len();
+                for (j, (u, e)) in jump[first..].iter_mut().zip(own.value.iter().zip(&values[here])) {
+                    *j = u - e;
+                }
+                add(&jump, p.weight);
+            }
+        }
+    }
+    let n = jump.len();
+    if !cells.sum_to_one() {
+        return matrix;
     }
     // Constants are free, and their rows sum to zero; what round-off makes of it goes to the diagonal, or it would show
     // up as a force without a cause: at degree 6 the extensions reach far, and the entries are large.
-    let n = jump.len();
     for a in 0..n {
         let row = &mut matrix[a * n..(a + 1) * n];
         row[a] = -(0..n).filter(|b| *b != a).map(|b| row[b]).sum::<f64>();

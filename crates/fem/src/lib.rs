@@ -24,6 +24,7 @@ pub mod lagrange;
 pub mod mesh;
 pub mod mesh_cells;
 pub mod reference;
+pub mod refined_grid;
 pub mod rules;
 pub mod small;
 
@@ -33,7 +34,8 @@ pub use dofs::DofMap;
 pub use ghost::ghost_penalty;
 pub use grid::Grid;
 pub use lagrange::TensorBasis;
-pub use mesh_cells::MeshCells;
 pub use mesh::{Group, Mesh, MeshError, Side};
+pub use mesh_cells::MeshCells;
 pub use reference::{CellShape, Local};
+pub use refined_grid::RefinedGrid;
 pub use signorini_geometry::rule::gauss_legendre;

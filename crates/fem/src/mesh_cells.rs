@@ -4,7 +4,7 @@
 //! at the vertex that is farthest from what cuts it.
 
 use crate::cell_map::CellMap;
-use crate::cells::{BoundarySide, Cells, Divided, Neighbours, SidePoint, quadrilaterals, whole_order};
+use crate::cells::{BoundarySide, Cells, Divided, Extension, Neighbours, SidePoint, quadrilaterals, whole_order};
 use crate::cut::{CellPartition, CellRule, QuadraturePoint, cut_cell};
 use crate::dofs::DofMap;
 use crate::grid::Grid;
@@ -14,6 +14,7 @@ use crate::mesh::{Mesh, Side};
 use crate::reference::{CellShape, Local};
 use crate::rules::{Rule, rule};
 use crate::small;
+use nalgebra::{DMatrix, DVector};
 use signorini_geometry::{Aabb, ImplicitShape, Matrix, Point, Vector};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
@@ -35,6 +36,8 @@ pub struct MeshCells {
     volumes: Vec<f64>,
     /// Centre and inverse Jacobian there; and whether the map is linear.
     linear: Vec<(Point<2>, Matrix<2>, bool)>,
+    /// Whether the Jacobian is nowhere much smaller than on average.
+    regular: Vec<bool>,
     /// Rule of each map, tabulated.
     rules: Vec<Vec<(f64, Values)>>,
     buckets: Grid<2>,
@@ -63,7 +66,7 @@ impl MeshCells {
         }
         let nodes = vertices;
         let mut rules: BTreeMap<usize, Vec<(f64, Values)>> = BTreeMap::new();
-        let (mut boxes, mut sizes, mut volumes, mut linear) = (vec![], vec![], vec![], vec![]);
+        let (mut boxes, mut sizes, mut volumes, mut linear, mut regular) = (vec![], vec![], vec![], vec![], vec![]);
         let mut at = Values::default();
         for cell in 0..count {
             let map = mesh.map(cell);
@@ -72,12 +75,22 @@ impl MeshCells {
                 table.iter().map(|(w, at)| w * small::determinant(&mesh.jacobian(cell, at).1).abs()).sum();
             let corners: Vec<Point<2>> = mesh.cell_nodes(cell).iter().map(|&n| mesh.nodes()[n as usize]).collect();
             let vertices: Vec<Point<2>> = mesh.vertices(cell).map(|n| mesh.nodes()[n as usize]).collect();
-            let longest =
-                (0..vertices.len()).map(|i| (vertices[i] - vertices[(i + 1) % vertices.len()]).norm()).fold(0.0, f64::max);
-            // The height of a triangle, the width of a quadrilateral.
-            sizes.push(volume / longest * if vertices.len() == 3 { 2.0 } else { 1.0 });
+            let longest = (0..vertices.len())
+                .map(|i| (vertices[i] - vertices[(i + 1) % vertices.len()]).norm())
+                .fold(0.0, f64::max);
+            // The height of a triangle; the width of a quadrilateral, less where a corner is nearly straight and slopes
+            // are steep.
+            let least = (map.nodes().iter())
+                .map(|x| {
+                    map.tabulate(x, &mut at);
+                    small::determinant(&mesh.jacobian(cell, &at).1)
+                })
+                .fold(f64::INFINITY, f64::min);
+            regular.push(least > 0.2 * volume / if vertices.len() == 3 { 0.5 } else { 4.0 });
+            sizes.push(least / longest * if vertices.len() == 3 { 1.0 } else { 4.0 });
             volumes.push(volume);
-            let mut bounds = corners.iter().fold(Aabb::new(corners[0], corners[0]), |b, p| Aabb::new(b.min.inf(p), b.max.sup(p)));
+            let mut bounds =
+                corners.iter().fold(Aabb::new(corners[0], corners[0]), |b, p| Aabb::new(b.min.inf(p), b.max.sup(p)));
             if map.order() > 1 {
                 // A curved side bulges beyond its nodes by no more than it bulges at them.
                 bounds = bounds.scaled(1.25);
@@ -114,6 +127,7 @@ impl MeshCells {
             sizes,
             volumes,
             linear,
+            regular,
             rules,
             buckets,
             cells_in,
@@ -184,38 +198,61 @@ impl MeshCells {
         self.mesh.jacobian(cell, &at)
     }
 
-    /// Reference coordinates of a point in a cell or near it: by Newton's method, and where that fails, far beyond a
-    /// strongly curved cell, by the linear map of its centre.
+    /// Reference coordinates of a point in a cell or near it, and where there are none, far beyond a strongly curved cell,
+    /// those of the linear map of its centre.
     fn local(&self, cell: usize, x: &Point<2>) -> Local {
         let (centre, inverse, straight) = &self.linear[cell];
-        let middle = self.mesh.shape(cell).centre();
+        let shape = self.mesh.shape(cell);
+        let middle = shape.centre();
         let first = inverse * (x - centre);
-        let start: Local = [middle[0] + first[0], middle[1] + first[1], 0.0];
+        let linear: Local = [middle[0] + first[0], middle[1] + first[1], 0.0];
         if *straight {
-            return start;
+            return linear;
         }
+        // A cell with a nearly straight corner folds just beyond it: of two places for a point the one inside counts.
+        let vertices = shape.vertices().iter().map(|v| [0, 1, 2].map(|k| middle[k] + 0.8 * (v[k] - middle[k])));
+        let mut best: Option<(f64, Local)> = None;
+        for start in [linear, middle].into_iter().chain(vertices) {
+            let Some(xi) = self.newton(cell, x, start) else { continue };
+            let beyond = self.beyond_reference(cell, &xi);
+            if best.is_none_or(|(b, _)| beyond < b) {
+                best = Some((beyond, xi));
+            }
+            if beyond < ON_THE_EDGE || self.regular[cell] {
+                break;
+            }
+        }
+        best.map_or(linear, |(_, xi)| xi)
+    }
+
+    /// Newton's method for the place of a point; none where it fails or ends where the cell is folded over.
+    fn newton(&self, cell: usize, x: &Point<2>, start: Local) -> Option<Local> {
         let mut xi = start;
         for _ in 0..30 {
             let (y, jacobian) = self.at(cell, &xi);
             let step = small::inverse(&jacobian) * (x - y);
             let length = step.norm();
             if !length.is_finite() {
-                return start;
+                return None;
             }
             let factor = (0.5 / length).min(1.0);
             xi[0] += factor * step[0];
             xi[1] += factor * step[1];
             if length < 1e-14 {
-                return xi;
+                break;
             }
         }
-        let (y, _) = self.at(cell, &xi);
-        if (x - y).norm() < 1e-10 * self.sizes[cell] { xi } else { start }
+        let (y, jacobian) = self.at(cell, &xi);
+        let found = (x - y).norm() < 1e-10 * self.boxes[cell].radius() && small::determinant(&jacobian) > 0.0;
+        found.then_some(xi)
     }
 
     /// How far a point lies beyond a cell, in reference coordinates.
     fn beyond(&self, cell: usize, x: &Point<2>) -> f64 {
-        let [a, b, _] = self.local(cell, x);
+        self.beyond_reference(cell, &self.local(cell, x))
+    }
+
+    fn beyond_reference(&self, cell: usize, [a, b, _]: &Local) -> f64 {
         match self.mesh.shape(cell) {
             CellShape::Triangle => (-a).max(-b).max(a + b - 1.0),
             _ => a.abs().max(b.abs()) - 1.0,
@@ -323,6 +360,9 @@ impl Cells<2> for MeshCells {
         }
         best.1
     }
+    fn sum_to_one(&self) -> bool {
+        self.degree == 1
+    }
     fn function_count(&self) -> usize {
         self.dofs.count()
     }
@@ -341,6 +381,35 @@ impl Cells<2> for MeshCells {
             out.value.push(sign * value);
             out.gradient.push(Vector::from_fn(|k, _| sign * (g[0] * inverse[(0, k)] + g[1] * inverse[(1, k)])));
         }
+    }
+    fn extension<'a>(&'a self, cell: usize) -> Extension<'a, 2> {
+        // The functions of a cell that is not affine may not be carried on: its map folds. Of their polynomials of the
+        // same degree, those are taken that are closest in the mean square.
+        let degree = self.degree;
+        let (centre, scale) = (self.linear[cell].0, self.boxes[cell].radius());
+        let monomials = move |x: &Point<2>| {
+            let y = (x - centre) / scale;
+            let powers = (0..=degree).flat_map(move |n| (0..=n).map(move |k| (n - k, k)));
+            powers.map(|(i, j)| y[0].powi(i as i32) * y[1].powi(j as i32)).collect::<Vec<f64>>()
+        };
+        let m = (degree + 1) * (degree + 2) / 2;
+        let n = self.dofs.cell(cell).len();
+        let (mut mass, mut load) = (DMatrix::<f64>::zeros(m, m), DMatrix::<f64>::zeros(m, n));
+        let mut t = Tabulation::default();
+        for p in self.rule(cell) {
+            self.tabulate(cell, &p.x, &mut t);
+            let basis = DVector::from_vec(monomials(&p.x));
+            mass.ger(p.weight, &basis, &basis, 1.0);
+            load.ger(p.weight, &basis, &DVector::from_column_slice(&t.value), 1.0);
+        }
+        let coefficients = mass.cholesky().map_or_else(|| DMatrix::zeros(m, n), |factor| factor.solve(&load));
+        let values = move |x: &Point<2>, out: &mut Vec<f64>| {
+            let basis = monomials(x);
+            out.clear();
+            out.extend(coefficients.column_iter().map(|c| c.iter().zip(&basis).map(|(c, b)| c * b).sum::<f64>()));
+        };
+        let is_own = self.linear[cell].2;
+        Extension { values: Box::new(values), is_own }
     }
     fn node(&self, function: usize) -> Point<2> {
         self.nodes[function]
@@ -450,9 +519,8 @@ impl<'a> Square<'a> {
                 let x = cells.at(cell, v).0;
                 partition.sheets.iter().map(|s| s.value(&x).abs()).fold(f64::INFINITY, f64::min)
             };
-            let farthest = (0..3)
-                .max_by(|&a, &b| distance(&vertices[a]).total_cmp(&distance(&vertices[b])))
-                .unwrap_or(0);
+            let farthest =
+                (0..3).max_by(|&a, &b| distance(&vertices[a]).total_cmp(&distance(&vertices[b]))).unwrap_or(0);
             [0, 1, 2].map(|k| vertices[(farthest + k) % 3])
         });
         Self { cells, cell, corners }
@@ -488,8 +556,7 @@ impl<'a> Square<'a> {
         match &self.corners {
             None => Point::<2>::new(0.5 * (1.0 + xi[0]), 0.5 * (1.0 + xi[1])),
             Some([apex, a, b]) => {
-                let edges =
-                    Matrix::<2>::new(b[0] - a[0], apex[0] - a[0], b[1] - a[1], apex[1] - a[1]);
+                let edges = Matrix::<2>::new(b[0] - a[0], apex[0] - a[0], b[1] - a[1], apex[1] - a[1]);
                 let st = small::inverse(&edges) * Vector::<2>::new(xi[0] - a[0], xi[1] - a[1]);
                 // Along the base, and towards the apex.
                 Point::<2>::new(st[0] / (1.0 - st[1]).max(f64::MIN_POSITIVE), st[1])
@@ -511,5 +578,115 @@ impl ImplicitShape<2> for Drawn<'_> {
     fn gradient(&self, s: &Point<2>) -> Vector<2> {
         let (x, jacobian) = self.square.at(s);
         jacobian.transpose() * self.sheet.gradient(&x)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cut::RegionId;
+    use signorini_geometry::{Ellipse, ImplicitShape};
+
+    /// A curved triangle, and beside it a curved quadrilateral with a straight corner, as mesh generators put them at
+    /// round edges: three of its corners lie on one circle, the Jacobian at the middle one nearly vanishes.
+    fn cells(degree: usize) -> MeshCells {
+        let on_circle = |angle: f64| Point::<2>::new(angle.cos(), angle.sin());
+        let [a, b, c] = [0.6, 0.75, 0.9].map(on_circle);
+        let inner = Point::<2>::new(0.6, 0.6);
+        let beside = Point::<2>::new(0.75, 0.3);
+        let mut nodes = vec![a, b, c, inner, beside];
+        nodes.extend([on_circle(0.675), on_circle(0.825), 0.5 * (a + inner), 0.5 * (c + inner)]);
+        nodes.push(0.25 * (a + b + c + inner));
+        nodes.extend([0.5 * (inner + beside) + Point::<2>::new(-0.01, 0.01), 0.5 * (beside + a)]);
+        let mut mesh = Mesh::<2>::new(nodes);
+        // Tensor order: from `inner` along the side to a, then to c.
+        mesh.add_cell(CellShape::Quadrilateral, 2, &[3, 7, 0, 8, 9, 5, 2, 6, 1]);
+        mesh.add_cell(CellShape::Triangle, 2, &[3, 4, 0, 10, 11, 7]);
+        mesh.check().unwrap();
+        MeshCells::new(mesh, degree)
+    }
+
+    #[test]
+    fn places_are_found_again_also_beside_a_straight_corner() {
+        let cells = cells(2);
+        assert!(!cells.regular[0] && cells.regular[1]);
+        for cell in 0..2 {
+            for (xi, _) in rule(cells.mesh.shape(cell), 9) {
+                let x = cells.at(cell, &xi).0;
+                let found = cells.local(cell, &x);
+                assert!((found[0] - xi[0]).abs() + (found[1] - xi[1]).abs() < 1e-9, "{cell}: {xi:?} {found:?}");
+                assert_eq!(cells.containing(&x), Some(cell));
+            }
+        }
+        assert_eq!(cells.containing(&Point::<2>::new(0.0, 0.0)), None);
+    }
+
+    struct Borrowed<'a>(&'a Ellipse);
+
+    impl ImplicitShape<2> for Borrowed<'_> {
+        fn value(&self, x: &Point<2>) -> f64 {
+            self.0.value(x)
+        }
+        fn gradient(&self, x: &Point<2>) -> Vector<2> {
+            self.0.gradient(x)
+        }
+    }
+
+    #[test]
+    fn parts_of_a_cut_cell_add_up_and_fluxes_balance() {
+        let cells = cells(1);
+        // Each cuts off another part, the first at the vertex that the triangle and the quadrilateral share.
+        for (center, radius) in [([0.62, 0.6], 0.07), ([0.75, 0.3], 0.2), ([0.0, 0.0], 0.93)] {
+            let disc = Ellipse { center: center.into(), semi_axes: [radius; 2] };
+            for cell in 0..2 {
+                let partition = CellPartition {
+                    sheets: vec![Box::new(Borrowed(&disc))],
+                    tags: vec![0],
+                    features: Vec::new(),
+                    region: Box::new(|_, v| RegionId::from(v[0] < 0.0)),
+                };
+                let rule = cells.cut(cell, &partition, 14);
+                let total: f64 = rule.volumes.iter().flat_map(|(_, points)| points).map(|p| p.weight).sum();
+                let error = (total - cells.volume(cell)).abs() / cells.volume(cell);
+                assert!(error < 1e-9, "{center:?}, cell {cell}: area {error:e}");
+                for p in &rule.surfaces {
+                    let y = (p.x - disc.center) / radius;
+                    assert!((y.norm() - 1.0).abs() < 1e-9 && (p.normal - y).norm() < 1e-7 && p.minus == 1);
+                }
+            }
+            // The part of the circle within the cells closes the boundary of what is inside.
+            let mut flux = Vector::<2>::zeros();
+            for cell in 0..2 {
+                let partition = CellPartition {
+                    sheets: vec![Box::new(Borrowed(&disc))],
+                    tags: vec![0],
+                    features: Vec::new(),
+                    region: Box::new(|_, v| RegionId::from(v[0] < 0.0)),
+                };
+                for p in &cells.cut(cell, &partition, 14).surfaces {
+                    flux += p.weight * p.normal;
+                }
+            }
+            for side in cells.boundary_sides() {
+                let n = 4000;
+                for i in 0..n {
+                    let p = cells.on_side(&side, (i as f64 + 0.5) / n as f64);
+                    if disc.value(&p.x) < 0.0 {
+                        flux += p.normal * (p.tangent.norm() / n as f64);
+                    }
+                }
+            }
+            assert!(flux.norm() < 2e-4, "{center:?}: {flux:?}");
+        }
+    }
+
+    #[test]
+    fn sides_in_the_same_groups_are_one_piece() {
+        let mut mesh = cells(1).mesh;
+        mesh.group_mut("arc").sides = vec![Side { cell: 0, side: 1 }, Side { cell: 0, side: 2 }];
+        let cells = MeshCells::new(mesh, 1);
+        assert_eq!(cells.pieces(), 2);
+        let names: Vec<(&str, usize)> = cells.groups().iter().map(|(n, p)| (n.as_str(), p.len())).collect();
+        assert_eq!(names, [("arc", 1), ("boundary", 2)]);
     }
 }

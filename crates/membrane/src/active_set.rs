@@ -93,7 +93,9 @@ pub fn solve<const D: usize, Z: Zone<D>>(
     let mut active: Vec<bool> = node_of
         .iter()
         .zip(&heights)
-        .map(|(&node, h)| h.is_some() && guess.as_ref().is_some_and(|(g, coarser)| g.touches(coarser, &membrane.cells.node(node))))
+        .map(|(&node, h)| {
+            h.is_some() && guess.as_ref().is_some_and(|(g, coarser)| g.touches(coarser, &membrane.cells.node(node)))
+        })
         .collect();
     let mut symbolic = Symbolic::default();
     let mut changes = Vec::new();
@@ -197,8 +199,8 @@ fn totals<const D: usize>(
     for p in &quadrature.rim {
         if let Some(support) = &membrane.supports[p.piece] {
             let (u, gradient) = evaluate(p.cell, &p.x);
-            supports[support.index] +=
-                p.weight * nitsche_flux(membrane, p.cell, &p.x, &p.normal, u - support.displacement.value(&p.x), &gradient);
+            supports[support.index] += p.weight
+                * nitsche_flux(membrane, p.cell, &p.x, &p.normal, u - support.displacement.value(&p.x), &gradient);
         }
     }
     (supports, force, energy)

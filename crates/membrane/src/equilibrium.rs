@@ -19,8 +19,8 @@ use crate::zone::{Zone, contact_index, is_free};
 use rayon::prelude::*;
 use signorini_fem::cells::Neighbours;
 use signorini_fem::cut::RegionId;
-use signorini_fem::lagrange::Tabulation;
 use signorini_fem::ghost_penalty;
+use signorini_fem::lagrange::Tabulation;
 use signorini_geometry::{Point, Vector};
 use signorini_solve::{Factor, SolveError, Symbolic, SymmetricMatrix};
 use std::collections::BTreeMap;
@@ -347,7 +347,9 @@ impl<const D: usize> System<D> {
                 }
             }
         }
-        matrix.restore_row_sums(&row_sums(membrane, &unknowns, &imposed));
+        if membrane.cells.sum_to_one() {
+            matrix.restore_row_sums(&row_sums(membrane, &unknowns, &imposed));
+        }
         Self { quadrature, unknowns, matrix, rhs }
     }
 }

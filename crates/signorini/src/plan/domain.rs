@@ -105,9 +105,7 @@ impl Planner<'_> {
         match &film.degree {
             None => Ok(None),
             Some(d) if (1..=6).contains(d.get_ref()) => Ok(Some(*d.get_ref() as usize)),
-            Some(d) => {
-                Err(self.document.error(d.span(), format!("degree {} is not between 1 and 6", d.get_ref())))
-            }
+            Some(d) => Err(self.document.error(d.span(), format!("degree {} is not between 1 and 6", d.get_ref()))),
         }
     }
 
@@ -294,7 +292,9 @@ impl ReadDomain<2> for Planner<'_> {
         }
         let mesh = self.gmsh::<2>(key)?;
         mesh.check().map_err(|e| {
-            document.error(key.file.span(), format!("the mesh: {e}")).help("every cell needs a positive area")
+            document
+                .error(key.file.span(), format!("`{}`: {e}", key.file.get_ref()))
+                .help("every cell needs a positive area")
         })?;
         let order = (0..mesh.cell_count()).map(|c| mesh.map(c).order()).max().unwrap_or(1);
         let degree = self.degree(film)?.unwrap_or(order);

@@ -9,6 +9,7 @@ mod flat_floor;
 mod floors;
 mod gallery;
 mod invariance;
+mod meshes;
 mod solids;
 
 use serde_json::Value;

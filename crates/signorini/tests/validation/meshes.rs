@@ -1,0 +1,139 @@
+//! Membranes on meshes from Gmsh: triangles and quadrilaterals, straight and curved.
+
+use super::{error, last_step, number, set, summary};
+use std::f64::consts::PI;
+
+fn file(name: &str) -> String {
+    format!("{}/tests/data/meshes/{name}", env!("CARGO_MANIFEST_DIR")).replace('\\', "/")
+}
+
+fn case(mesh: &str) -> String {
+    format!(
+        r#"
+space = "plane"
+[bodies.film.membrane]
+mesh.gmsh = {{ file = "{}", group = "film" }}
+tension = 1.0
+[bodies.floor.rigid]
+shape.height = "-0.1"
+[supports.rim]
+on = "film:rim"
+displacement = 0.0
+[loads.press]
+on = "film"
+normal = -1.0
+[contacts.touch]
+between = ["film", "floor"]
+"#,
+        file(mesh)
+    )
+}
+
+/// The radius at which a round membrane of radius 1 leaves a floor 0.1 below: `(1 - a²)/4 + a²/2 ln a = 0.1`.
+fn exact_radius() -> f64 {
+    let (mut low, mut high) = (1e-6_f64, 1.0 - 1e-9);
+    for _ in 0..200 {
+        let a = 0.5 * (low + high);
+        if (1.0 - a * a) / 4.0 + a * a / 2.0 * a.ln() > 0.1 { low = a } else { high = a }
+    }
+    low
+}
+
+#[test]
+fn the_front_converges_on_meshes_of_all_kinds() {
+    let exact = exact_radius();
+    for (kind, order, least) in [("triangles", 1, 1.8), ("mixed", 1, 1.8), ("triangles", 2, 3.0), ("mixed", 2, 3.0)] {
+        let errors = [6, 12].map(|n| {
+            let found = summary(&case(&format!("{kind}_{order}_{n}.msh")), &set(&[]));
+            let contact = &last_step(&found)["contacts"]["touch"];
+            let error = ((number(&contact["area"]) / PI).sqrt() - exact).abs();
+            let force = (number(&contact["force"][2]) - PI * exact * exact).abs();
+            assert!(force < 8.0 * error, "{kind} {order} {n}: force {force:e}, radius {error:e}");
+            error
+        });
+        let observed = (errors[0] / errors[1]).log2();
+        assert!(observed > least, "{kind}, order {order}: {errors:?}, order {observed:.2}");
+        assert!(errors[1] < [2e-3, 2e-5][order - 1], "{kind}, order {order}: {errors:?}");
+    }
+}
+
+/// A ring held at both edges touches in a ring: beside the same ring by its radius.
+#[test]
+fn groups_of_a_mesh_hold_a_ring() {
+    let ring = case("annulus.msh").replace("-0.1", "-0.05")
+        + "[supports.hole]\non = \"film:hole\"\ndisplacement = \"-0.02 + 0.0*x\"\n";
+    let found = summary(&ring, &set(&[]));
+    let contact = &last_step(&found)["contacts"]["touch"];
+    let round = ring
+        .replace("plane", "axisymmetric")
+        .replace(
+            &format!("mesh.gmsh = {{ file = \"{}\", group = \"film\" }}", file("annulus.msh")),
+            "domain.interval = { from = 0.2, to = 1.0 }\nmesh.grid = { cells = [60] }\ndegree = 4",
+        )
+        .replace("film:rim", "film:right")
+        .replace("film:hole", "film:left");
+    let exact_run = summary(&round, &set(&[]));
+    let exact = &last_step(&exact_run)["contacts"]["touch"];
+    assert_eq!((&contact["zones"], &contact["holes"]), (&1.into(), &1.into()));
+    for (key, a, b) in [("area", &contact["area"], &exact["area"]), ("force", &contact["force"][2], &exact["force"][2])]
+    {
+        let (a, b) = (number(a), number(b));
+        assert!((a - b).abs() < 1.5e-4 * b, "{key}: {a}, by the radius {b}");
+    }
+    let inner = &last_step(&found)["support_forces"]["hole"][2];
+    let exact_inner = &last_step(&exact_run)["support_forces"]["hole"][2];
+    assert!((number(inner) - number(exact_inner)).abs() < 5e-4 * number(exact_inner).abs(), "{inner} {exact_inner}");
+}
+
+#[test]
+fn mistakes_are_told() {
+    let good = case("triangles_1_6.msh");
+    let film = "mesh.gmsh";
+    for (from, to, what, place) in [
+        ("film:rim", "film:rims", "rims", "film:rims"),
+        ("group = \"film\"", "group = \"foil\"", "foil", "triangles"),
+        ("tension = 1.0", "tension = 1.0\ndegree = 3", "degree 3", "3"),
+        ("tension = 1.0", "tension = 1.0\ndegree = 7", "degree 7", "7"),
+        (film, "domain.disc = { radius = 1 }\nmesh.gmsh", "is the domain", "radius"),
+        ("triangles_1_6.msh", "none.msh", "cannot be read", "none.msh"),
+        ("\"plane\"", "\"line\"", "plane", "triangles"),
+        (
+            "between = [\"film\", \"floor\"]",
+            "between = [\"film\", \"floor\"]\nmethod.active_set = {}",
+            "works on a grid",
+            "triangles",
+        ),
+    ] {
+        assert!(good.contains(from), "{from}");
+        let wrong = error(&good.replace(from, to));
+        assert!(wrong.message.contains(what), "{to}: {wrong}");
+        let at = wrong.place.as_ref().expect("a place");
+        assert!(at.text[at.span.clone()].contains(place), "{to}: {}", wrong.one_line());
+    }
+}
+
+/// Damaged meshes: cut short, a node beyond the others, a cell turned over, a cell without area, a node missing.
+#[test]
+fn damaged_meshes_are_told() {
+    let text = std::fs::read_to_string(file("triangles_1_6.msh")).expect("a mesh");
+    let folder = tempfile::tempdir().expect("a folder");
+    let good = case("triangles_1_6.msh");
+    let elements = text.find("$Elements").expect("elements");
+    let last_cell = text.trim_end().trim_end_matches("$EndElements").trim_end();
+    let (kept, cell) = last_cell.rsplit_once('\n').expect("lines");
+    let corners: Vec<&str> = cell.split_whitespace().collect();
+    let [number, a, b, c] = corners[..] else { panic!("{cell}") };
+    let with_cell = |nodes: String| format!("{kept}\n{number} {nodes}\n$EndElements\n");
+    for (name, damaged) in [
+        ("cut.msh", text[..elements / 2].to_string()),
+        ("turned.msh", with_cell(format!("{a} {c} {b}"))),
+        ("flat.msh", with_cell(format!("{a} {b} {b}"))),
+        ("missing.msh", with_cell(format!("{a} {b} 999999"))),
+        ("empty.msh", String::new()),
+    ] {
+        let path = folder.path().join(name);
+        std::fs::write(&path, damaged).expect("written");
+        let wrong = error(&good.replace(&file("triangles_1_6.msh"), &path.display().to_string().replace('\\', "/")));
+        assert!(wrong.to_string().contains(name), "{wrong}");
+    }
+}

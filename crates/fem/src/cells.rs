@@ -2,7 +2,7 @@
 
 use crate::cut::{CellPartition, CellRule, QuadraturePoint, cut_cell};
 use crate::grid::Grid;
-use crate::lagrange::Tabulation;
+use crate::lagrange::{MAX_DEGREE, Tabulation};
 use signorini_geometry::rule::gauss_legendre;
 use signorini_geometry::{Aabb, Point, Vector};
 use std::sync::Arc;
@@ -80,6 +80,12 @@ pub trait Cells<const D: usize>: Send + Sync {
     fn node(&self, function: usize) -> Point<D>;
     /// The same cells, each divided into `finer` ones in each direction where that is easy, with functions of degree 1.
     fn linear(&self, finer: usize) -> Arc<dyn Cells<D>>;
+    /// The grid whose cells can be divided where it matters.
+    fn divisible(&self) -> Option<&Grid<D>> {
+        None
+    }
+    /// The same cells with functions of one degree more, where there are such.
+    fn raised(&self) -> Option<Arc<dyn Cells<D>>>;
     /// Half as many cells in each direction, with functions of degree 1.
     fn coarser(&self) -> Option<Arc<dyn Cells<D>>>;
     /// Quadrature of a cell that is not cut.
@@ -148,6 +154,14 @@ impl<const D: usize> Cells<D> for Grid<D> {
     }
     fn linear(&self, finer: usize) -> Arc<dyn Cells<D>> {
         Arc::new(Grid::new(*self.bounds(), self.cells().map(|n| n * finer), 1))
+    }
+    fn divisible(&self) -> Option<&Grid<D>> {
+        Some(self)
+    }
+    fn raised(&self) -> Option<Arc<dyn Cells<D>>> {
+        let degree = Grid::degree(self) + 1;
+        (degree <= MAX_DEGREE)
+            .then(|| -> Arc<dyn Cells<D>> { Arc::new(Grid::new(*self.bounds(), self.cells(), degree)) })
     }
     fn coarser(&self) -> Option<Arc<dyn Cells<D>>> {
         let cells = self.cells();

@@ -179,7 +179,8 @@ impl<const D: usize> Cutter<'_, D> {
                     let mut along = *face;
                     !scan_roots(b.min[k], b.max[k], FACE_SAMPLES, |t| {
                         along[k] = t;
-                        (sheet.value(&along), sheet.gradient(&along)[k])
+                        let (v, g) = sheet.value_and_gradient(&along);
+                        (v, g[k])
                     })
                     .is_empty()
                 })
@@ -213,7 +214,8 @@ impl<const D: usize> Cutter<'_, D> {
                 x[k] = face;
                 breaks.extend(scan_roots(lo, hi, FACE_SAMPLES, |t| {
                     x[base] = t;
-                    (sheet.value(&x), sheet.gradient(&x)[base])
+                    let (v, g) = sheet.value_and_gradient(&x);
+                    (v, g[base])
                 }));
             }
         }
@@ -272,7 +274,8 @@ impl<const D: usize> Cutter<'_, D> {
         let (lo, hi) = (b.min[k], b.max[k]);
         let along = |t: f64| {
             x[k] = t;
-            (sheet.value(&x), sheet.gradient(&x)[k])
+            let (v, g) = sheet.value_and_gradient(&x);
+            (v, g[k])
         };
         scan_roots(lo, hi, if search == Search::Single { 1 } else { FACE_SAMPLES }, along)
     }

@@ -8,7 +8,7 @@ use crate::cells::{BoundarySide, Cells, Divided, Extension, Neighbours, SidePoin
 use crate::cut::{CellPartition, CellRule, QuadraturePoint, cut_cell};
 use crate::dofs::DofMap;
 use crate::grid::Grid;
-use crate::hierarchic::Values;
+use crate::hierarchic::{MAX_DEGREE, Values};
 use crate::lagrange::Tabulation;
 use crate::mesh::{Mesh, Side};
 use crate::reference::{CellShape, Local};
@@ -417,6 +417,11 @@ impl Cells<2> for MeshCells {
     fn linear(&self, _: usize) -> Arc<dyn Cells<2>> {
         Arc::new(Self::new(self.mesh.clone(), 1))
     }
+    fn raised(&self) -> Option<Arc<dyn Cells<2>>> {
+        let most =
+            if self.mesh.all_sides().any(|s| !self.mesh.shape(s.cell as usize).is_tensor()) { 2 } else { MAX_DEGREE };
+        (self.degree < most).then(|| -> Arc<dyn Cells<2>> { Arc::new(Self::new(self.mesh.clone(), self.degree + 1)) })
+    }
     fn coarser(&self) -> Option<Arc<dyn Cells<2>>> {
         None
     }
@@ -576,8 +581,12 @@ impl ImplicitShape<2> for Drawn<'_> {
         self.sheet.value(&self.square.at(s).0)
     }
     fn gradient(&self, s: &Point<2>) -> Vector<2> {
+        self.value_and_gradient(s).1
+    }
+    fn value_and_gradient(&self, s: &Point<2>) -> (f64, Vector<2>) {
         let (x, jacobian) = self.square.at(s);
-        jacobian.transpose() * self.sheet.gradient(&x)
+        let (value, gradient) = self.sheet.value_and_gradient(&x);
+        (value, jacobian.transpose() * gradient)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::cells::{
 };
 use crate::cut::{CellPartition, CellRule, QuadraturePoint, cut_cell};
 use crate::grid::Grid;
-use crate::lagrange::Tabulation;
+use crate::lagrange::{MAX_DEGREE, Tabulation};
 use signorini_geometry::{Aabb, Point, Vector};
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
@@ -97,19 +97,9 @@ impl RefinedGrid {
         grid
     }
 
-    /// The grid as it was before any division.
-    pub fn coarse(&self) -> &Grid<2> {
-        &self.coarse
-    }
-
     /// How often the smallest cells were divided.
     pub fn levels(&self) -> usize {
         self.levels
-    }
-
-    /// The level of the cell that contains a point.
-    pub fn level_at(&self, x: &Point<2>) -> usize {
-        self.leaves[self.leaf_containing(x)].level.into()
     }
 
     fn leaf_containing(&self, x: &Point<2>) -> usize {
@@ -368,6 +358,15 @@ impl Cells<2> for RefinedGrid {
     }
     fn linear(&self, finer: usize) -> Arc<dyn Cells<2>> {
         self.coarse.linear(finer)
+    }
+    fn divisible(&self) -> Option<&Grid<2>> {
+        Some(&self.coarse)
+    }
+    fn raised(&self) -> Option<Arc<dyn Cells<2>>> {
+        let degree = self.coarse.degree() + 1;
+        let coarse = || Grid::new(*self.coarse.bounds(), self.coarse.cells(), degree);
+        (degree <= MAX_DEGREE)
+            .then(|| -> Arc<dyn Cells<2>> { Arc::new(Self::from_leaves(coarse(), self.leaves.clone())) })
     }
     fn coarser(&self) -> Option<Arc<dyn Cells<2>>> {
         self.coarse.coarser()

@@ -213,7 +213,8 @@ impl ClosedCurve {
             let next = (s - slope / second).clamp(start - width, start + width);
             let step = (next - s).abs();
             s = next;
-            if step < 1e-15 {
+            // What is left is of the order of the square.
+            if step < 1e-9 {
                 break;
             }
         }

@@ -8,6 +8,10 @@ pub trait ImplicitShape<const D: usize>: Send + Sync {
     fn value(&self, x: &Point<D>) -> f64;
     /// Derivative of [`value`](Self::value); points outwards on the boundary.
     fn gradient(&self, x: &Point<D>) -> Vector<D>;
+    /// Both at once, where that is cheaper.
+    fn value_and_gradient(&self, x: &Point<D>) -> (f64, Vector<D>) {
+        (self.value(x), self.gradient(x))
+    }
 }
 
 /// An ellipse with its axes along the coordinate axes; a disc where both semi-axes agree.

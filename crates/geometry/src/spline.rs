@@ -33,15 +33,20 @@ impl PeriodicBasis {
         let shift = if p % 2 == 0 { 0.5 } else { 0.0 };
         let cell = (u + shift).floor();
         let x = u + shift - cell;
-        let value = cardinal(p, x);
         let (mut d1, mut d2) = ([0.0; MAX_DEGREE + 1], [0.0; MAX_DEGREE + 1]);
-        if p >= 1 {
-            difference(&cardinal(p - 1, x), p, n, &mut d1);
-        }
-        if p >= 2 {
-            let mut lower = [0.0; MAX_DEGREE + 1];
-            difference(&cardinal(p - 2, x), p - 1, n, &mut lower);
-            difference(&lower, p, n, &mut d2);
+        let mut value = [0.0; MAX_DEGREE + 1];
+        value[0] = 1.0;
+        for q in 1..=p {
+            // On the way up, the derivatives from the lower degrees.
+            if q + 1 == p {
+                let mut lower = [0.0; MAX_DEGREE + 1];
+                difference(&value, q, n, &mut lower);
+                difference(&lower, p, n, &mut d2);
+            }
+            if q == p {
+                difference(&value, p, n, &mut d1);
+            }
+            raise(&mut value, q, x);
         }
         Bumps { first: cell as isize - (p as isize) / 2, len: p + 1, value, d1, d2 }
     }
@@ -85,24 +90,20 @@ impl PeriodicBasis {
     }
 }
 
-/// Values of the `p + 1` cardinal B-splines of degree `p` at `x` in `[0, 1)` of one knot cell (de Boor's recurrence).
-fn cardinal(p: usize, x: f64) -> [f64; MAX_DEGREE + 1] {
-    let mut b = [0.0; MAX_DEGREE + 1];
-    b[0] = 1.0;
-    for q in 1..=p {
-        let inv = 1.0 / q as f64;
-        let mut carried = 0.0;
-        for r in 0..q {
-            // Function r of the level below is split between functions r and r + 1 of this one.
-            let right = (r + 1) as f64 - x;
-            let left = x + (q - 1 - r) as f64;
-            let value = b[r] * inv;
-            b[r] = carried + right * value;
-            carried = left * value;
-        }
-        b[q] = carried;
+/// From the values of the cardinal B-splines of degree `q - 1` at `x` in `[0, 1)` of one knot cell to those of degree `q`
+/// (de Boor's recurrence).
+fn raise(b: &mut [f64; MAX_DEGREE + 1], q: usize, x: f64) {
+    let inv = 1.0 / q as f64;
+    let mut carried = 0.0;
+    for (r, b) in b.iter_mut().enumerate().take(q) {
+        // Function r of the level below is split between functions r and r + 1 of this one.
+        let right = (r + 1) as f64 - x;
+        let left = x + (q - 1 - r) as f64;
+        let value = *b * inv;
+        *b = carried + right * value;
+        carried = left * value;
     }
-    b
+    b[q] = carried;
 }
 
 /// Derivatives of degree-`p` bumps from values of degree `p - 1`: `B_p' = n (B_{p-1}(· ) - B_{p-1}(· - 1))`.

@@ -247,7 +247,8 @@ impl<const D: usize> NodalSolution<D> {
         membrane: &'a Membrane<D>,
         floor: &'a SharedField<D>,
     ) -> impl Fn(&Point<D>) -> f64 + 'a {
-        let h = membrane.grid.h();
+        let cells = &*membrane.cells;
+        let h = (0..cells.count()).map(|cell| cells.size(cell)).fold(f64::INFINITY, f64::min);
         let at_node: Vec<f64> = self
             .nodes
             .iter()

@@ -61,7 +61,7 @@ pub fn others<const D: usize, Z: Zone<D>>(
         for family in families(membrane, &free, &mut elements)? {
             for zone in near_equilibria(membrane, &family, &mut elements)? {
                 let start = Start::Asked(zone, Branch::Nearest);
-                let solution: Solution<'_, D, Z> = solve(membrane, &mut elements, start, (0, 0.0), &mut Silent);
+                let solution: Solution<D, Z> = solve(membrane, &mut elements, start, (0, 0.0), &mut Silent);
                 if let (Reason::Converged, Some(report)) = (&solution.reason, Report::new(&solution)) {
                     add(OtherState {
                         area: report.contact.area,
@@ -77,8 +77,8 @@ pub fn others<const D: usize, Z: Zone<D>>(
 }
 
 /// `∫ T |∇u|² / 2 - f u` of a membrane without contact.
-fn energy<const D: usize>(free: &Equilibrium<'_, D>) -> f64 {
-    let membrane = free.membrane;
+fn energy<const D: usize>(free: &Equilibrium<D>) -> f64 {
+    let membrane = &free.membrane;
     let mut sum = 0.0;
     free.for_each_point(|cell, region, x, w| {
         if let Some((u, gradient)) = free.evaluate(cell, region, x).filter(|_| is_free(region)) {
@@ -92,7 +92,7 @@ fn energy<const D: usize>(free: &Equilibrium<'_, D>) -> f64 {
 /// deflection under a unit load.
 fn families<const D: usize, Z: Zone<D>>(
     membrane: &Membrane<D>,
-    free: &Equilibrium<'_, D>,
+    free: &Equilibrium<D>,
     elements: &mut Elements<D>,
 ) -> Result<Vec<Vec<Z>>, SolveError> {
     let grid = &membrane.grid;
@@ -118,7 +118,7 @@ type Level<'a, const D: usize> = &'a dyn Fn(&Point<D>) -> Option<f64>;
 /// Visits the functions whose sublevel sets are likely zones, with their ranges.
 fn for_each_level<const D: usize, Z: Zone<D>>(
     membrane: &Membrane<D>,
-    free: &Equilibrium<'_, D>,
+    free: &Equilibrium<D>,
     elements: &mut Elements<D>,
     visit: &mut dyn FnMut(Level<'_, D>, [f64; 2]),
 ) -> Result<(), SolveError> {
@@ -127,7 +127,7 @@ fn for_each_level<const D: usize, Z: Zone<D>>(
     let softness = Membrane { load: Arc::new(Constant(-1.0)), floor: None, adhesion: None, ..membrane.clone() };
     let soft = Equilibrium::solve(&softness, &none, elements)?;
     let reach = 2.0 * grid.h();
-    let at = |state: &Equilibrium<'_, D>, x: &Point<D>| {
+    let at = |state: &Equilibrium<D>, x: &Point<D>| {
         let x = if membrane.contains(x) { *x } else { membrane.domain.domain.pulled_inside(x, reach)? };
         state.displacement(&none, &x)
     };

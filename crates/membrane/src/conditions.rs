@@ -15,8 +15,10 @@ const NEARLY: f64 = 30.0;
 pub struct Conditions<const D: usize> {
     /// Least gap anywhere in the free membrane.
     pub least_gap: f64,
-    /// Least gap away from the fronts, and where.
+    /// Least gap away from the fronts.
     pub least_gap_outside: f64,
+    /// The least there in multiples of the penetration that counts as none, and where.
+    pub worst: f64,
     pub deepest: Point<D>,
     /// Least pressure with which the floor would push where the free membrane penetrates.
     pub least_pressure_below: f64,
@@ -29,17 +31,13 @@ pub struct Conditions<const D: usize> {
 }
 
 impl<const D: usize> Conditions<D> {
-    pub fn check<Z: Zone<D>>(
-        equilibrium: &Equilibrium<'_, D>,
-        zone: &Z,
-        floor: &SharedField<D>,
-        scales: &Scales,
-    ) -> Self {
-        let membrane = equilibrium.membrane;
+    pub fn check<Z: Zone<D>>(equilibrium: &Equilibrium<D>, zone: &Z, floor: &SharedField<D>, scales: &Scales) -> Self {
+        let membrane = &equilibrium.membrane;
         let band = 0.5 * membrane.grid.h();
         let mut c = Self {
             least_gap: f64::INFINITY,
             least_gap_outside: f64::INFINITY,
+            worst: f64::INFINITY,
             deepest: Point::zeros(),
             least_pressure_below: f64::INFINITY,
             least_pressure: f64::INFINITY,
@@ -63,9 +61,13 @@ impl<const D: usize> Conditions<D> {
                 if gap < 0.0 {
                     c.least_pressure_below = c.least_pressure_below.min(membrane.floor_pressure(floor, x));
                 }
-                if gap < c.least_gap_outside && zone.distance(x) > band {
-                    c.least_gap_outside = gap;
-                    c.deepest = *x;
+                let relative = gap / scales.gap_tolerance(membrane.cells.size(cell));
+                if (gap < c.least_gap_outside || relative < c.worst) && zone.distance(x) > band {
+                    c.least_gap_outside = c.least_gap_outside.min(gap);
+                    if relative < c.worst {
+                        c.worst = relative;
+                        c.deepest = *x;
+                    }
                 }
             } else if contact_index(region).is_some() {
                 let pressure = membrane.floor_pressure(floor, x);
@@ -79,19 +81,19 @@ impl<const D: usize> Conditions<D> {
         c
     }
 
-    pub fn penetrates(&self, scales: &Scales) -> bool {
-        self.least_gap_outside < -scales.gap_tolerance()
+    pub fn penetrates(&self) -> bool {
+        self.worst < -1.0
     }
 
     /// Whether all that is wrong is a penetration not much larger than what counts as none.
     pub fn nearly_hold(&self, scales: &Scales, sticky: bool) -> bool {
-        let slight = self.least_gap_outside >= -NEARLY * scales.gap_tolerance();
+        let slight = self.worst >= -NEARLY;
         slight && (sticky || !self.pulls(scales)) && self.torn_from_support.is_none()
     }
 
     /// Whether the contact conditions hold everywhere. Where the floor is sticky it may pull.
     pub fn hold(&self, scales: &Scales, sticky: bool) -> bool {
-        !self.penetrates(scales) && (sticky || !self.pulls(scales)) && self.torn_from_support.is_none()
+        !self.penetrates() && (sticky || !self.pulls(scales)) && self.torn_from_support.is_none()
     }
 
     pub fn pulls(&self, scales: &Scales) -> bool {
@@ -102,14 +104,14 @@ impl<const D: usize> Conditions<D> {
 /// The zone with the parts added where the free membrane penetrates a floor that can push, and the parts removed where
 /// the floor would have to pull.
 pub fn corrected<const D: usize, Z: Zone<D>>(
-    equilibrium: &Equilibrium<'_, D>,
+    equilibrium: &Equilibrium<D>,
     zone: &Z,
     floor: &SharedField<D>,
     conditions: &Conditions<D>,
     scales: &Scales,
     sticky: bool,
 ) -> Z {
-    let membrane = equilibrium.membrane;
+    let membrane = &equilibrium.membrane;
     let grid = &membrane.grid;
     let mut result = zone.clone();
     if conditions.pulls(scales) && !sticky {
@@ -126,9 +128,9 @@ pub fn corrected<const D: usize, Z: Zone<D>>(
         result =
             result.reduced(grid, &mut |x| rim.iter().map(|y| (x - y).norm()).fold(f64::INFINITY, f64::min) - 1.5 * h);
     }
-    if conditions.penetrates(scales) {
+    if conditions.penetrates() {
         let reach = 2.0 * grid.h();
-        let shift = 0.5 * scales.gap_tolerance();
+        let shift = 0.5 * scales.gap_tolerance(grid.h());
         let mut penetration = |x: &Point<D>| {
             let Some(x) = inside(membrane, x, reach) else { return 1.0 };
             if zone.distance(&x) <= 0.5 * grid.h() || contact_index(zone.region_at(&x)).is_some() {
@@ -140,7 +142,7 @@ pub fn corrected<const D: usize, Z: Zone<D>>(
         };
         let before = result.counts();
         result = result.united(grid, &mut penetration);
-        if result.counts() == before && conditions.least_gap_outside < -scales.gap_tolerance() {
+        if result.counts() == before {
             // Too small for the raster to see.
             result = result.seeded(grid, &conditions.deepest, 0.5 * grid.h());
         }
@@ -150,7 +152,7 @@ pub fn corrected<const D: usize, Z: Zone<D>>(
 
 /// The least gap of a membrane without contact, and where it is: from the lowest quadrature point downhill.
 pub fn least_free_gap<const D: usize, Z: Zone<D>>(
-    free: &Equilibrium<'_, D>,
+    free: &Equilibrium<D>,
     zone: &Z,
     floor: &SharedField<D>,
 ) -> (f64, Point<D>) {

@@ -67,13 +67,14 @@ impl<const D: usize> Path<'_, D> {
     /// took; none where the iteration does not end, or the zone vanishes. `forward` tells the sense of the tangent.
     pub fn correct<Z: Zone<D>>(
         &self,
-        mut zone: Z,
+        zone: Z,
         mut time: f64,
         constraint: Constraint,
         forward: [f64; 2],
         progress: &dyn Progress,
     ) -> Result<(Option<PathState<Z>>, usize), SolveError> {
         let mut solves = 0;
+        let mut zone = zone.on_grid(&(self.membrane)(time).grid);
         for _ in 0..MOST_CORRECTIONS {
             if zone.is_empty() || progress.interrupted() {
                 break;
@@ -99,6 +100,7 @@ impl<const D: usize> Path<'_, D> {
 
     /// The state that is at rest at a time, with the direction in which the path goes on as the time grows by `sense`.
     pub fn begin<Z: Zone<D>>(&self, zone: Z, time: f64, sense: f64) -> Result<PathState<Z>, SolveError> {
+        let zone = zone.on_grid(&(self.membrane)(time).grid);
         let linear = self.linearise(&zone, time)?;
         let tangent = linear.tangent([0.0, sense], self.size);
         Ok(PathState { zone, time, area: linear.area, tangent, linear })

@@ -133,8 +133,8 @@ pub(crate) struct Unknowns {
 }
 
 /// The state of a membrane with a given contact zone.
-pub struct Equilibrium<'a, const D: usize> {
-    pub membrane: &'a Membrane<D>,
+pub struct Equilibrium<const D: usize> {
+    pub membrane: Membrane<D>,
     pub quadrature: Quadrature<D>,
     unknowns: Unknowns,
     factor: Factor,
@@ -156,17 +156,13 @@ struct Imposed<const D: usize> {
 /// The matrix and right-hand side of one region of one cell.
 type LocalSystem = Option<(Vec<f64>, Vec<f64>)>;
 
-impl<'a, const D: usize> Equilibrium<'a, D> {
+impl<const D: usize> Equilibrium<D> {
     /// Solves for the free membrane around a zone.
-    pub fn solve<Z: Zone<D>>(
-        membrane: &'a Membrane<D>,
-        zone: &Z,
-        elements: &mut Elements<D>,
-    ) -> Result<Self, SolveError> {
+    pub fn solve<Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z, elements: &mut Elements<D>) -> Result<Self, SolveError> {
         let System { quadrature, unknowns, matrix, rhs } = System::assemble(membrane, zone, elements);
         let factor = elements.symbolic.factor(matrix)?;
         let u = factor.solve_accurately(&rhs)?;
-        Ok(Self { membrane, quadrature, unknowns, factor, u })
+        Ok(Self { membrane: membrane.clone(), quadrature, unknowns, factor, u })
     }
 
     /// Number of unknowns of the linear system.
@@ -176,7 +172,7 @@ impl<'a, const D: usize> Equilibrium<'a, D> {
 
     /// Displacement and its gradient at a point of a cell, by the polynomial of one of its regions.
     pub fn evaluate(&self, cell: usize, region: RegionId, x: &Point<D>) -> Option<(f64, Vector<D>)> {
-        evaluate(self.membrane, &self.unknowns, &self.u, cell, region, x)
+        evaluate(&self.membrane, &self.unknowns, &self.u, cell, region, x)
     }
 
     /// The regions with unknowns in a cell.
@@ -192,7 +188,7 @@ impl<'a, const D: usize> Equilibrium<'a, D> {
     /// Calls `visit(cell, region, x, weight)` at every volume point of the membrane.
     pub fn for_each_point(&self, mut visit: impl FnMut(usize, RegionId, &Point<D>, f64)) {
         for cell in 0..self.quadrature.cells.len() {
-            for (region, points) in self.quadrature.volumes(self.membrane, cell) {
+            for (region, points) in self.quadrature.volumes(&self.membrane, cell) {
                 for p in points.iter() {
                     visit(cell, region, &p.x, p.weight);
                 }
@@ -209,7 +205,7 @@ impl<'a, const D: usize> Equilibrium<'a, D> {
             .map(|p| {
                 let (u, gradient) = self.evaluate(p.cell, p.free, &p.x).unwrap_or((0.0, Vector::zeros()));
                 let h = floor.map_or(signorini_geometry::Real::constant(0.0), |h| h.jet(&p.x));
-                (gradient - h.gradient).dot(&p.normal) + penalty(self.membrane, p.cell) * (u - h.value)
+                (gradient - h.gradient).dot(&p.normal) + penalty(&self.membrane, p.cell) * (u - h.value)
             })
             .collect()
     }
@@ -219,7 +215,7 @@ impl<'a, const D: usize> Equilibrium<'a, D> {
         let Some(support) = &self.membrane.supports[p.piece] else { return 0.0 };
         if is_free(p.region) {
             let (u, gradient) = self.evaluate(p.cell, p.region, &p.x).unwrap_or((0.0, Vector::zeros()));
-            nitsche_flux(self.membrane, p.cell, &p.x, &p.normal, u - support.displacement.value(&p.x), &gradient)
+            nitsche_flux(&self.membrane, p.cell, &p.x, &p.normal, u - support.displacement.value(&p.x), &gradient)
         } else {
             // In contact up to the support: the membrane follows the floor.
             let slope = self.membrane.floor.as_ref().map_or(Vector::zeros(), |h| h.jet(&p.x).gradient);
@@ -230,7 +226,7 @@ impl<'a, const D: usize> Equilibrium<'a, D> {
     /// The normal derivative, on the fronts, of the field that takes `data` there, vanishes on the supports and is in
     /// equilibrium without load: the Dirichlet-to-Neumann map, from the factorisation at hand.
     pub fn normal_derivative_of_extension(&self, data: &[f64]) -> Result<Vec<f64>, SolveError> {
-        let membrane = self.membrane;
+        let membrane = &self.membrane;
         let mut rhs = vec![0.0; self.unknowns.count];
         let mut t = Tabulation::default();
         for (p, &value) in self.quadrature.front.iter().zip(data) {

@@ -14,9 +14,12 @@ const WEAK_PRESSURE: f64 = 0.02;
 /// A local step longer than this fraction of the grid's resolution gives way to one with the response of the membrane.
 const LOCAL_REACH: f64 = 0.6;
 
+/// Modes whose response is computed at most.
+const MOST_RESPONSES: usize = 240;
+
 /// The fronts of a state: slope jump, floor pressure and tension at every quadrature point.
 pub struct Fronts<'a, const D: usize> {
-    pub(crate) equilibrium: &'a Equilibrium<'a, D>,
+    pub(crate) equilibrium: &'a Equilibrium<D>,
     /// `ρ`: positive where the floor would have to pull, negative where the membrane penetrates.
     pub slope_jump: Vec<f64>,
     pub pressure: Vec<f64>,
@@ -73,8 +76,8 @@ impl StepKind {
 
 impl<'a, const D: usize> Fronts<'a, D> {
     /// The fronts of a state, held by `adhesion` or by nothing.
-    pub fn new(equilibrium: &'a Equilibrium<'a, D>, adhesion: Option<&SharedField<D>>) -> Self {
-        let membrane: &Membrane<D> = equilibrium.membrane;
+    pub fn new(equilibrium: &'a Equilibrium<D>, adhesion: Option<&SharedField<D>>) -> Self {
+        let membrane: &Membrane<D> = &equilibrium.membrane;
         let points = &equilibrium.quadrature.front;
         let floor = membrane.floor.as_ref();
         let tension: Vec<_> = points.iter().map(|p| membrane.tension.jet(&p.x)).collect();
@@ -198,6 +201,14 @@ impl<'a, const D: usize> Fronts<'a, D> {
         Projection { norm: seen.max(0.0).sqrt(), remainder: (square - seen).max(0.0).sqrt() }
     }
 
+    /// How far the floor's pressure would have the fronts move, at the place where that is farthest.
+    pub fn farthest(&self, scales: &Scales) -> f64 {
+        let rate = |i: usize| self.pressure[i].max(WEAK_PRESSURE * scales.pressure) / self.tension[i];
+        (0..self.slope_jump.len())
+            .map(|i| (self.slope_jump[i] - self.adhesive_slope[i]).abs() / rate(i))
+            .fold(0.0, f64::max)
+    }
+
     /// The fewest modes that see the better part of the slope jump.
     fn leading_space<Z: Zone<D>>(&self, zone: &Z) -> ModeSpace {
         let fine = zone.mode_offsets(ModeSpace::Fine)[zone.front_count()];
@@ -243,9 +254,12 @@ impl<'a, const D: usize> Fronts<'a, D> {
         let floor_pressure = |p: f64| p.max(WEAK_PRESSURE * scales.pressure);
         let local: Vec<f64> = self.pressure.iter().zip(&self.tension).map(|(p, t)| floor_pressure(*p) / t).collect();
         let longest = self.slope_jump.iter().zip(&local).map(|(r, l)| r / l).fold(0.0, f64::max);
-        let far = longest > LOCAL_REACH * self.equilibrium.membrane.grid.h();
+        let h = self.equilibrium.membrane.grid.h();
         let space = self.leading_space(zone);
         let n = zone.mode_offsets(space)[zone.front_count()];
+        let beyond = longest > LOCAL_REACH * h;
+        // With very many modes their responses cost more than a few careful local steps.
+        let far = beyond && n <= MOST_RESPONSES;
         let frames = self.frames(zone, space);
         let (mut matrix, mut b) = self.galerkin(&frames, n, &local, &self.slope_jump);
         let kind = if far { StepKind::Full } else { StepKind::Local };
@@ -265,7 +279,8 @@ impl<'a, const D: usize> Fronts<'a, D> {
             .map(|(f, w)| w * f.modes.iter().map(|(i, v)| v * coefficients[*i]).sum::<f64>().powi(2))
             .sum();
         let length = (square / total.max(f64::MIN_POSITIVE)).sqrt();
-        Ok(Step { length, space, coefficients, kind, reach: f64::INFINITY })
+        let reach = if beyond && !far { h } else { f64::INFINITY };
+        Ok(Step { length, space, coefficients, kind, reach })
     }
 
     /// Adds `∫ Λ_T(ρ⁺ w_m) ω_n`, and for fronts on which it stays safely positive `-∫ κ ρ⁺ w_m ω_n`.

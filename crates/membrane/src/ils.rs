@@ -66,10 +66,10 @@ impl Reason {
 }
 
 /// The state at the end of a solve, whether it converged or not.
-pub struct Solution<'a, const D: usize, Z> {
+pub struct Solution<const D: usize, Z> {
     pub zone: Z,
     /// None only where even the first linear system could not be solved.
-    pub equilibrium: Option<Equilibrium<'a, D>>,
+    pub equilibrium: Option<Equilibrium<D>>,
     pub conditions: Option<Conditions<D>>,
     pub scales: Option<Scales>,
     pub reason: Reason,
@@ -88,6 +88,8 @@ pub struct Solution<'a, const D: usize, Z> {
     pub margin: Option<f64>,
     /// Penetration that was put up with where zones come so near to each other that the grid cannot tell whether they touch.
     pub unresolved: Option<f64>,
+    /// Whether smaller cells were wanted at the fronts, but no state was found on them.
+    pub unrefined: bool,
     /// Length of the last step relative to a cell, where the fronts settled on a jump of the discrete slope.
     pub settled_within: Option<f64>,
 }
@@ -109,7 +111,7 @@ pub fn solve<'a, const D: usize, Z: Zone<D>>(
     start: Start<Z>,
     at: (usize, f64),
     progress: &mut dyn Progress,
-) -> Solution<'a, D, Z> {
+) -> Solution<D, Z> {
     let mut run = Run {
         solution: Solution {
             zone: Z::empty(&membrane.grid),
@@ -124,6 +126,7 @@ pub fn solve<'a, const D: usize, Z: Zone<D>>(
             jumped: false,
             margin: None,
             unresolved: None,
+            unrefined: false,
             settled_within: None,
         },
         branch: Branch::Stable,
@@ -150,16 +153,12 @@ pub fn reaches_floor<const D: usize, Z: Zone<D>>(
 }
 
 /// Whether a membrane without contact stays clear of the floor.
-pub(crate) fn is_clear<const D: usize, Z: Zone<D>>(
-    free: &Equilibrium<'_, D>,
-    none: &Z,
-    floor: &SharedField<D>,
-) -> bool {
+pub(crate) fn is_clear<const D: usize, Z: Zone<D>>(free: &Equilibrium<D>, none: &Z, floor: &SharedField<D>) -> bool {
     least_free_gap(free, none, floor).0 >= FREE * Scales::of_free(free).gap
 }
 
 /// A zone smaller than a cell that shrinks: there is nothing that would stop it.
-fn lost<const D: usize>(equilibrium: &Equilibrium<'_, D>, fronts: &Fronts<'_, D>, zones: usize) -> Option<usize> {
+fn lost<const D: usize>(equilibrium: &Equilibrium<D>, fronts: &Fronts<'_, D>, zones: usize) -> Option<usize> {
     let mut area = vec![0.0; zones];
     equilibrium.for_each_point(|_, region, x, w| {
         // As large as it is drawn, whatever it weighs.
@@ -180,7 +179,7 @@ struct Run<'a, 'b, const D: usize, Z> {
     branch: Branch,
     /// Whether adhesion holds the fronts, or is left out.
     adhering: bool,
-    solution: Solution<'a, D, Z>,
+    solution: Solution<D, Z>,
 }
 
 /// How the iteration on the fronts ended.
@@ -198,7 +197,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         };
         match start {
             Start::Zone(zone, scales, branch) if !zone.is_empty() => {
-                self.solution.zone = zone;
+                self.solution.zone = zone.on_grid(&self.membrane.grid);
                 self.solution.scales = Some(scales);
                 self.branch = branch;
             }
@@ -206,7 +205,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             Start::Asked(zone, branch) => {
                 // Without contact, for the scales.
                 self.settle_fronts()?;
-                self.solution.zone = zone;
+                self.solution.zone = zone.on_grid(&self.membrane.grid);
                 self.branch = branch;
             }
         }

@@ -1,9 +1,10 @@
 //! Contact zones in one dimension: intervals.
 
 use crate::zone::{Advance, Division, FrontFrame, FrontsInCell, ModeSpace, Zone, contact, free};
-use signorini_fem::Grid;
 use signorini_fem::cut::RegionId;
+use signorini_fem::{Cells, Grid};
 use signorini_geometry::{Aabb, ImplicitShape, Point, Vector};
+use std::sync::Arc;
 
 /// Disjoint intervals in ascending order. An end beyond the membrane is not a front: there the zone reaches the end.
 #[derive(Clone, Debug)]
@@ -181,6 +182,15 @@ impl Zone<1> for LineZone {
     }
     fn region_at(&self, x: &Point<1>) -> RegionId {
         self.region_by(|front| self.end(front).value(x) < 0.0)
+    }
+    fn least_feature(&self) -> f64 {
+        f64::INFINITY
+    }
+    fn on_grid(&self, grid: &Grid<1>) -> Self {
+        Self::new(grid, self.intervals.clone())
+    }
+    fn divided(&self, _: &Grid<1>, _: usize, _: &dyn Fn(&Aabb<1>, usize) -> bool) -> Option<Arc<dyn Cells<1>>> {
+        None
     }
     fn sharpest(&self) -> f64 {
         let shortest = self.intervals.iter().map(|[a, b]| b - a).fold(f64::INFINITY, f64::min);

@@ -2,9 +2,11 @@
 
 use crate::raster::Raster;
 use crate::zone::{Advance, Division, FrontFrame, FrontsInCell, ModeSpace, Zone, contact, free};
-use signorini_fem::Grid;
 use signorini_fem::cut::RegionId;
+use signorini_fem::{Cells, Grid, RefinedGrid};
 use signorini_geometry::{Aabb, ClosedCurve, CurvePoint, ImplicitShape, PeriodicBasis, Point, Vector, polygon};
+use std::collections::HashSet;
+use std::sync::Arc;
 
 /// Fewest knots of a front, which still draw a circle to 3e-5 of its radius.
 const FEWEST_KNOTS: f64 = 5.0;
@@ -49,6 +51,10 @@ impl ImplicitShape<2> for FrontSheet<'_> {
     }
     fn gradient(&self, x: &Point<2>) -> Vector<2> {
         self.foot(x).1.normal
+    }
+    fn value_and_gradient(&self, x: &Point<2>) -> (f64, Vector<2>) {
+        let (distance, foot) = self.foot(x);
+        (distance, foot.normal)
     }
 }
 
@@ -441,6 +447,68 @@ impl Zone<2> for PlaneZone {
         });
         let far = self.around[cell].iter().map(|&c| c as usize).filter(|c| !near.contains(c));
         self.region_within(far.chain(close.collect::<Vec<_>>()))
+    }
+    fn least_feature(&self) -> f64 {
+        let radius = 1.0 / self.sharpest().max(f64::MIN_POSITIVE);
+        let mut least = radius;
+        let spacing: Vec<f64> =
+            self.curves.iter().map(|c| polygon::perimeter(c.samples()) / c.samples().len() as f64).collect();
+        for near in &self.near {
+            for (i, &(c, s)) in near.iter().enumerate() {
+                let curve = &self.curves[c as usize];
+                let n = curve.samples().len();
+                for &(d, t) in &near[i + 1..] {
+                    let distance = (curve.samples()[s as usize] - self.curves[d as usize].samples()[t as usize]).norm();
+                    // Along one curve, places far from each other on it count.
+                    let apart = (s as usize).abs_diff(t as usize);
+                    let way = apart.min(n - apart.min(n)) as f64 * spacing[c as usize];
+                    if distance < least && (c != d || way > 4.0 * distance) {
+                        least = distance;
+                    }
+                }
+            }
+        }
+        least
+    }
+    fn on_grid(&self, grid: &Grid<2>) -> Self {
+        let knots = |c: &ClosedCurve| Self::knots(grid, polygon::perimeter(c.samples()));
+        let same = |c: &ClosedCurve| knots(c) == c.knots() && c.degree() == Self::front_degree(grid);
+        let fit = |c: &ClosedCurve| {
+            if same(c) { c.clone() } else { ClosedCurve::along(c.samples(), Self::front_degree(grid), knots(c)) }
+        };
+        Self::new(grid, self.curves.iter().map(fit).collect())
+    }
+    fn divided(
+        &self,
+        grid: &Grid<2>,
+        levels: usize,
+        also: &dyn Fn(&Aabb<2>, usize) -> bool,
+    ) -> Option<Arc<dyn Cells<2>>> {
+        // Of each level the cells of that size within two of them from a front.
+        let near: Vec<HashSet<[i64; 2]>> = (0..levels)
+            .map(|level| {
+                let size = grid.cell_size() / f64::from(1u32 << level);
+                let mut found = HashSet::new();
+                for (a, b) in self.curves.iter().flat_map(|c| polygon::edges(c.samples())) {
+                    let parts = ((b - a).norm() / size.min()).ceil().max(1.0);
+                    for k in 0..parts as usize {
+                        let x = a + (b - a) * (k as f64 / parts);
+                        let at = [0, 1].map(|k| ((x[k] - grid.bounds().min[k]) / size[k]).floor() as i64);
+                        for i in 0..25 {
+                            found.insert([at[0] + i % 5 - 2, at[1] + i / 5 - 2]);
+                        }
+                    }
+                }
+                found
+            })
+            .collect();
+        let wanted = |b: &Aabb<2>, level: usize| {
+            let x = b.center();
+            let size = b.size();
+            let at = [0, 1].map(|k| ((x[k] - grid.bounds().min[k]) / size[k]).floor() as i64);
+            near.get(level).is_some_and(|cells| cells.contains(&at)) || also(b, level)
+        };
+        Some(Arc::new(RefinedGrid::new(grid, wanted)))
     }
     fn sharpest(&self) -> f64 {
         let curvature = |c: &ClosedCurve| {

@@ -157,7 +157,8 @@ impl<const D: usize> Quadrature<D> {
             for sheet in &divided.sheets {
                 breaks.extend(scan_roots(0.0, 1.0, 9, |t| {
                     let p = at(t);
-                    (sheet.value(&p.x), sheet.gradient(&p.x).dot(&p.tangent))
+                    let (value, gradient) = sheet.value_and_gradient(&p.x);
+                    (value, gradient.dot(&p.tangent))
                 }));
             }
             breaks.sort_by(f64::total_cmp);

@@ -4,9 +4,13 @@ use signorini_fem::Grid;
 use signorini_geometry::outline::Samples;
 use signorini_geometry::{Aabb, ClosedCurve, Point, polygon};
 
+/// Samples along the longer side beyond which cells are not divided for the raster.
+const ENOUGH: usize = 800;
+
 /// Samples per cell edge.
 fn refinement(grid: &Grid<2>) -> usize {
-    if grid.degree() == 1 { 3 } else { 4 }
+    let longest = grid.cells().into_iter().max().unwrap_or(1);
+    (ENOUGH / longest).clamp(1, if grid.degree() == 1 { 3 } else { 4 })
 }
 
 /// A function sampled on a grid finer than the cells, which reaches a few cells beyond the membrane so that a zone may

@@ -53,9 +53,9 @@ pub struct Report<const D: usize> {
 
 impl<const D: usize> Report<D> {
     /// Evaluates a solution; none if there is no state at all.
-    pub fn new<Z: Zone<D>>(solution: &Solution<'_, D, Z>) -> Option<Self> {
+    pub fn new<Z: Zone<D>>(solution: &Solution<D, Z>) -> Option<Self> {
         let equilibrium = solution.equilibrium.as_ref()?;
-        let membrane = equilibrium.membrane;
+        let membrane = &equilibrium.membrane;
         let zone = &solution.zone;
         let count = zone.counts().0;
         let mut components = vec![Component { area: 0.0, force: 0.0, centroid: Point::zeros(), holes: 0 }; count];

@@ -14,7 +14,7 @@ pub struct Scales {
     pub tension: f64,
     /// Extent of the domain.
     pub length: f64,
-    /// Cell size.
+    /// Size of the cells at the fronts.
     pub h: f64,
     pub degree: usize,
     pub dimension: usize,
@@ -22,8 +22,8 @@ pub struct Scales {
 
 impl Scales {
     /// Reads the scales off the membrane without contact.
-    pub fn of_free<const D: usize>(free: &Equilibrium<'_, D>) -> Self {
-        let membrane: &Membrane<D> = free.membrane;
+    pub fn of_free<const D: usize>(free: &Equilibrium<D>) -> Self {
+        let membrane: &Membrane<D> = &free.membrane;
         let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
         let (mut load, mut tension) = (0.0f64, 0.0f64);
         free.for_each_point(|cell, region, x, _| {
@@ -71,12 +71,12 @@ impl Scales {
         resolved.max(round_off).max(1e-10) * slope * self.length.sqrt()
     }
 
-    /// Penetration that counts as none: a fraction of the cell's share of the gap, and what a polynomial of this degree
-    /// misses of a curved membrane.
-    pub fn gap_tolerance(&self) -> f64 {
-        let missed =
-            0.2 * self.pressure / self.tension * self.h.powi(2) * self.relative_h().powi(self.degree as i32 - 1);
-        1e-3 * self.relative_h().powi(2) * self.gap + missed
+    /// Penetration that counts as none in a cell of size `h`: a fraction of the cell's share of the gap, and what a
+    /// polynomial of this degree misses of a curved membrane.
+    pub fn gap_tolerance(&self, h: f64) -> f64 {
+        let relative = h / self.length;
+        let missed = 0.2 * self.pressure / self.tension * h.powi(2) * relative.powi(self.degree as i32 - 1);
+        1e-3 * relative.powi(2) * self.gap + missed
     }
 
     /// Suction that counts as none.

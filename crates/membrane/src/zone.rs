@@ -1,8 +1,9 @@
 //! What the method needs to know of a contact zone, in one dimension or two.
 
-use signorini_fem::Grid;
 use signorini_fem::cut::RegionId;
+use signorini_fem::{Cells, Grid};
 use signorini_geometry::{Aabb, ImplicitShape, Point};
+use std::sync::Arc;
 
 /// Beyond the membrane.
 pub const OUTSIDE: RegionId = 0;
@@ -128,6 +129,18 @@ pub trait Zone<const D: usize>: Division<D> + Clone + Send {
     fn region_at(&self, x: &Point<D>) -> RegionId;
     /// The largest curvature of any front, to judge whether the grid resolves it.
     fn sharpest(&self) -> f64;
+    /// The smallest length in the fronts: a radius of curvature, or the distance between two that are near each other.
+    fn least_feature(&self) -> f64;
+    /// The zone with fronts of as many modes as another grid can tell apart.
+    fn on_grid(&self, grid: &Grid<D>) -> Self;
+    /// Cells of a grid divided `levels` times near the fronts, and elsewhere where `also` says so of a cell's box and how
+    /// often it was divided; none where cells are not divided.
+    fn divided(
+        &self,
+        grid: &Grid<D>,
+        levels: usize,
+        also: &dyn Fn(&Aabb<D>, usize) -> bool,
+    ) -> Option<Arc<dyn Cells<D>>>;
     /// Points along every front, for pictures and files; one in one dimension.
     fn outlines(&self) -> Vec<Vec<Point<D>>>;
 }

@@ -19,6 +19,7 @@ use signorini_membrane::domain::{Domain, DomainOnCells};
 use signorini_membrane::field::{Constant, Field, Moved, SharedField, Sum};
 use signorini_membrane::problem::{Measure, Membrane, Support};
 use signorini_membrane::quadrature::Quadrature;
+use signorini_membrane::refinement::Refinement;
 use signorini_membrane::zone::NoZone;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -78,6 +79,8 @@ pub struct MembranePlan<const D: usize> {
     /// Where zones are told apart.
     pub grid: Grid<D>,
     pub domain: DomainOnCells<D>,
+    /// Where cells are divided.
+    pub refinement: Refinement<D>,
     pub tension: Placed,
     pub loads: BTreeMap<String, Placed>,
     pub supports: Vec<PlannedSupport>,
@@ -355,6 +358,7 @@ impl<'a> Planner<'a> {
             if on.grid.degree() != 1 && film.degree.is_some() {
                 warnings.push("method.active_set works with degree 1; the stated degree is not used".into());
             }
+            on.refinement = Refinement::default();
             on.grid = Grid::new(*on.grid.bounds(), on.grid.cells(), 1);
             on.cells = Arc::new(on.grid.clone());
         }
@@ -410,6 +414,7 @@ impl<'a> Planner<'a> {
             cells: on.cells,
             grid: on.grid,
             domain: on.domain,
+            refinement: on.refinement,
             tension,
             loads,
             supports,

@@ -202,6 +202,8 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                 return Err(error.into());
             }
             let before = self.known(index, known.clone(), &mut logged);
+            let last_of_step = increments.get(index + 1).is_none_or(|next| next.step != planned.step);
+            self.engine.estimates = last_of_step;
             let mut increment = self.engine.solve(&self.plan, &membrane, (index, time), &mut logged);
             if let (false, Control::Time, Some(from)) = (increment.converged, planned.control, &known)
                 && let Some(taken) = self.approach(index, from, time, &mut logged)
@@ -239,7 +241,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                 }
             }
             let snapshot = increment.snapshot(&mesh, &membrane, time);
-            let last_of_step = increments.get(index + 1).is_none_or(|next| next.step != planned.step);
+            self.engine.estimates = false;
             let others = self.other_states(&membrane, &increment, D == 1 || last_of_step);
             self.record(time, &membrane, &increment, others);
             if let (Control::Time, Some(before), Some(after), None) =
@@ -536,14 +538,16 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                     return "The membrane does not touch the floor.".into();
                 }
                 let figure = |v: &Value| format!("{:.9}", v.as_f64().unwrap_or(f64::NAN));
+                let within = |v: &Value| v.as_f64().map_or(String::new(), |v| format!(" ± {v:.0e}"));
                 let measure =
                     if D == 1 && self.plan.space == crate::case::statement::Space::Line { "length" } else { "area" };
                 let holes = c["holes"].as_u64().unwrap_or(0);
                 let staircase =
                     if let MethodChoice::ActiveSet(_) = self.plan.method { " (a staircase of nodes)" } else { "" };
                 format!(
-                    "In contact over {measure} {}{staircase} in {zones} zone{}{}, pushed up by {}; forces balance to {:.0e}.{}",
+                    "In contact over {measure} {}{}{staircase} in {zones} zone{}{}, pushed up by {}{}; forces balance to {:.0e}.{}",
                     figure(&c["area"]),
+                    within(&c["error_estimate"]["area"]),
                     if zones == 1 { "" } else { "s" },
                     match holes {
                         0 => String::new(),
@@ -551,6 +555,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                         n => format!(" with {n} holes"),
                     },
                     figure(&c["force"][2]),
+                    within(&c["error_estimate"]["force"]),
                     step["equilibrium_residual"].as_f64().unwrap_or(f64::NAN),
                     if c["stable"] == false { " This equilibrium is unstable." } else { "" },
                 )

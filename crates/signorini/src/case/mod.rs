@@ -2,6 +2,7 @@
 
 pub mod error;
 pub mod override_key;
+pub mod schema;
 pub mod statement;
 pub mod units;
 pub mod value;

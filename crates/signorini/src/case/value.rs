@@ -3,7 +3,9 @@
 use super::units::{Dimension, Units, describe};
 use super::{CaseError, Document};
 use crate::expression::{Expression, Names, parse};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserialize, Deserializer, Visitor};
+use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
 use toml::Spanned;
@@ -19,6 +21,29 @@ pub enum Literal {
 pub type Value = Spanned<Literal>;
 /// A vector of values.
 pub type Values = Spanned<Vec<Value>>;
+
+impl JsonSchema for Literal {
+    fn schema_name() -> Cow<'static, str> {
+        "Value".into()
+    }
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "type": ["number", "string"],
+        })
+    }
+}
+
+impl JsonSchema for OneOrMany {
+    fn schema_name() -> Cow<'static, str> {
+        "ValueOrVector".into()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let one = generator.subschema_for::<Literal>();
+        json_schema!({
+            "anyOf": [one.clone(), { "type": "array", "items": one }],
+        })
+    }
+}
 
 impl<'de> Deserialize<'de> for Literal {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {

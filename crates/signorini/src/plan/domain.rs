@@ -5,17 +5,20 @@ use crate::case::CaseError;
 use crate::case::statement::{self, Domain, Mesh, Space};
 use crate::case::units::{LENGTH, NONE};
 use crate::expression::{Expression, Scope};
-use signorini_fem::{Cells, Grid, MeshCells};
+use signorini_fem::{Cells, Grid, MeshCells, RefinedGrid};
 use signorini_geometry::{Aabb, Ellipse, ImplicitShape, Jet, Point, Real, Vector, polygon};
 use signorini_membrane::domain::{
     BoxDomain, CellStatus, Domain as MembraneDomain, DomainOnCells, ImplicitDomain, MeshDomain, PolygonDomain,
 };
+use signorini_membrane::refinement::Refinement;
 use std::ops::Range;
 use std::sync::Arc;
 
 /// The box of a grid that the boundary cuts is larger than the domain by this factor, so that no boundary runs along
 /// its edge.
 pub(super) const MARGIN: f64 = 1.03;
+/// How often cells are divided at most where the case does not say.
+const MOST_DIVISIONS: usize = 3;
 /// Fraction of the free memory that a solve may use.
 const MEMORY_SHARE: f64 = 0.8;
 
@@ -64,6 +67,12 @@ pub(crate) trait ReadDomain<const D: usize> {
 
     fn planner(&self) -> &Planner<'_>;
 
+    /// Where the cells of a grid are divided.
+    fn refinement(&self, key: &statement::GridKey, grid: &Grid<D>) -> Result<Refinement<D>, CaseError>;
+
+    /// The cells of a grid, divided where a function says so.
+    fn divided(&self, grid: &Grid<D>, wanted: &Wanted<D>) -> Arc<dyn Cells<D>>;
+
     /// The cells of a mesh from a file.
     fn mesh(&self, key: &statement::GmshKey, film: &statement::Membrane) -> Result<OnCells<D>, CaseError>;
 
@@ -78,8 +87,14 @@ pub(crate) trait ReadDomain<const D: usize> {
         let (shape, bounds, pieces) = self.shape(planner.domain_key(film, span.clone())?)?;
         let (cells, place) = planner.cells(film, grid, &bounds)?;
         planner.check_size(&cells, degree, place.clone())?;
-        let grid = Grid::new(bounds, cells, degree);
-        let domain = DomainOnCells::new(shape, &grid);
+        let coarse = Grid::new(bounds, cells, degree);
+        let refinement = self.refinement(grid, &coarse)?;
+        let cells: Arc<dyn Cells<D>> = match &grid.refine {
+            Some(key) if key.get_ref().negative_where.is_some() => self.divided(&coarse, &refinement.always),
+            _ => Arc::new(coarse.clone()),
+        };
+        let grid = coarse;
+        let domain = DomainOnCells::new(shape, &*cells);
         if domain.status.iter().all(|s| *s == CellStatus::Outside) {
             let span = film.domain.as_ref().map_or(span, |d| d.span());
             return Err(planner
@@ -87,9 +102,12 @@ pub(crate) trait ReadDomain<const D: usize> {
                 .error(span, "the domain is empty: no point of it was found on the grid")
                 .help("check the sign (negative inside) and the bounds min, max, or use more cells"));
         }
-        Ok(OnCells { cells: Arc::new(grid.clone()), grid, domain, pieces })
+        Ok(OnCells { cells, grid, domain, pieces, refinement })
     }
 }
+
+/// Whether a cell is divided, from its box and how often it was divided.
+type Wanted<const D: usize> = Arc<dyn Fn(&Aabb<D>, usize) -> bool + Send + Sync>;
 
 /// A domain with its cells.
 pub(crate) struct OnCells<const D: usize> {
@@ -97,6 +115,7 @@ pub(crate) struct OnCells<const D: usize> {
     pub grid: Grid<D>,
     pub domain: DomainOnCells<D>,
     pub pieces: Pieces,
+    pub refinement: Refinement<D>,
 }
 
 impl Planner<'_> {
@@ -250,6 +269,20 @@ impl ReadDomain<1> for Planner<'_> {
             .help("space = \"plane\", or mesh.grid = { cells = [100] }"))
     }
 
+    fn refinement(&self, key: &statement::GridKey, _: &Grid<1>) -> Result<Refinement<1>, CaseError> {
+        match &key.refine {
+            None => Ok(Refinement::default()),
+            Some(refine) => Err(self
+                .document
+                .error(refine.span(), "cells are divided in the plane only")
+                .help("leave `refine` out: in one dimension fronts are points, and more cells cost little")),
+        }
+    }
+
+    fn divided(&self, grid: &Grid<1>, _: &Wanted<1>) -> Arc<dyn Cells<1>> {
+        Arc::new(grid.clone())
+    }
+
     fn shape(&self, key: &toml::Spanned<Domain>) -> Result<(Arc<dyn MembraneDomain<1>>, Aabb<1>, Pieces), CaseError> {
         let Domain::Interval(interval) = key.get_ref() else {
             return Err(self
@@ -283,6 +316,59 @@ impl ReadDomain<2> for Planner<'_> {
         self
     }
 
+    fn refinement(&self, key: &statement::GridKey, grid: &Grid<2>) -> Result<Refinement<2>, CaseError> {
+        let mut refinement = Refinement { most: MOST_DIVISIONS, ..Refinement::default() };
+        let Some(refine) = key.refine.as_ref().map(|r| r.get_ref()) else { return Ok(refinement) };
+        let times = |key: &Option<toml::Spanned<i64>>, otherwise: usize| match key {
+            None => Ok(otherwise),
+            Some(n) if (0..=8).contains(n.get_ref()) => Ok(*n.get_ref() as usize),
+            Some(n) => {
+                Err(self.document.error(n.span(), format!("cells are divided 0 to 8 times, not {}", n.get_ref())))
+            }
+        };
+        refinement.fronts = times(&refine.fronts, 0)?;
+        refinement.most = times(&refine.most, MOST_DIVISIONS.max(refinement.fronts))?;
+        if refinement.fronts > refinement.most {
+            let span = refine.most.as_ref().map_or(0..0, |m| m.span());
+            return Err(self.document.error(
+                span,
+                format!(
+                    "at fronts cells are divided {} times, which is more than {}",
+                    refinement.fronts, refinement.most
+                ),
+            ));
+        }
+        let levels = times(&refine.levels, 1)?;
+        if let Some(value) = &refine.negative_where {
+            let expression = self
+                .reader
+                .expression(value, NONE, &["x", "y"])
+                .or_else(|_| self.reader.expression(value, LENGTH, &["x", "y"]))?;
+            let at = move |x: Point<2>| expression.evaluate(&Scope { position: [x[0], x[1], 0.0], time: f64::NAN });
+            let center = grid.bounds().center();
+            if at(center).is_nan() {
+                return Err(self.document.error(
+                    value.span(),
+                    format!("`negative_where` is not a number at ({:.6}, {:.6})", center[0], center[1]),
+                ));
+            }
+            let sampled = move |b: &Aabb<2>| {
+                (0..9).any(|k| at(b.at(&Point::<2>::new(f64::from(k % 3) / 2.0, f64::from(k / 3) / 2.0))) < 0.0)
+            };
+            refinement.always = Arc::new(move |b, level| level < levels && sampled(b));
+        } else if let Some(levels) = &refine.levels {
+            return Err(self
+                .document
+                .error(levels.span(), "`levels` says how often, but nothing says where")
+                .help("add negative_where = \"hypot(x, y) - 0.3\", or use `fronts`"));
+        }
+        Ok(refinement)
+    }
+
+    fn divided(&self, grid: &Grid<2>, wanted: &Wanted<2>) -> Arc<dyn Cells<2>> {
+        Arc::new(RefinedGrid::new(grid, |b, level| wanted(b, level)))
+    }
+
     fn mesh(&self, key: &statement::GmshKey, film: &statement::Membrane) -> Result<OnCells<2>, CaseError> {
         let document = self.document;
         if let Some(domain) = &film.domain {
@@ -309,7 +395,7 @@ impl ReadDomain<2> for Planner<'_> {
         let cells = Arc::new(MeshCells::new(mesh, degree));
         let pieces = Pieces { groups: cells.groups().to_vec() };
         let domain = DomainOnCells::new(Arc::new(MeshDomain(cells.clone())), &*cells);
-        Ok(OnCells { grid: cells.grid(), cells, domain, pieces })
+        Ok(OnCells { grid: cells.grid(), cells, domain, pieces, refinement: Refinement::default() })
     }
 
     fn shape(&self, key: &toml::Spanned<Domain>) -> Result<(Arc<dyn MembraneDomain<2>>, Aabb<2>, Pieces), CaseError> {

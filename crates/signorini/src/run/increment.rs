@@ -9,8 +9,10 @@ use signorini_geometry::Point;
 use signorini_membrane::active_set::{self, NodalSolution, NodalStart};
 use signorini_membrane::adhesion::Branch;
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
+use signorini_membrane::error_estimate::ErrorEstimate;
 use signorini_membrane::ils::{self, Reason, Solution, Start};
 use signorini_membrane::problem::Membrane;
+use signorini_membrane::refinement::Refinement;
 use signorini_membrane::report::{Component, ContactReport, Report};
 use signorini_membrane::scales::Scales;
 use signorini_membrane::staircase::Staircase;
@@ -33,6 +35,11 @@ pub struct Engine<const D: usize, Z> {
     scales: Option<Scales>,
     /// The last states of the path and their times, as long as it goes on steadily.
     trail: Vec<(f64, Z)>,
+    refinement: Refinement<D>,
+    /// How often the cells at the fronts are divided.
+    levels: usize,
+    /// Whether errors are estimated, which takes a solve more.
+    pub estimates: bool,
 }
 
 type Sampler<'a, const D: usize> = Box<dyn Fn(&Point<D>) -> Option<Sample> + 'a>;
@@ -49,6 +56,8 @@ pub struct Increment<'a, const D: usize> {
     outlines: Vec<Vec<Point<D>>>,
     sample: Option<Sampler<'a, D>>,
     pub stability: Stability,
+    /// What the discretisation leaves uncertain, where that was asked for.
+    pub errors: Option<ErrorEstimate>,
 }
 
 /// What adhesion makes of a state.
@@ -68,7 +77,15 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             let grid = &plan.grid;
             Z::empty(grid).united(grid, &mut |x| shape.level(x))
         });
-        Self { previous: None, asked, scales: None, trail: Vec::new() }
+        Self {
+            previous: None,
+            asked,
+            scales: None,
+            trail: Vec::new(),
+            refinement: plan.refinement.clone(),
+            levels: plan.refinement.fronts,
+            estimates: false,
+        }
     }
 
     /// The state that the last increment converged to.
@@ -172,10 +189,11 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             }
             (None, None) => Start::Free,
         };
-        let mut elements = Elements::new(membrane);
-        let mut solution: Solution<'a, D, Z> = ils::solve(membrane, &mut elements, start, at, progress);
+        let mut solution: Solution<D, Z> = self.refinement.solve(membrane, &mut self.levels, start, at, progress);
         self.scales = solution.scales.or(self.scales);
         let report = Report::new(&solution);
+        let estimated = self.estimates && solution.reason.converged();
+        let errors = if estimated { ErrorEstimate::of(&solution).ok().flatten() } else { None };
         let converged = solution.reason.converged();
         if let (true, Some(scales)) = (converged, solution.scales) {
             self.previous = Some((solution.zone.clone(), scales, Branch::Stable));
@@ -191,7 +209,8 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             }
         }
         let mut warnings = Vec::new();
-        let sharp = solution.zone.sharpest() * membrane.grid.h();
+        let h = solution.equilibrium.as_ref().map_or(membrane.grid.h(), |e| e.membrane.grid.h());
+        let sharp = solution.zone.sharpest() * h;
         if D == 2 && !solution.zone.is_empty() && sharp > RESOLVED {
             warnings.push(format!(
                 "a front has a radius of curvature of {:.2} cells at t = {}: below two cells its shape is approximate, use more cells",
@@ -247,7 +266,19 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
                 Some(Sample { displacement, in_contact, pressure })
             }) as Sampler<'a, D>
         });
-        Increment { converged, reason, iterations, residuals, unknowns, warnings, report, outlines, sample, stability }
+        Increment {
+            converged,
+            reason,
+            iterations,
+            residuals,
+            unknowns,
+            warnings,
+            report,
+            outlines,
+            sample,
+            stability,
+            errors,
+        }
     }
 }
 
@@ -268,6 +299,7 @@ fn active_set<'a, const D: usize, Z: Zone<D>>(
         outlines: Vec::new(),
         sample: None,
         stability: Stability::default(),
+        errors: None,
     };
     let Some(floor) = &membrane.floor else {
         return failed("linear_solver", vec!["method.active_set needs a floor".into()]);
@@ -307,6 +339,7 @@ fn active_set<'a, const D: usize, Z: Zone<D>>(
         report: Some(nodal_report(membrane, &solution, &zones)),
         outlines: zones.outlines,
         stability: Stability::default(),
+        errors: None,
         sample: Some(Box::new(move |x| {
             Some(Sample {
                 displacement: solution.displacement(membrane, x),
@@ -435,6 +468,7 @@ impl<const D: usize> Increment<'_, D> {
             "radius": self.radius(c, space),
             "stable": self.stability.lowest_eigenvalue.is_none_or(|v| v > 0.0),
             "lowest_eigenvalue": self.stability.lowest_eigenvalue,
+            "error_estimate": self.errors.map(|e| json!({"front": e.front, "area": e.area, "force": e.force})),
             "other_states": [],
             "stick_area": null,
             "slip_area": null,

@@ -1,0 +1,62 @@
+//! How far front, area and force may be off: the fronts of a state, judged with functions of one degree more.
+//!
+//! The variational slope jump of the finer functions on the same cells does not vanish where the fronts are; the Newton
+//! step that would make it vanish is, to leading order, what they are off.
+
+use crate::adhesion::Branch;
+use crate::equilibrium::{Elements, Equilibrium};
+use crate::front::Fronts;
+use crate::ils::Solution;
+use crate::problem::Membrane;
+use crate::zone::{ModeSpace, Zone};
+use signorini_solve::SolveError;
+
+/// Errors of either sign cancel in area and force; of what could cancel so much is added.
+const CANCELLED: f64 = 0.1;
+
+/// What the discretisation leaves uncertain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ErrorEstimate {
+    /// Root mean square of the distance between the fronts and the exact ones.
+    pub front: f64,
+    /// Of the area of contact.
+    pub area: f64,
+    /// Of the force of the floor on the membrane.
+    pub force: f64,
+}
+
+impl ErrorEstimate {
+    /// Estimates the errors of a solution, at the price of one solve; none without contact, or where the cells have no
+    /// functions of a higher degree.
+    ///
+    /// # Errors
+    /// Equations that cannot be solved.
+    pub fn of<const D: usize, Z: Zone<D>>(solution: &Solution<D, Z>) -> Result<Option<Self>, SolveError> {
+        let (Some(coarse), Some(scales)) = (&solution.equilibrium, &solution.scales) else { return Ok(None) };
+        let zone = &solution.zone;
+        let Some(cells) = coarse.membrane.cells.raised().filter(|_| !zone.is_empty()) else { return Ok(None) };
+        let membrane = Membrane { cells, ..coarse.membrane.clone() };
+        let fine = Equilibrium::solve(&membrane, zone, &mut Elements::new(&membrane))?;
+        let adhesion = membrane.adhesion.as_ref();
+        let fronts = Fronts::new(&fine, adhesion);
+        let step = match adhesion {
+            Some(_) => fronts.linearise(zone, ModeSpace::Fine, scales)?.step(Branch::Nearest, scales),
+            None => fronts.newton_step(zone, scales)?,
+        };
+        let frames = fronts.frames(zone, step.space);
+        let (mut area, mut area_size, mut force, mut force_size) = (0.0, 0.0, 0.0, 0.0);
+        for (i, (p, frame)) in fine.quadrature.front.iter().zip(&frames).enumerate() {
+            let w: f64 = frame.modes.iter().map(|(k, v)| v * step.coefficients[*k]).sum();
+            // The force is that of the pressure within, less what adhesion pulls along the front.
+            let curvature = frame.curvature + membrane.measure.curvature(&p.x, p.normal[0]);
+            let pull = fronts.tension[i] * fronts.adhesive_slope[i] * curvature;
+            let rate = fronts.pressure[i] - pull;
+            area += p.weight * w;
+            area_size += p.weight * w.abs();
+            force += p.weight * w * rate;
+            force_size += p.weight * (w * rate).abs();
+        }
+        let front = step.length.max(4.0 * f64::EPSILON * scales.length);
+        Ok(Some(Self { front, area: area.abs() + CANCELLED * area_size, force: force.abs() + CANCELLED * force_size }))
+    }
+}

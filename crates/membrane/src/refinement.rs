@@ -1,0 +1,147 @@
+//! Cells divided where the fronts need it: where they curve within a cell or come near each other.
+
+use crate::adhesion::Branch;
+use crate::domain::DomainOnCells;
+use crate::equilibrium::{Elements, Equilibrium};
+use crate::front::Fronts;
+use crate::ils::{self, Reason, Solution, Start};
+use crate::problem::Membrane;
+use crate::scales::Scales;
+use crate::zone::Zone;
+use signorini_fem::Grid;
+use signorini_geometry::Aabb;
+use signorini_solve::Progress;
+use std::sync::Arc;
+
+/// A length of the fronts is resolved by so many cells.
+const RESOLVED: f64 = 2.0;
+/// Fronts that have to move less than this part of an undivided cell are near.
+const NEAR: f64 = 0.5;
+/// Solves on new cells within one increment.
+const MOST_ROUNDS: usize = 6;
+
+/// Where cells are divided.
+#[derive(Clone)]
+pub struct Refinement<const D: usize> {
+    /// How often cells at fronts are divided, whatever these look like.
+    pub fronts: usize,
+    /// How often they are divided at most.
+    pub most: usize,
+    /// Whether a cell is divided wherever the fronts are, from its box and how often it was divided.
+    pub always: Arc<dyn Fn(&Aabb<D>, usize) -> bool + Send + Sync>,
+}
+
+impl<const D: usize> Default for Refinement<D> {
+    fn default() -> Self {
+        Self { fronts: 0, most: 0, always: Arc::new(|_, _| false) }
+    }
+}
+
+impl<const D: usize> Refinement<D> {
+    /// How often the cells at the fronts of a zone are to be divided.
+    fn levels<Z: Zone<D>>(&self, membrane: &Membrane<D>, zone: &Z) -> usize {
+        let Some(coarse) = membrane.cells.divisible().filter(|_| D == 2 && self.most > 0 && !zone.is_empty()) else {
+            return 0;
+        };
+        let cells = RESOLVED * coarse.h() / zone.least_feature();
+        let wanted = cells.log2().ceil().clamp(0.0, self.most as f64) as usize;
+        wanted.max(self.fronts).min(self.most)
+    }
+
+    /// The membrane on cells divided near the fronts of a zone.
+    fn divided<Z: Zone<D>>(&self, membrane: &Membrane<D>, zone: &Z, levels: usize) -> Option<Membrane<D>> {
+        let coarse = membrane.cells.divisible()?;
+        let cells = zone.divided(coarse, levels, &*self.always)?;
+        let grid = Grid::new(*coarse.bounds(), coarse.cells().map(|n| n << levels), coarse.degree());
+        let domain = DomainOnCells::new(membrane.domain.domain.clone(), &*cells);
+        Some(Membrane { cells, grid, domain, ..membrane.clone() })
+    }
+
+    /// Solves an increment, on cells divided as often as `levels` says at first, and more often where the fronts need
+    /// it; `levels` is then what they need.
+    pub fn solve<Z: Zone<D>>(
+        &self,
+        membrane: &Membrane<D>,
+        levels: &mut usize,
+        start: Start<Z>,
+        at: (usize, f64),
+        progress: &mut dyn Progress,
+    ) -> Solution<D, Z> {
+        let mut used = 0;
+        let divided = match &start {
+            Start::Zone(zone, scales, _) if *levels > 0 && !zone.is_empty() && is_near(membrane, zone, scales) => {
+                used = *levels;
+                self.divided(membrane, zone, used)
+            }
+            _ => None,
+        };
+        let whole = divided.as_ref().unwrap_or(membrane);
+        let start = match start {
+            Start::Zone(zone, scales, branch) => Start::Zone(zone, scales.on(whole), branch),
+            other => other,
+        };
+        let branch = match &start {
+            Start::Zone(_, _, branch) | Start::Asked(_, branch) => *branch,
+            Start::Free => Branch::Stable,
+        };
+        let mut best = ils::solve(whole, &mut Elements::new(whole), start, at, progress);
+        for _ in 0..MOST_ROUNDS {
+            let (Some(scales), false) = (best.scales, best.zone.is_empty()) else { break };
+            let wanted = match (best.reason.clone(), best.unresolved) {
+                (Reason::Interrupted | Reason::NoSuchState | Reason::LinearSolver(_), _) => break,
+                (Reason::IterationLimit, _) => (used + 1).max(self.levels(membrane, &best.zone)),
+                (_, Some(_)) => self.most,
+                _ => self.levels(membrane, &best.zone),
+            };
+            let wanted = wanted.min(self.most);
+            if wanted < used || (wanted == used && !strayed(&best)) {
+                *levels = wanted;
+                return best;
+            }
+            if best.reason == Reason::IterationLimit && wanted == used {
+                break;
+            }
+            let Some(finer) = self.divided(membrane, &best.zone, wanted) else { break };
+            used = wanted;
+            let start = Start::Zone(best.zone.clone(), scales.on(&finer), branch);
+            let mut next = ils::solve(&finer, &mut Elements::new(&finer), start, at, progress);
+            next.iterations += best.iterations;
+            next.jumped |= best.jumped;
+            if best.reason.converged() && !next.reason.converged() {
+                // What was found on coarser cells is an answer all the same.
+                best.iterations = next.iterations;
+                best.unrefined = true;
+                break;
+            }
+            let mut residuals = std::mem::take(&mut best.residuals);
+            residuals.append(&mut next.residuals);
+            next.residuals = residuals;
+            best = next;
+        }
+        *levels = used;
+        best
+    }
+}
+
+/// Whether the fronts have not so far to go that the way is cheaper on undivided cells.
+fn is_near<const D: usize, Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z, scales: &Scales) -> bool {
+    let zone = zone.on_grid(&membrane.grid);
+    let state = Equilibrium::solve(membrane, &zone, &mut Elements::new(membrane));
+    state.is_ok_and(|state| Fronts::new(&state, membrane.adhesion.as_ref()).farthest(scales) < NEAR * membrane.grid.h())
+}
+
+/// Whether fronts have left the cells that were divided for them.
+fn strayed<const D: usize, Z: Zone<D>>(solution: &Solution<D, Z>) -> bool {
+    let Some(equilibrium) = &solution.equilibrium else { return false };
+    let membrane = &equilibrium.membrane;
+    let fine = 1.5 * membrane.grid.h();
+    membrane.cells.divisible().is_some()
+        && equilibrium.quadrature.front.iter().any(|p| membrane.cells.size(p.cell) > fine)
+}
+
+impl Scales {
+    /// The same scales for other cells.
+    pub fn on<const D: usize>(self, membrane: &Membrane<D>) -> Self {
+        Self { h: membrane.grid.h(), ..self }
+    }
+}

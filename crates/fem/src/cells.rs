@@ -98,6 +98,12 @@ pub trait Cells<const D: usize>: Send + Sync {
     fn kinds(&self) -> Vec<usize>;
     /// All pairs of neighbours.
     fn neighbours(&self) -> Vec<Neighbours>;
+    /// Quadrature of what the polynomials of two neighbours are compared over, each point with the number of its cell in
+    /// the pair: both cells, or as much of a larger one as reaches as far as the smaller.
+    fn compared_over(&self, pair: &Neighbours) -> Vec<(usize, QuadraturePoint<D>)> {
+        let of = |i: usize| self.rule(pair.cells[i]).into_iter().map(move |p| (i, p));
+        of(0).chain(of(1)).collect()
+    }
     /// Sides on the boundary of a domain that the cells fit.
     fn boundary_sides(&self) -> Vec<BoundarySide>;
     /// A point of a side, for `t` from 0 to 1.

@@ -25,24 +25,22 @@ pub fn ghost_penalty<const D: usize>(cells: &dyn Cells<D>, pair: &Neighbours) ->
             }
         }
     };
-    for (here, &cell) in pair.cells.iter().enumerate() {
-        for p in cells.rule(cell) {
-            for (extension, v) in extensions.iter_mut().zip(&mut values) {
-                (extension.values)(&p.x, v);
+    for (here, p) in cells.compared_over(pair) {
+        for (extension, v) in extensions.iter_mut().zip(&mut values) {
+            (extension.values)(&p.x, v);
+        }
+        jump.clear();
+        jump.extend_from_slice(&values[0]);
+        jump.extend(values[1].iter().map(|v| -v));
+        add(&jump, p.weight);
+        if !extensions[here].is_own {
+            cells.tabulate(pair.cells[here], &p.x, &mut own);
+            jump.fill(0.0);
+            let first = here * values[0].len();
+            for (j, (u, e)) in jump[first..].iter_mut().zip(own.value.iter().zip(&values[here])) {
+                *j = u - e;
             }
-            jump.clear();
-            jump.extend_from_slice(&values[0]);
-            jump.extend(values[1].iter().map(|v| -v));
             add(&jump, p.weight);
-            if !extensions[here].is_own {
-                cells.tabulate(cell, &p.x, &mut own);
-                jump.fill(0.0);
-                let first = here * values[0].len();
-                for (j, (u, e)) in jump[first..].iter_mut().zip(own.value.iter().zip(&values[here])) {
-                    *j = u - e;
-                }
-                add(&jump, p.weight);
-            }
         }
     }
     let n = jump.len();

@@ -1,6 +1,6 @@
 //! Cuts that leave only slivers: the system stays positive definite, whatever the degree.
 
-use signorini_fem::Grid;
+use signorini_fem::{Cells, Grid, RefinedGrid};
 use signorini_geometry::{Aabb, Line, Point, Vector};
 use signorini_membrane::domain::{Domain, DomainOnCells, ImplicitDomain};
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
@@ -12,16 +12,20 @@ use std::sync::Arc;
 
 /// A half plane cut by a straight edge; the other sides are free, so the solution is the height of the
 /// support.
-fn error(degree: usize, normal: Vector<2>, offset: f64) -> f64 {
+fn error(degree: usize, normal: Vector<2>, offset: f64, divided: bool) -> f64 {
     let bounds = Aabb::new(Point::<2>::new(0.0, 0.0), Point::<2>::new(1.0, 1.0));
     let grid = Grid::new(bounds, [8, 8], degree);
     let edge = Line { point: Point::<2>::new(0.5, 0.5) + offset * normal, normal };
     let domain: Arc<dyn Domain<2>> = Arc::new(ImplicitDomain(edge));
+    // Divided towards a point near the edge, so that it cuts cells of four sizes.
+    let near = |b: &Aabb<2>, level: usize| level < 3 && (b.center() - Point::<2>::new(0.43, 0.53)).norm() < b.radius();
+    let cells: Arc<dyn Cells<2>> =
+        if divided { Arc::new(RefinedGrid::new(&grid, near)) } else { Arc::new(grid.clone()) };
     let exact = 0.3;
     let displacement = Arc::new(Constant(exact));
     let membrane = Membrane {
-        domain: DomainOnCells::new(domain, &grid),
-        cells: Arc::new(grid.clone()),
+        domain: DomainOnCells::new(domain, &*cells),
+        cells,
         grid: grid.clone(),
         measure: Measure::Plain,
         tension: Arc::new(Constant(1.0)),
@@ -50,8 +54,13 @@ fn straight_cuts_of_every_thickness() {
     for degree in 1..=6 {
         for normal in [Vector::<2>::new(1.0, 0.0), Vector::<2>::new(0.0, -1.0), diagonal, slanted] {
             for offset in [1e-12, 1e-8, 1e-4, 1e-2, 0.03, 0.0625, 0.09, 0.12, 0.125 - 1e-9, -1e-10] {
-                let worst = error(degree, normal, offset);
-                assert!(worst < 1e-7, "degree {degree}, normal {normal:?}, offset {offset:e}: {worst:e}");
+                for divided in [false, true] {
+                    let worst = error(degree, normal, offset, divided);
+                    assert!(
+                        worst < 1e-7,
+                        "degree {degree}, normal {normal:?}, offset {offset:e}, {divided}: {worst:e}"
+                    );
+                }
             }
         }
     }

@@ -12,9 +12,9 @@ use signorini::run::{Ending, RunError, run};
 use signorini::scene::{self, Scene, SceneError};
 use std::path::{Path, PathBuf};
 
-const DONE: u8 = 0;
+pub const DONE: u8 = 0;
 const WRONG_INPUT: u8 = 1;
-const NOT_CONVERGED: u8 = 2;
+pub const NOT_CONVERGED: u8 = 2;
 const INTERRUPTED: u8 = 130;
 
 pub fn run_file(case: &Path, output: Option<PathBuf>, set: &[String], json: bool) -> u8 {
@@ -142,7 +142,7 @@ pub fn check(case: &Path, set: &[String], json: bool) -> u8 {
 }
 
 /// An error of the results folder, with what to do.
-fn output_error(error: &OutputError) -> CaseError {
+pub fn output_error(error: &OutputError) -> CaseError {
     let help = match error {
         OutputError::Foreign { .. } => "choose another folder with -o DIR, or empty this one",
         _ => "is there space, and may this program write there? choose another folder with -o DIR",
@@ -395,12 +395,12 @@ fn read(case: &Path) -> Result<(String, String), CaseError> {
     }
 }
 
-fn unknown_example(name: &str) -> CaseError {
+pub fn unknown_example(name: &str) -> CaseError {
     let names: Vec<&str> = all().map(|e| e.name).collect();
     CaseError::new(format!("the gallery has no case `{name}`")).help(signorini::case::suggestion(name, &names))
 }
 
-fn report(error: &CaseError, json: bool) -> u8 {
+pub fn report(error: &CaseError, json: bool) -> u8 {
     if json {
         let place = error.place.as_ref().map(|p| {
             let (line, column) = p.line_and_column();

@@ -1,9 +1,10 @@
 //! The `signorini` command.
 
 mod bar;
+mod begin;
 mod commands;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -15,6 +16,8 @@ const EXAMPLES: &str = "Examples:
   signorini closest queries.json -o answers.json      closest points of pairs of shapes
   signorini fit blister.toml                          adhesion from measurements
   signorini check case.toml                           is the case right, and how large is it?
+  signorini new flat_disc                             a case of your own to begin with
+  signorini explain iteration_limit                   what a word means, and what to do
 
 Exit status: 0 done, 1 the input is wrong, 2 not converged (results so far are on disk), 3 a fault of ours,
 130 interrupted.";
@@ -80,6 +83,41 @@ enum Command {
         #[arg(long)]
         local_minima: bool,
     },
+    /// Begin a case: a folder with a template that explains itself
+    #[command(
+        after_help = "Examples:\n  signorini new flat_disc\n  signorini new cosine_disc my_case\n\nThe templates are the cases of the gallery: signorini gallery lists them."
+    )]
+    New {
+        /// A case of the gallery
+        template: String,
+        /// The folder to make (default: the template's name)
+        folder: Option<PathBuf>,
+    },
+    /// Explain a key of the case file, a reason, an event, a figure of the results
+    #[command(
+        after_help = "Examples:\n  signorini explain membrane.tension\n  signorini explain iteration_limit\n  signorini explain expressions"
+    )]
+    Explain {
+        /// A key or the end of one, or a word; without it, all words
+        word: Option<String>,
+    },
+    /// Print the JSON Schema of case files, for editors
+    #[command(
+        after_help = "Example:\n  signorini schema > case.schema.json\n\nand as the first line of a case\n  #:schema ./case.schema.json"
+    )]
+    Schema {
+        /// As a table for people
+        #[arg(long)]
+        markdown: bool,
+    },
+    /// Run problems with known answers, here and now
+    #[command(after_help = "Example:\n  signorini verify")]
+    Verify,
+    /// Print the completions of a shell
+    #[command(
+        after_help = "Example:\n  signorini completions bash > ~/.local/share/bash-completion/completions/signorini"
+    )]
+    Completions { shell: clap_complete::Shell },
     /// List the gallery, or run one of its cases
     #[command(
         after_help = "Examples:\n  signorini gallery\n  signorini gallery run flat_disc\n  signorini gallery show flat_disc > case.toml"
@@ -136,6 +174,14 @@ fn main() -> ExitCode {
         Command::Check { case, set } => commands::check(&case, &set, json),
         Command::Fit { case, options } => commands::fit_file(&case, options.output, &options.set, json),
         Command::Closest { queries, output, local_minima } => commands::closest(&queries, &output, local_minima, json),
+        Command::New { template, folder } => begin::new(&template, folder, json),
+        Command::Explain { word } => begin::explain(word.as_deref(), json),
+        Command::Schema { markdown } => begin::schema(markdown),
+        Command::Verify => begin::verify(json),
+        Command::Completions { shell } => {
+            clap_complete::generate(shell, &mut Arguments::command(), "signorini", &mut std::io::stdout());
+            0
+        }
         Command::Gallery { action: None } => commands::gallery(json),
         Command::Gallery { action: Some(GalleryAction::Run { name, options }) } => {
             commands::run_example(&name, options.output, &options.set, json)

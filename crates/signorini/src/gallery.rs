@@ -40,7 +40,11 @@ pub const GALLERY: [Example; 20] = [
 
 /// A file that a case of the gallery names.
 pub fn asset(name: &str) -> Option<&'static str> {
-    (name == "die.json").then_some(include_str!("../../../gallery/die/die.json"))
+    match name {
+        "die.json" => Some(include_str!("../../../gallery/die/die.json")),
+        "measured.csv" => Some(include_str!("../../../gallery/blister/measured.csv")),
+        _ => None,
+    }
 }
 
 /// Scenes: bodies that move, and their closest pairs.

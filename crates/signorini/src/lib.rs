@@ -1,6 +1,7 @@
 //! Contact mechanics that puts geometry first: the statement of a problem, its run, its results.
 pub mod case;
 pub mod exact;
+pub mod explain;
 pub mod expression;
 pub mod fit;
 pub mod gallery;
@@ -12,3 +13,5 @@ pub mod queries;
 pub mod run;
 pub mod scene;
 pub mod snapshot;
+pub mod template;
+pub mod verify;

@@ -218,6 +218,10 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
                 at.1
             ));
         }
+        if solution.unrefined {
+            warnings
+                .push(format!("no state was found on smaller cells at t = {}: the one on larger cells stands", at.1));
+        }
         if let Some(step) = solution.settled_within {
             warnings.push(format!(
                 "the fronts settled to {step:.0e} of a cell at t = {}, {}",

@@ -10,6 +10,7 @@ mod floors;
 mod gallery;
 mod invariance;
 mod meshes;
+mod refinement;
 mod solids;
 
 use serde_json::Value;

@@ -94,7 +94,7 @@ fn mistakes_are_told() {
         ("group = \"film\"", "group = \"foil\"", "foil", "triangles"),
         ("tension = 1.0", "tension = 1.0\ndegree = 3", "degree 3", "3"),
         ("tension = 1.0", "tension = 1.0\ndegree = 7", "degree 7", "7"),
-        (film, "domain.disc = { radius = 1 }\nmesh.gmsh", "is the domain", "radius"),
+        (film, "domain.disc = { radius = 1 }\nmesh.gmsh", "is the domain", "domain"),
         ("triangles_1_6.msh", "none.msh", "cannot be read", "none.msh"),
         ("\"plane\"", "\"line\"", "plane", "triangles"),
         (

@@ -1,0 +1,122 @@
+//! What helps to begin: templates, explanations, the schema, problems with known answers.
+
+use crate::commands::{DONE, NOT_CONVERGED, report, unknown_example};
+use serde_json::{Value, json};
+use signorini::case::{CaseError, schema};
+use signorini::explain::{WORDS, explain as explanation};
+use signorini::gallery::{asset, find};
+use signorini::template::{SCHEMA_FILE, annotated};
+use signorini::verify::{PROBLEMS, verify as verified};
+use std::path::{Path, PathBuf};
+
+/// Makes a folder with a case to begin with.
+pub fn new(template: &str, folder: Option<PathBuf>, json: bool) -> u8 {
+    let Some(example) = find(template) else { return report(&unknown_example(template), json) };
+    let folder = folder.unwrap_or_else(|| PathBuf::from(template));
+    let occupied = std::fs::read_dir(&folder).is_ok_and(|mut entries| entries.next().is_some());
+    if occupied || folder.is_file() {
+        let error = CaseError::new(format!("`{}` is there already", folder.display()))
+            .help(format!("signorini new {template} another_folder"));
+        return report(&error, json);
+    }
+    let case = annotated(example);
+    let mut files = vec![("case.toml".to_string(), case.clone()), (SCHEMA_FILE.to_string(), schema_text())];
+    let named = case.lines().filter(|l| !l.starts_with('#')).flat_map(|l| l.split('"').skip(1).step_by(2));
+    files.extend(named.filter_map(|name| Some((name.to_string(), asset(name)?.to_string()))));
+    if let Err(error) = write_all(&folder, &files) {
+        let error = CaseError::new(format!("cannot write `{}`: {error}", folder.display()))
+            .help("may this program write there?");
+        return report(&error, json);
+    }
+    let path = folder.join("case.toml");
+    if json {
+        println!("{}", json!({"case": path.display().to_string()}));
+    } else {
+        println!("{}\n\nRun it with  signorini run {}", path.display(), path.display());
+    }
+    DONE
+}
+
+fn write_all(folder: &Path, files: &[(String, String)]) -> std::io::Result<()> {
+    std::fs::create_dir_all(folder)?;
+    files.iter().try_for_each(|(name, text)| std::fs::write(folder.join(name), text))
+}
+
+/// Explains a key or a word, or lists all words.
+pub fn explain(word: Option<&str>, json: bool) -> u8 {
+    let Some(word) = word else {
+        for w in &WORDS {
+            println!("{:22} {}", w.word, w.kind);
+        }
+        println!(
+            "\nAnd every key of the case file: signorini explain contacts.method  (all of them: signorini schema --markdown)"
+        );
+        return DONE;
+    };
+    match explanation(word) {
+        Err(error) => report(&error, json),
+        Ok(text) => {
+            if json {
+                println!("{}", json!({"explanation": text}));
+            } else {
+                print!("{text}");
+            }
+            DONE
+        }
+    }
+}
+
+fn schema_text() -> String {
+    serde_json::to_string_pretty(&schema::schema()).unwrap_or_default() + "\n"
+}
+
+pub fn schema(markdown: bool) -> u8 {
+    print!("{}", if markdown { schema::markdown() } else { schema_text() });
+    DONE
+}
+
+/// Runs the problems with known answers, and prints them as a table.
+pub fn verify(json: bool) -> u8 {
+    let mut wrong = 0;
+    let mut list: Vec<Value> = Vec::new();
+    if !json {
+        println!("{:58} {:>14} {:>14} {:>9} {:>9}", "problem", "found", "exact", "error", "allowed");
+    }
+    for problem in &PROBLEMS {
+        let folder = std::env::temp_dir().join(format!("signorini-verify-{}", std::process::id()));
+        let result = verified(problem, &folder);
+        // What cannot be removed stays in the folder for temporary files.
+        let _ = std::fs::remove_dir_all(&folder);
+        match result {
+            Ok(v) => {
+                wrong += u32::from(!v.holds());
+                list.push(json!({
+                    "problem": v.name, "found": v.found, "exact": v.exact, "error": v.error, "allowed": v.allowed,
+                    "source": v.source, "holds": v.holds(),
+                }));
+                if !json {
+                    let mark = if v.holds() { "" } else { "  WRONG" };
+                    println!(
+                        "{:58} {:>14.8} {:>14.8} {:>9.1e} {:>9.1e}{mark}",
+                        v.name, v.found, v.exact, v.error, v.allowed
+                    );
+                }
+            }
+            Err(why) => {
+                wrong += 1;
+                list.push(json!({"problem": problem.name, "holds": false, "error": why}));
+                if !json {
+                    println!("{:58} {why}", problem.name);
+                }
+            }
+        }
+    }
+    if json {
+        println!("{}", Value::from(list));
+    } else if wrong == 0 {
+        println!("\nAll {} hold.", PROBLEMS.len());
+    } else {
+        println!("\n{wrong} of {} do not hold.", PROBLEMS.len());
+    }
+    if wrong == 0 { DONE } else { NOT_CONVERGED }
+}

@@ -1,7 +1,7 @@
 //! Closed oriented curves of the plane, as periodic splines.
 
 use crate::rule::gauss_legendre;
-use crate::spline::PeriodicBasis;
+use crate::spline::{MAX_DEGREE, PeriodicBasis};
 use crate::{Point, Vector, polygon};
 
 /// Samples per knot interval, from which searches start.
@@ -34,9 +34,12 @@ impl ClosedCurve {
     pub fn through(points: &[Point<2>], degree: usize) -> Self {
         let basis = PeriodicBasis { degree, count: points.len() };
         let values: Vec<[f64; 2]> = points.iter().map(|p| [p[0], p[1]]).collect();
-        let coefficients = basis.interpolate(&values);
+        Self::with(basis, basis.interpolate(&values))
+    }
+
+    fn with(basis: PeriodicBasis, coefficients: Vec<[f64; 2]>) -> Self {
+        let n = coefficients.len() * SAMPLES_PER_KNOT;
         let mut curve = Self { basis, coefficients, samples: Vec::new() };
-        let n = points.len() * SAMPLES_PER_KNOT;
         curve.samples = (0..n).map(|i| curve.position(i as f64 / n as f64)).collect();
         curve
     }
@@ -106,6 +109,21 @@ impl ClosedCurve {
     /// Parameter of a sample.
     pub fn sample_parameter(&self, i: usize) -> f64 {
         i as f64 / self.samples.len() as f64
+    }
+
+    /// The coefficients of the splines, from which [`ClosedCurve::from_coefficients`] makes the same curve again.
+    pub fn coefficients(&self) -> &[[f64; 2]] {
+        &self.coefficients
+    }
+
+    /// The curve of given coefficients; none of too few, of a degree that is not supported, or that are not finite.
+    pub fn from_coefficients(degree: usize, coefficients: Vec<[f64; 2]>) -> Option<Self> {
+        let finite = coefficients.iter().flatten().all(|v| v.is_finite());
+        if coefficients.len() < 3 || !(1..=MAX_DEGREE).contains(&degree) || !finite {
+            return None;
+        }
+        let basis = PeriodicBasis { degree, count: coefficients.len() };
+        Some(Self::with(basis, coefficients))
     }
 
     /// Number of knots.

@@ -1,6 +1,7 @@
 //! Contact zones in one dimension: intervals.
 
 use crate::zone::{Advance, Division, FrontFrame, FrontsInCell, ModeSpace, Zone, contact, free};
+use serde_json::{Value, json};
 use signorini_fem::cut::RegionId;
 use signorini_fem::{Cells, Grid};
 use signorini_geometry::{Aabb, ImplicitShape, Point, Vector};
@@ -182,6 +183,12 @@ impl Zone<1> for LineZone {
     }
     fn region_at(&self, x: &Point<1>) -> RegionId {
         self.region_by(|front| self.end(front).value(x) < 0.0)
+    }
+    fn to_json(&self) -> Value {
+        json!(self.intervals)
+    }
+    fn from_json(grid: &Grid<1>, value: &Value) -> Option<Self> {
+        Some(Self::new(grid, serde_json::from_value(value.clone()).ok()?))
     }
     fn least_feature(&self) -> f64 {
         f64::INFINITY

@@ -2,6 +2,7 @@
 
 use crate::raster::Raster;
 use crate::zone::{Advance, Division, FrontFrame, FrontsInCell, ModeSpace, Zone, contact, free};
+use serde_json::{Value, json};
 use signorini_fem::cut::RegionId;
 use signorini_fem::{Cells, Grid, RefinedGrid};
 use signorini_geometry::{Aabb, ClosedCurve, CurvePoint, ImplicitShape, PeriodicBasis, Point, Vector, polygon};
@@ -447,6 +448,24 @@ impl Zone<2> for PlaneZone {
         });
         let far = self.around[cell].iter().map(|&c| c as usize).filter(|c| !near.contains(c));
         self.region_within(far.chain(close.collect::<Vec<_>>()))
+    }
+    fn to_json(&self) -> Value {
+        let curves = self.curves.iter().map(|c| json!({"degree": c.degree(), "coefficients": c.coefficients()}));
+        json!({"cells": self.grid.cells(), "degree": self.grid.degree(), "curves": curves.collect::<Vec<_>>()})
+    }
+    fn from_json(grid: &Grid<2>, value: &Value) -> Option<Self> {
+        let cells: [usize; 2] = serde_json::from_value(value["cells"].clone()).ok()?;
+        let degree = value["degree"].as_u64().filter(|d| (1..=8).contains(d))? as usize;
+        let finer = cells[0].checked_div(grid.cells()[0]).filter(|n| (1..=256).contains(n))?;
+        if cells != grid.cells().map(|n| n * finer) {
+            return None;
+        }
+        let curve = |v: &Value| {
+            let coefficients: Vec<[f64; 2]> = serde_json::from_value(v["coefficients"].clone()).ok()?;
+            ClosedCurve::from_coefficients(v["degree"].as_u64()? as usize, coefficients)
+        };
+        let curves = value["curves"].as_array()?.iter().map(curve).collect::<Option<Vec<_>>>()?;
+        Some(Self::new(&Grid::new(*grid.bounds(), cells, degree), curves))
     }
     fn least_feature(&self) -> f64 {
         let radius = 1.0 / self.sharpest().max(f64::MIN_POSITIVE);

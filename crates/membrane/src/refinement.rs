@@ -107,7 +107,7 @@ impl<const D: usize> Refinement<D> {
             let mut next = ils::solve(&finer, &mut Elements::new(&finer), start, at, progress);
             next.iterations += best.iterations;
             next.jumped |= best.jumped;
-            if best.reason.converged() && !next.reason.converged() {
+            if next.reason != Reason::Interrupted && best.reason.converged() && !next.reason.converged() {
                 // What was found on coarser cells is an answer all the same.
                 best.iterations = next.iterations;
                 best.unrefined = true;

@@ -46,6 +46,8 @@ pub struct Report<const D: usize> {
     pub energy: f64,
     /// `∫ u`, the volume between the membrane and its plane.
     pub volume: f64,
+    /// The steepest slope `|∇u|` of the membrane.
+    pub max_slope: f64,
     /// Sum of all forces, relative to the largest.
     pub equilibrium_residual: f64,
     pub contact: ContactReport<D>,
@@ -60,6 +62,7 @@ impl<const D: usize> Report<D> {
         let count = zone.counts().0;
         let mut components = vec![Component { area: 0.0, force: 0.0, centroid: Point::zeros(), holes: 0 }; count];
         let (mut load_force, mut energy, mut volume, mut adhesion_energy) = (0.0, 0.0, 0.0, 0.0);
+        let mut max_slope = 0.0f64;
         equilibrium.for_each_point(|cell, region, x, w| {
             let f = membrane.load.value(x);
             load_force += w * f;
@@ -79,6 +82,7 @@ impl<const D: usize> Report<D> {
                 return;
             };
             volume += w * u;
+            max_slope = max_slope.max(gradient.norm());
             energy += w * (0.5 * membrane.tension.value(x) * gradient.norm_squared() - f * u);
         });
         let (mut boundary_length, mut line_force) = (0.0, 0.0);
@@ -116,6 +120,7 @@ impl<const D: usize> Report<D> {
             load_force,
             energy,
             volume,
+            max_slope,
             equilibrium_residual: (force + supports + load_force).abs() / largest,
             contact: ContactReport {
                 force,

@@ -1,5 +1,6 @@
 //! What the method needs to know of a contact zone, in one dimension or two.
 
+use serde_json::Value;
 use signorini_fem::cut::RegionId;
 use signorini_fem::{Cells, Grid};
 use signorini_geometry::{Aabb, ImplicitShape, Point};
@@ -141,6 +142,10 @@ pub trait Zone<const D: usize>: Division<D> + Clone + Send {
         levels: usize,
         also: &dyn Fn(&Aabb<D>, usize) -> bool,
     ) -> Option<Arc<dyn Cells<D>>>;
+    /// The zone as numbers, from which [`Zone::from_json`] makes the same one again.
+    fn to_json(&self) -> Value;
+    /// The zone of such numbers, on a grid or one as much finer as it was; none where they make no zone.
+    fn from_json(grid: &Grid<D>, value: &Value) -> Option<Self>;
     /// Points along every front, for pictures and files; one in one dimension.
     fn outlines(&self) -> Vec<Vec<Point<D>>>;
 }

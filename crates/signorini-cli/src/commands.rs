@@ -8,7 +8,7 @@ use signorini::gallery::{all, find};
 use signorini::output::OutputError;
 use signorini::plan::{self, Plan};
 use signorini::queries::{Query, answer_file};
-use signorini::run::{Ending, RunError, run};
+use signorini::run::{Ending, RunError, resume, run};
 use signorini::scene::{self, Scene, SceneError};
 use std::path::{Path, PathBuf};
 
@@ -17,12 +17,12 @@ const WRONG_INPUT: u8 = 1;
 pub const NOT_CONVERGED: u8 = 2;
 const INTERRUPTED: u8 = 130;
 
-pub fn run_file(case: &Path, output: Option<PathBuf>, set: &[String], json: bool) -> u8 {
+pub fn run_file(case: &Path, output: Option<PathBuf>, set: &[String], resumed: bool, json: bool) -> u8 {
     let (name, text) = match read(case) {
         Ok(read) => read,
         Err(error) => return report(&error, json),
     };
-    execute(&name, &text, &output.unwrap_or_else(|| default_folder(case)), set, json)
+    execute(&name, &text, &output.unwrap_or_else(|| default_folder(case)), set, resumed, json)
 }
 
 pub fn fit_file(case: &Path, output: Option<PathBuf>, set: &[String], json: bool) -> u8 {
@@ -69,7 +69,7 @@ pub fn run_example(name: &str, output: Option<PathBuf>, set: &[String], json: bo
     match find(name) {
         Some(example) => {
             let folder = output.unwrap_or_else(|| PathBuf::from(name));
-            execute(&format!("{name}.toml"), example.case, &folder, set, json)
+            execute(&format!("{name}.toml"), example.case, &folder, set, false, json)
         }
         None => report(&unknown_example(name), json),
     }
@@ -260,7 +260,7 @@ fn sizes<const D: usize>(plan: &plan::MembranePlan<D>) -> Result<Value, CaseErro
     }))
 }
 
-fn execute(name: &str, text: &str, folder: &Path, set: &[String], json: bool) -> u8 {
+fn execute(name: &str, text: &str, folder: &Path, set: &[String], resumed: bool, json: bool) -> u8 {
     if scene::is_scene(text) {
         return execute_scene(name, text, folder, set, json);
     }
@@ -269,7 +269,7 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], json: bool) ->
         Err(error) => return report(&error, json),
     };
     let mut bar = Bar::new(json);
-    let result = run(&document, folder, &mut bar);
+    let result = if resumed { resume(&document, folder, &mut bar) } else { run(&document, folder, &mut bar) };
     bar.finish();
     match result {
         Err(RunError::Case(error)) => report(&error, json),

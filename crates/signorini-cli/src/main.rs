@@ -47,12 +47,17 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     /// Run a case
-    #[command(after_help = "Example:\n  signorini run gallery/cosine_disc/case.toml -o out --set steps.0.to=0.3")]
+    #[command(
+        after_help = "Examples:\n  signorini run gallery/cosine_disc/case.toml -o out --set steps.0.to=0.3\n  signorini run gallery/cosine_disc/case.toml -o out --resume"
+    )]
     Run {
         /// The case file; - reads it from standard input
         case: PathBuf,
         #[command(flatten)]
         options: RunOptions,
+        /// Go on with a run that was interrupted or killed, to the same digits
+        #[arg(long)]
+        resume: bool,
     },
     /// Check a case without running it
     #[command(after_help = "Example:\n  signorini check case.toml --json")]
@@ -170,7 +175,7 @@ fn main() -> ExitCode {
     let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     let json = arguments.json;
     let result = std::panic::catch_unwind(|| match arguments.command {
-        Command::Run { case, options } => commands::run_file(&case, options.output, &options.set, json),
+        Command::Run { case, options, resume } => commands::run_file(&case, options.output, &options.set, resume, json),
         Command::Check { case, set } => commands::check(&case, &set, json),
         Command::Fit { case, options } => commands::fit_file(&case, options.output, &options.set, json),
         Command::Closest { queries, output, local_minima } => commands::closest(&queries, &output, local_minima, json),

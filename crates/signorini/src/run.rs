@@ -1,5 +1,6 @@
 //! From a plan to results: increments, files, the summary and the verdict.
 
+mod checkpoint;
 mod environment;
 pub(crate) mod events;
 mod increment;
@@ -11,6 +12,7 @@ use crate::output::film::Film;
 use crate::output::{Folder, OutputError, pictures, tables, vtk};
 use crate::plan::{Control, MembranePlan, MethodChoice, Plan, PlannedIncrement, plan};
 use crate::snapshot::{DisplayMesh, Snapshot};
+use checkpoint::Checkpoint;
 use events::{Between, Bounded, Event, Known, jump, locate, locate_jump};
 use increment::{Engine, Increment};
 use path::{Along, Follower};
@@ -88,10 +90,25 @@ pub struct Outcome {
 
 /// Runs a case and writes its results into a folder, with the threads of rayon's current pool.
 pub fn run(document: &Document, folder: &Path, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
+    begin(document, folder, false, progress)
+}
+
+/// Goes on with a run of a membrane that was interrupted or killed, from its last increment; to the same digits.
+///
+/// # Errors
+/// Those of [`run`], and a folder without such a run, or with one of another case.
+pub fn resume(document: &Document, folder: &Path, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
+    begin(document, folder, true, progress)
+}
+
+fn begin(document: &Document, folder: &Path, resumed: bool, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
     let start = std::time::Instant::now();
     match plan(document)? {
-        Plan::Line(p) => Runner::<1, LineZone>::new(p, folder)?.run(start, progress),
-        Plan::Plane(p) => Runner::<2, PlaneZone>::new(p, folder)?.run(start, progress),
+        Plan::Line(p) => Runner::<1, LineZone>::new(p, folder, resumed)?.run(start, progress),
+        Plan::Plane(p) => Runner::<2, PlaneZone>::new(p, folder, resumed)?.run(start, progress),
+        _ if resumed => Err(CaseError::new("a run of solids cannot be resumed yet")
+            .help("run it from the beginning, without --resume")
+            .into()),
         Plan::PlaneSolids(p) => solid::run(*p, folder, start, progress),
         Plan::Solids(p) => solid::run(*p, folder, start, progress),
     }
@@ -108,6 +125,8 @@ struct Runner<const D: usize, Z> {
     events: Vec<Event>,
     path: Option<Follower<Z>>,
     film: Film<D>,
+    /// The state to go on from.
+    resumed: Option<(usize, Option<Known<Z>>)>,
 }
 
 /// Writes every iteration to the log on its way to the user's progress.
@@ -138,11 +157,14 @@ impl Progress for Logged<'_> {
 }
 
 impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
-    fn new(plan: MembranePlan<D>, folder: &Path) -> Result<Self, RunError> {
+    fn new(plan: MembranePlan<D>, folder: &Path, resumed: bool) -> Result<Self, RunError> {
         // Everything that can be checked is checked before the folder is touched.
         let first = &plan.increments[0];
         let time = if first.control == Control::Time { first.time } else { first.range[0] };
         plan.check_fields(&plan.at(time), time)?;
+        if resumed {
+            return Self::resume(plan, folder);
+        }
         let folder = Folder::create(folder)?;
         folder.write("case.toml", plan.document.text.as_bytes())?;
         let warnings = plan.warnings.clone();
@@ -157,7 +179,52 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             events: vec![],
             path: None,
             film: Film::default(),
+            resumed: None,
         })
+    }
+
+    /// A run that goes on where an earlier one ended.
+    fn resume(plan: MembranePlan<D>, path: &Path) -> Result<Self, RunError> {
+        let found = Checkpoint::<D, Z>::read(path, &plan.document.text, &plan.grid)
+            .map_err(|why| CaseError::new(why).help("run it from the beginning, without --resume"))?;
+        let mut engine = Engine::new(&plan);
+        engine.restore(found.engine);
+        let mut film = Film::default();
+        found.film.iter().for_each(|frame| film.add(frame));
+        Ok(Self {
+            engine,
+            plan,
+            folder: Folder::of_earlier_run(path),
+            steps: found.steps,
+            warnings: found.warnings,
+            frames: found.frames,
+            unknowns: found.unknowns,
+            events: found.events,
+            path: None,
+            film,
+            resumed: Some((found.next, found.known)),
+        })
+    }
+
+    /// Writes what a later run needs to go on.
+    fn checkpoint(
+        &self,
+        next: usize,
+        known: &Option<Known<Z>>,
+        frame: Option<&Snapshot<D>>,
+    ) -> Result<(), OutputError> {
+        let checkpoint = Checkpoint::<D, Z> {
+            next,
+            engine: self.engine.save(),
+            known: known.clone(),
+            steps: self.steps.clone(),
+            warnings: self.warnings.clone(),
+            frames: self.frames.clone(),
+            unknowns: self.unknowns,
+            events: self.events.clone(),
+            film: frame.cloned().into_iter().collect(),
+        };
+        checkpoint.write(&self.folder, &self.plan.document.text)
     }
 
     fn run(mut self, start: std::time::Instant, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
@@ -166,8 +233,8 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         let mut ending = Ending::Converged;
         let mut reason = "converged".to_string();
         let mut last: Option<Snapshot<D>> = None;
-        let mut known: Option<Known<Z>> = None;
-        for (index, planned) in increments.iter().enumerate() {
+        let (first, mut known) = self.resumed.take().unwrap_or((0, None));
+        for (index, planned) in increments.iter().enumerate().skip(first) {
             if self.path.as_ref().is_some_and(|p| p.done && p.step == planned.step) {
                 continue;
             }
@@ -176,6 +243,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             let mut logged = Logged { folder: &folder, inner: progress };
             let mut time = planned.time;
             let mut solves = 0;
+            let told = (self.events.len(), self.warnings.len());
             if planned.control != Control::Time {
                 match self.along(planned, known.as_ref(), &mut logged)? {
                     Along::State { zone, time: found, solves: taken } => {
@@ -234,9 +302,16 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                     increment.area()
                 ));
             }
+            if logged.interrupted() {
+                // It may have ended early; what it told is told anew when the run goes on.
+                (increment.converged, increment.reason) = (false, "interrupted".into());
+                self.forget(told);
+            }
             self.unknowns = self.unknowns.max(increment.unknowns);
             for warning in &increment.warnings {
-                if !self.warnings.contains(warning) {
+                // What is said of many increments is said once, of the first.
+                let kind = |w: &str| w.chars().take_while(|c| !c.is_ascii_digit()).collect::<String>();
+                if !self.warnings.iter().any(|w| kind(w) == kind(warning)) {
                     self.warnings.push(warning.clone());
                 }
             }
@@ -248,6 +323,12 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                 (planned.control, &before, &after, &membrane.adhesion)
             {
                 self.find_events(index, before, after, &mut logged);
+                if logged.interrupted() {
+                    self.forget(told);
+                    (ending, reason) = (Ending::Interrupted, "interrupted".into());
+                    last = snapshot.or(last);
+                    break;
+                }
             }
             known = after;
             if let Some(snapshot) = &snapshot
@@ -269,8 +350,17 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             if increments.len() == 1 {
                 reason = increment.reason.clone();
             }
+            // Along a path the way back leads to the beginning of its step.
+            if planned.control == Control::Time && increments.len() > 1 {
+                let frame = if self.plan.pictures { last.as_ref() } else { None };
+                self.checkpoint(index + 1, &known, frame)?;
+            }
         }
         let summary = self.finish(ending, &reason, start, &mesh, last.as_ref())?;
+        if ending == Ending::Converged {
+            self.folder.remove(checkpoint::FILE);
+            self.folder.remove("checkpoint");
+        }
         Ok(Outcome { summary, ending })
     }
 
@@ -287,6 +377,12 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         }
         let increment = self.engine.solve(&self.plan, &start, (0, 0.0), progress);
         self.engine.known(0.0, &increment)
+    }
+
+    /// Takes back the events and warnings beyond the given numbers of them.
+    fn forget(&mut self, (events, warnings): (usize, usize)) {
+        self.events.truncate(events);
+        self.warnings.truncate(warnings);
     }
 
     /// Leads from a state towards a time at which no state was found, by smaller increments that are cut as they need;

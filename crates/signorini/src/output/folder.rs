@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 pub const MARKER: &str = "log.jsonl";
 const FIRST_LINE: &str = "{\"event\":\"signorini\"";
 /// Everything a run writes.
-const OWN: [&str; 13] = [
+const OWN: [&str; 15] = [
     "summary.json",
     "log.jsonl",
     "history.csv",
@@ -20,6 +20,8 @@ const OWN: [&str; 13] = [
     "pairs.csv",
     "frames",
     "bodies.pvd",
+    "checkpoint.json",
+    "checkpoint",
     "pairs.pvd",
 ];
 
@@ -63,6 +65,17 @@ impl Folder {
         let folder = Self { path: path.to_path_buf() };
         folder.write(MARKER, format!("{FIRST_LINE},\"version\":\"{}\"}}\n", env!("CARGO_PKG_VERSION")).as_bytes())?;
         Ok(folder)
+    }
+
+    /// The folder of an earlier run, as it is.
+    pub fn of_earlier_run(path: &Path) -> Self {
+        Self { path: path.to_path_buf() }
+    }
+
+    /// Removes a file or a folder of ours; what cannot be removed stays.
+    pub fn remove(&self, name: &str) {
+        let path = self.path.join(name);
+        let _ = if path.is_dir() { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) };
     }
 
     pub fn path(&self) -> &Path {

@@ -66,7 +66,45 @@ pub fn draw<const D: usize>(
     {
         drawings.push(("loop", Box::new(move || loop_of_states(&drive, steps, events, name, plan.space, units))));
     }
-    drawings.par_iter().map(|(name, draw)| save(folder, name, &draw()?)).collect()
+    let drawn: Vec<String> = drawings
+        .par_iter()
+        .map(|(name, draw)| {
+            let text = draw()?;
+            save(folder, name, &text)?;
+            Ok(text)
+        })
+        .collect::<Result<_, OutputError>>()?;
+    save(folder, "overview", &sheet(&drawn))
+}
+
+/// All pictures on one sheet, in rows of two.
+fn sheet(pictures: &[String]) -> String {
+    const WIDTH: f64 = 760.0;
+    // The first line of a picture states its size.
+    let size = |text: &str| -> Option<(f64, f64)> {
+        let number = |key: &str| text.split_once(key)?.1.split('"').next()?.parse::<f64>().ok();
+        Some((number("width=\"")?, number("height=\"")?))
+    };
+    let (mut body, mut y) = (String::new(), 0.0);
+    for row in pictures.chunks(2) {
+        let mut highest = 0.0f64;
+        for (k, text) in row.iter().enumerate() {
+            let Some((w, h)) = size(text) else { continue };
+            let height = WIDTH * h / w;
+            let inner = text.split_once('>').and_then(|(_, rest)| rest.rsplit_once("</svg>")).map_or("", |(t, _)| t);
+            body += &format!(
+                "<svg x=\"{}\" y=\"{y}\" width=\"{WIDTH}\" height=\"{height}\" viewBox=\"0 0 {w} {h}\">{inner}</svg>",
+                k as f64 * WIDTH
+            );
+            highest = highest.max(height);
+        }
+        y += highest;
+    }
+    let wide = WIDTH * pictures.len().min(2) as f64;
+    format!(
+        "<svg width=\"{wide}\" height=\"{y:.0}\" viewBox=\"0 0 {wide} {y:.0}\" xmlns=\"http://www.w3.org/2000/svg\" \
+         xmlns:xlink=\"http://www.w3.org/1999/xlink\"><rect width=\"100%\" height=\"100%\" fill=\"white\"/>{body}</svg>\n"
+    )
 }
 
 /// Axis labels with the units of the case.

@@ -41,6 +41,34 @@ impl Event {
     }
 }
 
+/// All kinds of events.
+const KINDS: [&str; 8] =
+    ["nucleation", "release", "merge", "split", "hole_opened", "hole_closed", "snap_in", "pull_off"];
+
+impl Event {
+    /// All of it, for a run that goes on later.
+    pub fn to_checkpoint(&self) -> Value {
+        self.to_json("")
+    }
+
+    /// What [`Event::to_checkpoint`] wrote.
+    pub fn from_checkpoint(v: &Value) -> Option<Self> {
+        let number = |key: &str| v[key].as_f64();
+        let count = |key: &str| v[key].as_u64().map(|n| n as usize);
+        Some(Self {
+            kind: KINDS.into_iter().find(|k| v["kind"] == *k)?,
+            time: number("time")?,
+            within: number("within")?,
+            at: serde_json::from_value(v["at"].clone()).ok()?,
+            before: (count("zones_before")?, count("holes_before")?),
+            after: (count("zones_after")?, count("holes_after")?),
+            area: [number("area_before")?, number("area_after")?],
+            force: [number("force_before")?, number("force_after")?],
+            energy_released: number("energy_released"),
+        })
+    }
+}
+
 /// A state on the path.
 #[derive(Clone)]
 pub struct Known<Z> {

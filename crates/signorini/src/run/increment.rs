@@ -23,6 +23,9 @@ use std::collections::BTreeMap;
 /// Curvature times cell size beyond which a front is not resolved.
 const RESOLVED: f64 = 0.5;
 
+/// Slope up to which a membrane is linear.
+const LINEAR: f64 = 0.1;
+
 /// States that tell where a path goes on.
 const TRAIL: usize = 3;
 
@@ -38,8 +41,58 @@ pub struct Engine<const D: usize, Z> {
     refinement: Refinement<D>,
     /// How often the cells at the fronts are divided.
     levels: usize,
+    /// Whether lengths are lengths; without units the problem may be scaled at will.
+    has_units: bool,
     /// Whether errors are estimated, which takes a solve more.
     pub estimates: bool,
+}
+
+/// What an engine carries from one increment to the next.
+pub struct Saved<Z> {
+    previous: Option<(Z, Scales, Branch)>,
+    scales: Option<Scales>,
+    trail: Vec<(f64, Z)>,
+    levels: usize,
+}
+
+impl<Z> Saved<Z> {
+    pub fn to_json(&self, zone: impl Fn(&Z) -> Value) -> Value {
+        let scales =
+            |s: &Scales| json!([s.gap, s.pressure, s.tension, s.length, s.h, s.degree as f64, s.dimension as f64]);
+        json!({
+            "previous": self.previous.as_ref().map(|(z, s, branch)| {
+                json!({"zone": zone(z), "scales": scales(s), "nearest": *branch == Branch::Nearest})
+            }),
+            "scales": self.scales.as_ref().map(scales),
+            "trail": self.trail.iter().map(|(t, z)| json!([t, zone(z)])).collect::<Vec<_>>(),
+            "levels": self.levels,
+        })
+    }
+
+    pub fn from_json(v: &Value, zone: impl Fn(&Value) -> Option<Z>) -> Option<Self> {
+        let scales = |v: &Value| {
+            let [gap, pressure, tension, length, h, degree, dimension] =
+                serde_json::from_value::<[f64; 7]>(v.clone()).ok()?;
+            Some(Scales { gap, pressure, tension, length, h, degree: degree as usize, dimension: dimension as usize })
+        };
+        let previous = match &v["previous"] {
+            Value::Null => None,
+            p => {
+                let branch = if p["nearest"].as_bool()? { Branch::Nearest } else { Branch::Stable };
+                Some((zone(&p["zone"])?, scales(&p["scales"])?, branch))
+            }
+        };
+        Some(Self {
+            previous,
+            scales: if v["scales"].is_null() { None } else { Some(scales(&v["scales"])?) },
+            trail: v["trail"]
+                .as_array()?
+                .iter()
+                .map(|e| Some((e[0].as_f64()?, zone(&e[1])?)))
+                .collect::<Option<_>>()?,
+            levels: v["levels"].as_u64()? as usize,
+        })
+    }
 }
 
 type Sampler<'a, const D: usize> = Box<dyn Fn(&Point<D>) -> Option<Sample> + 'a>;
@@ -85,7 +138,20 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             refinement: plan.refinement.clone(),
             levels: plan.refinement.fronts,
             estimates: false,
+            has_units: plan.document.case.units.is_some(),
         }
+    }
+
+    /// What the next increment goes on from.
+    pub fn save(&self) -> Saved<Z> {
+        let Self { previous, scales, trail, levels, .. } = self;
+        Saved { previous: previous.clone(), scales: *scales, trail: trail.clone(), levels: *levels }
+    }
+
+    /// Goes on from what was saved.
+    pub fn restore(&mut self, saved: Saved<Z>) {
+        self.asked = None;
+        Saved { previous: self.previous, scales: self.scales, trail: self.trail, levels: self.levels } = saved;
     }
 
     /// The state that the last increment converged to.
@@ -209,6 +275,12 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             }
         }
         let mut warnings = Vec::new();
+        let steepest = report.as_ref().map_or(0.0, |r| r.max_slope);
+        if self.has_units && steepest > LINEAR {
+            warnings.push(format!(
+                "slopes reach {steepest:.1}: the linear theory of the membrane holds below about {LINEAR}, beyond it the tension grows"
+            ));
+        }
         let h = solution.equilibrium.as_ref().map_or(membrane.grid.h(), |e| e.membrane.grid.h());
         let sharp = solution.zone.sharpest() * h;
         if D == 2 && !solution.zone.is_empty() && sharp > RESOLVED {
@@ -376,6 +448,7 @@ fn nodal_report<const D: usize>(
         support_forces: solution.support_forces.clone(),
         load_force: solution.load_force,
         energy: solution.energy,
+        max_slope: 0.0,
         volume: solution.nodes.iter().flatten().map(|n| n.share * n.displacement).sum(),
         equilibrium_residual: (force + supports + solution.load_force).abs() / largest,
         contact: ContactReport {
@@ -422,6 +495,7 @@ impl<const D: usize> Increment<'_, D> {
             "energy": self.report.as_ref().map(|r| r.energy),
             "energy_total": self.report.as_ref().map(|r| r.energy - r.contact.adhesion_energy),
             "volume": self.report.as_ref().map(|r| r.volume),
+            "max_slope": self.report.as_ref().map(|r| r.max_slope),
             "equilibrium_residual": self.report.as_ref().map(|r| r.equilibrium_residual),
             "support_forces": {}, "load_forces": {}, "contacts": {}, "probes": {},
         });

@@ -11,6 +11,7 @@ mod gallery;
 mod invariance;
 mod meshes;
 mod refinement;
+mod resume;
 mod solids;
 
 use serde_json::Value;

@@ -35,7 +35,8 @@ fn cells_divided_at_fronts_or_where_the_case_says_find_the_same() {
     ] {
         let found = cosine(0.25, &[(CELLS, cells.into()), (DEGREE, degree.into()), (REFINE, refine.into())]);
         let off = number(&found["area"]) - exact;
-        assert!(off.abs() < 2e-7, "degree {degree}, {refine}: {off:e}");
+        let allowed = if degree == "2" { 1e-6 } else { 2e-7 };
+        assert!(off.abs() < allowed, "degree {degree}, {refine}: {off:e}");
     }
 }
 

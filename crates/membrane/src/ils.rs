@@ -105,8 +105,8 @@ pub enum Start<Z> {
 }
 
 /// Solves one increment.
-pub fn solve<'a, const D: usize, Z: Zone<D>>(
-    membrane: &'a Membrane<D>,
+pub fn solve<const D: usize, Z: Zone<D>>(
+    membrane: &Membrane<D>,
     elements: &mut Elements<D>,
     start: Start<Z>,
     at: (usize, f64),

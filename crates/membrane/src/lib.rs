@@ -10,6 +10,7 @@ pub mod error_estimate;
 pub mod field;
 pub mod front;
 pub mod ils;
+pub mod kinks;
 pub mod line_zone;
 pub mod plane_zone;
 pub mod problem;

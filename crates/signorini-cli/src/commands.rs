@@ -6,9 +6,9 @@ use signorini::case::{CaseError, Document, override_key};
 use signorini::fit::fit;
 use signorini::gallery::{all, find};
 use signorini::output::OutputError;
-use signorini::plan::{self, Plan};
+use signorini::plan::plan;
 use signorini::queries::{Query, answer_file};
-use signorini::run::{Ending, RunError, resume, run};
+use signorini::run::{Ending, RunError, resume, run, sizes};
 use signorini::scene::{self, Scene, SceneError};
 use std::path::{Path, PathBuf};
 
@@ -117,12 +117,7 @@ pub fn check(case: &Path, set: &[String], json: bool) -> u8 {
         };
     }
     let checked = read(case).and_then(|(name, text)| Document::parse(&name, &text, set)).and_then(|document| {
-        let sizes = match plan::plan(&document)? {
-            Plan::Line(plan) => sizes(&plan)?,
-            Plan::Plane(plan) => sizes(&plan)?,
-            Plan::PlaneSolids(plan) => signorini::run::solid_sizes(&plan)?,
-            Plan::Solids(plan) => signorini::run::solid_sizes(&plan)?,
-        };
+        let sizes = sizes(&plan(&document)?)?;
         Ok((document, sizes))
     });
     match checked {
@@ -238,26 +233,6 @@ pub fn closest(queries: &Path, output: &Path, local_minima: bool, json: bool) ->
         (false, 0) => DONE,
         _ => WRONG_INPUT,
     }
-}
-
-/// What a run would have to do, after checking the fields at its first and last time.
-fn sizes<const D: usize>(plan: &plan::MembranePlan<D>) -> Result<Value, CaseError> {
-    for time in [plan.increments.first(), plan.increments.last()].into_iter().flatten().map(|i| i.time) {
-        plan.check_fields(&plan.at(time), time)?;
-    }
-    let nodes = plan.grid.node_count();
-    Ok(json!({
-        "method": plan.method.name(),
-        "cells": plan.grid.cells().map(|n| n.to_string()).join(" x "),
-        "degree": plan.grid.degree(),
-        "unknowns_at_most": nodes,
-        "memory_at_most": format!("{:.2} GiB", plan::memory_estimate(nodes as f64, plan.grid.degree(), D) / f64::from(1u32 << 30)),
-        "increments": plan.increments.len(),
-        "supports": plan.supports.len(),
-        "loads": plan.loads.len(),
-        "contact": plan.contact.as_ref().map_or("none".to_string(), |(n, f)| format!("{n}: {} on {}", plan.body, f.body)),
-        "warnings": plan.warnings,
-    }))
 }
 
 fn execute(name: &str, text: &str, folder: &Path, set: &[String], resumed: bool, json: bool) -> u8 {

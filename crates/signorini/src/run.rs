@@ -5,6 +5,7 @@ mod environment;
 pub(crate) mod events;
 mod increment;
 mod path;
+mod sizes;
 pub(crate) mod solid;
 
 use crate::case::{CaseError, Document};
@@ -25,10 +26,11 @@ use signorini_membrane::problem::Membrane;
 use signorini_membrane::zone::Zone;
 use signorini_solve::SolveError;
 pub use signorini_solve::{Iteration, Progress, Silent};
+pub use sizes::sizes;
 use std::path::Path;
 
 /// What a run of solids would have to do, after checking that their supports and contacts make sense.
-pub fn solid_sizes<const D: usize>(plan: &crate::plan::solid::SolidPlan<D>) -> Result<Value, CaseError> {
+fn solid_sizes<const D: usize>(plan: &crate::plan::solid::SolidPlan<D>) -> Result<Value, CaseError> {
     let model = solid::model(plan)?;
     let free: Vec<String> = model
         .free_modes()

@@ -74,7 +74,7 @@ fn resolve<'a>(root: &'a Value, node: &'a Value) -> &'a Value {
 }
 
 /// The alternatives of a node, without `null`.
-fn alternatives<'a>(node: &'a Value) -> Vec<&'a Value> {
+fn alternatives(node: &Value) -> Vec<&Value> {
     let lists = ["anyOf", "oneOf"].iter().filter_map(|k| node[*k].as_array());
     let found: Vec<&Value> = lists.flatten().filter(|v| v["type"] != "null").collect();
     if found.is_empty() { vec![node] } else { found }

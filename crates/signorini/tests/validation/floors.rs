@@ -124,3 +124,27 @@ fn shapes_that_are_no_floor_are_told() {
         assert!(found.place.is_some() && found.one_line().contains(word), "{shape}: {}", found.one_line());
     }
 }
+
+/// A ridge pressed into a string is smooth to no degree: the place is told. Smooth floors are not suspected.
+#[test]
+fn kinks_of_the_floor_in_contact_are_told() {
+    let ridge = pushed("line", "height = \"0.0*x\"", 0.0)
+        .replace("shape.height = \"0.0*x\"", "shape.height = \"-0.2*abs(x - 0.1)\"")
+        .replace("[0, 0, 0]", "[0, 0, 0.1]")
+        .replace("[contacts.touch]", "[loads.press]\non = \"film\"\nnormal = -2.0\n[contacts.touch]");
+    let found = summary(&ridge, &set(&[]));
+    let warnings = found["warnings"].to_string();
+    assert!(warnings.contains("kink") && warnings.contains("(0.1"), "{warnings}");
+    for smooth in [
+        "sphere = { center = [0, 0, -2], radius = 2 }",
+        "paraboloid = { apex = [0, 0, 0], axis = [0, 0, -1], radius = 1.5 }",
+    ] {
+        for space in ["axisymmetric", "plane"] {
+            let found = summary(&pushed(space, smooth, 0.15), &set(&[]));
+            assert!(!found["warnings"].to_string().contains("kink"), "{smooth}");
+        }
+    }
+    let waves =
+        summary(super::example("cosine_disc"), &set(&[("steps", "[]".into()), ("loads.press.normal", "-0.3".into())]));
+    assert!(!waves["warnings"].to_string().contains("kink"));
+}

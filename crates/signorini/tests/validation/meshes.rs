@@ -137,3 +137,55 @@ fn damaged_meshes_are_told() {
         assert!(wrong.to_string().contains(name), "{wrong}");
     }
 }
+
+/// Bytes changed, lines dropped, doubled and swapped, numbers made huge: an error or a plan, never a panic.
+#[test]
+fn hostile_meshes_are_survived() {
+    let text = std::fs::read_to_string(file("mixed_2_6.msh")).expect("a mesh");
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("hostile.msh");
+    let case = case("mixed_2_6.msh").replace(&file("mixed_2_6.msh"), &path.display().to_string().replace('\\', "/"));
+    let document = signorini::case::Document::parse("case.toml", &case, &[]).expect("a case");
+    let mut state = 12345u64;
+    let mut random = |n: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((state >> 33) as usize) % n.max(1)
+    };
+    let (mut refused, mut accepted) = (0, 0);
+    for _ in 0..300 {
+        let mut lines: Vec<String> = text.lines().map(str::to_string).collect();
+        for _ in 0..=random(3) {
+            let at = random(lines.len());
+            match random(6) {
+                0 => drop(lines.remove(at)),
+                1 => lines.insert(at, lines[at].clone()),
+                2 => {
+                    let other = random(lines.len());
+                    lines.swap(at, other);
+                }
+                3 => lines[at] = ["1e308", "-1", "nan", "99999999999", "0 0 0", "inf inf 0"][random(6)].into(),
+                4 => lines.truncate(at.max(1)),
+                _ => {
+                    let mut bytes = lines[at].clone().into_bytes();
+                    if !bytes.is_empty() {
+                        let k = random(bytes.len());
+                        bytes[k] = b"0123456789 -.e"[random(14)];
+                    }
+                    lines[at] = String::from_utf8_lossy(&bytes).into_owned();
+                }
+            }
+            if lines.is_empty() {
+                break;
+            }
+        }
+        std::fs::write(&path, lines.join("\n")).expect("written");
+        match signorini::plan::plan(&document) {
+            Ok(_) => accepted += 1,
+            Err(error) => {
+                assert!(error.place.is_some(), "{error}");
+                refused += 1;
+            }
+        }
+    }
+    assert!(refused > 100 && accepted > 5, "{refused} refused, {accepted} accepted");
+}

@@ -11,7 +11,7 @@ use std::sync::Arc;
 const COARSEST: usize = 8;
 
 /// Gauss points per direction in cells that are not cut.
-pub fn whole_order(degree: usize) -> usize {
+pub(crate) fn whole_order(degree: usize) -> usize {
     degree + 3
 }
 
@@ -175,7 +175,7 @@ impl<const D: usize> Cells<D> for Grid<D> {
         enough.then(|| -> Arc<dyn Cells<D>> { Arc::new(Grid::new(*self.bounds(), cells.map(|n| n / 2), 1)) })
     }
     fn rule(&self, cell: usize) -> Vec<QuadraturePoint<D>> {
-        box_rule(&self.cell_box(cell), whole_order(Grid::degree(self)))
+        self.rule_in(&self.cell_box(cell))
     }
     fn cut(&self, cell: usize, partition: &CellPartition<'_, D>, order: usize) -> CellRule<D> {
         cut_cell(partition, &self.cell_box(cell), order)
@@ -231,7 +231,7 @@ pub(crate) fn quadrilaterals(n: usize) -> Vec<Vec<usize>> {
 }
 
 /// The tensor-product Gauss rule of a box.
-pub fn box_rule<const D: usize>(b: &Aabb<D>, order: usize) -> Vec<QuadraturePoint<D>> {
+pub(crate) fn box_rule<const D: usize>(b: &Aabb<D>, order: usize) -> Vec<QuadraturePoint<D>> {
     let gauss = gauss_legendre(order);
     (0..order.pow(D as u32))
         .map(|mut i| {

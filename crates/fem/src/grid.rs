@@ -1,7 +1,10 @@
 //! Uniform background grids with the nodes of a tensor-product basis.
 
+use crate::cells::{box_rule, whole_order};
+use crate::cut::QuadraturePoint;
 use crate::lagrange::TensorBasis;
 use signorini_geometry::{Aabb, Point};
+use std::sync::Arc;
 
 /// A box divided into equal cells, carrying the nodes of a basis of one degree.
 #[derive(Clone, Debug)]
@@ -9,11 +12,15 @@ pub struct Grid<const D: usize> {
     bounds: Aabb<D>,
     cells: [usize; D],
     basis: TensorBasis<D>,
+    /// Quadrature of an undivided cell, on the unit box.
+    rule: Arc<[QuadraturePoint<D>]>,
 }
 
 impl<const D: usize> Grid<D> {
     pub fn new(bounds: Aabb<D>, cells: [usize; D], degree: usize) -> Self {
-        Self { bounds, cells, basis: TensorBasis::new(degree) }
+        let unit = Aabb::new(Point::zeros(), Point::repeat(1.0));
+        let rule = box_rule(&unit, whole_order(degree)).into();
+        Self { bounds, cells, basis: TensorBasis::new(degree), rule }
     }
 
     pub fn bounds(&self) -> &Aabb<D> {
@@ -106,6 +113,12 @@ impl<const D: usize> Grid<D> {
         let index: [usize; D] = unflatten(node, &self.node_counts());
         let nodes = self.basis.line_nodes();
         self.bounds.at(&Point::from_fn(|k, _| ((index[k] / p) as f64 + nodes[index[k] % p]) / self.cells[k] as f64))
+    }
+
+    /// Quadrature of a box, with the points of an undivided cell.
+    pub fn rule_in(&self, b: &Aabb<D>) -> Vec<QuadraturePoint<D>> {
+        let volume = b.volume();
+        self.rule.iter().map(|p| QuadraturePoint { x: b.at(&p.x), weight: p.weight * volume }).collect()
     }
 
     /// Position of `x` relative to a cell.

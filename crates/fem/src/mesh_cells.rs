@@ -21,8 +21,6 @@ use std::sync::Arc;
 
 /// How far beyond its cell, in reference coordinates, a point still belongs to it.
 const ON_THE_EDGE: f64 = 1e-9;
-/// Buckets per cell of the grid in which points are looked up.
-const BUCKET: f64 = 1.0;
 
 /// The cells of a plane mesh with functions of one degree.
 pub struct MeshCells {
@@ -103,7 +101,8 @@ impl MeshCells {
             linear.push((x, small::inverse(&jacobian), straight));
         }
         let bounds = boxes.iter().fold(boxes[0], |a, b| Aabb::new(a.min.inf(&b.min), a.max.sup(&b.max)));
-        let spacing = BUCKET * (volumes.iter().sum::<f64>() / count as f64).sqrt();
+        // About one cell in each bucket.
+        let spacing = (volumes.iter().sum::<f64>() / count as f64).sqrt();
         let number = |k: usize| ((bounds.size()[k] / spacing).ceil() as usize).clamp(1, 4096);
         let buckets = Grid::new(bounds, [number(0), number(1)], 1);
         let mut cells_in = vec![Vec::new(); buckets.cell_count()];
@@ -137,10 +136,6 @@ impl MeshCells {
             groups,
             pieces,
         }
-    }
-
-    pub fn mesh(&self) -> &Mesh<2> {
-        &self.mesh
     }
 
     /// The smallest box round all cells.
@@ -630,6 +625,49 @@ mod tests {
         assert_eq!(cells.containing(&Point::<2>::new(0.0, 0.0)), None);
     }
 
+    #[test]
+    fn functions_know_positions_and_their_slopes() {
+        // Straight cells, within and a little beyond: functions of degree 1 add up to the position.
+        let corners = [[0.0, 0.0], [1.0, 0.1], [1.2, 0.9], [0.1, 1.1], [1.9, 0.3]].map(Point::<2>::from);
+        let mut mesh = Mesh::<2>::new(corners.to_vec());
+        mesh.add_cell(CellShape::Quadrilateral, 1, &[0, 1, 3, 2]);
+        mesh.add_cell(CellShape::Triangle, 1, &[1, 4, 2]);
+        mesh.check().unwrap();
+        let straight = MeshCells::new(mesh, 1);
+        let (mut numbers, mut t) = (Vec::new(), Tabulation::default());
+        for (cell, x) in [(0, [0.5, 0.6]), (0, [-0.05, 0.5]), (1, [1.3, 0.4]), (1, [1.5, 0.9])] {
+            let x = Point::<2>::from(x);
+            straight.functions(cell, &mut numbers);
+            straight.tabulate(cell, &x, &mut t);
+            let (mut position, mut slopes) = (Point::<2>::zeros(), Matrix::<2>::zeros());
+            for ((&f, value), gradient) in numbers.iter().zip(&t.value).zip(&t.gradient) {
+                position += *value * straight.node(f as usize);
+                slopes += straight.node(f as usize) * gradient.transpose();
+            }
+            assert!((position - x).norm() < 1e-13, "cell {cell}: {position:?} at {x:?}");
+            assert!((slopes - Matrix::<2>::identity()).norm() < 1e-12, "cell {cell}: {slopes:?}");
+        }
+        // Curved cells: slopes are those of the values.
+        let curved = cells(2);
+        for cell in 0..2 {
+            let x = curved.at(cell, &curved.mesh.shape(cell).centre()).0;
+            curved.tabulate(cell, &x, &mut t);
+            let slopes = t.gradient.clone();
+            for k in 0..2 {
+                let values = [-1e-6, 1e-6].map(|d| {
+                    let mut y = x;
+                    y[k] += d;
+                    curved.tabulate(cell, &y, &mut t);
+                    t.value.clone()
+                });
+                for (i, slope) in slopes.iter().enumerate() {
+                    let difference = (values[1][i] - values[0][i]) / 2e-6;
+                    assert!((difference - slope[k]).abs() < 1e-6 * slope.norm().max(1.0), "cell {cell}, {i}");
+                }
+            }
+        }
+    }
+
     struct Borrowed<'a>(&'a Ellipse);
 
     impl ImplicitShape<2> for Borrowed<'_> {
@@ -647,13 +685,13 @@ mod tests {
         // Each cuts off another part, the first at the vertex that the triangle and the quadrilateral share.
         for (center, radius) in [([0.62, 0.6], 0.07), ([0.75, 0.3], 0.2), ([0.0, 0.0], 0.93)] {
             let disc = Ellipse { center: center.into(), semi_axes: [radius; 2] };
+            let partition = CellPartition {
+                sheets: vec![Box::new(Borrowed(&disc))],
+                tags: vec![0],
+                features: Vec::new(),
+                region: Box::new(|_, v| RegionId::from(v[0] < 0.0)),
+            };
             for cell in 0..2 {
-                let partition = CellPartition {
-                    sheets: vec![Box::new(Borrowed(&disc))],
-                    tags: vec![0],
-                    features: Vec::new(),
-                    region: Box::new(|_, v| RegionId::from(v[0] < 0.0)),
-                };
                 let rule = cells.cut(cell, &partition, 14);
                 let total: f64 = rule.volumes.iter().flat_map(|(_, points)| points).map(|p| p.weight).sum();
                 let error = (total - cells.volume(cell)).abs() / cells.volume(cell);
@@ -666,12 +704,6 @@ mod tests {
             // The part of the circle within the cells closes the boundary of what is inside.
             let mut flux = Vector::<2>::zeros();
             for cell in 0..2 {
-                let partition = CellPartition {
-                    sheets: vec![Box::new(Borrowed(&disc))],
-                    tags: vec![0],
-                    features: Vec::new(),
-                    region: Box::new(|_, v| RegionId::from(v[0] < 0.0)),
-                };
                 for p in &cells.cut(cell, &partition, 14).surfaces {
                     flux += p.weight * p.normal;
                 }

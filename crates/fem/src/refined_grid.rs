@@ -3,9 +3,7 @@
 //! Nodes on a side that a larger cell shares hang: there the functions of the smaller cells follow those of the larger
 //! one. A function is one of a node that does not hang; a cell sees all functions that its own nodes follow.
 
-use crate::cells::{
-    BoundarySide, Cells, Divided, Neighbours, SidePoint, box_rule, divided_box, on_box_side, whole_order,
-};
+use crate::cells::{BoundarySide, Cells, Divided, Neighbours, SidePoint, divided_box, on_box_side};
 use crate::cut::{CellPartition, CellRule, QuadraturePoint, cut_cell};
 use crate::grid::Grid;
 use crate::lagrange::{MAX_DEGREE, Tabulation};
@@ -38,8 +36,7 @@ impl Leaf {
     }
 }
 
-/// The place of a node: twice its coordinates in halves of the smallest cells would not do for Gauss-Lobatto points, so
-/// nodes are told apart by what they lie on.
+/// A node, by what it lies on: Gauss-Lobatto points of cells of unlike size share no lattice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 enum Node {
     /// In units of the smallest cells that may be.
@@ -99,11 +96,6 @@ impl RefinedGrid {
         grid.number_functions();
         grid.find_neighbours();
         grid
-    }
-
-    /// How often the smallest cells were divided.
-    pub fn levels(&self) -> usize {
-        self.levels
     }
 
     fn leaf_containing(&self, x: &Point<2>) -> usize {
@@ -372,7 +364,7 @@ impl Cells<2> for RefinedGrid {
         self.coarse.coarser()
     }
     fn rule(&self, cell: usize) -> Vec<QuadraturePoint<2>> {
-        box_rule(&self.bounds_of(cell), whole_order(self.coarse.degree()))
+        self.coarse.rule_in(&self.bounds_of(cell))
     }
     fn cut(&self, cell: usize, partition: &CellPartition<'_, 2>, order: usize) -> CellRule<2> {
         cut_cell(partition, &self.bounds_of(cell), order)
@@ -389,7 +381,6 @@ impl Cells<2> for RefinedGrid {
     fn compared_over(&self, pair: &Neighbours) -> Vec<(usize, QuadraturePoint<2>)> {
         // The smaller cell is the first. Beyond its own width its polynomial would be carried too far.
         let [small, other] = pair.cells.map(|cell| self.bounds_of(cell));
-        let order = whole_order(self.coarse.degree());
         let mut beside = other;
         for k in 0..2 {
             if small.max[k] <= other.min[k] + 1e-9 * small.size()[k] {
@@ -401,7 +392,7 @@ impl Cells<2> for RefinedGrid {
             }
         }
         let rule = |b: &Aabb<2>, of: usize| {
-            box_rule(b, order).into_iter().map(move |p| (of, QuadraturePoint { weight: NEARER * p.weight, ..p }))
+            self.coarse.rule_in(b).into_iter().map(move |p| (of, QuadraturePoint { weight: NEARER * p.weight, ..p }))
         };
         rule(&small, 0).chain(rule(&beside, 1)).collect()
     }
@@ -439,7 +430,7 @@ mod tests {
     #[test]
     fn leaves_cover_the_box_and_neighbours_differ_by_one_division() {
         let grid = grid(1);
-        assert!(grid.levels() == 5);
+        assert!(grid.levels == 5);
         let area: f64 = (0..grid.count()).map(|c| grid.volume(c)).sum();
         assert!((area - 4.0).abs() < 1e-13);
         for pair in grid.neighbours() {

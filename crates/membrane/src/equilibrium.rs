@@ -24,6 +24,7 @@ use signorini_fem::lagrange::Tabulation;
 use signorini_geometry::{Point, Vector};
 use signorini_solve::{Factor, SolveError, Symbolic, SymmetricMatrix};
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 /// Cells whose local systems are in memory at once.
 const CHUNK: usize = 4096;
@@ -48,8 +49,9 @@ pub struct Elements<const D: usize> {
     /// For each kind of cell.
     kinds: Vec<Element<D>>,
     neighbours: Vec<Neighbours>,
-    /// For each kind of neighbours.
-    ghosts: Vec<Option<Vec<f64>>>,
+    /// For each kind of neighbours, and for each pair that is like no other, once it was needed.
+    ghosts_of_kinds: Vec<OnceLock<Vec<f64>>>,
+    ghosts_of_pairs: Vec<OnceLock<Vec<f64>>>,
     tension_constant: Option<f64>,
     symbolic: Symbolic,
 }
@@ -87,18 +89,13 @@ impl<const D: usize> Elements<D> {
             Element { tabulated, stiffness }
         };
         let neighbours = cells.neighbours();
-        let mut ghosts: Vec<Option<Vec<f64>>> = Vec::new();
-        for pair in &neighbours {
-            let Some(kind) = pair.kind else { continue };
-            if ghosts.len() <= kind {
-                ghosts.resize(kind + 1, None);
-            }
-            ghosts[kind].get_or_insert_with(|| ghost_penalty(cells, pair));
-        }
+        let empty = |n: usize| (0..n).map(|_| OnceLock::new()).collect();
+        let kinds = neighbours.iter().filter_map(|pair| pair.kind).max().map_or(0, |kind| kind + 1);
         Self {
             kinds: cells.kinds().into_iter().map(element).collect(),
+            ghosts_of_kinds: empty(kinds),
+            ghosts_of_pairs: empty(neighbours.len()),
             neighbours,
-            ghosts,
             tension_constant,
             symbolic: Symbolic::default(),
         }
@@ -109,6 +106,13 @@ impl<const D: usize> Elements<D> {
     /// The element of a cell that has others of its kind.
     fn of(&self, membrane: &Membrane<D>, cell: usize) -> Option<&Element<D>> {
         membrane.cells.kind(cell).map(|kind| &self.kinds[kind])
+    }
+
+    /// The ghost penalty of a pair of neighbours.
+    fn ghost(&self, membrane: &Membrane<D>, number: usize) -> &[f64] {
+        let pair = &self.neighbours[number];
+        let place = pair.kind.map_or(&self.ghosts_of_pairs[number], |kind| &self.ghosts_of_kinds[kind]);
+        place.get_or_init(|| ghost_penalty(&*membrane.cells, pair))
     }
 }
 
@@ -335,13 +339,7 @@ impl<const D: usize> System<D> {
         }
         let weight = ghost_weight(membrane.cells.degree());
         for pair in &pairs {
-            match pair.neighbours.kind.and_then(|kind| elements.ghosts[kind].as_ref()) {
-                Some(ghost) => matrix.add(&pair.dofs, ghost, weight * pair.scale),
-                None => {
-                    let ghost = ghost_penalty(&*membrane.cells, pair.neighbours);
-                    matrix.add(&pair.dofs, &ghost, weight * pair.scale);
-                }
-            }
+            matrix.add(&pair.dofs, elements.ghost(membrane, pair.number), weight * pair.scale);
         }
         if membrane.cells.sum_to_one() {
             matrix.restore_row_sums(&row_sums(membrane, &unknowns, &imposed));
@@ -403,21 +401,22 @@ fn number<const D: usize>(membrane: &Membrane<D>, quadrature: &Quadrature<D>) ->
 }
 
 /// Two neighbouring cells whose polynomials a ghost penalty holds together.
-struct GhostPair<'a> {
-    neighbours: &'a Neighbours,
+struct GhostPair {
+    /// Among the neighbours of the elements.
+    number: usize,
     dofs: Vec<u32>,
     scale: f64,
 }
 
-fn ghost_pairs<'a, const D: usize>(
+fn ghost_pairs<const D: usize>(
     membrane: &Membrane<D>,
-    elements: &'a Elements<D>,
+    elements: &Elements<D>,
     quadrature: &Quadrature<D>,
     unknowns: &Unknowns,
-) -> Vec<GhostPair<'a>> {
+) -> Vec<GhostPair> {
     let mut pairs = Vec::new();
     let is_cut = |cell: usize| matches!(quadrature.cells[cell], Cell::Cut(_));
-    for neighbours in &elements.neighbours {
+    for (number, neighbours) in elements.neighbours.iter().enumerate() {
         let [lower, upper] = neighbours.cells;
         if !is_cut(lower) && !is_cut(upper) {
             continue;
@@ -438,7 +437,7 @@ fn ghost_pairs<'a, const D: usize>(
             let missing =
                 1.0 - share(membrane, quadrature, lower, *region).min(share(membrane, quadrature, upper, *region));
             let scale = missing.powi(2) * membrane.tension.value(&x) * membrane.measure.weight(&x);
-            pairs.push(GhostPair { neighbours, dofs: [dofs.as_slice(), others].concat(), scale });
+            pairs.push(GhostPair { number, dofs: [dofs.as_slice(), others].concat(), scale });
         }
     }
     pairs

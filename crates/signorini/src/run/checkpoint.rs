@@ -51,7 +51,7 @@ impl<const D: usize, Z: Zone<D>> Checkpoint<D, Z> {
             "warnings": self.warnings,
             "frames": self.frames,
             "unknowns": self.unknowns,
-            "events": self.events.iter().map(Event::to_checkpoint).collect::<Vec<_>>(),
+            "events": self.events.iter().map(|e| e.to_json("")).collect::<Vec<_>>(),
         });
         folder.write(FILE, state.to_string().as_bytes())
     }
@@ -106,7 +106,7 @@ impl<const D: usize, Z: Zone<D>> Checkpoint<D, Z> {
             unknowns: v["unknowns"].as_u64().ok_or_else(damaged)? as usize,
             events: list("events")?
                 .iter()
-                .map(|e| Event::from_checkpoint(e).ok_or_else(damaged))
+                .map(|e| Event::from_json(e).ok_or_else(damaged))
                 .collect::<Result<_, _>>()?,
             film,
         })

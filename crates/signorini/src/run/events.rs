@@ -46,13 +46,8 @@ const KINDS: [&str; 8] =
     ["nucleation", "release", "merge", "split", "hole_opened", "hole_closed", "snap_in", "pull_off"];
 
 impl Event {
-    /// All of it, for a run that goes on later.
-    pub fn to_checkpoint(&self) -> Value {
-        self.to_json("")
-    }
-
-    /// What [`Event::to_checkpoint`] wrote.
-    pub fn from_checkpoint(v: &Value) -> Option<Self> {
+    /// What [`Event::to_json`] wrote.
+    pub fn from_json(v: &Value) -> Option<Self> {
         let number = |key: &str| v[key].as_f64();
         let count = |key: &str| v[key].as_u64().map(|n| n as usize);
         Some(Self {

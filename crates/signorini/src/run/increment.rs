@@ -25,7 +25,7 @@ use std::collections::BTreeMap;
 const RESOLVED: f64 = 0.5;
 
 /// Slope up to which a membrane is linear.
-const LINEAR: f64 = 0.1;
+pub const LINEAR: f64 = 0.1;
 
 /// States that tell where a path goes on.
 const TRAIL: usize = 3;

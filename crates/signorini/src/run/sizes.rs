@@ -1,5 +1,6 @@
 //! What a run of a membrane would have to do, and what looks wrong before it starts.
 
+use super::increment::LINEAR;
 use crate::case::CaseError;
 use crate::plan::{MembranePlan, Plan, memory_estimate};
 use serde_json::{Value, json};
@@ -16,8 +17,6 @@ use std::sync::Arc;
 const SOLVES: [f64; 2] = [6.0, 12.0];
 /// More unknowns than this are not solved for just to look.
 const LOOK: usize = 200_000;
-/// Slope up to which a membrane is linear.
-const LINEAR: f64 = 0.1;
 
 /// What a run of a plan would have to do: size, time, for a membrane the gap before any load, and warnings; after checking
 /// the fields at the first and the last time.

@@ -1,10 +1,10 @@
-//! The classical method: linear elements whose nodes are kept above the floor, by a primal-dual active set.
+//! The classical method: linear elements whose nodes are kept off the bodies, by a primal-dual active set.
 //!
 //! (Hintermüller, Ito & Kunisch, SIAM J. Optim. 13, 2002.) Its contact zone is a set of nodes: a staircase. It serves
 //! as a method of its own, to be set beside the level set, and to predict zones that are not one simple patch.
 
 use crate::equilibrium::{Elements, System, nitsche_flux};
-use crate::field::SharedField;
+use crate::obstacle::Side;
 use crate::problem::Membrane;
 use crate::quadrature::Quadrature;
 use crate::zone::Zone;
@@ -37,13 +37,21 @@ pub struct NodalSolution<const D: usize> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Node {
     pub displacement: f64,
-    /// Force of the floor on the node.
+    /// Force of what it touches on the node, along z.
     pub reaction: f64,
-    pub in_contact: bool,
-    /// Whether the floor can touch the node: whether it lies in the membrane.
+    /// The side on which it touches a body.
+    pub contact: Option<Side>,
+    /// Whether a body can touch the node: whether it lies in the membrane.
     pub inside: bool,
     /// Share of the membrane that belongs to the node: the integral of its shape function.
     pub share: f64,
+}
+
+impl Node {
+    /// Pressure of what it touches: its reaction over its share.
+    pub fn pressure(&self) -> f64 {
+        self.contact.map_or(0.0, |side| side.sign() * self.reaction / self.share.max(f64::MIN_POSITIVE))
+    }
 }
 
 /// How the iteration begins.
@@ -55,10 +63,9 @@ pub enum NodalStart {
     Cold,
 }
 
-/// Solves a membrane, which must be of degree 1, over its floor.
+/// Solves a membrane, which must be of degree 1, beside its bodies.
 pub fn solve<const D: usize, Z: Zone<D>>(
     membrane: &Membrane<D>,
-    floor: &SharedField<D>,
     start: NodalStart,
     interrupted: &dyn Fn() -> bool,
 ) -> Result<NodalSolution<D>, SolveError> {
@@ -67,7 +74,7 @@ pub fn solve<const D: usize, Z: Zone<D>>(
         NodalStart::Cold => None,
     };
     let guess = match &coarser {
-        Some(coarser) => Some((solve::<D, Z>(coarser, floor, start, interrupted)?, coarser)),
+        Some(coarser) => Some((solve::<D, Z>(coarser, start, interrupted)?, coarser)),
         None => None,
     };
     let elements = Elements::new(membrane);
@@ -83,18 +90,19 @@ pub fn solve<const D: usize, Z: Zone<D>>(
             }
         }
     }
-    let heights: Vec<Option<f64>> = node_of
+    // Heights of floor and ceiling at the nodes within the membrane.
+    let heights: Vec<Option<[f64; 2]>> = node_of
         .iter()
         .map(|&node| {
             let x = membrane.cells.node(node);
-            membrane.contains(&x).then(|| floor.value(&x))
+            membrane.contains(&x).then(|| Side::BOTH.map(|side| membrane.obstacles.height(side, &x)))
         })
         .collect();
-    let mut active: Vec<bool> = node_of
+    let mut active: Vec<Option<Side>> = node_of
         .iter()
         .zip(&heights)
         .map(|(&node, h)| {
-            h.is_some() && guess.as_ref().is_some_and(|(g, coarser)| g.touches(coarser, &membrane.cells.node(node)))
+            h.as_ref().and(guess.as_ref()).and_then(|(g, coarser)| g.contact(coarser, &membrane.cells.node(node)))
         })
         .collect();
     let mut symbolic = Symbolic::default();
@@ -104,7 +112,8 @@ pub fn solve<const D: usize, Z: Zone<D>>(
     while changes.len() < MOST_CHANGES && !interrupted() {
         let mut constrained = matrix.clone();
         let mut load = rhs.clone();
-        let prescribed: Vec<Option<f64>> = heights.iter().zip(&active).map(|(h, &a)| h.filter(|_| a)).collect();
+        let prescribed: Vec<Option<f64>> =
+            heights.iter().zip(&active).map(|(h, a)| Some((*h)?[(*a)? as usize])).collect();
         constrained.prescribe(&prescribed, &mut load);
         u = symbolic.factor(constrained)?.solve(&load)?;
         reaction = matrix.multiply(&u);
@@ -115,7 +124,10 @@ pub fn solve<const D: usize, Z: Zone<D>>(
         for i in 0..u.len() {
             let Some(h) = heights[i] else { continue };
             // On active nodes the gap vanishes, on free ones the reaction: one of the two decides.
-            let now = if active[i] { reaction[i] > 0.0 } else { u[i] < h };
+            let now = match active[i] {
+                Some(side) => (side.sign() * reaction[i] > 0.0).then_some(side),
+                None => Side::BOTH.into_iter().find(|side| side.sign() * (u[i] - h[*side as usize]) < 0.0),
+            };
             changed += usize::from(now != active[i]);
             active[i] = now;
         }
@@ -130,8 +142,8 @@ pub fn solve<const D: usize, Z: Zone<D>>(
     for i in 0..u.len() {
         all[node_of[i]] = Some(Node {
             displacement: u[i],
-            reaction: if active[i] { reaction[i] } else { 0.0 },
-            in_contact: active[i],
+            reaction: if active[i].is_some() { reaction[i] } else { 0.0 },
+            contact: active[i],
             inside: heights[i].is_some(),
             share: shares[node_of[i]],
         });
@@ -229,9 +241,9 @@ fn interpolate<const D: usize>(
 }
 
 impl<const D: usize> NodalSolution<D> {
-    /// Whether the node nearest to `x` is in contact.
-    pub fn touches(&self, membrane: &Membrane<D>, x: &Point<D>) -> bool {
-        self.nearest(membrane, x).is_some_and(|n| n.in_contact)
+    /// What the node nearest to `x` touches.
+    pub fn contact(&self, membrane: &Membrane<D>, x: &Point<D>) -> Option<Side> {
+        self.nearest(membrane, x).and_then(|n| n.contact)
     }
 
     /// The node whose function is largest at a point.
@@ -240,13 +252,9 @@ impl<const D: usize> NodalSolution<D> {
         around.max_by(|a, b| a.1.total_cmp(&b.1)).and_then(|(node, _)| self.nodes[node])
     }
 
-    /// A function that is negative in the predicted zone: the distance to its edge that the gap of a parabola tells,
+    /// A function that is negative in the predicted zone of one side: the distance to its edge that the gap of a parabola tells,
     /// `√(2 T g / p)`, interpolated between the nodes, and half a cell inwards at nodes in contact.
-    pub fn predictor<'a>(
-        &'a self,
-        membrane: &'a Membrane<D>,
-        floor: &'a SharedField<D>,
-    ) -> impl Fn(&Point<D>) -> f64 + 'a {
+    pub fn predictor<'a>(&'a self, membrane: &'a Membrane<D>, side: Side) -> impl Fn(&Point<D>) -> f64 + 'a {
         let cells = &*membrane.cells;
         let h = (0..cells.count()).map(|cell| cells.size(cell)).fold(f64::INFINITY, f64::min);
         let at_node: Vec<f64> = self
@@ -254,11 +262,11 @@ impl<const D: usize> NodalSolution<D> {
             .iter()
             .enumerate()
             .map(|(i, node)| match node {
-                Some(n) if n.in_contact => -0.5 * h,
+                Some(n) if n.contact == Some(side) => -0.5 * h,
                 Some(n) if n.inside => {
                     let x = membrane.cells.node(i);
-                    let pressure = membrane.floor_pressure(floor, &x);
-                    let gap = (n.displacement - floor.value(&x)).max(0.0);
+                    let pressure = membrane.pressure(side, &x);
+                    let gap = membrane.obstacles.gap(side, &x, n.displacement).max(0.0);
                     let distance = (2.0 * membrane.tension.value(&x) * gap / pressure).sqrt();
                     if pressure > 0.0 { distance.clamp(0.05 * h, 2.0 * h) } else { h }
                 }
@@ -273,8 +281,8 @@ impl<const D: usize> NodalSolution<D> {
         interpolate(membrane, x, 0.0, |node| self.nodes[node].map_or(0.0, |n| n.displacement))
     }
 
-    /// Pressure at a point: that of the nearest node, its reaction over its share.
+    /// Pressure at a point: that on the nearest node, its reaction over its share.
     pub fn pressure(&self, membrane: &Membrane<D>, x: &Point<D>) -> f64 {
-        self.nearest(membrane, x).filter(|n| n.in_contact).map_or(0.0, |n| n.reaction / n.share.max(f64::MIN_POSITIVE))
+        self.nearest(membrane, x).map_or(0.0, |n| n.pressure())
     }
 }

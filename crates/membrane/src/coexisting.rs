@@ -1,6 +1,6 @@
 //! Other equilibria of an adhesive membrane at the same load.
 //!
-//! Zones of growing size are tried: where the membrane comes nearest to the floor, and where it is softest. Between a zone
+//! Zones of growing size are tried: where the membrane comes nearest to a body, and where it is softest. Between a zone
 //! whose front the adhesion would let go and one whose front it would pull on lies an equilibrium.
 
 use crate::adhesion::Branch;
@@ -8,6 +8,7 @@ use crate::equilibrium::{Elements, Equilibrium};
 use crate::field::Constant;
 use crate::front::Fronts;
 use crate::ils::{Reason, Solution, Start, is_clear, solve};
+use crate::obstacle::{Obstacles, Side};
 use crate::problem::Membrane;
 use crate::report::Report;
 use crate::zone::{Zone, is_free};
@@ -36,7 +37,9 @@ pub fn others<const D: usize, Z: Zone<D>>(
     known: f64,
     zones: bool,
 ) -> Result<Vec<OtherState>, SolveError> {
-    let Some(floor) = &membrane.floor else { return Ok(Vec::new()) };
+    if membrane.obstacles.is_empty() {
+        return Ok(Vec::new());
+    }
     let mut elements = Elements::new(membrane);
     let none = Z::empty(&membrane.grid);
     let free = Equilibrium::solve(membrane, &none, &mut elements)?;
@@ -54,7 +57,7 @@ pub fn others<const D: usize, Z: Zone<D>>(
             states.push(state);
         }
     };
-    if is_clear(&free, &none, floor) {
+    if is_clear(&free, &none) {
         add(OtherState { area: 0.0, energy_total: energy(&free), stable: true });
     }
     if zones {
@@ -64,8 +67,8 @@ pub fn others<const D: usize, Z: Zone<D>>(
                 let solution: Solution<D, Z> = solve(membrane, &mut elements, start, (0, 0.0), &mut Silent);
                 if let (Reason::Converged, Some(report)) = (&solution.reason, Report::new(&solution)) {
                     add(OtherState {
-                        area: report.contact.area,
-                        energy_total: report.energy - report.contact.adhesion_energy,
+                        area: report.area(),
+                        energy_total: report.energy_total(),
                         stable: solution.lowest_eigenvalue.is_some_and(|v| v > 0.0),
                     });
                 }
@@ -98,14 +101,14 @@ fn families<const D: usize, Z: Zone<D>>(
     let grid = &membrane.grid;
     let none = Z::empty(grid);
     let mut out = Vec::new();
-    for_each_level::<D, Z>(membrane, free, elements, &mut |level, [low, high]| {
+    for_each_level::<D, Z>(membrane, free, elements, &mut |side, level, [low, high]| {
         // In one dimension very small zones too, which cost little there.
         let least = 1.0 / (SIZES[D - 1] + 1) as f64;
         let tiny = (1..=if D == 1 { 4 } else { 0 }).rev().map(|k| least * 0.5f64.powi(k));
         let family = tiny.chain((1..=SIZES[D - 1]).map(|k| k as f64 * least)).map(|part| {
             // The size of a small zone grows with the root of the level.
             let s = low + part * part * (high - low);
-            none.united(grid, &mut |x| level(x).map_or(1.0, |v| (v - s) / (high - low)))
+            none.united(grid, side, &mut |x| level(x).map_or(1.0, |v| (v - s) / (high - low)))
         });
         out.push(family.filter(|z| !z.is_empty()).collect());
     })?;
@@ -120,28 +123,30 @@ fn for_each_level<const D: usize, Z: Zone<D>>(
     membrane: &Membrane<D>,
     free: &Equilibrium<D>,
     elements: &mut Elements<D>,
-    visit: &mut dyn FnMut(Level<'_, D>, [f64; 2]),
+    visit: &mut dyn FnMut(Side, Level<'_, D>, [f64; 2]),
 ) -> Result<(), SolveError> {
     let grid = &membrane.grid;
     let none = Z::empty(grid);
-    let softness = Membrane { load: Arc::new(Constant(-1.0)), floor: None, adhesion: None, ..membrane.clone() };
+    let softness = Membrane { load: Arc::new(Constant(-1.0)), obstacles: Obstacles::default(), ..membrane.clone() };
     let soft = Equilibrium::solve(&softness, &none, elements)?;
     let reach = 2.0 * grid.h();
     let at = |state: &Equilibrium<D>, x: &Point<D>| {
         let x = if membrane.contains(x) { *x } else { membrane.domain.domain.pulled_inside(x, reach)? };
         state.displacement(&none, &x)
     };
-    let gap = |x: &Point<D>| Some(at(free, x)? - membrane.floor.as_ref()?.value(x));
     let depth = |x: &Point<D>| at(&soft, x);
-    for level in [&gap as Level<'_, D>, &depth] {
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        free.for_each_point(|_, _, x, _| {
-            if let Some(v) = level(x) {
-                (low, high) = (low.min(v), high.max(v));
+    for side in membrane.obstacles.sides() {
+        let gap = |x: &Point<D>| Some(membrane.obstacles.gap(side, x, at(free, x)?));
+        for level in [&gap as Level<'_, D>, &depth] {
+            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            free.for_each_point(|_, _, x, _| {
+                if let Some(v) = level(x) {
+                    (low, high) = (low.min(v), high.max(v));
+                }
+            });
+            if high - low > 1e-6 * high.abs().max(low.abs()) {
+                visit(side, level, [low, high]);
             }
-        });
-        if high - low > 1e-6 * high.abs().max(low.abs()) {
-            visit(level, [low, high]);
         }
     }
     Ok(())
@@ -153,7 +158,7 @@ pub fn zone_of_area<const D: usize, Z: Zone<D>>(membrane: &Membrane<D>, area: f6
     let none = Z::empty(&membrane.grid);
     let free = Equilibrium::solve(membrane, &none, &mut elements)?;
     let mut found = None;
-    for_each_level::<D, Z>(membrane, &free, &mut elements, &mut |level, [low, high]| {
+    for_each_level::<D, Z>(membrane, &free, &mut elements, &mut |side, level, [low, high]| {
         if found.is_some() {
             return;
         }
@@ -166,7 +171,7 @@ pub fn zone_of_area<const D: usize, Z: Zone<D>>(membrane: &Membrane<D>, area: f6
             sum >= area
         });
         let s = s.map_or(high, |p| p.0);
-        found = Some(none.united(&membrane.grid, &mut |x| level(x).map_or(1.0, |v| (v - s) / (high - low))));
+        found = Some(none.united(&membrane.grid, side, &mut |x| level(x).map_or(1.0, |v| (v - s) / (high - low))));
     })?;
     Ok(found.filter(|z| !z.is_empty()))
 }
@@ -181,7 +186,7 @@ fn near_equilibria<const D: usize, Z: Zone<D>>(
     let mut last: Option<(f64, &Z)> = None;
     for zone in family {
         let equilibrium = Equilibrium::solve(membrane, zone, elements)?;
-        let drive = Fronts::new(&equilibrium, membrane.adhesion.as_ref()).drive();
+        let drive = Fronts::new(&equilibrium, true).drive();
         if let Some((before, smaller)) = last
             && before * drive < 0.0
         {

@@ -1,53 +1,85 @@
 //! The contact conditions, checked at every quadrature point, and the sets on which they fail.
 
 use crate::equilibrium::Equilibrium;
-use crate::field::SharedField;
+use crate::obstacle::Side;
 use crate::problem::Membrane;
 use crate::scales::Scales;
-use crate::zone::{Zone, contact_index, is_free};
+use crate::zone::{Zone, contact_index, contact_of, is_free};
 use signorini_geometry::Point;
 
 /// Times the tolerance, a penetration that may be put up with where the grid cannot tell whether zones touch.
 const NEARLY: f64 = 30.0;
 
+/// How far a state is from the contact conditions with one body.
+#[derive(Clone, Copy, Debug)]
+pub struct Extremes {
+    /// Least gap anywhere in the free membrane, and away from the fronts.
+    pub least_gap: f64,
+    pub least_gap_outside: f64,
+    /// Least and largest pressure in contact.
+    pub least_pressure: f64,
+    pub largest_pressure: f64,
+}
+
+impl Default for Extremes {
+    fn default() -> Self {
+        let (most, least) = (f64::INFINITY, f64::NEG_INFINITY);
+        Self { least_gap: most, least_gap_outside: most, least_pressure: most, largest_pressure: least }
+    }
+}
+
+impl Extremes {
+    /// Takes a gap into account, which may be away from the fronts.
+    pub fn add_gap(&mut self, gap: f64, outside: bool) {
+        self.least_gap = self.least_gap.min(gap);
+        if outside {
+            self.least_gap_outside = self.least_gap_outside.min(gap);
+        }
+    }
+
+    /// Takes a pressure in contact into account.
+    pub fn add_pressure(&mut self, pressure: f64) {
+        self.least_pressure = self.least_pressure.min(pressure);
+        self.largest_pressure = self.largest_pressure.max(pressure);
+    }
+}
+
 /// How far a state is from the contact conditions.
 #[derive(Clone, Debug)]
 pub struct Conditions<const D: usize> {
-    /// Least gap anywhere in the free membrane.
-    pub least_gap: f64,
+    /// With each body.
+    pub extremes: Vec<Extremes>,
     /// Least gap away from the fronts.
     pub least_gap_outside: f64,
     /// The least there in multiples of the penetration that counts as none, and where.
     pub worst: f64,
-    pub deepest: Point<D>,
-    /// Least pressure with which the floor would push where the free membrane penetrates.
+    pub deepest: (Side, Point<D>),
+    /// Least pressure with which a body would push where the free membrane penetrates it.
     pub least_pressure_below: f64,
-    /// Least and largest pressure in contact.
+    /// Least pressure in contact.
     pub least_pressure: f64,
-    pub largest_pressure: f64,
     pub most_pulled: Point<D>,
-    /// A point of a support that the zone covers although the floor there lies below.
+    /// A point of a support that the zone covers although the body there lies apart from it.
     pub torn_from_support: Option<Point<D>>,
 }
 
 impl<const D: usize> Conditions<D> {
-    pub fn check<Z: Zone<D>>(equilibrium: &Equilibrium<D>, zone: &Z, floor: &SharedField<D>, scales: &Scales) -> Self {
+    pub fn check<Z: Zone<D>>(equilibrium: &Equilibrium<D>, zone: &Z, scales: &Scales) -> Self {
         let membrane = &equilibrium.membrane;
         let band = 0.5 * membrane.grid.h();
         let mut c = Self {
-            least_gap: f64::INFINITY,
+            extremes: vec![Extremes::default(); membrane.obstacles.0.len()],
             least_gap_outside: f64::INFINITY,
             worst: f64::INFINITY,
-            deepest: Point::zeros(),
+            deepest: (Side::Below, Point::zeros()),
             least_pressure_below: f64::INFINITY,
             least_pressure: f64::INFINITY,
-            largest_pressure: f64::NEG_INFINITY,
             most_pulled: Point::zeros(),
             torn_from_support: None,
         };
         for p in &equilibrium.quadrature.rim {
-            if let (Some(support), true) = (&membrane.supports[p.piece], contact_index(p.region).is_some()) {
-                let apart = (support.displacement.value(&p.x) - floor.value(&p.x)).abs();
+            if let (Some(support), Some((side, _))) = (&membrane.supports[p.piece], contact_of(p.region)) {
+                let apart = (support.displacement.value(&p.x) - membrane.obstacles.height(side, &p.x)).abs();
                 if apart > 1e-6 * scales.gap {
                     c.torn_from_support = Some(p.x);
                 }
@@ -56,22 +88,29 @@ impl<const D: usize> Conditions<D> {
         equilibrium.for_each_point(|cell, region, x, _| {
             if is_free(region) {
                 let Some((u, _)) = equilibrium.evaluate(cell, region, x) else { return };
-                let gap = u - floor.value(x);
-                c.least_gap = c.least_gap.min(gap);
-                if gap < 0.0 {
-                    c.least_pressure_below = c.least_pressure_below.min(membrane.floor_pressure(floor, x));
-                }
-                let relative = gap / scales.gap_tolerance(membrane.cells.size(cell));
-                if (gap < c.least_gap_outside || relative < c.worst) && zone.distance(x) > band {
-                    c.least_gap_outside = c.least_gap_outside.min(gap);
-                    if relative < c.worst {
-                        c.worst = relative;
-                        c.deepest = *x;
+                for side in membrane.obstacles.sides() {
+                    let Some(i) = membrane.obstacles.index_at(side, x) else { continue };
+                    let gap = side.sign() * (u - membrane.obstacles.0[i].height.value(x));
+                    let own = &mut c.extremes[i];
+                    own.add_gap(gap, false);
+                    if gap < 0.0 {
+                        c.least_pressure_below = c.least_pressure_below.min(membrane.pressure(side, x));
+                    }
+                    let relative = gap / scales.gap_tolerance(membrane.cells.size(cell));
+                    if (gap < own.least_gap_outside || relative < c.worst) && zone.distance(x) > band {
+                        own.add_gap(gap, true);
+                        c.least_gap_outside = c.least_gap_outside.min(gap);
+                        if relative < c.worst {
+                            c.worst = relative;
+                            c.deepest = (side, *x);
+                        }
                     }
                 }
-            } else if contact_index(region).is_some() {
-                let pressure = membrane.floor_pressure(floor, x);
-                c.largest_pressure = c.largest_pressure.max(pressure);
+            } else if let Some((side, _)) = contact_of(region) {
+                let pressure = membrane.pressure(side, x);
+                if let Some(i) = membrane.obstacles.index_at(side, x) {
+                    c.extremes[i].add_pressure(pressure);
+                }
                 if pressure < c.least_pressure {
                     c.least_pressure = pressure;
                     c.most_pulled = *x;
@@ -101,12 +140,11 @@ impl<const D: usize> Conditions<D> {
     }
 }
 
-/// The zone with the parts added where the free membrane penetrates a floor that can push, and the parts removed where
-/// the floor would have to pull.
+/// The zone with the parts added where the free membrane penetrates a body that can push, and the parts removed where
+/// a body would have to pull.
 pub fn corrected<const D: usize, Z: Zone<D>>(
     equilibrium: &Equilibrium<D>,
     zone: &Z,
-    floor: &SharedField<D>,
     conditions: &Conditions<D>,
     scales: &Scales,
     sticky: bool,
@@ -116,8 +154,8 @@ pub fn corrected<const D: usize, Z: Zone<D>>(
     let mut result = zone.clone();
     if conditions.pulls(scales) && !sticky {
         // First what pulls: added parts may then grow into its place.
-        result = result.reduced(grid, &mut |x| match contact_index(zone.region_at(x)) {
-            Some(_) => (membrane.floor_pressure(floor, x) - scales.pressure_tolerance()) / scales.pressure,
+        result = result.reduced(grid, &mut |x| match contact_of(zone.region_at(x)) {
+            Some((side, _)) => (membrane.pressure(side, x) - scales.pressure_tolerance()) / scales.pressure,
             None => 1.0,
         });
     }
@@ -131,37 +169,39 @@ pub fn corrected<const D: usize, Z: Zone<D>>(
     if conditions.penetrates() {
         let reach = 2.0 * grid.h();
         let shift = 0.5 * scales.gap_tolerance(grid.h());
-        let mut penetration = |x: &Point<D>| {
+        let penetration = |side: Side, x: &Point<D>| {
             let Some(x) = inside(membrane, x, reach) else { return 1.0 };
             if zone.distance(&x) <= 0.5 * grid.h() || contact_index(zone.region_at(&x)).is_some() {
                 return 1.0;
             }
             let Some(u) = equilibrium.displacement(zone, &x) else { return 1.0 };
-            let gap = (u - floor.value(&x) + shift) / scales.gap;
-            gap.max(-membrane.floor_pressure(floor, &x) / scales.pressure)
+            let gap = (membrane.obstacles.gap(side, &x, u) + shift) / scales.gap;
+            gap.max(-membrane.pressure(side, &x) / scales.pressure)
         };
         let before = result.counts();
-        result = result.united(grid, &mut penetration);
+        for side in membrane.obstacles.sides() {
+            result = result.united(grid, side, &mut |x| penetration(side, x));
+        }
         if result.counts() == before {
             // Too small for the raster to see.
-            result = result.seeded(grid, &conditions.deepest, 0.5 * grid.h());
+            let (side, x) = conditions.deepest;
+            result = result.seeded(grid, side, &x, 0.5 * grid.h());
         }
     }
     result
 }
 
-/// The least gap of a membrane without contact, and where it is: from the lowest quadrature point downhill.
-pub fn least_free_gap<const D: usize, Z: Zone<D>>(
-    free: &Equilibrium<D>,
-    zone: &Z,
-    floor: &SharedField<D>,
-) -> (f64, Point<D>) {
+/// The least gap of a membrane without contact, on which side, and where it is: from the lowest quadrature point downhill.
+pub fn least_free_gap<const D: usize, Z: Zone<D>>(free: &Equilibrium<D>, zone: &Z) -> (f64, Side, Point<D>) {
+    let obstacles = &free.membrane.obstacles;
     let mut best = (f64::INFINITY, Point::zeros());
+    let mut side = Side::Below;
     free.for_each_point(|cell, region, x, _| {
         if let Some((u, _)) = free.evaluate(cell, region, x).filter(|_| is_free(region)) {
-            let gap = u - floor.value(x);
+            let (gap, of) = obstacles.least_gap(x, u);
             if gap < best.0 {
                 best = (gap, *x);
+                side = of;
             }
         }
     });
@@ -174,13 +214,13 @@ pub fn least_free_gap<const D: usize, Z: Zone<D>>(
             x[k / 2] += if k % 2 == 0 { step } else { -step };
             bounds.clamp(&x)
         });
-        let lower = around.filter_map(|x| Some((free.displacement(zone, &x)? - floor.value(&x), x)));
+        let lower = around.filter_map(|x| Some((obstacles.gap(side, &x, free.displacement(zone, &x)?), x)));
         match lower.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|a| a.0 < best.0) {
             Some(lower) => best = lower,
             None => step *= 0.5,
         }
     }
-    best
+    (best.0, side, best.1)
 }
 
 /// The point itself if it belongs to the membrane, or a near one that does.

@@ -121,14 +121,14 @@ impl<const D: usize> Path<'_, D> {
     fn linearise<Z: Zone<D>>(&self, zone: &Z, time: f64) -> Result<Linear, SolveError> {
         let membrane = (self.membrane)(time);
         let equilibrium = Equilibrium::solve(&membrane, zone, &mut Elements::new(&membrane))?;
-        let fronts = Fronts::new(&equilibrium, membrane.adhesion.as_ref());
+        let fronts = Fronts::new(&equilibrium, true);
         let linearised = fronts.linearise(zone, ModeSpace::Fine, &self.scales)?;
         let error = fronts.project(zone, ModeSpace::Fine).norm / self.scales.slope_tolerance();
         // The same zone a little later: its quadrature is the same.
         let dt = 1e-5 * self.size[1];
         let later = (self.membrane)(time + dt);
         let state = Equilibrium::solve(&later, zone, &mut Elements::new(&later))?;
-        let after = Fronts::new(&state, later.adhesion.as_ref()).excess();
+        let after = Fronts::new(&state, true).excess();
         let rate: Vec<f64> = fronts.excess().iter().zip(&after).map(|(a, b)| (b - a) / dt).collect();
         let mut area = 0.0;
         equilibrium.for_each_point(|_, region, _, w| {

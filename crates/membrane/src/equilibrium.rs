@@ -15,7 +15,7 @@
 
 use crate::problem::Membrane;
 use crate::quadrature::{Cell, Quadrature, RimPoint};
-use crate::zone::{Zone, contact_index, is_free};
+use crate::zone::{Zone, contact_of, is_free};
 use rayon::prelude::*;
 use signorini_fem::cells::Neighbours;
 use signorini_fem::cut::RegionId;
@@ -184,11 +184,6 @@ impl<const D: usize> Equilibrium<D> {
         self.unknowns.cells[cell].iter().map(|(region, _)| *region)
     }
 
-    /// The floor under a membrane that has a contact zone.
-    fn floor_height(&self, x: &Point<D>) -> f64 {
-        self.membrane.floor.as_ref().map_or(0.0, |h| h.value(x))
-    }
-
     /// Calls `visit(cell, region, x, weight)` at every volume point of the membrane.
     pub fn for_each_point(&self, mut visit: impl FnMut(usize, RegionId, &Point<D>, f64)) {
         for cell in 0..self.quadrature.cells.len() {
@@ -200,16 +195,17 @@ impl<const D: usize> Equilibrium<D> {
         }
     }
 
-    /// The slope with which the gap opens at each point of the fronts, `ρ = ∂_n u + (β/h)(u - h) - ∂_n h`.
+    /// The slope with which the gap opens at each point of the fronts, `ρ = ∂_n u + (β/h)(u - h) - ∂_n h`, and its
+    /// opposite below a ceiling.
     pub fn slope_jump(&self) -> Vec<f64> {
-        let floor = self.membrane.floor.as_ref();
         self.quadrature
             .front
             .iter()
             .map(|p| {
                 let (u, gradient) = self.evaluate(p.cell, p.free, &p.x).unwrap_or((0.0, Vector::zeros()));
-                let h = floor.map_or(signorini_geometry::Real::constant(0.0), |h| h.jet(&p.x));
-                (gradient - h.gradient).dot(&p.normal) + penalty(&self.membrane, p.cell) * (u - h.value)
+                let h = self.membrane.obstacles.jet(p.side, &p.x);
+                let jump = (gradient - h.gradient).dot(&p.normal) + penalty(&self.membrane, p.cell) * (u - h.value);
+                p.side.sign() * jump
             })
             .collect()
     }
@@ -217,18 +213,19 @@ impl<const D: usize> Equilibrium<D> {
     /// The flux `T ∂_ν u` out of the membrane at a point of its boundary; zero on a free edge.
     pub fn support_flux(&self, p: &RimPoint<D>) -> f64 {
         let Some(support) = &self.membrane.supports[p.piece] else { return 0.0 };
-        if is_free(p.region) {
+        if let Some((side, _)) = contact_of(p.region) {
+            // In contact up to the support: the membrane follows the body.
+            let slope = self.membrane.obstacles.jet(side, &p.x).gradient;
+            self.membrane.tension.value(&p.x) * slope.dot(&p.normal)
+        } else {
             let (u, gradient) = self.evaluate(p.cell, p.region, &p.x).unwrap_or((0.0, Vector::zeros()));
             nitsche_flux(&self.membrane, p.cell, &p.x, &p.normal, u - support.displacement.value(&p.x), &gradient)
-        } else {
-            // In contact up to the support: the membrane follows the floor.
-            let slope = self.membrane.floor.as_ref().map_or(Vector::zeros(), |h| h.jet(&p.x).gradient);
-            self.membrane.tension.value(&p.x) * slope.dot(&p.normal)
         }
     }
 
-    /// The normal derivative, on the fronts, of the field that takes `data` there, vanishes on the supports and is in
-    /// equilibrium without load: the Dirichlet-to-Neumann map, from the factorisation at hand.
+    /// The rate at which the slope of the gap changes on the fronts where the gap itself changes at the rate `data`: the
+    /// normal derivative of the field that takes these values there, vanishes on the supports and is in equilibrium without
+    /// load. This is the Dirichlet-to-Neumann map, from the factorisation at hand.
     pub fn normal_derivative_of_extension(&self, data: &[f64]) -> Result<Vec<f64>, SolveError> {
         let membrane = &self.membrane;
         let mut rhs = vec![0.0; self.unknowns.count];
@@ -240,7 +237,7 @@ impl<const D: usize> Equilibrium<D> {
             let Some(dofs) = self.unknowns.of(p.cell, p.free) else { continue };
             membrane.cells.tabulate(p.cell, &p.x, &mut t);
             let penalty = penalty(membrane, p.cell);
-            let w = p.weight * membrane.tension.value(&p.x) * value;
+            let w = p.weight * membrane.tension.value(&p.x) * p.side.sign() * value;
             for (a, &i) in dofs.iter().enumerate() {
                 rhs[i as usize] += w * (t.gradient[a].dot(&p.normal) + penalty * t.value[a]);
             }
@@ -254,12 +251,13 @@ impl<const D: usize> Equilibrium<D> {
             .map(|(p, &value)| {
                 let (v, gradient) =
                     evaluate(membrane, &self.unknowns, &z, p.cell, p.free, &p.x).unwrap_or((0.0, Vector::zeros()));
-                gradient.dot(&p.normal) + penalty(membrane, p.cell) * (v - value)
+                let sign = p.side.sign();
+                sign * gradient.dot(&p.normal) + penalty(membrane, p.cell) * (sign * v - value)
             })
             .collect())
     }
 
-    /// The displacement at a point in any region: the solution where free, the floor in contact, none outside.
+    /// The displacement at a point in any region: the solution where free, the body in contact, none outside.
     pub fn displacement<Z: Zone<D>>(&self, zone: &Z, x: &Point<D>) -> Option<f64> {
         if !self.membrane.contains(x) {
             return None;
@@ -269,8 +267,8 @@ impl<const D: usize> Equilibrium<D> {
             Cell::Whole(region) => *region,
             _ => zone.region_at(x),
         };
-        match contact_index(region) {
-            Some(_) => Some(self.floor_height(x)),
+        match contact_of(region) {
+            Some((side, _)) => Some(self.membrane.obstacles.height(side, x)),
             None => self.evaluate(cell, region, x).map(|v| v.0),
         }
     }
@@ -341,6 +339,7 @@ impl<const D: usize> System<D> {
         for pair in &pairs {
             matrix.add(&pair.dofs, elements.ghost(membrane, pair.number), weight * pair.scale);
         }
+        hold_thin_regions(membrane, elements, &quadrature, &unknowns, &mut matrix);
         if membrane.cells.sum_to_one() {
             matrix.restore_row_sums(&row_sums(membrane, &unknowns, &imposed));
         }
@@ -443,6 +442,57 @@ fn ghost_pairs<const D: usize>(
     pairs
 }
 
+/// Stiffens regions that fill no cell to a good part, such as the strip between a front and a free edge beside it: there
+/// the method of Nitsche has nothing to lean on, however the ghost penalty ties its slivers together. The weight vanishes
+/// where the best cell of the region is good enough.
+fn hold_thin_regions<const D: usize>(
+    membrane: &Membrane<D>,
+    elements: &Elements<D>,
+    quadrature: &Quadrature<D>,
+    unknowns: &Unknowns,
+    matrix: &mut SymmetricMatrix,
+) {
+    let needed = 2.0 / nitsche_penalty(membrane.cells.degree());
+    let mut best: BTreeMap<RegionId, f64> = BTreeMap::new();
+    for (cell, regions) in unknowns.cells.iter().enumerate() {
+        for (region, _) in regions {
+            let most = best.entry(*region).or_insert(0.0);
+            if *most < needed {
+                *most = most.max(share(membrane, quadrature, cell, *region));
+            }
+        }
+    }
+    best.retain(|_, share| *share < needed);
+    if best.is_empty() {
+        return;
+    }
+    let mut scratch = Tabulation::default();
+    for (cell, regions) in unknowns.cells.iter().enumerate() {
+        for (region, dofs) in regions {
+            let Some(share) = best.get(region) else { continue };
+            // Beyond the membrane the tension may not be defined.
+            let within = match &quadrature.cells[cell] {
+                Cell::Cut(rule) => rule.volume(*region).first().map(|p| p.x),
+                _ => None,
+            };
+            let x = within.unwrap_or_else(|| membrane.cells.bounds_of(cell).center());
+            let scale = (needed - share) * membrane.tension.value(&x) * membrane.measure.weight(&x);
+            let mut local = vec![0.0; dofs.len() * dofs.len()];
+            for (i, p) in membrane.cells.rule(cell).iter().enumerate() {
+                let t = match elements.of(membrane, cell) {
+                    Some(element) => &element.tabulated[i],
+                    None => {
+                        membrane.cells.tabulate(cell, &p.x, &mut scratch);
+                        &scratch
+                    }
+                };
+                add_stiffness(&mut local, t, p.weight);
+            }
+            matrix.add(dofs, &local, scale);
+        }
+    }
+}
+
 /// The share of a cell that a region fills.
 fn share<const D: usize>(membrane: &Membrane<D>, quadrature: &Quadrature<D>, cell: usize, region: RegionId) -> f64 {
     match &quadrature.cells[cell] {
@@ -454,7 +504,7 @@ fn share<const D: usize>(membrane: &Membrane<D>, quadrature: &Quadrature<D>, cel
     }
 }
 
-/// Where the displacement is imposed: on the fronts by the floor, on supported boundary by the support.
+/// Where the displacement is imposed: on the fronts by what is touched, on supported boundary by the support.
 fn imposed_points<const D: usize>(membrane: &Membrane<D>, quadrature: &Quadrature<D>) -> Vec<Imposed<D>> {
     let fronts = quadrature.front.iter().map(|p| Imposed {
         cell: p.cell,
@@ -462,7 +512,7 @@ fn imposed_points<const D: usize>(membrane: &Membrane<D>, quadrature: &Quadratur
         x: p.x,
         weight: p.weight,
         outward: -p.normal,
-        value: membrane.floor.as_ref().map_or(0.0, |h| h.value(&p.x)),
+        value: membrane.obstacles.height(p.side, &p.x),
     });
     let rim = quadrature.rim.iter().filter(|p| is_free(p.region)).filter_map(|p| {
         let support = membrane.supports[p.piece].as_ref()?;

@@ -40,11 +40,12 @@ impl ErrorEstimate {
         let Some(cells) = coarse.membrane.cells.raised().filter(|_| !zone.is_empty()) else { return Ok(None) };
         let membrane = Membrane { cells, ..coarse.membrane.clone() };
         let fine = Equilibrium::solve(&membrane, zone, &mut Elements::new(&membrane))?;
-        let adhesion = membrane.adhesion.as_ref();
-        let fronts = Fronts::new(&fine, adhesion);
-        let step = match adhesion {
-            Some(_) => fronts.linearise(zone, ModeSpace::Fine, scales)?.step(Branch::Nearest, scales),
-            None => fronts.newton_step(zone, scales)?,
+        let sticky = membrane.obstacles.are_sticky();
+        let fronts = Fronts::new(&fine, sticky);
+        let step = if sticky {
+            fronts.linearise(zone, ModeSpace::Fine, scales)?.step(Branch::Nearest, scales)
+        } else {
+            fronts.newton_step(zone, scales)?
         };
         let frames = fronts.frames(zone, step.space);
         let (mut area, mut area_size, mut force, mut force_size) = (0.0, 0.0, 0.0, 0.0);

@@ -1,8 +1,6 @@
 //! The slope jump on the fronts, and the Newton step that drives it to zero.
 
 use crate::equilibrium::Equilibrium;
-use crate::field::SharedField;
-use crate::problem::Membrane;
 use crate::quadrature::FrontPoint;
 use crate::scales::Scales;
 use crate::zone::{FrontFrame, ModeSpace, Zone};
@@ -17,7 +15,7 @@ const LOCAL_REACH: f64 = 0.6;
 /// Modes whose response is computed at most.
 const MOST_RESPONSES: usize = 240;
 
-/// The fronts of a state: slope jump, floor pressure and tension at every quadrature point.
+/// The fronts of a state: slope jump, pressure of the bodies and tension at every quadrature point.
 pub struct Fronts<'a, const D: usize> {
     pub(crate) equilibrium: &'a Equilibrium<D>,
     /// `ρ`: positive where the floor would have to pull, negative where the membrane penetrates.
@@ -75,22 +73,22 @@ impl StepKind {
 }
 
 impl<'a, const D: usize> Fronts<'a, D> {
-    /// The fronts of a state, held by `adhesion` or by nothing.
-    pub fn new(equilibrium: &'a Equilibrium<D>, adhesion: Option<&SharedField<D>>) -> Self {
-        let membrane: &Membrane<D> = &equilibrium.membrane;
+    /// The fronts of a state, held by what adhesion there is, or by nothing.
+    pub fn new(equilibrium: &'a Equilibrium<D>, adhering: bool) -> Self {
+        let membrane = &equilibrium.membrane;
         let points = &equilibrium.quadrature.front;
-        let floor = membrane.floor.as_ref();
         let tension: Vec<_> = points.iter().map(|p| membrane.tension.jet(&p.x)).collect();
         let held = |p: &FrontPoint<D>| {
-            adhesion.map_or((0.0, 0.0), |energy| {
-                let (slope, gradient) = membrane.adhesive_slope(energy, &p.x);
-                (slope, gradient.dot(&p.normal))
-            })
+            if !adhering {
+                return (0.0, 0.0);
+            }
+            let (slope, gradient) = membrane.adhesive_slope(p.side, &p.x);
+            (slope, gradient.dot(&p.normal))
         };
         let (adhesive_slope, adhesive_slope_rate) = points.iter().map(held).unzip();
         Self {
             slope_jump: equilibrium.slope_jump(),
-            pressure: points.iter().map(|p| floor.map_or(0.0, |h| membrane.floor_pressure(h, &p.x))).collect(),
+            pressure: points.iter().map(|p| membrane.pressure(p.side, &p.x)).collect(),
             tension_slope: tension.iter().zip(points).map(|(t, p)| t.gradient.dot(&p.normal)).collect(),
             tension: tension.iter().map(|t| t.value()).collect(),
             adhesive_slope,

@@ -5,7 +5,6 @@ use crate::active_set::{self, NodalStart};
 use crate::adhesion::Branch;
 use crate::conditions::{Conditions, corrected, least_free_gap};
 use crate::equilibrium::{Elements, Equilibrium};
-use crate::field::SharedField;
 use crate::front::{Fronts, StepKind};
 use crate::problem::Membrane;
 use crate::scales::Scales;
@@ -23,8 +22,9 @@ const DAMPED_AFTER: usize = 3;
 /// ... and that move by less than this fraction of a cell have settled: as a front crosses a grid line the discrete
 /// slope jump makes a jump of its own, of the size of the discretisation error, and no position makes it vanish.
 const SETTLED: f64 = 1e-3;
-/// ... or, where a front is sharper than a cell, by less than this.
-const SETTLED_SHARP: f64 = 0.03;
+/// ... or, where a front is sharper than a cell, or where the slope jump that its modes do not see is larger than the one
+/// they do, by less than this.
+const SETTLED_COARSE: f64 = 0.03;
 /// A front sharper than this, relative to a cell, is no front any more.
 const SHARPEST: f64 = 10.0;
 /// A step of this fraction of a cell that does not improve on the last is round-off.
@@ -47,7 +47,7 @@ const REACH: f64 = 0.15;
 pub enum Reason {
     /// The slope jump vanishes on all fronts and the contact conditions hold everywhere.
     Converged,
-    /// The membrane does not reach the floor.
+    /// The membrane does not reach any body.
     NoContact,
     /// No equilibrium with contact was found near the zone that was asked for.
     NoSuchState,
@@ -141,20 +141,22 @@ pub fn solve<const D: usize, Z: Zone<D>>(
     run.solution
 }
 
-/// Whether a membrane without contact would penetrate its floor.
-pub fn reaches_floor<const D: usize, Z: Zone<D>>(
+/// Whether a membrane without contact would penetrate a body.
+pub fn reaches_obstacle<const D: usize, Z: Zone<D>>(
     membrane: &Membrane<D>,
     elements: &mut Elements<D>,
 ) -> Result<bool, SolveError> {
-    let Some(floor) = &membrane.floor else { return Ok(false) };
+    if membrane.obstacles.is_empty() {
+        return Ok(false);
+    }
     let none = Z::empty(&membrane.grid);
     let free = Equilibrium::solve(membrane, &none, elements)?;
-    Ok(!is_clear(&free, &none, floor))
+    Ok(!is_clear(&free, &none))
 }
 
-/// Whether a membrane without contact stays clear of the floor.
-pub(crate) fn is_clear<const D: usize, Z: Zone<D>>(free: &Equilibrium<D>, none: &Z, floor: &SharedField<D>) -> bool {
-    least_free_gap(free, none, floor).0 >= FREE * Scales::of_free(free).gap
+/// Whether a membrane without contact stays clear of all bodies.
+pub(crate) fn is_clear<const D: usize, Z: Zone<D>>(free: &Equilibrium<D>, none: &Z) -> bool {
+    least_free_gap(free, none).0 >= FREE * Scales::of_free(free).gap
 }
 
 /// A zone smaller than a cell that shrinks: there is nothing that would stop it.
@@ -191,10 +193,10 @@ enum Fixed {
 
 impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
     fn from(&mut self, start: Start<Z>) -> Result<Reason, SolveError> {
-        let Some(floor) = &self.membrane.floor else {
+        if self.membrane.obstacles.is_empty() {
             self.settle_fronts()?;
             return Ok(Reason::NoContact);
-        };
+        }
         match start {
             Start::Zone(zone, scales, branch) if !zone.is_empty() => {
                 self.solution.zone = zone.on_grid(&self.membrane.grid);
@@ -209,21 +211,21 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 self.branch = branch;
             }
         }
-        if self.membrane.adhesion.is_none() {
-            return self.sweep(floor);
+        if !self.membrane.obstacles.are_sticky() {
+            return self.sweep();
         }
         if self.solution.zone.is_empty()
-            && let Some(ended) = self.nucleate(floor)?
+            && let Some(ended) = self.nucleate()?
         {
             return Ok(ended);
         }
         self.adhering = true;
         let before = self.solution.zone.counts();
-        let reason = self.sweep(floor)?;
+        let reason = self.sweep()?;
         self.solution.jumped |= self.solution.zone.counts() != before;
         self.solution.margin = self.solution.lowest_eigenvalue.map(|v| v.max(0.0).powi(2));
         if let (Reason::NoContact, Some(equilibrium)) = (&reason, &self.solution.equilibrium) {
-            self.solution.margin = Some(least_free_gap(equilibrium, &self.solution.zone, floor).0);
+            self.solution.margin = Some(least_free_gap(equilibrium, &self.solution.zone).0);
         }
         Ok(match reason {
             Reason::NoContact | Reason::IterationLimit if self.branch == Branch::Nearest => Reason::NoSuchState,
@@ -231,10 +233,10 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         })
     }
 
-    /// Where the free membrane reaches the floor: the zone without adhesion, from which adhesion then spreads; or a seed
-    /// where that is smaller than the grid can tell. Adhesion acts at no distance: a membrane that stays clear of the
-    /// floor is free.
-    fn nucleate(&mut self, floor: &SharedField<D>) -> Result<Option<Reason>, SolveError> {
+    /// Where the free membrane reaches a body: the zone without adhesion, from which adhesion then spreads; or a seed
+    /// where that is smaller than the grid can tell. Adhesion acts at no distance: a membrane that stays clear of all
+    /// bodies is free.
+    fn nucleate(&mut self) -> Result<Option<Reason>, SolveError> {
         if let Fixed::Interrupted = self.settle_fronts()? {
             return Ok(Some(Reason::Interrupted));
         }
@@ -242,18 +244,18 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         let (Some(equilibrium), Some(scales)) = (&solution.equilibrium, solution.scales) else {
             return Ok(Some(Reason::IterationLimit));
         };
-        let (gap, deepest) = least_free_gap(equilibrium, &solution.zone, floor);
+        let (gap, side, deepest) = least_free_gap(equilibrium, &solution.zone);
         if gap >= FREE * scales.gap {
             solution.margin = Some(gap);
-            solution.conditions = Some(Conditions::check(equilibrium, &solution.zone, floor, &scales));
+            solution.conditions = Some(Conditions::check(equilibrium, &solution.zone, &scales));
             return Ok(Some(Reason::NoContact));
         }
-        match self.sweep(floor)? {
+        match self.sweep()? {
             Reason::Converged => {}
             Reason::Interrupted => return Ok(Some(Reason::Interrupted)),
             _ => {
                 let grid = &self.membrane.grid;
-                self.solution.zone = Z::empty(grid).seeded(grid, &deepest, 0.5 * grid.h());
+                self.solution.zone = Z::empty(grid).seeded(grid, side, &deepest, 0.5 * grid.h());
             }
         }
         self.solution.jumped = true;
@@ -261,7 +263,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
     }
 
     /// Corrects the zone until the contact conditions hold everywhere.
-    fn sweep(&mut self, floor: &SharedField<D>) -> Result<Reason, SolveError> {
+    fn sweep(&mut self) -> Result<Reason, SolveError> {
         let mut predicted = false;
         let mut sweeps = 0;
         let mut seen: Vec<((usize, usize), f64)> = Vec::new();
@@ -276,7 +278,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             }
             if astray {
                 (predicted, sweeps) = (true, 0);
-                self.predict(floor)?;
+                self.predict()?;
                 continue;
             }
             sweeps += 1;
@@ -284,7 +286,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             let (Some(equilibrium), Some(scales)) = (&solution.equilibrium, &solution.scales) else {
                 return Ok(Reason::IterationLimit);
             };
-            let conditions = Conditions::check(equilibrium, &solution.zone, floor, scales);
+            let conditions = Conditions::check(equilibrium, &solution.zone, scales);
             let first = solution.zone.is_empty();
             if conditions.hold(scales, self.adhering) {
                 solution.conditions = Some(conditions);
@@ -302,26 +304,29 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             if self.branch == Branch::Nearest && first {
                 return Ok(Reason::NoContact);
             }
-            let zone = corrected(equilibrium, &solution.zone, floor, &conditions, scales, self.adhering);
+            let zone = corrected(equilibrium, &solution.zone, &conditions, scales, self.adhering);
             let simple = zone.counts() == (1, 0) && conditions.least_pressure_below > 0.0;
             solution.conditions = Some(conditions);
             solution.zone = zone;
             if first && !simple && !predicted && !self.adhering {
                 predicted = true;
-                self.predict(floor)?;
+                self.predict()?;
             }
         }
     }
 
     /// Replaces the zone by the prediction of the nodal method on linear elements, which is cheap, and cannot go astray
     /// however the zone is connected. Its front is true to a fraction of a cell.
-    fn predict(&mut self, floor: &SharedField<D>) -> Result<(), SolveError> {
+    fn predict(&mut self) -> Result<(), SolveError> {
         let finer = if self.membrane.cells.degree() >= 3 { 2 } else { 1 };
         let nodal = self.membrane.on(self.membrane.cells.linear(finer));
         let progress = &*self.progress;
-        let solution = active_set::solve::<D, Z>(&nodal, floor, NodalStart::Nested, &|| progress.interrupted())?;
-        let predictor = solution.predictor(&nodal, floor);
-        self.solution.zone = Z::empty(&self.membrane.grid).united(&self.membrane.grid, &mut |x| predictor(x));
+        let solution = active_set::solve::<D, Z>(&nodal, NodalStart::Nested, &|| progress.interrupted())?;
+        let grid = &self.membrane.grid;
+        self.solution.zone = nodal.obstacles.sides().fold(Z::empty(grid), |zone, side| {
+            let predictor = solution.predictor(&nodal, side);
+            zone.united(grid, side, &mut |x| predictor(x))
+        });
         self.report(0.0, "predicted");
         self.solution.residuals.pop();
         Ok(())
@@ -354,9 +359,8 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 return Ok(Fixed::AtRest);
             }
             let h = self.membrane.grid.h();
-            let adhesion = self.membrane.adhesion.as_ref().filter(|_| self.adhering);
-            let fronts = Fronts::new(&equilibrium, adhesion);
-            if let (Some(_), Branch::Stable) = (adhesion, self.branch)
+            let fronts = Fronts::new(&equilibrium, self.adhering);
+            if let (true, Branch::Stable) = (self.adhering, self.branch)
                 && let Some(part) = lost(&equilibrium, &fronts, zone.counts().0)
             {
                 let zone = zone.without(&self.membrane.grid, part);
@@ -369,7 +373,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             }
             let projection = fronts.project(zone, ModeSpace::Fine);
             let residual = projection.norm / scales.slope_tolerance();
-            let linearised = adhesion.map(|_| fronts.linearise(zone, ModeSpace::Fine, &scales)).transpose()?;
+            let linearised = if self.adhering { Some(fronts.linearise(zone, ModeSpace::Fine, &scales)?) } else { None };
             let mut step = match &linearised {
                 Some(linearised) => linearised.step(self.branch, &scales),
                 None => fronts.newton_step(zone, &scales)?,
@@ -378,7 +382,8 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             best = best.min(residual);
             let relative_step = step.length / h;
             let sharp = D > 1 && (1.0..SHARPEST).contains(&(zone.sharpest() * h));
-            let enough = if sharp { SETTLED_SHARP } else { SETTLED };
+            let coarse = sharp || projection.norm < projection.remainder;
+            let enough = if coarse { SETTLED_COARSE } else { SETTLED };
             let settled = (waited >= PATIENCE || last) && relative_step < enough && step.kind != StepKind::Descent;
             if residual <= 1.0 || (waited >= 1 && relative_step < ROUND_OFF) || settled {
                 if let Some(linearised) = &linearised {

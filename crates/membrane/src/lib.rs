@@ -1,4 +1,4 @@
-//! Membranes on rigid floors by the inequality level-set method.
+//! Membranes beside rigid bodies by the inequality level-set method.
 pub mod active_set;
 pub mod adhesion;
 pub mod coexisting;
@@ -12,6 +12,7 @@ pub mod front;
 pub mod ils;
 pub mod kinks;
 pub mod line_zone;
+pub mod obstacle;
 pub mod plane_zone;
 pub mod problem;
 pub mod quadrature;

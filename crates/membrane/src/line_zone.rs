@@ -1,5 +1,6 @@
 //! Contact zones in one dimension: intervals.
 
+use crate::obstacle::Side;
 use crate::zone::{Advance, Division, FrontFrame, FrontsInCell, ModeSpace, Zone, contact, free};
 use serde_json::{Value, json};
 use signorini_fem::cut::RegionId;
@@ -7,10 +8,15 @@ use signorini_fem::{Cells, Grid};
 use signorini_geometry::{Aabb, ImplicitShape, Point, Vector};
 use std::sync::Arc;
 
+/// Zones that touch different sides are at least this fraction of a cell apart.
+const APART: f64 = 1e-3;
+
 /// Disjoint intervals in ascending order. An end beyond the membrane is not a front: there the zone reaches the end.
 #[derive(Clone, Debug)]
 pub struct LineZone {
     pub intervals: Vec<[f64; 2]>,
+    /// What each of them touches.
+    sides: Vec<Side>,
     grid: Grid<1>,
 }
 
@@ -30,18 +36,33 @@ impl ImplicitShape<1> for End {
 }
 
 impl LineZone {
-    pub fn new(grid: &Grid<1>, mut intervals: Vec<[f64; 2]>) -> Self {
+    /// Intervals that overlap are united; where they touch different sides the left one keeps what they share.
+    pub fn new(grid: &Grid<1>, mut intervals: Vec<(Side, [f64; 2])>) -> Self {
         let bounds = grid.bounds();
-        intervals.retain(|[a, b]| b > a && *b > bounds.min[0] && *a < bounds.max[0]);
-        intervals.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let mut merged: Vec<[f64; 2]> = Vec::new();
-        for [a, b] in intervals {
+        intervals.retain(|(_, [a, b])| b > a && *b > bounds.min[0] && *a < bounds.max[0]);
+        intervals.sort_by(|a, b| a.1[0].total_cmp(&b.1[0]));
+        let mut merged: Vec<(Side, [f64; 2])> = Vec::new();
+        for (side, [a, b]) in intervals {
             match merged.last_mut() {
-                Some(last) if a <= last[1] => last[1] = last[1].max(b),
-                _ => merged.push([a, b]),
+                Some((same, last)) if a <= last[1] && *same == side => last[1] = last[1].max(b),
+                Some((_, last)) if a <= last[1] => {
+                    let a = last[1] + APART * grid.h();
+                    merged.extend((b > a).then_some((side, [a, b])));
+                }
+                _ => merged.push((side, [a, b])),
             }
         }
-        Self { intervals: merged, grid: grid.clone() }
+        let (sides, intervals) = merged.into_iter().unzip();
+        Self { intervals, sides, grid: grid.clone() }
+    }
+
+    fn parts(&self) -> Vec<(Side, [f64; 2])> {
+        self.sides.iter().copied().zip(self.intervals.iter().copied()).collect()
+    }
+
+    /// The same zone with its intervals elsewhere.
+    fn moved(&self, grid: &Grid<1>, to: impl Fn(usize, [f64; 2]) -> [f64; 2]) -> Self {
+        Self::new(grid, self.parts().into_iter().enumerate().map(|(k, (side, ends))| (side, to(k, ends))).collect())
     }
 
     /// Front `2 i` is the left end of interval `i`, front `2 i + 1` its right end.
@@ -76,7 +97,7 @@ impl LineZone {
     /// The region of a point that lies on the inner side of the ends for which `inner` holds.
     fn region_by(&self, inner: impl Fn(usize) -> bool) -> RegionId {
         match (0..self.intervals.len()).find(|i| inner(2 * i) && inner(2 * i + 1)) {
-            Some(k) => contact(k),
+            Some(k) => contact(self.sides[k], k),
             None => free((0..self.intervals.len()).filter(|i| !inner(2 * i + 1)).count()),
         }
     }
@@ -117,6 +138,9 @@ impl Zone<1> for LineZone {
     fn counts(&self) -> (usize, usize) {
         (self.intervals.len(), 0)
     }
+    fn side_of(&self, zone: usize) -> Side {
+        self.sides[zone]
+    }
     fn holes_of(&self, _: usize) -> usize {
         0
     }
@@ -138,44 +162,43 @@ impl Zone<1> for LineZone {
 
     fn advanced(&self, grid: &Grid<1>, _: ModeSpace, step: &[f64], reach: f64) -> Advance<Self> {
         let step = |front: usize| step[front].clamp(-reach, reach);
-        let moved =
-            self.intervals.iter().enumerate().map(|(i, [a, b])| [a - step(2 * i), b + step(2 * i + 1)]).collect();
-        let zone = Self::new(grid, moved);
+        let zone = self.moved(grid, |i, [a, b]| [a - step(2 * i), b + step(2 * i + 1)]);
         Advance { topology_changed: zone.intervals.len() != self.intervals.len(), zone }
     }
 
     fn extrapolated(&self, grid: &Grid<1>, before: &[(&Self, f64)]) -> Option<Self> {
-        if before.iter().any(|(zone, _)| zone.intervals.len() != self.intervals.len()) {
+        if before.iter().any(|(zone, _)| zone.sides != self.sides) {
             return None;
         }
         let ahead = |k: usize, side: usize| {
             let now = self.intervals[k][side];
             now + before.iter().map(|(zone, multiple)| multiple * (now - zone.intervals[k][side])).sum::<f64>()
         };
-        let moved = (0..self.intervals.len()).map(|k| [ahead(k, 0), ahead(k, 1)]).collect();
-        Some(Self::new(grid, moved)).filter(|zone| zone.intervals.len() == self.intervals.len())
+        Some(self.moved(grid, |k, _| [ahead(k, 0), ahead(k, 1)]))
+            .filter(|zone| zone.intervals.len() == self.intervals.len())
     }
 
-    fn united(&self, grid: &Grid<1>, f: &mut dyn FnMut(&Point<1>) -> f64) -> Self {
-        let mut all = self.intervals.clone();
-        all.extend(Self::where_negative(grid, f));
+    fn united(&self, grid: &Grid<1>, side: Side, f: &mut dyn FnMut(&Point<1>) -> f64) -> Self {
+        let mut all = self.parts();
+        all.extend(Self::where_negative(grid, f).into_iter().map(|interval| (side, interval)));
         Self::new(grid, all)
     }
     fn reduced(&self, grid: &Grid<1>, f: &mut dyn FnMut(&Point<1>) -> f64) -> Self {
         let holes = Self::where_negative(grid, f);
-        let mut left = self.intervals.clone();
+        let mut left = self.parts();
         for [c, d] in holes {
-            left = left.iter().flat_map(|&[a, b]| [[a, b.min(c)], [a.max(d), b]]).filter(|[a, b]| b > a).collect();
+            let around = |&(side, [a, b]): &(Side, [f64; 2])| [(side, [a, b.min(c)]), (side, [a.max(d), b])];
+            left = left.iter().flat_map(around).filter(|(_, [a, b])| b > a).collect();
         }
         Self::new(grid, left)
     }
     fn without(&self, grid: &Grid<1>, part: usize) -> Self {
-        let kept = self.intervals.iter().enumerate().filter(|(i, _)| *i != part).map(|(_, interval)| *interval);
+        let kept = self.parts().into_iter().enumerate().filter(|(i, _)| *i != part).map(|(_, interval)| interval);
         Self::new(grid, kept.collect())
     }
-    fn seeded(&self, grid: &Grid<1>, x: &Point<1>, radius: f64) -> Self {
-        let mut all = self.intervals.clone();
-        all.push([x[0] - radius, x[0] + radius]);
+    fn seeded(&self, grid: &Grid<1>, side: Side, x: &Point<1>, radius: f64) -> Self {
+        let mut all = self.parts();
+        all.push((side, [x[0] - radius, x[0] + radius]));
         Self::new(grid, all)
     }
     fn distance(&self, x: &Point<1>) -> f64 {
@@ -185,16 +208,19 @@ impl Zone<1> for LineZone {
         self.region_by(|front| self.end(front).value(x) < 0.0)
     }
     fn to_json(&self) -> Value {
-        json!(self.intervals)
+        json!({"intervals": self.intervals, "above": self.sides.iter().map(|s| *s == Side::Above).collect::<Vec<_>>()})
     }
     fn from_json(grid: &Grid<1>, value: &Value) -> Option<Self> {
-        Some(Self::new(grid, serde_json::from_value(value.clone()).ok()?))
+        let intervals: Vec<[f64; 2]> = serde_json::from_value(value["intervals"].clone()).ok()?;
+        let above: Vec<bool> = serde_json::from_value(value["above"].clone()).ok()?;
+        let side = |above: bool| if above { Side::Above } else { Side::Below };
+        (above.len() == intervals.len()).then(|| Self::new(grid, above.into_iter().map(side).zip(intervals).collect()))
     }
     fn least_feature(&self) -> f64 {
         f64::INFINITY
     }
     fn on_grid(&self, grid: &Grid<1>) -> Self {
-        Self::new(grid, self.intervals.clone())
+        Self::new(grid, self.parts())
     }
     fn divided(&self, _: &Grid<1>, _: usize, _: &dyn Fn(&Aabb<1>, usize) -> bool) -> Option<Arc<dyn Cells<1>>> {
         None

@@ -1,7 +1,8 @@
 //! Contact zones in the plane, bounded by smooth closed fronts.
 
+use crate::obstacle::Side;
 use crate::raster::Raster;
-use crate::zone::{Advance, Division, FrontFrame, FrontsInCell, ModeSpace, Zone, contact, free};
+use crate::zone::{Advance, Division, FrontFrame, FrontsInCell, ModeSpace, Zone, contact, contact_of, free};
 use serde_json::{Value, json};
 use signorini_fem::cut::RegionId;
 use signorini_fem::{Cells, Grid, RefinedGrid};
@@ -22,6 +23,8 @@ const FOLD: f64 = 0.3;
 #[derive(Clone, Debug)]
 pub struct PlaneZone {
     curves: Vec<ClosedCurve>,
+    /// What the zone that a curve bounds touches.
+    sides: Vec<Side>,
     grid: Grid<2>,
     /// Absolute areas: of the curves round a point, the smallest decides where it lies.
     areas: Vec<f64>,
@@ -60,8 +63,9 @@ impl ImplicitShape<2> for FrontSheet<'_> {
 }
 
 impl PlaneZone {
-    /// The zone bounded by the given curves, which neither cross each other nor themselves.
-    pub fn new(grid: &Grid<2>, curves: Vec<ClosedCurve>) -> Self {
+    /// The zone bounded by the given curves, which neither cross each other nor themselves, and what it touches there.
+    pub fn new(grid: &Grid<2>, fronts: Vec<(Side, ClosedCurve)>) -> Self {
+        let (sides, curves): (Vec<Side>, Vec<ClosedCurve>) = fronts.into_iter().unzip();
         let areas: Vec<f64> = curves.iter().map(|c| polygon::signed_area(c.samples())).collect();
         let hole: Vec<bool> = areas.iter().map(|a| *a < 0.0).collect();
         let mut counts = [0, 0];
@@ -74,11 +78,29 @@ impl PlaneZone {
             .collect();
         let near = cells_near(grid, &curves);
         let around = cells_around(grid, &curves);
-        Self { areas: areas.iter().map(|a| a.abs()).collect(), hole, number, near, around, curves, grid: grid.clone() }
+        Self {
+            areas: areas.iter().map(|a| a.abs()).collect(),
+            hole,
+            number,
+            near,
+            around,
+            curves,
+            sides,
+            grid: grid.clone(),
+        }
     }
 
     pub fn curves(&self) -> &[ClosedCurve] {
         &self.curves
+    }
+
+    fn fronts(&self) -> Vec<(Side, ClosedCurve)> {
+        self.sides.iter().copied().zip(self.curves.iter().cloned()).collect()
+    }
+
+    /// The same zone with other curves in the place of its own.
+    fn with_curves(&self, grid: &Grid<2>, curves: Vec<ClosedCurve>) -> Self {
+        Self::new(grid, self.sides.iter().copied().zip(curves).collect())
     }
 
     /// Whether a curve is the rim of a hole.
@@ -152,7 +174,7 @@ impl PlaneZone {
         match enclosing.min_by(|&a, &b| self.areas[a].total_cmp(&self.areas[b])) {
             None => free(0),
             Some(c) if self.hole[c] => free(1 + self.number[c]),
-            Some(c) => contact(self.number[c]),
+            Some(c) => contact(self.sides[c], self.number[c]),
         }
     }
 
@@ -182,7 +204,7 @@ impl PlaneZone {
                 c.offset(4 * c.knots(), |p| w(p.s))
             })
             .collect();
-        Self::new(&self.grid, curves)
+        self.with_curves(&self.grid, curves)
     }
 
     /// Whether the curves are simple, apart, and alternate between fronts and holes from the outside in.
@@ -208,11 +230,17 @@ impl PlaneZone {
             })
     }
 
-    /// The zone enclosed by outlines found on a raster; outlines too small to hold a front are dropped.
-    fn from_outlines(grid: &Grid<2>, mut kept: Vec<ClosedCurve>, outlines: &[Vec<Point<2>>], least: f64) -> Self {
+    /// The fronts that are kept and those along outlines found on a raster; outlines too small to hold a front are dropped.
+    fn from_outlines(
+        grid: &Grid<2>,
+        mut kept: Vec<(Side, ClosedCurve)>,
+        side: Side,
+        outlines: &[Vec<Point<2>>],
+        least: f64,
+    ) -> Self {
         for outline in outlines.iter().filter(|o| polygon::signed_area(o).abs() > least * grid.h().powi(2)) {
             let knots = Self::knots(grid, polygon::perimeter(outline));
-            kept.push(ClosedCurve::along(outline, Self::front_degree(grid), knots));
+            kept.push((side, ClosedCurve::along(outline, Self::front_degree(grid), knots)));
         }
         Self::new(grid, kept)
     }
@@ -222,6 +250,7 @@ impl PlaneZone {
     fn combined(
         &self,
         grid: &Grid<2>,
+        side: Side,
         f: &mut dyn FnMut(&Point<2>) -> f64,
         reverse: bool,
         combine: fn(f64, f64) -> f64,
@@ -238,14 +267,16 @@ impl PlaneZone {
             .flatten()
             .all(|x| self.curves.iter().flat_map(|c| c.samples()).all(|y| (x - y).norm() > 0.75 * grid.h()));
         if clear {
-            let zone = Self::from_outlines(grid, self.curves.clone(), &outlines, 1e-3);
+            let zone = Self::from_outlines(grid, self.fronts(), side, &outlines, 1e-3);
             if Self::is_valid(&zone.curves) {
                 return zone;
             }
         }
-        let mut raster = Raster::of_curves(grid, &self.curves);
+        let (own, others): (Vec<_>, Vec<_>) = self.fronts().into_iter().partition(|f| f.0 == side);
+        let own: Vec<ClosedCurve> = own.into_iter().map(|f| f.1).collect();
+        let mut raster = Raster::of_curves(grid, &own);
         raster.combine(&other, combine);
-        Self::from_outlines(grid, Vec::new(), &raster.outlines(), COLLAPSED)
+        Self::from_outlines(grid, others, side, &raster.outlines(), COLLAPSED)
     }
 }
 
@@ -292,6 +323,10 @@ impl Zone<2> for PlaneZone {
         let holes = self.hole.iter().filter(|h| **h).count();
         (self.curves.len() - holes, holes)
     }
+    fn side_of(&self, zone: usize) -> Side {
+        let outer = (0..self.curves.len()).find(|&i| !self.hole[i] && self.number[i] == zone);
+        outer.map_or(Side::Below, |i| self.sides[i])
+    }
     fn holes_of(&self, zone: usize) -> usize {
         (0..self.curves.len())
             .filter(|&i| self.hole[i])
@@ -299,7 +334,7 @@ impl Zone<2> for PlaneZone {
                 let x = &self.curves[i].samples()[0];
                 let around = (0..self.curves.len())
                     .filter(|&j| j != i && polygon::winding_number(self.curves[j].samples(), x) != 0);
-                self.region_within(around) == contact(zone)
+                contact_of(self.region_within(around)).is_some_and(|c| c.1 == zone)
             })
             .count()
     }
@@ -372,15 +407,22 @@ impl Zone<2> for PlaneZone {
         let collapsed = |c: &ClosedCurve| polygon::signed_area(c.samples()).abs() < COLLAPSED * grid.h().powi(2);
         let turned = moved.iter().zip(&self.hole).any(|(c, &hole)| c.is_hole() != hole);
         if !turned && !moved.iter().any(collapsed) && Self::is_valid(&moved) {
-            return Advance { zone: Self::new(grid, moved), topology_changed: false };
+            return Advance { zone: self.with_curves(grid, moved), topology_changed: false };
         }
-        let raster = Raster::of_curves(grid, &moved);
-        let zone = Self::from_outlines(grid, Vec::new(), &raster.outlines(), COLLAPSED);
+        let zone = Side::BOTH.into_iter().fold(Self::empty(grid), |zone, side| {
+            let of_side = self.sides.iter().zip(&moved).filter(|(s, _)| **s == side);
+            let curves: Vec<ClosedCurve> = of_side.map(|(_, c)| c.clone()).collect();
+            if curves.is_empty() {
+                return zone;
+            }
+            let outlines = Raster::of_curves(grid, &curves).outlines();
+            Self::from_outlines(grid, zone.fronts(), side, &outlines, COLLAPSED)
+        });
         Advance { zone, topology_changed: true }
     }
 
     fn extrapolated(&self, grid: &Grid<2>, before: &[(&Self, f64)]) -> Option<Self> {
-        if before.iter().any(|(zone, _)| zone.hole != self.hole) {
+        if before.iter().any(|(zone, _)| zone.hole != self.hole || zone.sides != self.sides) {
             return None;
         }
         let mut moved = Vec::with_capacity(self.curves.len());
@@ -403,14 +445,19 @@ impl Zone<2> for PlaneZone {
             let curve = now.offset(4 * now.knots(), |p| ahead(&p.position));
             moved.push(curve.by_arc_length(Self::knots(grid, polygon::perimeter(curve.samples()))));
         }
-        Self::is_valid(&moved).then(|| Self::new(grid, moved))
+        Self::is_valid(&moved).then(|| self.with_curves(grid, moved))
     }
 
-    fn united(&self, grid: &Grid<2>, f: &mut dyn FnMut(&Point<2>) -> f64) -> Self {
-        self.combined(grid, f, false, f64::min)
+    fn united(&self, grid: &Grid<2>, side: Side, f: &mut dyn FnMut(&Point<2>) -> f64) -> Self {
+        self.combined(grid, side, f, false, f64::min)
     }
     fn reduced(&self, grid: &Grid<2>, f: &mut dyn FnMut(&Point<2>) -> f64) -> Self {
-        self.combined(grid, f, true, |zone, removed| zone.max(-removed))
+        let both = Side::BOTH.iter().all(|side| self.sides.contains(side));
+        Side::BOTH.into_iter().filter(|side| self.sides.contains(side)).fold(self.clone(), |zone, side| {
+            let other = |x: &Point<2>| both && contact_of(self.region_at(x)).is_some_and(|c| c.0 != side);
+            let mut own = |x: &Point<2>| if other(x) { 1.0 } else { f(x) };
+            zone.combined(grid, side, &mut own, true, |zone, removed| zone.max(-removed))
+        })
     }
     fn without(&self, grid: &Grid<2>, part: usize) -> Self {
         let Some(outer) = (0..self.curves.len()).find(|&i| !self.hole[i] && self.number[i] == part) else {
@@ -420,18 +467,19 @@ impl Zone<2> for PlaneZone {
             self.hole[i] && polygon::winding_number(self.curves[outer].samples(), &self.curves[i].samples()[0]) != 0
         };
         let kept = (0..self.curves.len()).filter(|&i| i != outer && !within(i));
-        Self::new(grid, kept.map(|i| self.curves[i].clone()).collect())
+        Self::new(grid, kept.map(|i| (self.sides[i], self.curves[i].clone())).collect())
     }
-    fn seeded(&self, grid: &Grid<2>, x: &Point<2>, radius: f64) -> Self {
+    fn seeded(&self, grid: &Grid<2>, side: Side, x: &Point<2>, radius: f64) -> Self {
         let circle: Vec<Point<2>> = (0..SEED_KNOTS)
             .map(|i| {
                 let (sin, cos) = (std::f64::consts::TAU * i as f64 / SEED_KNOTS as f64).sin_cos();
                 x + radius * Point::<2>::new(cos, sin)
             })
             .collect();
-        let mut curves = self.curves.clone();
-        curves.push(ClosedCurve::through(&circle, Self::front_degree(grid)));
-        if Self::is_valid(&curves) { Self::new(grid, curves) } else { self.clone() }
+        let mut fronts = self.fronts();
+        fronts.push((side, ClosedCurve::through(&circle, Self::front_degree(grid))));
+        let zone = Self::new(grid, fronts);
+        if Self::is_valid(&zone.curves) { zone } else { self.clone() }
     }
     fn distance(&self, x: &Point<2>) -> f64 {
         let near = &self.near[self.grid.cell_containing(x)];
@@ -450,7 +498,9 @@ impl Zone<2> for PlaneZone {
         self.region_within(far.chain(close.collect::<Vec<_>>()))
     }
     fn to_json(&self) -> Value {
-        let curves = self.curves.iter().map(|c| json!({"degree": c.degree(), "coefficients": c.coefficients()}));
+        let curves = self.sides.iter().zip(&self.curves).map(
+            |(side, c)| json!({"above": *side == Side::Above, "degree": c.degree(), "coefficients": c.coefficients()}),
+        );
         json!({"cells": self.grid.cells(), "degree": self.grid.degree(), "curves": curves.collect::<Vec<_>>()})
     }
     fn from_json(grid: &Grid<2>, value: &Value) -> Option<Self> {
@@ -462,7 +512,8 @@ impl Zone<2> for PlaneZone {
         }
         let curve = |v: &Value| {
             let coefficients: Vec<[f64; 2]> = serde_json::from_value(v["coefficients"].clone()).ok()?;
-            ClosedCurve::from_coefficients(v["degree"].as_u64()? as usize, coefficients)
+            let side = if v["above"].as_bool()? { Side::Above } else { Side::Below };
+            Some((side, ClosedCurve::from_coefficients(v["degree"].as_u64()? as usize, coefficients)?))
         };
         let curves = value["curves"].as_array()?.iter().map(curve).collect::<Option<Vec<_>>>()?;
         Some(Self::new(&Grid::new(*grid.bounds(), cells, degree), curves))
@@ -495,7 +546,7 @@ impl Zone<2> for PlaneZone {
         let fit = |c: &ClosedCurve| {
             if same(c) { c.clone() } else { ClosedCurve::along(c.samples(), Self::front_degree(grid), knots(c)) }
         };
-        Self::new(grid, self.curves.iter().map(fit).collect())
+        self.with_curves(grid, self.curves.iter().map(fit).collect())
     }
     fn divided(
         &self,

@@ -1,7 +1,8 @@
-//! A membrane at one instant: where it is, what pulls, pushes and holds it, and the floor below.
+//! A membrane at one instant: where it is, what pulls, pushes and holds it, and the bodies below and above.
 
 use crate::domain::{CellStatus, DomainOnCells};
 use crate::field::SharedField;
+use crate::obstacle::{Obstacles, Side};
 use signorini_fem::{Cells, Grid};
 use signorini_geometry::{Point, Vector};
 use std::sync::Arc;
@@ -42,7 +43,7 @@ pub struct Support<const D: usize> {
 }
 
 /// A membrane of tension `T` under the load `f`, over a floor of height `h`: find `u >= h` with
-/// `div(T ∇u) + f + p = 0`, `p >= 0`, `p (u - h) = 0`.
+/// `div(T ∇u) + f + p = 0`, `p >= 0`, `p (u - h) = 0`; under a ceiling the inequalities are turned round.
 #[derive(Clone)]
 pub struct Membrane<const D: usize> {
     /// What the displacement is computed on.
@@ -55,10 +56,8 @@ pub struct Membrane<const D: usize> {
     pub tension: SharedField<D>,
     /// Force per area along +z: negative where it presses downwards.
     pub load: SharedField<D>,
-    /// Height of the floor; none where there is no floor.
-    pub floor: Option<SharedField<D>>,
-    /// Energy that each area of contact gives back, where the floor is sticky.
-    pub adhesion: Option<SharedField<D>>,
+    /// What it may touch.
+    pub obstacles: Obstacles<D>,
     /// What holds each piece of the boundary; a piece without support is a free edge.
     pub supports: Vec<Option<Support<D>>>,
     /// Number of named supports.
@@ -66,9 +65,9 @@ pub struct Membrane<const D: usize> {
 }
 
 impl<const D: usize> Membrane<D> {
-    /// The pressure with which a floor in contact pushes up: `p = -div(T ∇h) - f`.
-    pub fn floor_pressure(&self, floor: &SharedField<D>, x: &Point<D>) -> f64 {
-        let h = floor.jet(x);
+    /// The pressure with which a body in contact pushes: `p = -div(T ∇h) - f` upwards, or its opposite downwards.
+    pub fn pressure(&self, side: Side, x: &Point<D>) -> f64 {
+        let h = self.obstacles.jet(side, x);
         // In polar coordinates the Laplacian has one more term, h'/r, which tends to h'' at the axis.
         let polar = match self.measure {
             Measure::Axisymmetric if x[0] == 0.0 => h.hessian[(0, 0)],
@@ -82,11 +81,14 @@ impl<const D: usize> Membrane<D> {
                 t.value * laplacian + t.gradient.dot(&h.gradient)
             }
         };
-        -bend - self.load.value(x)
+        -side.sign() * (bend + self.load.value(x))
     }
 
-    /// The slope at which adhesion holds a front, `ρ_a = √(2γ/T)`, and its gradient.
-    pub fn adhesive_slope(&self, adhesion: &SharedField<D>, x: &Point<D>) -> (f64, Vector<D>) {
+    /// The slope at which adhesion holds a front, `ρ_a = √(2γ/T)`, and its gradient; zero where nothing is sticky.
+    pub fn adhesive_slope(&self, side: Side, x: &Point<D>) -> (f64, Vector<D>) {
+        let Some(adhesion) = self.obstacles.at(side, x).and_then(|o| o.adhesion.as_ref()) else {
+            return (0.0, Vector::zeros());
+        };
         let (energy, tension) = (adhesion.jet(x), self.tension.jet(x));
         if energy.value <= 0.0 {
             return (0.0, Vector::zeros());

@@ -1,8 +1,9 @@
 //! The cells of a membrane divided by its boundary and by the fronts of contact.
 
 use crate::domain::CellStatus;
+use crate::obstacle::Side;
 use crate::problem::Membrane;
-use crate::zone::{Division, OUTSIDE, contact_index, is_free};
+use crate::zone::{Division, OUTSIDE, contact_of, is_free};
 use rayon::prelude::*;
 use signorini_fem::cells::SidePoint;
 use signorini_fem::cut::{CellPartition, CellRule, QuadraturePoint, RegionId, scan_roots};
@@ -30,8 +31,9 @@ pub struct FrontPoint<const D: usize> {
     /// Unit normal, out of the zone into the free membrane.
     pub normal: Vector<D>,
     pub front: usize,
-    /// The zone on one side and the free region on the other.
+    /// The zone within and the side that it touches, and the free region without.
     pub zone: usize,
+    pub side: Side,
     pub free: RegionId,
 }
 
@@ -105,7 +107,7 @@ impl<const D: usize> Quadrature<D> {
             let Cell::Cut(rule) = content else { continue };
             for p in &rule.surfaces {
                 if p.tag >= FRONT_TAG {
-                    if let (Some(zone), true) = (contact_index(p.minus), is_free(p.plus)) {
+                    if let (Some((side, zone)), true) = (contact_of(p.minus), is_free(p.plus)) {
                         self.front.push(FrontPoint {
                             cell,
                             x: p.x,
@@ -113,6 +115,7 @@ impl<const D: usize> Quadrature<D> {
                             normal: p.normal,
                             front: (p.tag - FRONT_TAG) as usize,
                             zone,
+                            side,
                             free: p.plus,
                         });
                     }

@@ -127,7 +127,7 @@ impl<const D: usize> Refinement<D> {
 fn is_near<const D: usize, Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z, scales: &Scales) -> bool {
     let zone = zone.on_grid(&membrane.grid);
     let state = Equilibrium::solve(membrane, &zone, &mut Elements::new(membrane));
-    state.is_ok_and(|state| Fronts::new(&state, membrane.adhesion.as_ref()).farthest(scales) < NEAR * membrane.grid.h())
+    state.is_ok_and(|state| Fronts::new(&state, true).farthest(scales) < NEAR * membrane.grid.h())
 }
 
 /// Whether fronts have left the cells that were divided for them.

@@ -7,7 +7,7 @@ use crate::zone::is_free;
 /// Reference gap, pressure, tension and length of a problem.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales {
-    /// Span of the gap between free membrane and floor; the gap itself where adhesion may bridge it.
+    /// Span of the gap between the free membrane and what it may touch; the gap itself where adhesion may bridge it.
     pub gap: f64,
     /// The larger of the load and the pressure that would bend the membrane by the reference gap.
     pub pressure: f64,
@@ -24,23 +24,35 @@ impl Scales {
     /// Reads the scales off the membrane without contact.
     pub fn of_free<const D: usize>(free: &Equilibrium<D>) -> Self {
         let membrane: &Membrane<D> = &free.membrane;
-        let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
+        let (mut lowest, mut highest) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         let (mut load, mut tension) = (0.0f64, 0.0f64);
         free.for_each_point(|cell, region, x, _| {
             if is_free(region)
                 && let Some((u, _)) = free.evaluate(cell, region, x)
             {
-                let gap = u - membrane.floor.as_ref().map_or(0.0, |h| h.value(x));
-                lowest = lowest.min(gap);
-                highest = highest.max(gap);
+                let mut measure = |k: usize, gap: f64| {
+                    lowest[k] = lowest[k].min(gap);
+                    highest[k] = highest[k].max(gap);
+                };
+                if membrane.obstacles.is_empty() {
+                    measure(0, u);
+                }
+                membrane
+                    .obstacles
+                    .sides()
+                    .enumerate()
+                    .for_each(|(k, side)| measure(k, membrane.obstacles.gap(side, x, u)));
                 load = load.max(membrane.load.value(x).abs());
                 tension = tension.max(membrane.tension.value(x));
             }
         });
         let length = membrane.size();
-        let span = highest - lowest;
-        let bridged = if membrane.adhesion.is_some() { span.max(highest.abs()) } else { span };
-        let gap = bridged.max(f64::MIN_POSITIVE);
+        let sticky = membrane.obstacles.are_sticky();
+        let spans = lowest.iter().zip(&highest).filter(|(low, high)| low <= high).map(|(low, high)| {
+            let span = high - low;
+            if sticky { span.max(high.abs()) } else { span }
+        });
+        let gap = spans.fold(f64::MIN_POSITIVE, f64::max);
         Self {
             gap,
             pressure: load.max(tension * gap / (length * length)),

@@ -16,13 +16,16 @@ pub struct Staircase<const D: usize> {
 impl<const D: usize> Staircase<D> {
     pub fn new(membrane: &Membrane<D>, solution: &NodalSolution<D>) -> Self {
         let counts = membrane.grid.node_counts();
-        let touches: Vec<bool> = solution.nodes.iter().map(|n| n.is_some_and(|n| n.in_contact)).collect();
+        let touches: Vec<bool> = solution.nodes.iter().map(|n| n.is_some_and(|n| n.contact.is_some())).collect();
         let (label, zones) = connected(&touches, &counts);
         let free: Vec<bool> = touches.iter().map(|t| !t).collect();
         let (hole_label, parts) = connected(&free, &counts);
-        let mut components = vec![Component { area: 0.0, force: 0.0, centroid: Point::zeros(), holes: 0 }; zones];
+        let mut components =
+            vec![Component { obstacle: 0, area: 0.0, force: 0.0, centroid: Point::zeros(), holes: 0 }; zones];
         for (i, node) in solution.nodes.iter().enumerate() {
             if let (Some(node), Some(k)) = (node, label[i]) {
+                let touched = node.contact.and_then(|side| membrane.obstacles.index_at(side, &membrane.grid.node(i)));
+                components[k].obstacle = touched.unwrap_or(components[k].obstacle);
                 components[k].area += node.share;
                 components[k].force += node.reaction;
                 components[k].centroid += node.share * membrane.grid.node(i);

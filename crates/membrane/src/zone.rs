@@ -1,5 +1,6 @@
 //! What the method needs to know of a contact zone, in one dimension or two.
 
+use crate::obstacle::Side;
 use serde_json::Value;
 use signorini_fem::cut::RegionId;
 use signorini_fem::{Cells, Grid};
@@ -8,13 +9,18 @@ use std::sync::Arc;
 
 /// Beyond the membrane.
 pub const OUTSIDE: RegionId = 0;
-const CONTACT: RegionId = 1 << 24;
+const BELOW: RegionId = 1 << 24;
 const FREE: RegionId = 2 << 24;
+const ABOVE: RegionId = 3 << 24;
 const INDEX: RegionId = (1 << 24) - 1;
 
-/// The region of the `k`-th connected zone of contact.
-pub fn contact(k: usize) -> RegionId {
-    CONTACT | k as u32
+/// The region of the `k`-th connected zone of contact, which touches a body on one side.
+pub fn contact(side: Side, k: usize) -> RegionId {
+    k as u32
+        | match side {
+            Side::Below => BELOW,
+            Side::Above => ABOVE,
+        }
 }
 
 /// The region of the `k`-th connected part of the free membrane.
@@ -22,9 +28,19 @@ pub fn free(k: usize) -> RegionId {
     FREE | k as u32
 }
 
-/// The index of a region if it is one of contact.
+/// The side that is touched and the number of the zone, if a region is one of contact.
+pub fn contact_of(region: RegionId) -> Option<(Side, usize)> {
+    let side = match region & !INDEX {
+        BELOW => Side::Below,
+        ABOVE => Side::Above,
+        _ => return None,
+    };
+    Some((side, (region & INDEX) as usize))
+}
+
+/// The number of the zone, if a region is one of contact.
 pub fn contact_index(region: RegionId) -> Option<usize> {
-    (region & !INDEX == CONTACT).then_some((region & INDEX) as usize)
+    contact_of(region).map(|c| c.1)
 }
 
 /// Whether a region is free membrane.
@@ -98,6 +114,8 @@ pub trait Zone<const D: usize>: Division<D> + Clone + Send {
     fn is_empty(&self) -> bool;
     /// Number of connected zones and of holes in them.
     fn counts(&self) -> (usize, usize);
+    /// What a zone touches.
+    fn side_of(&self, zone: usize) -> Side;
     /// Holes of one zone.
     fn holes_of(&self, zone: usize) -> usize;
 
@@ -116,14 +134,14 @@ pub trait Zone<const D: usize>: Division<D> + Clone + Send {
     /// these differ in more than the place of the fronts.
     fn extrapolated(&self, grid: &Grid<D>, before: &[(&Self, f64)]) -> Option<Self>;
 
-    /// Adds the set where `f < 0`, which lies outside the zone.
-    fn united(&self, grid: &Grid<D>, f: &mut dyn FnMut(&Point<D>) -> f64) -> Self;
+    /// Adds the set where `f < 0`, which lies outside the zone and touches one side.
+    fn united(&self, grid: &Grid<D>, side: Side, f: &mut dyn FnMut(&Point<D>) -> f64) -> Self;
     /// Removes the set where `f < 0`.
     fn reduced(&self, grid: &Grid<D>, f: &mut dyn FnMut(&Point<D>) -> f64) -> Self;
     /// The zone without one of its parts.
     fn without(&self, grid: &Grid<D>, part: usize) -> Self;
-    /// A small zone about a point, added.
-    fn seeded(&self, grid: &Grid<D>, x: &Point<D>, radius: f64) -> Self;
+    /// A small zone about a point that touches one side, added.
+    fn seeded(&self, grid: &Grid<D>, side: Side, x: &Point<D>, radius: f64) -> Self;
     /// Distance from `x` to the nearest front.
     fn distance(&self, x: &Point<D>) -> f64;
     /// The region of a point of the membrane.

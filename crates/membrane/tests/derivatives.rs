@@ -8,6 +8,7 @@ use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::field::{Constant, Formula, SharedField};
 use signorini_membrane::front::Fronts;
 use signorini_membrane::ils::{Reason, Start, solve};
+use signorini_membrane::obstacle::{Obstacle, Obstacles, Side};
 use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::{Measure, Membrane, Support};
 use signorini_membrane::scales::Scales;
@@ -17,24 +18,24 @@ use std::sync::Arc;
 
 const SPACE: ModeSpace = ModeSpace::Coarse(6);
 
-/// A disc over a curved floor, with a tension and a load that vary.
-fn membrane(cells: usize, degree: usize) -> Membrane<2> {
+/// A disc over a curved floor, with a tension and a load that vary; or all that upside down.
+fn membrane(cells: usize, degree: usize, side: Side) -> Membrane<2> {
     let bounds = Aabb::new(Point::<2>::new(-1.03, -1.03), Point::<2>::new(1.03, 1.03));
     let grid = Grid::new(bounds, [cells, cells], degree);
     let domain: Arc<dyn Domain<2>> =
         Arc::new(ImplicitDomain(Ellipse { center: Point::zeros(), semi_axes: [1.0, 1.0] }));
     let c = |v: f64| Jet::<2>::constant(v);
-    let floor: SharedField<2> =
-        Arc::new(Formula(move |[x, y]: [Jet<2>; 2]| c(-0.1) - c(0.05) * x * x + c(0.03) * y * x - c(0.02) * y));
+    let up = c(side.sign());
+    let height: SharedField<2> =
+        Arc::new(Formula(move |[x, y]: [Jet<2>; 2]| up * (c(-0.1) - c(0.05) * x * x + c(0.03) * y * x - c(0.02) * y)));
     Membrane {
         domain: DomainOnCells::new(domain, &grid),
         cells: Arc::new(grid.clone()),
         grid,
         measure: Measure::Plain,
         tension: Arc::new(Formula(move |[x, y]: [Jet<2>; 2]| c(1.0) + c(0.4) * x + c(0.2) * y * y)),
-        load: Arc::new(Formula(move |[x, y]: [Jet<2>; 2]| c(-1.0) - c(0.3) * y + c(0.2) * x * y)),
-        floor: Some(floor),
-        adhesion: None,
+        load: Arc::new(Formula(move |[x, y]: [Jet<2>; 2]| up * (c(-1.0) - c(0.3) * y + c(0.2) * x * y))),
+        obstacles: Obstacles(vec![Obstacle { side, height, adhesion: None }]),
         supports: vec![Some(Support { index: 0, displacement: Arc::new(Constant(0.0)) })],
         support_count: 1,
     }
@@ -53,7 +54,8 @@ fn zone_of(membrane: &Membrane<2>, radius: f64) -> PlaneZone {
             Point::<2>::new(0.07 + r * a.cos(), -0.04 + r * a.sin())
         })
         .collect();
-    PlaneZone::new(&membrane.grid, vec![ClosedCurve::through(&points, 9)])
+    let side = membrane.obstacles.0[0].side;
+    PlaneZone::new(&membrane.grid, vec![(side, ClosedCurve::through(&points, 9))])
 }
 
 /// `∫ ρ ω_n dΓ` for all modes, with the modes carried along by the front.
@@ -71,12 +73,12 @@ fn moments(membrane: &Membrane<2>, zone: &PlaneZone, modes: &PlaneZone) -> Vec<f
 }
 
 /// The relative error of the predicted change of the slope jump.
-fn slope_jump_error(cells: usize, degree: usize) -> f64 {
-    let membrane = membrane(cells, degree);
+fn slope_jump_error(cells: usize, degree: usize, side: Side) -> f64 {
+    let membrane = membrane(cells, degree, side);
     let zone = zone(&membrane);
     let mut elements = Elements::new(&membrane);
     let equilibrium = Equilibrium::solve(&membrane, &zone, &mut elements).expect("an equilibrium");
-    let fronts = Fronts::new(&equilibrium, None);
+    let fronts = Fronts::new(&equilibrium, false);
     let n = zone.mode_offsets(SPACE)[1];
     let direction: Vec<f64> = (0..n).map(|i| 1.0 + (1.7 * i as f64).sin()).collect();
     let frames: Vec<_> = equilibrium.quadrature.front.iter().map(|p| zone.frame(p.front, &p.x, SPACE)).collect();
@@ -98,14 +100,16 @@ fn slope_jump_error(cells: usize, degree: usize) -> f64 {
 
 #[test]
 fn the_change_of_the_slope_jump_is_predicted() {
-    let errors: Vec<f64> = [1, 2, 4].iter().map(|&p| slope_jump_error(20, p)).collect();
-    assert!(errors[2] <= 1e-3, "{errors:?}");
-    assert!(errors[0] > errors[1] && errors[1] > errors[2], "{errors:?}");
+    for side in Side::BOTH {
+        let errors: Vec<f64> = [1, 2, 4].iter().map(|&p| slope_jump_error(20, p, side)).collect();
+        assert!(errors[2] <= 1e-3, "{errors:?}");
+        assert!(errors[0] > errors[1] && errors[1] > errors[2], "{errors:?}");
+    }
 }
 
 #[test]
 fn the_change_of_the_energy_is_half_the_squared_slope_jump() {
-    let membrane = membrane(20, 4);
+    let membrane = membrane(20, 4, Side::Above);
     let zone = zone(&membrane);
     let energy = |zone: &PlaneZone| {
         let mut elements = Elements::new(&membrane);
@@ -113,7 +117,10 @@ fn the_change_of_the_energy_is_half_the_squared_slope_jump() {
         let mut energy = 0.0;
         equilibrium.for_each_point(|cell, region, x, w| {
             let (u, gradient) = match contact_index(region) {
-                Some(_) => membrane.floor.as_ref().map(|h| h.jet(x)).map(|h| (h.value, h.gradient)).expect("a floor"),
+                Some(_) => {
+                    let h = membrane.obstacles.0[0].height.jet(x);
+                    (h.value, h.gradient)
+                }
                 None if is_free(region) => equilibrium.evaluate(cell, region, x).expect("a state"),
                 None => return,
             };
@@ -142,29 +149,30 @@ fn the_change_of_the_energy_is_half_the_squared_slope_jump() {
 }
 
 /// An adhesion that varies.
-fn sticky(cells: usize, degree: usize) -> Membrane<2> {
+fn sticky(cells: usize, degree: usize, side: Side) -> Membrane<2> {
     let c = |v: f64| Jet::<2>::constant(v);
     let energy = move |[x, y]: [Jet<2>; 2]| c(0.002) + c(0.001) * x - c(0.0008) * y * y;
-    Membrane { adhesion: Some(Arc::new(Formula(energy))), ..membrane(cells, degree) }
+    let mut membrane = membrane(cells, degree, side);
+    membrane.obstacles.0[0].adhesion = Some(Arc::new(Formula(energy)));
+    membrane
 }
 
 #[test]
 fn the_change_of_the_adhesive_condition_is_predicted() {
-    let membrane = sticky(20, 4);
+    let membrane = sticky(20, 4, Side::Above);
     // Too large a zone, which the floor would have to hold.
     let zone = zone_of(&membrane, 0.72);
     let excess = |zone: &PlaneZone| {
         let mut elements = Elements::new(&membrane);
         let equilibrium = Equilibrium::solve(&membrane, zone, &mut elements).expect("an equilibrium");
         let scales = Scales::of_free(&equilibrium);
-        let fronts = Fronts::new(&equilibrium, membrane.adhesion.as_ref());
+        let fronts = Fronts::new(&equilibrium, true);
         let linearised = fronts.linearise(zone, SPACE, &scales).expect("a derivative");
         // The front itself becomes longer, which the method leaves out: it vanishes with the residual.
         let n = zone.mode_offsets(SPACE)[1];
         let mut stretch = vec![0.0; n * n];
         for (p, rho) in equilibrium.quadrature.front.iter().zip(&fronts.slope_jump) {
-            let energy = membrane.adhesion.as_ref().expect("an adhesion");
-            let residual = rho - membrane.adhesive_slope(energy, &p.x).0;
+            let residual = rho - membrane.adhesive_slope(p.side, &p.x).0;
             assert!(residual > 0.0, "the zone is too small for this test");
             let frame = zone.frame(p.front, &p.x, SPACE);
             for &(i, v) in &frame.modes {
@@ -189,7 +197,7 @@ fn the_change_of_the_adhesive_condition_is_predicted() {
 
 #[test]
 fn stability_is_the_second_change_of_the_energy() {
-    let membrane = sticky(20, 4);
+    let membrane = sticky(20, 4, Side::Below);
     let mut elements = Elements::new(&membrane);
     let start: Start<PlaneZone> = Start::Asked(zone_of(&membrane, 0.6), Branch::Nearest);
     let solution = solve(&membrane, &mut elements, start, (0, 0.0), &mut Silent);
@@ -200,8 +208,9 @@ fn stability_is_the_second_change_of_the_energy() {
         state.for_each_point(|cell, region, x, w| {
             let (u, gradient, stuck) = match contact_index(region) {
                 Some(_) => {
-                    let h = membrane.floor.as_ref().expect("a floor").jet(x);
-                    (h.value, h.gradient, membrane.adhesion.as_ref().expect("an adhesion").value(x))
+                    let body = &membrane.obstacles.0[0];
+                    let h = body.height.jet(x);
+                    (h.value, h.gradient, body.adhesion.as_ref().expect("an adhesion").value(x))
                 }
                 None if is_free(region) => {
                     let (u, gradient) = state.evaluate(cell, region, x).expect("a state");
@@ -217,7 +226,7 @@ fn stability_is_the_second_change_of_the_energy() {
     let zone = &solution.zone;
     let equilibrium = solution.equilibrium.as_ref().expect("a state");
     let scales = solution.scales.expect("scales");
-    let fronts = Fronts::new(equilibrium, membrane.adhesion.as_ref());
+    let fronts = Fronts::new(equilibrium, true);
     let linearised = fronts.linearise(zone, ModeSpace::Fine, &scales).expect("a derivative");
     let n = zone.mode_offsets(ModeSpace::Fine)[1];
     for frequency in [0.0, 1.0, 2.0] {

@@ -6,6 +6,7 @@ use signorini_geometry::{ClosedCurve, Point};
 use signorini_membrane::domain::{DomainOnCells, MeshDomain};
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::field::Constant;
+use signorini_membrane::obstacle::{Obstacle, Obstacles, Side};
 use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::{Measure, Membrane, Support};
 use std::sync::Arc;
@@ -25,8 +26,7 @@ fn failures(name: &str, degree: usize, circles: usize) -> usize {
         measure: Measure::Plain,
         tension: Arc::new(Constant(1.0)),
         load: Arc::new(Constant(-1.0)),
-        floor: Some(Arc::new(Constant(-0.1))),
-        adhesion: None,
+        obstacles: Obstacles(vec![Obstacle { side: Side::Below, height: Arc::new(Constant(-0.1)), adhesion: None }]),
         support_count: 1,
     };
     let mut elements = Elements::new(&membrane);
@@ -42,7 +42,7 @@ fn failures(name: &str, degree: usize, circles: usize) -> usize {
                         centre + r * Point::<2>::new(cos, sin)
                     })
                     .collect();
-                ClosedCurve::through(&points, 7)
+                (Side::Below, ClosedCurve::through(&points, 7))
             };
             let mut curves = vec![circle(radius, 1.0)];
             if i % 2 == 0 {

@@ -5,6 +5,7 @@ use signorini_geometry::{Aabb, Line, Point, Vector};
 use signorini_membrane::domain::{Domain, DomainOnCells, ImplicitDomain};
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::field::Constant;
+use signorini_membrane::obstacle::Obstacles;
 use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::{Measure, Membrane, Support};
 use signorini_membrane::zone::Zone;
@@ -30,8 +31,7 @@ fn error(degree: usize, normal: Vector<2>, offset: f64, divided: bool) -> f64 {
         measure: Measure::Plain,
         tension: Arc::new(Constant(1.0)),
         load: Arc::new(Constant(0.0)),
-        floor: None,
-        adhesion: None,
+        obstacles: Obstacles::default(),
         supports: vec![Some(Support { index: 0, displacement })],
         support_count: 1,
     };

@@ -2,6 +2,7 @@
 
 use crate::case::statement::Space;
 use crate::plan::MembranePlan;
+use signorini_membrane::obstacle::Side;
 use signorini_verify::flat_floor::{FlatFloor, Kind};
 
 /// The flat-floor solution at a time, if the case is a string or round membrane with constant data, held at
@@ -12,8 +13,8 @@ pub fn of<const D: usize>(plan: &MembranePlan<D>, time: f64) -> Option<FlatFloor
     let constant = |e: &crate::expression::Expression| e.at_time(time).constant();
     let tension = constant(&plan.tension.expression)?;
     let load: f64 = plan.loads.values().map(|l| constant(&l.expression)).sum::<Option<f64>>()?;
-    let (_, floor) = plan.contact.as_ref()?;
-    if floor.adhesion.is_some() {
+    let [floor] = plan.contacts.as_slice() else { return None };
+    if floor.adhesion.is_some() || floor.side == Side::Above {
         return None;
     }
     let height = constant(&floor.height.expression)? + floor.displacement_at(time)[2];

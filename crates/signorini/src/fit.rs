@@ -44,8 +44,9 @@ pub fn fit(document: &Document, folder: &Path) -> Result<Fitted, RunError> {
             .help("space = \"axisymmetric\" for a round membrane, \"line\" for a strip")
             .into());
     };
-    if planned.contact.is_none() {
-        return Err(document.error(key.span(), "there is no contact to measure").into());
+    if planned.contacts.len() != 1 {
+        let found = planned.contacts.len();
+        return Err(document.error(key.span(), format!("one contact is measured, there are {found}")).into());
     }
     if planned.space == Space::Axisymmetric && planned.grid.bounds().min[0] != 0.0 {
         return Err(document.error(document.case.space.span(), "a fit needs a disc: its radius begins at 0").into());

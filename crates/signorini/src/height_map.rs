@@ -3,15 +3,10 @@
 //! The first value is the height at the origin; columns run along x, rows along y. The values are joined by a bicubic
 //! spline, which passes through all of them and has continuous curvature.
 
+use crate::relief::Sampled;
+use signorini_geometry::Vector;
 use signorini_geometry::grid_spline::GridSpline;
-use signorini_geometry::{Jet, Real, Vector};
 use std::path::Path;
-
-/// A height above a rectangle.
-#[derive(Debug)]
-pub struct HeightMap {
-    spline: GridSpline<2>,
-}
 
 /// The most values of a map.
 const MOST: usize = 64 << 20;
@@ -23,60 +18,34 @@ struct Table {
     values: Vec<f64>,
 }
 
-impl HeightMap {
-    /// Reads a map from the bytes of a file, whose kind its extension tells. `scale` is what one unit of the file stands
-    /// for.
-    ///
-    /// # Errors
-    /// In words: files of another kind, damaged or ragged ones, numbers that are missing or not finite, fewer than four
-    /// rows or columns, images of another depth than 16 bits.
-    pub fn read(path: &Path, bytes: &[u8], origin: [f64; 2], spacing: [f64; 2], scale: f64) -> Result<Self, String> {
-        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-        let table = match extension.as_str() {
-            "csv" | "txt" => csv(bytes),
-            "npy" => npy(bytes),
-            "tif" | "tiff" => tiff(bytes),
-            other => Err(format!("`{other}` is no format of height maps; valid are csv, npy and tif")),
-        }?;
-        let Table { rows, columns, values } = table;
-        if rows < 4 || columns < 4 {
-            return Err(format!("{rows} rows of {columns} heights: at least 4 of each are needed"));
-        }
-        if let Some(k) = values.iter().position(|v| !v.is_finite()) {
-            let (row, column) = (k / columns + 1, k % columns + 1);
-            return Err(format!("row {row}, column {column} is {}: fill the gap, or crop the map", values[k]));
-        }
-        // The first index of the spline is that along x.
-        let mut turned = Vec::with_capacity(values.len());
-        for i in 0..columns {
-            turned.extend((0..rows).map(|j| scale * values[j * columns + i]));
-        }
-        let spline = GridSpline::new(Vector::<2>::from(origin), spacing, [columns, rows], turned);
-        Ok(HeightMap { spline: spline.map_err(|e| e.to_string())? })
+/// Reads a map from the bytes of a file, whose kind its extension tells. `scale` is what one unit of the file stands
+/// for.
+///
+/// # Errors
+/// In words: files of another kind, damaged or ragged ones, numbers that are missing or not finite, fewer than four
+/// rows or columns, images of another depth than 16 bits.
+pub fn read(path: &Path, bytes: &[u8], origin: [f64; 2], spacing: [f64; 2], scale: f64) -> Result<Sampled, String> {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let table = match extension.as_str() {
+        "csv" | "txt" => csv(bytes),
+        "npy" => npy(bytes),
+        "tif" | "tiff" => tiff(bytes),
+        other => Err(format!("`{other}` is no format of height maps; valid are csv, npy and tif")),
+    }?;
+    let Table { rows, columns, values } = table;
+    if rows < 4 || columns < 4 {
+        return Err(format!("{rows} rows of {columns} heights: at least 4 of each are needed"));
     }
-
-    /// The height at a place, with derivatives where the place is a jet.
-    pub fn evaluate<R: Real>(&self, x: R, y: R) -> R {
-        let at = Vector::<2>::new(x.value(), y.value());
-        if !at.iter().all(|v| v.is_finite()) {
-            return R::constant(f64::NAN);
-        }
-        let Jet { value, gradient: g, hessian: h } = self.spline.jet(&at);
-        // Jets end with the second order, and so does this.
-        let (dx, dy) = (x - R::constant(at[0]), y - R::constant(at[1]));
-        let c = R::constant;
-        c(value)
-            + c(g[0]) * dx
-            + c(g[1]) * dy
-            + c(0.5 * h[(0, 0)]) * dx * dx
-            + c(h[(0, 1)]) * dx * dy
-            + c(0.5 * h[(1, 1)]) * dy * dy
+    if let Some(k) = values.iter().position(|v| !v.is_finite()) {
+        let (row, column) = (k / columns + 1, k % columns + 1);
+        return Err(format!("row {row}, column {column} is {}: fill the gap, or crop the map", values[k]));
     }
-
-    /// The corners of the rectangle.
-    pub fn bounds(&self) -> [[f64; 2]; 2] {
-        self.spline.bounds().map(|x| [x[0], x[1]])
+    // The first index of the spline is that along x.
+    let mut turned = Vec::with_capacity(values.len());
+    for i in 0..columns {
+        turned.extend((0..rows).map(|j| scale * values[j * columns + i]));
     }
+    GridSpline::new(Vector::<2>::from(origin), spacing, [columns, rows], turned).map(Sampled).map_err(|e| e.to_string())
 }
 
 /// Numbers in lines, between commas, semicolons, tabs or blanks; lines that begin with `#` are skipped.
@@ -250,7 +219,7 @@ mod tests {
     #[test]
     fn all_formats_say_the_same() {
         for (name, bytes) in files() {
-            let map = HeightMap::read(Path::new(name), &bytes, [1.0, 2.0], [0.5, 0.25], 0.1).unwrap();
+            let map = read(Path::new(name), &bytes, [1.0, 2.0], [0.5, 0.25], 0.1).unwrap();
             let jet = map.evaluate(Jet::<3>::variable(2.2, 0), Jet::<3>::variable(2.6, 1));
             assert!((jet.value - 0.1 * (2.0 * 2.4 - 3.0 * 2.4 + 100.0)).abs() < 1e-12, "{name}: {}", jet.value);
             assert!((jet.gradient - Vector::<3>::new(0.4, -1.2, 0.0)).norm() < 1e-12, "{name}");
@@ -260,8 +229,7 @@ mod tests {
 
     #[test]
     fn bad_maps_are_refused_in_words() {
-        let read =
-            |name: &str, bytes: &[u8]| HeightMap::read(Path::new(name), bytes, [0.0; 2], [1.0; 2], 1.0).unwrap_err();
+        let read = |name: &str, bytes: &[u8]| read(Path::new(name), bytes, [0.0; 2], [1.0; 2], 1.0).unwrap_err();
         assert!(read("a.csv", b"1,2,3,4\n1,2,,4\n").contains("line 2, column 3: is empty"));
         assert!(read("a.csv", b"1,2,3,4\n1,2,x,4\n").contains("`x` is no number"));
         assert!(read("a.csv", b"1,2,3,4\n1,2\n").contains("2 numbers where the lines before have 4"));
@@ -287,7 +255,7 @@ mod tests {
                 bytes[k] = value;
             }
             bytes.truncate((cut * 2.0 * bytes.len() as f64) as usize);
-            let _ = HeightMap::read(Path::new(name), &bytes, [0.0; 2], [1.0; 2], 1.0);
+            let _ = read(Path::new(name), &bytes, [0.0; 2], [1.0; 2], 1.0);
         }
     }
 }

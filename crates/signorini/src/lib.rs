@@ -10,6 +10,7 @@ pub mod mesh_file;
 pub mod output;
 pub mod plan;
 pub mod queries;
+pub mod relief;
 pub mod run;
 pub mod scene;
 pub mod snapshot;

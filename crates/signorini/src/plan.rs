@@ -1,33 +1,35 @@
 //! From the statement to the model: every key looked up, every value read, every contradiction named.
 
 mod domain;
-mod floor;
 mod history;
 mod rigid;
 mod shapes;
 pub mod solid;
+mod surface;
 
 use crate::case::statement::{self, Body, Method, Space};
 use crate::case::units::{FORCE_PER_LENGTH, LENGTH, PRESSURE, Units};
-use crate::case::value::Reader;
+use crate::case::value::{Interpreted, Reader};
 use crate::case::{CaseError, Document, OneOrMany, Value, suggestion};
 use crate::expression::{Definition, Expression, Names, Scope};
 use signorini_fem::{Cells, Grid};
-use signorini_geometry::{Jet, Point, Real};
+use signorini_geometry::{Jet, Point, Real, Vector};
 use signorini_membrane::active_set::NodalStart;
 use signorini_membrane::domain::{Domain, DomainOnCells};
-use signorini_membrane::field::{Constant, Field, Moved, SharedField, Sum};
+use signorini_membrane::field::{Constant, Field, SharedField, Sum};
+use signorini_membrane::obstacle::{Obstacles, Side};
 use signorini_membrane::problem::{Measure, Membrane, Support};
 use signorini_membrane::quadrature::Quadrature;
 use signorini_membrane::refinement::Refinement;
 use signorini_membrane::zone::NoZone;
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
 pub use domain::{Pieces, memory_estimate};
-pub use floor::Floor;
 pub use history::{Control, PlannedIncrement};
+pub use surface::Contact;
 
 /// A problem that is ready to be solved.
 pub enum Plan {
@@ -70,7 +72,7 @@ pub struct PlannedSupport {
     pub pieces: Vec<usize>,
 }
 
-/// A membrane, its floor and its history.
+/// A membrane, what it may touch, and its history.
 pub struct MembranePlan<const D: usize> {
     pub document: Document,
     pub space: Space,
@@ -85,16 +87,18 @@ pub struct MembranePlan<const D: usize> {
     pub loads: BTreeMap<String, Placed>,
     pub supports: Vec<PlannedSupport>,
     pub body: String,
-    /// Name of the contact, and the floor.
-    pub contact: Option<(String, Floor)>,
+    /// What it may touch, in the order of the membrane's obstacles.
+    pub contacts: Vec<Contact>,
     pub method: MethodChoice,
     /// The zone that the first increment starts from, where the case asks for one.
-    pub initial_zone: Option<Arc<dyn Domain<D>>>,
+    pub initial_zone: Option<(Side, Arc<dyn Domain<D>>)>,
     pub increments: Vec<PlannedIncrement>,
     pub probes: BTreeMap<String, Point<D>>,
     pub every: usize,
     pub pictures: bool,
     pub warnings: Vec<String>,
+    /// What the values with units were taken for.
+    pub interpreted: Vec<Interpreted>,
 }
 
 /// Reads a document into a plan.
@@ -154,7 +158,7 @@ impl<'a> Planner<'a> {
         };
         let mut planner = Self {
             document,
-            reader: Reader { document, units, names: Names::default() },
+            reader: Reader { document, units, names: Names::default(), interpreted: RefCell::default() },
             space: *case.space.get_ref(),
         };
         planner.define_constants()?;
@@ -335,18 +339,14 @@ impl<'a> Planner<'a> {
         let tension = self.placed(format!("bodies.{body}.membrane.tension"), &film.tension, FORCE_PER_LENGTH)?;
         let loads = self.loads(body)?;
         let supports = self.supports(body, &on.pieces)?;
-        let contact = self.contact(body)?;
         let mut warnings = Vec::new();
-        let (contact, method) = match contact {
-            None => (None, MethodChoice::InequalityLevelSet),
-            Some((name, floor, method)) => (Some((name, floor)), method),
-        };
+        let (contacts, method) = self.contacts(body, &supports, &on.grid, &mut warnings)?;
         if method != MethodChoice::InequalityLevelSet && case.steps.iter().any(|s| s.get_ref().events.is_some()) {
             warnings.push("`events` are located by method.inequality_level_set only".into());
         }
-        if contact.is_none() && case.bodies.len() > 1 {
+        if contacts.is_empty() && case.bodies.len() > 1 {
             warnings.push(
-                "no contact is stated: the floor is ignored (add [contacts.NAME] between = [film, floor])".into(),
+                "no contact is stated: rigid bodies are ignored (add [contacts.NAME] between = [film, floor])".into(),
             );
         }
         if let MethodChoice::ActiveSet(_) = method {
@@ -362,13 +362,13 @@ impl<'a> Planner<'a> {
             on.grid = Grid::new(*on.grid.bounds(), on.grid.cells(), 1);
             on.cells = Arc::new(on.grid.clone());
         }
-        self.finish(body, on, tension, loads, supports, contact, method, warnings)
+        self.finish(body, on, tension, loads, supports, contacts, method, warnings)
     }
 
     /// The zone that a contact asks to start from.
-    fn initial_zone_key(&self) -> Option<&toml::Spanned<statement::Domain>> {
-        self.document.case.contacts.values().find_map(|c| match c.get_ref().method.as_ref()?.get_ref() {
-            Method::InequalityLevelSet(k) => k.initial_zone.as_ref(),
+    fn initial_zone_key(&self) -> Option<(&String, &toml::Spanned<statement::Domain>)> {
+        self.document.case.contacts.iter().find_map(|(name, c)| match c.get_ref().method.as_ref()?.get_ref() {
+            Method::InequalityLevelSet(k) => Some((name, k.initial_zone.as_ref()?)),
             _ => None,
         })
     }
@@ -381,7 +381,7 @@ impl<'a> Planner<'a> {
         tension: Placed,
         loads: BTreeMap<String, Placed>,
         supports: Vec<PlannedSupport>,
-        contact: Option<(String, Floor)>,
+        contacts: Vec<Contact>,
         method: MethodChoice,
         warnings: Vec<String>,
     ) -> Result<MembranePlan<D>, CaseError>
@@ -403,11 +403,15 @@ impl<'a> Planner<'a> {
             };
             probes.insert(name.clone(), Point::<D>::from_fn(|k, _| x[k]));
         }
-        let initial_zone = match (self.initial_zone_key(), &contact) {
-            (Some(key), Some(_)) => Some(domain::ReadDomain::<D>::initial_zone(self, key, &on.grid)?),
-            _ => None,
+        let initial_zone = match self.initial_zone_key() {
+            Some((contact, key)) => {
+                let zone = domain::ReadDomain::<D>::initial_zone(self, key, &on.grid)?;
+                contacts.iter().find(|c| c.name == *contact).map(|c| (c.side, zone))
+            }
+            None => None,
         };
-        let increments = self.increments(D, contact.as_ref().map(|(name, _)| name.as_str()))?;
+        let names: Vec<&str> = contacts.iter().map(|c| c.name.as_str()).collect();
+        let increments = self.increments(D, &names)?;
         let plan = MembranePlan {
             document: self.document.clone(),
             space: self.space,
@@ -419,7 +423,7 @@ impl<'a> Planner<'a> {
             loads,
             supports,
             body: body.to_string(),
-            contact,
+            contacts,
             method,
             initial_zone,
             increments,
@@ -427,6 +431,7 @@ impl<'a> Planner<'a> {
             every,
             pictures: output.pictures.unwrap_or(true),
             warnings,
+            interpreted: self.reader.echo(),
         };
         plan.check_time()?;
         Ok(plan)
@@ -548,13 +553,71 @@ impl<'a> Planner<'a> {
         }
     }
 
-    fn contact(&self, body: &str) -> Result<Option<(String, Floor, MethodChoice)>, CaseError> {
+    /// All contacts of the membrane, which have one method.
+    fn contacts<const D: usize>(
+        &self,
+        body: &str,
+        supports: &[PlannedSupport],
+        grid: &Grid<D>,
+        warnings: &mut Vec<String>,
+    ) -> Result<(Vec<Contact>, MethodChoice), CaseError> {
         let document = self.document;
-        let mut contacts = document.case.contacts.iter();
-        let Some((name, contact)) = contacts.next() else { return Ok(None) };
-        if let Some((_, second)) = contacts.next() {
-            return Err(self.unavailable(second.span(), "more than one contact of a membrane"));
+        let levels: Option<Vec<f64>> = supports.iter().map(|s| s.displacement.expression.constant()).collect();
+        let corner = |x: Point<D>| Vector::<2>::new(x[0], if D == 2 { x[D - 1] } else { 0.0 });
+        let mut scene = surface::Scene {
+            level: levels.and_then(|l| l.into_iter().reduce(f64::max)),
+            around: [corner(grid.bounds().min), corner(grid.bounds().max)],
+            resolution: 0.5 * grid.h(),
+            warnings,
+        };
+        let mut out: Vec<Contact> = Vec::new();
+        let stated = document.case.contacts.values().find(|c| c.get_ref().method.is_some());
+        let method = stated.map_or(Ok(MethodChoice::InequalityLevelSet), |c| self.method(c.get_ref()))?;
+        for (name, key) in &document.case.contacts {
+            let contact = key.get_ref();
+            if let Some(friction) = &contact.friction {
+                return Err(self.unavailable(friction.span(), "friction of a membrane"));
+            }
+            if let Some(own) = &contact.method
+                && self.method(contact)? != method
+            {
+                return Err(document
+                    .error(own.span(), format!("`{name}` has another method than the contact before"))
+                    .help("all contacts of a membrane are solved together: state the method once"));
+            }
+            let adhesion = match &contact.adhesion {
+                None => None,
+                Some(adhesion) => {
+                    let key = format!("contacts.{name}.adhesion.energy");
+                    let placed = self.placed(key, &adhesion.energy, FORCE_PER_LENGTH)?;
+                    (placed.expression.constant() != Some(0.0)).then_some(placed)
+                }
+            };
+            if let (Some(adhesion), MethodChoice::ActiveSet(_)) = (&adhesion, method) {
+                return Err(document
+                    .error(adhesion.span.clone(), "method.active_set knows no adhesion")
+                    .help("method.inequality_level_set = {}"));
+            }
+            let touched = self.touched(body, key)?;
+            for other in &touched {
+                if let Some(before) = out.iter().find(|c| c.body == *other) {
+                    let message = format!("`{other}` is already touched by the contact `{}`", before.name);
+                    return Err(document.error(key.span(), message).help("a body has one contact with the membrane"));
+                }
+                let Some(Body::Rigid(rigid)) = document.case.bodies.get(other).map(|b| b.get_ref()) else {
+                    return Err(document.error(key.span(), format!("`{other}` is not rigid")));
+                };
+                let name = if touched.len() == 1 { name.clone() } else { format!("{name}:{other}") };
+                let contact = surface::read(self, &name, other, rigid, &mut scene)?;
+                out.push(Contact { adhesion: adhesion.clone(), ..contact });
+            }
         }
+        Ok((out, method))
+    }
+
+    /// The rigid bodies that a contact names.
+    fn touched(&self, body: &str, contact: &toml::Spanned<statement::Contact>) -> Result<Vec<String>, CaseError> {
+        let document = self.document;
         let key = contact.get_ref();
         let rigid: Vec<&str> = document
             .case
@@ -563,7 +626,7 @@ impl<'a> Planner<'a> {
             .filter(|(_, b)| matches!(b.get_ref(), Body::Rigid(_)))
             .map(|(n, _)| n.as_str())
             .collect();
-        let floor = match (&key.between, &key.within, &key.all) {
+        match (&key.between, &key.within, &key.all) {
             (Some(pair), None, None) => {
                 let list = pair.get_ref();
                 let bodies: Vec<&str> = document.case.bodies.keys().map(String::as_str).collect();
@@ -575,53 +638,25 @@ impl<'a> Planner<'a> {
                             .help(suggestion(plain, &bodies)));
                     }
                 }
-                let other: Vec<_> = list.iter().filter(|b| b.get_ref() != body).collect();
-                match other[..] {
-                    [floor] if list.len() == 2 && rigid.contains(&floor.get_ref().as_str()) => floor.get_ref().clone(),
-                    _ => {
-                        return Err(document
-                            .error(pair.span(), "a membrane touches one rigid body")
-                            .help(format!("between = [\"{body}\", \"{}\"]", rigid.first().unwrap_or(&"floor"))));
-                    }
+                let others: Vec<&String> = list.iter().map(|b| b.get_ref()).filter(|b| *b != body).collect();
+                let known = others.iter().all(|b| rigid.contains(&b.as_str()));
+                match known && others.len() + 1 == list.len() && !others.is_empty() {
+                    true => Ok(others.into_iter().cloned().collect()),
+                    false => Err(document
+                        .error(pair.span(), "a contact is between the membrane and a rigid body")
+                        .help(format!("between = [\"{body}\", \"{}\"]", rigid.first().unwrap_or(&"floor")))),
                 }
             }
-            (None, None, Some(all)) if *all.get_ref() => match rigid[..] {
-                [floor] => floor.to_string(),
-                _ => {
-                    return Err(document.error(
-                        all.span(),
-                        format!("there are {} rigid bodies: name one with `between`", rigid.len()),
-                    ));
-                }
+            (None, None, Some(all)) if *all.get_ref() => match rigid.is_empty() {
+                false => Ok(rigid.into_iter().map(str::to_string).collect()),
+                true => Err(document
+                    .error(all.span(), "there is no rigid body to touch")
+                    .help("add for example  [bodies.floor.rigid]  shape.height = \"-0.1\"")),
             },
-            _ => {
-                return Err(document
-                    .error(contact.span(), "who touches whom is not said, or said twice")
-                    .help(format!("between = [\"{body}\", \"{}\"]", rigid.first().unwrap_or(&"floor"))));
-            }
-        };
-        if let Some(friction) = &key.friction {
-            return Err(self.unavailable(friction.span(), "friction of a membrane"));
+            _ => Err(document
+                .error(contact.span(), "who touches whom is not said, or said twice")
+                .help(format!("between = [\"{body}\", \"{}\"]", rigid.first().unwrap_or(&"floor")))),
         }
-        let adhesion = match &key.adhesion {
-            None => None,
-            Some(adhesion) => {
-                let key = format!("contacts.{name}.adhesion.energy");
-                let placed = self.placed(key, &adhesion.energy, FORCE_PER_LENGTH)?;
-                (placed.expression.constant() != Some(0.0)).then_some(placed)
-            }
-        };
-        let method = self.method(key)?;
-        if let (Some(adhesion), MethodChoice::ActiveSet(_)) = (&adhesion, method) {
-            return Err(document
-                .error(adhesion.span.clone(), "method.active_set knows no adhesion")
-                .help("method.inequality_level_set = {}"));
-        }
-        let Some(Body::Rigid(rigid)) = document.case.bodies.get(&floor).map(|b| b.get_ref()) else {
-            return Err(document.error(contact.span(), format!("`{floor}` is not rigid")));
-        };
-        let floor = Floor { adhesion, ..floor::read(self, &floor, rigid)? };
-        Ok(Some((name.clone(), floor, method)))
     }
 
     fn method(&self, key: &statement::Contact) -> Result<MethodChoice, CaseError> {
@@ -683,12 +718,12 @@ pub(crate) fn field<const D: usize>(expression: &Expression, time: f64) -> Share
 
 impl<const D: usize> MembranePlan<D> {
     fn expressions(&self) -> impl Iterator<Item = &Placed> {
-        let floor =
-            self.contact.iter().flat_map(|(_, f)| std::iter::once(&f.height).chain(&f.displacement).chain(&f.adhesion));
+        let touched =
+            self.contacts.iter().flat_map(|c| std::iter::once(&c.height).chain(&c.displacement).chain(&c.adhesion));
         std::iter::once(&self.tension)
             .chain(self.loads.values())
             .chain(self.supports.iter().map(|s| &s.displacement))
-            .chain(floor)
+            .chain(touched)
     }
 
     /// Something that depends on time needs steps.
@@ -726,20 +761,7 @@ impl<const D: usize> MembranePlan<D> {
             measure: if self.space == Space::Axisymmetric { Measure::Axisymmetric } else { Measure::Plain },
             tension: field(&self.tension.expression, time),
             load,
-            adhesion: self
-                .contact
-                .as_ref()
-                .and_then(|(_, floor)| floor.adhesion.as_ref())
-                .map(|adhesion| field(&adhesion.expression, time)),
-            floor: self.contact.as_ref().map(|(_, floor)| {
-                let height = field(&floor.height.expression, time);
-                let [x, y, z] = floor.displacement_at(time);
-                if [x, y, z] == [0.0; 3] {
-                    return height;
-                }
-                let shift = Point::from_fn(|k, _| if k == 0 { x } else { y });
-                Arc::new(Moved { field: height, shift, rise: z }) as SharedField<D>
-            }),
+            obstacles: Obstacles(self.contacts.iter().map(|c| c.at(time)).collect()),
             supports,
             support_count: self.supports.len(),
         }
@@ -791,16 +813,10 @@ impl<const D: usize> MembranePlan<D> {
         let fields: Vec<(&Placed, SharedField<D>, bool)> =
             std::iter::once((&self.tension, membrane.tension.clone(), true))
                 .chain(self.loads.values().map(|l| (l, field(&l.expression, time), false)))
-                .chain(
-                    self.contact.iter().map(|(_, f)| f).zip(&membrane.floor).map(|(f, h)| (&f.height, h.clone(), true)),
-                )
-                .chain(
-                    self.contact
-                        .iter()
-                        .filter_map(|(_, f)| f.adhesion.as_ref())
-                        .zip(&membrane.adhesion)
-                        .map(|(placed, energy)| (placed, energy.clone(), true)),
-                )
+                .chain(self.contacts.iter().zip(&membrane.obstacles.0).flat_map(|(c, o)| {
+                    let adhesion = c.adhesion.iter().zip(&o.adhesion).map(|(placed, e)| (placed, e.clone(), true));
+                    std::iter::once((&c.height, o.height.clone(), true)).chain(adhesion)
+                }))
                 .collect();
         for cell in 0..quadrature.cells.len() {
             for (_, points) in quadrature.volumes(membrane, cell) {
@@ -828,6 +844,21 @@ impl<const D: usize> MembranePlan<D> {
                 return Err(error);
             }
         }
+        if membrane.obstacles.sides().count() == 2 {
+            for cell in 0..quadrature.cells.len() {
+                for (_, points) in quadrature.volumes(membrane, cell) {
+                    for p in points.iter() {
+                        let [low, high] = Side::BOTH.map(|side| membrane.obstacles.height(side, &p.x));
+                        let ceiling = membrane.obstacles.index_at(Side::Above, &p.x).map(|i| &self.contacts[i]);
+                        if let (true, Some(ceiling)) = (low >= high, ceiling) {
+                            let what =
+                                format!("what lies below reaches up to {low} there: no room is left for the membrane");
+                            return Err(wrong(&ceiling.height, &p.x, high, &what).help("lift it"));
+                        }
+                    }
+                }
+            }
+        }
         for p in &quadrature.rim {
             let Some(support) = &membrane.supports[p.piece] else { continue };
             let planned = &self.supports[support.index];
@@ -835,20 +866,25 @@ impl<const D: usize> MembranePlan<D> {
             if !held.is_finite() {
                 return Err(wrong(&planned.displacement, &p.x, held, finite));
             }
-            if let (Some(h), Some((_, floor))) = (&membrane.floor, &self.contact) {
-                let height = h.value(&p.x);
+            for (contact, obstacle) in self.contacts.iter().zip(&membrane.obstacles.0) {
+                let height = obstacle.height.value(&p.x);
                 let slack = 1e-9 * (height.abs() + held.abs() + membrane.size() * 1e-6);
-                if height > held + slack {
-                    return Err(wrong(
-                        &floor.height,
-                        &p.x,
-                        height,
-                        &format!(
-                            "the floor lies above the displacement {held} prescribed by the support `{}`",
-                            planned.name
+                if obstacle.side.sign() * (held - height) < -slack {
+                    let (place, help) = match obstacle.side {
+                        Side::Below => (
+                            "above",
+                            "lower it there, or raise the support; a body over the membrane:  lies = \"above\"",
                         ),
-                    )
-                    .help("lower the floor there, or raise the support"));
+                        Side::Above => (
+                            "below",
+                            "raise it there, or lower the support; a body under the membrane:  lies = \"below\"",
+                        ),
+                    };
+                    let what = format!(
+                        "`{}` lies {place} the displacement {held} prescribed by the support `{}`",
+                        contact.body, planned.name
+                    );
+                    return Err(wrong(&contact.height, &p.x, height, &what).help(help));
                 }
             }
         }

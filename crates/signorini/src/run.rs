@@ -8,19 +8,23 @@ mod path;
 mod sizes;
 pub(crate) mod solid;
 
+use crate::case::statement::Space;
+use crate::case::value::Interpreted;
 use crate::case::{CaseError, Document};
 use crate::output::film::Film;
 use crate::output::{Folder, OutputError, pictures, tables, vtk};
-use crate::plan::{Control, MembranePlan, MethodChoice, Plan, PlannedIncrement, plan};
+use crate::plan::{Contact, Control, MembranePlan, MethodChoice, Plan, PlannedIncrement, plan};
 use crate::snapshot::{DisplayMesh, Snapshot};
 use checkpoint::Checkpoint;
 use events::{Between, Bounded, Event, Known, jump, locate, locate_jump};
 use increment::{Engine, Increment};
 use path::{Along, Follower};
 use serde_json::{Value, json};
+use signorini_geometry::Point;
 use signorini_membrane::adhesion::Branch;
 use signorini_membrane::coexisting::{OtherState, others};
 use signorini_membrane::line_zone::LineZone;
+use signorini_membrane::obstacle::Side;
 use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::Membrane;
 use signorini_membrane::zone::Zone;
@@ -47,6 +51,7 @@ fn solid_sizes<const D: usize>(plan: &crate::plan::solid::SolidPlan<D>) -> Resul
         "loads": plan.loads.len(),
         "contacts": plan.contacts.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", "),
         "free": free,
+        "interpreted": plan.interpreted.iter().map(Interpreted::to_json).collect::<Vec<_>>(),
         "warnings": plan.warnings,
     }))
 }
@@ -285,7 +290,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             let mut after = self.engine.known(time, &increment);
             if planned.control != Control::Time {
                 // Nothing jumps along a path.
-            } else if let (Some(before), Some(_)) = (&before, &membrane.adhesion) {
+            } else if let (Some(before), true) = (&before, membrane.obstacles.are_sticky()) {
                 let mut from = before.clone();
                 while let (true, Some(state)) = (increment.stability.jumped, &after)
                     && let Some(landed) = self.find_jump(index, &from, state, &mut logged)
@@ -321,8 +326,8 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             self.engine.estimates = false;
             let others = self.other_states(&membrane, &increment, D == 1 || last_of_step);
             self.record(time, &membrane, &increment, others);
-            if let (Control::Time, Some(before), Some(after), None) =
-                (planned.control, &before, &after, &membrane.adhesion)
+            if let (Control::Time, Some(before), Some(after), false) =
+                (planned.control, &before, &after, membrane.obstacles.are_sticky())
             {
                 self.find_events(index, before, after, &mut logged);
                 if logged.interrupted() {
@@ -492,7 +497,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             let state = engine.known(time, &increment);
             if (before.is_empty() || after.is_empty()) && state.as_ref().is_none_or(|s| s.zone.is_empty()) {
                 // A zone too small for the grid is told by the membrane without contact.
-                match engine.reaches_floor(&membrane) {
+                match engine.reaches_obstacle(&membrane) {
                     Some(true) if before.is_empty() => return Between::AsLater,
                     Some(true) => return Between::AsEarlier,
                     _ => {}
@@ -505,7 +510,13 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         self.add_events(tolerance, found);
     }
 
-    fn add_events(&mut self, tolerance: f64, found: Vec<Event>) {
+    fn add_events(&mut self, tolerance: f64, mut found: Vec<Event>) {
+        for event in &mut found {
+            let membrane = self.plan.at(event.time);
+            let at = Point::<D>::from_fn(|k, _| event.at[k]);
+            let touched = membrane.obstacles.index_at(event.side, &at).and_then(|k| self.plan.contacts.get(k));
+            event.contact = touched.map_or(String::new(), |c| c.name.clone());
+        }
         if let Some(coarse) = found.iter().find(|e| e.within > tolerance) {
             let [from, to] = [-0.5, 0.5].map(|s| coarse.time + s * coarse.within);
             self.warnings.push(format!("an event between t = {from} and {to} could not be located more closely"));
@@ -515,7 +526,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
 
     /// Other equilibria of an adhesive membrane; with `zones` those with contact too, which are searched for.
     fn other_states(&mut self, membrane: &Membrane<D>, increment: &Increment<D>, zones: bool) -> Vec<OtherState> {
-        if membrane.adhesion.is_none() || !increment.converged {
+        if !membrane.obstacles.are_sticky() || !increment.converged {
             return Vec::new();
         }
         if increment.stability.lowest_eigenvalue.is_some_and(|v| v <= 0.0)
@@ -528,10 +539,10 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
 
     fn record(&mut self, time: f64, membrane: &Membrane<D>, increment: &Increment<D>, others: Vec<OtherState>) {
         let mut step = increment.to_json(&self.plan, &self.plan.load_resultants(membrane, time));
-        if let (Some((name, _)), false) = (&self.plan.contact, others.is_empty()) {
+        for contact in self.plan.contacts.iter().filter(|_| !others.is_empty()) {
             let list =
                 others.iter().map(|o| json!({"area": o.area, "energy_total": o.energy_total, "stable": o.stable}));
-            step["contacts"][name]["other_states"] = list.collect();
+            step["contacts"][&contact.name]["other_states"] = list.collect();
         }
         step["index"] = json!(self.steps.len());
         step["time"] = json!(time);
@@ -568,8 +579,8 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         last: Option<&Snapshot<D>>,
     ) -> Result<Value, OutputError> {
         let probes: Vec<String> = self.plan.probes.keys().cloned().collect();
-        let contact = self.plan.contact.as_ref().map(|(n, _)| n.as_str());
-        self.folder.write("history.csv", tables::history(&self.steps, contact, &probes).as_bytes())?;
+        let contacts: Vec<&str> = self.plan.contacts.iter().map(|c| c.name.as_str()).collect();
+        self.folder.write("history.csv", tables::history(&self.steps, &contacts, &probes).as_bytes())?;
         if let (true, Some(snapshot)) = (self.plan.pictures, last) {
             self.film.write(&self.folder, &self.plan, mesh)?;
             pictures::draw(&self.folder, &self.plan, mesh, snapshot, &self.steps, &self.events)?;
@@ -583,8 +594,9 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             "method": self.plan.method.name(),
             "unknowns": self.unknowns,
             "warnings": self.warnings,
+            "interpreted": self.plan.interpreted.iter().map(Interpreted::to_json).collect::<Vec<_>>(),
             "steps": self.steps,
-            "events": self.events.iter().map(|e| e.to_json(contact.unwrap_or(""))).collect::<Vec<_>>(),
+            "events": self.events.iter().map(Event::to_json).collect::<Vec<_>>(),
             "environment": environment::describe(start, rayon::current_num_threads(), &self.plan.document.text),
         });
         let text = serde_json::to_string_pretty(&summary).unwrap_or_default();
@@ -627,37 +639,49 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             }
             Ending::Converged => {
                 let Some(step) = self.steps.last() else { return "Nothing was asked.".into() };
-                let Some((name, _)) = &self.plan.contact else {
+                if self.plan.contacts.is_empty() {
                     return "The membrane is in equilibrium; no contact was stated.".into();
-                };
-                let c = &step["contacts"][name];
-                let zones = c["zones"].as_u64().unwrap_or(0);
-                if zones == 0 {
-                    return "The membrane does not touch the floor.".into();
                 }
-                let figure = |v: &Value| format!("{:.9}", v.as_f64().unwrap_or(f64::NAN));
-                let within = |v: &Value| v.as_f64().map_or(String::new(), |v| format!(" ± {v:.0e}"));
-                let measure =
-                    if D == 1 && self.plan.space == crate::case::statement::Space::Line { "length" } else { "area" };
-                let holes = c["holes"].as_u64().unwrap_or(0);
-                let staircase =
-                    if let MethodChoice::ActiveSet(_) = self.plan.method { " (a staircase of nodes)" } else { "" };
-                format!(
-                    "In contact over {measure} {}{}{staircase} in {zones} zone{}{}, pushed up by {}{}; forces balance to {:.0e}.{}",
-                    figure(&c["area"]),
-                    within(&c["error_estimate"]["area"]),
-                    if zones == 1 { "" } else { "s" },
-                    match holes {
-                        0 => String::new(),
-                        1 => " with 1 hole".into(),
-                        n => format!(" with {n} holes"),
-                    },
-                    figure(&c["force"][2]),
-                    within(&c["error_estimate"]["force"]),
-                    step["equilibrium_residual"].as_f64().unwrap_or(f64::NAN),
-                    if c["stable"] == false { " This equilibrium is unstable." } else { "" },
-                )
+                let touching = |c: &&Contact| step["contacts"][&c.name]["zones"].as_u64().unwrap_or(0) > 0;
+                let told: Vec<&Contact> = self.plan.contacts.iter().filter(touching).collect();
+                let balance = step["equilibrium_residual"].as_f64().unwrap_or(f64::NAN);
+                let unstable = told.iter().any(|c| step["contacts"][&c.name]["stable"] == false);
+                let sentences: Vec<String> =
+                    told.iter().map(|c| self.contact_verdict(c, &step["contacts"][&c.name])).collect();
+                match sentences.is_empty() {
+                    true => "The membrane touches nothing.".into(),
+                    false => format!(
+                        "{}; forces balance to {balance:.0e}.{}",
+                        sentences.join("; ").replacen('i', "I", 1),
+                        if unstable { " This equilibrium is unstable." } else { "" }
+                    ),
+                }
             }
         }
+    }
+
+    /// One contact in a clause.
+    fn contact_verdict(&self, contact: &Contact, c: &Value) -> String {
+        let figure = |v: &Value| format!("{:.9}", v.as_f64().unwrap_or(f64::NAN));
+        let within = |v: &Value| v.as_f64().map_or(String::new(), |v| format!(" ± {v:.0e}"));
+        let measure = if D == 1 && self.plan.space == Space::Line { "length" } else { "area" };
+        let (zones, holes) = (c["zones"].as_u64().unwrap_or(0), c["holes"].as_u64().unwrap_or(0));
+        let staircase = if let MethodChoice::ActiveSet(_) = self.plan.method { " (a staircase of nodes)" } else { "" };
+        let force = c["force"][2].as_f64().unwrap_or(f64::NAN);
+        format!(
+            "in contact{} over {measure} {}{}{staircase} in {zones} zone{}{}, pushed {} by {:.9}{}",
+            if self.plan.contacts.len() > 1 { format!(" with {}", contact.body) } else { String::new() },
+            figure(&c["area"]),
+            within(&c["error_estimate"]["area"]),
+            if zones == 1 { "" } else { "s" },
+            match holes {
+                0 => String::new(),
+                1 => " with 1 hole".into(),
+                n => format!(" with {n} holes"),
+            },
+            if contact.side == Side::Below { "up" } else { "down" },
+            contact.side.sign() * force,
+            within(&c["error_estimate"]["force"]),
+        )
     }
 }

@@ -3,6 +3,7 @@
 use crate::plan::MembranePlan;
 use signorini_geometry::Point;
 use signorini_membrane::domain::CellStatus;
+use signorini_membrane::obstacle::Side;
 use signorini_membrane::problem::Membrane;
 use std::collections::HashMap;
 
@@ -62,10 +63,10 @@ pub struct Snapshot<const D: usize> {
     pub gap: Vec<f64>,
     pub pressure: Vec<f64>,
     pub in_contact: Vec<bool>,
-    pub floor: Vec<f64>,
+    /// Heights of what lies below and above, where there is something.
+    pub floor: Option<Vec<f64>>,
+    pub ceiling: Option<Vec<f64>>,
     pub outlines: Vec<Vec<Point<D>>>,
-    /// Whether there is a floor at all.
-    pub has_floor: bool,
 }
 
 /// What a method knows of a point.
@@ -75,7 +76,16 @@ pub struct Sample {
     pub pressure: f64,
 }
 
+fn heights<const D: usize>(mesh: &DisplayMesh<D>, membrane: &Membrane<D>, side: Side) -> Option<Vec<f64>> {
+    mesh.points.iter().map(|x| membrane.obstacles.at(side, x).map(|o| o.height.value(x))).collect()
+}
+
 impl<const D: usize> Snapshot<D> {
+    /// Whether there is anything to touch.
+    pub fn has_obstacles(&self) -> bool {
+        self.floor.is_some() || self.ceiling.is_some()
+    }
+
     pub fn new(
         mesh: &DisplayMesh<D>,
         membrane: &Membrane<D>,
@@ -90,16 +100,15 @@ impl<const D: usize> Snapshot<D> {
             gap: Vec::with_capacity(n),
             pressure: Vec::with_capacity(n),
             in_contact: Vec::with_capacity(n),
-            floor: Vec::with_capacity(n),
+            floor: heights(mesh, membrane, Side::Below),
+            ceiling: heights(mesh, membrane, Side::Above),
             outlines,
-            has_floor: membrane.floor.is_some(),
         };
         for x in &mesh.points {
             let s = sample(x).unwrap_or(Sample { displacement: 0.0, in_contact: false, pressure: 0.0 });
-            let floor = membrane.floor.as_ref().map_or(f64::NAN, |h| h.value(x));
+            let gap = membrane.obstacles.least_gap(x, s.displacement).0;
             snapshot.displacement.push(s.displacement);
-            snapshot.gap.push(if floor.is_nan() { 0.0 } else { s.displacement - floor });
-            snapshot.floor.push(if floor.is_nan() { 0.0 } else { floor });
+            snapshot.gap.push(if gap.is_finite() { gap } else { 0.0 });
             snapshot.pressure.push(s.pressure);
             snapshot.in_contact.push(s.in_contact);
         }

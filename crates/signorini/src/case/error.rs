@@ -113,12 +113,53 @@ pub fn from_toml(name: &str, text: &str, error: &toml::de::Error) -> CaseError {
     } else if message.contains("wanted exactly 1 element") {
         ours.message = "a choice is a table with exactly one key".into();
         ours.help = Some("write for example  shape.height = \"-0.1\"".into());
+    } else if let Some((found, wanted)) = message
+        .strip_prefix("invalid type: ")
+        .or_else(|| message.strip_prefix("invalid value: "))
+        .and_then(|rest| rest.rsplit_once(", expected "))
+    {
+        ours.message = format!("expected {}, found {}", in_words(wanted), found_in_words(found));
     }
     let span = error.span().unwrap_or(0..0);
     // An error in a table without a key of its own spans the whole table: its first line says enough.
     let end =
         text[span.start.min(text.len())..span.end.min(text.len())].find('\n').map_or(span.end, |n| span.start + n);
     ours.at(name, text, span.start..end.max(span.start))
+}
+
+/// What a type of the reader is called in a case file.
+fn in_words(wanted: &str) -> String {
+    let wanted = wanted.trim();
+    match wanted {
+        "i64" | "u64" | "usize" | "i32" | "u32" => "a whole number".into(),
+        "f64" => "a number".into(),
+        "a boolean" | "bool" => "true or false".into(),
+        "a string" | "string" => "a text in quotes".into(),
+        "a sequence" => "a list in brackets".into(),
+        "a map" => "a table".into(),
+        other if other.starts_with("struct ") => "a table of keys".into(),
+        other if other.starts_with("enum ") => "a choice: a table with exactly one key".into(),
+        other if other.starts_with("a tuple of size ") || other.starts_with("an array of length ") => {
+            let size = other.rsplit(' ').next().unwrap_or("");
+            format!("a list of {size}")
+        }
+        other => other.to_string(),
+    }
+}
+
+/// What the reader found, in words of a case file.
+fn found_in_words(found: &str) -> String {
+    let found = found.trim();
+    match found.split_once(' ') {
+        Some(("string", text)) => format!("the text `{}`", text.trim_matches('"')),
+        Some(("integer" | "boolean", value)) => value.into(),
+        Some(("floating", rest)) => rest.trim_start_matches("point ").into(),
+        _ => match found {
+            "map" => "a table".into(),
+            "sequence" => "a list".into(),
+            other => other.into(),
+        },
+    }
 }
 
 /// The nearest of the known words, or all of them.
@@ -150,6 +191,26 @@ fn distance(a: &str, b: &str) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// No name of a type of the program shows in a message.
+    #[test]
+    fn wrong_kinds_of_values_are_told_in_words() {
+        let head = "space = \"line\"\n[bodies.film.membrane]\ntension = 1.0\n";
+        for (line, expected) in [
+            ("degree = \"two\"", "expected a whole number, found the text `two`"),
+            ("degree = 0.5", "expected a whole number, found `0.5`"),
+            ("degree = [1]", "expected a whole number, found a list"),
+            ("mesh.grid = 5", "expected a table of keys, found `5`"),
+            ("mesh.grid = { cells = 40 }", "expected a list in brackets, found `40`"),
+            ("domain = 3", "choice"),
+            ("mesh.grid = { cells = [10], refine = 3 }", "expected a table of keys, found `3`"),
+        ] {
+            let text = format!("{head}{line}\n");
+            let error = crate::case::Document::parse("case.toml", &text, &[]).expect_err(line);
+            assert!(error.message.contains(expected), "{line}: {}", error.message);
+            assert!(!error.message.contains("i64") && !error.message.contains("Key"), "{line}: {}", error.message);
+        }
+    }
 
     #[test]
     fn near_words_are_suggested_and_places_are_counted_in_characters() {

@@ -30,6 +30,11 @@ impl Document {
         Ok(Self { name: name.to_string(), text, case })
     }
 
+    /// The line of a byte, from one.
+    pub fn line_of(&self, byte: usize) -> usize {
+        self.text.as_bytes().iter().take(byte).filter(|b| **b == b'\n').count() + 1
+    }
+
     /// An error at a place of this file.
     pub fn error(&self, span: Range<usize>, message: impl Into<String>) -> CaseError {
         CaseError::new(message).at(&self.name, &self.text, span)

@@ -497,10 +497,24 @@ pub struct Rigid {
     #[serde(default)]
     #[schemars(with = "Option<Side>")]
     pub side: Option<Spanned<Side>>,
+    /// Where it lies beside a membrane; if left out a plane, a cone and a paraboloid tell it by their direction, a round
+    /// body by its centre, and every other one lies below.
+    #[serde(default)]
+    #[schemars(with = "Option<Lies>")]
+    pub lies: Option<Spanned<Lies>>,
     /// How it moves; it is at rest if left out.
     #[serde(default)]
     #[schemars(with = "Option<Motion>")]
     pub motion: Option<Spanned<Motion>>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum Lies {
+    /// Under the membrane: it is seen from above.
+    Below,
+    /// Over the membrane: it is seen from below.
+    Above,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]

@@ -17,6 +17,8 @@ pub struct Units {
     pub length: f64,
     pub force: f64,
     pub time: f64,
+    /// Their names.
+    pub names: [&'static str; 3],
 }
 
 const LENGTHS: [(&str, f64); 8] =
@@ -52,26 +54,39 @@ impl Units {
     /// One of the named systems: `m-N-Pa`, `mm-N-MPa`, `um-uN-MPa`.
     pub fn system(name: &str) -> Option<Self> {
         Some(match name {
-            "m-N-Pa" => Self { length: 1.0, force: 1.0, time: 1.0 },
-            "mm-N-MPa" => Self { length: 1e-3, force: 1.0, time: 1.0 },
-            "um-uN-MPa" | "µm-µN-MPa" => Self { length: 1e-6, force: 1e-6, time: 1.0 },
+            "m-N-Pa" => Self { length: 1.0, force: 1.0, time: 1.0, names: ["m", "N", "s"] },
+            "mm-N-MPa" => Self { length: 1e-3, force: 1.0, time: 1.0, names: ["mm", "N", "s"] },
+            "um-uN-MPa" | "µm-µN-MPa" => Self { length: 1e-6, force: 1e-6, time: 1.0, names: ["um", "uN", "s"] },
             _ => return None,
         })
     }
 
     /// A system from the names of its base units.
     pub fn from_names(length: &str, force: &str, time: &str) -> Result<Self, String> {
-        let find = |list: &[(&str, f64)], what: &str, name: &str| {
-            list.iter().find(|(n, _)| *n == name).map(|(_, v)| *v).ok_or_else(|| {
+        let find = |list: &[(&'static str, f64)], what: &str, name: &str| {
+            list.iter().find(|(n, _)| *n == name).copied().ok_or_else(|| {
                 let known: Vec<&str> = list.iter().map(|(n, _)| *n).collect();
                 format!("`{name}` is not a unit of {what}: known are {}", known.join(", "))
             })
         };
-        Ok(Self {
-            length: find(&LENGTHS, "length", length)?,
-            force: find(&FORCES, "force", force)?,
-            time: find(&TIMES, "time", time)?,
-        })
+        let (length, force, time) =
+            (find(&LENGTHS, "length", length)?, find(&FORCES, "force", force)?, find(&TIMES, "time", time)?);
+        Ok(Self { length: length.1, force: force.1, time: time.1, names: [length.0, force.0, time.0] })
+    }
+
+    /// What the base unit of a dimension is called, such as `N/mm^2`.
+    pub fn name_of(&self, dimension: Dimension) -> String {
+        let power = |name: &str, p: i32| if p == 1 { name.to_string() } else { format!("{name}^{p}") };
+        // Force first, as people write it.
+        let parts = [1, 0, 2].map(|k| (self.names[k], dimension[k]));
+        let above: Vec<String> = parts.iter().filter(|(_, p)| *p > 0).map(|(n, p)| power(n, *p)).collect();
+        let below: Vec<String> = parts.iter().filter(|(_, p)| *p < 0).map(|(n, p)| power(n, -p)).collect();
+        match (above.is_empty(), below.is_empty()) {
+            (true, true) => "1".into(),
+            (_, true) => above.join("*"),
+            (true, _) => format!("1/{}", below.join("/")),
+            _ => format!("{}/{}", above.join("*"), below.join("/")),
+        }
     }
 
     /// The factor that turns a number in `unit` into base units, and the dimension of the unit.

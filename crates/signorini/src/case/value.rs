@@ -6,6 +6,8 @@ use crate::expression::{Expression, Names, parse};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserialize, Deserializer, Visitor};
 use std::borrow::Cow;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
 use toml::Spanned;
@@ -103,14 +105,50 @@ impl<'de> Deserialize<'de> for OneOrMany {
     }
 }
 
+/// A value with a unit, and what it is in the base units of its case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Interpreted {
+    pub line: usize,
+    pub text: String,
+    /// None where it is an expression of position or time.
+    pub value: Option<f64>,
+    /// The base unit, and how many of it make one of the stated unit.
+    pub unit: String,
+    pub factor: f64,
+}
+
+impl Interpreted {
+    pub fn to_json(&self) -> serde_json::Value {
+        serde_json::json!({
+            "line": self.line, "text": self.text, "value": self.value, "unit": self.unit, "factor": self.factor,
+        })
+    }
+}
+
+impl std::fmt::Display for Interpreted {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self.value {
+            Some(value) => write!(f, "line {}: `{}` is {value} {}", self.line, self.text, self.unit),
+            None => write!(f, "line {}: `{}`, of which one is {} {}", self.line, self.text, self.factor, self.unit),
+        }
+    }
+}
+
 /// Turns values into expressions in base units.
 pub struct Reader<'a> {
     pub document: &'a Document,
     pub units: Option<Units>,
     pub names: Names,
+    /// What the values with units were taken for, by their places.
+    pub interpreted: RefCell<BTreeMap<usize, Interpreted>>,
 }
 
 impl Reader<'_> {
+    /// What the values with units were taken for, in the order of the file.
+    pub fn echo(&self) -> Vec<Interpreted> {
+        self.interpreted.borrow().values().cloned().collect()
+    }
+
     fn error(&self, span: Range<usize>, message: impl Into<String>) -> CaseError {
         self.document.error(span, message)
     }
@@ -156,7 +194,12 @@ impl Reader<'_> {
                 .help("add  units = \"mm-N-MPa\"  (or m-N-Pa, um-uN-MPa) at the top, or leave the unit out")
         })?;
         let (factor, found) = units.factor(unit).map_err(|message| self.error(place, message))?;
-        Ok((expression.scaled(factor), Some(found)))
+        let expression = expression.scaled(factor);
+        let line = self.document.line_of(value.span().start);
+        let echo =
+            Interpreted { line, text: text.clone(), value: expression.constant(), unit: units.name_of(found), factor };
+        self.interpreted.borrow_mut().insert(value.span().start, echo);
+        Ok((expression, Some(found)))
     }
 
     /// A value that must be a number.

@@ -8,7 +8,7 @@ mod parse;
 pub(crate) use parse::number_length;
 pub use parse::{Names, ParseError, parse};
 
-use crate::height_map::HeightMap;
+use crate::relief::{self, Relief};
 use signorini_geometry::Real;
 use std::sync::Arc;
 
@@ -43,8 +43,8 @@ enum Node {
     Pair(PairFunction, Box<Node>, Box<Node>),
     If(Box<Node>, Box<Node>, Box<Node>),
     User(Arc<Definition>, Box<Node>),
-    /// The height of a map over x and y.
-    Map(Arc<HeightMap>),
+    /// A height over x and y that no formula gives.
+    Relief(Arc<dyn Relief>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -139,9 +139,9 @@ impl Expression {
         Self { root: Node::Number(value) }
     }
 
-    /// The height of a map over x and y.
-    pub fn height_map(map: HeightMap) -> Self {
-        Self { root: Node::Map(Arc::new(map)) }
+    /// A height over x and y that no formula gives.
+    pub fn relief(relief: impl Relief + 'static) -> Self {
+        Self { root: Node::Relief(Arc::new(relief)) }
     }
 
     /// The expression multiplied by a number: a unit.
@@ -175,7 +175,7 @@ impl Expression {
     pub fn uses_position(&self, axis: usize) -> bool {
         self.root.any(&|n| match n {
             Node::Position(k) => *k == axis,
-            Node::Map(_) => axis < 2,
+            Node::Relief(_) => axis < 2,
             _ => false,
         })
     }
@@ -189,7 +189,7 @@ impl Expression {
 impl Node {
     fn children(&self) -> Vec<&Node> {
         match self {
-            Node::Number(_) | Node::Position(_) | Node::Time | Node::Map(_) => vec![],
+            Node::Number(_) | Node::Position(_) | Node::Time | Node::Relief(_) => vec![],
             Node::Negate(a) | Node::Not(a) | Node::Call(_, a) | Node::User(_, a) => vec![a],
             Node::Binary(_, a, b) | Node::Compare(_, a, b) | Node::Pair(_, a, b) => vec![a, b],
             Node::If(a, b, c) => vec![a, b, c],
@@ -203,7 +203,7 @@ impl Node {
     fn map(&self, f: &impl Fn(&Node) -> Node) -> Node {
         let sub = |n: &Node| Box::new(f(n));
         match self {
-            Node::Number(_) | Node::Position(_) | Node::Time | Node::Map(_) => self.clone(),
+            Node::Number(_) | Node::Position(_) | Node::Time | Node::Relief(_) => self.clone(),
             Node::Negate(a) => Node::Negate(sub(a)),
             Node::Not(a) => Node::Not(sub(a)),
             Node::Call(g, a) => Node::Call(*g, sub(a)),
@@ -224,7 +224,7 @@ impl Node {
 
     /// Parts without position and time replaced by their value.
     fn folded(self) -> Node {
-        if self.any(&|n| matches!(n, Node::Position(_) | Node::Time | Node::Map(_))) {
+        if self.any(&|n| matches!(n, Node::Position(_) | Node::Time | Node::Relief(_))) {
             return self.map(&|n| n.clone().folded());
         }
         Node::Number(self.evaluate(&Scope { position: [f64::NAN; 3], time: f64::NAN }))
@@ -249,7 +249,7 @@ impl Node {
                 branch.evaluate(scope)
             }
             Node::User(f, a) => f.evaluate(a.evaluate(scope)),
-            Node::Map(map) => map.evaluate(scope.position[0], scope.position[1]),
+            Node::Relief(height) => relief::evaluate(&**height, scope.position[0], scope.position[1]),
         }
     }
 }

@@ -9,6 +9,7 @@ use signorini_geometry::Point;
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::field::Constant;
 use signorini_membrane::line_zone::LineZone;
+use signorini_membrane::obstacle::{Obstacle, Obstacles, Side};
 use signorini_membrane::problem::{Membrane, Support};
 use signorini_solve::SolveError;
 use std::sync::Arc;
@@ -51,13 +52,14 @@ impl Model {
     /// Where the membrane is not held.
     pub fn new(plan: &MembranePlan<1>, quantity: Quantity, times: &[f64]) -> Result<Self, SolveError> {
         let bounds = plan.grid.bounds();
+        let side = plan.contacts.first().map_or(Side::Below, |c| c.side);
         let line = plan.space == Space::Line;
         let reach = if line { 0.5 * bounds.size()[0] } else { bounds.max[0] };
         let radii: Vec<f64> = (1..=RADII).map(|k| reach * k as f64 / (RADII + 1) as f64).collect();
         let zone = |c: f64| {
             let interval =
                 if line { [bounds.center()[0] - c, bounds.center()[0] + c] } else { [bounds.min[0] - reach, c] };
-            LineZone::new(&plan.grid, vec![interval])
+            LineZone::new(&plan.grid, vec![(side, interval)])
         };
         let slope = |membrane: &Membrane<1>, c: f64| -> Result<f64, SolveError> {
             let slopes = Equilibrium::solve(membrane, &zone(c), &mut Elements::new(membrane))?.slope_jump();
@@ -71,8 +73,9 @@ impl Model {
                 let held =
                     |s: &Option<Support<1>>| s.as_ref().map(|s| Support { displacement: nothing(), ..s.clone() });
                 let by_floor = Membrane { load: nothing(), ..whole.clone() };
+                let flat = Obstacle { side, height: nothing(), adhesion: None };
                 let by_load = Membrane {
-                    floor: Some(nothing()),
+                    obstacles: Obstacles(vec![flat]),
                     supports: whole.supports.iter().map(held).collect(),
                     ..whole.clone()
                 };

@@ -181,6 +181,17 @@ pub fn closed_line(svg: &mut String, points: &[(f64, f64)], RGBColor(r, g, b): R
     svg.insert_str(end, &element);
 }
 
+/// Adds a word on top of an SVG, centred, with a border so that it is read on any colour.
+pub fn word(svg: &mut String, (x, y): (f64, f64), text: &str, RGBColor(r, g, b): RGBColor) {
+    let element = format!(
+        "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\" dominant-baseline=\"central\" font-family=\"{FONT}\" \
+         font-size=\"17\" font-weight=\"bold\" fill=\"rgb({r},{g},{b})\" stroke=\"white\" stroke-width=\"4\" \
+         paint-order=\"stroke\">{text}</text>\n"
+    );
+    let end = svg.rfind("</svg>").unwrap_or(svg.len());
+    svg.insert_str(end, &element);
+}
+
 /// The viridis colour map: even in lightness, and told apart by colour-blind eyes. `t` runs from 0 to 1.
 pub fn viridis(t: f64) -> RGBColor {
     const STOPS: [(u8, u8, u8); 9] = [

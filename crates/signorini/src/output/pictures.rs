@@ -1,6 +1,8 @@
 //! The pictures a person would want to look at first.
 
-use super::chart::{Axes, FONT, Image, axes, closed_line, failed, label, padded, range, rounded, save, svg, viridis};
+use super::chart::{
+    Axes, FONT, Image, axes, closed_line, failed, label, padded, range, rounded, save, svg, viridis, word,
+};
 use super::{Folder, OutputError};
 use crate::case::statement::Space;
 use crate::exact;
@@ -10,13 +12,16 @@ use crate::snapshot::{DisplayMesh, Snapshot};
 use plotters::prelude::*;
 use rayon::prelude::*;
 use serde_json::Value;
-use signorini_geometry::{Aabb, Point};
+use signorini_geometry::{Aabb, Point, polygon};
 use signorini_verify::flat_floor::FlatFloor;
 
 const MEMBRANE: RGBColor = RGBColor(31, 81, 140);
 const FLOOR: RGBColor = RGBColor(110, 110, 110);
 const FRONT: RGBColor = RGBColor(213, 60, 40);
 const EXACT: RGBColor = RGBColor(20, 20, 20);
+/// Colours of several contacts, told apart by everyone (Okabe and Ito).
+const SERIES: [RGBColor; 5] =
+    [MEMBRANE, RGBColor(230, 159, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167), RGBColor(86, 180, 233)];
 
 /// Draws all pictures of a run.
 pub fn draw<const D: usize>(
@@ -35,17 +40,19 @@ pub fn draw<const D: usize>(
     let exact = exact::of(plan, s.time);
     let own = |values: &[f64]| range(values.iter().copied());
     type Drawing<'a> = Box<dyn Fn() -> Result<String, OutputError> + Sync + 'a>;
+    let contacts: Vec<&str> = plan.contacts.iter().map(|c| c.name.as_str()).collect();
+    let contacts = contacts.as_slice();
     let mut drawings: Vec<(&str, Drawing)> = Vec::new();
     if D == 1 {
         drawings.push(("deflection", Box::new(|| profile(plan, mesh, s, exact, units, heights(s)))));
-        if s.has_floor {
+        if s.has_obstacles() {
             drawings.push(("gap_and_pressure", Box::new(|| gap_profile(mesh, s, units))));
         }
     } else {
         let field =
             |values: &Vec<f64>, title, label, exact| map(mesh, s, values, title, label, exact, units, own(values));
         drawings.push(("deflection", Box::new(move || field(&s.displacement, "Deflection", units.length("u"), exact))));
-        if s.has_floor {
+        if s.has_obstacles() {
             drawings.push(("gap", Box::new(move || field(&s.gap, "Gap", units.length("gap"), None))));
             drawings.push((
                 "pressure",
@@ -54,16 +61,14 @@ pub fn draw<const D: usize>(
         }
     }
     drawings.push(("convergence", Box::new(|| convergence(steps))));
-    if steps.len() > 1
-        && let Some((name, _)) = &plan.contact
-    {
-        drawings.push(("history", Box::new(|| history(steps, events, name, plan.space, units))));
+    if steps.len() > 1 && !contacts.is_empty() {
+        drawings.push(("history", Box::new(|| history(steps, events, contacts, plan.space, units))));
     }
     if steps.len() > 1
-        && let Some((name, floor)) = &plan.contact
-        && floor.adhesion.is_some()
+        && let Some(contact) = plan.contacts.iter().find(|c| c.adhesion.is_some())
         && let Some(drive) = Drive::of(plan, steps, units)
     {
+        let name = contact.name.as_str();
         drawings.push(("loop", Box::new(move || loop_of_states(&drive, steps, events, name, plan.space, units))));
     }
     let drawn: Vec<String> = drawings
@@ -159,7 +164,7 @@ pub(super) fn frame<const D: usize>(
     if D == 1 {
         return profile(plan, mesh, s, None, units, (lo, hi));
     }
-    let (values, title, label) = match s.has_floor {
+    let (values, title, label) = match s.has_obstacles() {
         true => (&s.gap, "Gap", units.length("gap")),
         false => (&s.displacement, "Deflection", units.length("u")),
     };
@@ -168,16 +173,16 @@ pub(super) fn frame<const D: usize>(
 
 /// The range of what a frame shows.
 pub(super) fn frame_range<const D: usize>(s: &Snapshot<D>) -> (f64, f64) {
-    match (D, s.has_floor) {
+    match (D, s.has_obstacles()) {
         (1, _) => heights(s),
         (_, true) => range(s.gap.iter().copied()),
         (_, false) => range(s.displacement.iter().copied()),
     }
 }
 
-/// The range of membrane and floor.
+/// The range of the membrane and of what it may touch.
 fn heights<const D: usize>(s: &Snapshot<D>) -> (f64, f64) {
-    range(s.displacement.iter().chain(s.floor.iter().filter(|_| s.has_floor)).copied())
+    range(s.displacement.iter().chain(s.floor.iter().flatten()).chain(s.ceiling.iter().flatten()).copied())
 }
 
 /// A field as a colour map, with the contact outlined.
@@ -243,13 +248,22 @@ fn map<const D: usize>(
     fill(&mut image, mesh, values, &bounds, (lo, hi));
     image.insert(&mut text, pixels.0, pixels.1)?;
     // The front is drawn in fractions of a pixel, which the chart's own lines are rounded to.
+    let at = |p: &Point<D>| {
+        let t = (p - bounds.min).component_div(&extent);
+        let (x, y) = (f64::from(pixels.0.1 - pixels.0.0), f64::from(pixels.1.1 - pixels.1.0));
+        (f64::from(pixels.0.0) + t[0] * x, f64::from(pixels.1.1) - t[1] * y)
+    };
     for outline in &s.outlines {
-        let at = |p: &Point<D>| {
-            let t = (p - bounds.min).component_div(&extent);
-            let (x, y) = (f64::from(pixels.0.1 - pixels.0.0), f64::from(pixels.1.1 - pixels.1.0));
-            (f64::from(pixels.0.0) + t[0] * x, f64::from(pixels.1.1) - t[1] * y)
-        };
         closed_line(&mut text, &outline.iter().map(at).collect::<Vec<_>>(), FRONT);
+    }
+    // Zones are numbered as the summary lists them.
+    let flat = |o: &Vec<Point<D>>| o.iter().map(|p| Point::<2>::new(p[0], p[D - 1])).collect::<Vec<_>>();
+    let zones = || s.outlines.iter().filter(|o| polygon::signed_area(&flat(o)) > 0.0);
+    if zones().count() > 1 {
+        for (k, outline) in zones().enumerate() {
+            let middle = outline.iter().sum::<Point<D>>() / outline.len() as f64;
+            word(&mut text, at(&middle), &(k + 1).to_string(), FRONT);
+        }
     }
     Ok(text)
 }
@@ -344,7 +358,6 @@ fn profile<const D: usize>(
     (lo, hi): (f64, f64),
 ) -> Result<String, OutputError> {
     let u = in_order(mesh, &s.displacement);
-    let floor = in_order(mesh, &s.floor);
     let x = range(u.iter().map(|p| p.0));
     let axis = if plan.space == Space::Axisymmetric { "r" } else { "x" };
     svg((900, 480), |root| {
@@ -365,11 +378,10 @@ fn profile<const D: usize>(
             .label_style((FONT, 15))
             .draw()
             .map_err(failed)?;
-        if s.has_floor {
-            let base = lo - 0.05 * (hi - lo);
-            chart
-                .draw_series(AreaSeries::new(floor.iter().copied(), base, FLOOR.mix(0.25)).border_style(FLOOR))
-                .map_err(failed)?;
+        for (heights, base) in [(&s.floor, lo - 0.05 * (hi - lo)), (&s.ceiling, hi + 0.05 * (hi - lo))] {
+            let Some(heights) = heights else { continue };
+            let surface = AreaSeries::new(in_order(mesh, heights), base, FLOOR.mix(0.25)).border_style(FLOOR);
+            chart.draw_series(surface).map_err(failed)?;
         }
         chart
             .draw_series(LineSeries::new(u.iter().copied(), MEMBRANE.stroke_width(3)))
@@ -490,7 +502,7 @@ fn convergence(steps: &[Value]) -> Result<String, OutputError> {
     })
 }
 
-/// What drives a membrane along its history: the resultant of the loads, or the height of the floor.
+/// What drives a membrane along its history: the resultant of the loads, or the height of a body.
 struct Drive<'a> {
     at: Box<dyn Fn(f64) -> f64 + Sync + 'a>,
     label: String,
@@ -500,7 +512,8 @@ impl<'a> Drive<'a> {
     /// The first of the two that changes.
     fn of<const D: usize>(plan: &'a MembranePlan<D>, steps: &[Value], units: &Labels) -> Option<Self> {
         let load = move |t: f64| -plan.load_resultants(&plan.at(t), t).values().sum::<f64>();
-        let height = move |t: f64| plan.contact.as_ref().map_or(0.0, |(_, floor)| floor.displacement_at(t)[2]);
+        let moving = plan.contacts.iter().find(|c| !c.displacement.is_empty());
+        let height = move |t: f64| moving.map_or(0.0, |c| c.displacement_at(t)[2]);
         let changes = |f: &dyn Fn(f64) -> f64| {
             let times = steps.iter().filter_map(|s| s["time"].as_f64());
             let (low, high) = times.map(f).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
@@ -509,7 +522,8 @@ impl<'a> Drive<'a> {
         if changes(&load) {
             Some(Self { at: Box::new(load), label: units.force("load, downwards") })
         } else if changes(&height) {
-            Some(Self { at: Box::new(height), label: units.length("displacement of the floor") })
+            let body = moving.map_or("", |c| c.body.as_str());
+            Some(Self { at: Box::new(height), label: units.length(&format!("displacement of {body}")) })
         } else {
             None
         }
@@ -529,7 +543,7 @@ fn loop_of_states(
     type Reading = fn(&Value) -> Option<f64>;
     let readings: [(Reading, fn(&Event) -> [f64; 2], String); 2] = [
         (|c| c["area"].as_f64(), |e| e.area, measure),
-        (|c| c["force"][2].as_f64(), |e| e.force, units.force("force of the floor")),
+        (|c| c["force"][2].as_f64(), |e| e.force, units.force("contact force")),
     ];
     let jumps: Vec<&Event> = events.iter().filter(|e| e.energy_released.is_some_and(|v| v != 0.0)).collect();
     svg((820, 720), |root| {
@@ -581,7 +595,7 @@ fn loop_of_states(
 fn history(
     steps: &[Value],
     events: &[Event],
-    contact: &str,
+    contacts: &[&str],
     space: Space,
     units: &Labels,
 ) -> Result<String, OutputError> {
@@ -598,17 +612,20 @@ fn history(
             _ => marks.push((*time, word)),
         }
     }
-    let series = |f: &dyn Fn(&Value) -> Option<f64>| -> Vec<(f64, f64)> {
-        steps.iter().filter_map(|s| Some((s["time"].as_f64()?, f(&s["contacts"][contact])?))).collect()
+    let series = |f: &dyn Fn(&Value) -> Option<f64>| -> Vec<Vec<(f64, f64)>> {
+        let of = |contact: &&str| {
+            steps.iter().filter_map(|s| Some((s["time"].as_f64()?, f(&s["contacts"][*contact])?))).collect()
+        };
+        contacts.iter().map(of).collect()
     };
     let area = series(&|c| c["area"].as_f64());
     let force = series(&|c| c["force"][2].as_f64());
     let measure = if space == Space::Line { units.length("length of contact") } else { units.area("area of contact") };
     svg((820, 640), |root| {
         let parts = root.split_evenly((2, 1));
-        for (part, points, y) in [(&parts[0], &area, measure), (&parts[1], &force, units.force("force of the floor"))] {
-            let x = range(points.iter().map(|p| p.0));
-            let height = range(points.iter().map(|p| p.1).chain([0.0]));
+        for (part, points, y) in [(&parts[0], &area, measure), (&parts[1], &force, units.force("contact force"))] {
+            let x = range(points.iter().flatten().map(|p| p.0));
+            let height = range(points.iter().flatten().map(|p| p.1).chain([0.0]));
             let mut chart = axes(part, &Axes { x, y: height, x_name: "t", y_name: &y })?;
             let (low, high) = (chart.y_range().start, chart.y_range().end);
             let style = TextStyle::from((FONT, 12).into_font()).color(&FRONT).transform(FontTransform::Rotate90);
@@ -618,8 +635,23 @@ fn history(
                 let text = Text::new(words.clone(), (*time, high), style.clone());
                 chart.draw_series(std::iter::once(text)).map_err(failed)?;
             }
-            chart.draw_series(LineSeries::new(points.iter().copied(), MEMBRANE.stroke_width(2))).map_err(failed)?;
-            chart.draw_series(points.iter().map(|p| Circle::new(*p, 4, MEMBRANE.filled()))).map_err(failed)?;
+            for (k, (points, name)) in points.iter().zip(contacts).enumerate() {
+                let colour = SERIES[k % SERIES.len()];
+                chart.draw_series(points.iter().map(|p| Circle::new(*p, 4, colour.filled()))).map_err(failed)?;
+                chart
+                    .draw_series(LineSeries::new(points.iter().copied(), colour.stroke_width(2)))
+                    .map_err(failed)?
+                    .label(*name)
+                    .legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 20, y)], colour.stroke_width(3)));
+            }
+            if contacts.len() > 1 {
+                chart
+                    .configure_series_labels()
+                    .label_font((FONT, 14))
+                    .background_style(WHITE)
+                    .draw()
+                    .map_err(failed)?;
+            }
         }
         Ok(())
     })

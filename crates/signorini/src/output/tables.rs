@@ -4,7 +4,7 @@ use crate::snapshot::Snapshot;
 use serde_json::Value;
 
 /// One line per increment, from the steps of the summary.
-pub fn history(steps: &[Value], contact: Option<&str>, probes: &[String]) -> String {
+pub fn history(steps: &[Value], contacts: &[&str], probes: &[String]) -> String {
     let mut header = ["index", "time", "converged", "iterations", "energy", "equilibrium_residual"].join(",");
     const CONTACT: [&str; 8] = [
         "area",
@@ -16,9 +16,11 @@ pub fn history(steps: &[Value], contact: Option<&str>, probes: &[String]) -> Str
         "max_pressure",
         "min_pressure",
     ];
-    if contact.is_some() {
-        header += ",force,";
-        header += &CONTACT.join(",");
+    for name in contacts {
+        // With one contact there is nothing to tell apart.
+        let of = if contacts.len() > 1 { format!("{name}:") } else { String::new() };
+        header += &format!(",{of}force");
+        CONTACT.iter().for_each(|key| header += &format!(",{of}{key}"));
     }
     for probe in probes {
         header += &format!(",{probe}");
@@ -30,8 +32,8 @@ pub fn history(steps: &[Value], contact: Option<&str>, probes: &[String]) -> Str
             .iter()
             .map(|k| cell(&step[*k]))
             .collect();
-        if let Some(name) = contact {
-            let c = &step["contacts"][name];
+        for name in contacts {
+            let c = &step["contacts"][*name];
             row.push(cell(&c["force"][2]));
             row.extend(CONTACT.iter().map(|k| cell(&c[*k])));
         }

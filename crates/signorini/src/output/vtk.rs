@@ -42,7 +42,7 @@ pub fn fields<const D: usize>(mesh: &DisplayMesh<D>, s: &Snapshot<D>) -> Result<
     let scalar = |name: &str, values: Vec<f64>| Attribute::scalars(name, 1).with_data(values);
     let vector: Vec<f64> = s.displacement.iter().flat_map(|u| [0.0, 0.0, *u]).collect();
     let mut point = vec![Attribute::vectors("displacement").with_data(vector)];
-    if s.has_floor {
+    if s.has_obstacles() {
         point.push(scalar("gap", s.gap.clone()));
         point.push(scalar("contact_pressure", s.pressure.clone()));
         point.push(scalar("contact_status", s.in_contact.iter().map(|c| f64::from(u8::from(*c))).collect()));

@@ -42,15 +42,11 @@ impl Planner<'_> {
                 Some((_, span)) => return Err(self.unavailable(span, "control of solids by arc length or area")),
             }
         }
-        Ok(self.increments(0, None)?.into_iter().map(|i| i.time).collect())
+        Ok(self.increments(0, &[])?.into_iter().map(|i| i.time).collect())
     }
 
-    /// The increments of a membrane of a dimension, whose contact has a name.
-    pub(super) fn increments(
-        &self,
-        dimension: usize,
-        contact: Option<&str>,
-    ) -> Result<Vec<PlannedIncrement>, CaseError> {
+    /// The increments of a membrane of a dimension, whose contacts have names.
+    pub(super) fn increments(&self, dimension: usize, contacts: &[&str]) -> Result<Vec<PlannedIncrement>, CaseError> {
         let mut out = Vec::new();
         let mut t = 0.0;
         for (step, key) in self.document.case.steps.iter().enumerate() {
@@ -83,7 +79,7 @@ impl Planner<'_> {
             for part in 1..=n {
                 // The last time is exactly the stated one.
                 let time = if part == n { to } else { t + (to - t) * part as f64 / n as f64 };
-                let control = self.control(key, dimension, contact, part, n)?;
+                let control = self.control(key, dimension, contacts, part, n)?;
                 out.push(PlannedIncrement { step, range: [t, to], time, control, events });
             }
             t = to;
@@ -98,12 +94,14 @@ impl Planner<'_> {
         &self,
         key: &statement::Step,
         dimension: usize,
-        contact: Option<&str>,
+        contacts: &[&str],
         part: usize,
         parts: usize,
     ) -> Result<Control, CaseError> {
         let Some(control) = &key.control else { return Ok(Control::Time) };
-        if let (None, statement::Control::ArcLength(_) | statement::Control::Area(_)) = (contact, control.get_ref()) {
+        if let (true, statement::Control::ArcLength(_) | statement::Control::Area(_)) =
+            (contacts.is_empty(), control.get_ref())
+        {
             return Err(self.document.error(control.span(), "there is no contact to control"));
         }
         match control.get_ref() {
@@ -119,11 +117,14 @@ impl Planner<'_> {
                 Ok(Control::ArcLength(size))
             }
             statement::Control::Area(area) => {
-                if contact != Some(area.of.get_ref().as_str()) {
+                if !contacts.contains(&area.of.get_ref().as_str()) {
                     return Err(self
                         .document
                         .error(area.of.span(), format!("there is no contact `{}`", area.of.get_ref()))
-                        .help(format!("of = \"{}\"", contact.unwrap_or(""))));
+                        .help(format!("of = \"{}\"", contacts.first().unwrap_or(&""))));
+                }
+                if contacts.len() > 1 {
+                    return Err(self.unavailable(control.span(), "control by the area of one contact of several"));
                 }
                 // On a line the area is a length; of a round membrane it is that of the disc.
                 let power = if self.space == statement::Space::Line { 1 } else { 2 };

@@ -207,6 +207,9 @@ pub(super) fn read<const D: usize>(
             .error(span, format!("a {what} is a shape in space"))
             .help("in the plane: plane, sphere (a circle), cylinder, ellipsoid (an ellipse)"))
     };
+    if let Some(lies) = &rigid.lies {
+        return Err(document.error(lies.span(), "`lies` is for bodies beside a membrane"));
+    }
     let whole = [[0.0, TAU], [-FRAC_PI_2, FRAC_PI_2]];
     let wrong = |error: ShapeError| document.error(rigid.shape.span(), error.to_string());
     let form = match rigid.shape.get_ref() {
@@ -283,14 +286,7 @@ pub(super) fn read<const D: usize>(
         }
         Shape::Stl(key) => {
             only_in_space(rigid.shape.span(), "triangulated surface")?;
-            let (path, _) = planner.read_file(&key.file)?;
-            let mesh = crate::mesh_file::read(&path).map_err(|e| document.error(key.file.span(), e.to_string()))?;
-            if !mesh.quality().has_inside() {
-                return Err(document
-                    .error(key.file.span(), format!("the surface in `{}` is not closed", key.file.get_ref()))
-                    .help("a rigid body needs an inside: close the holes, or model it by another shape"));
-            }
-            Form::General { shape: mesh.into(), outward: true }
+            Form::General { shape: planner.closed_mesh(key)?.into(), outward: true }
         }
         Shape::Nurbs(key) => {
             only_in_space(rigid.shape.span(), "NURBS surface")?;
@@ -344,7 +340,7 @@ pub(super) fn read<const D: usize>(
             }
             let field = move |x: &Point<3>| {
                 let [x, y, z] = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));
-                z - map.evaluate(x, y)
+                z - crate::relief::evaluate(&map, x, y)
             };
             let surface = ImplicitSurface::new(ImplicitBody::field(field), bounds, 96).map_err(|e| {
                 wrong(e).help("the heights must lie within the box around the solids, twice as long as they are")

@@ -1,10 +1,11 @@
-//! Rigid shapes seen from above: the height of the floor that they make.
+//! Rigid shapes seen from above or below: the height of the surface that they turn to a membrane.
 
 use super::Planner;
 use crate::case::statement::{Rigid, Shape, Space};
 use crate::case::units::{LENGTH, NONE};
 use crate::case::{CaseError, Values};
 use crate::expression::{Expression, Names, parse};
+use signorini_membrane::obstacle::Side;
 
 /// A round shape is followed to this fraction of the way to where it stands upright, and beyond along its tangent: a
 /// membrane whose slope matters there is beyond the linear theory.
@@ -12,10 +13,40 @@ const FOLLOWED: f64 = 0.98;
 /// Axes may be out of line by this much.
 const ALIGNED: f64 = 1e-9;
 
-/// The height of a shape at (x, y) as an expression; none for shapes that have another reading.
-pub(super) fn height(planner: &Planner<'_>, rigid: &Rigid) -> Result<Option<(Expression, &'static str)>, CaseError> {
-    let above = Above { planner, lineal: planner.space != Space::Plane };
+/// The height of a shape on one side of a membrane at (x, y) as an expression; none for shapes that have another reading.
+pub(super) fn height(
+    planner: &Planner<'_>,
+    rigid: &Rigid,
+    side: Side,
+) -> Result<Option<(Expression, &'static str)>, CaseError> {
+    let above = Above { planner, lineal: planner.space != Space::Plane, up: side.sign() };
     let (text, key) = match rigid.shape.get_ref() {
+        Shape::Plane(s) => {
+            let p = above.spatial(&s.point, LENGTH)?;
+            let n = above.spatial(&s.normal, NONE)?;
+            if n[2] <= 0.0 {
+                return Err(above.wrong(
+                    s.normal.span(),
+                    "the normal does not point towards the membrane",
+                    if side == Side::Below { "normal = [0, 0, 1]" } else { "normal = [0, 0, -1]" },
+                ));
+            }
+            let slopes = [n[0] / n[2], n[1] / n[2]];
+            (format!("({}) - ({})*(x - ({})) - ({})*(y - ({}))", p[2], slopes[0], p[0], slopes[1], p[1]), "plane")
+        }
+        Shape::Cone(s) => {
+            let c = above.place(&s.apex)?;
+            above.downwards(&s.axis)?;
+            let angle = planner.reader.positive(&s.half_angle, NONE)?;
+            if angle >= std::f64::consts::FRAC_PI_2 {
+                return Err(above.wrong(
+                    s.half_angle.span(),
+                    &format!("the half angle is {angle}"),
+                    "an angle in radians below pi/2",
+                ));
+            }
+            (format!("({}) - ({})*{}", c[2], 1.0 / angle.tan(), above.length(c, 1.0)), "cone")
+        }
         Shape::Sphere(s) => {
             let c = above.place(&s.center)?;
             let radius = planner.reader.positive(&s.radius, LENGTH)?;
@@ -74,16 +105,21 @@ pub(super) fn height(planner: &Planner<'_>, rigid: &Rigid) -> Result<Option<(Exp
         }
         _ => return Ok(None),
     };
-    let variables = if above.lineal { vec!["x"] } else { vec!["x", "y"] };
+    // Of a body above the mirror image was read.
+    let text = if side == Side::Above { format!("-({text})") } else { text };
+    let variables = vec!["x", "y"];
     let names = Names { variables, ..Names::default() };
     let expression = parse(&text, &names).map_err(|e| planner.document.error(rigid.shape.span(), e.message))?;
     Ok(Some((expression, key)))
 }
 
+/// Reads shapes as seen from above; those above a membrane upside down.
 struct Above<'a, 'b> {
     planner: &'a Planner<'b>,
     /// Whether positions have one coordinate beside the height.
     lineal: bool,
+    /// The sign that heights are multiplied by.
+    up: f64,
 }
 
 impl Above<'_, '_> {
@@ -91,12 +127,18 @@ impl Above<'_, '_> {
         self.planner.document.error(span, message).help(help)
     }
 
-    /// A place as x, y, z; on a line [x, z] will do.
-    fn place(&self, values: &Values) -> Result<[f64; 3], CaseError> {
-        let found = match values.get_ref().len() {
-            2 if self.lineal => self.planner.reader.numbers::<2>(values, LENGTH).map(|[x, z]| [x, 0.0, z]),
-            _ => self.planner.reader.numbers::<3>(values, LENGTH),
+    /// A place or direction as x, y, z; on a line [x, z] will do.
+    fn spatial(&self, values: &Values, dimension: [i32; 3]) -> Result<[f64; 3], CaseError> {
+        let [x, y, z] = match values.get_ref().len() {
+            2 if self.lineal => self.planner.reader.numbers::<2>(values, dimension).map(|[x, z]| [x, 0.0, z]),
+            _ => self.planner.reader.numbers::<3>(values, dimension),
         }?;
+        Ok([x, y, self.up * z])
+    }
+
+    /// A place as x, y, z.
+    fn place(&self, values: &Values) -> Result<[f64; 3], CaseError> {
+        let found = self.spatial(values, LENGTH)?;
         if self.planner.space == Space::Axisymmetric && (found[0] != 0.0 || found[1] != 0.0) {
             return Err(self.wrong(
                 values.span(),
@@ -107,24 +149,18 @@ impl Above<'_, '_> {
         Ok(found)
     }
 
-    fn direction(&self, axis: &Values) -> Result<[f64; 3], CaseError> {
-        match axis.get_ref().len() {
-            2 if self.lineal => self.planner.reader.numbers::<2>(axis, NONE).map(|[x, z]| [x, 0.0, z]),
-            _ => self.planner.reader.numbers::<3>(axis, NONE),
-        }
-    }
-
-    /// An axis that has to point into the body, down from the membrane.
+    /// An axis that has to point into the body, straight away from the membrane.
     fn downwards(&self, axis: &Values) -> Result<(), CaseError> {
-        let a = self.direction(axis)?;
+        let a = self.spatial(axis, NONE)?;
         if a[2] < 0.0 && a[0].hypot(a[1]) <= ALIGNED * -a[2] {
             return Ok(());
         }
-        Err(self.wrong(axis.span(), "the axis has to point straight down, into the body", "axis = [0, 0, -1]"))
+        let (way, example) = if self.up > 0.0 { ("down", "axis = [0, 0, -1]") } else { ("up", "axis = [0, 0, 1]") };
+        Err(self.wrong(axis.span(), &format!("the axis has to point straight {way}, into the body"), example))
     }
 
     fn upright(&self, axis: &Values) -> Result<(), CaseError> {
-        let a = self.direction(axis)?;
+        let a = self.spatial(axis, NONE)?;
         if a[2] != 0.0 && a[0].hypot(a[1]) <= ALIGNED * a[2].abs() {
             return Ok(());
         }

@@ -6,6 +6,7 @@ use super::rigid::{self, RigidBody};
 use super::{Placed, Planner};
 use crate::case::statement::{self, Body, Enforcement, Material, Method, SolidMesh, Space};
 use crate::case::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE};
+use crate::case::value::Interpreted;
 use crate::case::{CaseError, Document, Literal, OneOrMany, Value, Values, suggestion};
 use crate::expression::Scope;
 use signorini_fem::{Group, Mesh, Side};
@@ -78,6 +79,8 @@ pub struct SolidPlan<const D: usize> {
     pub every: usize,
     pub pictures: bool,
     pub warnings: Vec<String>,
+    /// What the values with units were taken for.
+    pub interpreted: Vec<Interpreted>,
 }
 
 /// The value of an expression at a point and time, or an error that names it.
@@ -114,7 +117,7 @@ impl Planner<'_> {
     }
 
     /// The heights of a map.
-    pub(super) fn height_map(&self, key: &statement::HeightMapKey) -> Result<crate::height_map::HeightMap, CaseError> {
+    pub(super) fn height_map(&self, key: &statement::HeightMapKey) -> Result<crate::relief::Sampled, CaseError> {
         let (path, bytes) = self.read_file(&key.file)?;
         let spacing = self.reader.numbers::<2>(&key.spacing, LENGTH)?;
         if spacing.iter().any(|h| *h <= 0.0) {
@@ -122,8 +125,24 @@ impl Planner<'_> {
         }
         let origin = key.origin.as_ref().map(|o| self.reader.numbers::<2>(o, LENGTH)).transpose()?.unwrap_or_default();
         let scale = key.scale.as_ref().map(|s| self.reader.number(s, LENGTH)).transpose()?.unwrap_or(1.0);
-        crate::height_map::HeightMap::read(&path, &bytes, origin, spacing, scale)
+        crate::height_map::read(&path, &bytes, origin, spacing, scale)
             .map_err(|message| self.document.error(key.file.span(), format!("`{}`: {message}", path.display())))
+    }
+
+    /// A triangle mesh that bounds a body.
+    pub(super) fn closed_mesh(
+        &self,
+        key: &statement::FileKey,
+    ) -> Result<signorini_geometry::mesh::TriangleMesh, CaseError> {
+        let (path, _) = self.read_file(&key.file)?;
+        let mesh = crate::mesh_file::read(&path).map_err(|e| self.document.error(key.file.span(), e.to_string()))?;
+        if mesh.quality().has_inside() {
+            return Ok(mesh);
+        }
+        Err(self
+            .document
+            .error(key.file.span(), format!("the surface in `{}` is not closed", key.file.get_ref()))
+            .help("a rigid body needs an inside: close the holes, or model it by another shape"))
     }
 
     fn coordinates<const D: usize>(&self) -> &'static [&'static str] {
@@ -196,6 +215,7 @@ impl Planner<'_> {
             every,
             pictures: case.output.pictures.unwrap_or(true),
             warnings,
+            interpreted: self.reader.echo(),
         })
     }
 

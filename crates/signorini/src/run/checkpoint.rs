@@ -51,7 +51,7 @@ impl<const D: usize, Z: Zone<D>> Checkpoint<D, Z> {
             "warnings": self.warnings,
             "frames": self.frames,
             "unknowns": self.unknowns,
-            "events": self.events.iter().map(|e| e.to_json("")).collect::<Vec<_>>(),
+            "events": self.events.iter().map(Event::to_json).collect::<Vec<_>>(),
         });
         folder.write(FILE, state.to_string().as_bytes())
     }
@@ -118,7 +118,7 @@ fn frame_json<const D: usize>(s: &Snapshot<D>) -> Value {
         s.outlines.iter().map(|o| o.iter().map(|x| x.iter().copied().collect()).collect()).collect();
     json!({
         "time": s.time, "displacement": s.displacement, "gap": s.gap, "pressure": s.pressure,
-        "in_contact": s.in_contact, "floor": s.floor, "outlines": outlines, "has_floor": s.has_floor,
+        "in_contact": s.in_contact, "floor": s.floor, "ceiling": s.ceiling, "outlines": outlines,
     })
 }
 
@@ -132,8 +132,8 @@ fn frame_from<const D: usize>(v: &Value) -> Option<Snapshot<D>> {
         gap: numbers("gap")?,
         pressure: numbers("pressure")?,
         in_contact: serde_json::from_value(v["in_contact"].clone()).ok()?,
-        floor: numbers("floor")?,
+        floor: numbers("floor"),
+        ceiling: numbers("ceiling"),
         outlines: outlines.iter().map(|o| o.iter().map(point).collect()).collect::<Option<_>>()?,
-        has_floor: v["has_floor"].as_bool()?,
     })
 }

@@ -7,6 +7,7 @@
 use serde_json::{Value, json};
 use signorini_fem::Grid;
 use signorini_geometry::Point;
+use signorini_membrane::obstacle::Side;
 use signorini_membrane::zone::{Zone, contact_index};
 use signorini_solve::{Iteration, Progress};
 
@@ -14,6 +15,9 @@ use signorini_solve::{Iteration, Progress};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
     pub kind: &'static str,
+    /// What the zone touches, and the contact that this is.
+    pub side: Side,
+    pub contact: String,
     /// The middle of the interval of time that holds the change, and its length.
     pub time: f64,
     pub within: f64,
@@ -29,9 +33,9 @@ pub struct Event {
 }
 
 impl Event {
-    pub fn to_json(&self, contact: &str) -> Value {
+    pub fn to_json(&self) -> Value {
         json!({
-            "contact": contact, "kind": self.kind, "time": self.time, "within": self.within, "at": self.at,
+            "contact": self.contact, "above": self.side == Side::Above, "kind": self.kind, "time": self.time, "within": self.within, "at": self.at,
             "zones_before": self.before.0, "zones_after": self.after.0,
             "holes_before": self.before.1, "holes_after": self.after.1,
             "area_before": self.area[0], "area_after": self.area[1],
@@ -52,6 +56,8 @@ impl Event {
         let count = |key: &str| v[key].as_u64().map(|n| n as usize);
         Some(Self {
             kind: KINDS.into_iter().find(|k| v["kind"] == *k)?,
+            side: if v["above"].as_bool()? { Side::Above } else { Side::Below },
+            contact: v["contact"].as_str()?.to_string(),
             time: number("time")?,
             within: number("within")?,
             at: serde_json::from_value(v["at"].clone()).ok()?,
@@ -184,6 +190,8 @@ pub fn jump<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Known<Z>, b: &Known<
     if events.is_empty() {
         events.push(Event {
             kind: if b.area > a.area { "snap_in" } else { "pull_off" },
+            side: if b.zone.is_empty() { a.zone.side_of(0) } else { b.zone.side_of(0) },
+            contact: String::new(),
             time: 0.5 * (a.time + b.time),
             within: b.time - a.time,
             at: moved(grid, &a.zone, &b.zone).iter().copied().collect(),
@@ -216,9 +224,11 @@ fn differences<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Known<Z>, b: &Kno
     let (parts_a, parts_b) = (parts(grid, &a.zone), parts(grid, &b.zone));
     let overlap = overlaps(grid, &a.zone, &b.zone, [parts_a.len(), parts_b.len()]);
     let mut out = Vec::new();
-    let mut add = |kind, at: Point<D>| {
+    let mut add = |kind, side, at: Point<D>| {
         out.push(Event {
             kind,
+            side,
+            contact: String::new(),
             time: 0.5 * (a.time + b.time),
             within: b.time - a.time,
             at: at.iter().copied().collect(),
@@ -232,20 +242,22 @@ fn differences<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Known<Z>, b: &Kno
     for (j, part) in parts_b.iter().enumerate() {
         let from: Vec<&Vec<Point<D>>> = (0..parts_a.len()).filter(|&i| overlap[i][j]).map(|i| &parts_a[i]).collect();
         if from.is_empty() {
-            add("nucleation", middle(grid, part));
+            add("nucleation", b.zone.side_of(j), middle(grid, part));
         }
-        bridges(&from).into_iter().for_each(|x| add("merge", x));
+        bridges(&from).into_iter().for_each(|x| add("merge", b.zone.side_of(j), x));
     }
     for (i, part) in parts_a.iter().enumerate() {
         let into: Vec<&Vec<Point<D>>> = (0..parts_b.len()).filter(|&j| overlap[i][j]).map(|j| &parts_b[j]).collect();
         if into.is_empty() {
-            add("release", middle(grid, part));
+            add("release", a.zone.side_of(i), middle(grid, part));
         }
-        bridges(&into).into_iter().for_each(|x| add("split", x));
+        bridges(&into).into_iter().for_each(|x| add("split", a.zone.side_of(i), x));
     }
-    let (holes_a, holes_b) = (holes(&a.zone), holes(&b.zone));
-    unmatched(&holes_b, &holes_a).into_iter().for_each(|x| add("hole_opened", x));
-    unmatched(&holes_a, &holes_b).into_iter().for_each(|x| add("hole_closed", x));
+    for side in Side::BOTH {
+        let [holes_a, holes_b] = [a, b].map(|state| holes(grid, &state.zone, side));
+        unmatched(&holes_b, &holes_a).into_iter().for_each(|x| add("hole_opened", side, x));
+        unmatched(&holes_a, &holes_b).into_iter().for_each(|x| add("hole_closed", side, x));
+    }
     out
 }
 
@@ -331,8 +343,8 @@ fn mean<const D: usize>(points: &[Point<D>]) -> Point<D> {
     points.iter().sum::<Point<D>>() / points.len().max(1) as f64
 }
 
-/// Centres of the holes: their fronts run clockwise.
-fn holes<const D: usize, Z: Zone<D>>(zone: &Z) -> Vec<Point<D>> {
+/// Centres of the holes in the zones that touch one side: their fronts run clockwise.
+fn holes<const D: usize, Z: Zone<D>>(grid: &Grid<D>, zone: &Z, side: Side) -> Vec<Point<D>> {
     if D == 1 {
         return Vec::new();
     }
@@ -340,7 +352,8 @@ fn holes<const D: usize, Z: Zone<D>>(zone: &Z) -> Vec<Point<D>> {
         let next = outline.iter().cycle().skip(1);
         outline.iter().zip(next).map(|(p, q)| p[0] * q[D - 1] - p[D - 1] * q[0]).sum::<f64>() < 0.0
     };
-    zone.outlines().iter().filter(|o| clockwise(o)).map(|o| mean(o)).collect()
+    let of_side = |o: &Vec<Point<D>>| inside(grid, zone, o).is_none_or(|k| zone.side_of(k) == side);
+    zone.outlines().iter().filter(|o| clockwise(o) && of_side(o)).map(|o| mean(o)).collect()
 }
 
 /// The places of a list that have none of the other list as their nearest partner.

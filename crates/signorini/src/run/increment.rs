@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use signorini_geometry::Point;
 use signorini_membrane::active_set::{self, NodalSolution, NodalStart};
 use signorini_membrane::adhesion::Branch;
+use signorini_membrane::conditions::Extremes;
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::error_estimate::ErrorEstimate;
 use signorini_membrane::ils::{self, Reason, Solution, Start};
@@ -17,7 +18,7 @@ use signorini_membrane::refinement::Refinement;
 use signorini_membrane::report::{Component, ContactReport, Report};
 use signorini_membrane::scales::Scales;
 use signorini_membrane::staircase::Staircase;
-use signorini_membrane::zone::{Zone, contact_index};
+use signorini_membrane::zone::{Zone, contact_of};
 use signorini_solve::{Iteration, Progress};
 use std::collections::BTreeMap;
 
@@ -127,9 +128,9 @@ pub struct Stability {
 
 impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
     pub fn new(plan: &MembranePlan<D>) -> Self {
-        let asked = plan.initial_zone.as_ref().map(|shape| {
+        let asked = plan.initial_zone.as_ref().map(|(side, shape)| {
             let grid = &plan.grid;
-            Z::empty(grid).united(grid, &mut |x| shape.level(x))
+            Z::empty(grid).united(grid, *side, &mut |x| shape.level(x))
         });
         Self {
             previous: None,
@@ -162,7 +163,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             time,
             zone: zone.clone(),
             area: increment.area(),
-            force: increment.report.as_ref().map_or(0.0, |r| r.contact.force),
+            force: increment.report.as_ref().map_or(0.0, |r| r.force()),
             energy_total: increment.energy_total(),
             margin: increment.stability.margin,
         })
@@ -214,9 +215,9 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         self.scales
     }
 
-    /// Whether a membrane without contact would penetrate its floor; none where that cannot be computed.
-    pub fn reaches_floor(&self, membrane: &Membrane<D>) -> Option<bool> {
-        ils::reaches_floor::<D, Z>(membrane, &mut Elements::new(membrane)).ok()
+    /// Whether a membrane without contact would penetrate a body; none where that cannot be computed.
+    pub fn reaches_obstacle(&self, membrane: &Membrane<D>) -> Option<bool> {
+        ils::reaches_obstacle::<D, Z>(membrane, &mut Elements::new(membrane)).ok()
     }
 
     /// Whether the case asks for a zone that no increment has started from yet.
@@ -277,12 +278,12 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         }
         let mut warnings = Vec::new();
         let steepest = report.as_ref().map_or(0.0, |r| r.max_slope);
-        if let (true, Some(state), Some(floor)) = (estimated, &solution.equilibrium, &membrane.floor)
-            && let Some(x) = kink(state, floor)
+        if let (true, Some(state)) = (estimated, &solution.equilibrium)
+            && let Some(x) = kink(state)
         {
             let place: Vec<String> = x.iter().map(|v| format!("{v:.4}")).collect();
             warnings.push(format!(
-                "the floor has a kink within the contact, near ({}): along it the pressure is a line force that the method \
+                "what the membrane touches has a kink within the contact, near ({}): along it the pressure is a line force that the method \
                  leaves out, and the error estimate does not see it; round the kink off by a few cells",
                 place.join(", ")
             ));
@@ -318,7 +319,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         }
         if let Some(depth) = solution.unresolved {
             warnings.push(format!(
-                "the grid cannot tell whether zones touch at t = {}: the membrane penetrates the floor by {depth:.0e} between them",
+                "the grid cannot tell whether zones touch at t = {}: the membrane penetrates what lies between them by {depth:.0e} between them",
                 at.1
             ));
         }
@@ -345,12 +346,9 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             let zone = solution.zone;
             Box::new(move |x: &Point<D>| {
                 let displacement = equilibrium.displacement(&zone, x)?;
-                let in_contact = contact_index(zone.region_at(x)).is_some();
-                let pressure = match &membrane.floor {
-                    Some(floor) if in_contact => membrane.floor_pressure(floor, x),
-                    _ => 0.0,
-                };
-                Some(Sample { displacement, in_contact, pressure })
+                let touched = contact_of(zone.region_at(x));
+                let pressure = touched.map_or(0.0, |(side, _)| membrane.pressure(side, x));
+                Some(Sample { displacement, in_contact: touched.is_some(), pressure })
             }) as Sampler<'a, D>
         });
         Increment {
@@ -388,12 +386,12 @@ fn active_set<'a, const D: usize, Z: Zone<D>>(
         stability: Stability::default(),
         errors: None,
     };
-    let Some(floor) = &membrane.floor else {
-        return failed("linear_solver", vec!["method.active_set needs a floor".into()]);
-    };
+    if membrane.obstacles.is_empty() {
+        return failed("linear_solver", vec!["method.active_set needs something to touch".into()]);
+    }
     let solved = {
         let shared = &*progress;
-        active_set::solve::<D, Z>(membrane, floor, start, &|| shared.interrupted())
+        active_set::solve::<D, Z>(membrane, start, &|| shared.interrupted())
     };
     let solution = match solved {
         Ok(solution) => solution,
@@ -430,7 +428,7 @@ fn active_set<'a, const D: usize, Z: Zone<D>>(
         sample: Some(Box::new(move |x| {
             Some(Sample {
                 displacement: solution.displacement(membrane, x),
-                in_contact: solution.touches(membrane, x),
+                in_contact: solution.contact(membrane, x).is_some(),
                 pressure: solution.pressure(membrane, x),
             })
         })),
@@ -442,51 +440,52 @@ fn nodal_report<const D: usize>(
     solution: &NodalSolution<D>,
     zones: &Staircase<D>,
 ) -> Report<D> {
-    let inside = || solution.nodes.iter().enumerate().filter_map(|(i, n)| n.filter(|n| n.inside).map(|n| (i, n)));
-    let height = |i: usize| membrane.floor.as_ref().map_or(0.0, |h| h.value(&membrane.grid.node(i)));
-    let gaps = || inside().filter(|(_, n)| !n.in_contact).map(|(i, n)| n.displacement - height(i));
-    let pressures = || inside().filter(|(_, n)| n.in_contact).map(|(_, n)| n.reaction / n.share.max(f64::MIN_POSITIVE));
-    let force: f64 = zones.components.iter().map(|c| c.force).sum();
+    let obstacles = &membrane.obstacles;
     let supports: f64 = solution.support_forces.iter().sum();
-    let largest = force.abs().max(supports.abs()).max(solution.load_force.abs()).max(f64::MIN_POSITIVE);
-    let least = |v: f64| if v.is_finite() { v } else { 0.0 };
-    let length: f64 = zones
-        .outlines
-        .iter()
-        .map(|o| if D == 1 { 2.0 } else { o.iter().zip(o.iter().cycle().skip(1)).map(|(a, b)| (b - a).norm()).sum() })
-        .sum();
+    let forces = zones.components.iter().map(|c| c.force);
+    let largest = forces.clone().chain([supports, solution.load_force]).fold(f64::MIN_POSITIVE, |m, f| m.max(f.abs()));
+    let length = |o: &Vec<Point<D>>| -> f64 {
+        if D == 1 { 2.0 } else { o.iter().zip(o.iter().cycle().skip(1)).map(|(a, b)| (b - a).norm()).sum() }
+    };
+    let contact = |k: usize| {
+        let side = obstacles.0[k].side;
+        let mut extremes = Extremes::default();
+        for (i, node) in solution.nodes.iter().enumerate() {
+            let Some(node) = node.filter(|n| n.inside) else { continue };
+            let x = membrane.grid.node(i);
+            if obstacles.index_at(side, &x) != Some(k) {
+                continue;
+            }
+            if node.contact == Some(side) {
+                extremes.add_pressure(node.pressure());
+            } else {
+                extremes.add_gap(obstacles.gap(side, &x, node.displacement), true);
+            }
+        }
+        let own = zones.components.iter().filter(|c| c.obstacle == k).cloned().collect();
+        // Outlines are not told apart by bodies: with several of them the length is that of all.
+        ContactReport::of(own, zones.outlines.iter().map(length).sum(), Some(&extremes))
+    };
     Report {
         support_forces: solution.support_forces.clone(),
         load_force: solution.load_force,
         energy: solution.energy,
         max_slope: 0.0,
         volume: solution.nodes.iter().flatten().map(|n| n.share * n.displacement).sum(),
-        equilibrium_residual: (force + supports + solution.load_force).abs() / largest,
-        contact: ContactReport {
-            force,
-            area: zones.components.iter().map(|c| c.area).sum(),
-            components: zones.components.clone(),
-            holes: zones.components.iter().map(|c| c.holes).sum(),
-            boundary_length: length,
-            line_force: 0.0,
-            adhesion_energy: 0.0,
-            max_penetration: gaps().fold(0.0, |m: f64, g| m.max(-g)),
-            min_gap_outside: Some(gaps().fold(f64::INFINITY, f64::min)).filter(|g| g.is_finite()),
-            max_pressure: least(pressures().fold(f64::NEG_INFINITY, f64::max)),
-            min_pressure: least(pressures().fold(f64::INFINITY, f64::min)),
-        },
+        equilibrium_residual: (forces.sum::<f64>() + supports + solution.load_force).abs() / largest,
+        contacts: (0..obstacles.0.len()).map(contact).collect(),
     }
 }
 
 impl<const D: usize> Increment<'_, D> {
     /// Area of contact.
     pub fn area(&self) -> f64 {
-        self.report.as_ref().map_or(0.0, |r| r.contact.area)
+        self.report.as_ref().map_or(0.0, |r| r.area())
     }
 
     /// Energy with that of adhesion.
     pub fn energy_total(&self) -> f64 {
-        self.report.as_ref().map_or(f64::NAN, |r| r.energy - r.contact.adhesion_energy)
+        self.report.as_ref().map_or(f64::NAN, |r| r.energy_total())
     }
 
     /// The state on the display mesh; none where nothing was solved.
@@ -504,7 +503,7 @@ impl<const D: usize> Increment<'_, D> {
             "iterations": self.iterations,
             "residual_history": self.residuals,
             "energy": self.report.as_ref().map(|r| r.energy),
-            "energy_total": self.report.as_ref().map(|r| r.energy - r.contact.adhesion_energy),
+            "energy_total": self.report.as_ref().map(|r| r.energy_total()),
             "volume": self.report.as_ref().map(|r| r.volume),
             "max_slope": self.report.as_ref().map(|r| r.max_slope),
             "equilibrium_residual": self.report.as_ref().map(|r| r.equilibrium_residual),
@@ -517,8 +516,8 @@ impl<const D: usize> Increment<'_, D> {
         for (name, force) in loads {
             step["load_forces"][name] = upward(*force);
         }
-        if let Some((name, _)) = &plan.contact {
-            step["contacts"][name] = self.contact_json(&report.contact, plan.space);
+        for (contact, report) in plan.contacts.iter().zip(&report.contacts) {
+            step["contacts"][&contact.name] = self.contact_json(report, plan.space);
         }
         for (name, x) in &plan.probes {
             let state = self.sample.as_ref().and_then(|s| s(x));

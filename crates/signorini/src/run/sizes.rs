@@ -2,12 +2,14 @@
 
 use super::increment::LINEAR;
 use crate::case::CaseError;
+use crate::case::value::Interpreted;
 use crate::plan::{MembranePlan, Plan, memory_estimate};
 use serde_json::{Value, json};
 use signorini_membrane::conditions::least_free_gap;
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::field::Constant;
 use signorini_membrane::line_zone::LineZone;
+use signorini_membrane::obstacle::Side;
 use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::Membrane;
 use signorini_membrane::zone::Zone;
@@ -37,6 +39,14 @@ fn of_membrane<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>) -> Result<Val
         plan.check_fields(&plan.at(time), time)?;
     }
     let unknowns = plan.cells.function_count();
+    let contacts: Vec<String> = plan
+        .contacts
+        .iter()
+        .map(|c| {
+            let place = if c.side == Side::Below { "on" } else { "under" };
+            format!("{}: {} {place} {}", c.name, plan.body, c.body)
+        })
+        .collect();
     let mut warnings = plan.warnings.clone();
     let mut sizes = json!({
         "method": plan.method.name(),
@@ -51,11 +61,12 @@ fn of_membrane<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>) -> Result<Val
         "increments": plan.increments.len(),
         "supports": plan.supports.len(),
         "loads": plan.loads.len(),
-        "contact": plan.contact.as_ref().map_or("none".to_string(), |(n, f)| format!("{n}: {} on {}", plan.body, f.body)),
+        "contact": if plan.contacts.is_empty() { "none".to_string() } else { contacts.join(", ") },
     });
     if unknowns <= LOOK {
         look::<D, Z>(plan, &mut sizes, &mut warnings);
     }
+    sizes["interpreted"] = plan.interpreted.iter().map(Interpreted::to_json).collect();
     sizes["warnings"] = json!(warnings);
     Ok(sizes)
 }
@@ -66,8 +77,8 @@ fn look<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>, sizes: &mut Value, w
     let none = Z::empty(&plan.grid);
     let free = |membrane: &Membrane<D>| Equilibrium::solve(membrane, &none, &mut Elements::new(membrane)).ok();
     let at_rest = Membrane { load: Arc::new(Constant(0.0)), ..plan.at(first.range[0]) };
-    if let (Some(state), Some(floor)) = (free(&at_rest), &at_rest.floor) {
-        let (gap, x) = least_free_gap(&state, &none, floor);
+    if let (Some(state), false) = (free(&at_rest), at_rest.obstacles.is_empty()) {
+        let (gap, _, x) = least_free_gap(&state, &none);
         let place: Vec<String> = x.iter().map(|v| format!("{v:.4}")).collect();
         sizes["least_gap_before_load"] = json!(format!("{gap:.4e} at ({})", place.join(", ")));
     }

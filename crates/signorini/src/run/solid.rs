@@ -3,6 +3,7 @@
 use super::{Ending, Logged, Outcome, RunError, SCHEMA, environment};
 use crate::case::CaseError;
 use crate::case::statement::Space as Stated;
+use crate::case::value::Interpreted;
 use crate::output::solid_fields::{ContactDisplay, SolidDisplay, SolidFields};
 use crate::output::{Folder, OutputError, solid_pictures, tables, vtk};
 use crate::plan::solid::{Opposite, SolidPlan, evaluate};
@@ -417,6 +418,7 @@ impl<const D: usize> Runner<D> {
             "method": method(&self.plan),
             "unknowns": self.model.unknowns(),
             "warnings": self.warnings,
+            "interpreted": self.plan.interpreted.iter().map(Interpreted::to_json).collect::<Vec<_>>(),
             "steps": self.steps,
             "events": [],
             "environment": environment::describe(start, rayon::current_num_threads(), &self.plan.document.text),

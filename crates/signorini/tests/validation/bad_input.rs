@@ -29,7 +29,7 @@ fn each_mistake_is_told_at_its_place() {
         ("tension = 1.0", "tension = nan", "not a finite number", "nan", ""),
         ("tension = 1.0", "tension = \"1 + z\"", "unknown name `z`", "z", ""),
         ("degree = 4", "degree = 9", "between 1 and 6", "9", ""),
-        ("degree = 4", "degree = 2.5", "expected i64", "2.5", ""),
+        ("degree = 4", "degree = 2.5", "a whole number", "2.5", ""),
         ("cells = [20, 20]", "cells = [0, 20]", "at least one", "0", ""),
         ("cells = [20, 20]", "cells = [20]", "expected 2", "[20]", ""),
         ("cells = [20, 20]", "cells = [1000000, 1000]", "GiB", "[1000000, 1000]", "fewer cells"),
@@ -51,7 +51,7 @@ fn each_mistake_is_told_at_its_place() {
             "",
             "order",
         ),
-        ("shape.height = \"-0.1\"", "shape.height = \"0.1\"", "floor lies above", "\"0.1\"", "lower the floor"),
+        ("shape.height = \"-0.1\"", "shape.height = \"0.1\"", "`floor` lies above", "\"0.1\"", "lower it there"),
         (
             "shape.height = \"-0.1\"",
             "shape.height = \"-1/(x-0.3)^2*0 - 0.1 + sqrt(x-0.2)*0\"",

@@ -1,6 +1,7 @@
-//! Rigid shapes under membranes, seen from above.
+//! Rigid shapes beside membranes: seen from above, from below, several of them, and membranes between two.
 
 use super::{error, last_step, number, set, summary};
+use signorini_verify::flat_floor::{FlatFloor, Kind};
 use std::f64::consts::PI;
 
 /// A membrane without load over a shape that is pushed up into it.
@@ -56,7 +57,9 @@ fn bodies_of_revolution_are_followed_exactly() {
     let paraboloid_slope = |r: f64| -r / 1.5;
     let ellipsoid = |r: f64| 0.5 * (1.0 - r * r / 1.21).sqrt() - 0.5 + up;
     let ellipsoid_slope = |r: f64| -0.5 * r / (1.21 * (1.0 - r * r / 1.21).sqrt());
-    let cases: [(&str, f64, f64); 3] = [
+    let cone = |r: f64| up - 0.2 * r;
+    let cone_slope = |_: f64| -0.2;
+    let cases: [(&str, f64, f64); 4] = [
         ("sphere = { center = [0, 0, -2], radius = 2 }", leaves(sphere, sphere_slope), 0.0),
         (
             "paraboloid = { apex = [0, 0, 0], axis = [0, 0, -1], radius = 1.5 }",
@@ -64,9 +67,10 @@ fn bodies_of_revolution_are_followed_exactly() {
             1.0,
         ),
         ("ellipsoid = { center = [0, 0, -0.5], semi_axes = [1.1, 1.1, 0.5] }", leaves(ellipsoid, ellipsoid_slope), 2.0),
+        ("cone = { apex = [0, 0, 0], axis = [0, 0, -1], half_angle = \"atan(5)\" }", leaves(cone, cone_slope), 3.0),
     ];
     for (shape, c, kind) in cases {
-        let slope = [sphere_slope(c), paraboloid_slope(c), ellipsoid_slope(c)][kind as usize];
+        let slope = [sphere_slope(c), paraboloid_slope(c), ellipsoid_slope(c), cone_slope(c)][kind as usize];
         for (space, tolerance) in [("axisymmetric", 1e-9), ("plane", 1e-6)] {
             let (area, force) = touch(&pushed(space, shape, up));
             assert!(((area / PI).sqrt() - c).abs() < tolerance, "{shape} in {space}: {} {c}", (area / PI).sqrt());
@@ -114,11 +118,16 @@ fn shapes_that_are_no_floor_are_told() {
         ("plane", "sphere = { center = [0, 0, -2], radius = -2 }", "must be positive"),
         ("plane", "cylinder = { point = [0, 0, -2], radius = 2 }", "needs an `axis`"),
         ("plane", "cylinder = { point = [0, 0, -2], axis = [0, 0, 1], radius = 2 }", "lies flat"),
-        ("plane", "paraboloid = { apex = [0, 0, 0], axis = [0, 0, 1], radius = 2 }", "straight down"),
+        ("plane", "paraboloid = { apex = [0, 0, 0], axis = [1, 0, -1], radius = 2 }", "straight down"),
         ("plane", "torus = { center = [0, 0, -1], axis = [1, 0, 0], major_radius = 1, minor_radius = 0.3 }", "upright"),
         ("plane", "ellipsoid = { center = [0, 0, -1], semi_axes = [1, 0, 1] }", "positive"),
         ("axisymmetric", "ellipsoid = { center = [0, 0, -1], semi_axes = [1, 2, 1] }", "are equal"),
-        ("plane", "cone = { apex = [0, 0, 0], axis = [0, 0, -1], half_angle = 1 }", "not available"),
+        ("plane", "cone = { apex = [0, 0, 0], axis = [0, 1, -1], half_angle = 1 }", "straight down"),
+        ("plane", "cone = { apex = [0, 0, 0], axis = [0, 0, -1], half_angle = 2 }", "half angle"),
+        ("plane", "level_set = { negative_inside = \"z\", min = [-1, -1, 1], max = [1, 1, -1] }", "box is empty"),
+        ("line", "stl = { file = \"none.stl\" }", "in the plane"),
+        ("plane", "stl = { file = \"none.stl\" }", "cannot"),
+        ("plane", "nurbs = { file = \"none.json\" }", "not available"),
     ] {
         let found = error(&pushed(space, shape, 0.0));
         assert!(found.place.is_some() && found.one_line().contains(word), "{shape}: {}", found.one_line());
@@ -147,4 +156,262 @@ fn kinks_of_the_floor_in_contact_are_told() {
     let waves =
         summary(super::example("cosine_disc"), &set(&[("steps", "[]".into()), ("loads.press.normal", "-0.3".into())]));
     assert!(!waves["warnings"].to_string().contains("kink"));
+}
+
+/// Upside down everything is the same, with the other sign.
+#[test]
+fn bodies_above_are_those_below_upside_down() {
+    for (space, below, above) in [
+        ("axisymmetric", "sphere = { center = [0, 0, -2], radius = 2 }", "sphere = { center = [0, 0, 2], radius = 2 }"),
+        (
+            "plane",
+            "ellipsoid = { center = [0.1, 0, -0.5], semi_axes = [1.1, 0.9, 0.5] }",
+            "ellipsoid = { center = [0.1, 0, 0.5], semi_axes = [1.1, 0.9, 0.5] }",
+        ),
+        (
+            "plane",
+            "torus = { center = [0, 0, -0.3], axis = [0, 0, 1], major_radius = 0.5, minor_radius = 0.3 }",
+            "torus = { center = [0, 0, 0.3], axis = [0, 0, 1], major_radius = 0.5, minor_radius = 0.3 }",
+        ),
+        (
+            "axisymmetric",
+            "cone = { apex = [0, 0, 0], axis = [0, 0, -1], half_angle = 1.4 }",
+            "cone = { apex = [0, 0, 0], axis = [0, 0, 1], half_angle = 1.4 }",
+        ),
+        (
+            "plane",
+            "paraboloid = { apex = [0, 0.1, 0], axis = [0, 0, -1], radius = 1.5 }",
+            "paraboloid = { apex = [0, 0.1, 0], axis = [0, 0, 1], radius = 1.5 }",
+        ),
+        ("line", "height = \"-0.3*x^2\"", "height = \"0.3*x^2\"\nlies = \"above\""),
+    ] {
+        let up = 0.12;
+        let lower = touch(&pushed(space, below, up));
+        let upper = touch(&pushed(space, above, -up));
+        assert!(lower.1 > 0.0 && lower.0 > 0.01, "{below}: {lower:?}");
+        assert!((upper.0 - lower.0).abs() < 1e-9 && (upper.1 + lower.1).abs() < 1e-9, "{above}: {lower:?} {upper:?}");
+    }
+}
+
+/// Adhesion, fits of paths and the nodal method hold above as they do below.
+#[test]
+fn adhesion_holds_above_too() {
+    let case = super::example("snap_in");
+    let below = summary(case, &set(&[]));
+    let turned = case
+        .replace("shape.height = \"", "lies = \"above\"\nshape.height = \"-(")
+        .replace("normal = \"", "normal = \"-(");
+    // Every expression that was turned ends with its line.
+    let turned: String = turned
+        .lines()
+        .map(|line| {
+            if line.contains("\"-(") {
+                line.trim_end_matches('"').to_string() + ")\"\n"
+            } else {
+                line.to_string() + "\n"
+            }
+        })
+        .collect();
+    let above = summary(&turned, &set(&[]));
+    let (lower, upper) = (below["events"].as_array().expect("events"), above["events"].as_array().expect("events"));
+    assert!(!lower.is_empty() && lower.len() == upper.len());
+    for (a, b) in lower.iter().zip(upper) {
+        assert_eq!((&a["kind"], &a["zones_after"]), (&b["kind"], &b["zones_after"]));
+        assert!((number(&a["time"]) - number(&b["time"])).abs() < 1e-9);
+        assert!((number(&a["force_after"]) + number(&b["force_after"])).abs() < 1e-8);
+    }
+}
+
+/// A string that is pressed down on one half and up on the other, between two plates: each half is a string on a floor.
+#[test]
+fn a_string_between_two_plates() {
+    let case = r#"
+space = "line"
+[bodies.film.membrane]
+domain.interval = { from = -1.0, to = 1.0 }
+mesh.grid = { cells = [40] }
+degree = 4
+tension = 1.0
+[bodies.floor.rigid]
+shape.plane = { point = [0, -0.1], normal = [0, 1] }
+[bodies.lid.rigid]
+shape.plane = { point = [0, 0.1], normal = [0, -1] }
+[supports.rim]
+on = "film:boundary"
+displacement = 0.0
+[loads.twist]
+on = "film"
+normal = "if(x < 0, -2, 2)"
+[contacts.below]
+between = ["film", "floor"]
+[contacts.above]
+between = ["lid", "film"]
+"#;
+    let exact = FlatFloor { tension: 1.0, load: 2.0, depth: 0.1, radius: 0.5, kind: Kind::String };
+    for method in ["inequality_level_set = {}", "active_set = {}"] {
+        let nodal = method.starts_with("active");
+        let case = case.replace("[contacts.below]", &format!("[contacts.below]\nmethod.{method}"));
+        let case = if nodal { case.replace("[40]", "[400]") } else { case };
+        let found = summary(&case, &set(&[]));
+        let step = last_step(&found);
+        for (name, sign) in [("below", 1.0), ("above", -1.0)] {
+            let contact = &step["contacts"][name];
+            let (length, force) = (2.0 * exact.contact_radius().expect("contact"), exact.contact_force());
+            let tolerance = if nodal { 1e-2 } else { 1e-9 };
+            assert!((number(&contact["area"]) - length).abs() < tolerance, "{name}: {} {length}", contact["area"]);
+            let off = (number(&contact["force"][2]) - sign * force).abs();
+            assert!(off < 2.0 * tolerance, "{name}: {} {force}", contact["force"]);
+            assert_eq!(contact["zones"], 1);
+        }
+    }
+}
+
+/// Two balls under one membrane, each with a contact of its own, or both as one floor; and a lid over a third place.
+#[test]
+fn several_bodies_under_and_over_one_membrane() {
+    let case = r#"
+space = "plane"
+[bodies.film.membrane]
+domain.rectangle = { min = [-1, -1], max = [1, 1] }
+mesh.grid = { cells = [28, 28] }
+degree = 3
+tension = 1.0
+[bodies.left.rigid]
+shape.paraboloid = { apex = [-0.4, 0.2, 0.0], axis = [0, 0, -1], radius = 0.8 }
+motion.prescribed = { displacement = [0, 0, "0.1*t"] }
+[bodies.right.rigid]
+shape.paraboloid = { apex = [0.4, 0.2, 0.0], axis = [0, 0, -1], radius = 0.8 }
+motion.prescribed = { displacement = [0, 0, "0.1*t"] }
+[bodies.lid.rigid]
+shape.sphere = { center = [0, -0.5, 1.0], radius = 1.0 }
+motion.prescribed = { displacement = [0, 0, "-0.05*t"] }
+[supports.rim]
+on = "film:boundary"
+displacement = 0.0
+CONTACTS
+[[steps]]
+to = 1.0
+increments = 2
+events = 1e-2
+"#;
+    let apart = case.replace(
+        "CONTACTS",
+        "[contacts.a]\nbetween = [\"film\", \"left\"]\n[contacts.b]\nbetween = [\"film\", \"right\"]\n\
+         [contacts.c]\nbetween = [\"film\", \"lid\"]\n",
+    );
+    let found = summary(&apart, &set(&[]));
+    let contacts = &last_step(&found)["contacts"];
+    let [a, b, c] = ["a", "b", "c"].map(|name| &contacts[name]);
+    assert!((number(&a["area"]) - number(&b["area"])).abs() < 1e-6, "{} {}", a["area"], b["area"]);
+    assert!(number(&a["force"][2]) > 0.1 && number(&c["force"][2]) < -0.05);
+    assert_eq!([&a["zones"], &b["zones"], &c["zones"]], [1, 1, 1]);
+    assert!(number(&last_step(&found)["equilibrium_residual"]) < 1e-10);
+    let all = summary(&case.replace("CONTACTS", "[contacts.all]\nall = true\n"), &set(&[]));
+    let other = &last_step(&all)["contacts"]["all:left"];
+    assert!((number(&other["area"]) - number(&a["area"])).abs() < 1e-12);
+    // The two below as one floor.
+    let one = case
+        .replace("[bodies.right.rigid]", "[bodies.unused.rigid]")
+        .replace(
+            "shape.paraboloid = { apex = [-0.4, 0.2, 0.0], axis = [0, 0, -1], radius = 0.8 }",
+            "shape.height = \"-((abs(x) - 0.4)^2 + (y - 0.2)^2)/1.6\"",
+        )
+        .replace(
+            "CONTACTS",
+            "[contacts.a]\nbetween = [\"film\", \"left\"]\n[contacts.c]\nbetween = [\"film\", \"lid\"]\n",
+        );
+    let merged = summary(&one, &set(&[]));
+    let contact = &last_step(&merged)["contacts"]["a"];
+    assert_eq!(contact["zones"], 2);
+    let sum = number(&a["force"][2]) + number(&b["force"][2]);
+    assert!((number(&contact["force"][2]) - sum).abs() < 1e-6, "{} {sum}", contact["force"]);
+    let kinds: Vec<&str> =
+        found["events"].as_array().expect("events").iter().filter_map(|e| e["contact"].as_str()).collect();
+    assert!(["a", "b", "c"].iter().all(|name| kinds.contains(name)), "{kinds:?}");
+}
+
+#[test]
+fn level_sets_and_meshes_are_seen_from_above() {
+    let up = 0.15;
+    let ball = touch(&pushed("plane", "sphere = { center = [0, 0, -2], radius = 2 }", up));
+    let level = "level_set = { negative_inside = \"x^2 + y^2 + (z + 2)^2 - 4\", min = [-3, -3, -5], max = [3, 3, 1] }";
+    let implicit = touch(&pushed("plane", level, up));
+    assert!((ball.0 - implicit.0).abs() < 1e-9 && (ball.1 - implicit.1).abs() < 1e-9, "{ball:?} {implicit:?}");
+    let flat = "level_set = { negative_inside = \"x^2 + (z + 2)^2 - 4\", min = [-3, -5], max = [3, 1] }";
+    let line = touch(&pushed("line", "cylinder = { point = [0, -2], radius = 2 }", up));
+    let implicit = touch(&pushed("line", flat, up));
+    assert!((line.0 - implicit.0).abs() < 1e-9, "{line:?} {implicit:?}");
+
+    // A ball of triangles, and one with a hole.
+    let folder = std::env::temp_dir().join(format!("signorini_floor_{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let (rings, sides) = (120, 240);
+    let point = |i: usize, j: usize| {
+        let (a, b) = (PI * i as f64 / rings as f64, 2.0 * PI * (j % sides) as f64 / sides as f64);
+        let around = if i % rings == 0 { 0.0 } else { 2.0 * a.sin() };
+        [around * b.cos(), around * b.sin(), 2.0 * a.cos() - 2.0]
+    };
+    let mut triangles = Vec::new();
+    for i in 0..rings {
+        for j in 0..sides {
+            let [a, b, c, d] = [point(i, j), point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)];
+            if i + 1 < rings {
+                triangles.push([a, b, c]);
+            }
+            if i > 0 {
+                triangles.push([a, c, d]);
+            }
+        }
+    }
+    let write = |name: &str, triangles: &[[[f64; 3]; 3]]| {
+        let mut text = String::from("solid ball\n");
+        for t in triangles {
+            text += "facet normal 0 0 0\nouter loop\n";
+            t.iter().for_each(|v| text += &format!("vertex {} {} {}\n", v[0], v[1], v[2]));
+            text += "endloop\nendfacet\n";
+        }
+        std::fs::write(folder.join(name), text + "endsolid\n").expect("a file");
+    };
+    write("ball.stl", &triangles);
+    write("holed.stl", &triangles[1..]);
+    let path = |name: &str| folder.join(name).display().to_string();
+    let case = pushed("plane", &format!("stl = {{ file = \"{}\" }}", path("ball.stl")), up);
+    let found = summary(&case, &set(&[]));
+    let contact = &last_step(&found)["contacts"]["touch"];
+    assert!((number(&contact["area"]) / ball.0 - 1.0).abs() < 2e-2, "{} {}", contact["area"], ball.0);
+    assert!((number(&contact["force"][2]) / ball.1 - 1.0).abs() < 1e-2, "{} {}", contact["force"], ball.1);
+    assert!(found["warnings"].to_string().contains("bicubic spline"));
+    let holed = error(&pushed("plane", &format!("stl = {{ file = \"{}\" }}", path("holed.stl")), up));
+    assert!(holed.one_line().contains("not closed"), "{}", holed.one_line());
+    std::fs::remove_dir_all(&folder).expect("to be removed");
+}
+
+#[test]
+fn wrong_neighbours_are_told() {
+    let case = pushed("plane", "height = \"-0.1\"", 0.0);
+    let lid = "[bodies.lid.rigid]\nlies = \"above\"\nshape.height = \"HEIGHT\"\n[contacts.upper]\nbetween = [\"film\", \"lid\"]\n";
+    let with = |height: &str| case.clone() + &lid.replace("HEIGHT", height);
+    for (text, word) in [
+        (with("-0.2"), "no room is left"),
+        (with("-0.05"), "below the displacement"),
+        (with("0.1").replace("\"above\"", "\"beside\""), "beside"),
+        (
+            with("0.1").replace(
+                "[contacts.upper]\nbetween = [\"film\", \"lid\"]",
+                "[contacts.upper]\nbetween = [\"film\", \"die\"]",
+            ),
+            "already touched",
+        ),
+        (
+            with("0.1")
+                .replace("[contacts.upper]", "[contacts.upper]\nmethod.active_set = {}")
+                .replace("[contacts.touch]", "[contacts.touch]\nmethod.inequality_level_set = {}"),
+            "another method",
+        ),
+        (with("0.1").replace("lies = \"above\"\n", ""), "above the displacement"),
+        (case.replace("between = [\"film\", \"die\"]", "between = [\"film\"]"), "rigid body"),
+    ] {
+        let found = error(&text);
+        assert!(found.place.is_some() && found.one_line().contains(word), "{word}: {}", found.one_line());
+    }
 }

@@ -1,0 +1,225 @@
+//! The surfaces that a membrane may touch: heights, on which side of it they lie, and how they move.
+
+use super::{Placed, Planner, coordinates, field};
+use crate::case::CaseError;
+use crate::case::statement::{self, Lies, Motion, Rigid, Shape, Space};
+use crate::case::units::{LENGTH, NONE};
+use crate::expression::{Expression, Scope};
+use crate::relief::{LevelSetTop, Sampled};
+use signorini_geometry::{Point, Vector};
+use signorini_membrane::field::Moved;
+use signorini_membrane::obstacle::{Obstacle, Side};
+use std::sync::Arc;
+
+/// A contact of the membrane: the surface of a rigid body as seen from it.
+#[derive(Clone)]
+pub struct Contact {
+    pub name: String,
+    pub body: String,
+    pub side: Side,
+    pub height: Placed,
+    /// Displacement along x, y, z as expressions of time; empty for a body at rest.
+    pub displacement: Vec<Placed>,
+    /// Energy of adhesion per area, where it is sticky.
+    pub adhesion: Option<Placed>,
+}
+
+impl Contact {
+    /// The body at a time.
+    pub fn at<const D: usize>(&self, time: f64) -> Obstacle<D> {
+        let mut height = field(&self.height.expression, time);
+        let [x, y, z] = self.displacement_at(time);
+        if [x, y, z] != [0.0; 3] {
+            let shift = Point::from_fn(|k, _| if k == 0 { x } else { y });
+            height = Arc::new(Moved { field: height, shift, rise: z });
+        }
+        Obstacle { side: self.side, height, adhesion: self.adhesion.as_ref().map(|e| field(&e.expression, time)) }
+    }
+
+    /// The displacement at a time.
+    pub fn displacement_at(&self, time: f64) -> [f64; 3] {
+        let at = |p: &Placed| p.expression.evaluate(&Scope { position: [f64::NAN; 3], time });
+        match self.displacement.as_slice() {
+            [x, y, z] => [at(x), at(y), at(z)],
+            _ => [0.0; 3],
+        }
+    }
+}
+
+/// What a shape is seen from.
+pub(super) struct Scene<'a> {
+    /// Height at which the membrane is held; none where that is not one number.
+    pub level: Option<f64>,
+    /// The box round the membrane, and the distance of what it can tell apart.
+    pub around: [Vector<2>; 2],
+    pub resolution: f64,
+    pub warnings: &'a mut Vec<String>,
+}
+
+/// Reads a contact between the membrane and a rigid body.
+pub(super) fn read(
+    planner: &Planner<'_>,
+    name: &str,
+    body: &str,
+    rigid: &Rigid,
+    scene: &mut Scene<'_>,
+) -> Result<Contact, CaseError> {
+    let document = planner.document;
+    if let Some(side) = &rigid.side
+        && *side.get_ref() == statement::Side::Inside
+    {
+        return Err(document
+            .error(side.span(), "a body beside a membrane is touched from outside")
+            .help("a body above the membrane:  lies = \"above\""));
+    }
+    let displacement = motion(planner, body, rigid)?;
+    let still = Placed { expression: Expression::number(0.0), span: rigid.shape.span(), key: String::new() };
+    let mut contact = Contact {
+        name: name.to_string(),
+        body: body.to_string(),
+        side: Side::Below,
+        height: still,
+        displacement,
+        adhesion: None,
+    };
+    let rise = contact.displacement_at(0.0)[2];
+    contact.side = side(planner, rigid, scene.level.map(|level| level - rise))?;
+    contact.height = height(planner, body, rigid, contact.side, scene)?;
+    Ok(contact)
+}
+
+/// The side of the membrane on which a body lies: as stated, or as its shape says.
+fn side(planner: &Planner<'_>, rigid: &Rigid, level: Option<f64>) -> Result<Side, CaseError> {
+    if let Some(lies) = &rigid.lies {
+        return Ok(match lies.get_ref() {
+            Lies::Below => Side::Below,
+            Lies::Above => Side::Above,
+        });
+    }
+    let last = |values: &crate::case::Values, dimension| -> Result<f64, CaseError> {
+        let list = values.get_ref();
+        let Some(z) = list.last().filter(|_| list.len() >= 2) else { return Ok(0.0) };
+        planner.reader.number(z, dimension)
+    };
+    // Up or down, into the body or out of it.
+    let by_sign = |up: f64| if up < 0.0 { Side::Above } else { Side::Below };
+    let by_centre = |values| {
+        let z = last(values, LENGTH)?;
+        Ok(if level.is_some_and(|level| z > level) { Side::Above } else { Side::Below })
+    };
+    match rigid.shape.get_ref() {
+        Shape::Plane(s) => Ok(by_sign(last(&s.normal, NONE)?)),
+        Shape::Cone(s) => Ok(by_sign(-last(&s.axis, NONE)?)),
+        Shape::Paraboloid(s) => Ok(by_sign(-last(&s.axis, NONE)?)),
+        Shape::Sphere(s) => by_centre(&s.center),
+        Shape::Cylinder(s) => by_centre(&s.point),
+        Shape::Ellipsoid(s) => by_centre(&s.center),
+        Shape::Torus(s) => by_centre(&s.center),
+        _ => Ok(Side::Below),
+    }
+}
+
+/// The height of a body as seen from the membrane.
+fn height(
+    planner: &Planner<'_>,
+    body: &str,
+    rigid: &Rigid,
+    side: Side,
+    scene: &mut Scene<'_>,
+) -> Result<Placed, CaseError> {
+    let document = planner.document;
+    let underside = side == Side::Above;
+    let placed = |expression, shape: &str| Placed {
+        expression,
+        span: rigid.shape.span(),
+        key: format!("bodies.{body}.rigid.shape.{shape}"),
+    };
+    match rigid.shape.get_ref() {
+        Shape::Height(value) => {
+            let expression = planner.reader.expression(value, LENGTH, coordinates(planner.space))?;
+            Ok(Placed { span: value.span(), ..placed(expression, "height") })
+        }
+        Shape::HeightMap(map) if planner.space == Space::Plane => {
+            let expression = Expression::relief(planner.height_map(map)?);
+            Ok(Placed { span: map.file.span(), ..placed(expression, "height_map") })
+        }
+        Shape::HeightMap(_) => Err(document
+            .error(rigid.shape.span(), "a height map is a surface beside a membrane in the plane")
+            .help("on a line the height is a function of x:  shape.height = \"…\"")),
+        Shape::LevelSet(key) => {
+            let inside = planner.reader.expression(&key.negative_inside, LENGTH, &["x", "y", "z"])?;
+            let ends = [&key.min, &key.max].map(|corner| match corner.get_ref().len() {
+                2 if planner.space != Space::Plane => planner.reader.numbers::<2>(corner, LENGTH).map(|c| c[1]),
+                _ => planner.reader.numbers::<3>(corner, LENGTH).map(|c| c[2]),
+            });
+            let [low, high] = ends;
+            let (low, high) = (low?, high?);
+            if low >= high {
+                return Err(document
+                    .error(key.max.span(), format!("the box is empty: z from {low} to {high}"))
+                    .help("`max` is the upper corner"));
+            }
+            Ok(placed(Expression::relief(LevelSetTop { inside, low, high, underside }), "level_set"))
+        }
+        Shape::Stl(key) if planner.space == Space::Plane => {
+            let mesh = planner.closed_mesh(key)?;
+            let sampled = Sampled::of_mesh(&mesh, scene.around, scene.resolution, underside)
+                .map_err(|e| document.error(key.file.span(), format!("`{}`: {e}", key.file.get_ref())))?;
+            scene.warnings.push(format!(
+                "`{}` is sampled every {:.3e} and joined by a bicubic spline: its edges are rounded by that much, and beyond \
+                 its shadow it falls off",
+                key.file.get_ref(),
+                scene.resolution
+            ));
+            Ok(placed(Expression::relief(sampled), "stl"))
+        }
+        Shape::Stl(_) => {
+            Err(document.error(rigid.shape.span(), "a triangle mesh is a surface beside a membrane in the plane"))
+        }
+        _ => match super::shapes::height(planner, rigid, side)? {
+            Some((expression, shape)) => Ok(placed(expression, shape)),
+            None => Err(planner.unavailable(rigid.shape.span(), "this shape beside a membrane")),
+        },
+    }
+}
+
+/// How a body moves: expressions along x, y and z, or none for one at rest.
+fn motion(planner: &Planner<'_>, body: &str, rigid: &Rigid) -> Result<Vec<Placed>, CaseError> {
+    let document = planner.document;
+    let mut displacement = Vec::new();
+    let motion = match rigid.motion.as_ref().map(|m| (m.get_ref(), m.span())) {
+        None | Some((Motion::Fixed(_), _)) => return Ok(displacement),
+        Some((Motion::Free(_), span)) => return Err(planner.unavailable(span, "a rigid body that moves freely")),
+        Some((Motion::Prescribed(motion), _)) => motion,
+    };
+    if let Some(rotation) = &motion.rotation {
+        for v in rotation.get_ref() {
+            if planner.reader.expression(v, NONE, &["t"])?.constant() != Some(0.0) {
+                return Err(planner.unavailable(v.span(), "rotation of a body beside a membrane"));
+            }
+        }
+    }
+    let Some(values) = &motion.displacement else { return Ok(displacement) };
+    let list = values.get_ref();
+    for (k, v) in list.iter().enumerate() {
+        let expression = planner.reader.expression(v, LENGTH, &["t"])?;
+        displacement.push(Placed {
+            expression,
+            span: v.span(),
+            key: format!("bodies.{body}.rigid.motion.prescribed.displacement[{k}]"),
+        });
+    }
+    if planner.space != Space::Plane && displacement.len() == 2 {
+        let mut still = displacement[0].clone();
+        still.expression = Expression::number(0.0);
+        displacement.insert(1, still);
+    }
+    if displacement.len() != 3 {
+        return Err(document.error(values.span(), format!("expected 3 components, found {}", list.len())));
+    }
+    let sideways = |p: &Placed| p.expression.constant() != Some(0.0);
+    if planner.space == Space::Axisymmetric && displacement[..2].iter().any(sideways) {
+        return Err(document.error(values.span(), "in an axisymmetric problem a body moves along z only"));
+    }
+    Ok(displacement)
+}

@@ -1,0 +1,258 @@
+//! Surfaces over a plane that no formula gives: measured heights, level sets and triangle meshes seen from above.
+
+use crate::expression::{Expression, Scope};
+use signorini_geometry::grid_spline::GridSpline;
+use signorini_geometry::mesh::TriangleMesh;
+use signorini_geometry::{Jet, Real, Vector};
+
+/// A height over x and y with its derivatives.
+pub trait Relief: std::fmt::Debug + Send + Sync {
+    fn jet(&self, x: &Vector<2>) -> Jet<2>;
+
+    fn value(&self, x: &Vector<2>) -> f64 {
+        self.jet(x).value
+    }
+}
+
+/// The height at a place, with derivatives where the place is a jet.
+pub(crate) fn evaluate<R: Real>(relief: &dyn Relief, x: R, y: R) -> R {
+    let at = Vector::<2>::new(x.value(), y.value());
+    if !at.iter().all(|v| v.is_finite()) {
+        return R::constant(f64::NAN);
+    }
+    if x.is_constant() && y.is_constant() {
+        return R::constant(relief.value(&at));
+    }
+    let Jet { value, gradient: g, hessian: h } = relief.jet(&at);
+    // Jets end with the second order, and so does this.
+    let (dx, dy) = (x - R::constant(at[0]), y - R::constant(at[1]));
+    let c = R::constant;
+    c(value)
+        + c(g[0]) * dx
+        + c(g[1]) * dy
+        + c(0.5 * h[(0, 0)]) * dx * dx
+        + c(h[(0, 1)]) * dx * dy
+        + c(0.5 * h[(1, 1)]) * dy * dy
+}
+
+/// Samples along a vertical between which a level set changes its sign at most once.
+const LAYERS: usize = 96;
+/// Halvings of an interval, which end at round-off.
+const HALVINGS: usize = 60;
+
+/// The top of a body that is negative inside: along each vertical of a box the highest place where the sign changes, and
+/// the bottom of the box where there is none.
+#[derive(Clone, Debug)]
+pub struct LevelSetTop {
+    /// Of x, y and z.
+    pub inside: Expression,
+    pub low: f64,
+    pub high: f64,
+    /// Whether the body is looked at from below: its lowest places, and the top of the box.
+    pub underside: bool,
+}
+
+impl LevelSetTop {
+    fn at(&self, x: &Vector<2>, z: f64) -> f64 {
+        self.inside.evaluate(&Scope { position: [x[0], x[1], z], time: f64::NAN })
+    }
+
+    /// The height along a vertical, if the body is there.
+    fn top(&self, x: &Vector<2>) -> Option<f64> {
+        let (from, to) = if self.underside { (self.low, self.high) } else { (self.high, self.low) };
+        let z = |k: usize| from + (to - from) * k as f64 / LAYERS as f64;
+        let entered = (0..=LAYERS).find(|&k| self.at(x, z(k)) <= 0.0)?;
+        if entered == 0 {
+            return Some(from);
+        }
+        // Between outside and inside, by the secant kept within halves.
+        let (mut out, mut inn) = ((z(entered - 1), self.at(x, z(entered - 1))), (z(entered), self.at(x, z(entered))));
+        for k in 0..HALVINGS {
+            let secant = inn.0 - inn.1 * (out.0 - inn.0) / (out.1 - inn.1);
+            let middle = 0.5 * (out.0 + inn.0);
+            let next = if k % 3 == 2 || !secant.is_finite() { middle } else { secant };
+            if next == out.0 || next == inn.0 {
+                break;
+            }
+            let value = self.at(x, next);
+            if value <= 0.0 { inn = (next, value) } else { out = (next, value) }
+        }
+        Some(if inn.1.abs() <= out.1.abs() { inn.0 } else { out.0 })
+    }
+}
+
+impl Relief for LevelSetTop {
+    fn value(&self, x: &Vector<2>) -> f64 {
+        self.top(x).unwrap_or(if self.underside { self.high } else { self.low })
+    }
+
+    /// By the implicit function theorem: `h_i = -F_i / F_z`, and once more.
+    fn jet(&self, x: &Vector<2>) -> Jet<2> {
+        let Some(z) = self.top(x) else { return Jet::constant(self.value(x)) };
+        if z == self.low || z == self.high {
+            return Jet::constant(z);
+        }
+        let position = [x[0], x[1], z];
+        let jets = [0, 1, 2].map(|k| Jet::<3>::variable(position[k], k));
+        let f = self.inside.evaluate(&Scope { position: jets, time: Jet::constant(f64::NAN) });
+        let (g, h) = (f.gradient, f.hessian);
+        let slope = [-g[0] / g[2], -g[1] / g[2]];
+        let bend = |i: usize, j: usize| {
+            -(h[(i, j)] + h[(i, 2)] * slope[j] + h[(j, 2)] * slope[i] + h[(2, 2)] * slope[i] * slope[j]) / g[2]
+        };
+        Jet {
+            value: z,
+            gradient: slope.into(),
+            hessian: signorini_geometry::Matrix::<2>::new(bend(0, 0), bend(0, 1), bend(1, 0), bend(1, 1)),
+        }
+    }
+}
+
+/// Heights on a grid, joined by a bicubic spline: it passes through all of them and has continuous curvature.
+#[derive(Debug)]
+pub struct Sampled(pub GridSpline<2>);
+
+impl Relief for Sampled {
+    fn jet(&self, x: &Vector<2>) -> Jet<2> {
+        self.0.jet(x)
+    }
+}
+
+/// Beyond its shadow a mesh falls off with this slope.
+const FALL: f64 = 1.0;
+
+impl Sampled {
+    /// The corners of the rectangle that is covered.
+    pub fn bounds(&self) -> [[f64; 2]; 2] {
+        self.0.bounds().map(|x| [x[0], x[1]])
+    }
+
+    /// The top of a triangle mesh over a rectangle, sampled with a spacing; or its underside. Beyond the shadow of the
+    /// mesh the surface falls off.
+    ///
+    /// # Errors
+    /// A mesh that has no shadow on the rectangle, or one that cannot be sampled so finely.
+    pub fn of_mesh(
+        mesh: &TriangleMesh,
+        [low, high]: [Vector<2>; 2],
+        spacing: f64,
+        underside: bool,
+    ) -> Result<Self, String> {
+        const MOST: usize = 1 << 24;
+        let count: [usize; 2] = std::array::from_fn(|k| ((high[k] - low[k]) / spacing).ceil() as usize + 4);
+        if count[0].saturating_mul(count[1]) > MOST {
+            return Err(format!("{} x {} samples are too many", count[0], count[1]));
+        }
+        let origin = low - Vector::<2>::repeat(spacing);
+        let sign = if underside { -1.0 } else { 1.0 };
+        // Row by row along x; the first index of the spline is that along x.
+        let mut heights = vec![f64::NEG_INFINITY; count[0] * count[1]];
+        for triangle in 0..mesh.triangles().len() {
+            let [a, b, c] = mesh.corners(triangle);
+            let index = |v: f64, k: usize| (v - origin[k]) / spacing;
+            let range = |k: usize| {
+                let (least, most) = (a[k].min(b[k]).min(c[k]), a[k].max(b[k]).max(c[k]));
+                let last = count[k] as f64 - 1.0;
+                let first = index(least, k).ceil().max(0.0);
+                (first <= last && index(most, k) >= 0.0)
+                    .then(|| first as usize..=index(most, k).floor().min(last) as usize)
+            };
+            let (Some(columns), Some(rows)) = (range(0), range(1)) else { continue };
+            let (u, v) = (b - a, c - a);
+            let determinant = u[0] * v[1] - u[1] * v[0];
+            if determinant == 0.0 {
+                continue;
+            }
+            for i in columns {
+                for j in rows.clone() {
+                    let d = [origin[0] + i as f64 * spacing - a[0], origin[1] + j as f64 * spacing - a[1]];
+                    let s = (d[0] * v[1] - d[1] * v[0]) / determinant;
+                    let t = (u[0] * d[1] - u[1] * d[0]) / determinant;
+                    if s >= -1e-12 && t >= -1e-12 && s + t <= 1.0 + 1e-12 {
+                        let z = sign * (a[2] + s * u[2] + t * v[2]);
+                        let height = &mut heights[i * count[1] + j];
+                        *height = height.max(z);
+                    }
+                }
+            }
+        }
+        if heights.iter().all(|h| h.is_infinite()) {
+            return Err("it does not lie under the membrane".into());
+        }
+        fall_off(&mut heights, count, FALL * spacing);
+        let values = heights.into_iter().map(|h| sign * h).collect();
+        let spline = GridSpline::new(origin, [spacing; 2], count, values).map_err(|e| e.to_string())?;
+        Ok(Self(spline))
+    }
+}
+
+/// Fills what lies beyond the shadow, where heights are infinitely low, by a slope down from the nearest places within, in
+/// two sweeps; `step` is the fall from one sample to the next.
+fn fall_off(heights: &mut [f64], [nx, ny]: [usize; 2], step: f64) {
+    let beyond: Vec<bool> = heights.iter().map(|h| h.is_infinite()).collect();
+    for forth in [true, false] {
+        let sense = if forth { -1 } else { 1 };
+        for n in 0..nx * ny {
+            let n = if forth { n } else { nx * ny - 1 - n };
+            if !beyond[n] {
+                continue;
+            }
+            let (i, j) = ((n / ny) as isize, (n % ny) as isize);
+            for (di, dj) in [(sense, -1), (sense, 0), (sense, 1), (0, sense)] {
+                let (k, l) = (i + di, j + dj);
+                if (0..nx as isize).contains(&k) && (0..ny as isize).contains(&l) {
+                    let fall = step * ((di * di + dj * dj) as f64).sqrt();
+                    heights[n] = heights[n].max(heights[k as usize * ny + l as usize] - fall);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expression::{Names, parse};
+
+    fn ball(underside: bool) -> LevelSetTop {
+        let names = Names { variables: vec!["x", "y", "z"], ..Names::default() };
+        let inside = parse("x^2 + (y - 0.1)^2 + (z + 0.2)^2 - 0.25", &names).expect("an expression");
+        LevelSetTop { inside, low: -1.0, high: 1.0, underside }
+    }
+
+    #[test]
+    fn the_top_of_a_ball_is_that_of_its_formula() {
+        for (underside, sign) in [(false, 1.0), (true, -1.0)] {
+            let top = ball(underside);
+            for (x, y) in [(0.0, 0.1), (0.2, -0.1), (-0.3, 0.3)] {
+                let [jx, jy] = [Jet::<2>::variable(x, 0), Jet::<2>::variable(y, 1)];
+                let c = Jet::<2>::constant;
+                let exact = c(-0.2) + c(sign) * (c(0.25) - jx * jx - (jy - c(0.1)) * (jy - c(0.1))).powf(0.5);
+                let found = top.jet(&Vector::<2>::new(x, y));
+                assert!((found.value - exact.value).abs() < 1e-14, "{found:?} {exact:?}");
+                assert!((found.gradient - exact.gradient).norm() < 1e-12);
+                assert!((found.hessian - exact.hessian).norm() < 1e-11);
+            }
+            let beyond = top.jet(&Vector::<2>::new(0.9, 0.0));
+            assert_eq!((beyond.value, beyond.gradient.norm()), (-sign, 0.0));
+        }
+    }
+
+    #[test]
+    fn the_top_of_a_mesh_passes_through_its_faces_and_falls_off_beyond() {
+        // A pyramid of height 1 over a square of side 2.
+        let vertices = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let vertices = vertices.iter().map(|v| signorini_geometry::Point::<3>::from(*v)).collect();
+        let faces = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [0, 2, 1], [0, 3, 2]];
+        let mesh = TriangleMesh::new(vertices, &faces).expect("a mesh");
+        let around = [Vector::<2>::new(-2.0, -2.0), Vector::<2>::new(2.0, 2.0)];
+        let top = Sampled::of_mesh(&mesh, around, 0.05, false).expect("a relief");
+        assert!((top.value(&Vector::<2>::new(0.5, 0.0)) - 0.5).abs() < 1e-3);
+        assert!((top.value(&Vector::<2>::new(0.2, 0.55)) - 0.45).abs() < 1e-3);
+        assert!((top.value(&Vector::<2>::new(1.5, 0.0)) + 0.5 * FALL).abs() < 0.06);
+        let under = Sampled::of_mesh(&mesh, around, 0.05, true).expect("a relief");
+        assert!(under.value(&Vector::<2>::new(0.3, 0.3)).abs() < 1e-3);
+        let apart = [Vector::<2>::new(5.0, 5.0), Vector::<2>::new(6.0, 6.0)];
+        assert!(Sampled::of_mesh(&mesh, apart, 0.05, false).is_err());
+    }
+}

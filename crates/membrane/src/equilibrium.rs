@@ -15,6 +15,7 @@
 
 use crate::problem::Membrane;
 use crate::quadrature::{Cell, Quadrature, RimPoint};
+use crate::thin_parts::hold_thin_parts;
 use crate::zone::{Zone, contact_of, is_free};
 use rayon::prelude::*;
 use signorini_fem::cells::Neighbours;
@@ -28,6 +29,9 @@ use std::sync::OnceLock;
 
 /// Cells whose local systems are in memory at once.
 const CHUNK: usize = 4096;
+
+/// Where the equations are not positive definite, parts that fill no cell to this share are held, one after the other.
+const HOLDS: [f64; 2] = [0.25, 1.0];
 
 /// Penalty of Nitsche's method, to be divided by the cell size.
 pub(crate) fn nitsche_penalty(degree: usize) -> f64 {
@@ -57,8 +61,8 @@ pub struct Elements<const D: usize> {
 }
 
 /// A cell that is not divided.
-struct Element<const D: usize> {
-    tabulated: Vec<Tabulation<D>>,
+pub(crate) struct Element<const D: usize> {
+    pub tabulated: Vec<Tabulation<D>>,
     /// Stiffness for unit tension, where the tension is constant and the measure plain.
     stiffness: Option<Vec<f64>>,
 }
@@ -104,7 +108,7 @@ impl<const D: usize> Elements<D> {
 
 impl<const D: usize> Elements<D> {
     /// The element of a cell that has others of its kind.
-    fn of(&self, membrane: &Membrane<D>, cell: usize) -> Option<&Element<D>> {
+    pub(crate) fn of(&self, membrane: &Membrane<D>, cell: usize) -> Option<&Element<D>> {
         membrane.cells.kind(cell).map(|kind| &self.kinds[kind])
     }
 
@@ -116,7 +120,7 @@ impl<const D: usize> Elements<D> {
     }
 }
 
-fn add_stiffness<const D: usize>(matrix: &mut [f64], t: &Tabulation<D>, weight: f64) {
+pub(crate) fn add_stiffness<const D: usize>(matrix: &mut [f64], t: &Tabulation<D>, weight: f64) {
     let n = t.value.len();
     for a in 0..n {
         let g = weight * t.gradient[a];
@@ -163,10 +167,18 @@ type LocalSystem = Option<(Vec<f64>, Vec<f64>)>;
 impl<const D: usize> Equilibrium<D> {
     /// Solves for the free membrane around a zone.
     pub fn solve<Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z, elements: &mut Elements<D>) -> Result<Self, SolveError> {
-        let System { quadrature, unknowns, matrix, rhs } = System::assemble(membrane, zone, elements);
-        let factor = elements.symbolic.factor(matrix)?;
-        let u = factor.solve_accurately(&rhs)?;
-        Ok(Self { membrane: membrane.clone(), quadrature, unknowns, factor, u })
+        let mut system = System::assemble(membrane, zone, elements);
+        let mut factor = elements.symbolic.factor(system.matrix);
+        for needed in HOLDS {
+            if let Err(SolveError::NotPositiveDefinite { .. }) = factor {
+                system = System::assemble(membrane, zone, elements);
+                hold_thin_parts(membrane, elements, &system.quadrature, &system.unknowns, &mut system.matrix, needed);
+                factor = elements.symbolic.factor(system.matrix);
+            }
+        }
+        let factor = factor?;
+        let u = factor.solve_accurately(&system.rhs)?;
+        Ok(Self { membrane: membrane.clone(), quadrature: system.quadrature, unknowns: system.unknowns, factor, u })
     }
 
     /// Number of unknowns of the linear system.
@@ -339,7 +351,6 @@ impl<const D: usize> System<D> {
         for pair in &pairs {
             matrix.add(&pair.dofs, elements.ghost(membrane, pair.number), weight * pair.scale);
         }
-        hold_thin_regions(membrane, elements, &quadrature, &unknowns, &mut matrix);
         if membrane.cells.sum_to_one() {
             matrix.restore_row_sums(&row_sums(membrane, &unknowns, &imposed));
         }
@@ -442,59 +453,13 @@ fn ghost_pairs<const D: usize>(
     pairs
 }
 
-/// Stiffens regions that fill no cell to a good part, such as the strip between a front and a free edge beside it: there
-/// the method of Nitsche has nothing to lean on, however the ghost penalty ties its slivers together. The weight vanishes
-/// where the best cell of the region is good enough.
-fn hold_thin_regions<const D: usize>(
-    membrane: &Membrane<D>,
-    elements: &Elements<D>,
-    quadrature: &Quadrature<D>,
-    unknowns: &Unknowns,
-    matrix: &mut SymmetricMatrix,
-) {
-    let needed = 2.0 / nitsche_penalty(membrane.cells.degree());
-    let mut best: BTreeMap<RegionId, f64> = BTreeMap::new();
-    for (cell, regions) in unknowns.cells.iter().enumerate() {
-        for (region, _) in regions {
-            let most = best.entry(*region).or_insert(0.0);
-            if *most < needed {
-                *most = most.max(share(membrane, quadrature, cell, *region));
-            }
-        }
-    }
-    best.retain(|_, share| *share < needed);
-    if best.is_empty() {
-        return;
-    }
-    let mut scratch = Tabulation::default();
-    for (cell, regions) in unknowns.cells.iter().enumerate() {
-        for (region, dofs) in regions {
-            let Some(share) = best.get(region) else { continue };
-            // Beyond the membrane the tension may not be defined.
-            let within = match &quadrature.cells[cell] {
-                Cell::Cut(rule) => rule.volume(*region).first().map(|p| p.x),
-                _ => None,
-            };
-            let x = within.unwrap_or_else(|| membrane.cells.bounds_of(cell).center());
-            let scale = (needed - share) * membrane.tension.value(&x) * membrane.measure.weight(&x);
-            let mut local = vec![0.0; dofs.len() * dofs.len()];
-            for (i, p) in membrane.cells.rule(cell).iter().enumerate() {
-                let t = match elements.of(membrane, cell) {
-                    Some(element) => &element.tabulated[i],
-                    None => {
-                        membrane.cells.tabulate(cell, &p.x, &mut scratch);
-                        &scratch
-                    }
-                };
-                add_stiffness(&mut local, t, p.weight);
-            }
-            matrix.add(dofs, &local, scale);
-        }
-    }
-}
-
 /// The share of a cell that a region fills.
-fn share<const D: usize>(membrane: &Membrane<D>, quadrature: &Quadrature<D>, cell: usize, region: RegionId) -> f64 {
+pub(crate) fn share<const D: usize>(
+    membrane: &Membrane<D>,
+    quadrature: &Quadrature<D>,
+    cell: usize,
+    region: RegionId,
+) -> f64 {
     match &quadrature.cells[cell] {
         Cell::Cut(rule) => {
             let volume: f64 = rule.volume(region).iter().map(|p| p.weight / membrane.measure.weight(&p.x)).sum();

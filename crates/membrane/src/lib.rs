@@ -21,4 +21,5 @@ pub mod refinement;
 pub mod report;
 pub mod scales;
 pub mod staircase;
+mod thin_parts;
 pub mod zone;

@@ -90,11 +90,12 @@ impl<const D: usize> Report<D> {
         // Of each zone the area before each body, and of each body the energy.
         let mut before = vec![vec![0.0; obstacles.0.len()]; count];
         let mut adhesion_energy = vec![0.0; obstacles.0.len()];
-        let (mut load_force, mut energy, mut volume) = (0.0, 0.0, 0.0);
+        let (mut load_force, mut load_size, mut energy, mut volume) = (0.0, 0.0, 0.0, 0.0);
         let mut max_slope = 0.0f64;
         equilibrium.for_each_point(|cell, region, x, w| {
             let f = membrane.load.value(x);
             load_force += w * f;
+            load_size += w * f.abs();
             let (u, gradient) = if is_free(region) {
                 let Some(state) = equilibrium.evaluate(cell, region, x) else { return };
                 state
@@ -150,7 +151,7 @@ impl<const D: usize> Report<D> {
         // Without load the two parts of the contact force may cancel.
         let line_force: f64 = fronts.iter().map(|f| f.1.abs()).sum();
         let parts = components.iter().fold(line_force, |most, c| most.max(c.force.abs()));
-        let largest = parts.max(supports.abs()).max(load_force.abs()).max(f64::MIN_POSITIVE);
+        let largest = parts.max(supports.abs()).max(load_size).max(f64::MIN_POSITIVE);
         let conditions = solution.conditions.as_ref();
         Some(Self {
             support_forces,

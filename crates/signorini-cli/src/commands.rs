@@ -6,9 +6,10 @@ use signorini::case::{CaseError, Document, override_key};
 use signorini::fit::fit;
 use signorini::gallery::{all, find};
 use signorini::output::OutputError;
+use signorini::output::chart::save_as;
 use signorini::plan::plan;
 use signorini::queries::{Query, answer_file};
-use signorini::run::{Ending, RunError, resume, run, sizes};
+use signorini::run::{Ending, RunError, preview, resume, run, sizes};
 use signorini::scene::{self, Scene, SceneError};
 use std::path::{Path, PathBuf};
 
@@ -99,7 +100,7 @@ pub fn gallery(json: bool) -> u8 {
     DONE
 }
 
-pub fn check(case: &Path, set: &[String], json: bool) -> u8 {
+pub fn check(case: &Path, set: &[String], picture: Option<&Path>, json: bool) -> u8 {
     if let Ok((name, text)) = read(case)
         && scene::is_scene(&text)
     {
@@ -117,7 +118,17 @@ pub fn check(case: &Path, set: &[String], json: bool) -> u8 {
         };
     }
     let checked = read(case).and_then(|(name, text)| Document::parse(&name, &text, set)).and_then(|document| {
-        let sizes = sizes(&plan(&document)?)?;
+        let plan = plan(&document)?;
+        let sizes = sizes(&plan)?;
+        if let Some(file) = picture {
+            let drawn = match preview(&plan) {
+                Ok(drawn) => drawn,
+                Err(RunError::Case(error)) => return Err(*error),
+                Err(RunError::Output(error)) => return Err(output_error(&error)),
+            };
+            let nothing = || CaseError::new("there is nothing to draw: the membrane could not be solved for");
+            save_as(file, &drawn.ok_or_else(nothing)?).map_err(|e| output_error(&e))?;
+        }
         Ok((document, sizes))
     });
     match checked {
@@ -128,11 +139,36 @@ pub fn check(case: &Path, set: &[String], json: bool) -> u8 {
             } else {
                 println!("{}: the case is right.", document.name);
                 for (key, value) in sizes.as_object().into_iter().flatten() {
-                    println!("  {:22} {}", key.replace('_', " "), value.to_string().trim_matches('"'));
+                    match value {
+                        Value::Array(list) if list.is_empty() => {}
+                        Value::Array(list) => {
+                            println!("  {}", key.replace('_', " "));
+                            list.iter().for_each(|v| println!("    {}", echo(v)));
+                        }
+                        value => println!("  {:22} {}", key.replace('_', " "), value.to_string().trim_matches('"')),
+                    }
+                }
+                if let Some(file) = picture {
+                    println!("Picture in {}.", file.display());
                 }
             }
             DONE
         }
+    }
+}
+
+/// An entry of a list: a text as it is, a value with a unit as it was understood.
+fn echo(v: &Value) -> String {
+    match (v.as_str(), &v["text"], v["value"].as_f64()) {
+        (Some(text), ..) => text.to_string(),
+        (None, Value::String(text), Some(value)) => {
+            format!("line {}: `{text}` is {value} {}", v["line"], v["unit"].as_str().unwrap_or(""))
+        }
+        (None, Value::String(text), None) => {
+            let unit = v["unit"].as_str().unwrap_or("");
+            format!("line {}: `{text}`, whose unit is {} {unit}", v["line"], v["factor"])
+        }
+        _ => v.to_string(),
     }
 }
 
@@ -332,6 +368,10 @@ fn solid_table(summary: &Value) {
 }
 
 fn membrane_table(summary: &Value) {
+    let several = |s: &Value| s["contacts"].as_object().is_some_and(|c| c.len() > 1);
+    if summary["steps"].as_array().into_iter().flatten().any(several) {
+        return solid_table(summary);
+    }
     println!(
         "{:>9} {:>7} {:>16} {:>16} {:>6} {:>6} {:>10}",
         "t", "solves", "area", "force", "zones", "holes", "balance"

@@ -60,13 +60,16 @@ enum Command {
         resume: bool,
     },
     /// Check a case without running it
-    #[command(after_help = "Example:\n  signorini check case.toml --json")]
+    #[command(after_help = "Example:\n  signorini check case.toml --picture preview.png")]
     Check {
         /// The case file; - reads it from standard input
         case: PathBuf,
         /// Replace or add a key
         #[arg(long = "set", value_name = "KEY=VALUE", allow_hyphen_values = true)]
         set: Vec<String>,
+        /// Draw the case before anything happens in it, as PNG or SVG
+        #[arg(long, value_name = "FILE")]
+        picture: Option<PathBuf>,
     },
     /// Find out the energy of adhesion from measured loads and contact radii
     #[command(after_help = "Example:\n  signorini fit gallery/blister/case.toml -o fitted")]
@@ -176,7 +179,7 @@ fn main() -> ExitCode {
     let json = arguments.json;
     let result = std::panic::catch_unwind(|| match arguments.command {
         Command::Run { case, options, resume } => commands::run_file(&case, options.output, &options.set, resume, json),
-        Command::Check { case, set } => commands::check(&case, &set, json),
+        Command::Check { case, set, picture } => commands::check(&case, &set, picture.as_deref(), json),
         Command::Fit { case, options } => commands::fit_file(&case, options.output, &options.set, json),
         Command::Closest { queries, output, local_minima } => commands::closest(&queries, &output, local_minima, json),
         Command::New { template, folder } => begin::new(&template, folder, json),

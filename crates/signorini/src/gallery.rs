@@ -15,7 +15,7 @@ macro_rules! example {
 }
 
 /// Cases with mechanics, simplest first.
-pub const GALLERY: [Example; 20] = [
+pub const GALLERY: [Example; 22] = [
     example!("string", "a string on a flat floor, beside the exact solution"),
     example!("axisymmetric", "a round membrane by its radius, beside the exact solution"),
     example!("snap_in", "a sticky membrane: snap-in, pull-off, and the loop between them"),
@@ -26,6 +26,8 @@ pub const GALLERY: [Example; 20] = [
     example!("cosine_disc", "four islands of contact merge to a ring and fill, as the load grows"),
     example!("cosine_square", "a square membrane on the same floor"),
     example!("tilted_floor", "a film in micrometres on a tilted, curved floor; tension and load vary"),
+    example!("drum", "a mesh from Gmsh, clamped at rim and hub, is drawn onto a tilted plate"),
+    example!("two_floors", "a membrane between a ball below and a lid above"),
     example!("active_set", "the classical nodal method, to be set beside cosine_square"),
     example!("hertz", "an elastic cylinder on a rigid plane, beside a converged reference"),
     example!("hertz_sphere", "an elastic sphere on a rigid plane, in space"),
@@ -42,6 +44,7 @@ pub const GALLERY: [Example; 20] = [
 pub fn asset(name: &str) -> Option<&'static str> {
     match name {
         "die.json" => Some(include_str!("../../../gallery/die/die.json")),
+        "drum.msh" => Some(include_str!("../../../gallery/drum/drum.msh")),
         "measured.csv" => Some(include_str!("../../../gallery/blister/measured.csv")),
         _ => None,
     }

@@ -97,6 +97,7 @@ pub struct MembranePlan<const D: usize> {
     pub every: usize,
     pub pictures: bool,
     pub warnings: Vec<String>,
+    pub units: Option<Units>,
     /// What the values with units were taken for.
     pub interpreted: Vec<Interpreted>,
 }
@@ -431,6 +432,7 @@ impl<'a> Planner<'a> {
             every,
             pictures: output.pictures.unwrap_or(true),
             warnings,
+            units: self.reader.units,
             interpreted: self.reader.echo(),
         };
         plan.check_time()?;

@@ -30,7 +30,7 @@ use signorini_membrane::problem::Membrane;
 use signorini_membrane::zone::Zone;
 use signorini_solve::SolveError;
 pub use signorini_solve::{Iteration, Progress, Silent};
-pub use sizes::sizes;
+pub use sizes::{preview, sizes};
 use std::path::Path;
 
 /// What a run of solids would have to do, after checking that their supports and contacts make sense.
@@ -52,7 +52,7 @@ fn solid_sizes<const D: usize>(plan: &crate::plan::solid::SolidPlan<D>) -> Resul
         "contacts": plan.contacts.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", "),
         "free": free,
         "interpreted": plan.interpreted.iter().map(Interpreted::to_json).collect::<Vec<_>>(),
-        "warnings": plan.warnings,
+        "warnings": plan.warnings.iter().cloned().chain(sizes::odd_solids(plan)).collect::<Vec<_>>(),
     }))
 }
 

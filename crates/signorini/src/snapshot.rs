@@ -67,6 +67,8 @@ pub struct Snapshot<const D: usize> {
     pub floor: Option<Vec<f64>>,
     pub ceiling: Option<Vec<f64>>,
     pub outlines: Vec<Vec<Point<D>>>,
+    /// Which of their points lie within the membrane: beyond a free edge fronts mean nothing.
+    pub within: Vec<Vec<bool>>,
 }
 
 /// What a method knows of a point.
@@ -81,6 +83,26 @@ fn heights<const D: usize>(mesh: &DisplayMesh<D>, membrane: &Membrane<D>, side: 
 }
 
 impl<const D: usize> Snapshot<D> {
+    /// The lines of the fronts within the membrane; the first point of a closed one is its last too.
+    pub fn fronts(&self) -> Vec<Vec<Point<D>>> {
+        let mut lines = Vec::new();
+        for (outline, within) in self.outlines.iter().zip(&self.within) {
+            let n = outline.len();
+            // From a point beyond on, so that no line is cut where the list begins.
+            let start = within.iter().position(|w| !w).unwrap_or(0);
+            let mut line: Vec<Point<D>> = Vec::new();
+            for k in (0..=n).map(|k| (start + k) % n.max(1)) {
+                if within[k] {
+                    line.push(outline[k]);
+                } else if !line.is_empty() {
+                    lines.push(std::mem::take(&mut line));
+                }
+            }
+            lines.extend((!line.is_empty()).then_some(line));
+        }
+        lines
+    }
+
     /// Whether there is anything to touch.
     pub fn has_obstacles(&self) -> bool {
         self.floor.is_some() || self.ceiling.is_some()
@@ -102,6 +124,7 @@ impl<const D: usize> Snapshot<D> {
             in_contact: Vec::with_capacity(n),
             floor: heights(mesh, membrane, Side::Below),
             ceiling: heights(mesh, membrane, Side::Above),
+            within: outlines.iter().map(|o| o.iter().map(|x| membrane.contains(x)).collect()).collect(),
             outlines,
         };
         for x in &mesh.points {

@@ -125,15 +125,6 @@ impl Interpreted {
     }
 }
 
-impl std::fmt::Display for Interpreted {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self.value {
-            Some(value) => write!(f, "line {}: `{}` is {value} {}", self.line, self.text, self.unit),
-            None => write!(f, "line {}: `{}`, of which one is {} {}", self.line, self.text, self.factor, self.unit),
-        }
-    }
-}
-
 /// Turns values into expressions in base units.
 pub struct Reader<'a> {
     pub document: &'a Document,

@@ -40,6 +40,20 @@ pub fn save(folder: &Folder, name: &str, svg: &str) -> Result<(), OutputError> {
     folder.write(&format!("pictures/{name}.png"), &png(svg)?)
 }
 
+/// Writes one picture into a file, whole or not at all: as SVG or PNG, as its extension says.
+pub fn save_as(path: &std::path::Path, svg: &str) -> Result<(), OutputError> {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let bytes = match extension.as_str() {
+        "svg" => svg.as_bytes().to_vec(),
+        "png" => png(svg)?,
+        other => return Err(failed(format!("`{other}` is no kind of picture; valid are png and svg"))),
+    };
+    let fail = |source| OutputError::Write { path: path.to_path_buf(), source };
+    let part = path.with_extension(format!("{extension}.part"));
+    std::fs::write(&part, bytes).map_err(fail)?;
+    std::fs::rename(&part, path).map_err(fail)
+}
+
 fn options() -> &'static usvg::Options<'static> {
     static OPTIONS: OnceLock<usvg::Options<'static>> = OnceLock::new();
     OPTIONS.get_or_init(|| {
@@ -170,12 +184,14 @@ impl Image {
     }
 }
 
-/// Adds a closed line on top of an SVG.
-pub fn closed_line(svg: &mut String, points: &[(f64, f64)], RGBColor(r, g, b): RGBColor) {
+/// Adds a line on top of an SVG, closed where it ends at its first point.
+pub fn line(svg: &mut String, points: &[(f64, f64)], RGBColor(r, g, b): RGBColor) {
+    let closed = points.len() > 2 && points.first() == points.last();
     let path: Vec<String> = points.iter().map(|(x, y)| format!("{x:.2} {y:.2}")).collect();
     let element = format!(
-        "<path d=\"M{}Z\" fill=\"none\" stroke=\"rgb({r},{g},{b})\" stroke-width=\"2.5\" stroke-linejoin=\"round\"/>\n",
-        path.join("L")
+        "<path d=\"M{}{}\" fill=\"none\" stroke=\"rgb({r},{g},{b})\" stroke-width=\"2.5\" stroke-linejoin=\"round\"/>\n",
+        path.join("L"),
+        if closed { "Z" } else { "" }
     );
     let end = svg.rfind("</svg>").unwrap_or(svg.len());
     svg.insert_str(end, &element);

@@ -1,8 +1,6 @@
 //! The pictures a person would want to look at first.
 
-use super::chart::{
-    Axes, FONT, Image, axes, closed_line, failed, label, padded, range, rounded, save, svg, viridis, word,
-};
+use super::chart::{Axes, FONT, Image, axes, failed, label, line, padded, range, rounded, save, svg, viridis, word};
 use super::{Folder, OutputError};
 use crate::case::statement::Space;
 use crate::exact;
@@ -65,11 +63,12 @@ pub fn draw<const D: usize>(
         drawings.push(("history", Box::new(|| history(steps, events, contacts, plan.space, units))));
     }
     if steps.len() > 1
-        && let Some(contact) = plan.contacts.iter().find(|c| c.adhesion.is_some())
+        && let Some(contact) = plan.contacts.iter().find(|c| c.adhesion.is_some()).or(plan.contacts.first())
         && let Some(drive) = Drive::of(plan, steps, units)
     {
         let name = contact.name.as_str();
-        drawings.push(("loop", Box::new(move || loop_of_states(&drive, steps, events, name, plan.space, units))));
+        let title = if contact.adhesion.is_some() { "loop" } else { "load_curves" };
+        drawings.push((title, Box::new(move || loop_of_states(&drive, steps, events, name, plan.space, units))));
     }
     let drawn: Vec<String> = drawings
         .par_iter()
@@ -80,6 +79,15 @@ pub fn draw<const D: usize>(
         })
         .collect::<Result<_, OutputError>>()?;
     save(folder, "overview", &sheet(&drawn))
+}
+
+/// A membrane before it touches: on a line its profile over what lies below, in the plane the gap.
+pub fn preview<const D: usize>(
+    plan: &MembranePlan<D>,
+    mesh: &DisplayMesh<D>,
+    s: &Snapshot<D>,
+) -> Result<String, OutputError> {
+    frame(plan, mesh, s, frame_range(s))
 }
 
 /// All pictures on one sheet, in rows of two.
@@ -253,8 +261,8 @@ fn map<const D: usize>(
         let (x, y) = (f64::from(pixels.0.1 - pixels.0.0), f64::from(pixels.1.1 - pixels.1.0));
         (f64::from(pixels.0.0) + t[0] * x, f64::from(pixels.1.1) - t[1] * y)
     };
-    for outline in &s.outlines {
-        closed_line(&mut text, &outline.iter().map(at).collect::<Vec<_>>(), FRONT);
+    for front in &s.fronts() {
+        line(&mut text, &front.iter().map(at).collect::<Vec<_>>(), FRONT);
     }
     // Zones are numbered as the summary lists them.
     let flat = |o: &Vec<Point<D>>| o.iter().map(|p| Point::<2>::new(p[0], p[D - 1])).collect::<Vec<_>>();
@@ -405,11 +413,11 @@ fn profile<const D: usize>(
             let v = u.iter().min_by(|a, b| (a.0 - p[0]).abs().total_cmp(&(b.0 - p[0]).abs())).map_or(0.0, |q| q.1);
             Circle::new((p[0], v), 6, FRONT.filled())
         });
-        chart
-            .draw_series(ends)
-            .map_err(failed)?
-            .label("end of contact")
-            .legend(|(x, y)| Circle::new((x + 10, y), 5, FRONT.filled()));
+        let touches = !s.outlines.is_empty();
+        let ends = chart.draw_series(ends).map_err(failed)?;
+        if touches {
+            ends.label("end of contact").legend(|(x, y)| Circle::new((x + 10, y), 5, FRONT.filled()));
+        }
         chart
             .configure_series_labels()
             .position(SeriesLabelPosition::UpperMiddle)
@@ -530,7 +538,8 @@ impl<'a> Drive<'a> {
     }
 }
 
-/// Area and force over what drives the membrane: stable states filled, unstable ones open, jumps as arrows.
+/// Area and force over what drives the membrane, and without adhesion too: stable states filled, unstable ones open, jumps
+/// as arrows.
 fn loop_of_states(
     drive: &Drive,
     steps: &[Value],

@@ -13,6 +13,8 @@ use std::fmt::Write as _;
 const SIZE: (f64, f64) = (900.0, 620.0);
 /// Room for the title above, the colour bar to the right and the axes.
 const MARGIN: [f64; 4] = [70.0, 46.0, 130.0, 40.0];
+/// Place of bodies without stress on the colour map.
+const AT_REST: f64 = 0.45;
 const LINE: RGBColor = RGBColor(31, 81, 140);
 
 /// Draws all pictures of a run.
@@ -43,6 +45,11 @@ pub fn draw<const D: usize>(
         save(folder, "history", &history(plan, steps, &labels)?)?;
     }
     Ok(())
+}
+
+/// The bodies before they deform.
+pub fn preview<const D: usize>(plan: &SolidPlan<D>, display: &SolidDisplay<D>, fields: &SolidFields<D>) -> String {
+    deformed(plan, 0.0, display, fields, &[], &Labels::new(&plan.document), None)
 }
 
 /// A view along a direction that holds a set of points.
@@ -261,7 +268,9 @@ fn deformed<const D: usize>(
         Some(corners) => View::<D>::new(towards, corners.into_iter()),
         None => View::<D>::new(towards, moved.iter().copied()),
     };
-    let mut title = format!("Equivalent stress (von Mises), t = {}", label(time));
+    let stressed = fields.von_mises.iter().any(|v| *v > 0.0);
+    let mut title = if stressed { "Equivalent stress (von Mises), t = " } else { "Bodies at rest, t = " }.to_string();
+    title += &label(time);
     if factor != 1.0 {
         title += &format!(", displacements × {factor}");
     }
@@ -310,8 +319,10 @@ fn deformed<const D: usize>(
             let c = viridis(t);
             RGBColor(dim(c.0), dim(c.1), dim(c.2))
         };
-        let relative: Vec<f64> =
-            corners.iter().map(|&k| ((values[k as usize] - range.0) / span).clamp(0.0, 1.0)).collect();
+        let relative: Vec<f64> = corners
+            .iter()
+            .map(|&k| if stressed { ((values[k as usize] - range.0) / span).clamp(0.0, 1.0) } else { AT_REST })
+            .collect();
         let mut text = String::new();
         shaded(&mut text, &page, &relative, &colour);
         list.push((depth, text));
@@ -336,7 +347,9 @@ fn deformed<const D: usize>(
     }
     out += "</g>";
     ruler(&mut out, &view, labels);
-    bar(&mut out, range, &labels.pressure("σ"));
+    if stressed {
+        bar(&mut out, range, &labels.pressure("σ"));
+    }
     if cut {
         let _ = write!(
             out,

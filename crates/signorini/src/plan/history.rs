@@ -33,6 +33,13 @@ pub enum Control {
     },
 }
 
+/// A time without round-off: 0.4 is not 0.39999999999999997.
+fn plain(time: f64, step: f64) -> f64 {
+    let digits = 10f64.powi(13 - step.log10().ceil() as i32);
+    let rounded = (time * digits).round() / digits;
+    if rounded.is_finite() { rounded } else { time }
+}
+
 impl Planner<'_> {
     /// The ends of all increments of a history in which time is given.
     pub(super) fn times(&self) -> Result<Vec<f64>, CaseError> {
@@ -78,7 +85,7 @@ impl Planner<'_> {
             }
             for part in 1..=n {
                 // The last time is exactly the stated one.
-                let time = if part == n { to } else { t + (to - t) * part as f64 / n as f64 };
+                let time = if part == n { to } else { plain(t + (to - t) * part as f64 / n as f64, to - t) };
                 let control = self.control(key, dimension, contacts, part, n)?;
                 out.push(PlannedIncrement { step, range: [t, to], time, control, events });
             }

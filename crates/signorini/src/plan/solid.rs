@@ -5,7 +5,7 @@ mod mesh;
 use super::rigid::{self, RigidBody};
 use super::{Placed, Planner};
 use crate::case::statement::{self, Body, Enforcement, Material, Method, SolidMesh, Space};
-use crate::case::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE};
+use crate::case::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE, Units};
 use crate::case::value::Interpreted;
 use crate::case::{CaseError, Document, Literal, OneOrMany, Value, Values, suggestion};
 use crate::expression::Scope;
@@ -79,6 +79,7 @@ pub struct SolidPlan<const D: usize> {
     pub every: usize,
     pub pictures: bool,
     pub warnings: Vec<String>,
+    pub units: Option<Units>,
     /// What the values with units were taken for.
     pub interpreted: Vec<Interpreted>,
 }
@@ -215,6 +216,7 @@ impl Planner<'_> {
             every,
             pictures: case.output.pictures.unwrap_or(true),
             warnings,
+            units: self.reader.units,
             interpreted: self.reader.echo(),
         })
     }

@@ -118,7 +118,7 @@ fn frame_json<const D: usize>(s: &Snapshot<D>) -> Value {
         s.outlines.iter().map(|o| o.iter().map(|x| x.iter().copied().collect()).collect()).collect();
     json!({
         "time": s.time, "displacement": s.displacement, "gap": s.gap, "pressure": s.pressure,
-        "in_contact": s.in_contact, "floor": s.floor, "ceiling": s.ceiling, "outlines": outlines,
+        "in_contact": s.in_contact, "floor": s.floor, "ceiling": s.ceiling, "outlines": outlines, "within": s.within,
     })
 }
 
@@ -134,6 +134,7 @@ fn frame_from<const D: usize>(v: &Value) -> Option<Snapshot<D>> {
         in_contact: serde_json::from_value(v["in_contact"].clone()).ok()?,
         floor: numbers("floor"),
         ceiling: numbers("ceiling"),
+        within: serde_json::from_value(v["within"].clone()).ok()?,
         outlines: outlines.iter().map(|o| o.iter().map(point).collect()).collect::<Option<_>>()?,
     })
 }

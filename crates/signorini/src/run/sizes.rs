@@ -1,10 +1,17 @@
 //! What a run of a membrane would have to do, and what looks wrong before it starts.
 
+use super::RunError;
 use super::increment::LINEAR;
 use crate::case::CaseError;
+use crate::case::units::Units;
 use crate::case::value::Interpreted;
+use crate::output::solid_fields::SolidDisplay;
+use crate::output::{pictures, solid_pictures};
+use crate::plan::solid::SolidPlan;
 use crate::plan::{MembranePlan, Plan, memory_estimate};
+use crate::snapshot::{DisplayMesh, Sample, Snapshot};
 use serde_json::{Value, json};
+use signorini_geometry::Point;
 use signorini_membrane::conditions::least_free_gap;
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::field::Constant;
@@ -12,11 +19,17 @@ use signorini_membrane::line_zone::LineZone;
 use signorini_membrane::obstacle::Side;
 use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::Membrane;
-use signorini_membrane::zone::Zone;
+use signorini_membrane::quadrature::{Cell, Quadrature};
+use signorini_membrane::zone::{NoZone, Zone};
 use std::sync::Arc;
 
 /// Solves that an increment takes, about.
 const SOLVES: [f64; 2] = [6.0, 12.0];
+/// A surface may leave the straight line within a cell by this part of its height.
+const BENDS: f64 = 0.1;
+/// Lengths in metres and Young's moduli in pascals beyond these look wrong.
+const LENGTHS: [f64; 2] = [1e-9, 1e5];
+const MODULI: [f64; 2] = [1e1, 3e12];
 /// More unknowns than this are not solved for just to look.
 const LOOK: usize = 200_000;
 
@@ -63,12 +76,111 @@ fn of_membrane<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>) -> Result<Val
         "loads": plan.loads.len(),
         "contact": if plan.contacts.is_empty() { "none".to_string() } else { contacts.join(", ") },
     });
+    warnings.extend(unresolved(plan, plan.increments.first().map_or(0.0, |i| i.range[0])));
+    if let Some(units) = plan.units {
+        warnings.extend(odd_length(units, plan.grid.bounds().size().max(), "the membrane"));
+    }
     if unknowns <= LOOK {
         look::<D, Z>(plan, &mut sizes, &mut warnings);
     }
     sizes["interpreted"] = plan.interpreted.iter().map(Interpreted::to_json).collect();
     sizes["warnings"] = json!(warnings);
     Ok(sizes)
+}
+
+/// What is odd about the size of a body.
+fn odd_length(units: Units, length: f64, what: &str) -> Option<String> {
+    let metres = length * units.length;
+    (metres < LENGTHS[0] || metres > LENGTHS[1])
+        .then(|| format!("{what} is {metres:.1e} m long: are the units what they should be?"))
+}
+
+/// What is odd about sizes and stiffness of solids, where their units are known.
+pub(super) fn odd_solids<const D: usize>(plan: &SolidPlan<D>) -> Vec<String> {
+    let Some(units) = plan.units else { return Vec::new() };
+    let mut out = Vec::new();
+    for body in &plan.bodies {
+        let nodes = body.mesh.nodes();
+        let Some(first) = nodes.first() else { continue };
+        let (low, high) = nodes.iter().fold((*first, *first), |(l, h), x| (l.inf(x), h.sup(x)));
+        out.extend(odd_length(units, (high - low).max(), &format!("`{}`", body.name)));
+        let pascals = body.material.youngs_modulus * units.force / units.length.powi(2);
+        if pascals < MODULI[0] || pascals > MODULI[1] {
+            out.push(format!(
+                "the modulus of `{}` is {pascals:.1e} Pa, {} any solid: are the units what they should be?",
+                body.name,
+                if pascals < MODULI[0] { "softer than" } else { "stiffer than" }
+            ));
+        }
+    }
+    out
+}
+
+/// A picture of a case before anything happens in it, as SVG; none where there is nothing to draw.
+///
+/// # Errors
+/// Fields that cannot be used, at their place, and a picture that cannot be drawn.
+pub fn preview(plan: &Plan) -> Result<Option<String>, RunError> {
+    fn membrane<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>) -> Result<Option<String>, RunError> {
+        let time = plan.increments.first().map_or(0.0, |i| i.range[0]);
+        let membrane = Membrane { load: Arc::new(Constant(0.0)), ..plan.at(time) };
+        let mesh = DisplayMesh::new(plan, &membrane);
+        let none = Z::empty(&plan.grid);
+        let Ok(state) = Equilibrium::solve(&membrane, &none, &mut Elements::new(&membrane)) else { return Ok(None) };
+        if mesh.cells.is_empty() {
+            return Ok(None);
+        }
+        let sample = |x: &Point<D>| {
+            Some(Sample { displacement: state.displacement(&none, x)?, in_contact: false, pressure: 0.0 })
+        };
+        let snapshot = Snapshot::new(&mesh, &membrane, time, Vec::new(), sample);
+        Ok(Some(pictures::preview(plan, &mesh, &snapshot)?))
+    }
+    fn solids<const D: usize>(plan: &SolidPlan<D>) -> Result<Option<String>, RunError> {
+        let model = super::solid::model(plan)?;
+        let display = SolidDisplay::new(&model);
+        let fields = display.fields(&model, &vec![0.0; model.bodies.unknowns()]);
+        Ok(Some(solid_pictures::preview(plan, &display, &fields)))
+    }
+    match plan {
+        Plan::Line(plan) => membrane::<1, LineZone>(plan),
+        Plan::Plane(plan) => membrane::<2, PlaneZone>(plan),
+        Plan::PlaneSolids(plan) => solids(plan),
+        Plan::Solids(plan) => solids(plan),
+    }
+}
+
+/// Bodies whose surface leaves the straight line within a cell by more than a part of its height are not resolved.
+fn unresolved<const D: usize>(plan: &MembranePlan<D>, time: f64) -> Vec<String> {
+    let membrane = plan.at(time);
+    let none = Quadrature::new(&membrane, &NoZone);
+    let mut out = Vec::new();
+    for (contact, obstacle) in plan.contacts.iter().zip(&membrane.obstacles.0) {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut worst = (0.0f64, Point::<D>::zeros());
+        for cell in (0..none.cells.len()).filter(|&cell| matches!(none.cells[cell], Cell::Whole(_))) {
+            let b = plan.cells.bounds_of(cell);
+            let corners = (0..1usize << D).map(|k| Point::<D>::from_fn(|i, _| [b.min, b.max][k >> i & 1][i]));
+            let heights: Vec<f64> = corners.map(|x| obstacle.height.value(&x)).collect();
+            let middle = obstacle.height.value(&b.center());
+            let bend = (heights.iter().sum::<f64>() / heights.len() as f64 - middle).abs();
+            low = heights.iter().fold(low, |m, h| m.min(*h));
+            high = heights.iter().fold(high, |m, h| m.max(*h));
+            if bend > worst.0 {
+                worst = (bend, b.center());
+            }
+        }
+        if worst.0 > BENDS * (high - low) {
+            let place: Vec<String> = worst.1.iter().map(|v| format!("{v:.4}")).collect();
+            out.push(format!(
+                "`{}` bends within a cell, near ({}), by {:.0} % of its height: use more cells, or mesh.grid.refine",
+                contact.body,
+                place.join(", "),
+                100.0 * worst.0 / (high - low)
+            ));
+        }
+    }
+    out
 }
 
 /// Solves for the membrane without contact, at rest and under its last load.

@@ -415,3 +415,33 @@ fn wrong_neighbours_are_told() {
         assert!(found.place.is_some() && found.one_line().contains(word), "{word}: {}", found.one_line());
     }
 }
+
+/// What a case is taken for before it runs: quantities with units, and what looks wrong.
+#[test]
+fn a_check_says_what_it_understood() {
+    let check = |text: &str| {
+        let document = signorini::case::Document::parse("case.toml", text, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let plan = signorini::plan::plan(&document).unwrap_or_else(|e| panic!("{}", e.one_line()));
+        assert!(signorini::run::preview(&plan).expect("a picture").is_some_and(|svg| svg.contains("</svg>")));
+        signorini::run::sizes(&plan).unwrap_or_else(|e| panic!("{}", e.one_line()))
+    };
+    let case = "units = \"mm-N-MPa\"\n".to_string()
+        + &pushed("plane", "height = \"-0.01*(1 - cos(5*x)) - 0.1\"", 0.0)
+            .replace("tension = 1.0", "tension = \"2 N/m\"")
+            .replace("radius = 1.0", "radius = \"1 cm\"");
+    let sizes = check(&case);
+    let echoed = sizes["interpreted"].as_array().expect("a list");
+    let told = |text: &str| echoed.iter().find(|v| v["text"] == text).unwrap_or_else(|| panic!("{text}: {sizes}"));
+    assert!((number(&told("2 N/m")["value"]) - 2e-3).abs() < 1e-15);
+    assert_eq!(told("2 N/m")["unit"], "N/mm");
+    assert_eq!((number(&told("1 cm")["value"]), &told("1 cm")["line"]), (10.0, &5.into()));
+    assert!(sizes["warnings"].to_string().contains("bends within a cell"), "{sizes}");
+    assert!(!check(&pushed("plane", "height = \"-0.1 - 0.2*x^2\"", 0.0))["warnings"].to_string().contains("bends"));
+    let long = check(&case.replace("\"1 cm\"", "\"1000 km\""));
+    assert!(long["warnings"].to_string().contains("m long"), "{long}");
+    // Pascals where megapascals are meant.
+    let stiff = check(super::example("hertz").replace("youngs_modulus = 1000", "youngs_modulus = 210e9").as_str());
+    let solid = check(super::example("hertz"));
+    assert!(!solid["warnings"].to_string().contains("units"), "{solid}");
+    assert!(stiff["warnings"].to_string().contains("stiffer than any solid"), "{stiff}");
+}

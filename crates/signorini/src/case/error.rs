@@ -110,7 +110,7 @@ pub fn from_toml(name: &str, text: &str, error: &toml::de::Error) -> CaseError {
     } else if let Some(key) = message.strip_prefix("missing field `").and_then(|r| r.strip_suffix('`')) {
         ours.message = format!("missing key `{key}`");
         ours.help = Some(format!("add `{key} = …` to this table"));
-    } else if message.contains("wanted exactly 1 element") {
+    } else if message.contains("wanted exactly 1 element") || message.contains("wanted string or table") {
         ours.message = "a choice is a table with exactly one key".into();
         ours.help = Some("write for example  shape.height = \"-0.1\"".into());
     } else if let Some((found, wanted)) = message

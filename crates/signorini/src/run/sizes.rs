@@ -21,6 +21,7 @@ use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::Membrane;
 use signorini_membrane::quadrature::{Cell, Quadrature};
 use signorini_membrane::zone::{NoZone, Zone};
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 /// Solves that an increment takes, about.
@@ -28,8 +29,8 @@ const SOLVES: [f64; 2] = [6.0, 12.0];
 /// A surface may leave the straight line within a cell by this part of its height.
 const BENDS: f64 = 0.1;
 /// Lengths in metres and Young's moduli in pascals beyond these look wrong.
-const LENGTHS: [f64; 2] = [1e-9, 1e5];
-const MODULI: [f64; 2] = [1e1, 3e12];
+const LENGTHS: RangeInclusive<f64> = 1e-9..=1e5;
+const MODULI: RangeInclusive<f64> = 1e1..=3e12;
 /// More unknowns than this are not solved for just to look.
 const LOOK: usize = 200_000;
 
@@ -91,8 +92,7 @@ fn of_membrane<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>) -> Result<Val
 /// What is odd about the size of a body.
 fn odd_length(units: Units, length: f64, what: &str) -> Option<String> {
     let metres = length * units.length;
-    (metres < LENGTHS[0] || metres > LENGTHS[1])
-        .then(|| format!("{what} is {metres:.1e} m long: are the units what they should be?"))
+    (!LENGTHS.contains(&metres)).then(|| format!("{what} is {metres:.1e} m long: are the units what they should be?"))
 }
 
 /// What is odd about sizes and stiffness of solids, where their units are known.
@@ -105,11 +105,11 @@ pub(super) fn odd_solids<const D: usize>(plan: &SolidPlan<D>) -> Vec<String> {
         let (low, high) = nodes.iter().fold((*first, *first), |(l, h), x| (l.inf(x), h.sup(x)));
         out.extend(odd_length(units, (high - low).max(), &format!("`{}`", body.name)));
         let pascals = body.material.youngs_modulus * units.force / units.length.powi(2);
-        if pascals < MODULI[0] || pascals > MODULI[1] {
+        if !MODULI.contains(&pascals) {
             out.push(format!(
                 "the modulus of `{}` is {pascals:.1e} Pa, {} any solid: are the units what they should be?",
                 body.name,
-                if pascals < MODULI[0] { "softer than" } else { "stiffer than" }
+                if pascals < *MODULI.start() { "softer than" } else { "stiffer than" }
             ));
         }
     }

@@ -348,7 +348,7 @@ fn level_sets_and_meshes_are_seen_from_above() {
     let (rings, sides) = (120, 240);
     let point = |i: usize, j: usize| {
         let (a, b) = (PI * i as f64 / rings as f64, 2.0 * PI * (j % sides) as f64 / sides as f64);
-        let around = if i % rings == 0 { 0.0 } else { 2.0 * a.sin() };
+        let around = if i.is_multiple_of(rings) { 0.0 } else { 2.0 * a.sin() };
         [around * b.cos(), around * b.sin(), 2.0 * a.cos() - 2.0]
     };
     let mut triangles = Vec::new();

@@ -1,6 +1,6 @@
 //! Shapes given by a function that is negative inside.
 
-use crate::{Point, Vector};
+use crate::{Aabb, Point, Vector};
 
 /// A shape `{x : value(x) < 0}`; its boundary is where the value vanishes and the gradient does not.
 pub trait ImplicitShape<const D: usize>: Send + Sync {
@@ -8,6 +8,10 @@ pub trait ImplicitShape<const D: usize>: Send + Sync {
     fn value(&self, x: &Point<D>) -> f64;
     /// Derivative of [`value`](Self::value); points outwards on the boundary.
     fn gradient(&self, x: &Point<D>) -> Vector<D>;
+    /// Bounds of the value in a box, where they are known.
+    fn range(&self, _: &Aabb<D>) -> Option<[f64; 2]> {
+        None
+    }
     /// Both at once, where that is cheaper.
     fn value_and_gradient(&self, x: &Point<D>) -> (f64, Vector<D>) {
         (self.value(x), self.gradient(x))
@@ -37,6 +41,15 @@ impl ImplicitShape<2> for Ellipse {
     fn value(&self, x: &Point<2>) -> f64 {
         let [s, t] = self.scaled(x);
         0.5 * self.minor() * (s * s + t * t - 1.0)
+    }
+
+    fn range(&self, b: &Aabb<2>) -> Option<[f64; 2]> {
+        let (low, high) = (self.scaled(&b.min), self.scaled(&b.max));
+        let squares = [0, 1].map(|k| {
+            let (a, b) = (low[k] * low[k], high[k] * high[k]);
+            [if low[k] <= 0.0 && high[k] >= 0.0 { 0.0 } else { a.min(b) }, a.max(b)]
+        });
+        Some([0, 1].map(|e| 0.5 * self.minor() * (squares[0][e] + squares[1][e] - 1.0)))
     }
 
     fn gradient(&self, x: &Point<2>) -> Vector<2> {

@@ -66,6 +66,9 @@ pub struct ImplicitDomain<S>(pub S);
 pub(crate) struct Borrowed<'a, S>(pub &'a S);
 
 impl<const D: usize, S: ImplicitShape<D>> ImplicitShape<D> for Borrowed<'_, S> {
+    fn range(&self, b: &Aabb<D>) -> Option<[f64; 2]> {
+        self.0.range(b)
+    }
     fn value(&self, x: &Point<D>) -> f64 {
         self.0.value(x)
     }
@@ -75,7 +78,10 @@ impl<const D: usize, S: ImplicitShape<D>> ImplicitShape<D> for Borrowed<'_, S> {
 }
 
 impl<const D: usize, S: ImplicitShape<D>> Domain<D> for ImplicitDomain<S> {
-    fn boundary_in(&self, _: &Aabb<D>) -> BoundaryInCell<'_, D> {
+    fn boundary_in(&self, b: &Aabb<D>) -> BoundaryInCell<'_, D> {
+        if self.0.range(b).is_some_and(|[low, high]| low > 0.0 || high < 0.0) {
+            return BoundaryInCell { sheets: Vec::new(), pieces: Vec::new(), features: Vec::new() };
+        }
         BoundaryInCell { sheets: vec![Box::new(Borrowed(&self.0))], pieces: vec![0], features: Vec::new() }
     }
     fn contains(&self, x: &Point<D>, sheet_values: &[f64]) -> bool {
@@ -201,24 +207,63 @@ impl<const D: usize> DomainOnCells<D> {
         if domain.is_fitted() {
             return Self { domain, status: Arc::new(vec![CellStatus::Inside; cells.count()]) };
         }
-        let status = (0..cells.count())
-            .map(|cell| {
-                let b = cells.bounds_of(cell);
-                let boundary = domain.boundary_in(&b);
-                let partition = signorini_fem::cut::CellPartition {
-                    tags: boundary.pieces,
-                    sheets: boundary.sheets,
-                    features: boundary.features,
-                    region: Box::new(|x, values| u32::from(domain.contains(x, values))),
-                };
-                let rule = cells.cut(cell, &partition, 1);
-                match (rule.cut, rule.volumes.first()) {
-                    (true, _) => CellStatus::Crossed,
-                    (false, Some((1, _))) => CellStatus::Inside,
-                    _ => CellStatus::Outside,
+        let status_of = |cell: usize| {
+            let b = cells.bounds_of(cell);
+            let boundary = domain.boundary_in(&b);
+            if boundary.sheets.is_empty() {
+                return if domain.contains(&b.center(), &[]) { CellStatus::Inside } else { CellStatus::Outside };
+            }
+            let partition = signorini_fem::cut::CellPartition {
+                tags: boundary.pieces,
+                sheets: boundary.sheets,
+                features: boundary.features,
+                region: Box::new(|x, values| u32::from(domain.contains(x, values))),
+            };
+            let rule = cells.cut(cell, &partition, 1);
+            match (rule.cut, rule.volumes.first()) {
+                (true, _) => CellStatus::Crossed,
+                (false, Some((1, _))) => CellStatus::Inside,
+                _ => CellStatus::Outside,
+            }
+        };
+        let mut status = vec![CellStatus::Outside; cells.count()];
+        match cells.divisible().filter(|grid| grid.cell_count() == cells.count()) {
+            // Blocks that the boundary does not cross are settled at once.
+            Some(grid) => {
+                let mut open = vec![([0; D], grid.cells())];
+                while let Some((low, high)) = open.pop() {
+                    let size: [usize; D] = std::array::from_fn(|k| high[k] - low[k]);
+                    if size.iter().all(|n| *n == 1) {
+                        let cell = grid.cell_at(low);
+                        status[cell] = status_of(cell);
+                        continue;
+                    }
+                    let last = std::array::from_fn(|k| high[k] - 1);
+                    let b = Aabb::new(grid.cell_box(grid.cell_at(low)).min, grid.cell_box(grid.cell_at(last)).max);
+                    if domain.boundary_in(&b).sheets.is_empty() {
+                        if domain.contains(&b.center(), &[]) {
+                            for k in 0..size.iter().product() {
+                                let mut rest = k;
+                                let at = std::array::from_fn(|axis| {
+                                    let i = low[axis] + rest % size[axis];
+                                    rest /= size[axis];
+                                    i
+                                });
+                                status[grid.cell_at(at)] = CellStatus::Inside;
+                            }
+                        }
+                        continue;
+                    }
+                    let axis = (0..D).max_by_key(|&k| size[k]).unwrap_or(0);
+                    let middle = low[axis] + size[axis] / 2;
+                    let (mut first, mut second) = (high, low);
+                    (first[axis], second[axis]) = (middle, middle);
+                    open.push((low, first));
+                    open.push((second, high));
                 }
-            })
-            .collect();
+            }
+            None => status.iter_mut().enumerate().for_each(|(cell, s)| *s = status_of(cell)),
+        }
         Self { domain, status: Arc::new(status) }
     }
 }

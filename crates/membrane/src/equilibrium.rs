@@ -145,7 +145,8 @@ pub struct Equilibrium<const D: usize> {
     pub membrane: Membrane<D>,
     pub quadrature: Quadrature<D>,
     unknowns: Unknowns,
-    factor: Factor,
+    /// None where other means than a factorisation found the displacement.
+    factor: Option<Factor>,
     /// Values at the nodes of the free regions.
     u: Vec<f64>,
 }
@@ -178,12 +179,38 @@ impl<const D: usize> Equilibrium<D> {
         }
         let factor = factor?;
         let u = factor.solve_accurately(&system.rhs)?;
-        Ok(Self { membrane: membrane.clone(), quadrature: system.quadrature, unknowns: system.unknowns, factor, u })
+        let System { quadrature, unknowns, .. } = system;
+        Ok(Self { membrane: membrane.clone(), quadrature, unknowns, factor: Some(factor), u })
+    }
+
+    /// A state whose displacement is found by other means, and given by [`Equilibrium::set_values`]; its fronts cannot
+    /// respond to each other.
+    pub(crate) fn unsolved(membrane: Membrane<D>, quadrature: Quadrature<D>, unknowns: Unknowns) -> Self {
+        let u = vec![0.0; unknowns.count];
+        Self { membrane, quadrature, unknowns, factor: None, u }
+    }
+
+    pub(crate) fn unknowns(&self) -> &Unknowns {
+        &self.unknowns
+    }
+
+    /// Whether the response of the membrane to its fronts can be computed.
+    pub fn responds(&self) -> bool {
+        self.factor.is_some()
+    }
+
+    /// The values of the unknowns.
+    pub(crate) fn values(&self) -> &[f64] {
+        &self.u
+    }
+
+    pub(crate) fn set_values(&mut self, value: impl Fn(usize) -> f64) {
+        self.u.iter_mut().enumerate().for_each(|(i, u)| *u = value(i));
     }
 
     /// Number of unknowns of the linear system.
     pub fn size(&self) -> usize {
-        self.factor.size()
+        self.unknowns.count
     }
 
     /// Displacement and its gradient at a point of a cell, by the polynomial of one of its regions.
@@ -254,7 +281,8 @@ impl<const D: usize> Equilibrium<D> {
                 rhs[i as usize] += w * (t.gradient[a].dot(&p.normal) + penalty * t.value[a]);
             }
         }
-        let z = self.factor.solve(&rhs)?;
+        let Some(factor) = &self.factor else { return Err(SolveError::NotFactorised { size: rhs.len() }) };
+        let z = factor.solve(&rhs)?;
         Ok(self
             .quadrature
             .front
@@ -308,7 +336,11 @@ pub(crate) struct System<const D: usize> {
 
 impl<const D: usize> System<D> {
     pub fn assemble<Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z, elements: &Elements<D>) -> Self {
-        let quadrature = Quadrature::new(membrane, zone);
+        Self::on(membrane, Quadrature::new(membrane, zone), elements)
+    }
+
+    /// The system for a quadrature at hand.
+    pub fn on(membrane: &Membrane<D>, quadrature: Quadrature<D>, elements: &Elements<D>) -> Self {
         let unknowns = number(membrane, &quadrature);
         let pairs = ghost_pairs(membrane, elements, &quadrature, &unknowns);
         let mut cliques: Vec<Vec<u32>> = unknowns.cells.iter().flatten().map(|(_, dofs)| dofs.clone()).collect();
@@ -382,7 +414,7 @@ fn evaluate<const D: usize>(
 }
 
 /// Numbers the unknowns, cell by cell: one for each node and free region.
-fn number<const D: usize>(membrane: &Membrane<D>, quadrature: &Quadrature<D>) -> Unknowns {
+pub(crate) fn number<const D: usize>(membrane: &Membrane<D>, quadrature: &Quadrature<D>) -> Unknowns {
     let mut of_node: BTreeMap<RegionId, Vec<u32>> = BTreeMap::new();
     let mut count = 0;
     let mut nodes = Vec::new();

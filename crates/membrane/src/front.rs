@@ -257,7 +257,7 @@ impl<'a, const D: usize> Fronts<'a, D> {
         let n = zone.mode_offsets(space)[zone.front_count()];
         let beyond = longest > LOCAL_REACH * h;
         // With very many modes their responses cost more than a few careful local steps.
-        let far = beyond && n <= MOST_RESPONSES;
+        let far = beyond && n <= MOST_RESPONSES && self.equilibrium.responds();
         let frames = self.frames(zone, space);
         let (mut matrix, mut b) = self.galerkin(&frames, n, &local, &self.slope_jump);
         let kind = if far { StepKind::Full } else { StepKind::Local };

@@ -21,10 +21,10 @@ const PATIENCE: usize = 9;
 const DAMPED_AFTER: usize = 3;
 /// ... and that move by less than this fraction of a cell have settled: as a front crosses a grid line the discrete
 /// slope jump makes a jump of its own, of the size of the discretisation error, and no position makes it vanish.
-const SETTLED: f64 = 1e-3;
+pub(crate) const SETTLED: f64 = 1e-3;
 /// ... or, where a front is sharper than a cell, or where the slope jump that its modes do not see is larger than the one
 /// they do, by less than this.
-const SETTLED_COARSE: f64 = 0.03;
+pub(crate) const SETTLED_COARSE: f64 = 0.03;
 /// A front sharper than this, relative to a cell, is no front any more.
 const SHARPEST: f64 = 10.0;
 /// A step of this fraction of a cell that does not improve on the last is round-off.
@@ -92,6 +92,31 @@ pub struct Solution<const D: usize, Z> {
     pub unrefined: bool,
     /// Length of the last step relative to a cell, where the fronts settled on a jump of the discrete slope.
     pub settled_within: Option<f64>,
+    /// Whether multigrid found it, and not a factorisation.
+    pub multigrid: bool,
+}
+
+impl<const D: usize, Z> Solution<D, Z> {
+    /// Nothing but a zone.
+    pub(crate) fn begin(zone: Z) -> Self {
+        Self {
+            zone,
+            equilibrium: None,
+            conditions: None,
+            scales: None,
+            reason: Reason::IterationLimit,
+            iterations: 0,
+            residuals: Vec::new(),
+            unknowns: 0,
+            lowest_eigenvalue: None,
+            jumped: false,
+            margin: None,
+            unresolved: None,
+            unrefined: false,
+            settled_within: None,
+            multigrid: false,
+        }
+    }
 }
 
 /// Where an increment starts from.
@@ -113,22 +138,7 @@ pub fn solve<const D: usize, Z: Zone<D>>(
     progress: &mut dyn Progress,
 ) -> Solution<D, Z> {
     let mut run = Run {
-        solution: Solution {
-            zone: Z::empty(&membrane.grid),
-            equilibrium: None,
-            conditions: None,
-            scales: None,
-            reason: Reason::IterationLimit,
-            iterations: 0,
-            residuals: Vec::new(),
-            unknowns: 0,
-            lowest_eigenvalue: None,
-            jumped: false,
-            margin: None,
-            unresolved: None,
-            unrefined: false,
-            settled_within: None,
-        },
+        solution: Solution::begin(Z::empty(&membrane.grid)),
         branch: Branch::Stable,
         adhering: false,
         membrane,

@@ -1,13 +1,17 @@
 //! Contact zones in the plane, bounded by smooth closed fronts.
 
+use crate::ils::Solution;
+use crate::multigrid;
 use crate::obstacle::Side;
+use crate::problem::Membrane;
 use crate::raster::Raster;
 use crate::zone::{Advance, Division, FrontFrame, FrontsInCell, ModeSpace, Zone, contact, contact_of, free};
 use serde_json::{Value, json};
 use signorini_fem::cut::RegionId;
 use signorini_fem::{Cells, Grid, RefinedGrid};
 use signorini_geometry::{Aabb, ClosedCurve, CurvePoint, ImplicitShape, PeriodicBasis, Point, Vector, polygon};
-use std::collections::HashSet;
+use signorini_solve::{Progress, SolveError};
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 /// Fewest knots of a front, which still draw a circle to 3e-5 of its radius.
@@ -31,10 +35,10 @@ pub struct PlaneZone {
     hole: Vec<bool>,
     /// For each curve, its number among the outer fronts or among the holes.
     number: Vec<usize>,
-    /// For each cell, pairs of curve and sample in or next to it.
-    near: Vec<Vec<(u32, u32)>>,
-    /// For each cell, the curves round its centre.
-    around: Vec<Vec<u32>>,
+    /// For cells near curves, pairs of curve and sample in or next to them.
+    near: HashMap<usize, Vec<(u32, u32)>>,
+    /// For each row of cells, the columns whose centres a curve encloses: first, one behind the last, and the curve.
+    rows: Vec<Vec<[u32; 3]>>,
 }
 
 /// The signed distance to one front near a cell.
@@ -62,7 +66,110 @@ impl ImplicitShape<2> for FrontSheet<'_> {
     }
 }
 
+/// The signed distance to a front within a cell that it hardly bends in: to the parabola that touches it nearest to the
+/// centre. Third order in the size of the cell.
+struct Osculating {
+    foot: Point<2>,
+    normal: Vector<2>,
+    curvature: f64,
+}
+
+impl ImplicitShape<2> for Osculating {
+    fn value(&self, x: &Point<2>) -> f64 {
+        let d = x - self.foot;
+        let along = d[0] * self.normal[1] - d[1] * self.normal[0];
+        d.dot(&self.normal) + 0.5 * self.curvature * along * along
+    }
+    fn gradient(&self, x: &Point<2>) -> Vector<2> {
+        let d = x - self.foot;
+        let along = d[0] * self.normal[1] - d[1] * self.normal[0];
+        self.normal + self.curvature * along * Vector::<2>::new(self.normal[1], -self.normal[0])
+    }
+}
+
+/// A zone whose fronts are taken for parabolas within cells that they hardly bend in.
+pub(crate) struct Straightened<'a>(pub &'a PlaneZone);
+
+/// Curvature times cell size up to which a front hardly bends.
+const HARDLY: f64 = 0.1;
+
+impl Division<2> for Straightened<'_> {
+    fn fronts_in(&self, b: &Aabb<2>) -> FrontsInCell<'_, 2> {
+        self.0.fronts_within(b, HARDLY)
+    }
+}
+
 impl PlaneZone {
+    /// Calls `visit(first, end, region)` for stretches of the cells of a row, by their centres; together they are the row.
+    pub(crate) fn for_each_stretch(&self, row: usize, mut visit: impl FnMut(usize, usize, RegionId)) {
+        let columns = self.grid.cells()[0];
+        let mut ends: Vec<usize> = self.rows[row].iter().flat_map(|[a, b, _]| [*a as usize, *b as usize]).collect();
+        ends.extend([0, columns]);
+        ends.sort_unstable();
+        ends.dedup();
+        for pair in ends.windows(2) {
+            let enclosing = self.enclosing(row, pair[0]);
+            visit(pair[0], pair[1], self.region_within(enclosing.into_iter()));
+        }
+    }
+
+    /// The cells that fronts are near to, in no order.
+    pub(crate) fn cells_near_fronts(&self) -> impl Iterator<Item = usize> + '_ {
+        self.near.keys().copied()
+    }
+
+    /// The curves round the centre of a cell.
+    fn enclosing(&self, row: usize, column: usize) -> Vec<usize> {
+        let column = column as u32;
+        self.rows[row].iter().filter(|[a, b, _]| (*a..*b).contains(&column)).map(|r| r[2] as usize).collect()
+    }
+
+    /// The curves round the centre of a cell.
+    fn around(&self, cell: usize) -> Vec<usize> {
+        let [column, row] = self.grid.cell_index(cell);
+        self.enclosing(row, column)
+    }
+
+    /// Pairs of curve and sample in or next to a cell.
+    fn near(&self, cell: usize) -> &[(u32, u32)] {
+        self.near.get(&cell).map_or(&[], Vec::as_slice)
+    }
+
+    /// The fronts in a box, taken for parabolas where their curvature times its size is less than `hardly`.
+    fn fronts_within(&self, b: &Aabb<2>, hardly: f64) -> FrontsInCell<'_, 2> {
+        let near = self.near_box(b);
+        let mut far = self.around(self.grid.cell_containing(&b.center()));
+        far.retain(|c| near.iter().all(|(n, _)| n != c));
+        let mut found = FrontsInCell { sheets: vec![], fronts: vec![], features: vec![], region: Box::new(|_| 0) };
+        for (c, seeds) in near {
+            let sheet = FrontSheet { curve: &self.curves[c], seeds };
+            let (distance, foot) = sheet.foot(&b.center());
+            if distance.abs() > b.radius() {
+                if self.encloses(c, distance) {
+                    far.push(c);
+                }
+                continue;
+            }
+            if foot.curvature.abs() * b.radius() < hardly {
+                let CurvePoint { position, normal, curvature, .. } = foot;
+                found.sheets.push(Box::new(Osculating { foot: position, normal, curvature }));
+            } else {
+                let own = bounding_box(self.curves[c].samples());
+                if (0..2).all(|k| own.min[k] > b.min[k] && own.max[k] < b.max[k]) {
+                    found.features.push(own.center());
+                }
+                found.sheets.push(Box::new(sheet));
+            }
+            found.fronts.push(c);
+        }
+        let fronts = found.fronts.clone();
+        found.region = Box::new(move |values| {
+            let close = fronts.iter().zip(values).filter(|&(&c, &v)| self.encloses(c, v)).map(|(&c, _)| c);
+            self.region_within(far.iter().copied().chain(close))
+        });
+        found
+    }
+
     /// The zone bounded by the given curves, which neither cross each other nor themselves, and what it touches there.
     pub fn new(grid: &Grid<2>, fronts: Vec<(Side, ClosedCurve)>) -> Self {
         let (sides, curves): (Vec<Side>, Vec<ClosedCurve>) = fronts.into_iter().unzip();
@@ -77,13 +184,13 @@ impl PlaneZone {
             })
             .collect();
         let near = cells_near(grid, &curves);
-        let around = cells_around(grid, &curves);
+        let rows = rows_enclosed(grid, &curves);
         Self {
             areas: areas.iter().map(|a| a.abs()).collect(),
             hole,
             number,
             near,
-            around,
+            rows,
             curves,
             sides,
             grid: grid.clone(),
@@ -136,7 +243,7 @@ impl PlaneZone {
     }
 
     fn seeds(&self, cell: usize, curve: usize) -> Vec<usize> {
-        self.near[cell].iter().filter(|(c, _)| *c as usize == curve).map(|(_, s)| *s as usize).collect()
+        self.near(cell).iter().filter(|(c, _)| *c as usize == curve).map(|(_, s)| *s as usize).collect()
     }
 
     /// The curves near a box, each with its samples there.
@@ -146,7 +253,7 @@ impl PlaneZone {
         let mut found: Vec<(usize, Vec<usize>)> = Vec::new();
         for j in low[1]..=high[1] {
             for i in low[0]..=high[0] {
-                for &(c, s) in &self.near[self.grid.cell_at([i, j])] {
+                for &(c, s) in self.near(self.grid.cell_at([i, j])) {
                     match found.iter_mut().find(|(curve, _)| *curve == c as usize) {
                         Some((_, seeds)) => seeds.push(s as usize),
                         None => found.push((c as usize, vec![s as usize])),
@@ -164,7 +271,7 @@ impl PlaneZone {
     }
 
     fn curves_near(&self, cell: usize) -> Vec<usize> {
-        let mut found: Vec<usize> = self.near[cell].iter().map(|(c, _)| *c as usize).collect();
+        let mut found: Vec<usize> = self.near(cell).iter().map(|(c, _)| *c as usize).collect();
         found.dedup();
         found
     }
@@ -282,33 +389,7 @@ impl PlaneZone {
 
 impl Division<2> for PlaneZone {
     fn fronts_in(&self, b: &Aabb<2>) -> FrontsInCell<'_, 2> {
-        let near = self.near_box(b);
-        let around = &self.around[self.grid.cell_containing(&b.center())];
-        let is_near = |c: &usize| near.iter().any(|(n, _)| n == c);
-        let mut far: Vec<usize> = around.iter().map(|&c| c as usize).filter(|c| !is_near(c)).collect();
-        let mut found = FrontsInCell { sheets: vec![], fronts: vec![], features: vec![], region: Box::new(|_| 0) };
-        for (c, seeds) in near {
-            let sheet = FrontSheet { curve: &self.curves[c], seeds };
-            let distance = sheet.value(&b.center());
-            if distance.abs() > b.radius() {
-                if self.encloses(c, distance) {
-                    far.push(c);
-                }
-                continue;
-            }
-            let own = bounding_box(self.curves[c].samples());
-            if (0..2).all(|k| own.min[k] > b.min[k] && own.max[k] < b.max[k]) {
-                found.features.push(own.center());
-            }
-            found.sheets.push(Box::new(sheet));
-            found.fronts.push(c);
-        }
-        let fronts = found.fronts.clone();
-        found.region = Box::new(move |values| {
-            let close = fronts.iter().zip(values).filter(|&(&c, &v)| self.encloses(c, v)).map(|(&c, _)| c);
-            self.region_within(far.iter().copied().chain(close))
-        });
-        found
+        self.fronts_within(b, 0.0)
     }
 }
 
@@ -482,7 +563,7 @@ impl Zone<2> for PlaneZone {
         if Self::is_valid(&zone.curves) { zone } else { self.clone() }
     }
     fn distance(&self, x: &Point<2>) -> f64 {
-        let near = &self.near[self.grid.cell_containing(x)];
+        let near = self.near(self.grid.cell_containing(x));
         near.iter()
             .map(|&(c, s)| (self.curves[c as usize].samples()[s as usize] - x).norm())
             .fold(f64::INFINITY, f64::min)
@@ -494,8 +575,18 @@ impl Zone<2> for PlaneZone {
             let (d, _) = self.curves[c].signed_distance(x, self.seeds(cell, c).into_iter());
             self.encloses(c, d)
         });
-        let far = self.around[cell].iter().map(|&c| c as usize).filter(|c| !near.contains(c));
-        self.region_within(far.chain(close.collect::<Vec<_>>()))
+        let far = self.around(cell).into_iter().filter(|c| !near.contains(c)).collect::<Vec<_>>();
+        self.region_within(far.into_iter().chain(close.collect::<Vec<_>>()))
+    }
+    fn by_multigrid(
+        membrane: &Membrane<2>,
+        at: (usize, f64),
+        progress: &mut dyn Progress,
+    ) -> Result<Option<Solution<2, Self>>, SolveError> {
+        if membrane.cells.function_count() < multigrid::LARGE || !multigrid::nested::is_able(membrane) {
+            return Ok(None);
+        }
+        multigrid::nested::solution(membrane, at, progress)
     }
     fn to_json(&self) -> Value {
         let curves = self.sides.iter().zip(&self.curves).map(
@@ -523,7 +614,7 @@ impl Zone<2> for PlaneZone {
         let mut least = radius;
         let spacing: Vec<f64> =
             self.curves.iter().map(|c| polygon::perimeter(c.samples()) / c.samples().len() as f64).collect();
-        for near in &self.near {
+        for near in self.near.values() {
             for (i, &(c, s)) in near.iter().enumerate() {
                 let curve = &self.curves[c as usize];
                 let n = curve.samples().len();
@@ -596,10 +687,9 @@ fn bounding_box(points: &[Point<2>]) -> Aabb<2> {
     points.iter().fold(Aabb::new(points[0], points[0]), |b, p| Aabb::new(b.min.inf(p), b.max.sup(p)))
 }
 
-/// For each cell, the samples within it and its neighbours.
-fn cells_near(grid: &Grid<2>, curves: &[ClosedCurve]) -> Vec<Vec<(u32, u32)>> {
-    let mut near = vec![Vec::new(); if curves.is_empty() { 0 } else { grid.cell_count() }];
-    near.resize(grid.cell_count(), Vec::new());
+/// For each cell near a curve, the samples within it and its neighbours.
+fn cells_near(grid: &Grid<2>, curves: &[ClosedCurve]) -> HashMap<usize, Vec<(u32, u32)>> {
+    let mut near: HashMap<usize, Vec<(u32, u32)>> = HashMap::new();
     let (bounds, size, cells) = (grid.bounds(), grid.cell_size(), grid.cells());
     for (c, curve) in curves.iter().enumerate() {
         for (s, x) in curve.samples().iter().enumerate() {
@@ -607,7 +697,7 @@ fn cells_near(grid: &Grid<2>, curves: &[ClosedCurve]) -> Vec<Vec<(u32, u32)>> {
             let range = |k: usize| (at[k] - 1).max(0)..(at[k] + 2).min(cells[k] as isize);
             for j in range(1) {
                 for i in range(0) {
-                    near[grid.cell_at([i as usize, j as usize])].push((c as u32, s as u32));
+                    near.entry(grid.cell_at([i as usize, j as usize])).or_default().push((c as u32, s as u32));
                 }
             }
         }
@@ -615,10 +705,11 @@ fn cells_near(grid: &Grid<2>, curves: &[ClosedCurve]) -> Vec<Vec<(u32, u32)>> {
     near
 }
 
-/// For each cell, the curves round its centre, by the crossings of each curve with the lines through cell centres.
-fn cells_around(grid: &Grid<2>, curves: &[ClosedCurve]) -> Vec<Vec<u32>> {
-    let mut around = vec![Vec::new(); grid.cell_count()];
+/// For each row of cells the stretches whose centres a curve encloses, by the crossings of the curve with the line through
+/// these.
+fn rows_enclosed(grid: &Grid<2>, curves: &[ClosedCurve]) -> Vec<Vec<[u32; 3]>> {
     let cells = grid.cells();
+    let mut rows = vec![Vec::new(); cells[1]];
     let (bounds, size) = (grid.bounds(), grid.cell_size());
     for (c, curve) in curves.iter().enumerate() {
         let mut crossings = vec![Vec::new(); cells[1]];
@@ -630,15 +721,16 @@ fn cells_around(grid: &Grid<2>, curves: &[ClosedCurve]) -> Vec<Vec<u32>> {
                 crossings[j].push(a[0] + (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1]));
             }
         }
-        for (j, mut xs) in crossings.into_iter().enumerate() {
+        for (row, mut xs) in rows.iter_mut().zip(crossings) {
             xs.sort_by(f64::total_cmp);
             for pair in xs.chunks_exact(2) {
                 let column = |x: f64| ((x - bounds.min[0]) / size[0] - 0.5).ceil().max(0.0) as usize;
-                for i in column(pair[0])..column(pair[1]).min(cells[0]) {
-                    around[grid.cell_at([i, j])].push(c as u32);
+                let (from, to) = (column(pair[0]), column(pair[1]).min(cells[0]));
+                if from < to {
+                    row.push([from as u32, to as u32, c as u32]);
                 }
             }
         }
     }
-    around
+    rows
 }

@@ -65,7 +65,11 @@ pub fn cut_order(degree: usize) -> usize {
 
 impl<const D: usize> Quadrature<D> {
     pub fn new<Z: Division<D>>(membrane: &Membrane<D>, zone: &Z) -> Self {
-        let order = cut_order(membrane.cells.degree());
+        Self::of_order(membrane, zone, cut_order(membrane.cells.degree()))
+    }
+
+    /// With so many Gauss points per direction and smooth piece in cut cells.
+    pub fn of_order<Z: Division<D>>(membrane: &Membrane<D>, zone: &Z, order: usize) -> Self {
         let cells: Vec<Cell<D>> = (0..membrane.cells.count())
             .into_par_iter()
             .map(|cell| {

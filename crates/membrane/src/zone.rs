@@ -1,10 +1,13 @@
 //! What the method needs to know of a contact zone, in one dimension or two.
 
+use crate::ils::Solution;
 use crate::obstacle::Side;
+use crate::problem::Membrane;
 use serde_json::Value;
 use signorini_fem::cut::RegionId;
 use signorini_fem::{Cells, Grid};
 use signorini_geometry::{Aabb, ImplicitShape, Point};
+use signorini_solve::{Progress, SolveError};
 use std::sync::Arc;
 
 /// Beyond the membrane.
@@ -164,6 +167,17 @@ pub trait Zone<const D: usize>: Division<D> + Clone + Send {
     fn to_json(&self) -> Value;
     /// The zone of such numbers, on a grid or one as much finer as it was; none where they make no zone.
     fn from_json(grid: &Grid<D>, value: &Value) -> Option<Self>;
+    /// The state of a large membrane by multigrid; none where that is not the way.
+    ///
+    /// # Errors
+    /// Equations that cannot be solved.
+    fn by_multigrid(
+        _membrane: &Membrane<D>,
+        _at: (usize, f64),
+        _progress: &mut dyn Progress,
+    ) -> Result<Option<Solution<D, Self>>, SolveError> {
+        Ok(None)
+    }
     /// Points along every front, for pictures and files; one in one dimension.
     fn outlines(&self) -> Vec<Vec<Point<D>>>;
 }

@@ -21,6 +21,8 @@ pub enum SolveError {
     NotPositiveDefinite { size: usize, pivot: usize },
     #[error("the linear system of {size} unknowns was solved only to a relative residual of {residual:.1e}")]
     Inaccurate { size: usize, residual: f64 },
+    #[error("the linear system of {size} unknowns was not factorised")]
+    NotFactorised { size: usize },
     #[error("not enough memory to factorise a matrix of {size} unknowns")]
     OutOfMemory { size: usize },
 }

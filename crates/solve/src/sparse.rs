@@ -56,6 +56,45 @@ impl SymmetricMatrix {
         out
     }
 
+    /// The matrix whose columns, from the diagonal down, `column` writes as pairs of row and entry in any order.
+    pub fn from_columns(n: usize, mut column: impl FnMut(usize, &mut Vec<(usize, f64)>)) -> Self {
+        let mut out = Self { column_start: vec![0], row: Vec::new(), value: Vec::new() };
+        let mut entries = Vec::new();
+        for j in 0..n {
+            entries.clear();
+            column(j, &mut entries);
+            entries.sort_unstable_by_key(|e| e.0);
+            for &(i, v) in &entries {
+                out.row.push(i);
+                out.value.push(v);
+            }
+            out.column_start.push(out.row.len());
+        }
+        out
+    }
+
+    /// Whole rows, of the unknowns that are wanted, each with its columns and entries.
+    pub fn rows(&self, wanted: impl Fn(usize) -> bool) -> Vec<(usize, Vec<(usize, f64)>)> {
+        let mut place = vec![usize::MAX; self.size()];
+        let mut out: Vec<(usize, Vec<(usize, f64)>)> = Vec::new();
+        for i in (0..self.size()).filter(|&i| wanted(i)) {
+            place[i] = out.len();
+            out.push((i, Vec::new()));
+        }
+        for j in 0..self.size() {
+            for k in self.column_start[j]..self.column_start[j + 1] {
+                let (i, v) = (self.row[k], self.value[k]);
+                if place[i] != usize::MAX {
+                    out[place[i]].1.push((j, v));
+                }
+                if i != j && place[j] != usize::MAX {
+                    out[place[j]].1.push((i, v));
+                }
+            }
+        }
+        out
+    }
+
     /// Number of unknowns.
     pub fn size(&self) -> usize {
         self.column_start.len().saturating_sub(1)

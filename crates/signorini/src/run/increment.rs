@@ -25,6 +25,9 @@ use std::collections::BTreeMap;
 /// Curvature times cell size beyond which a front is not resolved.
 const RESOLVED: f64 = 0.5;
 
+/// Unknowns up to which errors are estimated, by a factorisation for functions of one degree more.
+const MOST_ESTIMATED: usize = 100_000;
+
 /// Slope up to which a membrane is linear.
 pub const LINEAR: f64 = 0.1;
 
@@ -106,6 +109,8 @@ pub struct Increment<'a, const D: usize> {
     pub iterations: usize,
     pub residuals: Vec<f64>,
     pub unknowns: usize,
+    /// What solved the equations.
+    pub solver: &'static str,
     pub warnings: Vec<String>,
     report: Option<Report<D>>,
     outlines: Vec<Vec<Point<D>>>,
@@ -257,10 +262,15 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             }
             (None, None) => Start::Free,
         };
-        let mut solution: Solution<D, Z> = self.refinement.solve(membrane, &mut self.levels, start, at, progress);
+        let nearby = matches!(start, Start::Asked(..) | Start::Zone(_, _, Branch::Nearest));
+        let large = if nearby { None } else { Z::by_multigrid(membrane, at, progress).ok().flatten() };
+        let mut solution: Solution<D, Z> = match large {
+            Some(solution) => solution,
+            None => self.refinement.solve(membrane, &mut self.levels, start, at, progress),
+        };
         self.scales = solution.scales.or(self.scales);
         let report = Report::new(&solution);
-        let estimated = self.estimates && solution.reason.converged();
+        let estimated = self.estimates && solution.reason.converged() && solution.unknowns < MOST_ESTIMATED;
         let errors = if estimated { ErrorEstimate::of(&solution).ok().flatten() } else { None };
         let converged = solution.reason.converged();
         if let (true, Some(scales)) = (converged, solution.scales) {
@@ -357,6 +367,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             iterations,
             residuals,
             unknowns,
+            solver: if solution.multigrid { "multigrid" } else { "direct" },
             warnings,
             report,
             outlines,
@@ -379,6 +390,7 @@ fn active_set<'a, const D: usize, Z: Zone<D>>(
         iterations: 0,
         residuals: Vec::new(),
         unknowns: 0,
+        solver: "direct",
         warnings,
         report: None,
         outlines: Vec::new(),
@@ -420,6 +432,7 @@ fn active_set<'a, const D: usize, Z: Zone<D>>(
         iterations: solution.iterations,
         residuals: solution.changes.iter().map(|c| *c as f64).collect(),
         unknowns: solution.unknowns,
+        solver: "direct",
         warnings: Vec::new(),
         report: Some(nodal_report(membrane, &solution, &zones)),
         outlines: zones.outlines,
@@ -501,6 +514,7 @@ impl<const D: usize> Increment<'_, D> {
             "converged": self.converged,
             "reason": self.reason,
             "iterations": self.iterations,
+            "solver": self.solver,
             "residual_history": self.residuals,
             "energy": self.report.as_ref().map(|r| r.energy),
             "energy_total": self.report.as_ref().map(|r| r.energy_total()),

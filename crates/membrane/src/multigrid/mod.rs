@@ -1,0 +1,96 @@
+//! Multigrid for the membrane cut by its edge and its fronts, degree 1.
+//!
+//! Away from the cuts every node has the same equation, which is never stored: four-colour Gauss-Seidel relaxes it. Along
+//! the cuts the equations are stored, and a band of nodes there, with one layer of regular nodes around it, is solved for
+//! exactly in every sweep: it is a graph of one dimension, so its factor is small. Coarser levels are the same membrane on
+//! grids of half the cells. One cycle costs a few tens of nanoseconds per unknown and leaves less than an eighth of the
+//! error, however thin the slivers (spec: no setting of the smoother depends on the cut).
+
+mod level;
+pub mod nested;
+mod transfer;
+
+pub use level::Level;
+
+use crate::domain::DomainOnCells;
+use crate::plane_zone::PlaneZone;
+use crate::problem::Membrane;
+use crate::zone::Zone;
+use signorini_fem::Grid;
+use signorini_solve::SolveError;
+use std::sync::Arc;
+
+/// Cells along the longer side of the coarsest grid, below which all is solved for at once.
+const COARSEST: usize = 16;
+
+/// Functions from which on multigrid takes less time than a factorisation.
+pub const LARGE: usize = 60_000;
+
+/// A membrane around a zone on grids of growing size, the finest last.
+pub struct Hierarchy {
+    pub levels: Vec<Level>,
+}
+
+/// The grids of a hierarchy, the coarsest first.
+pub fn grids(finest: &Grid<2>) -> Vec<Grid<2>> {
+    let mut list = vec![finest.clone()];
+    while let Some(last) = list.last()
+        && last.cells().iter().all(|n| n % 2 == 0 && n / 2 >= COARSEST)
+    {
+        let coarser = Grid::new(*last.bounds(), last.cells().map(|n| n / 2), 1);
+        list.push(coarser);
+    }
+    list.reverse();
+    list
+}
+
+/// The same membrane on a grid of a hierarchy.
+pub fn on_grid(membrane: &Membrane<2>, grid: &Grid<2>) -> Membrane<2> {
+    let domain = DomainOnCells::new(membrane.domain.domain.clone(), grid);
+    Membrane { cells: Arc::new(grid.clone()), grid: grid.clone(), domain, ..membrane.clone() }
+}
+
+impl Hierarchy {
+    /// The membrane on all grids down from its own, around a zone.
+    ///
+    /// # Errors
+    /// Equations along the cuts that cannot be factorised.
+    pub fn new(membrane: &Membrane<2>, zone: &PlaneZone) -> Result<Self, SolveError> {
+        let grids = grids(&membrane.grid);
+        let levels = grids
+            .iter()
+            .enumerate()
+            .map(|(k, grid)| Level::new(&on_grid(membrane, grid), &zone.on_grid(grid), k == 0))
+            .collect::<Result<_, _>>()?;
+        Ok(Self { levels })
+    }
+
+    /// One cycle on the finest level: relaxation, correction from the coarser levels, relaxation.
+    ///
+    /// # Errors
+    /// A factorisation that does not solve.
+    pub fn cycle(&mut self) -> Result<(), SolveError> {
+        let finest = self.levels.len() - 1;
+        cycle(&mut self.levels[..=finest])
+    }
+
+    /// The finest level.
+    pub fn finest(&mut self) -> &mut Level {
+        let last = self.levels.len() - 1;
+        &mut self.levels[last]
+    }
+}
+
+/// A V-cycle on the last of some levels, whose right-hand side and displacement are those in it.
+pub(crate) fn cycle(levels: &mut [Level]) -> Result<(), SolveError> {
+    let Some((fine, coarser)) = levels.split_last_mut() else { return Ok(()) };
+    let Some(coarse) = coarser.last_mut() else { return fine.relax_band() };
+    fine.relax()?;
+    fine.restrict_residual(coarse);
+    coarse.u.iter_mut().for_each(|u| *u = 0.0);
+    cycle(coarser)?;
+    if let Some(coarse) = coarser.last() {
+        fine.add_correction(coarse);
+    }
+    fine.relax()
+}

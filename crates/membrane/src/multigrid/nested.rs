@@ -1,0 +1,210 @@
+//! The whole contact problem by nested iteration: the fronts are found on a coarse grid by the direct solver, and every
+//! finer grid gives them a few steps, each after a single cycle.
+//!
+//! What a cycle leaves of the algebraic error is of the size of the discretisation error, so is what the front is off; the
+//! whole costs as much as a few cycles on the finest grid.
+
+use super::{Level, cycle, grids, on_grid};
+use crate::conditions::Conditions;
+use crate::equilibrium::Elements;
+use crate::front::Fronts;
+use crate::ils::{self, Reason, SETTLED, SETTLED_COARSE, Solution, Start};
+use crate::plane_zone::PlaneZone;
+use crate::problem::Membrane;
+use crate::scales::Scales;
+use crate::zone::{ModeSpace, Zone};
+use signorini_solve::{Iteration, Progress, SolveError};
+
+/// Cells along the longer side of the grid on which the fronts are found at first.
+const FIRST: usize = 32;
+/// Steps of the fronts on each finer grid, and how many more where they have far to go.
+const STEPS: usize = 2;
+const MORE: usize = 6;
+/// Fronts that move by more than this fraction of a cell get another step.
+const FAR: f64 = 0.3;
+
+/// A membrane in contact on the finest of nested grids.
+pub struct NestedSolution {
+    pub zone: PlaneZone,
+    /// The finest level, with the displacement.
+    pub level: Level,
+    /// Steps of the fronts on each grid, the coarsest first.
+    pub steps: Vec<usize>,
+    pub scales: Scales,
+    /// The last step of the fronts, relative to a cell, and the residuals on the finest grid, relative to their tolerance.
+    pub last_step: f64,
+    pub residuals: Vec<f64>,
+    /// Whether the last residual is small enough, or the fronts rest on a jump of the discrete slope; the last step then.
+    pub settled: bool,
+    pub settled_within: Option<f64>,
+}
+
+/// Cycles at the end, and the residual relative to the load at which there are no more.
+const CLOSING: usize = 14;
+const CLOSED: f64 = 1e-12;
+/// Steps without progress after which fronts may rest on a jump of the discrete slope.
+const PATIENCE: usize = 3;
+/// Steps on the finest grid before fronts are given up that have to meet a tolerance.
+const MOST: usize = 12;
+
+/// Whether a membrane can be solved for so: degree 1, on a grid with coarser ones, of even tension, without adhesion.
+pub fn is_able(membrane: &Membrane<2>) -> bool {
+    membrane.cells.degree() == 1
+        && membrane.cells.divisible().is_some()
+        && membrane.tension.constant().is_some()
+        && !membrane.obstacles.are_sticky()
+        && grids(&membrane.grid).len() > 1
+}
+
+/// A state that meets the tolerances of every other solver; none where the way to it is not this one: the fronts were not
+/// found on the coarsest grid, did not come to rest, or are not all there are.
+///
+/// # Errors
+/// Equations that cannot be solved.
+pub fn solution(
+    membrane: &Membrane<2>,
+    at: (usize, f64),
+    progress: &mut dyn Progress,
+) -> Result<Option<Solution<2, PlaneZone>>, SolveError> {
+    let Ok(mut found) = solve(membrane, 1.0, at, progress)? else { return Ok(None) };
+    if !found.settled {
+        return Ok(None);
+    }
+    let zone = found.zone;
+    let equilibrium = found.level.whole_state(membrane, &zone);
+    let conditions = Conditions::check(&equilibrium, &zone, &found.scales);
+    if !conditions.hold(&found.scales, false) {
+        return Ok(None);
+    }
+    Ok(Some(Solution {
+        unknowns: found.level.unknowns(),
+        equilibrium: Some(equilibrium),
+        conditions: Some(conditions),
+        scales: Some(found.scales),
+        reason: Reason::Converged,
+        iterations: found.steps.last().copied().unwrap_or(0),
+        residuals: found.residuals,
+        multigrid: true,
+        settled_within: found.settled_within,
+        ..Solution::begin(zone)
+    }))
+}
+
+/// Solves a membrane for which [`is_able`] holds. On the finest grid the fronts step until their residual is below
+/// `tolerance` of what other solvers reach, at least twice: with an infinite one their error is that of the discretisation.
+///
+/// # Errors
+/// Equations that cannot be solved. The reason, where the fronts were not found on the coarsest grid.
+pub fn solve(
+    membrane: &Membrane<2>,
+    tolerance: f64,
+    at: (usize, f64),
+    progress: &mut dyn Progress,
+) -> Result<Result<NestedSolution, Reason>, SolveError> {
+    let grids = grids(&membrane.grid);
+    let first = grids.iter().position(|g| g.cells().into_iter().max().unwrap_or(0) >= FIRST).unwrap_or(0);
+    let coarse = on_grid(membrane, &grids[first]);
+    let found = ils::solve::<2, PlaneZone>(&coarse, &mut Elements::new(&coarse), Start::Free, at, progress);
+    let (Reason::Converged, Some(scales), Some(state)) = (&found.reason, found.scales, &found.equilibrium) else {
+        return Ok(Err(found.reason));
+    };
+    let mut zone = found.zone.clone();
+    let mut levels = grids[..=first]
+        .iter()
+        .enumerate()
+        .map(|(k, grid)| Level::new(&on_grid(membrane, grid), &zone.on_grid(grid), k == 0))
+        .collect::<Result<Vec<_>, _>>()?;
+    if let Some(level) = levels.last_mut() {
+        level.take(state);
+    }
+    let mut steps = vec![found.iterations];
+    let (mut last_step, mut residuals) = (0.0, Vec::new());
+    let mut settled = true;
+    let mut settled_within = None;
+    for grid in &grids[first + 1..] {
+        let here = on_grid(membrane, grid);
+        let h = grid.h();
+        let scales = scales.on(&here);
+        zone = zone.on_grid(grid);
+        let mut level = Level::new(&here, &zone, false)?;
+        if let Some(coarse) = levels.last() {
+            level.interpolate(coarse);
+        }
+        levels.push(level);
+        let finest = grid.cells() == membrane.grid.cells();
+        let mut count = 0;
+        let mut wanted = STEPS;
+        let (mut best, mut waited) = (f64::INFINITY, 0);
+        residuals.clear();
+        while count < wanted {
+            cycle(&mut levels)?;
+            count += 1;
+            let Some(level) = levels.last_mut() else { break };
+            let state = level.state();
+            let fronts = Fronts::new(state, false);
+            let seen = fronts.project(&zone, ModeSpace::Fine);
+            let residual = seen.norm / scales.slope_tolerance();
+            residuals.push(residual);
+            waited = if residual < 0.7 * best { 0 } else { waited + 1 };
+            best = best.min(residual);
+            let (zones, holes) = zone.counts();
+            progress.iteration(&Iteration {
+                step: at.0,
+                time: at.1,
+                iteration: count,
+                residual,
+                action: "multigrid step",
+                figures: &[("cells", grid.cells()[0] as f64), ("zones", zones as f64), ("holes", holes as f64)],
+            });
+            if progress.interrupted() {
+                return Ok(Err(Reason::Interrupted));
+            }
+            let step = fronts.newton_step(&zone, &scales)?;
+            last_step = step.length / h;
+            // As everywhere: on a jump of the discrete slope no position makes it vanish.
+            let enough = if seen.norm < seen.remainder { SETTLED_COARSE } else { SETTLED };
+            let on_jump = waited >= PATIENCE && last_step < enough;
+            settled = residual <= tolerance || on_jump;
+            if finest && settled && count >= STEPS && tolerance.is_finite() {
+                settled_within = (residual > tolerance).then_some(last_step);
+                break;
+            }
+            if finest && !settled && count >= wanted && wanted < MOST {
+                wanted += 1;
+            }
+            if last_step > FAR && wanted < STEPS + MORE {
+                wanted += 1;
+            }
+            let advance = zone.advanced(grid, step.space, &step.coefficients, h);
+            zone = advance.zone;
+            if count == wanted && !finest {
+                // What it is interpolated from may have the fronts of a moment ago.
+                break;
+            }
+            let mut next = Level::new(&here, &zone, false)?;
+            next.carry_on(level);
+            *level = next;
+        }
+        steps.push(count);
+    }
+    // The displacement itself to round-off: forces then balance as after a factorisation.
+    for _ in 0..if tolerance.is_finite() { CLOSING } else { 1 } {
+        cycle(&mut levels)?;
+        if let Some(level) = levels.last()
+            && level.relative_residual() < CLOSED
+        {
+            break;
+        }
+    }
+    let Some(level) = levels.pop() else { return Ok(Err(Reason::IterationLimit)) };
+    Ok(Ok(NestedSolution {
+        zone,
+        level,
+        steps,
+        scales: scales.on(membrane),
+        last_step,
+        residuals,
+        settled,
+        settled_within,
+    }))
+}

@@ -1,0 +1,193 @@
+//! Multigrid for cut membranes: how much of the error a cycle leaves, whatever is cut.
+
+use signorini_fem::Grid;
+use signorini_geometry::{Aabb, ClosedCurve, Ellipse, Jet, Point, Real, polygon};
+use signorini_membrane::domain::{BoxDomain, Domain, DomainOnCells, ImplicitDomain, PolygonDomain};
+use signorini_membrane::equilibrium::{Elements, Equilibrium};
+use signorini_membrane::field::{Constant, Formula};
+use signorini_membrane::ils::{self, Reason, Start};
+use signorini_membrane::multigrid::{Hierarchy, nested};
+use signorini_membrane::obstacle::{Obstacle, Obstacles, Side};
+use signorini_membrane::plane_zone::PlaneZone;
+use signorini_membrane::problem::{Measure, Membrane, Support};
+use signorini_membrane::report::Report;
+use signorini_membrane::zone::Zone;
+use signorini_solve::Silent;
+use std::sync::Arc;
+
+fn membrane(n: usize, domain: Arc<dyn Domain<2>>, half: f64) -> Membrane<2> {
+    let bounds = Aabb::new(Point::<2>::new(-half, -half), Point::<2>::new(half, half));
+    let grid = Grid::new(bounds, [n, n], 1);
+    let support = Some(Support { index: 0, displacement: Arc::new(Constant(0.0)) });
+    let floor = Obstacle { side: Side::Below, height: Arc::new(Constant(-0.1)), adhesion: None };
+    Membrane {
+        supports: vec![support; domain.pieces()],
+        domain: DomainOnCells::new(domain, &grid),
+        cells: Arc::new(grid.clone()),
+        grid,
+        measure: Measure::Plain,
+        tension: Arc::new(Constant(1.0)),
+        load: Arc::new(Constant(-1.0)),
+        obstacles: Obstacles(vec![floor]),
+        support_count: 1,
+    }
+}
+
+fn disc(n: usize) -> Membrane<2> {
+    membrane(n, Arc::new(ImplicitDomain(Ellipse { center: Point::zeros(), semi_axes: [1.0, 1.0] })), 1.03)
+}
+
+fn circle(center: Point<2>, radius: impl Fn(f64) -> f64, points: usize) -> ClosedCurve {
+    let points: Vec<Point<2>> = (0..points)
+        .map(|k| {
+            let a = std::f64::consts::TAU * k as f64 / points as f64;
+            center + radius(a) * Point::<2>::new(a.cos(), a.sin())
+        })
+        .collect();
+    ClosedCurve::through(&points, 7)
+}
+
+/// The contraction of a cycle in the residual's norm, after the first few.
+fn contraction(membrane: &Membrane<2>, zone: &PlaneZone) -> f64 {
+    let mut hierarchy = Hierarchy::new(membrane, zone).expect("levels");
+    let level = hierarchy.finest();
+    level.b.fill(0.0);
+    let mut seed = 1u64;
+    for u in &mut level.u {
+        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        *u = (seed >> 40) as f64 / f64::from(1u32 << 24) - 0.5;
+    }
+    level.silence();
+    let norm = |h: &mut Hierarchy| h.finest().residual().iter().map(|r| r * r).sum::<f64>().sqrt();
+    let mut norms = vec![norm(&mut hierarchy)];
+    for _ in 0..9 {
+        hierarchy.cycle().expect("a cycle");
+        norms.push(norm(&mut hierarchy));
+    }
+    (norms[9] / norms[5]).powf(0.25)
+}
+
+#[test]
+fn the_solution_is_that_of_the_direct_solver() {
+    let membrane = disc(48);
+    let zone = PlaneZone::new(
+        &membrane.grid,
+        vec![(Side::Below, circle(Point::zeros(), |a| 0.5 + 0.05 * (3.0 * a).cos(), 40))],
+    );
+    let zone = zone.on_grid(&membrane.grid);
+    let direct = Equilibrium::solve(&membrane, &zone, &mut Elements::new(&membrane)).expect("a solution");
+    let mut hierarchy = Hierarchy::new(&membrane, &zone).expect("levels");
+    for _ in 0..16 {
+        hierarchy.cycle().expect("a cycle");
+    }
+    let found = hierarchy.finest();
+    let mut worst = 0.0f64;
+    direct.for_each_point(|cell, region, x, _| {
+        let Some((u, _)) = direct.evaluate(cell, region, x) else { return };
+        if let Some(v) = found.evaluate(x) {
+            worst = worst.max((u - v).abs());
+        }
+    });
+    // Fronts are parabolas within each cell here.
+    assert!(worst > 0.0 && worst < 1e-7, "{worst:e}");
+    assert!(found.relative_residual() < 1e-12, "{:e}", found.relative_residual());
+}
+
+#[test]
+fn a_cycle_leaves_an_eighth_whatever_is_cut() {
+    let mut worst = (0.0, String::new());
+    let mut try_one = |membrane: &Membrane<2>, fronts: Vec<ClosedCurve>, name: String| {
+        let fronts = fronts.into_iter().map(|c| (Side::Below, c)).collect();
+        let zone = PlaneZone::new(&membrane.grid, fronts).on_grid(&membrane.grid);
+        let rate = contraction(membrane, &zone);
+        if rate > worst.0 {
+            worst = (rate, name);
+        }
+    };
+    for k in 0..12 {
+        let t = f64::from(k);
+        let front = circle(
+            Point::<2>::new(0.2 * (1.3 * t).sin(), 0.2 * (2.1 * t).cos()),
+            |a| 0.45 + 0.1 * (0.7 * t).sin() * (2.0 * a + t).cos() + 0.04 * (3.0 * a).sin(),
+            48,
+        );
+        try_one(&disc(64), vec![front], format!("random {k}"));
+    }
+    // Edges that leave slivers of every thickness.
+    for k in 0..12 {
+        let thin = 10f64.powi(-k);
+        let half = 1.0;
+        let edge = half - (2.0 / 64.0) * (1.0 - thin);
+        let corners = [[-edge, -edge], [edge, -edge], [edge, edge], [-edge, edge]].map(Point::<2>::from).to_vec();
+        try_one(
+            &membrane(64, Arc::new(PolygonDomain::new(corners)), half),
+            vec![circle(Point::zeros(), |_| 0.5, 32)],
+            format!("sliver {thin:e}"),
+        );
+    }
+    assert!(worst.0 <= 0.12, "{worst:?}");
+}
+
+/// The whole contact problem: the front of a round membrane on a flat floor, by the exact radius.
+#[test]
+fn nested_iteration_finds_the_front() {
+    let exact = 0.502_474_357_08;
+    let errors: Vec<f64> = [64usize, 128, 256]
+        .iter()
+        .map(|&n| {
+            let membrane = disc(n);
+            assert!(nested::is_able(&membrane));
+            let found =
+                nested::solve(&membrane, f64::INFINITY, (0, 0.0), &mut Silent).expect("solves").expect("a state");
+            assert!(found.steps.iter().skip(1).all(|s| *s <= 4), "{:?}", found.steps);
+            ((area(&found.zone) / std::f64::consts::PI).sqrt() - exact).abs()
+        })
+        .collect();
+    assert!(errors.iter().all(|e| *e < 2e-6), "{errors:?}");
+}
+
+fn area(zone: &PlaneZone) -> f64 {
+    zone.curves().iter().map(|c| polygon::signed_area(c.samples())).sum()
+}
+
+/// What multigrid finds is what the direct solver finds on the same grid, to less than the error of that grid: zones, holes,
+/// area, force, and the balance.
+#[test]
+fn multigrid_and_the_direct_solver_agree() {
+    let c = |v: f64| Jet::<2>::constant(v);
+    let wavy = move |[x, y]: [Jet<2>; 2]| {
+        let cos = |v: Jet<2>| {
+            let a = c(std::f64::consts::TAU) * v;
+            a.chain(a.value.cos(), -a.value.sin(), -a.value.cos())
+        };
+        c(-0.015) - c(0.005) * cos(x) * cos(y)
+    };
+    let tilted = move |[x, y]: [Jet<2>; 2]| c(-1.0) + c(0.3) * x - c(0.2) * y;
+    let square = BoxDomain(Aabb::new(Point::<2>::new(-1.0, -1.0), Point::<2>::new(1.0, 1.0)));
+    let flat = disc(128);
+    let waves = {
+        let mut m = disc(128);
+        m.obstacles.0[0].height = Arc::new(Formula(wavy));
+        m.load = Arc::new(Constant(-0.4));
+        m
+    };
+    let varied = Membrane { load: Arc::new(Formula(tilted)), ..membrane(96, Arc::new(square), 1.0) };
+    let ceiling = {
+        let mut m = disc(128);
+        m.obstacles.0[0] = Obstacle { side: Side::Above, height: Arc::new(Constant(0.1)), adhesion: None };
+        m.load = Arc::new(Constant(1.0));
+        m
+    };
+    for (name, membrane) in [("flat", flat), ("waves", waves), ("square, varied load", varied), ("ceiling", ceiling)] {
+        let found = nested::solution(&membrane, (0, 0.0), &mut Silent).expect("solves");
+        let found = found.unwrap_or_else(|| panic!("{name}: no state"));
+        let direct =
+            ils::solve::<2, PlaneZone>(&membrane, &mut Elements::new(&membrane), Start::Free, (0, 0.0), &mut Silent);
+        assert_eq!(direct.reason, Reason::Converged, "{name}");
+        assert_eq!(found.zone.counts(), direct.zone.counts(), "{name}");
+        let [a, b] = [&found, &direct].map(|s| Report::new(s).expect("a report"));
+        assert!((a.area() - b.area()).abs() < 1e-5 * b.area(), "{name}: {} {}", a.area(), b.area());
+        assert!((a.force() - b.force()).abs() < 5e-5 * b.force().abs(), "{name}: {} {}", a.force(), b.force());
+        assert!(a.equilibrium_residual < 1e-10, "{name}: {:e}", a.equilibrium_residual);
+    }
+}

@@ -1,12 +1,12 @@
-//! Time, memory and error of a round membrane on a flat floor, by multigrid from coarse to fine: from 1e4 unknowns to as many
-//! as `SIGNORINI_LADDER` says (1e6 if it says nothing), one thread.
+//! Time, memory and error of membranes by multigrid from coarse to fine: a round one on a flat floor, and a square one on a
+//! cosine floor at f = 0.4. From 1e4 unknowns to as many as `SIGNORINI_LADDER` says (1e6 if it says nothing), one thread.
 //!
 //! `cargo bench -p signorini-membrane --bench nested`
 
 use signorini_fem::Grid;
-use signorini_geometry::{Aabb, Ellipse, Point, polygon};
-use signorini_membrane::domain::{DomainOnCells, ImplicitDomain};
-use signorini_membrane::field::Constant;
+use signorini_geometry::{Aabb, Ellipse, Jet, Point, Real, polygon};
+use signorini_membrane::domain::{BoxDomain, Domain, DomainOnCells, ImplicitDomain};
+use signorini_membrane::field::{Constant, Formula, SharedField};
 use signorini_membrane::multigrid::nested;
 use signorini_membrane::obstacle::{Obstacle, Obstacles, Side};
 use signorini_membrane::problem::{Measure, Membrane, Support};
@@ -14,24 +14,39 @@ use signorini_solve::Silent;
 use std::sync::Arc;
 use std::time::Instant;
 
-const EXACT: f64 = 0.502_474_357_08;
+/// Radius of the zone on the flat floor.
+const RADIUS: f64 = 0.502_474_357_08;
 
-fn membrane(n: usize) -> Membrane<2> {
-    let bounds = Aabb::new(Point::<2>::new(-1.03, -1.03), Point::<2>::new(1.03, 1.03));
+fn on_grid(n: usize, half: f64, domain: Arc<dyn Domain<2>>, height: SharedField<2>, load: f64) -> Membrane<2> {
+    let bounds = Aabb::new(Point::<2>::new(-half, -half), Point::<2>::new(half, half));
     let grid = Grid::new(bounds, [n, n], 1);
-    let domain = Arc::new(ImplicitDomain(Ellipse { center: Point::zeros(), semi_axes: [1.0, 1.0] }));
-    let floor = Obstacle { side: Side::Below, height: Arc::new(Constant(-0.1)), adhesion: None };
+    let support = Some(Support { index: 0, displacement: Arc::new(Constant(0.0)) });
     Membrane {
-        supports: vec![Some(Support { index: 0, displacement: Arc::new(Constant(0.0)) })],
+        supports: vec![support; domain.pieces()],
         domain: DomainOnCells::new(domain, &grid),
         cells: Arc::new(grid.clone()),
         grid,
         measure: Measure::Plain,
         tension: Arc::new(Constant(1.0)),
-        load: Arc::new(Constant(-1.0)),
-        obstacles: Obstacles(vec![floor]),
+        load: Arc::new(Constant(load)),
+        obstacles: Obstacles(vec![Obstacle { side: Side::Below, height, adhesion: None }]),
         support_count: 1,
     }
+}
+
+fn flat(n: usize) -> Membrane<2> {
+    let disc = Arc::new(ImplicitDomain(Ellipse { center: Point::zeros(), semi_axes: [1.0, 1.0] }));
+    on_grid(n, 1.03, disc, Arc::new(Constant(-0.1)), -1.0)
+}
+
+fn waves(n: usize) -> Membrane<2> {
+    let cos = |v: Jet<2>| {
+        let a = Jet::constant(std::f64::consts::TAU) * v;
+        a.chain(a.value.cos(), -a.value.sin(), -a.value.cos())
+    };
+    let height = move |[x, y]: [Jet<2>; 2]| Jet::constant(-0.015) - Jet::constant(0.005) * cos(x) * cos(y);
+    let square = BoxDomain(Aabb::new(Point::<2>::new(-1.0, -1.0), Point::<2>::new(1.0, 1.0)));
+    on_grid(n, 1.0, Arc::new(square), Arc::new(Formula(height)), -0.4)
 }
 
 /// The largest memory of this process so far, in bytes, where the system tells.
@@ -44,30 +59,38 @@ fn peak() -> f64 {
 fn main() {
     let most: f64 = std::env::var("SIGNORINI_LADDER").ok().and_then(|v| v.parse().ok()).unwrap_or(1.2e6);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
-    println!("{:>10} {:>9} {:>8} {:>9} {:>9} {:>11}", "unknowns", "s", "µs each", "MB peak", "B each", "radius off");
-    let mut last: Option<(f64, f64)> = None;
-    for n in [128usize, 256, 512, 1024, 1408, 2816, 4096, 8192] {
-        if 0.56 * (n * n) as f64 > most {
-            break;
-        }
-        let start = Instant::now();
-        let found = pool.install(|| nested::solve(&membrane(n), f64::INFINITY, (0, 0.0), &mut Silent));
-        let seconds = start.elapsed().as_secs_f64();
-        let Ok(Ok(found)) = found else {
-            println!("{n} x {n}: no state");
-            return;
-        };
-        let area: f64 = found.zone.curves().iter().map(|c| polygon::signed_area(c.samples())).sum();
-        let unknowns = found.level.unknowns() as f64;
-        println!(
-            "{unknowns:>10} {seconds:>9.3} {:>8.2} {:>9.0} {:>9.0} {:>11.1e}",
-            1e6 * seconds / unknowns,
-            peak() / 1e6,
-            peak() / unknowns,
-            (area / std::f64::consts::PI).sqrt() - EXACT
-        );
-        if let Some((u, s)) = last.replace((unknowns, seconds)) {
-            println!("{:>10} exponent {:.2}", "", (seconds / s).ln() / (unknowns / u).ln());
+    let radius = |area: f64| (area / std::f64::consts::PI).sqrt() - RADIUS;
+    let cases: [(&str, f64, fn(usize) -> Membrane<2>, &dyn Fn(f64) -> f64); 2] = [
+        ("disc on a flat floor: radius off", 0.56, flat, &radius),
+        ("square on a cosine floor: area", 1.0, waves, &|area| area),
+    ];
+    for (name, share, membrane, figure) in cases {
+        println!("{:>10} {:>9} {:>8} {:>9} {:>9}  {name}", "unknowns", "s", "µs each", "MB peak", "B each");
+        let mut last: Option<(f64, f64)> = None;
+        for n in [128usize, 256, 512, 1024, 1408, 2816, 4096, 8192] {
+            if share * (n * n) as f64 > most {
+                break;
+            }
+            let start = Instant::now();
+            let found = pool.install(|| nested::solve(&membrane(n), f64::INFINITY, (0, 0.0), &mut Silent));
+            let seconds = start.elapsed().as_secs_f64();
+            let Ok(Ok(found)) = found else {
+                println!("{n} x {n}: no state");
+                return;
+            };
+            let area: f64 = found.zone.curves().iter().map(|c| polygon::signed_area(c.samples())).sum();
+            let unknowns = found.level.unknowns() as f64;
+            println!(
+                "{unknowns:>10} {seconds:>9.3} {:>8.2} {:>9.0} {:>9.0}  {:.9e}  steps {:?}",
+                1e6 * seconds / unknowns,
+                peak() / 1e6,
+                peak() / unknowns,
+                figure(area),
+                found.steps
+            );
+            if let Some((u, s)) = last.replace((unknowns, seconds)) {
+                println!("{:>10} exponent {:.2}", "", (seconds / s).ln() / (unknowns / u).ln());
+            }
         }
     }
 }

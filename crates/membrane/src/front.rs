@@ -5,12 +5,15 @@ use crate::quadrature::FrontPoint;
 use crate::scales::Scales;
 use crate::zone::{FrontFrame, ModeSpace, Zone};
 use signorini_geometry::Real;
-use signorini_solve::{SolveError, dense};
+use signorini_solve::{SolveError, Symbolic, SymmetricMatrix, dense};
 
 /// A floor pressure below this fraction of the reference pressure does not steer a local step any more.
 const WEAK_PRESSURE: f64 = 0.02;
 /// A local step longer than this fraction of the grid's resolution gives way to one with the response of the membrane.
 const LOCAL_REACH: f64 = 0.6;
+
+/// Modes from which on their equations are solved by sparse elimination.
+const MANY_MODES: usize = 150;
 
 /// Modes whose response is computed at most.
 const MOST_RESPONSES: usize = 240;
@@ -70,6 +73,19 @@ impl StepKind {
             StepKind::Descent => "unstable: down the energy",
         }
     }
+}
+
+/// Solves a symmetric positive definite system of modes, each of which meets few others: by sparse elimination where there
+/// are many.
+fn solve_positive(matrix: &[f64], b: &[f64]) -> Option<Vec<f64>> {
+    let n = b.len();
+    if n < MANY_MODES {
+        return dense::solve(matrix, b);
+    }
+    let sparse = SymmetricMatrix::from_columns(n, |j, out| {
+        out.extend((j..n).map(|i| (i, matrix[i * n + j])).filter(|(i, v)| *i == j || *v != 0.0));
+    });
+    Symbolic::default().factor(sparse).and_then(|f| f.solve(b)).ok()
 }
 
 impl<'a, const D: usize> Fronts<'a, D> {
@@ -195,7 +211,7 @@ impl<'a, const D: usize> Fronts<'a, D> {
         let (mut mass, b) = self.galerkin(&frames, n, &ones, &excess);
         self.hold_modes_outside(zone, space, &frames, &mut mass, 1.0);
         let square: f64 = self.weights().zip(&excess).map(|(w, r)| w * r * r).sum();
-        let seen = dense::solve(&mass, &b).map_or(square, |c| c.iter().zip(&b).map(|(c, b)| c * b).sum::<f64>());
+        let seen = solve_positive(&mass, &b).map_or(square, |c| c.iter().zip(&b).map(|(c, b)| c * b).sum::<f64>());
         Projection { norm: seen.max(0.0).sqrt(), remainder: (square - seen).max(0.0).sqrt() }
     }
 
@@ -253,7 +269,8 @@ impl<'a, const D: usize> Fronts<'a, D> {
         let local: Vec<f64> = self.pressure.iter().zip(&self.tension).map(|(p, t)| floor_pressure(*p) / t).collect();
         let longest = self.slope_jump.iter().zip(&local).map(|(r, l)| r / l).fold(0.0, f64::max);
         let h = self.equilibrium.membrane.grid.h();
-        let space = self.leading_space(zone);
+        // Where nothing but local steps can be made, the finest modes serve them best.
+        let space = if self.equilibrium.responds() { self.leading_space(zone) } else { ModeSpace::Fine };
         let n = zone.mode_offsets(space)[zone.front_count()];
         let beyond = longest > LOCAL_REACH * h;
         // With very many modes their responses cost more than a few careful local steps.
@@ -269,7 +286,8 @@ impl<'a, const D: usize> Fronts<'a, D> {
             *v = -*v;
         }
         // The matrix is the sum of a positive mass and a positive response; only a front without points is singular.
-        let coefficients = dense::solve(&matrix, &b).unwrap_or_else(|| vec![0.0; n]);
+        let solved = if far { dense::solve(&matrix, &b) } else { solve_positive(&matrix, &b) };
+        let coefficients = solved.unwrap_or_else(|| vec![0.0; n]);
         let total: f64 = self.weights().sum();
         let square: f64 = frames
             .iter()

@@ -16,6 +16,8 @@ use std::sync::Arc;
 
 /// Gauss points per direction in cut cells: on fine grids a front is nearly straight within a cell.
 const ORDER: usize = 3;
+/// Cells in contact beside cut ones whose displacement is held.
+const HELD: usize = 4;
 /// Neighbouring cells of a cut one that belong to the stored part, and those whose nodes have stored rows.
 const PART: usize = 2;
 const STORED: usize = 1;
@@ -280,19 +282,19 @@ impl Level {
             active[i as usize] = true;
         }
         self.runs.iter().for_each(|r| active[r.row * w + r.begin..r.row * w + r.end].fill(true));
-        for j in 0..ny {
-            zone.for_each_stretch(j, |begin, end, region| {
-                let Some((side, _)) = contact_of(region) else { return };
-                for i in (begin..end).filter(|i| state[j * nx + i] == State::Contact) {
-                    let node = j * w + i;
-                    for n in [node, node + 1, node + w, node + w + 1] {
-                        if !active[n] && !self.known[n] {
-                            self.known[n] = true;
-                            self.u[n] = membrane.obstacles.height(side, &self.grid.node(n));
-                        }
-                    }
+        // Only near the fronts is it ever needed: where these retreat, and to interpolate beside them.
+        for cell in around(&self.grid, state, |s| s == State::Cut, HELD) {
+            if state[cell] != State::Contact {
+                continue;
+            }
+            let Some((side, _)) = contact_of((zone.fronts_in(&self.grid.cell_box(cell)).region)(&[])) else { continue };
+            let node = cell / nx * w + cell % nx;
+            for n in [node, node + 1, node + w, node + w + 1] {
+                if !active[n] && !self.known[n] {
+                    self.known[n] = true;
+                    self.u[n] = membrane.obstacles.height(side, &self.grid.node(n));
                 }
-            });
+            }
         }
         self.known.iter_mut().zip(&active).for_each(|(k, a)| *k |= a);
     }

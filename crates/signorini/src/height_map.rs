@@ -45,7 +45,9 @@ pub fn read(path: &Path, bytes: &[u8], origin: [f64; 2], spacing: [f64; 2], scal
     for i in 0..columns {
         turned.extend((0..rows).map(|j| scale * values[j * columns + i]));
     }
-    GridSpline::new(Vector::<2>::from(origin), spacing, [columns, rows], turned).map(Sampled).map_err(|e| e.to_string())
+    let spline =
+        GridSpline::new(Vector::<2>::from(origin), spacing, [columns, rows], turned).map_err(|e| e.to_string())?;
+    Ok(Sampled { spline, ends: true })
 }
 
 /// Numbers in lines, between commas, semicolons, tabs or blanks; lines that begin with `#` are skipped.

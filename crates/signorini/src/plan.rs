@@ -12,6 +12,7 @@ use crate::case::units::{FORCE_PER_LENGTH, LENGTH, PRESSURE, Units};
 use crate::case::value::{Interpreted, Reader};
 use crate::case::{CaseError, Document, OneOrMany, Value, suggestion};
 use crate::expression::{Definition, Expression, Names, Scope};
+use signorini_fem::cut::QuadraturePoint;
 use signorini_fem::{Cells, Grid};
 use signorini_geometry::{Jet, Point, Real, Vector};
 use signorini_membrane::active_set::NodalStart;
@@ -844,6 +845,36 @@ impl<const D: usize> MembranePlan<D> {
             }
             if let Some(error) = failure {
                 return Err(error);
+            }
+        }
+        for contact in &self.contacts {
+            let Some([low, high]) = contact.height.expression.as_relief().and_then(|r| r.known_within()) else {
+                continue;
+            };
+            let shift = contact.displacement_at(time);
+            let slack = 1e-9 * (high - low).max();
+            for cell in 0..quadrature.cells.len() {
+                for (_, points) in quadrature.volumes(membrane, cell) {
+                    let beyond = |p: &&QuadraturePoint<D>| {
+                        (0..D).any(|k| p.x[k] - shift[k] < low[k] - slack || p.x[k] - shift[k] > high[k] + slack)
+                    };
+                    if let Some(p) = points.iter().find(beyond) {
+                        let at: Vec<String> = p.x.iter().map(|c| format!("{c:.6}")).collect();
+                        let message = format!(
+                            "the height map does not reach the membrane at ({}), t = {time}: it covers x from {:.6} to {:.6}, y \
+                             from {:.6} to {:.6}",
+                            at.join(", "),
+                            low[0] + shift[0],
+                            high[0] + shift[0],
+                            low[1] + shift[1],
+                            high[1] + shift[1]
+                        );
+                        return Err(self
+                            .document
+                            .error(contact.height.span.clone(), message)
+                            .help("give a larger map, see `origin` and `spacing`, or move it less"));
+                    }
+                }
             }
         }
         if membrane.obstacles.sides().count() == 2 {

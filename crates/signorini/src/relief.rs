@@ -12,6 +12,11 @@ pub trait Relief: std::fmt::Debug + Send + Sync {
     fn value(&self, x: &Vector<2>) -> f64 {
         self.jet(x).value
     }
+
+    /// The rectangle beyond which nothing is known of the height, by its corners; none where there is no such place.
+    fn known_within(&self) -> Option<[Vector<2>; 2]> {
+        None
+    }
 }
 
 /// The height at a place, with derivatives where the place is a jet.
@@ -110,11 +115,19 @@ impl Relief for LevelSetTop {
 
 /// Heights on a grid, joined by a bicubic spline: it passes through all of them and has continuous curvature.
 #[derive(Debug)]
-pub struct Sampled(pub GridSpline<2>);
+pub struct Sampled {
+    pub spline: GridSpline<2>,
+    /// Whether nothing is known beyond the grid.
+    pub ends: bool,
+}
 
 impl Relief for Sampled {
     fn jet(&self, x: &Vector<2>) -> Jet<2> {
-        self.0.jet(x)
+        self.spline.jet(x)
+    }
+
+    fn known_within(&self) -> Option<[Vector<2>; 2]> {
+        self.ends.then(|| self.spline.bounds())
     }
 }
 
@@ -124,7 +137,7 @@ const FALL: f64 = 1.0;
 impl Sampled {
     /// The corners of the rectangle that is covered.
     pub fn bounds(&self) -> [[f64; 2]; 2] {
-        self.0.bounds().map(|x| [x[0], x[1]])
+        self.spline.bounds().map(|x| [x[0], x[1]])
     }
 
     /// The top of a triangle mesh over a rectangle, sampled with a spacing; or its underside. Beyond the shadow of the
@@ -182,7 +195,7 @@ impl Sampled {
         fall_off(&mut heights, count, FALL * spacing);
         let values = heights.into_iter().map(|h| sign * h).collect();
         let spline = GridSpline::new(origin, [spacing; 2], count, values).map_err(|e| e.to_string())?;
-        Ok(Self(spline))
+        Ok(Self { spline, ends: false })
     }
 }
 

@@ -144,6 +144,14 @@ impl Expression {
         Self { root: Node::Relief(Arc::new(relief)) }
     }
 
+    /// The height that the expression is, if no formula gives it.
+    pub fn as_relief(&self) -> Option<&dyn Relief> {
+        match &self.root {
+            Node::Relief(height) => Some(&**height),
+            _ => None,
+        }
+    }
+
     /// The expression multiplied by a number: a unit.
     pub fn scaled(self, factor: f64) -> Self {
         if factor == 1.0 {

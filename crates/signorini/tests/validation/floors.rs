@@ -445,3 +445,28 @@ fn a_check_says_what_it_understood() {
     assert!(!solid["warnings"].to_string().contains("units"), "{solid}");
     assert!(stiff["warnings"].to_string().contains("stiffer than any solid"), "{stiff}");
 }
+
+/// Beyond its rectangle nothing is known of a height map, and a map may be moved from under the membrane.
+#[test]
+fn a_height_map_that_does_not_reach_the_membrane_is_told() {
+    let folder = std::env::temp_dir().join(format!("signorini_map_{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let row = vec!["-0.2"; 23].join(",");
+    std::fs::write(folder.join("map.csv"), vec![row; 23].join("\n")).expect("a file");
+    let map = |origin: f64| {
+        let file = folder.join("map.csv").display().to_string();
+        format!("height_map = {{ file = \"{file}\", spacing = [0.1, 0.1], origin = [{origin}, {origin}] }}")
+    };
+    assert_eq!(touch(&pushed("plane", &map(-1.1), 0.0)), (0.0, 0.0));
+    let short = error(&pushed("plane", &map(-0.9), 0.0));
+    assert!(short.place.is_some() && short.one_line().contains("does not reach"), "{}", short.one_line());
+    let moving = pushed("plane", &map(-1.1), 0.0).replace("[0, 0, 0]", "[\"0.3*t\", 0, 0]")
+        + "[[steps]]\nto = 1.0\nincrements = 2\n";
+    let moved = error(&moving);
+    assert!(
+        moved.one_line().contains("t = 0.5") && moved.one_line().contains("does not reach"),
+        "{}",
+        moved.one_line()
+    );
+    std::fs::remove_dir_all(&folder).expect("to be removed");
+}

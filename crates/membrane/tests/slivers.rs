@@ -1,11 +1,11 @@
 //! Cuts that leave only slivers: the system stays positive definite, whatever the degree.
 
 use signorini_fem::{Cells, Grid, RefinedGrid};
-use signorini_geometry::{Aabb, Line, Point, Vector};
+use signorini_geometry::{Aabb, ClosedCurve, Ellipse, Line, Point, Vector};
 use signorini_membrane::domain::{Domain, DomainOnCells, ImplicitDomain};
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::field::Constant;
-use signorini_membrane::obstacle::Obstacles;
+use signorini_membrane::obstacle::{Obstacle, Obstacles, Side};
 use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::{Measure, Membrane, Support};
 use signorini_membrane::zone::Zone;
@@ -62,6 +62,45 @@ fn straight_cuts_of_every_thickness() {
                     );
                 }
             }
+        }
+    }
+}
+
+/// Between a front and a free edge lies a ring that no cell holds well. It hangs on the front alone, so it has the height of
+/// the floor.
+#[test]
+fn thin_rings_along_a_free_edge_are_held() {
+    let bounds = Aabb::new(Point::<2>::new(-1.03, -1.03), Point::<2>::new(1.03, 1.03));
+    for degree in 1..=4 {
+        for thickness in [1e-9, 1e-6, 1e-4, 1e-3, 4e-3, 0.01, 0.02, 0.05] {
+            let grid = Grid::new(bounds, [12, 12], degree);
+            let disc = Ellipse { center: Point::zeros(), semi_axes: [1.0, 1.0] };
+            let domain: Arc<dyn Domain<2>> = Arc::new(ImplicitDomain(disc));
+            let floor = Obstacle { side: Side::Below, height: Arc::new(Constant(-0.1)), adhesion: None };
+            let membrane = Membrane {
+                domain: DomainOnCells::new(domain, &grid),
+                cells: Arc::new(grid.clone()),
+                grid,
+                measure: Measure::Plain,
+                tension: Arc::new(Constant(1.0)),
+                load: Arc::new(Constant(0.0)),
+                obstacles: Obstacles(vec![floor]),
+                supports: vec![None],
+                support_count: 0,
+            };
+            let front: Vec<Point<2>> = (0..48)
+                .map(|k| {
+                    let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / 48.0).sin_cos();
+                    (1.0 - thickness) * Point::<2>::new(cos, sin)
+                })
+                .collect();
+            let zone = PlaneZone::new(&membrane.grid, vec![(Side::Below, ClosedCurve::through(&front, 9))]);
+            let state = Equilibrium::solve(&membrane, &zone, &mut Elements::new(&membrane))
+                .unwrap_or_else(|e| panic!("degree {degree}, thickness {thickness:e}: {e}"));
+            state.for_each_point(|cell, region, x, _| {
+                let Some((u, _)) = state.evaluate(cell, region, x) else { return };
+                assert!((u + 0.1).abs() < 1e-7, "degree {degree}, thickness {thickness:e}: {u}");
+            });
         }
     }
 }

@@ -367,12 +367,33 @@ impl<'a> Planner<'a> {
         self.finish(body, on, tension, loads, supports, contacts, method, warnings)
     }
 
-    /// The zone that a contact asks to start from.
-    fn initial_zone_key(&self) -> Option<(&String, &toml::Spanned<statement::Domain>)> {
-        self.document.case.contacts.iter().find_map(|(name, c)| match c.get_ref().method.as_ref()?.get_ref() {
-            Method::InequalityLevelSet(k) => Some((name, k.initial_zone.as_ref()?)),
-            _ => None,
-        })
+    /// The zone that a contact asks to start from, and the side that it touches.
+    fn initial_zone<const D: usize>(
+        &self,
+        contacts: &[Contact],
+        grid: &Grid<D>,
+    ) -> Result<Option<(Side, Arc<dyn Domain<D>>)>, CaseError>
+    where
+        Self: domain::ReadDomain<D>,
+    {
+        let mut asked =
+            self.document.case.contacts.iter().filter_map(|(name, c)| match c.get_ref().method.as_ref()?.get_ref() {
+                Method::InequalityLevelSet(k) => Some((name, k.initial_zone.as_ref()?)),
+                _ => None,
+            });
+        let Some((name, key)) = asked.next() else { return Ok(None) };
+        if let Some((_, second)) = asked.next() {
+            return Err(self.unavailable(second.span(), "more than one `initial_zone`"));
+        }
+        let zone = domain::ReadDomain::<D>::initial_zone(self, key, grid)?;
+        // A contact with several bodies has a name for each of them.
+        let Some(contact) = contacts.iter().find(|c| c.name == *name) else {
+            return Err(self
+                .document
+                .error(key.span(), format!("`{name}` has several bodies: which of them the zone touches is not said"))
+                .help("give the body a contact of its own, with `between`"));
+        };
+        Ok(Some((contact.side, zone)))
     }
 
     #[allow(clippy::too_many_arguments)]
@@ -405,13 +426,7 @@ impl<'a> Planner<'a> {
             };
             probes.insert(name.clone(), Point::<D>::from_fn(|k, _| x[k]));
         }
-        let initial_zone = match self.initial_zone_key() {
-            Some((contact, key)) => {
-                let zone = domain::ReadDomain::<D>::initial_zone(self, key, &on.grid)?;
-                contacts.iter().find(|c| c.name == *contact).map(|c| (c.side, zone))
-            }
-            None => None,
-        };
+        let initial_zone = self.initial_zone(&contacts, &on.grid)?;
         let names: Vec<&str> = contacts.iter().map(|c| c.name.as_str()).collect();
         let increments = self.increments(D, &names)?;
         let plan = MembranePlan {

@@ -66,7 +66,12 @@ impl LevelSetTop {
     fn top(&self, x: &Vector<2>) -> Option<f64> {
         let (from, to) = if self.underside { (self.low, self.high) } else { (self.high, self.low) };
         let z = |k: usize| from + (to - from) * k as f64 / LAYERS as f64;
-        let entered = (0..=LAYERS).find(|&k| self.at(x, z(k)) <= 0.0)?;
+        // What is not a number is told as such, not passed over.
+        let mut values = (0..=LAYERS).map(|k| self.at(x, z(k)));
+        let entered = values.position(|v| v <= 0.0 || v.is_nan())?;
+        if self.at(x, z(entered)).is_nan() {
+            return Some(f64::NAN);
+        }
         if entered == 0 {
             return Some(from);
         }

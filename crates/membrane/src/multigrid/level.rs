@@ -51,7 +51,8 @@ pub struct Level {
     row_start: Vec<usize>,
     column: Vec<u32>,
     value: Vec<f64>,
-    band: Vec<u32>,
+    /// Unknowns that are solved for exactly, ascending, with their stored rows.
+    band: Vec<(u32, Option<u32>)>,
     factor: Option<Factor>,
     /// Displacement and right-hand side of all unknowns.
     pub u: Vec<f64>,
@@ -183,8 +184,22 @@ impl Level {
         self.band.len()
     }
 
-    pub(super) fn irregular_unknowns(&self) -> &[u32] {
-        &self.irregular
+    /// Columns and entries of a stored row.
+    fn stored_row(&self, k: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let range = self.row_start[k]..self.row_start[k + 1];
+        range.map(|at| (self.column[at] as usize, self.value[at]))
+    }
+
+    /// The residual of a stored row.
+    fn residual_of_row(&self, k: usize) -> f64 {
+        self.b[self.irregular[k] as usize] - self.stored_row(k).map(|(j, v)| v * self.u[j]).sum::<f64>()
+    }
+
+    /// Which unknowns take part.
+    fn active(&self) -> Vec<bool> {
+        let mut active = vec![false; self.u.len()];
+        self.for_each_active(|unknown, _| active[unknown] = true);
+        active
     }
 
     /// Neighbours of a regular node, with the entries of its row.
@@ -206,37 +221,29 @@ impl Level {
 
     fn factorise_band(&mut self, whole: bool) -> Result<(), SolveError> {
         let w = self.grid.cells()[0] + 1;
-        let mut place = vec![u32::MAX; self.u.len()];
-        let mut band = self.irregular.clone();
-        band.iter().for_each(|&i| place[i as usize] = 0);
+        let mut stored = vec![false; self.u.len()];
+        self.irregular.iter().for_each(|&i| stored[i as usize] = true);
+        let mut band: Vec<(u32, Option<u32>)> = (0..).map(Some).zip(&self.irregular).map(|(k, &i)| (i, k)).collect();
         for run in &self.runs {
-            for i in run.begin..run.end {
-                let node = run.row * w + i;
-                let near = || self.row_of_regular(node).iter().any(|(j, _)| place[*j] == 0);
-                if whole || near() {
-                    band.push(node as u32);
+            for node in run.row * w + run.begin..run.row * w + run.end {
+                if whole || self.row_of_regular(node).iter().any(|(j, _)| stored[*j]) {
+                    band.push((node as u32, None));
                 }
             }
         }
         band.sort_unstable();
-        place.fill(u32::MAX);
-        band.iter().enumerate().for_each(|(k, &i)| place[i as usize] = k as u32);
-        let mut row_of = vec![u32::MAX; self.u.len()];
-        self.irregular.iter().enumerate().for_each(|(k, &i)| row_of[i as usize] = k as u32);
+        let mut place = vec![usize::MAX; self.u.len()];
+        band.iter().enumerate().for_each(|(k, (i, _))| place[*i as usize] = k);
         let matrix = SymmetricMatrix::from_columns(band.len(), |k, out| {
-            let node = band[k] as usize;
             let mut push = |j: usize, v: f64| {
                 let to = place[j];
-                if to != u32::MAX && to as usize >= k {
-                    out.push((to as usize, v));
+                if to != usize::MAX && to >= k {
+                    out.push((to, v));
                 }
             };
-            match row_of[node] {
-                u32::MAX => self.row_of_regular(node).iter().for_each(|&(j, v)| push(j, v)),
-                row => {
-                    let range = self.row_start[row as usize]..self.row_start[row as usize + 1];
-                    range.for_each(|at| push(self.column[at] as usize, self.value[at]));
-                }
+            match band[k] {
+                (node, None) => self.row_of_regular(node as usize).iter().for_each(|&(j, v)| push(j, v)),
+                (_, Some(row)) => self.stored_row(row as usize).for_each(|(j, v)| push(j, v)),
             }
         });
         self.band = band;
@@ -246,11 +253,8 @@ impl Level {
 
     /// Sets the displacement of all that takes no part to zero.
     pub fn silence(&mut self) {
-        let w = self.grid.cells()[0] + 1;
-        let mut part = vec![false; self.u.len()];
-        self.irregular.iter().for_each(|&i| part[i as usize] = true);
-        self.runs.iter().for_each(|r| part[r.row * w + r.begin..r.row * w + r.end].fill(true));
-        self.u.iter_mut().zip(&part).filter(|(_, p)| !**p).for_each(|(u, _)| *u = 0.0);
+        let active = self.active();
+        self.u.iter_mut().zip(&active).filter(|(_, a)| !**a).for_each(|(u, _)| *u = 0.0);
     }
 
     /// The displacement at a point away from the cuts.
@@ -276,12 +280,8 @@ impl Level {
     fn hold_contact(&mut self, membrane: &Membrane<2>, zone: &PlaneZone, state: &[State]) {
         let [nx, ny] = self.grid.cells();
         let w = nx + 1;
-        self.known = vec![false; w * (ny + 1)];
-        let mut active = vec![false; w * (ny + 1)];
-        for &i in self.irregular.iter().filter(|i| (**i as usize) < w * (ny + 1)) {
-            active[i as usize] = true;
-        }
-        self.runs.iter().for_each(|r| active[r.row * w + r.begin..r.row * w + r.end].fill(true));
+        self.known = self.active();
+        self.known.truncate(w * (ny + 1));
         // Only near the fronts is it ever needed: where these retreat, and to interpolate beside them.
         for cell in around(&self.grid, state, |s| s == State::Cut, HELD) {
             if state[cell] != State::Contact {
@@ -290,13 +290,12 @@ impl Level {
             let Some((side, _)) = contact_of((zone.fronts_in(&self.grid.cell_box(cell)).region)(&[])) else { continue };
             let node = cell / nx * w + cell % nx;
             for n in [node, node + 1, node + w, node + w + 1] {
-                if !active[n] && !self.known[n] {
+                if !self.known[n] {
                     self.known[n] = true;
                     self.u[n] = membrane.obstacles.height(side, &self.grid.node(n));
                 }
             }
         }
-        self.known.iter_mut().zip(&active).for_each(|(k, a)| *k |= a);
     }
 
     /// The state along the cuts, with the displacement as it is.
@@ -337,7 +336,7 @@ impl Level {
     }
 
     /// Calls `visit(unknown, node)` for every unknown that takes part.
-    fn for_each_active(&self, mut visit: impl FnMut(usize, usize)) {
+    pub(super) fn for_each_active(&self, mut visit: impl FnMut(usize, usize)) {
         let w = self.grid.cells()[0] + 1;
         for run in &self.runs {
             (run.begin..run.end).for_each(|i| visit(run.row * w + i, run.row * w + i));
@@ -412,9 +411,7 @@ impl Level {
             }
         }
         for (k, &i) in self.irregular.iter().enumerate() {
-            let range = self.row_start[k]..self.row_start[k + 1];
-            let sum: f64 = range.map(|at| self.value[at] * self.u[self.column[at] as usize]).sum();
-            r[i as usize] = self.b[i as usize] - sum;
+            r[i as usize] = self.residual_of_row(k);
         }
         r
     }
@@ -443,26 +440,18 @@ impl Level {
 
     /// Solves for the band exactly, the other nodes held.
     pub(super) fn relax_band(&mut self) -> Result<(), SolveError> {
-        let mut residual = vec![f64::NAN; self.band.len()];
-        let mut irregular = self.irregular.iter().enumerate().peekable();
-        // Both lists ascend.
-        let mut sorted: Vec<(u32, usize)> = irregular.by_ref().map(|(k, &i)| (i, k)).collect();
-        sorted.sort_unstable();
-        let mut next = sorted.iter().peekable();
-        for (r, &node) in residual.iter_mut().zip(&self.band) {
-            *r = match next.next_if(|(i, _)| *i == node) {
-                Some(&(i, k)) => {
-                    let range = self.row_start[k]..self.row_start[k + 1];
-                    let sum: f64 = range.map(|at| self.value[at] * self.u[self.column[at] as usize]).sum();
-                    self.b[i as usize] - sum
-                }
-                None => self.residual_at(node as usize),
-            };
-        }
         let Some(factor) = &self.factor else { return Ok(()) };
+        let residual: Vec<f64> = self
+            .band
+            .iter()
+            .map(|&(unknown, row)| match row {
+                Some(k) => self.residual_of_row(k as usize),
+                None => self.residual_at(unknown as usize),
+            })
+            .collect();
         let correction = factor.solve(&residual)?;
-        for (&node, c) in self.band.iter().zip(&correction) {
-            self.u[node as usize] += c;
+        for ((unknown, _), c) in self.band.iter().zip(&correction) {
+            self.u[*unknown as usize] += c;
         }
         Ok(())
     }

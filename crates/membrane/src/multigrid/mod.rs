@@ -4,7 +4,7 @@
 //! the cuts the equations are stored, and a band of nodes there, with one layer of regular nodes around it, is solved for
 //! exactly in every sweep: it is a graph of one dimension, so its factor is small. Coarser levels are the same membrane on
 //! grids of half the cells. One cycle costs a few tens of nanoseconds per unknown and leaves less than an eighth of the
-//! error, however thin the slivers (spec: no setting of the smoother depends on the cut).
+//! error, however thin the slivers.
 
 mod level;
 pub mod nested;
@@ -12,7 +12,6 @@ mod transfer;
 
 pub use level::Level;
 
-use crate::domain::DomainOnCells;
 use crate::plane_zone::PlaneZone;
 use crate::problem::Membrane;
 use crate::zone::Zone;
@@ -46,8 +45,16 @@ pub fn grids(finest: &Grid<2>) -> Vec<Grid<2>> {
 
 /// The same membrane on a grid of a hierarchy.
 pub fn on_grid(membrane: &Membrane<2>, grid: &Grid<2>) -> Membrane<2> {
-    let domain = DomainOnCells::new(membrane.domain.domain.clone(), grid);
-    Membrane { cells: Arc::new(grid.clone()), grid: grid.clone(), domain, ..membrane.clone() }
+    if grid.cells() == membrane.grid.cells() {
+        return membrane.clone();
+    }
+    Membrane { grid: grid.clone(), ..membrane.on(Arc::new(grid.clone())) }
+}
+
+/// A membrane around a zone on some grids, the coarsest first, which is solved whole.
+fn levels(membrane: &Membrane<2>, zone: &PlaneZone, grids: &[Grid<2>]) -> Result<Vec<Level>, SolveError> {
+    let level = |(k, grid)| Level::new(&on_grid(membrane, grid), &zone.on_grid(grid), k == 0);
+    grids.iter().enumerate().map(level).collect()
 }
 
 impl Hierarchy {
@@ -56,13 +63,7 @@ impl Hierarchy {
     /// # Errors
     /// Equations along the cuts that cannot be factorised.
     pub fn new(membrane: &Membrane<2>, zone: &PlaneZone) -> Result<Self, SolveError> {
-        let grids = grids(&membrane.grid);
-        let levels = grids
-            .iter()
-            .enumerate()
-            .map(|(k, grid)| Level::new(&on_grid(membrane, grid), &zone.on_grid(grid), k == 0))
-            .collect::<Result<_, _>>()?;
-        Ok(Self { levels })
+        Ok(Self { levels: levels(membrane, zone, &grids(&membrane.grid))? })
     }
 
     /// One cycle on the finest level: relaxation, correction from the coarser levels, relaxation.
@@ -70,8 +71,7 @@ impl Hierarchy {
     /// # Errors
     /// A factorisation that does not solve.
     pub fn cycle(&mut self) -> Result<(), SolveError> {
-        let finest = self.levels.len() - 1;
-        cycle(&mut self.levels[..=finest])
+        cycle(&mut self.levels)
     }
 
     /// The finest level.

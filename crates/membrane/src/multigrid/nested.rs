@@ -4,7 +4,7 @@
 //! What a cycle leaves of the algebraic error is of the size of the discretisation error, so is what the front is off; the
 //! whole costs as much as a few cycles on the finest grid.
 
-use super::{Level, cycle, grids, on_grid};
+use super::{Level, cycle, grids, levels, on_grid};
 use crate::conditions::Conditions;
 use crate::equilibrium::Elements;
 use crate::front::Fronts;
@@ -31,8 +31,7 @@ pub struct NestedSolution {
     /// Steps of the fronts on each grid, the coarsest first.
     pub steps: Vec<usize>,
     pub scales: Scales,
-    /// The last step of the fronts, relative to a cell, and the residuals on the finest grid, relative to their tolerance.
-    pub last_step: f64,
+    /// Residuals on the finest grid, relative to their tolerance.
     pub residuals: Vec<f64>,
     /// Whether the last residual is small enough, or the fronts rest on a jump of the discrete slope; the last step then.
     pub settled: bool,
@@ -50,7 +49,8 @@ const MOST: usize = 12;
 /// Whether a membrane can be solved for so: degree 1, on a grid with coarser ones, of even tension, without adhesion.
 pub fn is_able(membrane: &Membrane<2>) -> bool {
     membrane.cells.degree() == 1
-        && membrane.cells.divisible().is_some()
+        && membrane.cells.divisible().is_some_and(|g| g.cells() == membrane.grid.cells())
+        && membrane.cells.count() == membrane.grid.cell_count()
         && membrane.tension.constant().is_some()
         && !membrane.obstacles.are_sticky()
         && grids(&membrane.grid).len() > 1
@@ -109,16 +109,12 @@ pub fn solve(
         return Ok(Err(found.reason));
     };
     let mut zone = found.zone.clone();
-    let mut levels = grids[..=first]
-        .iter()
-        .enumerate()
-        .map(|(k, grid)| Level::new(&on_grid(membrane, grid), &zone.on_grid(grid), k == 0))
-        .collect::<Result<Vec<_>, _>>()?;
+    let mut levels = levels(membrane, &zone, &grids[..=first])?;
     if let Some(level) = levels.last_mut() {
         level.take(state);
     }
     let mut steps = vec![found.iterations];
-    let (mut last_step, mut residuals) = (0.0, Vec::new());
+    let mut residuals = Vec::new();
     let mut settled = true;
     let mut settled_within = None;
     for grid in &grids[first + 1..] {
@@ -160,7 +156,7 @@ pub fn solve(
                 return Ok(Err(Reason::Interrupted));
             }
             let step = fronts.newton_step(&zone, &scales)?;
-            last_step = step.length / h;
+            let last_step = step.length / h;
             // As everywhere: on a jump of the discrete slope no position makes it vanish.
             let enough = if seen.norm < seen.remainder { SETTLED_COARSE } else { SETTLED };
             let on_jump = waited >= PATIENCE && last_step < enough;
@@ -197,14 +193,5 @@ pub fn solve(
         }
     }
     let Some(level) = levels.pop() else { return Ok(Err(Reason::IterationLimit)) };
-    Ok(Ok(NestedSolution {
-        zone,
-        level,
-        steps,
-        scales: scales.on(membrane),
-        last_step,
-        residuals,
-        settled,
-        settled_within,
-    }))
+    Ok(Ok(NestedSolution { zone, level, steps, scales: scales.on(membrane), residuals, settled, settled_within }))
 }

@@ -47,21 +47,15 @@ impl Level {
                 _ => 0.25 * (e[node] + e[node + 1] + e[node + wc] + e[node + wc + 1]),
             }
         };
-        let runs = std::mem::take(&mut self.runs);
-        for run in &runs {
-            for i in run.begin..run.end {
-                self.u[run.row * w + i] += at(i, run.row);
+        // Unknowns behind the nodes belong to the band alone.
+        let nodes = self.known.len();
+        let mut u = std::mem::take(&mut self.u);
+        self.for_each_active(|unknown, _| {
+            if unknown < nodes {
+                u[unknown] += at(unknown % w, unknown / w);
             }
-        }
-        self.runs = runs;
-        let nodes = w * (self.grid.cells()[1] + 1);
-        for k in 0..self.irregular_unknowns().len() {
-            let node = self.irregular_unknowns()[k] as usize;
-            // Unknowns behind the nodes belong to the band alone.
-            if node < nodes {
-                self.u[node] += at(node % w, node / w);
-            }
-        }
+        });
+        self.u = u;
     }
 
     /// Makes the residual the right-hand side of a coarser level, by the transpose of the interpolation.
@@ -80,20 +74,13 @@ impl Level {
             let above = if j < ny { row(2 * j + 1) } else { 0.0 };
             row(2 * j) + 0.5 * (below + above)
         };
-        coarse.b.fill(0.0);
-        let runs = std::mem::take(&mut coarse.runs);
-        for run in &runs {
-            for i in run.begin..run.end {
-                coarse.b[run.row * wc + i] = sum(i, run.row);
+        let nodes = coarse.known.len();
+        let mut b = vec![0.0; coarse.b.len()];
+        coarse.for_each_active(|unknown, _| {
+            if unknown < nodes {
+                b[unknown] = sum(unknown % wc, unknown / wc);
             }
-        }
-        coarse.runs = runs;
-        let nodes = wc * (ny + 1);
-        for k in 0..coarse.irregular_unknowns().len() {
-            let node = coarse.irregular_unknowns()[k] as usize;
-            if node < nodes {
-                coarse.b[node] = sum(node % wc, node / wc);
-            }
-        }
+        });
+        coarse.b = b;
     }
 }

@@ -263,7 +263,12 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             (None, None) => Start::Free,
         };
         let nearby = matches!(start, Start::Asked(..) | Start::Zone(_, _, Branch::Nearest));
-        let large = if nearby { None } else { Z::by_multigrid(membrane, at, progress).ok().flatten() };
+        // Where the case asks for divided cells it gets them.
+        let large = if nearby || self.refinement.fronts > 0 {
+            None
+        } else {
+            Z::by_multigrid(membrane, at, progress).ok().flatten()
+        };
         let mut solution: Solution<D, Z> = match large {
             Some(solution) => solution,
             None => self.refinement.solve(membrane, &mut self.levels, start, at, progress),

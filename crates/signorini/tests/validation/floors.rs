@@ -125,6 +125,8 @@ fn shapes_that_are_no_floor_are_told() {
         ("plane", "cone = { apex = [0, 0, 0], axis = [0, 1, -1], half_angle = 1 }", "straight down"),
         ("plane", "cone = { apex = [0, 0, 0], axis = [0, 0, -1], half_angle = 2 }", "half angle"),
         ("plane", "level_set = { negative_inside = \"z\", min = [-1, -1, 1], max = [1, 1, -1] }", "box is empty"),
+        ("plane", "level_set = { negative_inside = \"z + 0/0\", min = [-1, -1, -1], max = [1, 1, 1] }", "finite"),
+        ("plane", "level_set = { negative_inside = \"z + sqrt(x)\", min = [-1, -1, -1], max = [1, 1, 1] }", "finite"),
         ("line", "stl = { file = \"none.stl\" }", "in the plane"),
         ("plane", "stl = { file = \"none.stl\" }", "cannot"),
         ("plane", "nurbs = { file = \"none.json\" }", "not available"),
@@ -410,6 +412,13 @@ fn wrong_neighbours_are_told() {
         ),
         (with("0.1").replace("lies = \"above\"\n", ""), "above the displacement"),
         (case.replace("between = [\"film\", \"die\"]", "between = [\"film\"]"), "rigid body"),
+        (
+            with("0.1").replace("[contacts.upper]\nbetween = [\"film\", \"lid\"]", "").replace(
+                "between = [\"film\", \"die\"]",
+                "all = true\nmethod.inequality_level_set = { initial_zone.disc = { radius = 0.3 } }",
+            ),
+            "several bodies",
+        ),
     ] {
         let found = error(&text);
         assert!(found.place.is_some() && found.one_line().contains(word), "{word}: {}", found.one_line());

@@ -89,6 +89,16 @@ impl ActiveSet {
         ActiveSet { active: rows.into_iter().collect(), ..Self::default() }
     }
 
+    /// The active rows of the last step, and how many rows there were.
+    pub fn save(&self) -> (Vec<usize>, usize) {
+        (self.active.iter().copied().collect(), self.rows.len())
+    }
+
+    /// Goes on from what was saved.
+    pub fn restored((active, rows): (Vec<usize>, usize)) -> Self {
+        ActiveSet { rows: vec![Default::default(); rows], ..Self::starting_with(active) }
+    }
+
     /// Finds pressures `λ ≥ 0` with gaps `g + B u ≥ 0`, `λ (g + B u) = 0`, `K u = f + Bᵀλ`; soft rows as
     /// [`Softness`] says.
     ///

@@ -273,6 +273,10 @@ pub fn closest(queries: &Path, output: &Path, local_minima: bool, json: bool) ->
 
 fn execute(name: &str, text: &str, folder: &Path, set: &[String], resumed: bool, json: bool) -> u8 {
     if scene::is_scene(text) {
+        if resumed {
+            let error = CaseError::new("a scene cannot be resumed").help("run it from the beginning, without --resume");
+            return report(&error, json);
+        }
         return execute_scene(name, text, folder, set, json);
     }
     let document = match Document::parse(name, text, set) {

@@ -7,6 +7,7 @@ mod increment;
 mod path;
 mod sizes;
 pub(crate) mod solid;
+mod solid_checkpoint;
 
 use crate::case::statement::Space;
 use crate::case::value::Interpreted;
@@ -100,7 +101,7 @@ pub fn run(document: &Document, folder: &Path, progress: &mut dyn Progress) -> R
     begin(document, folder, false, progress)
 }
 
-/// Goes on with a run of a membrane that was interrupted or killed, from its last increment; to the same digits.
+/// Goes on with a run that was interrupted or killed, from its last increment; to the same digits.
 ///
 /// # Errors
 /// Those of [`run`], and a folder without such a run, or with one of another case.
@@ -113,12 +114,14 @@ fn begin(document: &Document, folder: &Path, resumed: bool, progress: &mut dyn P
     match plan(document)? {
         Plan::Line(p) => Runner::<1, LineZone>::new(p, folder, resumed)?.run(start, progress),
         Plan::Plane(p) => Runner::<2, PlaneZone>::new(p, folder, resumed)?.run(start, progress),
-        _ if resumed => Err(CaseError::new("a run of solids cannot be resumed yet")
-            .help("run it from the beginning, without --resume")
-            .into()),
-        Plan::PlaneSolids(p) => solid::run(*p, folder, start, progress),
-        Plan::Solids(p) => solid::run(*p, folder, start, progress),
+        Plan::PlaneSolids(p) => solid::run(*p, folder, resumed, start, progress),
+        Plan::Solids(p) => solid::run(*p, folder, resumed, start, progress),
     }
+}
+
+/// Why there is nothing to go on with, for a user.
+fn not_resumed(why: String) -> CaseError {
+    CaseError::new(why).help("run it from the beginning, without --resume")
 }
 
 struct Runner<const D: usize, Z> {
@@ -192,8 +195,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
 
     /// A run that goes on where an earlier one ended.
     fn resume(plan: MembranePlan<D>, path: &Path) -> Result<Self, RunError> {
-        let found = Checkpoint::<D, Z>::read(path, &plan.document.text, &plan.grid)
-            .map_err(|why| CaseError::new(why).help("run it from the beginning, without --resume"))?;
+        let found = Checkpoint::<D, Z>::read(path, &plan.document.text, &plan.grid).map_err(not_resumed)?;
         let mut engine = Engine::new(&plan);
         engine.restore(found.engine);
         let mut film = Film::default();

@@ -26,6 +26,7 @@ pub use body::{Bodies, Body, BodySurface};
 pub use contact::{Contact, ContactResult, Enforcement, Master, Method, PressureNode, RigidGap, Sliding, facing};
 pub use loads::{Load, LoadKind};
 pub use material::{Elastic, Space, von_mises};
-pub use model::{Circumstances, Model, StepError};
+pub use model::{Circumstances, Memory, Model, StepError};
+pub use sliding::Settled;
 pub use state::State;
 pub use supports::{Support, SupportError, SupportKind};

@@ -67,6 +67,15 @@ pub struct Circumstances<'a, const D: usize> {
     pub rigid: Vec<Option<RigidGap<D>>>,
 }
 
+/// What a model carries from one time to the next.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Memory {
+    /// With small sliding: the rows that were active, of how many.
+    pub active: (Vec<usize>, usize),
+    /// With finite sliding: the last state found.
+    pub settled: Option<Settled>,
+}
+
 struct System<'a>(&'a Factor);
 
 impl Compliance for System<'_> {
@@ -179,6 +188,29 @@ impl<const D: usize> Model<D> {
         let u = self.reduction.expand(&found.u, &offset);
         let ContactState { pressure, gap, active, iterations, .. } = found;
         Ok(self.state(Found { u, pressure, gap, active, iterations, residuals }, &now.load, &ends))
+    }
+
+    /// Whether something saved can be of this model.
+    pub fn fits(&self, memory: &Memory) -> bool {
+        let (active, rows) = &memory.active;
+        active.iter().all(|row| row < rows)
+            && memory.settled.as_ref().is_none_or(|s| s.u.len() == self.bodies.unknowns())
+    }
+
+    /// What the next time goes on from.
+    pub fn save(&self) -> Memory {
+        Memory { active: self.active.save(), settled: self.settled.clone() }
+    }
+
+    /// Goes on from what was saved; `first` are the circumstances of the first time of all, where the sides were found.
+    ///
+    /// # Errors
+    /// Those of a first search that the model saved did not have.
+    pub fn restore(&mut self, memory: Memory, first: &Circumstances<'_, D>) -> Result<(), StepError> {
+        self.search(first, &vec![0.0; self.bodies.unknowns()], false)?;
+        self.active = ActiveSet::restored(memory.active);
+        self.settled = memory.settled;
+        Ok(())
     }
 
     /// Whether a contact slides finitely.

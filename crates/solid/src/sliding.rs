@@ -16,13 +16,15 @@ use signorini_solve::{SolveError, SymmetricMatrix};
 use std::collections::HashMap;
 
 /// Contact and number of a row: the same row at another displacement.
-type Key = (usize, u32);
+pub type Key = (usize, u32);
 
 /// A state found: the displacement and the pressures.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Settled {
-    u: Vec<f64>,
-    pressure: HashMap<Key, f64>,
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Settled {
+    /// Displacement of all unknowns of the bodies.
+    pub u: Vec<f64>,
+    /// Pressures by contact and number of the row.
+    pub pressure: HashMap<Key, f64>,
 }
 
 const MOST_ITERATIONS: usize = 25;

@@ -31,6 +31,34 @@ pub struct Checkpoint<const D: usize, Z> {
     pub film: Vec<Snapshot<D>>,
 }
 
+/// Writes a state with what it is the state of.
+pub fn write(folder: &Folder, case: &str, state: &mut Value) -> Result<(), OutputError> {
+    (state["version"], state["case"]) = (json!(VERSION), json!(case));
+    folder.write(FILE, state.to_string().as_bytes())
+}
+
+/// Reads the state of a run of the same case.
+///
+/// # Errors
+/// In words: no checkpoint, or one of another case or version, or no JSON.
+pub fn read(path: &Path, case: &str) -> Result<Value, String> {
+    let file = path.join(FILE);
+    let text = std::fs::read_to_string(&file)
+        .map_err(|e| format!("there is no run to go on with: cannot read `{}`: {e}", file.display()))?;
+    let v: Value = serde_json::from_str(&text).map_err(|e| format!("{}: {e}", damaged(path)))?;
+    if v["version"] != VERSION {
+        return Err(format!("`{}` is of another version of this program", file.display()));
+    }
+    if v["case"] != case {
+        return Err(format!("`{}` is of another case, or of this one before it was changed", file.display()));
+    }
+    Ok(v)
+}
+
+pub fn damaged(path: &Path) -> String {
+    format!("`{}` is damaged", path.join(FILE).display())
+}
+
 impl<const D: usize, Z: Zone<D>> Checkpoint<D, Z> {
     /// Writes the state; the frame of its last increment stands in a file of its own.
     pub fn write(&self, folder: &Folder, case: &str) -> Result<(), OutputError> {
@@ -38,9 +66,7 @@ impl<const D: usize, Z: Zone<D>> Checkpoint<D, Z> {
             let name = format!("{FRAMES}/frame_{:05}.json", self.next - 1);
             folder.write(&name, frame_json(frame).to_string().as_bytes())?;
         }
-        let state = json!({
-            "version": VERSION,
-            "case": case,
+        let mut state = json!({
             "next": self.next,
             "engine": self.engine.to_json(|z: &Z| z.to_json()),
             "known": self.known.as_ref().map(|k| json!({
@@ -53,7 +79,7 @@ impl<const D: usize, Z: Zone<D>> Checkpoint<D, Z> {
             "unknowns": self.unknowns,
             "events": self.events.iter().map(Event::to_json).collect::<Vec<_>>(),
         });
-        folder.write(FILE, state.to_string().as_bytes())
+        write(folder, case, &mut state)
     }
 
     /// Reads the state of a run of the same case.
@@ -61,17 +87,8 @@ impl<const D: usize, Z: Zone<D>> Checkpoint<D, Z> {
     /// # Errors
     /// In words: no checkpoint, one of another case, or a damaged one.
     pub fn read(path: &Path, case: &str, grid: &Grid<D>) -> Result<Self, String> {
-        let file = path.join(FILE);
-        let text = std::fs::read_to_string(&file)
-            .map_err(|e| format!("there is no run to go on with: cannot read `{}`: {e}", file.display()))?;
-        let damaged = || format!("`{}` is damaged", file.display());
-        let v: Value = serde_json::from_str(&text).map_err(|e| format!("{}: {e}", damaged()))?;
-        if v["version"] != VERSION {
-            return Err(format!("`{}` is of another version of this program", file.display()));
-        }
-        if v["case"] != case {
-            return Err(format!("`{}` is of another case, or of this one before it was changed", file.display()));
-        }
+        let v = read(path, case)?;
+        let damaged = || damaged(path);
         let zone = |v: &Value| Z::from_json(grid, v).ok_or_else(damaged);
         let next = v["next"].as_u64().ok_or_else(damaged)? as usize;
         let number = |v: &Value| v.as_f64().ok_or_else(damaged);

@@ -1,19 +1,21 @@
 //! Solids in contact: from the plan to results.
 
-use super::{Ending, Logged, Outcome, RunError, SCHEMA, environment};
+use super::solid_checkpoint::SolidCheckpoint;
+use super::{Ending, Logged, Outcome, RunError, SCHEMA, checkpoint, environment, not_resumed};
 use crate::case::CaseError;
 use crate::case::statement::Space as Stated;
 use crate::case::value::Interpreted;
 use crate::output::solid_fields::{ContactDisplay, SolidDisplay, SolidFields};
 use crate::output::{Folder, OutputError, solid_pictures, tables, vtk};
-use crate::plan::solid::{Opposite, SolidPlan, evaluate};
+use crate::plan::Placed;
+use crate::plan::solid::{Opposite, SolidLoad, SolidPlan, evaluate};
 use serde_json::{Value, json};
 use signorini_contact::GapJet;
 use signorini_geometry::Point;
 use signorini_solid::loads::{forces, resultant};
 use signorini_solid::{
-    Bodies, Circumstances, Contact, Load, LoadKind, Master, Method, Model, RigidGap, Sliding, Space, State, StepError,
-    Support, SupportError, SupportKind, facing,
+    Bodies, Circumstances, Contact, Load, LoadKind, Master, Memory, Method, Model, RigidGap, Sliding, Space, State,
+    StepError, Support, SupportError, SupportKind, facing,
 };
 use signorini_solve::{Iteration, Progress};
 use std::cell::RefCell;
@@ -26,6 +28,8 @@ struct Runner<const D: usize> {
     plan: SolidPlan<D>,
     folder: Folder,
     model: Model<D>,
+    /// The increment to begin with.
+    next: usize,
     steps: Vec<Value>,
     warnings: Vec<String>,
     frames: Vec<(f64, String)>,
@@ -37,20 +41,32 @@ struct Failure {
     text: String,
 }
 
-/// Runs a plan and writes its results.
+/// Runs a plan, or goes on with an earlier run of it, and writes its results.
 pub fn run<const D: usize>(
     plan: SolidPlan<D>,
     folder: &Path,
+    resumed: bool,
     start: std::time::Instant,
     progress: &mut dyn Progress,
 ) -> Result<Outcome, RunError> {
     // Everything that can be checked is checked before the folder is touched.
     let model = model(&plan)?;
+    if resumed {
+        let found = SolidCheckpoint::read(folder, &plan.document.text).map_err(not_resumed)?;
+        if !model.fits(&found.memory) || found.next >= plan.times.len() {
+            return Err(not_resumed(checkpoint::damaged(folder)).into());
+        }
+        let SolidCheckpoint { next, memory, steps, warnings, frames } = found;
+        let mut runner = Runner { warnings, plan, model, folder: Folder::of_earlier_run(folder), next, steps, frames };
+        runner.restore(memory)?;
+        return runner.run(start, progress);
+    }
     let runner = Runner {
         warnings: plan.warnings.clone(),
         plan,
         model,
         folder: Folder::create(folder)?,
+        next: 0,
         steps: vec![],
         frames: vec![],
     };
@@ -115,7 +131,7 @@ impl<const D: usize> Runner<D> {
         let mut ending = Ending::Converged;
         let mut failure = None;
         let mut last = None;
-        for (index, &time) in times.iter().enumerate() {
+        for (index, &time) in times.iter().enumerate().skip(self.next) {
             progress.step(index, times.len(), time);
             let folder = self.folder.clone();
             let mut logged = Logged { folder: &folder, inner: progress };
@@ -146,9 +162,36 @@ impl<const D: usize> Runner<D> {
                 self.write_fields(index, time, &display, &fields, &contacts)?;
             }
             last = Some((time, fields, contacts));
+            // After the last there is nothing to go on to.
+            if index + 1 < times.len() {
+                self.checkpoint(index + 1)?;
+            }
         }
         let summary = self.finish(ending, failure.as_ref(), start, &display, last.as_ref())?;
+        if ending == Ending::Converged {
+            self.folder.remove(checkpoint::FILE);
+        }
         Ok(Outcome { summary, ending })
+    }
+
+    /// Writes what a later run needs to go on.
+    fn checkpoint(&self, next: usize) -> Result<(), OutputError> {
+        let checkpoint = SolidCheckpoint {
+            next,
+            memory: self.model.save(),
+            steps: self.steps.clone(),
+            warnings: self.warnings.clone(),
+            frames: self.frames.clone(),
+        };
+        checkpoint.write(&self.folder, &self.plan.document.text)
+    }
+
+    /// Brings the model to where an earlier run ended.
+    fn restore(&mut self, memory: Memory) -> Result<(), CaseError> {
+        let first = self.plan.times[0];
+        let document = &self.plan.document;
+        let rejected = |error: StepError| document.error(document.case.space.span(), error.to_string());
+        at_time(&self.plan, &mut self.model, first, |model, now| model.restore(memory, now))?.map_err(rejected)
     }
 
     /// Solves for the end of an increment. With finite sliding an increment that has no solution at once is cut: after an
@@ -193,39 +236,6 @@ impl<const D: usize> Runner<D> {
         progress: &mut dyn Progress,
     ) -> Result<Result<State<D>, Failure>, CaseError> {
         let document = &self.plan.document;
-        let wrong: RefCell<Option<CaseError>> = RefCell::new(None);
-        let value = |placed: &crate::plan::Placed, x: &Point<D>| match evaluate(document, placed, x, time) {
-            Ok(v) => v,
-            Err(error) => {
-                wrong.borrow_mut().get_or_insert(error);
-                0.0
-            }
-        };
-        let mut load = vec![0.0; self.model.bodies.unknowns()];
-        for l in &self.plan.loads {
-            for (sum, f) in load.iter_mut().zip(self.load(l, &value)) {
-                *sum += f;
-            }
-        }
-        let supports = &self.plan.supports;
-        let displacement = |number: usize, x: &Point<D>| {
-            let support = &supports[number];
-            match support.kind {
-                SupportKind::Normal => {
-                    let along = support.values[0].as_ref().map_or(0.0, |p| value(p, x));
-                    Point::<D>::from_fn(|k, _| if k == 0 { along } else { 0.0 })
-                }
-                _ => Point::<D>::from_fn(|k, _| {
-                    support.values.get(k).and_then(|p| p.as_ref()).map_or(0.0, |p| value(p, x))
-                }),
-            }
-        };
-        let rigid: Vec<Option<RigidGap<D>>> = (self.plan.contacts.iter())
-            .map(|c| match &c.opposite {
-                Opposite::Rigid(body) => Ok(Some(flat_gap::<D>(body.gap_at(document, time)?))),
-                Opposite::Body { .. } => Ok(None),
-            })
-            .collect::<Result<_, CaseError>>()?;
         let mut stopped = false;
         let (action, figure) =
             if self.model.slides() { ("newton", "residual") } else { ("active set", "nodes_changed") };
@@ -241,11 +251,7 @@ impl<const D: usize> Runner<D> {
             stopped = progress.interrupted();
             !stopped
         };
-        let now = Circumstances { displacement: &displacement, load, rigid };
-        let solved = self.model.solve(&now, &mut report);
-        if let Some(error) = wrong.borrow_mut().take() {
-            return Err(error);
-        }
+        let solved = at_time(&self.plan, &mut self.model, time, |model, now| model.solve(now, &mut report))?;
         match solved {
             Ok(state) => Ok(Ok(state)),
             // What cannot be meant is an error of the case.
@@ -265,20 +271,6 @@ impl<const D: usize> Runner<D> {
             }
             Err(error) => Ok(Err(failure(&error))),
         }
-    }
-
-    fn load(
-        &self,
-        l: &crate::plan::solid::SolidLoad,
-        value: &dyn Fn(&crate::plan::Placed, &Point<D>) -> f64,
-    ) -> Vec<f64> {
-        let load = Load { name: l.name.clone(), body: l.body, group: l.group.clone(), kind: l.kind };
-        forces(&self.model.bodies, &load, &|x| {
-            Point::<D>::from_fn(|k, _| {
-                let k = if l.kind == LoadKind::Pressure { 0 } else { k };
-                l.values.get(k).map_or(0.0, |p| value(p, x))
-            })
-        })
     }
 
     fn record(
@@ -311,9 +303,9 @@ impl<const D: usize> Runner<D> {
         for (name, force) in supports {
             step["support_forces"][name] = json!(vector(&force));
         }
-        let value = |p: &crate::plan::Placed, x: &Point<D>| evaluate(&self.plan.document, p, x, time).unwrap_or(0.0);
+        let value = |p: &Placed, x: &Point<D>| evaluate(&self.plan.document, p, x, time).unwrap_or(0.0);
         for l in &self.plan.loads {
-            let total = resultant(&self.model.bodies, &self.load(l, &value));
+            let total = resultant(&self.model.bodies, &load(&self.model.bodies, l, &value));
             step["load_forces"][&l.name] = json!(vector(&total));
         }
         for ((contact, result), shown) in self.plan.contacts.iter().zip(&state.contacts).zip(contacts) {
@@ -470,6 +462,58 @@ impl<const D: usize> Runner<D> {
             }
         }
     }
+}
+
+/// Does something with a model and what the plan has for it at one time.
+///
+/// # Errors
+/// An expression of the case whose value is no number there.
+fn at_time<const D: usize, R>(
+    plan: &SolidPlan<D>,
+    model: &mut Model<D>,
+    time: f64,
+    act: impl FnOnce(&mut Model<D>, &Circumstances<'_, D>) -> R,
+) -> Result<R, CaseError> {
+    let document = &plan.document;
+    let wrong: RefCell<Option<CaseError>> = RefCell::new(None);
+    let value = |placed: &Placed, x: &Point<D>| match evaluate(document, placed, x, time) {
+        Ok(v) => v,
+        Err(error) => {
+            wrong.borrow_mut().get_or_insert(error);
+            0.0
+        }
+    };
+    let mut forces = vec![0.0; model.bodies.unknowns()];
+    for l in &plan.loads {
+        forces.iter_mut().zip(load(&model.bodies, l, &value)).for_each(|(sum, f)| *sum += f);
+    }
+    let displacement = |number: usize, x: &Point<D>| {
+        let support = &plan.supports[number];
+        let along = |k: usize| support.values.get(k).and_then(|p| p.as_ref()).map_or(0.0, |p| value(p, x));
+        match support.kind {
+            SupportKind::Normal => Point::<D>::from_fn(|k, _| if k == 0 { along(0) } else { 0.0 }),
+            _ => Point::<D>::from_fn(|k, _| along(k)),
+        }
+    };
+    let rigid: Vec<Option<RigidGap<D>>> = (plan.contacts.iter())
+        .map(|c| match &c.opposite {
+            Opposite::Rigid(body) => Ok(Some(flat_gap::<D>(body.gap_at(document, time)?))),
+            Opposite::Body { .. } => Ok(None),
+        })
+        .collect::<Result<_, CaseError>>()?;
+    let result = act(model, &Circumstances { displacement: &displacement, load: forces, rigid });
+    wrong.into_inner().map_or(Ok(result), Err)
+}
+
+/// The forces of a load on the unknowns of the bodies.
+fn load<const D: usize>(bodies: &Bodies<D>, l: &SolidLoad, value: &dyn Fn(&Placed, &Point<D>) -> f64) -> Vec<f64> {
+    let load = Load { name: l.name.clone(), body: l.body, group: l.group.clone(), kind: l.kind };
+    forces(bodies, &load, &|x| {
+        Point::<D>::from_fn(|k, _| {
+            let k = if l.kind == LoadKind::Pressure { 0 } else { k };
+            l.values.get(k).map_or(0.0, |p| value(p, x))
+        })
+    })
 }
 
 /// The method of the contacts, all names where there are several.

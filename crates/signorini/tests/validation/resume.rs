@@ -19,6 +19,19 @@ impl Progress for Until {
     }
 }
 
+/// Stops a run in its increment of that number.
+struct UntilIncrement(usize);
+
+impl Progress for UntilIncrement {
+    fn step(&mut self, index: usize, _: usize, _: f64) {
+        self.0 = if index >= self.0 { 0 } else { self.0 };
+    }
+    fn iteration(&mut self, _: &Iteration) {}
+    fn interrupted(&self) -> bool {
+        self.0 == 0
+    }
+}
+
 fn results(summary: &Value) -> [&Value; 4] {
     ["steps", "events", "warnings", "verdict"].map(|key| &summary[key])
 }
@@ -77,6 +90,64 @@ fn what_cannot_be_resumed_is_told() {
     }
     std::fs::write(&checkpoint, &text).expect("written");
     assert!(resume(&case, &path, &mut Silent).is_ok());
-    let solid = Document::parse("case.toml", example("hertz"), &[]).expect("a case");
-    assert!(message(&solid).contains("solids"));
+}
+
+/// Solids: small sliding between two bodies and with a free one, a rigid body that moves, finite sliding, between two bodies
+/// and with a rigid one.
+#[test]
+fn solids_go_on_to_the_same_digits() {
+    let more = |n: usize| ("steps", format!("[{{ to = 1, increments = {n} }}]"));
+    let finite = ("contacts.touch.sliding", "\"finite\"".to_string());
+    let coarse = ("bodies.block.solid.mesh.box.cells", "[6, 6, 3]".to_string());
+    let cases: [(&str, Vec<(&str, String)>); 5] = [
+        ("high_order_blocks", vec![]),
+        ("cylinder_on_block", vec![more(3)]),
+        ("die", vec![coarse.clone()]),
+        ("die", vec![coarse, finite]),
+        ("ironing", vec![("steps", "[{ to = 1, increments = 2 }, { to = 1.2, increments = 2 }]".to_string())]),
+    ];
+    for (name, pairs) in cases {
+        let folder = tempfile::tempdir().expect("a folder");
+        let case = format!("{}/../../gallery/{name}/case.toml", env!("CARGO_MANIFEST_DIR"));
+        let document = Document::parse(&case, example(name), &set(&pairs)).expect("a case");
+        let whole = run(&document, &folder.path().join("whole"), &mut Silent).expect("a run").summary;
+        assert_eq!(whole["converged"], true, "{name}");
+        let increments = whole["steps"].as_array().map_or(0, Vec::len);
+        let path = folder.path().join("parts");
+        // Stopped at every increment, and once more on the way.
+        for stop in 1..increments {
+            let part = run(&document, &path, &mut UntilIncrement(stop)).expect("a run");
+            assert!(part.ending == Ending::Interrupted, "{name}, {stop}");
+            let _ = resume(&document, &path, &mut UntilIncrement(increments - 1)).expect("a run");
+            let rest = resume(&document, &path, &mut Silent).expect("a run").summary;
+            assert_eq!(results(&rest), results(&whole), "{name} after {stop} increments");
+            for file in ["history.csv", "fields.pvd"] {
+                let [a, b] = ["whole", "parts"].map(|part| std::fs::read(folder.path().join(part).join(file)).unwrap());
+                assert!(a == b, "{name}: {file} after {stop} increments");
+            }
+            assert!(!path.join("checkpoint.json").exists());
+        }
+    }
+}
+
+#[test]
+fn a_damaged_checkpoint_of_solids_is_told() {
+    let document = Document::parse("case.toml", example("high_order_blocks"), &[]).expect("a case");
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("out");
+    run(&document, &path, &mut UntilIncrement(2)).expect("a run");
+    let checkpoint = path.join("checkpoint.json");
+    let text = std::fs::read_to_string(&checkpoint).expect("a checkpoint");
+    for (from, to) in [
+        ("\"next\":2", "\"next\":9"),
+        ("\"active\":[[", "\"active\":[[77777,"),
+        ("\"settled\":null", "\"settled\":{\"u\":[],\"pressure\":[]}"),
+    ] {
+        assert!(text.contains(from), "{from}");
+        std::fs::write(&checkpoint, text.replacen(from, to, 1)).expect("written");
+        match resume(&document, &path, &mut Silent) {
+            Err(RunError::Case(error)) => assert!(error.message.contains("damaged"), "{}", error.message),
+            _ => panic!("resumed with {to}"),
+        }
+    }
 }

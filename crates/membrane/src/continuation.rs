@@ -5,7 +5,7 @@ use crate::equilibrium::{Elements, Equilibrium};
 use crate::front::Fronts;
 use crate::problem::Membrane;
 use crate::scales::Scales;
-use crate::zone::{ModeSpace, Zone, contact_index};
+use crate::zone::{Zone, contact_index};
 use signorini_solve::{Progress, SolveError, dense};
 
 /// Corrections of a state before it is given up.
@@ -92,8 +92,8 @@ impl<const D: usize> Path<'_, D> {
             let reach = TIME_REACH * self.size[1];
             tau = tau.clamp(-reach, reach);
             time += tau;
-            let grid = (self.membrane)(time).grid;
-            zone = zone.advanced(&grid, ModeSpace::Fine, &step, REACH * self.scales.length).zone;
+            let membrane = (self.membrane)(time);
+            zone = zone.advanced(&membrane.grid, membrane.modes.finest(), &step, REACH * self.scales.length).zone;
         }
         Ok((None, solves))
     }
@@ -113,8 +113,8 @@ impl<const D: usize> Path<'_, D> {
         };
         let ds = constraint.value - constraint.weights[0] * from.area - constraint.weights[1] * from.time;
         let step: Vec<f64> = step.iter().map(|w| w * ds).collect();
-        let grid = (self.membrane)(from.time).grid;
-        let zone = from.zone.advanced(&grid, ModeSpace::Fine, &step, REACH * self.scales.length).zone;
+        let Membrane { grid, modes, .. } = (self.membrane)(from.time);
+        let zone = from.zone.advanced(&grid, modes.finest(), &step, REACH * self.scales.length).zone;
         (zone, from.time + tau * ds)
     }
 
@@ -122,8 +122,8 @@ impl<const D: usize> Path<'_, D> {
         let membrane = (self.membrane)(time);
         let equilibrium = Equilibrium::solve(&membrane, zone, &mut Elements::new(&membrane))?;
         let fronts = Fronts::new(&equilibrium, true);
-        let linearised = fronts.linearise(zone, ModeSpace::Fine, &self.scales)?;
-        let error = fronts.project(zone, ModeSpace::Fine).norm / self.scales.slope_tolerance();
+        let linearised = fronts.linearise(zone, membrane.modes.finest(), &self.scales)?;
+        let error = fronts.project(zone, membrane.modes.finest()).norm / self.scales.slope_tolerance();
         // The same zone a little later: its quadrature is the same.
         let dt = 1e-5 * self.size[1];
         let later = (self.membrane)(time + dt);

@@ -8,7 +8,7 @@ use crate::equilibrium::{Elements, Equilibrium};
 use crate::front::Fronts;
 use crate::ils::Solution;
 use crate::problem::Membrane;
-use crate::zone::{ModeSpace, Zone};
+use crate::zone::{ModeSpace, Modes, Zone};
 use signorini_solve::SolveError;
 
 /// The estimate is as likely too small as too large: this makes it seldom too small.
@@ -38,7 +38,8 @@ impl ErrorEstimate {
         let (Some(coarse), Some(scales)) = (&solution.equilibrium, &solution.scales) else { return Ok(None) };
         let zone = &solution.zone;
         let Some(cells) = coarse.membrane.cells.raised().filter(|_| !zone.is_empty()) else { return Ok(None) };
-        let membrane = Membrane { cells, ..coarse.membrane.clone() };
+        // Splines see what a few waves may have left out.
+        let membrane = Membrane { cells, modes: Modes::Local, ..coarse.membrane.clone() };
         let fine = Equilibrium::solve(&membrane, zone, &mut Elements::new(&membrane))?;
         let sticky = membrane.obstacles.are_sticky();
         let fronts = Fronts::new(&fine, sticky);

@@ -3,7 +3,7 @@
 use crate::equilibrium::Equilibrium;
 use crate::quadrature::FrontPoint;
 use crate::scales::Scales;
-use crate::zone::{FrontFrame, ModeSpace, Zone};
+use crate::zone::{FrontFrame, ModeSpace, Modes, Zone};
 use signorini_geometry::Real;
 use signorini_solve::{SolveError, Symbolic, SymmetricMatrix, dense};
 
@@ -14,6 +14,9 @@ const LOCAL_REACH: f64 = 0.6;
 
 /// Modes from which on their equations are solved by sparse elimination.
 const MANY_MODES: usize = 150;
+
+/// A front of so few modes is short.
+const FEW_MODES: usize = 12;
 
 /// Modes whose response is computed at most.
 const MOST_RESPONSES: usize = 240;
@@ -117,10 +120,15 @@ impl<'a, const D: usize> Fronts<'a, D> {
         self.equilibrium.quadrature.front.iter().map(|p| p.weight)
     }
 
+    fn modes(&self) -> Modes {
+        self.equilibrium.membrane.modes
+    }
+
     /// `∫ f ω_n` in the finest modes.
     pub(crate) fn moments<Z: Zone<D>>(&self, zone: &Z, f: &[f64]) -> Vec<f64> {
-        let mut out = vec![0.0; zone.mode_offsets(ModeSpace::Fine)[zone.front_count()]];
-        for ((frame, w), f) in self.frames(zone, ModeSpace::Fine).iter().zip(self.weights()).zip(f) {
+        let finest = self.modes().finest();
+        let mut out = vec![0.0; zone.mode_offsets(finest)[zone.front_count()]];
+        for ((frame, w), f) in self.frames(zone, finest).iter().zip(self.weights()).zip(f) {
             frame.modes.iter().for_each(|(i, v)| out[*i] += w * f * v);
         }
         out
@@ -225,15 +233,16 @@ impl<'a, const D: usize> Fronts<'a, D> {
 
     /// The fewest modes that see the better part of the slope jump.
     fn leading_space<Z: Zone<D>>(&self, zone: &Z) -> ModeSpace {
-        let fine = zone.mode_offsets(ModeSpace::Fine)[zone.front_count()];
+        let finest = self.modes().finest();
+        let fine = zone.mode_offsets(finest)[zone.front_count()];
         (3..)
-            .map(|k| ModeSpace::Coarse(1 << k))
+            .map(|k| self.modes().at_most(1 << k))
             .take_while(|&space| zone.mode_offsets(space)[zone.front_count()] < fine)
             .find(|&space| {
                 let p = self.project(zone, space);
                 p.remainder < p.norm
             })
-            .unwrap_or(ModeSpace::Fine)
+            .unwrap_or(finest)
     }
 
     /// The rate of change `ρ°` of the slope jump at the points of a front that moves with the normal speed `w`:
@@ -269,10 +278,14 @@ impl<'a, const D: usize> Fronts<'a, D> {
         let local: Vec<f64> = self.pressure.iter().zip(&self.tension).map(|(p, t)| floor_pressure(*p) / t).collect();
         let longest = self.slope_jump.iter().zip(&local).map(|(r, l)| r / l).fold(0.0, f64::max);
         let h = self.equilibrium.membrane.grid.h();
-        // Where nothing but local steps can be made, the finest modes serve them best.
-        let space = if self.equilibrium.responds() { self.leading_space(zone) } else { ModeSpace::Fine };
-        let n = zone.mode_offsets(space)[zone.front_count()];
         let beyond = longest > LOCAL_REACH * h;
+        // Local steps cost nothing in the finest modes; but on fronts of a few cells these follow what the cells do.
+        let finest = self.modes().finest();
+        let offsets = zone.mode_offsets(finest);
+        let short = offsets.windows(2).any(|o| o[1] - o[0] <= FEW_MODES);
+        let schedule = (beyond || short) && self.equilibrium.responds();
+        let space = if schedule { self.leading_space(zone) } else { finest };
+        let n = zone.mode_offsets(space)[zone.front_count()];
         // With very many modes their responses cost more than a few careful local steps.
         let far = beyond && n <= MOST_RESPONSES && self.equilibrium.responds();
         let frames = self.frames(zone, space);

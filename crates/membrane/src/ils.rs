@@ -8,7 +8,7 @@ use crate::equilibrium::{Elements, Equilibrium};
 use crate::front::{Fronts, StepKind};
 use crate::problem::Membrane;
 use crate::scales::Scales;
-use crate::zone::{ModeSpace, Zone, contact_index};
+use crate::zone::{Zone, contact_index};
 use signorini_solve::{Acceleration, Iteration, Progress, SolveError};
 
 /// Steps after which fronts that do not come to rest are given up.
@@ -25,6 +25,8 @@ pub(crate) const SETTLED: f64 = 1e-3;
 /// ... or, where a front is sharper than a cell, or where the slope jump that its modes do not see is larger than the one
 /// they do, by less than this.
 pub(crate) const SETTLED_COARSE: f64 = 0.03;
+/// A residual that has fallen so often in a row has not settled, however slowly it falls: a front may be on its way to vanish.
+const SLOWLY: usize = 5;
 /// A front sharper than this, relative to a cell, is no front any more.
 const SHARPEST: f64 = 10.0;
 /// A step of this fraction of a cell that does not improve on the last is round-off.
@@ -344,8 +346,10 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
 
     /// Newton's iteration on the shape of the zone.
     fn settle_fronts(&mut self) -> Result<Fixed, SolveError> {
+        let finest = self.membrane.modes.finest();
         let mut acceleration = Acceleration::default();
         let (mut best, mut waited) = (f64::INFINITY, 0);
+        let (mut previous, mut falls) = (f64::INFINITY, 0);
         self.solution.settled_within = None;
         self.solution.lowest_eigenvalue = None;
         let (mut count, mut descents) = (0, 0);
@@ -381,20 +385,28 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 self.solution.zone = zone;
                 continue;
             }
-            let projection = fronts.project(zone, ModeSpace::Fine);
+            let projection = fronts.project(zone, finest);
             let residual = projection.norm / scales.slope_tolerance();
-            let linearised = if self.adhering { Some(fronts.linearise(zone, ModeSpace::Fine, &scales)?) } else { None };
+            let linearised = if self.adhering { Some(fronts.linearise(zone, finest, &scales)?) } else { None };
             let mut step = match &linearised {
                 Some(linearised) => linearised.step(self.branch, &scales),
                 None => fronts.newton_step(zone, &scales)?,
             };
             waited = if residual < 0.7 * best || step.kind == StepKind::Descent { 0 } else { waited + 1 };
             best = best.min(residual);
+            falls = if residual < previous { falls + 1 } else { 0 };
+            previous = residual;
+            if waited >= PATIENCE && falls >= SLOWLY {
+                waited = 0;
+            }
             let relative_step = step.length / h;
             let sharp = D > 1 && (1.0..SHARPEST).contains(&(zone.sharpest() * h));
             let coarse = sharp || projection.norm < projection.remainder;
             let enough = if coarse { SETTLED_COARSE } else { SETTLED };
-            let settled = (waited >= PATIENCE || last) && relative_step < enough && step.kind != StepKind::Descent;
+            let settled = (waited >= PATIENCE || last)
+                && falls < SLOWLY
+                && relative_step < enough
+                && step.kind != StepKind::Descent;
             if residual <= 1.0 || (waited >= 1 && relative_step < ROUND_OFF) || settled {
                 if let Some(linearised) = &linearised {
                     let spectrum = linearised.spectrum();
@@ -404,7 +416,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                         && descents < MOST_DESCENTS
                     {
                         let kick = linearised.kick(spectrum, h);
-                        let advance = zone.advanced(&self.membrane.grid, ModeSpace::Fine, &kick, h);
+                        let advance = zone.advanced(&self.membrane.grid, finest, &kick, h);
                         self.report(residual, "at rest, but unstable");
                         (count, descents, best) = (0, descents + 10, f64::INFINITY);
                         self.solution.jumped = true;
@@ -429,7 +441,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 acceleration = Acceleration::default();
                 let factor = 0.5f64.powi((waited / DAMPED_AFTER) as i32).max(0.1);
                 step.coefficients.iter_mut().for_each(|c| *c *= factor);
-            } else if step.space == ModeSpace::Fine
+            } else if step.space == finest
                 && (step.kind == StepKind::Local || (step.kind == StepKind::Adhesive && relative_step < NEAR))
             {
                 step.coefficients = acceleration.next(step.coefficients);
@@ -438,10 +450,12 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             }
             let reach = step.reach.min(REACH * scales.length);
             let advance = zone.advanced(&self.membrane.grid, step.space, &step.coefficients, reach);
-            if advance.topology_changed
-                || advance.zone.mode_offsets(ModeSpace::Fine) != zone.mode_offsets(ModeSpace::Fine)
-            {
+            if advance.topology_changed || advance.zone.mode_offsets(finest) != zone.mode_offsets(finest) {
                 acceleration = Acceleration::default();
+            }
+            if advance.topology_changed {
+                // Another problem: what the residuals were before says nothing of it.
+                (best, waited, previous, falls) = (f64::INFINITY, 0, f64::INFINITY, 0);
             }
             let action = if advance.topology_changed { "topology changed" } else { step.kind.name() };
             self.report(residual, action);

@@ -41,6 +41,48 @@ pub struct PlaneZone {
     rows: Vec<Vec<[u32; 3]>>,
 }
 
+/// Functions of the parameter of a front.
+enum FrontModes {
+    Splines(PeriodicBasis),
+    /// One, and the cosine and sine of every wave number up to the highest.
+    Waves {
+        highest: usize,
+    },
+}
+
+impl FrontModes {
+    fn count(&self) -> usize {
+        match self {
+            FrontModes::Splines(basis) => basis.count,
+            FrontModes::Waves { highest } => 2 * highest + 1,
+        }
+    }
+
+    /// Calls `visit(mode, value, derivative)` for every function that does not vanish at a parameter.
+    fn for_each_at(&self, s: f64, mut visit: impl FnMut(usize, f64, f64)) {
+        match self {
+            FrontModes::Splines(basis) => {
+                let b = basis.bumps(s);
+                // Few splines meet themselves round the curve: their bumps are added up.
+                for i in 0..b.len.min(basis.count) {
+                    let same = (i..b.len).step_by(basis.count);
+                    let (value, slope) = same.fold((0.0, 0.0), |(v, d), k| (v + b.value[k], d + b.d1[k]));
+                    visit(basis.index(&b, i), value, slope);
+                }
+            }
+            FrontModes::Waves { highest } => {
+                visit(0, 1.0, 0.0);
+                for k in 1..=*highest {
+                    let omega = std::f64::consts::TAU * k as f64;
+                    let (sin, cos) = (omega * s).sin_cos();
+                    visit(2 * k - 1, cos, -omega * sin);
+                    visit(2 * k, sin, omega * cos);
+                }
+            }
+        }
+    }
+}
+
 /// The signed distance to one front near a cell.
 struct FrontSheet<'a> {
     curve: &'a ClosedCurve,
@@ -234,11 +276,20 @@ impl PlaneZone {
         enough.max(relative / spacing).ceil() as usize
     }
 
-    fn modes(&self, front: usize, space: ModeSpace) -> PeriodicBasis {
+    fn modes(&self, front: usize, space: ModeSpace) -> FrontModes {
         let curve = &self.curves[front];
         match space {
-            ModeSpace::Coarse(count) if count < curve.knots() => PeriodicBasis { degree: 3, count },
-            _ => PeriodicBasis { degree: curve.degree(), count: curve.knots() },
+            ModeSpace::Coarse(count) if count < curve.knots() => {
+                FrontModes::Splines(PeriodicBasis { degree: 3, count })
+            }
+            ModeSpace::Coarse(_) | ModeSpace::Fine => {
+                FrontModes::Splines(PeriodicBasis { degree: curve.degree(), count: curve.knots() })
+            }
+            ModeSpace::Fourier(most) => {
+                // Waves must be longer than the splines that draw them.
+                let told_apart = if self.grid.degree() == 1 { curve.knots() } else { curve.knots() / 2 };
+                FrontModes::Waves { highest: most.min(told_apart).max(1).div_ceil(2) - 1 }
+            }
         }
     }
 
@@ -292,11 +343,12 @@ impl PlaneZone {
 
     /// Displacement of a front by coefficients of the modes, as a function of its parameter.
     fn displacement<'a>(&self, front: usize, space: ModeSpace, step: &'a [f64]) -> impl Fn(f64) -> f64 + use<'a> {
-        let basis = self.modes(front, space);
+        let modes = self.modes(front, space);
         let offset = self.mode_offsets(space)[front];
         move |s| {
-            let b = basis.bumps(s);
-            (0..b.len).map(|i| b.value[i] * step[offset + basis.index(&b, i)]).sum()
+            let mut sum = 0.0;
+            modes.for_each_at(s, |mode, value, _| sum += value * step[offset + mode]);
+            sum
         }
     }
 
@@ -426,18 +478,9 @@ impl Zone<2> for PlaneZone {
             true => self.curves[front].closest(x, 0..self.curves[front].samples().len()),
             false => self.curves[front].closest(x, seeds.into_iter()),
         };
-        let basis = self.modes(front, space);
         let offset = self.mode_offsets(space)[front];
-        let b = basis.bumps(foot.s);
-        // Few modes meet themselves round the curve: their bumps are added up.
-        let mut modes: Vec<(usize, f64)> = Vec::with_capacity(b.len);
-        for i in 0..b.len {
-            let mode = offset + basis.index(&b, i);
-            match modes.iter_mut().find(|(m, _)| *m == mode) {
-                Some((_, v)) => *v += b.value[i],
-                None => modes.push((mode, b.value[i])),
-            }
-        }
+        let mut modes = Vec::new();
+        self.modes(front, space).for_each_at(foot.s, |mode, value, _| modes.push((offset + mode, value)));
         FrontFrame { curvature: foot.curvature, modes }
     }
     fn front_count(&self) -> usize {
@@ -446,23 +489,24 @@ impl Zone<2> for PlaneZone {
     fn mode_offsets(&self, space: ModeSpace) -> Vec<usize> {
         let mut offsets = vec![0];
         for i in 0..self.curves.len() {
-            offsets.push(offsets[i] + self.modes(i, space).count);
+            offsets.push(offsets[i] + self.modes(i, space).count());
         }
         offsets
     }
     fn add_stiffness(&self, space: ModeSpace, front: usize, weight: f64, matrix: &mut [f64]) {
         let offsets = self.mode_offsets(space);
-        let (basis, offset, n) = (self.modes(front, space), offsets[front], offsets[self.curves.len()]);
+        let (modes, offset, n) = (self.modes(front, space), offsets[front], offsets[self.curves.len()]);
         let curve = &self.curves[front];
         let points = curve.samples().len();
+        let mut slopes: Vec<(usize, f64)> = Vec::new();
         for k in 0..points {
             let s = curve.sample_parameter(k);
-            let b = basis.bumps(s);
+            slopes.clear();
+            modes.for_each_at(s, |mode, _, slope| slopes.push((offset + mode, slope)));
             let speed = curve.point(s).speed;
-            for i in 0..b.len {
-                for j in 0..b.len {
-                    let at = (offset + basis.index(&b, i)) * n + offset + basis.index(&b, j);
-                    matrix[at] += weight * b.d1[i] * b.d1[j] / speed / points as f64;
+            for (i, vi) in &slopes {
+                for (j, vj) in &slopes {
+                    matrix[i * n + j] += weight * vi * vj / speed / points as f64;
                 }
             }
         }

@@ -3,6 +3,7 @@
 use crate::domain::{CellStatus, DomainOnCells};
 use crate::field::SharedField;
 use crate::obstacle::{Obstacles, Side};
+use crate::zone::Modes;
 use signorini_fem::{Cells, Grid};
 use signorini_geometry::{Point, Vector};
 use std::sync::Arc;
@@ -62,6 +63,8 @@ pub struct Membrane<const D: usize> {
     pub supports: Vec<Option<Support<D>>>,
     /// Number of named supports.
     pub support_count: usize,
+    /// How fronts move.
+    pub modes: Modes,
 }
 
 impl<const D: usize> Membrane<D> {

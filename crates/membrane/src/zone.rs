@@ -84,6 +84,36 @@ pub enum ModeSpace {
     Coarse(usize),
     /// As many as the grid can tell apart.
     Fine,
+    /// At most so many trigonometric functions of the arc length for each front, and no more than the grid can tell apart.
+    Fourier(usize),
+}
+
+/// The functions along a front by which it moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Modes {
+    /// Periodic splines, each of which moves a short piece: for fronts of any shape.
+    #[default]
+    Local,
+    /// Trigonometric functions of the arc length: few suffice where fronts are nearly circles.
+    Fourier,
+}
+
+impl Modes {
+    /// As many as the grid can tell apart.
+    pub fn finest(self) -> ModeSpace {
+        match self {
+            Modes::Local => ModeSpace::Fine,
+            Modes::Fourier => ModeSpace::Fourier(usize::MAX),
+        }
+    }
+
+    /// At most so many for each front.
+    pub fn at_most(self, count: usize) -> ModeSpace {
+        match self {
+            Modes::Local => ModeSpace::Coarse(count),
+            Modes::Fourier => ModeSpace::Fourier(count),
+        }
+    }
 }
 
 /// What became of a zone whose fronts were moved.

@@ -38,6 +38,7 @@ fn membrane(cells: usize, degree: usize, side: Side) -> Membrane<2> {
         obstacles: Obstacles(vec![Obstacle { side, height, adhesion: None }]),
         supports: vec![Some(Support { index: 0, displacement: Arc::new(Constant(0.0)) })],
         support_count: 1,
+        modes: Default::default(),
     }
 }
 

@@ -28,6 +28,7 @@ fn failures(name: &str, degree: usize, circles: usize) -> usize {
         load: Arc::new(Constant(-1.0)),
         obstacles: Obstacles(vec![Obstacle { side: Side::Below, height: Arc::new(Constant(-0.1)), adhesion: None }]),
         support_count: 1,
+        modes: Default::default(),
     };
     let mut elements = Elements::new(&membrane);
     (0..circles)

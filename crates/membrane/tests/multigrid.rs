@@ -30,6 +30,7 @@ fn membrane(n: usize, domain: Arc<dyn Domain<2>>, half: f64) -> Membrane<2> {
         load: Arc::new(Constant(-1.0)),
         obstacles: Obstacles(vec![floor]),
         support_count: 1,
+        modes: Default::default(),
     }
 }
 

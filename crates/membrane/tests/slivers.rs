@@ -34,6 +34,7 @@ fn error(degree: usize, normal: Vector<2>, offset: f64, divided: bool) -> f64 {
         obstacles: Obstacles::default(),
         supports: vec![Some(Support { index: 0, displacement })],
         support_count: 1,
+        modes: Default::default(),
     };
     let zone = PlaneZone::empty(&grid);
     let mut elements = Elements::new(&membrane);
@@ -87,6 +88,7 @@ fn thin_rings_along_a_free_edge_are_held() {
                 obstacles: Obstacles(vec![floor]),
                 supports: vec![None],
                 support_count: 0,
+                modes: Default::default(),
             };
             let front: Vec<Point<2>> = (0..48)
                 .map(|k| {

@@ -22,7 +22,7 @@ use signorini_membrane::obstacle::{Obstacles, Side};
 use signorini_membrane::problem::{Measure, Membrane, Support};
 use signorini_membrane::quadrature::Quadrature;
 use signorini_membrane::refinement::Refinement;
-use signorini_membrane::zone::NoZone;
+use signorini_membrane::zone::{Modes, NoZone};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -43,14 +43,20 @@ pub enum Plan {
 /// Which method finds the contact zone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MethodChoice {
-    InequalityLevelSet,
+    InequalityLevelSet(Modes),
     ActiveSet(NodalStart),
+}
+
+impl Default for MethodChoice {
+    fn default() -> Self {
+        MethodChoice::InequalityLevelSet(Modes::default())
+    }
 }
 
 impl MethodChoice {
     pub fn name(self) -> &'static str {
         match self {
-            MethodChoice::InequalityLevelSet => "inequality_level_set",
+            MethodChoice::InequalityLevelSet(_) => "inequality_level_set",
             MethodChoice::ActiveSet(_) => "active_set",
         }
     }
@@ -343,7 +349,9 @@ impl<'a> Planner<'a> {
         let supports = self.supports(body, &on.pieces)?;
         let mut warnings = Vec::new();
         let (contacts, method) = self.contacts(body, &supports, &on.grid, &mut warnings)?;
-        if method != MethodChoice::InequalityLevelSet && case.steps.iter().any(|s| s.get_ref().events.is_some()) {
+        if !matches!(method, MethodChoice::InequalityLevelSet(_))
+            && case.steps.iter().any(|s| s.get_ref().events.is_some())
+        {
             warnings.push("`events` are located by method.inequality_level_set only".into());
         }
         if contacts.is_empty() && case.bodies.len() > 1 {
@@ -590,7 +598,7 @@ impl<'a> Planner<'a> {
         };
         let mut out: Vec<Contact> = Vec::new();
         let stated = document.case.contacts.values().find(|c| c.get_ref().method.is_some());
-        let method = stated.map_or(Ok(MethodChoice::InequalityLevelSet), |c| self.method(c.get_ref()))?;
+        let method = stated.map_or(Ok(MethodChoice::default()), |c| self.method(c.get_ref()))?;
         for (name, key) in &document.case.contacts {
             let contact = key.get_ref();
             if let Some(friction) = &contact.friction {
@@ -678,23 +686,28 @@ impl<'a> Planner<'a> {
     }
 
     fn method(&self, key: &statement::Contact) -> Result<MethodChoice, CaseError> {
-        let Some(method) = &key.method else { return Ok(MethodChoice::InequalityLevelSet) };
+        let Some(method) = &key.method else { return Ok(MethodChoice::default()) };
         match method.get_ref() {
             Method::InequalityLevelSet(k) => {
-                let only = |value: &Option<toml::Spanned<String>>, here: &str, later: &str| match value {
-                    Some(v) if v.get_ref() == later => Err(self.unavailable(v.span(), &format!("`{later}`"))),
-                    Some(v) if v.get_ref() != here => Err(self
-                        .document
-                        .error(v.span(), format!("unknown word `{}`", v.get_ref()))
-                        .help(format!("known here: {here}, {later}"))),
-                    _ => Ok(()),
-                };
-                only(&k.formulation, "one_sided", "published")?;
-                only(&k.modes, "local", "fourier")?;
+                match &k.formulation {
+                    Some(v) if v.get_ref() == "published" => {
+                        return Err(self.unavailable(v.span(), "`published`"));
+                    }
+                    Some(v) if v.get_ref() != "one_sided" => {
+                        return Err(self
+                            .document
+                            .error(v.span(), format!("unknown word `{}`", v.get_ref()))
+                            .help("known here: one_sided, published"));
+                    }
+                    _ => {}
+                }
                 if let Some(v) = &k.front_degree {
                     return Err(self.unavailable(v.span(), "`front_degree`"));
                 }
-                Ok(MethodChoice::InequalityLevelSet)
+                Ok(MethodChoice::InequalityLevelSet(match k.modes.as_ref().map(|m| *m.get_ref()) {
+                    Some(statement::FrontModes::Fourier) => Modes::Fourier,
+                    _ => Modes::Local,
+                }))
             }
             Method::ActiveSet(k) => Ok(MethodChoice::ActiveSet(match k.start.as_ref().map(|s| *s.get_ref()) {
                 Some(statement::ActiveSetStart::Cold) => NodalStart::Cold,
@@ -782,6 +795,10 @@ impl<const D: usize> MembranePlan<D> {
             obstacles: Obstacles(self.contacts.iter().map(|c| c.at(time)).collect()),
             supports,
             support_count: self.supports.len(),
+            modes: match self.method {
+                MethodChoice::InequalityLevelSet(modes) => modes,
+                MethodChoice::ActiveSet(_) => Modes::default(),
+            },
         }
     }
 

@@ -4,6 +4,7 @@ mod checkpoint;
 mod environment;
 pub(crate) mod events;
 mod increment;
+mod mergers;
 mod path;
 mod sizes;
 pub(crate) mod solid;

@@ -841,10 +841,10 @@ pub struct LevelSetKey {
     #[serde(default)]
     #[schemars(with = "Option<String>")]
     pub formulation: Option<Spanned<String>>,
-    /// `localised`, the only ones so far.
+    /// The functions by which fronts move; `local` if left out.
     #[serde(default)]
-    #[schemars(with = "Option<String>")]
-    pub modes: Option<Spanned<String>>,
+    #[schemars(with = "Option<FrontModes>")]
+    pub modes: Option<Spanned<FrontModes>>,
     /// Degree of the fronts as curves; not available, it follows the degree of the membrane.
     #[serde(default)]
     #[schemars(with = "Option<i64>")]
@@ -853,6 +853,15 @@ pub struct LevelSetKey {
     #[serde(default)]
     #[schemars(with = "Option<Domain>")]
     pub initial_zone: Option<Spanned<Domain>>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum FrontModes {
+    /// Periodic splines, each of which moves a short piece: for fronts of any shape.
+    Local,
+    /// Sines and cosines of the arc length: few suffice where fronts are nearly circles.
+    Fourier,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]

@@ -1,9 +1,10 @@
 //! Changes of topology along a load path: which, where, and at what load.
 //!
 //! An increment between whose ends the numbers of zones or holes differ is halved until the change lies within the
-//! tolerance that its step states. A zone that comes and another that goes within one increment, or a zone that comes and
+//! tolerance that its step states; [`mergers`] have their own way. A zone that comes and another that goes within one increment, or a zone that comes and
 //! goes, are seen only if the ends of a part differ.
 
+use super::mergers::{self, Bridge, Merger, nearest};
 use serde_json::{Value, json};
 use signorini_fem::Grid;
 use signorini_geometry::Point;
@@ -21,6 +22,8 @@ pub struct Event {
     /// The middle of the interval of time that holds the change, and its length.
     pub time: f64,
     pub within: f64,
+    /// How it was found: by `bisection`, or by `extrapolation` from both sides.
+    pub by: &'static str,
     pub at: Vec<f64>,
     /// Zones and holes before and after.
     pub before: (usize, usize),
@@ -35,7 +38,7 @@ pub struct Event {
 impl Event {
     pub fn to_json(&self) -> Value {
         json!({
-            "contact": self.contact, "above": self.side == Side::Above, "kind": self.kind, "time": self.time, "within": self.within, "at": self.at,
+            "contact": self.contact, "above": self.side == Side::Above, "kind": self.kind, "time": self.time, "within": self.within, "by": self.by, "at": self.at,
             "zones_before": self.before.0, "zones_after": self.after.0,
             "holes_before": self.before.1, "holes_after": self.after.1,
             "area_before": self.area[0], "area_after": self.area[1],
@@ -60,6 +63,7 @@ impl Event {
             contact: v["contact"].as_str()?.to_string(),
             time: number("time")?,
             within: number("within")?,
+            by: ["bisection", "extrapolation"].into_iter().find(|by| v["by"] == *by)?,
             at: serde_json::from_value(v["at"].clone()).ok()?,
             before: (count("zones_before")?, count("holes_before")?),
             after: (count("zones_after")?, count("holes_after")?),
@@ -124,6 +128,16 @@ pub fn locate<const D: usize, Z: Zone<D>>(
 ) {
     if a.zone.counts() == b.zone.counts() {
         return;
+    }
+    if D > 1 && b.time - a.time > tolerance {
+        match mergers::locate(grid, a, b, tolerance, solve) {
+            Merger::Located(events) => return out.extend(events),
+            Merger::Other(middle) => {
+                locate(grid, a, &middle, tolerance, solve, out);
+                return locate(grid, &middle, b, tolerance, solve, out);
+            }
+            Merger::Unknown => {}
+        }
     }
     let time = 0.5 * (a.time + b.time);
     let between = if b.time - a.time > tolerance { solve(time, [&a.zone, &b.zone]) } else { Between::Unknown };
@@ -194,6 +208,7 @@ pub fn jump<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Known<Z>, b: &Known<
             contact: String::new(),
             time: 0.5 * (a.time + b.time),
             within: b.time - a.time,
+            by: "bisection",
             at: moved(grid, &a.zone, &b.zone).iter().copied().collect(),
             before: a.zone.counts(),
             after: b.zone.counts(),
@@ -220,7 +235,7 @@ fn moved<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Z, b: &Z) -> Point<D> {
 }
 
 /// The changes between two zones that differ little.
-fn differences<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Known<Z>, b: &Known<Z>) -> Vec<Event> {
+pub fn differences<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Known<Z>, b: &Known<Z>) -> Vec<Event> {
     let (parts_a, parts_b) = (parts(grid, &a.zone), parts(grid, &b.zone));
     let overlap = overlaps(grid, &a.zone, &b.zone, [parts_a.len(), parts_b.len()]);
     let mut out = Vec::new();
@@ -231,6 +246,7 @@ fn differences<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Known<Z>, b: &Kno
             contact: String::new(),
             time: 0.5 * (a.time + b.time),
             within: b.time - a.time,
+            by: "bisection",
             at: at.iter().copied().collect(),
             before: a.zone.counts(),
             after: b.zone.counts(),
@@ -240,18 +256,18 @@ fn differences<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Known<Z>, b: &Kno
         });
     };
     for (j, part) in parts_b.iter().enumerate() {
-        let from: Vec<&Vec<Point<D>>> = (0..parts_a.len()).filter(|&i| overlap[i][j]).map(|i| &parts_a[i]).collect();
+        let from: Vec<&Part<D>> = (0..parts_a.len()).filter(|&i| overlap[i][j]).map(|i| &parts_a[i]).collect();
         if from.is_empty() {
             add("nucleation", b.zone.side_of(j), middle(grid, part));
         }
-        bridges(&from).into_iter().for_each(|x| add("merge", b.zone.side_of(j), x));
+        bridges(&from).iter().for_each(|bridge| add("merge", b.zone.side_of(j), bridge.middle()));
     }
     for (i, part) in parts_a.iter().enumerate() {
-        let into: Vec<&Vec<Point<D>>> = (0..parts_b.len()).filter(|&j| overlap[i][j]).map(|j| &parts_b[j]).collect();
+        let into: Vec<&Part<D>> = (0..parts_b.len()).filter(|&j| overlap[i][j]).map(|j| &parts_b[j]).collect();
         if into.is_empty() {
             add("release", a.zone.side_of(i), middle(grid, part));
         }
-        bridges(&into).into_iter().for_each(|x| add("split", a.zone.side_of(i), x));
+        bridges(&into).iter().for_each(|bridge| add("split", a.zone.side_of(i), bridge.middle()));
     }
     for side in Side::BOTH {
         let [holes_a, holes_b] = [a, b].map(|state| holes(grid, &state.zone, side));
@@ -261,14 +277,17 @@ fn differences<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Known<Z>, b: &Kno
     out
 }
 
-/// Points of the fronts of every connected zone.
-fn parts<const D: usize, Z: Zone<D>>(grid: &Grid<D>, zone: &Z) -> Vec<Vec<Point<D>>> {
+/// The outlines of a connected zone.
+pub type Part<const D: usize> = Vec<Vec<Point<D>>>;
+
+/// The connected zones.
+pub fn parts<const D: usize, Z: Zone<D>>(grid: &Grid<D>, zone: &Z) -> Vec<Part<D>> {
     let mut out = vec![Vec::new(); zone.counts().0];
     for (k, outline) in zone.outlines().into_iter().enumerate() {
         // In one dimension every outline is an interval; in two the zone lies on the left of its fronts.
         let of = if D == 1 { Some(k) } else { inside(grid, zone, &outline) };
         if let Some(part) = of.and_then(|k| out.get_mut(k)) {
-            part.extend(outline);
+            part.push(outline);
         }
     }
     out
@@ -312,31 +331,28 @@ fn for_each_sample<const D: usize>(grid: &Grid<D>, mut visit: impl FnMut(Point<D
 }
 
 /// The narrowest places between parts, one less than there are parts: those of the shortest tree that joins them.
-fn bridges<const D: usize>(parts: &[&Vec<Point<D>>]) -> Vec<Point<D>> {
-    let narrowest = |p: &[Point<D>], q: &[Point<D>]| {
-        let pairs = p.iter().flat_map(|x| q.iter().map(move |y| ((x - y).norm(), (x + y) * 0.5)));
-        pairs.min_by(|a, b| a.0.total_cmp(&b.0))
-    };
+pub fn bridges<const D: usize>(parts: &[&Part<D>]) -> Vec<Bridge<D>> {
     let mut out = Vec::new();
     let mut joined = vec![0];
     while joined.len() < parts.len() {
         let next = (0..parts.len())
             .filter(|k| !joined.contains(k))
             .flat_map(|k| {
-                joined.iter().filter_map(move |&j| Some((k, narrowest(parts[j], parts[k])?))).collect::<Vec<_>>()
+                joined.iter().filter_map(move |&j| Some((k, nearest(parts[j], parts[k])?))).collect::<Vec<_>>()
             })
-            .min_by(|a, b| a.1.0.total_cmp(&b.1.0));
-        let Some((k, (_, x))) = next else { break };
+            .min_by(|a, b| a.1.length().total_cmp(&b.1.length()));
+        let Some((k, bridge)) = next else { break };
         joined.push(k);
-        out.push(x);
+        out.push(bridge);
     }
     out
 }
 
 /// The middle of a zone; of one that reaches the lower end of a line that end, which is the axis of a round membrane.
-fn middle<const D: usize>(grid: &Grid<D>, part: &[Point<D>]) -> Point<D> {
+fn middle<const D: usize>(grid: &Grid<D>, part: &Part<D>) -> Point<D> {
     let low = grid.bounds().min;
-    if D == 1 && part.iter().any(|x| x[0] <= low[0]) { low } else { mean(part) }
+    let points: Vec<Point<D>> = part.iter().flatten().copied().collect();
+    if D == 1 && points.iter().any(|x| x[0] <= low[0]) { low } else { mean(&points) }
 }
 
 fn mean<const D: usize>(points: &[Point<D>]) -> Point<D> {

@@ -241,7 +241,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         Z: 'a,
     {
         match plan.method {
-            MethodChoice::InequalityLevelSet => self.level_set(membrane, at, progress),
+            MethodChoice::InequalityLevelSet(_) => self.level_set(membrane, at, progress),
             MethodChoice::ActiveSet(start) => active_set::<D, Z>(membrane, start, at, progress),
         }
     }

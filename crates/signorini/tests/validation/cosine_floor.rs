@@ -44,6 +44,37 @@ fn the_square() {
     compare(&last_step(&summary)["contacts"]["touch"], &row("square-wavy", 0.4), 1e-6);
 }
 
+/// Trigonometric functions of the arc length instead of splines: the same zone, as far as few of them can draw it.
+#[test]
+fn the_square_with_fourier_modes() {
+    let fourier = ("contacts.touch.method.inequality_level_set.modes", "\"fourier\"".to_string());
+    let summary = summary(example("cosine_square"), &set(&[fourier]));
+    let contact = &last_step(&summary)["contacts"]["touch"];
+    let exact = row("square-wavy", 0.4);
+    compare(contact, &exact, 1e-5);
+    let estimate = number(&contact["error_estimate"]["area"]);
+    let error = (number(&contact["area"]) - number(&exact["contact_area"])).abs();
+    assert!(estimate > error / 3.0 && estimate < 30.0 * error, "{estimate:.1e} for {error:.1e}");
+}
+
+/// Small increments without an event take no more than five solves, whatever the cells, once there are states to go on
+/// from.
+#[test]
+fn small_increments_take_few_solves() {
+    for (cells, degree) in [("[104, 104]", "1"), ("[52, 52]", "2"), ("[40, 40]", "3"), ("[32, 32]", "4")] {
+        let pairs = [
+            (CELLS, cells.to_string()),
+            (DEGREE, degree.to_string()),
+            ("steps", "[{ to = 0.24 }, { to = 0.3, increments = 6 }]".to_string()),
+        ];
+        let summary = summary(example("cosine_disc"), &set(&pairs));
+        last_step(&summary);
+        let solves: Vec<u64> =
+            summary["steps"].as_array().expect("steps").iter().filter_map(|s| s["iterations"].as_u64()).collect();
+        assert!(solves[2..].iter().all(|n| *n <= 5), "degree {degree}: {solves:?}");
+    }
+}
+
 /// Zones of the square at every load of the publication, and the force between the bounds of nodal methods.
 #[test]
 fn the_square_at_lower_loads() {

@@ -37,6 +37,59 @@ fn the_hole_of_the_ring_closes() {
     assert!(number(&at[0]).abs() < 1e-3 && number(&at[1]).abs() < 1e-3);
 }
 
+/// Two zones grow tips towards each other, merge, and part again at the same load. With 80 × 48 cells and a tolerance of
+/// 4e-3 the merger is at t = 2.3488.
+#[test]
+fn mergers_are_located_from_both_sides() {
+    let case = r#"
+space = "plane"
+
+[bodies.film.membrane]
+domain.rectangle = { min = [-1, -0.6], max = [1, 0.6] }
+mesh.grid = { cells = [30, 18] }
+degree = 2
+tension = 1.0
+
+[bodies.floor.rigid]
+shape.height = "-(15 + 5*cos(2*pi*x))/1000"
+
+[supports.rim]
+on = "film:boundary"
+displacement = 0.0
+
+[loads.press]
+on = "film"
+normal = "-0.1*min(t, 8 - t)"
+
+[contacts.touch]
+between = ["film", "floor"]
+method.inequality_level_set = {}
+
+[[steps]]
+to = 2
+[[steps]]
+to = 2.8
+events = 0.01
+[[steps]]
+to = 6
+events = 0.01
+
+[output]
+pictures = false
+"#;
+    let found = summary(case, &set(&[]));
+    let area = |k: usize| number(&found["steps"][k]["contacts"]["touch"]["area"]);
+    assert!((area(2) / area(0) - 1.0).abs() < 1e-6, "{} {}", area(0), area(2));
+    let events = found["events"].as_array().expect("events");
+    assert_eq!(events.len(), 2, "{events:?}");
+    for (event, kind, time) in [(&events[0], "merge", 2.3488), (&events[1], "split", 8.0 - 2.3488)] {
+        assert!(event["kind"] == kind && event["by"] == "extrapolation" && number(&event["within"]) <= 0.01);
+        assert!((number(&event["time"]) - time).abs() <= 0.005, "{kind} at {}", event["time"]);
+        assert!(number(&event["at"][0]).abs() < 2e-3 && number(&event["at"][1]).abs() < 2e-3);
+    }
+    assert_eq!(found["warnings"].as_array().map(Vec::len), Some(0), "{}", found["warnings"]);
+}
+
 #[test]
 fn tolerances_are_positive() {
     let case = example("string").to_string() + "\n[[steps]]\nto = 1\nevents = 0\n";

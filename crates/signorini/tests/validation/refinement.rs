@@ -19,9 +19,10 @@ fn a_hole_of_the_size_of_a_cell_is_found_and_resolved() {
     assert_eq!((&found["zones"], &found["holes"]), (&1.into(), &1.into()));
     let off = number(&found["area"]) - 1.298_690_0;
     assert!(off.abs() < 1e-6, "{off:e}");
-    // Without dividing cells it is found too, but known to three digits only.
+    // Without dividing cells it is found too, but known less well.
     let coarse = cosine(0.39, &[(CELLS, "[40, 40]".into()), (REFINE, "{ most = 0 }".into())]);
-    assert!((number(&coarse["area"]) - 1.298_690_0).abs() > 1e-5);
+    let coarse = number(&coarse["area"]) - 1.298_690_0;
+    assert!(coarse.abs() < 1e-4 && coarse.abs() > 5.0 * off.abs(), "{coarse:e}");
 }
 
 #[test]

@@ -116,6 +116,9 @@ pub enum Between<Z> {
     Unknown,
 }
 
+/// Halvings towards a time that could not be solved for, from either side.
+const MOST_HALVINGS: usize = 5;
+
 /// Finds the events between two times. `solve` looks at a time between, knowing the zones before and after; where it finds
 /// nothing the events are known to that interval.
 pub fn locate<const D: usize, Z: Zone<D>>(
@@ -139,16 +142,34 @@ pub fn locate<const D: usize, Z: Zone<D>>(
             Merger::Unknown => {}
         }
     }
+    if b.time - a.time <= tolerance {
+        return out.extend(differences(grid, a, b));
+    }
     let time = 0.5 * (a.time + b.time);
-    let between = if b.time - a.time > tolerance { solve(time, [&a.zone, &b.zone]) } else { Between::Unknown };
-    match between {
+    match solve(time, [&a.zone, &b.zone]) {
         Between::AsLater => locate(grid, a, &Known { time, ..b.clone() }, tolerance, solve, out),
         Between::AsEarlier => locate(grid, &Known { time, ..a.clone() }, b, tolerance, solve, out),
         Between::State(middle) => {
             locate(grid, a, &middle, tolerance, solve, out);
             locate(grid, &middle, b, tolerance, solve, out);
         }
-        Between::Unknown => out.extend(differences(grid, a, b)),
+        Between::Unknown => {
+            let (mut low, mut high, mut later) = (a.clone(), b.clone(), Vec::new());
+            for _ in 0..MOST_HALVINGS {
+                let Between::State(state) = solve(0.5 * (low.time + time), [&low.zone, &high.zone]) else { break };
+                locate(grid, &low, &state, tolerance, solve, out);
+                low = state;
+            }
+            for _ in 0..MOST_HALVINGS {
+                let Between::State(state) = solve(0.5 * (time + high.time), [&high.zone, &low.zone]) else { break };
+                let mut found = Vec::new();
+                locate(grid, &state, &high, tolerance, solve, &mut found);
+                later.splice(0..0, found);
+                high = state;
+            }
+            out.extend(differences(grid, &low, &high));
+            out.extend(later);
+        }
     }
 }
 
@@ -303,6 +324,15 @@ fn inside<const D: usize, Z: Zone<D>>(grid: &Grid<D>, zone: &Z, outline: &[Point
     })
 }
 
+/// The narrowest places between zones that are one in another state.
+pub fn bridges_closed<const D: usize, Z: Zone<D>>(grid: &Grid<D>, apart: &Z, joined: &Z) -> Vec<Bridge<D>> {
+    let (parts, whole) = (parts(grid, apart), joined.counts().0);
+    let overlap = overlaps(grid, apart, joined, [parts.len(), whole]);
+    let of_whole =
+        |j: usize| bridges(&(0..parts.len()).filter(|&i| overlap[i][j]).map(|i| &parts[i]).collect::<Vec<_>>());
+    (0..whole).flat_map(of_whole).collect()
+}
+
 /// Which zones of both states share points of a grid of samples.
 fn overlaps<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Z, b: &Z, counts: [usize; 2]) -> Vec<Vec<bool>> {
     let mut out = vec![vec![false; counts[1]]; counts[0]];
@@ -331,7 +361,7 @@ fn for_each_sample<const D: usize>(grid: &Grid<D>, mut visit: impl FnMut(Point<D
 }
 
 /// The narrowest places between parts, one less than there are parts: those of the shortest tree that joins them.
-pub fn bridges<const D: usize>(parts: &[&Part<D>]) -> Vec<Bridge<D>> {
+fn bridges<const D: usize>(parts: &[&Part<D>]) -> Vec<Bridge<D>> {
     let mut out = Vec::new();
     let mut joined = vec![0];
     while joined.len() < parts.len() {

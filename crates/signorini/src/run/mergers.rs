@@ -9,7 +9,7 @@
 //! examples of singularities in a free boundary, Ann. Sc. Norm. Super. Pisa 4 (1977) 133). So `δ²` from states before,
 //! and `w` from states after, both tell the load at which they vanish; how far they differ tells how well it is known.
 
-use super::events::{Between, Event, Known, Part, bridges, differences, parts};
+use super::events::{Between, Event, Known, Part, bridges_closed, differences, parts};
 use signorini_fem::Grid;
 use signorini_geometry::Point;
 use signorini_membrane::zone::Zone;
@@ -152,7 +152,8 @@ pub fn locate<const D: usize, Z: Zone<D>>(
     let Some(known) = estimates(grid, &trails, merge).filter(|_| bracket > tolerance) else {
         return if bracket <= tolerance { Merger::Located(events) } else { Merger::Unknown };
     };
-    let bridges = all_bridges(grid, if merge { before } else { after });
+    let (apart, joined) = if merge { (before, after) } else { (after, before) };
+    let bridges = bridges_closed(grid, &apart.zone, &joined.zone);
     for event in &mut events {
         let at = Point::<D>::from_fn(|k, _| event.at[k]);
         let nearest = (0..bridges.len())
@@ -169,11 +170,6 @@ pub fn locate<const D: usize, Z: Zone<D>>(
     Merger::Located(events)
 }
 
-/// The bridges between the parts of a state.
-fn all_bridges<const D: usize, Z: Zone<D>>(grid: &Grid<D>, state: &Known<Z>) -> Vec<Bridge<D>> {
-    bridges(&parts(grid, &state.zone).iter().collect::<Vec<_>>())
-}
-
 /// The shortest way between each pair of parts.
 fn between_pairs<const D: usize>(parts: &[Part<D>]) -> Vec<Bridge<D>> {
     (1..parts.len()).flat_map(|j| (0..j).filter_map(move |i| nearest(&parts[i], &parts[j]))).collect()
@@ -183,7 +179,7 @@ fn between_pairs<const D: usize>(parts: &[Part<D>]) -> Vec<Bridge<D>> {
 fn estimates<const D: usize, Z: Zone<D>>(grid: &Grid<D>, trails: &[Trail<Z>; 2], merge: bool) -> Option<Vec<[f64; 2]>> {
     let [apart, joined] = if merge { [&trails[0], &trails[1]] } else { [&trails[1], &trails[0]] };
     let (apart, joined) = (apart.last()?, joined.last()?);
-    let list = all_bridges(grid, &apart[TRAIL - 1]);
+    let list = bridges_closed(grid, &apart[TRAIL - 1].zone, &joined[TRAIL - 1].zone);
     let pairs: Vec<Vec<Bridge<D>>> = apart.iter().map(|state| between_pairs(&parts(grid, &state.zone))).collect();
     let of_bridge = |bridge: &Bridge<D>| {
         // The same bridge in the other states.

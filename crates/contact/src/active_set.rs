@@ -56,6 +56,8 @@ pub struct Softness {
 pub struct ActiveSet {
     /// Terms and forces of every row, to see whether they changed.
     rows: Vec<[Vec<(u32, f64)>; 2]>,
+    /// Number of rows of the last step, here or in the run that this one goes on from; zero before the first.
+    count: usize,
     springs: Vec<Spring>,
     /// Unknowns that rows and springs touch, and their places.
     touched: Vec<u32>,
@@ -91,12 +93,12 @@ impl ActiveSet {
 
     /// The active rows of the last step, and how many rows there were.
     pub fn save(&self) -> (Vec<usize>, usize) {
-        (self.active.iter().copied().collect(), self.rows.len())
+        (self.active.iter().copied().collect(), self.count)
     }
 
     /// Goes on from what was saved.
-    pub fn restored((active, rows): (Vec<usize>, usize)) -> Self {
-        ActiveSet { rows: vec![Default::default(); rows], ..Self::starting_with(active) }
+    pub fn restored((active, count): (Vec<usize>, usize)) -> Self {
+        ActiveSet { count, ..Self::starting_with(active) }
     }
 
     /// Finds pressures `λ ≥ 0` with gaps `g + B u ≥ 0`, `λ (g + B u) = 0`, `K u = f + Bᵀλ`; soft rows as
@@ -184,9 +186,10 @@ impl ActiveSet {
             return;
         }
         self.columns.clear();
-        if self.rows.len() != rows.len() && !self.rows.is_empty() {
+        if self.count != rows.len() && self.count != 0 {
             self.active.clear();
         }
+        self.count = rows.len();
         self.rows = rows.iter().map(|r| [r.terms.clone(), r.forces.clone()]).collect();
         self.springs = springs.to_vec();
         let touched: BTreeSet<u32> =

@@ -1,6 +1,7 @@
 //! The contact conditions, checked at every quadrature point, and the sets on which they fail.
 
 use crate::equilibrium::Equilibrium;
+use crate::kinks::{Kink, kink};
 use crate::obstacle::Side;
 use crate::problem::Membrane;
 use crate::scales::Scales;
@@ -56,15 +57,17 @@ pub struct Conditions<const D: usize> {
     pub deepest: (Side, Point<D>),
     /// Least pressure with which a body would push where the free membrane penetrates it.
     pub least_pressure_below: f64,
-    /// Least pressure in contact.
+    /// Least pressure in contact where no adhesion holds, and what valleys of the bodies need everywhere.
     pub least_pressure: f64,
-    pub most_pulled: Point<D>,
+    /// The sharpest kink of a body in contact.
+    pub kink: Option<Kink<D>>,
     /// A point of a support that the zone covers although the body there lies apart from it.
     pub torn_from_support: Option<Point<D>>,
 }
 
 impl<const D: usize> Conditions<D> {
-    pub fn check<Z: Zone<D>>(equilibrium: &Equilibrium<D>, zone: &Z, scales: &Scales) -> Self {
+    /// Checks a state in which adhesion holds, or is left out.
+    pub fn check<Z: Zone<D>>(equilibrium: &Equilibrium<D>, zone: &Z, scales: &Scales, adhering: bool) -> Self {
         let membrane = &equilibrium.membrane;
         let band = 0.5 * membrane.grid.h();
         let mut c = Self {
@@ -74,7 +77,7 @@ impl<const D: usize> Conditions<D> {
             deepest: (Side::Below, Point::zeros()),
             least_pressure_below: f64::INFINITY,
             least_pressure: f64::INFINITY,
-            most_pulled: Point::zeros(),
+            kink: None,
             torn_from_support: None,
         };
         for p in &equilibrium.quadrature.rim {
@@ -85,6 +88,7 @@ impl<const D: usize> Conditions<D> {
                 }
             }
         }
+        let mut searched = None;
         equilibrium.for_each_point(|cell, region, x, _| {
             if is_free(region) {
                 let Some((u, _)) = equilibrium.evaluate(cell, region, x) else { return };
@@ -111,9 +115,13 @@ impl<const D: usize> Conditions<D> {
                 if let Some(i) = membrane.obstacles.index_at(side, x) {
                     c.extremes[i].add_pressure(pressure);
                 }
-                if pressure < c.least_pressure {
-                    c.least_pressure = pressure;
-                    c.most_pulled = *x;
+                // Those of neighbours cover each other's cells: one point of a cell is enough.
+                let first = searched.replace((cell, region)) != Some((cell, region));
+                let size = membrane.cells.size(cell);
+                let kink = if first { kink(membrane, zone, side, x, size, adhering) } else { None };
+                c.least_pressure = c.least_pressure.min(needed(membrane, side, x, kink, adhering));
+                if kink.is_some_and(|k| c.kink.is_none_or(|worst| k.jump > worst.jump)) {
+                    c.kink = kink;
                 }
             }
         });
@@ -125,19 +133,32 @@ impl<const D: usize> Conditions<D> {
     }
 
     /// Whether all that is wrong is a penetration not much larger than what counts as none.
-    pub fn nearly_hold(&self, scales: &Scales, sticky: bool) -> bool {
-        let slight = self.worst >= -NEARLY;
-        slight && (sticky || !self.pulls(scales)) && self.torn_from_support.is_none()
+    pub fn nearly_hold(&self, scales: &Scales) -> bool {
+        self.worst >= -NEARLY && !self.pulls(scales) && self.torn_from_support.is_none()
     }
 
-    /// Whether the contact conditions hold everywhere. Where the floor is sticky it may pull.
-    pub fn hold(&self, scales: &Scales, sticky: bool) -> bool {
-        !self.penetrates() && (sticky || !self.pulls(scales)) && self.torn_from_support.is_none()
+    /// Whether the contact conditions hold everywhere.
+    pub fn hold(&self, scales: &Scales) -> bool {
+        !self.penetrates() && !self.pulls(scales) && self.torn_from_support.is_none()
     }
 
     pub fn pulls(&self, scales: &Scales) -> bool {
         self.least_pressure < -scales.pressure_tolerance()
     }
+}
+
+/// The pressure with which a body must push about a point of contact: its own, as far as adhesion does not provide it where
+/// it is negative, and that of kinks.
+fn needed<const D: usize>(
+    membrane: &Membrane<D>,
+    side: Side,
+    x: &Point<D>,
+    kink: Option<Kink<D>>,
+    adhering: bool,
+) -> f64 {
+    let pressure = membrane.pressure(side, x);
+    let held = adhering && membrane.adhesive_slope(side, x).0 > 0.0;
+    (if held { pressure.max(0.0) } else { pressure }) + kink.map_or(0.0, |k| k.pressure)
 }
 
 /// The zone with the parts added where the free membrane penetrates a body that can push, and the parts removed where
@@ -147,15 +168,18 @@ pub fn corrected<const D: usize, Z: Zone<D>>(
     zone: &Z,
     conditions: &Conditions<D>,
     scales: &Scales,
-    sticky: bool,
+    adhering: bool,
 ) -> Z {
     let membrane = &equilibrium.membrane;
     let grid = &membrane.grid;
     let mut result = zone.clone();
-    if conditions.pulls(scales) && !sticky {
+    if conditions.pulls(scales) {
         // First what pulls: added parts may then grow into its place.
         result = result.reduced(grid, &mut |x| match contact_of(zone.region_at(x)) {
-            Some((side, _)) => (membrane.pressure(side, x) - scales.pressure_tolerance()) / scales.pressure,
+            Some((side, _)) => {
+                let kink = kink(membrane, zone, side, x, grid.h(), adhering);
+                (needed(membrane, side, x, kink, adhering) - scales.pressure_tolerance()) / scales.pressure
+            }
             None => 1.0,
         });
     }

@@ -259,7 +259,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         let (gap, side, deepest) = least_free_gap(equilibrium, &solution.zone);
         if gap >= FREE * scales.gap {
             solution.margin = Some(gap);
-            solution.conditions = Some(Conditions::check(equilibrium, &solution.zone, &scales));
+            solution.conditions = Some(Conditions::check(equilibrium, &solution.zone, &scales, false));
             return Ok(Some(Reason::NoContact));
         }
         match self.sweep()? {
@@ -298,16 +298,16 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             let (Some(equilibrium), Some(scales)) = (&solution.equilibrium, &solution.scales) else {
                 return Ok(Reason::IterationLimit);
             };
-            let conditions = Conditions::check(equilibrium, &solution.zone, scales);
+            let conditions = Conditions::check(equilibrium, &solution.zone, scales, self.adhering);
             let first = solution.zone.is_empty();
-            if conditions.hold(scales, self.adhering) {
+            if conditions.hold(scales) {
                 solution.conditions = Some(conditions);
                 return Ok(if solution.zone.is_empty() { Reason::NoContact } else { Reason::Converged });
             }
             // Corrected and settled again it would come back to itself: the grid cannot tell whether zones touch.
             let state = (solution.zone.counts(), conditions.least_gap_outside);
             let again = |(counts, gap): &((usize, usize), f64)| *counts == state.0 && (gap / state.1 - 1.0).abs() < 0.1;
-            if !first && conditions.nearly_hold(scales, self.adhering) && seen.iter().any(again) {
+            if !first && conditions.nearly_hold(scales) && seen.iter().any(again) {
                 solution.unresolved = Some(-conditions.least_gap_outside);
                 solution.conditions = Some(conditions);
                 return Ok(Reason::Converged);

@@ -125,6 +125,10 @@ pub fn explain(asked: &str) -> Result<String, CaseError> {
     for key in schema::find(asked.trim()) {
         let needed = if key.required { ", needed" } else { "" };
         text += &format!("{} (key: {}{needed})\n  {}\n", key.path, key.kind, key.about);
+        let within = schema::keys_in(&key.path);
+        if !within.is_empty() {
+            text += &format!("  with {}\n", within.join(", "));
+        }
     }
     if !text.is_empty() {
         return Ok(text);
@@ -148,6 +152,7 @@ mod tests {
     fn keys_and_words_are_explained() {
         assert!(explain("iteration_limit").expect("known").contains("more cells"));
         assert!(explain("bodies.film.membrane.tension").expect("known").contains("Force per length"));
+        assert!(explain("domain").expect("known").contains("with disc, "));
         assert!(explain("exit status").expect("known").contains("130"));
         let wrong = explain("tensoin").expect_err("unknown");
         assert!(wrong.help.expect("help").contains("tension"));

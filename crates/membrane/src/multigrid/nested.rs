@@ -72,8 +72,8 @@ pub fn solution(
     }
     let zone = found.zone;
     let equilibrium = found.level.whole_state(membrane, &zone);
-    let conditions = Conditions::check(&equilibrium, &zone, &found.scales);
-    if !conditions.hold(&found.scales, false) {
+    let conditions = Conditions::check(&equilibrium, &zone, &found.scales, false);
+    if !conditions.hold(&found.scales) {
         return Ok(None);
     }
     Ok(Some(Solution {

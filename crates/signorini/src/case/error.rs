@@ -105,14 +105,14 @@ pub fn from_toml(name: &str, text: &str, error: &toml::de::Error) -> CaseError {
         && let Some((key, expected)) = rest.split_once('`')
     {
         let known: Vec<&str> = expected.split('`').skip(1).step_by(2).collect();
-        ours.message = format!("unknown key `{key}`");
+        ours.message = format!("unknown {} `{key}`", if quoted(text, error.span()) { "word" } else { "key" });
         ours.help = Some(suggestion(key, &known));
     } else if let Some(key) = message.strip_prefix("missing field `").and_then(|r| r.strip_suffix('`')) {
         ours.message = format!("missing key `{key}`");
         ours.help = Some(format!("add `{key} = …` to this table"));
     } else if message.contains("wanted exactly 1 element") || message.contains("wanted string or table") {
-        ours.message = "a choice is a table with exactly one key".into();
-        ours.help = Some("write for example  shape.height = \"-0.1\"".into());
+        ours.message = "expected a choice: one word in quotes, or a table with exactly one key".into();
+        ours.help = key_before(text, error.span()).map(|key| format!("`signorini explain {key}` tells the choices"));
     } else if let Some((found, wanted)) = message
         .strip_prefix("invalid type: ")
         .or_else(|| message.strip_prefix("invalid value: "))
@@ -125,6 +125,18 @@ pub fn from_toml(name: &str, text: &str, error: &toml::de::Error) -> CaseError {
     let end =
         text[span.start.min(text.len())..span.end.min(text.len())].find('\n').map_or(span.end, |n| span.start + n);
     ours.at(name, text, span.start..end.max(span.start))
+}
+
+/// Whether a place in a text is one in quotes.
+fn quoted(text: &str, span: Option<Range<usize>>) -> bool {
+    span.and_then(|s| text.get(s.start..)).is_some_and(|value| value.starts_with(['"', '\'']))
+}
+
+/// The last word of the key whose value stands at a place, where both are on one line.
+fn key_before(text: &str, span: Option<Range<usize>>) -> Option<&str> {
+    let before = text.get(..span?.start)?.trim_end().strip_suffix('=')?.trim_end();
+    let word = before.rsplit(|c: char| !(c.is_alphanumeric() || c == '_')).next()?;
+    (!word.is_empty()).then_some(word)
 }
 
 /// What a type of the reader is called in a case file.
@@ -203,6 +215,10 @@ mod tests {
             ("mesh.grid = 5", "expected a table of keys, found `5`"),
             ("mesh.grid = { cells = 40 }", "expected a list in brackets, found `40`"),
             ("domain = 3", "choice"),
+            ("domain = {}", "choice"),
+            ("domain = { disc.radius = 1, interval.to = 2 }", "exactly one key"),
+            ("domain = \"disk\"", "unknown word `disk`"),
+            ("domain.disk.radius = 3", "unknown key `disk`"),
             ("mesh.grid = { cells = [10], refine = 3 }", "expected a table of keys, found `3`"),
         ] {
             let text = format!("{head}{line}\n");
@@ -210,6 +226,17 @@ mod tests {
             assert!(error.message.contains(expected), "{line}: {}", error.message);
             assert!(!error.message.contains("i64") && !error.message.contains("Key"), "{line}: {}", error.message);
         }
+    }
+
+    #[test]
+    fn the_choices_of_a_key_are_pointed_to() {
+        for line in ["domain = 3", "domain = { disc.radius = 1, interval.to = 2 }", "domain={}"] {
+            let text = format!("space = \"line\"\n[bodies.film.membrane]\ntension = 1.0\n{line}\n");
+            let error = crate::case::Document::parse("case.toml", &text, &[]).expect_err(line);
+            assert!(error.help.is_some_and(|h| h.contains("explain domain")), "{line}");
+        }
+        assert_eq!(key_before("a = { b.c = 1", Some(12..13)), Some("c"));
+        assert_eq!(key_before("[1, 2]", Some(4..5)), None);
     }
 
     #[test]

@@ -47,6 +47,15 @@ pub fn find(word: &str) -> Vec<Key> {
     keys().into_iter().filter(|k| matches(&k.path)).collect()
 }
 
+/// The names of the keys that stand in the table of another one.
+pub fn keys_in(path: &str) -> Vec<String> {
+    let below = |key: Key| {
+        let name = key.path.strip_prefix(path)?.trim_start_matches("[]").strip_prefix('.')?.trim_end_matches("[]");
+        (!name.contains('.')).then(|| name.to_string())
+    };
+    keys().into_iter().filter_map(below).collect()
+}
+
 /// All keys as a table in Markdown: the reference of the manual.
 pub fn markdown() -> String {
     let mut text = String::from(

@@ -12,7 +12,6 @@ use signorini_membrane::conditions::Extremes;
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::error_estimate::ErrorEstimate;
 use signorini_membrane::ils::{self, Reason, Solution, Start};
-use signorini_membrane::kinks::kink;
 use signorini_membrane::problem::Membrane;
 use signorini_membrane::refinement::Refinement;
 use signorini_membrane::report::{Component, ContactReport, Report};
@@ -293,10 +292,8 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         }
         let mut warnings = Vec::new();
         let steepest = report.as_ref().map_or(0.0, |r| r.max_slope);
-        if let (true, Some(state)) = (estimated, &solution.equilibrium)
-            && let Some(x) = kink(state)
-        {
-            let place: Vec<String> = x.iter().map(|v| format!("{v:.4}")).collect();
+        if let Some(kink) = solution.conditions.as_ref().and_then(|c| c.kink).filter(|_| estimated) {
+            let place: Vec<String> = kink.place.iter().map(|v| format!("{v:.4}")).collect();
             warnings.push(format!(
                 "what the membrane touches has a kink within the contact, near ({}): along it the pressure is a line force that the method \
                  leaves out, and the error estimate does not see it; round the kink off by a few cells",

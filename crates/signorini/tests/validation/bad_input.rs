@@ -64,7 +64,7 @@ fn each_mistake_is_told_at_its_place() {
         ("on = \"film:boundary\"", "on = \"film:edge\"", "no group `edge`", "\"film:edge\"", "boundary"),
         ("on = \"film:boundary\"", "on = \"flim:boundary\"", "no body `flim`", "\"flim:boundary\"", "`film`"),
         ("between = [\"film\", \"floor\"]", "between = [\"film\", \"flor\"]", "no body `flor`", "\"flor\"", "`floor`"),
-        ("space = \"plane\"", "space = \"plain\"", "unknown key `plain`", "\"plain\"", "`plane`"),
+        ("space = \"plane\"", "space = \"plain\"", "unknown word `plain`", "\"plain\"", "`plane`"),
         ("space = \"plane\"", "space = \"3d\"", "one of solids", "\"3d\"", "plane"),
         ("space = \"plane\"", "space = \"plane", "string", "", ""),
     ];

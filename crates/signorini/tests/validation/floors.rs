@@ -160,6 +160,63 @@ fn kinks_of_the_floor_in_contact_are_told() {
     assert!(!waves["warnings"].to_string().contains("kink"));
 }
 
+/// Benchmark A4, a parabolic cap over a flat floor at the height of the rim: the membrane leaves the cap where
+/// `ln(1/s²) = ρ²/s² - 1`. The foot of the cap is a valley, along which contact would have to pull.
+#[test]
+fn the_foot_of_a_cap_is_bridged() {
+    let (rho, height) = (0.5, 0.1);
+    let (mut low, mut high) = (1e-3, rho);
+    for _ in 0..200 {
+        let s: f64 = 0.5 * (low + high);
+        if s.powi(-2).ln() < rho * rho / (s * s) - 1.0 { low = s } else { high = s }
+    }
+    let force = 4.0 * PI * height * low * low / (rho * rho);
+    for (space, r2, tolerance) in [("axisymmetric", "x^2", 1e-9), ("plane", "(x^2 + y^2)", 1e-6)] {
+        let cap = format!("height = \"{height} * max(0, 1 - {r2} / {rho}^2)\"");
+        let found = touch(&pushed(space, &cap, 0.0));
+        assert!(((found.0 / PI).sqrt() - low).abs() < tolerance, "{space}: {found:?}");
+        assert!((found.1 - force).abs() < 10.0 * tolerance, "{space}: {found:?}");
+    }
+}
+
+/// A string pressed into a valley of two slopes bridges it over `(2 j - 2 √(2γ/T)) T/f`, and lies in it where adhesion holds it.
+#[test]
+fn valleys_are_bridged_as_far_as_adhesion_lets_them() {
+    let (slope, deep, at, press) = (0.3, 0.4, 0.013, 3.0);
+    for (energy, zones) in [(0.0, 2), (0.005, 2), (0.03, 2), (0.08, 1)] {
+        let adhesive = f64::sqrt(2.0 * energy);
+        let bridged = (2.0 * (slope - adhesive) / press).max(0.0);
+        // From each support down to where it touches: a parabola that leaves the floor with the adhesive slope.
+        let free = |width: f64| {
+            let drop = deep - slope * width;
+            ((adhesive * adhesive + 2.0 * press * drop).sqrt() - adhesive) / press
+        };
+        let exact = 2.0 - free(1.0 - at) - free(1.0 + at) - bridged;
+        let shape = format!("height = \"-{deep} + {slope} * abs(x - {at})\"");
+        let mut case = pushed("line", &shape, 0.0) + &format!("adhesion.energy = {energy}\n");
+        case += &format!("[loads.press]\non = \"film\"\nnormal = -{press}\n");
+        let found = summary(&case, &set(&[]));
+        let contact = &last_step(&found)["contacts"]["touch"];
+        assert_eq!(contact["zones"], zones, "{energy}");
+        assert!((number(&contact["area"]) - exact).abs() < 1e-9, "{energy}: {} {exact}", contact["area"]);
+        assert_eq!(found["warnings"].to_string().contains("kink"), zones == 1, "{energy}");
+    }
+}
+
+/// Three flat slopes that meet in a pit are touched in three zones, the pit and its valleys bridged.
+#[test]
+fn valleys_in_the_plane_divide_the_contact() {
+    let pit = "height = \"-0.4 + max(0.1*x, 0.15*(y - 0.02), -0.2*x - 0.05*y)\"";
+    let case = pushed("plane", pit, 0.0) + "[loads.press]\non = \"film\"\nnormal = -3.0\n";
+    let finer =
+        [("bodies.film.membrane.degree", "2".into()), ("bodies.film.membrane.mesh.grid.cells", "[40, 40]".into())];
+    let found = summary(&case, &set(&finer));
+    let contact = &last_step(&found)["contacts"]["touch"];
+    assert_eq!((&contact["zones"], &contact["holes"]), (&3.into(), &0.into()));
+    // On flat slopes the pressure is the load.
+    assert!((number(&contact["force"][2]) / number(&contact["area"]) - 3.0).abs() < 1e-6);
+}
+
 /// Upside down everything is the same, with the other sign.
 #[test]
 fn bodies_above_are_those_below_upside_down() {

@@ -4,6 +4,7 @@ use crate::equilibrium::Equilibrium;
 use crate::kinks::{Kink, kink};
 use crate::obstacle::Side;
 use crate::problem::Membrane;
+use crate::quadrature::Cell;
 use crate::scales::Scales;
 use crate::zone::{Zone, contact_index, contact_of, is_free};
 use signorini_geometry::Point;
@@ -115,10 +116,12 @@ impl<const D: usize> Conditions<D> {
                 if let Some(i) = membrane.obstacles.index_at(side, x) {
                     c.extremes[i].add_pressure(pressure);
                 }
-                // Those of neighbours cover each other's cells: one point of a cell is enough.
+                // What is searched about the points of neighbours covers their cells: one of each is enough, where there are
+                // neighbours on all sides.
                 let first = searched.replace((cell, region)) != Some((cell, region));
+                let search = first || !matches!(equilibrium.quadrature.cells[cell], Cell::Whole(_));
                 let size = membrane.cells.size(cell);
-                let kink = if first { kink(membrane, zone, side, x, size, adhering) } else { None };
+                let kink = if search { kink(membrane, zone, side, x, size, adhering) } else { None };
                 c.least_pressure = c.least_pressure.min(needed(membrane, side, x, kink, adhering));
                 if kink.is_some_and(|k| c.kink.is_none_or(|worst| k.jump > worst.jump)) {
                     c.kink = kink;

@@ -171,18 +171,22 @@ pub(crate) fn is_clear<const D: usize, Z: Zone<D>>(free: &Equilibrium<D>, none: 
     least_free_gap(free, none).0 >= FREE * Scales::of_free(free).gap
 }
 
-/// A zone smaller than a cell that shrinks: there is nothing that would stop it.
-fn lost<const D: usize>(equilibrium: &Equilibrium<D>, fronts: &Fronts<'_, D>, zones: usize) -> Option<usize> {
+/// The area of each zone as it is drawn, whatever it weighs.
+fn areas<const D: usize>(equilibrium: &Equilibrium<D>, zones: usize) -> Vec<f64> {
     let mut area = vec![0.0; zones];
     equilibrium.for_each_point(|_, region, x, w| {
-        // As large as it is drawn, whatever it weighs.
         if let Some(a) = contact_index(region).and_then(|k| area.get_mut(k)) {
             *a += w / equilibrium.membrane.measure.weight(x);
         }
     });
+    area
+}
+
+/// A zone smaller than a cell that shrinks: there is nothing that would stop it.
+fn lost<const D: usize>(equilibrium: &Equilibrium<D>, fronts: &Fronts<'_, D>, area: &[f64]) -> Option<usize> {
     let cell = equilibrium.membrane.grid.h().powi(D as i32);
-    let drive = fronts.drive_of_zones(zones);
-    (0..zones).find(|&k| area[k] < SMALL * cell && drive[k] > 0.0)
+    let drive = fronts.drive_of_zones(area.len());
+    (0..area.len()).find(|&k| area[k] < SMALL * cell && drive[k] > 0.0)
 }
 
 struct Run<'a, 'b, const D: usize, Z> {
@@ -372,10 +376,21 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 self.solution.equilibrium = Some(equilibrium);
                 return Ok(Fixed::AtRest);
             }
+            let area = areas(&equilibrium, zone.counts().0);
+            if let Some(beyond) = area.iter().position(|a| *a == 0.0) {
+                // Its fronts have left the membrane.
+                let zone = zone.without(&self.membrane.grid, beyond);
+                self.report(0.0, "zone left the membrane");
+                (best, waited, previous, falls) = (f64::INFINITY, 0, f64::INFINITY, 0);
+                acceleration = Acceleration::default();
+                self.solution.equilibrium = Some(equilibrium);
+                self.solution.zone = zone;
+                continue;
+            }
             let h = self.membrane.grid.h();
             let fronts = Fronts::new(&equilibrium, self.adhering);
             if let (true, Branch::Stable) = (self.adhering, self.branch)
-                && let Some(part) = lost(&equilibrium, &fronts, zone.counts().0)
+                && let Some(part) = lost(&equilibrium, &fronts, &area)
             {
                 let zone = zone.without(&self.membrane.grid, part);
                 self.report(0.0, "zone lost");

@@ -4,15 +4,17 @@
 use crate::obstacle::Side;
 use crate::problem::Membrane;
 use crate::zone::{Zone, contact_of};
-use signorini_geometry::{Point, Vector};
+use signorini_geometry::{Jet, Point, Vector};
 
-/// A change of slope counts as a kink beyond so many times what the curvature explains ...
+/// A kink is suspected where the slope changes by more than this many times what the curvature explains ...
+const SUSPECTED: f64 = 1.1;
+/// ... and is one where it still does so many times ...
 const UNEXPLAINED: f64 = 4.0;
-/// ... and beyond this fraction of the slope.
+/// ... on a way so often halved, ...
+const NARROWED: usize = 10;
+/// ... and by more than this fraction of itself.
 const NOTABLE: f64 = 0.02;
-/// Part of the distance to the nearest front that is surely within the contact.
-const WITHIN: f64 = 0.9;
-/// Halvings of the way across a kink that find its place.
+/// Halvings of a way that find a front.
 const HALVINGS: usize = 30;
 
 /// Kinks about a point of the contact.
@@ -44,19 +46,14 @@ pub fn kink<const D: usize, Z: Zone<D>>(
     }
     let crossings = (0..D).filter_map(|axis| {
         let way = across(membrane, x, axis, h);
-        if !bends(membrane, side, x, &way) {
-            return None;
-        }
-        let way = way.map(|y| if touches(zone, side, &y) { y } else { x + (y - x) * clear(zone, x, &y) });
-        bends(membrane, side, x, &way).then(|| {
-            let [low, high] = way.map(|y| slope(membrane, side, &y));
-            let jump = high - low;
-            let held = if adhering { 2.0 * membrane.adhesive_slope(side, x).0 } else { 0.0 };
-            let push = -side.sign() * jump[axis];
-            let push = if push < 0.0 { (push + held).min(0.0) } else { push };
-            let pressure = membrane.tension.value(x) * push / (way[1] - way[0]).norm();
-            Kink { place: sharpest(membrane, side, way), jump: jump.norm(), pressure }
-        })
+        sharpest(membrane, side, &way)?;
+        let way = way.map(|y| within(zone, side, x, y));
+        let (place, jump) = sharpest(membrane, side, &way)?;
+        let held = if adhering { 2.0 * membrane.adhesive_slope(side, x).0 } else { 0.0 };
+        let push = -side.sign() * jump[axis];
+        let push = if push < 0.0 { (push + held).min(0.0) } else { push };
+        let pressure = membrane.tension.value(x) * push / (way[1] - way[0]).norm();
+        Some(Kink { place, jump: jump.norm(), pressure })
     });
     crossings.reduce(|a, b| {
         let sharper = if a.jump < b.jump { b } else { a };
@@ -72,41 +69,40 @@ fn across<const D: usize>(membrane: &Membrane<D>, x: &Point<D>, axis: usize, h: 
     [bounds.clamp(&(x - half)), bounds.clamp(&(x + half))]
 }
 
-fn slope<const D: usize>(membrane: &Membrane<D>, side: Side, x: &Point<D>) -> Vector<D> {
-    membrane.obstacles.jet(side, x).gradient
-}
-
-/// Whether the slope changes on a way through a point by more than the curvature explains.
-fn bends<const D: usize>(membrane: &Membrane<D>, side: Side, x: &Point<D>, way: &[Point<D>; 2]) -> bool {
-    let [low, high] = [&way[0], &way[1]].map(|y| membrane.obstacles.jet(side, y));
-    let change = (high.gradient - low.gradient).norm();
-    let explained = UNEXPLAINED * (way[1] - way[0]).norm();
-    change > NOTABLE * low.gradient.norm().max(high.gradient.norm())
-        && change > explained * low.hessian.norm().max(high.hessian.norm())
-        // Nearly always it is smooth, and known to be so without this.
-        && change > explained * membrane.obstacles.jet(side, x).hessian.norm()
-}
-
-/// Where on a way the slope changes most.
-fn sharpest<const D: usize>(membrane: &Membrane<D>, side: Side, way: [Point<D>; 2]) -> Point<D> {
-    let [mut low, mut high] = way.map(|y| (y, slope(membrane, side, &y)));
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low.0 + high.0);
-        let there = slope(membrane, side, &middle);
-        if (there - low.1).norm() > (high.1 - there).norm() {
-            high = (middle, there);
-        } else {
-            low = (middle, there);
-        }
+/// Where on a way there is a kink, and by how much the slope changes there.
+fn sharpest<const D: usize>(membrane: &Membrane<D>, side: Side, way: &[Point<D>; 2]) -> Option<(Point<D>, Vector<D>)> {
+    let at = |x: Point<D>| (x, membrane.obstacles.jet(side, &x));
+    let change = |low: &(Point<D>, Jet<D>), high: &(Point<D>, Jet<D>)| (high.1.gradient - low.1.gradient).norm();
+    let beyond = |low: &(Point<D>, Jet<D>), high: &(Point<D>, Jet<D>), times: f64| {
+        let curvature = low.1.hessian.norm().max(high.1.hessian.norm());
+        let slope = low.1.gradient.norm().max(high.1.gradient.norm());
+        change(low, high) > (times * curvature * (high.0 - low.0).norm()).max(NOTABLE * slope)
+    };
+    let (mut low, mut high) = (at(way[0]), at(way[1]));
+    // Nearly always it is smooth, and known to be so at once.
+    if !beyond(&low, &high, SUSPECTED) {
+        return None;
     }
-    0.5 * (low.0 + high.0)
+    for _ in 0..NARROWED {
+        let middle = at(0.5 * (low.0 + high.0));
+        if change(&low, &middle) > change(&middle, &high) { high = middle } else { low = middle }
+    }
+    beyond(&low, &high, UNEXPLAINED).then(|| (0.5 * (low.0 + high.0), high.1.gradient - low.1.gradient))
 }
 
 fn touches<const D: usize, Z: Zone<D>>(zone: &Z, side: Side, x: &Point<D>) -> bool {
     contact_of(zone.region_at(x)).is_some_and(|c| c.0 == side)
 }
 
-/// The part of a way from a point of contact that is surely within it.
-fn clear<const D: usize, Z: Zone<D>>(zone: &Z, x: &Point<D>, end: &Point<D>) -> f64 {
-    (WITHIN * zone.distance(x) / (end - x).norm()).min(1.0)
+/// How far one may go from a point of contact towards another point without leaving it.
+fn within<const D: usize, Z: Zone<D>>(zone: &Z, side: Side, x: &Point<D>, end: Point<D>) -> Point<D> {
+    if touches(zone, side, &end) {
+        return end;
+    }
+    let (mut low, mut high) = (*x, end);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if touches(zone, side, &middle) { low = middle } else { high = middle }
+    }
+    low
 }

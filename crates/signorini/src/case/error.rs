@@ -178,7 +178,8 @@ fn found_in_words(found: &str) -> String {
 pub fn suggestion(word: &str, known: &[&str]) -> String {
     let nearest = known.iter().map(|k| (distance(word, k), *k)).min();
     match nearest {
-        Some((d, k)) if d <= 1 + word.chars().count() / 3 => format!("did you mean `{k}`?"),
+        // Another word altogether is no suggestion.
+        Some((d, k)) if d <= 1 + word.chars().count() / 3 && d < word.chars().count() => format!("did you mean `{k}`?"),
         Some(_) => format!("known here: {}", known.join(", ")),
         None => "nothing is known here".into(),
     }
@@ -243,6 +244,7 @@ mod tests {
     fn near_words_are_suggested_and_places_are_counted_in_characters() {
         assert_eq!(suggestion("tensoin", &["tension", "degree"]), "did you mean `tension`?");
         assert!(suggestion("q", &["tension", "degree"]).contains("known here"));
+        assert!(suggestion("q", &["e", "x"]).contains("known here"));
         let place = Place { name: "a".into(), text: "ä = 1\nbé = 2".into(), span: 10..11 };
         assert_eq!(place.line_and_column(), (2, 3));
     }

@@ -237,6 +237,8 @@ impl Parser<'_> {
         let is_function = function(name).is_some() || self.names.functions.contains_key(name);
         let help = if is_function {
             format!("`{name}` is a function: write {name}(…)")
+        } else if ["r", "radius"].contains(&name) {
+            "the radius is `x` in an axisymmetric case, and `hypot(x, y)` in the plane".into()
         } else {
             crate::case::suggestion(name, &known)
         };
@@ -399,6 +401,7 @@ mod tests {
             assert!(error.span.start == start && error.message.contains(word), "{text}: {error:?}");
         }
         assert!(parse("coss(x)", &names()).unwrap_err().help.unwrap().contains("`cos`"));
+        assert!(parse("r^2", &names()).unwrap_err().help.unwrap().contains("hypot"));
         let deep = "(".repeat(1000);
         assert!(parse(&deep, &names()).unwrap_err().message.contains("nested"));
         assert!(parse(&"1+".repeat(100_000), &names()).is_err());

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use signorini_fem::Grid;
 use signorini_geometry::Point;
 use signorini_membrane::obstacle::Side;
-use signorini_membrane::zone::{Zone, contact_index};
+use signorini_membrane::zone::{Zone, contact_index, is_free};
 use signorini_solve::{Iteration, Progress};
 
 /// One change of topology.
@@ -173,6 +173,10 @@ pub fn locate<const D: usize, Z: Zone<D>>(
     }
 }
 
+/// Steps by which the width of a mouth is felt, relative to a cell, and how many at most.
+const MOUTH_STEP: f64 = 0.02;
+const MOST_MOUTH: usize = 1000;
+
 /// States tried on the way to a jump.
 const MOST_TRIALS: usize = 120;
 
@@ -333,6 +337,32 @@ pub fn bridges_closed<const D: usize, Z: Zone<D>>(grid: &Grid<D>, apart: &Z, joi
     (0..whole).flat_map(of_whole).collect()
 }
 
+/// The mouths of what is a hole in one state, and no hole in another: where the contact about it is narrowest, how far it
+/// is from front to front across the mouth. None where the zone fills that place: such a hole closed by shrinking to nothing.
+pub fn mouths_closed<const D: usize, Z: Zone<D>>(grid: &Grid<D>, open: &Z, closed: &Z) -> Option<Vec<Bridge<D>>> {
+    let outlines = closed.outlines();
+    let mut new: Vec<usize> = (0..outlines.len()).filter(|&k| is_hole(&outlines[k])).collect();
+    let places: Vec<Point<D>> = new.iter().map(|&k| mean(&outlines[k])).collect();
+    let before: Vec<Point<D>> = open.outlines().iter().filter(|o| is_hole(o)).map(|o| mean(o)).collect();
+    let unmatched = unmatched(&places, &before);
+    new.retain(|&k| unmatched.contains(&mean(&outlines[k])));
+    let mouth = |&k: &usize| {
+        let others: Vec<_> = (0..outlines.len()).filter(|j| *j != k).map(|j| outlines[j].clone()).collect();
+        let neck = nearest(&outlines[k..=k], &others)?;
+        let along = mergers::turned(&(neck.tips[1] - neck.tips[0])).try_normalize(0.0)?;
+        let middle = neck.middle();
+        let reach = |way: Point<D>| {
+            let step = MOUTH_STEP * grid.h();
+            let taken =
+                (1..MOST_MOUTH).find(|&i| contact_index(open.region_at(&(middle + way * (i as f64 * step)))).is_some());
+            Some(middle + way * (taken? as f64 * step))
+        };
+        is_free(open.region_at(&middle)).then_some(())?;
+        Some(Bridge { tips: [reach(-along)?, reach(along)?] })
+    };
+    new.iter().map(mouth).collect()
+}
+
 /// Which zones of both states share points of a grid of samples.
 fn overlaps<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Z, b: &Z, counts: [usize; 2]) -> Vec<Vec<bool>> {
     let mut out = vec![vec![false; counts[1]]; counts[0]];
@@ -389,17 +419,19 @@ fn mean<const D: usize>(points: &[Point<D>]) -> Point<D> {
     points.iter().sum::<Point<D>>() / points.len().max(1) as f64
 }
 
-/// Centres of the holes in the zones that touch one side: their fronts run clockwise.
+/// Centres of the holes in the zones that touch one side.
 fn holes<const D: usize, Z: Zone<D>>(grid: &Grid<D>, zone: &Z, side: Side) -> Vec<Point<D>> {
     if D == 1 {
         return Vec::new();
     }
-    let clockwise = |outline: &Vec<Point<D>>| {
-        let next = outline.iter().cycle().skip(1);
-        outline.iter().zip(next).map(|(p, q)| p[0] * q[D - 1] - p[D - 1] * q[0]).sum::<f64>() < 0.0
-    };
     let of_side = |o: &Vec<Point<D>>| inside(grid, zone, o).is_none_or(|k| zone.side_of(k) == side);
-    zone.outlines().iter().filter(|o| clockwise(o) && of_side(o)).map(|o| mean(o)).collect()
+    zone.outlines().iter().filter(|o| is_hole(o) && of_side(o)).map(|o| mean(o)).collect()
+}
+
+/// Whether an outline is that of a hole: it runs clockwise.
+fn is_hole<const D: usize>(outline: &[Point<D>]) -> bool {
+    let next = outline.iter().cycle().skip(1);
+    outline.iter().zip(next).map(|(p, q)| p[0] * q[D - 1] - p[D - 1] * q[0]).sum::<f64>() < 0.0
 }
 
 /// The places of a list that have none of the other list as their nearest partner.

@@ -9,7 +9,7 @@
 //! examples of singularities in a free boundary, Ann. Sc. Norm. Super. Pisa 4 (1977) 133). So `δ²` from states before,
 //! and `w` from states after, both tell the load at which they vanish; how far they differ tells how well it is known.
 
-use super::events::{Between, Event, Known, Part, bridges_closed, differences, parts};
+use super::events::{Between, Event, Known, bridges_closed, differences, mouths_closed};
 use signorini_fem::Grid;
 use signorini_geometry::Point;
 use signorini_membrane::zone::Zone;
@@ -47,6 +47,49 @@ impl<const D: usize> Bridge<D> {
     pub fn length(&self) -> f64 {
         (self.tips[0] - self.tips[1]).norm()
     }
+
+    fn along(&self) -> Point<D> {
+        (self.tips[1] - self.tips[0]) / self.length()
+    }
+
+    /// The same bridge in another state of the zones, in which it may be up to about twice as long.
+    fn between<Z: Zone<D>>(&self, zone: &Z) -> Option<Self> {
+        beside(zone, &self.middle(), &turned(&self.along()), self.length())
+    }
+
+    /// The narrowest place of the neck of a zone where this bridge was.
+    fn neck<Z: Zone<D>>(&self, zone: &Z) -> Option<Self> {
+        beside(zone, &self.middle(), &self.along(), self.length())
+    }
+}
+
+/// A direction turned by a right angle.
+pub fn turned<const D: usize>(d: &Point<D>) -> Point<D> {
+    Point::from_fn(|k, _| if k == 0 { -d[D - 1] } else { d[0] })
+}
+
+/// The nearest points of the pieces of outlines on the two sides of a line, near a point of it.
+fn beside<const D: usize, Z: Zone<D>>(zone: &Z, middle: &Point<D>, line: &Point<D>, length: f64) -> Option<Bridge<D>> {
+    let across = turned(line);
+    let mut sides: [Vec<Vec<Point<D>>>; 2] = Default::default();
+    for outline in zone.outlines() {
+        let mut last = None;
+        for p in outline {
+            let from = p - middle;
+            let near = from.dot(line).abs() <= length && from.norm() <= 2.0 * length;
+            let side = near.then(|| usize::from(from.dot(&across) > 0.0));
+            if let Some(k) = side {
+                if last != side {
+                    sides[k].push(Vec::new());
+                }
+                if let Some(piece) = sides[k].last_mut() {
+                    piece.push(p);
+                }
+            }
+            last = side;
+        }
+    }
+    nearest(&sides[0], &sides[1])
 }
 
 /// The states of one side of the merger, the nearest last.
@@ -90,14 +133,16 @@ pub fn locate<const D: usize, Z: Zone<D>>(
     solve: &mut dyn FnMut(f64, [&Z; 2]) -> Between<Z>,
 ) -> Merger<Z> {
     let found = differences(grid, a, b);
-    let all = |kind: &str, hole: &str| {
-        found.iter().any(|e| e.kind == kind) && found.iter().all(|e| e.kind == kind || e.kind == hole)
-    };
+    let all = |kind: &str, hole: &str| !found.is_empty() && found.iter().all(|e| e.kind == kind || e.kind == hole);
     let merge = match (all("merge", "hole_opened"), all("split", "hole_closed")) {
         (true, _) => true,
         (_, true) => false,
         _ => return Merger::Unknown,
     };
+    let [apart, joined] = if merge { [&a.zone, &b.zone] } else { [&b.zone, &a.zone] };
+    if bridges(grid, apart, joined).is_none() {
+        return Merger::Unknown;
+    }
     let counts = [a.zone.counts(), b.zone.counts()];
     let mut trails = [a, b].map(|state| Trail { states: vec![state.clone()], exhausted: false });
     let mut failed: Vec<f64> = Vec::new();
@@ -153,14 +198,15 @@ pub fn locate<const D: usize, Z: Zone<D>>(
         return if bracket <= tolerance { Merger::Located(events) } else { Merger::Unknown };
     };
     let (apart, joined) = if merge { (before, after) } else { (after, before) };
-    let bridges = bridges_closed(grid, &apart.zone, &joined.zone);
+    let bridges = bridges(grid, &apart.zone, &joined.zone).unwrap_or_default();
+    let of_zones = events.iter().any(|e| !e.kind.starts_with("hole"));
     for event in &mut events {
         let at = Point::<D>::from_fn(|k, _| event.at[k]);
         let nearest = (0..bridges.len())
             .min_by(|&i, &j| (bridges[i].middle() - at).norm().total_cmp(&(bridges[j].middle() - at).norm()));
-        // A hole is there as soon as the last neck is, and as long as the first is not gone.
+        // A hole between zones is there as soon as the last neck is, and as long as the first is not gone.
         let hole = known.iter().copied().reduce(|x, y| if (x[0] + x[1] < y[0] + y[1]) == merge { y } else { x });
-        let own = if event.kind.starts_with("hole") { hole } else { nearest.map(|k| known[k]) };
+        let own = if of_zones && event.kind.starts_with("hole") { hole } else { nearest.map(|k| known[k]) };
         let Some([low, high]) = own else { continue };
         event.time = (0.5 * (low + high)).clamp(before.time, after.time);
         // Estimates that agree by chance say no more than was asked for.
@@ -170,61 +216,28 @@ pub fn locate<const D: usize, Z: Zone<D>>(
     Merger::Located(events)
 }
 
-/// The shortest way between each pair of parts.
-fn between_pairs<const D: usize>(parts: &[Part<D>]) -> Vec<Bridge<D>> {
-    (1..parts.len()).flat_map(|j| (0..j).filter_map(move |i| nearest(&parts[i], &parts[j]))).collect()
+/// The ways between zones, or between two places of one zone, that a merger closes; none where a hole is none of them.
+fn bridges<const D: usize, Z: Zone<D>>(grid: &Grid<D>, apart: &Z, joined: &Z) -> Option<Vec<Bridge<D>>> {
+    let between = bridges_closed(grid, apart, joined);
+    let all = if between.is_empty() { mouths_closed(grid, apart, joined)? } else { between };
+    (!all.is_empty()).then_some(all)
 }
 
 /// For every bridge the least and the greatest of the times at which its length and the width of its neck vanish.
 fn estimates<const D: usize, Z: Zone<D>>(grid: &Grid<D>, trails: &[Trail<Z>; 2], merge: bool) -> Option<Vec<[f64; 2]>> {
     let [apart, joined] = if merge { [&trails[0], &trails[1]] } else { [&trails[1], &trails[0]] };
     let (apart, joined) = (apart.last()?, joined.last()?);
-    let list = bridges_closed(grid, &apart[TRAIL - 1].zone, &joined[TRAIL - 1].zone);
-    let pairs: Vec<Vec<Bridge<D>>> = apart.iter().map(|state| between_pairs(&parts(grid, &state.zone))).collect();
+    let list = bridges(grid, &apart[TRAIL - 1].zone, &joined[TRAIL - 1].zone)?;
     let of_bridge = |bridge: &Bridge<D>| {
-        // The same bridge in the other states.
-        let open = |list: &Vec<Bridge<D>>| {
-            let off = |b: &Bridge<D>| (b.middle() - bridge.middle()).norm();
-            let same = list.iter().min_by(|x, y| off(x).total_cmp(&off(y)))?;
-            (off(same) < 0.5 * same.length()).then(|| same.length().powi(2))
+        let measured = |list: &[Known<Z>], measure: &dyn Fn(&Z) -> Option<f64>| {
+            list.iter().map(|s| Some((measure(&s.zone)?, s.time))).collect::<Option<Vec<_>>>()
         };
-        let opened: Vec<(f64, f64)> =
-            pairs.iter().zip(apart).map(|(list, s)| Some((open(list)?, s.time))).collect::<Option<_>>()?;
-        let closed: Vec<(f64, f64)> =
-            joined.iter().map(|s| Some((neck(&s.zone, bridge)?, s.time))).collect::<Option<_>>()?;
+        let opened = measured(apart, &|zone| Some(bridge.between(zone)?.length().powi(2)))?;
+        let closed = measured(joined, &|zone| Some(bridge.neck(zone)?.length()))?;
         let all = vanishes(&opened)?.into_iter().chain(vanishes(&closed)?);
         Some(all.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], t| [l.min(t), h.max(t)]))
     };
-    list.iter().map(of_bridge).collect::<Option<Vec<_>>>().filter(|list| !list.is_empty())
-}
-
-/// The width of the neck of a zone where there was a bridge.
-fn neck<const D: usize, Z: Zone<D>>(zone: &Z, bridge: &Bridge<D>) -> Option<f64> {
-    let (middle, length) = (bridge.middle(), bridge.length());
-    let along = (bridge.tips[1] - bridge.tips[0]) / length;
-    let mut sides: [Vec<Vec<Point<D>>>; 2] = Default::default();
-    for outline in zone.outlines() {
-        // The pieces of the outline beside the line between the tips.
-        let mut last = None;
-        for p in outline {
-            let from = p - middle;
-            let s = from.dot(&along);
-            let beside = (s.abs() <= length && from.norm() <= 2.0 * length).then(|| {
-                let across = from - along * s;
-                usize::from(across[D - 1] * along[0] - across[0] * along[D - 1] > 0.0)
-            });
-            if let Some(side) = beside {
-                if last != beside {
-                    sides[side].push(Vec::new());
-                }
-                if let Some(piece) = sides[side].last_mut() {
-                    piece.push(p);
-                }
-            }
-            last = beside;
-        }
-    }
-    nearest(&sides[0], &sides[1]).map(|b| b.length())
+    list.iter().map(of_bridge).collect()
 }
 
 /// The nearest points of two sets of outlines.

@@ -90,6 +90,63 @@ pictures = false
     assert_eq!(found["warnings"].as_array().map(Vec::len), Some(0), "{}", found["warnings"]);
 }
 
+/// Two arms of one zone close to a ring round a dip of the floor, and part again. With 36 × 36 cells of degree 3 and a
+/// tolerance of 2e-3 they close at a load of 0.6512.
+#[test]
+fn a_zone_that_merges_with_itself() {
+    let case = r#"
+space = "plane"
+
+[bodies.film.membrane]
+domain.disc = { radius = 1.0 }
+mesh.grid = { cells = [30, 30] }
+degree = 2
+tension = 1.0
+
+[bodies.floor.rigid]
+shape.height = "-0.1 - 0.6*(x^2 + y^2 - 0.25)^2 - 0.01*exp(-((x + 0.5)^2 + y^2)/0.06)"
+
+[supports.rim]
+on = "film:boundary"
+displacement = 0.0
+
+[loads.press]
+on = "film"
+normal = "abs(t - 0.8) - 0.8"
+
+[contacts.touch]
+between = ["film", "floor"]
+method.inequality_level_set = {}
+
+[[steps]]
+to = 0.62
+increments = 1
+[[steps]]
+to = 0.7
+increments = 1
+events = 4e-3
+[[steps]]
+to = 0.9
+increments = 1
+[[steps]]
+to = 0.98
+increments = 1
+events = 4e-3
+
+[output]
+pictures = false
+"#;
+    let found = summary(case, &set(&[]));
+    let area = |k: usize| number(&found["steps"][k]["contacts"]["touch"]["area"]);
+    assert!((area(3) / area(0) - 1.0).abs() < 1e-6 && (area(2) / area(1) - 1.0).abs() < 1e-5, "{}", found["steps"]);
+    let events = found["events"].as_array().expect("events");
+    assert_eq!(events.len(), 2, "{events:?}");
+    for (event, kind, time) in [(&events[0], "hole_opened", 0.6512), (&events[1], "hole_closed", 1.6 - 0.6512)] {
+        assert!(event["kind"] == kind && event["by"] == "extrapolation" && number(&event["within"]) <= 4e-3);
+        assert!((number(&event["time"]) - time).abs() <= 2e-3, "{kind} at {}", event["time"]);
+    }
+}
+
 #[test]
 fn tolerances_are_positive() {
     let case = example("string").to_string() + "\n[[steps]]\nto = 1\nevents = 0\n";

@@ -122,7 +122,7 @@ impl<const D: usize> Conditions<D> {
                 let search = first || !matches!(equilibrium.quadrature.cells[cell], Cell::Whole(_));
                 let size = membrane.cells.size(cell);
                 let kink = if search { kink(membrane, zone, side, x, size, adhering) } else { None };
-                c.least_pressure = c.least_pressure.min(needed(membrane, side, x, kink, adhering));
+                c.least_pressure = c.least_pressure.min(needed(membrane, side, x, pressure, kink, adhering));
                 if kink.is_some_and(|k| c.kink.is_none_or(|worst| k.jump > worst.jump)) {
                     c.kink = kink;
                 }
@@ -150,16 +150,16 @@ impl<const D: usize> Conditions<D> {
     }
 }
 
-/// The pressure with which a body must push about a point of contact: its own, as far as adhesion does not provide it where
-/// it is negative, and that of kinks.
+/// The pressure with which a body must push about a point of contact: that of the smooth body, as far as adhesion does not
+/// provide it where it is negative, and that of kinks.
 fn needed<const D: usize>(
     membrane: &Membrane<D>,
     side: Side,
     x: &Point<D>,
+    pressure: f64,
     kink: Option<Kink<D>>,
     adhering: bool,
 ) -> f64 {
-    let pressure = membrane.pressure(side, x);
     let held = adhering && membrane.adhesive_slope(side, x).0 > 0.0;
     (if held { pressure.max(0.0) } else { pressure }) + kink.map_or(0.0, |k| k.pressure)
 }
@@ -181,7 +181,8 @@ pub fn corrected<const D: usize, Z: Zone<D>>(
         result = result.reduced(grid, &mut |x| match contact_of(zone.region_at(x)) {
             Some((side, _)) => {
                 let kink = kink(membrane, zone, side, x, grid.h(), adhering);
-                (needed(membrane, side, x, kink, adhering) - scales.pressure_tolerance()) / scales.pressure
+                let needed = needed(membrane, side, x, membrane.pressure(side, x), kink, adhering);
+                (needed - scales.pressure_tolerance()) / scales.pressure
             }
             None => 1.0,
         });

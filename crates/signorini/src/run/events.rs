@@ -323,8 +323,7 @@ fn inside<const D: usize, Z: Zone<D>>(grid: &Grid<D>, zone: &Z, outline: &[Point
     let step = 1e-3 * grid.h();
     outline.iter().zip(outline.iter().skip(1)).find_map(|(p, q)| {
         let along = (q - p).try_normalize(0.0)?;
-        let left = Point::<D>::from_fn(|k, _| if k == 0 { -along[D - 1] } else { along[0] });
-        contact_index(zone.region_at(&((p + q) * 0.5 + left * step)))
+        contact_index(zone.region_at(&((p + q) * 0.5 + mergers::turned(&along) * step)))
     })
 }
 

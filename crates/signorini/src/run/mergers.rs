@@ -63,7 +63,7 @@ impl<const D: usize> Bridge<D> {
     }
 }
 
-/// A direction turned by a right angle.
+/// A direction turned to the left by a right angle.
 pub fn turned<const D: usize>(d: &Point<D>) -> Point<D> {
     Point::from_fn(|k, _| if k == 0 { -d[D - 1] } else { d[0] })
 }

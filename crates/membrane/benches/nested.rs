@@ -32,6 +32,7 @@ fn on_grid(n: usize, half: f64, domain: Arc<dyn Domain<2>>, height: SharedField<
         obstacles: Obstacles(vec![Obstacle { side: Side::Below, height, adhesion: None }]),
         support_count: 1,
         modes: Default::default(),
+        formulation: Default::default(),
     }
 }
 

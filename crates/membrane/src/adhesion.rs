@@ -81,15 +81,25 @@ impl<const D: usize> Fronts<'_, D> {
                     - self.adhesive_slope_rate[i]
             })
             .collect();
-        let columns: Vec<Vec<f64>> = (0..n)
-            .into_par_iter()
-            .map(|mode| {
+        let one_sided = || {
+            let column = |mode| {
                 let speed: Vec<f64> = frames.iter().map(|f| f.value(mode)).collect();
                 let data: Vec<f64> = slope.iter().zip(&speed).map(|(r, w)| -r * w).collect();
                 let response = equilibrium.normal_derivative_of_extension(&data)?;
                 Ok(response.iter().zip(own.iter().zip(&speed)).map(|(r, (o, w))| r + o * w).collect())
-            })
-            .collect::<Result<_, SolveError>>()?;
+            };
+            (0..n).into_par_iter().map(column).collect::<Result<Vec<Vec<f64>>, SolveError>>()
+        };
+        let columns = match equilibrium.saddle() {
+            None => one_sided()?,
+            Some(saddle) => {
+                let held = |mode: usize, i: usize| frames[i].value(mode) * self.adhesive_slope_rate[i];
+                let rates = saddle.rates(equilibrium, zone, space)?.into_iter().enumerate();
+                rates
+                    .map(|(m, rate)| rate.slope_jump.iter().enumerate().map(|(i, r)| r - held(m, i)).collect())
+                    .collect()
+            }
+        };
         let mut out = Linearised {
             space,
             n,

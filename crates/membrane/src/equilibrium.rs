@@ -14,6 +14,7 @@
 //! free region has unknowns of its own, so a thin wall of contact between two of them couples nothing.
 
 use crate::problem::Membrane;
+use crate::published::{Formulation, Saddle};
 use crate::quadrature::{Cell, Quadrature, RimPoint};
 use crate::thin_parts::hold_thin_parts;
 use crate::zone::{Zone, contact_of, is_free};
@@ -44,7 +45,7 @@ fn penalty<const D: usize>(membrane: &Membrane<D>, cell: usize) -> f64 {
 }
 
 /// Weight of the ghost penalty at a sliver; smaller ones lose positive definiteness when a straight boundary cuts slivers only.
-fn ghost_weight(degree: usize) -> f64 {
+pub(crate) fn ghost_weight(degree: usize) -> f64 {
     if degree == 1 { 0.5 } else { 0.2 }
 }
 
@@ -113,7 +114,8 @@ impl<const D: usize> Elements<D> {
     }
 
     /// The ghost penalty of a pair of neighbours.
-    fn ghost(&self, membrane: &Membrane<D>, number: usize) -> &[f64] {
+    pub(crate) fn ghost(&self, membrane: &Membrane<D>, pair: &GhostPair) -> &[f64] {
+        let number = pair.number;
         let pair = &self.neighbours[number];
         let place = pair.kind.map_or(&self.ghosts_of_pairs[number], |kind| &self.ghosts_of_kinds[kind]);
         place.get_or_init(|| ghost_penalty(&*membrane.cells, pair))
@@ -149,6 +151,8 @@ pub struct Equilibrium<const D: usize> {
     factor: Option<Factor>,
     /// Values at the nodes of the free regions.
     u: Vec<f64>,
+    /// In the published formulation, the other side and the multipliers.
+    saddle: Option<Saddle<D>>,
 }
 
 /// A point of a surface where the displacement is imposed.
@@ -168,6 +172,13 @@ type LocalSystem = Option<(Vec<f64>, Vec<f64>)>;
 impl<const D: usize> Equilibrium<D> {
     /// Solves for the free membrane around a zone.
     pub fn solve<Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z, elements: &mut Elements<D>) -> Result<Self, SolveError> {
+        if let (Formulation::Published(published), false) = (membrane.formulation, zone.is_empty()) {
+            let System { quadrature, unknowns, matrix, rhs } = System::assemble(membrane, zone, elements);
+            let (saddle, u) =
+                Saddle::solve(membrane, zone, elements, &quadrature, &unknowns, matrix, rhs, published.multiplier)?;
+            let membrane = membrane.clone();
+            return Ok(Self { membrane, quadrature, unknowns, factor: None, u, saddle: Some(saddle) });
+        }
         let mut system = System::assemble(membrane, zone, elements);
         let mut factor = elements.symbolic.factor(system.matrix);
         for needed in HOLDS {
@@ -180,14 +191,14 @@ impl<const D: usize> Equilibrium<D> {
         let factor = factor?;
         let u = factor.solve_accurately(&system.rhs)?;
         let System { quadrature, unknowns, .. } = system;
-        Ok(Self { membrane: membrane.clone(), quadrature, unknowns, factor: Some(factor), u })
+        Ok(Self { membrane: membrane.clone(), quadrature, unknowns, factor: Some(factor), u, saddle: None })
     }
 
     /// A state whose displacement is found by other means, and given by [`Equilibrium::set_values`]; its fronts cannot
     /// respond to each other.
     pub(crate) fn unsolved(membrane: Membrane<D>, quadrature: Quadrature<D>, unknowns: Unknowns) -> Self {
         let u = vec![0.0; unknowns.count];
-        Self { membrane, quadrature, unknowns, factor: None, u }
+        Self { membrane, quadrature, unknowns, factor: None, u, saddle: None }
     }
 
     pub(crate) fn unknowns(&self) -> &Unknowns {
@@ -234,9 +245,17 @@ impl<const D: usize> Equilibrium<D> {
         }
     }
 
+    /// The other side of the fronts and the multipliers, in the published formulation.
+    pub fn saddle(&self) -> Option<&Saddle<D>> {
+        self.saddle.as_ref()
+    }
+
     /// The slope with which the gap opens at each point of the fronts, `ρ = ∂_n u + (β/h)(u - h) - ∂_n h`, and its
-    /// opposite below a ceiling.
+    /// opposite below a ceiling. In the published formulation the multiplier over the tension is the slope of the membrane.
     pub fn slope_jump(&self) -> Vec<f64> {
+        if let Some(saddle) = &self.saddle {
+            return saddle.slope_jump(self);
+        }
         self.quadrature
             .front
             .iter()
@@ -381,7 +400,7 @@ impl<const D: usize> System<D> {
         }
         let weight = ghost_weight(membrane.cells.degree());
         for pair in &pairs {
-            matrix.add(&pair.dofs, elements.ghost(membrane, pair.number), weight * pair.scale);
+            matrix.add(&pair.dofs, elements.ghost(membrane, pair), weight * pair.need * pair.tension);
         }
         if membrane.cells.sum_to_one() {
             matrix.restore_row_sums(&row_sums(membrane, &unknowns, &imposed));
@@ -415,12 +434,21 @@ fn evaluate<const D: usize>(
 
 /// Numbers the unknowns, cell by cell: one for each node and free region.
 pub(crate) fn number<const D: usize>(membrane: &Membrane<D>, quadrature: &Quadrature<D>) -> Unknowns {
+    number_where(membrane, quadrature, is_free)
+}
+
+/// Numbers the unknowns, cell by cell: one for each node and region of some kind.
+pub(crate) fn number_where<const D: usize>(
+    membrane: &Membrane<D>,
+    quadrature: &Quadrature<D>,
+    wanted: impl Fn(RegionId) -> bool,
+) -> Unknowns {
     let mut of_node: BTreeMap<RegionId, Vec<u32>> = BTreeMap::new();
     let mut count = 0;
     let mut nodes = Vec::new();
     let cells = (0..quadrature.cells.len())
         .map(|cell| {
-            let regions = quadrature.regions(cell).into_iter().filter(|r| is_free(*r));
+            let regions = quadrature.regions(cell).into_iter().filter(|r| wanted(*r));
             regions
                 .map(|region| {
                     membrane.cells.functions(cell, &mut nodes);
@@ -443,14 +471,16 @@ pub(crate) fn number<const D: usize>(membrane: &Membrane<D>, quadrature: &Quadra
 }
 
 /// Two neighbouring cells whose polynomials a ghost penalty holds together.
-struct GhostPair {
+pub(crate) struct GhostPair {
     /// Among the neighbours of the elements.
     number: usize,
-    dofs: Vec<u32>,
-    scale: f64,
+    pub dofs: Vec<u32>,
+    /// By how much they need it.
+    pub need: f64,
+    tension: f64,
 }
 
-fn ghost_pairs<const D: usize>(
+pub(crate) fn ghost_pairs<const D: usize>(
     membrane: &Membrane<D>,
     elements: &Elements<D>,
     quadrature: &Quadrature<D>,
@@ -478,8 +508,9 @@ fn ghost_pairs<const D: usize>(
             // slope jump is continuous in the front.
             let missing =
                 1.0 - share(membrane, quadrature, lower, *region).min(share(membrane, quadrature, upper, *region));
-            let scale = missing.powi(2) * membrane.tension.value(&x) * membrane.measure.weight(&x);
-            pairs.push(GhostPair { number, dofs: [dofs.as_slice(), others].concat(), scale });
+            let need = missing.powi(2) * membrane.measure.weight(&x);
+            let tension = membrane.tension.value(&x);
+            pairs.push(GhostPair { number, dofs: [dofs.as_slice(), others].concat(), need, tension });
         }
     }
     pairs
@@ -501,9 +532,14 @@ pub(crate) fn share<const D: usize>(
     }
 }
 
-/// Where the displacement is imposed: on the fronts by what is touched, on supported boundary by the support.
+/// Where the displacement is imposed by Nitsche's method: on the fronts by what is touched, unless a multiplier does that, on
+/// supported boundary by the support.
 fn imposed_points<const D: usize>(membrane: &Membrane<D>, quadrature: &Quadrature<D>) -> Vec<Imposed<D>> {
-    let fronts = quadrature.front.iter().map(|p| Imposed {
+    let fronts = match membrane.formulation {
+        Formulation::OneSided => &quadrature.front[..],
+        Formulation::Published(_) => &[],
+    };
+    let fronts = fronts.iter().map(|p| Imposed {
         cell: p.cell,
         region: p.free,
         x: p.x,

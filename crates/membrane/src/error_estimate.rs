@@ -8,6 +8,7 @@ use crate::equilibrium::{Elements, Equilibrium};
 use crate::front::Fronts;
 use crate::ils::Solution;
 use crate::problem::Membrane;
+use crate::published::Formulation;
 use crate::zone::{ModeSpace, Modes, Zone};
 use signorini_solve::SolveError;
 
@@ -39,7 +40,8 @@ impl ErrorEstimate {
         let zone = &solution.zone;
         let Some(cells) = coarse.membrane.cells.raised().filter(|_| !zone.is_empty()) else { return Ok(None) };
         // Splines see what a few waves may have left out.
-        let membrane = Membrane { cells, modes: Modes::Local, ..coarse.membrane.clone() };
+        let membrane =
+            Membrane { cells, modes: Modes::Local, formulation: Formulation::OneSided, ..coarse.membrane.clone() };
         let fine = Equilibrium::solve(&membrane, zone, &mut Elements::new(&membrane))?;
         let sticky = membrane.obstacles.are_sticky();
         let fronts = Fronts::new(&fine, sticky);

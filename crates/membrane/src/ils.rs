@@ -7,14 +7,19 @@ use crate::conditions::{Conditions, corrected, least_free_gap};
 use crate::equilibrium::{Elements, Equilibrium};
 use crate::front::{Fronts, StepKind};
 use crate::problem::Membrane;
+use crate::published::{Formulation, ModeSchedule, Published, Transport};
 use crate::scales::Scales;
 use crate::zone::{Zone, contact_index};
 use signorini_solve::{Acceleration, Iteration, Progress, SolveError};
 
 /// Steps after which fronts that do not come to rest are given up.
 const MOST_STEPS: usize = 40;
-/// Corrections of the zone after which it is given up.
+/// Corrections of the zone after which it is given up ...
 const MOST_SWEEPS: usize = 12;
+/// ... or left to smaller cells.
+const MOST_SWEEPS_BEFORE_DIVISION: usize = 2;
+/// As many steps are left to smaller cells.
+const MOST_STEPS_BEFORE_DIVISION: usize = 15;
 /// Fronts whose residual has not fallen for so many steps ...
 const PATIENCE: usize = 9;
 /// ... after a third of which steps are damped ...
@@ -25,6 +30,8 @@ pub(crate) const SETTLED: f64 = 1e-3;
 /// ... or, where a front is sharper than a cell, or where the slope jump that its modes do not see is larger than the one
 /// they do, by less than this.
 pub(crate) const SETTLED_COARSE: f64 = 0.03;
+/// ... or, where they are moved as a level set on nodes, by less than this.
+const SETTLED_SHIFTED: f64 = 0.1;
 /// A residual that has fallen so often in a row has not settled, however slowly it falls: a front may be on its way to vanish.
 const SLOWLY: usize = 5;
 /// A front sharper than this, relative to a cell, is no front any more.
@@ -131,11 +138,48 @@ pub enum Start<Z> {
     Asked(Z, Branch),
 }
 
+/// How far fronts are brought to rest where they curve within a cell: what they lack there is little beside what the grid
+/// cannot show of it, and Newton's method converges slowly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rest {
+    /// Until nothing more changes that counts.
+    Final,
+    /// Until the cells about them may as well be divided.
+    BeforeDivision,
+}
+
+impl Rest {
+    /// The slope jump in the modes, relative to what they do not see of it, at which fronts sharper than a cell rest.
+    fn share(self) -> f64 {
+        match self {
+            Rest::Final => 1e-3,
+            Rest::BeforeDivision => 0.2,
+        }
+    }
+
+    /// Steps after which fronts that do not come to rest are given up.
+    fn most_steps(self) -> usize {
+        match self {
+            Rest::Final => MOST_STEPS,
+            Rest::BeforeDivision => MOST_STEPS_BEFORE_DIVISION,
+        }
+    }
+
+    /// Corrections of the zone after which it is given up.
+    fn most_sweeps(self) -> usize {
+        match self {
+            Rest::Final => MOST_SWEEPS,
+            Rest::BeforeDivision => MOST_SWEEPS_BEFORE_DIVISION,
+        }
+    }
+}
+
 /// Solves one increment.
 pub fn solve<const D: usize, Z: Zone<D>>(
     membrane: &Membrane<D>,
     elements: &mut Elements<D>,
     start: Start<Z>,
+    rest: Rest,
     at: (usize, f64),
     progress: &mut dyn Progress,
 ) -> Solution<D, Z> {
@@ -145,6 +189,7 @@ pub fn solve<const D: usize, Z: Zone<D>>(
         adhering: false,
         membrane,
         elements,
+        rest,
         at,
         progress,
     };
@@ -192,6 +237,7 @@ fn lost<const D: usize>(equilibrium: &Equilibrium<D>, fronts: &Fronts<'_, D>, ar
 struct Run<'a, 'b, const D: usize, Z> {
     membrane: &'a Membrane<D>,
     elements: &'b mut Elements<D>,
+    rest: Rest,
     at: (usize, f64),
     progress: &'b mut dyn Progress,
     branch: Branch,
@@ -288,7 +334,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             if let Ok(Fixed::Interrupted) = settled {
                 return Ok(Reason::Interrupted);
             }
-            let astray = !matches!(settled, Ok(Fixed::AtRest)) || sweeps > MOST_SWEEPS;
+            let astray = !matches!(settled, Ok(Fixed::AtRest)) || sweeps > self.rest.most_sweeps();
             if astray && (predicted || self.adhering) {
                 return settled.map(|_| Reason::IterationLimit);
             }
@@ -311,10 +357,16 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             // Corrected and settled again it would come back to itself: the grid cannot tell whether zones touch.
             let state = (solution.zone.counts(), conditions.least_gap_outside);
             let again = |(counts, gap): &((usize, usize), f64)| *counts == state.0 && (gap / state.1 - 1.0).abs() < 0.1;
-            if !first && conditions.nearly_hold(scales) && seen.iter().any(again) {
-                solution.unresolved = Some(-conditions.least_gap_outside);
-                solution.conditions = Some(conditions);
-                return Ok(Reason::Converged);
+            if !first && seen.iter().any(again) {
+                if conditions.nearly_hold(scales) {
+                    solution.unresolved = Some(-conditions.least_gap_outside);
+                    solution.conditions = Some(conditions);
+                    return Ok(Reason::Converged);
+                }
+                if predicted || self.adhering {
+                    solution.conditions = Some(conditions);
+                    return Ok(Reason::IterationLimit);
+                }
             }
             seen.push(state);
             if self.branch == Branch::Nearest && first {
@@ -352,14 +404,16 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
     fn settle_fronts(&mut self) -> Result<Fixed, SolveError> {
         let finest = self.membrane.modes.finest();
         let mut acceleration = Acceleration::default();
+        let mut schedule = ModeSchedule::default();
         let (mut best, mut waited) = (f64::INFINITY, 0);
         let (mut previous, mut falls) = (f64::INFINITY, 0);
         self.solution.settled_within = None;
         self.solution.lowest_eigenvalue = None;
         let (mut count, mut descents) = (0, 0);
-        while count < MOST_STEPS && descents < MOST_DESCENTS {
+        let most_steps = self.rest.most_steps();
+        while count < most_steps && descents < MOST_DESCENTS {
             count += 1;
-            let last = count == MOST_STEPS;
+            let last = count == most_steps;
             if self.progress.interrupted() {
                 return Ok(Fixed::Interrupted);
             }
@@ -405,24 +459,38 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             let linearised = if self.adhering { Some(fronts.linearise(zone, finest, &scales)?) } else { None };
             let mut step = match &linearised {
                 Some(linearised) => linearised.step(self.branch, &scales),
-                None => fronts.newton_step(zone, &scales)?,
+                None => match equilibrium.saddle() {
+                    Some(saddle) => schedule.step(&fronts, saddle, zone, &scales)?,
+                    None => fronts.newton_step(zone, &scales)?,
+                },
             };
             waited = if residual < 0.7 * best || step.kind == StepKind::Descent { 0 } else { waited + 1 };
             best = best.min(residual);
             falls = if residual < previous { falls + 1 } else { 0 };
             previous = residual;
-            if waited >= PATIENCE && falls >= SLOWLY {
+            // A level set on nodes shifts the fronts with every step: there is no coming closer than that.
+            let shifted =
+                matches!(self.membrane.formulation, Formulation::Published(p) if p.transport != Transport::Exact);
+            let patience = if shifted { DAMPED_AFTER } else { PATIENCE };
+            let slowly = falls >= SLOWLY && !shifted;
+            if waited >= PATIENCE && slowly {
                 waited = 0;
             }
             let relative_step = step.length / h;
             let sharp = D > 1 && (1.0..SHARPEST).contains(&(zone.sharpest() * h));
             let coarse = sharp || projection.norm < projection.remainder;
-            let enough = if coarse { SETTLED_COARSE } else { SETTLED };
-            let settled = (waited >= PATIENCE || last)
-                && falls < SLOWLY
-                && relative_step < enough
-                && step.kind != StepKind::Descent;
-            if residual <= 1.0 || (waited >= 1 && relative_step < ROUND_OFF) || settled {
+            let enough = if shifted {
+                SETTLED_SHIFTED
+            } else if coarse {
+                SETTLED_COARSE
+            } else {
+                SETTLED
+            };
+            let settled =
+                (waited >= patience || last) && !slowly && relative_step < enough && step.kind != StepKind::Descent;
+            let blunt =
+                D > 1 && zone.sharpest() * h >= 1.0 && projection.norm < self.rest.share() * projection.remainder;
+            if residual <= 1.0 || (waited >= 1 && relative_step < ROUND_OFF) || settled || blunt {
                 if let Some(linearised) = &linearised {
                     let spectrum = linearised.spectrum();
                     let lowest = spectrum.as_ref().and_then(|s| s.values.first().copied());
@@ -451,7 +519,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 self.solution.jumped = true;
             }
             // Far from the solution the steps are no linear iteration that could be extrapolated.
-            if waited >= DAMPED_AFTER {
+            if waited >= DAMPED_AFTER && !shifted {
                 // The derivative does not fit the discrete slope jump here: shorter steps find where it vanishes.
                 acceleration = Acceleration::default();
                 let factor = 0.5f64.powi((waited / DAMPED_AFTER) as i32).max(0.1);
@@ -464,7 +532,12 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 acceleration = Acceleration::default();
             }
             let reach = step.reach.min(REACH * scales.length);
-            let advance = zone.advanced(&self.membrane.grid, step.space, &step.coefficients, reach);
+            let advance = match self.membrane.formulation {
+                Formulation::OneSided => zone.advanced(&self.membrane.grid, step.space, &step.coefficients, reach),
+                Formulation::Published(Published { transport, .. }) => {
+                    zone.transported(&self.membrane.grid, step.space, &step.coefficients, reach, transport)
+                }
+            };
             if advance.topology_changed || advance.zone.mode_offsets(finest) != zone.mode_offsets(finest) {
                 acceleration = Acceleration::default();
             }

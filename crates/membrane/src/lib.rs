@@ -16,6 +16,7 @@ pub mod multigrid;
 pub mod obstacle;
 pub mod plane_zone;
 pub mod problem;
+pub mod published;
 pub mod quadrature;
 mod raster;
 pub mod refinement;

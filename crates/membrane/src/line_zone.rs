@@ -1,7 +1,7 @@
 //! Contact zones in one dimension: intervals.
 
 use crate::obstacle::Side;
-use crate::zone::{Advance, Division, FrontFrame, FrontsInCell, ModeSpace, Zone, contact, free};
+use crate::zone::{Advance, Division, FrontFoot, FrontsInCell, ModeSpace, Zone, contact, free};
 use serde_json::{Value, json};
 use signorini_fem::cut::RegionId;
 use signorini_fem::{Cells, Grid};
@@ -145,8 +145,14 @@ impl Zone<1> for LineZone {
         0
     }
 
-    fn frame(&self, front: usize, _: &Point<1>, _: ModeSpace) -> FrontFrame {
-        FrontFrame { curvature: 0.0, modes: vec![(front, 1.0)] }
+    fn foot(&self, front: usize, _: &Point<1>, _: ModeSpace) -> FrontFoot<1> {
+        let End { at, normal } = self.end(front);
+        FrontFoot {
+            position: Point::<1>::new(at),
+            normal: Vector::<1>::new(normal),
+            curvature: 0.0,
+            modes: vec![(front, 1.0, Vector::zeros())],
+        }
     }
     fn front_count(&self) -> usize {
         2 * self.intervals.len()

@@ -4,8 +4,9 @@ use crate::ils::Solution;
 use crate::multigrid;
 use crate::obstacle::Side;
 use crate::problem::Membrane;
+use crate::published::{NodalLevelSet, Transport};
 use crate::raster::Raster;
-use crate::zone::{Advance, Division, FrontFrame, FrontsInCell, ModeSpace, Zone, contact, contact_of, free};
+use crate::zone::{Advance, Division, FrontFoot, FrontsInCell, ModeSpace, Zone, contact, contact_of, free};
 use serde_json::{Value, json};
 use signorini_fem::cut::RegionId;
 use signorini_fem::{Cells, Grid, RefinedGrid};
@@ -18,6 +19,8 @@ use std::sync::Arc;
 const FEWEST_KNOTS: f64 = 5.0;
 /// Knots of a circle that is put where penetration is too small for the raster.
 const SEED_KNOTS: usize = 16;
+/// Degree of a curve along a level set that is linear between nodes.
+const LEVEL_SET_DEGREE: usize = 3;
 /// A front that encloses less than this multiple of `h²` after a step has collapsed.
 const COLLAPSED: f64 = 0.01;
 /// A step may not bring a front nearer to its centre of curvature than this fraction of its radius of curvature.
@@ -278,17 +281,16 @@ impl PlaneZone {
 
     fn modes(&self, front: usize, space: ModeSpace) -> FrontModes {
         let curve = &self.curves[front];
+        let most = self.most_modes(curve);
         match space {
-            ModeSpace::Coarse(count) if count < curve.knots() => {
-                FrontModes::Splines(PeriodicBasis { degree: 3, count })
-            }
+            ModeSpace::Coarse(count) if count < most => FrontModes::Splines(PeriodicBasis { degree: 3, count }),
             ModeSpace::Coarse(_) | ModeSpace::Fine => {
-                FrontModes::Splines(PeriodicBasis { degree: curve.degree(), count: curve.knots() })
+                FrontModes::Splines(PeriodicBasis { degree: curve.degree(), count: most })
             }
-            ModeSpace::Fourier(most) => {
+            ModeSpace::Fourier(count) => {
                 // Waves must be longer than the splines that draw them.
-                let told_apart = if self.grid.degree() == 1 { curve.knots() } else { curve.knots() / 2 };
-                FrontModes::Waves { highest: most.min(told_apart).max(1).div_ceil(2) - 1 }
+                let told_apart = if self.grid.degree() == 1 { most } else { most / 2 };
+                FrontModes::Waves { highest: count.min(told_apart).max(1).div_ceil(2) - 1 }
             }
         }
     }
@@ -404,6 +406,11 @@ impl PlaneZone {
         Self::new(grid, kept)
     }
 
+    /// The most modes that can be told apart along a curve.
+    fn most_modes(&self, curve: &ClosedCurve) -> usize {
+        curve.knots().min(Self::knots(&self.grid, polygon::perimeter(curve.samples())))
+    }
+
     /// Joins the raster of a function to the zone by `combine`, or adds its outlines as curves of their own where they
     /// keep clear of the fronts.
     fn combined(
@@ -472,16 +479,20 @@ impl Zone<2> for PlaneZone {
             .count()
     }
 
-    fn frame(&self, front: usize, x: &Point<2>, space: ModeSpace) -> FrontFrame {
+    fn foot(&self, front: usize, x: &Point<2>, space: ModeSpace) -> FrontFoot<2> {
         let seeds = self.seeds(self.grid.cell_containing(x), front);
         let foot = match seeds.is_empty() {
             true => self.curves[front].closest(x, 0..self.curves[front].samples().len()),
             false => self.curves[front].closest(x, seeds.into_iter()),
         };
         let offset = self.mode_offsets(space)[front];
+        // The normal lies to the right of the direction of travel.
+        let along = Vector::<2>::new(-foot.normal[1], foot.normal[0]) / foot.speed;
         let mut modes = Vec::new();
-        self.modes(front, space).for_each_at(foot.s, |mode, value, _| modes.push((offset + mode, value)));
-        FrontFrame { curvature: foot.curvature, modes }
+        self.modes(front, space).for_each_at(foot.s, |mode, value, slope| {
+            modes.push((offset + mode, value, along * slope));
+        });
+        FrontFoot { position: foot.position, normal: foot.normal, curvature: foot.curvature, modes }
     }
     fn front_count(&self) -> usize {
         self.curves.len()
@@ -544,6 +555,55 @@ impl Zone<2> for PlaneZone {
             Self::from_outlines(grid, zone.fronts(), side, &outlines, COLLAPSED)
         });
         Advance { zone, topology_changed: true }
+    }
+
+    fn transported(
+        &self,
+        grid: &Grid<2>,
+        space: ModeSpace,
+        step: &[f64],
+        reach: f64,
+        transport: Transport,
+    ) -> Advance<Self> {
+        let carried_from = match transport {
+            Transport::Exact => return self.advanced(grid, space, step, reach),
+            Transport::Redistancing => self.advanced(grid, space, step, reach).zone,
+            Transport::HamiltonJacobi => self.clone(),
+        };
+        let zone = Side::BOTH.into_iter().fold(Self::empty(grid), |zone, side| {
+            let fronts: Vec<usize> =
+                (0..carried_from.curves.len()).filter(|&i| carried_from.sides[i] == side).collect();
+            if fronts.is_empty() {
+                return zone;
+            }
+            // The nearest front: its signed distance, negative in the zone, its number, and where along it.
+            let nearest = |x: &Point<2>| {
+                let of = |&i: &usize| {
+                    let curve = &carried_from.curves[i];
+                    let (distance, foot) = curve.signed_distance(x, 0..curve.samples().len());
+                    (distance, i, foot.s)
+                };
+                let closer = |a: &(f64, usize, f64), b: &(f64, usize, f64)| a.0.abs().total_cmp(&b.0.abs());
+                fronts.iter().map(of).min_by(closer).unwrap_or((f64::INFINITY, 0, 0.0))
+            };
+            let mut level_set = NodalLevelSet::of(grid, |x| nearest(x).0);
+            if transport == Transport::HamiltonJacobi {
+                let moved: Vec<_> = (0..self.curves.len()).map(|i| self.displacement(i, space, step)).collect();
+                level_set = level_set.carried(|x| {
+                    let (_, front, s) = nearest(x);
+                    moved[front](s).clamp(-reach, reach)
+                });
+            }
+            // A curve that follows the level set from node to node, not one of the modes.
+            let outlines = level_set.outlines();
+            let large = outlines.iter().filter(|o| polygon::signed_area(o).abs() > COLLAPSED * grid.h().powi(2));
+            let along = |o: &Vec<Point<2>>| {
+                let knots = (polygon::perimeter(o) / grid.h()).max(FEWEST_KNOTS).ceil() as usize;
+                (side, ClosedCurve::along(o, LEVEL_SET_DEGREE, knots))
+            };
+            Self::new(grid, zone.fronts().into_iter().chain(large.map(along)).collect())
+        });
+        Advance { topology_changed: zone.counts() != self.counts(), zone }
     }
 
     fn extrapolated(&self, grid: &Grid<2>, before: &[(&Self, f64)]) -> Option<Self> {

@@ -3,6 +3,7 @@
 use crate::domain::{CellStatus, DomainOnCells};
 use crate::field::SharedField;
 use crate::obstacle::{Obstacles, Side};
+use crate::published::Formulation;
 use crate::zone::Modes;
 use signorini_fem::{Cells, Grid};
 use signorini_geometry::{Point, Vector};
@@ -65,6 +66,8 @@ pub struct Membrane<const D: usize> {
     pub support_count: usize,
     /// How fronts move.
     pub modes: Modes,
+    /// How the equilibrium beside a zone is formulated.
+    pub formulation: Formulation,
 }
 
 impl<const D: usize> Membrane<D> {

@@ -3,10 +3,11 @@
 use crate::ils::Solution;
 use crate::obstacle::Side;
 use crate::problem::Membrane;
+use crate::published::Transport;
 use serde_json::Value;
 use signorini_fem::cut::RegionId;
 use signorini_fem::{Cells, Grid};
-use signorini_geometry::{Aabb, ImplicitShape, Point};
+use signorini_geometry::{Aabb, ImplicitShape, Point, Vector};
 use signorini_solve::{Progress, SolveError};
 use std::sync::Arc;
 
@@ -75,6 +76,18 @@ impl FrontFrame {
     pub fn value(&self, mode: usize) -> f64 {
         self.modes.iter().filter(|(i, _)| *i == mode).map(|(_, v)| v).sum()
     }
+}
+
+/// The point of a front nearest to another point: where it is, and the modes there.
+#[derive(Clone, Debug)]
+pub struct FrontFoot<const D: usize> {
+    pub position: Point<D>,
+    /// Unit normal, out of the zone.
+    pub normal: Vector<D>,
+    /// Its divergence.
+    pub curvature: f64,
+    /// Modes that do not vanish there: number, value, and gradient along the front.
+    pub modes: Vec<(usize, f64, Vector<D>)>,
 }
 
 /// How finely fronts may move.
@@ -152,7 +165,12 @@ pub trait Zone<const D: usize>: Division<D> + Clone + Send {
     /// Holes of one zone.
     fn holes_of(&self, zone: usize) -> usize;
 
-    fn frame(&self, front: usize, x: &Point<D>, modes: ModeSpace) -> FrontFrame;
+    /// The point of a front nearest to a point.
+    fn foot(&self, front: usize, x: &Point<D>, modes: ModeSpace) -> FrontFoot<D>;
+    fn frame(&self, front: usize, x: &Point<D>, modes: ModeSpace) -> FrontFrame {
+        let foot = self.foot(front, x, modes);
+        FrontFrame { curvature: foot.curvature, modes: foot.modes.iter().map(|(i, v, _)| (*i, *v)).collect() }
+    }
     fn front_count(&self) -> usize;
     /// First mode of each front, and the number of all modes at the end.
     fn mode_offsets(&self, modes: ModeSpace) -> Vec<usize>;
@@ -162,6 +180,19 @@ pub trait Zone<const D: usize>: Division<D> + Clone + Send {
     /// Moves the fronts by `step` (coefficients of the modes) along their normals, nowhere further than `reach` and
     /// nowhere so far that they would fold.
     fn advanced(&self, grid: &Grid<D>, modes: ModeSpace, step: &[f64], reach: f64) -> Advance<Self>;
+
+    /// Moves the fronts as [`Zone::advanced`] does, but as the level set of a function on the nodes of the grid; in one
+    /// dimension that makes no difference.
+    fn transported(
+        &self,
+        grid: &Grid<D>,
+        modes: ModeSpace,
+        step: &[f64],
+        reach: f64,
+        _transport: Transport,
+    ) -> Advance<Self> {
+        self.advanced(grid, modes, step, reach)
+    }
 
     /// The zone with its fronts moved by a sum of multiples of the ways that they have come since earlier zones; none where
     /// these differ in more than the place of the fronts.

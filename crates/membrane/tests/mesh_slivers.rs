@@ -29,6 +29,7 @@ fn failures(name: &str, degree: usize, circles: usize) -> usize {
         obstacles: Obstacles(vec![Obstacle { side: Side::Below, height: Arc::new(Constant(-0.1)), adhesion: None }]),
         support_count: 1,
         modes: Default::default(),
+        formulation: Default::default(),
     };
     let mut elements = Elements::new(&membrane);
     (0..circles)

@@ -35,6 +35,7 @@ fn error(degree: usize, normal: Vector<2>, offset: f64, divided: bool) -> f64 {
         supports: vec![Some(Support { index: 0, displacement })],
         support_count: 1,
         modes: Default::default(),
+        formulation: Default::default(),
     };
     let zone = PlaneZone::empty(&grid);
     let mut elements = Elements::new(&membrane);
@@ -89,6 +90,7 @@ fn thin_rings_along_a_free_edge_are_held() {
                 supports: vec![None],
                 support_count: 0,
                 modes: Default::default(),
+                formulation: Default::default(),
             };
             let front: Vec<Point<2>> = (0..48)
                 .map(|k| {

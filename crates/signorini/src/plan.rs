@@ -7,7 +7,7 @@ mod shapes;
 pub mod solid;
 mod surface;
 
-use crate::case::statement::{self, Body, Method, Space};
+use crate::case::statement::{self, Body, FormulationKey, Method, Space, TransportKey, ZoneMultiplierKey};
 use crate::case::units::{FORCE_PER_LENGTH, LENGTH, PRESSURE, Units};
 use crate::case::value::{Interpreted, Reader};
 use crate::case::{CaseError, Document, OneOrMany, Value, suggestion};
@@ -20,6 +20,7 @@ use signorini_membrane::domain::{Domain, DomainOnCells};
 use signorini_membrane::field::{Constant, Field, SharedField, Sum};
 use signorini_membrane::obstacle::{Obstacles, Side};
 use signorini_membrane::problem::{Measure, Membrane, Support};
+use signorini_membrane::published::{Formulation, Published, Transport, ZoneMultiplier};
 use signorini_membrane::quadrature::Quadrature;
 use signorini_membrane::refinement::Refinement;
 use signorini_membrane::zone::{Modes, NoZone};
@@ -41,23 +42,31 @@ pub enum Plan {
 }
 
 /// Which method finds the contact zone.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MethodChoice {
-    InequalityLevelSet(Modes),
+    InequalityLevelSet { modes: Modes, formulation: Formulation },
     ActiveSet(NodalStart),
 }
 
 impl Default for MethodChoice {
     fn default() -> Self {
-        MethodChoice::InequalityLevelSet(Modes::default())
+        MethodChoice::InequalityLevelSet { modes: Modes::default(), formulation: Formulation::default() }
     }
 }
 
 impl MethodChoice {
     pub fn name(self) -> &'static str {
         match self {
-            MethodChoice::InequalityLevelSet(_) => "inequality_level_set",
+            MethodChoice::InequalityLevelSet { .. } => "inequality_level_set",
             MethodChoice::ActiveSet(_) => "active_set",
+        }
+    }
+
+    /// How the equilibrium beside a zone is formulated.
+    pub fn formulation(self) -> Formulation {
+        match self {
+            MethodChoice::InequalityLevelSet { formulation, .. } => formulation,
+            MethodChoice::ActiveSet(_) => Formulation::default(),
         }
     }
 }
@@ -349,7 +358,7 @@ impl<'a> Planner<'a> {
         let supports = self.supports(body, &on.pieces)?;
         let mut warnings = Vec::new();
         let (contacts, method) = self.contacts(body, &supports, &on.grid, &mut warnings)?;
-        if !matches!(method, MethodChoice::InequalityLevelSet(_))
+        if !matches!(method, MethodChoice::InequalityLevelSet { .. })
             && case.steps.iter().any(|s| s.get_ref().events.is_some())
         {
             warnings.push("`events` are located by method.inequality_level_set only".into());
@@ -358,6 +367,9 @@ impl<'a> Planner<'a> {
             warnings.push(
                 "no contact is stated: rigid bodies are ignored (add [contacts.NAME] between = [film, floor])".into(),
             );
+        }
+        if method.formulation() != Formulation::OneSided {
+            self.on_plain_cells(film, &mut on)?;
         }
         if let MethodChoice::ActiveSet(_) = method {
             if let statement::Mesh::Gmsh(key) = film.mesh.get_ref() {
@@ -598,14 +610,15 @@ impl<'a> Planner<'a> {
         };
         let mut out: Vec<Contact> = Vec::new();
         let stated = document.case.contacts.values().find(|c| c.get_ref().method.is_some());
-        let method = stated.map_or(Ok(MethodChoice::default()), |c| self.method(c.get_ref()))?;
+        let size = grid.bounds().size().max();
+        let method = stated.map_or(Ok(MethodChoice::default()), |c| self.method(c.get_ref(), size))?;
         for (name, key) in &document.case.contacts {
             let contact = key.get_ref();
             if let Some(friction) = &contact.friction {
                 return Err(self.unavailable(friction.span(), "friction of a membrane"));
             }
             if let Some(own) = &contact.method
-                && self.method(contact)? != method
+                && self.method(contact, size)? != method
             {
                 return Err(document
                     .error(own.span(), format!("`{name}` has another method than the contact before"))
@@ -685,29 +698,100 @@ impl<'a> Planner<'a> {
         }
     }
 
-    fn method(&self, key: &statement::Contact) -> Result<MethodChoice, CaseError> {
+    /// The formulation that a contact asks for, of a membrane of a certain extent.
+    fn formulation(&self, key: &statement::LevelSetKey, size: f64) -> Result<Formulation, CaseError> {
+        let published = key.formulation.as_ref().is_some_and(|f| *f.get_ref() == FormulationKey::Published);
+        let kind = key.multiplier.as_ref();
+        if !published {
+            let spans = [
+                kind.map(|m| m.span()),
+                key.multiplier_length.as_ref().map(|l| l.span()),
+                key.transport.as_ref().map(|t| t.span()),
+            ];
+            return match spans.into_iter().flatten().next() {
+                None => Ok(Formulation::OneSided),
+                Some(span) => Err(self
+                    .document
+                    .error(span, "this key belongs to the published formulation")
+                    .help("formulation = \"published\"")),
+            };
+        }
+        let multiplier = match (kind.map(|m| *m.get_ref()), &key.multiplier_length) {
+            (Some(ZoneMultiplierKey::L2), None) => ZoneMultiplier::L2,
+            (Some(ZoneMultiplierKey::L2), Some(length)) => {
+                return Err(self
+                    .document
+                    .error(length.span(), "a multiplier without gradients has no length")
+                    .help("multiplier = \"h1\""));
+            }
+            (_, None) => ZoneMultiplier::H1 { length: size },
+            (_, Some(length)) => ZoneMultiplier::H1 { length: self.reader.positive(length, LENGTH)? },
+        };
+        let transport = match key.transport.as_ref().map(|t| *t.get_ref()) {
+            None | Some(TransportKey::Exact) => Transport::Exact,
+            Some(TransportKey::Redistancing) => Transport::Redistancing,
+            Some(TransportKey::HamiltonJacobi) => Transport::HamiltonJacobi,
+        };
+        Ok(Formulation::Published(Published { multiplier, transport }))
+    }
+
+    /// The cells of a membrane in the published formulation, which knows neither divided cells nor, in the plane, degrees.
+    fn on_plain_cells<const D: usize>(
+        &self,
+        film: &statement::Membrane,
+        on: &mut domain::OnCells<D>,
+    ) -> Result<(), CaseError> {
+        let case = &self.document.case;
+        if let (2, Some(degree)) = (D, film.degree.as_ref().filter(|d| *d.get_ref() != 1)) {
+            return Err(self
+                .document
+                .error(
+                    degree.span(),
+                    format!("the published formulation has degree 1 in the plane, not {}", degree.get_ref()),
+                )
+                .help("degree = 1, or  formulation = \"one_sided\""));
+        }
+        if let statement::Mesh::Grid(key) = film.mesh.get_ref() {
+            if let Some(refine) = &key.refine {
+                return Err(self
+                    .document
+                    .error(refine.span(), "the published formulation works on cells that are not divided")
+                    .help("more cells, or  formulation = \"one_sided\""));
+            }
+            if D == 2 {
+                on.grid = Grid::new(*on.grid.bounds(), on.grid.cells(), 1);
+                on.cells = Arc::new(on.grid.clone());
+            }
+        } else if on.cells.degree() != 1 {
+            return Err(self
+                .document
+                .error(film.mesh.span(), "the published formulation has degree 1 in the plane")
+                .help("degree = 1, or  formulation = \"one_sided\""));
+        }
+        let mut controls = case.steps.iter().filter_map(|s| s.get_ref().control.as_ref());
+        if let Some(control) = controls.find(|c| !matches!(c.get_ref(), statement::Control::Time(_))) {
+            return Err(self
+                .document
+                .error(control.span(), "the published formulation follows time only")
+                .help("control.time = {}, or  formulation = \"one_sided\""));
+        }
+        on.refinement = Refinement::default();
+        Ok(())
+    }
+
+    fn method(&self, key: &statement::Contact, size: f64) -> Result<MethodChoice, CaseError> {
         let Some(method) = &key.method else { return Ok(MethodChoice::default()) };
         match method.get_ref() {
             Method::InequalityLevelSet(k) => {
-                match &k.formulation {
-                    Some(v) if v.get_ref() == "published" => {
-                        return Err(self.unavailable(v.span(), "`published`"));
-                    }
-                    Some(v) if v.get_ref() != "one_sided" => {
-                        return Err(self
-                            .document
-                            .error(v.span(), format!("unknown word `{}`", v.get_ref()))
-                            .help("known here: one_sided, published"));
-                    }
-                    _ => {}
-                }
                 if let Some(v) = &k.front_degree {
                     return Err(self.unavailable(v.span(), "`front_degree`"));
                 }
-                Ok(MethodChoice::InequalityLevelSet(match k.modes.as_ref().map(|m| *m.get_ref()) {
-                    Some(statement::FrontModes::Fourier) => Modes::Fourier,
+                let formulation = self.formulation(k, size)?;
+                let modes = match (k.modes.as_ref().map(|m| *m.get_ref()), formulation) {
+                    (Some(statement::FrontModes::Fourier), _) | (None, Formulation::Published(_)) => Modes::Fourier,
                     _ => Modes::Local,
-                }))
+                };
+                Ok(MethodChoice::InequalityLevelSet { modes, formulation })
             }
             Method::ActiveSet(k) => Ok(MethodChoice::ActiveSet(match k.start.as_ref().map(|s| *s.get_ref()) {
                 Some(statement::ActiveSetStart::Cold) => NodalStart::Cold,
@@ -796,9 +880,10 @@ impl<const D: usize> MembranePlan<D> {
             supports,
             support_count: self.supports.len(),
             modes: match self.method {
-                MethodChoice::InequalityLevelSet(modes) => modes,
+                MethodChoice::InequalityLevelSet { modes, .. } => modes,
                 MethodChoice::ActiveSet(_) => Modes::default(),
             },
+            formulation: self.method.formulation(),
         }
     }
 

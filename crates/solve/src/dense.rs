@@ -9,6 +9,24 @@ pub fn solve(a: &[f64], b: &[f64]) -> Option<Vec<f64>> {
     x.iter().all(|v| v.is_finite()).then(|| x.as_slice().to_vec())
 }
 
+/// A factorised matrix.
+pub struct Factor(nalgebra::LU<f64, nalgebra::Dyn, nalgebra::Dyn>);
+
+impl Factor {
+    /// Factorises a row-major matrix by LU with partial pivoting; none if it is singular.
+    pub fn new(n: usize, a: &[f64]) -> Option<Self> {
+        let lu = DMatrix::from_row_slice(n, n, a).lu();
+        lu.is_invertible().then_some(Self(lu))
+    }
+
+    /// Solves `A x = b`.
+    pub fn solve(&self, b: &[f64]) -> Vec<f64> {
+        let mut x = DVector::from_column_slice(b);
+        self.0.solve_mut(&mut x);
+        x.as_slice().to_vec()
+    }
+}
+
 /// The eigenvalues of `A x = λ B x`, ascending, and their eigenvectors, of unit length in `B`; of symmetric row-major
 /// matrices, of which `B` must be positive definite. None where it is not.
 pub fn symmetric_eigen(a: &[f64], b: &[f64]) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {

@@ -823,7 +823,7 @@ pub enum Sliding {
 #[serde(rename_all = "snake_case")]
 pub enum Method {
     /// The contact zone of a membrane as a level set with exact fronts.
-    InequalityLevelSet(LevelSetKey),
+    InequalityLevelSet(Box<LevelSetKey>),
     /// The classical nodal method for a membrane, of degree 1.
     ActiveSet(ActiveSetKey),
     /// Between solids: dual multipliers, integrated over exact segments.
@@ -837,11 +837,23 @@ pub enum Method {
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LevelSetKey {
-    /// `one_sided`, the only one so far.
+    /// How the equilibrium beside a contact zone is formulated; `one_sided` if left out.
     #[serde(default)]
-    #[schemars(with = "Option<String>")]
-    pub formulation: Option<Spanned<String>>,
-    /// The functions by which fronts move; `local` if left out.
+    #[schemars(with = "Option<FormulationKey>")]
+    pub formulation: Option<Spanned<FormulationKey>>,
+    /// With `formulation = "published"`, the space of the multiplier in the contact zone; `h1` if left out.
+    #[serde(default)]
+    #[schemars(with = "Option<ZoneMultiplierKey>")]
+    pub multiplier: Option<Spanned<ZoneMultiplierKey>>,
+    /// With `multiplier = "h1"`, the length that weighs its gradients; the extent of the membrane if left out.
+    #[serde(default)]
+    #[schemars(with = "Option<Literal>")]
+    pub multiplier_length: Option<Value>,
+    /// With `formulation = "published"`, how fronts are moved; `exact` if left out.
+    #[serde(default)]
+    #[schemars(with = "Option<TransportKey>")]
+    pub transport: Option<Spanned<TransportKey>>,
+    /// The functions by which fronts move; `local` if left out, `fourier` in the published formulation.
     #[serde(default)]
     #[schemars(with = "Option<FrontModes>")]
     pub modes: Option<Spanned<FrontModes>>,
@@ -853,6 +865,36 @@ pub struct LevelSetKey {
     #[serde(default)]
     #[schemars(with = "Option<Domain>")]
     pub initial_zone: Option<Spanned<Domain>>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum FormulationKey {
+    /// The free membrane alone, held along the front by Nitsche's method: any degree, any path.
+    OneSided,
+    /// Both sides of the front with multipliers, as the method was published: degree 1 in the plane, 1 to 6 along a line or a
+    /// radius.
+    Published,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum ZoneMultiplierKey {
+    /// With gradients: carries the line force along a front that is not at rest.
+    H1,
+    /// Without: oscillates along such a front, to show why not.
+    L2,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum TransportKey {
+    /// As curves.
+    Exact,
+    /// As a level set on the nodes, which becomes the distance to the moved front.
+    Redistancing,
+    /// As a level set on the nodes, carried along by the equation of Hamilton and Jacobi.
+    HamiltonJacobi,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]

@@ -13,6 +13,7 @@ use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::error_estimate::ErrorEstimate;
 use signorini_membrane::ils::{self, Reason, Solution, Start};
 use signorini_membrane::problem::Membrane;
+use signorini_membrane::published::{Formulation, Transport};
 use signorini_membrane::refinement::Refinement;
 use signorini_membrane::report::{Component, ContactReport, Report};
 use signorini_membrane::scales::Scales;
@@ -240,7 +241,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         Z: 'a,
     {
         match plan.method {
-            MethodChoice::InequalityLevelSet(_) => self.level_set(membrane, at, progress),
+            MethodChoice::InequalityLevelSet { .. } => self.level_set(membrane, at, progress),
             MethodChoice::ActiveSet(start) => active_set::<D, Z>(membrane, start, at, progress),
         }
     }
@@ -263,7 +264,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         };
         let nearby = matches!(start, Start::Asked(..) | Start::Zone(_, _, Branch::Nearest));
         // Where the case asks for divided cells it gets them.
-        let large = if nearby || self.refinement.fronts > 0 {
+        let large = if nearby || self.refinement.fronts > 0 || membrane.formulation != Formulation::OneSided {
             None
         } else {
             Z::by_multigrid(membrane, at, progress).ok().flatten()
@@ -318,11 +319,14 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             warnings
                 .push(format!("no state was found on smaller cells at t = {}: the one on larger cells stands", at.1));
         }
+        let on_nodes = matches!(membrane.formulation, Formulation::Published(p) if p.transport != Transport::Exact);
         if let Some(step) = solution.settled_within {
             warnings.push(format!(
                 "the fronts settled to {step:.0e} of a cell at t = {}, {}",
                 at.1,
-                if step < 1e-3 {
+                if on_nodes {
+                    "as far as a level set on nodes shifts them with every step: `transport = \"exact\"` does not"
+                } else if step < 1e-3 {
                     "on a jump of the discrete slope"
                 } else {
                     "where they are sharper than the grid: zones, areas and forces are known to that only"

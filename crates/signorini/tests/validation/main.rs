@@ -10,6 +10,7 @@ mod floors;
 mod gallery;
 mod invariance;
 mod meshes;
+mod published;
 mod refinement;
 mod resume;
 mod solids;

@@ -1,10 +1,11 @@
 //! What helps to begin: templates, explanations, the schema, problems with known answers.
 
-use crate::commands::{DONE, NOT_CONVERGED, report, unknown_example};
+use crate::commands::{DONE, NOT_CONVERGED, WRONG_INPUT, report, unknown_example};
 use serde_json::{Value, json};
 use signorini::case::{CaseError, schema};
 use signorini::explain::{WORDS, explain as explanation};
 use signorini::gallery::{asset, find};
+use signorini::reproduce::{FIGURES, reproduce as reproduced};
 use signorini::template::{SCHEMA_FILE, annotated};
 use signorini::verify::{PROBLEMS, verify as verified};
 use std::path::{Path, PathBuf};
@@ -72,6 +73,34 @@ fn schema_text() -> String {
 
 pub fn schema(markdown: bool) -> u8 {
     print!("{}", if markdown { schema::markdown() } else { schema_text() });
+    DONE
+}
+
+/// Computes figures of the publication anew, into a folder; lists them where none is named.
+pub fn reproduce(names: &[String], folder: &Path) -> u8 {
+    if names.is_empty() {
+        for figure in &FIGURES {
+            println!("{:18} {}", figure.name, figure.about);
+        }
+        println!("\nsignorini reproduce NAME computes one of them, signorini reproduce all computes all.");
+        return DONE;
+    }
+    let all = names.iter().any(|n| n == "all");
+    if let Some(unknown) = names.iter().find(|n| *n != "all" && FIGURES.iter().all(|f| f.name != **n)) {
+        let names: Vec<&str> = FIGURES.iter().map(|f| f.name).collect();
+        eprintln!("there is no figure `{unknown}`; there are {} and all", names.join(", "));
+        return WRONG_INPUT;
+    }
+    for figure in FIGURES.iter().filter(|f| all || names.iter().any(|n| n == f.name)) {
+        match reproduced(figure, folder) {
+            Ok(text) => println!("{text}"),
+            Err(why) => {
+                eprintln!("{}: {why}", figure.name);
+                return NOT_CONVERGED;
+            }
+        }
+    }
+    println!("Pages and pictures are in {}.", folder.display());
     DONE
 }
 

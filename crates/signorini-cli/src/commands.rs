@@ -14,7 +14,7 @@ use signorini::scene::{self, Scene, SceneError};
 use std::path::{Path, PathBuf};
 
 pub const DONE: u8 = 0;
-const WRONG_INPUT: u8 = 1;
+pub const WRONG_INPUT: u8 = 1;
 pub const NOT_CONVERGED: u8 = 2;
 const INTERRUPTED: u8 = 130;
 

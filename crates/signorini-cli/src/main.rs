@@ -121,6 +121,17 @@ enum Command {
     /// Run problems with known answers, here and now
     #[command(after_help = "Example:\n  signorini verify")]
     Verify,
+    /// Compute figures of the publication of the inequality level-set method anew
+    #[command(
+        after_help = "Examples:\n  signorini reproduce\n  signorini reproduce front_error\n  signorini reproduce all -o docs/validation"
+    )]
+    Reproduce {
+        /// Names of figures, or all; without one, a list
+        names: Vec<String>,
+        /// The folder for pages and pictures
+        #[arg(short, long, default_value = "reproduced")]
+        output: PathBuf,
+    },
     /// Print the completions of a shell
     #[command(
         after_help = "Example:\n  signorini completions bash > ~/.local/share/bash-completion/completions/signorini"
@@ -186,6 +197,7 @@ fn main() -> ExitCode {
         Command::Explain { word } => begin::explain(word.as_deref(), json),
         Command::Schema { markdown } => begin::schema(markdown),
         Command::Verify => begin::verify(json),
+        Command::Reproduce { names, output } => begin::reproduce(&names, &output),
         Command::Completions { shell } => {
             clap_complete::generate(shell, &mut Arguments::command(), "signorini", &mut std::io::stdout());
             0

@@ -11,6 +11,7 @@ pub mod output;
 pub mod plan;
 pub mod queries;
 pub mod relief;
+pub mod reproduce;
 pub mod run;
 pub mod scene;
 pub mod snapshot;

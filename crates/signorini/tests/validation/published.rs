@@ -2,6 +2,7 @@
 
 use super::{CELLS, DEGREE, error, example, last_step, number, reference, set, summary};
 use serde_json::Value;
+use signorini::reproduce::{FIGURES, reproduce};
 use signorini_verify::order::fitted;
 
 const METHOD: &str = "contacts.touch.method.inequality_level_set";
@@ -136,4 +137,30 @@ fn what_does_not_go_together_is_told() {
     assert!(length.contains("must be positive"), "{length}");
     let controlled = told(&(linear + "\n[[steps]]\nto = 1.0\ncontrol.arc_length = { size = 0.1 }\n"));
     assert!(controlled.contains("follows time only"), "{controlled}");
+}
+
+#[test]
+fn the_figures_of_the_publication_are_computed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let page = |name: &str| {
+        let figure = FIGURES.iter().find(|f| f.name == name).expect("a figure");
+        let text = reproduce(figure, folder.path()).unwrap_or_else(|e| panic!("{e}"));
+        assert!(folder.path().join(format!("{name}.md")).is_file());
+        assert!(folder.path().join(format!("{name}.svg")).is_file());
+        text
+    };
+    // The rows of a table, each cell as a number where it is one.
+    let rows = |text: &str| -> Vec<Vec<f64>> {
+        let cells = |line: &str| line.split('|').map(|c| c.trim().parse().unwrap_or(f64::NAN)).collect();
+        text.lines().filter(|l| l.starts_with("| ")).skip(1).map(cells).collect()
+    };
+    let way = rows(&page("front_evolution"));
+    let radii: Vec<f64> = way.iter().map(|row| row[2]).collect();
+    assert!((radii[0] - 0.6f64.sqrt()).abs() < 5e-3 && radii.windows(2).all(|r| r[1] <= r[0] + 1e-6), "{radii:?}");
+    assert!((radii[radii.len() - 1] - RADIUS).abs() < 2e-4, "{radii:?}");
+    let waves = rows(&page("modes"));
+    // By symmetry the second wave has nothing to do on the one mesh, but on the other.
+    assert!(waves[0][4] < 1e-3 * waves[1][4] && waves[0][6] > 10.0 * waves[0][4], "{waves:?}");
+    let states = rows(&page("axisymmetric"));
+    assert!(states.iter().all(|row| row[4] <= 1e-10) && states.len() == 5, "{states:?}");
 }

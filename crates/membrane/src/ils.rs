@@ -14,12 +14,8 @@ use signorini_solve::{Acceleration, Iteration, Progress, SolveError};
 
 /// Steps after which fronts that do not come to rest are given up.
 const MOST_STEPS: usize = 40;
-/// Corrections of the zone after which it is given up ...
+/// Corrections of the zone after which it is given up.
 const MOST_SWEEPS: usize = 12;
-/// ... or left to smaller cells.
-const MOST_SWEEPS_BEFORE_DIVISION: usize = 2;
-/// As many steps are left to smaller cells.
-const MOST_STEPS_BEFORE_DIVISION: usize = 15;
 /// Fronts whose residual has not fallen for so many steps ...
 const PATIENCE: usize = 9;
 /// ... after a third of which steps are damped ...
@@ -141,48 +137,11 @@ pub enum Start<Z> {
     Asked(Z, Branch),
 }
 
-/// How far fronts are brought to rest where they curve within a cell: what they lack there is little beside what the grid
-/// cannot show of it, and Newton's method converges slowly.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rest {
-    /// Until nothing more changes that counts.
-    Final,
-    /// Until the cells about them may as well be divided.
-    BeforeDivision,
-}
-
-impl Rest {
-    /// The slope jump in the modes, relative to what they do not see of it, at which fronts sharper than a cell rest.
-    fn share(self) -> f64 {
-        match self {
-            Rest::Final => 1e-3,
-            Rest::BeforeDivision => 0.2,
-        }
-    }
-
-    /// Steps after which fronts that do not come to rest are given up.
-    fn most_steps(self) -> usize {
-        match self {
-            Rest::Final => MOST_STEPS,
-            Rest::BeforeDivision => MOST_STEPS_BEFORE_DIVISION,
-        }
-    }
-
-    /// Corrections of the zone after which it is given up.
-    fn most_sweeps(self) -> usize {
-        match self {
-            Rest::Final => MOST_SWEEPS,
-            Rest::BeforeDivision => MOST_SWEEPS_BEFORE_DIVISION,
-        }
-    }
-}
-
 /// Solves one increment.
 pub fn solve<const D: usize, Z: Zone<D>>(
     membrane: &Membrane<D>,
     elements: &mut Elements<D>,
     start: Start<Z>,
-    rest: Rest,
     at: (usize, f64),
     progress: &mut dyn Progress,
 ) -> Solution<D, Z> {
@@ -192,7 +151,6 @@ pub fn solve<const D: usize, Z: Zone<D>>(
         adhering: false,
         membrane,
         elements,
-        rest,
         at,
         progress,
     };
@@ -240,7 +198,6 @@ fn lost<const D: usize>(equilibrium: &Equilibrium<D>, fronts: &Fronts<'_, D>, ar
 struct Run<'a, 'b, const D: usize, Z> {
     membrane: &'a Membrane<D>,
     elements: &'b mut Elements<D>,
-    rest: Rest,
     at: (usize, f64),
     progress: &'b mut dyn Progress,
     branch: Branch,
@@ -337,7 +294,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             if let Ok(Fixed::Interrupted) = settled {
                 return Ok(Reason::Interrupted);
             }
-            let astray = !matches!(settled, Ok(Fixed::AtRest)) || sweeps > self.rest.most_sweeps();
+            let astray = !matches!(settled, Ok(Fixed::AtRest)) || sweeps > MOST_SWEEPS;
             if astray && (predicted || self.adhering) {
                 return settled.map(|_| Reason::IterationLimit);
             }
@@ -417,10 +374,9 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         self.solution.settled_within = None;
         self.solution.lowest_eigenvalue = None;
         let (mut count, mut descents) = (0, 0);
-        let most_steps = self.rest.most_steps();
-        while count < most_steps && descents < MOST_DESCENTS {
+        while count < MOST_STEPS && descents < MOST_DESCENTS {
             count += 1;
-            let last = count == most_steps;
+            let last = count == MOST_STEPS;
             if self.progress.interrupted() {
                 return Ok(Fixed::Interrupted);
             }
@@ -495,9 +451,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             };
             let settled =
                 (waited >= patience || last) && !slowly && relative_step < enough && step.kind != StepKind::Descent;
-            let blunt =
-                D > 1 && zone.sharpest() * h >= 1.0 && projection.norm < self.rest.share() * projection.remainder;
-            if residual <= 1.0 || (waited >= 1 && relative_step < ROUND_OFF) || settled || blunt {
+            if residual <= 1.0 || (waited >= 1 && relative_step < ROUND_OFF) || settled {
                 if let Some(linearised) = &linearised {
                     let spectrum = linearised.spectrum();
                     let lowest = spectrum.as_ref().and_then(|s| s.values.first().copied());

@@ -4,7 +4,7 @@ use crate::adhesion::Branch;
 use crate::domain::DomainOnCells;
 use crate::equilibrium::{Elements, Equilibrium};
 use crate::front::Fronts;
-use crate::ils::{self, Reason, Rest, Solution, Start};
+use crate::ils::{self, Reason, Solution, Start};
 use crate::problem::Membrane;
 use crate::scales::Scales;
 use crate::zone::Zone;
@@ -84,9 +84,7 @@ impl<const D: usize> Refinement<D> {
             Start::Zone(_, _, branch) | Start::Asked(_, branch) => *branch,
             Start::Free => Branch::Stable,
         };
-        let last = whole.cells.divisible().is_none() || D != 2 || used >= self.most;
-        let rest = if last { Rest::Final } else { Rest::BeforeDivision };
-        let mut best = ils::solve(whole, &mut Elements::new(whole), start, rest, at, progress);
+        let mut best = ils::solve(whole, &mut Elements::new(whole), start, at, progress);
         for _ in 0..MOST_ROUNDS {
             let (Some(scales), false) = (best.scales, best.zone.is_empty()) else { break };
             let astray = best.reason == Reason::IterationLimit;
@@ -109,7 +107,7 @@ impl<const D: usize> Refinement<D> {
             let Some(finer) = self.divided(membrane, &zone, wanted) else { break };
             used = wanted;
             let start = Start::Zone(zone, scales.on(&finer), branch);
-            let mut next = ils::solve(&finer, &mut Elements::new(&finer), start, Rest::Final, at, progress);
+            let mut next = ils::solve(&finer, &mut Elements::new(&finer), start, at, progress);
             next.iterations += best.iterations;
             next.jumped |= best.jumped;
             if next.reason != Reason::Interrupted && best.reason.converged() && !next.reason.converged() {

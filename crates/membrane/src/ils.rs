@@ -99,8 +99,6 @@ pub struct Solution<const D: usize, Z> {
     pub settled_within: Option<f64>,
     /// Whether multigrid found it, and not a factorisation.
     pub multigrid: bool,
-    /// What the nodal method predicted on the way, if it was asked.
-    pub predicted: Option<Z>,
 }
 
 impl<const D: usize, Z> Solution<D, Z> {
@@ -122,7 +120,6 @@ impl<const D: usize, Z> Solution<D, Z> {
             unrefined: false,
             settled_within: None,
             multigrid: false,
-            predicted: None,
         }
     }
 }
@@ -317,19 +314,10 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             // Corrected and settled again it would come back to itself: the grid cannot tell whether zones touch.
             let state = (solution.zone.counts(), conditions.least_gap_outside);
             let again = |(counts, gap): &((usize, usize), f64)| *counts == state.0 && (gap / state.1 - 1.0).abs() < 0.1;
-            if !first && seen.iter().any(again) {
-                if conditions.nearly_hold(scales, self.membrane) {
-                    solution.unresolved = Some(-conditions.least_gap_outside);
-                    solution.conditions = Some(conditions);
-                    return Ok(Reason::Converged);
-                }
+            if !first && conditions.nearly_hold(scales) && seen.iter().any(again) {
+                solution.unresolved = Some(-conditions.least_gap_outside);
                 solution.conditions = Some(conditions);
-                if predicted || self.adhering {
-                    return Ok(Reason::IterationLimit);
-                }
-                (predicted, sweeps) = (true, 0);
-                self.predict()?;
-                continue;
+                return Ok(Reason::Converged);
             }
             seen.push(state);
             if self.branch == Branch::Nearest && first {
@@ -358,7 +346,6 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             let predictor = solution.predictor(&nodal, side);
             zone.united(grid, side, &mut |x| predictor(x))
         });
-        self.solution.predicted = Some(self.solution.zone.clone());
         self.report(0.0, "predicted");
         self.solution.residuals.pop();
         Ok(())

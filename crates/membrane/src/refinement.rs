@@ -87,26 +87,23 @@ impl<const D: usize> Refinement<D> {
         let mut best = ils::solve(whole, &mut Elements::new(whole), start, at, progress);
         for _ in 0..MOST_ROUNDS {
             let (Some(scales), false) = (best.scales, best.zone.is_empty()) else { break };
-            let astray = best.reason == Reason::IterationLimit;
-            // Fronts that went astray are a worse start than those that were predicted.
-            let zone = best.predicted.take().filter(|_| astray).unwrap_or_else(|| best.zone.clone());
             let wanted = match (best.reason.clone(), best.unresolved) {
                 (Reason::Interrupted | Reason::NoSuchState | Reason::LinearSolver(_), _) => break,
-                (Reason::IterationLimit, _) => (used + 1).max(self.levels(membrane, &zone)),
+                (Reason::IterationLimit, _) => (used + 1).max(self.levels(membrane, &best.zone)),
                 (_, Some(_)) => self.most,
-                _ => self.levels(membrane, &zone),
+                _ => self.levels(membrane, &best.zone),
             };
             let wanted = wanted.min(self.most);
             if wanted < used || (wanted == used && !strayed(&best)) {
                 *levels = wanted;
                 return best;
             }
-            if astray && wanted == used {
+            if best.reason == Reason::IterationLimit && wanted == used {
                 break;
             }
-            let Some(finer) = self.divided(membrane, &zone, wanted) else { break };
+            let Some(finer) = self.divided(membrane, &best.zone, wanted) else { break };
             used = wanted;
-            let start = Start::Zone(zone, scales.on(&finer), branch);
+            let start = Start::Zone(best.zone.clone(), scales.on(&finer), branch);
             let mut next = ils::solve(&finer, &mut Elements::new(&finer), start, at, progress);
             next.iterations += best.iterations;
             next.jumped |= best.jumped;

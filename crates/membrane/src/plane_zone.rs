@@ -406,9 +406,12 @@ impl PlaneZone {
         Self::new(grid, kept)
     }
 
-    /// The most modes that can be told apart along a curve.
+    /// The most modes that can be told apart along a curve: its own, but for curves that follow a level set more closely.
     fn most_modes(&self, curve: &ClosedCurve) -> usize {
-        curve.knots().min(Self::knots(&self.grid, polygon::perimeter(curve.samples())))
+        match curve.degree() {
+            LEVEL_SET_DEGREE => curve.knots().min(Self::knots(&self.grid, polygon::perimeter(curve.samples()))),
+            _ => curve.knots(),
+        }
     }
 
     /// Joins the raster of a function to the zone by `combine`, or adds its outlines as curves of their own where they

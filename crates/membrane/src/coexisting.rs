@@ -7,7 +7,7 @@ use crate::adhesion::Branch;
 use crate::equilibrium::{Elements, Equilibrium};
 use crate::field::Constant;
 use crate::front::Fronts;
-use crate::ils::{Reason, Solution, Start, is_clear, solve};
+use crate::ils::{Reason, Rest, Solution, Start, is_clear, solve};
 use crate::obstacle::{Obstacles, Side};
 use crate::problem::Membrane;
 use crate::report::Report;
@@ -64,7 +64,8 @@ pub fn others<const D: usize, Z: Zone<D>>(
         for family in families(membrane, &free, &mut elements)? {
             for zone in near_equilibria(membrane, &family, &mut elements)? {
                 let start = Start::Asked(zone, Branch::Nearest);
-                let solution: Solution<D, Z> = solve(membrane, &mut elements, start, (0, 0.0), &mut Silent);
+                let solution: Solution<D, Z> =
+                    solve(membrane, &mut elements, start, Rest::Final, (0, 0.0), &mut Silent);
                 if let (Reason::Converged, Some(report)) = (&solution.reason, Report::new(&solution)) {
                     add(OtherState {
                         area: report.area(),

@@ -54,7 +54,7 @@ pub struct Conditions<const D: usize> {
     /// Least gap away from the fronts.
     pub least_gap_outside: f64,
     /// The least there in multiples of the penetration that counts as none, and where.
-    pub worst: f64,
+    worst: f64,
     pub deepest: (Side, Point<D>),
     /// Least pressure with which a body would push where the free membrane penetrates it.
     pub least_pressure_below: f64,
@@ -135,9 +135,10 @@ impl<const D: usize> Conditions<D> {
         self.worst < -1.0
     }
 
-    /// Whether all that is wrong is a penetration not much larger than what counts as none.
-    pub fn nearly_hold(&self, scales: &Scales) -> bool {
-        self.worst >= -NEARLY && !self.pulls(scales) && self.torn_from_support.is_none()
+    /// Whether all that is wrong is a penetration not much larger than what counts as none, on cells that are not divided.
+    pub fn nearly_hold(&self, scales: &Scales, membrane: &Membrane<D>) -> bool {
+        let divided = membrane.cells.divisible().map_or(1.0, |whole| whole.h() / membrane.grid.h());
+        self.worst >= -NEARLY * divided.powi(2) && !self.pulls(scales) && self.torn_from_support.is_none()
     }
 
     /// Whether the contact conditions hold everywhere.

@@ -14,8 +14,12 @@ use signorini_solve::{Acceleration, Iteration, Progress, SolveError};
 
 /// Steps after which fronts that do not come to rest are given up.
 const MOST_STEPS: usize = 40;
-/// Corrections of the zone after which it is given up.
+/// Corrections of the zone after which it is given up ...
 const MOST_SWEEPS: usize = 12;
+/// ... or left to smaller cells.
+const MOST_SWEEPS_BEFORE_DIVISION: usize = 2;
+/// As many steps are left to smaller cells.
+const MOST_STEPS_BEFORE_DIVISION: usize = 15;
 /// Fronts whose residual has not fallen for so many steps ...
 const PATIENCE: usize = 9;
 /// ... after a third of which steps are damped ...
@@ -99,6 +103,8 @@ pub struct Solution<const D: usize, Z> {
     pub settled_within: Option<f64>,
     /// Whether multigrid found it, and not a factorisation.
     pub multigrid: bool,
+    /// What the nodal method predicted on the way, if it was asked.
+    pub predicted: Option<Z>,
 }
 
 impl<const D: usize, Z> Solution<D, Z> {
@@ -120,6 +126,7 @@ impl<const D: usize, Z> Solution<D, Z> {
             unrefined: false,
             settled_within: None,
             multigrid: false,
+            predicted: None,
         }
     }
 }
@@ -134,11 +141,48 @@ pub enum Start<Z> {
     Asked(Z, Branch),
 }
 
+/// How far fronts are brought to rest where they curve within a cell: what they lack there is little beside what the grid
+/// cannot show of it, and Newton's method converges slowly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rest {
+    /// Until nothing more changes that counts.
+    Final,
+    /// Until the cells about them may as well be divided.
+    BeforeDivision,
+}
+
+impl Rest {
+    /// The slope jump in the modes, relative to what they do not see of it, at which fronts sharper than a cell rest.
+    fn share(self) -> f64 {
+        match self {
+            Rest::Final => 1e-3,
+            Rest::BeforeDivision => 0.2,
+        }
+    }
+
+    /// Steps after which fronts that do not come to rest are given up.
+    fn most_steps(self) -> usize {
+        match self {
+            Rest::Final => MOST_STEPS,
+            Rest::BeforeDivision => MOST_STEPS_BEFORE_DIVISION,
+        }
+    }
+
+    /// Corrections of the zone after which it is given up.
+    fn most_sweeps(self) -> usize {
+        match self {
+            Rest::Final => MOST_SWEEPS,
+            Rest::BeforeDivision => MOST_SWEEPS_BEFORE_DIVISION,
+        }
+    }
+}
+
 /// Solves one increment.
 pub fn solve<const D: usize, Z: Zone<D>>(
     membrane: &Membrane<D>,
     elements: &mut Elements<D>,
     start: Start<Z>,
+    rest: Rest,
     at: (usize, f64),
     progress: &mut dyn Progress,
 ) -> Solution<D, Z> {
@@ -148,6 +192,7 @@ pub fn solve<const D: usize, Z: Zone<D>>(
         adhering: false,
         membrane,
         elements,
+        rest,
         at,
         progress,
     };
@@ -195,6 +240,7 @@ fn lost<const D: usize>(equilibrium: &Equilibrium<D>, fronts: &Fronts<'_, D>, ar
 struct Run<'a, 'b, const D: usize, Z> {
     membrane: &'a Membrane<D>,
     elements: &'b mut Elements<D>,
+    rest: Rest,
     at: (usize, f64),
     progress: &'b mut dyn Progress,
     branch: Branch,
@@ -291,7 +337,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             if let Ok(Fixed::Interrupted) = settled {
                 return Ok(Reason::Interrupted);
             }
-            let astray = !matches!(settled, Ok(Fixed::AtRest)) || sweeps > MOST_SWEEPS;
+            let astray = !matches!(settled, Ok(Fixed::AtRest)) || sweeps > self.rest.most_sweeps();
             if astray && (predicted || self.adhering) {
                 return settled.map(|_| Reason::IterationLimit);
             }
@@ -314,10 +360,19 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             // Corrected and settled again it would come back to itself: the grid cannot tell whether zones touch.
             let state = (solution.zone.counts(), conditions.least_gap_outside);
             let again = |(counts, gap): &((usize, usize), f64)| *counts == state.0 && (gap / state.1 - 1.0).abs() < 0.1;
-            if !first && conditions.nearly_hold(scales) && seen.iter().any(again) {
-                solution.unresolved = Some(-conditions.least_gap_outside);
+            if !first && seen.iter().any(again) {
+                if conditions.nearly_hold(scales, self.membrane) {
+                    solution.unresolved = Some(-conditions.least_gap_outside);
+                    solution.conditions = Some(conditions);
+                    return Ok(Reason::Converged);
+                }
                 solution.conditions = Some(conditions);
-                return Ok(Reason::Converged);
+                if predicted || self.adhering {
+                    return Ok(Reason::IterationLimit);
+                }
+                (predicted, sweeps) = (true, 0);
+                self.predict()?;
+                continue;
             }
             seen.push(state);
             if self.branch == Branch::Nearest && first {
@@ -346,6 +401,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             let predictor = solution.predictor(&nodal, side);
             zone.united(grid, side, &mut |x| predictor(x))
         });
+        self.solution.predicted = Some(self.solution.zone.clone());
         self.report(0.0, "predicted");
         self.solution.residuals.pop();
         Ok(())
@@ -361,9 +417,10 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         self.solution.settled_within = None;
         self.solution.lowest_eigenvalue = None;
         let (mut count, mut descents) = (0, 0);
-        while count < MOST_STEPS && descents < MOST_DESCENTS {
+        let most_steps = self.rest.most_steps();
+        while count < most_steps && descents < MOST_DESCENTS {
             count += 1;
-            let last = count == MOST_STEPS;
+            let last = count == most_steps;
             if self.progress.interrupted() {
                 return Ok(Fixed::Interrupted);
             }
@@ -438,7 +495,9 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             };
             let settled =
                 (waited >= patience || last) && !slowly && relative_step < enough && step.kind != StepKind::Descent;
-            if residual <= 1.0 || (waited >= 1 && relative_step < ROUND_OFF) || settled {
+            let blunt =
+                D > 1 && zone.sharpest() * h >= 1.0 && projection.norm < self.rest.share() * projection.remainder;
+            if residual <= 1.0 || (waited >= 1 && relative_step < ROUND_OFF) || settled || blunt {
                 if let Some(linearised) = &linearised {
                     let spectrum = linearised.spectrum();
                     let lowest = spectrum.as_ref().and_then(|s| s.values.first().copied());

@@ -4,7 +4,7 @@ use crate::adhesion::Branch;
 use crate::domain::DomainOnCells;
 use crate::equilibrium::{Elements, Equilibrium};
 use crate::front::Fronts;
-use crate::ils::{self, Reason, Solution, Start};
+use crate::ils::{self, Reason, Rest, Solution, Start};
 use crate::problem::Membrane;
 use crate::scales::Scales;
 use crate::zone::Zone;
@@ -84,27 +84,32 @@ impl<const D: usize> Refinement<D> {
             Start::Zone(_, _, branch) | Start::Asked(_, branch) => *branch,
             Start::Free => Branch::Stable,
         };
-        let mut best = ils::solve(whole, &mut Elements::new(whole), start, at, progress);
+        let last = whole.cells.divisible().is_none() || D != 2 || used >= self.most;
+        let rest = if last { Rest::Final } else { Rest::BeforeDivision };
+        let mut best = ils::solve(whole, &mut Elements::new(whole), start, rest, at, progress);
         for _ in 0..MOST_ROUNDS {
             let (Some(scales), false) = (best.scales, best.zone.is_empty()) else { break };
+            let astray = best.reason == Reason::IterationLimit;
+            // Fronts that went astray are a worse start than those that were predicted.
+            let zone = best.predicted.take().filter(|_| astray).unwrap_or_else(|| best.zone.clone());
             let wanted = match (best.reason.clone(), best.unresolved) {
                 (Reason::Interrupted | Reason::NoSuchState | Reason::LinearSolver(_), _) => break,
-                (Reason::IterationLimit, _) => (used + 1).max(self.levels(membrane, &best.zone)),
+                (Reason::IterationLimit, _) => (used + 1).max(self.levels(membrane, &zone)),
                 (_, Some(_)) => self.most,
-                _ => self.levels(membrane, &best.zone),
+                _ => self.levels(membrane, &zone),
             };
             let wanted = wanted.min(self.most);
             if wanted < used || (wanted == used && !strayed(&best)) {
                 *levels = wanted;
                 return best;
             }
-            if best.reason == Reason::IterationLimit && wanted == used {
+            if astray && wanted == used {
                 break;
             }
-            let Some(finer) = self.divided(membrane, &best.zone, wanted) else { break };
+            let Some(finer) = self.divided(membrane, &zone, wanted) else { break };
             used = wanted;
-            let start = Start::Zone(best.zone.clone(), scales.on(&finer), branch);
-            let mut next = ils::solve(&finer, &mut Elements::new(&finer), start, at, progress);
+            let start = Start::Zone(zone, scales.on(&finer), branch);
+            let mut next = ils::solve(&finer, &mut Elements::new(&finer), start, Rest::Final, at, progress);
             next.iterations += best.iterations;
             next.jumped |= best.jumped;
             if next.reason != Reason::Interrupted && best.reason.converged() && !next.reason.converged() {

@@ -7,7 +7,7 @@ use signorini_membrane::domain::{Domain, DomainOnCells, ImplicitDomain};
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::field::{Constant, Formula, SharedField};
 use signorini_membrane::front::Fronts;
-use signorini_membrane::ils::{Reason, Start, solve};
+use signorini_membrane::ils::{Reason, Rest, Start, solve};
 use signorini_membrane::obstacle::{Obstacle, Obstacles, Side};
 use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::{Measure, Membrane, Support};
@@ -202,7 +202,7 @@ fn stability_is_the_second_change_of_the_energy() {
     let membrane = sticky(20, 4, Side::Below);
     let mut elements = Elements::new(&membrane);
     let start: Start<PlaneZone> = Start::Asked(zone_of(&membrane, 0.6), Branch::Nearest);
-    let solution = solve(&membrane, &mut elements, start, (0, 0.0), &mut Silent);
+    let solution = solve(&membrane, &mut elements, start, Rest::Final, (0, 0.0), &mut Silent);
     assert_eq!(solution.reason, Reason::Converged);
     let energy = |zone: &PlaneZone| {
         let state = Equilibrium::solve(&membrane, zone, &mut Elements::new(&membrane)).expect("an equilibrium");

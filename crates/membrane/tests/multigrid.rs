@@ -5,7 +5,7 @@ use signorini_geometry::{Aabb, ClosedCurve, Ellipse, Jet, Point, Real, polygon};
 use signorini_membrane::domain::{BoxDomain, Domain, DomainOnCells, ImplicitDomain, PolygonDomain};
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::field::{Constant, Formula};
-use signorini_membrane::ils::{self, Reason, Start};
+use signorini_membrane::ils::{self, Reason, Rest, Start};
 use signorini_membrane::multigrid::{Hierarchy, nested};
 use signorini_membrane::obstacle::{Obstacle, Obstacles, Side};
 use signorini_membrane::plane_zone::PlaneZone;
@@ -187,8 +187,14 @@ fn multigrid_and_the_direct_solver_agree() {
     for (name, membrane) in [("flat", flat), ("waves", waves), ("square, varied load", varied), ("ceiling", ceiling)] {
         let found = nested::solution(&membrane, (0, 0.0), &mut Silent).expect("solves");
         let found = found.unwrap_or_else(|| panic!("{name}: no state"));
-        let direct =
-            ils::solve::<2, PlaneZone>(&membrane, &mut Elements::new(&membrane), Start::Free, (0, 0.0), &mut Silent);
+        let direct = ils::solve::<2, PlaneZone>(
+            &membrane,
+            &mut Elements::new(&membrane),
+            Start::Free,
+            Rest::Final,
+            (0, 0.0),
+            &mut Silent,
+        );
         assert_eq!(direct.reason, Reason::Converged, "{name}");
         assert_eq!(found.zone.counts(), direct.zone.counts(), "{name}");
         let [a, b] = [&found, &direct].map(|s| Report::new(s).expect("a report"));

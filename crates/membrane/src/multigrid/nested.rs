@@ -8,7 +8,7 @@ use super::{Level, cycle, grids, levels, on_grid};
 use crate::conditions::Conditions;
 use crate::equilibrium::Elements;
 use crate::front::Fronts;
-use crate::ils::{self, Reason, SETTLED, SETTLED_COARSE, Solution, Start};
+use crate::ils::{self, Reason, Rest, SETTLED, SETTLED_COARSE, Solution, Start};
 use crate::plane_zone::PlaneZone;
 use crate::problem::Membrane;
 use crate::scales::Scales;
@@ -104,7 +104,8 @@ pub fn solve(
     let grids = grids(&membrane.grid);
     let first = grids.iter().position(|g| g.cells().into_iter().max().unwrap_or(0) >= FIRST).unwrap_or(0);
     let coarse = on_grid(membrane, &grids[first]);
-    let found = ils::solve::<2, PlaneZone>(&coarse, &mut Elements::new(&coarse), Start::Free, at, progress);
+    let found =
+        ils::solve::<2, PlaneZone>(&coarse, &mut Elements::new(&coarse), Start::Free, Rest::Final, at, progress);
     let (Reason::Converged, Some(scales), Some(state)) = (&found.reason, found.scales, &found.equilibrium) else {
         return Ok(Err(found.reason));
     };

@@ -7,7 +7,7 @@ use crate::plan::{Plan, plan};
 use serde_json::Value;
 use signorini_geometry::Point;
 use signorini_membrane::equilibrium::Elements;
-use signorini_membrane::ils::{self, Start};
+use signorini_membrane::ils::{self, Rest, Start};
 use signorini_membrane::line_zone::LineZone;
 use signorini_solve::Silent;
 use signorini_verify::order::fitted;
@@ -106,7 +106,8 @@ fn axisymmetric(_: &Path) -> Result<Page, String> {
         };
         let membrane = plan.at(0.0);
         let mut elements = Elements::new(&membrane);
-        let found = ils::solve::<1, LineZone>(&membrane, &mut elements, Start::Free, (0, 0.0), &mut Silent);
+        let found =
+            ils::solve::<1, LineZone>(&membrane, &mut elements, Start::Free, Rest::Final, (0, 0.0), &mut Silent);
         let Some(state) = found.equilibrium.filter(|_| found.reason.converged()) else {
             return Err(format!("no state was found for an energy of {energy}"));
         };

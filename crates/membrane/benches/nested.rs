@@ -1,10 +1,11 @@
 //! Time, memory and error of membranes by multigrid from coarse to fine: a round one on a flat floor, and a square one on a
-//! cosine floor at f = 0.4. From 1e4 unknowns to as many as `SIGNORINI_LADDER` says (1e6 if it says nothing), one thread.
+//! cosine floor at f = 0.4, at degree 1, 2 and 4. From 1e4 unknowns to as many as `SIGNORINI_LADDER` says (1e6 if it says
+//! nothing), on `SIGNORINI_THREADS` threads (one if it says nothing), at `SIGNORINI_DEGREE` alone if it says something.
 //!
 //! `cargo bench -p signorini-membrane --bench nested`
 
 use signorini_fem::Grid;
-use signorini_geometry::{Aabb, Ellipse, Jet, Point, Real, polygon};
+use signorini_geometry::{Aabb, Ellipse, Jet, Point, Real};
 use signorini_membrane::domain::{BoxDomain, Domain, DomainOnCells, ImplicitDomain};
 use signorini_membrane::field::{Constant, Formula, SharedField};
 use signorini_membrane::multigrid::nested;
@@ -17,9 +18,9 @@ use std::time::Instant;
 /// Radius of the zone on the flat floor.
 const RADIUS: f64 = 0.502_474_357_08;
 
-fn on_grid(n: usize, half: f64, domain: Arc<dyn Domain<2>>, height: SharedField<2>, load: f64) -> Membrane<2> {
+fn on_grid([n, degree]: [usize; 2], half: f64, domain: Arc<dyn Domain<2>>, height: SharedField<2>, load: f64) -> Membrane<2> {
     let bounds = Aabb::new(Point::<2>::new(-half, -half), Point::<2>::new(half, half));
-    let grid = Grid::new(bounds, [n, n], 1);
+    let grid = Grid::new(bounds, [n, n], degree);
     let support = Some(Support { index: 0, displacement: Arc::new(Constant(0.0)) });
     Membrane {
         supports: vec![support; domain.pieces()],
@@ -36,12 +37,12 @@ fn on_grid(n: usize, half: f64, domain: Arc<dyn Domain<2>>, height: SharedField<
     }
 }
 
-fn flat(n: usize) -> Membrane<2> {
+fn flat(n: [usize; 2]) -> Membrane<2> {
     let disc = Arc::new(ImplicitDomain(Ellipse { center: Point::zeros(), semi_axes: [1.0, 1.0] }));
     on_grid(n, 1.03, disc, Arc::new(Constant(-0.1)), -1.0)
 }
 
-fn waves(n: usize) -> Membrane<2> {
+fn waves(n: [usize; 2]) -> Membrane<2> {
     let cos = |v: Jet<2>| {
         let a = Jet::constant(std::f64::consts::TAU) * v;
         a.chain(a.value.cos(), -a.value.sin(), -a.value.cos())
@@ -58,40 +59,54 @@ fn peak() -> f64 {
     line.split_whitespace().next().and_then(|kb| kb.parse::<f64>().ok()).unwrap_or(f64::NAN) * 1024.0
 }
 
+/// A number that is asked for by the environment.
+fn asked(name: &str, usual: f64) -> f64 {
+    std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(usual)
+}
+
 fn main() {
-    let most: f64 = std::env::var("SIGNORINI_LADDER").ok().and_then(|v| v.parse().ok()).unwrap_or(1.2e6);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
+    let most = asked("SIGNORINI_LADDER", 1.2e6);
+    let threads = asked("SIGNORINI_THREADS", 1.0) as usize;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
     let radius = |area: f64| (area / std::f64::consts::PI).sqrt() - RADIUS;
-    let cases: [(&str, f64, fn(usize) -> Membrane<2>, &dyn Fn(f64) -> f64); 2] = [
+    type Case<'a> = (&'a str, f64, fn([usize; 2]) -> Membrane<2>, &'a dyn Fn(f64) -> f64);
+    let cases: [Case; 2] = [
         ("disc on a flat floor: radius off", 0.56, flat, &radius),
         ("square on a cosine floor: area", 1.0, waves, &|area| area),
     ];
-    for (name, share, membrane, figure) in cases {
-        println!("{:>10} {:>9} {:>8} {:>9} {:>9}  {name}", "unknowns", "s", "µs each", "MB peak", "B each");
-        let mut last: Option<(f64, f64)> = None;
-        for n in [128usize, 256, 512, 1024, 1408, 2816, 4096, 8192] {
-            if share * (n * n) as f64 > most {
-                break;
-            }
-            let start = Instant::now();
-            let found = pool.install(|| nested::solve(&membrane(n), f64::INFINITY, (0, 0.0), &mut Silent));
-            let seconds = start.elapsed().as_secs_f64();
-            let Ok(Ok(found)) = found else {
-                println!("{n} x {n}: no state");
-                return;
-            };
-            let area: f64 = found.zone.curves().iter().map(|c| polygon::signed_area(c.samples())).sum();
-            let unknowns = found.level.unknowns() as f64;
+    let only = asked("SIGNORINI_DEGREE", 0.0) as usize;
+    for degree in [1, 2, 4].into_iter().filter(|d| only == 0 || *d == only) {
+        for (name, share, membrane, figure) in &cases {
             println!(
-                "{unknowns:>10} {seconds:>9.3} {:>8.2} {:>9.0} {:>9.0}  {:.9e}  steps {:?}",
-                1e6 * seconds / unknowns,
-                peak() / 1e6,
-                peak() / unknowns,
-                figure(area),
-                found.steps
+                "{:>10} {:>9} {:>8} {:>9} {:>9}  degree {degree}, {name}",
+                "unknowns", "s", "µs each", "MB peak", "B each"
             );
-            if let Some((u, s)) = last.replace((unknowns, seconds)) {
-                println!("{:>10} exponent {:.2}", "", (seconds / s).ln() / (unknowns / u).ln());
+            let mut last: Option<(f64, f64)> = None;
+            for n in [128usize, 256, 512, 1024, 1408, 2816, 4096, 8192].map(|n| n / degree / 16 * 16) {
+                if share * ((n * degree) as f64).powi(2) > most {
+                    break;
+                }
+                let start = Instant::now();
+                let found =
+                    pool.install(|| nested::solve(&membrane([n, degree]), f64::INFINITY, (0, 0.0), &mut Silent));
+                let seconds = start.elapsed().as_secs_f64();
+                let Ok(Ok(found)) = found else {
+                    println!("{n} x {n}: no state");
+                    break;
+                };
+                let area: f64 = found.zone.curves().iter().map(|c| c.signed_area()).sum();
+                let unknowns = found.level.unknowns() as f64;
+                println!(
+                    "{unknowns:>10} {seconds:>9.3} {:>8.2} {:>9.0} {:>9.0}  {:.9e}  steps {:?}",
+                    1e6 * seconds / unknowns,
+                    peak() / 1e6,
+                    peak() / unknowns,
+                    figure(area),
+                    found.steps
+                );
+                if let Some((u, s)) = last.replace((unknowns, seconds)) {
+                    println!("{:>10} exponent {:.2}", "", (seconds / s).ln() / (unknowns / u).ln());
+                }
             }
         }
     }

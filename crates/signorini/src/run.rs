@@ -33,6 +33,7 @@ use signorini_membrane::zone::Zone;
 use signorini_solve::SolveError;
 pub use signorini_solve::{Iteration, Progress, Silent};
 pub use sizes::{preview, sizes};
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// What a run of solids would have to do, after checking that their supports and contacts make sense.
@@ -486,7 +487,16 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         let Some(tolerance) = self.plan.increments[index].events else { return };
         let (plan, engine) = (&self.plan, &mut self.engine);
         let mut found = Vec::new();
+        // Events at the same time ask for the same states.
+        let mut solved: HashMap<u64, Known<Z>> = HashMap::new();
+        let mut failed = HashSet::new();
         let mut solve = |time: f64, [before, after]: [&Z; 2]| {
+            let from = (time.to_bits(), before.counts(), after.counts());
+            match solved.get(&time.to_bits()) {
+                Some(state) => return Between::State(state.clone()),
+                None if failed.contains(&from) => return Between::Unknown,
+                None => {}
+            }
             let membrane = plan.at(time);
             if progress.interrupted() || plan.check_fields(&membrane, time).is_err() {
                 return Between::Unknown;
@@ -506,7 +516,16 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                     _ => {}
                 }
             }
-            state.map_or(Between::Unknown, Between::State)
+            match state {
+                Some(state) => {
+                    solved.insert(time.to_bits(), state.clone());
+                    Between::State(state)
+                }
+                None => {
+                    failed.insert(from);
+                    Between::Unknown
+                }
+            }
         };
         locate(&plan.grid, a, b, tolerance, &mut solve, &mut found);
         self.engine.start_from(b.zone.clone());

@@ -1,5 +1,7 @@
 //! One level: regular nodes by their stencil, irregular ones by stored rows, and the factor of the band round these.
 
+use super::interior::{Interior, Run, runs};
+use super::transfer::Interpolation;
 use crate::domain::{CellStatus, DomainOnCells};
 use crate::equilibrium::{Elements, Equilibrium, System, number};
 use crate::plane_zone::{PlaneZone, Straightened};
@@ -14,7 +16,7 @@ use signorini_solve::{Factor, SolveError, Symbolic, SymmetricMatrix};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Gauss points per direction in cut cells: on fine grids a front is nearly straight within a cell.
+/// Gauss points per direction in cut cells at degree 1: on fine grids a front is nearly straight within a cell.
 const ORDER: usize = 3;
 /// Cells in contact beside cut ones whose displacement is held.
 const HELD: usize = 4;
@@ -22,32 +24,18 @@ const HELD: usize = 4;
 const PART: usize = 2;
 const STORED: usize = 1;
 
-/// Regular nodes of one row of the grid, from `begin` up to `end`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Run {
-    pub row: usize,
-    pub begin: usize,
-    pub end: usize,
-}
-
-/// The equation of a regular node: its own entry, those of its neighbours along x and y, and across the corners.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Stencil {
-    pub own: f64,
-    pub x: f64,
-    pub y: f64,
-    pub corner: f64,
-}
-
 /// A membrane around a zone on one grid. Unknowns are the nodes of the grid, by their number there, and behind them further
 /// ones for nodes that two free regions share.
 pub struct Level {
     pub(super) grid: Grid<2>,
+    interior: Interior,
+    pub(super) interpolation: Interpolation,
+    /// Regular nodes, and vertices whose patches are relaxed.
     pub(super) runs: Vec<Run>,
-    pub(super) stencil: Stencil,
+    vertices: Vec<Run>,
     /// Rows of irregular unknowns.
-    irregular: Vec<u32>,
-    node_of_irregular: Vec<u32>,
+    pub(super) irregular: Vec<u32>,
+    pub(super) node_of_irregular: Vec<u32>,
     row_start: Vec<usize>,
     column: Vec<u32>,
     value: Vec<f64>,
@@ -73,6 +61,7 @@ impl Level {
     pub fn new(membrane: &Membrane<2>, zone: &PlaneZone, whole: bool) -> Result<Self, SolveError> {
         let grid = membrane.grid.clone();
         let [nx, ny] = grid.cells();
+        let [columns, rows_of_nodes] = grid.node_counts();
         let state = states(membrane, zone);
         let part_cells = around(&grid, &state, |s| s == State::Cut, PART);
         let cells = Arc::new(GridPart::new(&grid, part_cells));
@@ -81,11 +70,10 @@ impl Level {
         let part = Membrane { cells: cells.clone(), domain, ..membrane.clone() };
         let elements = Elements::new(&part);
         let System { quadrature, unknowns, matrix, rhs } =
-            System::on(&part, Quadrature::of_order(&part, &Straightened(zone), ORDER), &elements);
+            System::on(&part, quadrature(&part, zone), &elements);
 
         // The unknown of the level for each of the part: the node, or one more where another region has it already.
-        let node_count = (nx + 1) * (ny + 1);
-        let mut count = node_count;
+        let mut count = grid.node_count();
         let mut taken = vec![u32::MAX; cells.nodes().len()];
         let mut global = vec![u32::MAX; unknowns.count];
         let mut node_of = vec![0; unknowns.count];
@@ -111,7 +99,9 @@ impl Level {
         }
         // Stored rows: those whose cells are all in the part.
         let mut stored = vec![false; count];
+        let mut plain: Vec<bool> = state.iter().map(|s| *s == State::Free).collect();
         for &cell in &around(&grid, &state, |s| s == State::Cut, STORED) {
+            plain[cell] = false;
             let Some(k) = cells.number(cell) else { continue };
             for (_, dofs) in &unknowns.cells[k] {
                 dofs.iter().for_each(|&d| stored[global[d as usize] as usize] = true);
@@ -131,30 +121,23 @@ impl Level {
         }
 
         // Regular nodes have free cells on all sides, and no stored row.
-        let mut runs: Vec<Run> = Vec::new();
+        let p = grid.degree();
+        let free = |i: usize, j: usize| i < nx && j < ny && plain[j * nx + i];
+        let beside = |node: usize| (node.checked_sub(1).map_or(usize::MAX, |n| n / p), node / p);
         let regular = |i: usize, j: usize| {
-            i > 0 && j > 0 && i < nx && j < ny && !stored[j * (nx + 1) + i] && state[j * nx + i] == State::Free
+            let ((left, right), (below, above)) = (beside(i), beside(j));
+            free(left, below) && free(right, below) && free(left, above) && free(right, above)
         };
-        for j in 1..ny {
-            let mut i = 1;
-            while i < nx {
-                if !regular(i, j) {
-                    i += 1;
-                    continue;
-                }
-                let begin = i;
-                while i < nx && regular(i, j) {
-                    i += 1;
-                }
-                runs.push(Run { row: j, begin, end: i });
-            }
-        }
-        let stencil = stencil(&grid, membrane.tension.constant().unwrap_or(1.0));
-        load(membrane, &state, &runs, &mut b);
+        let regular_nodes = runs(rows_of_nodes, columns, regular);
+        let vertices = runs(ny + 1, nx + 1, |i, j| regular(i * p, j * p));
+        let interior = Interior::new(&grid, membrane.tension.constant().unwrap_or(1.0))?;
+        load(membrane, &state, &regular_nodes, &mut b);
         let mut level = Self {
+            interpolation: Interpolation::new(&grid),
+            interior,
             grid,
-            runs,
-            stencil,
+            runs: regular_nodes,
+            vertices,
             irregular,
             node_of_irregular,
             row_start,
@@ -202,31 +185,19 @@ impl Level {
         active
     }
 
-    /// Neighbours of a regular node, with the entries of its row.
-    fn row_of_regular(&self, node: usize) -> [(usize, f64); 9] {
-        let w = self.grid.cells()[0] + 1;
-        let Stencil { own, x, y, corner } = self.stencil;
-        [
-            (node - w - 1, corner),
-            (node - w, y),
-            (node - w + 1, corner),
-            (node - 1, x),
-            (node, own),
-            (node + 1, x),
-            (node + w - 1, corner),
-            (node + w, y),
-            (node + w + 1, corner),
-        ]
+    /// Nodes in a row of the grid.
+    pub(super) fn width(&self) -> usize {
+        self.grid.node_counts()[0]
     }
 
     fn factorise_band(&mut self, whole: bool) -> Result<(), SolveError> {
-        let w = self.grid.cells()[0] + 1;
+        let w = self.width();
         let mut stored = vec![false; self.u.len()];
         self.irregular.iter().for_each(|&i| stored[i as usize] = true);
         let mut band: Vec<(u32, Option<u32>)> = (0..).map(Some).zip(&self.irregular).map(|(k, &i)| (i, k)).collect();
         for run in &self.runs {
             for node in run.row * w + run.begin..run.row * w + run.end {
-                if whole || self.row_of_regular(node).iter().any(|(j, _)| stored[*j]) {
+                if whole || self.interior.row(node).any(|(j, _)| stored[j]) {
                     band.push((node as u32, None));
                 }
             }
@@ -242,7 +213,7 @@ impl Level {
                 }
             };
             match band[k] {
-                (node, None) => self.row_of_regular(node as usize).iter().for_each(|&(j, v)| push(j, v)),
+                (node, None) => self.interior.row(node as usize).for_each(|(j, v)| push(j, v)),
                 (_, Some(row)) => self.stored_row(row as usize).for_each(|(j, v)| push(j, v)),
             }
         });
@@ -262,7 +233,7 @@ impl Level {
         let cell = self.grid.cell_containing(x);
         let mut nodes = Vec::new();
         self.grid.cell_nodes(cell, &mut nodes);
-        let w = self.grid.cells()[0] + 1;
+        let w = self.width();
         let regular = |node: usize| {
             let (i, j) = (node % w, node / w);
             let near = self.runs.partition_point(|r| (r.row, r.end) <= (j, i));
@@ -278,18 +249,17 @@ impl Level {
 
     /// In contact the displacement is the height of what is touched.
     fn hold_contact(&mut self, membrane: &Membrane<2>, zone: &PlaneZone, state: &[State]) {
-        let [nx, ny] = self.grid.cells();
-        let w = nx + 1;
         self.known = self.active();
-        self.known.truncate(w * (ny + 1));
+        self.known.truncate(self.grid.node_count());
+        let mut nodes = Vec::new();
         // Only near the fronts is it ever needed: where these retreat, and to interpolate beside them.
         for cell in around(&self.grid, state, |s| s == State::Cut, HELD) {
             if state[cell] != State::Contact {
                 continue;
             }
             let Some((side, _)) = contact_of((zone.fronts_in(&self.grid.cell_box(cell)).region)(&[])) else { continue };
-            let node = cell / nx * w + cell % nx;
-            for n in [node, node + 1, node + w, node + w + 1] {
+            self.grid.cell_nodes(cell, &mut nodes);
+            for n in nodes.iter().map(|&n| n as usize) {
                 if !self.known[n] {
                     self.known[n] = true;
                     self.u[n] = membrane.obstacles.height(side, &self.grid.node(n));
@@ -307,7 +277,7 @@ impl Level {
 
     /// The state of the whole membrane on its grid, around the zone of this level.
     pub(super) fn whole_state(&mut self, membrane: &Membrane<2>, zone: &PlaneZone) -> Equilibrium<2> {
-        let quadrature = Quadrature::of_order(membrane, &Straightened(zone), ORDER);
+        let quadrature = quadrature(membrane, zone);
         let unknowns = number(membrane, &quadrature);
         // Where regions share a node, each has an unknown of its own.
         let mut own: HashMap<(RegionId, u32), u32> = HashMap::new();
@@ -337,7 +307,7 @@ impl Level {
 
     /// Calls `visit(unknown, node)` for every unknown that takes part.
     pub(super) fn for_each_active(&self, mut visit: impl FnMut(usize, usize)) {
-        let w = self.grid.cells()[0] + 1;
+        let w = self.width();
         for run in &self.runs {
             (run.begin..run.end).for_each(|i| visit(run.row * w + i, run.row * w + i));
         }
@@ -376,7 +346,7 @@ impl Level {
 
     /// Begins with the displacement of the next coarser level: cubic where four neighbours in a line are known.
     pub(super) fn interpolate(&mut self, coarse: &Level) {
-        let w = self.grid.cells()[0] + 1;
+        let w = self.width();
         let mut u = std::mem::take(&mut self.u);
         self.for_each_active(|unknown, node| u[unknown] = coarse.interpolated(node % w, node / w));
         self.u = u;
@@ -384,7 +354,7 @@ impl Level {
 
     /// The residual of a regular node.
     fn residual_at(&self, node: usize) -> f64 {
-        self.b[node] - self.row_of_regular(node).iter().map(|(j, v)| v * self.u[*j]).sum::<f64>()
+        self.b[node] - self.interior.row(node).map(|(j, v)| v * self.u[j]).sum::<f64>()
     }
 
     /// The largest residual relative to the largest right-hand side.
@@ -395,46 +365,17 @@ impl Level {
 
     /// The residual of all unknowns; zero where none take part.
     pub fn residual(&self) -> Vec<f64> {
-        let w = self.grid.cells()[0] + 1;
         let mut r = vec![0.0; self.u.len()];
-        let Stencil { own, x, y, corner } = self.stencil;
-        for run in &self.runs {
-            let at = run.row * w;
-            let (low, mid, high) = (&self.u[at - w..at], &self.u[at..at + w], &self.u[at + w..at + 2 * w]);
-            for i in run.begin..run.end {
-                let corners = low[i - 1] + low[i + 1] + high[i - 1] + high[i + 1];
-                r[at + i] = self.b[at + i]
-                    - own * mid[i]
-                    - x * (mid[i - 1] + mid[i + 1])
-                    - y * (low[i] + high[i])
-                    - corner * corners;
-            }
-        }
+        self.interior.residual(&self.runs, &self.u, &self.b, &mut r);
         for (k, &i) in self.irregular.iter().enumerate() {
             r[i as usize] = self.residual_of_row(k);
         }
         r
     }
 
-    /// Four-colour Gauss-Seidel over the regular nodes, then the exact solution of the band.
+    /// Relaxes the regular nodes patch by patch, then solves for the band exactly.
     pub(super) fn relax(&mut self) -> Result<(), SolveError> {
-        let w = self.grid.cells()[0] + 1;
-        let Stencil { own, x, y, corner } = self.stencil;
-        for colour in 0..4 {
-            let (odd_row, odd) = (colour / 2, colour % 2);
-            for run in self.runs.iter().filter(|r| r.row % 2 == odd_row) {
-                let at = run.row * w;
-                let begin = run.begin + (run.begin + odd) % 2;
-                let (below, rest) = self.u[at - w..at + 2 * w].split_at_mut(w);
-                let (mid, above) = rest.split_at_mut(w);
-                let b = &self.b[at..at + w];
-                for i in (begin..run.end).step_by(2) {
-                    let corners = below[i - 1] + below[i + 1] + above[i - 1] + above[i + 1];
-                    let others = x * (mid[i - 1] + mid[i + 1]) + y * (below[i] + above[i]) + corner * corners;
-                    mid[i] = (b[i] - others) / own;
-                }
-            }
-        }
+        self.interior.relax(&self.vertices, &mut self.u, &self.b);
         self.relax_band()
     }
 
@@ -454,6 +395,14 @@ impl Level {
             self.u[*unknown as usize] += c;
         }
         Ok(())
+    }
+}
+
+/// The quadrature of a membrane around a zone.
+fn quadrature(membrane: &Membrane<2>, zone: &PlaneZone) -> Quadrature<2> {
+    match membrane.cells.degree() {
+        1 => Quadrature::of_order(membrane, &Straightened(zone), ORDER),
+        _ => Quadrature::new(membrane, zone),
     }
 }
 
@@ -508,23 +457,12 @@ fn around(grid: &Grid<2>, state: &[State], which: impl Fn(State) -> bool, reach:
     (0..state.len()).filter(|&c| found[c] && state[c] != State::Outside).collect()
 }
 
-fn stencil(grid: &Grid<2>, tension: f64) -> Stencil {
-    let size = grid.cell_size();
-    let (along, across) = (tension * size[1] / size[0], tension * size[0] / size[1]);
-    Stencil {
-        own: 4.0 * (along + across) / 3.0,
-        x: (across - 2.0 * along) / 3.0,
-        y: (along - 2.0 * across) / 3.0,
-        corner: -(along + across) / 6.0,
-    }
-}
-
 /// The load on regular nodes.
 fn load(membrane: &Membrane<2>, state: &[State], runs: &[Run], b: &mut [f64]) {
     let grid = &membrane.grid;
-    let w = grid.cells()[0] + 1;
+    let w = grid.node_counts()[0];
     let area: f64 = grid.cell_size().iter().product();
-    if let Some(f) = membrane.load.constant() {
+    if let (Some(f), 1) = (membrane.load.constant(), grid.degree()) {
         for run in runs {
             b[run.row * w + run.begin..run.row * w + run.end].fill(f * area);
         }

@@ -1,11 +1,12 @@
-//! Multigrid for the membrane cut by its edge and its fronts, degree 1.
+//! Multigrid for the membrane cut by its edge and its fronts.
 //!
-//! Away from the cuts every node has the same equation, which is never stored: four-colour Gauss-Seidel relaxes it. Along
-//! the cuts the equations are stored, and a band of nodes there, with one layer of regular nodes around it, is solved for
+//! Away from the cuts the equations repeat from cell to cell and are never stored; they are relaxed patch by patch, one
+//! around each vertex of the grid, which at degree 1 is Gauss-Seidel in four colours. Along the cuts the equations are stored, and a band of nodes there, with one layer of regular nodes around it, is solved for
 //! exactly in every sweep: it is a graph of one dimension, so its factor is small. Coarser levels are the same membrane on
 //! grids of half the cells. One cycle costs a few tens of nanoseconds per unknown and leaves less than an eighth of the
 //! error, however thin the slivers.
 
+mod interior;
 mod level;
 pub mod nested;
 mod transfer;
@@ -36,7 +37,7 @@ pub fn grids(finest: &Grid<2>) -> Vec<Grid<2>> {
     while let Some(last) = list.last()
         && last.cells().iter().all(|n| n % 2 == 0 && n / 2 >= COARSEST)
     {
-        let coarser = Grid::new(*last.bounds(), last.cells().map(|n| n / 2), 1);
+        let coarser = Grid::new(*last.bounds(), last.cells().map(|n| n / 2), last.degree());
         list.push(coarser);
     }
     list.reverse();

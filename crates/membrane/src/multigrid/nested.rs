@@ -15,7 +15,7 @@ use crate::scales::Scales;
 use crate::zone::{ModeSpace, Zone};
 use signorini_solve::{Iteration, Progress, SolveError};
 
-/// Cells along the longer side of the grid on which the fronts are found at first.
+/// Nodes along the longer side of the grid on which the fronts are found at first.
 const FIRST: usize = 32;
 /// Steps of the fronts on each finer grid, and how many more where they have far to go.
 const STEPS: usize = 2;
@@ -46,10 +46,9 @@ const PATIENCE: usize = 3;
 /// Steps on the finest grid before fronts are given up that have to meet a tolerance.
 const MOST: usize = 12;
 
-/// Whether a membrane can be solved for so: degree 1, on a grid with coarser ones, of even tension, without adhesion.
+/// Whether a membrane can be solved for so: on a grid with coarser ones, of even tension, without adhesion.
 pub fn is_able(membrane: &Membrane<2>) -> bool {
-    membrane.cells.degree() == 1
-        && membrane.cells.divisible().is_some_and(|g| g.cells() == membrane.grid.cells())
+    membrane.cells.divisible().is_some_and(|g| g.cells() == membrane.grid.cells())
         && membrane.cells.count() == membrane.grid.cell_count()
         && membrane.tension.constant().is_some()
         && !membrane.obstacles.are_sticky()
@@ -102,7 +101,7 @@ pub fn solve(
     progress: &mut dyn Progress,
 ) -> Result<Result<NestedSolution, Reason>, SolveError> {
     let grids = grids(&membrane.grid);
-    let first = grids.iter().position(|g| g.cells().into_iter().max().unwrap_or(0) >= FIRST).unwrap_or(0);
+    let first = grids.iter().position(|g| g.node_counts().into_iter().max().unwrap_or(0) > FIRST).unwrap_or(0);
     let coarse = on_grid(membrane, &grids[first]);
     let found =
         ils::solve::<2, PlaneZone>(&coarse, &mut Elements::new(&coarse), Start::Free, Rest::Final, at, progress);

@@ -1,6 +1,52 @@
-//! From one level to the next: bilinear interpolation and its transpose.
+//! From one level to the next: interpolation by the functions of the coarser grid, and its transpose.
 
 use super::level::Level;
+use signorini_fem::Grid;
+
+/// The functions of the coarser grid along one direction at the nodes of the finer one.
+pub(super) struct Interpolation {
+    degree: usize,
+    /// For every node of the two fine cells in a coarse one, but the last: nodes of that with their weights.
+    from: Vec<Vec<(usize, f64)>>,
+    /// For every node of a coarse cell but the last: fine nodes, counted from the first of the cell, with their weights.
+    to: Vec<Vec<(isize, f64)>>,
+}
+
+impl Interpolation {
+    pub fn new(grid: &Grid<2>) -> Self {
+        let (p, basis) = (grid.degree(), grid.basis());
+        let at = |l: usize| 0.5 * ((l / p) as f64 + basis.line_nodes()[l % p]);
+        let weights = |l: usize| {
+            let [value, _] = basis.line(at(l));
+            // At a node of the coarse cell all others are zero, but for round-off.
+            (0..=p).map(|k| (k, value[k])).filter(|(_, v)| v.abs() > 1e-13).collect::<Vec<_>>()
+        };
+        let from: Vec<Vec<(usize, f64)>> = (0..2 * p).map(weights).collect();
+        let mut to = vec![Vec::new(); p];
+        for (l, weights) in from.iter().enumerate() {
+            for &(k, v) in weights {
+                let l = l as isize;
+                // The last node of a cell is the first of the next.
+                if k == p { to[0].push((l - 2 * p as isize, v)) } else { to[k].push((l, v)) }
+            }
+        }
+        to.iter_mut().for_each(|list| list.sort_by_key(|e| e.0));
+        Self { degree: p, from, to }
+    }
+
+    /// Coarse nodes and their weights at a fine one.
+    fn at_fine(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + Clone + '_ {
+        let p = self.degree;
+        self.from[i % (2 * p)].iter().map(move |&(k, v)| (i / (2 * p) * p + k, v))
+    }
+
+    /// Fine nodes, of so many, and their weights at a coarse one.
+    fn at_coarse(&self, i: usize, fine: usize) -> impl Iterator<Item = (usize, f64)> + Clone + '_ {
+        let first = i / self.degree * 2 * self.degree;
+        let node = move |&(step, v): &(isize, f64)| Some((first.checked_add_signed(step).filter(|n| *n < fine)?, v));
+        self.to[i % self.degree].iter().filter_map(node)
+    }
+}
 
 /// Halfway between the second and third of four values, of which the outer ones may be missing.
 fn halfway(v: [Option<f64>; 4]) -> f64 {
@@ -15,8 +61,12 @@ fn halfway(v: [Option<f64>; 4]) -> f64 {
 impl Level {
     /// The displacement at a node of the next finer grid.
     pub(super) fn interpolated(&self, i: usize, j: usize) -> f64 {
-        let w = self.grid.cells()[0] + 1;
-        let rows = self.grid.cells()[1] + 1;
+        if self.grid.degree() == 1 { self.by_cubics(i, j) } else { self.by_functions(i, j) }
+    }
+
+    /// That at degree 1, cubic where four neighbours in a line are known.
+    fn by_cubics(&self, i: usize, j: usize) -> f64 {
+        let [w, rows] = self.grid.node_counts();
         let at = |ic: isize, jc: isize| -> Option<f64> {
             let inside = (0..w as isize).contains(&ic) && (0..rows as isize).contains(&jc);
             let node = if inside { jc as usize * w + ic as usize } else { return None };
@@ -33,54 +83,91 @@ impl Level {
         if j.is_multiple_of(2) { along(jc).unwrap_or(0.0) } else { halfway([-1, 0, 1, 2].map(|k| along(jc + k))) }
     }
 
+    /// The displacement of a coarser level at a node, by the functions there; where some are unknown by those that are known.
+    fn by_functions(&self, i: usize, j: usize) -> f64 {
+        let w = self.width();
+        let (mut sum, mut weight) = (0.0, 0.0);
+        for (jc, y) in self.interpolation.at_fine(j) {
+            for (ic, x) in self.interpolation.at_fine(i) {
+                if self.known[jc * w + ic] {
+                    sum += x * y * self.u[jc * w + ic];
+                    weight += x * y;
+                }
+            }
+        }
+        if weight > 0.5 { sum / weight } else { 0.0 }
+    }
+
     /// Adds the displacement of a coarser level, interpolated, to the nodes that take part.
     pub(super) fn add_correction(&mut self, coarse: &Level) {
-        let (w, wc) = (self.grid.cells()[0] + 1, coarse.grid.cells()[0] + 1);
-        let e = &coarse.u;
-        let at = |i: usize, j: usize| -> f64 {
-            let (ic, jc) = (i / 2, j / 2);
-            let node = jc * wc + ic;
-            match (i % 2, j % 2) {
-                (0, 0) => e[node],
-                (1, 0) => 0.5 * (e[node] + e[node + 1]),
-                (0, _) => 0.5 * (e[node] + e[node + wc]),
-                _ => 0.25 * (e[node] + e[node + 1] + e[node + wc] + e[node + wc + 1]),
+        let (w, wc) = (self.width(), coarse.width());
+        let table = &self.interpolation;
+        let across = |j: usize, line: &mut [f64]| combine(table.at_fine(j), &coarse.u, line);
+        let mut line = Line::new(wc);
+        for run in &self.runs {
+            let line = line.of(run.row, across);
+            for i in run.begin..run.end {
+                self.u[run.row * w + i] += table.at_fine(i).map(|(ic, x)| x * line[ic]).sum::<f64>();
             }
-        };
-        // Unknowns behind the nodes belong to the band alone.
-        let nodes = self.known.len();
-        let mut u = std::mem::take(&mut self.u);
-        self.for_each_active(|unknown, _| {
-            if unknown < nodes {
-                u[unknown] += at(unknown % w, unknown / w);
+        }
+        for (&unknown, &node) in self.irregular.iter().zip(&self.node_of_irregular) {
+            // Unknowns behind the nodes belong to the band alone.
+            if (unknown as usize) < self.known.len() {
+                let (i, j) = (node as usize % w, node as usize / w);
+                let along = |jc: usize| table.at_fine(i).map(|(ic, x)| x * coarse.u[jc * wc + ic]).sum::<f64>();
+                self.u[unknown as usize] += table.at_fine(j).map(|(jc, y)| y * along(jc)).sum::<f64>();
             }
-        });
-        self.u = u;
+        }
     }
 
     /// Makes the residual the right-hand side of a coarser level, by the transpose of the interpolation.
     pub(super) fn restrict_residual(&self, coarse: &mut Level) {
         let r = self.residual();
-        let (w, wc) = (self.grid.cells()[0] + 1, coarse.grid.cells()[0] + 1);
-        let [nx, ny] = coarse.grid.cells();
-        let sum = |i: usize, j: usize| -> f64 {
-            let row = |jj: usize| {
-                let at = jj * w + 2 * i;
-                let left = if i > 0 { r[at - 1] } else { 0.0 };
-                let right = if i < nx { r[at + 1] } else { 0.0 };
-                r[at] + 0.5 * (left + right)
-            };
-            let below = if j > 0 { row(2 * j - 1) } else { 0.0 };
-            let above = if j < ny { row(2 * j + 1) } else { 0.0 };
-            row(2 * j) + 0.5 * (below + above)
-        };
-        let nodes = coarse.known.len();
-        let mut b = vec![0.0; coarse.b.len()];
-        coarse.for_each_active(|unknown, _| {
-            if unknown < nodes {
-                b[unknown] = sum(unknown % wc, unknown / wc);
+        let (w, wc) = (self.width(), coarse.width());
+        let (table, rows) = (&self.interpolation, self.known.len() / w);
+        let across = |j: usize, line: &mut [f64]| combine(table.at_coarse(j, rows), &r, line);
+        let mut line = Line::new(w);
+        coarse.b.fill(0.0);
+        for run in &coarse.runs {
+            let line = line.of(run.row, across);
+            for i in run.begin..run.end {
+                coarse.b[run.row * wc + i] = table.at_coarse(i, w).map(|(i, x)| x * line[i]).sum();
             }
-        });
-        coarse.b = b;
+        }
+        for (&unknown, &node) in coarse.irregular.iter().zip(&coarse.node_of_irregular) {
+            if (unknown as usize) < coarse.known.len() {
+                let (i, j) = (node as usize % wc, node as usize / wc);
+                let along = |jf: usize| table.at_coarse(i, w).map(|(i, x)| x * r[jf * w + i]).sum::<f64>();
+                coarse.b[unknown as usize] = table.at_coarse(j, rows).map(|(jf, y)| y * along(jf)).sum();
+            }
+        }
+    }
+}
+
+/// A row of sums over rows of nodes, kept as long as the same is asked for.
+struct Line {
+    row: Option<usize>,
+    values: Vec<f64>,
+}
+
+impl Line {
+    fn new(width: usize) -> Self {
+        Self { row: None, values: vec![0.0; width] }
+    }
+
+    fn of(&mut self, row: usize, sum: impl Fn(usize, &mut [f64])) -> &[f64] {
+        if self.row.replace(row) != Some(row) {
+            sum(row, &mut self.values);
+        }
+        &self.values
+    }
+}
+
+/// The sum of some rows of nodes, by their weights.
+fn combine(rows: impl Iterator<Item = (usize, f64)>, values: &[f64], out: &mut [f64]) {
+    out.fill(0.0);
+    for (row, weight) in rows {
+        let row = &values[row * out.len()..(row + 1) * out.len()];
+        out.iter_mut().zip(row).for_each(|(o, v)| *o += weight * v);
     }
 }

@@ -13,6 +13,8 @@ const SAMPLES_PER_KNOT: usize = 8;
 pub struct ClosedCurve {
     basis: PeriodicBasis,
     coefficients: Vec<[f64; 2]>,
+    /// The polynomial of each knot interval in the distance from its middle, by rising powers, one behind the other.
+    pieces: Vec<Point<2>>,
     samples: Vec<Point<2>>,
 }
 
@@ -39,7 +41,16 @@ impl ClosedCurve {
 
     fn with(basis: PeriodicBasis, coefficients: Vec<[f64; 2]>) -> Self {
         let n = coefficients.len() * SAMPLES_PER_KNOT;
-        let mut curve = Self { basis, coefficients, samples: Vec::new() };
+        let powers = basis.powers();
+        let piece = |cell: usize| {
+            let coefficients = &coefficients;
+            powers.iter().map(move |of_bumps| {
+                let term = |(i, v): (usize, &f64)| *v * Point::from(coefficients[basis.bump_at(cell, i)]);
+                of_bumps.iter().enumerate().map(term).sum::<Point<2>>()
+            })
+        };
+        let pieces = (0..basis.count).flat_map(piece).collect();
+        let mut curve = Self { basis, coefficients, pieces, samples: Vec::new() };
         curve.samples = (0..n).map(|i| curve.position(i as f64 / n as f64)).collect();
         curve
     }
@@ -70,22 +81,28 @@ impl ClosedCurve {
         Self::through(&averaged, degree).by_arc_length(count)
     }
 
-    /// The position at parameter `s` (period one).
-    pub fn position(&self, s: f64) -> Point<2> {
-        let b = self.basis.bumps(s);
-        (0..b.len).fold(Point::zeros(), |x, i| x + b.value[i] * Point::from(self.coefficients[self.basis.index(&b, i)]))
+    /// The polynomial of the knot interval that a parameter lies in, and the distance from its middle.
+    fn piece(&self, s: f64) -> (&[Point<2>], f64) {
+        let (cell, t) = self.basis.interval(s);
+        let terms = self.basis.degree + 1;
+        (&self.pieces[cell * terms..(cell + 1) * terms], t)
     }
 
+    /// The position at parameter `s` (period one).
+    pub fn position(&self, s: f64) -> Point<2> {
+        let (piece, t) = self.piece(s);
+        piece.iter().rev().fold(Point::zeros(), |x, c| x * t + c)
+    }
+
+    /// The position and its first two derivatives with respect to the parameter.
     fn derivatives(&self, s: f64) -> [Point<2>; 3] {
-        let b = self.basis.bumps(s);
-        let mut d = [Point::zeros(); 3];
-        for i in 0..b.len {
-            let c = Point::<2>::from(self.coefficients[self.basis.index(&b, i)]);
-            d[0] += b.value[i] * c;
-            d[1] += b.d1[i] * c;
-            d[2] += b.d2[i] * c;
-        }
-        d
+        let (piece, t) = self.piece(s);
+        let n = self.basis.count as f64;
+        // Horner's rule, and its derivatives by the rule of products.
+        let [x, d1, half_d2] = piece.iter().rev().fold([Point::zeros(); 3], |[x, d1, half_d2], c| {
+            [x * t + c, d1 * t + x, half_d2 * t + d1]
+        });
+        [x, d1 * n, half_d2 * (2.0 * n * n)]
     }
 
     /// The point at parameter `s` with its frame.

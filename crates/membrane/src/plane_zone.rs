@@ -12,7 +12,7 @@ use signorini_fem::cut::RegionId;
 use signorini_fem::{Cells, Grid, RefinedGrid};
 use signorini_geometry::{Aabb, ClosedCurve, CurvePoint, ImplicitShape, PeriodicBasis, Point, Vector, polygon};
 use signorini_solve::{Progress, SolveError};
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// Fewest knots of a front, which still draw a circle to 3e-5 of its radius.
@@ -38,8 +38,7 @@ pub struct PlaneZone {
     hole: Vec<bool>,
     /// For each curve, its number among the outer fronts or among the holes.
     number: Vec<usize>,
-    /// For cells near curves, pairs of curve and sample in or next to them.
-    near: HashMap<usize, Vec<(u32, u32)>>,
+    near: NearFronts,
     /// For each row of cells, the columns whose centres a curve encloses: first, one behind the last, and the curve.
     rows: Vec<Vec<[u32; 3]>>,
 }
@@ -158,9 +157,9 @@ impl PlaneZone {
         }
     }
 
-    /// The cells that fronts are near to, in no order.
+    /// The cells that fronts are near to, ascending.
     pub(crate) fn cells_near_fronts(&self) -> impl Iterator<Item = usize> + '_ {
-        self.near.keys().copied()
+        self.near.cells.iter().map(|&cell| cell as usize)
     }
 
     /// The curves round the centre of a cell.
@@ -177,7 +176,7 @@ impl PlaneZone {
 
     /// Pairs of curve and sample in or next to a cell.
     fn near(&self, cell: usize) -> &[(u32, u32)] {
-        self.near.get(&cell).map_or(&[], Vec::as_slice)
+        self.near.of(cell)
     }
 
     /// The fronts in a box, taken for parabolas where their curvature times its size is less than `hardly`.
@@ -228,7 +227,7 @@ impl PlaneZone {
                 counts[usize::from(h)] - 1
             })
             .collect();
-        let near = cells_near(grid, &curves);
+        let near = NearFronts::new(grid, &curves);
         let rows = rows_enclosed(grid, &curves);
         Self {
             areas: areas.iter().map(|a| a.abs()).collect(),
@@ -721,7 +720,8 @@ impl Zone<2> for PlaneZone {
         let mut least = radius;
         let spacing: Vec<f64> =
             self.curves.iter().map(|c| polygon::perimeter(c.samples()) / c.samples().len() as f64).collect();
-        for near in self.near.values() {
+        for &cell in &self.near.cells {
+            let near = self.near.of(cell as usize);
             for (i, &(c, s)) in near.iter().enumerate() {
                 let curve = &self.curves[c as usize];
                 let n = curve.samples().len();
@@ -794,22 +794,51 @@ fn bounding_box(points: &[Point<2>]) -> Aabb<2> {
     points.iter().fold(Aabb::new(points[0], points[0]), |b, p| Aabb::new(b.min.inf(p), b.max.sup(p)))
 }
 
-/// For each cell near a curve, the samples within it and its neighbours.
-fn cells_near(grid: &Grid<2>, curves: &[ClosedCurve]) -> HashMap<usize, Vec<(u32, u32)>> {
-    let mut near: HashMap<usize, Vec<(u32, u32)>> = HashMap::new();
-    let (bounds, size, cells) = (grid.bounds(), grid.cell_size(), grid.cells());
-    for (c, curve) in curves.iter().enumerate() {
-        for (s, x) in curve.samples().iter().enumerate() {
-            let at: [isize; 2] = std::array::from_fn(|k| ((x[k] - bounds.min[k]) / size[k]).floor() as isize);
-            let range = |k: usize| (at[k] - 1).max(0)..(at[k] + 2).min(cells[k] as isize);
-            for j in range(1) {
-                for i in range(0) {
-                    near.entry(grid.cell_at([i as usize, j as usize])).or_default().push((c as u32, s as u32));
+/// For cells near curves, pairs of curve and sample in or next to them.
+#[derive(Clone, Debug)]
+struct NearFronts {
+    /// Ascending, and where the pairs of each begin and end.
+    cells: Vec<u32>,
+    begin: Vec<u32>,
+    pairs: Vec<(u32, u32)>,
+}
+
+impl NearFronts {
+    fn new(grid: &Grid<2>, curves: &[ClosedCurve]) -> Self {
+        let (bounds, size, cells) = (grid.bounds(), grid.cell_size(), grid.cells());
+        let mut all: Vec<(u32, u32, u32)> = Vec::new();
+        for (c, curve) in curves.iter().enumerate() {
+            for (s, x) in curve.samples().iter().enumerate() {
+                let at: [isize; 2] = std::array::from_fn(|k| ((x[k] - bounds.min[k]) / size[k]).floor() as isize);
+                let range = |k: usize| (at[k] - 1).max(0)..(at[k] + 2).min(cells[k] as isize);
+                for j in range(1) {
+                    for i in range(0) {
+                        all.push((grid.cell_at([i as usize, j as usize]) as u32, c as u32, s as u32));
+                    }
                 }
             }
         }
+        all.sort_unstable();
+        let mut near = Self { cells: Vec::new(), begin: vec![0], pairs: Vec::with_capacity(all.len()) };
+        for (cell, curve, sample) in all {
+            if near.cells.last() != Some(&cell) {
+                near.cells.push(cell);
+                near.begin.push(near.pairs.len() as u32);
+            }
+            near.pairs.push((curve, sample));
+            if let Some(end) = near.begin.last_mut() {
+                *end = near.pairs.len() as u32;
+            }
+        }
+        near
     }
-    near
+
+    fn of(&self, cell: usize) -> &[(u32, u32)] {
+        match self.cells.binary_search(&(cell as u32)) {
+            Ok(k) => &self.pairs[self.begin[k] as usize..self.begin[k + 1] as usize],
+            Err(_) => &[],
+        }
+    }
 }
 
 /// For each row of cells the stretches whose centres a curve encloses, by the crossings of the curve with the line through

@@ -4,37 +4,11 @@
 //! solved for exactly while the rim is held. Degree 1 has a single node in each patch, and is Gauss-Seidel. Patches of one
 //! row of vertices touch no node of the next row but one, so that every other row is relaxed at the same time.
 
+use super::runs::Run;
 use rayon::prelude::*;
 use signorini_fem::lagrange::TensorBasis;
 use signorini_fem::{Grid, gauss_legendre};
 use signorini_solve::{SolveError, dense};
-
-/// Consecutive nodes or vertices of one row of the grid, from `begin` up to `end`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Run {
-    pub row: usize,
-    pub begin: usize,
-    pub end: usize,
-}
-
-/// Runs of all that a predicate holds for, row by row.
-pub(super) fn runs(rows: usize, columns: usize, holds: impl Fn(usize, usize) -> bool) -> Vec<Run> {
-    let mut out = Vec::new();
-    for row in 0..rows {
-        let mut i = 0;
-        while i < columns {
-            let begin = i;
-            while i < columns && holds(i, row) {
-                i += 1;
-            }
-            if begin < i {
-                out.push(Run { row, begin, end: i });
-            }
-            i += 1;
-        }
-    }
-    out
-}
 
 /// The part of a row of nodes that stands for one column or row of the grid in a row of the matrix: offset, entry of the
 /// stiffness, entry of the mass.
@@ -278,6 +252,7 @@ fn line(p: usize, place: usize) -> Line {
 
 #[cfg(test)]
 mod tests {
+    use super::super::runs::runs;
     use super::*;
     use signorini_geometry::{Aabb, Point};
 

@@ -6,9 +6,11 @@
 //! grids of half the cells. One cycle costs a few tens of nanoseconds per unknown and leaves less than an eighth of the
 //! error, however thin the slivers.
 
+mod band;
 mod interior;
 mod level;
 pub mod nested;
+mod runs;
 mod transfer;
 
 pub use level::Level;
@@ -85,7 +87,7 @@ impl Hierarchy {
 /// A V-cycle on the last of some levels, whose right-hand side and displacement are those in it.
 pub(crate) fn cycle(levels: &mut [Level]) -> Result<(), SolveError> {
     let Some((fine, coarser)) = levels.split_last_mut() else { return Ok(()) };
-    let Some(coarse) = coarser.last_mut() else { return fine.relax_band() };
+    let Some(coarse) = coarser.last_mut() else { return fine.relax_bands() };
     fine.relax()?;
     fine.restrict_residual(coarse);
     coarse.u.iter_mut().for_each(|u| *u = 0.0);

@@ -65,7 +65,7 @@ pub fn solution(
     at: (usize, f64),
     progress: &mut dyn Progress,
 ) -> Result<Option<Solution<2, PlaneZone>>, SolveError> {
-    let Ok(mut found) = solve(membrane, 1.0, at, progress)? else { return Ok(None) };
+    let Ok(found) = solve(membrane, 1.0, at, progress)? else { return Ok(None) };
     if !found.settled {
         return Ok(None);
     }
@@ -177,9 +177,7 @@ pub fn solve(
                 // What it is interpolated from may have the fronts of a moment ago.
                 break;
             }
-            let mut next = Level::new(&here, &zone, false)?;
-            next.carry_on(level);
-            *level = next;
+            level.moved(&here, &zone)?;
         }
         steps.push(count);
     }

@@ -1,7 +1,9 @@
 //! From one level to the next: interpolation by the functions of the coarser grid, and its transpose.
 
+use super::band::Band;
 use super::level::Level;
 use signorini_fem::Grid;
+use std::sync::Arc;
 
 /// The functions of the coarser grid along one direction at the nodes of the finer one.
 pub(super) struct Interpolation {
@@ -59,18 +61,18 @@ fn halfway(v: [Option<f64>; 4]) -> f64 {
 }
 
 impl Level {
-    /// The displacement at a node of the next finer grid.
-    pub(super) fn interpolated(&self, i: usize, j: usize) -> f64 {
-        if self.grid.degree() == 1 { self.by_cubics(i, j) } else { self.by_functions(i, j) }
+    /// The displacement at a node of the next finer grid, by the nodes where it is known.
+    pub(super) fn interpolated(&self, known: &[bool], i: usize, j: usize) -> f64 {
+        if self.grid.degree() == 1 { self.by_cubics(known, i, j) } else { self.by_functions(known, i, j) }
     }
 
     /// That at degree 1, cubic where four neighbours in a line are known.
-    fn by_cubics(&self, i: usize, j: usize) -> f64 {
+    fn by_cubics(&self, known: &[bool], i: usize, j: usize) -> f64 {
         let [w, rows] = self.grid.node_counts();
         let at = |ic: isize, jc: isize| -> Option<f64> {
             let inside = (0..w as isize).contains(&ic) && (0..rows as isize).contains(&jc);
             let node = if inside { jc as usize * w + ic as usize } else { return None };
-            self.known[node].then(|| self.u[node])
+            known[node].then(|| self.u[node])
         };
         let (ic, jc) = ((i / 2) as isize, (j / 2) as isize);
         let along = |jc: isize| -> Option<f64> {
@@ -84,12 +86,12 @@ impl Level {
     }
 
     /// The displacement of a coarser level at a node, by the functions there; where some are unknown by those that are known.
-    fn by_functions(&self, i: usize, j: usize) -> f64 {
+    fn by_functions(&self, known: &[bool], i: usize, j: usize) -> f64 {
         let w = self.width();
         let (mut sum, mut weight) = (0.0, 0.0);
         for (jc, y) in self.interpolation.at_fine(j) {
             for (ic, x) in self.interpolation.at_fine(i) {
-                if self.known[jc * w + ic] {
+                if known[jc * w + ic] {
                     sum += x * y * self.u[jc * w + ic];
                     weight += x * y;
                 }
@@ -110,12 +112,13 @@ impl Level {
                 self.u[run.row * w + i] += table.at_fine(i).map(|(ic, x)| x * line[ic]).sum::<f64>();
             }
         }
-        for (&unknown, &node) in self.irregular.iter().zip(&self.node_of_irregular) {
+        let nodes = self.grid.node_count();
+        for (unknown, node) in self.held.iter().map(Arc::as_ref).chain([&self.moving]).flat_map(Band::irregular) {
             // Unknowns behind the nodes belong to the band alone.
-            if (unknown as usize) < self.known.len() {
-                let (i, j) = (node as usize % w, node as usize / w);
+            if unknown < nodes {
+                let (i, j) = (node % w, node / w);
                 let along = |jc: usize| table.at_fine(i).map(|(ic, x)| x * coarse.u[jc * wc + ic]).sum::<f64>();
-                self.u[unknown as usize] += table.at_fine(j).map(|(jc, y)| y * along(jc)).sum::<f64>();
+                self.u[unknown] += table.at_fine(j).map(|(jc, y)| y * along(jc)).sum::<f64>();
             }
         }
     }
@@ -124,7 +127,7 @@ impl Level {
     pub(super) fn restrict_residual(&self, coarse: &mut Level) {
         let r = self.residual();
         let (w, wc) = (self.width(), coarse.width());
-        let (table, rows) = (&self.interpolation, self.known.len() / w);
+        let (table, rows) = (&self.interpolation, self.grid.node_counts()[1]);
         let across = |j: usize, line: &mut [f64]| combine(table.at_coarse(j, rows), &r, line);
         let mut line = Line::new(w);
         coarse.b.fill(0.0);
@@ -134,11 +137,12 @@ impl Level {
                 coarse.b[run.row * wc + i] = table.at_coarse(i, w).map(|(i, x)| x * line[i]).sum();
             }
         }
-        for (&unknown, &node) in coarse.irregular.iter().zip(&coarse.node_of_irregular) {
-            if (unknown as usize) < coarse.known.len() {
-                let (i, j) = (node as usize % wc, node as usize / wc);
+        let nodes = coarse.grid.node_count();
+        for (unknown, node) in coarse.held.iter().map(Arc::as_ref).chain([&coarse.moving]).flat_map(Band::irregular) {
+            if unknown < nodes {
+                let (i, j) = (node % wc, node / wc);
                 let along = |jf: usize| table.at_coarse(i, w).map(|(i, x)| x * r[jf * w + i]).sum::<f64>();
-                coarse.b[unknown as usize] = table.at_coarse(j, rows).map(|(jf, y)| y * along(jf)).sum();
+                coarse.b[unknown] = table.at_coarse(j, rows).map(|(jf, y)| y * along(jf)).sum();
             }
         }
     }

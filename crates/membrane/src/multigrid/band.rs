@@ -1,0 +1,219 @@
+//! What lies along some cuts of a membrane: stored equations, and the factor of the band of nodes there.
+
+use super::interior::Interior;
+use crate::domain::DomainOnCells;
+use crate::equilibrium::{Elements, Equilibrium, System};
+use crate::plane_zone::{PlaneZone, Straightened};
+use crate::problem::Membrane;
+use crate::quadrature::Quadrature;
+use signorini_fem::cut::RegionId;
+use signorini_fem::{Cells, GridPart};
+use signorini_solve::{Factor, SolveError, Symbolic, SymmetricMatrix};
+use std::sync::Arc;
+
+/// Gauss points per direction in cut cells at degree 1: on fine grids a front is nearly straight within a cell.
+const ORDER: usize = 3;
+
+/// The equations along some cuts.
+pub(super) struct Band {
+    cells: Arc<GridPart<2>>,
+    /// The state of these cells, and the unknown of the level for each of its own.
+    state: Equilibrium<2>,
+    global: Vec<u32>,
+    /// Unknowns behind the nodes: of nodes that two free regions share.
+    pub more: usize,
+    /// Unknowns with stored rows, the nodes they stand for, the rows and the right-hand side.
+    irregular: Vec<u32>,
+    node_of_irregular: Vec<u32>,
+    row_start: Vec<usize>,
+    column: Vec<u32>,
+    value: Vec<f64>,
+    load: Vec<f64>,
+    /// Unknowns that are solved for exactly, ascending, with their stored rows.
+    solved: Vec<(u32, Option<u32>)>,
+    factor: Option<Factor>,
+}
+
+impl Band {
+    /// The band in some cells of the grid of a membrane. Nodes of those that are `inner` have their rows stored; further
+    /// unknowns are numbered from `first` on; `also` are regular nodes that are solved for with the band.
+    ///
+    /// # Errors
+    /// A band that cannot be factorised.
+    pub fn new(
+        membrane: &Membrane<2>,
+        zone: &PlaneZone,
+        cells: Vec<usize>,
+        inner: impl Fn(usize) -> bool,
+        first: usize,
+        interior: &Interior,
+        also: impl Iterator<Item = usize>,
+    ) -> Result<Self, SolveError> {
+        let grid = &membrane.grid;
+        let cells = Arc::new(GridPart::new(grid, cells));
+        let status = cells.cells().iter().map(|&c| membrane.domain.status[c]).collect();
+        let domain = DomainOnCells { domain: membrane.domain.domain.clone(), status: Arc::new(status) };
+        let part = Membrane { cells: cells.clone(), domain, ..membrane.clone() };
+        let elements = Elements::new(&part);
+        let System { quadrature, unknowns, matrix, rhs } = System::on(&part, quadrature(&part, zone), &elements);
+
+        // The unknown of the level for each of the part: the node, or one more where another region has it already.
+        let mut more = 0;
+        let mut taken = vec![false; cells.nodes().len()];
+        let mut global = vec![u32::MAX; unknowns.count];
+        let mut node_of = vec![0; unknowns.count];
+        let mut stored = vec![false; unknowns.count];
+        let mut functions = Vec::new();
+        for (cell, regions) in unknowns.cells.iter().enumerate() {
+            cells.functions(cell, &mut functions);
+            let inner = inner(cells.cells()[cell]);
+            for (_, dofs) in regions {
+                for (&dof, &f) in dofs.iter().zip(&functions) {
+                    let dof = dof as usize;
+                    stored[dof] |= inner;
+                    if global[dof] != u32::MAX {
+                        continue;
+                    }
+                    node_of[dof] = cells.nodes()[f as usize];
+                    global[dof] = if std::mem::replace(&mut taken[f as usize], true) {
+                        more += 1;
+                        (first + more - 1) as u32
+                    } else {
+                        node_of[dof]
+                    };
+                }
+            }
+        }
+        let mut band = Self {
+            state: Equilibrium::unsolved(part, quadrature, unknowns),
+            cells,
+            more,
+            irregular: Vec::new(),
+            node_of_irregular: Vec::new(),
+            row_start: vec![0],
+            column: Vec::new(),
+            value: Vec::new(),
+            load: Vec::new(),
+            solved: Vec::new(),
+            factor: None,
+            global: Vec::new(),
+        };
+        for (i, row) in matrix.rows(|i| stored[i]) {
+            band.solved.push((global[i], Some(band.irregular.len() as u32)));
+            band.irregular.push(global[i]);
+            band.node_of_irregular.push(node_of[i]);
+            band.column.extend(row.iter().map(|(j, _)| global[*j]));
+            band.value.extend(row.iter().map(|(_, v)| *v));
+            band.row_start.push(band.column.len());
+            band.load.push(rhs[i]);
+        }
+        let outer = (0..global.len()).filter(|&i| !stored[i]).map(|i| global[i]);
+        band.solved.extend(outer.chain(also.map(|node| node as u32)).map(|node| (node, None)));
+        band.global = global;
+        band.factorise(interior)?;
+        Ok(band)
+    }
+
+    fn factorise(&mut self, interior: &Interior) -> Result<(), SolveError> {
+        self.solved.sort_unstable();
+        self.solved.dedup_by_key(|s| s.0);
+        if self.solved.is_empty() {
+            return Ok(());
+        }
+        let place = |unknown: usize| self.solved.binary_search_by_key(&(unknown as u32), |s| s.0).ok();
+        let matrix = SymmetricMatrix::from_columns(self.solved.len(), |k, out| {
+            let mut push = |j: usize, v: f64| out.extend(place(j).filter(|to| *to >= k).map(|to| (to, v)));
+            match self.solved[k] {
+                (node, None) => interior.row(node as usize).for_each(|(j, v)| push(j, v)),
+                (_, Some(row)) => self.row(row as usize).for_each(|(j, v)| push(j, v)),
+            }
+        });
+        self.factor = Some(Symbolic::default().factor(matrix)?);
+        Ok(())
+    }
+
+    /// The cells of the grid that it lies in, ascending.
+    pub fn cells(&self) -> &[usize] {
+        self.cells.cells()
+    }
+
+    /// Unknowns that are solved for exactly.
+    pub fn size(&self) -> usize {
+        self.solved.len()
+    }
+
+    /// Unknowns with stored rows, and the nodes that they stand for.
+    pub fn irregular(&self) -> impl ExactSizeIterator<Item = (usize, usize)> + '_ {
+        self.irregular.iter().zip(&self.node_of_irregular).map(|(&unknown, &node)| (unknown as usize, node as usize))
+    }
+
+    /// Columns and entries of a stored row.
+    fn row(&self, k: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let range = self.row_start[k]..self.row_start[k + 1];
+        range.map(|at| (self.column[at] as usize, self.value[at]))
+    }
+
+    /// The residual of a stored row.
+    fn residual_of(&self, k: usize, u: &[f64], b: &[f64]) -> f64 {
+        b[self.irregular[k] as usize] - self.row(k).map(|(j, v)| v * u[j]).sum::<f64>()
+    }
+
+    /// Puts the right-hand side of the stored rows in its place.
+    pub fn load(&self, b: &mut [f64]) {
+        self.irregular.iter().zip(&self.load).for_each(|(&i, f)| b[i as usize] = *f);
+    }
+
+    /// What the stored rows leave of the right-hand side.
+    pub fn residual(&self, u: &[f64], b: &[f64], r: &mut [f64]) {
+        for (k, &i) in self.irregular.iter().enumerate() {
+            r[i as usize] = self.residual_of(k, u, b);
+        }
+    }
+
+    /// Solves for the band exactly, the other nodes held.
+    ///
+    /// # Errors
+    /// A factor that does not solve.
+    pub fn relax(&self, interior: &Interior, u: &mut [f64], b: &[f64]) -> Result<(), SolveError> {
+        let Some(factor) = &self.factor else { return Ok(()) };
+        let residual: Vec<f64> = self
+            .solved
+            .iter()
+            .map(|&(unknown, row)| match row {
+                Some(k) => self.residual_of(k as usize, u, b),
+                None => b[unknown as usize] - interior.row(unknown as usize).map(|(j, v)| v * u[j]).sum::<f64>(),
+            })
+            .collect();
+        let correction = factor.solve(&residual)?;
+        self.solved.iter().zip(&correction).for_each(|((unknown, _), c)| u[*unknown as usize] += c);
+        Ok(())
+    }
+
+    /// The state of the cells, with the displacement of the level.
+    pub fn state(&mut self, u: &[f64]) -> &Equilibrium<2> {
+        let global = &self.global;
+        self.state.set_values(|i| u[global[i] as usize]);
+        &self.state
+    }
+
+    /// Calls `visit(region, node, unknown)` for all unknowns, for some more than once.
+    pub fn for_each_unknown(&self, mut visit: impl FnMut(RegionId, u32, u32)) {
+        let mut functions = Vec::new();
+        for (cell, regions) in self.state.unknowns().cells.iter().enumerate() {
+            self.cells.functions(cell, &mut functions);
+            for (region, dofs) in regions {
+                for (&dof, &f) in dofs.iter().zip(&functions) {
+                    visit(*region, self.cells.nodes()[f as usize], self.global[dof as usize]);
+                }
+            }
+        }
+    }
+}
+
+/// The quadrature of a membrane around a zone.
+pub(super) fn quadrature(membrane: &Membrane<2>, zone: &PlaneZone) -> Quadrature<2> {
+    match membrane.cells.degree() {
+        1 => Quadrature::of_order(membrane, &Straightened(zone), ORDER),
+        _ => Quadrature::new(membrane, zone),
+    }
+}

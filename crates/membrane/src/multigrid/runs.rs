@@ -1,0 +1,125 @@
+//! Sets of the cells, nodes or vertices of a grid, row by row.
+
+/// Consecutive members of one row, from `begin` up to `end`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Run {
+    pub row: usize,
+    pub begin: usize,
+    pub end: usize,
+}
+
+/// Runs of all that a predicate holds for, row by row.
+pub(super) fn runs(rows: usize, columns: usize, holds: impl Fn(usize, usize) -> bool) -> Vec<Run> {
+    let mut out = Vec::new();
+    for row in 0..rows {
+        let mut i = 0;
+        while i < columns {
+            let begin = i;
+            while i < columns && holds(i, row) {
+                i += 1;
+            }
+            if begin < i {
+                out.push(Run { row, begin, end: i });
+            }
+            i += 1;
+        }
+    }
+    out
+}
+
+/// All that lies at most `reach` rows and columns away from a set, within so many rows and columns.
+pub(super) fn dilated(set: &[Run], reach: usize, [columns, rows]: [usize; 2]) -> Vec<Run> {
+    let mut all: Vec<Run> = set
+        .iter()
+        .flat_map(|r| {
+            let (begin, end) = (r.begin.saturating_sub(reach), (r.end + reach).min(columns));
+            (r.row.saturating_sub(reach)..(r.row + reach + 1).min(rows)).map(move |row| Run { row, begin, end })
+        })
+        .collect();
+    all.sort_unstable();
+    let mut out: Vec<Run> = Vec::new();
+    for run in all {
+        match out.last_mut() {
+            Some(last) if last.row == run.row && run.begin <= last.end => last.end = last.end.max(run.end),
+            _ => out.push(run),
+        }
+    }
+    out
+}
+
+/// What two sets of the same rows have in common.
+pub(super) fn common(a: &[Run], b: &[Run], mut visit: impl FnMut(usize, usize)) {
+    let (mut a, mut b) = (a.iter().peekable(), b.iter().peekable());
+    while let (Some(x), Some(y)) = (a.peek(), b.peek()) {
+        let (begin, end) = (x.begin.max(y.begin), x.end.min(y.end));
+        if begin < end {
+            visit(begin, end);
+        }
+        if x.end < y.end { a.next() } else { b.next() };
+    }
+}
+
+/// The runs of one row, of a set in ascending order.
+pub(super) fn of_row(set: &[Run], row: usize) -> &[Run] {
+    let from = &set[set.partition_point(|r| r.row < row)..];
+    &from[..from.partition_point(|r| r.row == row)]
+}
+
+/// For each run the number of the part of the set that it belongs to: parts meet nowhere, not even at corners.
+pub(super) fn parts(set: &[Run]) -> Vec<usize> {
+    let mut root: Vec<usize> = (0..set.len()).collect();
+    fn find(root: &mut [usize], mut k: usize) -> usize {
+        while root[k] != k {
+            root[k] = root[root[k]];
+            k = root[k];
+        }
+        k
+    }
+    let mut below = 0;
+    for k in 0..set.len() {
+        while set[below].row + 1 < set[k].row || (set[below].row < set[k].row && set[below].end < set[k].begin) {
+            below += 1;
+        }
+        let touching = (below..k).take_while(|&j| set[j].row < set[k].row && set[j].begin <= set[k].end);
+        for j in touching {
+            let [a, b] = [j, k].map(|i| find(&mut root, i));
+            root[a.max(b)] = a.min(b);
+        }
+    }
+    (0..set.len()).map(|k| find(&mut root, k)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn set(picture: &[&str], member: u8) -> Vec<Run> {
+        runs(picture.len(), picture[0].len(), |i, j| picture[j].as_bytes()[i] == member)
+    }
+
+    #[test]
+    fn parts_that_touch_at_a_corner_are_one() {
+        let s = set(&["aa..b..", "..a.b.c", "..a.bb.", "......b"], b'.');
+        assert_eq!(s.len(), 8);
+        let all = |picture: &[&str]| runs(4, 7, |i, j| picture[j].as_bytes()[i] != b'.');
+        let s = all(&["aa..b..", "..a.b.c", "..a.bb.", "......b"]);
+        let part = parts(&s);
+        let of = |row: usize, column: usize| {
+            s.iter().position(|r| r.row == row && r.begin <= column && column < r.end).map(|k| part[k])
+        };
+        assert_eq!(of(0, 0), of(2, 2));
+        assert_eq!(of(0, 4), of(3, 6));
+        assert_eq!(of(0, 4), of(1, 6));
+        assert_ne!(of(0, 0), of(0, 4));
+    }
+
+    #[test]
+    fn what_lies_around_a_set_and_in_common_with_another() {
+        let s = set(&[".....", "..x..", ".....", "....."], b'x');
+        assert_eq!(dilated(&s, 1, [5, 4]), set(&[".xxx.", ".xxx.", ".xxx.", "....."], b'x'));
+        assert_eq!(dilated(&s, 2, [5, 4]), set(&["xxxxx", "xxxxx", "xxxxx", "xxxxx"], b'x'));
+        let mut found = Vec::new();
+        common(&set(&["xx.xx.x"], b'x'), &set(&[".xxxx.x"], b'x'), |a, b| found.push((a, b)));
+        assert_eq!(found, [(1, 2), (3, 5), (6, 7)]);
+    }
+}

@@ -74,40 +74,48 @@ impl<const D: usize> TensorBasis<D> {
 
     /// Values and derivatives of the one-dimensional functions at `x`, which may lie outside `[0, 1]`.
     pub fn line(&self, x: f64) -> Line {
-        let n = self.degree + 1;
         let mut out = [[0.0; MAX_DEGREE + 1]; 2];
-        for i in 0..n {
+        self.line_into(x, &mut out);
+        out
+    }
+
+    fn line_into(&self, x: f64, [values, slopes]: &mut Line) {
+        for (i, weight) in self.weights.iter().enumerate() {
             // The product and, by the product rule, its derivative; exact at the nodes too.
-            let (mut value, mut slope) = (self.weights[i], 0.0);
+            let (mut value, mut slope) = (*weight, 0.0);
             for (j, node) in self.nodes.iter().enumerate() {
                 if j != i {
                     slope = slope * (x - node) + value;
                     value *= x - node;
                 }
             }
-            out[0][i] = value;
-            out[1][i] = slope;
+            values[i] = value;
+            slopes[i] = slope;
         }
-        out
     }
 
     /// Tabulates values and gradients at the relative position `xi` of a cell of the given size.
     pub fn tabulate(&self, xi: &Point<D>, size: &Point<D>, out: &mut Tabulation<D>) {
         let n = self.degree + 1;
-        let lines: [Line; D] = std::array::from_fn(|k| self.line(xi[k]));
+        let mut lines = [[[0.0; MAX_DEGREE + 1]; 2]; D];
+        for (k, line) in lines.iter_mut().enumerate() {
+            self.line_into(xi[k], line);
+        }
         out.value.clear();
         out.gradient.clear();
-        for i in 0..self.len() {
-            let mut index = i;
-            let mut along = [0; D];
-            for a in &mut along {
-                *a = index % n;
-                index /= n;
-            }
+        let mut along = [0; D];
+        for _ in 0..self.len() {
             out.value.push((0..D).map(|k| lines[k][0][along[k]]).product());
             out.gradient.push(Vector::from_fn(|d, _| {
                 (0..D).map(|k| lines[k][usize::from(k == d)][along[k]]).product::<f64>() / size[d]
             }));
+            for a in &mut along {
+                *a += 1;
+                if *a < n {
+                    break;
+                }
+                *a = 0;
+            }
         }
     }
 }

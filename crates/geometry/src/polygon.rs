@@ -48,13 +48,23 @@ pub fn segments_cross(a: &Point<2>, b: &Point<2>, c: &Point<2>, d: &Point<2>) ->
 pub fn self_crossing(corners: &[Point<2>]) -> Option<(usize, usize)> {
     let n = corners.len();
     let edge = |i: usize| (&corners[i], &corners[(i + 1) % n]);
-    (0..n).find_map(|i| {
+    let range = |i: usize, k: usize| {
         let (a, b) = edge(i);
-        (i + 2..n).filter(|&j| (j + 1) % n != i).find_map(|j| {
-            let (c, d) = edge(j);
-            let apart = (0..2).any(|k| a[k].max(b[k]) < c[k].min(d[k]) || c[k].max(d[k]) < a[k].min(b[k]));
-            (!apart && segments_cross(a, b, c, d)).then_some((i, j))
-        })
+        (a[k].min(b[k]), a[k].max(b[k]))
+    };
+    // From left to right only edges that begin before another one ends can cross it.
+    let mut order: Vec<usize> = (0..n).collect();
+    order.sort_unstable_by(|&i, &j| range(i, 0).0.total_cmp(&range(j, 0).0).then(i.cmp(&j)));
+    order.iter().enumerate().find_map(|(at, &i)| {
+        let (end, (low, high)) = (range(i, 0).1, range(i, 1));
+        let beside = order[at + 1..].iter().copied().take_while(|&j| range(j, 0).0 <= end);
+        let crossed = |&j: &usize| {
+            let neighbours = (i + 1) % n == j || (j + 1) % n == i;
+            let (from, to) = range(j, 1);
+            let ((a, b), (c, d)) = (edge(i), edge(j));
+            !neighbours && from <= high && low <= to && segments_cross(a, b, c, d)
+        };
+        { beside }.find(crossed).map(|j| (i.min(j), i.max(j)))
     })
 }
 
@@ -78,5 +88,10 @@ mod tests {
         assert_eq!(self_crossing(&square), None);
         let bow: Vec<_> = [0, 2, 1, 3].map(|i| square[i]).to_vec();
         assert!(self_crossing(&bow).is_some());
+        // A long curve, and the same with one corner pulled across to the other side.
+        let mut round: Vec<Point<2>> = (0..500).map(|k| f64::from(k) * 0.004 * std::f64::consts::PI).map(|a| Point::<2>::new(a.cos(), a.sin())).collect();
+        assert_eq!(self_crossing(&round), None);
+        round[100] = Point::<2>::new(-1.1, -0.3);
+        assert!(self_crossing(&round).is_some_and(|(i, j)| i == 99 || i == 100 || j == 100));
     }
 }

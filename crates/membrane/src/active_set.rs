@@ -82,12 +82,10 @@ pub fn solve<const D: usize, Z: Zone<D>>(
     let System { quadrature, unknowns, matrix, rhs } = System::assemble(membrane, &zone, &elements);
     let mut node_of = vec![0usize; unknowns.count];
     let mut nodes = Vec::new();
-    for (cell, regions) in unknowns.cells.iter().enumerate() {
+    for (cell, _, dofs) in unknowns.all() {
         membrane.cells.functions(cell, &mut nodes);
-        for (_, dofs) in regions {
-            for (&dof, &node) in dofs.iter().zip(&nodes) {
-                node_of[dof as usize] = node as usize;
-            }
+        for (&dof, &node) in dofs.iter().zip(&nodes) {
+            node_of[dof as usize] = node as usize;
         }
     }
     // Heights of floor and ceiling at the nodes within the membrane.

@@ -138,7 +138,10 @@ pub(crate) fn add_stiffness<const D: usize>(matrix: &mut [f64], t: &Tabulation<D
 
 /// Unknowns of each cell and region.
 pub(crate) struct Unknowns {
-    pub cells: Vec<Vec<(RegionId, Vec<u32>)>>,
+    /// For each cell where its regions begin, and for each of these where its unknowns do.
+    cells: Vec<u32>,
+    regions: Vec<(RegionId, u32)>,
+    list: Vec<u32>,
     pub count: usize,
 }
 
@@ -231,7 +234,7 @@ impl<const D: usize> Equilibrium<D> {
 
     /// The regions with unknowns in a cell.
     pub fn free_regions(&self, cell: usize) -> impl Iterator<Item = RegionId> + '_ {
-        self.unknowns.cells[cell].iter().map(|(region, _)| *region)
+        self.unknowns.of_cell(cell).map(|(region, _)| region)
     }
 
     /// Calls `visit(cell, region, x, weight)` at every volume point of the membrane.
@@ -362,7 +365,7 @@ impl<const D: usize> System<D> {
     pub fn on(membrane: &Membrane<D>, quadrature: Quadrature<D>, elements: &Elements<D>) -> Self {
         let unknowns = number(membrane, &quadrature);
         let pairs = ghost_pairs(membrane, elements, &quadrature, &unknowns);
-        let mut cliques: Vec<Vec<u32>> = unknowns.cells.iter().flatten().map(|(_, dofs)| dofs.clone()).collect();
+        let mut cliques: Vec<Vec<u32>> = unknowns.all().map(|(_, _, dofs)| dofs.to_vec()).collect();
         cliques.extend(pairs.iter().map(|pair| pair.dofs.clone()));
         let mut matrix = SymmetricMatrix::from_cliques(unknowns.count, &cliques);
         drop(cliques);
@@ -384,7 +387,7 @@ impl<const D: usize> System<D> {
                 })
                 .collect();
             for (cell, systems) in (begin..end).zip(local) {
-                for ((_, dofs), system) in unknowns.cells[cell].iter().zip(systems) {
+                for ((_, dofs), system) in unknowns.of_cell(cell).zip(systems) {
                     let Some((local, load)) = system else { continue };
                     match elements.of(membrane, cell).and_then(|e| e.stiffness.as_ref()) {
                         Some(stiffness) if local.is_empty() => {
@@ -410,8 +413,21 @@ impl<const D: usize> System<D> {
 }
 
 impl Unknowns {
+    /// The regions of a cell with their unknowns.
+    pub fn of_cell(&self, cell: usize) -> impl Iterator<Item = (RegionId, &[u32])> {
+        (self.cells[cell] as usize..self.cells[cell + 1] as usize).map(|k| {
+            let end = self.regions.get(k + 1).map_or(self.list.len(), |r| r.1 as usize);
+            (self.regions[k].0, &self.list[self.regions[k].1 as usize..end])
+        })
+    }
+
+    /// All cells and regions with their unknowns.
+    pub fn all(&self) -> impl Iterator<Item = (usize, RegionId, &[u32])> {
+        (0..self.cells.len() - 1).flat_map(|cell| self.of_cell(cell).map(move |(region, dofs)| (cell, region, dofs)))
+    }
+
     pub fn of(&self, cell: usize, region: RegionId) -> Option<&[u32]> {
-        self.cells[cell].iter().find(|(r, _)| *r == region).map(|(_, dofs)| dofs.as_slice())
+        self.of_cell(cell).find(|(r, _)| *r == region).map(|(_, dofs)| dofs)
     }
 }
 
@@ -444,30 +460,25 @@ pub(crate) fn number_where<const D: usize>(
     wanted: impl Fn(RegionId) -> bool,
 ) -> Unknowns {
     let mut of_node: BTreeMap<RegionId, Vec<u32>> = BTreeMap::new();
-    let mut count = 0;
+    let mut out = Unknowns { cells: vec![0], regions: Vec::new(), list: Vec::new(), count: 0 };
     let mut nodes = Vec::new();
-    let cells = (0..quadrature.cells.len())
-        .map(|cell| {
-            let regions = quadrature.regions(cell).into_iter().filter(|r| wanted(*r));
-            regions
-                .map(|region| {
-                    membrane.cells.functions(cell, &mut nodes);
-                    let numbers =
-                        of_node.entry(region).or_insert_with(|| vec![u32::MAX; membrane.cells.function_count()]);
-                    let dofs = nodes.iter().map(|&node| {
-                        let number = &mut numbers[node as usize];
-                        if *number == u32::MAX {
-                            *number = count as u32;
-                            count += 1;
-                        }
-                        *number
-                    });
-                    (region, dofs.collect())
-                })
-                .collect()
-        })
-        .collect();
-    Unknowns { cells, count }
+    for cell in 0..quadrature.cells.len() {
+        for region in quadrature.regions(cell).into_iter().filter(|r| wanted(*r)) {
+            membrane.cells.functions(cell, &mut nodes);
+            let numbers = of_node.entry(region).or_insert_with(|| vec![u32::MAX; membrane.cells.function_count()]);
+            out.regions.push((region, out.list.len() as u32));
+            for &node in &nodes {
+                let number = &mut numbers[node as usize];
+                if *number == u32::MAX {
+                    *number = out.count as u32;
+                    out.count += 1;
+                }
+                out.list.push(*number);
+            }
+        }
+        out.cells.push(out.regions.len() as u32);
+    }
+    out
 }
 
 /// Two neighbouring cells whose polynomials a ghost penalty holds together.
@@ -493,24 +504,24 @@ pub(crate) fn ghost_pairs<const D: usize>(
         if !is_cut(lower) && !is_cut(upper) {
             continue;
         }
-        for (region, dofs) in &unknowns.cells[lower] {
-            let Some(others) = unknowns.of(upper, *region) else { continue };
+        for (region, dofs) in unknowns.of_cell(lower) {
+            let Some(others) = unknowns.of(upper, region) else { continue };
             // The coefficients where the region is; outside the membrane they may not be defined.
             let x = [lower, upper]
                 .iter()
                 .find_map(|&cell| match &quadrature.cells[cell] {
                     Cell::Whole(_) => Some(membrane.cells.bounds_of(cell).center()),
-                    Cell::Cut(rule) => rule.volume(*region).first().map(|p| p.x),
+                    Cell::Cut(rule) => rule.volume(region).first().map(|p| p.x),
                     Cell::Outside => None,
                 })
                 .unwrap_or_else(|| membrane.cells.bounds_of(lower).center());
             // A full cell needs no help, a sliver all of it; in between the weight is continuous in the cut, so the
             // slope jump is continuous in the front.
             let missing =
-                1.0 - share(membrane, quadrature, lower, *region).min(share(membrane, quadrature, upper, *region));
+                1.0 - share(membrane, quadrature, lower, region).min(share(membrane, quadrature, upper, region));
             let need = missing.powi(2) * membrane.measure.weight(&x);
             let tension = membrane.tension.value(&x);
-            pairs.push(GhostPair { number, dofs: [dofs.as_slice(), others].concat(), need, tension });
+            pairs.push(GhostPair { number, dofs: [dofs, others].concat(), need, tension });
         }
     }
     pairs
@@ -586,13 +597,13 @@ fn local_systems<const D: usize>(
     let plain = points.is_empty() && element.is_some_and(|e| e.stiffness.is_some());
     let mut scratch = Tabulation::default();
     let volumes = quadrature.volumes(membrane, cell);
-    unknowns.cells[cell]
-        .iter()
+    unknowns
+        .of_cell(cell)
         .map(|(region, dofs)| {
             let n = dofs.len();
             let mut matrix = if plain { Vec::new() } else { vec![0.0; n * n] };
             let mut load = vec![0.0; n];
-            for (_, rule) in volumes.iter().filter(|(r, _)| r == region) {
+            for (_, rule) in volumes.iter().filter(|(r, _)| *r == region) {
                 for (i, p) in rule.iter().enumerate() {
                     let t = match element {
                         Some(element) => &element.tabulated[i],
@@ -610,7 +621,7 @@ fn local_systems<const D: usize>(
                     }
                 }
             }
-            for p in points.iter().map(|&i| &imposed[i]).filter(|p| p.region == *region) {
+            for p in points.iter().map(|&i| &imposed[i]).filter(|p| p.region == region) {
                 cells.tabulate(cell, &p.x, &mut scratch);
                 let penalty = penalty(membrane, cell);
                 let w = p.weight * membrane.tension.value(&p.x);

@@ -129,6 +129,11 @@ impl<const D: usize, Z> Solution<D, Z> {
             predicted: None,
         }
     }
+
+    /// Whether the fronts came to rest no sharper than the grid can show.
+    pub fn is_resolved(&self) -> bool {
+        self.settled_within.is_none_or(|step| step < SETTLED)
+    }
 }
 
 /// Where an increment starts from.

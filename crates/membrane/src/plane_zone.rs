@@ -305,10 +305,11 @@ impl PlaneZone {
         let mut found: Vec<(usize, Vec<usize>)> = Vec::new();
         for j in low[1]..=high[1] {
             for i in low[0]..=high[0] {
-                for &(c, s) in self.near(self.grid.cell_at([i, j])) {
-                    match found.iter_mut().find(|(curve, _)| *curve == c as usize) {
-                        Some((_, seeds)) => seeds.push(s as usize),
-                        None => found.push((c as usize, vec![s as usize])),
+                for pairs in self.near(self.grid.cell_at([i, j])).chunk_by(|a, b| a.0 == b.0) {
+                    let (c, seeds) = (pairs[0].0 as usize, pairs.iter().map(|pair| pair.1 as usize));
+                    match found.iter_mut().find(|(curve, _)| *curve == c) {
+                        Some((_, all)) => all.extend(seeds),
+                        None => found.push((c, seeds.collect())),
                     }
                 }
             }

@@ -19,7 +19,7 @@ pub enum Cell<const D: usize> {
     Outside,
     /// The whole cell lies in one region.
     Whole(RegionId),
-    Cut(CellRule<D>),
+    Cut(Box<CellRule<D>>),
 }
 
 /// A quadrature point of a front.
@@ -95,7 +95,7 @@ impl<const D: usize> Quadrature<D> {
                 for p in &mut rule.surfaces {
                     p.weight *= membrane.measure.weight(&p.x);
                 }
-                Cell::Cut(rule)
+                Cell::Cut(Box::new(rule))
             })
             .collect();
         let mut quadrature = Self { cells, front: Vec::new(), rim: Vec::new() };

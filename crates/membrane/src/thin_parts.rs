@@ -23,12 +23,10 @@ pub(crate) fn hold_thin_parts<const D: usize>(
     // Fronts and the boundary may cut a region into parts that have no unknowns in common.
     let part = parts(unknowns);
     let mut best: BTreeMap<u32, f64> = BTreeMap::new();
-    for (cell, regions) in unknowns.cells.iter().enumerate() {
-        for (region, dofs) in regions {
-            let most = best.entry(part[dofs[0] as usize]).or_insert(0.0);
-            if *most < needed {
-                *most = most.max(share(membrane, quadrature, cell, *region));
-            }
+    for (cell, region, dofs) in unknowns.all() {
+        let most = best.entry(part[dofs[0] as usize]).or_insert(0.0);
+        if *most < needed {
+            *most = most.max(share(membrane, quadrature, cell, region));
         }
     }
     best.retain(|_, share| *share < needed);
@@ -36,29 +34,27 @@ pub(crate) fn hold_thin_parts<const D: usize>(
         return;
     }
     let mut scratch = Tabulation::default();
-    for (cell, regions) in unknowns.cells.iter().enumerate() {
-        for (region, dofs) in regions {
-            let Some(share) = best.get(&part[dofs[0] as usize]) else { continue };
-            // Beyond the membrane the tension may not be defined.
-            let within = match &quadrature.cells[cell] {
-                Cell::Cut(rule) => rule.volume(*region).first().map(|p| p.x),
-                _ => None,
+    for (cell, region, dofs) in unknowns.all() {
+        let Some(share) = best.get(&part[dofs[0] as usize]) else { continue };
+        // Beyond the membrane the tension may not be defined.
+        let within = match &quadrature.cells[cell] {
+            Cell::Cut(rule) => rule.volume(region).first().map(|p| p.x),
+            _ => None,
+        };
+        let x = within.unwrap_or_else(|| membrane.cells.bounds_of(cell).center());
+        let scale = (needed - share) * membrane.tension.value(&x) * membrane.measure.weight(&x);
+        let mut local = vec![0.0; dofs.len() * dofs.len()];
+        for (i, p) in membrane.cells.rule(cell).iter().enumerate() {
+            let t = match elements.of(membrane, cell) {
+                Some(element) => &element.tabulated[i],
+                None => {
+                    membrane.cells.tabulate(cell, &p.x, &mut scratch);
+                    &scratch
+                }
             };
-            let x = within.unwrap_or_else(|| membrane.cells.bounds_of(cell).center());
-            let scale = (needed - share) * membrane.tension.value(&x) * membrane.measure.weight(&x);
-            let mut local = vec![0.0; dofs.len() * dofs.len()];
-            for (i, p) in membrane.cells.rule(cell).iter().enumerate() {
-                let t = match elements.of(membrane, cell) {
-                    Some(element) => &element.tabulated[i],
-                    None => {
-                        membrane.cells.tabulate(cell, &p.x, &mut scratch);
-                        &scratch
-                    }
-                };
-                add_stiffness(&mut local, t, p.weight);
-            }
-            matrix.add(dofs, &local, scale);
+            add_stiffness(&mut local, t, p.weight);
         }
+        matrix.add(dofs, &local, scale);
     }
 }
 
@@ -72,7 +68,7 @@ fn parts(unknowns: &Unknowns) -> Vec<u32> {
         i
     }
     let mut part: Vec<u32> = (0..unknowns.count as u32).collect();
-    for dofs in unknowns.cells.iter().flatten().map(|(_, dofs)| dofs) {
+    for (_, _, dofs) in unknowns.all() {
         for pair in dofs.windows(2) {
             let (a, b) = (root(&mut part, pair[0]), root(&mut part, pair[1]));
             part[a.max(b) as usize] = a.min(b);

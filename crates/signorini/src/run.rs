@@ -507,7 +507,8 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             if progress.interrupted() {
                 return Between::Unknown;
             }
-            let state = engine.known(time, &increment);
+            // Beside a merger zones with fronts sharper than the grid tell nothing.
+            let state = engine.known(time, &increment).filter(|_| increment.resolved);
             if (before.is_empty() || after.is_empty()) && state.as_ref().is_none_or(|s| s.zone.is_empty()) {
                 // A zone too small for the grid is told by the membrane without contact.
                 match engine.reaches_obstacle(&membrane) {

@@ -64,24 +64,22 @@ impl Band {
         let mut node_of = vec![0; unknowns.count];
         let mut stored = vec![false; unknowns.count];
         let mut functions = Vec::new();
-        for (cell, regions) in unknowns.cells.iter().enumerate() {
+        for (cell, _, dofs) in unknowns.all() {
             cells.functions(cell, &mut functions);
             let inner = inner(cells.cells()[cell]);
-            for (_, dofs) in regions {
-                for (&dof, &f) in dofs.iter().zip(&functions) {
-                    let dof = dof as usize;
-                    stored[dof] |= inner;
-                    if global[dof] != u32::MAX {
-                        continue;
-                    }
-                    node_of[dof] = cells.nodes()[f as usize];
-                    global[dof] = if std::mem::replace(&mut taken[f as usize], true) {
-                        more += 1;
-                        (first + more - 1) as u32
-                    } else {
-                        node_of[dof]
-                    };
+            for (&dof, &f) in dofs.iter().zip(&functions) {
+                let dof = dof as usize;
+                stored[dof] |= inner;
+                if global[dof] != u32::MAX {
+                    continue;
                 }
+                node_of[dof] = cells.nodes()[f as usize];
+                global[dof] = if std::mem::replace(&mut taken[f as usize], true) {
+                    more += 1;
+                    (first + more - 1) as u32
+                } else {
+                    node_of[dof]
+                };
             }
         }
         let mut band = Self {
@@ -199,12 +197,10 @@ impl Band {
     /// Calls `visit(region, node, unknown)` for all unknowns, for some more than once.
     pub fn for_each_unknown(&self, mut visit: impl FnMut(RegionId, u32, u32)) {
         let mut functions = Vec::new();
-        for (cell, regions) in self.state.unknowns().cells.iter().enumerate() {
+        for (cell, region, dofs) in self.state.unknowns().all() {
             self.cells.functions(cell, &mut functions);
-            for (region, dofs) in regions {
-                for (&dof, &f) in dofs.iter().zip(&functions) {
-                    visit(*region, self.cells.nodes()[f as usize], self.global[dof as usize]);
-                }
+            for (&dof, &f) in dofs.iter().zip(&functions) {
+                visit(region, self.cells.nodes()[f as usize], self.global[dof as usize]);
             }
         }
     }

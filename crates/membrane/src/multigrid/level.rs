@@ -269,13 +269,11 @@ impl Level {
         }
         let mut functions = Vec::new();
         let mut values = vec![0.0; unknowns.count];
-        for (cell, regions) in unknowns.cells.iter().enumerate() {
+        for (cell, region, dofs) in unknowns.all() {
             membrane.cells.functions(cell, &mut functions);
-            for (region, dofs) in regions {
-                for (&dof, &node) in dofs.iter().zip(&functions) {
-                    let at = own.get(&(*region, node)).copied().unwrap_or(node);
-                    values[dof as usize] = self.u[at as usize];
-                }
+            for (&dof, &node) in dofs.iter().zip(&functions) {
+                let at = own.get(&(region, node)).copied().unwrap_or(node);
+                values[dof as usize] = self.u[at as usize];
             }
         }
         let mut state = Equilibrium::unsolved(membrane.clone(), quadrature, unknowns);
@@ -296,12 +294,10 @@ impl Level {
     pub(super) fn take(&mut self, state: &Equilibrium<2>) {
         let mut value = vec![f64::NAN; self.grid.node_count()];
         let mut functions = Vec::new();
-        for (cell, regions) in state.unknowns().cells.iter().enumerate() {
+        for (cell, _, dofs) in state.unknowns().all() {
             state.membrane.cells.functions(cell, &mut functions);
-            for (_, dofs) in regions {
-                for (&dof, &f) in dofs.iter().zip(&functions) {
-                    value[f as usize] = state.values()[dof as usize];
-                }
+            for (&dof, &f) in dofs.iter().zip(&functions) {
+                value[f as usize] = state.values()[dof as usize];
             }
         }
         let mut u = std::mem::take(&mut self.u);

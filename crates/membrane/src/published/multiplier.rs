@@ -178,9 +178,9 @@ pub fn inf_sup<const D: usize, Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z) -> 
     let mut locals: Vec<(Vec<u32>, Vec<f64>)> = Vec::new();
     let mut support = vec![0.0f64; n];
     let mut t = Tabulation::default();
-    for (cell, regions) in unknowns.cells.iter().enumerate() {
+    for cell in 0..quadrature.cells.len() {
         for (region, points) in quadrature.volumes(membrane, cell) {
-            let Some((_, dofs)) = regions.iter().find(|(r, _)| *r == region) else { continue };
+            let Some(dofs) = unknowns.of(cell, region) else { continue };
             let k = dofs.len();
             let mut local = vec![0.0; k * k];
             for p in points.iter() {
@@ -192,7 +192,7 @@ pub fn inf_sup<const D: usize, Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z) -> 
                 }
             }
             dofs.iter().enumerate().for_each(|(a, &i)| support[i as usize] += local[a * k + a]);
-            locals.push((dofs.clone(), local));
+            locals.push((dofs.to_vec(), local));
         }
     }
     // Functions with nothing of their support on their side do not count; the others are measured by their own size, so

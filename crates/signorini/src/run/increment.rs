@@ -116,6 +116,8 @@ pub struct Increment<'a, const D: usize> {
     outlines: Vec<Vec<Point<D>>>,
     sample: Option<Sampler<'a, D>>,
     pub stability: Stability,
+    /// Whether the fronts are no sharper than the grid can show.
+    pub resolved: bool,
     /// What the discretisation leaves uncertain, where that was asked for.
     pub errors: Option<ErrorEstimate>,
 }
@@ -351,6 +353,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             }
         };
         let outlines = solution.zone.outlines();
+        let resolved = solution.is_resolved();
         let residuals = std::mem::take(&mut solution.residuals);
         let (iterations, unknowns) = (solution.iterations, solution.unknowns);
         let stability = Stability {
@@ -379,6 +382,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             outlines,
             sample,
             stability,
+            resolved,
             errors,
         }
     }
@@ -402,6 +406,7 @@ fn active_set<'a, const D: usize, Z: Zone<D>>(
         outlines: Vec::new(),
         sample: None,
         stability: Stability::default(),
+        resolved: true,
         errors: None,
     };
     if membrane.obstacles.is_empty() {
@@ -443,6 +448,7 @@ fn active_set<'a, const D: usize, Z: Zone<D>>(
         report: Some(nodal_report(membrane, &solution, &zones)),
         outlines: zones.outlines,
         stability: Stability::default(),
+        resolved: true,
         errors: None,
         sample: Some(Box::new(move |x| {
             Some(Sample {

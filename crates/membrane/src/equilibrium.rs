@@ -20,7 +20,7 @@ use crate::thin_parts::hold_thin_parts;
 use crate::zone::{Zone, contact_of, is_free};
 use rayon::prelude::*;
 use signorini_fem::cells::Neighbours;
-use signorini_fem::cut::RegionId;
+use signorini_fem::cut::{QuadraturePoint, RegionId};
 use signorini_fem::ghost_penalty;
 use signorini_fem::lagrange::Tabulation;
 use signorini_geometry::{Point, Vector};
@@ -424,6 +424,22 @@ impl Unknowns {
     /// All cells and regions with their unknowns.
     pub fn all(&self) -> impl Iterator<Item = (usize, RegionId, &[u32])> {
         (0..self.cells.len() - 1).flat_map(|cell| self.of_cell(cell).map(move |(region, dofs)| (cell, region, dofs)))
+    }
+
+    /// Visits the volume rules of all cells and regions that have unknowns: the cell, the region, its unknowns, its points.
+    pub fn for_each_rule<const D: usize>(
+        &self,
+        membrane: &Membrane<D>,
+        quadrature: &Quadrature<D>,
+        mut visit: impl FnMut(usize, RegionId, &[u32], &[QuadraturePoint<D>]),
+    ) {
+        for cell in 0..quadrature.cells.len() {
+            for (region, points) in quadrature.volumes(membrane, cell) {
+                if let Some(dofs) = self.of(cell, region) {
+                    visit(cell, region, dofs, &points);
+                }
+            }
+        }
     }
 
     pub fn of(&self, cell: usize, region: RegionId) -> Option<&[u32]> {

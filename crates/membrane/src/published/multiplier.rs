@@ -178,23 +178,20 @@ pub fn inf_sup<const D: usize, Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z) -> 
     let mut locals: Vec<(Vec<u32>, Vec<f64>)> = Vec::new();
     let mut support = vec![0.0f64; n];
     let mut t = Tabulation::default();
-    for cell in 0..quadrature.cells.len() {
-        for (region, points) in quadrature.volumes(membrane, cell) {
-            let Some(dofs) = unknowns.of(cell, region) else { continue };
-            let k = dofs.len();
-            let mut local = vec![0.0; k * k];
-            for p in points.iter() {
-                membrane.cells.tabulate(cell, &p.x, &mut t);
-                for a in 0..k {
-                    for b in 0..k {
-                        local[a * k + b] += p.weight * (t.gradient[a].dot(&t.gradient[b]) + t.value[a] * t.value[b]);
-                    }
+    unknowns.for_each_rule(membrane, &quadrature, |cell, _, dofs, points| {
+        let k = dofs.len();
+        let mut local = vec![0.0; k * k];
+        for p in points {
+            membrane.cells.tabulate(cell, &p.x, &mut t);
+            for a in 0..k {
+                for b in 0..k {
+                    local[a * k + b] += p.weight * (t.gradient[a].dot(&t.gradient[b]) + t.value[a] * t.value[b]);
                 }
             }
-            dofs.iter().enumerate().for_each(|(a, &i)| support[i as usize] += local[a * k + a]);
-            locals.push((dofs.to_vec(), local));
         }
-    }
+        dofs.iter().enumerate().for_each(|(a, &i)| support[i as usize] += local[a * k + a]);
+        locals.push((dofs.to_vec(), local));
+    });
     // Functions with nothing of their support on their side do not count; the others are measured by their own size, so
     // that slivers do no harm.
     let scale: Vec<f64> = support.iter().map(|s| if *s > 0.0 { 1.0 / s.sqrt() } else { 0.0 }).collect();

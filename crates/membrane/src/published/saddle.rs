@@ -191,15 +191,12 @@ impl<const D: usize> Saddle<D> {
         let mut rhs = vec![0.0; self.within.count];
         let mut t = Tabulation::default();
         let mut each_point = |visit: &mut dyn FnMut(&Tabulation<D>, &[u32], &signorini_geometry::Point<D>, f64)| {
-            for (cell, regions) in self.within.cells.iter().enumerate() {
-                for (region, points) in quadrature.volumes(membrane, cell) {
-                    let Some((_, dofs)) = regions.iter().find(|(r, _)| *r == region) else { continue };
-                    for p in points.iter() {
-                        membrane.cells.tabulate(cell, &p.x, &mut t);
-                        visit(&t, dofs, &p.x, p.weight);
-                    }
+            self.within.for_each_rule(membrane, quadrature, |cell, _, dofs, points| {
+                for p in points {
+                    membrane.cells.tabulate(cell, &p.x, &mut t);
+                    visit(&t, dofs, &p.x, p.weight);
                 }
-            }
+            });
         };
         each_point(&mut |t, dofs, x, w| {
             let (_, gradient) = combined(t, dofs, &self.displacement);
@@ -235,28 +232,25 @@ fn gram<const D: usize>(
     multiplier: ZoneMultiplier,
 ) -> SymmetricMatrix {
     let pairs = ghost_pairs(membrane, elements, quadrature, within);
-    let mut cliques: Vec<Vec<u32>> = within.cells.iter().flatten().map(|(_, dofs)| dofs.clone()).collect();
+    let mut cliques: Vec<Vec<u32>> = within.all().map(|(_, _, dofs)| dofs.to_vec()).collect();
     cliques.extend(pairs.iter().map(|pair| pair.dofs.clone()));
     let mut matrix = SymmetricMatrix::from_cliques(within.count, &cliques);
     let gradient_weight = multiplier.gradient_weight();
     let mut t = Tabulation::default();
-    for (cell, regions) in within.cells.iter().enumerate() {
-        for (region, points) in quadrature.volumes(membrane, cell) {
-            let Some((_, dofs)) = regions.iter().find(|(r, _)| *r == region) else { continue };
-            let n = dofs.len();
-            let mut local = vec![0.0; n * n];
-            for p in points.iter() {
-                membrane.cells.tabulate(cell, &p.x, &mut t);
-                for a in 0..n {
-                    for b in 0..n {
-                        local[a * n + b] +=
-                            p.weight * (gradient_weight * t.gradient[a].dot(&t.gradient[b]) + t.value[a] * t.value[b]);
-                    }
+    within.for_each_rule(membrane, quadrature, |cell, _, dofs, points| {
+        let n = dofs.len();
+        let mut local = vec![0.0; n * n];
+        for p in points {
+            membrane.cells.tabulate(cell, &p.x, &mut t);
+            for a in 0..n {
+                for b in 0..n {
+                    local[a * n + b] +=
+                        p.weight * (gradient_weight * t.gradient[a].dot(&t.gradient[b]) + t.value[a] * t.value[b]);
                 }
             }
-            matrix.add(dofs, &local, 1.0);
         }
-    }
+        matrix.add(dofs, &local, 1.0);
+    });
     let weight = ghost_weight(membrane.cells.degree());
     let h = membrane.grid.h();
     for pair in &pairs {
@@ -275,19 +269,15 @@ fn projected<const D: usize>(
     let gradient_weight = multiplier.gradient_weight();
     let mut rhs = vec![0.0; within.count];
     let mut t = Tabulation::default();
-    for (cell, regions) in within.cells.iter().enumerate() {
-        for (region, points) in quadrature.volumes(membrane, cell) {
-            let Some((_, dofs)) = regions.iter().find(|(r, _)| *r == region) else { continue };
-            let Some((side, _)) = contact_of(region) else { continue };
-            for p in points.iter() {
-                membrane.cells.tabulate(cell, &p.x, &mut t);
-                let h = membrane.obstacles.jet(side, &p.x);
-                for (a, &i) in dofs.iter().enumerate() {
-                    rhs[i as usize] +=
-                        p.weight * (gradient_weight * t.gradient[a].dot(&h.gradient) + t.value[a] * h.value);
-                }
+    within.for_each_rule(membrane, quadrature, |cell, region, dofs, points| {
+        let Some((side, _)) = contact_of(region) else { return };
+        for p in points {
+            membrane.cells.tabulate(cell, &p.x, &mut t);
+            let h = membrane.obstacles.jet(side, &p.x);
+            for (a, &i) in dofs.iter().enumerate() {
+                rhs[i as usize] += p.weight * (gradient_weight * t.gradient[a].dot(&h.gradient) + t.value[a] * h.value);
             }
         }
-    }
+    });
     rhs
 }

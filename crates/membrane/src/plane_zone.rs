@@ -33,6 +33,8 @@ pub struct PlaneZone {
     /// What the zone that a curve bounds touches.
     sides: Vec<Side>,
     grid: Grid<2>,
+    /// The smallest box round each curve.
+    boxes: Vec<Aabb<2>>,
     /// Absolute areas: of the curves round a point, the smallest decides where it lies.
     areas: Vec<f64>,
     hole: Vec<bool>,
@@ -198,7 +200,7 @@ impl PlaneZone {
                 let CurvePoint { position, normal, curvature, .. } = foot;
                 found.sheets.push(Box::new(Osculating { foot: position, normal, curvature }));
             } else {
-                let own = bounding_box(self.curves[c].samples());
+                let own = &self.boxes[c];
                 if (0..2).all(|k| own.min[k] > b.min[k] && own.max[k] < b.max[k]) {
                     found.features.push(own.center());
                 }
@@ -230,6 +232,7 @@ impl PlaneZone {
         let near = NearFronts::new(grid, &curves);
         let rows = rows_enclosed(grid, &curves);
         Self {
+            boxes: curves.iter().map(|c| bounding_box(c.samples())).collect(),
             areas: areas.iter().map(|a| a.abs()).collect(),
             hole,
             number,

@@ -104,7 +104,7 @@ impl<const D: usize> Cells<D> for GridPart<D> {
         Some(0)
     }
     fn kinds(&self) -> Vec<usize> {
-        vec![0]
+        if self.cells.is_empty() { Vec::new() } else { vec![0] }
     }
     fn neighbours(&self) -> Vec<Neighbours> {
         let size = self.grid.cell_size();

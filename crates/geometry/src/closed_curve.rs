@@ -99,9 +99,10 @@ impl ClosedCurve {
         let (piece, t) = self.piece(s);
         let n = self.basis.count as f64;
         // Horner's rule, and its derivatives by the rule of products.
-        let [x, d1, half_d2] = piece.iter().rev().fold([Point::zeros(); 3], |[x, d1, half_d2], c| {
-            [x * t + c, d1 * t + x, half_d2 * t + d1]
-        });
+        let [x, d1, half_d2] = piece
+            .iter()
+            .rev()
+            .fold([Point::zeros(); 3], |[x, d1, half_d2], c| [x * t + c, d1 * t + x, half_d2 * t + d1]);
         [x, d1 * n, half_d2 * (2.0 * n * n)]
     }
 

@@ -89,7 +89,10 @@ mod tests {
         let bow: Vec<_> = [0, 2, 1, 3].map(|i| square[i]).to_vec();
         assert!(self_crossing(&bow).is_some());
         // A long curve, and the same with one corner pulled across to the other side.
-        let mut round: Vec<Point<2>> = (0..500).map(|k| f64::from(k) * 0.004 * std::f64::consts::PI).map(|a| Point::<2>::new(a.cos(), a.sin())).collect();
+        let mut round: Vec<Point<2>> = (0..500)
+            .map(|k| f64::from(k) * 0.004 * std::f64::consts::PI)
+            .map(|a| Point::<2>::new(a.cos(), a.sin()))
+            .collect();
         assert_eq!(self_crossing(&round), None);
         round[100] = Point::<2>::new(-1.1, -0.3);
         assert!(self_crossing(&round).is_some_and(|(i, j)| i == 99 || i == 100 || j == 100));

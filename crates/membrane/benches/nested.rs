@@ -1,6 +1,6 @@
 //! Time, memory and error of membranes by multigrid from coarse to fine: a round one on a flat floor, and a square one on a
 //! cosine floor at f = 0.4, at degree 1, 2 and 4. From 1e4 unknowns to as many as `SIGNORINI_LADDER` says (1e6 if it says
-//! nothing), on `SIGNORINI_THREADS` threads (one if it says nothing), at `SIGNORINI_DEGREE` alone if it says something.
+//! nothing), beside the membrane alone, without contact, solved from nothing to 1e-8, on `SIGNORINI_THREADS` threads (one if it says nothing), at `SIGNORINI_DEGREE` alone if it says something.
 //!
 //! `cargo bench -p signorini-membrane --bench nested`
 
@@ -8,9 +8,11 @@ use signorini_fem::Grid;
 use signorini_geometry::{Aabb, Ellipse, Jet, Point, Real};
 use signorini_membrane::domain::{BoxDomain, Domain, DomainOnCells, ImplicitDomain};
 use signorini_membrane::field::{Constant, Formula, SharedField};
-use signorini_membrane::multigrid::nested;
+use signorini_membrane::multigrid::{Hierarchy, nested};
 use signorini_membrane::obstacle::{Obstacle, Obstacles, Side};
+use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::{Measure, Membrane, Support};
+use signorini_membrane::zone::Zone;
 use signorini_solve::Silent;
 use std::sync::Arc;
 use std::time::Instant;
@@ -18,7 +20,13 @@ use std::time::Instant;
 /// Radius of the zone on the flat floor.
 const RADIUS: f64 = 0.502_474_357_08;
 
-fn on_grid([n, degree]: [usize; 2], half: f64, domain: Arc<dyn Domain<2>>, height: SharedField<2>, load: f64) -> Membrane<2> {
+fn on_grid(
+    [n, degree]: [usize; 2],
+    half: f64,
+    domain: Arc<dyn Domain<2>>,
+    height: SharedField<2>,
+    load: f64,
+) -> Membrane<2> {
     let bounds = Aabb::new(Point::<2>::new(-half, -half), Point::<2>::new(half, half));
     let grid = Grid::new(bounds, [n, n], degree);
     let support = Some(Support { index: 0, displacement: Arc::new(Constant(0.0)) });
@@ -59,6 +67,16 @@ fn peak() -> f64 {
     line.split_whitespace().next().and_then(|kb| kb.parse::<f64>().ok()).unwrap_or(f64::NAN) * 1024.0
 }
 
+/// Seconds for the membrane without contact.
+fn alone(membrane: &Membrane<2>) -> f64 {
+    let start = Instant::now();
+    let mut hierarchy = Hierarchy::new(membrane, &PlaneZone::empty(&membrane.grid)).expect("levels");
+    while hierarchy.finest().relative_residual() > 1e-8 {
+        hierarchy.cycle().expect("a cycle");
+    }
+    start.elapsed().as_secs_f64()
+}
+
 /// A number that is asked for by the environment.
 fn asked(name: &str, usual: f64) -> f64 {
     std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(usual)
@@ -78,8 +96,8 @@ fn main() {
     for degree in [1, 2, 4].into_iter().filter(|d| only == 0 || *d == only) {
         for (name, share, membrane, figure) in &cases {
             println!(
-                "{:>10} {:>9} {:>8} {:>9} {:>9}  degree {degree}, {name}",
-                "unknowns", "s", "µs each", "MB peak", "B each"
+                "{:>10} {:>9} {:>8} {:>9} {:>9} {:>9}  degree {degree}, {name}",
+                "unknowns", "s", "µs each", "MB peak", "B each", "alone s"
             );
             let mut last: Option<(f64, f64)> = None;
             for n in [128usize, 256, 512, 1024, 1408, 2816, 4096, 8192].map(|n| n / degree / 16 * 16) {
@@ -96,13 +114,16 @@ fn main() {
                 };
                 let area: f64 = found.zone.curves().iter().map(|c| c.signed_area()).sum();
                 let unknowns = found.level.unknowns() as f64;
+                let memory = peak();
+                let steps = found.steps;
+                drop(found.level);
+                let alone = pool.install(|| alone(&membrane([n, degree])));
                 println!(
-                    "{unknowns:>10} {seconds:>9.3} {:>8.2} {:>9.0} {:>9.0}  {:.9e}  steps {:?}",
+                    "{unknowns:>10} {seconds:>9.3} {:>8.2} {:>9.0} {:>9.0} {alone:>9.3}  {:.9e}  steps {steps:?}",
                     1e6 * seconds / unknowns,
-                    peak() / 1e6,
-                    peak() / unknowns,
+                    memory / 1e6,
+                    memory / unknowns,
                     figure(area),
-                    found.steps
                 );
                 if let Some((u, s)) = last.replace((unknowns, seconds)) {
                     println!("{:>10} exponent {:.2}", "", (seconds / s).ln() / (unknowns / u).ln());

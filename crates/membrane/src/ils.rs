@@ -109,7 +109,7 @@ pub struct Solution<const D: usize, Z> {
 
 impl<const D: usize, Z> Solution<D, Z> {
     /// Nothing but a zone.
-    pub(crate) fn begin(zone: Z) -> Self {
+    pub fn begin(zone: Z) -> Self {
         Self {
             zone,
             equilibrium: None,

@@ -18,6 +18,7 @@ use signorini_geometry::{Jet, Point, Real, Vector};
 use signorini_membrane::active_set::NodalStart;
 use signorini_membrane::domain::{Domain, DomainOnCells};
 use signorini_membrane::field::{Constant, Field, SharedField, Sum};
+use signorini_membrane::multigrid::{LARGE, nested::is_able};
 use signorini_membrane::obstacle::{Obstacles, Side};
 use signorini_membrane::problem::{Measure, Membrane, Support};
 use signorini_membrane::published::{Formulation, Published, Transport, ZoneMultiplier};
@@ -29,7 +30,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-pub use domain::{Pieces, memory_estimate};
+pub use domain::{Pieces, memory_estimate, multigrid_estimate};
 pub use history::{Control, PlannedIncrement};
 pub use surface::Contact;
 
@@ -384,7 +385,13 @@ impl<'a> Planner<'a> {
             on.grid = Grid::new(*on.grid.bounds(), on.grid.cells(), 1);
             on.cells = Arc::new(on.grid.clone());
         }
-        self.finish(body, on, tension, loads, supports, contacts, method, warnings)
+        let plan = self.finish(body, on, tension, loads, supports, contacts, method, warnings)?;
+        let start = plan.increments.first().map_or(0.0, |i| i.range[0]);
+        if !plan.by_multigrid(&plan.at(start)) {
+            let unknowns = plan.cells.function_count() as f64;
+            self.check_bytes(unknowns, memory_estimate(unknowns, plan.cells.degree(), D), film.mesh.span())?;
+        }
+        Ok(plan)
     }
 
     /// The zone that a contact asks to start from, and the side that it touches.
@@ -917,6 +924,29 @@ impl<const D: usize> MembranePlan<D> {
             }
         }
         self.loads.keys().cloned().zip(sums).collect()
+    }
+
+    /// Whether an increment is solved for by multigrid: large ones are, where the case asks for nothing that it cannot do.
+    pub fn by_multigrid(&self, membrane: &Membrane<D>) -> bool {
+        membrane.cells.function_count() >= LARGE
+            && self.refinement.fronts == 0
+            && self.initial_zone.is_none()
+            && matches!(self.method, MethodChoice::InequalityLevelSet { .. })
+            && membrane.formulation == Formulation::OneSided
+            && is_able(membrane)
+    }
+
+    /// What to say where a factorisation needs more memory than there is.
+    pub fn lacks_memory(&self) -> Option<String> {
+        let unknowns = self.cells.function_count() as f64;
+        let bytes = memory_estimate(unknowns, self.cells.degree(), D);
+        (bytes > domain::memory_at_hand()).then(|| {
+            format!(
+                "multigrid did not find the state, and a factorisation of {unknowns:.1e} unknowns needs about {:.1} GiB: \
+                 more than are free; try fewer cells first, to see what makes the state hard to find",
+                bytes / f64::from(1u32 << 30)
+            )
+        })
     }
 
     /// Checks the fields of a membrane where they will be used: finite values, positive tension, a floor below the

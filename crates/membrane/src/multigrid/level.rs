@@ -63,8 +63,7 @@ impl Level {
     pub fn moved(&mut self, membrane: &Membrane<2>, zone: &PlaneZone) -> Result<(), SolveError> {
         let held = self.held.take().filter(|_| zone.counts() == self.counts);
         let vectors = [std::mem::take(&mut self.u), std::mem::take(&mut self.b)];
-        *self =
-            Self::with(membrane, zone, false, held, vectors, self.interior.clone(), self.interpolation.clone())?;
+        *self = Self::with(membrane, zone, false, held, vectors, self.interior.clone(), self.interpolation.clone())?;
         Ok(())
     }
 

@@ -33,11 +33,16 @@ pub struct Hierarchy {
     pub levels: Vec<Level>,
 }
 
+/// Whether so many cells may be those of a grid with a coarser one.
+fn can_be_halved(cells: usize) -> bool {
+    cells.is_multiple_of(2) && cells / 2 >= COARSEST
+}
+
 /// The grids of a hierarchy, the coarsest first.
 pub fn grids(finest: &Grid<2>) -> Vec<Grid<2>> {
     let mut list = vec![finest.clone()];
     while let Some(last) = list.last()
-        && last.cells().iter().all(|n| n % 2 == 0 && n / 2 >= COARSEST)
+        && last.cells().iter().all(|n| can_be_halved(*n))
     {
         let coarser = Grid::new(*last.bounds(), last.cells().map(|n| n / 2), last.degree());
         list.push(coarser);

@@ -4,7 +4,7 @@
 //! What a cycle leaves of the algebraic error is of the size of the discretisation error, so is what the front is off; the
 //! whole costs as much as a few cycles on the finest grid.
 
-use super::{Level, cycle, grids, levels, on_grid};
+use super::{Level, can_be_halved, cycle, grids, levels, on_grid};
 use crate::conditions::Conditions;
 use crate::equilibrium::Elements;
 use crate::front::Fronts;
@@ -47,12 +47,13 @@ const PATIENCE: usize = 3;
 const MOST: usize = 12;
 
 /// Whether a membrane can be solved for so: on a grid with coarser ones, of even tension, without adhesion.
-pub fn is_able(membrane: &Membrane<2>) -> bool {
-    membrane.cells.divisible().is_some_and(|g| g.cells() == membrane.grid.cells())
+pub fn is_able<const D: usize>(membrane: &Membrane<D>) -> bool {
+    D == 2
+        && membrane.cells.divisible().is_some_and(|g| g.cells() == membrane.grid.cells())
         && membrane.cells.count() == membrane.grid.cell_count()
         && membrane.tension.constant().is_some()
         && !membrane.obstacles.are_sticky()
-        && grids(&membrane.grid).len() > 1
+        && membrane.grid.cells().iter().all(|n| can_be_halved(*n))
 }
 
 /// A state that meets the tolerances of every other solver; none where the way to it is not this one: the fronts were not

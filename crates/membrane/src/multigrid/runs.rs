@@ -55,7 +55,11 @@ pub(super) fn common(a: &[Run], b: &[Run], mut visit: impl FnMut(usize, usize)) 
         if begin < end {
             visit(begin, end);
         }
-        if x.end < y.end { a.next() } else { b.next() };
+        if x.end < y.end {
+            a.next()
+        } else {
+            b.next()
+        };
     }
 }
 

@@ -243,13 +243,14 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         Z: 'a,
     {
         match plan.method {
-            MethodChoice::InequalityLevelSet { .. } => self.level_set(membrane, at, progress),
+            MethodChoice::InequalityLevelSet { .. } => self.level_set(plan, membrane, at, progress),
             MethodChoice::ActiveSet(start) => active_set::<D, Z>(membrane, start, at, progress),
         }
     }
 
     fn level_set<'a>(
         &mut self,
+        plan: &MembranePlan<D>,
         membrane: &'a Membrane<D>,
         at: (usize, f64),
         progress: &mut dyn Progress,
@@ -265,15 +266,15 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             (None, None) => Start::Free,
         };
         let nearby = matches!(start, Start::Asked(..) | Start::Zone(_, _, Branch::Nearest));
-        // Where the case asks for divided cells it gets them.
-        let large = if nearby || self.refinement.fronts > 0 || membrane.formulation != Formulation::OneSided {
-            None
-        } else {
-            Z::by_multigrid(membrane, at, progress).ok().flatten()
-        };
-        let mut solution: Solution<D, Z> = match large {
-            Some(solution) => solution,
-            None => self.refinement.solve(membrane, &mut self.levels, start, at, progress),
+        let large = plan.by_multigrid(membrane) && !nearby;
+        let found = if large { Z::by_multigrid(membrane, at, progress).ok().flatten() } else { None };
+        // Where multigrid does not lead to a state a factorisation does, if it has the memory.
+        let mut solution: Solution<D, Z> = match (found, plan.lacks_memory()) {
+            (Some(solution), _) => solution,
+            (None, Some(message)) if large && !progress.interrupted() => {
+                Solution { reason: Reason::LinearSolver(message), ..Solution::begin(Z::empty(&membrane.grid)) }
+            }
+            (None, _) => self.refinement.solve(membrane, &mut self.levels, start, at, progress),
         };
         self.scales = solution.scales.or(self.scales);
         let report = Report::new(&solution);

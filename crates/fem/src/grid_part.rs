@@ -14,8 +14,9 @@ pub struct GridPart<const D: usize> {
     grid: Grid<D>,
     cells: Vec<usize>,
     number: HashMap<usize, usize>,
-    /// Nodes of the grid, ascending.
+    /// Nodes of the grid, ascending, and for each cell after the other which of them are its own.
     nodes: Vec<u32>,
+    functions: Vec<u32>,
 }
 
 impl<const D: usize> GridPart<D> {
@@ -23,16 +24,18 @@ impl<const D: usize> GridPart<D> {
     pub fn new(grid: &Grid<D>, mut cells: Vec<usize>) -> Self {
         cells.sort_unstable();
         cells.dedup();
-        let mut nodes = Vec::new();
+        let mut functions = Vec::with_capacity(cells.len() * grid.basis().len());
         let mut of_cell = Vec::new();
         for &cell in &cells {
             grid.cell_nodes(cell, &mut of_cell);
-            nodes.extend_from_slice(&of_cell);
+            functions.extend_from_slice(&of_cell);
         }
+        let mut nodes = functions.clone();
         nodes.sort_unstable();
         nodes.dedup();
+        functions.iter_mut().for_each(|node| *node = nodes.partition_point(|n| n < node) as u32);
         let number = cells.iter().enumerate().map(|(k, &cell)| (cell, k)).collect();
-        Self { grid: grid.clone(), cells, number, nodes }
+        Self { grid: grid.clone(), cells, number, nodes, functions }
     }
 
     /// The cells in the grid.
@@ -74,10 +77,9 @@ impl<const D: usize> Cells<D> for GridPart<D> {
         self.nodes.len()
     }
     fn functions(&self, cell: usize, out: &mut Vec<u32>) {
-        self.grid.cell_nodes(self.cells[cell], out);
-        for node in out {
-            *node = self.nodes.partition_point(|n| n < node) as u32;
-        }
+        let count = self.grid.basis().len();
+        out.clear();
+        out.extend_from_slice(&self.functions[cell * count..(cell + 1) * count]);
     }
     fn tabulate(&self, cell: usize, x: &Point<D>, out: &mut Tabulation<D>) {
         self.grid.tabulate(self.cells[cell], x, out);

@@ -106,7 +106,7 @@ fn main() {
                 }
                 let start = Instant::now();
                 let found =
-                    pool.install(|| nested::solve(&membrane([n, degree]), f64::INFINITY, (0, 0.0), &mut Silent));
+                    pool.install(|| nested::solve(&membrane([n, degree]), f64::INFINITY, 32, (0, 0.0), &mut Silent));
                 let seconds = start.elapsed().as_secs_f64();
                 let Ok(Ok(found)) = found else {
                     println!("{n} x {n}: no state");

@@ -7,7 +7,7 @@ use crate::conditions::{Conditions, corrected, least_free_gap};
 use crate::equilibrium::{Elements, Equilibrium};
 use crate::front::{Fronts, StepKind};
 use crate::problem::Membrane;
-use crate::published::{Formulation, ModeSchedule, Published, Transport};
+use crate::published::{ModeSchedule, Transport};
 use crate::scales::Scales;
 use crate::zone::{Zone, contact_index};
 use signorini_solve::{Acceleration, Iteration, Progress, SolveError};
@@ -481,8 +481,8 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             falls = if residual < previous { falls + 1 } else { 0 };
             previous = residual;
             // A level set on nodes shifts the fronts with every step: there is no coming closer than that.
-            let shifted =
-                matches!(self.membrane.formulation, Formulation::Published(p) if p.transport != Transport::Exact);
+            let transport = self.membrane.formulation.transport();
+            let shifted = transport != Transport::Exact;
             let patience = if shifted { DAMPED_AFTER } else { PATIENCE };
             let slowly = falls >= SLOWLY && !shifted;
             if waited >= PATIENCE && slowly {
@@ -544,12 +544,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 acceleration = Acceleration::default();
             }
             let reach = step.reach.min(REACH * scales.length);
-            let advance = match self.membrane.formulation {
-                Formulation::OneSided => zone.advanced(&self.membrane.grid, step.space, &step.coefficients, reach),
-                Formulation::Published(Published { transport, .. }) => {
-                    zone.transported(&self.membrane.grid, step.space, &step.coefficients, reach, transport)
-                }
-            };
+            let advance = zone.transported(&self.membrane.grid, step.space, &step.coefficients, reach, transport);
             if advance.topology_changed || advance.zone.mode_offsets(finest) != zone.mode_offsets(finest) {
                 acceleration = Acceleration::default();
             }

@@ -257,6 +257,12 @@ impl PlaneZone {
         Self::new(grid, self.sides.iter().copied().zip(curves).collect())
     }
 
+    /// The diameter of the disc that is as large as the smallest zone; infinite where there is none.
+    pub(crate) fn smallest(&self) -> f64 {
+        let areas = self.areas.iter().zip(&self.hole).filter(|(_, hole)| !**hole).map(|(area, _)| *area);
+        2.0 * (areas.fold(f64::INFINITY, f64::min) / std::f64::consts::PI).sqrt()
+    }
+
     /// Whether a curve is the rim of a hole.
     pub fn is_hole(&self, curve: usize) -> bool {
         self.hole[curve]

@@ -181,7 +181,7 @@ pub trait Zone<const D: usize>: Division<D> + Clone + Send {
     /// nowhere so far that they would fold.
     fn advanced(&self, grid: &Grid<D>, modes: ModeSpace, step: &[f64], reach: f64) -> Advance<Self>;
 
-    /// Moves the fronts as [`Zone::advanced`] does, but as the level set of a function on the nodes of the grid; in one
+    /// Moves the fronts as [`Zone::advanced`] does, or as the level set of a function on the nodes of the grid; in one
     /// dimension that makes no difference.
     fn transported(
         &self,

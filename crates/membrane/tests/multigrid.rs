@@ -158,6 +158,51 @@ fn a_cycle_leaves_an_eighth_whatever_is_cut() {
     assert!(worst <= 0.12, "{worst}");
 }
 
+/// Zones that coarse grids do not show, and several of them.
+#[test]
+fn tiny_zones_do_not_slow_a_cycle_down() {
+    for (n, radius, degree) in [(256, 0.015, 1), (256, 0.004, 1), (64, 0.02, 3)] {
+        let membrane = disc(n, degree);
+        let centres = [[0.1, 0.2], [-0.35, 0.11], [0.02, -0.4]].map(Point::<2>::from);
+        let fronts = centres.map(|c| (Side::Below, circle(c, |_| radius, 16))).to_vec();
+        let zone = PlaneZone::new(&membrane.grid, fronts).on_grid(&membrane.grid);
+        let rate = contraction(&membrane, &zone);
+        println!("{n} cells of degree {degree}, radius {radius}: {rate:.3}");
+        assert!(rate <= 0.2, "{n} cells of degree {degree}, radius {radius}: {rate}");
+    }
+}
+
+/// A membrane that stays clear of the floor is told so; one that meets it only between the nodes of the first grid is not.
+#[test]
+fn a_free_membrane_is_free() {
+    let mut membrane = disc(128, 2);
+    membrane.obstacles.0[0].height = Arc::new(Constant(-0.26));
+    let found = nested::solution(&membrane, (0, 0.0), &mut Silent).expect("solves").expect("a state");
+    assert_eq!(found.reason, Reason::NoContact);
+    let state = found.equilibrium.expect("a state");
+    let x = Point::<2>::new(0.21, -0.13);
+    let u = state.displacement(&found.zone, &x).expect("inside");
+    assert!((u - 0.25 * (x.norm_squared() - 1.0)).abs() < 1e-9, "{u}");
+}
+
+/// A needle that the first grids do not show.
+#[test]
+fn a_tiny_zone_is_found() {
+    let c = |v: f64| Jet::<2>::constant(v);
+    let needle = move |[x, y]: [Jet<2>; 2]| {
+        let r = (x - c(0.21)) * (x - c(0.21)) + (y + c(0.13)) * (y + c(0.13));
+        let e = (-r.value / 2e-4).exp();
+        c(-0.4) + c(0.25) * r.chain(e, -e / 2e-4, e / 4e-8)
+    };
+    let mut membrane = disc(512, 1);
+    membrane.obstacles.0[0].height = Arc::new(Formula(needle));
+    let found = nested::solution(&membrane, (0, 0.0), &mut Silent).expect("solves").expect("a state");
+    assert_eq!(found.zone.counts(), (1, 0));
+    let report = Report::new(&found).expect("a report");
+    println!("area {:e}, force {:e}", report.area(), report.force());
+    assert!(report.area() > 1e-5 && report.area() < 1e-3 && report.equilibrium_residual < 1e-9);
+}
+
 #[test]
 fn a_cycle_of_higher_degree_leaves_a_seventh() {
     for degree in 2..=4 {
@@ -177,7 +222,7 @@ fn nested_iteration_finds_the_front() {
     let found = |n: usize, degree: usize| {
         let membrane = disc(n, degree);
         assert!(nested::is_able(&membrane));
-        let found = nested::solve(&membrane, f64::INFINITY, (0, 0.0), &mut Silent).expect("solves").expect("a state");
+        let found = nested::solve(&membrane, f64::INFINITY, 32, (0, 0.0), &mut Silent).expect("solves").expect("a state");
         assert!(found.steps.iter().skip(1).all(|s| *s <= 4), "{:?}", found.steps);
         ((area(&found.zone) / std::f64::consts::PI).sqrt() - exact).abs()
     };

@@ -118,9 +118,16 @@ impl Band {
         if self.solved.is_empty() {
             return Ok(());
         }
-        let place = |unknown: usize| self.solved.binary_search_by_key(&(unknown as u32), |s| s.0).ok();
+        // The place of each, counted from one; of all that is not there nothing is ever touched.
+        let last = self.column.iter().chain(self.solved.iter().map(|s| &s.0)).fold(0, |m, &i| m.max(i as usize));
+        let mut place = vec![0u32; last + interior.reach() + 1];
+        self.solved.iter().zip(1..).for_each(|(s, k)| place[s.0 as usize] = k);
         let matrix = SymmetricMatrix::from_columns(self.solved.len(), |k, out| {
-            let mut push = |j: usize, v: f64| out.extend(place(j).filter(|to| *to >= k).map(|to| (to, v)));
+            let mut push = |j: usize, v: f64| {
+                if place[j] > k as u32 {
+                    out.push((place[j] as usize - 1, v));
+                }
+            };
             match self.solved[k] {
                 (node, None) => interior.row(node as usize).for_each(|(j, v)| push(j, v)),
                 (_, Some(row)) => self.row(row as usize).for_each(|(j, v)| push(j, v)),

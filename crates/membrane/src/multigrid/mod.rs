@@ -25,6 +25,11 @@ use std::sync::Arc;
 /// Cells along the longer side of the coarsest grid, below which all is solved for at once.
 const COARSEST: usize = 16;
 
+/// Cells that the smallest zone has to be wide for a coarsest grid, and how many times cells of degree 1 that may be at most
+/// along one side.
+const SHOWN: f64 = 2.0;
+const LARGEST_WHOLE: usize = 128;
+
 /// Functions from which on multigrid takes less time than a factorisation.
 pub const LARGE: usize = 60_000;
 
@@ -51,6 +56,15 @@ pub fn grids(finest: &Grid<2>) -> Vec<Grid<2>> {
     list
 }
 
+/// The grids of a hierarchy that a zone needs: coarser ones than show its smallest part leave a slow error round it that
+/// only finer ones could take away; but what is cheap to solve for whole is not made larger for its sake.
+fn that_show<'a>(grids: &'a [Grid<2>], zone: &PlaneZone) -> &'a [Grid<2>] {
+    let smallest = zone.smallest();
+    let shows = |g: &Grid<2>| SHOWN * g.h() <= smallest || g.cells().iter().any(|n| n * g.degree() >= LARGEST_WHOLE);
+    let first = grids.iter().position(shows).unwrap_or(0);
+    &grids[first.min(grids.len() - 1)..]
+}
+
 /// The same membrane on a grid of a hierarchy.
 pub fn on_grid(membrane: &Membrane<2>, grid: &Grid<2>) -> Membrane<2> {
     if grid.cells() == membrane.grid.cells() {
@@ -71,7 +85,7 @@ impl Hierarchy {
     /// # Errors
     /// Equations along the cuts that cannot be factorised.
     pub fn new(membrane: &Membrane<2>, zone: &PlaneZone) -> Result<Self, SolveError> {
-        Ok(Self { levels: levels(membrane, zone, &grids(&membrane.grid))? })
+        Ok(Self { levels: levels(membrane, zone, that_show(&grids(&membrane.grid), zone))? })
     }
 
     /// One cycle on the finest level: relaxation, correction from the coarser levels, relaxation.

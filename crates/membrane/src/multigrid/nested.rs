@@ -4,7 +4,7 @@
 //! What a cycle leaves of the algebraic error is of the size of the discretisation error, so is what the front is off; the
 //! whole costs as much as a few cycles on the finest grid.
 
-use super::{Level, can_be_halved, cycle, grids, levels, on_grid};
+use super::{Level, can_be_halved, cycle, grids, levels, on_grid, that_show};
 use crate::conditions::Conditions;
 use crate::equilibrium::Elements;
 use crate::front::Fronts;
@@ -15,10 +15,13 @@ use crate::scales::Scales;
 use crate::zone::{ModeSpace, Zone};
 use signorini_solve::{Iteration, Progress, SolveError};
 
-/// Nodes along the longer side of the grid on which the fronts are found at first.
-const FIRST: usize = 32;
-/// Steps of the fronts on each finer grid, and how many more where they have far to go.
+/// Nodes along the longer side of the grid on which the fronts are found at first, and, where zones were missed there, on
+/// which they are looked for again.
+const FIRST: [usize; 3] = [32, 128, 512];
+/// Steps of the fronts on each finer grid, those at degree 1 on grids between the first and the last, where what they leave
+/// is less than what the grid does, and how many more where they have far to go.
 const STEPS: usize = 2;
+const STEPS_BETWEEN: usize = 1;
 const MORE: usize = 6;
 /// Fronts that move by more than this fraction of a cell get another step.
 const FAR: f64 = 0.3;
@@ -38,8 +41,8 @@ pub struct NestedSolution {
     pub settled_within: Option<f64>,
 }
 
-/// Cycles at the end, and the residual relative to the load at which there are no more.
-const CLOSING: usize = 14;
+/// Cycles at the end at most, and the residual relative to the load at which there are no more.
+const CLOSING: usize = 60;
 const CLOSED: f64 = 1e-12;
 /// Steps without progress after which fronts may rest on a jump of the discrete slope.
 const PATIENCE: usize = 3;
@@ -66,7 +69,25 @@ pub fn solution(
     at: (usize, f64),
     progress: &mut dyn Progress,
 ) -> Result<Option<Solution<2, PlaneZone>>, SolveError> {
-    let Ok(found) = solve(membrane, 1.0, at, progress)? else { return Ok(None) };
+    for first in FIRST {
+        if let Some(solution) = solution_from(membrane, first, at, progress)? {
+            return Ok(Some(solution));
+        }
+        if progress.interrupted() || membrane.grid.node_counts().into_iter().all(|n| n / 4 <= first) {
+            break;
+        }
+    }
+    Ok(None)
+}
+
+/// The same from a first grid of so many nodes.
+fn solution_from(
+    membrane: &Membrane<2>,
+    first: usize,
+    at: (usize, f64),
+    progress: &mut dyn Progress,
+) -> Result<Option<Solution<2, PlaneZone>>, SolveError> {
+    let Ok(found) = solve(membrane, 1.0, first, at, progress)? else { return Ok(None) };
     if !found.settled {
         return Ok(None);
     }
@@ -81,7 +102,7 @@ pub fn solution(
         equilibrium: Some(equilibrium),
         conditions: Some(conditions),
         scales: Some(found.scales),
-        reason: Reason::Converged,
+        reason: if zone.is_empty() { Reason::NoContact } else { Reason::Converged },
         iterations: found.steps.last().copied().unwrap_or(0),
         residuals: found.residuals,
         multigrid: true,
@@ -90,7 +111,8 @@ pub fn solution(
     }))
 }
 
-/// Solves a membrane for which [`is_able`] holds. On the finest grid the fronts step until their residual is below
+/// Solves a membrane for which [`is_able`] holds, from the first grid of more than so many nodes along a side. On the finest
+/// grid the fronts step until their residual is below
 /// `tolerance` of what other solvers reach, at least twice: with an infinite one their error is that of the discretisation.
 ///
 /// # Errors
@@ -98,19 +120,20 @@ pub fn solution(
 pub fn solve(
     membrane: &Membrane<2>,
     tolerance: f64,
+    first: usize,
     at: (usize, f64),
     progress: &mut dyn Progress,
 ) -> Result<Result<NestedSolution, Reason>, SolveError> {
     let grids = grids(&membrane.grid);
-    let first = grids.iter().position(|g| g.node_counts().into_iter().max().unwrap_or(0) > FIRST).unwrap_or(0);
+    let first = grids.iter().position(|g| g.node_counts().into_iter().max().unwrap_or(0) > first).unwrap_or(0);
     let coarse = on_grid(membrane, &grids[first]);
     let found =
         ils::solve::<2, PlaneZone>(&coarse, &mut Elements::new(&coarse), Start::Free, Rest::Final, at, progress);
-    let (Reason::Converged, Some(scales), Some(state)) = (&found.reason, found.scales, &found.equilibrium) else {
+    let (true, Some(scales), Some(state)) = (found.reason.converged(), found.scales, &found.equilibrium) else {
         return Ok(Err(found.reason));
     };
     let mut zone = found.zone.clone();
-    let mut levels = levels(membrane, &zone, &grids[..=first])?;
+    let mut levels = levels(membrane, &zone, that_show(&grids[..=first], &zone))?;
     if let Some(level) = levels.last_mut() {
         level.take(state);
     }
@@ -128,9 +151,13 @@ pub fn solve(
             level.interpolate(coarse);
         }
         levels.push(level);
+        if zone.is_empty() {
+            steps.push(0);
+            continue;
+        }
         let finest = grid.cells() == membrane.grid.cells();
         let mut count = 0;
-        let mut wanted = STEPS;
+        let mut wanted = if finest || grid.degree() > 1 { STEPS } else { STEPS_BETWEEN };
         let (mut best, mut waited) = (f64::INFINITY, 0);
         residuals.clear();
         while count < wanted {

@@ -43,6 +43,16 @@ pub enum Formulation {
     Published(Published),
 }
 
+impl Formulation {
+    /// How it moves fronts.
+    pub fn transport(self) -> Transport {
+        match self {
+            Formulation::OneSided => Transport::Exact,
+            Formulation::Published(published) => published.transport,
+        }
+    }
+}
+
 /// The choices within the published formulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Published {

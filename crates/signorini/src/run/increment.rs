@@ -13,7 +13,7 @@ use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::error_estimate::ErrorEstimate;
 use signorini_membrane::ils::{self, Reason, Solution, Start};
 use signorini_membrane::problem::Membrane;
-use signorini_membrane::published::{Formulation, Transport};
+use signorini_membrane::published::Transport;
 use signorini_membrane::refinement::Refinement;
 use signorini_membrane::report::{Component, ContactReport, Report};
 use signorini_membrane::scales::Scales;
@@ -322,7 +322,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             warnings
                 .push(format!("no state was found on smaller cells at t = {}: the one on larger cells stands", at.1));
         }
-        let on_nodes = matches!(membrane.formulation, Formulation::Published(p) if p.transport != Transport::Exact);
+        let on_nodes = membrane.formulation.transport() != Transport::Exact;
         if let Some(step) = solution.settled_within {
             warnings.push(format!(
                 "the fronts settled to {step:.0e} of a cell at t = {}, {}",

@@ -191,8 +191,8 @@ fn a_tiny_zone_is_found() {
     let c = |v: f64| Jet::<2>::constant(v);
     let needle = move |[x, y]: [Jet<2>; 2]| {
         let r = (x - c(0.21)) * (x - c(0.21)) + (y + c(0.13)) * (y + c(0.13));
-        let e = (-r.value / 2e-4).exp();
-        c(-0.4) + c(0.25) * r.chain(e, -e / 2e-4, e / 4e-8)
+        let e = (-r.value / 1e-3).exp();
+        c(-0.4) + c(0.25) * r.chain(e, -e / 1e-3, e / 1e-6)
     };
     let mut membrane = disc(512, 1);
     membrane.obstacles.0[0].height = Arc::new(Formula(needle));

@@ -47,7 +47,9 @@ const CLOSED: f64 = 1e-12;
 /// Steps without progress after which fronts may rest on a jump of the discrete slope.
 const PATIENCE: usize = 3;
 /// Steps on the finest grid before fronts are given up that have to meet a tolerance.
-const MOST: usize = 12;
+const MOST: usize = 30;
+/// Steps without progress after which they are given up at once.
+const HOPELESS: usize = 8;
 
 /// Whether a membrane can be solved for so: on a grid with coarser ones, of even tension, without adhesion.
 pub fn is_able<const D: usize>(membrane: &Membrane<D>) -> bool {
@@ -193,7 +195,7 @@ pub fn solve(
                 settled_within = (residual > tolerance).then_some(last_step);
                 break;
             }
-            if finest && !settled && count >= wanted && wanted < MOST {
+            if finest && !settled && count >= wanted && wanted < MOST && waited < HOPELESS {
                 wanted += 1;
             }
             if last_step > FAR && wanted < STEPS + MORE {

@@ -100,7 +100,7 @@ fn main() {
                 "unknowns", "s", "µs each", "MB peak", "B each", "alone s"
             );
             let mut last: Option<(f64, f64)> = None;
-            for n in [128usize, 256, 512, 1024, 1408, 2816, 4096, 8192].map(|n| n / degree / 16 * 16) {
+            for n in [128usize, 256, 512, 1024, 1408, 2816, 4096, 8192, 16384].map(|n| n / degree / 16 * 16) {
                 if share * ((n * degree) as f64).powi(2) > most {
                     break;
                 }

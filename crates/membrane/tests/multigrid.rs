@@ -222,7 +222,8 @@ fn nested_iteration_finds_the_front() {
     let found = |n: usize, degree: usize| {
         let membrane = disc(n, degree);
         assert!(nested::is_able(&membrane));
-        let found = nested::solve(&membrane, f64::INFINITY, 32, (0, 0.0), &mut Silent).expect("solves").expect("a state");
+        let found =
+            nested::solve(&membrane, f64::INFINITY, 32, (0, 0.0), &mut Silent).expect("solves").expect("a state");
         assert!(found.steps.iter().skip(1).all(|s| *s <= 4), "{:?}", found.steps);
         ((area(&found.zone) / std::f64::consts::PI).sqrt() - exact).abs()
     };

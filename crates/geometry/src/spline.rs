@@ -53,7 +53,7 @@ impl PeriodicBasis {
     /// The knot interval that a parameter lies in, up to the count where it is the first again, and where within it.
     fn cell(&self, s: f64) -> (f64, f64) {
         // For even degrees the bumps are centred between the knots; a shift of half a cell keeps them at k / count.
-        let shift = if self.degree % 2 == 0 { 0.5 } else { 0.0 };
+        let shift = if self.degree.is_multiple_of(2) { 0.5 } else { 0.0 };
         let u = (s - s.floor()) * self.count as f64 + shift;
         (u.floor(), u - u.floor())
     }
@@ -109,7 +109,7 @@ impl PeriodicBasis {
         let felt = Self { degree: self.degree, count: few }.inverse();
         // The inverse is even; of an even number of knots the farthest one is met only once.
         let reach = (few - 1) / 2;
-        let last = if few % 2 == 0 && few == n { Some(few / 2) } else { None };
+        let last = if few.is_multiple_of(2) && few == n { Some(few / 2) } else { None };
         (0..n)
             .map(|i| {
                 let mut c = values[i].map(|v| felt[0] * v);

@@ -57,14 +57,14 @@ pub fn self_crossing(corners: &[Point<2>]) -> Option<(usize, usize)> {
     order.sort_unstable_by(|&i, &j| range(i, 0).0.total_cmp(&range(j, 0).0).then(i.cmp(&j)));
     order.iter().enumerate().find_map(|(at, &i)| {
         let (end, (low, high)) = (range(i, 0).1, range(i, 1));
-        let beside = order[at + 1..].iter().copied().take_while(|&j| range(j, 0).0 <= end);
+        let mut beside = order[at + 1..].iter().copied().take_while(|&j| range(j, 0).0 <= end);
         let crossed = |&j: &usize| {
             let neighbours = (i + 1) % n == j || (j + 1) % n == i;
             let (from, to) = range(j, 1);
             let ((a, b), (c, d)) = (edge(i), edge(j));
             !neighbours && from <= high && low <= to && segments_cross(a, b, c, d)
         };
-        { beside }.find(crossed).map(|j| (i.min(j), i.max(j)))
+        beside.find(crossed).map(|j| (i.min(j), i.max(j)))
     })
 }
 

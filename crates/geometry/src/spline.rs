@@ -66,7 +66,7 @@ impl PeriodicBasis {
 
     /// Index of the `i`-th function that does not vanish in a knot interval.
     pub fn bump_at(&self, cell: usize, i: usize) -> usize {
-        (cell as isize - (self.degree as isize) / 2 + i as isize).rem_euclid(self.count as isize) as usize
+        self.wrapped(cell as isize - (self.degree as isize) / 2 + i as isize)
     }
 
     /// The functions of a knot interval as polynomials in the distance from its middle: for each power, from the lowest,
@@ -94,7 +94,11 @@ impl PeriodicBasis {
 
     /// Index of the `i`-th function of [`Bumps`], brought into `0..count`.
     pub fn index(&self, bumps: &Bumps, i: usize) -> usize {
-        (bumps.first + i as isize).rem_euclid(self.count as isize) as usize
+        self.wrapped(bumps.first + i as isize)
+    }
+
+    fn wrapped(&self, index: isize) -> usize {
+        index.rem_euclid(self.count as isize) as usize
     }
 
     /// Coefficients of the spline that takes `values[k]` at `k / count`.

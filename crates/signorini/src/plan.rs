@@ -389,7 +389,7 @@ impl<'a> Planner<'a> {
         let start = plan.increments.first().map_or(0.0, |i| i.range[0]);
         if !plan.by_multigrid(&plan.at(start)) {
             let unknowns = plan.cells.function_count() as f64;
-            self.check_bytes(unknowns, memory_estimate(unknowns, plan.cells.degree(), D), film.mesh.span())?;
+            self.check_unknowns::<D>(unknowns, plan.cells.degree(), film.mesh.span())?;
         }
         Ok(plan)
     }

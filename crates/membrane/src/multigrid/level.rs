@@ -2,7 +2,7 @@
 
 use super::band::{Band, quadrature};
 use super::interior::Interior;
-use super::runs::{Run, common, dilated, of_row, parts, runs};
+use super::runs::{Run, common, dilated, find, of_row, parts, runs};
 use super::transfer::Interpolation;
 use crate::domain::CellStatus;
 use crate::equilibrium::{Equilibrium, number};
@@ -33,15 +33,27 @@ pub struct Level {
     /// Regular nodes, and vertices whose patches are relaxed.
     pub(super) runs: Vec<Run>,
     vertices: Vec<Run>,
-    /// What lies along the edge of the membrane away from all fronts, and all other cuts.
-    pub(super) held: Option<Arc<Band>>,
-    pub(super) moving: Band,
+    pub(super) bands: Bands,
     counts: (usize, usize),
     /// Displacement and right-hand side of all unknowns.
     pub u: Vec<f64>,
     pub b: Vec<f64>,
     /// Nodes in contact near the fronts, where the displacement is known.
     in_contact: Vec<u32>,
+}
+
+/// The bands along the cuts.
+pub(super) struct Bands {
+    /// What lies along the edge of the membrane away from all fronts.
+    held: Option<Arc<Band>>,
+    /// All other cuts.
+    moving: Band,
+}
+
+impl Bands {
+    pub fn iter(&self) -> impl Iterator<Item = &Band> {
+        self.held.iter().map(Arc::as_ref).chain([&self.moving])
+    }
 }
 
 impl Level {
@@ -61,7 +73,7 @@ impl Level {
     /// # Errors
     /// A band that cannot be factorised.
     pub fn moved(&mut self, membrane: &Membrane<2>, zone: &PlaneZone) -> Result<(), SolveError> {
-        let held = self.held.take().filter(|_| zone.counts() == self.counts);
+        let held = self.bands.held.take().filter(|_| zone.counts() == self.counts);
         let vectors = [std::mem::take(&mut self.u), std::mem::take(&mut self.b)];
         *self = Self::with(membrane, zone, false, held, vectors, self.interior.clone(), self.interpolation.clone())?;
         Ok(())
@@ -81,10 +93,7 @@ impl Level {
         let state = states(membrane, zone);
         let cut = runs(ny, nx, |i, j| state[j * nx + i] == State::Cut);
         let inner = dilated(&cut, STORED, [nx, ny]);
-        let is_inner = |cell: usize| {
-            let (i, row) = (cell % nx, of_row(&inner, cell / nx));
-            row.get(row.partition_point(|r| r.end <= i)).is_some_and(|r| r.begin <= i)
-        };
+        let is_inner = |cell: usize| find(&inner, cell / nx, cell % nx).is_some();
 
         // Regular nodes have free cells on all sides, and no stored row.
         let mut plain = Vec::new();
@@ -121,9 +130,7 @@ impl Level {
         let part = parts(&around);
         let mut moves = vec![whole; around.len()];
         for cell in zone.cells_near_fronts() {
-            let (i, j) = (cell % nx, cell / nx);
-            let at = around.partition_point(|r| (r.row, r.end) <= (j, i));
-            if around.get(at).is_some_and(|r| r.row == j && r.begin <= i) {
+            if let Some(at) = find(&around, cell / nx, cell % nx) {
                 moves[part[at]] = true;
             }
         }
@@ -155,37 +162,29 @@ impl Level {
             grid,
             runs: nodes,
             vertices,
-            held,
-            moving,
+            bands: Bands { held, moving },
             counts: zone.counts(),
             u,
             b,
             in_contact: Vec::new(),
         };
-        for band in level.held.iter().map(Arc::as_ref).chain([&level.moving]) {
-            band.load(&mut level.b);
-        }
-        for (unknown, node) in level.moving.irregular().filter(|i| i.0 >= level.grid.node_count()) {
+        level.bands.iter().for_each(|band| band.load(&mut level.b));
+        for (unknown, node) in level.bands.moving.irregular().filter(|i| i.0 >= level.grid.node_count()) {
             level.u[unknown] = level.u[node];
         }
         level.hold_contact(membrane, &dilated(&cut, HELD, [nx, ny]), &state);
         Ok(level)
     }
 
-    /// The bands along the cuts.
-    pub(super) fn bands(&self) -> impl Iterator<Item = &Band> {
-        self.held.iter().map(Arc::as_ref).chain([&self.moving])
-    }
-
     /// Number of unknowns that take part.
     pub fn unknowns(&self) -> usize {
-        let irregular: usize = self.bands().map(|band| band.irregular().len()).sum();
+        let irregular: usize = self.bands.iter().map(|band| band.irregular().len()).sum();
         irregular + self.runs.iter().map(|r| r.end - r.begin).sum::<usize>()
     }
 
     /// Unknowns that are solved for exactly in every sweep.
     pub fn band(&self) -> usize {
-        self.bands().map(Band::size).sum()
+        self.bands.iter().map(Band::size).sum()
     }
 
     /// Nodes in a row of the grid.
@@ -220,12 +219,7 @@ impl Level {
         let mut nodes = Vec::new();
         self.grid.cell_nodes(cell, &mut nodes);
         let w = self.width();
-        let regular = |node: usize| {
-            let (i, j) = (node % w, node / w);
-            let near = self.runs.partition_point(|r| (r.row, r.end) <= (j, i));
-            self.runs.get(near).is_some_and(|r| r.row == j && r.begin <= i && i < r.end)
-        };
-        if !nodes.iter().all(|&n| regular(n as usize)) {
+        if !nodes.iter().all(|&n| find(&self.runs, n as usize / w, n as usize % w).is_some()) {
             return None;
         }
         let mut t = Tabulation::default();
@@ -252,7 +246,7 @@ impl Level {
 
     /// The state along the cuts that fronts are near to, with the displacement as it is.
     pub(super) fn state(&mut self) -> &Equilibrium<2> {
-        self.moving.state(&self.u)
+        self.bands.moving.state(&self.u)
     }
 
     /// The state of the whole membrane on its grid, around the zone of this level.
@@ -261,7 +255,7 @@ impl Level {
         let unknowns = number(membrane, &quadrature);
         // Where regions share a node, each has an unknown of its own.
         let mut own: HashMap<(RegionId, u32), u32> = HashMap::new();
-        for band in self.bands() {
+        for band in self.bands.iter() {
             band.for_each_unknown(|region, node, unknown| {
                 own.insert((region, node), unknown);
             });
@@ -286,7 +280,7 @@ impl Level {
         for run in &self.runs {
             (run.begin..run.end).for_each(|i| visit(run.row * w + i, run.row * w + i));
         }
-        self.bands().flat_map(Band::irregular).for_each(|(unknown, node)| visit(unknown, node));
+        self.bands.iter().flat_map(Band::irregular).for_each(|(unknown, node)| visit(unknown, node));
     }
 
     /// Takes the displacement of a state on the same grid and around the same zone.
@@ -327,7 +321,7 @@ impl Level {
     pub fn residual(&self) -> Vec<f64> {
         let mut r = vec![0.0; self.u.len()];
         self.interior.residual(&self.runs, &self.u, &self.b, &mut r);
-        self.bands().for_each(|band| band.residual(&self.u, &self.b, &mut r));
+        self.bands.iter().for_each(|band| band.residual(&self.u, &self.b, &mut r));
         r
     }
 
@@ -339,8 +333,7 @@ impl Level {
 
     /// Solves for the bands exactly, the other nodes held.
     pub(super) fn relax_bands(&mut self) -> Result<(), SolveError> {
-        let Self { held, moving, interior, u, b, .. } = self;
-        held.iter().map(Arc::as_ref).chain([&*moving]).try_for_each(|band| band.relax(interior, u, b))
+        self.bands.iter().try_for_each(|band| band.relax(&self.interior, &mut self.u, &self.b))
     }
 }
 

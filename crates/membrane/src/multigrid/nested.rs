@@ -114,8 +114,8 @@ fn solution_from(
 }
 
 /// Solves a membrane for which [`is_able`] holds, from the first grid of more than so many nodes along a side. On the finest
-/// grid the fronts step until their residual is below
-/// `tolerance` of what other solvers reach, at least twice: with an infinite one their error is that of the discretisation.
+/// grid the fronts step until their residual is below `tolerance` of what other solvers reach, at least twice: with an
+/// infinite one their error is that of the discretisation.
 ///
 /// # Errors
 /// Equations that cannot be solved. The reason, where the fronts were not found on the coarsest grid.

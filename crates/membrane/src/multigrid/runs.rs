@@ -69,6 +69,12 @@ pub(super) fn of_row(set: &[Run], row: usize) -> &[Run] {
     &from[..from.partition_point(|r| r.row == row)]
 }
 
+/// Which run of a set in ascending order a member of a row belongs to.
+pub(super) fn find(set: &[Run], row: usize, column: usize) -> Option<usize> {
+    let at = set.partition_point(|r| (r.row, r.end) <= (row, column));
+    set.get(at).is_some_and(|r| r.row == row && r.begin <= column).then_some(at)
+}
+
 /// For each run the number of the part of the set that it belongs to: parts meet nowhere, not even at corners.
 pub(super) fn parts(set: &[Run]) -> Vec<usize> {
     let mut root: Vec<usize> = (0..set.len()).collect();
@@ -105,9 +111,8 @@ mod tests {
     fn parts_that_touch_at_a_corner_are_one() {
         let s = set(&["xx..x..", "..x.x.x", "..x.xx.", "......x"], b'x');
         let part = parts(&s);
-        let of = |row: usize, column: usize| {
-            s.iter().position(|r| r.row == row && r.begin <= column && column < r.end).map(|k| part[k])
-        };
+        let of = |row: usize, column: usize| find(&s, row, column).map(|k| part[k]);
+        assert_eq!([of(0, 2), of(1, 3), of(3, 0)], [None; 3]);
         assert_eq!(of(0, 0), of(2, 2));
         assert_eq!(of(0, 4), of(3, 6));
         assert_eq!(of(0, 4), of(1, 6));

@@ -3,7 +3,6 @@
 use super::band::Band;
 use super::level::Level;
 use signorini_fem::Grid;
-use std::sync::Arc;
 
 /// The functions of the coarser grid along one direction at the nodes of the finer one.
 pub(super) struct Interpolation {
@@ -113,7 +112,7 @@ impl Level {
             }
         }
         let nodes = self.grid.node_count();
-        for (unknown, node) in self.held.iter().map(Arc::as_ref).chain([&self.moving]).flat_map(Band::irregular) {
+        for (unknown, node) in self.bands.iter().flat_map(Band::irregular) {
             // Unknowns behind the nodes belong to the band alone.
             if unknown < nodes {
                 let (i, j) = (node % w, node / w);
@@ -138,7 +137,7 @@ impl Level {
             }
         }
         let nodes = coarse.grid.node_count();
-        for (unknown, node) in coarse.held.iter().map(Arc::as_ref).chain([&coarse.moving]).flat_map(Band::irregular) {
+        for (unknown, node) in coarse.bands.iter().flat_map(Band::irregular) {
             if unknown < nodes {
                 let (i, j) = (node % wc, node / wc);
                 let along = |jf: usize| table.at_coarse(i, w).map(|(i, x)| x * r[jf * w + i]).sum::<f64>();

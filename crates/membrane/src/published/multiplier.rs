@@ -10,7 +10,7 @@ use crate::equilibrium::{Unknowns, number_where};
 use crate::problem::Membrane;
 use crate::quadrature::{FrontPoint, Quadrature};
 use crate::zone::{Zone, contact, contact_of, is_free};
-use signorini_fem::cut::RegionId;
+use signorini_fem::cut::{QuadraturePoint, RegionId};
 use signorini_fem::lagrange::Tabulation;
 use signorini_geometry::Point;
 use signorini_solve::{SolveError, Symbolic, SymmetricMatrix, dense};
@@ -179,17 +179,8 @@ pub fn inf_sup<const D: usize, Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z) -> 
     let mut support = vec![0.0f64; n];
     let mut t = Tabulation::default();
     unknowns.for_each_rule(membrane, &quadrature, |cell, _, dofs, points| {
-        let k = dofs.len();
-        let mut local = vec![0.0; k * k];
-        for p in points {
-            membrane.cells.tabulate(cell, &p.x, &mut t);
-            for a in 0..k {
-                for b in 0..k {
-                    local[a * k + b] += p.weight * (t.gradient[a].dot(&t.gradient[b]) + t.value[a] * t.value[b]);
-                }
-            }
-        }
-        dofs.iter().enumerate().for_each(|(a, &i)| support[i as usize] += local[a * k + a]);
+        let local = inner_product(membrane, cell, dofs.len(), points, 1.0);
+        dofs.iter().enumerate().for_each(|(a, &i)| support[i as usize] += local[a * (dofs.len() + 1)]);
         locals.push((dofs.to_vec(), local));
     });
     // Functions with nothing of their support on their side do not count; the others are measured by their own size, so
@@ -257,4 +248,25 @@ pub(super) fn coupling<const D: usize>(
         }
     }
     rows.into_iter().map(|row| row.into_iter().collect()).collect()
+}
+
+/// `∫ l² ∇p·∇q + p q` of so many functions of a cell over some of its volume points, by the square of the length.
+pub(super) fn inner_product<const D: usize>(
+    membrane: &Membrane<D>,
+    cell: usize,
+    count: usize,
+    points: &[QuadraturePoint<D>],
+    gradient_weight: f64,
+) -> Vec<f64> {
+    let (mut t, mut local) = (Tabulation::default(), vec![0.0; count * count]);
+    for p in points {
+        membrane.cells.tabulate(cell, &p.x, &mut t);
+        for a in 0..count {
+            for b in 0..count {
+                local[a * count + b] +=
+                    p.weight * (gradient_weight * t.gradient[a].dot(&t.gradient[b]) + t.value[a] * t.value[b]);
+            }
+        }
+    }
+    local
 }

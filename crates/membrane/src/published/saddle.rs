@@ -1,7 +1,7 @@
 //! Equilibrium on both sides of the front.
 
 use super::ZoneMultiplier;
-use super::multiplier::{FrontMultipliers, coupling};
+use super::multiplier::{FrontMultipliers, coupling, inner_product};
 use crate::equilibrium::{Elements, Equilibrium, Unknowns, ghost_pairs, ghost_weight, number_where};
 use crate::problem::Membrane;
 use crate::quadrature::{FrontPoint, Quadrature};
@@ -236,20 +236,8 @@ fn gram<const D: usize>(
     cliques.extend(pairs.iter().map(|pair| pair.dofs.clone()));
     let mut matrix = SymmetricMatrix::from_cliques(within.count, &cliques);
     let gradient_weight = multiplier.gradient_weight();
-    let mut t = Tabulation::default();
     within.for_each_rule(membrane, quadrature, |cell, _, dofs, points| {
-        let n = dofs.len();
-        let mut local = vec![0.0; n * n];
-        for p in points {
-            membrane.cells.tabulate(cell, &p.x, &mut t);
-            for a in 0..n {
-                for b in 0..n {
-                    local[a * n + b] +=
-                        p.weight * (gradient_weight * t.gradient[a].dot(&t.gradient[b]) + t.value[a] * t.value[b]);
-                }
-            }
-        }
-        matrix.add(dofs, &local, 1.0);
+        matrix.add(dofs, &inner_product(membrane, cell, dofs.len(), points, gradient_weight), 1.0);
     });
     let weight = ghost_weight(membrane.cells.degree());
     let h = membrane.grid.h();

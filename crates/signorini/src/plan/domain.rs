@@ -180,14 +180,20 @@ impl Planner<'_> {
         self.check_bytes(nodes, bytes, span)
     }
 
-    fn check_unknowns<const D: usize>(&self, nodes: f64, degree: usize, span: Range<usize>) -> Result<(), CaseError> {
+    /// Tells where a factorisation needs more memory than there is.
+    pub(super) fn check_unknowns<const D: usize>(
+        &self,
+        nodes: f64,
+        degree: usize,
+        span: Range<usize>,
+    ) -> Result<(), CaseError> {
         self.check_bytes(nodes, memory_estimate(nodes, degree, D), span)
     }
 
     /// Tells where a solve of so many unknowns needs more bytes than there are.
-    pub(super) fn check_bytes(&self, nodes: f64, bytes: f64, span: Range<usize>) -> Result<(), CaseError> {
+    fn check_bytes(&self, nodes: f64, bytes: f64, span: Range<usize>) -> Result<(), CaseError> {
         let free = free_memory();
-        if nodes < 2e9 && bytes < memory_at_hand() {
+        if nodes < 2e9 && bytes < MEMORY_SHARE * free {
             return Ok(());
         }
         let gib = |b: f64| b / f64::from(1 << 30);

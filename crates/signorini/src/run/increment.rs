@@ -269,12 +269,14 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         let large = plan.by_multigrid(membrane) && !nearby;
         let found = if large { Z::by_multigrid(membrane, at, progress).ok().flatten() } else { None };
         // Where multigrid does not lead to a state a factorisation does, if it has the memory.
-        let mut solution: Solution<D, Z> = match (found, plan.lacks_memory()) {
-            (Some(solution), _) => solution,
-            (None, Some(message)) if large && !progress.interrupted() => {
-                Solution { reason: Reason::LinearSolver(message), ..Solution::begin(Z::empty(&membrane.grid)) }
-            }
-            (None, _) => self.refinement.solve(membrane, &mut self.levels, start, at, progress),
+        let mut solution: Solution<D, Z> = match found {
+            Some(solution) => solution,
+            None => match if large && !progress.interrupted() { plan.lacks_memory() } else { None } {
+                Some(message) => {
+                    Solution { reason: Reason::LinearSolver(message), ..Solution::begin(Z::empty(&membrane.grid)) }
+                }
+                None => self.refinement.solve(membrane, &mut self.levels, start, at, progress),
+            },
         };
         self.scales = solution.scales.or(self.scales);
         let report = Report::new(&solution);

@@ -12,6 +12,7 @@ use super::reference::{CellShape, Local};
 pub struct CellMap {
     shape: CellShape,
     order: usize,
+    len: usize,
     line: TensorBasis<1>,
 }
 
@@ -21,7 +22,14 @@ impl CellMap {
     pub fn new(shape: CellShape, order: usize) -> Self {
         let most = if shape.is_tensor() { MAX_DEGREE } else { 2 };
         assert!((1..=most).contains(&order), "order {order} on a {}", shape.name());
-        CellMap { shape, order, line: TensorBasis::new(order) }
+        let n = order + 1;
+        let len = match shape {
+            CellShape::Wedge => n * triangle_nodes(order),
+            CellShape::Triangle => triangle_nodes(order),
+            CellShape::Tetrahedron => [4, 10][order - 1],
+            tensor => n.pow(tensor.dimension() as u32),
+        };
+        CellMap { shape, order, len, line: TensorBasis::new(order) }
     }
 
     pub fn shape(&self) -> CellShape {
@@ -34,13 +42,7 @@ impl CellMap {
 
     /// Number of nodes.
     pub fn len(&self) -> usize {
-        let n = self.order + 1;
-        match self.shape {
-            CellShape::Wedge => n * triangle_nodes(self.order),
-            CellShape::Triangle => triangle_nodes(self.order),
-            CellShape::Tetrahedron => [4, 10][self.order - 1],
-            tensor => n.pow(tensor.dimension() as u32),
-        }
+        self.len
     }
 
     pub fn is_empty(&self) -> bool {
@@ -94,6 +96,9 @@ impl CellMap {
     /// Values and gradients of all functions at a point of the reference cell, or near it.
     pub fn tabulate(&self, x: &Local, out: &mut Values) {
         out.clear();
+        if matches!(self.shape, CellShape::Triangle | CellShape::Tetrahedron) {
+            return self.simplex(self.shape, x, out);
+        }
         let n = self.order + 1;
         // Values and slopes along each direction.
         let lines = [0, 1, 2].map(|k| {
@@ -104,7 +109,6 @@ impl CellMap {
             if used { self.line.line(0.5 * (1.0 + x[k])) } else { [[0.0; MAX_DEGREE + 1]; 2] }
         });
         match self.shape {
-            CellShape::Triangle | CellShape::Tetrahedron => self.simplex(self.shape, x, out),
             CellShape::Wedge => {
                 let mut triangle = Values::default();
                 self.simplex(CellShape::Triangle, x, &mut triangle);

@@ -3,6 +3,7 @@
 use crate::cut::{CellPartition, CellRule, QuadraturePoint, cut_cell};
 use crate::grid::Grid;
 use crate::lagrange::{MAX_DEGREE, Tabulation};
+use crate::mesh_cells::MeshCells;
 use signorini_geometry::rule::gauss_legendre;
 use signorini_geometry::{Aabb, Point, Vector};
 use std::sync::Arc;
@@ -69,17 +70,16 @@ pub trait Cells<const D: usize>: Send + Sync {
     fn tabulate(&self, cell: usize, x: &Point<D>, out: &mut Tabulation<D>);
     /// What the functions of a cell are beyond it, and whether they are the same within.
     fn extension<'a>(&'a self, cell: usize) -> Extension<'a, D> {
-        let mut t = Tabulation::default();
-        let values = move |x: &Point<D>, out: &mut Vec<f64>| {
-            self.tabulate(cell, x, &mut t);
-            out.clone_from(&t.value);
-        };
-        Extension { values: Box::new(values), is_own: true }
+        own_extension(self, cell)
     }
     /// The node of a function of degree 1.
     fn node(&self, function: usize) -> Point<D>;
     /// The same cells, each divided into `finer` ones in each direction where that is easy, with functions of degree 1.
     fn linear(&self, finer: usize) -> Arc<dyn Cells<D>>;
+    /// The mesh, where the cells are those of one.
+    fn mesh(self: Arc<Self>) -> Option<Arc<MeshCells>> {
+        None
+    }
     /// The grid whose cells can be divided where it matters.
     fn divisible(&self) -> Option<&Grid<D>> {
         None
@@ -90,6 +90,14 @@ pub trait Cells<const D: usize>: Send + Sync {
     fn coarser(&self) -> Option<Arc<dyn Cells<D>>>;
     /// Quadrature of a cell that is not cut.
     fn rule(&self, cell: usize) -> Vec<QuadraturePoint<D>>;
+    /// Calls `visit` with every point of that quadrature and the functions there.
+    fn for_each_point(&self, cell: usize, visit: &mut dyn FnMut(&QuadraturePoint<D>, &Tabulation<D>)) {
+        let mut t = Tabulation::default();
+        for p in self.rule(cell) {
+            self.tabulate(cell, &p.x, &mut t);
+            visit(&p, &t);
+        }
+    }
     /// Quadrature of a cell that is divided.
     fn cut(&self, cell: usize, partition: &CellPartition<'_, D>, order: usize) -> CellRule<D>;
     /// Cells of one kind differ in their place only.
@@ -110,6 +118,24 @@ pub trait Cells<const D: usize>: Send + Sync {
     fn on_side(&self, side: &BoundarySide, t: f64) -> SidePoint<D>;
     /// A cell divided for display into `n` parts along each side.
     fn divided(&self, cell: usize, n: usize) -> Divided<D>;
+}
+
+/// Cells that know what is beside each of them: of these a part can be taken.
+pub trait CellByCell<const D: usize>: Cells<D> {
+    /// Appends the pairs that a cell forms with neighbours of greater number.
+    fn neighbours_of(&self, cell: usize, out: &mut Vec<Neighbours>);
+    /// Appends the sides of a cell that lie on the boundary of a domain that the cells fit.
+    fn sides_of(&self, cell: usize, out: &mut Vec<BoundarySide>);
+}
+
+/// The functions of a cell where they go on beyond it by themselves.
+pub(crate) fn own_extension<'a, const D: usize, C: Cells<D> + ?Sized>(cells: &'a C, cell: usize) -> Extension<'a, D> {
+    let mut t = Tabulation::default();
+    let values = move |x: &Point<D>, out: &mut Vec<f64>| {
+        cells.tabulate(cell, x, &mut t);
+        out.clone_from(&t.value);
+    };
+    Extension { values: Box::new(values), is_own: true }
 }
 
 /// The functions of a cell, carried on beyond it.
@@ -187,29 +213,36 @@ impl<const D: usize> Cells<D> for Grid<D> {
         vec![0]
     }
     fn neighbours(&self) -> Vec<Neighbours> {
-        let size = self.cell_size();
-        let across = |cell: usize, k: usize| {
-            let upper = self.upper_neighbour(cell, k)?;
-            Some(Neighbours { cells: [cell, upper], width: size[k], kind: Some(k) })
-        };
-        (0..self.cell_count()).flat_map(|cell| (0..D).filter_map(move |k| across(cell, k))).collect()
+        let mut out = Vec::with_capacity(D * self.cell_count());
+        (0..self.cell_count()).for_each(|cell| self.neighbours_of(cell, &mut out));
+        out
     }
     fn boundary_sides(&self) -> Vec<BoundarySide> {
-        let cells = self.cells();
-        (0..self.cell_count())
-            .flat_map(|cell| {
-                let index = self.cell_index(cell);
-                (0..2 * D)
-                    .filter(move |side| index[side / 2] == if side % 2 == 1 { cells[side / 2] - 1 } else { 0 })
-                    .map(move |side| BoundarySide { cell, side, piece: side })
-            })
-            .collect()
+        let mut out = Vec::new();
+        (0..self.cell_count()).for_each(|cell| self.sides_of(cell, &mut out));
+        out
     }
     fn on_side(&self, side: &BoundarySide, t: f64) -> SidePoint<D> {
         on_box_side(&self.cell_box(side.cell), side.side, t)
     }
     fn divided(&self, cell: usize, n: usize) -> Divided<D> {
         divided_box(&self.cell_box(cell), n)
+    }
+}
+
+impl<const D: usize> CellByCell<D> for Grid<D> {
+    fn neighbours_of(&self, cell: usize, out: &mut Vec<Neighbours>) {
+        let size = self.cell_size();
+        let across = |k: usize| {
+            let upper = self.upper_neighbour(cell, k)?;
+            Some(Neighbours { cells: [cell, upper], width: size[k], kind: Some(k) })
+        };
+        out.extend((0..D).filter_map(across));
+    }
+    fn sides_of(&self, cell: usize, out: &mut Vec<BoundarySide>) {
+        let (index, cells) = (self.cell_index(cell), self.cells());
+        let outer = |side: &usize| index[side / 2] == if side % 2 == 1 { cells[side / 2] - 1 } else { 0 };
+        out.extend((0..2 * D).filter(outer).map(|side| BoundarySide { cell, side, piece: side }));
     }
 }
 

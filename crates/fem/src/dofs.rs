@@ -8,17 +8,21 @@ use super::mesh::{Mesh, Side};
 use super::reference::CellShape;
 use std::collections::HashMap;
 
+/// A node without a function.
+const NONE: u32 = u32::MAX;
+
 /// The functions of all cells.
 #[derive(Clone, Debug)]
 pub struct DofMap {
     bases: Vec<HierarchicBasis>,
     basis_of: Vec<u32>,
     start: Vec<u32>,
-    /// Number and sign of every function of every cell.
-    functions: Vec<(u32, f64)>,
+    /// Number of every function of every cell, and its sign, where there are others than +1.
+    functions: Vec<u32>,
+    signs: Vec<i8>,
     count: usize,
     /// Function of each vertex, by node.
-    vertices: HashMap<u32, u32>,
+    vertices: Vec<u32>,
 }
 
 impl DofMap {
@@ -27,17 +31,21 @@ impl DofMap {
     /// # Panics
     /// If the degree is above 2 on a mesh with cells other than quadrilaterals and hexahedra.
     pub fn new<const D: usize>(mesh: &Mesh<D>, degree: usize) -> Self {
+        let mut start = Vec::with_capacity(mesh.cell_count() + 1);
+        start.push(0);
         let mut map = DofMap {
             bases: Vec::new(),
-            basis_of: Vec::new(),
-            start: vec![0],
-            functions: Vec::new(),
+            basis_of: Vec::with_capacity(mesh.cell_count()),
+            start,
+            signs: Vec::new(),
+            functions: Vec::with_capacity(mesh.cell_count() * (degree + 1) * (degree + 2) / 2),
             count: 0,
-            vertices: HashMap::new(),
+            vertices: vec![NONE; mesh.nodes().len()],
         };
         let mut edges: HashMap<[u32; 2], u32> = HashMap::new();
         let mut sides: HashMap<[u32; 3], u32> = HashMap::new();
         let per_edge = degree - 1;
+        let mut vertices = Vec::new();
         for cell in 0..mesh.cell_count() {
             let shape = mesh.shape(cell);
             let found = map.bases.iter().position(|b| b.shape() == shape);
@@ -46,15 +54,22 @@ impl DofMap {
                 map.bases.len() - 1
             });
             map.basis_of.push(basis as u32);
-            let vertices: Vec<u32> = mesh.vertices(cell).collect();
+            vertices.clear();
+            vertices.extend(mesh.vertices(cell));
             let mut next = map.count as u32;
             let mut take = |n: usize| {
                 next += n as u32;
                 next - n as u32
             };
             for mode in map.bases[basis].modes() {
-                map.functions.push(match *mode {
-                    Mode::Vertex(v) => (*map.vertices.entry(vertices[v as usize]).or_insert_with(|| take(1)), 1.0),
+                let (function, sign) = match *mode {
+                    Mode::Vertex(v) => {
+                        let function = &mut map.vertices[vertices[v as usize] as usize];
+                        if *function == NONE {
+                            *function = take(1);
+                        }
+                        (*function, 1)
+                    }
                     Mode::Edge(e, k) => {
                         let [a, b] = shape.edges()[e as usize].map(|v| vertices[v]);
                         let first = *edges.entry([a.min(b), a.max(b)]).or_insert_with(|| take(per_edge));
@@ -71,8 +86,12 @@ impl DofMap {
                         let offset = (usize::from(m) - 2) * per_edge + usize::from(n) - 2;
                         (first + offset as u32, sign(reversed[0], i) * sign(reversed[1], j))
                     }
-                    Mode::Interior => (take(1), 1.0),
-                });
+                    Mode::Interior => (take(1), 1),
+                };
+                map.functions.push(function);
+                if degree > 1 {
+                    map.signs.push(sign);
+                }
             }
             map.count = next as usize;
             map.start.push(map.functions.len() as u32);
@@ -94,14 +113,25 @@ impl DofMap {
         self.basis_of[cell] as usize
     }
 
-    /// Number and sign of each function of a cell.
-    pub fn cell(&self, cell: usize) -> &[(u32, f64)] {
+    /// Numbers of the functions of a cell.
+    pub fn functions(&self, cell: usize) -> &[u32] {
         &self.functions[self.start[cell] as usize..self.start[cell + 1] as usize]
+    }
+
+    /// Number and sign of a function of a cell, by its place in the list of the cell.
+    pub fn function(&self, cell: usize, place: usize) -> (u32, f64) {
+        let at = self.start[cell] as usize + place;
+        (self.functions[at], self.signs.get(at).map_or(1.0, |sign| f64::from(*sign)))
+    }
+
+    /// Number and sign of each function of a cell.
+    pub fn cell(&self, cell: usize) -> impl ExactSizeIterator<Item = (u32, f64)> + '_ {
+        (0..self.functions(cell).len()).map(move |place| self.function(cell, place))
     }
 
     /// The function of a vertex.
     pub fn vertex(&self, node: u32) -> Option<u32> {
-        self.vertices.get(&node).copied()
+        self.vertices.get(node as usize).copied().filter(|function| *function != NONE)
     }
 
     /// Places, in the list of the cell, of the functions that do not vanish on a side.
@@ -119,8 +149,8 @@ impl DofMap {
     }
 }
 
-fn sign(reversed: bool, degree: u8) -> f64 {
-    if reversed && degree % 2 == 1 { -1.0 } else { 1.0 }
+fn sign(reversed: bool, degree: u8) -> i8 {
+    if reversed && degree % 2 == 1 { -1 } else { 1 }
 }
 
 /// Whether the axes of a side change places in its global orientation, and which of its local axes are reversed.
@@ -211,8 +241,8 @@ mod tests {
                     let mut values = Values::default();
                     dofs.basis(cell).tabulate(&local, &mut values);
                     let mut out = vec![0.0; dofs.count()];
-                    for ((f, s), v) in dofs.cell(cell).iter().zip(&values.value) {
-                        out[*f as usize] += s * v;
+                    for ((f, s), v) in dofs.cell(cell).zip(&values.value) {
+                        out[f as usize] += s * v;
                     }
                     out
                 };

@@ -4,6 +4,8 @@
 //! - [`hierarchic`]: integrated Legendre functions, the unknowns of solids; [`dofs`] numbers them on a mesh.
 //! - [`cell_map`]: Lagrange functions that map reference cells to space; [`mesh`] and [`block`] are made of them.
 //! - [`gmsh`]: meshes from files.
+//! - [`adjacency`]: which cells of a mesh share sides.
+//! - [`mesh_refinement`]: meshes of the plane, each cell divided into four.
 //! - [`rules`]: quadrature on reference cells.
 //! - [`lagrange`]: tensor-product Lagrange bases of any degree on Gauss-Lobatto points.
 //! - [`grid`]: uniform background grids in one, two and three dimensions, with their nodes.
@@ -11,30 +13,32 @@
 //! - [`cut`]: quadrature on cells that are divided by implicit surfaces: volume, surface and normal.
 //! - [`ghost`]: the ghost penalty that keeps small cuts stable.
 
+pub mod adjacency;
 pub mod block;
 pub mod cell_map;
 pub mod cells;
+pub mod cells_part;
 pub mod cut;
 pub mod dofs;
 pub mod ghost;
 pub mod gmsh;
 pub mod grid;
-pub mod grid_part;
 pub mod hierarchic;
 pub mod lagrange;
 pub mod mesh;
 pub mod mesh_cells;
+pub mod mesh_refinement;
 pub mod reference;
 pub mod refined_grid;
 pub mod rules;
 pub mod small;
 
-pub use cells::Cells;
+pub use cells::{CellByCell, Cells};
+pub use cells_part::CellsPart;
 pub use cut::{CellRule, Partition, QuadraturePoint, SurfacePoint};
 pub use dofs::DofMap;
 pub use ghost::ghost_penalty;
 pub use grid::Grid;
-pub use grid_part::GridPart;
 pub use lagrange::TensorBasis;
 pub use mesh::{Group, Mesh, MeshError, Side};
 pub use mesh_cells::MeshCells;

@@ -86,6 +86,18 @@ impl<const D: usize> Mesh<D> {
         (self.cells.len() - 1) as u32
     }
 
+    /// Makes room for so many triangles of order 1.
+    pub(crate) fn reserve(&mut self, cells: usize) {
+        self.cells.reserve(cells);
+        self.cell_nodes.reserve(3 * cells);
+    }
+
+    /// Adds a node.
+    pub fn add_node(&mut self, x: Point<D>) -> u32 {
+        self.nodes.push(x);
+        (self.nodes.len() - 1) as u32
+    }
+
     pub fn group_mut(&mut self, name: &str) -> &mut Group {
         self.groups.entry(name.to_string()).or_default()
     }
@@ -137,6 +149,11 @@ impl<const D: usize> Mesh<D> {
 
     pub fn side_shape(&self, side: Side) -> CellShape {
         CellShape::of_side(self.shape(side.cell as usize).sides()[side.side as usize].len())
+    }
+
+    /// Position from tabulated functions of the cell's map.
+    pub fn position(&self, cell: usize, at: &Values) -> Point<D> {
+        self.cell_nodes(cell).iter().zip(&at.value).map(|(&node, value)| self.nodes[node as usize] * *value).sum()
     }
 
     /// Position and Jacobian `∂x_i/∂ξ_j` from tabulated functions of the cell's map.

@@ -3,21 +3,26 @@
 //! A cell is cut in a unit square: a quadrilateral's own, and for a triangle the one that collapses onto it with one side
 //! at the vertex that is farthest from what cuts it.
 
+use crate::adjacency::Adjacency;
 use crate::cell_map::CellMap;
-use crate::cells::{BoundarySide, Cells, Divided, Extension, Neighbours, SidePoint, quadrilaterals, whole_order};
+use crate::cells::{
+    BoundarySide, CellByCell, Cells, Divided, Extension, Neighbours, SidePoint, own_extension, quadrilaterals,
+    whole_order,
+};
 use crate::cut::{CellPartition, CellRule, QuadraturePoint, cut_cell};
 use crate::dofs::DofMap;
 use crate::grid::Grid;
-use crate::hierarchic::{MAX_DEGREE, Values};
+use crate::hierarchic::{HierarchicBasis, MAX_DEGREE, Values};
 use crate::lagrange::Tabulation;
 use crate::mesh::{Mesh, Side};
+use crate::mesh_refinement::{PARTS, parts};
 use crate::reference::{CellShape, Local};
 use crate::rules::{Rule, rule};
 use crate::small;
 use nalgebra::{DMatrix, DVector};
 use signorini_geometry::{Aabb, ImplicitShape, Matrix, Point, Vector};
-use std::collections::{BTreeMap, BTreeSet, HashMap};
-use std::sync::Arc;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Arc, OnceLock};
 
 /// How far beyond its cell, in reference coordinates, a point still belongs to it.
 const ON_THE_EDGE: f64 = 1e-9;
@@ -29,23 +34,88 @@ pub struct MeshCells {
     /// The vertex of each function that belongs to one.
     nodes: Vec<Point<2>>,
     degree: usize,
-    boxes: Vec<Aabb<2>>,
-    sizes: Vec<f64>,
-    volumes: Vec<f64>,
-    /// Centre and inverse Jacobian there; and whether the map is linear.
-    linear: Vec<(Point<2>, Matrix<2>, bool)>,
-    /// Whether the Jacobian is nowhere much smaller than on average.
-    regular: Vec<bool>,
+    /// For each cell whose map is not linear, its place in `bent`.
+    bent_at: Vec<u32>,
+    bent: Vec<Bent>,
     /// Rule of each map, tabulated.
-    rules: Vec<Vec<(f64, Values)>>,
+    rules: Vec<Vec<RulePoint>>,
     buckets: Grid<2>,
-    /// For each bucket, the cells and the boundary sides that reach into it.
-    cells_in: Vec<Vec<u32>>,
-    sides_in: Vec<Vec<u32>>,
-    neighbours: Vec<Neighbours>,
-    sides: Vec<(BoundarySide, Side)>,
+    /// For each bucket, the cells and the boundary sides that reach into it, once these are asked for.
+    cells_in: OnceLock<Lists>,
+    sides_in: OnceLock<Lists>,
+    adjacency: Adjacency,
+    /// Sides on the boundary, cell by cell, and points along each.
+    sides: Vec<BoundarySide>,
+    drawn: Vec<[Point<2>; DRAWN + 1]>,
     groups: Vec<(String, Vec<usize>)>,
     pieces: usize,
+    parent: Option<Parent>,
+}
+
+/// The cells of which each was divided into four.
+pub struct Parent {
+    pub cells: Arc<MeshCells>,
+    /// For each vertex function those of the parent at four vertices: its vertex is the mean of these, in the reference
+    /// cell, and a function of degree 1 is there the mean of its values.
+    pub nodes: Vec<[u32; 4]>,
+}
+
+/// The functions of three or four vertices.
+pub struct CornerFunctions {
+    list: [u32; 4],
+    count: usize,
+}
+
+impl std::ops::Deref for CornerFunctions {
+    type Target = [u32];
+    fn deref(&self) -> &[u32] {
+        &self.list[..self.count]
+    }
+}
+
+/// What is to know about a cell whose map is not linear.
+struct Bent {
+    bounds: Aabb<2>,
+    size: f64,
+    volume: f64,
+    /// Centre and inverse Jacobian there.
+    centre: Point<2>,
+    inverse: Matrix<2>,
+    /// Whether the Jacobian is nowhere much smaller than on average.
+    regular: bool,
+}
+
+const STRAIGHT: u32 = u32::MAX;
+
+/// Parts that a side of the boundary is drawn in.
+const DRAWN: usize = 4;
+
+/// Lists of numbers, one behind the other.
+struct Lists {
+    start: Vec<u32>,
+    all: Vec<u32>,
+}
+
+impl Lists {
+    /// So many lists, of pairs of list and number that are visited twice, in the same order.
+    fn new(count: usize, pairs: impl Fn(&mut dyn FnMut(usize, u32))) -> Self {
+        let mut start = vec![0u32; count + 1];
+        pairs(&mut |list, _| start[list + 1] += 1);
+        for k in 1..start.len() {
+            start[k] += start[k - 1];
+        }
+        let mut next = start.clone();
+        let mut all = vec![0; start[count] as usize];
+        pairs(&mut |list, number| {
+            all[next[list] as usize] = number;
+            next[list] += 1;
+        });
+        Self { start, all }
+    }
+
+    fn of(&self, list: usize) -> &[u32] {
+        &self.all[self.start[list] as usize..self.start[list + 1] as usize]
+    }
 }
 
 impl MeshCells {
@@ -54,6 +124,11 @@ impl MeshCells {
     /// # Panics
     /// If the degree is above 2 on a mesh with triangles.
     pub fn new(mesh: Mesh<2>, degree: usize) -> Self {
+        let adjacency = Adjacency::new(&mesh);
+        Self::with(mesh, adjacency, degree)
+    }
+
+    fn with(mesh: Mesh<2>, adjacency: Adjacency, degree: usize) -> Self {
         let count = mesh.cell_count();
         let dofs = DofMap::new(&mesh, degree);
         let mut vertices = vec![Point::<2>::zeros(); dofs.count()];
@@ -63,19 +138,23 @@ impl MeshCells {
             }
         }
         let nodes = vertices;
-        let mut rules: BTreeMap<usize, Vec<(f64, Values)>> = BTreeMap::new();
-        let (mut boxes, mut sizes, mut volumes, mut linear, mut regular) = (vec![], vec![], vec![], vec![], vec![]);
+        let mut rules: BTreeMap<usize, Vec<RulePoint>> = BTreeMap::new();
+        let mut total = 0.0;
+        let (mut bent_at, mut bent) = (Vec::with_capacity(count), Vec::new());
         let mut at = Values::default();
+        let mut vertices: Vec<Point<2>> = Vec::new();
         for cell in 0..count {
             let map = mesh.map(cell);
+            vertices.clear();
+            vertices.extend(mesh.vertices(cell).map(|n| mesh.nodes()[n as usize]));
+            if map.shape() == CellShape::Triangle && map.order() == 1 {
+                total += 0.5 * small::determinant(&edges(&vertices));
+                bent_at.push(STRAIGHT);
+                continue;
+            }
             let table = rules.entry(mesh.map_number(cell)).or_insert_with(|| tabulated(map, degree));
             let volume: f64 =
-                table.iter().map(|(w, at)| w * small::determinant(&mesh.jacobian(cell, at).1).abs()).sum();
-            let corners: Vec<Point<2>> = mesh.cell_nodes(cell).iter().map(|&n| mesh.nodes()[n as usize]).collect();
-            let vertices: Vec<Point<2>> = mesh.vertices(cell).map(|n| mesh.nodes()[n as usize]).collect();
-            let longest = (0..vertices.len())
-                .map(|i| (vertices[i] - vertices[(i + 1) % vertices.len()]).norm())
-                .fold(0.0, f64::max);
+                table.iter().map(|p| p.weight * small::determinant(&mesh.jacobian(cell, &p.map).1).abs()).sum();
             // The height of a triangle; the width of a quadrilateral, less where a corner is nearly straight and slopes
             // are steep.
             let least = (map.nodes().iter())
@@ -84,58 +163,108 @@ impl MeshCells {
                     small::determinant(&mesh.jacobian(cell, &at).1)
                 })
                 .fold(f64::INFINITY, f64::min);
-            regular.push(least > 0.2 * volume / if vertices.len() == 3 { 0.5 } else { 4.0 });
-            sizes.push(least / longest * if vertices.len() == 3 { 1.0 } else { 4.0 });
-            volumes.push(volume);
-            let mut bounds =
-                corners.iter().fold(Aabb::new(corners[0], corners[0]), |b, p| Aabb::new(b.min.inf(p), b.max.sup(p)));
+            let size = least / longest(&vertices) * if vertices.len() == 3 { 1.0 } else { 4.0 };
+            total += volume;
+            map.tabulate(&map.shape().centre(), &mut at);
+            let (centre, jacobian) = mesh.jacobian(cell, &at);
+            if map.shape() == CellShape::Triangle
+                && table.iter().all(|p| (mesh.jacobian(cell, &p.map).1 - jacobian).norm() < 1e-13 * jacobian.norm())
+            {
+                bent_at.push(STRAIGHT);
+                continue;
+            }
+            let mut bounds = box_round(mesh.cell_nodes(cell).iter().map(|&n| mesh.nodes()[n as usize]));
             if map.order() > 1 {
                 // A curved side bulges beyond its nodes by no more than it bulges at them.
                 bounds = bounds.scaled(1.25);
             }
-            boxes.push(bounds);
-            map.tabulate(&map.shape().centre(), &mut at);
-            let (x, jacobian) = mesh.jacobian(cell, &at);
-            let straight = map.shape() == CellShape::Triangle
-                && table.iter().all(|(_, at)| (mesh.jacobian(cell, at).1 - jacobian).norm() < 1e-13 * jacobian.norm());
-            linear.push((x, small::inverse(&jacobian), straight));
+            let regular = least > 0.2 * volume / if vertices.len() == 3 { 0.5 } else { 4.0 };
+            bent_at.push(bent.len() as u32);
+            bent.push(Bent { bounds, size, volume, centre, inverse: small::inverse(&jacobian), regular });
         }
-        let bounds = boxes.iter().fold(boxes[0], |a, b| Aabb::new(a.min.inf(&b.min), a.max.sup(&b.max)));
-        // About one cell in each bucket.
-        let spacing = (volumes.iter().sum::<f64>() / count as f64).sqrt();
-        let number = |k: usize| ((bounds.size()[k] / spacing).ceil() as usize).clamp(1, 4096);
-        let buckets = Grid::new(bounds, [number(0), number(1)], 1);
-        let mut cells_in = vec![Vec::new(); buckets.cell_count()];
-        for (cell, b) in boxes.iter().enumerate() {
-            for_each_bucket(&buckets, b, |bucket| cells_in[bucket].push(cell as u32));
+        for cell in 0..count {
+            rules.entry(mesh.map_number(cell)).or_insert_with(|| tabulated(mesh.map(cell), degree));
         }
-        let (groups, sides, pieces) = boundary(&mesh);
-        let mut sides_in = vec![Vec::new(); buckets.cell_count()];
-        for (k, (side, _)) in sides.iter().enumerate() {
-            for_each_bucket(&buckets, &boxes[side.cell], |bucket| sides_in[bucket].push(k as u32));
-        }
-        let neighbours = neighbours(&mesh, &volumes);
         let maps = rules.keys().max().map_or(0, |m| m + 1);
         let rules = (0..maps).map(|m| rules.remove(&m).unwrap_or_default()).collect();
+        let box_of = |cell: usize| bounds_of(&mesh, &bent_at, &bent, cell);
+        let bounds = (1..count).map(box_of).fold(box_of(0), |a, b| Aabb::new(a.min.inf(&b.min), a.max.sup(&b.max)));
+        // About one cell in each bucket.
+        let spacing = (total / count as f64).sqrt();
+        let number = |k: usize| ((bounds.size()[k] / spacing).ceil() as usize).clamp(1, 4096);
+        let buckets = Grid::new(bounds, [number(0), number(1)], 1);
+        let (groups, sides, pieces) = boundary(&mesh, &adjacency);
+        let drawn = |side: &BoundarySide| {
+            let of = Side { cell: side.cell as u32, side: side.side as u8 };
+            std::array::from_fn(|i| mesh.on_side(of, &[2.0 * i as f64 / DRAWN as f64 - 1.0, 0.0, 0.0]).0)
+        };
+        let drawn = sides.iter().map(drawn).collect();
         Self {
             mesh,
             dofs,
             nodes,
             degree,
-            boxes,
-            sizes,
-            volumes,
-            linear,
-            regular,
+            bent_at,
+            bent,
             rules,
             buckets,
-            cells_in,
-            sides_in,
-            neighbours,
+            cells_in: OnceLock::new(),
+            sides_in: OnceLock::new(),
+            adjacency,
             sides,
+            drawn,
             groups,
             pieces,
+            parent: None,
         }
+    }
+
+    /// The same functions on the mesh with every cell divided into four.
+    pub fn refined(self: &Arc<Self>) -> Self {
+        let mesh = self.mesh.refined(&self.adjacency);
+        let mut fine = Self::with(mesh, self.adjacency.refined(&self.mesh), self.degree);
+        let mut nodes = vec![[0; 4]; fine.nodes.len()];
+        for cell in 0..fine.count() {
+            let coarse = cell / PARTS;
+            let corners = self.corner_functions(coarse);
+            let part = parts(self.mesh.shape(coarse))[cell % PARTS];
+            for (function, corner) in fine.corner_functions(cell).iter().zip(part) {
+                nodes[*function as usize] = corner.map(|v| corners[usize::from(v)]);
+            }
+        }
+        fine.parent = Some(Parent { cells: self.clone(), nodes });
+        fine
+    }
+
+    /// The cells of which each was divided into four of these.
+    pub fn parent(&self) -> Option<&Parent> {
+        self.parent.as_ref()
+    }
+
+    /// The functions of the vertices of a cell, in their order.
+    pub fn corner_functions(&self, cell: usize) -> CornerFunctions {
+        let mut list = [0; 4];
+        let mut count = 0;
+        for (at, node) in list.iter_mut().zip(self.mesh.vertices(cell)) {
+            *at = self.dofs.vertex(node).unwrap_or(0);
+            count += 1;
+        }
+        CornerFunctions { list, count }
+    }
+
+    /// The cell across a side of a cell.
+    pub fn across(&self, cell: usize, side: usize) -> Option<usize> {
+        self.adjacency.across(Side { cell: cell as u32, side: side as u8 })
+    }
+
+    /// Whether a cell is a triangle with straight sides.
+    pub fn is_straight(&self, cell: usize) -> bool {
+        self.bent(cell).is_none()
+    }
+
+    /// The cells across the sides of a cell.
+    pub fn beside(&self, cell: usize) -> impl Iterator<Item = usize> + '_ {
+        self.adjacency.of(cell)
     }
 
     /// The smallest box round all cells.
@@ -155,28 +284,34 @@ impl MeshCells {
 
     /// A uniform grid over the mesh, with cells of the median size.
     pub fn grid(&self) -> Grid<2> {
-        let mut sizes: Vec<f64> = (0..self.volumes.len())
-            .map(|c| (self.volumes[c] * if self.mesh.shape(c) == CellShape::Triangle { 2.0 } else { 1.0 }).sqrt())
+        let mut sizes: Vec<f64> = (0..self.count())
+            .map(|c| (self.volume(c) * if self.mesh.shape(c) == CellShape::Triangle { 2.0 } else { 1.0 }).sqrt())
             .collect();
-        sizes.sort_by(f64::total_cmp);
-        let h = sizes[sizes.len() / 2];
+        let middle = sizes.len() / 2;
+        let h = *sizes.select_nth_unstable_by(middle, f64::total_cmp).1;
         let number = |k: usize| ((self.bounds().size()[k] / h).round() as usize).clamp(1, 1 << 14);
         Grid::new(*self.bounds(), [number(0), number(1)], self.degree)
     }
 
     /// The point of the boundary that is closest to `x`, to a fraction of a cell, if there is one within `reach`.
     pub fn closest_on_boundary(&self, x: &Point<2>, reach: f64) -> Option<Point<2>> {
-        const PARTS: usize = 4;
+        let sides_in = self
+            .sides_in
+            .get_or_init(|| self.lists(|visit| self.sides.iter().zip(0..).for_each(|(side, k)| visit(side.cell, k))));
         let mut best: Option<(f64, Point<2>)> = None;
         let reach_vector = Point::<2>::repeat(reach);
         for_each_bucket(&self.buckets, &Aabb::new(x - reach_vector, x + reach_vector), |bucket| {
-            for &k in &self.sides_in[bucket] {
-                let side = &self.sides[k as usize].0;
-                for i in 0..PARTS {
-                    let [a, b] = [i, i + 1].map(|j| self.on_side(side, j as f64 / PARTS as f64).x);
-                    let along = b - a;
+            for &k in sides_in.of(bucket) {
+                let side = &self.sides[k as usize];
+                for (i, pair) in self.drawn[k as usize].windows(2).enumerate() {
+                    let (a, along) = (pair[0], pair[1] - pair[0]);
                     let t = ((x - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
-                    let y = self.on_side(side, (i as f64 + t) / PARTS as f64).x;
+                    // A curve is no farther from its chord than that is long.
+                    let nearest = (x - a - t * along).norm() - along.norm();
+                    if nearest > best.map_or(reach, |b| b.0) {
+                        continue;
+                    }
+                    let y = self.on_side(side, (i as f64 + t) / DRAWN as f64).x;
                     let distance = (x - y).norm();
                     if distance <= reach && best.is_none_or(|(d, _)| distance < d) {
                         best = Some((distance, y));
@@ -187,7 +322,48 @@ impl MeshCells {
         best.map(|(_, y)| y)
     }
 
+    /// Functions tabulated in the reference cell, with their slopes in space by the inverse Jacobian.
+    fn slopes(&self, cell: usize, values: &Values, inverse: &Matrix<2>, out: &mut Tabulation<2>) {
+        out.value.clear();
+        out.gradient.clear();
+        for ((value, g), (_, sign)) in values.value.iter().zip(&values.gradient).zip(self.dofs.cell(cell)) {
+            out.value.push(sign * value);
+            out.gradient.push(Vector::from_fn(|k, _| sign * (g[0] * inverse[(0, k)] + g[1] * inverse[(1, k)])));
+        }
+    }
+
+    /// For each bucket the numbers that `all` visits with cells which reach into it.
+    fn lists(&self, all: impl Fn(&mut dyn FnMut(usize, u32))) -> Lists {
+        Lists::new(self.buckets.cell_count(), |visit| {
+            all(&mut |cell, number| {
+                for_each_bucket(&self.buckets, &self.bounds_of(cell), |bucket| visit(bucket, number))
+            });
+        })
+    }
+
+    fn bent(&self, cell: usize) -> Option<&Bent> {
+        self.bent.get(self.bent_at[cell] as usize)
+    }
+
+    /// The vertices at the ends of a side.
+    fn ends(&self, cell: usize, side: usize) -> [Point<2>; 2] {
+        let ends = self.mesh.shape(cell).sides()[side];
+        [ends[0], ends[1]].map(|v| self.mesh.nodes()[self.mesh.vertices(cell).nth(v).unwrap_or(0) as usize])
+    }
+
+    /// The corners of a triangle.
+    fn corners(&self, cell: usize) -> [Point<2>; 3] {
+        let nodes = self.mesh.cell_nodes(cell);
+        [0, 1, 2].map(|k| self.mesh.nodes()[nodes[k] as usize])
+    }
+
+    /// Position and derivatives of the map of a cell at reference coordinates.
     fn at(&self, cell: usize, xi: &Local) -> (Point<2>, Matrix<2>) {
+        if self.bent(cell).is_none() {
+            let corners = self.corners(cell);
+            let jacobian = edges(&corners);
+            return (corners[0] + jacobian * Point::<2>::new(xi[0], xi[1]), jacobian);
+        }
         let mut at = Values::default();
         self.mesh.map(cell).tabulate(xi, &mut at);
         self.mesh.jacobian(cell, &at)
@@ -196,16 +372,20 @@ impl MeshCells {
     /// Reference coordinates of a point in a cell or near it, and where there are none, far beyond a strongly curved cell,
     /// those of the linear map of its centre.
     fn local(&self, cell: usize, x: &Point<2>) -> Local {
-        let (centre, inverse, straight) = &self.linear[cell];
-        let shape = self.mesh.shape(cell);
-        let middle = shape.centre();
-        let first = inverse * (x - centre);
+        let middle = self.mesh.shape(cell).centre();
+        let bent = match self.bent(cell) {
+            Some(bent) => bent,
+            None => {
+                let [a, b, c] = self.corners(cell);
+                let first = small::inverse(&edges(&[a, b, c])) * (x - a);
+                return [first[0], first[1], 0.0];
+            }
+        };
+        let first = bent.inverse * (x - bent.centre);
         let linear: Local = [middle[0] + first[0], middle[1] + first[1], 0.0];
-        if *straight {
-            return linear;
-        }
         // A cell with a nearly straight corner folds just beyond it: of two places for a point the one inside counts.
-        let vertices = shape.vertices().iter().map(|v| [0, 1, 2].map(|k| middle[k] + 0.8 * (v[k] - middle[k])));
+        let vertices = self.mesh.shape(cell).vertices().iter();
+        let vertices = vertices.map(|v| [0, 1, 2].map(|k| middle[k] + 0.8 * (v[k] - middle[k])));
         let mut best: Option<(f64, Local)> = None;
         for start in [linear, middle].into_iter().chain(vertices) {
             let Some(xi) = self.newton(cell, x, start) else { continue };
@@ -213,7 +393,7 @@ impl MeshCells {
             if best.is_none_or(|(b, _)| beyond < b) {
                 best = Some((beyond, xi));
             }
-            if beyond < ON_THE_EDGE || self.regular[cell] {
+            if beyond < ON_THE_EDGE || bent.regular {
                 break;
             }
         }
@@ -238,7 +418,7 @@ impl MeshCells {
             }
         }
         let (y, jacobian) = self.at(cell, &xi);
-        let found = (x - y).norm() < 1e-10 * self.boxes[cell].radius() && small::determinant(&jacobian) > 0.0;
+        let found = (x - y).norm() < 1e-10 * self.bounds_of(cell).radius() && small::determinant(&jacobian) > 0.0;
         found.then_some(xi)
     }
 
@@ -255,14 +435,48 @@ impl MeshCells {
     }
 }
 
-fn tabulated(map: &CellMap, degree: usize) -> Vec<(f64, Values)> {
+/// The edges of a triangle from its first corner, the derivatives of its linear map.
+fn edges(corners: &[Point<2>]) -> Matrix<2> {
+    Matrix::<2>::from_columns(&[corners[1] - corners[0], corners[2] - corners[0]])
+}
+
+/// The longest side of a polygon.
+fn longest(vertices: &[Point<2>]) -> f64 {
+    let side = |i: usize| (vertices[i] - vertices[(i + 1) % vertices.len()]).norm();
+    (0..vertices.len()).map(side).fold(0.0, f64::max)
+}
+
+/// The smallest box round points.
+fn box_round(points: impl Iterator<Item = Point<2>>) -> Aabb<2> {
+    let nowhere = [f64::INFINITY, f64::NEG_INFINITY].map(Point::<2>::repeat);
+    let [min, max] = points.fold(nowhere, |[min, max], x| [min.inf(&x), max.sup(&x)]);
+    Aabb::new(min, max)
+}
+
+fn bounds_of(mesh: &Mesh<2>, bent_at: &[u32], bent: &[Bent], cell: usize) -> Aabb<2> {
+    match bent.get(bent_at[cell] as usize) {
+        Some(bent) => bent.bounds,
+        None => box_round(mesh.vertices(cell).map(|n| mesh.nodes()[n as usize])),
+    }
+}
+
+/// A point of a quadrature rule in a reference cell.
+struct RulePoint {
+    weight: f64,
+    map: Values,
+    functions: Values,
+}
+
+fn tabulated(map: &CellMap, degree: usize) -> Vec<RulePoint> {
+    let basis = HierarchicBasis::new(map.shape(), degree);
     let points: Rule = rule(map.shape(), whole_order(degree) + usize::from(map.order() > 1));
     points
         .into_iter()
         .map(|(x, w)| {
-            let mut at = Values::default();
-            map.tabulate(&x, &mut at);
-            (w, at)
+            let mut point = RulePoint { weight: w, map: Values::default(), functions: Values::default() };
+            map.tabulate(&x, &mut point.map);
+            basis.tabulate(&x, &mut point.functions);
+            point
         })
         .collect()
 }
@@ -276,50 +490,50 @@ fn for_each_bucket(buckets: &Grid<2>, b: &Aabb<2>, mut visit: impl FnMut(usize))
     }
 }
 
-type Boundary = (Vec<(String, Vec<usize>)>, Vec<(BoundarySide, Side)>, usize);
+type Boundary = (Vec<(String, Vec<usize>)>, Vec<BoundarySide>, usize);
 
-/// The sides on the boundary. Those that belong to the same groups are one piece.
-fn boundary(mesh: &Mesh<2>) -> Boundary {
+/// The sides on the boundary, cell by cell. Those that belong to the same groups are one piece; pieces are numbered by the
+/// names of their groups, so that those of a divided mesh have the same numbers.
+fn boundary(mesh: &Mesh<2>, adjacency: &Adjacency) -> Boundary {
     let mut names: BTreeMap<Side, BTreeSet<&str>> = BTreeMap::new();
     for (name, group) in mesh.groups() {
-        for side in &group.sides {
+        for side in group.sides.iter().filter(|side| adjacency.across(**side).is_none()) {
             names.entry(*side).or_default().insert(name);
         }
     }
-    let mut pieces: BTreeMap<BTreeSet<&str>, usize> = BTreeMap::new();
-    let mut groups: BTreeMap<String, BTreeSet<usize>> = BTreeMap::new();
-    let sides: Vec<(BoundarySide, Side)> = mesh
-        .boundary()
-        .into_iter()
-        .map(|side| {
-            let of = names.get(&side).cloned().unwrap_or_default();
-            let next = pieces.len();
-            let piece = *pieces.entry(of.clone()).or_insert(next);
-            for name in of {
-                groups.entry(name.to_string()).or_default().insert(piece);
-            }
-            (BoundarySide { cell: side.cell as usize, side: side.side as usize, piece }, side)
-        })
-        .collect();
+    let free: Vec<Side> = mesh.all_sides().filter(|side| adjacency.across(*side).is_none()).collect();
+    let none = BTreeSet::new();
+    let of = |side: &Side| names.get(side).unwrap_or(&none);
+    let pieces: BTreeSet<&BTreeSet<&str>> = free.iter().map(of).collect();
+    let pieces: Vec<&BTreeSet<&str>> = pieces.into_iter().collect();
+    let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    for (piece, names) in pieces.iter().enumerate() {
+        names.iter().for_each(|name| groups.entry(name.to_string()).or_default().push(piece));
+    }
     groups.entry("boundary".into()).or_insert_with(|| (0..pieces.len()).collect());
-    let groups = groups.into_iter().map(|(name, pieces)| (name, pieces.into_iter().collect())).collect();
-    (groups, sides, pieces.len())
+    let side = |side: &Side| {
+        let piece = pieces.binary_search(&of(side)).unwrap_or(0);
+        BoundarySide { cell: side.cell as usize, side: side.side as usize, piece }
+    };
+    (groups.into_iter().collect(), free.iter().map(side).collect(), pieces.len())
 }
 
-fn neighbours(mesh: &Mesh<2>, volumes: &[f64]) -> Vec<Neighbours> {
-    let mut open: HashMap<[u32; 2], usize> = HashMap::new();
-    let mut pairs = Vec::new();
-    for side in mesh.all_sides() {
-        let ends = mesh.side_vertices(side);
-        let key = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-        let cell = side.cell as usize;
-        if let Some(other) = open.insert(key, cell) {
-            let length = (mesh.nodes()[ends[0] as usize] - mesh.nodes()[ends[1] as usize]).norm();
-            let width = 0.5 * (volumes[cell] + volumes[other]) / length;
-            pairs.push(Neighbours { cells: [other, cell], width, kind: None });
+impl CellByCell<2> for MeshCells {
+    fn neighbours_of(&self, cell: usize, out: &mut Vec<Neighbours>) {
+        let shape = self.mesh.shape(cell);
+        for side in 0..shape.sides().len() {
+            let Some(other) = self.adjacency.across(Side { cell: cell as u32, side: side as u8 }) else { continue };
+            if other > cell {
+                let [a, b] = self.ends(cell, side);
+                let width = 0.5 * (self.volume(cell) + self.volume(other)) / (a - b).norm();
+                out.push(Neighbours { cells: [cell, other], width, kind: None });
+            }
         }
     }
-    pairs
+    fn sides_of(&self, cell: usize, out: &mut Vec<BoundarySide>) {
+        let from = self.sides.partition_point(|side| side.cell < cell);
+        out.extend(self.sides[from..].iter().take_while(|side| side.cell == cell));
+    }
 }
 
 impl Cells<2> for MeshCells {
@@ -327,24 +541,35 @@ impl Cells<2> for MeshCells {
         self.degree
     }
     fn count(&self) -> usize {
-        self.boxes.len()
+        self.bent_at.len()
     }
     fn bounds_of(&self, cell: usize) -> Aabb<2> {
-        self.boxes[cell]
+        bounds_of(&self.mesh, &self.bent_at, &self.bent, cell)
     }
     fn size(&self, cell: usize) -> f64 {
-        self.sizes[cell]
+        let of_triangle = || {
+            let corners = self.corners(cell);
+            small::determinant(&edges(&corners)) / longest(&corners)
+        };
+        self.bent(cell).map_or_else(of_triangle, |bent| bent.size)
     }
     fn volume(&self, cell: usize) -> f64 {
-        self.volumes[cell]
+        let of_triangle = || 0.5 * small::determinant(&edges(&self.corners(cell)));
+        self.bent(cell).map_or_else(of_triangle, |bent| bent.volume)
     }
     fn containing(&self, x: &Point<2>) -> Option<usize> {
         if (0..2).any(|k| x[k] < self.bounds().min[k] || x[k] > self.bounds().max[k]) {
             return None;
         }
-        let inside = |cell: usize| (0..2).all(|k| x[k] >= self.boxes[cell].min[k] && x[k] <= self.boxes[cell].max[k]);
+        let inside = |cell: usize| {
+            let b = self.bounds_of(cell);
+            (0..2).all(|k| x[k] >= b.min[k] && x[k] <= b.max[k])
+        };
         let mut best = (ON_THE_EDGE, None);
-        for &cell in &self.cells_in[self.buckets.cell_containing(x)] {
+        let cells_in = self
+            .cells_in
+            .get_or_init(|| self.lists(|visit| (0..self.count()).for_each(|cell| visit(cell, cell as u32))));
+        for &cell in cells_in.of(self.buckets.cell_containing(x)) {
             if !inside(cell as usize) {
                 continue;
             }
@@ -363,25 +588,32 @@ impl Cells<2> for MeshCells {
     }
     fn functions(&self, cell: usize, out: &mut Vec<u32>) {
         out.clear();
-        out.extend(self.dofs.cell(cell).iter().map(|(f, _)| f));
+        out.extend_from_slice(self.dofs.functions(cell));
     }
     fn tabulate(&self, cell: usize, x: &Point<2>, out: &mut Tabulation<2>) {
+        if self.degree == 1 && self.is_straight(cell) {
+            let corners = self.corners(cell);
+            let inverse = small::inverse(&edges(&corners));
+            let (first, slopes) = (inverse * (x - corners[0]), inverse.transpose());
+            out.value.clear();
+            out.gradient.clear();
+            out.value.extend([1.0 - first[0] - first[1], first[0], first[1]]);
+            let [b, c] = [0, 1].map(|k| slopes.column(k).into_owned());
+            out.gradient.extend([-b - c, b, c]);
+            return;
+        }
         let xi = self.local(cell, x);
         let inverse = small::inverse(&self.at(cell, &xi).1);
         let mut values = Values::default();
         self.dofs.basis(cell).tabulate(&xi, &mut values);
-        out.value.clear();
-        out.gradient.clear();
-        for ((value, g), (_, sign)) in values.value.iter().zip(&values.gradient).zip(self.dofs.cell(cell)) {
-            out.value.push(sign * value);
-            out.gradient.push(Vector::from_fn(|k, _| sign * (g[0] * inverse[(0, k)] + g[1] * inverse[(1, k)])));
-        }
+        self.slopes(cell, &values, &inverse, out);
     }
     fn extension<'a>(&'a self, cell: usize) -> Extension<'a, 2> {
         // The functions of a cell that is not affine may not be carried on: its map folds. Of their polynomials of the
         // same degree, those are taken that are closest in the mean square.
         let degree = self.degree;
-        let (centre, scale) = (self.linear[cell].0, self.boxes[cell].radius());
+        let Some(bent) = self.bent(cell) else { return own_extension(self, cell) };
+        let (centre, scale) = (bent.centre, bent.bounds.radius());
         let monomials = move |x: &Point<2>| {
             let y = (x - centre) / scale;
             let powers = (0..=degree).flat_map(move |n| (0..=n).map(move |k| (n - k, k)));
@@ -403,8 +635,7 @@ impl Cells<2> for MeshCells {
             out.clear();
             out.extend(coefficients.column_iter().map(|c| c.iter().zip(&basis).map(|(c, b)| c * b).sum::<f64>()));
         };
-        let is_own = self.linear[cell].2;
-        Extension { values: Box::new(values), is_own }
+        Extension { values: Box::new(values), is_own: false }
     }
     fn node(&self, function: usize) -> Point<2> {
         self.nodes[function]
@@ -418,14 +649,27 @@ impl Cells<2> for MeshCells {
         (self.degree < most).then(|| -> Arc<dyn Cells<2>> { Arc::new(Self::new(self.mesh.clone(), self.degree + 1)) })
     }
     fn coarser(&self) -> Option<Arc<dyn Cells<2>>> {
-        None
+        let coarse = &self.parent()?.cells;
+        Some(if self.degree == 1 { coarse.clone() } else { Arc::new(Self::new(coarse.mesh.clone(), 1)) })
+    }
+    fn mesh(self: Arc<Self>) -> Option<Arc<MeshCells>> {
+        Some(self)
+    }
+    fn for_each_point(&self, cell: usize, visit: &mut dyn FnMut(&QuadraturePoint<2>, &Tabulation<2>)) {
+        let mut t = Tabulation::default();
+        for point in &self.rules[self.mesh.map_number(cell)] {
+            let (x, jacobian) = self.mesh.jacobian(cell, &point.map);
+            let determinant = small::determinant(&jacobian);
+            self.slopes(cell, &point.functions, &small::inverse(&jacobian), &mut t);
+            visit(&QuadraturePoint { x, weight: point.weight * determinant.abs() }, &t);
+        }
     }
     fn rule(&self, cell: usize) -> Vec<QuadraturePoint<2>> {
         self.rules[self.mesh.map_number(cell)]
             .iter()
-            .map(|(w, at)| {
-                let (x, jacobian) = self.mesh.jacobian(cell, at);
-                QuadraturePoint { x, weight: w * small::determinant(&jacobian).abs() }
+            .map(|point| {
+                let (x, jacobian) = self.mesh.jacobian(cell, &point.map);
+                QuadraturePoint { x, weight: point.weight * small::determinant(&jacobian).abs() }
             })
             .collect()
     }
@@ -467,10 +711,12 @@ impl Cells<2> for MeshCells {
         Vec::new()
     }
     fn neighbours(&self) -> Vec<Neighbours> {
-        self.neighbours.clone()
+        let mut out = Vec::new();
+        (0..self.count()).for_each(|cell| self.neighbours_of(cell, &mut out));
+        out
     }
     fn boundary_sides(&self) -> Vec<BoundarySide> {
-        self.sides.iter().map(|(side, _)| *side).collect()
+        self.sides.clone()
     }
     fn on_side(&self, side: &BoundarySide, t: f64) -> SidePoint<2> {
         let of = Side { cell: side.cell as u32, side: side.side as u8 };
@@ -613,7 +859,7 @@ mod tests {
     #[test]
     fn places_are_found_again_also_beside_a_straight_corner() {
         let cells = cells(2);
-        assert!(!cells.regular[0] && cells.regular[1]);
+        assert!(!cells.bent[0].regular && cells.bent[1].regular);
         for cell in 0..2 {
             for (xi, _) in rule(cells.mesh.shape(cell), 9) {
                 let x = cells.at(cell, &xi).0;

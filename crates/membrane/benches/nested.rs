@@ -1,14 +1,18 @@
 //! Time, memory and error of membranes by multigrid from coarse to fine: a round one on a flat floor, and a square one on a
-//! cosine floor at f = 0.4, at degree 1, 2 and 4. From 1e4 unknowns to as many as `SIGNORINI_LADDER` says (1e6 if it says
-//! nothing), beside the membrane alone, without contact, solved from nothing to 1e-8, on `SIGNORINI_THREADS` threads (one if it says nothing), at `SIGNORINI_DEGREE` alone if it says something.
+//! cosine floor at f = 0.4, at degree 1, 2 and 4, and the round one on a mesh whose cells are divided. From 1e4 unknowns to as
+//! many as `SIGNORINI_LADDER` says (1e6 if it says nothing), beside the membrane alone, without contact, solved from nothing to
+//! 1e-8, on `SIGNORINI_THREADS` threads (one if it says nothing), on grids of `SIGNORINI_DEGREE` alone if it says something.
 //!
 //! `cargo bench -p signorini-membrane --bench nested`
+
+#[path = "../tests/common/mod.rs"]
+mod common;
 
 use signorini_fem::Grid;
 use signorini_geometry::{Aabb, Ellipse, Jet, Point, Real};
 use signorini_membrane::domain::{BoxDomain, Domain, DomainOnCells, ImplicitDomain};
 use signorini_membrane::field::{Constant, Formula, SharedField};
-use signorini_membrane::multigrid::{Hierarchy, nested};
+use signorini_membrane::multigrid::{Hierarchy, OnGrid, OnMesh, Regular, nested};
 use signorini_membrane::obstacle::{Obstacle, Obstacles, Side};
 use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::{Measure, Membrane, Support};
@@ -68,13 +72,57 @@ fn peak() -> f64 {
 }
 
 /// Seconds for the membrane without contact.
-fn alone(membrane: &Membrane<2>) -> f64 {
+fn alone<R: Regular>(membrane: &Membrane<2>) -> f64 {
     let start = Instant::now();
-    let mut hierarchy = Hierarchy::new(membrane, &PlaneZone::empty(&membrane.grid)).expect("levels");
+    let mut hierarchy = Hierarchy::<R>::new(membrane, &PlaneZone::empty(&membrane.grid)).expect("levels");
     while hierarchy.finest().relative_residual() > 1e-8 {
         hierarchy.cycle().expect("a cycle");
     }
     start.elapsed().as_secs_f64()
+}
+
+/// Rows of a table, one for each size.
+struct Ladder<'a> {
+    pool: &'a rayon::ThreadPool,
+    figure: &'a dyn Fn(f64) -> f64,
+    last: Option<(f64, f64)>,
+}
+
+impl Ladder<'_> {
+    /// Solves one membrane, from the mesh on; whether there is a state.
+    fn row<R: Regular>(&mut self, membrane: &(dyn Fn() -> Membrane<2> + Sync)) -> bool {
+        let start = Instant::now();
+        let found = self.pool.install(|| nested::solve::<R>(&membrane(), f64::INFINITY, 32, (0, 0.0), &mut Silent));
+        let seconds = start.elapsed().as_secs_f64();
+        let Ok(Ok(found)) = found else {
+            println!("no state");
+            return false;
+        };
+        let area: f64 = found.zone.curves().iter().map(|c| c.signed_area()).sum();
+        let unknowns = found.level.unknowns() as f64;
+        let memory = peak();
+        let steps = found.steps;
+        drop(found.level);
+        let alone = self.pool.install(|| alone::<R>(&membrane()));
+        println!(
+            "{unknowns:>10} {seconds:>9.3} {:>8.2} {:>9.0} {:>9.0} {alone:>9.3}  {:.9e}  steps {steps:?}",
+            1e6 * seconds / unknowns,
+            memory / 1e6,
+            memory / unknowns,
+            (self.figure)(area),
+        );
+        if let Some((u, s)) = self.last.replace((unknowns, seconds)) {
+            println!("{:>10} exponent {:.2}", "", (seconds / s).ln() / (unknowns / u).ln());
+        }
+        true
+    }
+}
+
+fn head(name: &str) {
+    println!(
+        "{:>10} {:>9} {:>8} {:>9} {:>9} {:>9}  {name}",
+        "unknowns", "s", "µs each", "MB peak", "B each", "alone s"
+    );
 }
 
 /// A number that is asked for by the environment.
@@ -93,40 +141,22 @@ fn main() {
         ("square on a cosine floor: area", 1.0, waves, &|area| area),
     ];
     let only = asked("SIGNORINI_DEGREE", 0.0) as usize;
+    if only == 0 {
+        head("degree 1, disc on a flat floor, mesh from a file with every cell divided: radius off");
+        let mut ladder = Ladder { pool: &pool, figure: &radius, last: None };
+        let nodes = |divisions: usize| 434.0 * 4f64.powi(divisions as i32);
+        for divisions in (2..).take_while(|d| nodes(*d) < most) {
+            ladder.row::<OnMesh>(&|| common::on_mesh(common::cells("triangles_2_12", 1, divisions)));
+        }
+    }
     for degree in [1, 2, 4].into_iter().filter(|d| only == 0 || *d == only) {
         for (name, share, membrane, figure) in &cases {
-            println!(
-                "{:>10} {:>9} {:>8} {:>9} {:>9} {:>9}  degree {degree}, {name}",
-                "unknowns", "s", "µs each", "MB peak", "B each", "alone s"
-            );
-            let mut last: Option<(f64, f64)> = None;
+            head(&format!("degree {degree}, {name}"));
+            let mut ladder = Ladder { pool: &pool, figure, last: None };
             for n in [128usize, 256, 512, 1024, 1408, 2816, 4096, 8192, 16384].map(|n| n / degree / 16 * 16) {
-                if share * ((n * degree) as f64).powi(2) > most {
+                let more = share * ((n * degree) as f64).powi(2) <= most;
+                if !more || !ladder.row::<OnGrid>(&|| membrane([n, degree])) {
                     break;
-                }
-                let start = Instant::now();
-                let found =
-                    pool.install(|| nested::solve(&membrane([n, degree]), f64::INFINITY, 32, (0, 0.0), &mut Silent));
-                let seconds = start.elapsed().as_secs_f64();
-                let Ok(Ok(found)) = found else {
-                    println!("{n} x {n}: no state");
-                    break;
-                };
-                let area: f64 = found.zone.curves().iter().map(|c| c.signed_area()).sum();
-                let unknowns = found.level.unknowns() as f64;
-                let memory = peak();
-                let steps = found.steps;
-                drop(found.level);
-                let alone = pool.install(|| alone(&membrane([n, degree])));
-                println!(
-                    "{unknowns:>10} {seconds:>9.3} {:>8.2} {:>9.0} {:>9.0} {alone:>9.3}  {:.9e}  steps {steps:?}",
-                    1e6 * seconds / unknowns,
-                    memory / 1e6,
-                    memory / unknowns,
-                    figure(area),
-                );
-                if let Some((u, s)) = last.replace((unknowns, seconds)) {
-                    println!("{:>10} exponent {:.2}", "", (seconds / s).ln() / (unknowns / u).ln());
                 }
             }
         }

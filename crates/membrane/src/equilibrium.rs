@@ -612,13 +612,24 @@ fn local_systems<const D: usize>(
     let element = elements.of(membrane, cell).filter(|_| matches!(quadrature.cells[cell], Cell::Whole(_)));
     let plain = points.is_empty() && element.is_some_and(|e| e.stiffness.is_some());
     let mut scratch = Tabulation::default();
-    let volumes = quadrature.volumes(membrane, cell);
+    let whole = matches!(quadrature.cells[cell], Cell::Whole(_)) && element.is_none();
+    let volumes = if whole { Vec::new() } else { quadrature.volumes(membrane, cell) };
     unknowns
         .of_cell(cell)
         .map(|(region, dofs)| {
             let n = dofs.len();
             let mut matrix = if plain { Vec::new() } else { vec![0.0; n * n] };
             let mut load = vec![0.0; n];
+            let mut add = |x: &Point<D>, weight: f64, t: &Tabulation<D>| {
+                if !plain {
+                    add_stiffness(&mut matrix, t, weight * membrane.tension.value(x));
+                }
+                let f = weight * membrane.load.value(x);
+                load.iter_mut().zip(&t.value).for_each(|(l, v)| *l += f * v);
+            };
+            if whole {
+                cells.for_each_point(cell, &mut |p, t| add(&p.x, p.weight * membrane.measure.weight(&p.x), t));
+            }
             for (_, rule) in volumes.iter().filter(|(r, _)| *r == region) {
                 for (i, p) in rule.iter().enumerate() {
                     let t = match element {
@@ -628,13 +639,7 @@ fn local_systems<const D: usize>(
                             &scratch
                         }
                     };
-                    if !plain {
-                        add_stiffness(&mut matrix, t, p.weight * membrane.tension.value(&p.x));
-                    }
-                    let f = p.weight * membrane.load.value(&p.x);
-                    for (l, v) in load.iter_mut().zip(&t.value) {
-                        *l += f * v;
-                    }
+                    add(&p.x, p.weight, t);
                 }
             }
             for p in points.iter().map(|&i| &imposed[i]).filter(|p| p.region == region) {

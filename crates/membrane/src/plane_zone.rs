@@ -159,6 +159,11 @@ impl PlaneZone {
         }
     }
 
+    /// The grid that it is told apart on.
+    pub(crate) fn grid(&self) -> &Grid<2> {
+        &self.grid
+    }
+
     /// The cells that fronts are near to, ascending.
     pub(crate) fn cells_near_fronts(&self) -> impl Iterator<Item = usize> + '_ {
         self.near.cells.iter().map(|&cell| cell as usize)
@@ -174,6 +179,11 @@ impl PlaneZone {
     fn around(&self, cell: usize) -> Vec<usize> {
         let [column, row] = self.grid.cell_index(cell);
         self.enclosing(row, column)
+    }
+
+    /// The region of a cell that no front is near to.
+    pub(crate) fn region_away(&self, cell: usize) -> RegionId {
+        self.region_within(self.around(cell).into_iter())
     }
 
     /// Pairs of curve and sample in or next to a cell.
@@ -699,7 +709,7 @@ impl Zone<2> for PlaneZone {
         at: (usize, f64),
         progress: &mut dyn Progress,
     ) -> Result<Option<Solution<2, Self>>, SolveError> {
-        if membrane.cells.function_count() < multigrid::LARGE || !multigrid::nested::is_able(membrane) {
+        if membrane.cells.function_count() < multigrid::LARGE {
             return Ok(None);
         }
         multigrid::nested::solution(membrane, at, progress)

@@ -1,36 +1,16 @@
 //! Fronts that cut the cells of a mesh anywhere: the system stays positive definite.
 
-use signorini_fem::gmsh::GmshFile;
-use signorini_fem::{Cells, MeshCells};
+mod common;
+
+use common::{cells, on_mesh};
 use signorini_geometry::{ClosedCurve, Point};
-use signorini_membrane::domain::{DomainOnCells, MeshDomain};
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
-use signorini_membrane::field::Constant;
-use signorini_membrane::obstacle::{Obstacle, Obstacles, Side};
+use signorini_membrane::obstacle::Side;
 use signorini_membrane::plane_zone::PlaneZone;
-use signorini_membrane::problem::{Measure, Membrane, Support};
-use std::sync::Arc;
 
 /// Solves round many circles, some of them holes; the number of those that could not be solved.
 fn failures(name: &str, degree: usize, circles: usize) -> usize {
-    let path = format!("{}/../signorini/tests/data/meshes/{name}.msh", env!("CARGO_MANIFEST_DIR"));
-    let file = GmshFile::parse(&std::fs::read(path).expect("a mesh")).expect("a mesh");
-    let cells = Arc::new(MeshCells::new(file.mesh::<2>(None).expect("a mesh"), degree));
-    let domain = DomainOnCells::new(Arc::new(MeshDomain(cells.clone())), &*cells);
-    let support = Support { index: 0, displacement: Arc::new(Constant(0.0)) };
-    let membrane = Membrane {
-        grid: cells.grid(),
-        supports: vec![Some(support); cells.pieces()],
-        cells: cells.clone() as Arc<dyn Cells<2>>,
-        domain,
-        measure: Measure::Plain,
-        tension: Arc::new(Constant(1.0)),
-        load: Arc::new(Constant(-1.0)),
-        obstacles: Obstacles(vec![Obstacle { side: Side::Below, height: Arc::new(Constant(-0.1)), adhesion: None }]),
-        support_count: 1,
-        modes: Default::default(),
-        formulation: Default::default(),
-    };
+    let membrane = on_mesh(cells(name, degree, 0));
     let mut elements = Elements::new(&membrane);
     (0..circles)
         .filter(|&i| {

@@ -1,12 +1,15 @@
 //! Multigrid for cut membranes: how much of the error a cycle leaves, whatever is cut.
 
+mod contraction;
+
+use contraction::{circle, contraction};
 use signorini_fem::Grid;
 use signorini_geometry::{Aabb, ClosedCurve, Ellipse, Jet, Point, Real};
 use signorini_membrane::domain::{BoxDomain, Domain, DomainOnCells, ImplicitDomain, PolygonDomain};
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::field::{Constant, Formula};
 use signorini_membrane::ils::{self, Reason, Rest, Start};
-use signorini_membrane::multigrid::{Hierarchy, nested};
+use signorini_membrane::multigrid::{Hierarchy, OnGrid, nested};
 use signorini_membrane::obstacle::{Obstacle, Obstacles, Side};
 use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::{Measure, Membrane, Support};
@@ -40,36 +43,6 @@ fn disc(n: usize, degree: usize) -> Membrane<2> {
     membrane(n, degree, Arc::new(ImplicitDomain(Ellipse { center: Point::zeros(), semi_axes: [1.0, 1.0] })), 1.03)
 }
 
-fn circle(center: Point<2>, radius: impl Fn(f64) -> f64, points: usize) -> ClosedCurve {
-    let points: Vec<Point<2>> = (0..points)
-        .map(|k| {
-            let a = std::f64::consts::TAU * k as f64 / points as f64;
-            center + radius(a) * Point::<2>::new(a.cos(), a.sin())
-        })
-        .collect();
-    ClosedCurve::through(&points, 7)
-}
-
-/// The contraction of a cycle in the residual's norm, after the first few.
-fn contraction(membrane: &Membrane<2>, zone: &PlaneZone) -> f64 {
-    let mut hierarchy = Hierarchy::new(membrane, zone).expect("levels");
-    let level = hierarchy.finest();
-    level.b.fill(0.0);
-    let mut seed = 1u64;
-    for u in &mut level.u {
-        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        *u = (seed >> 40) as f64 / f64::from(1u32 << 24) - 0.5;
-    }
-    level.silence();
-    let norm = |h: &mut Hierarchy| h.finest().residual().iter().map(|r| r * r).sum::<f64>().sqrt();
-    let mut norms = vec![norm(&mut hierarchy)];
-    for _ in 0..9 {
-        hierarchy.cycle().expect("a cycle");
-        norms.push(norm(&mut hierarchy));
-    }
-    (norms[9] / norms[5]).powf(0.25)
-}
-
 #[test]
 fn the_solution_is_that_of_the_direct_solver() {
     let membrane = disc(48, 1);
@@ -79,7 +52,7 @@ fn the_solution_is_that_of_the_direct_solver() {
     );
     let zone = zone.on_grid(&membrane.grid);
     let direct = Equilibrium::solve(&membrane, &zone, &mut Elements::new(&membrane)).expect("a solution");
-    let mut hierarchy = Hierarchy::new(&membrane, &zone).expect("levels");
+    let mut hierarchy = Hierarchy::<OnGrid>::new(&membrane, &zone).expect("levels");
     for _ in 0..16 {
         hierarchy.cycle().expect("a cycle");
     }
@@ -102,7 +75,7 @@ fn worst_contraction(degree: usize, cuts: usize, n: usize) -> f64 {
     let mut try_one = |membrane: &Membrane<2>, fronts: Vec<ClosedCurve>, name: String| {
         let fronts = fronts.into_iter().map(|c| (Side::Below, c)).collect();
         let zone = PlaneZone::new(&membrane.grid, fronts).on_grid(&membrane.grid);
-        let rate = contraction(membrane, &zone);
+        let rate = contraction::<OnGrid>(membrane, &zone);
         if rate > worst.0 {
             worst = (rate, name);
         }
@@ -141,7 +114,7 @@ fn asked(name: &str, usual: usize) -> usize {
 fn without_contact_it_is_poissons_problem() {
     for degree in [1, 3] {
         let membrane = disc(32, degree);
-        let mut hierarchy = Hierarchy::new(&membrane, &PlaneZone::empty(&membrane.grid)).expect("levels");
+        let mut hierarchy = Hierarchy::<OnGrid>::new(&membrane, &PlaneZone::empty(&membrane.grid)).expect("levels");
         for _ in 0..14 {
             hierarchy.cycle().expect("a cycle");
         }
@@ -166,7 +139,7 @@ fn tiny_zones_do_not_slow_a_cycle_down() {
         let centres = [[0.1, 0.2], [-0.35, 0.11], [0.02, -0.4]].map(Point::<2>::from);
         let fronts = centres.map(|c| (Side::Below, circle(c, |_| radius, 16))).to_vec();
         let zone = PlaneZone::new(&membrane.grid, fronts).on_grid(&membrane.grid);
-        let rate = contraction(&membrane, &zone);
+        let rate = contraction::<OnGrid>(&membrane, &zone);
         println!("{n} cells of degree {degree}, radius {radius}: {rate:.3}");
         assert!(rate <= 0.2, "{n} cells of degree {degree}, radius {radius}: {rate}");
     }
@@ -222,8 +195,9 @@ fn nested_iteration_finds_the_front() {
     let found = |n: usize, degree: usize| {
         let membrane = disc(n, degree);
         assert!(nested::is_able(&membrane));
-        let found =
-            nested::solve(&membrane, f64::INFINITY, 32, (0, 0.0), &mut Silent).expect("solves").expect("a state");
+        let found = nested::solve::<OnGrid>(&membrane, f64::INFINITY, 32, (0, 0.0), &mut Silent)
+            .expect("solves")
+            .expect("a state");
         assert!(found.steps.iter().skip(1).all(|s| *s <= 4), "{:?}", found.steps);
         ((area(&found.zone) / std::f64::consts::PI).sqrt() - exact).abs()
     };

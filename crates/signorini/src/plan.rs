@@ -30,7 +30,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-pub use domain::{Pieces, memory_estimate, multigrid_estimate};
+pub use domain::{Pieces, memory_estimate, mesh_multigrid_estimate, multigrid_estimate};
 pub use history::{Control, PlannedIncrement};
 pub use surface::Contact;
 

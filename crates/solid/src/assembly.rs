@@ -29,9 +29,9 @@ pub(crate) fn assemble<const D: usize>(bodies: &Bodies<D>, supports: &[Support])
         for cell in 0..body.mesh.cell_count() {
             let unknowns = body
                 .dofs
-                .cell(cell)
+                .functions(cell)
                 .iter()
-                .flat_map(|(f, _)| (0..D).map(move |i| (body.first + *f as usize * D + i) as u32));
+                .flat_map(|f| (0..D).map(move |i| (body.first + *f as usize * D + i) as u32));
             cliques.push(unknowns.collect());
         }
     }
@@ -58,8 +58,7 @@ pub(crate) fn assemble<const D: usize>(bodies: &Bodies<D>, supports: &[Support])
                     let table = &tables[&(body.mesh.map_number(cell), body.dofs.basis_number(cell))];
                     let basis = body.dofs.basis(cell);
                     let k = stiffness(&body.mesh, cell, table, basis, &body.material, bodies.space);
-                    let signs: Vec<f64> =
-                        body.dofs.cell(cell).iter().flat_map(|(_, s)| std::iter::repeat_n(*s, D)).collect();
+                    let signs: Vec<f64> = body.dofs.cell(cell).flat_map(|(_, s)| std::iter::repeat_n(s, D)).collect();
                     let n = signs.len();
                     let mut out = vec![0.0; n * n];
                     for a in 0..n {

@@ -46,7 +46,7 @@ impl<const D: usize> Body<D> {
             };
             let all: Vec<usize> = (0..vertices.len()).collect();
             let modes = self.dofs.basis(cell).modes();
-            for ((f, _), mode) in self.dofs.cell(cell).iter().zip(modes) {
+            for (f, mode) in self.dofs.functions(cell).iter().zip(modes) {
                 out[*f as usize] = match *mode {
                     Mode::Vertex(v) => mean(&[v as usize]),
                     Mode::Edge(e, _) => mean(&shape.edges()[e as usize]),
@@ -155,9 +155,8 @@ impl<const D: usize> ContactSurface<D> for BodySurface<D> {
         let (xi, _) = basis.shape().on_side(side.side as usize, s);
         let mut at = Values::default();
         basis.tabulate(&xi, &mut at);
-        let list = self.body.dofs.cell(cell);
         for &k in &self.functions[face] {
-            let (function, sign) = list[k];
+            let (function, sign) = self.body.dofs.function(cell, k);
             out.push(((self.body.first + D * function as usize) as u32, sign * at.value[k]));
         }
     }
@@ -169,10 +168,9 @@ impl<const D: usize> ContactSurface<D> for BodySurface<D> {
         let (xi, along) = basis.shape().on_side(side.side as usize, s);
         let mut at = Values::default();
         basis.tabulate(&xi, &mut at);
-        let list = self.body.dofs.cell(cell);
         (self.functions[face].iter())
             .map(|&k| {
-                let (function, sign) = list[k];
+                let (function, sign) = self.body.dofs.function(cell, k);
                 let slope = |a: &Local| sign * (0..3).map(|i| at.gradient[k][i] * a[i]).sum::<f64>();
                 let unknown = (self.body.first + D * function as usize) as u32;
                 ShapeFunction { unknown, value: sign * at.value[k], slopes: [slope(&along[0]), slope(&along[1])] }

@@ -79,9 +79,9 @@ fn volume<const D: usize>(bodies: &Bodies<D>, load: &Load, value: &dyn Fn(&Point
         for (q, (_, w)) in table.points.iter().enumerate() {
             let (x, jacobian) = body.mesh.jacobian(cell, &table.map[q]);
             let force = value(&x) * (w * determinant(&jacobian) * bodies.measure(&x));
-            for ((f, sign), v) in body.dofs.cell(cell).iter().zip(&table.basis[q].value) {
+            for ((f, sign), v) in body.dofs.cell(cell).zip(&table.basis[q].value) {
                 for i in 0..D {
-                    out[body.first + *f as usize * D + i] += sign * v * force[i];
+                    out[body.first + f as usize * D + i] += sign * v * force[i];
                 }
             }
         }

@@ -67,9 +67,9 @@ impl<const D: usize> Contact<D> {
             let (xi, _) = basis.shape().on_side(side.side as usize, &s);
             let normal = self.slave.at(face, &s).area_normal().normalize();
             let along = normal_stress(&body.mesh, cell, table, basis, (&body.material, bodies.space), (&xi, &normal));
-            let stress: Vec<(u32, f64)> = (body.dofs.cell(cell).iter().enumerate())
+            let stress: Vec<(u32, f64)> = (body.dofs.cell(cell).enumerate())
                 .flat_map(|(a, (f, sign))| {
-                    let first = body.first + *f as usize * D;
+                    let first = body.first + f as usize * D;
                     let along = &along;
                     (0..D).map(move |i| ((first + i) as u32, sign * along[a * D + i]))
                 })

@@ -240,9 +240,9 @@ pub fn displacement_at<const D: usize>(
     let inverse = inverse(&jacobian);
     let mut displacement = Point::<D>::zeros();
     let mut gradient = Matrix3::zeros();
-    for ((f, sign), (value, slope)) in dofs.cell(cell).iter().zip(basis.value.iter().zip(&basis.gradient)) {
+    for ((f, sign), (value, slope)) in dofs.cell(cell).zip(basis.value.iter().zip(&basis.gradient)) {
         for i in 0..D {
-            let unknown = sign * u[*f as usize * D + i];
+            let unknown = sign * u[f as usize * D + i];
             displacement[i] += unknown * value;
             for j in 0..D {
                 let along: f64 = (0..D).map(|k| slope[k] * inverse[(k, j)]).sum();

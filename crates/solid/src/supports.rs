@@ -328,13 +328,13 @@ fn functions<const D: usize>(bodies: &Bodies<D>, support: &Support) -> BTreeSet<
         body.dofs.vertex(*v).map(&mut add);
     }
     for side in &support.group.sides {
-        let list = body.dofs.cell(side.cell as usize);
+        let list = body.dofs.functions(side.cell as usize);
         for k in body.dofs.on_side(*side) {
-            add(list[k].0);
+            add(list[k]);
         }
     }
     for &cell in &support.group.cells {
-        for (f, _) in body.dofs.cell(cell as usize) {
+        for f in body.dofs.functions(cell as usize) {
             add(*f);
         }
     }

@@ -216,8 +216,8 @@ fn nitsches_equations_hold() {
     let body = &model.bodies.list[0];
     let held: std::collections::HashSet<u32> = (groups["top"].sides.iter())
         .flat_map(|s| {
-            let list = body.dofs.cell(s.cell as usize);
-            body.dofs.on_side(*s).into_iter().map(|k| list[k].0)
+            let list = body.dofs.functions(s.cell as usize);
+            body.dofs.on_side(*s).into_iter().map(|k| list[k])
         })
         .collect();
     for seed in 1..4 {

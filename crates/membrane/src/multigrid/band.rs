@@ -1,13 +1,13 @@
 //! What lies along some cuts of a membrane: stored equations, and the factor of the band of nodes there.
 
-use super::interior::Interior;
+use super::regular::Regular;
 use crate::domain::DomainOnCells;
 use crate::equilibrium::{Elements, Equilibrium, System};
 use crate::plane_zone::{PlaneZone, Straightened};
 use crate::problem::Membrane;
 use crate::quadrature::Quadrature;
 use signorini_fem::cut::RegionId;
-use signorini_fem::{Cells, GridPart};
+use signorini_fem::{Cells, CellsPart};
 use signorini_solve::{Factor, SolveError, Symbolic, SymmetricMatrix};
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ const ORDER: usize = 3;
 
 /// The equations along some cuts.
 pub(super) struct Band {
-    cells: Arc<GridPart<2>>,
+    cells: Arc<CellsPart<2>>,
     /// The state of these cells, and the unknown of the level for each of its own.
     state: Equilibrium<2>,
     global: Vec<u32>,
@@ -35,22 +35,21 @@ pub(super) struct Band {
 }
 
 impl Band {
-    /// The band in some cells of the grid of a membrane. Nodes of those that are `inner` have their rows stored; further
-    /// unknowns are numbered from `first` on; `also` are regular nodes that are solved for with the band.
+    /// The band in some of the cells of a membrane. Nodes of those that are `inner` have their rows stored; further unknowns
+    /// are numbered from `first` on; `also` are regular nodes that are solved for with the band.
     ///
     /// # Errors
     /// A band that cannot be factorised.
-    pub fn new(
+    pub fn new<R: Regular>(
         membrane: &Membrane<2>,
         zone: &PlaneZone,
-        cells: Vec<usize>,
-        inner: impl Fn(usize) -> bool,
+        cells: CellsPart<2>,
+        inner: &[usize],
         first: usize,
-        interior: &Interior,
-        also: impl Iterator<Item = usize>,
+        regular: &R,
+        also: &[usize],
     ) -> Result<Self, SolveError> {
-        let grid = &membrane.grid;
-        let cells = Arc::new(GridPart::new(grid, cells));
+        let cells = Arc::new(cells);
         let status = cells.cells().iter().map(|&c| membrane.domain.status[c]).collect();
         let domain = DomainOnCells { domain: membrane.domain.domain.clone(), status: Arc::new(status) };
         let part = Membrane { cells: cells.clone(), domain, ..membrane.clone() };
@@ -66,7 +65,7 @@ impl Band {
         let mut functions = Vec::new();
         for (cell, _, dofs) in unknowns.all() {
             cells.functions(cell, &mut functions);
-            let inner = inner(cells.cells()[cell]);
+            let inner = inner.binary_search(&cells.cells()[cell]).is_ok();
             for (&dof, &f) in dofs.iter().zip(&functions) {
                 let dof = dof as usize;
                 stored[dof] |= inner;
@@ -106,21 +105,27 @@ impl Band {
             band.load.push(rhs[i]);
         }
         let outer = (0..global.len()).filter(|&i| !stored[i]).map(|i| global[i]);
-        band.solved.extend(outer.chain(also.map(|node| node as u32)).map(|node| (node, None)));
+        band.solved.extend(outer.chain(also.iter().map(|node| *node as u32)).map(|node| (node, None)));
         band.global = global;
-        band.factorise(interior)?;
+        band.factorise(regular)?;
         Ok(band)
     }
 
-    fn factorise(&mut self, interior: &Interior) -> Result<(), SolveError> {
+    fn factorise<R: Regular>(&mut self, regular: &R) -> Result<(), SolveError> {
         self.solved.sort_unstable();
         self.solved.dedup_by_key(|s| s.0);
         if self.solved.is_empty() {
             return Ok(());
         }
         // The place of each, counted from one; of all that is not there nothing is ever touched.
-        let last = self.column.iter().chain(self.solved.iter().map(|s| &s.0)).fold(0, |m, &i| m.max(i as usize));
-        let mut place = vec![0u32; last + interior.reach() + 1];
+        let mut last = self.column.iter().fold(0, |m, &i| m.max(i as usize));
+        for &(unknown, row) in &self.solved {
+            last = last.max(unknown as usize);
+            if row.is_none() {
+                last = regular.row(unknown as usize).fold(last, |m, (j, _)| m.max(j));
+            }
+        }
+        let mut place = vec![0u32; last + 1];
         self.solved.iter().zip(1..).for_each(|(s, k)| place[s.0 as usize] = k);
         let matrix = SymmetricMatrix::from_columns(self.solved.len(), |k, out| {
             let mut push = |j: usize, v: f64| {
@@ -129,7 +134,7 @@ impl Band {
                 }
             };
             match self.solved[k] {
-                (node, None) => interior.row(node as usize).for_each(|(j, v)| push(j, v)),
+                (node, None) => regular.row(node as usize).for_each(|(j, v)| push(j, v)),
                 (_, Some(row)) => self.row(row as usize).for_each(|(j, v)| push(j, v)),
             }
         });
@@ -137,7 +142,7 @@ impl Band {
         Ok(())
     }
 
-    /// The cells of the grid that it lies in, ascending.
+    /// The cells that it lies in, ascending.
     pub fn cells(&self) -> &[usize] {
         self.cells.cells()
     }
@@ -179,14 +184,14 @@ impl Band {
     ///
     /// # Errors
     /// A factor that does not solve.
-    pub fn relax(&self, interior: &Interior, u: &mut [f64], b: &[f64]) -> Result<(), SolveError> {
+    pub fn relax<R: Regular>(&self, regular: &R, u: &mut [f64], b: &[f64]) -> Result<(), SolveError> {
         let Some(factor) = &self.factor else { return Ok(()) };
         let residual: Vec<f64> = self
             .solved
             .iter()
             .map(|&(unknown, row)| match row {
                 Some(k) => self.residual_of(k as usize, u, b),
-                None => b[unknown as usize] - interior.row(unknown as usize).map(|(j, v)| v * u[j]).sum::<f64>(),
+                None => b[unknown as usize] - regular.row(unknown as usize).map(|(j, v)| v * u[j]).sum::<f64>(),
             })
             .collect();
         let correction = factor.solve(&residual)?;

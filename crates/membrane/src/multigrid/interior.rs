@@ -81,11 +81,6 @@ impl Interior {
         Ok(Self { degree: p, width, rows, patch })
     }
 
-    /// By how much the number of a neighbour is greater at most.
-    pub fn reach(&self) -> usize {
-        self.degree * (self.width + 1)
-    }
-
     /// Neighbours of a regular node, itself among them, with the entries of its row.
     pub fn row(&self, node: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let (i, j) = (node % self.width % self.degree, node / self.width % self.degree);

@@ -4,7 +4,7 @@
 //! What a cycle leaves of the algebraic error is of the size of the discretisation error, so is what the front is off; the
 //! whole costs as much as a few cycles on the finest grid.
 
-use super::{Level, can_be_halved, cycle, grids, levels, on_grid, that_show};
+use super::{Ground, Level, OnGrid, OnMesh, Regular, cycle, levels, that_show};
 use crate::conditions::Conditions;
 use crate::equilibrium::Elements;
 use crate::front::Fronts;
@@ -13,6 +13,7 @@ use crate::plane_zone::PlaneZone;
 use crate::problem::Membrane;
 use crate::scales::Scales;
 use crate::zone::{ModeSpace, Zone};
+use signorini_fem::Cells;
 use signorini_solve::{Iteration, Progress, SolveError};
 
 /// Nodes along the longer side of the grid on which the fronts are found at first, and, where zones were missed there, on
@@ -27,10 +28,10 @@ const MORE: usize = 6;
 const FAR: f64 = 0.3;
 
 /// A membrane in contact on the finest of nested grids.
-pub struct NestedSolution {
+pub struct NestedSolution<R: Regular> {
     pub zone: PlaneZone,
     /// The finest level, with the displacement.
-    pub level: Level,
+    pub level: Level<R>,
     /// Steps of the fronts on each grid, the coarsest first.
     pub steps: Vec<usize>,
     pub scales: Scales,
@@ -51,14 +52,13 @@ const MOST: usize = 30;
 /// Steps without progress after which they are given up at once.
 const HOPELESS: usize = 8;
 
-/// Whether a membrane can be solved for so: on a grid with coarser ones, of even tension, without adhesion.
+/// Whether a membrane can be solved for so: on a grid with coarser ones or on a mesh whose cells were divided, of even
+/// tension, without adhesion.
 pub fn is_able<const D: usize>(membrane: &Membrane<D>) -> bool {
     D == 2
-        && membrane.cells.divisible().is_some_and(|g| g.cells() == membrane.grid.cells())
-        && membrane.cells.count() == membrane.grid.cell_count()
         && membrane.tension.constant().is_some()
         && !membrane.obstacles.are_sticky()
-        && membrane.grid.cells().iter().all(|n| can_be_halved(*n))
+        && (OnGrid::is_able(membrane) || OnMesh::is_able(membrane))
 }
 
 /// A state that meets the tolerances of every other solver; none where the way to it is not this one: the fronts were not
@@ -71,8 +71,15 @@ pub fn solution(
     at: (usize, f64),
     progress: &mut dyn Progress,
 ) -> Result<Option<Solution<2, PlaneZone>>, SolveError> {
+    if !is_able(membrane) {
+        return Ok(None);
+    }
+    let from = |first: usize, progress: &mut dyn Progress| match OnGrid::is_able(membrane) {
+        true => solution_from::<OnGrid>(membrane, first, at, progress),
+        false => solution_from::<OnMesh>(membrane, first, at, progress),
+    };
     for first in FIRST {
-        if let Some(solution) = solution_from(membrane, first, at, progress)? {
+        if let Some(solution) = from(first, progress)? {
             return Ok(Some(solution));
         }
         if progress.interrupted() || membrane.grid.node_counts().into_iter().all(|n| n / 4 <= first) {
@@ -83,13 +90,13 @@ pub fn solution(
 }
 
 /// The same from a first grid of so many nodes.
-fn solution_from(
+fn solution_from<R: Regular>(
     membrane: &Membrane<2>,
     first: usize,
     at: (usize, f64),
     progress: &mut dyn Progress,
 ) -> Result<Option<Solution<2, PlaneZone>>, SolveError> {
-    let Ok(found) = solve(membrane, 1.0, first, at, progress)? else { return Ok(None) };
+    let Ok(found) = solve::<R>(membrane, 1.0, first, at, progress)? else { return Ok(None) };
     if !found.settled {
         return Ok(None);
     }
@@ -119,23 +126,25 @@ fn solution_from(
 ///
 /// # Errors
 /// Equations that cannot be solved. The reason, where the fronts were not found on the coarsest grid.
-pub fn solve(
+pub fn solve<R: Regular>(
     membrane: &Membrane<2>,
     tolerance: f64,
     first: usize,
     at: (usize, f64),
     progress: &mut dyn Progress,
-) -> Result<Result<NestedSolution, Reason>, SolveError> {
-    let grids = grids(&membrane.grid);
-    let first = grids.iter().position(|g| g.node_counts().into_iter().max().unwrap_or(0) > first).unwrap_or(0);
-    let coarse = on_grid(membrane, &grids[first]);
+) -> Result<Result<NestedSolution<R>, Reason>, SolveError> {
+    let grounds = R::grounds(membrane);
+    let many = |ground: &Ground<R::Cells>| ground.grid.node_counts().into_iter().max().unwrap_or(0) > first;
+    let first = grounds.iter().position(many).unwrap_or(0);
+    let Some(coarse) = grounds.get(first) else { return Ok(Err(Reason::IterationLimit)) };
+    let coarse = coarse.membrane(membrane);
     let found =
         ils::solve::<2, PlaneZone>(&coarse, &mut Elements::new(&coarse), Start::Free, Rest::Final, at, progress);
     let (true, Some(scales), Some(state)) = (found.reason.converged(), found.scales, &found.equilibrium) else {
         return Ok(Err(found.reason));
     };
     let mut zone = found.zone.clone();
-    let mut levels = levels(membrane, &zone, that_show(&grids[..=first], &zone))?;
+    let mut levels = levels(membrane, &zone, that_show(&grounds[..=first], &zone))?;
     if let Some(level) = levels.last_mut() {
         level.take(state);
     }
@@ -143,12 +152,12 @@ pub fn solve(
     let mut residuals = Vec::new();
     let mut settled = true;
     let mut settled_within = None;
-    for grid in &grids[first + 1..] {
-        let here = on_grid(membrane, grid);
+    for ground in &grounds[first + 1..] {
+        let (grid, here) = (&ground.grid, ground.membrane(membrane));
         let h = grid.h();
         let scales = scales.on(&here);
         zone = zone.on_grid(grid);
-        let mut level = Level::new(&here, &zone, false)?;
+        let mut level = Level::new(&here, ground, &zone, false)?;
         if let Some(coarse) = levels.last() {
             level.interpolate(coarse);
         }
@@ -157,7 +166,7 @@ pub fn solve(
             steps.push(0);
             continue;
         }
-        let finest = grid.cells() == membrane.grid.cells();
+        let finest = ground.cells.count() == membrane.cells.count();
         let mut count = 0;
         let mut wanted = if finest || grid.degree() > 1 { STEPS } else { STEPS_BETWEEN };
         let (mut best, mut waited) = (f64::INFINITY, 0);
@@ -214,7 +223,7 @@ pub fn solve(
     // The displacement itself to round-off: forces then balance as after a factorisation.
     for _ in 0..if tolerance.is_finite() { CLOSING } else { 1 } {
         cycle(&mut levels)?;
-        if let Some(level) = levels.last()
+        if let Some(level) = levels.last_mut()
             && level.relative_residual() < CLOSED
         {
             break;

@@ -78,25 +78,30 @@ pub(super) fn find(set: &[Run], row: usize, column: usize) -> Option<usize> {
 /// For each run the number of the part of the set that it belongs to: parts meet nowhere, not even at corners.
 pub(super) fn parts(set: &[Run]) -> Vec<usize> {
     let mut root: Vec<usize> = (0..set.len()).collect();
-    fn find(root: &mut [usize], mut k: usize) -> usize {
-        while root[k] != k {
-            root[k] = root[root[k]];
-            k = root[k];
-        }
-        k
-    }
     let mut below = 0;
     for k in 0..set.len() {
         while set[below].row + 1 < set[k].row || (set[below].row < set[k].row && set[below].end < set[k].begin) {
             below += 1;
         }
         let touching = (below..k).take_while(|&j| set[j].row < set[k].row && set[j].begin <= set[k].end);
-        for j in touching {
-            let [a, b] = [j, k].map(|i| find(&mut root, i));
-            root[a.max(b)] = a.min(b);
-        }
+        touching.for_each(|j| join(&mut root, j, k));
     }
-    (0..set.len()).map(|k| find(&mut root, k)).collect()
+    (0..set.len()).map(|k| root_of(&mut root, k)).collect()
+}
+
+/// The least member of the part that a member belongs to.
+pub(super) fn root_of(root: &mut [usize], mut k: usize) -> usize {
+    while root[k] != k {
+        root[k] = root[root[k]];
+        k = root[k];
+    }
+    k
+}
+
+/// Makes the parts of two members one.
+pub(super) fn join(root: &mut [usize], a: usize, b: usize) {
+    let [a, b] = [a, b].map(|k| root_of(root, k));
+    root[a.max(b)] = a.min(b);
 }
 
 #[cfg(test)]

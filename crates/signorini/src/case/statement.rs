@@ -431,7 +431,7 @@ pub enum Mesh {
     /// A uniform grid, which the boundary may cut.
     Grid(GridKey),
     /// Triangles and quadrilaterals from a file, straight or curved; in the plane.
-    Gmsh(GmshKey),
+    Gmsh(DividedGmshKey),
 }
 
 /// A background grid: a number of cells in each direction, or their size.
@@ -484,6 +484,23 @@ pub struct GmshKey {
     /// The physical group that is the body; all cells if left out.
     #[serde(default)]
     pub group: Option<String>,
+}
+
+/// A mesh from a file whose cells may be divided.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DividedGmshKey {
+    /// A file .msh of version 2.2 or 4.1, ASCII or binary, found from the folder of the case.
+    #[schemars(with = "String")]
+    pub file: Spanned<String>,
+    /// The physical group that is the body; all cells if left out.
+    #[serde(default)]
+    pub group: Option<String>,
+    /// How often every cell is divided into four, curved sides along their curves; 0 if left out. At degree 1 the meshes
+    /// before each division are the coarser levels of a multigrid method.
+    #[serde(default)]
+    #[schemars(with = "Option<i64>")]
+    pub divisions: Option<Spanned<i64>>,
 }
 
 /// A body that does not deform.

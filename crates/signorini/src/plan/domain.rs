@@ -19,6 +19,8 @@ use std::sync::Arc;
 pub(super) const MARGIN: f64 = 1.03;
 /// How often cells are divided at most where the case does not say.
 const MOST_DIVISIONS: usize = 3;
+/// How often those of a mesh from a file may be.
+const MOST_MESH_DIVISIONS: i64 = 12;
 /// Fraction of the free memory that a solve may use.
 const MEMORY_SHARE: f64 = 0.8;
 
@@ -74,7 +76,7 @@ pub(crate) trait ReadDomain<const D: usize> {
     fn divided(&self, grid: &Grid<D>, wanted: &Wanted<D>) -> Arc<dyn Cells<D>>;
 
     /// The cells of a mesh from a file.
-    fn mesh(&self, key: &statement::GmshKey, film: &statement::Membrane) -> Result<OnCells<D>, CaseError>;
+    fn mesh(&self, key: &statement::DividedGmshKey, film: &statement::Membrane) -> Result<OnCells<D>, CaseError>;
 
     /// The domain on its cells.
     fn domain(&self, film: &statement::Membrane, span: Range<usize>) -> Result<OnCells<D>, CaseError> {
@@ -255,6 +257,11 @@ pub fn multigrid_estimate(unknowns: f64, degree: usize) -> f64 {
     unknowns * (350.0 + 300.0 / (p * p)) + unknowns.sqrt() * 4e4 * p * p
 }
 
+/// The same at degree 1 on a mesh whose cells were divided.
+pub fn mesh_multigrid_estimate(unknowns: f64) -> f64 {
+    unknowns * 1500.0
+}
+
 /// Memory that a solve may take at most.
 pub(super) fn memory_at_hand() -> f64 {
     MEMORY_SHARE * free_memory()
@@ -286,7 +293,7 @@ impl ReadDomain<1> for Planner<'_> {
         self
     }
 
-    fn mesh(&self, key: &statement::GmshKey, _: &statement::Membrane) -> Result<OnCells<1>, CaseError> {
+    fn mesh(&self, key: &statement::DividedGmshKey, _: &statement::Membrane) -> Result<OnCells<1>, CaseError> {
         Err(self
             .document
             .error(key.file.span(), "a mesh from a file belongs to a membrane in the plane")
@@ -393,14 +400,14 @@ impl ReadDomain<2> for Planner<'_> {
         Arc::new(RefinedGrid::new(grid, |b, level| wanted(b, level)))
     }
 
-    fn mesh(&self, key: &statement::GmshKey, film: &statement::Membrane) -> Result<OnCells<2>, CaseError> {
+    fn mesh(&self, key: &statement::DividedGmshKey, film: &statement::Membrane) -> Result<OnCells<2>, CaseError> {
         let document = self.document;
         if let Some(domain) = &film.domain {
             return Err(document
                 .error(domain.span(), "the mesh from a file is the domain")
                 .help("leave `domain` out, or take mesh.grid"));
         }
-        let mesh = self.gmsh::<2>(key)?;
+        let mesh = self.gmsh::<2>(&statement::GmshKey { file: key.file.clone(), group: key.group.clone() })?;
         mesh.check().map_err(|e| {
             document
                 .error(key.file.span(), format!("`{}`: {e}", key.file.get_ref()))
@@ -415,8 +422,24 @@ impl ReadDomain<2> for Planner<'_> {
                 .error(span, format!("degree {degree} on a mesh with triangles"))
                 .help("triangles have degree 1 or 2, quadrilaterals 1 to 6"));
         }
-        self.check_unknowns::<2>(mesh.cell_count() as f64 * (degree * degree) as f64, degree, key.file.span())?;
-        let cells = Arc::new(MeshCells::new(mesh, degree));
+        let divisions = key.divisions.as_ref().map_or(0, |d| *d.get_ref());
+        let span = key.divisions.as_ref().map_or(key.file.span(), |d| d.span());
+        if !(0..=MOST_MESH_DIVISIONS).contains(&divisions) {
+            let message = format!("cells are divided 0 to {MOST_MESH_DIVISIONS} times, not {divisions}");
+            return Err(document.error(span, message));
+        }
+        // Triangles are twice as many as their vertices.
+        let share = |cell: usize| if mesh.shape(cell).is_tensor() { 1.0 } else { 0.5 };
+        let vertices = (0..mesh.cell_count()).map(share).sum::<f64>() * 4f64.powi(divisions as i32);
+        let unknowns = vertices * (degree * degree) as f64;
+        if divisions > 0 && degree == 1 {
+            let bytes = memory_estimate(unknowns, 1, 2).min(mesh_multigrid_estimate(unknowns));
+            self.check_bytes(unknowns, bytes, span)?;
+        } else {
+            self.check_unknowns::<2>(unknowns, degree, span)?;
+        }
+        let undivided = Arc::new(MeshCells::new(mesh, degree));
+        let cells = (0..divisions).fold(undivided, |cells, _| Arc::new(cells.refined()));
         let pieces = Pieces { groups: cells.groups().to_vec() };
         let domain = DomainOnCells::new(Arc::new(MeshDomain(cells.clone())), &*cells);
         Ok(OnCells { grid: cells.grid(), cells, domain, pieces, refinement: Refinement::default() })

@@ -8,7 +8,7 @@ use crate::case::value::Interpreted;
 use crate::output::solid_fields::SolidDisplay;
 use crate::output::{pictures, solid_pictures};
 use crate::plan::solid::SolidPlan;
-use crate::plan::{MembranePlan, Plan, memory_estimate, multigrid_estimate};
+use crate::plan::{MembranePlan, Plan, memory_estimate, mesh_multigrid_estimate, multigrid_estimate};
 use crate::snapshot::{DisplayMesh, Sample, Snapshot};
 use serde_json::{Value, json};
 use signorini_geometry::Point;
@@ -63,7 +63,11 @@ fn of_membrane<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>) -> Result<Val
         .collect();
     let mut warnings = plan.warnings.clone();
     let multigrid = plan.by_multigrid(&plan.at(plan.increments.first().map_or(0.0, |i| i.range[0])));
-    let estimate = |n: f64, p: usize| if multigrid { multigrid_estimate(n, p) } else { memory_estimate(n, p, D) };
+    let estimate = |n: f64, p: usize| match (multigrid, plan.cells.divisible()) {
+        (true, Some(_)) => multigrid_estimate(n, p),
+        (true, None) => mesh_multigrid_estimate(n),
+        (false, _) => memory_estimate(n, p, D),
+    };
     let bytes = estimate(unknowns as f64, plan.cells.degree());
     let mut sizes = json!({
         "method": plan.method.name(),

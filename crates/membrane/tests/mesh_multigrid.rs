@@ -1,0 +1,127 @@
+//! Multigrid on meshes from a file with every cell divided into four, again and again.
+
+mod common;
+mod contraction;
+
+use common::{cells, on_mesh};
+use contraction::{circle, contraction};
+use signorini_geometry::{ClosedCurve, Jet, Point, Real};
+use signorini_membrane::equilibrium::{Elements, Equilibrium};
+use signorini_membrane::field::Formula;
+use signorini_membrane::ils::{self, Reason, Rest, Start};
+use signorini_membrane::multigrid::{Hierarchy, OnMesh, nested};
+use signorini_membrane::obstacle::{Obstacle, Side};
+use signorini_membrane::plane_zone::PlaneZone;
+use signorini_membrane::problem::Membrane;
+use signorini_membrane::report::Report;
+use signorini_membrane::zone::Zone;
+use signorini_solve::Silent;
+use signorini_verify::order::fitted;
+use std::sync::Arc;
+
+fn zone(membrane: &Membrane<2>, front: ClosedCurve) -> PlaneZone {
+    PlaneZone::new(&membrane.grid, vec![(Side::Below, front)]).on_grid(&membrane.grid)
+}
+
+/// Triangles and quadrilaterals, straight and with curved sides, cut at random.
+#[test]
+fn a_cycle_leaves_a_sixth_whatever_is_cut() {
+    let cuts = std::env::var("SIGNORINI_CUTS").ok().and_then(|v| v.parse().ok()).unwrap_or(5);
+    for (name, divisions) in [("triangles_2_6", 3), ("triangles_2_12", 2), ("triangles_1_6", 4), ("mixed_2_6", 3)] {
+        let membrane = on_mesh(cells(name, 1, divisions));
+        let rates = (0..cuts).map(|k| {
+            let t = f64::from(k);
+            let center = Point::<2>::new(0.2 * (1.3 * t).sin(), 0.2 * (2.1 * t).cos());
+            let radius = |a: f64| 0.45 + 0.1 * (0.7 * t).sin() * (2.0 * a + t).cos() + 0.04 * (3.0 * a).sin();
+            contraction::<OnMesh>(&membrane, &zone(&membrane, circle(center, radius, 48)))
+        });
+        let worst = rates.fold(0.0, f64::max);
+        println!("{name} divided {divisions} times: at most {worst:.3}");
+        assert!(worst < 0.17, "{name} divided {divisions} times: {worst}");
+    }
+}
+
+#[test]
+fn the_solution_is_that_of_the_direct_solver() {
+    for name in ["triangles_2_6", "mixed_2_6"] {
+        let mut membrane = on_mesh(cells(name, 1, 2));
+        let c = |v: f64| Jet::<2>::constant(v);
+        membrane.load = Arc::new(Formula(move |[x, y]: [Jet<2>; 2]| c(-1.0) + c(0.3) * x - c(0.2) * y));
+        let zone = zone(&membrane, circle(Point::<2>::new(0.1, 0.0), |a| 0.5 + 0.05 * (3.0 * a).cos(), 40));
+        let direct = Equilibrium::solve(&membrane, &zone, &mut Elements::new(&membrane)).expect("a solution");
+        let mut hierarchy = Hierarchy::<OnMesh>::new(&membrane, &zone).expect("levels");
+        assert!(hierarchy.levels.len() > 1);
+        for _ in 0..20 {
+            hierarchy.cycle().expect("a cycle");
+        }
+        let found = hierarchy.finest();
+        let (mut worst, mut points) = (0.0f64, 0);
+        direct.for_each_point(|cell, region, x, _| {
+            let Some((u, _)) = direct.evaluate(cell, region, x) else { return };
+            if let Some(v) = found.evaluate(x) {
+                worst = worst.max((u - v).abs());
+                points += 1;
+            }
+        });
+        // Fronts are parabolas within each cell here.
+        assert!(points > 1000 && worst < 1e-6, "{name}: {worst:e} at {points} points");
+        assert!(found.relative_residual() < 1e-12, "{name}: {:e}", found.relative_residual());
+    }
+}
+
+/// The whole contact problem: the front of a round membrane on a flat floor, by the exact radius.
+#[test]
+fn nested_iteration_finds_the_front() {
+    let exact = 0.502_474_357_08;
+    let errors = [2, 3, 4].map(|divisions| {
+        let membrane = on_mesh(cells("triangles_2_12", 1, divisions));
+        assert!(nested::is_able(&membrane));
+        let found = nested::solve::<OnMesh>(&membrane, f64::INFINITY, 32, (0, 0.0), &mut Silent);
+        let found = found.expect("solves").expect("a state");
+        assert!(found.steps.iter().skip(1).all(|s| *s <= 4), "{:?}", found.steps);
+        let area: f64 = found.zone.curves().iter().map(|c| c.signed_area()).sum();
+        ((area / std::f64::consts::PI).sqrt() - exact).abs()
+    });
+    assert!(errors[2] < 4e-6, "{errors:?}");
+    let seen = fitted(&[0.25, 0.125, 0.0625], &errors);
+    assert!(seen > 1.8, "order {seen}, {errors:?}");
+}
+
+/// What multigrid finds is what the direct solver finds on the same mesh, to less than the error of that mesh: zones, holes,
+/// area, force, and the balance.
+#[test]
+fn multigrid_and_the_direct_solver_agree() {
+    let c = |v: f64| Jet::<2>::constant(v);
+    let wavy = move |[x, y]: [Jet<2>; 2]| {
+        let cos = |v: Jet<2>| {
+            let a = c(std::f64::consts::TAU) * v;
+            a.chain(a.value.cos(), -a.value.sin(), -a.value.cos())
+        };
+        c(-0.015) - c(0.005) * cos(x) * cos(y)
+    };
+    let load = |v: f64| Arc::new(Formula(move |_: [Jet<2>; 2]| c(v)));
+    let mut waves = on_mesh(cells("triangles_2_12", 1, 3));
+    waves.obstacles.0[0].height = Arc::new(Formula(wavy));
+    waves.load = load(-0.4);
+    let mut ceiling = on_mesh(cells("mixed_2_12", 1, 2));
+    ceiling.obstacles.0[0] = Obstacle { side: Side::Above, height: Arc::new(Formula(move |_| c(0.1))), adhesion: None };
+    ceiling.load = load(1.0);
+    let mut ring = on_mesh(cells("annulus", 1, 2));
+    ring.obstacles.0[0].height = Arc::new(Formula(move |[x, _]: [Jet<2>; 2]| c(-0.05) + c(0.005) * x));
+    for (name, membrane) in [("waves", waves), ("ceiling", ceiling), ("ring", ring)] {
+        assert!(membrane.cells.divisible().is_none());
+        let found = nested::solution(&membrane, (0, 0.0), &mut Silent).expect("solves");
+        let found = found.unwrap_or_else(|| panic!("{name}: no state"));
+        assert!(found.multigrid);
+        let mut elements = Elements::new(&membrane);
+        let direct =
+            ils::solve::<2, PlaneZone>(&membrane, &mut elements, Start::Free, Rest::Final, (0, 0.0), &mut Silent);
+        assert_eq!(direct.reason, Reason::Converged, "{name}");
+        assert_eq!(found.zone.counts(), direct.zone.counts(), "{name}");
+        let [a, b] = [&found, &direct].map(|s| Report::new(s).expect("a report"));
+        println!("{name}: {} {}, {} {}", a.area(), b.area(), a.force(), b.force());
+        assert!((a.area() - b.area()).abs() < 2e-5 * b.area(), "{name}: {} {}", a.area(), b.area());
+        assert!((a.force() - b.force()).abs() < 5e-5 * b.force().abs(), "{name}: {} {}", a.force(), b.force());
+        assert!(a.equilibrium_residual < 1e-9, "{name}: {:e}", a.equilibrium_residual);
+    }
+}

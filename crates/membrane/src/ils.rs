@@ -82,8 +82,9 @@ pub struct Solution<const D: usize, Z> {
     pub conditions: Option<Conditions<D>>,
     pub scales: Option<Scales>,
     pub reason: Reason,
-    /// Equilibrium solves.
+    /// Equilibrium solves on the cells of this state, and on larger ones before that.
     pub iterations: usize,
+    pub before: usize,
     /// Residual of each iteration relative to its tolerance.
     pub residuals: Vec<f64>,
     /// Size of the largest linear system.
@@ -117,6 +118,7 @@ impl<const D: usize, Z> Solution<D, Z> {
             scales: None,
             reason: Reason::IterationLimit,
             iterations: 0,
+            before: 0,
             residuals: Vec::new(),
             unknowns: 0,
             lowest_eigenvalue: None,

@@ -67,11 +67,13 @@ impl<const D: usize> Refinement<D> {
         at: (usize, f64),
         progress: &mut dyn Progress,
     ) -> Solution<D, Z> {
-        let mut used = 0;
+        let (mut used, mut looks) = (0, 0);
         let divided = match &start {
-            Start::Zone(zone, scales, _) if *levels > 0 && !zone.is_empty() && is_near(membrane, zone, scales) => {
-                used = *levels;
-                self.divided(membrane, zone, used)
+            Start::Zone(zone, scales, _) if *levels > 0 && !zone.is_empty() => {
+                looks = 1;
+                is_near(membrane, zone, scales)
+                    .then(|| used = *levels)
+                    .and_then(|()| self.divided(membrane, zone, used))
             }
             _ => None,
         };
@@ -87,6 +89,7 @@ impl<const D: usize> Refinement<D> {
         let last = whole.cells.divisible().is_none() || D != 2 || used >= self.most;
         let rest = if last { Rest::Final } else { Rest::BeforeDivision };
         let mut best = ils::solve(whole, &mut Elements::new(whole), start, rest, at, progress);
+        best.before = looks;
         for _ in 0..MOST_ROUNDS {
             let (Some(scales), false) = (best.scales, best.zone.is_empty()) else { break };
             let astray = best.reason == Reason::IterationLimit;
@@ -110,11 +113,11 @@ impl<const D: usize> Refinement<D> {
             used = wanted;
             let start = Start::Zone(zone, scales.on(&finer), branch);
             let mut next = ils::solve(&finer, &mut Elements::new(&finer), start, Rest::Final, at, progress);
-            next.iterations += best.iterations;
+            next.before = best.before + best.iterations;
             next.jumped |= best.jumped;
             if next.reason != Reason::Interrupted && best.reason.converged() && !next.reason.converged() {
                 // What was found on coarser cells is an answer all the same.
-                best.iterations = next.iterations;
+                best.before += next.iterations;
                 best.unrefined = true;
                 break;
             }

@@ -350,7 +350,7 @@ fn solid_table(summary: &Value) {
                 .map(|f| f.iter().filter_map(Value::as_f64).map(|v| v * v).sum::<f64>().sqrt());
             println!(
                 "{time:>9} {:>7}  {name:14} {:>16} {:>14} {:>14} {:>6} {balance:>10}",
-                step["iterations"].to_string(),
+                solves(step),
                 number(force),
                 number(contact["area"].as_f64()),
                 number(contact["max_pressure"].as_f64()),
@@ -360,7 +360,7 @@ fn solid_table(summary: &Value) {
         if step["contacts"].as_object().is_none_or(|c| c.is_empty()) {
             println!(
                 "{time:>9} {:>7}  {:14} {:>16} {:>14} {:>14} {:>6} {balance:>10}",
-                step["iterations"].to_string(),
+                solves(step),
                 "-",
                 "-",
                 "-",
@@ -369,6 +369,12 @@ fn solid_table(summary: &Value) {
             );
         }
     }
+}
+
+/// All that was solved for a state, also on larger cells before.
+fn solves(step: &Value) -> String {
+    let count = |key: &str| step[key].as_u64().unwrap_or(0);
+    (count("iterations_before") + count("iterations")).to_string()
 }
 
 fn membrane_table(summary: &Value) {
@@ -387,7 +393,7 @@ fn membrane_table(summary: &Value) {
         println!(
             "{:>9} {:>7} {:>16} {:>16} {:>6} {:>6} {:>10}",
             format!("{:.6}", step["time"].as_f64().unwrap_or(f64::NAN)),
-            step["iterations"].to_string(),
+            solves(step),
             number(&contact["area"]),
             number(&contact["force"][2]),
             contact["zones"].to_string(),

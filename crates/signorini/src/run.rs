@@ -287,10 +287,10 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             if let (false, Control::Time, Some(from)) = (increment.converged, planned.control, &known)
                 && let Some(taken) = self.approach(index, from, time, &mut logged)
             {
-                solves += increment.iterations + taken;
+                solves += increment.before + increment.iterations + taken;
                 increment = self.engine.solve(&self.plan, &membrane, (index, time), &mut logged);
             }
-            increment.iterations += solves;
+            increment.before += solves;
             let mut after = self.engine.known(time, &increment);
             if planned.control != Control::Time {
                 // Nothing jumps along a path.
@@ -415,7 +415,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             self.plan.check_fields(&membrane, target).ok()?;
             self.engine.start_from(reached.zone.clone());
             let increment = self.engine.solve(&self.plan, &membrane, (index, target), progress);
-            solves += increment.iterations;
+            solves += increment.before + increment.iterations;
             match self.engine.known(target, &increment) {
                 Some(state) => reached = state,
                 None => size *= 0.5,

@@ -106,7 +106,9 @@ type Sampler<'a, const D: usize> = Box<dyn Fn(&Point<D>) -> Option<Sample> + 'a>
 pub struct Increment<'a, const D: usize> {
     pub converged: bool,
     pub reason: String,
+    /// Equilibrium solves on the cells of the state, and on larger ones before that.
     pub iterations: usize,
+    pub before: usize,
     pub residuals: Vec<f64>,
     pub unknowns: usize,
     /// What solved the equations.
@@ -358,7 +360,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         let outlines = solution.zone.outlines();
         let resolved = solution.is_resolved();
         let residuals = std::mem::take(&mut solution.residuals);
-        let (iterations, unknowns) = (solution.iterations, solution.unknowns);
+        let (iterations, before, unknowns) = (solution.iterations, solution.before, solution.unknowns);
         let stability = Stability {
             lowest_eigenvalue: solution.lowest_eigenvalue,
             jumped: solution.jumped && converged,
@@ -377,6 +379,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             converged,
             reason,
             iterations,
+            before,
             residuals,
             unknowns,
             solver: if solution.multigrid { "multigrid" } else { "direct" },
@@ -401,6 +404,7 @@ fn active_set<'a, const D: usize, Z: Zone<D>>(
         converged: false,
         reason: reason.into(),
         iterations: 0,
+        before: 0,
         residuals: Vec::new(),
         unknowns: 0,
         solver: "direct",
@@ -444,6 +448,7 @@ fn active_set<'a, const D: usize, Z: Zone<D>>(
         converged: solution.converged,
         reason: reason.into(),
         iterations: solution.iterations,
+        before: 0,
         residuals: solution.changes.iter().map(|c| *c as f64).collect(),
         unknowns: solution.unknowns,
         solver: "direct",
@@ -529,6 +534,7 @@ impl<const D: usize> Increment<'_, D> {
             "converged": self.converged,
             "reason": self.reason,
             "iterations": self.iterations,
+            "iterations_before": self.before,
             "solver": self.solver,
             "residual_history": self.residuals,
             "energy": self.report.as_ref().map(|r| r.energy),

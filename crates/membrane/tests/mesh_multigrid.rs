@@ -108,7 +108,9 @@ fn multigrid_and_the_direct_solver_agree() {
     ceiling.load = load(1.0);
     let mut ring = on_mesh(cells("annulus", 1, 2));
     ring.obstacles.0[0].height = Arc::new(Formula(move |[x, _]: [Jet<2>; 2]| c(-0.05) + c(0.005) * x));
-    for (name, membrane) in [("waves", waves), ("ceiling", ceiling), ("ring", ring)] {
+    let mut uneven = on_mesh(cells("mixed_2_6", 1, 3));
+    uneven.tension = Arc::new(Formula(move |[x, y]: [Jet<2>; 2]| c(1.0) + c(0.5) * x - c(0.3) * y * y));
+    for (name, membrane) in [("waves", waves), ("uneven tension", uneven), ("ceiling", ceiling), ("ring", ring)] {
         assert!(membrane.cells.divisible().is_none());
         let found = nested::solution(&membrane, (0, 0.0), &mut Silent).expect("solves");
         let found = found.unwrap_or_else(|| panic!("{name}: no state"));

@@ -95,9 +95,8 @@ impl Regular for OnGrid {
     }
 
     fn new(membrane: &Membrane<2>, grid: &Arc<Grid<2>>) -> Result<Self, SolveError> {
-        let tension = membrane.tension.constant().unwrap_or(1.0);
         Ok(Self {
-            interior: Interior::new(grid, tension)?,
+            interior: Interior::new(grid, &*membrane.tension)?,
             interpolation: Interpolation::new(grid),
             grid: grid.clone(),
             nodes: Vec::new(),

@@ -2,9 +2,12 @@
 //!
 //! Relaxation solves patch by patch: the nodes around a vertex of the grid, up to those on the rim of its four cells, are
 //! solved for exactly while the rim is held. Degree 1 has a single node in each patch, and is Gauss-Seidel. Patches of one
-//! row of vertices touch no node of the next row but one, so that every other row is relaxed at the same time.
+//! row of vertices touch no node of the next row but one, so that every other row is relaxed at the same time. Where the
+//! tension varies the equations do not repeat; patches are then solved as if it were everywhere what it is at their vertex.
 
 use super::runs::Run;
+use super::uneven::Uneven;
+use crate::field::Field;
 use rayon::prelude::*;
 use signorini_fem::lagrange::TensorBasis;
 use signorini_fem::{Grid, gauss_legendre};
@@ -24,6 +27,8 @@ pub(super) struct Interior {
     /// The solution of a patch: for every node of it, by the right-hand side there, row by row, and for every node of its
     /// rim, those below, those above, then left and right of each row, by the displacement there.
     patch: Vec<f64>,
+    /// The equations, where the tension is not the same everywhere; `rows` are then those of unit tension.
+    uneven: Option<Uneven>,
 }
 
 /// Nodes of a grid from which on the rows of patches are shared among threads.
@@ -32,8 +37,9 @@ const SHARED: usize = 1 << 15;
 impl Interior {
     /// # Errors
     /// A patch that cannot be solved for.
-    pub fn new(grid: &Grid<2>, tension: f64) -> Result<Self, SolveError> {
+    pub fn new(grid: &Grid<2>, field: &dyn Field<2>) -> Result<Self, SolveError> {
         let p = grid.degree();
+        let tension = field.constant().unwrap_or(1.0);
         let width = grid.node_counts()[0];
         let size = grid.cell_size();
         let (along, across) = (tension * size[1] / size[0], tension * size[0] / size[1]);
@@ -49,7 +55,7 @@ impl Interior {
             let entries = coupling([place % p, place / p]);
             entries.into_iter().map(|([dx, dy], v)| (dy * width as isize + dx, v)).collect()
         });
-        let rows = rows.collect();
+        let rows: Vec<Vec<(isize, f64)>> = rows.collect();
 
         // The patch around a vertex at the origin.
         let reach = p as isize;
@@ -78,19 +84,32 @@ impl Interior {
         }
         let factor = dense::Factor::new(m, &a).ok_or(SolveError::NotFactorised { size: m })?;
         let patch = columns.iter().flat_map(|c| factor.solve(c)).collect();
-        Ok(Self { degree: p, width, rows, patch })
+        let mut interior = Self { degree: p, width, rows, patch, uneven: None };
+        if field.constant().is_none() {
+            interior.uneven = Some(Uneven::new(grid, field, |node| interior.pattern(node)));
+        }
+        Ok(interior)
+    }
+
+    /// What the row of a node looks like: what is added to its number for each neighbour, and the entry, where it repeats.
+    fn pattern(&self, node: usize) -> &[(isize, f64)] {
+        let (i, j) = (node % self.width % self.degree, node / self.width % self.degree);
+        &self.rows[j * self.degree + i]
     }
 
     /// Neighbours of a regular node, itself among them, with the entries of its row.
     pub fn row(&self, node: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let (i, j) = (node % self.width % self.degree, node / self.width % self.degree);
-        self.rows[j * self.degree + i].iter().map(move |&(step, v)| (node.wrapping_add_signed(step), v))
+        let stored = self.uneven.as_ref().map(|uneven| uneven.row(node));
+        let entry = move |(k, &(step, v)): (usize, &(isize, f64))| {
+            (node.wrapping_add_signed(step), stored.map_or(v, |row| row[k]))
+        };
+        self.pattern(node).iter().enumerate().map(entry)
     }
 
     /// What the equations of some runs of regular nodes leave of the right-hand side.
     pub fn residual(&self, runs: &[Run], u: &[f64], b: &[f64], r: &mut [f64]) {
         let (w, p) = (self.width, self.degree);
-        if p == 1 {
+        if p == 1 && self.uneven.is_none() {
             let Stencil { own, x, y, corner } = self.stencil();
             for run in runs {
                 let at = run.row * w;
@@ -122,6 +141,9 @@ impl Interior {
     /// others.
     pub fn relax(&self, vertices: &[Run], u: &mut [f64], b: &[f64]) {
         let (w, p) = (self.width, self.degree);
+        if let Some(uneven) = &self.uneven {
+            return self.relax_uneven(uneven, vertices, u, b);
+        }
         for first in [2, 1] {
             let mut strips = Vec::new();
             let Some((_, rest)) = u.split_at_mut_checked((first - 1) * p * w) else { continue };
@@ -144,6 +166,35 @@ impl Interior {
                 strips.into_par_iter().for_each(|(runs, strip)| self.relax_strip(runs, strip));
             } else {
                 strips.into_iter().for_each(|(runs, strip)| self.relax_strip(runs, strip));
+            }
+        }
+    }
+
+    /// The same by what is left of the stored equations.
+    fn relax_uneven(&self, uneven: &Uneven, vertices: &[Run], u: &mut [f64], b: &[f64]) {
+        let (w, p) = (self.width, self.degree);
+        let side = 2 * p - 1;
+        let m = side * side;
+        let (mut left, mut step) = (vec![0.0; m], vec![0.0; m]);
+        let own = self.rows[0].iter().position(|e| e.0 == 0).unwrap_or(0);
+        for first in [0, 1] {
+            for run in vertices.iter().filter(|run| run.row % 2 == first) {
+                for odd in 0..2 {
+                    for i in (run.begin + (run.begin + odd) % 2..run.end).step_by(2) {
+                        let vertex = run.row * p * w + i * p;
+                        let corner = vertex - (p - 1) * (w + 1);
+                        let node = |k: usize| corner + k / side * w + k % side;
+                        for (k, left) in left.iter_mut().enumerate() {
+                            *left = b[node(k)] - self.row(node(k)).map(|(j, v)| v * u[j]).sum::<f64>();
+                        }
+                        let tension = uneven.row(vertex)[own] / self.rows[0][own].1;
+                        step.fill(0.0);
+                        for (column, left) in self.patch.chunks_exact(m).zip(&left) {
+                            step.iter_mut().zip(column).for_each(|(s, c)| *s += c * left);
+                        }
+                        step.iter().enumerate().for_each(|(k, s)| u[node(k)] += s / tension);
+                    }
+                }
             }
         }
     }
@@ -254,16 +305,22 @@ fn line(p: usize, place: usize) -> Line {
 mod tests {
     use super::super::runs::runs;
     use super::*;
-    use signorini_geometry::{Aabb, Point};
+    use crate::field::{Constant, Formula};
+    use signorini_geometry::{Aabb, Jet, Point, Real};
 
     /// The equations hold for the harmonic polynomials that the functions can show, on cells that are no squares, and patches
-    /// leave these as they are.
+    /// leave these as they are; so too where the equations are stored.
     #[test]
     fn harmonic_polynomials_are_solutions() {
+        check(&Constant(1.7));
+        check(&Formula(|_: [Jet<2>; 2]| Jet::constant(1.7)));
+    }
+
+    fn check(tension: &dyn Field<2>) {
         let bounds = Aabb::new(Point::<2>::zeros(), Point::<2>::new(1.2, 0.7));
         for p in 1..=8 {
             let grid = Grid::new(bounds, [5, 4], p);
-            let interior = Interior::new(&grid, 1.7).expect("patches");
+            let interior = Interior::new(&grid, tension).expect("patches");
             let z = |x: &Point<2>| {
                 let (mut re, mut im) = (1.0, 0.0);
                 for _ in 0..p {

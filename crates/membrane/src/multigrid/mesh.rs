@@ -56,7 +56,7 @@ impl Regular for OnMesh {
     }
 
     fn new(membrane: &Membrane<2>, cells: &Arc<MeshCells>) -> Result<Self, SolveError> {
-        let rows = Rows::new(cells, membrane.tension.constant().unwrap_or(1.0));
+        let rows = Rows::new(cells, &*membrane.tension);
         let mut load = vec![0.0; cells.function_count()];
         let mut functions = Vec::new();
         for cell in 0..cells.count() {

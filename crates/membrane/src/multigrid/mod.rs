@@ -18,6 +18,7 @@ mod regular;
 mod rows;
 mod runs;
 mod transfer;
+mod uneven;
 
 pub use grid::OnGrid;
 pub use level::Level;

@@ -52,13 +52,10 @@ const MOST: usize = 30;
 /// Steps without progress after which they are given up at once.
 const HOPELESS: usize = 8;
 
-/// Whether a membrane can be solved for so: on a grid with coarser ones or on a mesh whose cells were divided, of even
-/// tension, without adhesion.
+/// Whether a membrane can be solved for so: on a grid with coarser ones or on a mesh whose cells were divided, without
+/// adhesion.
 pub fn is_able<const D: usize>(membrane: &Membrane<D>) -> bool {
-    D == 2
-        && membrane.tension.constant().is_some()
-        && !membrane.obstacles.are_sticky()
-        && (OnGrid::is_able(membrane) || OnMesh::is_able(membrane))
+    D == 2 && !membrane.obstacles.are_sticky() && (OnGrid::is_able(membrane) || OnMesh::is_able(membrane))
 }
 
 /// A state that meets the tolerances of every other solver; none where the way to it is not this one: the fronts were not

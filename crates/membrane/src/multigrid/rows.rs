@@ -1,6 +1,7 @@
 //! The stiffness of a mesh, row by row.
 
 use crate::equilibrium::add_stiffness;
+use crate::field::Field;
 use signorini_fem::{Cells, MeshCells};
 
 /// The rows of a matrix: diagonal, then all other entries.
@@ -13,7 +14,7 @@ pub(super) struct Rows {
 
 impl Rows {
     /// The stiffness of all cells under a tension.
-    pub fn new(cells: &MeshCells, tension: f64) -> Self {
+    pub fn new(cells: &MeshCells, tension: &dyn Field<2>) -> Self {
         let nodes = cells.function_count();
         let mut start = vec![0u32; nodes + 1];
         for cell in 0..cells.count() {
@@ -29,9 +30,9 @@ impl Rows {
         let mut next: Vec<u32> = rows.start[..nodes].to_vec();
         let mut entries = Vec::new();
         for cell in 0..cells.count() {
-            stiffness(cells, cell, &mut entries);
+            stiffness(cells, cell, tension, &mut entries);
             for_each_pair(cells, cell, |[a, b], is_new, at| {
-                let v = tension * entries[at];
+                let v = entries[at];
                 for (own, other) in [(a as usize, b), (b as usize, a)] {
                     let (begin, end) = (rows.start[own] as usize, &mut next[own]);
                     let known = rows.column[begin..*end as usize].iter().position(|j| *j == other).filter(|_| !is_new);
@@ -102,15 +103,20 @@ fn for_each_pair(cells: &MeshCells, cell: usize, mut visit: impl FnMut([u32; 2],
     }
 }
 
-/// The stiffness of a cell under unit tension, its vertices in their order.
-fn stiffness(cells: &MeshCells, cell: usize, out: &mut Vec<f64>) {
+/// The stiffness of a cell, its vertices in their order.
+fn stiffness(cells: &MeshCells, cell: usize, tension: &dyn Field<2>, out: &mut Vec<f64>) {
     out.clear();
     let corners = cells.corner_functions(cell);
     if cells.is_straight(cell) {
         // Half the product of two sides over the double area, each side opposite a corner.
         let x = [0, 1, 2].map(|k| cells.node(corners[k] as usize));
         let side = [x[2] - x[1], x[0] - x[2], x[1] - x[0]];
-        let scale = 0.5 / side[0].perp(&side[1]);
+        let double = side[0].perp(&side[1]);
+        let mean = tension.constant().unwrap_or_else(|| {
+            let weighted = cells.rule(cell).iter().map(|p| p.weight * tension.value(&p.x)).sum::<f64>();
+            2.0 * weighted / double
+        });
+        let scale = 0.5 * mean / double;
         for a in side {
             out.extend(side.iter().map(|b| scale * a.dot(b)));
         }
@@ -118,7 +124,7 @@ fn stiffness(cells: &MeshCells, cell: usize, out: &mut Vec<f64>) {
     }
     let n = corners.len();
     let mut matrix = vec![0.0; n * n];
-    cells.for_each_point(cell, &mut |p, t| add_stiffness(&mut matrix, t, p.weight));
+    cells.for_each_point(cell, &mut |p, t| add_stiffness(&mut matrix, t, p.weight * tension.value(&p.x)));
     // From the order of functions to that of vertices.
     let mut functions = Vec::new();
     cells.functions(cell, &mut functions);

@@ -62,9 +62,10 @@ fn of_membrane<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>) -> Result<Val
         })
         .collect();
     let mut warnings = plan.warnings.clone();
-    let multigrid = plan.by_multigrid(&plan.at(plan.increments.first().map_or(0.0, |i| i.range[0])));
+    let membrane = plan.at(plan.increments.first().map_or(0.0, |i| i.range[0]));
+    let multigrid = plan.by_multigrid(&membrane);
     let estimate = |n: f64, p: usize| match (multigrid, plan.cells.divisible()) {
-        (true, Some(_)) => multigrid_estimate(n, p),
+        (true, Some(_)) => multigrid_estimate(n, p, membrane.tension.constant().is_some()),
         (true, None) => mesh_multigrid_estimate(n),
         (false, _) => memory_estimate(n, p, D),
     };

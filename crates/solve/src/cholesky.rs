@@ -160,6 +160,11 @@ impl Factor {
         Ok(())
     }
 
+    /// Solves in `x`, without refinement: for corrections that are themselves refined later.
+    pub fn solve_once(&self, x: &mut [f64]) -> Result<(), SolveError> {
+        self.substitute(x)
+    }
+
     fn substitute(&self, x: &mut [f64]) -> Result<(), SolveError> {
         let symbolic = &self.analysis.2;
         let size = self.matrix.size();
@@ -212,6 +217,9 @@ mod tests {
             let y = symbolic.factor(a.clone()).unwrap().solve(&b).unwrap();
             let error = x.iter().zip(&y).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
             assert!(error < 1e-9, "{error}");
+            let mut once = b.clone();
+            symbolic.factor(a.clone()).unwrap().solve_once(&mut once).unwrap();
+            assert!(once.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-8));
         }
     }
 

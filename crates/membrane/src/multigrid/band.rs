@@ -186,7 +186,8 @@ impl Band {
     /// A factor that does not solve.
     pub fn relax<R: Regular>(&self, regular: &R, u: &mut [f64], b: &[f64]) -> Result<(), SolveError> {
         let Some(factor) = &self.factor else { return Ok(()) };
-        let residual: Vec<f64> = self
+        // The next sweep refines this one.
+        let mut correction: Vec<f64> = self
             .solved
             .iter()
             .map(|&(unknown, row)| match row {
@@ -194,7 +195,7 @@ impl Band {
                 None => b[unknown as usize] - regular.row(unknown as usize).map(|(j, v)| v * u[j]).sum::<f64>(),
             })
             .collect();
-        let correction = factor.solve(&residual)?;
+        factor.solve_once(&mut correction)?;
         self.solved.iter().zip(&correction).for_each(|((unknown, _), c)| u[*unknown as usize] += c);
         Ok(())
     }

@@ -4,11 +4,14 @@
 //! 1e-8, on `SIGNORINI_THREADS` threads (one if it says nothing), on grids of `SIGNORINI_DEGREE` alone if it says something.
 //!
 //! `cargo bench -p signorini-membrane --bench nested`
+//!
+//! With `SIGNORINI_PETSC` naming a Python that has petsc4py with hypre, numpy and scipy, PETSc solves the same problems at
+//! degree 1 beside, from 1e5 nodes on: TAO tron and SNES vinewtonrsls on the same triangles, SNES on the same square grid.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
 
-use signorini_fem::Grid;
+use signorini_fem::{Cells, Grid, MeshCells};
 use signorini_geometry::{Aabb, Ellipse, Jet, Point, Real};
 use signorini_membrane::domain::{BoxDomain, Domain, DomainOnCells, ImplicitDomain};
 use signorini_membrane::field::{Constant, Formula, SharedField};
@@ -18,8 +21,12 @@ use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::{Measure, Membrane, Support};
 use signorini_membrane::zone::Zone;
 use signorini_solve::Silent;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
+
+/// Nodes from which on PETSc runs beside.
+const BESIDE: f64 = 1e5;
 
 /// Radius of the zone on the flat floor.
 const RADIUS: f64 = 0.502_474_357_08;
@@ -118,6 +125,72 @@ impl Ladder<'_> {
     }
 }
 
+/// PETSc on the same problem, one process for each run.
+fn petsc(problem: &[&str]) {
+    let Ok(python) = std::env::var("SIGNORINI_PETSC") else { return };
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/petsc.py");
+    let run = std::process::Command::new(&python).arg(script).args(problem).env("OMP_NUM_THREADS", "1").output();
+    let (row, told) = match run {
+        Ok(run) => [run.stdout, run.stderr].map(|text| String::from_utf8_lossy(&text).into_owned()).into(),
+        Err(error) => (String::new(), error.to_string()),
+    };
+    let number = |key: &str| {
+        let rest = row.split_once(&format!("\"{key}\": "))?.1;
+        rest.split([',', '}']).next()?.parse::<f64>().ok()
+    };
+    let name = format!("PETSc {}", problem[2]);
+    match (number("unknowns"), number("seconds"), number("megabytes")) {
+        (Some(n), Some(s), Some(mb)) => {
+            println!("{n:>10} {s:>9.3} {:>8.2} {mb:>9.0} {:>9.0} {:>9}  {name}", 1e6 * s / n, 1e6 * mb / n, "")
+        }
+        _ => println!("{:>10} {name} did not run: {}", "", told.lines().last().unwrap_or("it said nothing")),
+    }
+}
+
+/// Writes the triangles of all levels for PETSc: positions, corners, which nodes are held, and the parents of each.
+fn write_levels(folder: &Path, finest: &Arc<MeshCells>) -> std::io::Result<()> {
+    let mut levels = vec![finest.clone()];
+    while let Some(coarser) = levels.last().and_then(|cells| cells.parent()).map(|parent| parent.cells.clone()) {
+        levels.push(coarser);
+    }
+    for (level, cells) in levels.iter().rev().enumerate() {
+        let write = |end: &str, bytes: Vec<u8>| std::fs::write(folder.join(format!("{level:02}.{end}")), bytes);
+        let nodes = cells.function_count();
+        let integers = |list: &mut dyn Iterator<Item = u32>| list.flat_map(u32::to_le_bytes).collect::<Vec<u8>>();
+        let positions = (0..nodes).flat_map(|n| cells.node(n).data.0[0]);
+        write("nodes", positions.flat_map(f64::to_le_bytes).collect())?;
+        write("cells", integers(&mut (0..cells.count()).flat_map(|cell| cells.corner_functions(cell).to_vec())))?;
+        let mut edge = vec![0u8; nodes];
+        for side in cells.boundary_sides() {
+            let corners = cells.corner_functions(side.cell);
+            for end in [side.side, (side.side + 1) % corners.len()] {
+                edge[corners[end] as usize] = 1;
+            }
+        }
+        write("edge", edge)?;
+        let parents = match cells.parent() {
+            Some(parent) => parent.nodes.clone(),
+            None => (0..nodes as u32).map(|n| [n; 4]).collect(),
+        };
+        write("parents", integers(&mut parents.into_iter().flatten()))?;
+    }
+    Ok(())
+}
+
+/// PETSc on the triangles of a mesh and of those that it was divided from.
+fn petsc_on_mesh(cells: &Arc<MeshCells>) {
+    if std::env::var_os("SIGNORINI_PETSC").is_none() {
+        return;
+    }
+    let folder = std::env::temp_dir().join(format!("signorini-levels-{}", std::process::id()));
+    let written = std::fs::create_dir_all(&folder).and_then(|()| write_levels(&folder, cells));
+    match (written, folder.to_str()) {
+        (Ok(()), Some(path)) => ["tron", "vinewtonrsls"].into_iter().for_each(|how| petsc(&["mesh", path, how])),
+        (written, _) => println!("{:>10} PETSc did not run: {written:?}", ""),
+    }
+    let _ = std::fs::remove_dir_all(&folder);
+}
+
 fn head(name: &str) {
     println!(
         "{:>10} {:>9} {:>8} {:>9} {:>9} {:>9}  {name}",
@@ -146,7 +219,11 @@ fn main() {
         let mut ladder = Ladder { pool: &pool, figure: &radius, last: None };
         let nodes = |divisions: usize| 434.0 * 4f64.powi(divisions as i32);
         for divisions in (2..).take_while(|d| nodes(*d) < most) {
-            ladder.row::<OnMesh>(&|| common::on_mesh(common::cells("triangles_2_12", 1, divisions)));
+            let cells = || common::cells("triangles_2_12", 1, divisions);
+            ladder.row::<OnMesh>(&|| common::on_mesh(cells()));
+            if nodes(divisions) > BESIDE {
+                petsc_on_mesh(&cells());
+            }
         }
     }
     for degree in [1, 2, 4].into_iter().filter(|d| only == 0 || *d == only) {
@@ -157,6 +234,9 @@ fn main() {
                 let more = share * ((n * degree) as f64).powi(2) <= most;
                 if !more || !ladder.row::<OnGrid>(&|| membrane([n, degree])) {
                     break;
+                }
+                if degree == 1 && name.starts_with("square") && (n * n) as f64 > BESIDE {
+                    ["hypre", "mg"].into_iter().for_each(|how| petsc(&["grid", &n.to_string(), how]));
                 }
             }
         }

@@ -256,7 +256,7 @@ pub fn memory_estimate(unknowns: f64, degree: usize, dimension: usize) -> f64 {
 pub fn multigrid_estimate(unknowns: f64, degree: usize, is_even: bool) -> f64 {
     let p = degree as f64;
     let stored = if is_even { 0.0 } else { 11.0 * (p + 2.0) * (p + 2.0) };
-    unknowns * (350.0 + 300.0 / (p * p) + stored) + unknowns.sqrt() * 4e4 * p * p
+    unknowns * (450.0 + 300.0 / (p * p) + stored) + unknowns.sqrt() * 4e4 * p * p
 }
 
 /// The same at degree 1 on a mesh whose cells were divided.

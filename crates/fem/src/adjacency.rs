@@ -1,5 +1,6 @@
 //! Which cells of a plane mesh share sides.
 
+use crate::lists::Lists;
 use crate::mesh::{Mesh, Side};
 use crate::mesh_refinement::{PARTS, between_parts};
 
@@ -18,20 +19,14 @@ impl Adjacency {
     pub fn new(mesh: &Mesh<2>) -> Self {
         let width = (0..mesh.cell_count()).map(|cell| mesh.shape(cell).sides().len()).max().unwrap_or(0);
         let mut across = vec![NONE; width * mesh.cell_count()];
-        // Sides by their lower vertex: at each there are few.
-        let mut start = vec![0u32; mesh.nodes().len() + 1];
-        for_each_side(mesh, |[low, _], _| start[low as usize + 1] += 1);
-        for k in 1..start.len() {
-            start[k] += start[k - 1];
-        }
-        let mut next = start.clone();
-        let mut sides = vec![(0u32, 0u32); next.last().map_or(0, |n| *n as usize)];
-        for_each_side(mesh, |[low, high], side| {
-            sides[next[low as usize] as usize] = (high, side.cell * width as u32 + u32::from(side.side));
-            next[low as usize] += 1;
+        // Sides by their lower vertex, with the other and their place: at each there are few.
+        let sides = Lists::new(mesh.nodes().len(), |visit| {
+            for_each_side(mesh, |[low, high], side| {
+                visit(low as usize, (high, side.cell * width as u32 + u32::from(side.side)));
+            });
         });
-        for range in start.windows(2) {
-            let here = &sides[range[0] as usize..range[1] as usize];
+        for vertex in 0..mesh.nodes().len() {
+            let here = sides.of(vertex);
             for (k, &(end, side)) in here.iter().enumerate() {
                 if let Some(&(_, other)) = here[..k].iter().find(|(e, _)| *e == end) {
                     across[side as usize] = other;

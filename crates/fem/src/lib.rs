@@ -25,6 +25,7 @@ pub mod gmsh;
 pub mod grid;
 pub mod hierarchic;
 pub mod lagrange;
+mod lists;
 pub mod mesh;
 pub mod mesh_cells;
 pub mod mesh_refinement;

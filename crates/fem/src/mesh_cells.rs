@@ -14,6 +14,7 @@ use crate::dofs::DofMap;
 use crate::grid::Grid;
 use crate::hierarchic::{HierarchicBasis, MAX_DEGREE, Values};
 use crate::lagrange::Tabulation;
+use crate::lists::Lists;
 use crate::mesh::{Mesh, Side};
 use crate::mesh_refinement::{PARTS, parts};
 use crate::reference::{CellShape, Local};
@@ -41,8 +42,8 @@ pub struct MeshCells {
     rules: Vec<Vec<RulePoint>>,
     buckets: Grid<2>,
     /// For each bucket, the cells and the boundary sides that reach into it, once these are asked for.
-    cells_in: OnceLock<Lists>,
-    sides_in: OnceLock<Lists>,
+    cells_in: OnceLock<Lists<u32>>,
+    sides_in: OnceLock<Lists<u32>>,
     adjacency: Adjacency,
     /// Sides on the boundary, cell by cell, and points along each.
     sides: Vec<BoundarySide>,
@@ -89,34 +90,6 @@ const STRAIGHT: u32 = u32::MAX;
 
 /// Parts that a side of the boundary is drawn in.
 const DRAWN: usize = 4;
-
-/// Lists of numbers, one behind the other.
-struct Lists {
-    start: Vec<u32>,
-    all: Vec<u32>,
-}
-
-impl Lists {
-    /// So many lists, of pairs of list and number that are visited twice, in the same order.
-    fn new(count: usize, pairs: impl Fn(&mut dyn FnMut(usize, u32))) -> Self {
-        let mut start = vec![0u32; count + 1];
-        pairs(&mut |list, _| start[list + 1] += 1);
-        for k in 1..start.len() {
-            start[k] += start[k - 1];
-        }
-        let mut next = start.clone();
-        let mut all = vec![0; start[count] as usize];
-        pairs(&mut |list, number| {
-            all[next[list] as usize] = number;
-            next[list] += 1;
-        });
-        Self { start, all }
-    }
-
-    fn of(&self, list: usize) -> &[u32] {
-        &self.all[self.start[list] as usize..self.start[list + 1] as usize]
-    }
-}
 
 impl MeshCells {
     /// Functions of the given degree on a mesh that [`Mesh::check`] accepts.
@@ -333,7 +306,7 @@ impl MeshCells {
     }
 
     /// For each bucket the numbers that `all` visits with cells which reach into it.
-    fn lists(&self, all: impl Fn(&mut dyn FnMut(usize, u32))) -> Lists {
+    fn lists(&self, all: impl Fn(&mut dyn FnMut(usize, u32))) -> Lists<u32> {
         Lists::new(self.buckets.cell_count(), |visit| {
             all(&mut |cell, number| {
                 for_each_bucket(&self.buckets, &self.bounds_of(cell), |bucket| visit(bucket, number))
@@ -343,12 +316,6 @@ impl MeshCells {
 
     fn bent(&self, cell: usize) -> Option<&Bent> {
         self.bent.get(self.bent_at[cell] as usize)
-    }
-
-    /// The vertices at the ends of a side.
-    fn ends(&self, cell: usize, side: usize) -> [Point<2>; 2] {
-        let ends = self.mesh.shape(cell).sides()[side];
-        [ends[0], ends[1]].map(|v| self.mesh.nodes()[self.mesh.vertices(cell).nth(v).unwrap_or(0) as usize])
     }
 
     /// The corners of a triangle.
@@ -372,15 +339,12 @@ impl MeshCells {
     /// Reference coordinates of a point in a cell or near it, and where there are none, far beyond a strongly curved cell,
     /// those of the linear map of its centre.
     fn local(&self, cell: usize, x: &Point<2>) -> Local {
-        let middle = self.mesh.shape(cell).centre();
-        let bent = match self.bent(cell) {
-            Some(bent) => bent,
-            None => {
-                let [a, b, c] = self.corners(cell);
-                let first = small::inverse(&edges(&[a, b, c])) * (x - a);
-                return [first[0], first[1], 0.0];
-            }
+        let Some(bent) = self.bent(cell) else {
+            let corners = self.corners(cell);
+            let first = small::inverse(&edges(&corners)) * (x - corners[0]);
+            return [first[0], first[1], 0.0];
         };
+        let middle = self.mesh.shape(cell).centre();
         let first = bent.inverse * (x - bent.centre);
         let linear: Local = [middle[0] + first[0], middle[1] + first[1], 0.0];
         // A cell with a nearly straight corner folds just beyond it: of two places for a point the one inside counts.
@@ -520,12 +484,12 @@ fn boundary(mesh: &Mesh<2>, adjacency: &Adjacency) -> Boundary {
 
 impl CellByCell<2> for MeshCells {
     fn neighbours_of(&self, cell: usize, out: &mut Vec<Neighbours>) {
-        let shape = self.mesh.shape(cell);
-        for side in 0..shape.sides().len() {
-            let Some(other) = self.adjacency.across(Side { cell: cell as u32, side: side as u8 }) else { continue };
-            if other > cell {
-                let [a, b] = self.ends(cell, side);
-                let width = 0.5 * (self.volume(cell) + self.volume(other)) / (a - b).norm();
+        for side in 0..self.mesh.shape(cell).sides().len() {
+            let side = Side { cell: cell as u32, side: side as u8 };
+            if let Some(other) = self.adjacency.across(side).filter(|other| *other > cell) {
+                let ends = self.mesh.side_vertices(side);
+                let length = (self.mesh.nodes()[ends[0] as usize] - self.mesh.nodes()[ends[1] as usize]).norm();
+                let width = 0.5 * (self.volume(cell) + self.volume(other)) / length;
                 out.push(Neighbours { cells: [cell, other], width, kind: None });
             }
         }

@@ -134,10 +134,8 @@ fn petsc(problem: &[&str]) {
         Ok(run) => [run.stdout, run.stderr].map(|text| String::from_utf8_lossy(&text).into_owned()).into(),
         Err(error) => (String::new(), error.to_string()),
     };
-    let number = |key: &str| {
-        let rest = row.split_once(&format!("\"{key}\": "))?.1;
-        rest.split([',', '}']).next()?.parse::<f64>().ok()
-    };
+    let figures: serde_json::Value = serde_json::from_str(&row).unwrap_or_default();
+    let number = |key: &str| figures[key].as_f64();
     let name = format!("PETSc {}", problem[2]);
     match (number("unknowns"), number("seconds"), number("megabytes")) {
         (Some(n), Some(s), Some(mb)) => {

@@ -71,9 +71,12 @@ impl<const D: usize> Refinement<D> {
         let divided = match &start {
             Start::Zone(zone, scales, _) if *levels > 0 && !zone.is_empty() => {
                 looks = 1;
-                is_near(membrane, zone, scales)
-                    .then(|| used = *levels)
-                    .and_then(|()| self.divided(membrane, zone, used))
+                if is_near(membrane, zone, scales) {
+                    used = *levels;
+                    self.divided(membrane, zone, used)
+                } else {
+                    None
+                }
             }
             _ => None,
         };

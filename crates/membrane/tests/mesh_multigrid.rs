@@ -1,15 +1,15 @@
 //! Multigrid on meshes from a file with every cell divided into four, again and again.
 
 mod common;
-mod contraction;
+mod cycles;
 
 use common::{cells, on_mesh};
-use contraction::{circle, contraction};
+use cycles::{beside_the_direct_solver, circle, contraction};
 use signorini_geometry::{ClosedCurve, Jet, Point, Real};
-use signorini_membrane::equilibrium::{Elements, Equilibrium};
+use signorini_membrane::equilibrium::Elements;
 use signorini_membrane::field::Formula;
 use signorini_membrane::ils::{self, Reason, Rest, Start};
-use signorini_membrane::multigrid::{Hierarchy, OnMesh, nested};
+use signorini_membrane::multigrid::{OnMesh, nested};
 use signorini_membrane::obstacle::{Obstacle, Side};
 use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::Membrane;
@@ -48,24 +48,10 @@ fn the_solution_is_that_of_the_direct_solver() {
         let c = |v: f64| Jet::<2>::constant(v);
         membrane.load = Arc::new(Formula(move |[x, y]: [Jet<2>; 2]| c(-1.0) + c(0.3) * x - c(0.2) * y));
         let zone = zone(&membrane, circle(Point::<2>::new(0.1, 0.0), |a| 0.5 + 0.05 * (3.0 * a).cos(), 40));
-        let direct = Equilibrium::solve(&membrane, &zone, &mut Elements::new(&membrane)).expect("a solution");
-        let mut hierarchy = Hierarchy::<OnMesh>::new(&membrane, &zone).expect("levels");
-        assert!(hierarchy.levels.len() > 1);
-        for _ in 0..20 {
-            hierarchy.cycle().expect("a cycle");
-        }
-        let found = hierarchy.finest();
-        let (mut worst, mut points) = (0.0f64, 0);
-        direct.for_each_point(|cell, region, x, _| {
-            let Some((u, _)) = direct.evaluate(cell, region, x) else { return };
-            if let Some(v) = found.evaluate(x) {
-                worst = worst.max((u - v).abs());
-                points += 1;
-            }
-        });
+        let (worst, points, left) = beside_the_direct_solver::<OnMesh>(&membrane, &zone, 20);
         // Fronts are parabolas within each cell here.
         assert!(points > 1000 && worst < 1e-6, "{name}: {worst:e} at {points} points");
-        assert!(found.relative_residual() < 1e-12, "{name}: {:e}", found.relative_residual());
+        assert!(left < 1e-12, "{name}: {left:e}");
     }
 }
 

@@ -107,25 +107,19 @@ impl Band {
         let outer = (0..global.len()).filter(|&i| !stored[i]).map(|i| global[i]);
         band.solved.extend(outer.chain(also.iter().map(|node| *node as u32)).map(|node| (node, None)));
         band.global = global;
-        band.factorise(regular)?;
+        band.factorise(regular, first + more)?;
         Ok(band)
     }
 
-    fn factorise<R: Regular>(&mut self, regular: &R) -> Result<(), SolveError> {
+    /// Factorises the equations of the band, where the level has so many unknowns up to its last one.
+    fn factorise<R: Regular>(&mut self, regular: &R, count: usize) -> Result<(), SolveError> {
         self.solved.sort_unstable();
         self.solved.dedup_by_key(|s| s.0);
         if self.solved.is_empty() {
             return Ok(());
         }
         // The place of each, counted from one; of all that is not there nothing is ever touched.
-        let mut last = self.column.iter().fold(0, |m, &i| m.max(i as usize));
-        for &(unknown, row) in &self.solved {
-            last = last.max(unknown as usize);
-            if row.is_none() {
-                last = regular.row(unknown as usize).fold(last, |m, (j, _)| m.max(j));
-            }
-        }
-        let mut place = vec![0u32; last + 1];
+        let mut place = vec![0u32; count];
         self.solved.iter().zip(1..).for_each(|(s, k)| place[s.0 as usize] = k);
         let matrix = SymmetricMatrix::from_columns(self.solved.len(), |k, out| {
             let mut push = |j: usize, v: f64| {

@@ -85,6 +85,9 @@ impl<R: Regular> Hierarchy<R> {
     }
 
     /// The finest level.
+    ///
+    /// # Panics
+    /// Where there are no levels.
     pub fn finest(&mut self) -> &mut Level<R> {
         let last = self.levels.len() - 1;
         &mut self.levels[last]

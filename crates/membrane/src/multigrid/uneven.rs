@@ -6,7 +6,7 @@ use signorini_fem::{Cells, Grid};
 
 /// Entries of all rows, each in the order of the pattern of its node.
 pub(super) struct Uneven {
-    start: Vec<u32>,
+    start: Vec<usize>,
     value: Vec<f64>,
 }
 
@@ -19,7 +19,7 @@ impl Uneven {
         let mut start = Vec::with_capacity(width * rows + 1);
         start.push(0);
         for node in 0..width * rows {
-            start.push(start[node] + pattern(node).len() as u32);
+            start.push(start[node] + pattern(node).len());
         }
         // Products of slopes are the same in all cells, and so is where the entries go.
         let mut t = Tabulation::default();
@@ -35,7 +35,7 @@ impl Uneven {
         let place = |a: usize, b: usize| pattern(nodes[a] as usize).iter().position(|e| e.0 == step(a, b)).unwrap_or(0);
         let places: Vec<usize> = (0..n * n).map(|k| place(k / n, k % n)).collect();
 
-        let mut value = vec![0.0; start[width * rows] as usize];
+        let mut value = vec![0.0; start[width * rows]];
         let mut matrix = vec![0.0; n * n];
         for cell in 0..grid.cell_count() {
             matrix.fill(0.0);
@@ -45,7 +45,7 @@ impl Uneven {
             }
             grid.cell_nodes(cell, &mut nodes);
             for (k, (v, place)) in matrix.iter().zip(&places).enumerate() {
-                value[start[nodes[k / n] as usize] as usize + place] += v;
+                value[start[nodes[k / n] as usize] + place] += v;
             }
         }
         Self { start, value }
@@ -53,6 +53,6 @@ impl Uneven {
 
     /// The entries of a node.
     pub fn row(&self, node: usize) -> &[f64] {
-        &self.value[self.start[node] as usize..self.start[node + 1] as usize]
+        &self.value[self.start[node]..self.start[node + 1]]
     }
 }

@@ -1,6 +1,7 @@
-//! How much of the error a cycle leaves, for the tests of multigrid.
+//! What cycles leave of the error, for the tests of multigrid.
 
 use signorini_geometry::{ClosedCurve, Point};
+use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::multigrid::{Hierarchy, Regular};
 use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::Membrane;
@@ -34,4 +35,29 @@ pub fn contraction<R: Regular>(membrane: &Membrane<2>, zone: &PlaneZone) -> f64 
         norms.push(norm(&mut hierarchy));
     }
     (norms[9] / norms[5]).powf(0.25)
+}
+
+/// After so many cycles, the largest difference of the displacement from that of the direct solver, the number of points
+/// where they were compared, and the relative residual.
+pub fn beside_the_direct_solver<R: Regular>(
+    membrane: &Membrane<2>,
+    zone: &PlaneZone,
+    cycles: usize,
+) -> (f64, usize, f64) {
+    let direct = Equilibrium::solve(membrane, zone, &mut Elements::new(membrane)).expect("a solution");
+    let mut hierarchy = Hierarchy::<R>::new(membrane, zone).expect("levels");
+    assert!(hierarchy.levels.len() > 1);
+    for _ in 0..cycles {
+        hierarchy.cycle().expect("a cycle");
+    }
+    let found = hierarchy.finest();
+    let (mut worst, mut points) = (0.0f64, 0);
+    direct.for_each_point(|cell, region, x, _| {
+        let Some((u, _)) = direct.evaluate(cell, region, x) else { return };
+        if let Some(v) = found.evaluate(x) {
+            worst = worst.max((u - v).abs());
+            points += 1;
+        }
+    });
+    (worst, points, found.relative_residual())
 }

@@ -25,14 +25,15 @@ use signorini_fem::ghost_penalty;
 use signorini_fem::lagrange::Tabulation;
 use signorini_geometry::{Point, Vector};
 use signorini_solve::{Factor, SolveError, Symbolic, SymmetricMatrix};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::OnceLock;
 
 /// Cells whose local systems are in memory at once.
 const CHUNK: usize = 4096;
 
-/// Where the equations are not positive definite, parts that fill no cell to this share are held, one after the other.
-const HOLDS: [f64; 2] = [0.25, 1.0];
+/// Where the equations are not positive definite, parts that fill no cell to this share are held, one after the other; then
+/// slivers are tied to their neighbours by so much more, where fronts that meet the boundary leave wedges.
+const HOLDS: [(f64, f64); 4] = [(0.25, 1.0), (1.0, 1.0), (1.0, 4.0), (1.0, 16.0)];
 
 /// Penalty of Nitsche's method, to be divided by the cell size.
 pub(crate) fn nitsche_penalty(degree: usize) -> f64 {
@@ -43,6 +44,9 @@ pub(crate) fn nitsche_penalty(degree: usize) -> f64 {
 fn penalty<const D: usize>(membrane: &Membrane<D>, cell: usize) -> f64 {
     nitsche_penalty(membrane.cells.degree()) / membrane.cells.size(cell)
 }
+
+/// What is left of that weight at a sliver of no size: enough for round-off.
+const LEAST: f64 = 1e-4;
 
 /// Weight of the ghost penalty at a sliver; smaller ones lose positive definiteness when a straight boundary cuts slivers only.
 pub(crate) fn ghost_weight(degree: usize) -> f64 {
@@ -184,9 +188,9 @@ impl<const D: usize> Equilibrium<D> {
         }
         let mut system = System::assemble(membrane, zone, elements);
         let mut factor = elements.symbolic.factor(system.matrix);
-        for needed in HOLDS {
+        for (needed, tied) in HOLDS {
             if let Err(SolveError::NotPositiveDefinite { .. }) = factor {
-                system = System::assemble(membrane, zone, elements);
+                system = System::tied(membrane, Quadrature::new(membrane, zone), elements, tied);
                 hold_thin_parts(membrane, elements, &system.quadrature, &system.unknowns, &mut system.matrix, needed);
                 factor = elements.symbolic.factor(system.matrix);
             }
@@ -363,6 +367,11 @@ impl<const D: usize> System<D> {
 
     /// The system for a quadrature at hand.
     pub fn on(membrane: &Membrane<D>, quadrature: Quadrature<D>, elements: &Elements<D>) -> Self {
+        Self::tied(membrane, quadrature, elements, 1.0)
+    }
+
+    /// The same with slivers tied to their neighbours by so much more.
+    fn tied(membrane: &Membrane<D>, quadrature: Quadrature<D>, elements: &Elements<D>, tied: f64) -> Self {
         let unknowns = number(membrane, &quadrature);
         let pairs = ghost_pairs(membrane, elements, &quadrature, &unknowns);
         let mut cliques: Vec<Vec<u32>> = unknowns.all().map(|(_, _, dofs)| dofs.to_vec()).collect();
@@ -401,7 +410,7 @@ impl<const D: usize> System<D> {
                 }
             }
         }
-        let weight = ghost_weight(membrane.cells.degree());
+        let weight = tied * ghost_weight(membrane.cells.degree());
         for pair in &pairs {
             matrix.add(&pair.dofs, elements.ghost(membrane, pair), weight * pair.need * pair.tension);
         }
@@ -515,6 +524,7 @@ pub(crate) fn ghost_pairs<const D: usize>(
 ) -> Vec<GhostPair> {
     let mut pairs = Vec::new();
     let is_cut = |cell: usize| matches!(quadrature.cells[cell], Cell::Cut(_));
+    let held = held_along(membrane, quadrature);
     for (number, neighbours) in elements.neighbours.iter().enumerate() {
         let [lower, upper] = neighbours.cells;
         if !is_cut(lower) && !is_cut(upper) {
@@ -531,16 +541,34 @@ pub(crate) fn ghost_pairs<const D: usize>(
                     Cell::Outside => None,
                 })
                 .unwrap_or_else(|| membrane.cells.bounds_of(lower).center());
-            // A full cell needs no help, a sliver all of it; in between the weight is continuous in the cut, so the
-            // slope jump is continuous in the front.
-            let missing =
-                1.0 - share(membrane, quadrature, lower, region).min(share(membrane, quadrature, upper, region));
-            let need = missing.powi(2) * membrane.measure.weight(&x);
+            // A full cell needs no help, a sliver as much as it is held along: the method of Nitsche leans on no more. The
+            // weight is continuous in the cut, also as slivers come and go whose neighbours would each have them be
+            // different, so the slope jump is continuous in the front.
+            let [a, b] = neighbours.cells.map(|cell| share(membrane, quadrature, cell, region));
+            let [of_a, of_b] = neighbours.cells.map(|cell| held.get(&cell).map_or(1.0, |along| along.min(1.0)));
+            let along = (of_a * b + of_b * a) / (a + b).max(f64::MIN_POSITIVE);
+            let leant = LEAST + (1.0 - LEAST) * along * (2.0 - along);
+            let need = (1.0 - a.min(b)).powi(2) * leant * membrane.measure.weight(&x);
             let tension = membrane.tension.value(&x);
             pairs.push(GhostPair { number, dofs: [dofs, others].concat(), need, tension });
         }
     }
     pairs
+}
+
+/// Along which part of a side the displacement is imposed in each cell; with multipliers slivers lean on other things.
+fn held_along<const D: usize>(membrane: &Membrane<D>, quadrature: &Quadrature<D>) -> HashMap<usize, f64> {
+    let mut along = HashMap::new();
+    if membrane.formulation != Formulation::OneSided {
+        return along;
+    }
+    let fronts = quadrature.front.iter().map(|p| (p.cell, p.x, p.weight));
+    let rim = quadrature.rim.iter().map(|p| (p.cell, p.x, p.weight));
+    for (cell, x, weight) in fronts.chain(rim) {
+        let side = membrane.cells.volume(cell) / membrane.cells.size(cell);
+        *along.entry(cell).or_insert(0.0) += weight / membrane.measure.weight(&x) / side;
+    }
+    along
 }
 
 /// The share of a cell that a region fills.

@@ -52,7 +52,7 @@ impl ErrorEstimate {
         };
         let frames = fronts.frames(zone, step.space);
         let (mut area, mut area_size, mut force, mut force_size) = (0.0, 0.0, 0.0, 0.0);
-        for (i, (p, frame)) in fine.quadrature.front.iter().zip(&frames).enumerate() {
+        for (i, (p, frame)) in fine.quadrature.front.iter().zip(&*frames).enumerate() {
             let w: f64 = frame.modes.iter().map(|(k, v)| v * step.coefficients[*k]).sum();
             // The force is that of the pressure within, less what adhesion pulls along the front.
             let curvature = frame.curvature + membrane.measure.curvature(&p.x, p.normal[0]);

@@ -6,6 +6,8 @@ use crate::scales::Scales;
 use crate::zone::{FrontFrame, ModeSpace, Modes, Zone};
 use signorini_geometry::Real;
 use signorini_solve::{SolveError, Symbolic, SymmetricMatrix, dense};
+use std::borrow::Cow;
+use std::cell::OnceCell;
 
 /// A floor pressure below this fraction of the reference pressure does not steer a local step any more.
 const WEAK_PRESSURE: f64 = 0.02;
@@ -33,6 +35,7 @@ pub struct Fronts<'a, const D: usize> {
     /// The slope at which adhesion holds the front, and its normal derivative; zero without.
     pub(crate) adhesive_slope: Vec<f64>,
     pub(crate) adhesive_slope_rate: Vec<f64>,
+    first_frames: OnceCell<(ModeSpace, Vec<FrontFrame>)>,
 }
 
 /// The slope jump in a space of modes.
@@ -112,6 +115,7 @@ impl<'a, const D: usize> Fronts<'a, D> {
             tension: tension.iter().map(|t| t.value()).collect(),
             adhesive_slope,
             adhesive_slope_rate,
+            first_frames: OnceCell::new(),
             equilibrium,
         }
     }
@@ -163,8 +167,12 @@ impl<'a, const D: usize> Fronts<'a, D> {
         self.slope_jump.iter().zip(&self.adhesive_slope).map(|(r, a)| r - a).collect()
     }
 
-    pub(crate) fn frames<Z: Zone<D>>(&self, zone: &Z, space: ModeSpace) -> Vec<FrontFrame> {
-        self.equilibrium.quadrature.front.iter().map(|p| zone.frame(p.front, &p.x, space)).collect()
+    /// The frame of every point, in the zone that the state was solved around. Those of the modes that are asked for first
+    /// are kept.
+    pub(crate) fn frames<Z: Zone<D>>(&self, zone: &Z, space: ModeSpace) -> Cow<'_, [FrontFrame]> {
+        let frames = || self.equilibrium.quadrature.front.iter().map(|p| zone.frame(p.front, &p.x, space)).collect();
+        let (kept, first) = self.first_frames.get_or_init(|| (space, frames()));
+        if *kept == space { Cow::Borrowed(first) } else { Cow::Owned(frames()) }
     }
 
     /// The matrix `∫ c w_m ω_n` and the vector `∫ f ω_n`, row-major.

@@ -156,21 +156,31 @@ pub enum Rest {
     Final,
     /// Until the cells about them may as well be divided.
     BeforeDivision,
+    /// Until they are as true as the grid, which a finer one goes on from.
+    BeforeRefinement,
 }
 
 impl Rest {
     /// The slope jump in the modes, relative to what they do not see of it, at which fronts sharper than a cell rest.
     fn share(self) -> f64 {
         match self {
-            Rest::Final => 1e-3,
+            Rest::Final | Rest::BeforeRefinement => 1e-3,
             Rest::BeforeDivision => 0.2,
+        }
+    }
+
+    /// The slope jump at which fronts rest, relative to its tolerance.
+    fn residual(self) -> f64 {
+        match self {
+            Rest::Final | Rest::BeforeDivision => 1.0,
+            Rest::BeforeRefinement => 10.0,
         }
     }
 
     /// Steps after which fronts that do not come to rest are given up.
     fn most_steps(self) -> usize {
         match self {
-            Rest::Final => MOST_STEPS,
+            Rest::Final | Rest::BeforeRefinement => MOST_STEPS,
             Rest::BeforeDivision => MOST_STEPS_BEFORE_DIVISION,
         }
     }
@@ -178,7 +188,7 @@ impl Rest {
     /// Corrections of the zone after which it is given up.
     fn most_sweeps(self) -> usize {
         match self {
-            Rest::Final => MOST_SWEEPS,
+            Rest::Final | Rest::BeforeRefinement => MOST_SWEEPS,
             Rest::BeforeDivision => MOST_SWEEPS_BEFORE_DIVISION,
         }
     }
@@ -504,7 +514,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 (waited >= patience || last) && !slowly && relative_step < enough && step.kind != StepKind::Descent;
             let blunt =
                 D > 1 && zone.sharpest() * h >= 1.0 && projection.norm < self.rest.share() * projection.remainder;
-            if residual <= 1.0 || (waited >= 1 && relative_step < ROUND_OFF) || settled || blunt {
+            if residual <= self.rest.residual() || (waited >= 1 && relative_step < ROUND_OFF) || settled || blunt {
                 if let Some(linearised) = &linearised {
                     let spectrum = linearised.spectrum();
                     let lowest = spectrum.as_ref().and_then(|s| s.values.first().copied());

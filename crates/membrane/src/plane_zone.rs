@@ -628,7 +628,8 @@ impl Zone<2> for PlaneZone {
         Advance { topology_changed: zone.counts() != self.counts(), zone }
     }
 
-    fn extrapolated(&self, grid: &Grid<2>, before: &[(&Self, f64)]) -> Option<Self> {
+    // As finely as the zone is told, which may be on smaller cells than the next solve begins with.
+    fn extrapolated(&self, _: &Grid<2>, before: &[(&Self, f64)]) -> Option<Self> {
         if before.iter().any(|(zone, _)| zone.hole != self.hole || zone.sides != self.sides) {
             return None;
         }
@@ -644,15 +645,15 @@ impl Zone<2> for PlaneZone {
             // Fronts that have little to do with each other, or sharp ones, are better left where they are.
             let small = |p: &CurvePoint| {
                 let w = ahead(&p.position).abs();
-                w < 2.0 * grid.h() && w * p.curvature.abs() < FOLD
+                w < 2.0 * self.grid.h() && w * p.curvature.abs() < FOLD
             };
             if !(0..now.samples().len()).all(|k| small(&now.point(now.sample_parameter(k)))) {
                 return None;
             }
             let curve = now.offset(4 * now.knots(), |p| ahead(&p.position));
-            moved.push(curve.by_arc_length(Self::knots(grid, polygon::perimeter(curve.samples()))));
+            moved.push(curve.by_arc_length(Self::knots(&self.grid, polygon::perimeter(curve.samples()))));
         }
-        Self::is_valid(&moved).then(|| self.with_curves(grid, moved))
+        Self::is_valid(&moved).then(|| self.with_curves(&self.grid, moved))
     }
 
     fn united(&self, grid: &Grid<2>, side: Side, f: &mut dyn FnMut(&Point<2>) -> f64) -> Self {

@@ -58,9 +58,10 @@ pub struct Quadrature<const D: usize> {
     pub rim: Vec<RimPoint<D>>,
 }
 
-/// Gauss points per direction and smooth piece in cut cells.
+/// Gauss points per direction and smooth piece in cut cells: enough for fronts that curve within a cell by as much as the
+/// degree can show.
 pub fn cut_order(degree: usize) -> usize {
-    degree + 5
+    if degree == 1 { 4 } else { degree + 5 }
 }
 
 impl<const D: usize> Quadrature<D> {

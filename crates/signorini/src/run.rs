@@ -485,6 +485,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
     /// Locates the changes of topology within an increment.
     fn find_events(&mut self, index: usize, a: &Known<Z>, b: &Known<Z>, progress: &mut dyn Progress) {
         let Some(tolerance) = self.plan.increments[index].events else { return };
+        let saved = self.engine.save();
         let (plan, engine) = (&self.plan, &mut self.engine);
         let mut found = Vec::new();
         // Events at the same time ask for the same states.
@@ -529,7 +530,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             }
         };
         locate(&plan.grid, a, b, tolerance, &mut solve, &mut found);
-        self.engine.start_from(b.zone.clone());
+        self.engine.restore(saved);
         self.add_events(tolerance, found);
     }
 

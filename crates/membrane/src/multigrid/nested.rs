@@ -135,8 +135,8 @@ pub fn solve<R: Regular>(
     let first = grounds.iter().position(many).unwrap_or(0);
     let Some(coarse) = grounds.get(first) else { return Ok(Err(Reason::IterationLimit)) };
     let coarse = coarse.membrane(membrane);
-    let found =
-        ils::solve::<2, PlaneZone>(&coarse, &mut Elements::new(&coarse), Start::Free, Rest::Final, at, progress);
+    let rest = if first + 1 < grounds.len() { Rest::BeforeRefinement } else { Rest::Final };
+    let found = ils::solve::<2, PlaneZone>(&coarse, &mut Elements::new(&coarse), Start::Free, rest, at, progress);
     let (true, Some(scales), Some(state)) = (found.reason.converged(), found.scales, &found.equilibrium) else {
         return Ok(Err(found.reason));
     };

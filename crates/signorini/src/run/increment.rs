@@ -31,8 +31,13 @@ const MOST_ESTIMATED: usize = 100_000;
 /// Slope up to which a membrane is linear.
 pub const LINEAR: f64 = 0.1;
 
-/// States that tell where a path goes on.
-const TRAIL: usize = 3;
+/// States that are kept to tell where a path goes on, how many of them do, and how far ahead at most, relative to the distance
+/// between the nearest two.
+const TRAIL: usize = 64;
+const NEAREST: usize = 3;
+const FARTHEST: f64 = 1.5;
+/// States nearer than this part of an increment are at the same place.
+const SAME: f64 = 1e-6;
 
 /// Solves increments, each from the one before.
 pub struct Engine<const D: usize, Z> {
@@ -41,7 +46,7 @@ pub struct Engine<const D: usize, Z> {
     asked: Option<Z>,
     /// The scales of the problem, once they are known.
     scales: Option<Scales>,
-    /// The last states of the path and their times, as long as it goes on steadily.
+    /// The last states of the path and their times.
     trail: Vec<(f64, Z)>,
     refinement: Refinement<D>,
     /// How often the cells at the fronts are divided.
@@ -195,22 +200,56 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         self.start_near(zone, Branch::Stable);
     }
 
-    /// Where the fronts will be if they go on as they did: by the polynomial in time through the last states.
-    fn ahead(&self, membrane: &Membrane<D>, time: f64) -> Option<Z> {
-        let ((last, zone), before) = self.trail.split_last()?;
-        let step = last - before.last()?.0;
-        if (time - last) / step <= 0.0 || (time - last) / step > 1.5 {
+    /// Where the fronts will be by the polynomial through the states nearest on the path of what drives them. Without
+    /// adhesion the state depends on nothing else, and a path that turns comes by where it was; with it only the way ahead
+    /// is like the way just gone.
+    fn ahead(&self, plan: &MembranePlan<D>, membrane: &Membrane<D>, time: f64) -> Option<Z> {
+        let times: Vec<f64> = self.trail.iter().map(|(t, _)| *t).chain([time]).collect();
+        let places = plan.places(&times);
+        let (next, states) = places.split_last()?;
+        let counts = self.trail.last()?.1.counts();
+        let mut near: Vec<usize> = (0..states.len()).rev().filter(|&k| self.trail[k].1.counts() == counts).collect();
+        if membrane.obstacles.are_sticky() {
+            near.truncate(NEAREST);
+            let [last, before, ..] = near[..] else { return None };
+            if (next - states[last]) * (states[last] - states[before]) <= 0.0 {
+                return None;
+            }
+        }
+        near.sort_by(|&a, &b| (next - states[a]).abs().total_cmp(&(next - states[b]).abs()));
+        near.truncate(NEAREST);
+        let [from, second, ..] = near[..] else { return None };
+        let step = (states[second] - states[from]).abs();
+        let apart = |k: usize| near.iter().all(|&o| o == k || (states[o] - states[k]).abs() > SAME * step);
+        if (next - states[from]).abs() > FARTHEST * step || !near.iter().all(|&k| apart(k)) {
             return None;
         }
-        let times: Vec<f64> = self.trail.iter().map(|(t, _)| *t).collect();
-        let multiples: Vec<(&Z, f64)> = before
-            .iter()
-            .map(|(t, zone)| {
-                let others = times.iter().filter(|o| *o != t);
-                (zone, -others.map(|o| (time - o) / (t - o)).product::<f64>())
-            })
-            .collect();
-        zone.extrapolated(&membrane.grid, &multiples)
+        let weight = |k: usize| {
+            let others = near.iter().filter(|&&o| o != k);
+            others.map(|&o| (next - states[o]) / (states[k] - states[o])).product::<f64>()
+        };
+        let multiples: Vec<(&Z, f64)> = near[1..].iter().map(|&k| (&self.trail[k].1, -weight(k))).collect();
+        self.trail[from].1.extrapolated(&membrane.grid, &multiples)
+    }
+
+    /// Keeps a state as one of those that tell where the path goes on. A place that was there before is told again.
+    fn remember(&mut self, plan: &MembranePlan<D>, time: f64, zone: &Z) {
+        if zone.is_empty() {
+            return;
+        }
+        let times: Vec<f64> = self.trail.iter().map(|(t, _)| *t).chain([time]).collect();
+        if let [states @ .., last] = plan.places(&times).as_slice() {
+            let step = states.last().map_or(0.0, |s| (last - s).abs());
+            let mut places = states.iter();
+            self.trail.retain(|(_, known)| {
+                let near = places.next().is_some_and(|p| (p - last).abs() <= SAME * step);
+                !near || known.counts() != zone.counts()
+            });
+        }
+        if self.trail.len() == TRAIL {
+            self.trail.remove(0);
+        }
+        self.trail.push((time, zone.clone()));
     }
 
     /// Starts the next increment from another zone.
@@ -263,7 +302,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         let start = match (self.asked.take(), self.previous.take()) {
             (Some(zone), _) => Start::Asked(zone, Branch::Nearest),
             (None, Some((zone, scales, branch))) => {
-                Start::Zone(self.ahead(membrane, at.1).unwrap_or(zone), scales, branch)
+                Start::Zone(self.ahead(plan, membrane, at.1).unwrap_or(zone), scales, branch)
             }
             (None, None) => Start::Free,
         };
@@ -287,15 +326,9 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         let converged = solution.reason.converged();
         if let (true, Some(scales)) = (converged, solution.scales) {
             self.previous = Some((solution.zone.clone(), scales, Branch::Stable));
-            if self.trail.last().is_some_and(|(_, z)| z.counts() != solution.zone.counts()) || solution.zone.is_empty()
-            {
-                self.trail.clear();
-            }
-            if self.trail.len() == TRAIL {
-                self.trail.remove(0);
-            }
-            if !solution.zone.is_empty() {
-                self.trail.push((at.1, solution.zone.clone()));
+            // Multigrid finds its own way from the coarsest grid.
+            if !solution.multigrid {
+                self.remember(plan, at.1, &solution.zone);
             }
         }
         let mut warnings = Vec::new();

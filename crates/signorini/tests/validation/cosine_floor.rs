@@ -75,6 +75,33 @@ fn small_increments_take_few_solves() {
     }
 }
 
+/// A path that turns goes on from the states that it came through: they depend on the load alone, whatever the time. Between
+/// two drivers that do not keep in step there is no such line, and the path goes on in time.
+#[test]
+fn a_path_that_turns_takes_few_solves() {
+    let steps = ("steps", "[{ to = 0.15 }, { to = 0.21, increments = 6 }]".to_string());
+    let cells = [(CELLS, "[40, 40]".to_string()), (DEGREE, "3".to_string()), steps];
+    let solve = |load: &str, floor: Option<&str>| {
+        let mut pairs = cells.to_vec();
+        pairs.push(("loads.press.normal", format!("\"{load}\"")));
+        pairs.extend(floor.map(|f| ("bodies.floor.rigid.shape.height", format!("\"{f}\""))));
+        let summary = summary(example("cosine_square"), &set(&pairs));
+        last_step(&summary);
+        let steps = summary["steps"].as_array().expect("steps").clone();
+        let area = |s: &Value| number(&s["contacts"]["touch"]["area"]);
+        steps.iter().map(|s| (s["iterations"].as_u64().expect("a number"), area(s))).collect::<Vec<_>>()
+    };
+    let turned = solve("-min(t, 0.36 - t)", None);
+    assert!(turned[2..].iter().all(|(n, _)| *n <= 5), "{turned:?}");
+    for k in 0..3 {
+        assert!((turned[k].1 - turned[6 - k].1).abs() < 1e-6, "{turned:?}");
+    }
+    // The floor goes on sinking by a thousandth of its depth while the load turns.
+    let floor = "-(15 + 5*cos(2*pi*x)*cos(2*pi*y))/1000 - 1.5e-4*(t - 0.15)";
+    let other = solve("-min(t, 0.36 - t)", Some(floor));
+    assert!(other[2..].iter().all(|(n, _)| *n <= 6), "{other:?}");
+}
+
 /// Zones of the square at every load of the publication, and the force between the bounds of nodal methods.
 #[test]
 fn the_square_at_lower_loads() {

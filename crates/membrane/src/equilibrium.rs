@@ -45,13 +45,13 @@ fn penalty<const D: usize>(membrane: &Membrane<D>, cell: usize) -> f64 {
     nitsche_penalty(membrane.cells.degree()) / membrane.cells.size(cell)
 }
 
-/// What is left of that weight at a sliver of no size: enough for round-off.
-const LEAST: f64 = 1e-4;
-
 /// Weight of the ghost penalty at a sliver; smaller ones lose positive definiteness when a straight boundary cuts slivers only.
 pub(crate) fn ghost_weight(degree: usize) -> f64 {
     if degree == 1 { 0.5 } else { 0.2 }
 }
+
+/// What is left of that weight at a sliver of no size: enough for round-off.
+const LEAST: f64 = 1e-4;
 
 /// What does not change from one zone to the next: the matrices of cells that are not divided.
 pub struct Elements<const D: usize> {
@@ -190,7 +190,7 @@ impl<const D: usize> Equilibrium<D> {
         let mut factor = elements.symbolic.factor(system.matrix);
         for (needed, tied) in HOLDS {
             if let Err(SolveError::NotPositiveDefinite { .. }) = factor {
-                system = System::tied(membrane, Quadrature::new(membrane, zone), elements, tied);
+                system = System::tied(membrane, system.quadrature, elements, tied);
                 hold_thin_parts(membrane, elements, &system.quadrature, &system.unknowns, &mut system.matrix, needed);
                 factor = elements.symbolic.factor(system.matrix);
             }

@@ -484,7 +484,8 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
 
     /// Locates the changes of topology within an increment.
     fn find_events(&mut self, index: usize, a: &Known<Z>, b: &Known<Z>, progress: &mut dyn Progress) {
-        let Some(tolerance) = self.plan.increments[index].events else { return };
+        let changed = a.zone.counts() != b.zone.counts();
+        let Some(tolerance) = self.plan.increments[index].events.filter(|_| changed) else { return };
         let saved = self.engine.save();
         let (plan, engine) = (&self.plan, &mut self.engine);
         let mut found = Vec::new();

@@ -208,9 +208,11 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         let places = plan.places(&times);
         let (next, states) = places.split_last()?;
         let counts = self.trail.last()?.1.counts();
-        let mut near: Vec<usize> = (0..states.len()).rev().filter(|&k| self.trail[k].1.counts() == counts).collect();
+        let alike = |k: &usize| self.trail[*k].1.counts() == counts;
+        let latest = (0..states.len()).rev();
+        let mut near: Vec<usize> = latest.clone().filter(alike).collect();
         if membrane.obstacles.are_sticky() {
-            near.truncate(NEAREST);
+            near = latest.take_while(alike).take(NEAREST).collect();
             let [last, before, ..] = near[..] else { return None };
             if (next - states[last]) * (states[last] - states[before]) <= 0.0 {
                 return None;
@@ -326,6 +328,10 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         let converged = solution.reason.converged();
         if let (true, Some(scales)) = (converged, solution.scales) {
             self.previous = Some((solution.zone.clone(), scales, Branch::Stable));
+            if membrane.obstacles.are_sticky() && (solution.jumped || solution.zone.is_empty()) {
+                // Another branch of equilibria, which the states so far tell nothing of.
+                self.trail.clear();
+            }
             // Multigrid finds its own way from the coarsest grid.
             if !solution.multigrid {
                 self.remember(plan, at.1, &solution.zone);

@@ -4,6 +4,7 @@ use crate::cut::{CellPartition, CellRule, QuadraturePoint, cut_cell};
 use crate::grid::Grid;
 use crate::lagrange::{MAX_DEGREE, Tabulation};
 use crate::mesh_cells::MeshCells;
+use crate::reference::CellShape;
 use signorini_geometry::rule::gauss_legendre;
 use signorini_geometry::{Aabb, Point, Vector};
 use std::sync::Arc;
@@ -71,6 +72,14 @@ pub trait Cells<const D: usize>: Send + Sync {
     /// What the functions of a cell are beyond it, and whether they are the same within.
     fn extension<'a>(&'a self, cell: usize) -> Extension<'a, D> {
         own_extension(self, cell)
+    }
+    /// The sides of a cell between two corners, as places among its functions of degree 1.
+    fn edges(&self, _cell: usize) -> &'static [[usize; 2]] {
+        match D {
+            1 => CellShape::Line.edges(),
+            // Functions of a grid come row by row.
+            _ => &[[0, 1], [2, 3], [0, 2], [1, 3]],
+        }
     }
     /// The node of a function of degree 1.
     fn node(&self, function: usize) -> Point<D>;

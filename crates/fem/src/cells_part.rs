@@ -88,6 +88,9 @@ impl<const D: usize> Cells<D> for CellsPart<D> {
         out.clear();
         out.extend_from_slice(&self.functions[self.start[cell] as usize..self.start[cell + 1] as usize]);
     }
+    fn edges(&self, cell: usize) -> &'static [[usize; 2]] {
+        self.whole.edges(self.cells[cell])
+    }
     fn tabulate(&self, cell: usize, x: &Point<D>, out: &mut Tabulation<D>) {
         self.whole.tabulate(self.cells[cell], x, out);
     }

@@ -554,6 +554,9 @@ impl Cells<2> for MeshCells {
         out.clear();
         out.extend_from_slice(self.dofs.functions(cell));
     }
+    fn edges(&self, cell: usize) -> &'static [[usize; 2]] {
+        self.mesh.shape(cell).edges()
+    }
     fn tabulate(&self, cell: usize, x: &Point<2>, out: &mut Tabulation<2>) {
         if self.degree == 1 && self.is_straight(cell) {
             let corners = self.corners(cell);

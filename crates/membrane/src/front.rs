@@ -1,11 +1,12 @@
 //! The slope jump on the fronts, and the Newton step that drives it to zero.
 
 use crate::equilibrium::Equilibrium;
+use crate::mode_matrix::{Clique, ModeMatrix, add_cliques};
 use crate::quadrature::FrontPoint;
 use crate::scales::Scales;
 use crate::zone::{FrontFrame, ModeSpace, Modes, Zone};
 use signorini_geometry::Real;
-use signorini_solve::{SolveError, Symbolic, SymmetricMatrix, dense};
+use signorini_solve::{SolveError, dense};
 use std::borrow::Cow;
 use std::cell::OnceCell;
 
@@ -13,9 +14,6 @@ use std::cell::OnceCell;
 const WEAK_PRESSURE: f64 = 0.02;
 /// A local step longer than this fraction of the grid's resolution gives way to one with the response of the membrane.
 const LOCAL_REACH: f64 = 0.6;
-
-/// Modes from which on their equations are solved by sparse elimination.
-const MANY_MODES: usize = 150;
 
 /// A front of so few modes is short.
 const FEW_MODES: usize = 12;
@@ -79,19 +77,6 @@ impl StepKind {
             StepKind::Descent => "unstable: down the energy",
         }
     }
-}
-
-/// Solves a symmetric positive definite system of modes, each of which meets few others: by sparse elimination where there
-/// are many.
-fn solve_positive(matrix: &[f64], b: &[f64]) -> Option<Vec<f64>> {
-    let n = b.len();
-    if n < MANY_MODES {
-        return dense::solve(matrix, b);
-    }
-    let sparse = SymmetricMatrix::from_columns(n, |j, out| {
-        out.extend((j..n).map(|i| (i, matrix[i * n + j])).filter(|(i, v)| *i == j || *v != 0.0));
-    });
-    Symbolic::default().factor(sparse).and_then(|f| f.solve(b)).ok()
 }
 
 impl<'a, const D: usize> Fronts<'a, D> {
@@ -175,21 +160,45 @@ impl<'a, const D: usize> Fronts<'a, D> {
         if *kept == space { Cow::Borrowed(first) } else { Cow::Owned(frames()) }
     }
 
-    /// The matrix `∫ c w_m ω_n` and the vector `∫ f ω_n`, row-major.
-    fn galerkin(&self, frames: &[FrontFrame], n: usize, c: &[f64], f: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let (mut matrix, mut vector) = (vec![0.0; n * n], vec![0.0; n]);
-        for (((frame, w), c), f) in frames.iter().zip(self.weights()).zip(c).zip(f) {
-            for &(i, vi) in &frame.modes {
-                vector[i] += w * f * vi;
-                for &(j, vj) in &frame.modes {
-                    matrix[i * n + j] += w * c * vi * vj;
-                }
-            }
+    /// The matrix `∫ c w_m ω_n` and the vector `∫ f ω_n`.
+    fn galerkin(&self, frames: &[FrontFrame], n: usize, c: &[f64], f: &[f64]) -> (ModeMatrix, Vec<f64>) {
+        let mut vector = vec![0.0; n];
+        for ((frame, w), f) in frames.iter().zip(self.weights()).zip(f) {
+            frame.modes.iter().for_each(|(i, v)| vector[*i] += w * f * v);
         }
-        (matrix, vector)
+        (ModeMatrix::of_products(n, frames, self.weights().zip(c).map(|(w, c)| w * c)), vector)
     }
 
-    /// Stiffness for modes that live, wholly or in part, beyond the membrane, where nothing else determines them.
+    /// Stiffness for modes that live, wholly or in part, beyond the membrane, where nothing else determines them; `diagonal` is
+    /// that of the matrix to which it is added.
+    pub(crate) fn stiffness_outside<Z: Zone<D>>(
+        &self,
+        zone: &Z,
+        space: ModeSpace,
+        frames: &[FrontFrame],
+        diagonal: &[f64],
+        scale: f64,
+    ) -> Vec<Clique> {
+        let offsets = zone.mode_offsets(space);
+        let h = self.equilibrium.membrane.grid.h();
+        let largest = diagonal.iter().fold(f64::MIN_POSITIVE, |m, d| m.max(d.abs()));
+        let mut out = Vec::new();
+        let mut weight = vec![0.0; diagonal.len()];
+        for (frame, w) in frames.iter().zip(self.weights()) {
+            frame.modes.iter().for_each(|(i, v)| weight[*i] += w * v * v);
+        }
+        let heaviest = weight.iter().fold(0.0f64, |m, w| m.max(*w));
+        for front in 0..zone.front_count() {
+            let lightest = weight[offsets[front]..offsets[front + 1]].iter().fold(f64::INFINITY, |m, w| m.min(*w));
+            if lightest < 1e-3 * heaviest {
+                out.extend(zone.stiffness(space, front, 1e-3 * scale * h * h));
+                out.extend((offsets[front]..offsets[front + 1]).map(|i| (vec![i as u32], vec![1e-10 * largest])));
+            }
+        }
+        out
+    }
+
+    /// Adds that stiffness to a row-major matrix.
     pub(crate) fn hold_modes_outside<Z: Zone<D>>(
         &self,
         zone: &Z,
@@ -198,24 +207,9 @@ impl<'a, const D: usize> Fronts<'a, D> {
         matrix: &mut [f64],
         scale: f64,
     ) {
-        let offsets = zone.mode_offsets(space);
-        let n = offsets[zone.front_count()];
-        let h = self.equilibrium.membrane.grid.h();
-        let diagonal = (0..n).map(|i| matrix[i * n + i].abs()).fold(f64::MIN_POSITIVE, f64::max);
-        let mut weight = vec![0.0; n];
-        for (frame, w) in frames.iter().zip(self.weights()) {
-            frame.modes.iter().for_each(|(i, v)| weight[*i] += w * v * v);
-        }
-        let heaviest = weight.iter().fold(0.0f64, |m, w| m.max(*w));
-        for front in 0..zone.front_count() {
-            let lightest = weight[offsets[front]..offsets[front + 1]].iter().fold(f64::INFINITY, |m, w| m.min(*w));
-            if lightest < 1e-3 * heaviest {
-                zone.add_stiffness(space, front, 1e-3 * scale * h * h, matrix);
-                for i in offsets[front]..offsets[front + 1] {
-                    matrix[i * n + i] += 1e-10 * diagonal;
-                }
-            }
-        }
+        let n = zone.mode_offsets(space)[zone.front_count()];
+        let diagonal: Vec<f64> = (0..n).map(|i| matrix[i * n + i]).collect();
+        add_cliques(matrix, n, &self.stiffness_outside(zone, space, frames, &diagonal, scale));
     }
 
     /// Splits what the slope jump lacks into what the modes see and what they do not.
@@ -225,9 +219,9 @@ impl<'a, const D: usize> Fronts<'a, D> {
         let frames = self.frames(zone, space);
         let ones = vec![1.0; frames.len()];
         let (mut mass, b) = self.galerkin(&frames, n, &ones, &excess);
-        self.hold_modes_outside(zone, space, &frames, &mut mass, 1.0);
+        mass.add(self.stiffness_outside(zone, space, &frames, &mass.diagonal(), 1.0));
         let square: f64 = self.weights().zip(&excess).map(|(w, r)| w * r * r).sum();
-        let seen = solve_positive(&mass, &b).map_or(square, |c| c.iter().zip(&b).map(|(c, b)| c * b).sum::<f64>());
+        let seen = mass.solve(&b).map_or(square, |c| c.iter().zip(&b).map(|(c, b)| c * b).sum::<f64>());
         Projection { norm: seen.max(0.0).sqrt(), remainder: (square - seen).max(0.0).sqrt() }
     }
 
@@ -299,15 +293,18 @@ impl<'a, const D: usize> Fronts<'a, D> {
         let frames = self.frames(zone, space);
         let (mut matrix, mut b) = self.galerkin(&frames, n, &local, &self.slope_jump);
         let kind = if far { StepKind::Full } else { StepKind::Local };
-        if far {
-            self.add_response(zone, space, &frames, n, &mut matrix)?;
-        }
-        self.hold_modes_outside(zone, space, &frames, &mut matrix, scales.pressure / scales.tension);
+        matrix.add(self.stiffness_outside(zone, space, &frames, &matrix.diagonal(), scales.pressure / scales.tension));
         for v in &mut b {
             *v = -*v;
         }
         // The matrix is the sum of a positive mass and a positive response; only a front without points is singular.
-        let solved = if far { dense::solve(&matrix, &b) } else { solve_positive(&matrix, &b) };
+        let solved = if far {
+            let mut matrix = matrix.dense();
+            self.add_response(zone, space, &frames, n, &mut matrix)?;
+            dense::solve(&matrix, &b)
+        } else {
+            matrix.solve(&b)
+        };
         let coefficients = solved.unwrap_or_else(|| vec![0.0; n]);
         let total: f64 = self.weights().sum();
         let square: f64 = frames

@@ -12,6 +12,7 @@ pub mod front;
 pub mod ils;
 pub mod kinks;
 pub mod line_zone;
+mod mode_matrix;
 pub mod multigrid;
 pub mod obstacle;
 pub mod plane_zone;

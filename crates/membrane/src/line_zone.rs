@@ -1,5 +1,6 @@
 //! Contact zones in one dimension: intervals.
 
+use crate::mode_matrix::Clique;
 use crate::obstacle::Side;
 use crate::zone::{Advance, Division, FrontFoot, FrontsInCell, ModeSpace, Zone, contact, free};
 use serde_json::{Value, json};
@@ -160,10 +161,9 @@ impl Zone<1> for LineZone {
     fn mode_offsets(&self, _: ModeSpace) -> Vec<usize> {
         (0..=self.front_count()).collect()
     }
-    fn add_stiffness(&self, _: ModeSpace, front: usize, weight: f64, matrix: &mut [f64]) {
+    fn stiffness(&self, _: ModeSpace, front: usize, weight: f64) -> Vec<Clique> {
         // A point has no length; an end beyond the membrane stays where it is.
-        let n = self.front_count();
-        matrix[front * n + front] += weight;
+        vec![(vec![front as u32], vec![weight])]
     }
 
     fn advanced(&self, grid: &Grid<1>, _: ModeSpace, step: &[f64], reach: f64) -> Advance<Self> {

@@ -1,6 +1,7 @@
 //! Contact zones in the plane, bounded by smooth closed fronts.
 
 use crate::ils::Solution;
+use crate::mode_matrix::Clique;
 use crate::multigrid;
 use crate::obstacle::Side;
 use crate::problem::Membrane;
@@ -526,23 +527,23 @@ impl Zone<2> for PlaneZone {
         }
         offsets
     }
-    fn add_stiffness(&self, space: ModeSpace, front: usize, weight: f64, matrix: &mut [f64]) {
-        let offsets = self.mode_offsets(space);
-        let (modes, offset, n) = (self.modes(front, space), offsets[front], offsets[self.curves.len()]);
+    fn stiffness(&self, space: ModeSpace, front: usize, weight: f64) -> Vec<Clique> {
+        let offset = self.mode_offsets(space)[front];
+        let modes = self.modes(front, space);
         let curve = &self.curves[front];
         let points = curve.samples().len();
-        let mut slopes: Vec<(usize, f64)> = Vec::new();
-        for k in 0..points {
+        let at = |k: usize| {
             let s = curve.sample_parameter(k);
-            slopes.clear();
-            modes.for_each_at(s, |mode, _, slope| slopes.push((offset + mode, slope)));
-            let speed = curve.point(s).speed;
-            for (i, vi) in &slopes {
-                for (j, vj) in &slopes {
-                    matrix[i * n + j] += weight * vi * vj / speed / points as f64;
-                }
-            }
-        }
+            let (mut numbers, mut slopes) = (Vec::new(), Vec::new());
+            modes.for_each_at(s, |mode, _, slope| {
+                numbers.push((offset + mode) as u32);
+                slopes.push(slope);
+            });
+            let factor = weight / curve.point(s).speed / points as f64;
+            let products = slopes.iter().flat_map(|a| slopes.iter().map(move |b| factor * a * b)).collect();
+            (numbers, products)
+        };
+        (0..points).map(at).collect()
     }
 
     fn advanced(&self, grid: &Grid<2>, space: ModeSpace, step: &[f64], reach: f64) -> Advance<Self> {

@@ -1,6 +1,7 @@
 //! What the method needs to know of a contact zone, in one dimension or two.
 
 use crate::ils::Solution;
+use crate::mode_matrix::Clique;
 use crate::obstacle::Side;
 use crate::problem::Membrane;
 use crate::published::Transport;
@@ -174,8 +175,8 @@ pub trait Zone<const D: usize>: Division<D> + Clone + Send {
     fn front_count(&self) -> usize;
     /// First mode of each front, and the number of all modes at the end.
     fn mode_offsets(&self, modes: ModeSpace) -> Vec<usize>;
-    /// Adds `weight ∫ w_s v_s` over all fronts to a row-major matrix of the modes.
-    fn add_stiffness(&self, modes: ModeSpace, front: usize, weight: f64, matrix: &mut [f64]);
+    /// The matrix `weight ∫ w_s v_s` over a front.
+    fn stiffness(&self, modes: ModeSpace, front: usize, weight: f64) -> Vec<Clique>;
 
     /// Moves the fronts by `step` (coefficients of the modes) along their normals, nowhere further than `reach` and
     /// nowhere so far that they would fold.

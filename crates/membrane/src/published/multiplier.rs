@@ -56,15 +56,6 @@ impl FrontMultipliers {
     }
 }
 
-/// The edges of a cell of degree 1 between its functions, which are those of its corners.
-fn edges(corners: usize) -> &'static [[usize; 2]] {
-    match corners {
-        2 => &[[0, 1]],
-        3 => &[[0, 1], [1, 2], [2, 0]],
-        _ => &[[0, 1], [2, 3], [0, 2], [1, 3]],
-    }
-}
-
 /// All crossings of fronts with edges, and for each cell those of its edges.
 fn crossings<const D: usize, Z: Zone<D>>(
     membrane: &Membrane<D>,
@@ -85,7 +76,7 @@ fn crossings<const D: usize, Z: Zone<D>>(
         }
         cells.functions(cell, &mut corners);
         let mut own = Vec::new();
-        for edge in edges(corners.len()) {
+        for edge in cells.edges(cell) {
             let mut ends = edge.map(|i| corners[i]);
             ends.sort_unstable();
             let crossing = of_edge.entry(ends).or_insert_with(|| {

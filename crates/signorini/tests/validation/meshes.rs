@@ -8,7 +8,7 @@ fn file(name: &str) -> String {
     format!("{}/tests/data/meshes/{name}", env!("CARGO_MANIFEST_DIR")).replace('\\', "/")
 }
 
-fn case(mesh: &str) -> String {
+pub fn case(mesh: &str) -> String {
     format!(
         r#"
 space = "plane"

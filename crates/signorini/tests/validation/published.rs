@@ -43,6 +43,27 @@ fn the_front_on_the_disc_is_of_second_order() {
 }
 
 #[test]
+fn so_it_is_on_triangles_and_quadrilaterals() {
+    for mesh in ["triangles_2_6.msh", "mixed_2_6.msh"] {
+        let divisions = [1, 2, 3];
+        let errors = divisions.map(|k| {
+            let text = super::meshes::case(mesh)
+                .replace("group = \"film\"", &format!("group = \"film\", divisions = {k}"))
+                .replace("tension", "degree = 1\ntension")
+                + "method.inequality_level_set = { formulation = \"published\" }\n";
+            let found = summary(&text, &set(&[]));
+            let step = last_step(&found);
+            assert!(number(&step["equilibrium_residual"]) <= 1e-10, "{}", step["equilibrium_residual"]);
+            let iterations = step["iterations"].as_u64().expect("a number");
+            assert!(iterations <= 12, "{mesh}, divided {k} times: {iterations}");
+            ((number(contact(step, "area")) / std::f64::consts::PI).sqrt() - RADIUS).abs()
+        });
+        let order = fitted(&divisions.map(|k| 0.5f64.powi(k)), &errors);
+        assert!(order >= 1.9, "{mesh}: {order}: {errors:?}");
+    }
+}
+
+#[test]
 fn along_the_radius_it_has_every_degree() {
     for (degree, bound) in [(1, 1e-3), (2, 1e-6), (3, 1e-9), (4, 1e-10), (5, 1e-8), (6, 1e-8)] {
         let pairs = [(CELLS, "[20]".to_string()), (DEGREE, degree.to_string())];

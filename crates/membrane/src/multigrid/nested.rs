@@ -7,14 +7,14 @@
 use super::{Ground, Level, OnGrid, OnMesh, Regular, cycle, levels, that_show};
 use crate::conditions::Conditions;
 use crate::equilibrium::Elements;
-use crate::front::Fronts;
+use crate::front::{Fronts, StepKind};
 use crate::ils::{self, Reason, Rest, SETTLED, SETTLED_COARSE, Solution, Start};
 use crate::plane_zone::PlaneZone;
 use crate::problem::Membrane;
 use crate::scales::Scales;
 use crate::zone::{ModeSpace, Zone};
 use signorini_fem::Cells;
-use signorini_solve::{Iteration, Progress, SolveError};
+use signorini_solve::{Acceleration, Iteration, Progress, SolveError};
 
 /// Nodes along the longer side of the grid on which the fronts are found at first, and, where zones were missed there, on
 /// which they are looked for again.
@@ -22,6 +22,8 @@ const FIRST: [usize; 3] = [32, 128, 512];
 /// Steps of the fronts on each finer grid, those at degree 1 on grids between the first and the last, where what they leave
 /// is less than what the grid does, and how many more where they have far to go.
 const STEPS: usize = 2;
+/// Cycles for each further step.
+const CYCLES: usize = 2;
 const STEPS_BETWEEN: usize = 1;
 const MORE: usize = 6;
 /// Fronts that move by more than this fraction of a cell get another step.
@@ -46,11 +48,11 @@ pub struct NestedSolution<R: Regular> {
 const CLOSING: usize = 60;
 const CLOSED: f64 = 1e-12;
 /// Steps without progress after which fronts may rest on a jump of the discrete slope.
-const PATIENCE: usize = 3;
+const PATIENCE: usize = 9;
 /// Steps on the finest grid before fronts are given up that have to meet a tolerance.
 const MOST: usize = 30;
 /// Steps without progress after which they are given up at once.
-const HOPELESS: usize = 8;
+const HOPELESS: usize = 12;
 
 /// Whether a membrane can be solved for so: on a grid with coarser ones or on a mesh whose cells were divided, without
 /// adhesion.
@@ -167,9 +169,13 @@ pub fn solve<R: Regular>(
         let mut count = 0;
         let mut wanted = if finest || grid.degree() > 1 { STEPS } else { STEPS_BETWEEN };
         let (mut best, mut waited) = (f64::INFINITY, 0);
+        let mut acceleration = Acceleration::default();
         residuals.clear();
         while count < wanted {
-            cycle(&mut levels)?;
+            // Fronts that are brought to rest need a displacement that is not behind them.
+            for _ in 0..if count < STEPS { 1 } else { CYCLES } {
+                cycle(&mut levels)?;
+            }
             count += 1;
             let Some(level) = levels.last_mut() else { break };
             let state = level.state();
@@ -191,7 +197,7 @@ pub fn solve<R: Regular>(
             if progress.interrupted() {
                 return Ok(Err(Reason::Interrupted));
             }
-            let step = fronts.newton_step(&zone, &scales)?;
+            let mut step = fronts.newton_step(&zone, &scales)?;
             let last_step = step.length / h;
             // As everywhere: on a jump of the discrete slope no position makes it vanish.
             let enough = if seen.norm < seen.remainder { SETTLED_COARSE } else { SETTLED };
@@ -207,7 +213,14 @@ pub fn solve<R: Regular>(
             if last_step > FAR && wanted < STEPS + MORE {
                 wanted += 1;
             }
+            // As everywhere: cells of degree 1 have a slope jump of their own, which the derivative does not know.
+            if tolerance.is_finite() && step.kind == StepKind::Local && step.space == ModeSpace::Fine {
+                step.coefficients = acceleration.next(step.coefficients);
+            }
             let advance = zone.advanced(grid, step.space, &step.coefficients, h);
+            if advance.topology_changed || advance.zone.mode_offsets(step.space) != zone.mode_offsets(step.space) {
+                acceleration = Acceleration::default();
+            }
             zone = advance.zone;
             if count == wanted && !finest {
                 // What it is interpolated from may have the fronts of a moment ago.

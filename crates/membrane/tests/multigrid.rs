@@ -222,6 +222,34 @@ fn nested_iteration_finds_the_front() {
     }
 }
 
+/// A floor of cosine waves.
+fn wavy([x, y]: [Jet<2>; 2]) -> Jet<2> {
+    let c = |v: f64| Jet::<2>::constant(v);
+    let cos = |v: Jet<2>| {
+        let a = c(std::f64::consts::TAU) * v;
+        a.chain(a.value.cos(), -a.value.sin(), -a.value.cos())
+    };
+    c(-0.015) - c(0.005) * cos(x) * cos(y)
+}
+
+/// Holes where the floor hardly presses at all, so that fronts come to rest slowly: they do in the end.
+#[test]
+fn fronts_that_hardly_rest_come_to_rest() {
+    let square = BoxDomain(Aabb::new(Point::<2>::new(-1.0, -1.0), Point::<2>::new(1.0, 1.0)));
+    let mut membrane = membrane(256, 1, Arc::new(square), 1.0);
+    membrane.obstacles.0[0].height = Arc::new(Formula(wavy));
+    membrane.load = Arc::new(Constant(-0.4));
+    membrane.tension = Arc::new(Formula(|[x, y]: [Jet<2>; 2]| {
+        let c = |v: f64| Jet::<2>::constant(v);
+        let a = c(3.0) * y;
+        c(1.0) + c(0.3) * x + c(0.2) * a.chain(a.value.sin(), a.value.cos(), -a.value.sin())
+    }));
+    let found = nested::solution(&membrane, (0, 0.0), &mut Silent).expect("solves").expect("a state");
+    assert_eq!(found.zone.counts(), (1, 2));
+    let last = found.residuals.last().copied();
+    assert!(found.is_resolved() && last.is_some_and(|r| r <= 1.0), "{:?}", found.residuals);
+}
+
 fn area(zone: &PlaneZone) -> f64 {
     zone.curves().iter().map(|c| c.signed_area()).sum()
 }
@@ -231,13 +259,6 @@ fn area(zone: &PlaneZone) -> f64 {
 #[test]
 fn multigrid_and_the_direct_solver_agree() {
     let c = |v: f64| Jet::<2>::constant(v);
-    let wavy = move |[x, y]: [Jet<2>; 2]| {
-        let cos = |v: Jet<2>| {
-            let a = c(std::f64::consts::TAU) * v;
-            a.chain(a.value.cos(), -a.value.sin(), -a.value.cos())
-        };
-        c(-0.015) - c(0.005) * cos(x) * cos(y)
-    };
     let tilted = move |[x, y]: [Jet<2>; 2]| c(-1.0) + c(0.3) * x - c(0.2) * y;
     let flat = disc(128, 1);
     let waves = |n: usize, degree: usize| {

@@ -12,7 +12,7 @@ use crate::cells::{
 use crate::cut::{CellPartition, CellRule, QuadraturePoint, cut_cell};
 use crate::dofs::DofMap;
 use crate::grid::Grid;
-use crate::hierarchic::{HierarchicBasis, MAX_DEGREE, Values};
+use crate::hierarchic::{HierarchicBasis, MAX_DEGREE, Mode, Values};
 use crate::lagrange::Tabulation;
 use crate::lists::Lists;
 use crate::mesh::{Mesh, Side};
@@ -223,6 +223,43 @@ impl MeshCells {
             count += 1;
         }
         CornerFunctions { list, count }
+    }
+
+    /// Calls `visit` with every function of a cell and the corners of the cell at which it does not end: its own corner, the
+    /// two of its edge, all of them where it lives within.
+    pub fn for_each_function_at_corners(&self, cell: usize, mut visit: impl FnMut(u32, &[usize])) {
+        let shape = self.mesh.shape(cell);
+        for (&function, mode) in self.dofs.functions(cell).iter().zip(self.dofs.basis(cell).modes()) {
+            match *mode {
+                Mode::Vertex(v) => visit(function, &[usize::from(v)]),
+                Mode::Edge(e, _) => visit(function, &shape.edges()[usize::from(e)]),
+                Mode::Side(..) | Mode::Interior => visit(function, &[0, 1, 2, 3][..shape.vertices().len()]),
+            }
+        }
+    }
+
+    /// For each function the one of degree 1 of the same vertex, in the numbers of [`MeshCells::new`] with that degree on the
+    /// same mesh; none for functions of no vertex.
+    pub fn functions_of_degree_one(&self) -> Vec<Option<u32>> {
+        let mut out = vec![None; self.dofs.count()];
+        let mut count = 0;
+        for cell in 0..self.mesh.cell_count() {
+            for &function in self.corner_functions(cell).iter() {
+                out[function as usize].get_or_insert_with(|| {
+                    count += 1;
+                    count - 1
+                });
+            }
+        }
+        out
+    }
+
+    /// Functions of degree 1 on the same mesh, and on those of which its cells were divided.
+    pub fn of_degree_one(&self) -> Self {
+        match &self.parent {
+            Some(parent) => Arc::new(parent.cells.of_degree_one()).refined(),
+            None => Self::new(self.mesh.clone(), 1),
+        }
     }
 
     /// The cell across a side of a cell.

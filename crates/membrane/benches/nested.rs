@@ -1,5 +1,5 @@
 //! Time, memory and error of membranes by multigrid from coarse to fine: a round one on a flat floor, and a square one on a
-//! cosine floor at f = 0.4, at degree 1, 2 and 4, and the round one on a mesh whose cells are divided. From 1e4 unknowns to as
+//! cosine floor at f = 0.4, at degree 1, 2 and 4, and membranes on meshes whose cells are divided. From 1e4 unknowns to as
 //! many as `SIGNORINI_LADDER` says (1e6 if it says nothing), beside the membrane alone, without contact, solved from nothing to
 //! 1e-8, on `SIGNORINI_THREADS` threads (one if it says nothing), on grids of `SIGNORINI_DEGREE` alone if it says something.
 //!
@@ -212,15 +212,20 @@ fn main() {
         ("square on a cosine floor: area", 1.0, waves, &|area| area),
     ];
     let only = asked("SIGNORINI_DEGREE", 0.0) as usize;
-    if only == 0 {
-        head("degree 1, disc on a flat floor, mesh from a file with every cell divided: radius off");
-        let mut ladder = Ladder { pool: &pool, figure: &radius, last: None };
-        let nodes = |divisions: usize| 434.0 * 4f64.powi(divisions as i32);
+    type Divided<'a> = (usize, &'a str, f64, &'a dyn Fn(f64) -> f64, fn(usize) -> Arc<MeshCells>);
+    let divided: [Divided; 3] = [
+        (1, "disc on a flat floor, triangles of a file", 434.0, &radius, |k| common::cells("triangles_2_12", 1, k)),
+        (2, "disc on a flat floor, triangles of a file", 434.0, &radius, |k| common::cells("triangles_2_12", 2, k)),
+        (4, "square on a flat floor, skew quadrilaterals", 64.0, &|area| area, |k| common::quadrilaterals(4, k)),
+    ];
+    for (degree, name, first, figure, cells) in divided.into_iter().filter(|_| only == 0) {
+        head(&format!("degree {degree}, {name}, every cell divided"));
+        let mut ladder = Ladder { pool: &pool, figure, last: None };
+        let nodes = |divisions: usize| first * 4f64.powi(divisions as i32) * (degree * degree) as f64;
         for divisions in (2..).take_while(|d| nodes(*d) < most) {
-            let cells = || common::cells("triangles_2_12", 1, divisions);
-            ladder.row::<OnMesh>(&|| common::on_mesh(cells()));
-            if nodes(divisions) > BESIDE {
-                petsc_on_mesh(&cells());
+            ladder.row::<OnMesh>(&|| common::on_mesh(cells(divisions)));
+            if degree == 1 && nodes(divisions) > BESIDE {
+                petsc_on_mesh(&cells(divisions));
             }
         }
     }

@@ -153,6 +153,6 @@ fn strayed<const D: usize, Z: Zone<D>>(solution: &Solution<D, Z>) -> bool {
 impl Scales {
     /// The same scales for other cells.
     pub fn on<const D: usize>(self, membrane: &Membrane<D>) -> Self {
-        Self { h: membrane.grid.h(), ..self }
+        Self { h: membrane.grid.h(), degree: membrane.grid.degree(), ..self }
     }
 }

@@ -194,6 +194,12 @@ impl SymmetricMatrix {
         Self { column_start, row: rows, value: values }
     }
 
+    /// The entries of the lower triangle: row, column and value.
+    pub fn entries(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        let column = |j: usize| self.column_start[j]..self.column_start[j + 1];
+        (0..self.size()).flat_map(move |j| column(j).map(move |k| (self.row[k], j, self.value[k])))
+    }
+
     /// The entries of the diagonal.
     pub fn diagonal(&self) -> Vec<f64> {
         (0..self.size())

@@ -11,6 +11,7 @@ use crate::zone::Division;
 use signorini_fem::cut::QuadraturePoint;
 use signorini_fem::lagrange::Tabulation;
 use signorini_fem::{Cells, Grid};
+use signorini_geometry::Point;
 use signorini_solve::SolveError;
 use std::sync::Arc;
 
@@ -174,6 +175,10 @@ impl Regular for OnGrid {
     fn contains(&self, node: usize) -> bool {
         let w = self.width();
         find(&self.nodes, node / w, node % w).is_some()
+    }
+
+    fn position(&self, node: usize) -> Option<Point<2>> {
+        Some(self.grid.node(node))
     }
 
     fn for_each(&self, mut visit: impl FnMut(usize)) {

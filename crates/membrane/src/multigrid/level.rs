@@ -130,7 +130,8 @@ impl<R: Regular> Level<R> {
             for &node in &functions {
                 if !std::mem::replace(&mut taken[node as usize], true) {
                     self.in_contact.push(node);
-                    self.u[node as usize] = membrane.obstacles.height(side, &self.cells.node(node as usize));
+                    let height = |x: Point<2>| membrane.obstacles.height(side, &x);
+                    self.u[node as usize] = self.regular.position(node as usize).map_or(0.0, height);
                 }
             }
         }

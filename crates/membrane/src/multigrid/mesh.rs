@@ -1,6 +1,8 @@
 //! Levels on meshes, each with every cell of the coarser one divided into four: the equations are stored, and relaxed one
-//! node after the other, those that share none first.
+//! node after the other, those that share none first. A level of higher degree has that of degree 1 on its own mesh below it,
+//! and is relaxed patch by patch.
 
+use super::patches::Patches;
 use super::regular::{Ground, Layout, Regular, State};
 use super::rows::Rows;
 use super::runs::{join, root_of};
@@ -11,7 +13,7 @@ use crate::zone::Division;
 use rayon::prelude::*;
 use signorini_fem::mesh_refinement::PARTS;
 use signorini_fem::{Cells, CellsPart, Grid, MeshCells};
-use signorini_geometry::Aabb;
+use signorini_geometry::{Aabb, Point};
 use signorini_solve::SolveError;
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -33,21 +35,43 @@ pub struct OnMesh {
     /// Those that are regular.
     nodes: Vec<u32>,
     regular: Vec<bool>,
+    /// At higher degree.
+    higher: Option<Higher>,
+}
+
+/// What functions of higher degree need.
+struct Higher {
+    patches: Patches,
+    /// For each function that of its vertex on the level below.
+    below: Vec<Option<u32>>,
+}
+
+impl OnMesh {
+    /// The functions of the next coarser level whose mean a function is where those are; none where it is nothing there.
+    fn parents(&self, node: usize) -> Option<[u32; 4]> {
+        match &self.higher {
+            Some(higher) => higher.below[node].map(|n| [n; 4]),
+            None => self.cells.parent().map(|parent| parent.nodes[node]),
+        }
+    }
 }
 
 impl Regular for OnMesh {
     type Cells = MeshCells;
 
     fn is_able<const D: usize>(membrane: &Membrane<D>) -> bool {
-        membrane.cells.clone().mesh().is_some_and(|mesh| mesh.degree() == 1 && mesh.parent().is_some())
+        membrane.cells.clone().mesh().is_some_and(|mesh| mesh.parent().is_some())
     }
 
     fn grounds(membrane: &Membrane<2>) -> Vec<Ground<MeshCells>> {
         let finest = membrane.cells.clone().mesh().into_iter();
         let mut list: Vec<_> =
             finest.map(|cells| Ground { grid: membrane.grid.clone(), cells, domain: None }).collect();
-        while let Some(parent) = list.last().and_then(|ground| ground.cells.parent()) {
-            let cells = parent.cells.clone();
+        let below = |cells: &MeshCells| match cells.degree() {
+            1 => cells.parent().map(|parent| parent.cells.clone()),
+            _ => Some(Arc::new(cells.of_degree_one())),
+        };
+        while let Some(cells) = list.last().and_then(|ground| below(&ground.cells)) {
             let domain: Arc<dyn Domain<2>> = Arc::new(MeshDomain(cells.clone()));
             list.push(Ground { grid: cells.grid(), domain: Some(domain), cells });
         }
@@ -61,7 +85,7 @@ impl Regular for OnMesh {
         let mut functions = Vec::new();
         for cell in 0..cells.count() {
             cells.functions(cell, &mut functions);
-            match membrane.load.constant().filter(|_| cells.is_straight(cell)) {
+            match membrane.load.constant().filter(|_| cells.degree() == 1 && cells.is_straight(cell)) {
                 Some(f) => functions.iter().for_each(|&n| load[n as usize] += f * cells.volume(cell) / 3.0),
                 None => cells.for_each_point(cell, &mut |p, t| {
                     let f = p.weight * membrane.load.value(&p.x);
@@ -69,8 +93,15 @@ impl Regular for OnMesh {
                 }),
             }
         }
-        let order = rows.colours();
-        Ok(Self { cells: cells.clone(), rows, regular: vec![false; load.len()], load, order, nodes: Vec::new() })
+        let regular = vec![false; load.len()];
+        let (higher, order) = match cells.degree() {
+            1 => (None, rows.colours()),
+            _ => {
+                let higher = Higher { patches: Patches::new(cells, &rows)?, below: cells.functions_of_degree_one() };
+                (Some(higher), (0..load.len() as u32).collect())
+            }
+        };
+        Ok(Self { cells: cells.clone(), rows, regular, load, order, nodes: Vec::new(), higher })
     }
 
     fn lay_out(&mut self, _: &Membrane<2>, zone: &PlaneZone, whole: bool) -> Layout {
@@ -160,6 +191,11 @@ impl Regular for OnMesh {
         self.regular[node]
     }
 
+    fn position(&self, node: usize) -> Option<Point<2>> {
+        let is_value = self.higher.as_ref().is_none_or(|higher| higher.below[node].is_some());
+        is_value.then(|| self.cells.node(node))
+    }
+
     fn for_each(&self, visit: impl FnMut(usize)) {
         self.nodes.iter().map(|n| *n as usize).for_each(visit);
     }
@@ -184,21 +220,29 @@ impl Regular for OnMesh {
     }
 
     fn relax(&self, u: &mut [f64], b: &[f64]) {
+        if let Some(Higher { patches, below }) = &self.higher {
+            let mut scratch = Vec::new();
+            for vertex in self.nodes.iter().map(|n| *n as usize).filter(|n| below[*n].is_some()) {
+                patches.relax(vertex, &self.rows, u, b, &mut scratch);
+            }
+            return;
+        }
         for node in self.nodes.iter().map(|n| *n as usize) {
             u[node] = (b[node] - self.rows.sum(node, u)) / self.rows.diagonal[node];
         }
     }
 
     fn first_guess(&self, node: usize, _: &Self, u: &[f64], known: &[bool]) -> f64 {
-        let Some(parent) = self.cells.parent() else { return 0.0 };
-        let of = parent.nodes[node].iter().map(|n| *n as usize).filter(|n| known[*n]);
+        let Some(parents) = self.parents(node) else { return 0.0 };
+        let of = parents.iter().map(|n| *n as usize).filter(|n| known[*n]);
         let (count, sum) = of.fold((0.0, 0.0), |(count, sum), n| (count + 1.0, sum + u[n]));
         if count > 0.0 { sum / count } else { 0.0 }
     }
 
     fn add_correction(&self, coarse: &[f64], others: impl Iterator<Item = usize>, u: &mut [f64]) {
-        let Some(parent) = self.cells.parent() else { return };
-        let correction = |node: usize| 0.25 * parent.nodes[node].iter().map(|n| coarse[*n as usize]).sum::<f64>();
+        let correction = |node: usize| {
+            self.parents(node).map_or(0.0, |parents| 0.25 * parents.iter().map(|n| coarse[*n as usize]).sum::<f64>())
+        };
         for (node, u) in u[..self.regular.len()].iter_mut().enumerate().filter(|(node, _)| self.regular[*node]) {
             *u += correction(node);
         }
@@ -207,9 +251,8 @@ impl Regular for OnMesh {
 
     fn restrict(&self, r: &[f64], _: &Self, _: impl Iterator<Item = usize>, b: &mut [f64]) {
         // What goes to nodes that take no part is never looked at.
-        let Some(parent) = self.cells.parent() else { return };
-        for (r, parents) in r.iter().zip(&parent.nodes) {
-            parents.iter().for_each(|n| b[*n as usize] += 0.25 * r);
+        for (node, r) in r[..self.regular.len()].iter().enumerate() {
+            self.parents(node).into_iter().flatten().for_each(|n| b[n as usize] += 0.25 * r);
         }
     }
 }

@@ -14,6 +14,7 @@ mod interior;
 mod level;
 mod mesh;
 pub mod nested;
+mod patches;
 mod regular;
 mod rows;
 mod runs;

@@ -13,7 +13,6 @@ use crate::plane_zone::PlaneZone;
 use crate::problem::Membrane;
 use crate::scales::Scales;
 use crate::zone::{ModeSpace, Zone};
-use signorini_fem::Cells;
 use signorini_solve::{Acceleration, Iteration, Progress, SolveError};
 
 /// Nodes along the longer side of the grid on which the fronts are found at first, and, where zones were missed there, on
@@ -165,7 +164,7 @@ pub fn solve<R: Regular>(
             steps.push(0);
             continue;
         }
-        let finest = ground.cells.count() == membrane.cells.count();
+        let finest = ground.is_of(membrane);
         let mut count = 0;
         let mut wanted = if finest || grid.degree() > 1 { STEPS } else { STEPS_BETWEEN };
         let (mut best, mut waited) = (f64::INFINITY, 0);

@@ -7,6 +7,7 @@ use crate::problem::Membrane;
 use crate::zone::{contact_of, is_free};
 use signorini_fem::cut::RegionId;
 use signorini_fem::{CellByCell, Grid};
+use signorini_geometry::Point;
 use signorini_solve::SolveError;
 use std::sync::Arc;
 
@@ -19,9 +20,14 @@ pub struct Ground<C> {
 }
 
 impl<C: CellByCell<2> + 'static> Ground<C> {
+    /// Whether these are the cells of a membrane.
+    pub fn is_of(&self, membrane: &Membrane<2>) -> bool {
+        self.cells.function_count() == membrane.cells.function_count()
+    }
+
     /// The same membrane on these cells.
     pub fn membrane(&self, membrane: &Membrane<2>) -> Membrane<2> {
-        if self.cells.count() == membrane.cells.count() {
+        if self.is_of(membrane) {
             return membrane.clone();
         }
         let domain = self.domain.as_ref().unwrap_or(&membrane.domain.domain);
@@ -91,6 +97,8 @@ pub trait Regular: Sized + Send {
 
     fn count(&self) -> usize;
     fn contains(&self, node: usize) -> bool;
+    /// Where the displacement at a node is its unknown; none for unknowns of higher degree that are no value.
+    fn position(&self, node: usize) -> Option<Point<2>>;
     fn for_each(&self, visit: impl FnMut(usize));
 
     /// The row of a regular node, itself included.

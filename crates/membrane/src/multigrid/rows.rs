@@ -3,6 +3,7 @@
 use crate::equilibrium::add_stiffness;
 use crate::field::Field;
 use signorini_fem::{Cells, MeshCells};
+use signorini_solve::SymmetricMatrix;
 
 /// The rows of a matrix: diagonal, then all other entries.
 pub(super) struct Rows {
@@ -15,6 +16,45 @@ pub(super) struct Rows {
 impl Rows {
     /// The stiffness of all cells under a tension.
     pub fn new(cells: &MeshCells, tension: &dyn Field<2>) -> Self {
+        if cells.degree() == 1 { Self::of_corners(cells, tension) } else { Self::of_functions(cells, tension) }
+    }
+
+    /// That of functions of higher degree.
+    fn of_functions(cells: &MeshCells, tension: &dyn Field<2>) -> Self {
+        let n = cells.function_count();
+        let functions = |cell: usize| {
+            let mut list = Vec::new();
+            cells.functions(cell, &mut list);
+            list
+        };
+        let cliques: Vec<Vec<u32>> = (0..cells.count()).map(functions).collect();
+        let mut matrix = SymmetricMatrix::from_cliques(n, &cliques);
+        for (cell, list) in cliques.iter().enumerate() {
+            let mut local = vec![0.0; list.len() * list.len()];
+            cells.for_each_point(cell, &mut |p, t| add_stiffness(&mut local, t, p.weight * tension.value(&p.x)));
+            matrix.add(list, &local, 1.0);
+        }
+        drop(cliques);
+        let mut start = vec![0u32; n + 1];
+        let beside = || matrix.entries().filter(|(i, j, _)| i != j);
+        beside().for_each(|(i, j, _)| [i, j].into_iter().for_each(|k| start[k + 1] += 1));
+        for k in 1..start.len() {
+            start[k] += start[k - 1];
+        }
+        let mut next = start.clone();
+        let (mut column, mut value) = (vec![0; start[n] as usize], vec![0.0; start[n] as usize]);
+        for (i, j, v) in beside() {
+            for (own, other) in [(i, j), (j, i)] {
+                let at = next[own] as usize;
+                (column[at], value[at]) = (other as u32, v);
+                next[own] += 1;
+            }
+        }
+        Self { diagonal: matrix.diagonal(), start, column, value }
+    }
+
+    /// That of functions of degree 1.
+    fn of_corners(cells: &MeshCells, tension: &dyn Field<2>) -> Self {
         let nodes = cells.function_count();
         let mut start = vec![0u32; nodes + 1];
         for cell in 0..cells.count() {

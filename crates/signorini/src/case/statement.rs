@@ -496,8 +496,8 @@ pub struct DividedGmshKey {
     /// The physical group that is the body; all cells if left out.
     #[serde(default)]
     pub group: Option<String>,
-    /// How often every cell is divided into four, curved sides along their curves; 0 if left out. At degree 1 the meshes
-    /// before each division are the coarser levels of a multigrid method.
+    /// How often every cell is divided into four, curved sides along their curves; 0 if left out. The meshes before each
+    /// division are the coarser levels of a multigrid method.
     #[serde(default)]
     #[schemars(with = "Option<i64>")]
     pub divisions: Option<Spanned<i64>>,

@@ -259,9 +259,10 @@ pub fn multigrid_estimate(unknowns: f64, degree: usize, is_even: bool) -> f64 {
     unknowns * (450.0 + 300.0 / (p * p) + stored) + unknowns.sqrt() * 4e4 * p * p
 }
 
-/// The same at degree 1 on a mesh whose cells were divided.
-pub fn mesh_multigrid_estimate(unknowns: f64) -> f64 {
-    unknowns * 1500.0
+/// The same on a mesh whose cells were divided, where all equations are stored, and at higher degree those around each vertex.
+pub fn mesh_multigrid_estimate(unknowns: f64, degree: usize) -> f64 {
+    let around = 2.0 * degree as f64 + 1.0;
+    unknowns * (1300.0 + 22.0 * around * around)
 }
 
 /// Memory that a solve may take at most.
@@ -434,12 +435,8 @@ impl ReadDomain<2> for Planner<'_> {
         let share = |cell: usize| if mesh.shape(cell).is_tensor() { 1.0 } else { 0.5 };
         let vertices = (0..mesh.cell_count()).map(share).sum::<f64>() * 4f64.powi(divisions as i32);
         let unknowns = vertices * (degree * degree) as f64;
-        if divisions > 0 && degree == 1 {
-            let bytes = memory_estimate(unknowns, 1, 2).min(mesh_multigrid_estimate(unknowns));
-            self.check_bytes(unknowns, bytes, span)?;
-        } else {
-            self.check_unknowns::<2>(unknowns, degree, span)?;
-        }
+        let by_multigrid = if divisions > 0 { mesh_multigrid_estimate(unknowns, degree) } else { f64::INFINITY };
+        self.check_bytes(unknowns, memory_estimate(unknowns, degree, 2).min(by_multigrid), span)?;
         let undivided = Arc::new(MeshCells::new(mesh, degree));
         let cells = (0..divisions).fold(undivided, |cells, _| Arc::new(cells.refined()));
         let pieces = Pieces { groups: cells.groups().to_vec() };

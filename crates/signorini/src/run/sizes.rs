@@ -66,7 +66,7 @@ fn of_membrane<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>) -> Result<Val
     let multigrid = plan.by_multigrid(&membrane);
     let estimate = |n: f64, p: usize| match (multigrid, plan.cells.divisible()) {
         (true, Some(_)) => multigrid_estimate(n, p, membrane.tension.constant().is_some()),
-        (true, None) => mesh_multigrid_estimate(n),
+        (true, None) => mesh_multigrid_estimate(n, p),
         (false, _) => memory_estimate(n, p, D),
     };
     let bytes = estimate(unknowns as f64, plan.cells.degree());

@@ -33,7 +33,7 @@ const CHUNK: usize = 4096;
 
 /// Where the equations are not positive definite, parts that fill no cell to this share are held, one after the other; then
 /// slivers are tied to their neighbours by so much more, where fronts that meet the boundary leave wedges.
-const HOLDS: [(f64, f64); 4] = [(0.25, 1.0), (1.0, 1.0), (1.0, 4.0), (1.0, 16.0)];
+pub(crate) const HOLDS: [(f64, f64); 4] = [(0.25, 1.0), (1.0, 1.0), (1.0, 4.0), (1.0, 16.0)];
 
 /// Penalty of Nitsche's method, to be divided by the cell size.
 pub(crate) fn nitsche_penalty(degree: usize) -> f64 {
@@ -188,10 +188,9 @@ impl<const D: usize> Equilibrium<D> {
         }
         let mut system = System::assemble(membrane, zone, elements);
         let mut factor = elements.symbolic.factor(system.matrix);
-        for (needed, tied) in HOLDS {
+        for hold in HOLDS {
             if let Err(SolveError::NotPositiveDefinite { .. }) = factor {
-                system = System::tied(membrane, system.quadrature, elements, tied);
-                hold_thin_parts(membrane, elements, &system.quadrature, &system.unknowns, &mut system.matrix, needed);
+                system = System::held(membrane, system.quadrature, elements, hold);
                 factor = elements.symbolic.factor(system.matrix);
             }
         }
@@ -368,6 +367,18 @@ impl<const D: usize> System<D> {
     /// The system for a quadrature at hand.
     pub fn on(membrane: &Membrane<D>, quadrature: Quadrature<D>, elements: &Elements<D>) -> Self {
         Self::tied(membrane, quadrature, elements, 1.0)
+    }
+
+    /// The same where that is not positive definite: one of [`HOLDS`].
+    pub fn held(
+        membrane: &Membrane<D>,
+        quadrature: Quadrature<D>,
+        elements: &Elements<D>,
+        (needed, tied): (f64, f64),
+    ) -> Self {
+        let mut system = Self::tied(membrane, quadrature, elements, tied);
+        hold_thin_parts(membrane, elements, &system.quadrature, &system.unknowns, &mut system.matrix, needed);
+        system
     }
 
     /// The same with slivers tied to their neighbours by so much more.

@@ -2,7 +2,7 @@
 
 use super::regular::Regular;
 use crate::domain::DomainOnCells;
-use crate::equilibrium::{Elements, Equilibrium, System};
+use crate::equilibrium::{Elements, Equilibrium, HOLDS, System};
 use crate::plane_zone::{PlaneZone, Straightened};
 use crate::problem::Membrane;
 use crate::quadrature::Quadrature;
@@ -54,8 +54,28 @@ impl Band {
         let domain = DomainOnCells { domain: membrane.domain.domain.clone(), status: Arc::new(status) };
         let part = Membrane { cells: cells.clone(), domain, ..membrane.clone() };
         let elements = Elements::new(&part);
-        let System { quadrature, unknowns, matrix, rhs } = System::on(&part, quadrature(&part, zone), &elements);
+        let mut band =
+            Self::of(&part, &cells, System::on(&part, quadrature(&part, zone), &elements), inner, first, regular, also);
+        for hold in HOLDS {
+            if let Err(SolveError::NotPositiveDefinite { .. }) = band {
+                let system = System::held(&part, quadrature(&part, zone), &elements, hold);
+                band = Self::of(&part, &cells, system, inner, first, regular, also);
+            }
+        }
+        band
+    }
 
+    /// That of a system at hand.
+    fn of<R: Regular>(
+        part: &Membrane<2>,
+        cells: &Arc<CellsPart<2>>,
+        system: System<2>,
+        inner: &[usize],
+        first: usize,
+        regular: &R,
+        also: &[usize],
+    ) -> Result<Self, SolveError> {
+        let System { quadrature, unknowns, matrix, rhs } = system;
         // The unknown of the level for each of the part: the node, or one more where another region has it already.
         let mut more = 0;
         let mut taken = vec![false; cells.nodes().len()];
@@ -82,8 +102,8 @@ impl Band {
             }
         }
         let mut band = Self {
-            state: Equilibrium::unsolved(part, quadrature, unknowns),
-            cells,
+            state: Equilibrium::unsolved(part.clone(), quadrature, unknowns),
+            cells: cells.clone(),
             more,
             irregular: Vec::new(),
             node_of_irregular: Vec::new(),

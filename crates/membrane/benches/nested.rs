@@ -1,9 +1,11 @@
 //! Time, memory and error of membranes by multigrid from coarse to fine: a round one on a flat floor, and a square one on a
-//! cosine floor at f = 0.4, at degree 1, 2 and 4, and membranes on meshes whose cells are divided. From 1e4 unknowns to as
+//! cosine floor at f = 0.4, at degree 1, 2 and 4, and membranes on meshes whose cells are divided. From 1e3 unknowns to as
 //! many as `SIGNORINI_LADDER` says (1e6 if it says nothing), beside the membrane alone, without contact, solved from nothing to
 //! 1e-8, on `SIGNORINI_THREADS` threads (one if it says nothing), on grids of `SIGNORINI_DEGREE` alone if it says something.
 //!
 //! `cargo bench -p signorini-membrane --bench nested`
+//!
+//! What takes seconds is run three times and the fastest is told, here and of PETSc.
 //!
 //! With `SIGNORINI_PETSC` naming a Python that has petsc4py with hypre, numpy and scipy, PETSc solves the same problems at
 //! degree 1 beside, from 1e5 nodes on: TAO tron and SNES vinewtonrsls on the same triangles, SNES on the same square grid.
@@ -71,11 +73,33 @@ fn waves(n: [usize; 2]) -> Membrane<2> {
     on_grid(n, 1.0, Arc::new(square), Arc::new(Formula(height)), -0.4)
 }
 
-/// The largest memory of this process so far, in bytes, where the system tells.
+/// Forgets the largest memory of this process, where the system can.
+fn forget_peak() {
+    let _ = std::fs::write("/proc/self/clear_refs", "5");
+}
+
+/// The largest memory of this process since, in bytes, where the system tells.
 fn peak() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:")).unwrap_or("");
     line.split_whitespace().next().and_then(|kb| kb.parse::<f64>().ok()).unwrap_or(f64::NAN) * 1024.0
+}
+
+/// The fastest of so many runs of what takes less than [`LONG`] seconds: others on the machine only make it slower.
+const TIMES: usize = 3;
+const LONG: f64 = 12.0;
+
+fn best<T>(run: impl Fn() -> (T, f64)) -> (T, f64) {
+    let (mut found, mut seconds) = run();
+    for _ in 1..TIMES {
+        if seconds < LONG {
+            // Not two at once in memory.
+            drop(found);
+            let next = run();
+            (found, seconds) = (next.0, seconds.min(next.1));
+        }
+    }
+    (found, seconds)
 }
 
 /// Seconds for the membrane without contact.
@@ -98,9 +122,12 @@ struct Ladder<'a> {
 impl Ladder<'_> {
     /// Solves one membrane, from the mesh on; whether there is a state.
     fn row<R: Regular>(&mut self, membrane: &(dyn Fn() -> Membrane<2> + Sync)) -> bool {
-        let start = Instant::now();
-        let found = self.pool.install(|| nested::solve::<R>(&membrane(), f64::INFINITY, 32, (0, 0.0), &mut Silent));
-        let seconds = start.elapsed().as_secs_f64();
+        forget_peak();
+        let (found, seconds) = best(|| {
+            let start = Instant::now();
+            let solve = || nested::solve::<R>(&membrane(), f64::INFINITY, 32, (0, 0.0), &mut Silent);
+            (self.pool.install(solve), start.elapsed().as_secs_f64())
+        });
         let Ok(Ok(found)) = found else {
             println!("no state");
             return false;
@@ -110,7 +137,7 @@ impl Ladder<'_> {
         let memory = peak();
         let steps = found.steps;
         drop(found.level);
-        let alone = self.pool.install(|| alone::<R>(&membrane()));
+        let (_, alone) = best(|| ((), self.pool.install(|| alone::<R>(&membrane()))));
         println!(
             "{unknowns:>10} {seconds:>9.3} {:>8.2} {:>9.0} {:>9.0} {alone:>9.3}  {:.9e}  steps {steps:?}",
             1e6 * seconds / unknowns,
@@ -129,17 +156,23 @@ impl Ladder<'_> {
 fn petsc(problem: &[&str]) {
     let Ok(python) = std::env::var("SIGNORINI_PETSC") else { return };
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/petsc.py");
-    let run = std::process::Command::new(&python).arg(script).args(problem).env("OMP_NUM_THREADS", "1").output();
-    let (row, told) = match run {
-        Ok(run) => [run.stdout, run.stderr].map(|text| String::from_utf8_lossy(&text).into_owned()).into(),
-        Err(error) => (String::new(), error.to_string()),
+    let run = || {
+        let run = std::process::Command::new(&python).arg(script).args(problem).env("OMP_NUM_THREADS", "1").output();
+        let (row, told) = match run {
+            Ok(run) => [run.stdout, run.stderr].map(|text| String::from_utf8_lossy(&text).into_owned()).into(),
+            Err(error) => (String::new(), error.to_string()),
+        };
+        let figures: serde_json::Value = serde_json::from_str(&row).unwrap_or_default();
+        let seconds = figures["seconds"].as_f64().unwrap_or(f64::INFINITY);
+        ((figures, told), seconds)
     };
-    let figures: serde_json::Value = serde_json::from_str(&row).unwrap_or_default();
+    let ((figures, told), seconds) = best(run);
     let number = |key: &str| figures[key].as_f64();
     let name = format!("PETSc {}", problem[2]);
-    match (number("unknowns"), number("seconds"), number("megabytes")) {
-        (Some(n), Some(s), Some(mb)) => {
-            println!("{n:>10} {s:>9.3} {:>8.2} {mb:>9.0} {:>9.0} {:>9}  {name}", 1e6 * s / n, 1e6 * mb / n, "")
+    match (number("unknowns"), number("megabytes")) {
+        (Some(n), Some(mb)) => {
+            let each = 1e6 * seconds / n;
+            println!("{n:>10} {seconds:>9.3} {each:>8.2} {mb:>9.0} {:>9.0} {:>9}  {name}", 1e6 * mb / n, "")
         }
         _ => println!("{:>10} {name} did not run: {}", "", told.lines().last().unwrap_or("it said nothing")),
     }
@@ -233,7 +266,8 @@ fn main() {
         for (name, share, membrane, figure) in &cases {
             head(&format!("degree {degree}, {name}"));
             let mut ladder = Ladder { pool: &pool, figure, last: None };
-            for n in [128usize, 256, 512, 1024, 1408, 2816, 4096, 8192, 16384].map(|n| n / degree / 16 * 16) {
+            let sizes = [32usize, 64, 128, 256, 512, 1024, 1408, 2816, 4096, 8192, 16384].map(|n| n / degree / 16 * 16);
+            for n in sizes.into_iter().filter(|n| *n > 0) {
                 let more = share * ((n * degree) as f64).powi(2) <= most;
                 if !more || !ladder.row::<OnGrid>(&|| membrane([n, degree])) {
                     break;

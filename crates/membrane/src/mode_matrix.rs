@@ -93,7 +93,13 @@ mod tests {
                 FrontFrame { curvature: 0.0, modes: (0..3).map(|i| (at(i), values[i])).collect() }
             })
             .collect();
-        let mut matrix = ModeMatrix::of_products(n, &frames, (0..frames.len()).map(|k| 1.0 + (k as f64).sin().powi(2)));
+        let factor = |k: usize| 1.0 + (k as f64).sin().powi(2);
+        let mut matrix = ModeMatrix::of_products(n, &frames, (0..frames.len()).map(factor));
+        let products = matrix.dense();
+        for (i, j) in (0..5).flat_map(|i| (0..n).map(move |j| (i, j))) {
+            let each = frames.iter().enumerate().map(|(k, f)| factor(k) * f.value(i) * f.value(j));
+            assert!((products[i * n + j] - each.sum::<f64>()).abs() < 1e-14, "{i}, {j}");
+        }
         matrix.add(vec![(vec![MANY_MODES as u32], vec![2.0])]);
         let b: Vec<f64> = (0..n).map(|i| (1.3 * i as f64).cos()).collect();
         let x = matrix.solve(&b).expect("positive definite");

@@ -27,6 +27,8 @@ const STEPS_BETWEEN: usize = 1;
 const MORE: usize = 6;
 /// Fronts that move by more than this fraction of a cell get another step.
 const FAR: f64 = 0.3;
+/// Fronts that moved by less than this fraction of a cell at last leave the displacement as it is.
+const NEAR: f64 = 0.01;
 
 /// A membrane in contact on the finest of nested grids.
 pub struct NestedSolution<R: Regular> {
@@ -221,8 +223,9 @@ pub fn solve<R: Regular>(
                 acceleration = Acceleration::default();
             }
             zone = advance.zone;
-            if count == wanted && !finest {
-                // What it is interpolated from may have the fronts of a moment ago.
+            if count == wanted && (!finest || last_step < NEAR) {
+                // The displacement changes with the square of the step, for fronts rest where it is in contact without a
+                // slope; and what a finer grid is interpolated from may have the fronts of a moment ago.
                 break;
             }
             level.moved(&here, &zone)?;

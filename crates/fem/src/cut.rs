@@ -130,8 +130,9 @@ impl<const D: usize> Cutter<'_, D> {
         if D == 1 {
             return self.line(b.min, 0, b, &active, 1.0, Search::Scan, rule);
         }
+        let slopes = self.least_slopes(&active, b);
         let (slope, k) = (0..D)
-            .map(|k| (self.least_slope(&active, b, k), k))
+            .map(|k| (slopes[k], k))
             .fold((f64::NEG_INFINITY, 0), |best, new| if new.0 > best.0 { new } else { best });
         if slope >= MIN_SLOPE {
             self.column(b, k, &active, Search::Single, rule);
@@ -187,19 +188,22 @@ impl<const D: usize> Cutter<'_, D> {
             })
     }
 
-    /// The least slope of the active sheets along direction `k`; negative where the sign of the slope changes.
-    fn least_slope(&self, active: &[usize], b: &Aabb<D>, k: usize) -> f64 {
-        active
-            .iter()
-            .map(|&s| {
-                let slopes = samples(b).map(|x| {
-                    let g = self.partition.sheets[s].gradient(&x);
-                    g[k] / g.norm().max(f64::MIN_POSITIVE)
-                });
-                let (lo, hi) = slopes.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-                lo.max(-hi)
-            })
-            .fold(f64::INFINITY, f64::min)
+    /// The least slopes of the active sheets along each direction; negative where the sign of the slope changes.
+    fn least_slopes(&self, active: &[usize], b: &Aabb<D>) -> Vector<D> {
+        let mut least = Vector::<D>::repeat(f64::INFINITY);
+        for &s in active {
+            let sheet = &*self.partition.sheets[s];
+            let mut low = Vector::<D>::repeat(f64::INFINITY);
+            let mut high = -low;
+            for x in samples(b) {
+                let g = sheet.gradient(&x);
+                let direction = g / g.norm().max(f64::MIN_POSITIVE);
+                low = low.inf(&direction);
+                high = high.sup(&direction);
+            }
+            least = least.inf(&low.sup(&-high));
+        }
+        least
     }
 
     /// Integrates over lines in direction `k` above the other direction of a rectangle.

@@ -1,9 +1,20 @@
 //! Gauss-Legendre rules on the unit interval.
 
+use std::sync::OnceLock;
+
 /// The `n`-point Gauss-Legendre rule on `[0, 1]`: pairs (position, weight), exact for degree `2n - 1`.
 ///
-/// Newton on the Legendre polynomial from the Chebyshev-like starting points of Abramowitz & Stegun 22.16.6.
+/// Those of a few points are computed once.
 pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
+    static RULES: [OnceLock<Vec<(f64, f64)>>; 32] = [const { OnceLock::new() }; 32];
+    match RULES.get(n) {
+        Some(rule) => rule.get_or_init(|| by_newton(n)).clone(),
+        None => by_newton(n),
+    }
+}
+
+/// Newton on the Legendre polynomial from the Chebyshev-like starting points of Abramowitz & Stegun 22.16.6.
+fn by_newton(n: usize) -> Vec<(f64, f64)> {
     (0..n)
         .map(|i| {
             let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();

@@ -385,25 +385,22 @@ impl<const D: usize> System<D> {
     fn tied(membrane: &Membrane<D>, quadrature: Quadrature<D>, elements: &Elements<D>, tied: f64) -> Self {
         let unknowns = number(membrane, &quadrature);
         let pairs = ghost_pairs(membrane, elements, &quadrature, &unknowns);
-        let mut cliques: Vec<Vec<u32>> = unknowns.all().map(|(_, _, dofs)| dofs.to_vec()).collect();
-        cliques.extend(pairs.iter().map(|pair| pair.dofs.clone()));
+        let dofs_of_pairs = pairs.iter().map(|pair| pair.dofs.as_slice());
+        let cliques: Vec<&[u32]> = unknowns.all().map(|(_, _, dofs)| dofs).chain(dofs_of_pairs).collect();
         let mut matrix = SymmetricMatrix::from_cliques(unknowns.count, &cliques);
         drop(cliques);
         let mut rhs = vec![0.0; unknowns.count];
 
-        let imposed = imposed_points(membrane, &quadrature);
-        // Points come cell by cell, so those of one cell form a range.
-        let mut by_cell: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for (i, p) in imposed.iter().enumerate() {
-            by_cell.entry(p.cell).or_default().push(i);
-        }
+        let mut imposed = imposed_points(membrane, &quadrature);
+        imposed.sort_by_key(|p| p.cell);
         for begin in (0..quadrature.cells.len()).step_by(CHUNK) {
             let end = (begin + CHUNK).min(quadrature.cells.len());
             let local: Vec<Vec<LocalSystem>> = (begin..end)
                 .into_par_iter()
                 .map(|cell| {
-                    let points = by_cell.get(&cell).map_or(&[][..], Vec::as_slice);
-                    local_systems(membrane, elements, &quadrature, &unknowns, cell, &imposed, points)
+                    let points = &imposed[imposed.partition_point(|p| p.cell < cell)..];
+                    let points = &points[..points.partition_point(|p| p.cell == cell)];
+                    local_systems(membrane, elements, &quadrature, &unknowns, cell, points)
                 })
                 .collect();
             for (cell, systems) in (begin..end).zip(local) {
@@ -645,11 +642,10 @@ fn local_systems<const D: usize>(
     unknowns: &Unknowns,
     cell: usize,
     imposed: &[Imposed<D>],
-    points: &[usize],
 ) -> Vec<LocalSystem> {
     let cells = &*membrane.cells;
     let element = elements.of(membrane, cell).filter(|_| matches!(quadrature.cells[cell], Cell::Whole(_)));
-    let plain = points.is_empty() && element.is_some_and(|e| e.stiffness.is_some());
+    let plain = imposed.is_empty() && element.is_some_and(|e| e.stiffness.is_some());
     let mut scratch = Tabulation::default();
     let whole = matches!(quadrature.cells[cell], Cell::Whole(_)) && element.is_none();
     let volumes = if whole { Vec::new() } else { quadrature.volumes(membrane, cell) };
@@ -681,7 +677,7 @@ fn local_systems<const D: usize>(
                     add(&p.x, p.weight, t);
                 }
             }
-            for p in points.iter().map(|&i| &imposed[i]).filter(|p| p.region == region) {
+            for p in imposed.iter().filter(|p| p.region == region) {
                 cells.tabulate(cell, &p.x, &mut scratch);
                 let penalty = penalty(membrane, cell);
                 let w = p.weight * membrane.tension.value(&p.x);

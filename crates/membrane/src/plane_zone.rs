@@ -123,14 +123,16 @@ struct Osculating {
 
 impl ImplicitShape<2> for Osculating {
     fn value(&self, x: &Point<2>) -> f64 {
-        let d = x - self.foot;
-        let along = d[0] * self.normal[1] - d[1] * self.normal[0];
-        d.dot(&self.normal) + 0.5 * self.curvature * along * along
+        self.value_and_gradient(x).0
     }
     fn gradient(&self, x: &Point<2>) -> Vector<2> {
+        self.value_and_gradient(x).1
+    }
+    fn value_and_gradient(&self, x: &Point<2>) -> (f64, Vector<2>) {
         let d = x - self.foot;
-        let along = d[0] * self.normal[1] - d[1] * self.normal[0];
-        self.normal + self.curvature * along * Vector::<2>::new(self.normal[1], -self.normal[0])
+        let tangent = Vector::<2>::new(self.normal[1], -self.normal[0]);
+        let (along, bent) = (d.dot(&tangent), self.curvature * d.dot(&tangent));
+        (d.dot(&self.normal) + 0.5 * bent * along, self.normal + bent * tangent)
     }
 }
 

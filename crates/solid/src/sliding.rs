@@ -146,7 +146,7 @@ impl<const D: usize> Model<D> {
         let mut factor = symbolic.factor(with(&curvature));
         if matches!(factor, Err(SolveError::NotPositiveDefinite { .. })) {
             // Far from the solution the curvature may outweigh the stiffness: without it the step still goes down.
-            curvature = SymmetricMatrix::from_cliques(around.u.len(), &[]);
+            curvature = SymmetricMatrix::from_cliques::<Vec<u32>>(around.u.len(), &[]);
             factor = symbolic.factor(with(&curvature));
         }
         let factor = factor?;

@@ -10,10 +10,10 @@ pub struct SymmetricMatrix {
 
 impl SymmetricMatrix {
     /// A zero matrix of size `n` whose pattern couples all unknowns within each clique (the unknowns of an element).
-    pub fn from_cliques(n: usize, cliques: &[Vec<u32>]) -> Self {
+    pub fn from_cliques<C: AsRef<[u32]>>(n: usize, cliques: &[C]) -> Self {
         // Cliques of each unknown, in compressed rows.
         let mut start = vec![0usize; n + 1];
-        for &i in cliques.iter().flatten() {
+        for &i in cliques.iter().flat_map(|clique| clique.as_ref()) {
             start[i as usize + 1] += 1;
         }
         for i in 0..n {
@@ -22,7 +22,7 @@ impl SymmetricMatrix {
         let mut fill = start.clone();
         let mut member = vec![0u32; start[n]];
         for (c, clique) in cliques.iter().enumerate() {
-            for &i in clique {
+            for &i in clique.as_ref() {
                 member[fill[i as usize]] = c as u32;
                 fill[i as usize] += 1;
             }
@@ -33,7 +33,7 @@ impl SymmetricMatrix {
         for j in 0..n {
             let begin = row.len();
             for &c in &member[start[j]..start[j + 1]] {
-                for &i in &cliques[c as usize] {
+                for &i in cliques[c as usize].as_ref() {
                     let i = i as usize;
                     if i >= j && seen[i] != j {
                         seen[i] = j;
@@ -50,7 +50,7 @@ impl SymmetricMatrix {
 
     /// The sum of symmetric row-major matrices of a few unknowns each.
     pub fn of_cliques(n: usize, cliques: &[(Vec<u32>, Vec<f64>)]) -> Self {
-        let lists: Vec<Vec<u32>> = cliques.iter().map(|c| c.0.clone()).collect();
+        let lists: Vec<&[u32]> = cliques.iter().map(|c| c.0.as_slice()).collect();
         let mut out = Self::from_cliques(n, &lists);
         cliques.iter().for_each(|(unknowns, values)| out.add(unknowns, values, 1.0));
         out

@@ -65,7 +65,24 @@ fn options() -> &'static usvg::Options<'static> {
 }
 
 fn png(svg: &str) -> Result<Vec<u8>, OutputError> {
-    rendered(svg, ZOOM)?.encode_png().map_err(failed)
+    // More would take longer than a small problem.
+    encoded(&rendered(svg, ZOOM)?, png::Compression::Fast)
+}
+
+fn encoded(image: &tiny_skia::Pixmap, compression: png::Compression) -> Result<Vec<u8>, OutputError> {
+    let mut bytes = Vec::new();
+    let opaque = image.pixels().iter().all(|p| p.is_opaque());
+    let pixels = image.pixels().iter().map(|p| p.demultiply());
+    let (color, data): (_, Vec<u8>) = match opaque {
+        true => (png::ColorType::Rgb, pixels.flat_map(|p| [p.red(), p.green(), p.blue()]).collect()),
+        false => (png::ColorType::Rgba, pixels.flat_map(|p| [p.red(), p.green(), p.blue(), p.alpha()]).collect()),
+    };
+    let mut encoder = png::Encoder::new(&mut bytes, image.width(), image.height());
+    encoder.set_color(color);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(compression);
+    encoder.write_header().and_then(|mut writer| writer.write_image_data(&data)).map_err(failed)?;
+    Ok(bytes)
 }
 
 /// Width, height and RGBA of a picture.
@@ -168,7 +185,7 @@ impl Image {
 
     /// Puts the image into an SVG, above the background and below everything else.
     pub fn insert(&self, svg: &mut String, x: (i32, i32), y: (i32, i32)) -> Result<(), OutputError> {
-        let data = base64::engine::general_purpose::STANDARD.encode(self.pixmap.encode_png().map_err(failed)?);
+        let data = base64::engine::general_purpose::STANDARD.encode(encoded(&self.pixmap, png::Compression::Balanced)?);
         let element = format!(
             "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" xlink:href=\"data:image/png;base64,{data}\" xmlns:xlink=\"http://www.w3.org/1999/xlink\"/>\n",
             x.0,

@@ -123,7 +123,7 @@ impl<const D: usize> Path<'_, D> {
         let equilibrium = Equilibrium::solve(&membrane, zone, &mut Elements::new(&membrane))?;
         let fronts = Fronts::new(&equilibrium, true);
         let linearised = fronts.linearise(zone, membrane.modes.finest(), &self.scales)?;
-        let error = fronts.project(zone, membrane.modes.finest()).norm / self.scales.slope_tolerance();
+        let error = fronts.residual(zone, membrane.modes.finest()) / self.scales.slope_tolerance();
         // The same zone a little later: its quadrature is the same.
         let dt = 1e-5 * self.size[1];
         let later = (self.membrane)(time + dt);

@@ -478,8 +478,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 self.solution.zone = zone;
                 continue;
             }
-            let projection = fronts.project(zone, finest);
-            let residual = projection.norm / scales.slope_tolerance();
+            let residual = fronts.residual(zone, finest) / scales.slope_tolerance();
             let linearised = if self.adhering { Some(fronts.linearise(zone, finest, &scales)?) } else { None };
             let mut step = match &linearised {
                 Some(linearised) => linearised.step(self.branch, &scales),
@@ -502,18 +501,18 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             }
             let relative_step = step.length / h;
             let sharp = D > 1 && (1.0..SHARPEST).contains(&(zone.sharpest() * h));
-            let coarse = sharp || projection.norm < projection.remainder;
-            let enough = if shifted {
-                SETTLED_SHIFTED
-            } else if coarse {
-                SETTLED_COARSE
-            } else {
-                SETTLED
+            let unseen = |share: f64| {
+                let projection = fronts.project(zone, finest);
+                projection.norm < share * projection.remainder
+            };
+            let enough = || match () {
+                () if shifted => SETTLED_SHIFTED,
+                () if sharp || unseen(1.0) => SETTLED_COARSE,
+                () => SETTLED,
             };
             let settled =
-                (waited >= patience || last) && !slowly && relative_step < enough && step.kind != StepKind::Descent;
-            let blunt =
-                D > 1 && zone.sharpest() * h >= 1.0 && projection.norm < self.rest.share() * projection.remainder;
+                (waited >= patience || last) && !slowly && step.kind != StepKind::Descent && relative_step < enough();
+            let blunt = D > 1 && zone.sharpest() * h >= 1.0 && unseen(self.rest.share());
             if residual <= self.rest.residual() || (waited >= 1 && relative_step < ROUND_OFF) || settled || blunt {
                 if let Some(linearised) = &linearised {
                     let spectrum = linearised.spectrum();

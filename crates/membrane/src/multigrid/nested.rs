@@ -181,8 +181,7 @@ pub fn solve<R: Regular>(
             let Some(level) = levels.last_mut() else { break };
             let state = level.state();
             let fronts = Fronts::new(state, false);
-            let seen = fronts.project(&zone, ModeSpace::Fine);
-            let residual = seen.norm / scales.slope_tolerance();
+            let residual = fronts.residual(&zone, ModeSpace::Fine) / scales.slope_tolerance();
             residuals.push(residual);
             waited = if residual < 0.7 * best { 0 } else { waited + 1 };
             best = best.min(residual);
@@ -201,8 +200,11 @@ pub fn solve<R: Regular>(
             let mut step = fronts.newton_step(&zone, &scales)?;
             let last_step = step.length / h;
             // As everywhere: on a jump of the discrete slope no position makes it vanish.
-            let enough = if seen.norm < seen.remainder { SETTLED_COARSE } else { SETTLED };
-            let on_jump = waited >= PATIENCE && last_step < enough;
+            let enough = || {
+                let seen = fronts.project(&zone, ModeSpace::Fine);
+                if seen.norm < seen.remainder { SETTLED_COARSE } else { SETTLED }
+            };
+            let on_jump = waited >= PATIENCE && last_step < enough();
             settled = residual <= tolerance || on_jump;
             if finest && settled && count >= STEPS && tolerance.is_finite() {
                 settled_within = (residual > tolerance).then_some(last_step);

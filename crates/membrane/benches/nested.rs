@@ -172,7 +172,8 @@ fn petsc(problem: &[&str]) {
     match (number("unknowns"), number("megabytes")) {
         (Some(n), Some(mb)) => {
             let each = 1e6 * seconds / n;
-            println!("{n:>10} {seconds:>9.3} {each:>8.2} {mb:>9.0} {:>9.0} {:>9}  {name}", 1e6 * mb / n, "")
+            let off = number("front").map_or(String::new(), |off| format!("{off:.1e} "));
+            println!("{n:>10} {seconds:>9.3} {each:>8.2} {mb:>9.0} {:>9.0} {:>9}  {off}{name}", 1e6 * mb / n, "")
         }
         _ => println!("{:>10} {name} did not run: {}", "", told.lines().last().unwrap_or("it said nothing")),
     }
@@ -266,7 +267,7 @@ fn main() {
         for (name, share, membrane, figure) in &cases {
             head(&format!("degree {degree}, {name}"));
             let mut ladder = Ladder { pool: &pool, figure, last: None };
-            let sizes = [32usize, 64, 128, 256, 512, 1024, 1408, 2816, 4096, 8192, 16384].map(|n| n / degree / 16 * 16);
+            let sizes = [16usize, 32, 64, 128, 256, 512, 1024, 1408, 2816, 4096, 8192, 16384].map(|n| n / degree / 8 * 8);
             for n in sizes.into_iter().filter(|n| *n > 0) {
                 let more = share * ((n * degree) as f64).powi(2) <= most;
                 if !more || !ladder.row::<OnGrid>(&|| membrane([n, degree])) {

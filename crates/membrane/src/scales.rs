@@ -68,11 +68,11 @@ impl Scales {
         self.h / self.length
     }
 
-    /// What the slope jump must fall below, in the norm of `L²` of the fronts: the solver's own accuracy, or a
-    /// thirtieth of what the grid resolves where that is more.
+    /// What the slope jump must fall below, in the norm of `H⁻¹` of the fronts: the solver's own accuracy, or a
+    /// hundredth of what the grid resolves where that is more.
     pub fn slope_tolerance(&self) -> f64 {
         let slope = self.pressure * self.length / self.tension;
-        let resolved = 3e-2 * self.relative_h().powi(2 * self.degree as i32);
+        let resolved = 1e-2 * self.relative_h().powi(2 * self.degree as i32);
         if self.dimension == 1 {
             // Fronts are points: the norm has no length in it, and one more solve costs nothing.
             let least = if self.degree == 1 { resolved } else { 1e-11 };

@@ -267,7 +267,8 @@ fn main() {
         for (name, share, membrane, figure) in &cases {
             head(&format!("degree {degree}, {name}"));
             let mut ladder = Ladder { pool: &pool, figure, last: None };
-            let sizes = [16usize, 32, 64, 128, 256, 512, 1024, 1408, 2816, 4096, 8192, 16384].map(|n| n / degree / 8 * 8);
+            let sizes =
+                [16usize, 32, 64, 128, 256, 512, 1024, 1408, 2816, 4096, 8192, 16384].map(|n| n / degree / 8 * 8);
             for n in sizes.into_iter().filter(|n| *n > 0) {
                 let more = share * ((n * degree) as f64).powi(2) <= most;
                 if !more || !ladder.row::<OnGrid>(&|| membrane([n, degree])) {

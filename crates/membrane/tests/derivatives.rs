@@ -109,6 +109,30 @@ fn the_change_of_the_slope_jump_is_predicted() {
     }
 }
 
+/// On a circle waves are the eigenfunctions of the norm of `H⁻¹`, in which the residual is told.
+#[test]
+fn short_waves_count_less_in_the_residual() {
+    let membrane = membrane(24, 3, Side::Below);
+    let radius = 0.5;
+    let points: Vec<Point<2>> = (0..32)
+        .map(|i| std::f64::consts::TAU * f64::from(i) / 32.0)
+        .map(|a| Point::<2>::new(radius * a.cos(), radius * a.sin()))
+        .collect();
+    let zone = PlaneZone::new(&membrane.grid, vec![(Side::Below, ClosedCurve::through(&points, 9))]);
+    let equilibrium = Equilibrium::solve(&membrane, &zone, &mut Elements::new(&membrane)).expect("an equilibrium");
+    let mut fronts = Fronts::new(&equilibrium, false);
+    let length = membrane.size() / std::f64::consts::TAU;
+    for k in 0..6 {
+        let wave = |x: &Point<2>| (f64::from(k) * x[1].atan2(x[0])).cos();
+        fronts.slope_jump = equilibrium.quadrature.front.iter().map(|p| wave(&p.x)).collect();
+        let square = if k == 0 { std::f64::consts::TAU } else { std::f64::consts::PI } * radius;
+        let exact = (square / (1.0 + (f64::from(k) * length / radius).powi(2))).sqrt();
+        let residual = fronts.residual(&zone, ModeSpace::Fine);
+        assert!((residual / exact - 1.0).abs() < 1e-4, "{k}: {residual} {exact}");
+        assert!((fronts.project(&zone, ModeSpace::Fine).norm / square.sqrt() - 1.0).abs() < 1e-4, "{k}");
+    }
+}
+
 #[test]
 fn the_change_of_the_energy_is_half_the_squared_slope_jump() {
     let membrane = membrane(20, 4, Side::Above);

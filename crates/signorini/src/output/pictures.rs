@@ -21,6 +21,13 @@ const EXACT: RGBColor = RGBColor(20, 20, 20);
 const SERIES: [RGBColor; 5] =
     [MEMBRANE, RGBColor(230, 159, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167), RGBColor(86, 180, 233)];
 
+/// What a field does across the fronts.
+#[derive(Clone, Copy, PartialEq)]
+enum Across {
+    Continuous,
+    Jumping,
+}
+
 /// Draws all pictures of a run.
 pub fn draw<const D: usize>(
     folder: &Folder,
@@ -47,14 +54,18 @@ pub fn draw<const D: usize>(
             drawings.push(("gap_and_pressure", Box::new(|| gap_profile(mesh, s, units))));
         }
     } else {
-        let field =
-            |values: &Vec<f64>, title, label, exact| map(mesh, s, values, title, label, exact, units, own(values));
+        let field = |values: &Vec<f64>, title, label, exact| {
+            map(mesh, s, (values, Across::Continuous), title, label, exact, units, own(values))
+        };
         drawings.push(("deflection", Box::new(move || field(&s.displacement, "Deflection", units.length("u"), exact))));
         if s.has_obstacles() {
             drawings.push(("gap", Box::new(move || field(&s.gap, "Gap", units.length("gap"), None))));
             drawings.push((
                 "pressure",
-                Box::new(move || field(&s.pressure, "Contact pressure", units.pressure("p"), None)),
+                Box::new(|| {
+                    let pressure = (s.pressure.as_slice(), Across::Jumping);
+                    map(mesh, s, pressure, "Contact pressure", units.pressure("p"), None, units, own(&s.pressure))
+                }),
             ));
         }
     }
@@ -176,7 +187,7 @@ pub(super) fn frame<const D: usize>(
         true => (&s.gap, "Gap", units.length("gap")),
         false => (&s.displacement, "Deflection", units.length("u")),
     };
-    map(mesh, s, values, title, label, None, units, (lo, hi))
+    map(mesh, s, (values, Across::Continuous), title, label, None, units, (lo, hi))
 }
 
 /// The range of what a frame shows.
@@ -198,7 +209,7 @@ fn heights<const D: usize>(s: &Snapshot<D>) -> (f64, f64) {
 fn map<const D: usize>(
     mesh: &DisplayMesh<D>,
     s: &Snapshot<D>,
-    values: &[f64],
+    (values, across): (&[f64], Across),
     title: &str,
     value_label: String,
     exact: Option<FlatFloor>,
@@ -253,7 +264,7 @@ fn map<const D: usize>(
         colour_bar(&right, (lo, hi), &value_label, s, exact.is_some_and(|e| e.contact_radius().is_some()))
     })?;
     let mut image = Image::new((pixels.0.1 - pixels.0.0).max(1) as u32, (pixels.1.1 - pixels.1.0).max(1) as u32)?;
-    fill(&mut image, mesh, values, &bounds, (lo, hi));
+    fill(&mut image, mesh, s, (values, across), &bounds, (lo, hi));
     image.insert(&mut text, pixels.0, pixels.1)?;
     // The front is drawn in fractions of a pixel, which the chart's own lines are rounded to.
     let at = |p: &Point<D>| {
@@ -318,7 +329,8 @@ fn colour_bar<const D: usize>(
 fn fill<const D: usize>(
     image: &mut Image,
     mesh: &DisplayMesh<D>,
-    values: &[f64],
+    s: &Snapshot<D>,
+    (values, across): (&[f64], Across),
     bounds: &Aabb<D>,
     (lo, hi): (f64, f64),
 ) {
@@ -326,6 +338,12 @@ fn fill<const D: usize>(
     let (w, h) = (image.width(), image.height());
     let pixel =
         |p: &Point<D>| ((p[0] - bounds.min[0]) / size[0] * w as f64, (bounds.max[1] - p[1]) / size[1] * h as f64);
+    let drawn = |p: &Point<D>| {
+        let (x, y) = pixel(p);
+        Point::<2>::new(x, y)
+    };
+    let outlines: Vec<Vec<Point<2>>> = s.outlines.iter().map(|o| o.iter().map(drawn).collect()).collect();
+    let touches = |x: &Point<2>| outlines.iter().map(|o| polygon::winding_number(o, x)).sum::<i32>() != 0;
     let triangles = mesh.cells.iter().flat_map(|cell| (2..cell.len()).map(|k| [cell[0], cell[k - 1], cell[k]]));
     for corners in triangles {
         let [a, b, c] = corners.map(|i| pixel(&mesh.points[i as usize]));
@@ -336,14 +354,25 @@ fn fill<const D: usize>(
         if whole == 0.0 {
             continue;
         }
+        let contact = corners.map(|i| s.in_contact[i as usize]);
+        let divided = across == Across::Jumping && contact.iter().any(|c| *c != contact[0]);
         for y in y0.floor().max(0.0) as usize..(y1.ceil() as usize).min(h) {
             for x in x0.floor().max(0.0) as usize..(x1.ceil() as usize).min(w) {
                 let at = (x as f64 + 0.5, y as f64 + 0.5);
-                let shares = [twice(at, b, c), twice(a, at, c), twice(a, b, at)].map(|s| s / whole);
-                if shares.iter().all(|s| *s >= -1e-9) {
-                    let v: f64 = shares.iter().zip(&corners).map(|(s, &i)| s * values[i as usize]).sum();
-                    image.set(x, y, viridis((v - lo) / (hi - lo)));
+                let mut shares = [twice(at, b, c), twice(a, at, c), twice(a, b, at)].map(|s| s / whole);
+                if !shares.iter().all(|s| *s >= -1e-9) {
+                    continue;
                 }
+                if divided {
+                    // Only what is on the same side of the front says anything.
+                    let side = touches(&Point::<2>::new(at.0, at.1));
+                    let own = shares.iter().zip(contact).filter(|(_, c)| *c == side).map(|(s, _)| s).sum::<f64>();
+                    if own > 0.0 {
+                        shares.iter_mut().zip(contact).for_each(|(s, c)| *s = if c == side { *s / own } else { 0.0 });
+                    }
+                }
+                let v: f64 = shares.iter().zip(&corners).map(|(s, &i)| s * values[i as usize]).sum();
+                image.set(x, y, viridis((v - lo) / (hi - lo)));
             }
         }
     }

@@ -109,7 +109,10 @@ pub enum Modes {
     #[default]
     Local,
     /// Trigonometric functions of the arc length: few suffice where fronts are nearly circles.
-    Fourier,
+    Fourier {
+        /// How many each front has at most.
+        most: usize,
+    },
 }
 
 impl Modes {
@@ -117,15 +120,24 @@ impl Modes {
     pub fn finest(self) -> ModeSpace {
         match self {
             Modes::Local => ModeSpace::Fine,
-            Modes::Fourier => ModeSpace::Fourier(usize::MAX),
+            Modes::Fourier { most } => ModeSpace::Fourier(most),
         }
+    }
+
+    /// The number of modes of the poorest front of a zone, where that is less than what is asked for: its cells tell no more
+    /// apart.
+    pub fn reduced<const D: usize, Z: Zone<D>>(self, zone: &Z) -> Option<usize> {
+        let Modes::Fourier { most } = self else { return None };
+        let fewest = zone.mode_offsets(self.finest()).windows(2).map(|o| o[1] - o[0]).min()?;
+        // A cosine comes with its sine.
+        (D > 1 && most < usize::MAX && fewest + 1 < most).then_some(fewest)
     }
 
     /// At most so many for each front.
     pub fn at_most(self, count: usize) -> ModeSpace {
         match self {
             Modes::Local => ModeSpace::Coarse(count),
-            Modes::Fourier => ModeSpace::Fourier(count),
+            Modes::Fourier { most } => ModeSpace::Fourier(count.min(most)),
         }
     }
 }

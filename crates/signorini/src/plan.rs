@@ -786,6 +786,18 @@ impl<'a> Planner<'a> {
         Ok(())
     }
 
+    /// How many modes a front may have.
+    fn mode_count(&self, key: &statement::LevelSetKey) -> Result<Option<usize>, CaseError> {
+        let Some(count) = &key.mode_count else { return Ok(None) };
+        match usize::try_from(*count.get_ref()) {
+            Ok(most @ 1..) => Ok(Some(most)),
+            _ => Err(self
+                .document
+                .error(count.span(), format!("a front has one mode at least, not {}", count.get_ref()))
+                .help("mode_count = 21")),
+        }
+    }
+
     fn method(&self, key: &statement::Contact, size: f64) -> Result<MethodChoice, CaseError> {
         let Some(method) = &key.method else { return Ok(MethodChoice::default()) };
         match method.get_ref() {
@@ -795,8 +807,18 @@ impl<'a> Planner<'a> {
                 }
                 let formulation = self.formulation(k, size)?;
                 let modes = match (k.modes.as_ref().map(|m| *m.get_ref()), formulation) {
-                    (Some(statement::FrontModes::Fourier), _) | (None, Formulation::Published(_)) => Modes::Fourier,
-                    _ => Modes::Local,
+                    (Some(statement::FrontModes::Fourier), _) | (None, Formulation::Published(_)) => {
+                        Modes::Fourier { most: self.mode_count(k)?.unwrap_or(usize::MAX) }
+                    }
+                    _ => match &k.mode_count {
+                        Some(count) => {
+                            return Err(self
+                                .document
+                                .error(count.span(), "splines along a front are as many as its cells can tell apart")
+                                .help("modes = \"fourier\", or no `mode_count`"));
+                        }
+                        None => Modes::Local,
+                    },
                 };
                 Ok(MethodChoice::InequalityLevelSet { modes, formulation })
             }

@@ -12,7 +12,7 @@ use crate::ils::{self, Reason, Rest, SETTLED, SETTLED_COARSE, Solution, Start};
 use crate::plane_zone::PlaneZone;
 use crate::problem::Membrane;
 use crate::scales::Scales;
-use crate::zone::{ModeSpace, Zone};
+use crate::zone::Zone;
 use signorini_solve::{Acceleration, Iteration, Progress, SolveError};
 
 /// Nodes along the longer side of the grid on which the fronts are found at first, and, where zones were missed there, on
@@ -143,6 +143,7 @@ pub fn solve<R: Regular>(
     let (true, Some(scales), Some(state)) = (found.reason.converged(), found.scales, &found.equilibrium) else {
         return Ok(Err(found.reason));
     };
+    let finest_modes = membrane.modes.finest();
     let mut zone = found.zone.clone();
     let mut levels = levels(membrane, &zone, that_show(&grounds[..=first], &zone))?;
     if let Some(level) = levels.last_mut() {
@@ -181,7 +182,7 @@ pub fn solve<R: Regular>(
             let Some(level) = levels.last_mut() else { break };
             let state = level.state();
             let fronts = Fronts::new(state, false);
-            let residual = fronts.residual(&zone, ModeSpace::Fine) / scales.slope_tolerance();
+            let residual = fronts.residual(&zone, finest_modes) / scales.slope_tolerance();
             residuals.push(residual);
             waited = if residual < 0.7 * best { 0 } else { waited + 1 };
             best = best.min(residual);
@@ -201,7 +202,7 @@ pub fn solve<R: Regular>(
             let last_step = step.length / h;
             // As everywhere: on a jump of the discrete slope no position makes it vanish.
             let enough = || {
-                let seen = fronts.project(&zone, ModeSpace::Fine);
+                let seen = fronts.project(&zone, finest_modes);
                 if seen.norm < seen.remainder { SETTLED_COARSE } else { SETTLED }
             };
             let on_jump = waited >= PATIENCE && last_step < enough();
@@ -217,7 +218,7 @@ pub fn solve<R: Regular>(
                 wanted += 1;
             }
             // As everywhere: cells of degree 1 have a slope jump of their own, which the derivative does not know.
-            if tolerance.is_finite() && step.kind == StepKind::Local && step.space == ModeSpace::Fine {
+            if tolerance.is_finite() && step.kind == StepKind::Local && step.space == finest_modes {
                 step.coefficients = acceleration.next(step.coefficients);
             }
             let advance = zone.advanced(grid, step.space, &step.coefficients, h);

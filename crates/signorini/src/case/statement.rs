@@ -874,6 +874,11 @@ pub struct LevelSetKey {
     #[serde(default)]
     #[schemars(with = "Option<FrontModes>")]
     pub modes: Option<Spanned<FrontModes>>,
+    /// With `modes = "fourier"`, how many of them each front has at most; where its cells tell fewer apart it has these, and the
+    /// run says so.
+    #[serde(default)]
+    #[schemars(with = "Option<i64>")]
+    pub mode_count: Option<Spanned<i64>>,
     /// Degree of the fronts as curves; not available, it follows the degree of the membrane.
     #[serde(default)]
     #[schemars(with = "Option<i64>")]

@@ -365,6 +365,12 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             warnings
                 .push(format!("no state was found on smaller cells at t = {}: the one on larger cells stands", at.1));
         }
+        if let Some(fewest) = membrane.modes.reduced(&solution.zone) {
+            warnings.push(format!(
+                "a front has {fewest} modes at t = {}, fewer than `mode_count`: its cells tell no more apart",
+                at.1
+            ));
+        }
         let on_nodes = membrane.formulation.transport() != Transport::Exact;
         if let Some(step) = solution.settled_within {
             warnings.push(format!(

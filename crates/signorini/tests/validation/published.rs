@@ -140,6 +140,30 @@ fn a_level_set_on_nodes_shifts_the_front_and_says_so() {
     }
 }
 
+/// Few modes tell a circle; more than its cells tell apart are not to be had, which is said.
+#[test]
+fn as_many_modes_as_are_asked_for() {
+    let found = |count: usize, formulation: &str| {
+        let mut pairs = plane(40);
+        let [fourier, most, kind] = ["modes", "mode_count", "formulation"].map(|key| format!("{METHOD}.{key}"));
+        pairs.extend([
+            (fourier.as_str(), "\"fourier\"".to_string()),
+            (most.as_str(), count.to_string()),
+            (kind.as_str(), format!("\"{formulation}\"")),
+        ]);
+        let summary = summary(example("flat_disc"), &set(&pairs));
+        let radius = (number(contact(last_step(&summary), "area")) / std::f64::consts::PI).sqrt();
+        assert!((radius - RADIUS).abs() < 2e-4, "{formulation}, {count}: {radius}");
+        summary["warnings"].to_string()
+    };
+    for formulation in ["published", "one_sided"] {
+        let few = found(3, formulation);
+        assert!(!few.contains("mode_count"), "{formulation}: {few}");
+        let many = found(500, formulation);
+        assert!(many.contains("fewer than `mode_count`"), "{formulation}: {many}");
+    }
+}
+
 #[test]
 fn what_does_not_go_together_is_told() {
     let case = |method: &str, extra: &str| {
@@ -156,6 +180,10 @@ fn what_does_not_go_together_is_told() {
     assert!(both.contains("has no length"), "{both}");
     let length = told(&linear.replace("\"published\"", "\"published\", multiplier_length = -2"));
     assert!(length.contains("must be positive"), "{length}");
+    let splines = told(&linear.replace("\"published\"", "\"one_sided\", mode_count = 5"));
+    assert!(splines.contains("as many as its cells can tell apart"), "{splines}");
+    let none = told(&linear.replace("\"published\"", "\"published\", mode_count = 0"));
+    assert!(none.contains("one mode at least, not 0"), "{none}");
     let controlled = told(&(linear + "\n[[steps]]\nto = 1.0\ncontrol.arc_length = { size = 0.1 }\n"));
     assert!(controlled.contains("follows time only"), "{controlled}");
 }

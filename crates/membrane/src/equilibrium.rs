@@ -41,7 +41,7 @@ pub(crate) fn nitsche_penalty(degree: usize) -> f64 {
 }
 
 /// The penalty in a cell, `β/h`.
-fn penalty<const D: usize>(membrane: &Membrane<D>, cell: usize) -> f64 {
+pub(crate) fn penalty<const D: usize>(membrane: &Membrane<D>, cell: usize) -> f64 {
     nitsche_penalty(membrane.cells.degree()) / membrane.cells.size(cell)
 }
 
@@ -306,8 +306,7 @@ impl<const D: usize> Equilibrium<D> {
                 rhs[i as usize] += w * (t.gradient[a].dot(&p.normal) + penalty * t.value[a]);
             }
         }
-        let Some(factor) = &self.factor else { return Err(SolveError::NotFactorised { size: rhs.len() }) };
-        let z = factor.solve(&rhs)?;
+        let z = self.respond(&rhs)?;
         Ok(self
             .quadrature
             .front
@@ -320,6 +319,14 @@ impl<const D: usize> Equilibrium<D> {
                 sign * gradient.dot(&p.normal) + penalty(membrane, p.cell) * (sign * v - value)
             })
             .collect())
+    }
+
+    /// What the unknowns are under other forces, by the factorisation at hand.
+    pub(crate) fn respond(&self, forces: &[f64]) -> Result<Vec<f64>, SolveError> {
+        match &self.factor {
+            Some(factor) => factor.solve(forces),
+            None => Err(SolveError::NotFactorised { size: forces.len() }),
+        }
     }
 
     /// The displacement at a point in any region: the solution where free, the body in contact, none outside.
@@ -420,7 +427,7 @@ impl<const D: usize> System<D> {
         }
         let weight = tied * ghost_weight(membrane.cells.degree());
         for pair in &pairs {
-            matrix.add(&pair.dofs, elements.ghost(membrane, pair), weight * pair.need * pair.tension);
+            matrix.add(&pair.dofs, elements.ghost(membrane, pair), weight * pair.need() * pair.tension);
         }
         if membrane.cells.sum_to_one() {
             matrix.restore_row_sums(&row_sums(membrane, &unknowns, &imposed));
@@ -518,10 +525,59 @@ pub(crate) fn number_where<const D: usize>(
 pub(crate) struct GhostPair {
     /// Among the neighbours of the elements.
     number: usize,
+    pub region: RegionId,
     pub dofs: Vec<u32>,
+    pub cells: [usize; 2],
+    lean: Lean,
+    measure: f64,
+    pub tension: f64,
+}
+
+impl GhostPair {
     /// By how much they need it.
-    pub need: f64,
-    tension: f64,
+    pub fn need(&self) -> f64 {
+        self.measure * self.lean.need()
+    }
+
+    /// How fast that changes as shares and lengths do.
+    pub fn need_rate(&self, shares: [f64; 2], held: [f64; 2]) -> f64 {
+        self.measure * self.lean.rate(shares, held)
+    }
+}
+
+/// How much two neighbouring cells need each other. A full cell needs no help, a sliver as much as it is held along: the
+/// method of Nitsche leans on no more. The weight is continuous in the cut, also as slivers come and go whose neighbours would
+/// each have them be different, so the slope jump is continuous in the front.
+pub(crate) struct Lean {
+    /// What the region fills of each cell.
+    shares: [f64; 2],
+    /// Along which part of a side each cell is held, at most along a whole one.
+    held: [f64; 2],
+}
+
+impl Lean {
+    fn need(&self) -> f64 {
+        let [a, b] = self.shares;
+        let along = self.along();
+        (1.0 - a.min(b)).powi(2) * (LEAST + (1.0 - LEAST) * along * (2.0 - along))
+    }
+
+    /// Of the two the smaller counts more.
+    fn along(&self) -> f64 {
+        let ([a, b], [of_a, of_b]) = (self.shares, self.held);
+        (of_a * b + of_b * a) / (a + b).max(f64::MIN_POSITIVE)
+    }
+
+    fn rate(&self, shares: [f64; 2], held: [f64; 2]) -> f64 {
+        let ([a, b], [of_a, of_b]) = (self.shares, self.held);
+        let along = self.along();
+        let smaller = if a < b { shares[0] } else { shares[1] };
+        let grows = held[0] * b + of_a * shares[1] + held[1] * a + of_b * shares[0] - along * (shares[0] + shares[1]);
+        let along_rate = grows / (a + b).max(f64::MIN_POSITIVE);
+        let missing = 1.0 - a.min(b);
+        let leant = LEAST + (1.0 - LEAST) * along * (2.0 - along);
+        -2.0 * missing * smaller * leant + missing.powi(2) * (1.0 - LEAST) * 2.0 * (1.0 - along) * along_rate
+    }
 }
 
 pub(crate) fn ghost_pairs<const D: usize>(
@@ -549,16 +605,20 @@ pub(crate) fn ghost_pairs<const D: usize>(
                     Cell::Outside => None,
                 })
                 .unwrap_or_else(|| membrane.cells.bounds_of(lower).center());
-            // A full cell needs no help, a sliver as much as it is held along: the method of Nitsche leans on no more. The
-            // weight is continuous in the cut, also as slivers come and go whose neighbours would each have them be
-            // different, so the slope jump is continuous in the front.
-            let [a, b] = neighbours.cells.map(|cell| share(membrane, quadrature, cell, region));
-            let [of_a, of_b] = neighbours.cells.map(|cell| held.get(&cell).map_or(1.0, |along| along.min(1.0)));
-            let along = (of_a * b + of_b * a) / (a + b).max(f64::MIN_POSITIVE);
-            let leant = LEAST + (1.0 - LEAST) * along * (2.0 - along);
-            let need = (1.0 - a.min(b)).powi(2) * leant * membrane.measure.weight(&x);
-            let tension = membrane.tension.value(&x);
-            pairs.push(GhostPair { number, dofs: [dofs, others].concat(), need, tension });
+            let lean = Lean {
+                shares: neighbours.cells.map(|cell| share(membrane, quadrature, cell, region)),
+                held: neighbours.cells.map(|cell| held.get(&cell).map_or(1.0, |along| along.min(1.0))),
+            };
+            let (measure, tension) = (membrane.measure.weight(&x), membrane.tension.value(&x));
+            pairs.push(GhostPair {
+                number,
+                region,
+                dofs: [dofs, others].concat(),
+                cells: neighbours.cells,
+                lean,
+                measure,
+                tension,
+            });
         }
     }
     pairs

@@ -23,6 +23,7 @@ mod raster;
 pub mod refinement;
 pub mod report;
 pub mod scales;
+pub mod shape_rate;
 pub mod staircase;
 mod thin_parts;
 pub mod zone;

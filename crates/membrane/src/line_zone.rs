@@ -150,6 +150,7 @@ impl Zone<1> for LineZone {
         let End { at, normal } = self.end(front);
         FrontFoot {
             position: Point::<1>::new(at),
+            parameter: 0.0,
             normal: Vector::<1>::new(normal),
             curvature: 0.0,
             modes: vec![(front, 1.0, Vector::zeros())],

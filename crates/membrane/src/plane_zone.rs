@@ -517,7 +517,13 @@ impl Zone<2> for PlaneZone {
         self.modes(front, space).for_each_at(foot.s, |mode, value, slope| {
             modes.push((offset + mode, value, along * slope));
         });
-        FrontFoot { position: foot.position, normal: foot.normal, curvature: foot.curvature, modes }
+        FrontFoot {
+            position: foot.position,
+            parameter: foot.s.rem_euclid(1.0),
+            normal: foot.normal,
+            curvature: foot.curvature,
+            modes,
+        }
     }
     fn front_count(&self) -> usize {
         self.curves.len()

@@ -83,6 +83,8 @@ impl FrontFrame {
 #[derive(Clone, Debug)]
 pub struct FrontFoot<const D: usize> {
     pub position: Point<D>,
+    /// Where along the front, from 0 to 1.
+    pub parameter: f64,
     /// Unit normal, out of the zone.
     pub normal: Vector<D>,
     /// Its divergence.

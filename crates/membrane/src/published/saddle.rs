@@ -242,7 +242,7 @@ fn gram<const D: usize>(
     let weight = ghost_weight(membrane.cells.degree());
     let h = membrane.grid.h();
     for pair in &pairs {
-        matrix.add(&pair.dofs, elements.ghost(membrane, pair), weight * pair.need * (gradient_weight + h * h));
+        matrix.add(&pair.dofs, elements.ghost(membrane, pair), weight * pair.need() * (gradient_weight + h * h));
     }
     matrix
 }

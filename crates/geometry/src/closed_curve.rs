@@ -180,6 +180,13 @@ impl ClosedCurve {
         polygon::signed_area(&self.samples) < 0.0
     }
 
+    /// The largest speed at the knots over the least: one where the parameter is the arc length.
+    pub fn unevenness(&self) -> f64 {
+        let speeds = (0..self.knots()).map(|i| self.point(i as f64 / self.knots() as f64).speed);
+        let (least, most) = speeds.fold((f64::INFINITY, 0.0f64), |(l, m), s| (l.min(s), m.max(s)));
+        most / least
+    }
+
     /// The same curve with `count` knots at equal steps of arc length.
     pub fn by_arc_length(&self, count: usize) -> Self {
         let rule = gauss_legendre(self.basis.degree / 2 + 3);

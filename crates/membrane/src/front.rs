@@ -1,9 +1,10 @@
 //! The slope jump on the fronts, and the Newton step that drives it to zero.
 
-use crate::equilibrium::Equilibrium;
+use crate::equilibrium::{Elements, Equilibrium};
 use crate::mode_matrix::{Clique, ModeMatrix, add_cliques};
 use crate::quadrature::FrontPoint;
 use crate::scales::Scales;
+use crate::shape_rate::ShapeRate;
 use crate::zone::{FrontFrame, ModeSpace, Modes, Zone};
 use signorini_geometry::Real;
 use signorini_solve::{SolveError, dense};
@@ -17,6 +18,10 @@ const LOCAL_REACH: f64 = 0.6;
 
 /// A front of so few modes is short.
 const FEW_MODES: usize = 12;
+
+/// What the discrete step leaves of its equations, and the products with their matrix that it may take.
+const LEFT: f64 = 1e-5;
+const MOST_PRODUCTS: usize = 12;
 
 /// Modes whose response is computed at most.
 const MOST_RESPONSES: usize = 240;
@@ -334,6 +339,57 @@ impl<'a, const D: usize> Fronts<'a, D> {
         let length = (square / total.max(f64::MIN_POSITIVE)).sqrt();
         let reach = if beyond && !far { h } else { f64::INFINITY };
         Ok(Step { length, space, coefficients, kind, reach })
+    }
+
+    /// The Newton step with the derivative of the discrete slope jump, by generalised conjugate residuals: the pressure of the
+    /// floor is all of it but for what cells add, so a few products do. None where these do not get there.
+    ///
+    /// # Errors
+    /// A state that was not found by a factorisation.
+    pub fn discrete_step<Z: Zone<D>>(
+        &self,
+        zone: &Z,
+        elements: &Elements<D>,
+        scales: &Scales,
+    ) -> Result<Option<Vec<f64>>, SolveError> {
+        let space = self.modes().finest();
+        let n = zone.mode_offsets(space)[zone.front_count()];
+        let frames = self.frames(zone, space);
+        let floor_pressure = |p: f64| p.max(WEAK_PRESSURE * scales.pressure);
+        let local: Vec<f64> = self.pressure.iter().zip(&self.tension).map(|(p, t)| floor_pressure(*p) / t).collect();
+        let (mut matrix, b) = self.galerkin(&frames, n, &local, &self.slope_jump);
+        let outside =
+            self.stiffness_outside(zone, space, &frames, &matrix.diagonal(), scales.pressure / scales.tension);
+        matrix.add(outside.clone());
+        let mut held = ModeMatrix::of_products(n, &[], std::iter::empty());
+        held.add(outside);
+        let rate = ShapeRate::new(self.equilibrium, elements, zone, space);
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let subtract = |a: &mut [f64], c: f64, b: &[f64]| a.iter_mut().zip(b).for_each(|(a, b)| *a -= c * b);
+        let Some(first) = matrix.solve(&b) else { return Ok(None) };
+        let mut left: Vec<f64> = first.iter().map(|v| -v).collect();
+        let begin = dot(&left, &left);
+        let mut step = vec![0.0; n];
+        let mut known: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
+        for _ in 0..MOST_PRODUCTS {
+            let mut direction = left.clone();
+            let mut moments = rate.of_moments(&direction)?;
+            moments.iter_mut().zip(held.multiply(&direction)).for_each(|(m, h)| *m += h);
+            let Some(mut image) = matrix.solve(&moments) else { return Ok(None) };
+            for (d, i) in &known {
+                let c = dot(&image, i) / dot(i, i);
+                subtract(&mut image, c, i);
+                subtract(&mut direction, c, d);
+            }
+            let c = dot(&left, &image) / dot(&image, &image);
+            subtract(&mut step, -c, &direction);
+            subtract(&mut left, c, &image);
+            if dot(&left, &left) <= LEFT * LEFT * begin {
+                return Ok(Some(step));
+            }
+            known.push((direction, image));
+        }
+        Ok(None)
     }
 
     /// Adds `∫ Λ_T(ρ⁺ w_m) ω_n`, and for fronts on which it stays safely positive `-∫ κ ρ⁺ w_m ω_n`.

@@ -59,6 +59,17 @@ impl ModeMatrix {
         self.cliques.extend(cliques);
     }
 
+    /// The product with a vector.
+    pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; self.n];
+        for (modes, values) in &self.cliques {
+            for (&i, row) in modes.iter().zip(values.chunks(modes.len())) {
+                out[i as usize] += modes.iter().zip(row).map(|(&j, v)| v * x[j as usize]).sum::<f64>();
+            }
+        }
+        out
+    }
+
     /// The whole matrix, row by row.
     pub fn dense(&self) -> Vec<f64> {
         let mut out = vec![0.0; self.n * self.n];

@@ -22,6 +22,11 @@ const FEWEST_KNOTS: f64 = 5.0;
 const SEED_KNOTS: usize = 16;
 /// Degree of a curve along a level set that is linear between nodes.
 const LEVEL_SET_DEGREE: usize = 3;
+/// A front that moves keeps its parameter, and has so many knots for each mode: what is left of a step in another space,
+/// or on another parameter, is a few hundredths of the short waves.
+const SPLIT: usize = 2;
+/// It gets a new parameter once its length has changed, or its speed differs, by so much.
+const STRETCH: f64 = 0.2;
 /// A front that encloses less than this multiple of `h²` after a step has collapsed.
 const COLLAPSED: f64 = 0.01;
 /// A step may not bring a front nearer to its centre of curvature than this fraction of its radius of curvature.
@@ -41,6 +46,8 @@ pub struct PlaneZone {
     hole: Vec<bool>,
     /// For each curve, its number among the outer fronts or among the holes.
     number: Vec<usize>,
+    /// How many modes each curve has; see [`SPLIT`].
+    mode_counts: Vec<usize>,
     near: NearFronts,
     /// For each row of cells, the columns whose centres a curve encloses: first, one behind the last, and the curve.
     rows: Vec<Vec<[u32; 3]>>,
@@ -243,12 +250,19 @@ impl PlaneZone {
             })
             .collect();
         let near = NearFronts::new(grid, &curves);
+        // As many as can be told apart: its own, but for curves that follow a level set more closely.
+        let most = |c: &ClosedCurve| match c.degree() {
+            LEVEL_SET_DEGREE => c.knots().min(Self::knots(grid, polygon::perimeter(c.samples()))),
+            _ => c.knots(),
+        };
+        let mode_counts = curves.iter().map(most).collect();
         let rows = rows_enclosed(grid, &curves);
         Self {
             boxes: curves.iter().map(|c| bounding_box(c.samples())).collect(),
             areas: areas.iter().map(|a| a.abs()).collect(),
             hole,
             number,
+            mode_counts,
             near,
             rows,
             curves,
@@ -302,7 +316,7 @@ impl PlaneZone {
 
     fn modes(&self, front: usize, space: ModeSpace) -> FrontModes {
         let curve = &self.curves[front];
-        let most = self.most_modes(curve);
+        let most = self.mode_counts[front];
         match space {
             ModeSpace::Coarse(count) if count < most => FrontModes::Splines(PeriodicBasis { degree: 3, count }),
             ModeSpace::Coarse(_) | ModeSpace::Fine => {
@@ -428,14 +442,6 @@ impl PlaneZone {
         Self::new(grid, kept)
     }
 
-    /// The most modes that can be told apart along a curve: its own, but for curves that follow a level set more closely.
-    fn most_modes(&self, curve: &ClosedCurve) -> usize {
-        match curve.degree() {
-            LEVEL_SET_DEGREE => curve.knots().min(Self::knots(&self.grid, polygon::perimeter(curve.samples()))),
-            _ => curve.knots(),
-        }
-    }
-
     /// Joins the raster of a function to the zone by `combine`, or adds its outlines as curves of their own where they
     /// keep clear of the fronts.
     fn combined(
@@ -555,7 +561,7 @@ impl Zone<2> for PlaneZone {
     }
 
     fn advanced(&self, grid: &Grid<2>, space: ModeSpace, step: &[f64], reach: f64) -> Advance<Self> {
-        let moved: Vec<ClosedCurve> = self
+        let (moved, mode_counts): (Vec<ClosedCurve>, Vec<usize>) = self
             .curves
             .iter()
             .enumerate()
@@ -567,14 +573,20 @@ impl Zone<2> for PlaneZone {
                     let (inward, outward) = if p.curvature > 0.0 { (room, reach) } else { (reach, room) };
                     w(p.s).clamp(-inward.min(reach), outward.min(reach))
                 };
-                let moved = c.offset(4 * c.knots(), limited);
-                moved.by_arc_length(Self::knots(grid, polygon::perimeter(moved.samples())))
+                let modes = self.mode_counts[i];
+                let moved = c.offset(SPLIT * modes, limited);
+                let wanted = Self::knots(grid, polygon::perimeter(moved.samples()));
+                if wanted.abs_diff(modes) as f64 <= STRETCH * modes as f64 && moved.unevenness() <= 1.0 + STRETCH {
+                    return (moved, modes);
+                }
+                (c.offset(4 * modes, limited).by_arc_length(wanted), wanted)
             })
-            .collect();
+            .unzip();
         let collapsed = |c: &ClosedCurve| polygon::signed_area(c.samples()).abs() < COLLAPSED * grid.h().powi(2);
         let turned = moved.iter().zip(&self.hole).any(|(c, &hole)| c.is_hole() != hole);
         if !turned && !moved.iter().any(collapsed) && Self::is_valid(&moved) {
-            return Advance { zone: self.with_curves(grid, moved), topology_changed: false };
+            let zone = Self { mode_counts, ..self.with_curves(grid, moved) };
+            return Advance { zone, topology_changed: false };
         }
         let zone = Side::BOTH.into_iter().fold(Self::empty(grid), |zone, side| {
             let of_side = self.sides.iter().zip(&moved).filter(|(s, _)| **s == side);

@@ -129,7 +129,30 @@ fn dump() {
                     ex[i * n + k] = col[i];
                 }
             }
-            let out = format!("{{\"n\":{n},\"a\":{a:?},\"m\":{m:?},\"j\":{jac:?},\"x\":{ex:?}}}");
+            // One exact Newton step from a disturbed zone.
+    let st: Vec<f64> = (0..n).map(|i| 1e-3 * membrane.grid.h() * (1.0 + (0.9 * i as f64).sin())).collect();
+    let off = zone.advanced(&membrane.grid, SPACE, &st, 1.0).zone;
+    let norm = |v: &[f64]| v.iter().map(|x| x*x).sum::<f64>().sqrt();
+    for kind in 0..3 {
+        let mut z = off.clone();
+        let mut line = String::new();
+        for _ in 0..4 {
+            let b = moments(&membrane, &mut elements, &z, &z);
+            line += &format!(" {:.2e}", norm(&b));
+            let e = Equilibrium::solve(&membrane, &z, &mut elements).unwrap();
+            let r = signorini_membrane::shape_rate::ShapeRate::new(&e, &elements, &z, SPACE);
+            let nn = b.len();
+            if nn != n { line += "modes changed"; break; }
+            let mut m = vec![0.0; n*n];
+            for k in 0..n { let mut st = vec![0.0; n]; st[k] = 1.0; for (i, v) in r.of_moments(&st).unwrap().into_iter().enumerate() { m[i*n+k] = v; } }
+            if kind == 2 { m = a.clone(); }
+            let d: Vec<f64> = signorini_solve::dense::solve(&m, &b).unwrap().iter().map(|v| -v).collect();
+            z = if kind == 1 { z.displaced(SPACE, &d) } else { z.advanced(&membrane.grid, SPACE, &d, 1.0).zone };
+            if kind == 1 { let bb = moments(&membrane, &mut elements, &z, &off); line += &format!(" -> {:.2e}", norm(&bb)); break; }
+        }
+        println!("   kind {kind}: {line}");
+    }
+    let out = format!("{{\"n\":{n},\"a\":{a:?},\"m\":{m:?},\"j\":{jac:?},\"x\":{ex:?}}}");
             std::fs::write(format!("/tmp/u/jac_{degree}_{cells}.json"), out).unwrap();
         }
     }

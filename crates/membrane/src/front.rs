@@ -7,6 +7,7 @@ use crate::scales::Scales;
 use crate::shape_rate::ShapeRate;
 use crate::zone::{FrontFrame, ModeSpace, Modes, Zone};
 use signorini_geometry::Real;
+use signorini_solve::krylov::conjugate_residuals;
 use signorini_solve::{SolveError, dense};
 use std::borrow::Cow;
 use std::cell::OnceCell;
@@ -20,7 +21,7 @@ const LOCAL_REACH: f64 = 0.6;
 const FEW_MODES: usize = 12;
 
 /// What the discrete step leaves of its equations, and the products with their matrix that it may take.
-const LEFT: f64 = 1e-5;
+const LEFT: f64 = 1e-3;
 const MOST_PRODUCTS: usize = 12;
 
 /// Modes whose response is computed at most.
@@ -67,6 +68,8 @@ pub enum StepKind {
     Local,
     /// With the response of the membrane.
     Full,
+    /// With all of the derivative of the discrete equations.
+    Exact,
     /// Towards the slope at which adhesion holds, with all of the derivative.
     Adhesive,
     /// Down the energy, where the state is unstable.
@@ -78,6 +81,7 @@ impl StepKind {
         match self {
             StepKind::Local => "local step",
             StepKind::Full => "full step",
+            StepKind::Exact => "exact step",
             StepKind::Adhesive => "adhesive step",
             StepKind::Descent => "unstable: down the energy",
         }
@@ -300,8 +304,7 @@ impl<'a, const D: usize> Fronts<'a, D> {
     /// in a few modes per front: one solve each with the factorisation at hand. Where the zone is too small (`ρ < 0`)
     /// the response would take away the sign of the operator in short waves, and is left out.
     pub fn newton_step<Z: Zone<D>>(&self, zone: &Z, scales: &Scales) -> Result<Step, SolveError> {
-        let floor_pressure = |p: f64| p.max(WEAK_PRESSURE * scales.pressure);
-        let local: Vec<f64> = self.pressure.iter().zip(&self.tension).map(|(p, t)| floor_pressure(*p) / t).collect();
+        let local = self.local_rate(scales);
         let longest = self.slope_jump.iter().zip(&local).map(|(r, l)| r / l).fold(0.0, f64::max);
         let h = self.equilibrium.membrane.grid.h();
         let beyond = longest > LOCAL_REACH * h;
@@ -315,9 +318,8 @@ impl<'a, const D: usize> Fronts<'a, D> {
         // With very many modes their responses cost more than a few careful local steps.
         let far = beyond && n <= MOST_RESPONSES && self.equilibrium.responds();
         let frames = self.frames(zone, space);
-        let (mut matrix, mut b) = self.galerkin(&frames, n, &local, &self.slope_jump);
+        let (matrix, _, mut b) = self.local_system(zone, space, &frames, &local, scales);
         let kind = if far { StepKind::Full } else { StepKind::Local };
-        matrix.add(self.stiffness_outside(zone, space, &frames, &matrix.diagonal(), scales.pressure / scales.tension));
         for v in &mut b {
             *v = -*v;
         }
@@ -330,19 +332,43 @@ impl<'a, const D: usize> Fronts<'a, D> {
             matrix.solve(&b)
         };
         let coefficients = solved.unwrap_or_else(|| vec![0.0; n]);
-        let total: f64 = self.weights().sum();
-        let square: f64 = frames
-            .iter()
-            .zip(self.weights())
-            .map(|(f, w)| w * f.modes.iter().map(|(i, v)| v * coefficients[*i]).sum::<f64>().powi(2))
-            .sum();
-        let length = (square / total.max(f64::MIN_POSITIVE)).sqrt();
+        let length = self.length(&frames, &coefficients);
         let reach = if beyond && !far { h } else { f64::INFINITY };
         Ok(Step { length, space, coefficients, kind, reach })
     }
 
-    /// The Newton step with the derivative of the discrete slope jump, by generalised conjugate residuals: the pressure of the
-    /// floor is all of it but for what cells add, so a few products do. None where these do not get there.
+    /// `p/T`, the local part of the derivative; nowhere less than steers a step.
+    fn local_rate(&self, scales: &Scales) -> Vec<f64> {
+        let least = WEAK_PRESSURE * scales.pressure;
+        self.pressure.iter().zip(&self.tension).map(|(p, t)| p.max(least) / t).collect()
+    }
+
+    /// The matrix of that with what holds modes beyond the membrane, the latter alone, and `∫ ρ ω_n`.
+    fn local_system<Z: Zone<D>>(
+        &self,
+        zone: &Z,
+        space: ModeSpace,
+        frames: &[FrontFrame],
+        local: &[f64],
+        scales: &Scales,
+    ) -> (ModeMatrix, ModeMatrix, Vec<f64>) {
+        let n = zone.mode_offsets(space)[zone.front_count()];
+        let (mut matrix, b) = self.galerkin(frames, n, local, &self.slope_jump);
+        let held = self.stiffness_outside(zone, space, frames, &matrix.diagonal(), scales.pressure / scales.tension);
+        matrix.add(held.clone());
+        (matrix, ModeMatrix::of_cliques(n, held), b)
+    }
+
+    /// Root mean square of a displacement of the fronts.
+    fn length(&self, frames: &[FrontFrame], coefficients: &[f64]) -> f64 {
+        let total: f64 = self.weights().sum();
+        let at = |f: &FrontFrame| f.modes.iter().map(|(i, v)| v * coefficients[*i]).sum::<f64>();
+        let square: f64 = frames.iter().zip(self.weights()).map(|(f, w)| w * at(f).powi(2)).sum();
+        (square / total.max(f64::MIN_POSITIVE)).sqrt()
+    }
+
+    /// The Newton step with the derivative of the discrete slope jump, near the solution. The pressure of the floor is most of
+    /// that, so the method of generalised conjugate residuals needs few products with it; none where these do not get there.
     ///
     /// # Errors
     /// A state that was not found by a factorisation.
@@ -351,45 +377,21 @@ impl<'a, const D: usize> Fronts<'a, D> {
         zone: &Z,
         elements: &Elements<D>,
         scales: &Scales,
-    ) -> Result<Option<Vec<f64>>, SolveError> {
+    ) -> Result<Option<Step>, SolveError> {
         let space = self.modes().finest();
-        let n = zone.mode_offsets(space)[zone.front_count()];
         let frames = self.frames(zone, space);
-        let floor_pressure = |p: f64| p.max(WEAK_PRESSURE * scales.pressure);
-        let local: Vec<f64> = self.pressure.iter().zip(&self.tension).map(|(p, t)| floor_pressure(*p) / t).collect();
-        let (mut matrix, b) = self.galerkin(&frames, n, &local, &self.slope_jump);
-        let outside =
-            self.stiffness_outside(zone, space, &frames, &matrix.diagonal(), scales.pressure / scales.tension);
-        matrix.add(outside.clone());
-        let mut held = ModeMatrix::of_products(n, &[], std::iter::empty());
-        held.add(outside);
+        let (matrix, held, b) = self.local_system(zone, space, &frames, &self.local_rate(scales), scales);
         let rate = ShapeRate::new(self.equilibrium, elements, zone, space);
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let subtract = |a: &mut [f64], c: f64, b: &[f64]| a.iter_mut().zip(b).for_each(|(a, b)| *a -= c * b);
+        let image = |step: &[f64]| -> Result<Option<Vec<f64>>, SolveError> {
+            let mut moments = rate.of_moments(step)?;
+            moments.iter_mut().zip(held.multiply(step)).for_each(|(m, h)| *m += h);
+            Ok(matrix.solve(&moments))
+        };
         let Some(first) = matrix.solve(&b) else { return Ok(None) };
-        let mut left: Vec<f64> = first.iter().map(|v| -v).collect();
-        let begin = dot(&left, &left);
-        let mut step = vec![0.0; n];
-        let mut known: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
-        for _ in 0..MOST_PRODUCTS {
-            let mut direction = left.clone();
-            let mut moments = rate.of_moments(&direction)?;
-            moments.iter_mut().zip(held.multiply(&direction)).for_each(|(m, h)| *m += h);
-            let Some(mut image) = matrix.solve(&moments) else { return Ok(None) };
-            for (d, i) in &known {
-                let c = dot(&image, i) / dot(i, i);
-                subtract(&mut image, c, i);
-                subtract(&mut direction, c, d);
-            }
-            let c = dot(&left, &image) / dot(&image, &image);
-            subtract(&mut step, -c, &direction);
-            subtract(&mut left, c, &image);
-            if dot(&left, &left) <= LEFT * LEFT * begin {
-                return Ok(Some(step));
-            }
-            known.push((direction, image));
-        }
-        Ok(None)
+        let first = first.iter().map(|v| -v).collect();
+        let Some(coefficients) = conjugate_residuals(first, image, LEFT, MOST_PRODUCTS)? else { return Ok(None) };
+        let length = self.length(&frames, &coefficients);
+        Ok(Some(Step { length, space, coefficients, kind: StepKind::Exact, reach: f64::INFINITY }))
     }
 
     /// Adds `∫ Λ_T(ρ⁺ w_m) ω_n`, and for fronts on which it stays safely positive `-∫ κ ρ⁺ w_m ω_n`.

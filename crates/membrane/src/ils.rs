@@ -46,6 +46,8 @@ const UNSTABLE: f64 = -1e-6;
 const FREE: f64 = -1e-10;
 /// A zone of less than this part of a cell has no shape.
 const SMALL: f64 = 0.7;
+/// Steps shorter than this fraction of a cell are made with the derivative of the discrete equations.
+const CLOSE: f64 = 0.3;
 /// Adhesive steps shorter than this fraction of a cell are extrapolated.
 const NEAR: f64 = 0.1;
 /// A front moves at most this fraction of the membrane's extent in one step.
@@ -541,20 +543,19 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 (count, descents, best) = (0, descents + 1, f64::INFINITY);
                 self.solution.jumped = true;
             }
-            let lim = std::env::var("LIM").map_or(0.25, |v| v.parse::<f64>().unwrap());
-            let exact = D == 2 && !self.adhering && !shifted && equilibrium.responds() && step.space == finest && step.kind == StepKind::Local && relative_step < lim;
-            let exact = if exact { fronts.discrete_step(zone, self.elements, &scales)? } else { None };
-            if std::env::var("TRACE").is_ok() { eprintln!("res {residual:.2e} rel {relative_step:.2e} kind {:?} finest {} exact {}", step.kind, step.space == finest, exact.is_some()); }
-            let newton = exact.is_some();
-            if let Some(exact) = exact { step.coefficients = exact; }
+            // As everywhere short of adhesion fronts rest without a slope, the pressure of the floor is nearly all of the
+            // derivative; near the solution the rest of it, which cells add, makes the convergence quadratic.
+            let exact = match D > 1 && !self.adhering && !shifted && relative_step < CLOSE && equilibrium.responds() {
+                true => fronts.discrete_step(zone, self.elements, &scales)?,
+                false => None,
+            };
+            step = exact.unwrap_or(step);
             // Far from the solution the steps are no linear iteration that could be extrapolated.
             if waited >= DAMPED_AFTER && !shifted {
                 // The derivative does not fit the discrete slope jump here: shorter steps find where it vanishes.
                 acceleration = Acceleration::default();
                 let factor = 0.5f64.powi((waited / DAMPED_AFTER) as i32).max(0.1);
                 step.coefficients.iter_mut().for_each(|c| *c *= factor);
-            } else if newton {
-                acceleration = Acceleration::default();
             } else if step.space == finest
                 && (step.kind == StepKind::Local || (step.kind == StepKind::Adhesive && relative_step < NEAR))
             {

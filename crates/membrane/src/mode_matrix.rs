@@ -47,6 +47,11 @@ impl ModeMatrix {
         Self { n, cliques }
     }
 
+    /// A sum of given cliques.
+    pub fn of_cliques(n: usize, cliques: Vec<Clique>) -> Self {
+        Self { n, cliques }
+    }
+
     pub fn diagonal(&self) -> Vec<f64> {
         let mut out = vec![0.0; self.n];
         for (modes, values) in &self.cliques {
@@ -119,6 +124,7 @@ mod tests {
             let row: f64 = (0..n).map(|j| dense[i * n + j] * x[j]).sum();
             assert!((row - b).abs() < 1e-10, "{row} {b}");
             assert_eq!(matrix.diagonal()[i], dense[i * n + i]);
+            assert!((row - matrix.multiply(&x)[i]).abs() < 1e-12);
         }
     }
 }

@@ -27,6 +27,10 @@ const LEVEL_SET_DEGREE: usize = 3;
 const SPLIT: usize = 2;
 /// It gets a new parameter once its length has changed, or its speed differs, by so much.
 const STRETCH: f64 = 0.2;
+/// Fronts that would move by less than this part of a cell have been there before.
+const SAME: f64 = 1e-9;
+/// The speed of a front between states of a path differs by this factor at most.
+const CROWDED: f64 = 1.5;
 /// A front that encloses less than this multiple of `h²` after a step has collapsed.
 const COLLAPSED: f64 = 0.01;
 /// A step may not bring a front nearer to its centre of curvature than this fraction of its radius of curvature.
@@ -275,8 +279,16 @@ impl PlaneZone {
         &self.curves
     }
 
+    /// The fronts, each with as many knots as modes.
     fn fronts(&self) -> Vec<(Side, ClosedCurve)> {
-        self.sides.iter().copied().zip(self.curves.iter().cloned()).collect()
+        let plain = |(c, &modes): (&ClosedCurve, &usize)| {
+            if c.degree() != LEVEL_SET_DEGREE && c.knots() == SPLIT * modes {
+                c.by_arc_length(modes)
+            } else {
+                c.clone()
+            }
+        };
+        self.sides.iter().copied().zip(self.curves.iter().zip(&self.mode_counts).map(plain)).collect()
     }
 
     /// The same zone with other curves in the place of its own.
@@ -576,7 +588,8 @@ impl Zone<2> for PlaneZone {
                 let modes = self.mode_counts[i];
                 let moved = c.offset(SPLIT * modes, limited);
                 let wanted = Self::knots(grid, polygon::perimeter(moved.samples()));
-                if wanted.abs_diff(modes) as f64 <= STRETCH * modes as f64 && moved.unevenness() <= 1.0 + STRETCH {
+                let even = moved.unevenness() <= (1.0 + STRETCH) * c.unevenness();
+                if even && wanted.abs_diff(modes) as f64 <= STRETCH * modes as f64 {
                     return (moved, modes);
                 }
                 (c.offset(4 * modes, limited).by_arc_length(wanted), wanted)
@@ -655,6 +668,7 @@ impl Zone<2> for PlaneZone {
             return None;
         }
         let mut moved = Vec::with_capacity(self.curves.len());
+        let mut farthest = 0.0f64;
         for (i, now) in self.curves.iter().enumerate() {
             let ahead = |x: &Point<2>| -> f64 {
                 let way = |zone: &Self| {
@@ -664,8 +678,9 @@ impl Zone<2> for PlaneZone {
                 before.iter().map(|(zone, multiple)| multiple * way(zone)).sum()
             };
             // Fronts that have little to do with each other, or sharp ones, are better left where they are.
-            let small = |p: &CurvePoint| {
+            let mut small = |p: &CurvePoint| {
                 let w = ahead(&p.position).abs();
+                farthest = farthest.max(w);
                 w < 2.0 * self.grid.h() && w * p.curvature.abs() < FOLD
             };
             if !(0..now.samples().len()).all(|k| small(&now.point(now.sample_parameter(k)))) {
@@ -673,6 +688,9 @@ impl Zone<2> for PlaneZone {
             }
             let curve = now.offset(4 * now.knots(), |p| ahead(&p.position));
             moved.push(curve.by_arc_length(Self::knots(&self.grid, polygon::perimeter(curve.samples()))));
+        }
+        if farthest < SAME * self.grid.h() {
+            return Some(self.clone());
         }
         Self::is_valid(&moved).then(|| self.with_curves(&self.grid, moved))
     }
@@ -737,9 +755,11 @@ impl Zone<2> for PlaneZone {
         multigrid::nested::solution(membrane, at, progress)
     }
     fn to_json(&self) -> Value {
-        let curves = self.sides.iter().zip(&self.curves).map(
-            |(side, c)| json!({"above": *side == Side::Above, "degree": c.degree(), "coefficients": c.coefficients()}),
-        );
+        let curves = self.sides.iter().zip(&self.curves).zip(&self.mode_counts).map(|((side, c), modes)| {
+            json!({
+                "above": *side == Side::Above, "degree": c.degree(), "modes": modes, "coefficients": c.coefficients(),
+            })
+        });
         json!({"cells": self.grid.cells(), "degree": self.grid.degree(), "curves": curves.collect::<Vec<_>>()})
     }
     fn from_json(grid: &Grid<2>, value: &Value) -> Option<Self> {
@@ -752,10 +772,12 @@ impl Zone<2> for PlaneZone {
         let curve = |v: &Value| {
             let coefficients: Vec<[f64; 2]> = serde_json::from_value(v["coefficients"].clone()).ok()?;
             let side = if v["above"].as_bool()? { Side::Above } else { Side::Below };
-            Some((side, ClosedCurve::from_coefficients(v["degree"].as_u64()? as usize, coefficients)?))
+            let modes = v["modes"].as_u64().filter(|&m| (1..=coefficients.len() as u64).contains(&m))? as usize;
+            Some(((side, ClosedCurve::from_coefficients(v["degree"].as_u64()? as usize, coefficients)?), modes))
         };
         let curves = value["curves"].as_array()?.iter().map(curve).collect::<Option<Vec<_>>>()?;
-        Some(Self::new(&Grid::new(*grid.bounds(), cells, degree), curves))
+        let (curves, mode_counts) = curves.into_iter().unzip();
+        Some(Self { mode_counts, ..Self::new(&Grid::new(*grid.bounds(), cells, degree), curves) })
     }
     fn least_feature(&self) -> f64 {
         let radius = 1.0 / self.sharpest().max(f64::MIN_POSITIVE);
@@ -781,12 +803,19 @@ impl Zone<2> for PlaneZone {
         least
     }
     fn on_grid(&self, grid: &Grid<2>) -> Self {
-        let knots = |c: &ClosedCurve| Self::knots(grid, polygon::perimeter(c.samples()));
-        let same = |c: &ClosedCurve| knots(c) == c.knots() && c.degree() == Self::front_degree(grid);
-        let fit = |c: &ClosedCurve| {
-            if same(c) { c.clone() } else { ClosedCurve::along(c.samples(), Self::front_degree(grid), knots(c)) }
+        let fit = |(c, &modes): (&ClosedCurve, &usize)| {
+            let wanted = Self::knots(grid, polygon::perimeter(c.samples()));
+            let degree = Self::front_degree(grid);
+            // A front that has moved far enough for its knots to crowd gets new ones.
+            let same = wanted == modes && c.degree() == degree;
+            if same && (c.knots() == modes || c.unevenness() < CROWDED) {
+                (c.clone(), modes)
+            } else {
+                (ClosedCurve::along(c.samples(), degree, wanted), wanted)
+            }
         };
-        self.with_curves(grid, self.curves.iter().map(fit).collect())
+        let (curves, mode_counts) = self.curves.iter().zip(&self.mode_counts).map(fit).unzip();
+        Self { mode_counts, ..self.with_curves(grid, curves) }
     }
     fn divided(
         &self,

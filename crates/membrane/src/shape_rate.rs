@@ -24,8 +24,10 @@ use std::collections::HashMap;
 
 /// Step of the differences that take a derivative of polynomials, relative to their cell.
 const DIFFERENCE: f64 = 1e-4;
-/// Halvings that lead to where a front crosses a side.
-const HALVINGS: usize = 30;
+/// Halvings that lead to where a front crosses a side, and how far aside of it, relative to the nearest point, it is asked
+/// where another front would.
+const HALVINGS: usize = 45;
+const ASIDE: f64 = 0.05;
 /// Points of one front further apart than so many cells have nothing between them.
 const APART: f64 = 1.5;
 
@@ -288,7 +290,7 @@ fn crossings<const D: usize, Z: Zone<D>>(
                 let normal = feet[a].normal * (1.0 - t) + feet[b].normal * t;
                 p.x + chord * (t * t * (3.0 - 2.0 * t)) + from * bulge + to * end + normal * shift
             };
-            let crossing = |shift: f64| -> Point<D> {
+            let crossing = |shift: f64| -> f64 {
                 let (mut inside, mut beyond) = (0.0, 1.0);
                 for _ in 0..HALVINGS {
                     let middle = 0.5 * (inside + beyond);
@@ -298,11 +300,13 @@ fn crossings<const D: usize, Z: Zone<D>>(
                         beyond = middle;
                     }
                 }
-                beside(0.5 * (inside + beyond), shift)
+                0.5 * (inside + beyond)
             };
-            let shift = DIFFERENCE * h;
-            let x = crossing(0.0);
-            let slid = crossing(shift) - crossing(-shift);
+            let t = crossing(0.0);
+            let x = beside(t, 0.0);
+            // Not so far aside that the crossing would leave the piece between the two points.
+            let shift = ASIDE * chord.norm() * t.min(1.0 - t);
+            let slid = beside(crossing(shift), shift) - beside(crossing(-shift), -shift);
             let foot = zone.foot(p.front, &x, space);
             let ahead = chord - foot.normal * foot.normal.dot(&chord);
             let slide = slid.dot(&ahead) / ahead.norm().max(f64::MIN_POSITIVE) / (2.0 * shift);

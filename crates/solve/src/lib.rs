@@ -5,12 +5,14 @@
 //! - [`acceleration`]: Anderson's for fixed-point iterations.
 //! - [`dissection`]: an order of elimination for meshes in space.
 //! - [`dense`]: small dense systems.
+//! - [`krylov`]: equations known by products with their matrix.
 //! - [`progress`]: what a solver reports while it works, and how it is interrupted.
 
 pub mod acceleration;
 pub mod cholesky;
 pub mod dense;
 pub mod dissection;
+pub mod krylov;
 pub mod progress;
 pub mod sparse;
 

@@ -22,10 +22,12 @@ const FEWEST_KNOTS: f64 = 5.0;
 const SEED_KNOTS: usize = 16;
 /// Degree of a curve along a level set that is linear between nodes.
 const LEVEL_SET_DEGREE: usize = 3;
-/// A front that moves keeps its parameter, and has so many knots for each mode: what is left of a step in another space,
-/// or on another parameter, is a few hundredths of the short waves.
+/// A front that moves by less than this fraction of a cell keeps its parameter, and has so many knots for each mode: in the
+/// space of its modes, on another parameter, a few hundredths of the short waves of a step would be left behind. Longer steps
+/// begin anew there, so that what no mode sees of a front is what is left of its last, short steps.
+const CLOSE: f64 = 0.05;
 const SPLIT: usize = 2;
-/// It gets a new parameter once its length has changed, or its speed differs, by so much.
+/// It gets a new parameter, too, once its length has changed, or its speed differs, by so much.
 const STRETCH: f64 = 0.2;
 /// Fronts that would move by less than this part of a cell have been there before.
 const SAME: f64 = 1e-9;
@@ -589,7 +591,8 @@ impl Zone<2> for PlaneZone {
                 let moved = c.offset(SPLIT * modes, limited);
                 let wanted = Self::knots(grid, polygon::perimeter(moved.samples()));
                 let even = moved.unevenness() <= (1.0 + STRETCH) * c.unevenness();
-                if even && wanted.abs_diff(modes) as f64 <= STRETCH * modes as f64 {
+                let farthest = (0..modes).map(|k| w(k as f64 / modes as f64).abs()).fold(0.0, f64::max);
+                if even && farthest < CLOSE * grid.h() && wanted.abs_diff(modes) as f64 <= STRETCH * modes as f64 {
                     return (moved, modes);
                 }
                 (c.offset(4 * modes, limited).by_arc_length(wanted), wanted)

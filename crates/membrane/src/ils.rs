@@ -48,6 +48,11 @@ const FREE: f64 = -1e-10;
 const SMALL: f64 = 0.7;
 /// Steps shorter than this fraction of a cell are made with the derivative of the discrete equations.
 const CLOSE: f64 = 0.3;
+/// One that leaves more than this part of the residual is followed by so many others.
+/// So are those of fronts that curve by this within a cell.
+const GAINED: f64 = 0.5;
+const SHARP: f64 = 0.5;
+const DOUBTED: usize = 2;
 /// Adhesive steps shorter than this fraction of a cell are extrapolated.
 const NEAR: f64 = 0.1;
 /// A front moves at most this fraction of the membrane's extent in one step.
@@ -436,6 +441,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         self.solution.settled_within = None;
         self.solution.lowest_eigenvalue = None;
         let (mut count, mut descents) = (0, 0);
+        let (mut last_kind, mut doubted) = (None, 0);
         let most_steps = self.rest.most_steps();
         while count < most_steps && descents < MOST_DESCENTS {
             count += 1;
@@ -492,6 +498,11 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             waited = if residual < 0.7 * best || step.kind == StepKind::Descent { 0 } else { waited + 1 };
             best = best.min(residual);
             falls = if residual < previous { falls + 1 } else { 0 };
+            doubted = match last_kind {
+                // A kink of the discrete slope jump lies between here and where the step came from.
+                Some(StepKind::Exact) if residual > GAINED * previous => DOUBTED,
+                _ => doubted.saturating_sub(1),
+            };
             previous = residual;
             // A level set on nodes shifts the fronts with every step: there is no coming closer than that.
             let transport = self.membrane.formulation.transport();
@@ -545,11 +556,13 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             }
             // As everywhere short of adhesion fronts rest without a slope, the pressure of the floor is nearly all of the
             // derivative; near the solution the rest of it, which cells add, makes the convergence quadratic.
-            let exact = match D > 1 && !self.adhering && !shifted && relative_step < CLOSE && equilibrium.responds() {
+            let near = relative_step < CLOSE && doubted == 0 && zone.sharpest() * h < SHARP;
+            let exact = match D > 1 && near && !self.adhering && !shifted && equilibrium.responds() {
                 true => fronts.discrete_step(zone, self.elements, &scales)?,
                 false => None,
             };
             step = exact.unwrap_or(step);
+            last_kind = Some(step.kind);
             // Far from the solution the steps are no linear iteration that could be extrapolated.
             if waited >= DAMPED_AFTER && !shifted {
                 // The derivative does not fit the discrete slope jump here: shorter steps find where it vanishes.

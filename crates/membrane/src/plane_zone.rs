@@ -25,7 +25,7 @@ const LEVEL_SET_DEGREE: usize = 3;
 /// A front that moves by less than this fraction of a cell keeps its parameter, and has so many knots for each mode: in the
 /// space of its modes, on another parameter, a few hundredths of the short waves of a step would be left behind. Longer steps
 /// begin anew there, so that what no mode sees of a front is what is left of its last, short steps.
-const CLOSE: f64 = 0.05;
+const CLOSE: f64 = 0.01;
 const SPLIT: usize = 2;
 /// It gets a new parameter, too, once its length has changed, or its speed differs, by so much.
 const STRETCH: f64 = 0.2;

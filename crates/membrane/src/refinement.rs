@@ -93,6 +93,8 @@ impl<const D: usize> Refinement<D> {
         let rest = if last { Rest::Final } else { Rest::BeforeDivision };
         let mut best = ils::solve(whole, &mut Elements::new(whole), start, rest, at, progress);
         best.before = looks;
+        // Fronts that were left to smaller cells, which may turn out not to be wanted.
+        let mut unfinished = rest == Rest::BeforeDivision;
         for _ in 0..MOST_ROUNDS {
             let (Some(scales), false) = (best.scales, best.zone.is_empty()) else { break };
             let astray = best.reason == Reason::IterationLimit;
@@ -107,13 +109,18 @@ impl<const D: usize> Refinement<D> {
             let wanted = wanted.min(self.most);
             if wanted < used || (wanted == used && !strayed(&best)) {
                 *levels = wanted;
+                if unfinished && best.settled_within.is_some() {
+                    let start = Start::Zone(zone, scales, branch);
+                    let next = ils::solve(whole, &mut Elements::new(whole), start, Rest::Final, at, progress);
+                    return continued(best, next);
+                }
                 return best;
             }
             if astray && wanted == used {
                 break;
             }
             let Some(finer) = self.divided(membrane, &zone, wanted) else { break };
-            used = wanted;
+            (used, unfinished) = (wanted, false);
             let start = Start::Zone(zone, scales.on(&finer), branch);
             let mut next = ils::solve(&finer, &mut Elements::new(&finer), start, Rest::Final, at, progress);
             next.before = best.before + best.iterations;
@@ -124,14 +131,30 @@ impl<const D: usize> Refinement<D> {
                 best.unrefined = true;
                 break;
             }
-            let mut residuals = std::mem::take(&mut best.residuals);
-            residuals.append(&mut next.residuals);
-            next.residuals = residuals;
+            prepend(&mut best.residuals, &mut next.residuals);
             best = next;
         }
         *levels = used;
         best
     }
+}
+
+/// A solution and what came of going on from it on the same cells.
+fn continued<const D: usize, Z: Zone<D>>(mut first: Solution<D, Z>, mut next: Solution<D, Z>) -> Solution<D, Z> {
+    if next.reason != Reason::Interrupted && !next.reason.converged() {
+        first.before += next.iterations;
+        return first;
+    }
+    next.before = first.before;
+    next.iterations += first.iterations;
+    next.jumped |= first.jumped;
+    prepend(&mut first.residuals, &mut next.residuals);
+    next
+}
+
+fn prepend(first: &mut Vec<f64>, next: &mut Vec<f64>) {
+    let rest = std::mem::take(next);
+    *next = first.drain(..).chain(rest).collect();
 }
 
 /// Whether the fronts have not so far to go that the way is cheaper on undivided cells.

@@ -46,12 +46,12 @@ const UNSTABLE: f64 = -1e-6;
 const FREE: f64 = -1e-10;
 /// A zone of less than this part of a cell has no shape.
 const SMALL: f64 = 0.7;
-/// Steps shorter than this fraction of a cell are made with the derivative of the discrete equations.
+/// Steps shorter than this fraction of a cell are made with the derivative of the discrete equations ...
 const CLOSE: f64 = 0.3;
-/// One that leaves more than this part of the residual is followed by so many others.
-/// So are those of fronts that curve by this within a cell.
-const GAINED: f64 = 0.5;
+/// ... where no front curves by more than this within a cell.
 const SHARP: f64 = 0.5;
+/// One that leaves more than this part of the residual is followed by so many others.
+const GAINED: f64 = 0.5;
 const DOUBTED: usize = 2;
 /// Adhesive steps shorter than this fraction of a cell are extrapolated.
 const NEAR: f64 = 0.1;
@@ -109,6 +109,8 @@ pub struct Solution<const D: usize, Z> {
     pub unrefined: bool,
     /// Length of the last step relative to a cell, where the fronts settled on a jump of the discrete slope.
     pub settled_within: Option<f64>,
+    /// Whether they settled as no step was left, not as they came no closer.
+    pub out_of_steps: bool,
     /// Whether multigrid found it, and not a factorisation.
     pub multigrid: bool,
     /// What the nodal method predicted on the way, if it was asked.
@@ -134,6 +136,7 @@ impl<const D: usize, Z> Solution<D, Z> {
             unresolved: None,
             unrefined: false,
             settled_within: None,
+            out_of_steps: false,
             multigrid: false,
             predicted: None,
         }
@@ -361,7 +364,9 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             if let Ok(Fixed::Interrupted) = settled {
                 return Ok(Reason::Interrupted);
             }
-            let astray = !matches!(settled, Ok(Fixed::AtRest)) || sweeps > self.rest.most_sweeps();
+            let astray = !matches!(settled, Ok(Fixed::AtRest))
+                || sweeps > self.rest.most_sweeps()
+                || (!predicted && self.have_missed_a_merger()?);
             if astray && (predicted || self.adhering) {
                 return settled.map(|_| Reason::IterationLimit);
             }
@@ -413,22 +418,35 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         }
     }
 
-    /// Replaces the zone by the prediction of the nodal method on linear elements, which is cheap, and cannot go astray
-    /// however the zone is connected. Its front is true to a fraction of a cell.
+    /// Whether fronts that moved to the last, sharper than the grid, are those of zones that have merged or split.
+    fn have_missed_a_merger(&self) -> Result<bool, SolveError> {
+        let left = self.rest == Rest::BeforeDivision && self.solution.out_of_steps;
+        let shifted = self.membrane.formulation.transport() != Transport::Exact;
+        let moving = self.solution.settled_within.is_some_and(|step| step > SETTLED);
+        Ok(moving && !left && !shifted && !self.adhering && self.prediction()?.counts() != self.solution.zone.counts())
+    }
+
+    /// Replaces the zone by what the nodal method predicts.
     fn predict(&mut self) -> Result<(), SolveError> {
+        self.solution.zone = self.prediction()?;
+        self.solution.predicted = Some(self.solution.zone.clone());
+        self.report(0.0, "predicted");
+        self.solution.residuals.pop();
+        Ok(())
+    }
+
+    /// The zone by the nodal method on linear elements, which is cheap, and cannot go astray however the zone is connected.
+    /// Its front is true to a fraction of a cell.
+    fn prediction(&self) -> Result<Z, SolveError> {
         let finer = if self.membrane.cells.degree() >= 3 { 2 } else { 1 };
         let nodal = self.membrane.on(self.membrane.cells.linear(finer));
         let progress = &*self.progress;
         let solution = active_set::solve::<D, Z>(&nodal, NodalStart::Nested, &|| progress.interrupted())?;
         let grid = &self.membrane.grid;
-        self.solution.zone = nodal.obstacles.sides().fold(Z::empty(grid), |zone, side| {
+        Ok(nodal.obstacles.sides().fold(Z::empty(grid), |zone, side| {
             let predictor = solution.predictor(&nodal, side);
             zone.united(grid, side, &mut |x| predictor(x))
-        });
-        self.solution.predicted = Some(self.solution.zone.clone());
-        self.report(0.0, "predicted");
-        self.solution.residuals.pop();
-        Ok(())
+        }))
     }
 
     /// Newton's iteration on the shape of the zone.
@@ -439,6 +457,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         let (mut best, mut waited) = (f64::INFINITY, 0);
         let (mut previous, mut falls) = (f64::INFINITY, 0);
         self.solution.settled_within = None;
+        self.solution.out_of_steps = false;
         self.solution.lowest_eigenvalue = None;
         let (mut count, mut descents) = (0, 0);
         let (mut last_kind, mut doubted) = (None, 0);
@@ -518,10 +537,14 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 let projection = fronts.project(zone, finest);
                 projection.norm < share * projection.remainder
             };
-            let enough = || match () {
-                () if shifted => SETTLED_SHIFTED,
-                () if sharp || unseen(1.0) => SETTLED_COARSE,
-                () => SETTLED,
+            let enough = || {
+                if shifted {
+                    SETTLED_SHIFTED
+                } else if sharp || unseen(1.0) {
+                    SETTLED_COARSE
+                } else {
+                    SETTLED
+                }
             };
             let settled =
                 (waited >= patience || last) && !slowly && step.kind != StepKind::Descent && relative_step < enough();
@@ -547,6 +570,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 }
                 self.report(residual, if settled && residual > 1.0 { "settled" } else { "at rest" });
                 self.solution.settled_within = (settled && residual > 1.0).then_some(relative_step);
+                self.solution.out_of_steps = self.solution.settled_within.is_some() && waited < patience;
                 self.solution.equilibrium = Some(equilibrium);
                 return Ok(Fixed::AtRest);
             }

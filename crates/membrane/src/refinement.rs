@@ -109,7 +109,7 @@ impl<const D: usize> Refinement<D> {
             let wanted = wanted.min(self.most);
             if wanted < used || (wanted == used && !strayed(&best)) {
                 *levels = wanted;
-                if unfinished && best.settled_within.is_some() {
+                if unfinished && best.out_of_steps {
                     let start = Start::Zone(zone, scales, branch);
                     let next = ils::solve(whole, &mut Elements::new(whole), start, Rest::Final, at, progress);
                     return continued(best, next);
@@ -131,7 +131,8 @@ impl<const D: usize> Refinement<D> {
                 best.unrefined = true;
                 break;
             }
-            prepend(&mut best.residuals, &mut next.residuals);
+            best.residuals.append(&mut next.residuals);
+            next.residuals = std::mem::take(&mut best.residuals);
             best = next;
         }
         *levels = used;
@@ -148,13 +149,9 @@ fn continued<const D: usize, Z: Zone<D>>(mut first: Solution<D, Z>, mut next: So
     next.before = first.before;
     next.iterations += first.iterations;
     next.jumped |= first.jumped;
-    prepend(&mut first.residuals, &mut next.residuals);
+    first.residuals.append(&mut next.residuals);
+    next.residuals = first.residuals;
     next
-}
-
-fn prepend(first: &mut Vec<f64>, next: &mut Vec<f64>) {
-    let rest = std::mem::take(next);
-    *next = first.drain(..).chain(rest).collect();
 }
 
 /// Whether the fronts have not so far to go that the way is cheaper on undivided cells.

@@ -391,8 +391,10 @@ impl Cells<2> for RefinedGrid {
                 (beside.min[k], beside.max[k]) = (small.min[k], small.max[k]);
             }
         }
+        let [level, of_other] = pair.cells.map(|cell| self.leaves[cell].level);
+        let weight = if level == of_other { 1.0 } else { NEARER };
         let rule = |b: &Aabb<2>, of: usize| {
-            self.coarse.rule_in(b).into_iter().map(move |p| (of, QuadraturePoint { weight: NEARER * p.weight, ..p }))
+            self.coarse.rule_in(b).into_iter().map(move |p| (of, QuadraturePoint { weight: weight * p.weight, ..p }))
         };
         rule(&small, 0).chain(rule(&beside, 1)).collect()
     }

@@ -38,6 +38,8 @@ const SLOWLY: usize = 5;
 const SHARPEST: f64 = 10.0;
 /// A step of this fraction of a cell that does not improve on the last is round-off.
 const ROUND_OFF: f64 = 1e-8;
+/// Fronts that have torn or met so often have gone astray.
+const MOST_CHANGES: usize = 10;
 /// Steps down the energy before a jump is given up.
 const MOST_DESCENTS: usize = 200;
 /// An eigenvalue of the second variation below this fraction of the pressure's share is negative.
@@ -459,10 +461,10 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         self.solution.settled_within = None;
         self.solution.out_of_steps = false;
         self.solution.lowest_eigenvalue = None;
-        let (mut count, mut descents) = (0, 0);
+        let (mut count, mut descents, mut changes) = (0, 0, 0);
         let (mut last_kind, mut doubted) = (None, 0);
         let most_steps = self.rest.most_steps();
-        while count < most_steps && descents < MOST_DESCENTS {
+        while count < most_steps && changes < MOST_CHANGES && descents < MOST_DESCENTS {
             count += 1;
             let last = count == most_steps;
             if self.progress.interrupted() {
@@ -607,6 +609,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             }
             if advance.topology_changed {
                 // Another problem: what the residuals were before says nothing of it.
+                changes += 1;
                 (best, waited, previous, falls) = (f64::INFINITY, 0, f64::INFINITY, 0);
             }
             let action = if advance.topology_changed { "topology changed" } else { step.kind.name() };

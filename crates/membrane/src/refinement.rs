@@ -119,15 +119,29 @@ impl<const D: usize> Refinement<D> {
             if astray && wanted == used {
                 break;
             }
-            let Some(finer) = self.divided(membrane, &zone, wanted) else { break };
+            let mut about = |zone: Z| {
+                let finer = self.divided(membrane, &zone, wanted)?;
+                let start = Start::Zone(zone, scales.on(&finer), branch);
+                Some(ils::solve(&finer, &mut Elements::new(&finer), start, Rest::Final, at, progress))
+            };
+            let counts = zone.counts();
+            let Some(mut next) = about(zone) else { break };
             (used, unfinished) = (wanted, false);
-            let start = Start::Zone(zone, scales.on(&finer), branch);
-            let mut next = ils::solve(&finer, &mut Elements::new(&finer), start, Rest::Final, at, progress);
             next.before = best.before + best.iterations;
+            let lost = |next: &Solution<D, Z>| {
+                best.reason.converged() && !next.reason.converged() && next.reason != Reason::Interrupted
+            };
+            if lost(&next)
+                && let Some(other) = next.predicted.take().filter(|other| other.counts() != counts)
+                && let Some(again) = about(other)
+            {
+                // Cells were divided about fronts that are not there any more.
+                next = Solution { before: next.before + next.iterations, ..again };
+            }
             next.jumped |= best.jumped;
-            if next.reason != Reason::Interrupted && best.reason.converged() && !next.reason.converged() {
+            if lost(&next) {
                 // What was found on coarser cells is an answer all the same.
-                best.before += next.iterations;
+                best.before = next.before + next.iterations - best.iterations;
                 best.unrefined = true;
                 break;
             }

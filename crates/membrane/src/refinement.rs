@@ -6,6 +6,7 @@ use crate::equilibrium::{Elements, Equilibrium};
 use crate::front::Fronts;
 use crate::ils::{self, Reason, Rest, Solution, Start};
 use crate::problem::Membrane;
+use crate::published::Formulation;
 use crate::scales::Scales;
 use crate::zone::Zone;
 use signorini_fem::Grid;
@@ -55,6 +56,34 @@ impl<const D: usize> Refinement<D> {
         let grid = Grid::new(*coarse.bounds(), coarse.cells().map(|n| n << levels), coarse.degree());
         let domain = DomainOnCells::new(membrane.domain.domain.clone(), &*cells);
         Some(Membrane { cells, grid, domain, ..membrane.clone() })
+    }
+
+    /// The zone on cells of twice the size, if these resolve it, and the solves that it took: fronts that have far to go
+    /// need few steps from there, however small the cells are. Not with adhesion, which may jump elsewhere on other cells.
+    pub fn approached<Z: Zone<D>>(
+        &self,
+        membrane: &Membrane<D>,
+        zone: &Z,
+        scales: &Scales,
+        at: (usize, f64),
+        progress: &mut dyn Progress,
+    ) -> Option<(Z, usize)> {
+        if D != 2 || membrane.obstacles.are_sticky() || membrane.formulation != Formulation::OneSided {
+            return None;
+        }
+        let degree = membrane.cells.degree();
+        let mut cells = membrane.cells.coarser()?;
+        while cells.degree() < degree {
+            cells = cells.raised()?;
+        }
+        let grid = Grid::new(*membrane.grid.bounds(), membrane.grid.cells().map(|n| n.div_ceil(2)), degree);
+        let coarse = Membrane { grid, ..membrane.on(cells) };
+        if zone.is_empty() || coarse.grid.h() > zone.least_feature() {
+            return None;
+        }
+        let start = Start::Zone(zone.clone(), scales.on(&coarse), Branch::Stable);
+        let found = ils::solve(&coarse, &mut Elements::new(&coarse), start, Rest::BeforeRefinement, at, progress);
+        found.reason.converged().then_some((found.zone, found.iterations))
     }
 
     /// Solves an increment, on cells divided as often as `levels` says at first, and more often where the fronts need

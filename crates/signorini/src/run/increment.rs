@@ -301,15 +301,24 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
     where
         Z: 'a,
     {
+        let nearby = match (&self.asked, &self.previous) {
+            (Some(_), _) => true,
+            (None, previous) => matches!(previous, Some((_, _, Branch::Nearest))),
+        };
+        let large = plan.by_multigrid(membrane) && !nearby;
+        let mut solves = 0;
         let start = match (self.asked.take(), self.previous.take()) {
             (Some(zone), _) => Start::Asked(zone, Branch::Nearest),
             (None, Some((zone, scales, branch))) => {
-                Start::Zone(self.ahead(plan, membrane, at.1).unwrap_or(zone), scales, branch)
+                let mut ahead = self.ahead(plan, membrane, at.1);
+                if ahead.is_none() && !large && !nearby {
+                    let approached = self.refinement.approached(membrane, &zone, &scales, at, progress);
+                    (ahead, solves) = approached.map_or((None, 0), |(zone, solves)| (Some(zone), solves));
+                }
+                Start::Zone(ahead.unwrap_or(zone), scales, branch)
             }
             (None, None) => Start::Free,
         };
-        let nearby = matches!(start, Start::Asked(..) | Start::Zone(_, _, Branch::Nearest));
-        let large = plan.by_multigrid(membrane) && !nearby;
         let found = if large { Z::by_multigrid(membrane, at, progress).ok().flatten() } else { None };
         // Where multigrid does not lead to a state a factorisation does, if it has the memory.
         let mut solution: Solution<D, Z> = match found {
@@ -321,6 +330,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
                 None => self.refinement.solve(membrane, &mut self.levels, start, at, progress),
             },
         };
+        solution.before += solves;
         self.scales = solution.scales.or(self.scales);
         let report = Report::new(&solution);
         let estimated = self.estimates && solution.reason.converged() && solution.unknowns < MOST_ESTIMATED;

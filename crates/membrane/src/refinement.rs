@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// A length of the fronts is resolved by so many cells.
 const RESOLVED: f64 = 2.0;
 /// Fronts that have to move less than this part of an undivided cell are near.
-const NEAR: f64 = 0.5;
+const NEAR: f64 = 0.2;
 /// Solves on new cells within one increment.
 const MOST_ROUNDS: usize = 6;
 

@@ -417,6 +417,7 @@ impl Cells<2> for RefinedGrid {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ghost::ghost_penalty;
 
     fn grid(degree: usize) -> RefinedGrid {
         let bounds = Aabb::new(Point::<2>::new(0.0, -1.0), Point::<2>::new(2.0, 1.0));
@@ -491,6 +492,25 @@ mod tests {
                     let [p, q] = pair.cells.map(|c| value(c, &x, &wild));
                     assert!((p - q).abs() < 1e-12, "degree {degree} at {x:?}: {p} {q}");
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn cells_of_one_size_are_compared_as_on_a_grid() {
+        let bounds = Aabb::new(Point::<2>::new(0.0, -1.0), Point::<2>::new(2.0, 1.0));
+        for degree in [1, 3] {
+            let fine = Grid::<2>::new(bounds, [8, 6], degree);
+            let refined = RefinedGrid::new(&Grid::<2>::new(bounds, [4, 3], degree), |_, level| level < 1);
+            let on_grid = [0, 1].map(|k| {
+                let pairs = fine.neighbours();
+                let pair = pairs.iter().find(|p| p.kind == Some(k)).expect("a pair");
+                ghost_penalty(&fine, pair)
+            });
+            for pair in refined.neighbours() {
+                let expected = &on_grid[pair.kind.expect("cells of one kind")];
+                let penalty = ghost_penalty(&refined, &pair);
+                assert!(penalty.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "degree {degree}");
             }
         }
     }

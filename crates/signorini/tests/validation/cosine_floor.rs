@@ -77,6 +77,21 @@ fn small_increments_take_few_solves() {
     }
 }
 
+/// So do long ones, from a single state and where cells are divided, once they were approached on larger cells.
+#[test]
+fn long_increments_take_few_solves() {
+    for (cells, degree) in [("[40, 40]", "1"), ("[64, 64]", "1"), ("[64, 64]", "2"), ("[32, 32]", "3")] {
+        let pairs = [
+            (CELLS, cells.to_string()),
+            (DEGREE, degree.to_string()),
+            ("steps", "[{ to = 0.2 }, { to = 0.3 }]".to_string()),
+        ];
+        let summary = summary(example("cosine_disc"), &set(&pairs));
+        let solves = last_step(&summary)["iterations"].as_u64().expect("a number");
+        assert!(solves <= 5, "{cells} of degree {degree}: {solves}");
+    }
+}
+
 /// A path that turns goes on from the states that it came through: they depend on the load alone, whatever the time. Between
 /// two drivers that do not keep in step there is no such line, and the path goes on in time.
 #[test]

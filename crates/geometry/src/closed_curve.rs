@@ -58,13 +58,24 @@ impl ClosedCurve {
     /// A smooth curve along a polyline: the polyline is averaged over each knot interval, so that the corners of a
     /// sampled outline do not ripple the spline.
     pub fn along(polyline: &[Point<2>], degree: usize, count: usize) -> Self {
-        let length = polygon::perimeter(polyline);
+        Self::evenly_along(polyline, degree, count, |_| 1.0)
+    }
+
+    /// The same with knots at equal steps of the integral of a density along it.
+    pub fn evenly_along(
+        polyline: &[Point<2>],
+        degree: usize,
+        count: usize,
+        density: impl Fn(&Point<2>) -> f64,
+    ) -> Self {
+        let weighed = |a: &Point<2>, b: &Point<2>| (b - a).norm() * density(&(0.5 * (a + b)));
+        let length: f64 = polygon::edges(polyline).map(|(a, b)| weighed(a, b)).sum();
         let fine = 8;
         let total = count * fine;
         let mut dense = Vec::with_capacity(total);
         let mut walked = 0.0;
         for (a, b) in polygon::edges(polyline) {
-            let step = (b - a).norm();
+            let step = weighed(a, b);
             while dense.len() < total && length * dense.len() as f64 / total as f64 <= walked + step {
                 let t = (length * dense.len() as f64 / total as f64 - walked) / step.max(f64::MIN_POSITIVE);
                 dense.push(a + t.clamp(0.0, 1.0) * (b - a));
@@ -78,7 +89,7 @@ impl ClosedCurve {
                 window.sum::<Point<2>>() / (fine as f64 + 1.0)
             })
             .collect();
-        Self::through(&averaged, degree).by_arc_length(count)
+        Self::through(&averaged, degree).evenly(count, density)
     }
 
     /// The polynomial of the knot interval that a parameter lies in, and the distance from its middle.
@@ -189,10 +200,20 @@ impl ClosedCurve {
 
     /// The same curve with `count` knots at equal steps of arc length.
     pub fn by_arc_length(&self, count: usize) -> Self {
+        self.evenly(count, |_| 1.0)
+    }
+
+    /// The same curve with `count` knots at equal steps of the integral of a density along it, which must be as smooth as the
+    /// curve is to be.
+    pub fn evenly(&self, count: usize, density: impl Fn(&Point<2>) -> f64) -> Self {
         let rule = gauss_legendre(self.basis.degree / 2 + 3);
-        let fine = 4 * self.basis.count;
+        let fine = 4 * self.basis.count.max(count);
+        let speed = |s: f64| {
+            let p = self.point(s);
+            p.speed * density(&p.position)
+        };
         let interval = |a: f64, b: f64| -> f64 {
-            rule.iter().map(|&(x, w)| w * (b - a) * self.point(a + x * (b - a)).speed).sum()
+            rule.iter().map(|&(x, w)| w * (b - a) * speed(a + x * (b - a))).sum()
         };
         let knot = |k: usize| k as f64 / fine as f64;
         let mut walked = vec![0.0];
@@ -207,11 +228,11 @@ impl ClosedCurve {
                 while k + 1 < fine && walked[k + 1] < target {
                     k += 1;
                 }
-                // Newton on the arc length within the interval; the speed is its derivative.
+                // Newton on the integral within the interval; the integrand is its derivative.
                 let mut s =
                     knot(k) + (target - walked[k]) / (walked[k + 1] - walked[k]).max(f64::MIN_POSITIVE) / fine as f64;
                 for _ in 0..20 {
-                    let step = (walked[k] + interval(knot(k), s) - target) / self.point(s).speed;
+                    let step = (walked[k] + interval(knot(k), s) - target) / speed(s);
                     s -= step;
                     if step.abs() < 1e-15 {
                         break;

@@ -48,6 +48,7 @@ fn on_grid(
         domain: DomainOnCells::new(domain, &grid),
         cells: Arc::new(grid.clone()),
         grid,
+        sizing: None,
         measure: Measure::Plain,
         tension: Arc::new(Constant(1.0)),
         load: Arc::new(Constant(load)),

@@ -162,7 +162,7 @@ impl Linearised {
             dense::solve(&self.rate, &negative).unwrap_or_else(|| vec![0.0; self.n])
         };
         let step = |coefficients: Vec<f64>, kind, reach| {
-            let length = self.size(&coefficients);
+            let length = self.size(&coefficients) / scales.h;
             Step { length, space: self.space, coefficients, kind, reach }
         };
         let spectrum = if branch == Branch::Stable { self.spectrum() } else { None };

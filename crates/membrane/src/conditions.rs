@@ -70,7 +70,6 @@ impl<const D: usize> Conditions<D> {
     /// Checks a state in which adhesion holds, or is left out.
     pub fn check<Z: Zone<D>>(equilibrium: &Equilibrium<D>, zone: &Z, scales: &Scales, adhering: bool) -> Self {
         let membrane = &equilibrium.membrane;
-        let band = 0.5 * membrane.grid.h();
         let mut c = Self {
             extremes: vec![Extremes::default(); membrane.obstacles.0.len()],
             least_gap_outside: f64::INFINITY,
@@ -102,7 +101,7 @@ impl<const D: usize> Conditions<D> {
                         c.least_pressure_below = c.least_pressure_below.min(membrane.pressure(side, x));
                     }
                     let relative = gap / scales.gap_tolerance(membrane.cells.size(cell));
-                    if (gap < own.least_gap_outside || relative < c.worst) && zone.distance(x) > band {
+                    if (gap < own.least_gap_outside || relative < c.worst) && is_apart(membrane, zone, x) {
                         own.add_gap(gap, true);
                         c.least_gap_outside = c.least_gap_outside.min(gap);
                         if relative < c.worst {
@@ -137,7 +136,8 @@ impl<const D: usize> Conditions<D> {
 
     /// Whether all that is wrong is a penetration not much larger than what counts as none, on cells that are not divided.
     pub fn nearly_hold(&self, scales: &Scales, membrane: &Membrane<D>) -> bool {
-        let divided = membrane.cells.divisible().map_or(1.0, |whole| whole.h() / membrane.grid.h());
+        let cell = membrane.cells.containing(&self.deepest.1).map_or(membrane.grid.h(), |cell| membrane.cells.size(cell));
+        let divided = membrane.cells.divisible().map_or(1.0, |whole| whole.h() / cell);
         self.worst >= -NEARLY * divided.powi(2) && !self.pulls(scales) && self.torn_from_support.is_none()
     }
 
@@ -200,7 +200,7 @@ pub fn corrected<const D: usize, Z: Zone<D>>(
         let shift = 0.5 * scales.gap_tolerance(grid.h());
         let penetration = |side: Side, x: &Point<D>| {
             let Some(x) = inside(membrane, x, reach) else { return 1.0 };
-            if zone.distance(&x) <= 0.5 * grid.h() || contact_index(zone.region_at(&x)).is_some() {
+            if !is_apart(membrane, zone, &x) || contact_index(zone.region_at(&x)).is_some() {
                 return 1.0;
             }
             let Some(u) = equilibrium.displacement(zone, &x) else { return 1.0 };
@@ -250,6 +250,14 @@ pub fn least_free_gap<const D: usize, Z: Zone<D>>(free: &Equilibrium<D>, zone: &
         }
     }
     (best.0, side, best.1)
+}
+
+/// Whether a point is further from all fronts than half of its cell.
+fn is_apart<const D: usize, Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z, x: &Point<D>) -> bool {
+    let h = membrane.grid.h();
+    let size = membrane.sizing.as_ref().and_then(|_| membrane.cells.containing(x));
+    let band = 0.5 * size.map_or(h, |cell| membrane.cells.size(cell));
+    zone.distance(x, band) > band
 }
 
 /// The point itself if it belongs to the membrane, or a near one that does.

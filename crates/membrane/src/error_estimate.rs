@@ -52,19 +52,21 @@ impl ErrorEstimate {
         };
         let frames = fronts.frames(zone, step.space);
         let (mut area, mut area_size, mut force, mut force_size) = (0.0, 0.0, 0.0, 0.0);
+        let (mut square, mut total) = (0.0, 0.0);
         for (i, (p, frame)) in fine.quadrature.front.iter().zip(&*frames).enumerate() {
             let w: f64 = frame.modes.iter().map(|(k, v)| v * step.coefficients[*k]).sum();
             // The force is that of the pressure within, less what adhesion pulls along the front.
             let curvature = frame.curvature + membrane.measure.curvature(&p.x, p.normal[0]);
             let pull = fronts.tension[i] * fronts.adhesive_slope[i] * curvature;
             let rate = fronts.pressure[i] - pull;
+            (square, total) = (square + p.weight * w * w, total + p.weight);
             area += p.weight * w;
             area_size += p.weight * w.abs();
             force += p.weight * w * rate;
             force_size += p.weight * (w * rate).abs();
         }
         let cancelled = if coarse.membrane.cells.degree() == 1 { CANCELLED } else { 0.0 };
-        let front = step.length.max(4.0 * f64::EPSILON * scales.length);
+        let front = f64::sqrt(square / f64::max(total, f64::MIN_POSITIVE)).max(4.0 * f64::EPSILON * scales.length);
         Ok(Some(Self {
             front,
             area: SAFETY * area.abs() + cancelled * area_size,

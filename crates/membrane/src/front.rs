@@ -52,7 +52,7 @@ pub struct Projection {
 
 /// A proposed displacement of the fronts.
 pub struct Step {
-    /// Root mean square of the displacement.
+    /// Root mean square of the displacement, relative to the cells that the fronts lie in.
     pub length: f64,
     pub space: ModeSpace,
     pub coefficients: Vec<f64>,
@@ -253,11 +253,12 @@ impl<'a, const D: usize> Fronts<'a, D> {
         (mass, b)
     }
 
-    /// How far the floor's pressure would have the fronts move, at the place where that is farthest.
+    /// How many cells the floor's pressure would have the fronts move, at the place where those are most.
     pub fn farthest(&self, scales: &Scales) -> f64 {
+        let sizes = self.cell_sizes();
         let rate = |i: usize| self.pressure[i].max(WEAK_PRESSURE * scales.pressure) / self.tension[i];
         (0..self.slope_jump.len())
-            .map(|i| (self.slope_jump[i] - self.adhesive_slope[i]).abs() / rate(i))
+            .map(|i| (self.slope_jump[i] - self.adhesive_slope[i]).abs() / rate(i) / sizes[i])
             .fold(0.0, f64::max)
     }
 
@@ -305,9 +306,9 @@ impl<'a, const D: usize> Fronts<'a, D> {
     /// the response would take away the sign of the operator in short waves, and is left out.
     pub fn newton_step<Z: Zone<D>>(&self, zone: &Z, scales: &Scales) -> Result<Step, SolveError> {
         let local = self.local_rate(scales);
-        let longest = self.slope_jump.iter().zip(&local).map(|(r, l)| r / l).fold(0.0, f64::max);
-        let h = self.equilibrium.membrane.grid.h();
-        let beyond = longest > LOCAL_REACH * h;
+        let sizes = self.cell_sizes();
+        let ways = self.slope_jump.iter().zip(&local).zip(&sizes);
+        let beyond = ways.map(|((r, l), h)| r / l / h).fold(0.0, f64::max) > LOCAL_REACH;
         // Local steps cost nothing in the finest modes; but on fronts of a few cells these follow what the cells do.
         let finest = self.modes().finest();
         let offsets = zone.mode_offsets(finest);
@@ -333,7 +334,8 @@ impl<'a, const D: usize> Fronts<'a, D> {
         };
         let coefficients = solved.unwrap_or_else(|| vec![0.0; n]);
         let length = self.length(&frames, &coefficients);
-        let reach = if beyond && !far { h } else { f64::INFINITY };
+        let largest = sizes.iter().copied().fold(0.0, f64::max);
+        let reach = if beyond && !far { largest } else { f64::INFINITY };
         Ok(Step { length, space, coefficients, kind, reach })
     }
 
@@ -359,11 +361,22 @@ impl<'a, const D: usize> Fronts<'a, D> {
         (matrix, ModeMatrix::of_cliques(n, held), b)
     }
 
-    /// Root mean square of a displacement of the fronts.
+    /// The sizes of the cells that the points of the fronts lie in.
+    fn cell_sizes(&self) -> Vec<f64> {
+        let Equilibrium { membrane, quadrature, .. } = self.equilibrium;
+        let size = |p: &FrontPoint<D>| match membrane.sizing {
+            None => membrane.grid.h(),
+            Some(_) => membrane.cells.size(p.cell),
+        };
+        quadrature.front.iter().map(size).collect()
+    }
+
+    /// Root mean square of a displacement of the fronts, in cells.
     fn length(&self, frames: &[FrontFrame], coefficients: &[f64]) -> f64 {
         let total: f64 = self.weights().sum();
         let at = |f: &FrontFrame| f.modes.iter().map(|(i, v)| v * coefficients[*i]).sum::<f64>();
-        let square: f64 = frames.iter().zip(self.weights()).map(|(f, w)| w * at(f).powi(2)).sum();
+        let points = frames.iter().zip(self.cell_sizes()).zip(self.weights());
+        let square: f64 = points.map(|((f, h), w)| w * (at(f) / h).powi(2)).sum();
         (square / total.max(f64::MIN_POSITIVE)).sqrt()
     }
 

@@ -293,7 +293,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         }
         match start {
             Start::Zone(zone, scales, branch) if !zone.is_empty() => {
-                self.solution.zone = zone.on_grid(&self.membrane.grid);
+                self.solution.zone = self.on_cells(zone);
                 self.solution.scales = Some(scales);
                 self.branch = branch;
             }
@@ -301,7 +301,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             Start::Asked(zone, branch) => {
                 // Without contact, for the scales.
                 self.settle_fronts()?;
-                self.solution.zone = zone.on_grid(&self.membrane.grid);
+                self.solution.zone = self.on_cells(zone);
                 self.branch = branch;
             }
         }
@@ -412,7 +412,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             let zone = corrected(equilibrium, &solution.zone, &conditions, scales, self.adhering);
             let simple = zone.counts() == (1, 0) && conditions.least_pressure_below > 0.0;
             solution.conditions = Some(conditions);
-            solution.zone = zone;
+            self.solution.zone = self.resized(zone);
             if first && !simple && !predicted && !self.adhering {
                 predicted = true;
                 self.predict()?;
@@ -445,10 +445,27 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         let progress = &*self.progress;
         let solution = active_set::solve::<D, Z>(&nodal, NodalStart::Nested, &|| progress.interrupted())?;
         let grid = &self.membrane.grid;
-        Ok(nodal.obstacles.sides().fold(Z::empty(grid), |zone, side| {
+        let zone = nodal.obstacles.sides().fold(Z::empty(grid), |zone, side| {
             let predictor = solution.predictor(&nodal, side);
             zone.united(grid, side, &mut |x| predictor(x))
-        }))
+        });
+        Ok(self.resized(zone))
+    }
+
+    /// A zone from other cells with modes as these can tell them apart.
+    fn on_cells(&self, zone: Z) -> Z {
+        match &self.membrane.sizing {
+            None => zone.on_grid(&self.membrane.grid),
+            Some(sizing) => zone.on_sizes(&self.membrane.grid, sizing),
+        }
+    }
+
+    /// A zone whose fronts were drawn anew on the grid, with modes as long as the cells are large.
+    fn resized(&self, zone: Z) -> Z {
+        match &self.membrane.sizing {
+            None => zone,
+            Some(sizing) => zone.on_sizes(&self.membrane.grid, sizing),
+        }
     }
 
     /// Newton's iteration on the shape of the zone.
@@ -533,8 +550,9 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             if waited >= PATIENCE && slowly {
                 waited = 0;
             }
-            let relative_step = step.length / h;
-            let sharp = D > 1 && (1.0..SHARPEST).contains(&(zone.sharpest() * h));
+            let relative_step = step.length;
+            let bend = zone.bend();
+            let sharp = D > 1 && (1.0..SHARPEST).contains(&bend);
             let unseen = |share: f64| {
                 let projection = fronts.project(zone, finest);
                 projection.norm < share * projection.remainder
@@ -550,7 +568,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             };
             let settled =
                 (waited >= patience || last) && !slowly && step.kind != StepKind::Descent && relative_step < enough();
-            let blunt = D > 1 && zone.sharpest() * h >= 1.0 && unseen(self.rest.share());
+            let blunt = D > 1 && bend >= 1.0 && unseen(self.rest.share());
             if residual <= self.rest.residual() || (waited >= 1 && relative_step < ROUND_OFF) || settled || blunt {
                 if let Some(linearised) = &linearised {
                     let spectrum = linearised.spectrum();
@@ -582,7 +600,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             }
             // As everywhere short of adhesion fronts rest without a slope, the pressure of the floor is nearly all of the
             // derivative; near the solution the rest of it, which cells add, makes the convergence quadratic.
-            let near = relative_step < CLOSE && doubted == 0 && zone.sharpest() * h < SHARP;
+            let near = relative_step < CLOSE && doubted == 0 && bend < SHARP;
             let exact = match D > 1 && near && !self.adhering && !shifted && equilibrium.responds() {
                 true => fronts.discrete_step(zone, self.elements, &scales)?,
                 false => None,
@@ -613,9 +631,10 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 (best, waited, previous, falls) = (f64::INFINITY, 0, f64::INFINITY, 0);
             }
             let action = if advance.topology_changed { "topology changed" } else { step.kind.name() };
+            let zone = if advance.topology_changed { self.resized(advance.zone) } else { advance.zone };
             self.report(residual, action);
             self.solution.equilibrium = Some(equilibrium);
-            self.solution.zone = advance.zone;
+            self.solution.zone = zone;
         }
         Ok(Fixed::Moving)
     }

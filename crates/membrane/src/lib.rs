@@ -24,6 +24,7 @@ pub mod refinement;
 pub mod report;
 pub mod scales;
 pub mod shape_rate;
+pub mod sizing;
 pub mod staircase;
 mod thin_parts;
 pub mod zone;

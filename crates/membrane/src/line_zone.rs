@@ -5,9 +5,8 @@ use crate::obstacle::Side;
 use crate::zone::{Advance, Division, FrontFoot, FrontsInCell, ModeSpace, Zone, contact, free};
 use serde_json::{Value, json};
 use signorini_fem::cut::RegionId;
-use signorini_fem::{Cells, Grid};
+use signorini_fem::Grid;
 use signorini_geometry::{Aabb, ImplicitShape, Point, Vector};
-use std::sync::Arc;
 
 /// Zones that touch different sides are at least this fraction of a cell apart.
 const APART: f64 = 1e-3;
@@ -208,7 +207,7 @@ impl Zone<1> for LineZone {
         all.push((side, [x[0] - radius, x[0] + radius]));
         Self::new(grid, all)
     }
-    fn distance(&self, x: &Point<1>) -> f64 {
+    fn distance(&self, x: &Point<1>, _: f64) -> f64 {
         (0..self.front_count()).map(|i| (self.end(i).at - x[0]).abs()).fold(f64::INFINITY, f64::min)
     }
     fn region_at(&self, x: &Point<1>) -> RegionId {
@@ -229,8 +228,8 @@ impl Zone<1> for LineZone {
     fn on_grid(&self, grid: &Grid<1>) -> Self {
         Self::new(grid, self.parts())
     }
-    fn divided(&self, _: &Grid<1>, _: usize, _: &dyn Fn(&Aabb<1>, usize) -> bool) -> Option<Arc<dyn Cells<1>>> {
-        None
+    fn bend(&self) -> f64 {
+        0.0
     }
     fn sharpest(&self) -> f64 {
         let shortest = self.intervals.iter().map(|[a, b]| b - a).fold(f64::INFINITY, f64::min);

@@ -7,13 +7,14 @@ use crate::obstacle::Side;
 use crate::problem::Membrane;
 use crate::published::{NodalLevelSet, Transport};
 use crate::raster::Raster;
+use crate::sizing::Sizing;
 use crate::zone::{Advance, Division, FrontFoot, FrontsInCell, ModeSpace, Zone, contact, contact_of, free};
 use serde_json::{Value, json};
 use signorini_fem::cut::RegionId;
 use signorini_fem::{Cells, Grid, RefinedGrid};
 use signorini_geometry::{Aabb, ClosedCurve, CurvePoint, ImplicitShape, PeriodicBasis, Point, Vector, polygon};
 use signorini_solve::{Progress, SolveError};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 /// Fewest knots of a front, which still draw a circle to 3e-5 of its radius.
@@ -33,6 +34,9 @@ const STRETCH: f64 = 0.2;
 const SAME: f64 = 1e-9;
 /// The speed of a front between states of a path differs by this factor at most.
 const CROWDED: f64 = 1.5;
+/// Cells for each radius of curvature of a front, and between fronts.
+const CURVED: f64 = 3.0;
+const BETWEEN: f64 = 2.0;
 /// A front that encloses less than this multiple of `h²` after a step has collapsed.
 const COLLAPSED: f64 = 0.01;
 /// A step may not bring a front nearer to its centre of curvature than this fraction of its radius of curvature.
@@ -45,6 +49,8 @@ pub struct PlaneZone {
     /// What the zone that a curve bounds touches.
     sides: Vec<Side>,
     grid: Grid<2>,
+    /// How long modes are where they differ in length.
+    sizing: Option<Arc<Sizing<2>>>,
     /// The smallest box round each curve.
     boxes: Vec<Aabb<2>>,
     /// Absolute areas: of the curves round a point, the smallest decides where it lies.
@@ -258,7 +264,7 @@ impl PlaneZone {
         let near = NearFronts::new(grid, &curves);
         // As many as can be told apart: its own, but for curves that follow a level set more closely.
         let most = |c: &ClosedCurve| match c.degree() {
-            LEVEL_SET_DEGREE => c.knots().min(Self::knots(grid, polygon::perimeter(c.samples()))),
+            LEVEL_SET_DEGREE => c.knots().min(Self::knots(grid, polygon::perimeter(c.samples()) / grid.h())),
             _ => c.knots(),
         };
         let mode_counts = curves.iter().map(most).collect();
@@ -274,6 +280,7 @@ impl PlaneZone {
             curves,
             sides,
             grid: grid.clone(),
+            sizing: None,
         }
     }
 
@@ -285,7 +292,7 @@ impl PlaneZone {
     fn fronts(&self) -> Vec<(Side, ClosedCurve)> {
         let plain = |(c, &modes): (&ClosedCurve, &usize)| {
             if c.degree() != LEVEL_SET_DEGREE && c.knots() == SPLIT * modes {
-                c.by_arc_length(modes)
+                self.redrawn(c, modes)
             } else {
                 c.clone()
             }
@@ -295,7 +302,23 @@ impl PlaneZone {
 
     /// The same zone with other curves in the place of its own.
     fn with_curves(&self, grid: &Grid<2>, curves: Vec<ClosedCurve>) -> Self {
-        Self::new(grid, self.sides.iter().copied().zip(curves).collect())
+        Self { sizing: self.sizing.clone(), ..Self::new(grid, self.sides.iter().copied().zip(curves).collect()) }
+    }
+
+    /// A curve with so many knots, as far from each other as its cells are large.
+    fn redrawn(&self, curve: &ClosedCurve, knots: usize) -> ClosedCurve {
+        match &self.sizing {
+            None => curve.by_arc_length(knots),
+            Some(sizing) => curve.evenly(knots, |x| 1.0 / sizing.at(x)),
+        }
+    }
+
+    /// The length of a curve relative to the size of its cells.
+    fn relative_length(&self, curve: &ClosedCurve) -> f64 {
+        match &self.sizing {
+            None => polygon::perimeter(curve.samples()) / self.grid.h(),
+            Some(sizing) => at_knots(curve).map(|p| p.speed / sizing.at(&p.position)).sum::<f64>() / curve.knots() as f64,
+        }
     }
 
     /// The diameter of the disc that is as large as the smallest zone; infinite where there is none.
@@ -315,10 +338,9 @@ impl PlaneZone {
         (2 * grid.degree() + 1).max(7)
     }
 
-    /// As many knots as the slope jump can tell apart modes on a front of the given length. The front lives in the
+    /// As many knots as the slope jump can tell apart modes on a front of the given length in cells. The front lives in the
     /// space of its modes: what they do not see they could not smooth either.
-    fn knots(grid: &Grid<2>, length: f64) -> usize {
-        let relative = length / grid.h();
+    fn knots(grid: &Grid<2>, relative: f64) -> usize {
         let (spacing, enough) = match grid.degree() {
             1 => (4.0, (relative / 2.0).clamp(FEWEST_KNOTS, 8.0)),
             2 => (1.5, relative.clamp(FEWEST_KNOTS, 12.0)),
@@ -393,6 +415,60 @@ impl PlaneZone {
         (signed_distance < 0.0) != self.hole[curve]
     }
 
+    /// What cells at the fronts have to resolve, at samples that are so far from each other; distances between fronts as far
+    /// as cells of a grid tell them apart.
+    fn features(&self, grid: &Grid<2>, spacing: f64) -> Vec<Feature> {
+        let mut features: Vec<Feature> = Vec::new();
+        // For each feature its curve, and how far along it of how much.
+        let mut ways: Vec<(usize, f64, f64)> = Vec::new();
+        for (c, curve) in self.curves.iter().enumerate() {
+            let (first, total) = (features.len(), polygon::perimeter(curve.samples()));
+            let mut walked = 0.0;
+            for (i, (a, b)) in polygon::edges(curve.samples()).enumerate() {
+                let last = ways.last().filter(|_| features.len() > first).map_or(f64::NEG_INFINITY, |way| way.1);
+                if walked - last >= spacing {
+                    let curvature = curve.point(curve.sample_parameter(i)).curvature.abs().max(f64::MIN_POSITIVE);
+                    features.push(Feature { place: *a, length: 0.0, curvature, apart: f64::INFINITY });
+                    ways.push((c, walked, total));
+                }
+                walked += (b - a).norm();
+            }
+            // Each stands for half of the way to its neighbours.
+            let n = features.len() - first;
+            for k in 0..n {
+                let next = (k + 1) % n;
+                let step = (ways[first + next].1 - ways[first + k].1).rem_euclid(total.max(f64::MIN_POSITIVE));
+                let step = if n == 1 { total } else { step };
+                features[first + k].length += 0.5 * step;
+                features[first + next].length += 0.5 * step;
+            }
+        }
+        let mut within: HashMap<[i64; 2], Vec<usize>> = HashMap::new();
+        let size = grid.cell_size();
+        let cell = |x: &Point<2>| [0, 1].map(|k| ((x[k] - grid.bounds().min[k]) / size[k]).floor() as i64);
+        for (k, feature) in features.iter().enumerate() {
+            within.entry(cell(&feature.place)).or_default().push(k);
+        }
+        for k in 0..features.len() {
+            let [i, j] = cell(&features[k].place);
+            let around = (0..9).filter_map(|o| within.get(&[i + o % 3 - 1, j + o / 3 - 1])).flatten();
+            let mut apart = f64::INFINITY;
+            for &other in around {
+                let distance = (features[k].place - features[other].place).norm();
+                if distance < apart {
+                    let ((c, s, total), (d, t, _)) = (ways[k], ways[other]);
+                    let way = (s - t).abs().min(total - (s - t).abs());
+                    // Along one curve, places far from each other on it count.
+                    if c != d || way > 4.0 * distance {
+                        apart = distance;
+                    }
+                }
+            }
+            features[k].apart = apart;
+        }
+        features
+    }
+
     /// Displacement of a front by coefficients of the modes, as a function of its parameter.
     fn displacement<'a>(&self, front: usize, space: ModeSpace, step: &'a [f64]) -> impl Fn(f64) -> f64 + use<'a> {
         let modes = self.modes(front, space);
@@ -450,7 +526,7 @@ impl PlaneZone {
         least: f64,
     ) -> Self {
         for outline in outlines.iter().filter(|o| polygon::signed_area(o).abs() > least * grid.h().powi(2)) {
-            let knots = Self::knots(grid, polygon::perimeter(outline));
+            let knots = Self::knots(grid, polygon::perimeter(outline) / grid.h());
             kept.push((side, ClosedCurve::along(outline, Self::front_degree(grid), knots)));
         }
         Self::new(grid, kept)
@@ -589,13 +665,13 @@ impl Zone<2> for PlaneZone {
                 };
                 let modes = self.mode_counts[i];
                 let moved = c.offset(SPLIT * modes, limited);
-                let wanted = Self::knots(grid, polygon::perimeter(moved.samples()));
+                let wanted = Self::knots(grid, self.relative_length(&moved));
                 let even = moved.unevenness() <= (1.0 + STRETCH) * c.unevenness();
                 let farthest = (0..modes).map(|k| w(k as f64 / modes as f64).abs()).fold(0.0, f64::max);
                 if even && farthest < CLOSE * grid.h() && wanted.abs_diff(modes) as f64 <= STRETCH * modes as f64 {
                     return (moved, modes);
                 }
-                (c.offset(4 * modes, limited).by_arc_length(wanted), wanted)
+                (self.redrawn(&c.offset(4 * modes, limited), wanted), wanted)
             })
             .unzip();
         let collapsed = |c: &ClosedCurve| polygon::signed_area(c.samples()).abs() < COLLAPSED * grid.h().powi(2);
@@ -690,7 +766,12 @@ impl Zone<2> for PlaneZone {
                 return None;
             }
             let curve = now.offset(4 * now.knots(), |p| ahead(&p.position));
-            moved.push(curve.by_arc_length(Self::knots(&self.grid, polygon::perimeter(curve.samples()))));
+            // The next cells have sizes of their own, and modes too.
+            moved.push(if now.unevenness() > CROWDED {
+                curve
+            } else {
+                curve.by_arc_length(Self::knots(&self.grid, polygon::perimeter(curve.samples()) / self.grid.h()))
+            });
         }
         if farthest < SAME * self.grid.h() {
             return Some(self.clone());
@@ -731,11 +812,15 @@ impl Zone<2> for PlaneZone {
         let zone = Self::new(grid, fronts);
         if Self::is_valid(&zone.curves) { zone } else { self.clone() }
     }
-    fn distance(&self, x: &Point<2>) -> f64 {
-        let near = self.near(self.grid.cell_containing(x));
-        near.iter()
-            .map(|&(c, s)| (self.curves[c as usize].samples()[s as usize] - x).norm())
-            .fold(f64::INFINITY, f64::min)
+    fn distance(&self, x: &Point<2>, within: f64) -> f64 {
+        let apart = |c: usize, s: usize| (self.curves[c].samples()[s] - x).norm();
+        let Some(sizing) = &self.sizing else {
+            let near = self.near(self.grid.cell_containing(x)).iter();
+            return near.map(|&(c, s)| apart(c as usize, s as usize)).fold(f64::INFINITY, f64::min);
+        };
+        let reach = Point::<2>::repeat(within.min(sizing.at(x)));
+        let near = self.near_box(&Aabb::new(x - reach, x + reach));
+        near.into_iter().flat_map(|(c, seeds)| seeds.into_iter().map(move |s| (c, s))).map(|(c, s)| apart(c, s)).fold(f64::INFINITY, f64::min)
     }
     fn region_at(&self, x: &Point<2>) -> RegionId {
         let cell = self.grid.cell_containing(x);
@@ -783,31 +868,12 @@ impl Zone<2> for PlaneZone {
         Some(Self { mode_counts, ..Self::new(&Grid::new(*grid.bounds(), cells, degree), curves) })
     }
     fn least_feature(&self) -> f64 {
-        let radius = 1.0 / self.sharpest().max(f64::MIN_POSITIVE);
-        let mut least = radius;
-        let spacing: Vec<f64> =
-            self.curves.iter().map(|c| polygon::perimeter(c.samples()) / c.samples().len() as f64).collect();
-        for &cell in &self.near.cells {
-            let near = self.near.of(cell as usize);
-            for (i, &(c, s)) in near.iter().enumerate() {
-                let curve = &self.curves[c as usize];
-                let n = curve.samples().len();
-                for &(d, t) in &near[i + 1..] {
-                    let distance = (curve.samples()[s as usize] - self.curves[d as usize].samples()[t as usize]).norm();
-                    // Along one curve, places far from each other on it count.
-                    let apart = (s as usize).abs_diff(t as usize);
-                    let way = apart.min(n - apart.min(n)) as f64 * spacing[c as usize];
-                    if distance < least && (c != d || way > 4.0 * distance) {
-                        least = distance;
-                    }
-                }
-            }
-        }
-        least
+        let features = self.features(&self.grid, 0.0);
+        features.iter().map(|f| f.apart.min(1.0 / f.curvature)).fold(f64::INFINITY, f64::min)
     }
     fn on_grid(&self, grid: &Grid<2>) -> Self {
         let fit = |(c, &modes): (&ClosedCurve, &usize)| {
-            let wanted = Self::knots(grid, polygon::perimeter(c.samples()));
+            let wanted = Self::knots(grid, polygon::perimeter(c.samples()) / grid.h());
             let degree = Self::front_degree(grid);
             // A front that has moved far enough for its knots to crowd gets new ones.
             let same = wanted == modes && c.degree() == degree;
@@ -818,20 +884,53 @@ impl Zone<2> for PlaneZone {
             }
         };
         let (curves, mode_counts) = self.curves.iter().zip(&self.mode_counts).map(fit).unzip();
-        Self { mode_counts, ..self.with_curves(grid, curves) }
+        Self { mode_counts, sizing: None, ..self.with_curves(grid, curves) }
+    }
+    fn on_sizes(&self, grid: &Grid<2>, sizing: &Arc<Sizing<2>>) -> Self {
+        let sized = Self { sizing: Some(sizing.clone()), grid: grid.clone(), ..self.clone() };
+        let degree = Self::front_degree(grid);
+        let fit = |c: &ClosedCurve| {
+            let wanted = Self::knots(grid, sized.relative_length(c));
+            if c.degree() == degree {
+                return sized.redrawn(c, wanted);
+            }
+            ClosedCurve::evenly_along(c.samples(), degree, wanted, |x| 1.0 / sizing.at(x))
+        };
+        sized.with_curves(grid, self.curves.iter().map(fit).collect())
+    }
+    fn sizing(&self, grid: &Grid<2>, [least, most]: [usize; 2], finer: usize) -> Option<Sizing<2>> {
+        let divided = |times: usize| grid.h() / f64::from(1u32 << times);
+        let places = self.features(grid, divided(most));
+        let wanted = |feature: &Feature| {
+            let size = (1.0 / (CURVED * feature.curvature)).min(feature.apart / BETWEEN);
+            (size / f64::from(1u32 << finer)).clamp(divided(most), divided(least))
+        };
+        if places.iter().all(|f| wanted(f) >= grid.h()) {
+            return None;
+        }
+        Some(Sizing::new(places.iter().map(|f| (f.place, f.length, wanted(f)))))
+    }
+    fn bend(&self) -> f64 {
+        let Some(sizing) = &self.sizing else { return self.sharpest() * self.grid.h() };
+        let bend = |p: CurvePoint| p.curvature.abs() * sizing.at(&p.position);
+        self.curves.iter().flat_map(|c| at_knots(c).map(bend)).fold(0.0, f64::max)
     }
     fn divided(
         &self,
         grid: &Grid<2>,
-        levels: usize,
+        sizing: &Sizing<2>,
+        most: usize,
         also: &dyn Fn(&Aabb<2>, usize) -> bool,
     ) -> Option<Arc<dyn Cells<2>>> {
-        // Of each level the cells of that size within two of them from a front.
-        let near: Vec<HashSet<[i64; 2]>> = (0..levels)
+        let edges: Vec<_> = self.curves.iter().flat_map(|c| polygon::edges(c.samples())).collect();
+        let divisions: Vec<usize> =
+            edges.iter().map(|(a, b)| sizing.divisions(&(0.5 * (*a + *b)), grid.h()).min(most)).collect();
+        // Of each level the cells of that size within two of them from a front that wants smaller ones.
+        let near: Vec<HashSet<[i64; 2]>> = (0..most)
             .map(|level| {
                 let size = grid.cell_size() / f64::from(1u32 << level);
                 let mut found = HashSet::new();
-                for (a, b) in self.curves.iter().flat_map(|c| polygon::edges(c.samples())) {
+                for ((a, b), _) in edges.iter().copied().zip(&divisions).filter(|(_, times)| **times > level) {
                     let parts = ((b - a).norm() / size.min()).ceil().max(1.0);
                     for k in 0..parts as usize {
                         let x = a + (b - a) * (k as f64 / parts);
@@ -863,6 +962,22 @@ impl Zone<2> for PlaneZone {
     }
 }
 
+/// What the cells at a place along a front have to resolve.
+struct Feature {
+    place: Point<2>,
+    /// The length of front that it stands for.
+    length: f64,
+    curvature: f64,
+    /// The distance to another front, or to a part of the same one that is far along it; infinite beyond two cells.
+    apart: f64,
+}
+
+/// The points of a curve at its knots.
+fn at_knots(curve: &ClosedCurve) -> impl Iterator<Item = CurvePoint> + '_ {
+    let knots = curve.knots();
+    (0..knots).map(move |k| curve.point(k as f64 / knots as f64))
+}
+
 /// The smallest box round points.
 fn bounding_box(points: &[Point<2>]) -> Aabb<2> {
     points.iter().fold(Aabb::new(points[0], points[0]), |b, p| Aabb::new(b.min.inf(p), b.max.sup(p)))
@@ -882,17 +997,23 @@ impl NearFronts {
         let (bounds, size, cells) = (grid.bounds(), grid.cell_size(), grid.cells());
         let mut all: Vec<(u32, u32, u32)> = Vec::new();
         for (c, curve) in curves.iter().enumerate() {
-            for (s, x) in curve.samples().iter().enumerate() {
-                let at: [isize; 2] = std::array::from_fn(|k| ((x[k] - bounds.min[k]) / size[k]).floor() as isize);
-                let range = |k: usize| (at[k] - 1).max(0)..(at[k] + 2).min(cells[k] as isize);
-                for j in range(1) {
-                    for i in range(0) {
-                        all.push((grid.cell_at([i as usize, j as usize]) as u32, c as u32, s as u32));
+            for (s, (a, b)) in polygon::edges(curve.samples()).enumerate() {
+                // Samples may be further from each other than the smallest cells are large.
+                let parts = ((b - a).component_div(&size).amax().ceil()).max(1.0);
+                for part in 0..parts as usize {
+                    let x = a + (b - a) * (part as f64 / parts);
+                    let at: [isize; 2] = std::array::from_fn(|k| ((x[k] - bounds.min[k]) / size[k]).floor() as isize);
+                    let range = |k: usize| (at[k] - 1).max(0)..(at[k] + 2).min(cells[k] as isize);
+                    for j in range(1) {
+                        for i in range(0) {
+                            all.push((grid.cell_at([i as usize, j as usize]) as u32, c as u32, s as u32));
+                        }
                     }
                 }
             }
         }
         all.sort_unstable();
+        all.dedup();
         let mut near = Self { cells: Vec::new(), begin: vec![0], pairs: Vec::with_capacity(all.len()) };
         for (cell, curve, sample) in all {
             if near.cells.last() != Some(&cell) {

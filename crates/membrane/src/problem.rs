@@ -4,6 +4,7 @@ use crate::domain::{CellStatus, DomainOnCells};
 use crate::field::SharedField;
 use crate::obstacle::{Obstacles, Side};
 use crate::published::Formulation;
+use crate::sizing::Sizing;
 use crate::zone::Modes;
 use signorini_fem::{Cells, Grid};
 use signorini_geometry::{Point, Vector};
@@ -52,6 +53,8 @@ pub struct Membrane<const D: usize> {
     pub cells: Arc<dyn Cells<D>>,
     /// Where zones are told apart: the cells themselves, or a grid of about their size.
     pub grid: Grid<D>,
+    /// How large cells and modes are where they differ; none where cells are as large as those of the grid.
+    pub sizing: Option<Arc<Sizing<D>>>,
     pub domain: DomainOnCells<D>,
     pub measure: Measure,
     /// Force per length.
@@ -126,6 +129,6 @@ impl<const D: usize> Membrane<D> {
     /// The same membrane on other cells.
     pub fn on(&self, cells: Arc<dyn Cells<D>>) -> Self {
         let domain = DomainOnCells::new(self.domain.domain.clone(), &*cells);
-        Self { cells, domain, ..self.clone() }
+        Self { cells, domain, sizing: None, ..self.clone() }
     }
 }

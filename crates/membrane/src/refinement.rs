@@ -8,16 +8,19 @@ use crate::ils::{self, Reason, Rest, Solution, Start};
 use crate::problem::Membrane;
 use crate::published::Formulation;
 use crate::scales::Scales;
+use crate::sizing::Sizing;
 use crate::zone::Zone;
 use signorini_fem::Grid;
-use signorini_geometry::Aabb;
+use signorini_geometry::{Aabb, Point};
 use signorini_solve::Progress;
 use std::sync::Arc;
 
-/// A length of the fronts is resolved by so many cells.
-const RESOLVED: f64 = 2.0;
+/// Cells may be so much larger than fronts that have moved within them want.
+const HARDLY: f64 = 1.7;
 /// Fronts that have to move less than this part of an undivided cell are near.
 const NEAR: f64 = 0.2;
+/// Divisions more than fronts want of their cells, where no state is found on those.
+const MOST_FINER: usize = 2;
 /// Solves on new cells within one increment.
 const MOST_ROUNDS: usize = 6;
 
@@ -39,23 +42,22 @@ impl<const D: usize> Default for Refinement<D> {
 }
 
 impl<const D: usize> Refinement<D> {
-    /// How often the cells at the fronts of a zone are to be divided.
-    fn levels<Z: Zone<D>>(&self, membrane: &Membrane<D>, zone: &Z) -> usize {
-        let Some(coarse) = membrane.cells.divisible().filter(|_| D == 2 && self.most > 0 && !zone.is_empty()) else {
-            return 0;
-        };
-        let cells = RESOLVED * coarse.h() / zone.least_feature();
-        let wanted = cells.log2().ceil().clamp(0.0, self.most as f64) as usize;
-        wanted.max(self.fronts).min(self.most)
+    /// The sizes that the fronts of a zone want of the cells, which are divided `finer` times more often than would do; none
+    /// where they need not be divided.
+    fn sizing<Z: Zone<D>>(&self, membrane: &Membrane<D>, zone: &Z, finer: usize) -> Option<Sizing<D>> {
+        let coarse = membrane.cells.divisible().filter(|_| D == 2 && self.most > 0 && !zone.is_empty())?;
+        zone.sizing(coarse, [(self.fronts + finer).min(self.most), self.most], finer)
     }
 
-    /// The membrane on cells divided near the fronts of a zone.
-    fn divided<Z: Zone<D>>(&self, membrane: &Membrane<D>, zone: &Z, levels: usize) -> Option<Membrane<D>> {
+    /// The membrane on cells of such sizes near the fronts of a zone.
+    fn divided<Z: Zone<D>>(&self, membrane: &Membrane<D>, zone: &Z, sizing: Sizing<D>) -> Option<Membrane<D>> {
         let coarse = membrane.cells.divisible()?;
-        let cells = zone.divided(coarse, levels, &*self.always)?;
-        let grid = Grid::new(*coarse.bounds(), coarse.cells().map(|n| n << levels), coarse.degree());
+        let cells = zone.divided(coarse, &sizing, self.most, &*self.always)?;
+        let smallest = (0..cells.count()).map(|cell| cells.size(cell)).fold(coarse.h(), f64::min);
+        let finer = (coarse.h() / smallest).round() as usize;
+        let grid = Grid::new(*coarse.bounds(), coarse.cells().map(|n| n * finer), coarse.degree());
         let domain = DomainOnCells::new(membrane.domain.domain.clone(), &*cells);
-        Some(Membrane { cells, grid, domain, ..membrane.clone() })
+        Some(Membrane { cells, grid, domain, sizing: Some(Arc::new(sizing)), ..membrane.clone() })
     }
 
     /// The zone on cells of twice the size, if these resolve it, and the solves that it took: fronts that have far to go
@@ -86,86 +88,85 @@ impl<const D: usize> Refinement<D> {
         found.reason.converged().then_some((found.zone, found.iterations))
     }
 
-    /// Solves an increment, on cells divided as often as `levels` says at first, and more often where the fronts need
-    /// it; `levels` is then what they need.
+    /// Solves an increment: on cells divided for the zone that it starts from if the fronts have not far to go from there,
+    /// else on cells that are not, and then on cells divided as the fronts need it.
     pub fn solve<Z: Zone<D>>(
         &self,
         membrane: &Membrane<D>,
-        levels: &mut usize,
         start: Start<Z>,
         at: (usize, f64),
         progress: &mut dyn Progress,
     ) -> Solution<D, Z> {
-        let (mut used, mut looks) = (0, 0);
+        let mut looks = 0;
         let divided = match &start {
-            Start::Zone(zone, scales, _) if *levels > 0 && !zone.is_empty() => {
+            Start::Zone(zone, scales, _) => self.sizing(membrane, zone, 0).and_then(|sizing| {
                 looks = 1;
-                if is_near(membrane, zone, scales) {
-                    used = *levels;
-                    self.divided(membrane, zone, used)
-                } else {
-                    None
-                }
-            }
+                if is_near(membrane, zone, scales) { self.divided(membrane, zone, sizing) } else { None }
+            }),
             _ => None,
         };
-        let whole = divided.as_ref().unwrap_or(membrane);
+        let mut whole = divided.unwrap_or_else(|| membrane.clone());
         let start = match start {
-            Start::Zone(zone, scales, branch) => Start::Zone(zone, scales.on(whole), branch),
+            Start::Zone(zone, scales, branch) => Start::Zone(zone, scales.on(&whole), branch),
             other => other,
         };
         let branch = match &start {
             Start::Zone(_, _, branch) | Start::Asked(_, branch) => *branch,
             Start::Free => Branch::Stable,
         };
-        let last = whole.cells.divisible().is_none() || D != 2 || used >= self.most;
+        let last = whole.sizing.is_some() || whole.cells.divisible().is_none() || D != 2 || self.most == 0;
         let rest = if last { Rest::Final } else { Rest::BeforeDivision };
-        let mut best = ils::solve(whole, &mut Elements::new(whole), start, rest, at, progress);
+        let mut best = ils::solve(&whole, &mut Elements::new(&whole), start, rest, at, progress);
         best.before = looks;
         // Fronts that were left to smaller cells, which may turn out not to be wanted.
         let mut unfinished = rest == Rest::BeforeDivision;
+        let mut finer = 0;
         for _ in 0..MOST_ROUNDS {
             let (Some(scales), false) = (best.scales, best.zone.is_empty()) else { break };
+            if matches!(best.reason, Reason::Interrupted | Reason::NoSuchState | Reason::LinearSolver(_)) {
+                break;
+            }
             let astray = best.reason == Reason::IterationLimit;
             // Fronts that went astray are a worse start than those that were predicted.
             let zone = best.predicted.take().filter(|_| astray).unwrap_or_else(|| best.zone.clone());
-            let wanted = match (best.reason.clone(), best.unresolved) {
-                (Reason::Interrupted | Reason::NoSuchState | Reason::LinearSolver(_), _) => break,
-                (Reason::IterationLimit, _) => (used + 1).max(self.levels(membrane, &zone)),
-                (_, Some(_)) => self.most,
-                _ => self.levels(membrane, &zone),
-            };
-            let wanted = wanted.min(self.most);
-            if wanted < used || (wanted == used && !strayed(&best)) {
-                *levels = wanted;
-                if unfinished && best.out_of_steps {
+            let too_large = astray || best.unresolved.is_some();
+            if too_large && whole.sizing.is_some() {
+                finer += 1;
+            }
+            if finer > MOST_FINER {
+                break;
+            }
+            let wanted = self.sizing(membrane, &zone, finer.max(usize::from(too_large)));
+            let enough = wanted.as_ref().is_none_or(|sizing| !too_large && resolves(&whole, &zone, sizing));
+            let Some(sizing) = wanted.filter(|_| !enough) else {
+                if !astray && unfinished && best.out_of_steps {
                     let start = Start::Zone(zone, scales, branch);
-                    let next = ils::solve(whole, &mut Elements::new(whole), start, Rest::Final, at, progress);
+                    let next = ils::solve(&whole, &mut Elements::new(&whole), start, Rest::Final, at, progress);
                     return continued(best, next);
                 }
                 return best;
-            }
-            if astray && wanted == used {
-                break;
-            }
-            let mut about = |zone: Z| {
-                let finer = self.divided(membrane, &zone, wanted)?;
+            };
+            let about = |zone: Z, sizing: Sizing<D>, progress: &mut dyn Progress| {
+                let finer = self.divided(membrane, &zone, sizing)?;
                 let start = Start::Zone(zone, scales.on(&finer), branch);
-                Some(ils::solve(&finer, &mut Elements::new(&finer), start, Rest::Final, at, progress))
+                let found = ils::solve(&finer, &mut Elements::new(&finer), start, Rest::Final, at, progress);
+                Some((finer, found))
             };
             let counts = zone.counts();
-            let Some(mut next) = about(zone) else { break };
-            (used, unfinished) = (wanted, false);
+            let Some((mut cells, mut next)) = about(zone, sizing, progress) else { break };
+            unfinished = false;
             next.before = best.before + best.iterations;
             let lost = |next: &Solution<D, Z>| {
                 best.reason.converged() && !next.reason.converged() && next.reason != Reason::Interrupted
             };
             if lost(&next)
                 && let Some(other) = next.predicted.take().filter(|other| other.counts() != counts)
-                && let Some(again) = about(other)
+                && let Some(sizing) = self.sizing(membrane, &other, finer)
+                && let Some((others, again)) = about(other, sizing, progress)
             {
                 // Cells were divided about fronts that are not there any more.
                 next = Solution { before: next.before + next.iterations, ..again };
+                cells = others;
             }
             next.jumped |= best.jumped;
             if lost(&next) {
@@ -176,9 +177,8 @@ impl<const D: usize> Refinement<D> {
             }
             best.residuals.append(&mut next.residuals);
             next.residuals = std::mem::take(&mut best.residuals);
-            best = next;
+            (best, whole) = (next, cells);
         }
-        *levels = used;
         best
     }
 }
@@ -201,16 +201,16 @@ fn continued<const D: usize, Z: Zone<D>>(mut first: Solution<D, Z>, mut next: So
 fn is_near<const D: usize, Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z, scales: &Scales) -> bool {
     let zone = zone.on_grid(&membrane.grid);
     let state = Equilibrium::solve(membrane, &zone, &mut Elements::new(membrane));
-    state.is_ok_and(|state| Fronts::new(&state, true).farthest(scales) < NEAR * membrane.grid.h())
+    state.is_ok_and(|state| Fronts::new(&state, true).farthest(scales) < NEAR)
 }
 
-/// Whether fronts have left the cells that were divided for them.
-fn strayed<const D: usize, Z: Zone<D>>(solution: &Solution<D, Z>) -> bool {
-    let Some(equilibrium) = &solution.equilibrium else { return false };
-    let membrane = &equilibrium.membrane;
-    let fine = 1.5 * membrane.grid.h();
-    membrane.cells.divisible().is_some()
-        && equilibrium.quadrature.front.iter().any(|p| membrane.cells.size(p.cell) > fine)
+/// Whether the cells at the fronts of a zone are hardly larger than these want them.
+fn resolves<const D: usize, Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z, sizing: &Sizing<D>) -> bool {
+    let small = |x: &Point<D>| {
+        let cell = membrane.cells.containing(x);
+        cell.is_none_or(|cell| membrane.cells.size(cell) <= HARDLY * sizing.at(x))
+    };
+    zone.outlines().iter().flatten().all(small)
 }
 
 impl Scales {

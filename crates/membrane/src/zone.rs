@@ -5,6 +5,7 @@ use crate::mode_matrix::Clique;
 use crate::obstacle::Side;
 use crate::problem::Membrane;
 use crate::published::Transport;
+use crate::sizing::Sizing;
 use serde_json::Value;
 use signorini_fem::cut::RegionId;
 use signorini_fem::{Cells, Grid};
@@ -221,24 +222,39 @@ pub trait Zone<const D: usize>: Division<D> + Clone + Send {
     fn without(&self, grid: &Grid<D>, part: usize) -> Self;
     /// A small zone about a point that touches one side, added.
     fn seeded(&self, grid: &Grid<D>, side: Side, x: &Point<D>, radius: f64) -> Self;
-    /// Distance from `x` to the nearest front.
-    fn distance(&self, x: &Point<D>) -> f64;
+    /// Distance from `x` to the nearest front, if that is near: of fronts beyond `within` none need be known.
+    fn distance(&self, x: &Point<D>, within: f64) -> f64;
     /// The region of a point of the membrane.
     fn region_at(&self, x: &Point<D>) -> RegionId;
     /// The largest curvature of any front, to judge whether the grid resolves it.
     fn sharpest(&self) -> f64;
     /// The smallest length in the fronts: a radius of curvature, or the distance between two that are near each other.
     fn least_feature(&self) -> f64;
+    /// The largest product of the curvature of a front and the size of the cells there.
+    fn bend(&self) -> f64;
     /// The zone with fronts of as many modes as another grid can tell apart.
     fn on_grid(&self, grid: &Grid<D>) -> Self;
-    /// Cells of a grid divided `levels` times near the fronts, and elsewhere where `also` says so of a cell's box and how
-    /// often it was divided; none where cells are not divided.
+    /// The zone with fronts whose modes are as long as cells of the given sizes can tell apart, the smallest of which are
+    /// those of the grid.
+    fn on_sizes(&self, grid: &Grid<D>, _sizing: &Arc<Sizing<D>>) -> Self {
+        self.on_grid(grid)
+    }
+    /// The sizes that the fronts want of cells: those of `grid` divided at least and at most so often, and `finer` times more
+    /// often than would do; none where cells are not divided or need not be.
+    fn sizing(&self, _grid: &Grid<D>, _divisions: [usize; 2], _finer: usize) -> Option<Sizing<D>> {
+        None
+    }
+    /// Cells of a grid divided near the fronts as the sizes say, at most so often, and elsewhere where `also` says so of a
+    /// cell's box and how often it was divided; none where cells are not divided.
     fn divided(
         &self,
-        grid: &Grid<D>,
-        levels: usize,
-        also: &dyn Fn(&Aabb<D>, usize) -> bool,
-    ) -> Option<Arc<dyn Cells<D>>>;
+        _grid: &Grid<D>,
+        _sizing: &Sizing<D>,
+        _most: usize,
+        _also: &dyn Fn(&Aabb<D>, usize) -> bool,
+    ) -> Option<Arc<dyn Cells<D>>> {
+        None
+    }
     /// The zone as numbers, from which [`Zone::from_json`] makes the same one again.
     fn to_json(&self) -> Value;
     /// The zone of such numbers, on a grid or one as much finer as it was; none where they make no zone.

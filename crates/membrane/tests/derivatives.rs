@@ -33,6 +33,7 @@ fn membrane(cells: usize, degree: usize, side: Side) -> Membrane<2> {
         domain: DomainOnCells::new(domain, &grid),
         cells: Arc::new(grid.clone()),
         grid,
+        sizing: None,
         measure: Measure::Plain,
         tension: Arc::new(Formula(move |[x, y]: [Jet<2>; 2]| c(1.0) + c(0.4) * x + c(0.2) * y * y)),
         load: Arc::new(Formula(move |[x, y]: [Jet<2>; 2]| up * (c(-1.0) - c(0.3) * y + c(0.2) * x * y))),

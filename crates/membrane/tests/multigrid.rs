@@ -29,6 +29,7 @@ fn membrane(n: usize, degree: usize, domain: Arc<dyn Domain<2>>, half: f64) -> M
         domain: DomainOnCells::new(domain, &grid),
         cells: Arc::new(grid.clone()),
         grid,
+        sizing: None,
         measure: Measure::Plain,
         tension: Arc::new(Constant(1.0)),
         load: Arc::new(Constant(-1.0)),

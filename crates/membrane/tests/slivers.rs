@@ -25,6 +25,7 @@ fn error(degree: usize, normal: Vector<2>, offset: f64, divided: bool) -> f64 {
     let exact = 0.3;
     let displacement = Arc::new(Constant(exact));
     let membrane = Membrane {
+        sizing: None,
         domain: DomainOnCells::new(domain, &*cells),
         cells,
         grid: grid.clone(),
@@ -80,6 +81,7 @@ fn thin_rings_along_a_free_edge_are_held() {
             let domain: Arc<dyn Domain<2>> = Arc::new(ImplicitDomain(disc));
             let floor = Obstacle { side: Side::Below, height: Arc::new(Constant(-0.1)), adhesion: None };
             let membrane = Membrane {
+                sizing: None,
                 domain: DomainOnCells::new(domain, &grid),
                 cells: Arc::new(grid.clone()),
                 grid,

@@ -902,6 +902,7 @@ impl<const D: usize> MembranePlan<D> {
             cells: self.cells.clone(),
             grid: self.grid.clone(),
             domain: self.domain.clone(),
+            sizing: None,
             measure: if self.space == Space::Axisymmetric { Measure::Axisymmetric } else { Measure::Plain },
             tension: field(&self.tension.expression, time),
             load,

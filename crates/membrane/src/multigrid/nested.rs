@@ -199,7 +199,7 @@ pub fn solve<R: Regular>(
                 return Ok(Err(Reason::Interrupted));
             }
             let mut step = fronts.newton_step(&zone, &scales)?;
-            let last_step = step.length / h;
+            let last_step = step.length;
             // As everywhere: on a jump of the discrete slope no position makes it vanish.
             let enough = || {
                 let seen = fronts.project(&zone, finest_modes);

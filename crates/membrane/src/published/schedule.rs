@@ -74,7 +74,7 @@ impl ModeSchedule {
         coefficients.iter_mut().for_each(|c| *c *= share);
         let square: f64 = points.iter().enumerate().map(|(i, p)| p.weight * moved(&coefficients, i).powi(2)).sum();
         let total: f64 = points.iter().map(|p| p.weight).sum();
-        let length = (square / total.max(f64::MIN_POSITIVE)).sqrt();
+        let length = (square / total.max(f64::MIN_POSITIVE)).sqrt() / scales.h;
         Ok(Step { length, space, coefficients, kind: StepKind::Full, reach: f64::INFINITY })
     }
 }

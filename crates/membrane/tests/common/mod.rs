@@ -46,6 +46,7 @@ pub fn on_mesh(cells: Arc<MeshCells>) -> Membrane<2> {
         supports: vec![Some(support); cells.pieces()],
         cells: cells as Arc<dyn Cells<2>>,
         domain,
+        sizing: None,
         measure: Measure::Plain,
         tension: Arc::new(Constant(1.0)),
         load: Arc::new(Constant(-1.0)),

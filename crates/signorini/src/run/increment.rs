@@ -49,8 +49,6 @@ pub struct Engine<const D: usize, Z> {
     /// The last states of the path and their times.
     trail: Vec<(f64, Z)>,
     refinement: Refinement<D>,
-    /// How often the cells at the fronts are divided.
-    levels: usize,
     /// Whether lengths are lengths; without units the problem may be scaled at will.
     has_units: bool,
     /// Whether errors are estimated, which takes a solve more.
@@ -62,7 +60,6 @@ pub struct Saved<Z> {
     previous: Option<(Z, Scales, Branch)>,
     scales: Option<Scales>,
     trail: Vec<(f64, Z)>,
-    levels: usize,
 }
 
 impl<Z> Saved<Z> {
@@ -75,7 +72,6 @@ impl<Z> Saved<Z> {
             }),
             "scales": self.scales.as_ref().map(scales),
             "trail": self.trail.iter().map(|(t, z)| json!([t, zone(z)])).collect::<Vec<_>>(),
-            "levels": self.levels,
         })
     }
 
@@ -100,7 +96,6 @@ impl<Z> Saved<Z> {
                 .iter()
                 .map(|e| Some((e[0].as_f64()?, zone(&e[1])?)))
                 .collect::<Option<_>>()?,
-            levels: v["levels"].as_u64()? as usize,
         })
     }
 }
@@ -152,7 +147,6 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             scales: None,
             trail: Vec::new(),
             refinement: plan.refinement.clone(),
-            levels: plan.refinement.fronts,
             estimates: false,
             has_units: plan.document.case.units.is_some(),
         }
@@ -160,14 +154,14 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
 
     /// What the next increment goes on from.
     pub fn save(&self) -> Saved<Z> {
-        let Self { previous, scales, trail, levels, .. } = self;
-        Saved { previous: previous.clone(), scales: *scales, trail: trail.clone(), levels: *levels }
+        let Self { previous, scales, trail, .. } = self;
+        Saved { previous: previous.clone(), scales: *scales, trail: trail.clone() }
     }
 
     /// Goes on from what was saved.
     pub fn restore(&mut self, saved: Saved<Z>) {
         self.asked = None;
-        Saved { previous: self.previous, scales: self.scales, trail: self.trail, levels: self.levels } = saved;
+        Saved { previous: self.previous, scales: self.scales, trail: self.trail } = saved;
     }
 
     /// The state that the last increment converged to.
@@ -327,7 +321,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
                 Some(message) => {
                     Solution { reason: Reason::LinearSolver(message), ..Solution::begin(Z::empty(&membrane.grid)) }
                 }
-                None => self.refinement.solve(membrane, &mut self.levels, start, at, progress),
+                None => self.refinement.solve(membrane, start, at, progress),
             },
         };
         solution.before += solves;
@@ -362,8 +356,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
                 "slopes reach {steepest:.1}: the linear theory of the membrane holds below about {LINEAR}, beyond it the tension grows"
             ));
         }
-        let h = solution.equilibrium.as_ref().map_or(membrane.grid.h(), |e| e.membrane.grid.h());
-        let sharp = solution.zone.sharpest() * h;
+        let sharp = solution.zone.bend();
         if D == 2 && !solution.zone.is_empty() && sharp > RESOLVED {
             warnings.push(format!(
                 "a front has a radius of curvature of {:.2} cells at t = {}: below two cells its shape is approximate, use more cells",

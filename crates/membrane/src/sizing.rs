@@ -1,0 +1,64 @@
+//! How large cells and modes are to be, as a smooth function of the place: small where the fronts need it, and growing
+//! gradually from there.
+
+use signorini_geometry::Point;
+
+/// Cells grow by this much on the way of one length.
+const GROWTH: f64 = 0.25;
+/// Cells may be larger than wanted by this power of two.
+const SLACK: f64 = 0.25;
+
+/// A place along the fronts and the size that is wanted there.
+#[derive(Clone, Copy, Debug)]
+struct Wanted<const D: usize> {
+    place: Point<D>,
+    size: f64,
+    /// Its part in the mean.
+    share: f64,
+}
+
+/// A size for every place: `s(x)⁻⁴ = (2g/π) ∫ (s(y)² + g² |x - y|²)⁻² dy / s(y)` over the fronts, which is the size wanted
+/// along a straight front that wants the same everywhere, and grows like `g |x - y|` away from a place `y` that wants less.
+/// It is as smooth as modes must be that vary in length with it.
+#[derive(Clone, Debug)]
+pub struct Sizing<const D: usize>(Vec<Wanted<D>>);
+
+impl<const D: usize> Sizing<D> {
+    /// From places along the fronts, the length of front that each stands for, and the size that is wanted there.
+    pub fn new(wanted: impl Iterator<Item = (Point<D>, f64, f64)>) -> Self {
+        let share = |length: f64, size: f64| 2.0 * GROWTH / std::f64::consts::PI * length / size;
+        Self(wanted.map(|(place, length, size)| Wanted { place, size, share: share(length, size) }).collect())
+    }
+
+    /// The size that is wanted at a place.
+    pub fn at(&self, x: &Point<D>) -> f64 {
+        let of = |w: &Wanted<D>| {
+            let square = w.size * w.size + GROWTH * GROWTH * (x - w.place).norm_squared();
+            w.share / (square * square)
+        };
+        self.0.iter().map(of).sum::<f64>().sqrt().sqrt().recip()
+    }
+
+    /// How often cells of the given size are to be divided at a place.
+    pub fn divisions(&self, x: &Point<D>, size: f64) -> usize {
+        ((size / self.at(x)).log2() - SLACK).ceil().max(0.0) as usize
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_straight_front_has_the_size_that_it_wants_and_cells_grow_from_there() {
+        let places = |size: f64| (-4000..4000).map(move |k| (Point::<2>::new(1e-3 * f64::from(k), 0.0), 1e-3, size));
+        let sizing = Sizing::new(places(0.02));
+        assert!((sizing.at(&Point::<2>::zeros()) / 0.02 - 1.0).abs() < 1e-3);
+        assert_eq!(sizing.divisions(&Point::<2>::zeros(), 0.08), 2);
+        // A short part that wants less.
+        let sharp = (-40..40).map(|k| (Point::<2>::new(1e-3 * f64::from(k), 0.0), 1e-3, 0.005));
+        let sizing = Sizing::new(places(0.1).chain(sharp));
+        let at = |x: f64| sizing.at(&Point::<2>::new(x, 0.0));
+        assert!(at(0.0) < 0.0065 && at(0.2) > 0.03 && at(2.0) > 0.09, "{} {} {}", at(0.0), at(0.2), at(2.0));
+    }
+}

@@ -212,9 +212,8 @@ impl ClosedCurve {
             let p = self.point(s);
             p.speed * density(&p.position)
         };
-        let interval = |a: f64, b: f64| -> f64 {
-            rule.iter().map(|&(x, w)| w * (b - a) * speed(a + x * (b - a))).sum()
-        };
+        let interval =
+            |a: f64, b: f64| -> f64 { rule.iter().map(|&(x, w)| w * (b - a) * speed(a + x * (b - a))).sum() };
         let knot = |k: usize| k as f64 / fine as f64;
         let mut walked = vec![0.0];
         for k in 0..fine {

@@ -55,7 +55,7 @@ pub struct Conditions<const D: usize> {
     pub least_gap_outside: f64,
     /// The least there in multiples of the penetration that counts as none, and where.
     worst: f64,
-    pub deepest: (Side, Point<D>),
+    deepest: (Side, Point<D>),
     /// Least pressure with which a body would push where the free membrane penetrates it.
     pub least_pressure_below: f64,
     /// Least pressure in contact where no adhesion holds, and what valleys of the bodies need everywhere.
@@ -102,6 +102,10 @@ impl<const D: usize> Conditions<D> {
                     }
                     let relative = gap / scales.gap_tolerance(membrane.cells.size(cell));
                     if (gap < own.least_gap_outside || relative < c.worst) && is_apart(membrane, zone, x) {
+                        let relative = match membrane.sizing {
+                            None => relative,
+                            Some(_) => gap / scales.gap_tolerance(membrane.cell_size(x)),
+                        };
                         own.add_gap(gap, true);
                         c.least_gap_outside = c.least_gap_outside.min(gap);
                         if relative < c.worst {
@@ -136,7 +140,8 @@ impl<const D: usize> Conditions<D> {
 
     /// Whether all that is wrong is a penetration not much larger than what counts as none, on cells that are not divided.
     pub fn nearly_hold(&self, scales: &Scales, membrane: &Membrane<D>) -> bool {
-        let cell = membrane.cells.containing(&self.deepest.1).map_or(membrane.grid.h(), |cell| membrane.cells.size(cell));
+        let cell =
+            membrane.cells.containing(&self.deepest.1).map_or(membrane.grid.h(), |cell| membrane.cells.size(cell));
         let divided = membrane.cells.divisible().map_or(1.0, |whole| whole.h() / cell);
         self.worst >= -NEARLY * divided.powi(2) && !self.pulls(scales) && self.torn_from_support.is_none()
     }
@@ -175,7 +180,8 @@ pub fn corrected<const D: usize, Z: Zone<D>>(
     adhering: bool,
 ) -> Z {
     let membrane = &equilibrium.membrane;
-    let grid = &membrane.grid;
+    let samples = membrane.samples();
+    let grid = &samples;
     let mut result = zone.clone();
     if conditions.pulls(scales) {
         // First what pulls: added parts may then grow into its place.
@@ -197,14 +203,18 @@ pub fn corrected<const D: usize, Z: Zone<D>>(
     }
     if conditions.penetrates() {
         let reach = 2.0 * grid.h();
-        let shift = 0.5 * scales.gap_tolerance(grid.h());
         let penetration = |side: Side, x: &Point<D>| {
             let Some(x) = inside(membrane, x, reach) else { return 1.0 };
-            if !is_apart(membrane, zone, &x) || contact_index(zone.region_at(&x)).is_some() {
+            if contact_index(zone.region_at(&x)).is_some() {
                 return 1.0;
             }
             let Some(u) = equilibrium.displacement(zone, &x) else { return 1.0 };
-            let gap = (membrane.obstacles.gap(side, &x, u) + shift) / scales.gap;
+            let gap = membrane.obstacles.gap(side, &x, u);
+            if gap < 0.0 && !is_apart(membrane, zone, &x) {
+                return 1.0;
+            }
+            let size = if gap < 0.0 { membrane.cell_size(&x) } else { grid.h() };
+            let gap = (gap + 0.5 * scales.gap_tolerance(size)) / scales.gap;
             gap.max(-membrane.pressure(side, &x) / scales.pressure)
         };
         let before = result.counts();
@@ -254,9 +264,7 @@ pub fn least_free_gap<const D: usize, Z: Zone<D>>(free: &Equilibrium<D>, zone: &
 
 /// Whether a point is further from all fronts than half of its cell.
 fn is_apart<const D: usize, Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z, x: &Point<D>) -> bool {
-    let h = membrane.grid.h();
-    let size = membrane.sizing.as_ref().and_then(|_| membrane.cells.containing(x));
-    let band = 0.5 * size.map_or(h, |cell| membrane.cells.size(cell));
+    let band = 0.5 * membrane.cell_size(x);
     zone.distance(x, band) > band
 }
 

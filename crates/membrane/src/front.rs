@@ -6,7 +6,7 @@ use crate::quadrature::FrontPoint;
 use crate::scales::Scales;
 use crate::shape_rate::ShapeRate;
 use crate::zone::{FrontFrame, ModeSpace, Modes, Zone};
-use signorini_geometry::Real;
+use signorini_geometry::{Point, Real};
 use signorini_solve::krylov::conjugate_residuals;
 use signorini_solve::{SolveError, dense};
 use std::borrow::Cow;
@@ -253,12 +253,12 @@ impl<'a, const D: usize> Fronts<'a, D> {
         (mass, b)
     }
 
-    /// How many cells the floor's pressure would have the fronts move, at the place where those are most.
-    pub fn farthest(&self, scales: &Scales) -> f64 {
-        let sizes = self.cell_sizes();
+    /// How far the floor's pressure would have the fronts move, at the place where that is farthest relative to a size.
+    pub fn farthest(&self, scales: &Scales, size: impl Fn(&Point<D>) -> f64) -> f64 {
+        let points = &self.equilibrium.quadrature.front;
         let rate = |i: usize| self.pressure[i].max(WEAK_PRESSURE * scales.pressure) / self.tension[i];
         (0..self.slope_jump.len())
-            .map(|i| (self.slope_jump[i] - self.adhesive_slope[i]).abs() / rate(i) / sizes[i])
+            .map(|i| (self.slope_jump[i] - self.adhesive_slope[i]).abs() / rate(i) / size(&points[i].x))
             .fold(0.0, f64::max)
     }
 

@@ -46,6 +46,8 @@ const MOST_DESCENTS: usize = 200;
 const UNSTABLE: f64 = -1e-6;
 /// A gap of this fraction of the scale counts as none: without contact nothing but round-off disturbs it.
 const FREE: f64 = -1e-10;
+/// Cells along a side of those by whose nodes it is told what has merged.
+const NODES: usize = 256;
 /// A zone of less than this part of a cell has no shape.
 const SMALL: f64 = 0.7;
 /// Steps shorter than this fraction of a cell are made with the derivative of the discrete equations ...
@@ -228,6 +230,26 @@ pub fn solve<const D: usize, Z: Zone<D>>(
     let reason = run.from(start).unwrap_or_else(|error| Reason::LinearSolver(error.to_string()));
     run.solution.reason = reason;
     run.solution
+}
+
+/// The zone by the nodal method on linear elements, which is cheap, and cannot go astray however the zone is connected. Its
+/// front is true to a fraction of a cell, or of smaller ones where the question is what has merged.
+pub(crate) fn prediction<const D: usize, Z: Zone<D>>(
+    membrane: &Membrane<D>,
+    closely: bool,
+    interrupted: &dyn Fn() -> bool,
+) -> Result<Z, SolveError> {
+    let coarse = membrane.cells.divisible().map_or(membrane.grid.cells(), |grid| grid.cells());
+    let longest = coarse.into_iter().max().unwrap_or(1);
+    let least = if membrane.cells.degree() >= 3 { 2 } else { 1 };
+    let finer = if closely { (NODES / longest).max(least) } else { least };
+    let nodal = membrane.on(membrane.cells.linear(finer));
+    let solution = active_set::solve::<D, Z>(&nodal, NodalStart::Nested, interrupted)?;
+    let grid = membrane.samples();
+    Ok(nodal.obstacles.sides().fold(Z::empty(&grid), |zone, side| {
+        let predictor = solution.predictor(&nodal, side);
+        zone.united(&grid, side, &mut |x| predictor(x))
+    }))
 }
 
 /// Whether a membrane without contact would penetrate a body.
@@ -437,19 +459,10 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         Ok(())
     }
 
-    /// The zone by the nodal method on linear elements, which is cheap, and cannot go astray however the zone is connected.
-    /// Its front is true to a fraction of a cell.
+    /// The zone by the nodal method, on as many nodes as the cells make worth while.
     fn prediction(&self) -> Result<Z, SolveError> {
-        let finer = if self.membrane.cells.degree() >= 3 { 2 } else { 1 };
-        let nodal = self.membrane.on(self.membrane.cells.linear(finer));
-        let progress = &*self.progress;
-        let solution = active_set::solve::<D, Z>(&nodal, NodalStart::Nested, &|| progress.interrupted())?;
-        let grid = &self.membrane.grid;
-        let zone = nodal.obstacles.sides().fold(Z::empty(grid), |zone, side| {
-            let predictor = solution.predictor(&nodal, side);
-            zone.united(grid, side, &mut |x| predictor(x))
-        });
-        Ok(self.resized(zone))
+        let divided = self.membrane.sizing.is_some();
+        Ok(self.resized(prediction(self.membrane, divided, &|| self.progress.interrupted())?))
     }
 
     /// A zone from other cells with modes as these can tell them apart.

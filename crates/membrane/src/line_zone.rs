@@ -4,8 +4,8 @@ use crate::mode_matrix::Clique;
 use crate::obstacle::Side;
 use crate::zone::{Advance, Division, FrontFoot, FrontsInCell, ModeSpace, Zone, contact, free};
 use serde_json::{Value, json};
-use signorini_fem::cut::RegionId;
 use signorini_fem::Grid;
+use signorini_fem::cut::RegionId;
 use signorini_geometry::{Aabb, ImplicitShape, Point, Vector};
 
 /// Zones that touch different sides are at least this fraction of a cell apart.

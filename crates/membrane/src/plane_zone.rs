@@ -7,7 +7,7 @@ use crate::obstacle::Side;
 use crate::problem::Membrane;
 use crate::published::{NodalLevelSet, Transport};
 use crate::raster::Raster;
-use crate::sizing::Sizing;
+use crate::sizing::{self, Sizing};
 use crate::zone::{Advance, Division, FrontFoot, FrontsInCell, ModeSpace, Zone, contact, contact_of, free};
 use serde_json::{Value, json};
 use signorini_fem::cut::RegionId;
@@ -34,9 +34,15 @@ const STRETCH: f64 = 0.2;
 const SAME: f64 = 1e-9;
 /// The speed of a front between states of a path differs by this factor at most.
 const CROWDED: f64 = 1.5;
-/// Cells for each radius of curvature of a front, and between fronts.
-const CURVED: f64 = 3.0;
+/// Cells along the longer side of a grid on which fronts that meet are told apart, where the smallest cells are few.
+const MOST_SAMPLES: usize = 2048;
+/// Cells for each radius of curvature of a front, so that Newton's method converges as fast there as along straight ones; of
+/// degree 1, whose modes are longer; and between fronts.
+const CURVED: f64 = 5.0;
+const CURVED_LINEAR: f64 = 8.0;
 const BETWEEN: f64 = 2.0;
+/// A front that bends within a cell is blunter than it would be on smaller ones: by this much times curvature and size.
+const BLUNTED: f64 = 1.3;
 /// A front that encloses less than this multiple of `h²` after a step has collapsed.
 const COLLAPSED: f64 = 0.01;
 /// A step may not bring a front nearer to its centre of curvature than this fraction of its radius of curvature.
@@ -317,7 +323,9 @@ impl PlaneZone {
     fn relative_length(&self, curve: &ClosedCurve) -> f64 {
         match &self.sizing {
             None => polygon::perimeter(curve.samples()) / self.grid.h(),
-            Some(sizing) => at_knots(curve).map(|p| p.speed / sizing.at(&p.position)).sum::<f64>() / curve.knots() as f64,
+            Some(sizing) => {
+                at_knots(curve).map(|p| p.speed / sizing.at(&p.position)).sum::<f64>() / curve.knots() as f64
+            }
         }
     }
 
@@ -680,6 +688,8 @@ impl Zone<2> for PlaneZone {
             let zone = Self { mode_counts, ..self.with_curves(grid, moved) };
             return Advance { zone, topology_changed: false };
         }
+        let raster = if self.sizing.is_some() { sizing::coarsened(grid, MOST_SAMPLES) } else { grid.clone() };
+        let grid = &raster;
         let zone = Side::BOTH.into_iter().fold(Self::empty(grid), |zone, side| {
             let of_side = self.sides.iter().zip(&moved).filter(|(s, _)| **s == side);
             let curves: Vec<ClosedCurve> = of_side.map(|(_, c)| c.clone()).collect();
@@ -820,7 +830,10 @@ impl Zone<2> for PlaneZone {
         };
         let reach = Point::<2>::repeat(within.min(sizing.at(x)));
         let near = self.near_box(&Aabb::new(x - reach, x + reach));
-        near.into_iter().flat_map(|(c, seeds)| seeds.into_iter().map(move |s| (c, s))).map(|(c, s)| apart(c, s)).fold(f64::INFINITY, f64::min)
+        near.into_iter()
+            .flat_map(|(c, seeds)| seeds.into_iter().map(move |s| (c, s)))
+            .map(|(c, s)| apart(c, s))
+            .fold(f64::INFINITY, f64::min)
     }
     fn region_at(&self, x: &Point<2>) -> RegionId {
         let cell = self.grid.cell_containing(x);
@@ -902,7 +915,10 @@ impl Zone<2> for PlaneZone {
         let divided = |times: usize| grid.h() / f64::from(1u32 << times);
         let places = self.features(grid, divided(most));
         let wanted = |feature: &Feature| {
-            let size = (1.0 / (CURVED * feature.curvature)).min(feature.apart / BETWEEN);
+            let here = self.sizing.as_ref().map_or(self.grid.h(), |s| s.at(&feature.place));
+            let blunted = (BLUNTED * feature.curvature * here).max(1.0);
+            let curved = if grid.degree() == 1 { CURVED_LINEAR } else { CURVED };
+            let size = (1.0 / (curved * feature.curvature * blunted)).min(feature.apart / BETWEEN);
             (size / f64::from(1u32 << finer)).clamp(divided(most), divided(least))
         };
         if places.iter().all(|f| wanted(f) >= grid.h()) {

@@ -4,11 +4,17 @@ use crate::domain::{CellStatus, DomainOnCells};
 use crate::field::SharedField;
 use crate::obstacle::{Obstacles, Side};
 use crate::published::Formulation;
-use crate::sizing::Sizing;
+use crate::sizing::{Sizing, coarsened};
 use crate::zone::Modes;
 use signorini_fem::{Cells, Grid};
 use signorini_geometry::{Point, Vector};
 use std::sync::Arc;
+
+/// Cells along a side of a grid on which functions are sampled where cells differ in size.
+const MOST_SAMPLES: usize = 512;
+
+/// Cells beside others are that much larger than what is wanted of these.
+const BESIDE: f64 = 1.5;
 
 /// What a unit of the coordinates measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -119,6 +125,24 @@ impl<const D: usize> Membrane<D> {
                 self.domain.domain.contains(x, &values)
             }
         }
+    }
+
+    /// The grid on which functions are sampled to tell zones apart: the grid itself, where its cells are not the smallest of
+    /// a few.
+    pub fn samples(&self) -> Grid<D> {
+        if self.sizing.is_some() { coarsened(&self.grid, MOST_SAMPLES) } else { self.grid.clone() }
+    }
+
+    /// The size of the cells at the fronts, in the mean.
+    pub fn front_size(&self) -> f64 {
+        self.sizing.as_ref().map_or(self.grid.h(), |sizing| sizing.mean())
+    }
+
+    /// The size of the cells at a place, or of somewhat larger ones beside it.
+    pub fn cell_size(&self, x: &Point<D>) -> f64 {
+        let Some(sizing) = &self.sizing else { return self.grid.h() };
+        let own = self.cells.containing(x).map_or(0.0, |cell| self.cells.size(cell));
+        own.max(BESIDE * sizing.at(x))
     }
 
     /// The largest extent of the grid.

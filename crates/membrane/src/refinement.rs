@@ -16,9 +16,9 @@ use signorini_solve::Progress;
 use std::sync::Arc;
 
 /// Cells may be so much larger than fronts that have moved within them want.
-const HARDLY: f64 = 1.7;
-/// Fronts that have to move less than this part of an undivided cell are near.
-const NEAR: f64 = 0.2;
+const HARDLY: f64 = 1.5;
+/// Fronts that have to move by less than this part of a divided cell are near.
+const NEAR: f64 = 0.5;
 /// Divisions more than fronts want of their cells, where no state is found on those.
 const MOST_FINER: usize = 2;
 /// Solves on new cells within one increment.
@@ -101,7 +101,7 @@ impl<const D: usize> Refinement<D> {
         let divided = match &start {
             Start::Zone(zone, scales, _) => self.sizing(membrane, zone, 0).and_then(|sizing| {
                 looks = 1;
-                if is_near(membrane, zone, scales) { self.divided(membrane, zone, sizing) } else { None }
+                if is_near(membrane, zone, scales, &sizing) { self.divided(membrane, zone, sizing) } else { None }
             }),
             _ => None,
         };
@@ -127,8 +127,16 @@ impl<const D: usize> Refinement<D> {
                 break;
             }
             let astray = best.reason == Reason::IterationLimit;
-            // Fronts that went astray are a worse start than those that were predicted.
-            let zone = best.predicted.take().filter(|_| astray).unwrap_or_else(|| best.zone.clone());
+            // Fronts that went astray are a worse start than those that were predicted; so are some that come too near to each
+            // other to tell whether they touch.
+            let mut zone = best.predicted.take().filter(|_| astray).unwrap_or_else(|| best.zone.clone());
+            if best.unresolved.is_some()
+                && !membrane.obstacles.are_sticky()
+                && let Ok(merged) = ils::prediction::<D, Z>(membrane, true, &|| progress.interrupted())
+                && merged.counts() != zone.counts()
+            {
+                zone = merged;
+            }
             let too_large = astray || best.unresolved.is_some();
             if too_large && whole.sizing.is_some() {
                 finer += 1;
@@ -136,7 +144,8 @@ impl<const D: usize> Refinement<D> {
             if finer > MOST_FINER {
                 break;
             }
-            let wanted = self.sizing(membrane, &zone, finer.max(usize::from(too_large)));
+            let more = || self.sizing(membrane, &zone, 1).filter(|_| too_large);
+            let wanted = self.sizing(membrane, &zone, finer).or_else(more);
             let enough = wanted.as_ref().is_none_or(|sizing| !too_large && resolves(&whole, &zone, sizing));
             let Some(sizing) = wanted.filter(|_| !enough) else {
                 if !astray && unfinished && best.out_of_steps {
@@ -198,10 +207,10 @@ fn continued<const D: usize, Z: Zone<D>>(mut first: Solution<D, Z>, mut next: So
 }
 
 /// Whether the fronts have not so far to go that the way is cheaper on undivided cells.
-fn is_near<const D: usize, Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z, scales: &Scales) -> bool {
+fn is_near<const D: usize, Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z, scales: &Scales, sizing: &Sizing<D>) -> bool {
     let zone = zone.on_grid(&membrane.grid);
     let state = Equilibrium::solve(membrane, &zone, &mut Elements::new(membrane));
-    state.is_ok_and(|state| Fronts::new(&state, true).farthest(scales) < NEAR)
+    state.is_ok_and(|state| Fronts::new(&state, true).farthest(scales, |x| sizing.at(x)) < NEAR)
 }
 
 /// Whether the cells at the fronts of a zone are hardly larger than these want them.
@@ -216,6 +225,6 @@ fn resolves<const D: usize, Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z, sizing
 impl Scales {
     /// The same scales for other cells.
     pub fn on<const D: usize>(self, membrane: &Membrane<D>) -> Self {
-        Self { h: membrane.grid.h(), degree: membrane.grid.degree(), ..self }
+        Self { h: membrane.front_size(), degree: membrane.grid.degree(), ..self }
     }
 }

@@ -14,7 +14,7 @@ pub struct Scales {
     pub tension: f64,
     /// Extent of the domain.
     pub length: f64,
-    /// Size of the cells at the fronts.
+    /// Size of the cells at the fronts, in the mean.
     pub h: f64,
     pub degree: usize,
     pub dimension: usize,
@@ -58,7 +58,7 @@ impl Scales {
             pressure: load.max(tension * gap / (length * length)),
             tension,
             length,
-            h: membrane.grid.h(),
+            h: membrane.front_size(),
             degree: membrane.grid.degree(),
             dimension: D,
         }

@@ -1,6 +1,7 @@
 //! How large cells and modes are to be, as a smooth function of the place: small where the fronts need it, and growing
 //! gradually from there.
 
+use signorini_fem::Grid;
 use signorini_geometry::Point;
 
 /// Cells grow by this much on the way of one length.
@@ -39,10 +40,26 @@ impl<const D: usize> Sizing<D> {
         self.0.iter().map(of).sum::<f64>().sqrt().sqrt().recip()
     }
 
+    /// The mean size along the fronts.
+    pub fn mean(&self) -> f64 {
+        let [size, length] =
+            self.0.iter().fold([0.0; 2], |[s, l], w| [s + w.share * w.size * w.size, l + w.share * w.size]);
+        size / length.max(f64::MIN_POSITIVE)
+    }
+
     /// How often cells of the given size are to be divided at a place.
     pub fn divisions(&self, x: &Point<D>, size: f64) -> usize {
         ((size / self.at(x)).log2() - SLACK).ceil().max(0.0) as usize
     }
+}
+
+/// A grid with cells twice as large as long as there are more than so many along a side.
+pub fn coarsened<const D: usize>(grid: &Grid<D>, most: usize) -> Grid<D> {
+    let mut cells = grid.cells();
+    while cells.iter().any(|n| *n > most) && cells.iter().all(|n| n.is_multiple_of(2)) {
+        cells = cells.map(|n| n / 2);
+    }
+    Grid::new(*grid.bounds(), cells, grid.degree())
 }
 
 #[cfg(test)]

@@ -18,7 +18,7 @@ use std::sync::Arc;
 /// its edge.
 pub(super) const MARGIN: f64 = 1.03;
 /// How often cells are divided at most where the case does not say.
-const MOST_DIVISIONS: usize = 3;
+const MOST_DIVISIONS: usize = 5;
 /// How often those of a mesh from a file may be.
 const MOST_MESH_DIVISIONS: i64 = 12;
 /// Fraction of the free memory that a solve may use.

@@ -156,6 +156,18 @@ impl<const D: usize> Conditions<D> {
     }
 }
 
+/// Whether a body pushes about a point that it might touch.
+pub fn pushes<const D: usize, Z: Zone<D>>(
+    membrane: &Membrane<D>,
+    zone: &Z,
+    side: Side,
+    x: &Point<D>,
+    size: f64,
+) -> bool {
+    let kink = kink(membrane, zone, side, x, size, false);
+    needed(membrane, side, x, membrane.pressure(side, x), kink, false) > 0.0
+}
+
 /// The pressure with which a body must push about a point of contact: that of the smooth body, as far as adhesion does not
 /// provide it where it is negative, and that of kinks.
 fn needed<const D: usize>(

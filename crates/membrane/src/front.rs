@@ -253,13 +253,16 @@ impl<'a, const D: usize> Fronts<'a, D> {
         (mass, b)
     }
 
-    /// How far the floor's pressure would have the fronts move, at the place where that is farthest relative to a size.
-    pub fn farthest(&self, scales: &Scales, size: impl Fn(&Point<D>) -> f64) -> f64 {
-        let points = &self.equilibrium.quadrature.front;
-        let rate = |i: usize| self.pressure[i].max(WEAK_PRESSURE * scales.pressure) / self.tension[i];
-        (0..self.slope_jump.len())
-            .map(|i| (self.slope_jump[i] - self.adhesive_slope[i]).abs() / rate(i) / size(&points[i].x))
-            .fold(0.0, f64::max)
+    /// How far the floor's pressure would have the modes of the fronts move, at the place where that is farthest relative to
+    /// a size.
+    pub fn farthest<Z: Zone<D>>(&self, zone: &Z, scales: &Scales, size: impl Fn(&Point<D>) -> f64) -> f64 {
+        let space = self.modes().finest();
+        let frames = self.frames(zone, space);
+        let (matrix, _, b) = self.local_system(zone, space, &frames, &self.local_rate(scales), scales);
+        let Some(step) = matrix.solve(&b) else { return f64::INFINITY };
+        let moved = |frame: &FrontFrame| frame.modes.iter().map(|(i, v)| v * step[*i]).sum::<f64>();
+        let points = self.equilibrium.quadrature.front.iter().zip(frames.iter());
+        points.map(|(p, frame)| moved(frame).abs() / size(&p.x)).fold(0.0, f64::max)
     }
 
     /// The fewest modes that see the better part of the slope jump.
@@ -355,7 +358,7 @@ impl<'a, const D: usize> Fronts<'a, D> {
         scales: &Scales,
     ) -> (ModeMatrix, ModeMatrix, Vec<f64>) {
         let n = zone.mode_offsets(space)[zone.front_count()];
-        let (mut matrix, b) = self.galerkin(frames, n, local, &self.slope_jump);
+        let (mut matrix, b) = self.galerkin(frames, n, local, &self.excess());
         let held = self.stiffness_outside(zone, space, frames, &matrix.diagonal(), scales.pressure / scales.tension);
         matrix.add(held.clone());
         (matrix, ModeMatrix::of_cliques(n, held), b)

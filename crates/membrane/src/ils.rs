@@ -3,13 +3,14 @@
 
 use crate::active_set::{self, NodalStart};
 use crate::adhesion::Branch;
-use crate::conditions::{Conditions, corrected, least_free_gap};
+use crate::conditions::{Conditions, corrected, least_free_gap, pushes};
 use crate::equilibrium::{Elements, Equilibrium};
 use crate::front::{Fronts, StepKind};
 use crate::problem::Membrane;
 use crate::published::{ModeSchedule, Transport};
 use crate::scales::Scales;
 use crate::zone::{Zone, contact_index};
+use signorini_geometry::Point;
 use signorini_solve::{Acceleration, Iteration, Progress, SolveError};
 
 /// Steps after which fronts that do not come to rest are given up.
@@ -50,6 +51,8 @@ const FREE: f64 = -1e-10;
 const NODES: usize = 256;
 /// A zone of less than this part of a cell has no shape.
 const SMALL: f64 = 0.7;
+/// Holes of fewer cells are nowhere far from their outlines.
+const FEW: f64 = 16.0;
 /// Steps shorter than this fraction of a cell are made with the derivative of the discrete equations ...
 const CLOSE: f64 = 0.3;
 /// ... where no front curves by more than this within a cell.
@@ -57,6 +60,8 @@ const SHARP: f64 = 0.5;
 /// One that leaves more than this part of the residual is followed by so many others.
 const GAINED: f64 = 0.5;
 const DOUBTED: usize = 2;
+/// Fronts that lack less than this fraction of a cell are left to smaller ones.
+const NEARLY: f64 = 0.05;
 /// Adhesive steps shorter than this fraction of a cell are extrapolated.
 const NEAR: f64 = 0.1;
 /// A front moves at most this fraction of the membrane's extent in one step.
@@ -113,8 +118,8 @@ pub struct Solution<const D: usize, Z> {
     pub unrefined: bool,
     /// Length of the last step relative to a cell, where the fronts settled on a jump of the discrete slope.
     pub settled_within: Option<f64>,
-    /// Whether they settled as no step was left, not as they came no closer.
-    pub out_of_steps: bool,
+    /// Whether they were left to smaller cells before they came to rest.
+    pub unfinished: bool,
     /// Whether multigrid found it, and not a factorisation.
     pub multigrid: bool,
     /// What the nodal method predicted on the way, if it was asked.
@@ -140,7 +145,7 @@ impl<const D: usize, Z> Solution<D, Z> {
             unresolved: None,
             unrefined: false,
             settled_within: None,
-            out_of_steps: false,
+            unfinished: false,
             multigrid: false,
             predicted: None,
         }
@@ -170,6 +175,8 @@ pub enum Rest {
     Final,
     /// Until the cells about them may as well be divided.
     BeforeDivision,
+    /// The same on cells that are divided, perhaps not enough.
+    BeforeMoreDivision,
     /// Until they are as true as the grid, which a finer one goes on from.
     BeforeRefinement,
 }
@@ -178,7 +185,7 @@ impl Rest {
     /// The slope jump in the modes, relative to what they do not see of it, at which fronts sharper than a cell rest.
     fn share(self) -> f64 {
         match self {
-            Rest::Final | Rest::BeforeRefinement => 1e-3,
+            Rest::Final | Rest::BeforeMoreDivision | Rest::BeforeRefinement => 1e-3,
             Rest::BeforeDivision => 0.2,
         }
     }
@@ -186,7 +193,7 @@ impl Rest {
     /// The slope jump at which fronts rest, relative to its tolerance.
     fn residual(self) -> f64 {
         match self {
-            Rest::Final | Rest::BeforeDivision => 1.0,
+            Rest::Final | Rest::BeforeDivision | Rest::BeforeMoreDivision => 1.0,
             Rest::BeforeRefinement => 10.0,
         }
     }
@@ -194,15 +201,20 @@ impl Rest {
     /// Steps after which fronts that do not come to rest are given up.
     fn most_steps(self) -> usize {
         match self {
-            Rest::Final | Rest::BeforeRefinement => MOST_STEPS,
+            Rest::Final | Rest::BeforeMoreDivision | Rest::BeforeRefinement => MOST_STEPS,
             Rest::BeforeDivision => MOST_STEPS_BEFORE_DIVISION,
         }
+    }
+
+    /// Whether fronts are left to smaller cells where those that they lie in are too large for Newton's method.
+    fn leaves(self) -> bool {
+        matches!(self, Rest::BeforeDivision | Rest::BeforeMoreDivision)
     }
 
     /// Corrections of the zone after which it is given up.
     fn most_sweeps(self) -> usize {
         match self {
-            Rest::Final | Rest::BeforeRefinement => MOST_SWEEPS,
+            Rest::Final | Rest::BeforeMoreDivision | Rest::BeforeRefinement => MOST_SWEEPS,
             Rest::BeforeDivision => MOST_SWEEPS_BEFORE_DIVISION,
         }
     }
@@ -399,6 +411,9 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 self.predict()?;
                 continue;
             }
+            if self.rest == Rest::BeforeMoreDivision && self.solution.unfinished {
+                return Ok(Reason::Converged);
+            }
             sweeps += 1;
             let solution = &mut self.solution;
             let (Some(equilibrium), Some(scales)) = (&solution.equilibrium, &solution.scales) else {
@@ -412,9 +427,12 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             }
             // Corrected and settled again it would come back to itself: the grid cannot tell whether zones touch.
             let state = (solution.zone.counts(), conditions.least_gap_outside);
-            let again = |(counts, gap): &((usize, usize), f64)| *counts == state.0 && (gap / state.1 - 1.0).abs() < 0.1;
+            let left = self.rest == Rest::BeforeDivision && !self.adhering;
+            let again = |(counts, gap): &((usize, usize), f64)| {
+                *counts == state.0 && (left || (gap / state.1 - 1.0).abs() < 0.1)
+            };
             if !first && seen.iter().any(again) {
-                if conditions.nearly_hold(scales, self.membrane) {
+                if left || conditions.nearly_hold(scales, self.membrane) {
                     solution.unresolved = Some(-conditions.least_gap_outside);
                     solution.conditions = Some(conditions);
                     return Ok(Reason::Converged);
@@ -444,7 +462,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
 
     /// Whether fronts that moved to the last, sharper than the grid, are those of zones that have merged or split.
     fn have_missed_a_merger(&self) -> Result<bool, SolveError> {
-        let left = self.rest == Rest::BeforeDivision && self.solution.out_of_steps;
+        let left = self.solution.unfinished;
         let shifted = self.membrane.formulation.transport() != Transport::Exact;
         let moving = self.solution.settled_within.is_some_and(|step| step > SETTLED);
         Ok(moving && !left && !shifted && !self.adhering && self.prediction()?.counts() != self.solution.zone.counts())
@@ -489,7 +507,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         let (mut best, mut waited) = (f64::INFINITY, 0);
         let (mut previous, mut falls) = (f64::INFINITY, 0);
         self.solution.settled_within = None;
-        self.solution.out_of_steps = false;
+        self.solution.unfinished = false;
         self.solution.lowest_eigenvalue = None;
         let (mut count, mut descents, mut changes) = (0, 0, 0);
         let (mut last_kind, mut doubted) = (None, 0);
@@ -518,6 +536,14 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 // Its fronts have left the membrane.
                 let zone = zone.without(&self.membrane.grid, beyond);
                 self.report(0.0, "zone left the membrane");
+                (best, waited, previous, falls) = (f64::INFINITY, 0, f64::INFINITY, 0);
+                acceleration = Acceleration::default();
+                self.solution.equilibrium = Some(equilibrium);
+                self.solution.zone = zone;
+                continue;
+            }
+            if let Some(zone) = self.without_pressed_holes(zone) {
+                self.report(0.0, "hole closed");
                 (best, waited, previous, falls) = (f64::INFINITY, 0, f64::INFINITY, 0);
                 acceleration = Acceleration::default();
                 self.solution.equilibrium = Some(equilibrium);
@@ -582,6 +608,10 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             let settled =
                 (waited >= patience || last) && !slowly && step.kind != StepKind::Descent && relative_step < enough();
             let blunt = D > 1 && bend >= 1.0 && unseen(self.rest.share());
+            // Newton's method is slow on fronts as sharp as a cell, and fast on the smaller ones that they want.
+            let left = self.rest.leaves() && !self.adhering && bend >= SHARP;
+            let left = left && fronts.farthest(zone, &scales, |_| h) < NEARLY;
+            let settled = settled || left;
             if residual <= self.rest.residual() || (waited >= 1 && relative_step < ROUND_OFF) || settled || blunt {
                 if let Some(linearised) = &linearised {
                     let spectrum = linearised.spectrum();
@@ -603,7 +633,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 }
                 self.report(residual, if settled && residual > 1.0 { "settled" } else { "at rest" });
                 self.solution.settled_within = (settled && residual > 1.0).then_some(relative_step);
-                self.solution.out_of_steps = self.solution.settled_within.is_some() && waited < patience;
+                self.solution.unfinished = self.rest.leaves() && settled && residual > 1.0 && waited < patience;
                 self.solution.equilibrium = Some(equilibrium);
                 return Ok(Fixed::AtRest);
             }
@@ -613,7 +643,14 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             }
             // As everywhere short of adhesion fronts rest without a slope, the pressure of the floor is nearly all of the
             // derivative; near the solution the rest of it, which cells add, makes the convergence quadratic.
-            let near = relative_step < CLOSE && doubted == 0 && bend < SHARP;
+            let near = relative_step < CLOSE
+                && doubted == 0
+                && bend
+                    < std::env::var("SH")
+                        .ok()
+                        .and_then(|v| v.parse().ok())
+                        .filter(|_| self.membrane.grid.degree() == 1)
+                        .unwrap_or(SHARP);
             let exact = match D > 1 && near && !self.adhering && !shifted && equilibrium.responds() {
                 true => fronts.discrete_step(zone, self.elements, &scales)?,
                 false => None,
@@ -650,6 +687,21 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             self.solution.zone = zone;
         }
         Ok(Fixed::Moving)
+    }
+
+    /// The zone without holes of a few cells in which a body pushes everywhere: there the membrane would lie below it, and
+    /// Newton's method only halves such a hole in every step. None where there are no such holes.
+    fn without_pressed_holes(&self, zone: &Z) -> Option<Z> {
+        let membrane = self.membrane;
+        if self.adhering || membrane.formulation.transport() != Transport::Exact {
+            return None;
+        }
+        zone.filled(&membrane.grid, &|side, outline, area| {
+            let centre = outline.iter().sum::<Point<D>>() / outline.len() as f64;
+            let size = membrane.cells.containing(&centre).map_or(0.0, |cell| membrane.cells.size(cell));
+            let few = area < FEW * size.powi(D as i32);
+            few && std::iter::once(&centre).chain(outline).all(|x| pushes(membrane, zone, side, x, size))
+        })
     }
 
     fn report(&mut self, residual: f64, action: &str) {

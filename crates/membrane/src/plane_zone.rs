@@ -311,6 +311,14 @@ impl PlaneZone {
         Self { sizing: self.sizing.clone(), ..Self::new(grid, self.sides.iter().copied().zip(curves).collect()) }
     }
 
+    /// The same zone without some of its curves.
+    fn keeping(&self, grid: &Grid<2>, keep: impl Fn(usize) -> bool) -> Self {
+        let kept: Vec<usize> = (0..self.curves.len()).filter(|&i| keep(i)).collect();
+        let curves = kept.iter().map(|&i| (self.sides[i], self.curves[i].clone())).collect();
+        let mode_counts = kept.iter().map(|&i| self.mode_counts[i]).collect();
+        Self { mode_counts, sizing: self.sizing.clone(), ..Self::new(grid, curves) }
+    }
+
     /// A curve with so many knots, as far from each other as its cells are large.
     fn redrawn(&self, curve: &ClosedCurve, knots: usize) -> ClosedCurve {
         match &self.sizing {
@@ -807,8 +815,18 @@ impl Zone<2> for PlaneZone {
         let within = |i: usize| {
             self.hole[i] && polygon::winding_number(self.curves[outer].samples(), &self.curves[i].samples()[0]) != 0
         };
-        let kept = (0..self.curves.len()).filter(|&i| i != outer && !within(i));
-        Self::new(grid, kept.map(|i| (self.sides[i], self.curves[i].clone())).collect())
+        self.keeping(grid, |i| i != outer && !within(i))
+    }
+    fn filled(&self, grid: &Grid<2>, closes: &dyn Fn(Side, &[Point<2>], f64) -> bool) -> Option<Self> {
+        let empty = |i: usize| {
+            let hole = self.curves[i].samples();
+            let within = |c: &ClosedCurve| polygon::winding_number(hole, &c.samples()[0]) != 0;
+            (0..self.curves.len()).all(|j| j == i || !within(&self.curves[j]))
+        };
+        let closing =
+            |i: usize| self.hole[i] && closes(self.sides[i], self.curves[i].samples(), self.areas[i]) && empty(i);
+        let kept: Vec<bool> = (0..self.curves.len()).map(|i| !closing(i)).collect();
+        kept.contains(&false).then(|| self.keeping(grid, |i| kept[i]))
     }
     fn seeded(&self, grid: &Grid<2>, side: Side, x: &Point<2>, radius: f64) -> Self {
         let circle: Vec<Point<2>> = (0..SEED_KNOTS)
@@ -917,7 +935,11 @@ impl Zone<2> for PlaneZone {
         let wanted = |feature: &Feature| {
             let here = self.sizing.as_ref().map_or(self.grid.h(), |s| s.at(&feature.place));
             let blunted = (BLUNTED * feature.curvature * here).max(1.0);
-            let curved = if grid.degree() == 1 { CURVED_LINEAR } else { CURVED };
+            let curved = if grid.degree() == 1 {
+                std::env::var("CL").ok().and_then(|v| v.parse().ok()).unwrap_or(CURVED_LINEAR)
+            } else {
+                CURVED
+            };
             let size = (1.0 / (curved * feature.curvature * blunted)).min(feature.apart / BETWEEN);
             (size / f64::from(1u32 << finer)).clamp(divided(most), divided(least))
         };

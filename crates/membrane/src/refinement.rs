@@ -4,7 +4,7 @@ use crate::adhesion::Branch;
 use crate::domain::DomainOnCells;
 use crate::equilibrium::{Elements, Equilibrium};
 use crate::front::Fronts;
-use crate::ils::{self, Reason, Rest, Solution, Start};
+use crate::ils::{self, Reason, Rest, SETTLED_COARSE, Solution, Start};
 use crate::problem::Membrane;
 use crate::published::Formulation;
 use crate::scales::Scales;
@@ -118,8 +118,6 @@ impl<const D: usize> Refinement<D> {
         let rest = if last { Rest::Final } else { Rest::BeforeDivision };
         let mut best = ils::solve(&whole, &mut Elements::new(&whole), start, rest, at, progress);
         best.before = looks;
-        // Fronts that were left to smaller cells, which may turn out not to be wanted.
-        let mut unfinished = rest == Rest::BeforeDivision;
         let mut finer = 0;
         for _ in 0..MOST_ROUNDS {
             let (Some(scales), false) = (best.scales, best.zone.is_empty()) else { break };
@@ -147,23 +145,16 @@ impl<const D: usize> Refinement<D> {
             let more = || self.sizing(membrane, &zone, 1).filter(|_| too_large);
             let wanted = self.sizing(membrane, &zone, finer).or_else(more);
             let enough = wanted.as_ref().is_none_or(|sizing| !too_large && resolves(&whole, &zone, sizing));
-            let Some(sizing) = wanted.filter(|_| !enough) else {
-                if !astray && unfinished && best.out_of_steps {
-                    let start = Start::Zone(zone, scales, branch);
-                    let next = ils::solve(&whole, &mut Elements::new(&whole), start, Rest::Final, at, progress);
-                    return continued(best, next);
-                }
-                return best;
-            };
+            let Some(sizing) = wanted.filter(|_| !enough) else { break };
             let about = |zone: Z, sizing: Sizing<D>, progress: &mut dyn Progress| {
                 let finer = self.divided(membrane, &zone, sizing)?;
                 let start = Start::Zone(zone, scales.on(&finer), branch);
-                let found = ils::solve(&finer, &mut Elements::new(&finer), start, Rest::Final, at, progress);
+                let rest = Rest::BeforeMoreDivision;
+                let found = ils::solve(&finer, &mut Elements::new(&finer), start, rest, at, progress);
                 Some((finer, found))
             };
             let counts = zone.counts();
             let Some((mut cells, mut next)) = about(zone, sizing, progress) else { break };
-            unfinished = false;
             next.before = best.before + best.iterations;
             let lost = |next: &Solution<D, Z>| {
                 best.reason.converged() && !next.reason.converged() && next.reason != Reason::Interrupted
@@ -188,13 +179,20 @@ impl<const D: usize> Refinement<D> {
             next.residuals = std::mem::take(&mut best.residuals);
             (best, whole) = (next, cells);
         }
+        if let (true, true, Some(scales)) = (best.unfinished, best.reason.converged(), best.scales) {
+            // Smaller cells turned out not to be wanted, or not to be had.
+            let start = Start::Zone(best.zone.clone(), scales, branch);
+            let next = ils::solve(&whole, &mut Elements::new(&whole), start, Rest::Final, at, progress);
+            return continued(best, next);
+        }
         best
     }
 }
 
 /// A solution and what came of going on from it on the same cells.
 fn continued<const D: usize, Z: Zone<D>>(mut first: Solution<D, Z>, mut next: Solution<D, Z>) -> Solution<D, Z> {
-    if next.reason != Reason::Interrupted && !next.reason.converged() {
+    let true_enough = first.settled_within.is_none_or(|step| step < SETTLED_COARSE);
+    if next.reason != Reason::Interrupted && !next.reason.converged() && true_enough {
         first.before += next.iterations;
         return first;
     }
@@ -210,7 +208,7 @@ fn continued<const D: usize, Z: Zone<D>>(mut first: Solution<D, Z>, mut next: So
 fn is_near<const D: usize, Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z, scales: &Scales, sizing: &Sizing<D>) -> bool {
     let zone = zone.on_grid(&membrane.grid);
     let state = Equilibrium::solve(membrane, &zone, &mut Elements::new(membrane));
-    state.is_ok_and(|state| Fronts::new(&state, true).farthest(scales, |x| sizing.at(x)) < NEAR)
+    state.is_ok_and(|state| Fronts::new(&state, true).farthest(&zone, scales, |x| sizing.at(x)) < NEAR)
 }
 
 /// Whether the cells at the fronts of a zone are hardly larger than these want them.

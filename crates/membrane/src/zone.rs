@@ -220,6 +220,11 @@ pub trait Zone<const D: usize>: Division<D> + Clone + Send {
     fn reduced(&self, grid: &Grid<D>, f: &mut dyn FnMut(&Point<D>) -> f64) -> Self;
     /// The zone without one of its parts.
     fn without(&self, grid: &Grid<D>, part: usize) -> Self;
+    /// The zone without those holes of which this says so, from the side that is touched round them, their outlines and
+    /// areas; none where it does of no hole.
+    fn filled(&self, _grid: &Grid<D>, _closes: &dyn Fn(Side, &[Point<D>], f64) -> bool) -> Option<Self> {
+        None
+    }
     /// A small zone about a point that touches one side, added.
     fn seeded(&self, grid: &Grid<D>, side: Side, x: &Point<D>, radius: f64) -> Self;
     /// Distance from `x` to the nearest front, if that is near: of fronts beyond `within` none need be known.

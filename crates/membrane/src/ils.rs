@@ -643,14 +643,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             }
             // As everywhere short of adhesion fronts rest without a slope, the pressure of the floor is nearly all of the
             // derivative; near the solution the rest of it, which cells add, makes the convergence quadratic.
-            let near = relative_step < CLOSE
-                && doubted == 0
-                && bend
-                    < std::env::var("SH")
-                        .ok()
-                        .and_then(|v| v.parse().ok())
-                        .filter(|_| self.membrane.grid.degree() == 1)
-                        .unwrap_or(SHARP);
+            let near = relative_step < CLOSE && doubted == 0 && bend < SHARP;
             let exact = match D > 1 && near && !self.adhering && !shifted && equilibrium.responds() {
                 true => fronts.discrete_step(zone, self.elements, &scales)?,
                 false => None,

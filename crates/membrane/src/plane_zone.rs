@@ -935,11 +935,7 @@ impl Zone<2> for PlaneZone {
         let wanted = |feature: &Feature| {
             let here = self.sizing.as_ref().map_or(self.grid.h(), |s| s.at(&feature.place));
             let blunted = (BLUNTED * feature.curvature * here).max(1.0);
-            let curved = if grid.degree() == 1 {
-                std::env::var("CL").ok().and_then(|v| v.parse().ok()).unwrap_or(CURVED_LINEAR)
-            } else {
-                CURVED
-            };
+            let curved = if grid.degree() == 1 { CURVED_LINEAR } else { CURVED };
             let size = (1.0 / (curved * feature.curvature * blunted)).min(feature.apart / BETWEEN);
             (size / f64::from(1u32 << finer)).clamp(divided(most), divided(least))
         };

@@ -149,7 +149,7 @@ impl<const D: usize> Refinement<D> {
             let about = |zone: Z, sizing: Sizing<D>, progress: &mut dyn Progress| {
                 let finer = self.divided(membrane, &zone, sizing)?;
                 let start = Start::Zone(zone, scales.on(&finer), branch);
-                let rest = Rest::BeforeMoreDivision;
+                let rest = if whole.sizing.is_none() { Rest::BeforeMoreDivision } else { Rest::Final };
                 let found = ils::solve(&finer, &mut Elements::new(&finer), start, rest, at, progress);
                 Some((finer, found))
             };

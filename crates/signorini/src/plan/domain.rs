@@ -19,6 +19,8 @@ use std::sync::Arc;
 pub(super) const MARGIN: f64 = 1.03;
 /// How often cells are divided at most where the case does not say.
 const MOST_DIVISIONS: usize = 5;
+/// ... of degree 1, which is not so accurate that smaller ones would gain much.
+const MOST_DIVISIONS_LINEAR: usize = 3;
 /// How often those of a mesh from a file may be.
 const MOST_MESH_DIVISIONS: i64 = 12;
 /// Fraction of the free memory that a solve may use.
@@ -351,7 +353,8 @@ impl ReadDomain<2> for Planner<'_> {
     }
 
     fn refinement(&self, key: &statement::GridKey, grid: &Grid<2>) -> Result<Refinement<2>, CaseError> {
-        let mut refinement = Refinement { most: MOST_DIVISIONS, ..Refinement::default() };
+        let most = if grid.degree() == 1 { MOST_DIVISIONS_LINEAR } else { MOST_DIVISIONS };
+        let mut refinement = Refinement { most, ..Refinement::default() };
         let Some(refine) = key.refine.as_ref().map(|r| r.get_ref()) else { return Ok(refinement) };
         let times = |key: &Option<toml::Spanned<i64>>, otherwise: usize| match key {
             None => Ok(otherwise),
@@ -361,7 +364,7 @@ impl ReadDomain<2> for Planner<'_> {
             }
         };
         refinement.fronts = times(&refine.fronts, 0)?;
-        refinement.most = times(&refine.most, MOST_DIVISIONS.max(refinement.fronts))?;
+        refinement.most = times(&refine.most, most.max(refinement.fronts))?;
         if refinement.fronts > refinement.most {
             let span = refine.most.as_ref().map_or(0..0, |m| m.span());
             return Err(self.document.error(

@@ -66,6 +66,7 @@ pub fn reference() -> Value {
 }
 
 pub const CELLS: &str = "bodies.film.membrane.mesh.grid.cells";
+pub const REFINE: &str = "bodies.film.membrane.mesh.grid.refine";
 pub const DEGREE: &str = "bodies.film.membrane.degree";
 
 /// A gallery case by name.

@@ -1,9 +1,7 @@
 //! Cells that divide where the fronts need it, and what the discretisation leaves uncertain.
 
-use super::{CELLS, DEGREE, error, example, last_step, number, set, summary};
+use super::{CELLS, DEGREE, REFINE, error, example, last_step, number, set, summary};
 use serde_json::Value;
-
-const REFINE: &str = "bodies.film.membrane.mesh.grid.refine";
 
 fn cosine(load: f64, pairs: &[(&str, String)]) -> Value {
     let mut all = vec![("steps", "[]".to_string()), ("loads.press.normal", format!("-{load}"))];

@@ -318,6 +318,26 @@ mod tests {
     }
 
     #[test]
+    fn knots_lie_at_equal_steps_of_a_density() {
+        // ∫ (1 + 3 cos a) r da over an arc of the circle.
+        let (radius, density) = (0.5, |x: &Point<2>| 4.0 + 6.0 * (x[0] - 0.1));
+        let weighed = |a: f64| radius * (4.0 * a + 6.0 * radius * a.sin());
+        let count = 64;
+        let even = circle(radius, 9, 48).evenly(count, density);
+        for k in 0..count {
+            let at = |k: usize| {
+                let x = even.point(k as f64 / count as f64).position;
+                x[1].atan2(x[0] - 0.1)
+            };
+            let arc = |a: f64, b: f64| weighed(if b < a { b + 2.0 * PI } else { b }) - weighed(a);
+            let step = arc(at(k), at(k + 1)) * count as f64 / weighed(2.0 * PI);
+            assert!((step - 1.0).abs() < 1e-6, "{k}: {step}");
+        }
+        assert!((even.length() - PI).abs() < 1e-6, "{}", even.length() - PI);
+        assert!(even.unevenness() > 3.0);
+    }
+
+    #[test]
     fn closest_points_are_orthogonal_and_signed() {
         let c = circle(0.5, 7, 24);
         for i in 0..50 {

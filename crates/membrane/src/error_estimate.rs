@@ -65,12 +65,17 @@ impl ErrorEstimate {
             force += p.weight * w * rate;
             force_size += p.weight * (w * rate).abs();
         }
+        // What Newton's method left of the slope jump pulls too.
+        let rest = Fronts::new(coarse, sticky);
+        let left: f64 = (coarse.quadrature.front.iter().enumerate())
+            .map(|(i, p)| p.weight * rest.tension[i] * (rest.slope_jump[i] - rest.adhesive_slope[i]))
+            .sum();
         let cancelled = if coarse.membrane.cells.degree() == 1 { CANCELLED } else { 0.0 };
         let front = f64::sqrt(square / f64::max(total, f64::MIN_POSITIVE)).max(4.0 * f64::EPSILON * scales.length);
         Ok(Some(Self {
             front,
             area: SAFETY * area.abs() + cancelled * area_size,
-            force: SAFETY * force.abs() + cancelled * force_size,
+            force: SAFETY * force.abs() + cancelled * force_size + left.abs(),
         }))
     }
 }

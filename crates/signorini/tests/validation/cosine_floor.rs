@@ -93,6 +93,23 @@ fn long_increments_take_few_solves() {
     }
 }
 
+/// And so do those beside a merger and a hole that closes, where fronts are as sharp as cells are small: of as many zones and
+/// holes as the last, the second and third of a kind.
+#[test]
+fn increments_beside_events_take_few_solves() {
+    for (from, to, increments, last) in
+        [("0.1", "0.12", 2, (4, 0)), ("0.15", "0.17", 2, (1, 1)), ("0.37", "0.39", 2, (1, 1))]
+    {
+        let steps = ("steps", format!("[{{ to = {from} }}, {{ to = {to}, increments = {increments} }}]"));
+        let summary = summary(example("cosine_disc"), &set(&[(CELLS, "[32, 32]".into()), steps]));
+        let contact = &last_step(&summary)["contacts"]["touch"];
+        assert_eq!((&contact["zones"], &contact["holes"]), (&last.0.into(), &last.1.into()));
+        let steps = summary["steps"].as_array().expect("steps");
+        let solves: Vec<u64> = steps.iter().filter_map(|s| s["iterations"].as_u64()).collect();
+        assert!(solves[1..].iter().all(|n| *n <= 5), "to {to}: {solves:?}");
+    }
+}
+
 /// A path that turns goes on from the states that it came through: they depend on the load alone, whatever the time. Between
 /// two drivers that do not keep in step there is no such line, and the path goes on in time.
 #[test]

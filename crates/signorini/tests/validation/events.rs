@@ -37,6 +37,22 @@ fn the_hole_of_the_ring_closes() {
     assert!(number(&at[0]).abs() < 1e-3 && number(&at[1]).abs() < 1e-3);
 }
 
+/// From a state in which it is hardly open any more it is not found open beyond that load.
+#[test]
+fn a_hole_does_not_outlive_its_load() {
+    let steps = "[[steps]]\nto = 0.385\n[[steps]]\nto = 0.3925\n[[steps]]\nto = 0.3944\n[[steps]]\nto = 0.3953";
+    let case = example("cosine_disc").replace("[[steps]]\nto = 0.4\nincrements = 4", steps);
+    let found = summary(&case, &set(&[]));
+    assert_eq!(found["converged"], true, "{}", found["verdict"]);
+    let holes: Vec<u64> = found["steps"]
+        .as_array()
+        .expect("steps")
+        .iter()
+        .filter_map(|s| s["contacts"]["touch"]["holes"].as_u64())
+        .collect();
+    assert_eq!(holes, [1, 1, 1, 0]);
+}
+
 /// Two zones grow tips towards each other, merge, and part again at the same load. With 80 × 48 cells and a tolerance of
 /// 4e-3 the merger is at t = 2.3488.
 #[test]

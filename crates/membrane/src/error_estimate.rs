@@ -67,9 +67,8 @@ impl ErrorEstimate {
         }
         // What Newton's method left of the slope jump pulls too.
         let rest = Fronts::new(coarse, sticky);
-        let left: f64 = (coarse.quadrature.front.iter().enumerate())
-            .map(|(i, p)| p.weight * rest.tension[i] * (rest.slope_jump[i] - rest.adhesive_slope[i]))
-            .sum();
+        let points = coarse.quadrature.front.iter().zip(&rest.tension).zip(rest.excess());
+        let left: f64 = points.map(|((p, tension), excess)| p.weight * tension * excess).sum();
         let cancelled = if coarse.membrane.cells.degree() == 1 { CANCELLED } else { 0.0 };
         let front = f64::sqrt(square / f64::max(total, f64::MIN_POSITIVE)).max(4.0 * f64::EPSILON * scales.length);
         Ok(Some(Self {

@@ -185,24 +185,24 @@ impl Rest {
     /// The slope jump in the modes, relative to what they do not see of it, at which fronts sharper than a cell rest.
     fn share(self) -> f64 {
         match self {
-            Rest::Final | Rest::BeforeMoreDivision | Rest::BeforeRefinement => 1e-3,
             Rest::BeforeDivision => 0.2,
+            _ => 1e-3,
         }
     }
 
     /// The slope jump at which fronts rest, relative to its tolerance.
     fn residual(self) -> f64 {
         match self {
-            Rest::Final | Rest::BeforeDivision | Rest::BeforeMoreDivision => 1.0,
             Rest::BeforeRefinement => 10.0,
+            _ => 1.0,
         }
     }
 
     /// Steps after which fronts that do not come to rest are given up.
     fn most_steps(self) -> usize {
         match self {
-            Rest::Final | Rest::BeforeMoreDivision | Rest::BeforeRefinement => MOST_STEPS,
             Rest::BeforeDivision => MOST_STEPS_BEFORE_DIVISION,
+            _ => MOST_STEPS,
         }
     }
 
@@ -214,8 +214,8 @@ impl Rest {
     /// Corrections of the zone after which it is given up.
     fn most_sweeps(self) -> usize {
         match self {
-            Rest::Final | Rest::BeforeMoreDivision | Rest::BeforeRefinement => MOST_SWEEPS,
             Rest::BeforeDivision => MOST_SWEEPS_BEFORE_DIVISION,
+            _ => MOST_SWEEPS,
         }
     }
 }
@@ -485,10 +485,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
 
     /// A zone from other cells with modes as these can tell them apart.
     fn on_cells(&self, zone: Z) -> Z {
-        match &self.membrane.sizing {
-            None => zone.on_grid(&self.membrane.grid),
-            Some(sizing) => zone.on_sizes(&self.membrane.grid, sizing),
-        }
+        if self.membrane.sizing.is_some() { self.resized(zone) } else { zone.on_grid(&self.membrane.grid) }
     }
 
     /// A zone whose fronts were drawn anew on the grid, with modes as long as the cells are large.
@@ -532,18 +529,12 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 return Ok(Fixed::AtRest);
             }
             let area = areas(&equilibrium, zone.counts().0);
-            if let Some(beyond) = area.iter().position(|a| *a == 0.0) {
-                // Its fronts have left the membrane.
-                let zone = zone.without(&self.membrane.grid, beyond);
-                self.report(0.0, "zone left the membrane");
-                (best, waited, previous, falls) = (f64::INFINITY, 0, f64::INFINITY, 0);
-                acceleration = Acceleration::default();
-                self.solution.equilibrium = Some(equilibrium);
-                self.solution.zone = zone;
-                continue;
-            }
-            if let Some(zone) = self.without_pressed_holes(zone) {
-                self.report(0.0, "hole closed");
+            // Fronts that have left the membrane, or closed.
+            let beyond = area.iter().position(|a| *a == 0.0);
+            let fewer = beyond.map(|part| (zone.without(&self.membrane.grid, part), "zone left the membrane"));
+            let fewer = fewer.or_else(|| Some((self.without_pressed_holes(zone)?, "hole closed")));
+            if let Some((zone, what)) = fewer {
+                self.report(0.0, what);
                 (best, waited, previous, falls) = (f64::INFINITY, 0, f64::INFINITY, 0);
                 acceleration = Acceleration::default();
                 self.solution.equilibrium = Some(equilibrium);

@@ -199,6 +199,7 @@ fn continued<const D: usize, Z: Zone<D>>(mut first: Solution<D, Z>, mut next: So
     next.before = first.before;
     next.iterations += first.iterations;
     next.jumped |= first.jumped;
+    next.unrefined |= first.unrefined;
     first.residuals.append(&mut next.residuals);
     next.residuals = first.residuals;
     next

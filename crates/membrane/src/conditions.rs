@@ -11,6 +11,8 @@ use signorini_geometry::Point;
 
 /// Times the tolerance, a penetration that may be put up with where the grid cannot tell whether zones touch.
 const NEARLY: f64 = 30.0;
+/// Cells within which a place is beside a front.
+const BESIDE: f64 = 4.0;
 
 /// How far a state is from the contact conditions with one body.
 #[derive(Clone, Copy, Debug)]
@@ -144,6 +146,14 @@ impl<const D: usize> Conditions<D> {
             membrane.cells.containing(&self.deepest.1).map_or(membrane.grid.h(), |cell| membrane.cells.size(cell));
         let divided = membrane.cells.divisible().map_or(1.0, |whole| whole.h() / cell);
         self.worst >= -NEARLY * divided.powi(2) && !self.pulls(scales) && self.torn_from_support.is_none()
+    }
+
+    /// The same where that penetration lies beside a front.
+    pub fn nearly_hold_about<Z: Zone<D>>(&self, zone: &Z, scales: &Scales, membrane: &Membrane<D>) -> bool {
+        let (_, deepest) = self.deepest;
+        let reach = BESIDE * membrane.cell_size(&deepest);
+        let beside = || zone.outlines().iter().flatten().any(|x| (x - deepest).norm() < reach);
+        self.nearly_hold(scales, membrane) && beside()
     }
 
     /// Whether the contact conditions hold everywhere.

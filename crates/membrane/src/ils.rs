@@ -23,6 +23,8 @@ const MOST_SWEEPS_BEFORE_DIVISION: usize = 2;
 const MOST_STEPS_BEFORE_DIVISION: usize = 15;
 /// Fronts whose residual has not fallen for so many steps ...
 const PATIENCE: usize = 9;
+/// ... or for so many where they are sharper than a cell ...
+const PATIENCE_AT_TIPS: usize = 1;
 /// ... after a third of which steps are damped ...
 const DAMPED_AFTER: usize = 3;
 /// ... and that move by less than this fraction of a cell have settled: as a front crosses a grid line the discrete
@@ -33,6 +35,8 @@ pub(crate) const SETTLED: f64 = 1e-3;
 pub(crate) const SETTLED_COARSE: f64 = 0.03;
 /// ... or, where they are moved as a level set on nodes, by less than this.
 const SETTLED_SHIFTED: f64 = 0.1;
+/// ... or, where smaller cells may follow and a front is sharper than a cell, by less than this.
+const SETTLED_ASTRAY: f64 = 0.5;
 /// A residual that has fallen so often in a row has not settled, however slowly it falls: a front may be on its way to vanish.
 const SLOWLY: usize = 5;
 /// A front sharper than this, relative to a cell, is no front any more.
@@ -415,6 +419,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 return Ok(Reason::Converged);
             }
             sweeps += 1;
+            let tips = self.has_lost_tips(&self.solution.zone);
             let solution = &mut self.solution;
             let (Some(equilibrium), Some(scales)) = (&solution.equilibrium, &solution.scales) else {
                 return Ok(Reason::IterationLimit);
@@ -424,6 +429,14 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             if conditions.hold(scales) {
                 solution.conditions = Some(conditions);
                 return Ok(if solution.zone.is_empty() { Reason::NoContact } else { Reason::Converged });
+            }
+            // What fronts sharper than a cell leave between them is for smaller cells, or for none.
+            let unresolvable =
+                tips && (solution.unfinished || conditions.nearly_hold_about(&solution.zone, scales, self.membrane));
+            if unresolvable {
+                solution.unresolved = Some(-conditions.least_gap_outside);
+                solution.conditions = Some(conditions);
+                return Ok(Reason::Converged);
             }
             // Corrected and settled again it would come back to itself: the grid cannot tell whether zones touch.
             let state = (solution.zone.counts(), conditions.least_gap_outside);
@@ -458,6 +471,13 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 self.predict()?;
             }
         }
+    }
+
+    /// Whether fronts are sharper than a cell somewhere. Newton's method does not converge on such tips, whose radius is the
+    /// length on which it may move them.
+    fn has_lost_tips(&self, zone: &Z) -> bool {
+        let exact = self.membrane.formulation.transport() == Transport::Exact;
+        D > 1 && exact && !self.adhering && zone.bend() >= 1.0
     }
 
     /// Whether fronts that moved to the last, sharper than the grid, are those of zones that have merged or split.
@@ -575,7 +595,12 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             // A level set on nodes shifts the fronts with every step: there is no coming closer than that.
             let transport = self.membrane.formulation.transport();
             let shifted = transport != Transport::Exact;
-            let patience = if shifted { DAMPED_AFTER } else { PATIENCE };
+            let tips = self.has_lost_tips(zone);
+            let patience = match (shifted, tips) {
+                (true, _) => DAMPED_AFTER,
+                (_, true) => PATIENCE_AT_TIPS,
+                _ => PATIENCE,
+            };
             let slowly = falls >= SLOWLY && !shifted;
             if waited >= PATIENCE && slowly {
                 waited = 0;
@@ -590,6 +615,8 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             let enough = || {
                 if shifted {
                     SETTLED_SHIFTED
+                } else if tips && self.rest.leaves() {
+                    SETTLED_ASTRAY
                 } else if sharp || unseen(1.0) {
                     SETTLED_COARSE
                 } else {
@@ -624,7 +651,8 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 }
                 self.report(residual, if settled && residual > 1.0 { "settled" } else { "at rest" });
                 self.solution.settled_within = (settled && residual > 1.0).then_some(relative_step);
-                self.solution.unfinished = self.rest.leaves() && settled && residual > 1.0 && waited < patience;
+                self.solution.unfinished =
+                    self.rest.leaves() && settled && residual > 1.0 && (tips || waited < patience);
                 self.solution.equilibrium = Some(equilibrium);
                 return Ok(Fixed::AtRest);
             }

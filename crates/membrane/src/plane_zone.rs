@@ -216,7 +216,7 @@ impl PlaneZone {
 
     /// Pairs of curve and sample in or next to a cell.
     fn near(&self, cell: usize) -> &[(u32, u32)] {
-        self.near.of(cell)
+        self.near.between(cell, cell)
     }
 
     /// The fronts in a box, taken for parabolas where their curvature times its size is less than `hardly`.
@@ -392,13 +392,12 @@ impl PlaneZone {
         let [low, high] = [b.min + inset, b.max - inset].map(|x| self.grid.cell_index(self.grid.cell_containing(&x)));
         let mut found: Vec<(usize, Vec<usize>)> = Vec::new();
         for j in low[1]..=high[1] {
-            for i in low[0]..=high[0] {
-                for pairs in self.near(self.grid.cell_at([i, j])).chunk_by(|a, b| a.0 == b.0) {
-                    let (c, seeds) = (pairs[0].0 as usize, pairs.iter().map(|pair| pair.1 as usize));
-                    match found.iter_mut().find(|(curve, _)| *curve == c) {
-                        Some((_, all)) => all.extend(seeds),
-                        None => found.push((c, seeds.collect())),
-                    }
+            let row = self.near.between(self.grid.cell_at([low[0], j]), self.grid.cell_at([high[0], j]));
+            for pairs in row.chunk_by(|a, b| a.0 == b.0) {
+                let (c, seeds) = (pairs[0].0 as usize, pairs.iter().map(|pair| pair.1 as usize));
+                match found.iter_mut().find(|(curve, _)| *curve == c) {
+                    Some((_, all)) => all.extend(seeds),
+                    None => found.push((c, seeds.collect())),
                 }
             }
         }
@@ -1062,11 +1061,11 @@ impl NearFronts {
         near
     }
 
-    fn of(&self, cell: usize) -> &[(u32, u32)] {
-        match self.cells.binary_search(&(cell as u32)) {
-            Ok(k) => &self.pairs[self.begin[k] as usize..self.begin[k + 1] as usize],
-            Err(_) => &[],
-        }
+    /// Those of all cells of a row from one to another, cell by cell.
+    fn between(&self, first: usize, last: usize) -> &[(u32, u32)] {
+        let from = self.cells.partition_point(|&cell| (cell as usize) < first);
+        let to = from + self.cells[from..].partition_point(|&cell| cell as usize <= last);
+        &self.pairs[self.begin[from] as usize..self.begin[to] as usize]
     }
 }
 

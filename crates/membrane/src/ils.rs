@@ -8,41 +8,13 @@ use crate::equilibrium::{Elements, Equilibrium};
 use crate::front::{Fronts, StepKind};
 use crate::problem::Membrane;
 use crate::published::{ModeSchedule, Transport};
+pub use crate::rest::Rest;
+use crate::rest::{Course, SETTLED, SHARP, Sight, Verdict};
 use crate::scales::Scales;
 use crate::zone::{Zone, contact_index};
 use signorini_geometry::Point;
 use signorini_solve::{Acceleration, Iteration, Progress, SolveError};
 
-/// Steps after which fronts that do not come to rest are given up.
-const MOST_STEPS: usize = 40;
-/// Corrections of the zone after which it is given up ...
-const MOST_SWEEPS: usize = 12;
-/// ... or left to smaller cells.
-const MOST_SWEEPS_BEFORE_DIVISION: usize = 2;
-/// As many steps are left to smaller cells.
-const MOST_STEPS_BEFORE_DIVISION: usize = 15;
-/// Fronts whose residual has not fallen for so many steps ...
-const PATIENCE: usize = 9;
-/// ... or for so many where they are sharper than a cell ...
-const PATIENCE_AT_TIPS: usize = 1;
-/// ... after a third of which steps are damped ...
-const DAMPED_AFTER: usize = 3;
-/// ... and that move by less than this fraction of a cell have settled: as a front crosses a grid line the discrete
-/// slope jump makes a jump of its own, of the size of the discretisation error, and no position makes it vanish.
-pub(crate) const SETTLED: f64 = 1e-3;
-/// ... or, where a front is sharper than a cell, or where the slope jump that its modes do not see is larger than the one
-/// they do, by less than this.
-pub(crate) const SETTLED_COARSE: f64 = 0.03;
-/// ... or, where they are moved as a level set on nodes, by less than this.
-const SETTLED_SHIFTED: f64 = 0.1;
-/// ... or, where smaller cells may follow and a front is sharper than a cell, by less than this.
-const SETTLED_ASTRAY: f64 = 0.5;
-/// A residual that has fallen so often in a row has not settled, however slowly it falls: a front may be on its way to vanish.
-const SLOWLY: usize = 5;
-/// A front sharper than this, relative to a cell, is no front any more.
-const SHARPEST: f64 = 10.0;
-/// A step of this fraction of a cell that does not improve on the last is round-off.
-const ROUND_OFF: f64 = 1e-8;
 /// Fronts that have torn or met so often have gone astray.
 const MOST_CHANGES: usize = 10;
 /// Steps down the energy before a jump is given up.
@@ -57,15 +29,8 @@ const NODES: usize = 256;
 const SMALL: f64 = 0.7;
 /// Holes of fewer cells are nowhere far from their outlines.
 const FEW: f64 = 16.0;
-/// Steps shorter than this fraction of a cell are made with the derivative of the discrete equations ...
+/// Steps shorter than this fraction of a cell are made with the derivative of the discrete equations.
 const CLOSE: f64 = 0.3;
-/// ... where no front curves by more than this within a cell.
-const SHARP: f64 = 0.5;
-/// One that leaves more than this part of the residual is followed by so many others.
-const GAINED: f64 = 0.5;
-const DOUBTED: usize = 2;
-/// Fronts that lack less than this fraction of a cell are left to smaller ones.
-const NEARLY: f64 = 0.05;
 /// Adhesive steps shorter than this fraction of a cell are extrapolated.
 const NEAR: f64 = 0.1;
 /// A front moves at most this fraction of the membrane's extent in one step.
@@ -169,59 +134,6 @@ pub enum Start<Z> {
     Zone(Z, Scales, Branch),
     /// A zone that someone asked for, and which of the equilibria near it is wanted.
     Asked(Z, Branch),
-}
-
-/// How far fronts are brought to rest where they curve within a cell: what they lack there is little beside what the grid
-/// cannot show of it, and Newton's method converges slowly.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rest {
-    /// Until nothing more changes that counts.
-    Final,
-    /// Until the cells about them may as well be divided.
-    BeforeDivision,
-    /// The same on cells that are divided, perhaps not enough.
-    BeforeMoreDivision,
-    /// Until they are as true as the grid, which a finer one goes on from.
-    BeforeRefinement,
-}
-
-impl Rest {
-    /// The slope jump in the modes, relative to what they do not see of it, at which fronts sharper than a cell rest.
-    fn share(self) -> f64 {
-        match self {
-            Rest::BeforeDivision => 0.2,
-            _ => 1e-3,
-        }
-    }
-
-    /// The slope jump at which fronts rest, relative to its tolerance.
-    fn residual(self) -> f64 {
-        match self {
-            Rest::BeforeRefinement => 10.0,
-            _ => 1.0,
-        }
-    }
-
-    /// Steps after which fronts that do not come to rest are given up.
-    fn most_steps(self) -> usize {
-        match self {
-            Rest::BeforeDivision => MOST_STEPS_BEFORE_DIVISION,
-            _ => MOST_STEPS,
-        }
-    }
-
-    /// Whether fronts are left to smaller cells where those that they lie in are too large for Newton's method.
-    fn leaves(self) -> bool {
-        matches!(self, Rest::BeforeDivision | Rest::BeforeMoreDivision)
-    }
-
-    /// Corrections of the zone after which it is given up.
-    fn most_sweeps(self) -> usize {
-        match self {
-            Rest::BeforeDivision => MOST_SWEEPS_BEFORE_DIVISION,
-            _ => MOST_SWEEPS,
-        }
-    }
 }
 
 /// Solves one increment.
@@ -521,17 +433,17 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         let finest = self.membrane.modes.finest();
         let mut acceleration = Acceleration::default();
         let mut schedule = ModeSchedule::default();
-        let (mut best, mut waited) = (f64::INFINITY, 0);
-        let (mut previous, mut falls) = (f64::INFINITY, 0);
+        let mut course = Course::default();
         self.solution.settled_within = None;
         self.solution.unfinished = false;
         self.solution.lowest_eigenvalue = None;
         let (mut count, mut descents, mut changes) = (0, 0, 0);
-        let (mut last_kind, mut doubted) = (None, 0);
+        // A level set on nodes shifts the fronts with every step.
+        let transport = self.membrane.formulation.transport();
+        let shifted = transport != Transport::Exact;
         let most_steps = self.rest.most_steps();
         while count < most_steps && changes < MOST_CHANGES && descents < MOST_DESCENTS {
             count += 1;
-            let last = count == most_steps;
             if self.progress.interrupted() {
                 return Ok(Fixed::Interrupted);
             }
@@ -555,7 +467,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             let fewer = fewer.or_else(|| Some((self.without_pressed_holes(zone)?, "hole closed")));
             if let Some((zone, what)) = fewer {
                 self.report(0.0, what);
-                (best, waited, previous, falls) = (f64::INFINITY, 0, f64::INFINITY, 0);
+                course = Course::default();
                 acceleration = Acceleration::default();
                 self.solution.equilibrium = Some(equilibrium);
                 self.solution.zone = zone;
@@ -568,7 +480,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             {
                 let zone = zone.without(&self.membrane.grid, part);
                 self.report(0.0, "zone lost");
-                (count, descents, best) = (0, descents + 1, f64::INFINITY);
+                (count, descents, course) = (0, descents + 1, Course::default());
                 self.solution.jumped = true;
                 self.solution.equilibrium = Some(equilibrium);
                 self.solution.zone = zone;
@@ -583,54 +495,25 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                     None => fronts.newton_step(zone, &scales)?,
                 },
             };
-            waited = if residual < 0.7 * best || step.kind == StepKind::Descent { 0 } else { waited + 1 };
-            best = best.min(residual);
-            falls = if residual < previous { falls + 1 } else { 0 };
-            doubted = match last_kind {
-                // A kink of the discrete slope jump lies between here and where the step came from.
-                Some(StepKind::Exact) if residual > GAINED * previous => DOUBTED,
-                _ => doubted.saturating_sub(1),
+            course.take(residual, step.kind, shifted);
+            let bend = if D > 1 { zone.bend() } else { 0.0 };
+            let sight = Sight {
+                residual,
+                step: step.length,
+                kind: step.kind,
+                bend,
+                tips: self.has_lost_tips(zone),
+                shifted,
+                adhering: self.adhering,
+                last: count == most_steps,
+                unseen: &|share| {
+                    let projection = fronts.project(zone, finest);
+                    projection.norm < share * projection.remainder
+                },
+                farthest: &|| fronts.farthest(zone, &scales, |_| h),
             };
-            previous = residual;
-            // A level set on nodes shifts the fronts with every step: there is no coming closer than that.
-            let transport = self.membrane.formulation.transport();
-            let shifted = transport != Transport::Exact;
-            let tips = self.has_lost_tips(zone);
-            let patience = match (shifted, tips) {
-                (true, _) => DAMPED_AFTER,
-                (_, true) => PATIENCE_AT_TIPS,
-                _ => PATIENCE,
-            };
-            let slowly = falls >= SLOWLY && !shifted;
-            if waited >= PATIENCE && slowly {
-                waited = 0;
-            }
-            let relative_step = step.length;
-            let bend = zone.bend();
-            let sharp = D > 1 && (1.0..SHARPEST).contains(&bend);
-            let unseen = |share: f64| {
-                let projection = fronts.project(zone, finest);
-                projection.norm < share * projection.remainder
-            };
-            let enough = || {
-                if shifted {
-                    SETTLED_SHIFTED
-                } else if tips && self.rest.leaves() {
-                    SETTLED_ASTRAY
-                } else if sharp || unseen(1.0) {
-                    SETTLED_COARSE
-                } else {
-                    SETTLED
-                }
-            };
-            let settled =
-                (waited >= patience || last) && !slowly && step.kind != StepKind::Descent && relative_step < enough();
-            let blunt = D > 1 && bend >= 1.0 && unseen(self.rest.share());
-            // Newton's method is slow on fronts as sharp as a cell, and fast on the smaller ones that they want.
-            let left = self.rest.leaves() && !self.adhering && bend >= SHARP;
-            let left = left && fronts.farthest(zone, &scales, |_| h) < NEARLY;
-            let settled = settled || left;
-            if residual <= self.rest.residual() || (waited >= 1 && relative_step < ROUND_OFF) || settled || blunt {
+            let verdict = self.rest.judge(&course, &sight);
+            if verdict != Verdict::Moving {
                 if let Some(linearised) = &linearised {
                     let spectrum = linearised.spectrum();
                     let lowest = spectrum.as_ref().and_then(|s| s.values.first().copied());
@@ -641,7 +524,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                         let kick = linearised.kick(spectrum, h);
                         let advance = zone.advanced(&self.membrane.grid, finest, &kick, h);
                         self.report(residual, "at rest, but unstable");
-                        (count, descents, best) = (0, descents + 10, f64::INFINITY);
+                        (count, descents, course) = (0, descents + 10, Course::default());
                         self.solution.jumped = true;
                         self.solution.equilibrium = Some(equilibrium);
                         self.solution.zone = advance.zone;
@@ -649,34 +532,32 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                     }
                     self.solution.lowest_eigenvalue = lowest;
                 }
-                self.report(residual, if settled && residual > 1.0 { "settled" } else { "at rest" });
-                self.solution.settled_within = (settled && residual > 1.0).then_some(relative_step);
-                self.solution.unfinished =
-                    self.rest.leaves() && settled && residual > 1.0 && (tips || waited < patience);
+                let settled = matches!(verdict, Verdict::Settled { .. });
+                self.report(residual, if settled { "settled" } else { "at rest" });
+                self.solution.settled_within = settled.then_some(step.length);
+                self.solution.unfinished = verdict == Verdict::Settled { unfinished: true };
                 self.solution.equilibrium = Some(equilibrium);
                 return Ok(Fixed::AtRest);
             }
             if step.kind == StepKind::Descent {
-                (count, descents, best) = (0, descents + 1, f64::INFINITY);
+                (count, descents, course) = (0, descents + 1, Course::default());
                 self.solution.jumped = true;
             }
             // As everywhere short of adhesion fronts rest without a slope, the pressure of the floor is nearly all of the
             // derivative; near the solution the rest of it, which cells add, makes the convergence quadratic.
-            let near = relative_step < CLOSE && doubted == 0 && bend < SHARP;
+            let near = step.length < CLOSE && course.is_smooth() && bend < SHARP;
             let exact = match D > 1 && near && !self.adhering && !shifted && equilibrium.responds() {
                 true => fronts.discrete_step(zone, self.elements, &scales)?,
                 false => None,
             };
             step = exact.unwrap_or(step);
-            last_kind = Some(step.kind);
+            course.make(step.kind);
             // Far from the solution the steps are no linear iteration that could be extrapolated.
-            if waited >= DAMPED_AFTER && !shifted {
-                // The derivative does not fit the discrete slope jump here: shorter steps find where it vanishes.
+            if let Some(factor) = course.damping().filter(|_| !shifted) {
                 acceleration = Acceleration::default();
-                let factor = 0.5f64.powi((waited / DAMPED_AFTER) as i32).max(0.1);
                 step.coefficients.iter_mut().for_each(|c| *c *= factor);
             } else if step.space == finest
-                && (step.kind == StepKind::Local || (step.kind == StepKind::Adhesive && relative_step < NEAR))
+                && (step.kind == StepKind::Local || (step.kind == StepKind::Adhesive && step.length < NEAR))
             {
                 step.coefficients = acceleration.next(step.coefficients);
             } else {
@@ -690,7 +571,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             if advance.topology_changed {
                 // Another problem: what the residuals were before says nothing of it.
                 changes += 1;
-                (best, waited, previous, falls) = (f64::INFINITY, 0, f64::INFINITY, 0);
+                course = Course::default();
             }
             let action = if advance.topology_changed { "topology changed" } else { step.kind.name() };
             let zone = if advance.topology_changed { self.resized(advance.zone) } else { advance.zone };

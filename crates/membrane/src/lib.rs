@@ -22,6 +22,7 @@ pub mod quadrature;
 mod raster;
 pub mod refinement;
 pub mod report;
+mod rest;
 pub mod scales;
 pub mod shape_rate;
 pub mod sizing;

@@ -29,8 +29,10 @@ const NODES: usize = 256;
 const SMALL: f64 = 0.7;
 /// Holes of fewer cells are nowhere far from their outlines.
 const FEW: f64 = 16.0;
-/// Steps shorter than this fraction of a cell are made with the derivative of the discrete equations.
+/// Steps shorter than this fraction of a cell are made with the derivative of the discrete equations ...
 const CLOSE: f64 = 0.3;
+/// ... unless they get longer by this factor.
+const LONGER: f64 = 2.0;
 /// Adhesive steps shorter than this fraction of a cell are extrapolated.
 const NEAR: f64 = 0.1;
 /// A front moves at most this fraction of the membrane's extent in one step.
@@ -550,7 +552,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 true => fronts.discrete_step(zone, self.elements, &scales)?,
                 false => None,
             };
-            step = exact.unwrap_or(step);
+            step = exact.filter(|exact| exact.length < LONGER * step.length).unwrap_or(step);
             course.make(step.kind);
             // Far from the solution the steps are no linear iteration that could be extrapolated.
             if let Some(factor) = course.damping().filter(|_| !shifted) {

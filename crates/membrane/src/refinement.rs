@@ -22,6 +22,8 @@ const HARDLY: f64 = 1.5;
 const NEAR: f64 = 0.5;
 /// Divisions more than fronts want of their cells, where no state is found on those.
 const MOST_FINER: usize = 2;
+/// Divisions from one solve to the next.
+const AT_ONCE: usize = 2;
 /// Solves on new cells within one increment.
 const MOST_ROUNDS: usize = 6;
 
@@ -106,87 +108,133 @@ impl<const D: usize> Refinement<D> {
             }),
             _ => None,
         };
-        let mut whole = divided.unwrap_or_else(|| membrane.clone());
+        let cells = divided.unwrap_or_else(|| membrane.clone());
         let start = match start {
-            Start::Zone(zone, scales, branch) => Start::Zone(zone, scales.on(&whole), branch),
+            Start::Zone(zone, scales, branch) => Start::Zone(zone, scales.on(&cells), branch),
             other => other,
         };
         let branch = match &start {
             Start::Zone(_, _, branch) | Start::Asked(_, branch) => *branch,
             Start::Free => Branch::Stable,
         };
-        let last = whole.sizing.is_some() || whole.cells.divisible().is_none() || D != 2 || self.most == 0;
+        let last = cells.sizing.is_some() || cells.cells.divisible().is_none() || D != 2 || self.most == 0;
         let rest = if last { Rest::Final } else { Rest::BeforeDivision };
-        let mut best = ils::solve(&whole, &mut Elements::new(&whole), start, rest, at, progress);
-        best.before = looks;
-        let mut finer = 0;
-        for _ in 0..MOST_ROUNDS {
-            let (Some(scales), false) = (best.scales, best.zone.is_empty()) else { break };
-            if matches!(best.reason, Reason::Interrupted | Reason::NoSuchState | Reason::LinearSolver(_)) {
-                break;
-            }
-            let astray = best.reason == Reason::IterationLimit;
-            // Fronts that went astray are a worse start than those that were predicted; so are some that come too near to each
-            // other to tell whether they touch.
-            let mut zone = best.predicted.take().filter(|_| astray).unwrap_or_else(|| best.zone.clone());
-            if best.unresolved.is_some()
-                && !membrane.obstacles.are_sticky()
-                && let Ok(merged) = ils::prediction::<D, Z>(membrane, true, &|| progress.interrupted())
-                && merged.counts() != zone.counts()
-            {
-                zone = merged;
-            }
-            let too_large = astray || best.unresolved.is_some();
-            if too_large && whole.sizing.is_some() {
-                finer += 1;
-            }
-            if finer > MOST_FINER {
-                break;
-            }
-            let more = || self.sizing(membrane, &zone, 1).filter(|_| too_large);
-            let wanted = self.sizing(membrane, &zone, finer).or_else(more);
-            let enough = wanted.as_ref().is_none_or(|sizing| !too_large && resolves(&whole, &zone, sizing));
-            let Some(sizing) = wanted.filter(|_| !enough) else { break };
-            let about = |zone: Z, sizing: Sizing<D>, progress: &mut dyn Progress| {
-                let finer = self.divided(membrane, &zone, sizing)?;
-                let start = Start::Zone(zone, scales.on(&finer), branch);
-                let rest = if whole.sizing.is_none() { Rest::BeforeMoreDivision } else { Rest::Final };
-                let found = ils::solve(&finer, &mut Elements::new(&finer), start, rest, at, progress);
-                Some((finer, found))
-            };
-            let counts = zone.counts();
-            let Some((mut cells, mut next)) = about(zone, sizing, progress) else { break };
-            next.before = best.before + best.iterations;
-            let lost = |next: &Solution<D, Z>| {
-                best.reason.converged() && !next.reason.converged() && next.reason != Reason::Interrupted
-            };
-            if lost(&next)
-                && let Some(other) = next.predicted.take().filter(|other| other.counts() != counts)
-                && let Some(sizing) = self.sizing(membrane, &other, finer)
-                && let Some((others, again)) = about(other, sizing, progress)
-            {
-                // Cells were divided about fronts that are not there any more.
-                next = Solution { before: next.before + next.iterations, ..again };
-                cells = others;
-            }
-            next.jumped |= best.jumped;
-            if lost(&next) {
-                // What was found on coarser cells is an answer all the same.
-                best.before = next.before + next.iterations - best.iterations;
-                best.unrefined = true;
-                break;
-            }
-            best.residuals.append(&mut next.residuals);
-            next.residuals = std::mem::take(&mut best.residuals);
-            (best, whole) = (next, cells);
+        let mut found = ils::solve(&cells, &mut Elements::new(&cells), start, rest, at, progress);
+        found.before = looks;
+        let mut search = Search { refinement: self, membrane, branch, at, progress, cells, found, finer: 0 };
+        (0..MOST_ROUNDS).take_while(|_| search.goes_on().is_some()).count();
+        search.finished()
+    }
+}
+
+/// The search for cells that resolve the fronts of an increment.
+struct Search<'a, const D: usize, Z> {
+    refinement: &'a Refinement<D>,
+    /// On cells that are not divided.
+    membrane: &'a Membrane<D>,
+    branch: Branch,
+    at: (usize, f64),
+    progress: &'a mut dyn Progress,
+    /// What was found last, and the membrane on the cells that it was found on.
+    found: Solution<D, Z>,
+    cells: Membrane<D>,
+    /// Divisions more than the fronts want.
+    finer: usize,
+}
+
+impl<const D: usize, Z: Zone<D>> Search<'_, D, Z> {
+    /// Goes on to smaller cells; none where they are small enough, or there are no smaller ones.
+    fn goes_on(&mut self) -> Option<()> {
+        let scales = self.found.scales.filter(|_| !self.found.zone.is_empty())?;
+        if matches!(self.found.reason, Reason::Interrupted | Reason::NoSuchState | Reason::LinearSolver(_)) {
+            return None;
         }
-        if let (true, true, Some(scales)) = (best.unfinished, best.reason.converged(), best.scales) {
-            // Smaller cells turned out not to be wanted, or not to be had.
-            let start = Start::Zone(best.zone.clone(), scales, branch);
-            let next = ils::solve(&whole, &mut Elements::new(&whole), start, Rest::Final, at, progress);
-            return continued(best, next);
+        let too_large = self.found.reason == Reason::IterationLimit || self.found.unresolved.is_some();
+        if too_large && self.cells.sizing.is_some() {
+            self.finer += 1;
         }
-        best
+        if self.finer > MOST_FINER {
+            return None;
+        }
+        let zone = self.best_known();
+        // Fronts that lie some cells off come to rest soon; those that lie many off do not.
+        let reached = (self.membrane.grid.h() / self.cells.grid.h()).log2().round() as usize;
+        let most = self.refinement.most.min(reached + AT_ONCE);
+        let step = Refinement { most, ..self.refinement.clone() };
+        let more = || step.sizing(self.membrane, &zone, 1).filter(|_| too_large);
+        let sizing = step.sizing(self.membrane, &zone, self.finer).or_else(more)?;
+        if !too_large && resolves(&self.cells, &zone, &sizing) {
+            return None;
+        }
+        let first = self.cells.sizing.is_none() || most < self.refinement.most;
+        let rest = if first { Rest::BeforeMoreDivision } else { Rest::Final };
+        let counts = zone.counts();
+        let (mut cells, mut next) = self.about(&step, zone, sizing, scales, rest)?;
+        next.before = self.found.before + self.found.iterations;
+        if self.is_lost(&next)
+            && let Some(other) = next.predicted.take().filter(|other| other.counts() != counts)
+            && let Some(sizing) = step.sizing(self.membrane, &other, self.finer)
+            && let Some((others, again)) = self.about(&step, other, sizing, scales, rest)
+        {
+            // Cells were divided about fronts that are not there any more.
+            next = Solution { before: next.before + next.iterations, ..again };
+            cells = others;
+        }
+        next.jumped |= self.found.jumped;
+        if self.is_lost(&next) {
+            // What was found on larger cells is an answer all the same.
+            self.found.before = next.before + next.iterations - self.found.iterations;
+            self.found.unrefined = true;
+            return None;
+        }
+        self.found.residuals.append(&mut next.residuals);
+        next.residuals = std::mem::take(&mut self.found.residuals);
+        (self.found, self.cells) = (next, cells);
+        Some(())
+    }
+
+    /// Where to go on from. Fronts that went astray are a worse start than those that were predicted; so are some that come
+    /// too near to each other to tell whether they touch.
+    fn best_known(&mut self) -> Z {
+        let astray = self.found.reason == Reason::IterationLimit;
+        let zone = self.found.predicted.take().filter(|_| astray).unwrap_or_else(|| self.found.zone.clone());
+        if self.found.unresolved.is_none() || self.membrane.obstacles.are_sticky() {
+            return zone;
+        }
+        let merged = ils::prediction::<D, Z>(self.membrane, true, &|| self.progress.interrupted());
+        merged.ok().filter(|merged| merged.counts() != zone.counts()).unwrap_or(zone)
+    }
+
+    /// What is found on cells divided about a zone.
+    fn about(
+        &mut self,
+        refinement: &Refinement<D>,
+        zone: Z,
+        sizing: Sizing<D>,
+        scales: Scales,
+        rest: Rest,
+    ) -> Option<(Membrane<D>, Solution<D, Z>)> {
+        let cells = refinement.divided(self.membrane, &zone, sizing)?;
+        let start = Start::Zone(zone, scales.on(&cells), self.branch);
+        let found = ils::solve(&cells, &mut Elements::new(&cells), start, rest, self.at, self.progress);
+        Some((cells, found))
+    }
+
+    /// Whether less is known than before.
+    fn is_lost(&self, next: &Solution<D, Z>) -> bool {
+        self.found.reason.converged() && !next.reason.converged() && next.reason != Reason::Interrupted
+    }
+
+    /// What was found, brought to rest.
+    fn finished(self) -> Solution<D, Z> {
+        let Some(scales) = self.found.scales.filter(|_| self.found.unfinished && self.found.reason.converged()) else {
+            return self.found;
+        };
+        // Smaller cells turned out not to be wanted, or not to be had.
+        let start = Start::Zone(self.found.zone.clone(), scales, self.branch);
+        let cells = &self.cells;
+        let next = ils::solve(cells, &mut Elements::new(cells), start, Rest::Final, self.at, self.progress);
+        continued(self.found, next)
     }
 }
 

@@ -22,8 +22,10 @@ const HARDLY: f64 = 1.5;
 const NEAR: f64 = 0.5;
 /// Divisions more than fronts want of their cells, where no state is found on those.
 const MOST_FINER: usize = 2;
-/// Divisions from one solve to the next.
+/// Divisions from one solve to the next ...
 const AT_ONCE: usize = 2;
+/// ... of cells of degree 1, on which fronts wander off that were not brought to rest.
+const AT_ONCE_LINEAR: usize = 3;
 /// Solves on new cells within one increment.
 const MOST_ROUNDS: usize = 6;
 
@@ -159,7 +161,8 @@ impl<const D: usize, Z: Zone<D>> Search<'_, D, Z> {
         let zone = self.best_known();
         // Fronts that lie some cells off come to rest soon; those that lie many off do not.
         let reached = (self.membrane.grid.h() / self.cells.grid.h()).log2().round() as usize;
-        let most = self.refinement.most.min(reached + AT_ONCE);
+        let at_once = if self.membrane.cells.degree() == 1 { AT_ONCE_LINEAR } else { AT_ONCE };
+        let most = self.refinement.most.min(reached + at_once);
         let step = Refinement { most, ..self.refinement.clone() };
         let more = || step.sizing(self.membrane, &zone, 1).filter(|_| too_large);
         let sizing = step.sizing(self.membrane, &zone, self.finer).or_else(more)?;

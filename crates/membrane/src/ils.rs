@@ -391,7 +391,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
     /// length on which it may move them.
     fn has_lost_tips(&self, zone: &Z) -> bool {
         let exact = self.membrane.formulation.transport() == Transport::Exact;
-        D > 1 && exact && !self.adhering && zone.bend() >= 1.0
+        exact && !self.adhering && zone.has_lost_tips()
     }
 
     /// Whether fronts that moved to the last, sharper than the grid, are those of zones that have merged or split.

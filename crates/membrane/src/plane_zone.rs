@@ -43,6 +43,8 @@ const CURVED_LINEAR: f64 = 8.0;
 const BETWEEN: f64 = 2.0;
 /// A front that bends within a cell is blunter than it would be on smaller ones: by this much times curvature and size.
 const BLUNTED: f64 = 1.3;
+/// A front of so many cells is long.
+const LONG: f64 = 12.0;
 /// A front that encloses less than this multiple of `h²` after a step has collapsed.
 const COLLAPSED: f64 = 0.01;
 /// A step may not bring a front nearer to its centre of curvature than this fraction of its radius of curvature.
@@ -334,6 +336,15 @@ impl PlaneZone {
             Some(sizing) => {
                 at_knots(curve).map(|p| p.speed / sizing.at(&p.position)).sum::<f64>() / curve.knots() as f64
             }
+        }
+    }
+
+    /// The largest product of the curvature of one front and the size of the cells there.
+    fn bend_of(&self, front: usize) -> f64 {
+        let curve = &self.curves[front];
+        match &self.sizing {
+            None => curvatures(curve).fold(0.0, f64::max) * self.grid.h(),
+            Some(sizing) => at_knots(curve).map(|p| p.curvature.abs() * sizing.at(&p.position)).fold(0.0, f64::max),
         }
     }
 
@@ -944,9 +955,11 @@ impl Zone<2> for PlaneZone {
         Some(Sizing::new(places.iter().map(|f| (f.place, f.length, wanted(f)))))
     }
     fn bend(&self) -> f64 {
-        let Some(sizing) = &self.sizing else { return self.sharpest() * self.grid.h() };
-        let bend = |p: CurvePoint| p.curvature.abs() * sizing.at(&p.position);
-        self.curves.iter().flat_map(|c| at_knots(c).map(bend)).fold(0.0, f64::max)
+        (0..self.curves.len()).map(|c| self.bend_of(c)).fold(0.0, f64::max)
+    }
+    fn has_lost_tips(&self) -> bool {
+        let mut sharp = (0..self.curves.len()).filter(|c| self.bend_of(*c) >= 1.0).peekable();
+        sharp.peek().is_some() && sharp.all(|c| self.relative_length(&self.curves[c]) >= LONG)
     }
     fn divided(
         &self,
@@ -985,10 +998,7 @@ impl Zone<2> for PlaneZone {
         Some(Arc::new(RefinedGrid::new(grid, wanted)))
     }
     fn sharpest(&self) -> f64 {
-        let curvature = |c: &ClosedCurve| {
-            (0..c.samples().len()).map(|i| c.point(c.sample_parameter(i)).curvature.abs()).fold(0.0, f64::max)
-        };
-        self.curves.iter().map(curvature).fold(0.0, f64::max)
+        self.curves.iter().flat_map(curvatures).fold(0.0, f64::max)
     }
     fn outlines(&self) -> Vec<Vec<Point<2>>> {
         self.curves.iter().map(|c| c.samples().to_vec()).collect()
@@ -1009,6 +1019,11 @@ struct Feature {
 fn at_knots(curve: &ClosedCurve) -> impl Iterator<Item = CurvePoint> + '_ {
     let knots = curve.knots();
     (0..knots).map(move |k| curve.point(k as f64 / knots as f64))
+}
+
+/// The curvatures of a curve at its samples, without their signs.
+fn curvatures(curve: &ClosedCurve) -> impl Iterator<Item = f64> + '_ {
+    (0..curve.samples().len()).map(|i| curve.point(curve.sample_parameter(i)).curvature.abs())
 }
 
 /// The smallest box round points.

@@ -237,6 +237,10 @@ pub trait Zone<const D: usize>: Division<D> + Clone + Send {
     fn least_feature(&self) -> f64;
     /// The largest product of the curvature of a front and the size of the cells there.
     fn bend(&self) -> f64;
+    /// Whether fronts are sharper than a cell, and only such as are many cells long: tips, not holes or zones of a few cells.
+    fn has_lost_tips(&self) -> bool {
+        false
+    }
     /// The zone with fronts of as many modes as another grid can tell apart.
     fn on_grid(&self, grid: &Grid<D>) -> Self;
     /// The zone with fronts whose modes are as long as cells of the given sizes can tell apart, the smallest of which are

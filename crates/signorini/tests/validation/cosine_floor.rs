@@ -110,6 +110,22 @@ fn increments_beside_events_take_few_solves() {
     }
 }
 
+/// Nor does Newton's method go round in circles on tips that cells cannot resolve: 0.12 is 0.9 % below the load at which the four
+/// zones of the square merge. Reference: degree 3 on 32 x 32 cells, with an estimated error of 1e-8.
+#[test]
+fn tips_before_a_merger_take_few_solves() {
+    let steps = ("steps", "[{ to = 0.1 }, { to = 0.12, increments = 2 }]".to_string());
+    let pairs = [(CELLS, "[32, 32]".to_string()), (DEGREE, "2".to_string()), steps];
+    let summary = summary(example("cosine_square"), &set(&pairs));
+    let last = last_step(&summary);
+    let contact = &last["contacts"]["touch"];
+    assert_eq!((&contact["zones"], &contact["holes"]), (&4.into(), &0.into()));
+    let solves = ["iterations", "iterations_before"].map(|key| last[key].as_u64().expect("a number"));
+    assert!(solves[0] <= 5 && solves[1] <= 40, "{solves:?}");
+    let off = number(&contact["area"]) - 0.340_952_414;
+    assert!(off.abs() < 5e-6, "{off:e}");
+}
+
 /// A path that turns goes on from the states that it came through: they depend on the load alone, whatever the time. Between
 /// two drivers that do not keep in step there is no such line, and the path goes on in time.
 #[test]

@@ -115,7 +115,8 @@ fn increments_beside_events_take_few_solves() {
 #[test]
 fn tips_before_a_merger_take_few_solves() {
     let steps = ("steps", "[{ to = 0.1 }, { to = 0.12, increments = 2 }]".to_string());
-    let pairs = [(CELLS, "[32, 32]".to_string()), (DEGREE, "2".to_string()), steps];
+    let load = ("loads.press.normal", "\"-t\"".to_string());
+    let pairs = [(CELLS, "[32, 32]".to_string()), (DEGREE, "2".to_string()), load, steps];
     let summary = summary(example("cosine_square"), &set(&pairs));
     let last = last_step(&summary);
     let contact = &last["contacts"]["touch"];

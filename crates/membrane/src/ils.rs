@@ -387,19 +387,26 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         }
     }
 
-    /// Whether fronts are sharper than a cell somewhere. Newton's method does not converge on such tips, whose radius is the
-    /// length on which it may move them.
+    /// Whether a level set on nodes moves the fronts, which shifts them with every step.
+    fn is_shifted(&self) -> bool {
+        self.membrane.formulation.transport() != Transport::Exact
+    }
+
+    /// Whether long fronts are sharper than a cell. Newton's method does not converge on such tips, whose radius is the length
+    /// on which it may move them.
     fn has_lost_tips(&self, zone: &Z) -> bool {
-        let exact = self.membrane.formulation.transport() == Transport::Exact;
-        exact && !self.adhering && zone.has_lost_tips()
+        !self.is_shifted() && !self.adhering && zone.has_lost_tips()
     }
 
     /// Whether fronts that moved to the last, sharper than the grid, are those of zones that have merged or split.
     fn have_missed_a_merger(&self) -> Result<bool, SolveError> {
         let left = self.solution.unfinished;
-        let shifted = self.membrane.formulation.transport() != Transport::Exact;
         let moving = self.solution.settled_within.is_some_and(|step| step > SETTLED);
-        Ok(moving && !left && !shifted && !self.adhering && self.prediction()?.counts() != self.solution.zone.counts())
+        Ok(moving
+            && !left
+            && !self.is_shifted()
+            && !self.adhering
+            && self.prediction()?.counts() != self.solution.zone.counts())
     }
 
     /// Replaces the zone by what the nodal method predicts.
@@ -440,9 +447,8 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         self.solution.unfinished = false;
         self.solution.lowest_eigenvalue = None;
         let (mut count, mut descents, mut changes) = (0, 0, 0);
-        // A level set on nodes shifts the fronts with every step.
         let transport = self.membrane.formulation.transport();
-        let shifted = transport != Transport::Exact;
+        let shifted = self.is_shifted();
         let most_steps = self.rest.most_steps();
         while count < most_steps && changes < MOST_CHANGES && descents < MOST_DESCENTS {
             count += 1;
@@ -504,7 +510,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 step: step.length,
                 kind: step.kind,
                 bend,
-                tips: self.has_lost_tips(zone),
+                tips: bend >= 1.0 && self.has_lost_tips(zone),
                 shifted,
                 adhering: self.adhering,
                 last: count == most_steps,
@@ -588,7 +594,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
     /// Newton's method only halves such a hole in every step. None where there are no such holes.
     fn without_pressed_holes(&self, zone: &Z) -> Option<Z> {
         let membrane = self.membrane;
-        if self.adhering || membrane.formulation.transport() != Transport::Exact {
+        if self.adhering || self.is_shifted() {
             return None;
         }
         zone.filled(&membrane.grid, &|side, outline, area| {

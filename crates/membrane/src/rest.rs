@@ -12,10 +12,10 @@ const MOST_SWEEPS_BEFORE_DIVISION: usize = 2;
 const MOST_STEPS_BEFORE_DIVISION: usize = 15;
 /// Fronts whose residual has not fallen for so many steps ...
 const PATIENCE: usize = 9;
-/// ... or for so many where they are sharper than a cell ...
+/// ... or for so many on tips that no cell shows ...
 const PATIENCE_AT_TIPS: usize = 1;
-/// ... after a third of which steps are damped ...
-pub(crate) const DAMPED_AFTER: usize = 3;
+/// ... where, after so many, steps are damped ...
+const DAMPED_AFTER: usize = 3;
 /// ... and that move by less than this fraction of a cell have settled: as a front crosses a grid line the discrete
 /// slope jump makes a jump of its own, of the size of the discretisation error, and no position makes it vanish.
 pub(crate) const SETTLED: f64 = 1e-3;
@@ -24,8 +24,6 @@ pub(crate) const SETTLED: f64 = 1e-3;
 pub(crate) const SETTLED_COARSE: f64 = 0.03;
 /// ... or, where they are moved as a level set on nodes, by less than this.
 const SETTLED_SHIFTED: f64 = 0.1;
-/// Fronts that smaller cells may follow are left to these where they gain nothing and move by less than this.
-const SETTLED_ASTRAY: f64 = 0.5;
 /// A residual that has fallen so often in a row has not settled, however slowly it falls: a front may be on its way to vanish.
 const SLOWLY: usize = 5;
 /// A front sharper than this, relative to a cell, is no front any more.
@@ -34,8 +32,10 @@ const SHARPEST: f64 = 10.0;
 const ROUND_OFF: f64 = 1e-8;
 /// Fronts that curve by more than this within a cell are left to smaller cells ...
 pub(crate) const SHARP: f64 = 0.5;
-/// ... where they lack less than this fraction of one.
+/// ... where they lack less than this fraction of one ...
 const NEARLY: f64 = 0.05;
+/// ... or gain nothing by a step that is shorter than this.
+const ASTRAY: f64 = 0.5;
 /// A step with all of the derivative that leaves more than this part of the residual is followed by so many others.
 const GAINED: f64 = 0.5;
 const DOUBTED: usize = 2;
@@ -80,7 +80,7 @@ impl Rest {
     }
 
     /// Whether fronts are left to smaller cells where those that they lie in are too large for Newton's method.
-    pub fn leaves(self) -> bool {
+    fn leaves(self) -> bool {
         matches!(self, Rest::BeforeDivision | Rest::BeforeMoreDivision)
     }
 
@@ -98,7 +98,7 @@ impl Rest {
             return Verdict::AtRest;
         }
         // Newton's method is slow on fronts as sharp as a cell, and fast on the smaller ones that they want.
-        let slow = || (course.waited >= 1 && sight.step < SETTLED_ASTRAY) || (sight.farthest)() < NEARLY;
+        let slow = || (course.waited >= 1 && sight.step < ASTRAY) || (sight.farthest)() < NEARLY;
         if self.leaves() && !sight.adhering && sight.bend >= SHARP && slow() {
             return Verdict::Settled { unfinished: true };
         }

@@ -89,6 +89,11 @@ pub trait Cells<const D: usize>: Send + Sync {
     fn mesh(self: Arc<Self>) -> Option<Arc<MeshCells>> {
         None
     }
+    /// The outlines of the set where a function is negative that is linear between their corners, with that set on their
+    /// left; none where the cells do not tell, or the set reaches beyond them.
+    fn outlines(&self, _value: &dyn Fn(&Point<D>) -> f64) -> Option<Vec<Vec<Point<D>>>> {
+        None
+    }
     /// The grid whose cells can be divided where it matters.
     fn divisible(&self) -> Option<&Grid<D>> {
         None

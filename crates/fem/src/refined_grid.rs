@@ -7,8 +7,9 @@ use crate::cells::{BoundarySide, Cells, Divided, Neighbours, SidePoint, divided_
 use crate::cut::{CellPartition, CellRule, QuadraturePoint, cut_cell};
 use crate::grid::Grid;
 use crate::lagrange::{MAX_DEGREE, Tabulation};
+use signorini_geometry::outline::outlines;
 use signorini_geometry::{Aabb, Point, Vector};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
 /// Most divisions of a cell of the coarse grid.
@@ -54,7 +55,8 @@ pub struct RefinedGrid {
     leaves: Vec<Leaf>,
     number: HashMap<Leaf, u32>,
     levels: usize,
-    count: usize,
+    /// Where the node of each function lies.
+    nodes: Vec<Point<2>>,
     cells: Vec<Functions>,
     /// A cell of each kind: those of one level whose nodes do not hang.
     kinds: Vec<usize>,
@@ -92,7 +94,7 @@ impl RefinedGrid {
         let number: HashMap<Leaf, u32> = leaves.iter().enumerate().map(|(i, l)| (*l, i as u32)).collect();
         let levels = leaves.iter().map(|l| usize::from(l.level)).max().unwrap_or(0);
         let mut grid =
-            Self { coarse, leaves, number, levels, count: 0, cells: vec![], kinds: vec![], neighbours: vec![] };
+            Self { coarse, leaves, number, levels, nodes: vec![], cells: vec![], kinds: vec![], neighbours: vec![] };
         grid.number_functions();
         grid.find_neighbours();
         grid
@@ -125,6 +127,26 @@ impl RefinedGrid {
     fn vertex(&self, leaf: Leaf, corner: [u32; 2]) -> Node {
         let shift = MOST_LEVELS - usize::from(leaf.level);
         Node::Vertex([0, 1].map(|k| u64::from(leaf.index[k] + corner[k]) << shift))
+    }
+
+    /// The corners of a leaf and of smaller ones beside it, counter-clockwise, in units of the smallest leaves.
+    fn corners(&self, leaf: Leaf) -> Vec<[u32; 2]> {
+        let unit = 1 << (self.levels - usize::from(leaf.level));
+        let smaller = |side: usize| {
+            beside(&self.coarse, leaf, side).is_some_and(|b| !self.number.contains_key(&b))
+                && self.larger(leaf, side).is_none()
+        };
+        let at = |o: [u32; 2]| [0, 1].map(|k| leaf.index[k] * unit + o[k] * unit / 2);
+        let mut corners = Vec::with_capacity(8);
+        for (corner, middle, side) in
+            [([0, 0], [1, 0], 2), ([2, 0], [2, 1], 1), ([2, 2], [1, 2], 3), ([0, 2], [0, 1], 0)]
+        {
+            corners.push(at(corner));
+            if smaller(side) {
+                corners.push(at(middle));
+            }
+        }
+        corners
     }
 
     /// The nodes along a side of a leaf: `p + 1` in the positive direction.
@@ -185,7 +207,7 @@ impl RefinedGrid {
             }
         }
         let mut numbers: HashMap<Node, u32> = HashMap::new();
-        let mut count = 0;
+        let mut placed = Vec::new();
         let mut kinds: Vec<Option<usize>> = vec![None; self.levels + 1];
         let mut representatives = Vec::new();
         let mut cells = Vec::with_capacity(self.leaves.len());
@@ -193,7 +215,8 @@ impl RefinedGrid {
             let nodes = self.nodes(leaf);
             let mut functions = Vec::new();
             let mut own: Vec<Vec<(u32, f64)>> = Vec::new();
-            for node in &nodes {
+            let bounds = box_of(&self.coarse, leaf);
+            for (k, node) in nodes.iter().enumerate() {
                 let mut list: Vec<(u32, f64)> = Vec::new();
                 // A node of a larger side may hang on a side that is larger still.
                 let mut open = vec![(*node, 1.0)];
@@ -203,8 +226,8 @@ impl RefinedGrid {
                         continue;
                     }
                     let function = *numbers.entry(node).or_insert_with(|| {
-                        count += 1;
-                        count - 1
+                        placed.push(Point::<2>::zeros());
+                        placed.len() as u32 - 1
                     });
                     let at = functions.iter().position(|f| *f == function).unwrap_or_else(|| {
                         functions.push(function);
@@ -214,6 +237,10 @@ impl RefinedGrid {
                         Some((_, v)) => *v += weight,
                         None => list.push((at, weight)),
                     }
+                }
+                if !follows.contains_key(node) {
+                    let at = [k % places.len(), k / places.len()].map(|i| places[i]);
+                    placed[functions[list[0].0 as usize] as usize] = bounds.at(&Point::<2>::from(at));
                 }
                 own.push(list);
             }
@@ -226,7 +253,7 @@ impl RefinedGrid {
             });
             cells.push(Functions { kind, functions, hanging: if hangs { own } else { Vec::new() } });
         }
-        self.count = count as usize;
+        self.nodes = placed;
         self.cells = cells;
         self.kinds = representatives;
     }
@@ -317,7 +344,7 @@ impl Cells<2> for RefinedGrid {
         Some(self.leaf_containing(x))
     }
     fn function_count(&self) -> usize {
-        self.count
+        self.nodes.len()
     }
     fn functions(&self, cell: usize, out: &mut Vec<u32>) {
         out.clone_from(&self.cells[cell].functions);
@@ -345,14 +372,41 @@ impl Cells<2> for RefinedGrid {
         }
     }
     fn node(&self, function: usize) -> Point<2> {
-        // Functions of degree 1 live on a grid of their own.
-        self.coarse.node(function.min(self.coarse.node_count() - 1))
+        self.nodes[function]
     }
     fn linear(&self, finer: usize) -> Arc<dyn Cells<2>> {
-        self.coarse.linear(finer)
+        let coarse = Grid::new(*self.coarse.bounds(), self.coarse.cells().map(|n| n * finer), 1);
+        let parts = |leaf: &Leaf| {
+            let (level, from) = (leaf.level, leaf.index.map(|i| i * finer as u32));
+            let part = move |k: usize| [from[0] + (k % finer) as u32, from[1] + (k / finer) as u32];
+            (0..finer * finer).map(move |k| Leaf { level, index: part(k) })
+        };
+        Arc::new(Self::from_leaves(coarse, self.leaves.iter().flat_map(parts).collect()))
     }
     fn divisible(&self) -> Option<&Grid<2>> {
         Some(&self.coarse)
+    }
+    fn outlines(&self, value: &dyn Fn(&Point<2>) -> f64) -> Option<Vec<Vec<Point<2>>>> {
+        let bounds = self.coarse.bounds();
+        let ends = self.coarse.cells().map(|n| (n << self.levels) as f64);
+        let place = |v: [u32; 2]| bounds.at(&Point::<2>::new(f64::from(v[0]) / ends[0], f64::from(v[1]) / ends[1]));
+        let mut values: HashMap<[u32; 2], f64> = HashMap::new();
+        let cells: Vec<Vec<_>> = self
+            .leaves
+            .iter()
+            .map(|&leaf| {
+                let corners = self.corners(leaf);
+                let next = corners.iter().cycle().skip(1);
+                let edge = |(a, b): (&[u32; 2], &[u32; 2])| (*a.min(b), *a.max(b));
+                let edges: Vec<_> = corners.iter().zip(next).map(edge).collect();
+                corners.iter().map(|v| *values.entry(*v).or_insert_with(|| value(&place(*v)))).zip(edges).collect()
+            })
+            .collect();
+        let crossing = |(a, b): ([u32; 2], [u32; 2])| {
+            let (f, g) = (values[&a], values[&b]);
+            place(a) + f / (f - g) * (place(b) - place(a))
+        };
+        outlines(cells.iter(), crossing, 1e-12 * bounds.radius())
     }
     fn raised(&self) -> Option<Arc<dyn Cells<2>>> {
         let degree = self.coarse.degree() + 1;
@@ -361,7 +415,15 @@ impl Cells<2> for RefinedGrid {
             .then(|| -> Arc<dyn Cells<2>> { Arc::new(Self::from_leaves(coarse(), self.leaves.clone())) })
     }
     fn coarser(&self) -> Option<Arc<dyn Cells<2>>> {
-        self.coarse.coarser()
+        if self.levels == 0 {
+            return self.coarse.coarser();
+        }
+        // Without the last divisions.
+        let coarse = Grid::new(*self.coarse.bounds(), self.coarse.cells(), 1);
+        let last = |leaf: &Leaf| usize::from(leaf.level) == self.levels;
+        let kept: BTreeSet<Leaf> =
+            self.leaves.iter().map(|leaf| leaf.parent().filter(|_| last(leaf)).unwrap_or(*leaf)).collect();
+        Some(Arc::new(Self::from_leaves(coarse, kept.into_iter().collect())))
     }
     fn rule(&self, cell: usize) -> Vec<QuadraturePoint<2>> {
         self.coarse.rule_in(&self.bounds_of(cell))
@@ -418,6 +480,7 @@ impl Cells<2> for RefinedGrid {
 mod tests {
     use super::*;
     use crate::ghost::ghost_penalty;
+    use signorini_geometry::polygon;
 
     fn grid(degree: usize) -> RefinedGrid {
         let bounds = Aabb::new(Point::<2>::new(0.0, -1.0), Point::<2>::new(2.0, 1.0));
@@ -446,6 +509,54 @@ mod tests {
         // Every length of inner side is shared by one pair; and the rest is the boundary.
         let outer: f64 = grid.boundary_sides().iter().map(|s| grid.on_side(s, 0.5).tangent.norm()).sum();
         assert!((outer - 8.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn functions_are_one_at_their_own_nodes() {
+        for degree in [1, 3] {
+            let grid = grid(degree);
+            let (mut t, mut functions) = (Tabulation::default(), Vec::new());
+            for function in 0..grid.function_count() {
+                let x = grid.node(function);
+                let cell = grid.leaf_containing(&x);
+                grid.functions(cell, &mut functions);
+                grid.tabulate(cell, &x, &mut t);
+                assert!(functions.contains(&(function as u32)));
+                for (&f, v) in functions.iter().zip(&t.value) {
+                    let own = f64::from(u8::from(f as usize == function));
+                    assert!((v - own).abs() < 1e-9, "degree {degree}, function {function} at {x}: {f} is {v}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn coarser_cells_lack_the_last_divisions() {
+        let mut cells: Arc<dyn Cells<2>> = Arc::new(grid(3));
+        let smallest = |cells: &dyn Cells<2>| (0..cells.count()).map(|c| cells.size(c)).fold(f64::INFINITY, f64::min);
+        for _ in 0..5 {
+            let coarser = cells.coarser().expect("divisions");
+            assert!((smallest(&*coarser) - 2.0 * smallest(&*cells)).abs() < 1e-14);
+            let area: f64 = (0..coarser.count()).map(|c| coarser.volume(c)).sum();
+            assert!((area - 4.0).abs() < 1e-13);
+            assert_eq!(coarser.degree(), 1);
+            cells = coarser;
+        }
+        // Three cells have no half.
+        assert!(cells.coarser().is_none());
+    }
+
+    #[test]
+    fn outlines_close_across_cells_of_unlike_size() {
+        let circle = |x: &Point<2>| (x - Point::<2>::new(1.0, 0.1)).norm() - 0.7;
+        let loops = grid(2).linear(8).outlines(&circle).expect("closed outlines");
+        assert_eq!(loops.len(), 1);
+        let area = polygon::signed_area(&loops[0]) / (std::f64::consts::PI * 0.49);
+        assert!((area - 1.0).abs() < 5e-3, "{area}");
+        assert!(
+            grid(1).outlines(&|x| x[0] - 1.0).is_none(),
+            "a set that reaches beyond the cells has no closed outline"
+        );
     }
 
     #[test]

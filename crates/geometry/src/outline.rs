@@ -41,47 +41,18 @@ impl Samples {
     ///
     /// Saddles are resolved by the mean of the four corners.
     pub fn outlines(&self) -> Vec<Vec<Point<2>>> {
-        // Each directed piece runs between two crossed grid edges; an edge is named by its lower node and direction.
-        type Edge = (isize, isize, u8);
-        let mut next: BTreeMap<Edge, Edge> = BTreeMap::new();
-        for j in -1..=self.cells[1] as isize {
-            for i in -1..=self.cells[0] as isize {
-                let corner = [self.at(i, j), self.at(i + 1, j), self.at(i + 1, j + 1), self.at(i, j + 1)];
-                let inside = corner.map(|v| v < 0.0);
-                let edge: [Edge; 4] = [(i, j, 0), (i + 1, j, 1), (i, j + 1, 0), (i, j, 1)];
-                // Walking counter-clockwise round the cell, a piece enters where inside ends and leaves where it begins.
-                let falling: Vec<usize> = (0..4).filter(|&k| inside[k] && !inside[(k + 1) % 4]).collect();
-                let rising: Vec<usize> = (0..4).filter(|&k| !inside[k] && inside[(k + 1) % 4]).collect();
-                match falling.len() {
-                    1 => {
-                        next.insert(edge[falling[0]], edge[rising[0]]);
-                    }
-                    2 => {
-                        let joined = corner.iter().sum::<f64>() < 0.0;
-                        for &f in &falling {
-                            // Joined corners: pieces cut off the positive corners; else the negative ones.
-                            let r = if joined { (f + 1) % 4 } else { (f + 3) % 4 };
-                            next.insert(edge[f], edge[r]);
-                        }
-                    }
-                    _ => {}
-                }
-            }
-        }
-        let mut loops = Vec::new();
-        while let Some((&start, _)) = next.first_key_value() {
-            let mut polyline = Vec::new();
-            let mut edge = start;
-            while let Some(following) = next.remove(&edge) {
-                polyline.push(self.crossing(edge));
-                edge = following;
-            }
-            polyline.dedup_by(|a, b| (*a - *b).norm() < 1e-12 * self.bounds.radius());
-            if polyline.len() >= 3 {
-                loops.push(polyline);
-            }
-        }
-        loops
+        // An edge is named by its lower node and direction.
+        let rows = -1..=self.cells[1] as isize;
+        let cells = rows.flat_map(|j| (-1..=self.cells[0] as isize).map(move |i| (i, j))).map(|(i, j)| {
+            [
+                (self.at(i, j), (i, j, 0)),
+                (self.at(i + 1, j), (i + 1, j, 1)),
+                (self.at(i + 1, j + 1), (i, j + 1, 0)),
+                (self.at(i, j + 1), (i, j, 1)),
+            ]
+        });
+        // Beyond the grid everything is positive.
+        outlines(cells, |edge| self.crossing(edge), 1e-12 * self.bounds.radius()).unwrap_or_default()
     }
 
     /// Where the function vanishes on a grid edge, by linear interpolation.
@@ -99,6 +70,52 @@ impl Samples {
         let at = |i: isize, j: isize| self.bounds.min + spacing.component_mul(&Point::<2>::new(i as f64, j as f64));
         at(i, j) + t * (at(i + di, j + dj) - at(i, j))
     }
+}
+
+/// The outlines of the set where a function is negative, as closed polylines with that set on their left: by the values at the
+/// corners of cells, counter-clockwise, each with the name of the edge to the next, and where the function vanishes on an
+/// edge. Points nearer than `same` are one. None where the set reaches beyond the cells.
+///
+/// Where more than two corners alternate, the mean of all tells which are joined.
+pub fn outlines<Edge: Ord + Copy, Cell: AsRef<[(f64, Edge)]>>(
+    cells: impl Iterator<Item = Cell>,
+    crossing: impl Fn(Edge) -> Point<2>,
+    same: f64,
+) -> Option<Vec<Vec<Point<2>>>> {
+    // Each directed piece runs between two crossed edges.
+    let mut next: BTreeMap<Edge, Edge> = BTreeMap::new();
+    for cell in cells {
+        let corners = cell.as_ref();
+        let n = corners.len();
+        let changes = |k: usize, from: bool| (corners[k].0 < 0.0) == from && (corners[(k + 1) % n].0 < 0.0) != from;
+        if (0..n).all(|k| !changes(k, true)) {
+            continue;
+        }
+        let joined = corners.iter().map(|c| c.0).sum::<f64>() < 0.0;
+        // Walking counter-clockwise round the cell, a piece enters where inside ends and leaves where it begins: joined
+        // corners leave pieces that cut off the positive ones, else they cut off the negative ones.
+        for f in (0..n).filter(|&k| changes(k, true)) {
+            let r = (1..n).map(|i| (f + if joined { i } else { n - i }) % n).find(|&k| changes(k, false));
+            next.extend(r.map(|r| (corners[f].1, corners[r].1)));
+        }
+    }
+    let mut loops = Vec::new();
+    while let Some((&start, _)) = next.first_key_value() {
+        let mut polyline = Vec::new();
+        let mut edge = start;
+        while let Some(following) = next.remove(&edge) {
+            polyline.push(crossing(edge));
+            edge = following;
+        }
+        if edge != start {
+            return None;
+        }
+        polyline.dedup_by(|a, b| (*a - *b).norm() < same);
+        if polyline.len() >= 3 {
+            loops.push(polyline);
+        }
+    }
+    Some(loops)
 }
 
 #[cfg(test)]

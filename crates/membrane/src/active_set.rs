@@ -3,6 +3,7 @@
 //! (Hintermüller, Ito & Kunisch, SIAM J. Optim. 13, 2002.) Its contact zone is a set of nodes: a staircase. It serves
 //! as a method of its own, to be set beside the level set, and to predict zones that are not one simple patch.
 
+use crate::deferred::Known;
 use crate::equilibrium::{Elements, System, nitsche_flux};
 use crate::obstacle::Side;
 use crate::problem::Membrane;
@@ -69,25 +70,40 @@ pub fn solve<const D: usize, Z: Zone<D>>(
     start: NodalStart,
     interrupted: &dyn Fn() -> bool,
 ) -> Result<NodalSolution<D>, SolveError> {
+    solve_beside::<D, Z>(membrane, start, None, interrupted)
+}
+
+/// The same as accurately as a state at hand.
+pub(crate) fn solve_beside<const D: usize, Z: Zone<D>>(
+    membrane: &Membrane<D>,
+    start: NodalStart,
+    known: Option<&Known<'_, D, Z>>,
+    interrupted: &dyn Fn() -> bool,
+) -> Result<NodalSolution<D>, SolveError> {
     let coarser = match start {
         NodalStart::Nested => membrane.cells.coarser().map(|cells| membrane.on(cells)),
         NodalStart::Cold => None,
     };
     let guess = match &coarser {
-        Some(coarser) => Some((solve::<D, Z>(coarser, start, interrupted)?, coarser)),
+        Some(coarser) => Some((solve_beside::<D, Z>(coarser, start, known, interrupted)?, coarser)),
         None => None,
     };
     let elements = Elements::new(membrane);
     let zone = Z::empty(&membrane.grid);
-    let System { quadrature, unknowns, matrix, rhs } = System::assemble(membrane, &zone, &elements);
-    let mut node_of = vec![0usize; unknowns.count];
+    let mut system = System::assemble(membrane, &zone, &elements);
+    let mut node_of = vec![0usize; system.unknowns.count];
     let mut nodes = Vec::new();
-    for (cell, _, dofs) in unknowns.all() {
+    for (cell, _, dofs) in system.unknowns.all() {
         membrane.cells.functions(cell, &mut nodes);
         for (&dof, &node) in dofs.iter().zip(&nodes) {
             node_of[dof as usize] = node as usize;
         }
     }
+    if let Some(known) = known {
+        let places: Vec<Point<D>> = node_of.iter().map(|&node| membrane.cells.node(node)).collect();
+        system.rhs = known.load(membrane, &system, &places);
+    }
+    let System { quadrature, unknowns, matrix, rhs } = system;
     // Heights of floor and ceiling at the nodes within the membrane.
     let heights: Vec<Option<[f64; 2]>> = node_of
         .iter()
@@ -250,16 +266,39 @@ impl<const D: usize> NodalSolution<D> {
         around.max_by(|a, b| a.1.total_cmp(&b.1)).and_then(|(node, _)| self.nodes[node])
     }
 
-    /// A function that is negative in the predicted zone of one side: the distance to its edge that the gap of a parabola tells,
-    /// `√(2 T g / p)`, interpolated between the nodes, and half a cell inwards at nodes in contact.
-    pub fn predictor<'a>(&'a self, membrane: &'a Membrane<D>, side: Side) -> impl Fn(&Point<D>) -> f64 + 'a {
+    /// A function that is negative in the predicted zone of one side: the distance to its edge, interpolated between the nodes.
+    ///
+    /// At free nodes it is that which the gap of a parabola tells, `√(2 T g / p)`; at nodes in contact half a cell, or that
+    /// which their reaction tells: on a line a node whose front lies a part `δ` of a cell beyond it bears `1 - (1 - δ)² / 2` of
+    /// the pressure on a cell.
+    pub fn predictor<'a>(
+        &'a self,
+        membrane: &'a Membrane<D>,
+        side: Side,
+        by_reaction: bool,
+    ) -> impl Fn(&Point<D>) -> f64 + 'a {
         let cells = &*membrane.cells;
-        let h = (0..cells.count()).map(|cell| cells.size(cell)).fold(f64::INFINITY, f64::min);
+        let mut sizes = vec![f64::INFINITY; self.nodes.len()];
+        let mut functions = Vec::new();
+        for cell in 0..cells.count() {
+            cells.functions(cell, &mut functions);
+            for &node in &functions {
+                let size = &mut sizes[node as usize];
+                *size = size.min(cells.size(cell));
+            }
+        }
+        let h = sizes.iter().copied().fold(f64::INFINITY, f64::min);
         let at_node: Vec<f64> = self
             .nodes
             .iter()
+            .zip(&sizes)
             .enumerate()
-            .map(|(i, node)| match node {
+            .map(|(i, (node, &h))| match node {
+                Some(n) if n.contact == Some(side) && by_reaction => {
+                    let share = n.pressure() / membrane.pressure(side, &membrane.cells.node(i));
+                    let beyond = 1.0 - (2.0 * (1.0 - share)).max(0.0).sqrt();
+                    -h * if beyond.is_finite() { beyond.clamp(0.05, 1.0) } else { 0.5 }
+                }
                 Some(n) if n.contact == Some(side) => -0.5 * h,
                 Some(n) if n.inside => {
                     let x = membrane.cells.node(i);

@@ -316,11 +316,14 @@ impl<'a, const D: usize> Fronts<'a, D> {
         let finest = self.modes().finest();
         let offsets = zone.mode_offsets(finest);
         let short = offsets.windows(2).any(|o| o[1] - o[0] <= FEW_MODES);
-        let schedule = (beyond || short) && self.equilibrium.responds();
+        // Fronts that come to divided cells were found on others, or by the nodal method: what is left of their way is short
+        // waves, which full steps in a few modes would not see.
+        let whole = beyond && self.equilibrium.membrane.sizing.is_none();
+        let schedule = (whole || short) && self.equilibrium.responds();
         let space = if schedule { self.leading_space(zone) } else { finest };
         let n = zone.mode_offsets(space)[zone.front_count()];
         // With very many modes their responses cost more than a few careful local steps.
-        let far = beyond && n <= MOST_RESPONSES && self.equilibrium.responds();
+        let far = whole && n <= MOST_RESPONSES && self.equilibrium.responds();
         let frames = self.frames(zone, space);
         let (matrix, _, mut b) = self.local_system(zone, space, &frames, &local, scales);
         let kind = if far { StepKind::Full } else { StepKind::Local };

@@ -4,6 +4,7 @@
 use crate::active_set::{self, NodalStart};
 use crate::adhesion::Branch;
 use crate::conditions::{Conditions, corrected, least_free_gap, pushes};
+use crate::deferred::Known;
 use crate::equilibrium::{Elements, Equilibrium};
 use crate::front::{Fronts, StepKind};
 use crate::problem::Membrane;
@@ -12,6 +13,7 @@ pub use crate::rest::Rest;
 use crate::rest::{Course, SETTLED, SHARP, Sight, Verdict};
 use crate::scales::Scales;
 use crate::zone::{Zone, contact_index};
+use signorini_fem::Grid;
 use signorini_geometry::Point;
 use signorini_solve::{Acceleration, Iteration, Progress, SolveError};
 
@@ -23,8 +25,6 @@ const MOST_DESCENTS: usize = 200;
 const UNSTABLE: f64 = -1e-6;
 /// A gap of this fraction of the scale counts as none: without contact nothing but round-off disturbs it.
 const FREE: f64 = -1e-10;
-/// Cells along a side of those by whose nodes it is told what has merged.
-const NODES: usize = 256;
 /// A zone of less than this part of a cell has no shape.
 const SMALL: f64 = 0.7;
 /// Holes of fewer cells are nowhere far from their outlines.
@@ -166,18 +166,25 @@ pub fn solve<const D: usize, Z: Zone<D>>(
 /// front is true to a fraction of a cell, or of smaller ones where the question is what has merged.
 pub(crate) fn prediction<const D: usize, Z: Zone<D>>(
     membrane: &Membrane<D>,
-    closely: bool,
+    known: Option<&Known<'_, D, Z>>,
     interrupted: &dyn Fn() -> bool,
 ) -> Result<Z, SolveError> {
-    let coarse = membrane.cells.divisible().map_or(membrane.grid.cells(), |grid| grid.cells());
-    let longest = coarse.into_iter().max().unwrap_or(1);
-    let least = if membrane.cells.degree() >= 3 { 2 } else { 1 };
-    let finer = if closely { (NODES / longest).max(least) } else { least };
+    let finer = if membrane.cells.degree() >= 3 { 2 } else { 1 };
     let nodal = membrane.on(membrane.cells.linear(finer));
-    let solution = active_set::solve::<D, Z>(&nodal, NodalStart::Nested, interrupted)?;
+    let solution = active_set::solve_beside::<D, Z>(&nodal, NodalStart::Nested, known, interrupted)?;
+    if let Some(sizing) = &membrane.sizing {
+        let outlines = |side| {
+            let found = nodal.cells.outlines(&solution.predictor(&nodal, side, true));
+            found.map(|found| found.into_iter().map(move |outline| (side, outline)).collect::<Vec<_>>())
+        };
+        if let Some(outlines) = nodal.obstacles.sides().map(outlines).collect::<Option<Vec<_>>>() {
+            let linear = Grid::new(*membrane.grid.bounds(), membrane.grid.cells(), 1);
+            return Ok(Z::within(&linear, sizing, &outlines.concat()));
+        }
+    }
     let grid = membrane.samples();
     Ok(nodal.obstacles.sides().fold(Z::empty(&grid), |zone, side| {
-        let predictor = solution.predictor(&nodal, side);
+        let predictor = solution.predictor(&nodal, side, false);
         zone.united(&grid, side, &mut |x| predictor(x))
     }))
 }
@@ -329,11 +336,13 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 self.predict()?;
                 continue;
             }
-            if self.rest == Rest::BeforeMoreDivision && self.solution.unfinished {
+            let tips = self.has_lost_tips(&self.solution.zone);
+            if (self.rest == Rest::BeforeMoreDivision && self.solution.unfinished)
+                || (self.rest == Rest::BeforeDivision && tips)
+            {
                 return Ok(Reason::Converged);
             }
             sweeps += 1;
-            let tips = self.has_lost_tips(&self.solution.zone);
             let solution = &mut self.solution;
             let (Some(equilibrium), Some(scales)) = (&solution.equilibrium, &solution.scales) else {
                 return Ok(Reason::IterationLimit);
@@ -420,8 +429,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
 
     /// The zone by the nodal method, on as many nodes as the cells make worth while.
     fn prediction(&self) -> Result<Z, SolveError> {
-        let divided = self.membrane.sizing.is_some();
-        Ok(self.resized(prediction(self.membrane, divided, &|| self.progress.interrupted())?))
+        Ok(self.resized(prediction(self.membrane, None, &|| self.progress.interrupted())?))
     }
 
     /// A zone from other cells with modes as these can tell them apart.

@@ -4,6 +4,7 @@ pub mod adhesion;
 pub mod coexisting;
 pub mod conditions;
 pub mod continuation;
+mod deferred;
 pub mod domain;
 pub mod equilibrium;
 pub mod error_estimate;

@@ -40,13 +40,17 @@ const MOST_SAMPLES: usize = 2048;
 /// degree 1, whose modes are longer; and between fronts.
 const CURVED: f64 = 5.0;
 const CURVED_LINEAR: f64 = 8.0;
-const BETWEEN: f64 = 2.0;
+const BETWEEN: f64 = 3.0;
 /// A front that bends within a cell is blunter than it would be on smaller ones: by this much times curvature and size.
 const BLUNTED: f64 = 1.3;
 /// A front of so many cells is long.
 const LONG: f64 = 12.0;
 /// A front that encloses less than this multiple of `h²` after a step has collapsed.
 const COLLAPSED: f64 = 0.01;
+/// Outlines that enclose less than this multiple of a cell are those of nodes, not of zones or holes.
+const SHAPELESS: f64 = 4.0;
+/// A step may not bring a tip farther than this many divided cells, beyond which the linear model says nothing.
+const FARTHEST: f64 = 4.0;
 /// A step may not bring a front nearer to its centre of curvature than this fraction of its radius of curvature.
 const FOLD: f64 = 0.3;
 
@@ -683,11 +687,16 @@ impl Zone<2> for PlaneZone {
             .enumerate()
             .map(|(i, c)| {
                 let w = self.displacement(i, space, step);
+                let tips = self.sizing.as_ref().filter(|_| self.relative_length(c) >= LONG);
                 let limited = |p: &CurvePoint| {
+                    let (w, reach) = match tips {
+                        None => (w(p.s), reach),
+                        Some(sizing) => (swept(w(p.s), p.curvature), reach.min(FARTHEST * sizing.at(&p.position))),
+                    };
                     // Towards the centre of curvature the front would fold.
                     let room = (1.0 - FOLD) / p.curvature.abs().max(f64::MIN_POSITIVE);
                     let (inward, outward) = if p.curvature > 0.0 { (room, reach) } else { (reach, room) };
-                    w(p.s).clamp(-inward.min(reach), outward.min(reach))
+                    w.clamp(-inward.min(reach), outward.min(reach))
                 };
                 let modes = self.mode_counts[i];
                 let moved = c.offset(SPLIT * modes, limited);
@@ -807,6 +816,21 @@ impl Zone<2> for PlaneZone {
         Self::is_valid(&moved).then(|| self.with_curves(&self.grid, moved))
     }
 
+    fn within(grid: &Grid<2>, sizing: &Arc<Sizing<2>>, outlines: &[(Side, Vec<Point<2>>)]) -> Self {
+        let along = |(side, outline): &(Side, Vec<Point<2>>)| {
+            let relative: f64 =
+                polygon::edges(outline).map(|(a, b)| (b - a).norm() / sizing.at(&(0.5 * (a + b)))).sum();
+            let knots = Self::knots(grid, relative);
+            let degree = Self::front_degree(grid);
+            (*side, ClosedCurve::evenly_along(outline, degree, knots, |x| 1.0 / sizing.at(x)))
+        };
+        let has_shape = |(_, outline): &&(Side, Vec<Point<2>>)| {
+            let centre = outline.iter().sum::<Point<2>>() / outline.len() as f64;
+            polygon::signed_area(outline).abs() > SHAPELESS * sizing.at(&centre).powi(2)
+        };
+        let curves = outlines.iter().filter(has_shape).map(along).collect();
+        Self { sizing: Some(sizing.clone()), ..Self::new(grid, curves) }
+    }
     fn united(&self, grid: &Grid<2>, side: Side, f: &mut dyn FnMut(&Point<2>) -> f64) -> Self {
         self.combined(grid, side, f, false, f64::min)
     }
@@ -957,6 +981,9 @@ impl Zone<2> for PlaneZone {
     fn bend(&self) -> f64 {
         (0..self.curves.len()).map(|c| self.bend_of(c)).fold(0.0, f64::max)
     }
+    fn fronts_are_long(&self) -> bool {
+        self.curves.iter().all(|curve| self.relative_length(curve) >= LONG)
+    }
     fn has_lost_tips(&self) -> bool {
         let mut sharp = (0..self.curves.len()).filter(|c| self.bend_of(*c) >= 1.0).peekable();
         sharp.peek().is_some() && sharp.all(|c| self.relative_length(&self.curves[c]) >= LONG)
@@ -1024,6 +1051,12 @@ fn at_knots(curve: &ClosedCurve) -> impl Iterator<Item = CurvePoint> + '_ {
 /// The curvatures of a curve at its samples, without their signs.
 fn curvatures(curve: &ClosedCurve) -> impl Iterator<Item = f64> + '_ {
     (0..curve.samples().len()).map(|i| curve.point(curve.sample_parameter(i)).curvature.abs())
+}
+
+/// How far a tip moves away from its centre of curvature to sweep as much area as a straight front does in a step: the load on
+/// what is swept balances the slope jump.
+fn swept(step: f64, curvature: f64) -> f64 {
+    2.0 * step / (1.0 + (1.0 + 2.0 * (curvature * step).max(0.0)).sqrt())
 }
 
 /// The smallest box round points.
@@ -1112,4 +1145,19 @@ fn rows_enclosed(grid: &Grid<2>, curves: &[ClosedCurve]) -> Vec<Vec<[u32; 3]>> {
         }
     }
     rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tips_sweep_what_straight_fronts_do() {
+        for (step, curvature) in [(0.1, 3.0), (2.0, 5.0), (-0.2, -40.0)] {
+            let w = swept(step, curvature);
+            assert!((w * (1.0 + 0.5 * curvature * w) - step).abs() < 1e-14 * step.abs().max(1.0), "{w}");
+        }
+        // Towards the centre of curvature, and on straight fronts, nothing changes.
+        assert_eq!([swept(-0.1, 3.0), swept(0.1, -3.0), swept(0.3, 0.0)], [-0.1, 0.1, 0.3]);
+    }
 }

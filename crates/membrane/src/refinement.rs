@@ -1,13 +1,14 @@
 //! Cells divided where the fronts need it: where they curve within a cell or come near each other.
 
 use crate::adhesion::Branch;
+use crate::deferred::Known;
 use crate::domain::DomainOnCells;
 use crate::equilibrium::{Elements, Equilibrium};
 use crate::front::Fronts;
 use crate::ils::{self, Reason, Solution, Start};
 use crate::problem::Membrane;
 use crate::published::Formulation;
-use crate::rest::{Rest, SETTLED_COARSE};
+use crate::rest::{Rest, SETTLED, SETTLED_COARSE};
 use crate::scales::Scales;
 use crate::sizing::Sizing;
 use crate::zone::Zone;
@@ -26,6 +27,8 @@ const MOST_FINER: usize = 2;
 const AT_ONCE: usize = 2;
 /// ... of cells of degree 1, on which fronts wander off that were not brought to rest.
 const AT_ONCE_LINEAR: usize = 3;
+/// Predictions on cells divided so often.
+const MOST_LOOKS: usize = 6;
 /// Solves on new cells within one increment.
 const MOST_ROUNDS: usize = 6;
 
@@ -93,6 +96,31 @@ impl<const D: usize> Refinement<D> {
         found.reason.converged().then_some((found.zone, found.iterations))
     }
 
+    /// The zone by the nodal method, on cells that are divided about it as the fronts need it.
+    fn predicted<Z: Zone<D>>(
+        &self,
+        membrane: &Membrane<D>,
+        zone: &Z,
+        known: Option<&Known<'_, D, Z>>,
+        interrupted: &dyn Fn() -> bool,
+    ) -> Option<Z> {
+        let mut zone = zone.clone();
+        let mut cells: Option<Membrane<D>> = None;
+        for most in 1..=self.most {
+            let step = Self { most, ..self.clone() };
+            for _ in 0..MOST_LOOKS {
+                let Some(sizing) = step.sizing(membrane, &zone, 0) else { return Some(zone) };
+                if cells.as_ref().is_some_and(|cells| resolves(cells, &zone, &sizing)) {
+                    break;
+                }
+                let divided = step.divided(membrane, &zone, sizing)?;
+                zone = ils::prediction(&divided, known, interrupted).ok()?;
+                cells = Some(divided);
+            }
+        }
+        Some(zone)
+    }
+
     /// Solves an increment: on cells divided for the zone that it starts from if the fronts have not far to go from there,
     /// else on cells that are not, and then on cells divided as the fronts need it.
     pub fn solve<Z: Zone<D>>(
@@ -123,7 +151,8 @@ impl<const D: usize> Refinement<D> {
         let rest = if last { Rest::Final } else { Rest::BeforeDivision };
         let mut found = ils::solve(&cells, &mut Elements::new(&cells), start, rest, at, progress);
         found.before = looks;
-        let mut search = Search { refinement: self, membrane, branch, at, progress, cells, found, finer: 0 };
+        let mut search =
+            Search { refinement: self, membrane, branch, at, progress, cells, found, finer: 0, predicted: false };
         (0..MOST_ROUNDS).take_while(|_| search.goes_on().is_some()).count();
         search.finished()
     }
@@ -142,6 +171,8 @@ struct Search<'a, const D: usize, Z> {
     cells: Membrane<D>,
     /// Divisions more than the fronts want.
     finer: usize,
+    /// Whether the nodal method has told where the fronts are.
+    predicted: bool,
 }
 
 impl<const D: usize, Z: Zone<D>> Search<'_, D, Z> {
@@ -155,23 +186,16 @@ impl<const D: usize, Z: Zone<D>> Search<'_, D, Z> {
         if too_large && self.cells.sizing.is_some() {
             self.finer += 1;
         }
-        if self.finer > MOST_FINER {
+        if self.finer > MOST_FINER || (!too_large && self.resolves()) {
             return None;
         }
-        let zone = self.best_known();
-        // Fronts that lie some cells off come to rest soon; those that lie many off do not.
-        let reached = (self.membrane.grid.h() / self.cells.grid.h()).log2().round() as usize;
-        let at_once = if self.membrane.cells.degree() == 1 { AT_ONCE_LINEAR } else { AT_ONCE };
-        let most = self.refinement.most.min(reached + at_once);
+        let (counts, predicted) = (self.found.zone.counts(), self.predicted);
+        let (zone, most) = self.best_known();
         let step = Refinement { most, ..self.refinement.clone() };
         let more = || step.sizing(self.membrane, &zone, 1).filter(|_| too_large);
         let sizing = step.sizing(self.membrane, &zone, self.finer).or_else(more)?;
-        if !too_large && resolves(&self.cells, &zone, &sizing) {
-            return None;
-        }
         let first = self.cells.sizing.is_none() || most < self.refinement.most;
         let rest = if first { Rest::BeforeMoreDivision } else { Rest::Final };
-        let counts = zone.counts();
         let (mut cells, mut next) = self.about(&step, zone, sizing, scales, rest)?;
         next.before = self.found.before + self.found.iterations;
         if self.is_lost(&next)
@@ -184,6 +208,11 @@ impl<const D: usize, Z: Zone<D>> Search<'_, D, Z> {
             cells = others;
         }
         next.jumped |= self.found.jumped;
+        if self.is_lost(&next) && self.predicted && !predicted {
+            // What was predicted is no start; what was found is, for cells that are not so much smaller.
+            self.found.before = next.before + next.iterations - self.found.iterations;
+            return Some(());
+        }
         if self.is_lost(&next) {
             // What was found on larger cells is an answer all the same.
             self.found.before = next.before + next.iterations - self.found.iterations;
@@ -196,16 +225,36 @@ impl<const D: usize, Z: Zone<D>> Search<'_, D, Z> {
         Some(())
     }
 
-    /// Where to go on from. Fronts that went astray are a worse start than those that were predicted; so are some that come
-    /// too near to each other to tell whether they touch.
-    fn best_known(&mut self) -> Z {
-        let astray = self.found.reason == Reason::IterationLimit;
+    /// Whether the cells are hardly larger than the fronts that were found want them.
+    fn resolves(&self) -> bool {
+        let sizing = self.refinement.sizing(self.membrane, &self.found.zone, self.finer);
+        sizing.is_none_or(|sizing| resolves(&self.cells, &self.found.zone, &sizing))
+    }
+
+    /// Where to go on from, and how often cells are divided then at most.
+    fn best_known(&mut self) -> (Z, usize) {
+        let astray = !self.found.reason.converged();
         let zone = self.found.predicted.take().filter(|_| astray).unwrap_or_else(|| self.found.zone.clone());
-        if self.found.unresolved.is_none() || self.membrane.obstacles.are_sticky() {
-            return zone;
+        // Fronts that lie some cells off come to rest soon; those that lie many off do not.
+        let reached = (self.membrane.grid.h() / self.cells.grid.h()).log2().round() as usize;
+        let at_once = if self.membrane.cells.degree() == 1 { AT_ONCE_LINEAR } else { AT_ONCE };
+        let most = self.refinement.most.min(reached + at_once);
+        // Those that went astray, or whose tips no cell shows, are a worse start than those that are predicted; so are some
+        // that come too near to each other to tell whether they touch.
+        let lost =
+            astray || (!self.predicted && (zone.has_lost_tips() || (self.found.unfinished && zone.fronts_are_long())));
+        if !(lost || self.found.unresolved.is_some()) || self.membrane.obstacles.are_sticky() {
+            return (zone, most);
         }
-        let merged = ils::prediction::<D, Z>(self.membrane, true, &|| self.progress.interrupted());
-        merged.ok().filter(|merged| merged.counts() != zone.counts()).unwrap_or(zone)
+        self.predicted = true;
+        let known = self.found.equilibrium.as_ref().filter(|_| !astray);
+        let known = known.map(|state| Known { state, zone: &self.found.zone });
+        let predicted =
+            self.refinement.predicted(self.membrane, &zone, known.as_ref(), &|| self.progress.interrupted());
+        match predicted.filter(|predicted| lost || predicted.counts() != zone.counts()) {
+            Some(predicted) => (predicted, self.refinement.most),
+            None => (zone, most),
+        }
     }
 
     /// What is found on cells divided about a zone.
@@ -230,7 +279,9 @@ impl<const D: usize, Z: Zone<D>> Search<'_, D, Z> {
 
     /// What was found, brought to rest.
     fn finished(self) -> Solution<D, Z> {
-        let Some(scales) = self.found.scales.filter(|_| self.found.unfinished && self.found.reason.converged()) else {
+        // What sharp fronts lack in the end may be less than what other fronts settle with.
+        let at_rest = !self.found.unfinished || self.found.settled_within.is_some_and(|step| step < SETTLED);
+        let Some(scales) = self.found.scales.filter(|_| !at_rest && self.found.reason.converged()) else {
             return self.found;
         };
         // Smaller cells turned out not to be wanted, or not to be had.

@@ -22,6 +22,8 @@ pub(crate) const SETTLED: f64 = 1e-3;
 /// ... or, where a front is sharper than a cell, or where the slope jump that its modes do not see is larger than the one
 /// they do, by less than this.
 pub(crate) const SETTLED_COARSE: f64 = 0.03;
+/// ... or, on tips that no cell shows where both are so, by less than this.
+const SETTLED_AT_TIPS: f64 = 0.1;
 /// ... or, where they are moved as a level set on nodes, by less than this.
 const SETTLED_SHIFTED: f64 = 0.1;
 /// A residual that has fallen so often in a row has not settled, however slowly it falls: a front may be on its way to vanish.
@@ -111,6 +113,7 @@ impl Rest {
         let sharp = sight.bend >= 1.0;
         let enough = || match (sight.shifted, sharp && sight.bend < SHARPEST) {
             (true, _) => SETTLED_SHIFTED,
+            (_, true) if sight.tips && (sight.unseen)(1.0) => SETTLED_AT_TIPS,
             (_, sharp) if sharp || (sight.unseen)(1.0) => SETTLED_COARSE,
             _ => SETTLED,
         };

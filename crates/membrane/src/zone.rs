@@ -214,6 +214,11 @@ pub trait Zone<const D: usize>: Division<D> + Clone + Send {
     /// these differ in more than the place of the fronts.
     fn extrapolated(&self, grid: &Grid<D>, before: &[(&Self, f64)]) -> Option<Self>;
 
+    /// The zone within outlines on each side, with modes as long as cells of the given sizes can tell apart.
+    fn within(grid: &Grid<D>, _sizing: &Arc<Sizing<D>>, _outlines: &[(Side, Vec<Point<D>>)]) -> Self {
+        Self::empty(grid)
+    }
+
     /// Adds the set where `f < 0`, which lies outside the zone and touches one side.
     fn united(&self, grid: &Grid<D>, side: Side, f: &mut dyn FnMut(&Point<D>) -> f64) -> Self;
     /// Removes the set where `f < 0`.
@@ -237,6 +242,10 @@ pub trait Zone<const D: usize>: Division<D> + Clone + Send {
     fn least_feature(&self) -> f64;
     /// The largest product of the curvature of a front and the size of the cells there.
     fn bend(&self) -> f64;
+    /// Whether no front is so short, counted in cells, that a coarse look would miss it.
+    fn fronts_are_long(&self) -> bool {
+        true
+    }
     /// Whether fronts are sharper than a cell, and only such as are many cells long: tips, not holes or zones of a few cells.
     fn has_lost_tips(&self) -> bool {
         false

@@ -456,7 +456,7 @@ pub struct GridKey {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RefineKey {
-    /// How often cells are divided at most where fronts curve within a cell or come near each other; 5 if left out (3
+    /// How often cells are divided at most where fronts curve within a cell or come near each other; 8 if left out (5
     /// of degree 1), 0 for never.
     #[serde(default)]
     #[schemars(with = "Option<i64>")]

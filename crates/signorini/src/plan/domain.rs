@@ -18,9 +18,9 @@ use std::sync::Arc;
 /// its edge.
 pub(super) const MARGIN: f64 = 1.03;
 /// How often cells are divided at most where the case does not say.
-const MOST_DIVISIONS: usize = 5;
+const MOST_DIVISIONS: usize = 8;
 /// ... of degree 1, which is not so accurate that smaller ones would gain much.
-const MOST_DIVISIONS_LINEAR: usize = 3;
+const MOST_DIVISIONS_LINEAR: usize = 5;
 /// How often those of a mesh from a file may be.
 const MOST_MESH_DIVISIONS: i64 = 12;
 /// Fraction of the free memory that a solve may use.

@@ -687,7 +687,8 @@ impl Zone<2> for PlaneZone {
             .enumerate()
             .map(|(i, c)| {
                 let w = self.displacement(i, space, step);
-                let tips = self.sizing.as_ref().filter(|_| self.relative_length(c) >= LONG);
+                // Modes of degree 1 are as long as a step may be, and have no such tips.
+                let tips = self.sizing.as_ref().filter(|_| grid.degree() > 1 && self.relative_length(c) >= LONG);
                 let limited = |p: &CurvePoint| {
                     let (w, reach) = match tips {
                         None => (w(p.s), reach),

@@ -94,9 +94,13 @@ pub trait Cells<const D: usize>: Send + Sync {
     fn outlines(&self, _value: &dyn Fn(&Point<D>) -> f64) -> Option<Vec<Vec<Point<D>>>> {
         None
     }
-    /// The grid whose cells can be divided where it matters.
-    fn divisible(&self) -> Option<&Grid<D>> {
+    /// The grid whose cells these are, or are parts of.
+    fn as_grid(&self) -> Option<&Grid<D>> {
         None
+    }
+    /// How often a cell was divided.
+    fn divisions(&self, _cell: usize) -> usize {
+        0
     }
     /// The same cells with functions of one degree more, where there are such.
     fn raised(&self) -> Option<Arc<dyn Cells<D>>>;
@@ -201,7 +205,7 @@ impl<const D: usize> Cells<D> for Grid<D> {
     fn linear(&self, finer: usize) -> Arc<dyn Cells<D>> {
         Arc::new(Grid::new(*self.bounds(), self.cells().map(|n| n * finer), 1))
     }
-    fn divisible(&self) -> Option<&Grid<D>> {
+    fn as_grid(&self) -> Option<&Grid<D>> {
         Some(self)
     }
     fn raised(&self) -> Option<Arc<dyn Cells<D>>> {

@@ -5,7 +5,7 @@
 //! - [`cell_map`]: Lagrange functions that map reference cells to space; [`mesh`] and [`block`] are made of them.
 //! - [`gmsh`]: meshes from files.
 //! - [`adjacency`]: which cells of a mesh share sides.
-//! - [`mesh_refinement`]: meshes of the plane, each cell divided into four.
+//! - [`mesh_refinement`]: meshes of the plane, each cell divided into four; [`graded_mesh`]: only where it matters.
 //! - [`rules`]: quadrature on reference cells.
 //! - [`lagrange`]: tensor-product Lagrange bases of any degree on Gauss-Lobatto points.
 //! - [`grid`]: uniform background grids in one, two and three dimensions, with their nodes.
@@ -22,6 +22,7 @@ pub mod cut;
 pub mod dofs;
 pub mod ghost;
 pub mod gmsh;
+pub mod graded_mesh;
 pub mod grid;
 pub mod hierarchic;
 pub mod lagrange;

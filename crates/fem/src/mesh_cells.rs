@@ -21,6 +21,7 @@ use crate::reference::{CellShape, Local};
 use crate::rules::{Rule, rule};
 use crate::small;
 use nalgebra::{DMatrix, DVector};
+use signorini_geometry::outline::outlines;
 use signorini_geometry::{Aabb, ImplicitShape, Matrix, Point, Vector};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, OnceLock};
@@ -51,6 +52,9 @@ pub struct MeshCells {
     groups: Vec<(String, Vec<usize>)>,
     pieces: usize,
     parent: Option<Parent>,
+    /// Those of which some were divided, and how often each was.
+    whole: Option<Arc<MeshCells>>,
+    levels: Vec<u8>,
 }
 
 /// The cells of which each was divided into four.
@@ -87,6 +91,12 @@ struct Bent {
 }
 
 const STRAIGHT: u32 = u32::MAX;
+
+/// The highest degree of functions on triangles.
+pub const MOST_ON_TRIANGLES: usize = 2;
+
+/// Cells are near a place that is less than so many of their extents away.
+const NEAR: f64 = 2.0;
 
 /// Parts that a side of the boundary is drawn in.
 const DRAWN: usize = 4;
@@ -189,6 +199,8 @@ impl MeshCells {
             groups,
             pieces,
             parent: None,
+            whole: None,
+            levels: Vec::new(),
         }
     }
 
@@ -207,6 +219,48 @@ impl MeshCells {
         }
         fine.parent = Some(Parent { cells: self.clone(), nodes });
         fine
+    }
+
+    /// The same functions on the mesh that is not divided, with cells divided, at most so often, until those near each of the places are no larger
+    /// than what is wanted there, and where `also` says so of a cell's box and how often it was divided. None where the
+    /// functions are those of quadrilaterals alone: beside divided ones there are triangles.
+    pub fn graded(
+        self: &Arc<Self>,
+        places: &[(Point<2>, f64)],
+        most: usize,
+        also: &dyn Fn(&Aabb<2>, usize) -> bool,
+    ) -> Option<Self> {
+        if self.degree > MOST_ON_TRIANGLES {
+            return None;
+        }
+        if let Some(whole) = &self.whole {
+            return whole.graded(places, most, also);
+        }
+        let about = |b: &Aabb<2>, extent: f64| {
+            let reach = Point::<2>::repeat(NEAR * extent);
+            Aabb::new(b.min - reach, b.max + reach)
+        };
+        let in_buckets = Lists::new(self.buckets.cell_count(), |visit| {
+            places.iter().zip(0u32..).for_each(|((x, _), k)| visit(self.buckets.cell_containing(x), k));
+        });
+        let near: Vec<Vec<u32>> = (0..self.count())
+            .map(|cell| {
+                let reach = about(&self.bounds_of(cell), self.extent(cell));
+                let mut near = Vec::new();
+                for_each_bucket(&self.buckets, &reach, |bucket| near.extend_from_slice(in_buckets.of(bucket)));
+                near.retain(|&k| reach.contains(&places[k as usize].0));
+                near
+            })
+            .collect();
+        let mut wanted = |mesh: &Mesh<2>, cell: usize, of: usize, level: usize| {
+            let b = box_round(mesh.cell_nodes(cell).iter().map(|&n| mesh.nodes()[n as usize]));
+            let extent = self.extent(of) / f64::from(1u32 << level);
+            let reach = about(&b, extent);
+            let mut near = near[of].iter().map(|&k| &places[k as usize]);
+            (level < most && near.any(|(x, size)| extent > *size && reach.contains(x))) || also(&b, level)
+        };
+        let (mesh, levels) = self.mesh.graded(&mut wanted);
+        Some(Self { whole: Some(self.clone()), levels, ..Self::new(mesh, self.degree) })
     }
 
     /// The cells of which each was divided into four of these.
@@ -294,13 +348,16 @@ impl MeshCells {
 
     /// A uniform grid over the mesh, with cells of the median size.
     pub fn grid(&self) -> Grid<2> {
-        let mut sizes: Vec<f64> = (0..self.count())
-            .map(|c| (self.volume(c) * if self.mesh.shape(c) == CellShape::Triangle { 2.0 } else { 1.0 }).sqrt())
-            .collect();
+        let mut sizes: Vec<f64> = (0..self.count()).map(|cell| self.extent(cell)).collect();
         let middle = sizes.len() / 2;
         let h = *sizes.select_nth_unstable_by(middle, f64::total_cmp).1;
         let number = |k: usize| ((self.bounds().size()[k] / h).round() as usize).clamp(1, 1 << 14);
         Grid::new(*self.bounds(), [number(0), number(1)], self.degree)
+    }
+
+    /// The side of a square as large as a cell, or as two triangles.
+    fn extent(&self, cell: usize) -> f64 {
+        (self.volume(cell) * if self.mesh.shape(cell) == CellShape::Triangle { 2.0 } else { 1.0 }).sqrt()
     }
 
     /// The point of the boundary that is closest to `x`, to a fraction of a cell, if there is one within `reach`.
@@ -648,8 +705,11 @@ impl Cells<2> for MeshCells {
         Arc::new(Self::new(self.mesh.clone(), 1))
     }
     fn raised(&self) -> Option<Arc<dyn Cells<2>>> {
-        let most =
-            if self.mesh.all_sides().any(|s| !self.mesh.shape(s.cell as usize).is_tensor()) { 2 } else { MAX_DEGREE };
+        let most = if (0..self.count()).any(|cell| !self.mesh.shape(cell).is_tensor()) {
+            MOST_ON_TRIANGLES
+        } else {
+            MAX_DEGREE
+        };
         (self.degree < most).then(|| -> Arc<dyn Cells<2>> { Arc::new(Self::new(self.mesh.clone(), self.degree + 1)) })
     }
     fn coarser(&self) -> Option<Arc<dyn Cells<2>>> {
@@ -658,6 +718,30 @@ impl Cells<2> for MeshCells {
     }
     fn mesh(self: Arc<Self>) -> Option<Arc<MeshCells>> {
         Some(self)
+    }
+    fn outlines(&self, value: &dyn Fn(&Point<2>) -> f64) -> Option<Vec<Vec<Point<2>>>> {
+        let nodes = self.mesh.nodes();
+        let mut values = vec![f64::NAN; nodes.len()];
+        for node in (0..self.count()).flat_map(|cell| self.mesh.vertices(cell)) {
+            let known = &mut values[node as usize];
+            if known.is_nan() {
+                *known = value(&nodes[node as usize]);
+            }
+        }
+        let corners = |cell: usize| -> Vec<_> {
+            let vertices: Vec<u32> = self.mesh.vertices(cell).collect();
+            let next = vertices.iter().cycle().skip(1);
+            let corner = |(&a, &b): (&u32, &u32)| (values[a as usize], (a.min(b), a.max(b)));
+            vertices.iter().zip(next).map(corner).collect()
+        };
+        let crossing = |(a, b): (u32, u32)| {
+            let (f, g) = (values[a as usize], values[b as usize]);
+            nodes[a as usize] + f / (f - g) * (nodes[b as usize] - nodes[a as usize])
+        };
+        outlines((0..self.count()).map(corners), crossing, 1e-12 * self.bounds().radius())
+    }
+    fn divisions(&self, cell: usize) -> usize {
+        self.levels.get(cell).map_or(0, |level| usize::from(*level))
     }
     fn for_each_point(&self, cell: usize, visit: &mut dyn FnMut(&QuadraturePoint<2>, &Tabulation<2>)) {
         let mut t = Tabulation::default();

@@ -1,6 +1,7 @@
 //! Meshes of the plane with every cell divided into four.
 
 use crate::adjacency::Adjacency;
+use crate::cell_map::CellMap;
 use crate::hierarchic::Values;
 use crate::mesh::{Group, Mesh, Side};
 use crate::reference::{CellShape, Local};
@@ -40,13 +41,30 @@ pub fn between_parts(shape: CellShape) -> &'static [[[usize; 2]; 2]] {
 }
 
 /// Reference coordinates of a corner.
-fn place(shape: CellShape, corner: &Corner) -> Local {
+pub(crate) fn place(shape: CellShape, corner: &Corner) -> Local {
     let vertices = shape.vertices();
     std::array::from_fn(|k| 0.25 * corner.iter().map(|&v| vertices[v as usize][k]).sum::<f64>())
 }
 
+/// The nodes at the vertices of the parts of a cell, by those at its own, in the middles of its sides and in its centre. The
+/// fourth of a triangle is none.
+pub(crate) fn vertices_of_parts(
+    shape: CellShape,
+    corners: &[u32],
+    middle: &dyn Fn(u8) -> u32,
+    centre: u32,
+) -> [[u32; 4]; PARTS] {
+    let node = |&[a, b, _, d]: &Corner| match (a == d, a == b) {
+        (true, _) => corners[usize::from(a)],
+        (_, false) => centre,
+        // The side from the last vertex to the first is the last.
+        _ => middle(if d == a + 1 { a } else { d }),
+    };
+    parts(shape).map(|part| std::array::from_fn(|k| part.get(k).map_or(u32::MAX, node)))
+}
+
 /// The sides of the parts of a cell that lie on one of its own sides.
-fn on_side(shape: CellShape, side: usize) -> impl Iterator<Item = (usize, usize)> {
+pub(crate) fn on_side(shape: CellShape, side: usize) -> impl Iterator<Item = (usize, usize)> {
     let ends = shape.sides()[side];
     let on = move |corner: &Corner| corner.iter().all(|v| ends.contains(&usize::from(*v)));
     (0..PARTS).flat_map(move |part| {
@@ -58,8 +76,8 @@ fn on_side(shape: CellShape, side: usize) -> impl Iterator<Item = (usize, usize)
 }
 
 /// The nodes of each part of a cell that is bent.
-type CurvedParts = [Option<Vec<Point<2>>>; PARTS];
-const NONE_CURVED: CurvedParts = [const { None }; PARTS];
+pub(crate) type CurvedParts = [Option<Vec<Point<2>>>; PARTS];
+pub(crate) const NONE_CURVED: CurvedParts = [const { None }; PARTS];
 
 impl Mesh<2> {
     /// The mesh with every cell divided into four at the middles of its sides, curved ones along their curves. The parts of
@@ -74,22 +92,12 @@ impl Mesh<2> {
         let mut at = Values::default();
         let mut corners = Vec::new();
         for cell in 0..self.cell_count() {
-            let map = self.map(cell);
-            let shape = map.shape();
             // What is not bent is divided with the nodes at its vertices alone.
-            let bent = map.order() > 1 && self.is_bent(cell);
+            let bent = self.is_bent(cell);
+            let mut new = |corner: &Corner| fine.add_node(self.corner(cell, bent, corner, &mut at));
             corners.clear();
             corners.extend(self.vertices(cell));
             let sides = corners.len();
-            let mut position = |xi: &Local| {
-                map.tabulate(xi, &mut at);
-                self.position(cell, &at)
-            };
-            let mean = |corner: &Corner| -> Point<2> {
-                corner.iter().map(|&v| 0.25 * self.nodes()[corners[usize::from(v)] as usize]).sum()
-            };
-            let mut new =
-                |corner: &Corner| fine.add_node(if bent { position(&place(shape, corner)) } else { mean(corner) });
             for side in 0..sides {
                 let of = Side { cell: cell as u32, side: side as u8 };
                 let (a, b) = (side as u8, ((side + 1) % sides) as u8);
@@ -98,40 +106,16 @@ impl Mesh<2> {
                 middles[adjacency.place(of)] = if known == u32::MAX { new(&[a, a, b, b]) } else { known };
             }
             let centre = if sides == 4 { new(&[0, 1, 2, 3]) } else { u32::MAX };
-            let vertices = |part: &[Corner]| -> [u32; 4] {
-                let node = |&[a, b, _, d]: &Corner| match (a == d, a == b) {
-                    (true, _) => corners[usize::from(a)],
-                    (_, false) => centre,
-                    // The side from the last vertex to the first is the last.
-                    _ => {
-                        let side = if d == a + 1 { a } else { d };
-                        middles[adjacency.place(Side { cell: cell as u32, side })]
-                    }
-                };
-                // The fourth of a triangle is never asked for.
-                std::array::from_fn(|k| part.get(k).map_or(u32::MAX, node))
+            let middle = |side: u8| middles[adjacency.place(Side { cell: cell as u32, side })];
+            let whole = vertices_of_parts(self.shape(cell), &corners, &middle, centre);
+            let curved = if bent {
+                let x = whole.map(|nodes| nodes[..sides].iter().map(|&n| fine.nodes()[n as usize]).collect());
+                self.curved_parts(cell, &x, &mut at)
+            } else {
+                NONE_CURVED
             };
-            let whole = parts(shape).map(vertices);
-            let x = |nodes: [u32; 4]| nodes[..sides].iter().map(|&n| fine.nodes()[n as usize]).collect();
-            let curved = if bent { self.curved_parts(cell, &whole.map(x), &mut at) } else { NONE_CURVED };
-            for (mut nodes, curved) in whole.into_iter().zip(curved) {
-                if let Some(curved) = curved {
-                    let vertices = map.vertex_nodes();
-                    let mut own = Vec::new();
-                    for (k, x) in curved.into_iter().enumerate() {
-                        own.push(match vertices.iter().position(|v| *v == k) {
-                            Some(v) => nodes[v],
-                            None => fine.add_node(x),
-                        });
-                    }
-                    fine.add_cell(shape, map.order(), &own);
-                } else {
-                    if sides == 4 {
-                        // Nodes of tensor shapes run along the first direction.
-                        nodes.swap(2, 3);
-                    }
-                    fine.add_cell(shape, 1, &nodes[..sides]);
-                }
+            for (nodes, curved) in whole.into_iter().zip(curved) {
+                fine.add_part(self.map(cell), &nodes[..sides], curved);
             }
         }
         for (name, group) in self.groups() {
@@ -149,10 +133,39 @@ impl Mesh<2> {
         fine
     }
 
+    /// Where a corner of a part of a cell lies, which may be bent.
+    pub(crate) fn corner(&self, cell: usize, bent: bool, corner: &Corner, at: &mut Values) -> Point<2> {
+        if bent {
+            let map = self.map(cell);
+            map.tabulate(&place(map.shape(), corner), at);
+            return self.position(cell, at);
+        }
+        let vertices: Vec<u32> = self.vertices(cell).collect();
+        corner.iter().map(|&v| 0.25 * self.nodes()[vertices[usize::from(v)] as usize]).sum()
+    }
+
+    /// Adds a part of a cell of the given map, by the nodes at its vertices and, where it is curved, where all its nodes lie.
+    pub(crate) fn add_part(&mut self, map: &CellMap, vertices: &[u32], curved: Option<Vec<Point<2>>>) -> u32 {
+        let Some(curved) = curved else {
+            return match *vertices {
+                // Nodes of tensor shapes run along the first direction.
+                [a, b, c, d] => self.add_cell(CellShape::Quadrilateral, 1, &[a, b, d, c]),
+                _ => self.add_cell(CellShape::Triangle, 1, vertices),
+            };
+        };
+        let places = map.vertex_nodes();
+        let node = |(k, x): (usize, Point<2>)| match places.iter().position(|v| *v == k) {
+            Some(v) => vertices[v],
+            None => self.add_node(x),
+        };
+        let nodes: Vec<u32> = curved.into_iter().enumerate().map(node).collect();
+        self.add_cell(map.shape(), map.order(), &nodes)
+    }
+
     /// Where the nodes of the parts of a bent cell lie, by their vertices; none for a part that is not bent. Within a
     /// triangle sides are straight, if no part is folded by that: only what lies along a curved side is curved, and with
     /// every division half as many parts are.
-    fn curved_parts(&self, cell: usize, vertices: &[Vec<Point<2>>; PARTS], at: &mut Values) -> CurvedParts {
+    pub(crate) fn curved_parts(&self, cell: usize, vertices: &[Vec<Point<2>>; PARTS], at: &mut Values) -> CurvedParts {
         let map = self.map(cell);
         let shape = map.shape();
         let mut exact = |part: &[Corner]| -> Vec<Point<2>> {
@@ -191,8 +204,11 @@ impl Mesh<2> {
     }
 
     /// Whether a cell is not what its vertices alone would make it.
-    fn is_bent(&self, cell: usize) -> bool {
+    pub(crate) fn is_bent(&self, cell: usize) -> bool {
         let (map, nodes) = (self.map(cell), self.cell_nodes(cell));
+        if map.order() == 1 {
+            return false;
+        }
         let shape = map.shape();
         let corners: Vec<Point<2>> = self.vertices(cell).map(|n| self.nodes()[n as usize]).collect();
         let size = (corners[1] - corners[0]).norm();
@@ -216,7 +232,7 @@ fn linear(shape: CellShape, [x, y, _]: &Local) -> Vec<f64> {
 }
 
 /// Reference coordinates in a cell of a point of a part with the given corners.
-fn within(shape: CellShape, corners: &[Local], xi: &Local) -> Local {
+pub(crate) fn within(shape: CellShape, corners: &[Local], xi: &Local) -> Local {
     let weights = linear(shape, xi);
     std::array::from_fn(|k| corners.iter().zip(&weights).map(|(x, w)| w * x[k]).sum())
 }

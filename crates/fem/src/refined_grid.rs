@@ -383,8 +383,11 @@ impl Cells<2> for RefinedGrid {
         };
         Arc::new(Self::from_leaves(coarse, self.leaves.iter().flat_map(parts).collect()))
     }
-    fn divisible(&self) -> Option<&Grid<2>> {
+    fn as_grid(&self) -> Option<&Grid<2>> {
         Some(&self.coarse)
+    }
+    fn divisions(&self, cell: usize) -> usize {
+        self.leaves[cell].level.into()
     }
     fn outlines(&self, value: &dyn Fn(&Point<2>) -> f64) -> Option<Vec<Vec<Point<2>>>> {
         let bounds = self.coarse.bounds();

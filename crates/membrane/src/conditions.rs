@@ -142,18 +142,19 @@ impl<const D: usize> Conditions<D> {
 
     /// Whether all that is wrong is a penetration not much larger than what counts as none, on cells that are not divided.
     pub fn nearly_hold(&self, scales: &Scales, membrane: &Membrane<D>) -> bool {
-        let cell =
-            membrane.cells.containing(&self.deepest.1).map_or(membrane.grid.h(), |cell| membrane.cells.size(cell));
-        let divided = membrane.cells.divisible().map_or(1.0, |whole| whole.h() / cell);
+        let cell = membrane.cells.containing(&self.deepest.1);
+        let divided = f64::from(1u32 << cell.map_or(0, |cell| membrane.cells.divisions(cell)));
         self.worst >= -NEARLY * divided.powi(2) && !self.pulls(scales) && self.torn_from_support.is_none()
     }
 
-    /// The same where that penetration lies beside a front.
+    /// The same where that penetration lies beside a front, and may be what the membrane sags between fronts a cell apart.
     pub fn nearly_hold_about<Z: Zone<D>>(&self, zone: &Z, scales: &Scales, membrane: &Membrane<D>) -> bool {
-        let (_, deepest) = self.deepest;
-        let reach = BESIDE * membrane.cell_size(&deepest);
-        let beside = || zone.outlines().iter().flatten().any(|x| (x - deepest).norm() < reach);
-        self.nearly_hold(scales, membrane) && beside()
+        let (side, deepest) = self.deepest;
+        let cell = membrane.cell_size(&deepest);
+        let sag = membrane.pressure(side, &deepest) * cell.powi(2) / (8.0 * membrane.tension.value(&deepest));
+        let beside = || zone.outlines().iter().flatten().any(|x| (x - deepest).norm() < BESIDE * cell);
+        let slight = -self.least_gap_outside < sag && !self.pulls(scales) && self.torn_from_support.is_none();
+        (slight || self.nearly_hold(scales, membrane)) && beside()
     }
 
     /// Whether the contact conditions hold everywhere.

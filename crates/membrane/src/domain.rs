@@ -227,7 +227,7 @@ impl<const D: usize> DomainOnCells<D> {
             }
         };
         let mut status = vec![CellStatus::Outside; cells.count()];
-        match cells.divisible().filter(|grid| grid.cell_count() == cells.count()) {
+        match cells.as_grid().filter(|grid| grid.cell_count() == cells.count()) {
             // Blocks that the boundary does not cross are settled at once.
             Some(grid) => {
                 let mut open = vec![([0; D], grid.cells())];

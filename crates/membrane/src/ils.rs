@@ -411,16 +411,17 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
     fn have_missed_a_merger(&self) -> Result<bool, SolveError> {
         let left = self.solution.unfinished;
         let moving = self.solution.settled_within.is_some_and(|step| step > SETTLED);
-        Ok(moving
-            && !left
-            && !self.is_shifted()
-            && !self.adhering
-            && self.prediction()?.counts() != self.solution.zone.counts())
+        if !moving || left || self.is_shifted() || self.adhering {
+            return Ok(false);
+        }
+        let zone = &self.solution.zone;
+        let known = self.solution.equilibrium.as_ref().map(|state| Known { state, zone });
+        Ok(self.prediction(known.as_ref())?.counts() != zone.counts())
     }
 
     /// Replaces the zone by what the nodal method predicts.
     fn predict(&mut self) -> Result<(), SolveError> {
-        self.solution.zone = self.prediction()?;
+        self.solution.zone = self.prediction(None)?;
         self.solution.predicted = Some(self.solution.zone.clone());
         self.report(0.0, "predicted");
         self.solution.residuals.pop();
@@ -428,8 +429,8 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
     }
 
     /// The zone by the nodal method, on as many nodes as the cells make worth while.
-    fn prediction(&self) -> Result<Z, SolveError> {
-        Ok(self.resized(prediction(self.membrane, None, &|| self.progress.interrupted())?))
+    fn prediction(&self, known: Option<&Known<'_, D, Z>>) -> Result<Z, SolveError> {
+        Ok(self.resized(prediction(self.membrane, known, &|| self.progress.interrupted())?))
     }
 
     /// A zone from other cells with modes as these can tell them apart.

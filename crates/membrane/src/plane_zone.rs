@@ -991,12 +991,22 @@ impl Zone<2> for PlaneZone {
     }
     fn divided(
         &self,
-        grid: &Grid<2>,
+        cells: &Arc<dyn Cells<2>>,
         sizing: &Sizing<2>,
         most: usize,
         also: &dyn Fn(&Aabb<2>, usize) -> bool,
     ) -> Option<Arc<dyn Cells<2>>> {
         let edges: Vec<_> = self.curves.iter().flat_map(|c| polygon::edges(c.samples())).collect();
+        if let Some(mesh) = cells.clone().mesh() {
+            let mut places = Vec::new();
+            for (a, b) in edges {
+                let size = sizing.largest(&(0.5 * (a + b)));
+                let parts = ((b - a).norm() / size).ceil().max(1.0);
+                places.extend((0..parts as usize).map(|k| (a + (b - a) * (k as f64 / parts), size)));
+            }
+            return Some(Arc::new(mesh.graded(&places, most, also)?));
+        }
+        let grid = cells.as_grid()?;
         let divisions: Vec<usize> =
             edges.iter().map(|(a, b)| sizing.divisions(&(0.5 * (*a + *b)), grid.h()).min(most)).collect();
         // Of each level the cells of that size within two of them from a front that wants smaller ones.

@@ -53,16 +53,17 @@ impl<const D: usize> Refinement<D> {
     /// The sizes that the fronts of a zone want of the cells, which are divided `finer` times more often than would do; none
     /// where they need not be divided.
     fn sizing<Z: Zone<D>>(&self, membrane: &Membrane<D>, zone: &Z, finer: usize) -> Option<Sizing<D>> {
-        let coarse = membrane.cells.divisible().filter(|_| D == 2 && self.most > 0 && !zone.is_empty())?;
-        zone.sizing(coarse, [(self.fronts + finer).min(self.most), self.most], finer)
+        if D != 2 || self.most == 0 || zone.is_empty() {
+            return None;
+        }
+        zone.sizing(&membrane.grid, [(self.fronts + finer).min(self.most), self.most], finer)
     }
 
     /// The membrane on cells of such sizes near the fronts of a zone.
     fn divided<Z: Zone<D>>(&self, membrane: &Membrane<D>, zone: &Z, sizing: Sizing<D>) -> Option<Membrane<D>> {
-        let coarse = membrane.cells.divisible()?;
-        let cells = zone.divided(coarse, &sizing, self.most, &*self.always)?;
-        let smallest = (0..cells.count()).map(|cell| cells.size(cell)).fold(coarse.h(), f64::min);
-        let finer = (coarse.h() / smallest).round() as usize;
+        let coarse = &membrane.grid;
+        let cells = zone.divided(&membrane.cells, &sizing, self.most, &*self.always)?;
+        let finer = 1 << (0..cells.count()).map(|cell| cells.divisions(cell)).max().unwrap_or(0);
         let grid = Grid::new(*coarse.bounds(), coarse.cells().map(|n| n * finer), coarse.degree());
         let domain = DomainOnCells::new(membrane.domain.domain.clone(), &*cells);
         Some(Membrane { cells, grid, domain, sizing: Some(Arc::new(sizing)), ..membrane.clone() })
@@ -147,7 +148,7 @@ impl<const D: usize> Refinement<D> {
             Start::Zone(_, _, branch) | Start::Asked(_, branch) => *branch,
             Start::Free => Branch::Stable,
         };
-        let last = cells.sizing.is_some() || cells.cells.divisible().is_none() || D != 2 || self.most == 0;
+        let last = cells.sizing.is_some() || D != 2 || self.most == 0;
         let rest = if last { Rest::Final } else { Rest::BeforeDivision };
         let mut found = ils::solve(&cells, &mut Elements::new(&cells), start, rest, at, progress);
         found.before = looks;

@@ -47,9 +47,14 @@ impl<const D: usize> Sizing<D> {
         size / length.max(f64::MIN_POSITIVE)
     }
 
+    /// The size of the largest cells that need not be divided at a place.
+    pub fn largest(&self, x: &Point<D>) -> f64 {
+        self.at(x) * SLACK.exp2()
+    }
+
     /// How often cells of the given size are to be divided at a place.
     pub fn divisions(&self, x: &Point<D>, size: f64) -> usize {
-        ((size / self.at(x)).log2() - SLACK).ceil().max(0.0) as usize
+        (size / self.largest(x)).log2().ceil().max(0.0) as usize
     }
 }
 

@@ -262,11 +262,11 @@ pub trait Zone<const D: usize>: Division<D> + Clone + Send {
     fn sizing(&self, _grid: &Grid<D>, _divisions: [usize; 2], _finer: usize) -> Option<Sizing<D>> {
         None
     }
-    /// Cells of a grid divided near the fronts as the sizes say, at most so often, and elsewhere where `also` says so of a
-    /// cell's box and how often it was divided; none where cells are not divided.
+    /// Cells divided near the fronts as the sizes say, at most so often, and elsewhere where `also` says so of a cell's box and
+    /// how often it was divided; none where cells are not divided.
     fn divided(
         &self,
-        _grid: &Grid<D>,
+        _cells: &Arc<dyn Cells<D>>,
         _sizing: &Sizing<D>,
         _most: usize,
         _also: &dyn Fn(&Aabb<D>, usize) -> bool,

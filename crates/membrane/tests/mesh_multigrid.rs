@@ -125,7 +125,7 @@ fn multigrid_and_the_direct_solver_agree() {
         ("quadrilaterals, degree 4", on_mesh(quadrilaterals(4, 2)), [1e-8, 1e-8]),
     ];
     for (name, membrane, least) in cases {
-        assert!(membrane.cells.divisible().is_none());
+        assert!(membrane.cells.as_grid().is_none());
         let found = nested::solution(&membrane, (0, 0.0), &mut Silent).expect("solves");
         let found = found.unwrap_or_else(|| panic!("{name}: no state"));
         assert!(found.multigrid);

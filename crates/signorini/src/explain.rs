@@ -21,7 +21,7 @@ pub const WORDS: [Word; 34] = [
     word(
         "iteration_limit",
         "reason",
-        "The fronts did not come to rest. Try more cells, or mesh.grid.refine = { most = 7 }, where zones are small or close to each other; smaller increments; a lower degree. method.active_set = {} shows a coarse picture of the zones.",
+        "The fronts did not come to rest. Try more cells, or refine = { fronts = 2 } in the mesh, where zones are small or close to each other; smaller increments; a lower degree. method.active_set = {} shows a coarse picture of the zones.",
     ),
     word(
         "no_such_state",

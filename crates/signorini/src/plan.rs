@@ -758,13 +758,17 @@ impl<'a> Planner<'a> {
                 )
                 .help("degree = 1, or  formulation = \"one_sided\""));
         }
-        if let statement::Mesh::Grid(key) = film.mesh.get_ref() {
-            if let Some(refine) = &key.refine {
-                return Err(self
-                    .document
-                    .error(refine.span(), "the published formulation works on cells that are not divided")
-                    .help("more cells, or  formulation = \"one_sided\""));
-            }
+        let refine = match film.mesh.get_ref() {
+            statement::Mesh::Grid(key) => &key.refine,
+            statement::Mesh::Gmsh(key) => &key.refine,
+        };
+        if let Some(refine) = refine {
+            return Err(self
+                .document
+                .error(refine.span(), "the published formulation works on cells that are not divided")
+                .help("more cells, or  formulation = \"one_sided\""));
+        }
+        if let statement::Mesh::Grid(_) = film.mesh.get_ref() {
             if D == 2 {
                 on.grid = Grid::new(*on.grid.bounds(), on.grid.cells(), 1);
                 on.cells = Arc::new(on.grid.clone());

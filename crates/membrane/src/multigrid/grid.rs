@@ -81,11 +81,11 @@ impl Regular for OnGrid {
     fn is_able<const D: usize>(membrane: &Membrane<D>) -> bool {
         let fits =
             |grid: &Grid<D>| grid.cells() == membrane.grid.cells() && membrane.cells.count() == grid.cell_count();
-        membrane.cells.divisible().is_some_and(fits) && membrane.grid.cells().iter().all(|n| can_be_halved(*n))
+        membrane.cells.as_grid().is_some_and(fits) && membrane.grid.cells().iter().all(|n| can_be_halved(*n))
     }
 
     fn grounds(membrane: &Membrane<2>) -> Vec<Ground<Grid<2>>> {
-        let mut list: Vec<Grid<2>> = membrane.cells.divisible().cloned().into_iter().collect();
+        let mut list: Vec<Grid<2>> = membrane.cells.as_grid().cloned().into_iter().collect();
         while let Some(last) = list.last()
             && last.cells().iter().all(|n| can_be_halved(*n))
         {

@@ -452,7 +452,7 @@ pub struct GridKey {
     pub refine: Option<Spanned<RefineKey>>,
 }
 
-/// Where the cells of a grid are divided, in the plane.
+/// Where cells are divided, in the plane.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RefineKey {
@@ -501,6 +501,10 @@ pub struct DividedGmshKey {
     #[serde(default)]
     #[schemars(with = "Option<i64>")]
     pub divisions: Option<Spanned<i64>>,
+    /// Where cells are divided besides; up to degree 2.
+    #[serde(default)]
+    #[schemars(with = "Option<RefineKey>")]
+    pub refine: Option<Spanned<RefineKey>>,
 }
 
 /// A body that does not deform.

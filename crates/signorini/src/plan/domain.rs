@@ -5,6 +5,7 @@ use crate::case::CaseError;
 use crate::case::statement::{self, Domain, Mesh, Space};
 use crate::case::units::{LENGTH, NONE};
 use crate::expression::{Expression, Scope};
+use signorini_fem::mesh_cells::MOST_ON_TRIANGLES;
 use signorini_fem::{Cells, Grid, MeshCells, RefinedGrid};
 use signorini_geometry::{Aabb, Ellipse, ImplicitShape, Jet, Point, Real, Vector, polygon};
 use signorini_membrane::domain::{
@@ -71,8 +72,8 @@ pub(crate) trait ReadDomain<const D: usize> {
 
     fn planner(&self) -> &Planner<'_>;
 
-    /// Where the cells of a grid are divided.
-    fn refinement(&self, key: &statement::GridKey, grid: &Grid<D>) -> Result<Refinement<D>, CaseError>;
+    /// Where cells are divided, which without a word are those of the grid.
+    fn refinement(&self, key: Option<&RefineEntry>, grid: &Grid<D>) -> Result<Refinement<D>, CaseError>;
 
     /// The cells of a grid, divided where a function says so.
     fn divided(&self, grid: &Grid<D>, wanted: &Wanted<D>) -> Arc<dyn Cells<D>>;
@@ -92,7 +93,7 @@ pub(crate) trait ReadDomain<const D: usize> {
         let (cells, place) = planner.cells(film, grid, &bounds)?;
         planner.check_size(&cells, degree, place.clone())?;
         let coarse = Grid::new(bounds, cells, degree);
-        let refinement = self.refinement(grid, &coarse)?;
+        let refinement = self.refinement(grid.refine.as_ref(), &coarse)?;
         let cells: Arc<dyn Cells<D>> = match &grid.refine {
             Some(key) if key.get_ref().negative_where.is_some() => self.divided(&coarse, &refinement.always),
             _ => Arc::new(coarse.clone()),
@@ -109,6 +110,9 @@ pub(crate) trait ReadDomain<const D: usize> {
         Ok(OnCells { cells, grid, domain, pieces, refinement })
     }
 }
+
+/// What a case says of where cells are divided.
+type RefineEntry = toml::Spanned<statement::RefineKey>;
 
 /// Whether a cell is divided, from its box and how often it was divided.
 type Wanted<const D: usize> = Arc<dyn Fn(&Aabb<D>, usize) -> bool + Send + Sync>;
@@ -305,8 +309,8 @@ impl ReadDomain<1> for Planner<'_> {
             .help("space = \"plane\", or mesh.grid = { cells = [100] }"))
     }
 
-    fn refinement(&self, key: &statement::GridKey, _: &Grid<1>) -> Result<Refinement<1>, CaseError> {
-        match &key.refine {
+    fn refinement(&self, key: Option<&RefineEntry>, _: &Grid<1>) -> Result<Refinement<1>, CaseError> {
+        match key {
             None => Ok(Refinement::default()),
             Some(refine) => Err(self
                 .document
@@ -352,10 +356,10 @@ impl ReadDomain<2> for Planner<'_> {
         self
     }
 
-    fn refinement(&self, key: &statement::GridKey, grid: &Grid<2>) -> Result<Refinement<2>, CaseError> {
+    fn refinement(&self, key: Option<&RefineEntry>, grid: &Grid<2>) -> Result<Refinement<2>, CaseError> {
         let most = if grid.degree() == 1 { MOST_DIVISIONS_LINEAR } else { MOST_DIVISIONS };
         let mut refinement = Refinement { most, ..Refinement::default() };
-        let Some(refine) = key.refine.as_ref().map(|r| r.get_ref()) else { return Ok(refinement) };
+        let Some(refine) = key.map(|r| r.get_ref()) else { return Ok(refinement) };
         let times = |key: &Option<toml::Spanned<i64>>, otherwise: usize| match key {
             None => Ok(otherwise),
             Some(n) if (0..=8).contains(n.get_ref()) => Ok(*n.get_ref() as usize),
@@ -422,7 +426,7 @@ impl ReadDomain<2> for Planner<'_> {
         let order = (0..mesh.cell_count()).map(|c| mesh.map(c).order()).max().unwrap_or(1);
         let degree = self.degree(film)?.unwrap_or(order);
         let triangles = (0..mesh.cell_count()).any(|c| !mesh.shape(c).is_tensor());
-        if triangles && degree > 2 {
+        if triangles && degree > MOST_ON_TRIANGLES {
             let span = film.degree.as_ref().map_or(key.file.span(), |d| d.span());
             return Err(document
                 .error(span, format!("degree {degree} on a mesh with triangles"))
@@ -442,9 +446,27 @@ impl ReadDomain<2> for Planner<'_> {
         self.check_bytes(unknowns, memory_estimate(unknowns, degree, 2).min(by_multigrid), span)?;
         let undivided = Arc::new(MeshCells::new(mesh, degree));
         let cells = (0..divisions).fold(undivided, |cells, _| Arc::new(cells.refined()));
+        let grid = cells.grid();
+        let refinement = match &key.refine {
+            Some(refine) if degree > MOST_ON_TRIANGLES => {
+                return Err(document
+                    .error(refine.span(), format!("degree {degree} on a mesh that is divided here and there"))
+                    .help(
+                        "quadrilaterals and triangles lie side by side there: degree = 1 or 2, or leave `refine` out",
+                    ));
+            }
+            None if degree > MOST_ON_TRIANGLES => Refinement::default(),
+            refine => self.refinement(refine.as_ref(), &grid)?,
+        };
         let pieces = Pieces { groups: cells.groups().to_vec() };
-        let domain = DomainOnCells::new(Arc::new(MeshDomain(cells.clone())), &*cells);
-        Ok(OnCells { grid: cells.grid(), cells, domain, pieces, refinement: Refinement::default() })
+        let domain: Arc<dyn MembraneDomain<2>> = Arc::new(MeshDomain(cells.clone()));
+        let everywhere = key.refine.as_ref().is_some_and(|refine| refine.get_ref().negative_where.is_some());
+        let divided = everywhere.then(|| cells.graded(&[], 0, &*refinement.always)).flatten();
+        let cells: Arc<dyn Cells<2>> = match divided {
+            Some(divided) => Arc::new(divided),
+            None => cells,
+        };
+        Ok(OnCells { grid, domain: DomainOnCells::new(domain, &*cells), cells, pieces, refinement })
     }
 
     fn shape(&self, key: &toml::Spanned<Domain>) -> Result<(Arc<dyn MembraneDomain<2>>, Aabb<2>, Pieces), CaseError> {

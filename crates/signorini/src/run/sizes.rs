@@ -64,7 +64,7 @@ fn of_membrane<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>) -> Result<Val
     let mut warnings = plan.warnings.clone();
     let membrane = plan.at(plan.increments.first().map_or(0.0, |i| i.range[0]));
     let multigrid = plan.by_multigrid(&membrane);
-    let estimate = |n: f64, p: usize| match (multigrid, plan.cells.divisible()) {
+    let estimate = |n: f64, p: usize| match (multigrid, plan.cells.as_grid()) {
         (true, Some(_)) => multigrid_estimate(n, p, membrane.tension.constant().is_some()),
         (true, None) => mesh_multigrid_estimate(n, p),
         (false, _) => memory_estimate(n, p, D),
@@ -182,7 +182,7 @@ fn unresolved<const D: usize>(plan: &MembranePlan<D>, time: f64) -> Vec<String> 
         if worst.0 > BENDS * (high - low) {
             let place: Vec<String> = worst.1.iter().map(|v| format!("{v:.4}")).collect();
             out.push(format!(
-                "`{}` bends within a cell, near ({}), by {:.0} % of its height: use more cells, or mesh.grid.refine",
+                "`{}` bends within a cell, near ({}), by {:.0} % of its height: use more cells, or `refine` in the mesh",
                 contact.body,
                 place.join(", "),
                 100.0 * worst.0 / (high - low)

@@ -1,6 +1,7 @@
 //! Membranes on meshes from Gmsh: triangles and quadrilaterals, straight and curved.
 
 use super::{error, last_step, number, set, summary};
+use serde_json::Value;
 use signorini_verify::flat_floor::{FlatFloor, Kind};
 use std::f64::consts::PI;
 
@@ -76,6 +77,99 @@ fn divided_cells_are_as_good_as_finer_ones() {
     }
 }
 
+const WAVES: &str = "-(15 + 5*cos(2*pi*x)*cos(2*pi*y))/1000";
+
+/// Cells divide where zones are about to merge, twelve of them to the radius, and again where they have merged: areas and forces
+/// are those of a grid of degree 3 on 32 x 32 cells, to 1e-6 at degree 2, in few solves.
+#[test]
+fn cells_of_meshes_divide_at_tips() {
+    let exact = [(0.12, 0.243_425_012, 0.095_124_171, (4, 0)), (0.16, 0.430_629_405, 0.160_727_360, (1, 1))];
+    for (mesh, degree, bound) in
+        [("triangles_2_12.msh", 2, 1e-6), ("mixed_2_12.msh", 2, 1e-6), ("triangles_2_12.msh", 1, 3e-4)]
+    {
+        let text = case(mesh)
+            .replace("\"-0.1\"", &format!("\"{WAVES}\""))
+            .replace("normal = -1.0", "normal = \"-t\"")
+            .replace("tension", &format!("degree = {degree}\ntension"));
+        let steps = "[{ to = 0.1 }, { to = 0.16, increments = 3 }]";
+        let found = summary(&text, &set(&[("steps", steps.to_string())]));
+        last_step(&found);
+        let states = found["steps"].as_array().expect("steps");
+        for (load, area, force, counts) in exact {
+            let at = |state: &&Value| (number(&state["time"]) - load).abs() < 1e-9;
+            let contact = &states.iter().find(at).expect("the load")["contacts"]["touch"];
+            assert_eq!((&contact["zones"], &contact["holes"]), (&counts.0.into(), &counts.1.into()), "{mesh} {load}");
+            let off = [number(&contact["area"]) - area, number(&contact["force"][2]) - force].map(f64::abs);
+            assert!(off[0] < bound && off[1] < bound, "{mesh}, degree {degree}, at {load}: off by {off:?}");
+        }
+        let solves: Vec<u64> = states.iter().filter_map(|state| state["iterations"].as_u64()).collect();
+        assert!(solves[1..].iter().all(|n| *n <= 5), "{mesh}, degree {degree}: {solves:?}");
+    }
+}
+
+/// A square of quadrilaterals, some of which become triangles as their neighbours divide: beside a grid of the same cells.
+#[test]
+fn quadrilaterals_divide_up_to_degree_2() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("square.msh");
+    std::fs::write(&path, squares(8)).expect("a file");
+    let name = path.display().to_string().replace('\\', "/");
+    let on = |mesh: &str| case("").replace(&format!("{{ file = \"{}\", group = \"film\" }}", file("")), mesh);
+    let of_file = |more: &str| on(&format!("{{ file = \"{name}\", group = \"film\"{more} }}"));
+    let contact = |text: &str| last_step(&summary(text, &set(&[])))["contacts"]["touch"].clone();
+    let on_grid = of_file("")
+        .replace(&format!("mesh.gmsh = {{ file = \"{name}\", group = \"film\" }}"), "")
+        .replace(
+            "tension",
+            "domain.rectangle = { min = [-1, -1], max = [1, 1] }\nmesh.grid = { cells = [40, 40] }\ntension",
+        )
+        .replace("film:rim", "film:boundary");
+    let exact = number(&contact(&on_grid.replace("tension =", "degree = 4\ntension ="))["area"]);
+    let undivided =
+        number(&contact(&of_file(", refine = { most = 0 }").replace("tension", "degree = 2\ntension"))["area"]);
+    for more in [", refine = { fronts = 2 }", ", refine = { negative_where = \"0.8 - hypot(x, y)\", levels = 2 }"] {
+        let area = number(&contact(&of_file(more).replace("tension", "degree = 2\ntension"))["area"]);
+        let off = [area - exact, undivided - exact].map(f64::abs);
+        assert!(off[0] < 0.2 * off[1] && off[0] < 2e-4, "{more}: off by {:e}, undivided {:e}", off[0], off[1]);
+    }
+    // Of a higher degree they stay whole.
+    let wrong = error(&of_file(", refine = { fronts = 1 }").replace("tension", "degree = 3\ntension"));
+    assert!(wrong.message.contains("degree 3 on a mesh that is divided"), "{wrong}");
+    let whole = number(&contact(&of_file("").replace("tension", "degree = 4\ntension"))["area"]);
+    assert!((whole - exact).abs() < 2e-4, "{whole} {exact}");
+}
+
+/// A square of so many quadrilaterals in each direction, as a file.
+fn squares(n: usize) -> String {
+    let node = |i: usize, j: usize| j * (n + 1) + i + 1;
+    let place = |k: usize| 2.0 * k as f64 / n as f64 - 1.0;
+    let nodes: Vec<String> = (0..=n)
+        .flat_map(|j| (0..=n).map(move |i| (i, j)))
+        .map(|(i, j)| format!("{} {} {} 0", node(i, j), place(i), place(j)))
+        .collect();
+    let sides = (0..n).flat_map(|k| {
+        [
+            [node(k, 0), node(k + 1, 0)],
+            [node(n, k), node(n, k + 1)],
+            [node(k + 1, n), node(k, n)],
+            [node(0, k + 1), node(0, k)],
+        ]
+    });
+    let cells = (0..n * n).map(|k| (k % n, k / n));
+    let cells = cells.map(|(i, j)| [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)]);
+    let sides = sides.map(|[a, b]| format!("1 2 1 1 {a} {b}"));
+    let elements: Vec<String> = sides.chain(cells.map(|[a, b, c, d]| format!("3 2 2 2 {a} {b} {c} {d}"))).collect();
+    let numbered: Vec<String> = elements.iter().zip(1..).map(|(e, k)| format!("{k} {e}")).collect();
+    format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n1 1 \"rim\"\n2 2 \"film\"\n$EndPhysicalNames\n\
+         $Nodes\n{}\n{}\n$EndNodes\n$Elements\n{}\n{}\n$EndElements\n",
+        nodes.len(),
+        nodes.join("\n"),
+        numbered.len(),
+        numbered.join("\n")
+    )
+}
+
 /// A ring held at both edges touches in a ring: beside the same ring by its radius.
 #[test]
 fn groups_of_a_mesh_hold_a_ring() {
@@ -119,6 +213,9 @@ fn mistakes_are_told() {
         ("group = \"film\"", "group = \"film\", divisions = 13", "0 to 12 times, not 13", "13"),
         ("group = \"film\"", "group = \"film\", divisions = 12", "unknowns would need", "12"),
         ("group = \"film\"", "group = \"film\", divisions = \"two\"", "expected", "two"),
+        ("group = \"film\"", "group = \"film\", refine = { most = 9 }", "0 to 8 times, not 9", "9"),
+        ("group = \"film\"", "group = \"film\", refine = { fronts = 3, most = 2 }", "more than 2", "2"),
+        ("group = \"film\"", "group = \"film\", refine = { levels = 2 }", "nothing says where", "2"),
         ("\"plane\"", "\"line\"", "plane", "triangles"),
         (
             "between = [\"film\", \"floor\"]",

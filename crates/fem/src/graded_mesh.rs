@@ -5,8 +5,8 @@
 
 use crate::cell_map::CellMap;
 use crate::hierarchic::Values;
-use crate::mesh::{Group, Mesh, Side};
-use crate::mesh_refinement::{NONE_CURVED, on_side, place, vertices_of_parts, within};
+use crate::mesh::{Mesh, Side};
+use crate::mesh_refinement::{NONE_CURVED, on_side, place, vertices_of_parts};
 use crate::reference::{CellShape, Local};
 use std::collections::HashMap;
 
@@ -74,12 +74,8 @@ impl Forest {
             centre = self.mesh.add_node(x);
         }
         let whole = vertices_of_parts(shape, &corners, &|side| middles[usize::from(side)], centre);
-        let curved = if bent {
-            let x = whole.map(|nodes| nodes[..sides].iter().map(|&n| self.mesh.nodes()[n as usize]).collect());
-            self.mesh.curved_parts(cell, &x, &mut self.at)
-        } else {
-            NONE_CURVED
-        };
+        let mesh = &self.mesh;
+        let curved = if bent { mesh.curved_parts(cell, &whole, mesh.nodes(), &mut self.at) } else { NONE_CURVED };
         let map = self.mesh.map(cell).clone();
         let of = self.origins[cell];
         self.origins[cell].divided = true;
@@ -119,57 +115,36 @@ impl Forest {
         let of = self.origins[cell];
         let shape = self.mesh.shape(cell);
         let vertices: Vec<u32> = self.mesh.vertices(cell).collect();
-        // Round the cell, beginning behind the corner that all triangles share; a quadrilateral has a node of its own for that.
-        let sides = vertices.len();
-        let first = hanging.iter().position(Option::is_some).unwrap_or(0);
-        let (from, count) = if sides == 3 { (first, 1) } else { (0, sides) };
-        let reference = shape.vertices();
-        let mut round: Vec<(u32, Local, u8)> = Vec::new();
-        for side in (0..count).map(|k| (from + k) % sides) {
-            let (a, b) = (side, (side + 1) % sides);
-            round.push((vertices[a], reference[a], of.sides[side]));
-            if let Some(middle) = hanging[side] {
-                round.push((middle, place(shape, &[a as u8, a as u8, b as u8, b as u8]), of.sides[side]));
+        let n = vertices.len();
+        let corner = |v: usize| (vertices[v % n], shape.vertices()[v % n]);
+        let middle = |side: usize| {
+            let (v, w) = (side as u8, ((side + 1) % n) as u8);
+            hanging[side].map(|node| (node, place(shape, &[v, v, w, w])))
+        };
+        let on = |side: usize| of.sides[side % n];
+        let bent = self.mesh.is_bent(cell);
+        let mut triangles: Vec<([(u32, Local); 3], [u8; 4])> = Vec::new();
+        if n == 3 {
+            for (side, middle) in (0..3).filter_map(|side| Some((side, middle(side)?))) {
+                let [a, b, c] = [0, 1, 2].map(|k| corner(side + k));
+                triangles.push(([a, middle, c], [on(side), INNER, on(side + 2), INNER]));
+                triangles.push(([middle, b, c], [on(side), on(side + 1), INNER, INNER]));
+            }
+        } else {
+            let centre = (out.add_node(self.mesh.corner(cell, bent, &[0, 1, 2, 3], &mut self.at)), shape.centre());
+            for side in 0..n {
+                let along: Vec<_> =
+                    [Some(corner(side)), middle(side), Some(corner(side + 1))].into_iter().flatten().collect();
+                let fan = along.windows(2).map(|ends| [ends[0], ends[1], centre]);
+                triangles.extend(fan.map(|corners| (corners, [on(side), INNER, INNER, INNER])));
             }
         }
-        let bent = self.mesh.is_bent(cell);
-        let apex = if sides == 3 {
-            let (b, c) = ((from + 1) % 3, (from + 2) % 3);
-            round.push((vertices[b], reference[b], INNER));
-            (vertices[c], reference[c])
-        } else {
-            round.push(round[0]);
-            let x = self.mesh.corner(cell, bent, &[0, 1, 2, 3], &mut self.at);
-            (out.add_node(x), shape.centre())
-        };
-        let own = self.mesh.map(cell);
-        let map = CellMap::new(CellShape::Triangle, own.order());
-        let last = round.len() - 2;
-        for (k, pair) in round.windows(2).enumerate() {
-            let [(a, at_a, side), (b, at_b, _)] = [pair[0], pair[1]];
-            let nodes = [a, b, apex.0];
-            let at = &mut self.at;
-            let curved = bent.then(|| {
-                let corners = [at_a, at_b, apex.1];
-                let position = |xi: &Local| {
-                    own.tabulate(&within(CellShape::Triangle, &corners, xi), at);
-                    self.mesh.position(cell, at)
-                };
-                map.nodes().iter().map(position).collect()
-            });
-            out.add_part(&map, &nodes, curved);
-            let mut sides = [side, INNER, INNER];
-            if shape == CellShape::Triangle {
-                // The sides of the triangle at its apex.
-                let (b, c) = ((from + 1) % 3, (from + 2) % 3);
-                if k == last {
-                    sides[1] = of.sides[b];
-                }
-                if k == 0 {
-                    sides[2] = of.sides[c];
-                }
-            }
-            origins.push(Origin { sides: [sides[0], sides[1], sides[2], INNER], ..of });
+        let map = CellMap::new(CellShape::Triangle, self.mesh.map(cell).order());
+        for (corners, sides) in triangles {
+            let places = corners.map(|(_, place)| place);
+            let curved = bent.then(|| self.mesh.nodes_of_part(cell, &map, &places, &mut self.at));
+            out.add_part(&map, &corners.map(|(node, _)| node), curved);
+            origins.push(Origin { sides, ..of });
         }
     }
 }
@@ -210,21 +185,12 @@ impl Mesh<2> {
         }
         let mut parts: Vec<Vec<u32>> = vec![Vec::new(); self.cell_count()];
         origins.iter().zip(0..).for_each(|(origin, part)| parts[origin.cell as usize].push(part));
-        for (name, group) in self.groups() {
-            let on = |side: &Side| {
-                let number = side.side;
-                let origins = &origins;
-                parts[side.cell as usize].iter().flat_map(move |&part| {
-                    let of = origins[part as usize].sides;
-                    (0..4u8).filter(move |&s| of[usize::from(s)] == number).map(move |side| Side { cell: part, side })
-                })
-            };
-            *mesh.group_mut(name) = Group {
-                cells: group.cells.iter().flat_map(|&cell| parts[cell as usize].iter().copied()).collect(),
-                sides: group.sides.iter().flat_map(on).collect(),
-                vertices: group.vertices.clone(),
-            };
-        }
+        let sides_of = |cell: u32| &origins[cell as usize].sides;
+        let on = |Side { cell, side }: Side| {
+            let of_cell = parts[cell as usize].iter().flat_map(|&cell| (0..4).map(move |side| Side { cell, side }));
+            of_cell.filter(move |s| sides_of(s.cell)[usize::from(s.side)] == side)
+        };
+        self.hand_groups_to(&mut mesh, |cell| parts[cell as usize].iter().copied(), on);
         (mesh, origins.iter().map(|origin| origin.level).collect())
     }
 }
@@ -232,6 +198,7 @@ impl Mesh<2> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::Group;
     use crate::rules::rule;
     use crate::small;
     use signorini_geometry::Point;

@@ -21,7 +21,7 @@ use crate::reference::{CellShape, Local};
 use crate::rules::{Rule, rule};
 use crate::small;
 use nalgebra::{DMatrix, DVector};
-use signorini_geometry::outline::outlines;
+use signorini_geometry::outline::outlines_between;
 use signorini_geometry::{Aabb, ImplicitShape, Matrix, Point, Vector};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, OnceLock};
@@ -52,7 +52,7 @@ pub struct MeshCells {
     groups: Vec<(String, Vec<usize>)>,
     pieces: usize,
     parent: Option<Parent>,
-    /// Those of which some were divided, and how often each was.
+    /// The cells before some were divided, and how often each was; none where none was.
     whole: Option<Arc<MeshCells>>,
     levels: Vec<u8>,
 }
@@ -221,9 +221,9 @@ impl MeshCells {
         fine
     }
 
-    /// The same functions on the mesh that is not divided, with cells divided, at most so often, until those near each of the places are no larger
-    /// than what is wanted there, and where `also` says so of a cell's box and how often it was divided. None where the
-    /// functions are those of quadrilaterals alone: beside divided ones there are triangles.
+    /// The same functions on the mesh before any such division, with cells divided until those near each of the places are no
+    /// larger than the size wanted there, at most so often, and as long as `also` says so of a cell's box and how often it was
+    /// divided. None of a degree that triangles do not have, which lie beside divided cells.
     pub fn graded(
         self: &Arc<Self>,
         places: &[(Point<2>, f64)],
@@ -720,25 +720,9 @@ impl Cells<2> for MeshCells {
         Some(self)
     }
     fn outlines(&self, value: &dyn Fn(&Point<2>) -> f64) -> Option<Vec<Vec<Point<2>>>> {
-        let nodes = self.mesh.nodes();
-        let mut values = vec![f64::NAN; nodes.len()];
-        for node in (0..self.count()).flat_map(|cell| self.mesh.vertices(cell)) {
-            let known = &mut values[node as usize];
-            if known.is_nan() {
-                *known = value(&nodes[node as usize]);
-            }
-        }
-        let corners = |cell: usize| -> Vec<_> {
-            let vertices: Vec<u32> = self.mesh.vertices(cell).collect();
-            let next = vertices.iter().cycle().skip(1);
-            let corner = |(&a, &b): (&u32, &u32)| (values[a as usize], (a.min(b), a.max(b)));
-            vertices.iter().zip(next).map(corner).collect()
-        };
-        let crossing = |(a, b): (u32, u32)| {
-            let (f, g) = (values[a as usize], values[b as usize]);
-            nodes[a as usize] + f / (f - g) * (nodes[b as usize] - nodes[a as usize])
-        };
-        outlines((0..self.count()).map(corners), crossing, 1e-12 * self.bounds().radius())
+        let cells = (0..self.count()).map(|cell| self.mesh.vertices(cell).collect());
+        let place = |vertex: u32| self.mesh.nodes()[vertex as usize];
+        outlines_between(cells, |vertex| value(&place(vertex)), place, 1e-12 * self.bounds().radius())
     }
     fn divisions(&self, cell: usize) -> usize {
         self.levels.get(cell).map_or(0, |level| usize::from(*level))

@@ -108,29 +108,33 @@ impl Mesh<2> {
             let centre = if sides == 4 { new(&[0, 1, 2, 3]) } else { u32::MAX };
             let middle = |side: u8| middles[adjacency.place(Side { cell: cell as u32, side })];
             let whole = vertices_of_parts(self.shape(cell), &corners, &middle, centre);
-            let curved = if bent {
-                let x = whole.map(|nodes| nodes[..sides].iter().map(|&n| fine.nodes()[n as usize]).collect());
-                self.curved_parts(cell, &x, &mut at)
-            } else {
-                NONE_CURVED
-            };
+            let curved = if bent { self.curved_parts(cell, &whole, fine.nodes(), &mut at) } else { NONE_CURVED };
             for (nodes, curved) in whole.into_iter().zip(curved) {
                 fine.add_part(self.map(cell), &nodes[..sides], curved);
             }
         }
+        let part = |Side { cell, side }: Side| {
+            let of_cell = on_side(self.shape(cell as usize), side as usize);
+            of_cell.map(move |(part, s)| Side { cell: cell * PARTS as u32 + part as u32, side: s as u8 })
+        };
+        self.hand_groups_to(&mut fine, |cell| cell * PARTS as u32..(cell + 1) * PARTS as u32, part);
+        fine
+    }
+
+    /// Gives the groups to a mesh of parts, by the parts of a cell and those of a side.
+    pub(crate) fn hand_groups_to<Cells: IntoIterator<Item = u32>, Sides: IntoIterator<Item = Side>>(
+        &self,
+        fine: &mut Self,
+        cells: impl Fn(u32) -> Cells,
+        sides: impl Fn(Side) -> Sides,
+    ) {
         for (name, group) in self.groups() {
-            let part = |side: &Side| {
-                let Side { cell, side } = *side;
-                let of_cell = on_side(self.shape(cell as usize), side as usize);
-                of_cell.map(move |(part, s)| Side { cell: cell * PARTS as u32 + part as u32, side: s as u8 })
-            };
             *fine.group_mut(name) = Group {
-                cells: group.cells.iter().flat_map(|c| c * PARTS as u32..(c + 1) * PARTS as u32).collect(),
-                sides: group.sides.iter().flat_map(part).collect(),
+                cells: group.cells.iter().flat_map(|&cell| cells(cell)).collect(),
+                sides: group.sides.iter().flat_map(|&side| sides(side)).collect(),
                 vertices: group.vertices.clone(),
             };
         }
-        fine
     }
 
     /// Where a corner of a part of a cell lies, which may be bent.
@@ -165,23 +169,25 @@ impl Mesh<2> {
     /// Where the nodes of the parts of a bent cell lie, by their vertices; none for a part that is not bent. Within a
     /// triangle sides are straight, if no part is folded by that: only what lies along a curved side is curved, and with
     /// every division half as many parts are.
-    pub(crate) fn curved_parts(&self, cell: usize, vertices: &[Vec<Point<2>>; PARTS], at: &mut Values) -> CurvedParts {
+    pub(crate) fn curved_parts(
+        &self,
+        cell: usize,
+        vertices: &[[u32; 4]; PARTS],
+        nodes: &[Point<2>],
+        at: &mut Values,
+    ) -> CurvedParts {
         let map = self.map(cell);
         let shape = map.shape();
-        let mut exact = |part: &[Corner]| -> Vec<Point<2>> {
-            let places: Vec<Local> = part.iter().map(|corner| place(shape, corner)).collect();
-            let node = |xi: &Local| {
-                map.tabulate(&within(shape, &places, xi), at);
-                self.position(cell, at)
-            };
-            map.nodes().iter().map(node).collect()
-        };
-        let exact = parts(shape).map(&mut exact);
+        let exact = parts(shape).map(|part| {
+            let corners: Vec<Local> = part.iter().map(|corner| place(shape, corner)).collect();
+            self.nodes_of_part(cell, map, &corners, at)
+        });
         if shape != CellShape::Triangle {
             return exact.map(Some);
         }
         let mut out = NONE_CURVED;
-        for (k, x) in vertices.iter().enumerate() {
+        for (k, vertices) in vertices.iter().enumerate() {
+            let x = [0, 1, 2].map(|v| nodes[vertices[v] as usize]);
             let mut nodes = exact[k].clone();
             let mut curved = false;
             for (node, &[a, b]) in nodes[3..].iter_mut().zip(shape.edges()) {
@@ -201,6 +207,21 @@ impl Mesh<2> {
             out[k] = curved.then(|| trial.nodes().to_vec());
         }
         out
+    }
+
+    /// Where the nodes of a part of a cell lie on that cell's map, by the reference coordinates of the part's corners.
+    pub(crate) fn nodes_of_part(
+        &self,
+        cell: usize,
+        part: &CellMap,
+        corners: &[Local],
+        at: &mut Values,
+    ) -> Vec<Point<2>> {
+        let node = |xi: &Local| {
+            self.map(cell).tabulate(&within(part.shape(), corners, xi), at);
+            self.position(cell, at)
+        };
+        part.nodes().iter().map(node).collect()
     }
 
     /// Whether a cell is not what its vertices alone would make it.
@@ -232,7 +253,7 @@ fn linear(shape: CellShape, [x, y, _]: &Local) -> Vec<f64> {
 }
 
 /// Reference coordinates in a cell of a point of a part with the given corners.
-pub(crate) fn within(shape: CellShape, corners: &[Local], xi: &Local) -> Local {
+fn within(shape: CellShape, corners: &[Local], xi: &Local) -> Local {
     let weights = linear(shape, xi);
     std::array::from_fn(|k| corners.iter().zip(&weights).map(|(x, w)| w * x[k]).sum())
 }

@@ -7,7 +7,7 @@ use crate::cells::{BoundarySide, Cells, Divided, Neighbours, SidePoint, divided_
 use crate::cut::{CellPartition, CellRule, QuadraturePoint, cut_cell};
 use crate::grid::Grid;
 use crate::lagrange::{MAX_DEGREE, Tabulation};
-use signorini_geometry::outline::outlines;
+use signorini_geometry::outline::outlines_between;
 use signorini_geometry::{Aabb, Point, Vector};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
@@ -393,23 +393,8 @@ impl Cells<2> for RefinedGrid {
         let bounds = self.coarse.bounds();
         let ends = self.coarse.cells().map(|n| (n << self.levels) as f64);
         let place = |v: [u32; 2]| bounds.at(&Point::<2>::new(f64::from(v[0]) / ends[0], f64::from(v[1]) / ends[1]));
-        let mut values: HashMap<[u32; 2], f64> = HashMap::new();
-        let cells: Vec<Vec<_>> = self
-            .leaves
-            .iter()
-            .map(|&leaf| {
-                let corners = self.corners(leaf);
-                let next = corners.iter().cycle().skip(1);
-                let edge = |(a, b): (&[u32; 2], &[u32; 2])| (*a.min(b), *a.max(b));
-                let edges: Vec<_> = corners.iter().zip(next).map(edge).collect();
-                corners.iter().map(|v| *values.entry(*v).or_insert_with(|| value(&place(*v)))).zip(edges).collect()
-            })
-            .collect();
-        let crossing = |(a, b): ([u32; 2], [u32; 2])| {
-            let (f, g) = (values[&a], values[&b]);
-            place(a) + f / (f - g) * (place(b) - place(a))
-        };
-        outlines(cells.iter(), crossing, 1e-12 * bounds.radius())
+        let cells = self.leaves.iter().map(|&leaf| self.corners(leaf));
+        outlines_between(cells, |corner| value(&place(corner)), place, 1e-12 * bounds.radius())
     }
     fn raised(&self) -> Option<Arc<dyn Cells<2>>> {
         let degree = self.coarse.degree() + 1;

@@ -72,6 +72,30 @@ impl Samples {
     }
 }
 
+/// The outlines of the set where a function is negative that is linear between the corners of cells, which are named
+/// counter-clockwise, as [`outlines`] has them: by the value and the place of each corner.
+pub fn outlines_between<Corner: Ord + Copy>(
+    cells: impl Iterator<Item = Vec<Corner>>,
+    value: impl Fn(Corner) -> f64,
+    place: impl Fn(Corner) -> Point<2>,
+    same: f64,
+) -> Option<Vec<Vec<Point<2>>>> {
+    let mut values: BTreeMap<Corner, f64> = BTreeMap::new();
+    let cells: Vec<Vec<_>> = cells
+        .map(|corners| {
+            let next = corners.iter().cycle().skip(1);
+            let edge = |(&a, &b): (&Corner, &Corner)| (a, (a.min(b), a.max(b)));
+            let corner = |(a, edge)| (*values.entry(a).or_insert_with(|| value(a)), edge);
+            corners.iter().zip(next).map(edge).map(corner).collect()
+        })
+        .collect();
+    let crossing = |(a, b)| {
+        let (f, g) = (values[&a], values[&b]);
+        place(a) + f / (f - g) * (place(b) - place(a))
+    };
+    outlines(cells.iter(), crossing, same)
+}
+
 /// The outlines of the set where a function is negative, as closed polylines with that set on their left: by the values at the
 /// corners of cells, counter-clockwise, each with the name of the edge to the next, and where the function vanishes on an
 /// edge. Points nearer than `same` are one. None where the set reaches beyond the cells.

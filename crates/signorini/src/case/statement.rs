@@ -501,7 +501,7 @@ pub struct DividedGmshKey {
     #[serde(default)]
     #[schemars(with = "Option<i64>")]
     pub divisions: Option<Spanned<i64>>,
-    /// Where cells are divided besides; up to degree 2.
+    /// Where single cells are divided, at degree 1 and 2.
     #[serde(default)]
     #[schemars(with = "Option<RefineKey>")]
     pub refine: Option<Spanned<RefineKey>>,

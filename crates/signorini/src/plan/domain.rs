@@ -72,7 +72,7 @@ pub(crate) trait ReadDomain<const D: usize> {
 
     fn planner(&self) -> &Planner<'_>;
 
-    /// Where cells are divided, which without a word are those of the grid.
+    /// Where cells of about the size of a grid's are divided, by themselves and where the case says.
     fn refinement(&self, key: Option<&RefineEntry>, grid: &Grid<D>) -> Result<Refinement<D>, CaseError>;
 
     /// The cells of a grid, divided where a function says so.
@@ -460,8 +460,8 @@ impl ReadDomain<2> for Planner<'_> {
         };
         let pieces = Pieces { groups: cells.groups().to_vec() };
         let domain: Arc<dyn MembraneDomain<2>> = Arc::new(MeshDomain(cells.clone()));
-        let everywhere = key.refine.as_ref().is_some_and(|refine| refine.get_ref().negative_where.is_some());
-        let divided = everywhere.then(|| cells.graded(&[], 0, &*refinement.always)).flatten();
+        let on_request = key.refine.as_ref().is_some_and(|refine| refine.get_ref().negative_where.is_some());
+        let divided = on_request.then(|| cells.graded(&[], 0, &*refinement.always)).flatten();
         let cells: Arc<dyn Cells<2>> = match divided {
             Some(divided) => Arc::new(divided),
             None => cells,

@@ -244,6 +244,17 @@ impl<'a, const D: usize> Fronts<'a, D> {
         square.map_or_else(|| self.project(zone, space).norm, |square| square.max(0.0).sqrt())
     }
 
+    /// The coefficients of a step without its waves that are shorter than about 2π times a length.
+    pub fn smoothed<Z: Zone<D>>(&self, zone: &Z, step: &Step, length: f64) -> Vec<f64> {
+        let frames = self.frames(zone, step.space);
+        let n = step.coefficients.len();
+        let mut matrix = ModeMatrix::of_products(n, &frames, self.weights());
+        matrix.add(self.stiffness_outside(zone, step.space, &frames, &matrix.diagonal(), 1.0));
+        let moments = matrix.multiply(&step.coefficients);
+        (0..zone.front_count()).for_each(|front| matrix.add(zone.stiffness(step.space, front, length * length)));
+        matrix.solve(&moments).unwrap_or_else(|| step.coefficients.clone())
+    }
+
     /// The mass matrix of the modes, and the moments of what the slope jump lacks.
     fn mass<Z: Zone<D>>(&self, zone: &Z, space: ModeSpace) -> (ModeMatrix, Vec<f64>) {
         let n = zone.mode_offsets(space)[zone.front_count()];

@@ -6,11 +6,11 @@ use crate::adhesion::Branch;
 use crate::conditions::{Conditions, corrected, least_free_gap, pushes};
 use crate::deferred::Known;
 use crate::equilibrium::{Elements, Equilibrium};
-use crate::front::{Fronts, StepKind};
+use crate::front::{Fronts, Step, StepKind};
 use crate::problem::Membrane;
 use crate::published::{ModeSchedule, Transport};
 pub use crate::rest::Rest;
-use crate::rest::{Course, SETTLED, SHARP, Sight, Verdict};
+use crate::rest::{Course, SETTLED, Sight, Verdict};
 use crate::scales::Scales;
 use crate::zone::{Zone, contact_index};
 use signorini_fem::Grid;
@@ -31,12 +31,20 @@ const SMALL: f64 = 0.7;
 const FEW: f64 = 16.0;
 /// Steps shorter than this fraction of a cell are made with the derivative of the discrete equations ...
 const CLOSE: f64 = 0.3;
+/// ... on fronts that curve by less than this within a cell ...
+const SHARP: f64 = 1.0;
 /// ... unless they get longer by this factor.
 const LONGER: f64 = 2.0;
 /// Adhesive steps shorter than this fraction of a cell are extrapolated.
 const NEAR: f64 = 0.1;
 /// A front moves at most this fraction of the membrane's extent in one step.
 const REACH: f64 = 0.15;
+/// A step may make a front so much sharper than a cell, or sharper by so much than it was: where the pressure that steers it
+/// is weak, what cells make of the slope jump would bend it.
+const SHARPEST: f64 = 3.0;
+const SHARPENED: f64 = 2.0;
+/// So often its short waves are left out, each time those of twice the length.
+const MOST_SMOOTHINGS: u32 = 4;
 
 /// How a solve ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -149,6 +157,7 @@ pub fn solve<const D: usize, Z: Zone<D>>(
 ) -> Solution<D, Z> {
     let mut run = Run {
         solution: Solution::begin(Z::empty(&membrane.grid)),
+        known: None,
         branch: Branch::Stable,
         adhering: false,
         membrane,
@@ -158,6 +167,32 @@ pub fn solve<const D: usize, Z: Zone<D>>(
         progress,
     };
     let reason = run.from(start).unwrap_or_else(|error| Reason::LinearSolver(error.to_string()));
+    run.solution.reason = reason;
+    run.solution
+}
+
+/// Goes on from where a solve left its fronts, on the same cells and without adhesion.
+pub(crate) fn resume<const D: usize, Z: Zone<D>>(
+    membrane: &Membrane<D>,
+    mut found: Solution<D, Z>,
+    rest: Rest,
+    at: (usize, f64),
+    progress: &mut dyn Progress,
+) -> Solution<D, Z> {
+    // It is told again what the fronts lack.
+    found.residuals.pop();
+    let mut run = Run {
+        known: found.equilibrium.take(),
+        solution: found,
+        branch: Branch::Stable,
+        adhering: false,
+        membrane,
+        elements: &mut Elements::new(membrane),
+        rest,
+        at,
+        progress,
+    };
+    let reason = run.sweep().unwrap_or_else(|error| Reason::LinearSolver(error.to_string()));
     run.solution.reason = reason;
     run.solution
 }
@@ -235,6 +270,8 @@ struct Run<'a, 'b, const D: usize, Z> {
     /// Whether adhesion holds the fronts, or is left out.
     adhering: bool,
     solution: Solution<D, Z>,
+    /// The state of the zone of this solution, where it is known before the first solve.
+    known: Option<Equilibrium<D>>,
 }
 
 /// How the iteration on the fronts ended.
@@ -465,8 +502,13 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 return Ok(Fixed::Interrupted);
             }
             let zone = &self.solution.zone;
-            let equilibrium = Equilibrium::solve(self.membrane, zone, self.elements)?;
-            self.solution.iterations += 1;
+            let equilibrium = match self.known.take() {
+                Some(known) => known,
+                None => {
+                    self.solution.iterations += 1;
+                    Equilibrium::solve(self.membrane, zone, self.elements)?
+                }
+            };
             self.solution.unknowns = self.solution.unknowns.max(equilibrium.size());
             if self.solution.scales.is_none() {
                 self.solution.scales = Some(Scales::of_free(&equilibrium));
@@ -581,7 +623,20 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 acceleration = Acceleration::default();
             }
             let reach = step.reach.min(REACH * scales.length);
-            let advance = zone.transported(&self.membrane.grid, step.space, &step.coefficients, reach, transport);
+            let advanced =
+                |step: &Step| zone.transported(&self.membrane.grid, step.space, &step.coefficients, reach, transport);
+            let mut advance = advanced(&step);
+            if D > 1 && !self.adhering && !shifted {
+                let sharpest = f64::max(SHARPEST, SHARPENED * bend);
+                for doublings in 0..MOST_SMOOTHINGS {
+                    if advance.topology_changed || advance.zone.bend() <= sharpest {
+                        break;
+                    }
+                    step.coefficients = fronts.smoothed(zone, &step, scales.h * f64::from(1u32 << doublings));
+                    acceleration = Acceleration::default();
+                    advance = advanced(&step);
+                }
+            }
             if advance.topology_changed || advance.zone.mode_offsets(finest) != zone.mode_offsets(finest) {
                 acceleration = Acceleration::default();
             }

@@ -30,6 +30,8 @@ const CLOSE: f64 = 0.01;
 const SPLIT: usize = 2;
 /// It gets a new parameter, too, once its length has changed, or its speed differs, by so much.
 const STRETCH: f64 = 0.2;
+/// After a longer step it keeps its number of modes where its cells would have it differ by one, or by this part of it.
+const KEPT: f64 = 0.03;
 /// Fronts that would move by less than this part of a cell have been there before.
 const SAME: f64 = 1e-9;
 /// The speed of a front between states of a path differs by this factor at most.
@@ -704,10 +706,13 @@ impl Zone<2> for PlaneZone {
                 let wanted = Self::knots(grid, self.relative_length(&moved));
                 let even = moved.unevenness() <= (1.0 + STRETCH) * c.unevenness();
                 let farthest = (0..modes).map(|k| w(k as f64 / modes as f64).abs()).fold(0.0, f64::max);
-                if even && farthest < CLOSE * grid.h() && wanted.abs_diff(modes) as f64 <= STRETCH * modes as f64 {
+                let differs = wanted.abs_diff(modes) as f64;
+                if differs <= STRETCH * modes as f64 && even && farthest < CLOSE * grid.h() {
                     return (moved, modes);
                 }
-                (self.redrawn(&c.offset(4 * modes, limited), wanted), wanted)
+                // A number that goes up and down with every step is another problem each time.
+                let kept = if differs <= (KEPT * modes as f64).max(1.0) { modes } else { wanted };
+                (self.redrawn(&c.offset(4 * modes, limited), kept), kept)
             })
             .unzip();
         let collapsed = |c: &ClosedCurve| polygon::signed_area(c.samples()).abs() < COLLAPSED * grid.h().powi(2);
@@ -1161,6 +1166,37 @@ fn rows_enclosed(grid: &Grid<2>, curves: &[ClosedCurve]) -> Vec<Vec<[u32; 3]>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Else it would go up and down with the length of the front, and the front with it.
+    #[test]
+    fn the_number_of_modes_stays_while_it_will_do() {
+        for degree in 1..=3 {
+            let bounds = Aabb::new(Point::<2>::new(-1.0, -1.0), Point::<2>::new(1.0, 1.0));
+            let grid = Grid::new(bounds, [40, 40], degree);
+            let h = grid.h();
+            let circle: Vec<Point<2>> = (0..48)
+                .map(|i| std::f64::consts::TAU * f64::from(i) / 48.0)
+                .map(|a| 0.5 * Point::<2>::new(a.cos(), a.sin()))
+                .collect();
+            let zone = PlaneZone::new(&grid, vec![(Side::Below, ClosedCurve::through(&circle, 7))]).on_grid(&grid);
+            let count = |zone: &PlaneZone| zone.mode_offsets(ModeSpace::Fine)[1];
+            let moved = |by: f64| {
+                let step = vec![by; count(&zone)];
+                zone.advanced(&grid, ModeSpace::Fine, &step, 1.0).zone
+            };
+            let wanted = |zone: &PlaneZone| PlaneZone::knots(&grid, zone.relative_length(&zone.curves[0]));
+            let modes = count(&zone);
+            // Steps after which a front does not keep its parameter, and that would have it get one mode more or less.
+            for (direction, other) in [(1.0, modes + 1), (-1.0, modes - 1)] {
+                let steps = (1..40).map(|k| moved(0.05 * direction * f64::from(k) * h));
+                let longer = steps.into_iter().find(|zone| wanted(zone) == other).expect("a mode more or less");
+                assert_eq!(count(&longer), modes, "degree {degree}");
+            }
+            // A front that has become much longer gets what it wants.
+            let far = moved(0.25);
+            assert_eq!(count(&far), wanted(&far), "degree {degree}");
+        }
+    }
 
     #[test]
     fn tips_sweep_what_straight_fronts_do() {

@@ -280,33 +280,27 @@ impl<const D: usize, Z: Zone<D>> Search<'_, D, Z> {
 
     /// What was found, brought to rest.
     fn finished(self) -> Solution<D, Z> {
+        let Self { cells, mut found, at, progress, .. } = self;
         // What sharp fronts lack in the end may be less than what other fronts settle with.
-        let at_rest = !self.found.unfinished || self.found.settled_within.is_some_and(|step| step < SETTLED);
-        let Some(scales) = self.found.scales.filter(|_| !at_rest && self.found.reason.converged()) else {
-            return self.found;
-        };
+        let at_rest = !found.unfinished || found.settled_within.is_some_and(|step| step < SETTLED);
+        if at_rest || !found.reason.converged() {
+            return found;
+        }
         // Smaller cells turned out not to be wanted, or not to be had.
-        let start = Start::Zone(self.found.zone.clone(), scales, self.branch);
-        let cells = &self.cells;
-        let next = ils::solve(cells, &mut Elements::new(cells), start, Rest::Final, self.at, self.progress);
-        continued(self.found, next)
+        let left = (found.zone.clone(), found.conditions.take(), found.settled_within, found.unresolved);
+        let true_enough = left.2.is_none_or(|step| step < SETTLED_COARSE);
+        let mut next = ils::resume(&cells, found, Rest::Final, at, progress);
+        if matches!(next.reason, Reason::IterationLimit | Reason::LinearSolver(_))
+            && true_enough
+            && let Ok(state) = Equilibrium::solve(&cells, &left.0, &mut Elements::new(&cells))
+        {
+            // Where they were left they were as near to rest as these cells can tell.
+            (next.reason, next.unfinished) = (Reason::Converged, true);
+            (next.iterations, next.equilibrium) = (next.iterations + 1, Some(state));
+            (next.zone, next.conditions, next.settled_within, next.unresolved) = left;
+        }
+        next
     }
-}
-
-/// A solution and what came of going on from it on the same cells.
-fn continued<const D: usize, Z: Zone<D>>(mut first: Solution<D, Z>, mut next: Solution<D, Z>) -> Solution<D, Z> {
-    let true_enough = first.settled_within.is_none_or(|step| step < SETTLED_COARSE);
-    if next.reason != Reason::Interrupted && !next.reason.converged() && true_enough {
-        first.before += next.iterations;
-        return first;
-    }
-    next.before = first.before;
-    next.iterations += first.iterations;
-    next.jumped |= first.jumped;
-    next.unrefined |= first.unrefined;
-    first.residuals.append(&mut next.residuals);
-    next.residuals = first.residuals;
-    next
 }
 
 /// Whether the fronts have not so far to go that the way is cheaper on undivided cells.

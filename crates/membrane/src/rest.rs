@@ -30,10 +30,13 @@ const SETTLED_SHIFTED: f64 = 0.1;
 const SLOWLY: usize = 5;
 /// A front sharper than this, relative to a cell, is no front any more.
 const SHARPEST: f64 = 10.0;
+/// Fronts that lack no more than so many times the tolerance, and gained nothing by a step, rest: that is little beside what
+/// the grid resolves, and a jump of the discrete slope lies in the way.
+const STUCK: f64 = 5.0;
 /// A step of this fraction of a cell that does not improve on the last is round-off.
 const ROUND_OFF: f64 = 1e-8;
 /// Fronts that curve by more than this within a cell are left to smaller cells ...
-pub(crate) const SHARP: f64 = 0.5;
+const SHARP: f64 = 0.5;
 /// ... where they lack less than this fraction of one ...
 const NEARLY: f64 = 0.05;
 /// ... or gain nothing by a step that is shorter than this.
@@ -122,8 +125,13 @@ impl Rest {
             return Verdict::Settled { unfinished: false };
         }
         let round_off = course.waited >= 1 && sight.step < ROUND_OFF;
+        let stuck = course.waited >= 1 && sight.residual <= STUCK;
         let blunt = || sharp && (sight.unseen)(self.share());
-        if sight.residual <= self.residual() || round_off || blunt() { Verdict::AtRest } else { Verdict::Moving }
+        if sight.residual <= self.residual() || round_off || stuck || blunt() {
+            Verdict::AtRest
+        } else {
+            Verdict::Moving
+        }
     }
 }
 

@@ -69,7 +69,8 @@ impl Scales {
     }
 
     /// What the slope jump must fall below, in the norm of `H⁻¹` of the fronts: the solver's own accuracy, or a
-    /// hundredth of what the grid resolves where that is more.
+    /// hundredth of what the grid resolves where that is more; in the plane three of them at degree 1, whose slope jump has
+    /// kinks of that size wherever fronts pass vertices of cells.
     pub fn slope_tolerance(&self) -> f64 {
         let slope = self.pressure * self.length / self.tension;
         let resolved = 1e-2 * self.relative_h().powi(2 * self.degree as i32);
@@ -78,6 +79,7 @@ impl Scales {
             let least = if self.degree == 1 { resolved } else { 1e-11 };
             return least * slope;
         }
+        let resolved = if self.degree == 1 { 3.0 * resolved } else { resolved };
         // The flux is a difference of displacements times the penalty over h, and inherits their round-off.
         let round_off = 400.0 * f64::EPSILON * nitsche_penalty(self.degree) / self.relative_h();
         resolved.max(round_off).max(1e-10) * slope * self.length.sqrt()

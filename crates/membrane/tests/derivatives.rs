@@ -6,7 +6,7 @@ use signorini_membrane::adhesion::Branch;
 use signorini_membrane::domain::{Domain, DomainOnCells, ImplicitDomain};
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::field::{Constant, Formula, SharedField};
-use signorini_membrane::front::Fronts;
+use signorini_membrane::front::{Fronts, Step, StepKind};
 use signorini_membrane::ils::{Reason, Rest, Start, solve};
 use signorini_membrane::obstacle::{Obstacle, Obstacles, Side};
 use signorini_membrane::plane_zone::PlaneZone;
@@ -153,7 +153,7 @@ fn the_change_of_the_discrete_slope_jump_is_predicted() {
 #[test]
 fn fronts_come_to_rest_quadratically() {
     for degree in 1..=3 {
-        let membrane = membrane(20, degree, Side::Below);
+        let membrane = membrane(24, degree, Side::Below);
         let mut elements = Elements::new(&membrane);
         let start = Start::Free;
         let solution = solve::<2, PlaneZone>(&membrane, &mut elements, start, Rest::Final, (0, 0.0), &mut Silent);
@@ -170,8 +170,9 @@ fn fronts_come_to_rest_quadratically() {
             let step = fronts.discrete_step(&zone, &elements, &scales).expect("a step").expect("near a solution");
             zone = zone.advanced(&membrane.grid, ModeSpace::Fine, &step.coefficients, 1.0).zone;
         }
-        // Three digits, then six; the derivative has kinks where fronts pass corners of cells, most of all at degree 1.
-        assert!(left[1] < 1e-2 * left[0] && left[2] < 1e-4 * left[0], "degree {degree}: {left:?}");
+        // Three digits, then six. At degree 1 the derivative has kinks where fronts pass corners of cells: beside one, as on
+        // 20 x 20 cells, it is two digits, then three.
+        assert!(left[1] < 1e-3 * left[0] && left[2] < 1e-5 * left[0], "degree {degree}: {left:?}");
     }
 }
 
@@ -196,6 +197,36 @@ fn short_waves_count_less_in_the_residual() {
         let residual = fronts.residual(&zone, ModeSpace::Fine);
         assert!((residual / exact - 1.0).abs() < 1e-4, "{k}: {residual} {exact}");
         assert!((fronts.project(&zone, ModeSpace::Fine).norm / square.sqrt() - 1.0).abs() < 1e-4, "{k}");
+    }
+}
+
+/// A step on a circle, whose modes are all alike: a wave of them keeps its shape and loses the factor that its length says.
+#[test]
+fn short_waves_are_left_out_of_a_step() {
+    let membrane = membrane(24, 3, Side::Below);
+    let radius = 0.5;
+    let points: Vec<Point<2>> = (0..64)
+        .map(|i| std::f64::consts::TAU * f64::from(i) / 64.0)
+        .map(|a| Point::<2>::new(radius * a.cos(), radius * a.sin()))
+        .collect();
+    let zone = PlaneZone::new(&membrane.grid, vec![(Side::Below, ClosedCurve::through(&points, 7))]);
+    let state = Equilibrium::solve(&membrane, &zone, &mut Elements::new(&membrane)).expect("an equilibrium");
+    let fronts = Fronts::new(&state, false);
+    let n = zone.mode_offsets(ModeSpace::Fine)[1];
+    let length = 0.1;
+    for k in 0..8 {
+        let wave: Vec<f64> = (0..n).map(|i| (std::f64::consts::TAU * (k * i) as f64 / n as f64).cos()).collect();
+        let step = Step {
+            length: 1.0,
+            space: ModeSpace::Fine,
+            coefficients: wave.clone(),
+            kind: StepKind::Local,
+            reach: f64::INFINITY,
+        };
+        let left = 1.0 / (1.0 + (k as f64 * length / radius).powi(2));
+        let smoothed = fronts.smoothed(&zone, &step, length);
+        let off = smoothed.iter().zip(&wave).map(|(a, b)| (a - left * b).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-3, "{k}: {off}");
     }
 }
 

@@ -564,6 +564,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 tips: bend >= 1.0 && self.has_lost_tips(zone),
                 shifted,
                 adhering: self.adhering,
+                kinks: scales.degree == 1,
                 last: count == most_steps,
                 unseen: &|share| {
                     let projection = fronts.project(zone, finest);

@@ -125,7 +125,7 @@ impl Rest {
             return Verdict::Settled { unfinished: false };
         }
         let round_off = course.waited >= 1 && sight.step < ROUND_OFF;
-        let stuck = course.waited >= 1 && sight.residual <= STUCK;
+        let stuck = sight.kinks && course.waited >= 1 && sight.residual <= STUCK;
         let blunt = || sharp && (sight.unseen)(self.share());
         if sight.residual <= self.residual() || round_off || stuck || blunt() {
             Verdict::AtRest
@@ -149,6 +149,8 @@ pub struct Sight<'a> {
     /// Whether every step shifts the fronts on its own account.
     pub shifted: bool,
     pub adhering: bool,
+    /// Whether the slope jump has kinks of the size of its tolerance, as at degree 1.
+    pub kinks: bool,
     /// Whether there is no step after this one.
     pub last: bool,
     /// Whether the modes see less of the slope jump than this part of what they do not see.

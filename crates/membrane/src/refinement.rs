@@ -287,7 +287,7 @@ impl<const D: usize, Z: Zone<D>> Search<'_, D, Z> {
             return found;
         }
         // Smaller cells turned out not to be wanted, or not to be had.
-        let left = (found.zone.clone(), found.conditions.take(), found.settled_within, found.unresolved);
+        let left = (found.zone.clone(), found.conditions.take(), found.settled_within, found.unresolved.take());
         let true_enough = left.2.is_none_or(|step| step < SETTLED_COARSE);
         let mut next = ils::resume(&cells, found, Rest::Final, at, progress);
         if matches!(next.reason, Reason::IterationLimit | Reason::LinearSolver(_))

@@ -238,7 +238,7 @@ impl<'a, const D: usize> Fronts<'a, D> {
         let (mut matrix, b) = self.mass(zone, space);
         if D > 1 {
             let length = self.equilibrium.membrane.size() / std::f64::consts::TAU;
-            (0..zone.front_count()).for_each(|front| matrix.add(zone.stiffness(space, front, length * length)));
+            stiffen(&mut matrix, zone, space, length);
         }
         let square = matrix.solve(&b).map(|c| c.iter().zip(&b).map(|(c, b)| c * b).sum::<f64>());
         square.map_or_else(|| self.project(zone, space).norm, |square| square.max(0.0).sqrt())
@@ -246,12 +246,9 @@ impl<'a, const D: usize> Fronts<'a, D> {
 
     /// The coefficients of a step without its waves that are shorter than about 2π times a length.
     pub fn smoothed<Z: Zone<D>>(&self, zone: &Z, step: &Step, length: f64) -> Vec<f64> {
-        let frames = self.frames(zone, step.space);
-        let n = step.coefficients.len();
-        let mut matrix = ModeMatrix::of_products(n, &frames, self.weights());
-        matrix.add(self.stiffness_outside(zone, step.space, &frames, &matrix.diagonal(), 1.0));
+        let (mut matrix, _) = self.mass(zone, step.space);
         let moments = matrix.multiply(&step.coefficients);
-        (0..zone.front_count()).for_each(|front| matrix.add(zone.stiffness(step.space, front, length * length)));
+        stiffen(&mut matrix, zone, step.space, length);
         matrix.solve(&moments).unwrap_or_else(|| step.coefficients.clone())
     }
 
@@ -468,4 +465,9 @@ impl<'a, const D: usize> Fronts<'a, D> {
         }
         Ok(())
     }
+}
+
+/// Adds `l² K`, the stiffness of the modes of all fronts for a length.
+fn stiffen<const D: usize, Z: Zone<D>>(matrix: &mut ModeMatrix, zone: &Z, space: ModeSpace, length: f64) {
+    (0..zone.front_count()).for_each(|front| matrix.add(zone.stiffness(space, front, length * length)));
 }

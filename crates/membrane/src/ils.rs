@@ -32,7 +32,7 @@ const FEW: f64 = 16.0;
 /// Steps shorter than this fraction of a cell are made with the derivative of the discrete equations ...
 const CLOSE: f64 = 0.3;
 /// ... on fronts that curve by less than this within a cell ...
-const SHARP: f64 = 1.0;
+const BLUNT: f64 = 1.0;
 /// ... unless they get longer by this factor.
 const LONGER: f64 = 2.0;
 /// Adhesive steps shorter than this fraction of a cell are extrapolated.
@@ -41,7 +41,7 @@ const NEAR: f64 = 0.1;
 const REACH: f64 = 0.15;
 /// A step may make a front so much sharper than a cell, or sharper by so much than it was: where the pressure that steers it
 /// is weak, what cells make of the slope jump would bend it.
-const SHARPEST: f64 = 3.0;
+const WILD: f64 = 3.0;
 const SHARPENED: f64 = 2.0;
 /// So often its short waves are left out, each time those of twice the length.
 const MOST_SMOOTHINGS: u32 = 4;
@@ -605,7 +605,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             }
             // As everywhere short of adhesion fronts rest without a slope, the pressure of the floor is nearly all of the
             // derivative; near the solution the rest of it, which cells add, makes the convergence quadratic.
-            let near = step.length < CLOSE && course.is_smooth() && bend < SHARP;
+            let near = step.length < CLOSE && course.is_smooth() && bend < BLUNT;
             let exact = match D > 1 && near && !self.adhering && !shifted && equilibrium.responds() {
                 true => fronts.discrete_step(zone, self.elements, &scales)?,
                 false => None,
@@ -628,7 +628,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 |step: &Step| zone.transported(&self.membrane.grid, step.space, &step.coefficients, reach, transport);
             let mut advance = advanced(&step);
             if D > 1 && !self.adhering && !shifted {
-                let sharpest = f64::max(SHARPEST, SHARPENED * bend);
+                let sharpest = f64::max(WILD, SHARPENED * bend);
                 for doublings in 0..MOST_SMOOTHINGS {
                     if advance.topology_changed || advance.zone.bend() <= sharpest {
                         break;

@@ -223,3 +223,35 @@ impl Course {
         (self.waited >= DAMPED_AFTER).then(|| 0.5f64.powi((self.waited / DAMPED_AFTER) as i32).max(0.1))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_jump_of_the_slope_is_put_up_with_where_there_are_such_jumps() {
+        let verdict = |residuals: &[f64], kinks: bool| {
+            let mut course = Course::default();
+            residuals.iter().for_each(|r| course.take(*r, StepKind::Local, false));
+            let sight = Sight {
+                residual: *residuals.last().expect("a residual"),
+                step: 0.01,
+                kind: StepKind::Local,
+                bend: 0.1,
+                tips: false,
+                shifted: false,
+                adhering: false,
+                kinks,
+                last: false,
+                unseen: &|_| false,
+                farthest: &|| 1.0,
+            };
+            Rest::Final.judge(&course, &sight)
+        };
+        assert_eq!(verdict(&[90.0, 4.0, 4.5], true), Verdict::AtRest);
+        // While steps gain, where there are no such jumps, and where too much is lacking, they go on.
+        assert_eq!(verdict(&[90.0, 4.0], true), Verdict::Moving);
+        assert_eq!(verdict(&[90.0, 4.0, 4.5], false), Verdict::Moving);
+        assert_eq!(verdict(&[90.0, 40.0, 45.0], true), Verdict::Moving);
+    }
+}

@@ -62,6 +62,15 @@ fn zone_of(membrane: &Membrane<2>, radius: f64) -> PlaneZone {
     PlaneZone::new(&membrane.grid, vec![(side, ClosedCurve::through(&points, 9))])
 }
 
+/// A round front about the centre, of so many knots.
+fn round(membrane: &Membrane<2>, radius: f64, knots: u32, degree: usize) -> PlaneZone {
+    let points: Vec<Point<2>> = (0..knots)
+        .map(|i| std::f64::consts::TAU * f64::from(i) / f64::from(knots))
+        .map(|a| Point::<2>::new(radius * a.cos(), radius * a.sin()))
+        .collect();
+    PlaneZone::new(&membrane.grid, vec![(Side::Below, ClosedCurve::through(&points, degree))])
+}
+
 /// `∫ ρ ω_n dΓ` for all modes, with the modes carried along by the front.
 fn moments(membrane: &Membrane<2>, zone: &PlaneZone, modes: &PlaneZone) -> Vec<f64> {
     let mut elements = Elements::new(membrane);
@@ -181,11 +190,7 @@ fn fronts_come_to_rest_quadratically() {
 fn short_waves_count_less_in_the_residual() {
     let membrane = membrane(24, 3, Side::Below);
     let radius = 0.5;
-    let points: Vec<Point<2>> = (0..32)
-        .map(|i| std::f64::consts::TAU * f64::from(i) / 32.0)
-        .map(|a| Point::<2>::new(radius * a.cos(), radius * a.sin()))
-        .collect();
-    let zone = PlaneZone::new(&membrane.grid, vec![(Side::Below, ClosedCurve::through(&points, 9))]);
+    let zone = round(&membrane, radius, 32, 9);
     let equilibrium = Equilibrium::solve(&membrane, &zone, &mut Elements::new(&membrane)).expect("an equilibrium");
     let mut fronts = Fronts::new(&equilibrium, false);
     let length = membrane.size() / std::f64::consts::TAU;
@@ -205,11 +210,7 @@ fn short_waves_count_less_in_the_residual() {
 fn short_waves_are_left_out_of_a_step() {
     let membrane = membrane(24, 3, Side::Below);
     let radius = 0.5;
-    let points: Vec<Point<2>> = (0..64)
-        .map(|i| std::f64::consts::TAU * f64::from(i) / 64.0)
-        .map(|a| Point::<2>::new(radius * a.cos(), radius * a.sin()))
-        .collect();
-    let zone = PlaneZone::new(&membrane.grid, vec![(Side::Below, ClosedCurve::through(&points, 7))]);
+    let zone = round(&membrane, radius, 64, 7);
     let state = Equilibrium::solve(&membrane, &zone, &mut Elements::new(&membrane)).expect("an equilibrium");
     let fronts = Fronts::new(&state, false);
     let n = zone.mode_offsets(ModeSpace::Fine)[1];

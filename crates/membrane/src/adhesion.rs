@@ -140,6 +140,11 @@ impl<const D: usize> Fronts<'_, D> {
 }
 
 impl Linearised {
+    /// The derivative of the front condition, factorised; none where it is singular.
+    pub(crate) fn factor(&self) -> Option<dense::Factor> {
+        dense::Factor::new(self.n, &self.rate)
+    }
+
     /// The spectrum of the second variation; none where the modes depend on each other.
     pub fn spectrum(&self) -> Option<Spectrum> {
         let (values, vectors) = dense::symmetric_eigen(&self.second_variation, &self.mass)?;

@@ -1,5 +1,6 @@
 //! The slope jump on the fronts, and the Newton step that drives it to zero.
 
+use crate::adhesion::Linearised;
 use crate::equilibrium::{Elements, Equilibrium};
 use crate::mode_matrix::{Clique, ModeMatrix, add_cliques};
 use crate::quadrature::FrontPoint;
@@ -394,8 +395,9 @@ impl<'a, const D: usize> Fronts<'a, D> {
         (square / total.max(f64::MIN_POSITIVE)).sqrt()
     }
 
-    /// The Newton step with the derivative of the discrete slope jump, near the solution. The pressure of the floor is most of
-    /// that, so the method of generalised conjugate residuals needs few products with it; none where these do not get there.
+    /// The Newton step with the derivative of the discrete slope jump, near the solution. Most of that is the pressure of the
+    /// floor, or with adhesion the derivative in the continuum, so the method of generalised conjugate residuals needs few
+    /// products with it; none where these do not get there.
     ///
     /// # Errors
     /// A state that was not found by a factorisation.
@@ -404,21 +406,42 @@ impl<'a, const D: usize> Fronts<'a, D> {
         zone: &Z,
         elements: &Elements<D>,
         scales: &Scales,
+        linearised: Option<&Linearised>,
     ) -> Result<Option<Step>, SolveError> {
         let space = self.modes().finest();
         let frames = self.frames(zone, space);
         let (matrix, held, b) = self.local_system(zone, space, &frames, &self.local_rate(scales), scales);
+        let factor = match linearised.map(Linearised::factor) {
+            Some(None) => return Ok(None),
+            other => other.flatten(),
+        };
+        let nearly = |moments: &[f64]| match &factor {
+            Some(factor) => Some(factor.solve(moments)),
+            None => matrix.solve(moments),
+        };
         let rate = ShapeRate::new(self.equilibrium, elements, zone, space);
         let image = |step: &[f64]| -> Result<Option<Vec<f64>>, SolveError> {
             let mut moments = rate.of_moments(step)?;
             moments.iter_mut().zip(held.multiply(step)).for_each(|(m, h)| *m += h);
-            Ok(matrix.solve(&moments))
+            if factor.is_some() {
+                self.subtract_adhesive_rate(&frames, step, &mut moments);
+            }
+            Ok(nearly(&moments))
         };
-        let Some(first) = matrix.solve(&b) else { return Ok(None) };
+        let Some(first) = nearly(&b) else { return Ok(None) };
         let first = first.iter().map(|v| -v).collect();
         let Some(coefficients) = conjugate_residuals(first, image, LEFT, MOST_PRODUCTS)? else { return Ok(None) };
         let length = self.length(&frames, &coefficients);
         Ok(Some(Step { length, space, coefficients, kind: StepKind::Exact, reach: f64::INFINITY }))
+    }
+
+    /// Subtracts the rate of change of `∫ ρ_a ω_n`, which is `∫ (∂_n ρ_a + κ ρ_a) w ω_n`.
+    fn subtract_adhesive_rate(&self, frames: &[FrontFrame], step: &[f64], moments: &mut [f64]) {
+        for (i, (frame, weight)) in frames.iter().zip(self.weights()).enumerate() {
+            let w: f64 = frame.modes.iter().map(|(m, v)| v * step[*m]).sum();
+            let rate = w * (self.adhesive_slope_rate[i] + frame.curvature * self.adhesive_slope[i]);
+            frame.modes.iter().for_each(|(m, v)| moments[*m] -= weight * rate * v);
+        }
     }
 
     /// Adds `∫ Λ_T(ρ⁺ w_m) ω_n`, and for fronts on which it stays safely positive `-∫ κ ρ⁺ w_m ω_n`.

@@ -137,6 +137,7 @@ impl<const D: usize, Z> Solution<D, Z> {
 }
 
 /// Where an increment starts from.
+#[derive(Clone)]
 pub enum Start<Z> {
     /// The membrane without contact.
     Free,
@@ -155,9 +156,22 @@ pub fn solve<const D: usize, Z: Zone<D>>(
     at: (usize, f64),
     progress: &mut dyn Progress,
 ) -> Solution<D, Z> {
+    solve_from(membrane, elements, start, None, rest, at, progress)
+}
+
+/// Solves one increment from a zone whose state on these cells may be known.
+pub(crate) fn solve_from<const D: usize, Z: Zone<D>>(
+    membrane: &Membrane<D>,
+    elements: &mut Elements<D>,
+    start: Start<Z>,
+    known: Option<Equilibrium<D>>,
+    rest: Rest,
+    at: (usize, f64),
+    progress: &mut dyn Progress,
+) -> Solution<D, Z> {
     let mut run = Run {
-        solution: Solution::begin(Z::empty(&membrane.grid)),
-        known: None,
+        solution: Solution { iterations: usize::from(known.is_some()), ..Solution::begin(Z::empty(&membrane.grid)) },
+        known,
         branch: Branch::Stable,
         adhering: false,
         membrane,
@@ -603,11 +617,11 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 (count, descents, course) = (0, descents + 1, Course::default());
                 self.solution.jumped = true;
             }
-            // As everywhere short of adhesion fronts rest without a slope, the pressure of the floor is nearly all of the
-            // derivative; near the solution the rest of it, which cells add, makes the convergence quadratic.
-            let near = step.length < CLOSE && course.is_smooth() && bend < BLUNT;
-            let exact = match D > 1 && near && !self.adhering && !shifted && equilibrium.responds() {
-                true => fronts.discrete_step(zone, self.elements, &scales)?,
+            // Short of adhesion fronts rest without a slope: the pressure of the floor is nearly all of the derivative in the
+            // continuum. Near the solution the rest of it, which cells add, makes the convergence quadratic.
+            let near = step.length < CLOSE && course.is_smooth() && bend < BLUNT && step.kind != StepKind::Descent;
+            let exact = match D > 1 && near && !shifted && equilibrium.responds() {
+                true => fronts.discrete_step(zone, self.elements, &scales, linearised.as_ref())?,
                 false => None,
             };
             step = exact.filter(|exact| exact.length < LONGER * step.length).unwrap_or(step);

@@ -788,7 +788,7 @@ impl Zone<2> for PlaneZone {
     }
 
     // As finely as the zone is told, which may be on smaller cells than the next solve begins with.
-    fn extrapolated(&self, _: &Grid<2>, before: &[(&Self, f64)]) -> Option<Self> {
+    fn extrapolated(&self, grid: &Grid<2>, before: &[(&Self, f64)]) -> Option<Self> {
         if before.iter().any(|(zone, _)| zone.hole != self.hole || zone.sides != self.sides) {
             return None;
         }
@@ -804,9 +804,9 @@ impl Zone<2> for PlaneZone {
             };
             // Fronts that have little to do with each other, or sharp ones, are better left where they are.
             let mut small = |p: &CurvePoint| {
-                let w = ahead(&p.position).abs();
-                farthest = farthest.max(w);
-                w < 2.0 * self.grid.h() && w * p.curvature.abs() < FOLD
+                let w = ahead(&p.position);
+                farthest = farthest.max(w.abs());
+                w.abs() < 2.0 * grid.h() && -w * p.curvature < 1.0 - FOLD
             };
             if !(0..now.samples().len()).all(|k| small(&now.point(now.sample_parameter(k)))) {
                 return None;
@@ -823,6 +823,17 @@ impl Zone<2> for PlaneZone {
             return Some(self.clone());
         }
         Self::is_valid(&moved).then(|| self.with_curves(&self.grid, moved))
+    }
+
+    fn farthest_from(&self, other: &Self, size: &dyn Fn(&Point<2>) -> f64) -> Option<f64> {
+        if other.hole != self.hole || other.sides != self.sides {
+            return None;
+        }
+        let of_curve = |(own, other): (&ClosedCurve, &ClosedCurve)| {
+            let way = |x: &Point<2>| other.signed_distance(x, 0..other.samples().len()).0.abs() / size(x);
+            own.samples().iter().map(way).fold(0.0, f64::max)
+        };
+        Some(self.curves.iter().zip(&other.curves).map(of_curve).fold(0.0, f64::max))
     }
 
     fn within(grid: &Grid<2>, sizing: &Arc<Sizing<2>>, outlines: &[(Side, Vec<Point<2>>)]) -> Self {

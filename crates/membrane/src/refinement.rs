@@ -21,6 +21,8 @@ use std::sync::Arc;
 const HARDLY: f64 = 1.5;
 /// Fronts that have to move by less than this part of a divided cell are near.
 const NEAR: f64 = 0.5;
+/// Fronts that were predicted by two polynomials which differ by less than this are as near.
+const SURE: f64 = 1.0;
 /// Divisions more than fronts want of their cells, where no state is found on those.
 const MOST_FINER: usize = 2;
 /// Divisions from one solve to the next ...
@@ -123,23 +125,59 @@ impl<const D: usize> Refinement<D> {
     }
 
     /// Solves an increment: on cells divided for the zone that it starts from if the fronts have not far to go from there,
-    /// else on cells that are not, and then on cells divided as the fronts need it.
+    /// else on cells that are not, and then on cells divided as the fronts need it. They have not far to go where another
+    /// prediction is near the one that they start from, or where a state on undivided cells says so. With adhesion divided
+    /// cells are tried wherever the fronts are, as all of the derivative, by which they go then, is not worth its name on cells
+    /// that are too large; but a jump is believed only if the others see it too.
     pub fn solve<Z: Zone<D>>(
         &self,
         membrane: &Membrane<D>,
         start: Start<Z>,
+        other: Option<&Z>,
         at: (usize, f64),
         progress: &mut dyn Progress,
     ) -> Solution<D, Z> {
-        let mut looks = 0;
-        let divided = match &start {
-            Start::Zone(zone, scales, _) => self.sizing(membrane, zone, 0).and_then(|sizing| {
-                looks = 1;
-                if is_near(membrane, zone, scales, &sizing) { self.divided(membrane, zone, sizing) } else { None }
-            }),
-            _ => None,
-        };
-        let cells = divided.unwrap_or_else(|| membrane.clone());
+        let (mut cells, mut looked, mut before) = (None, None, 0);
+        if let Start::Zone(zone, scales, _) = &start
+            && let Some(sizing) = self.sizing(membrane, zone, 0)
+        {
+            let apart = other.and_then(|other| zone.farthest_from(other, &|x| sizing.at(x)));
+            if (membrane.obstacles.are_sticky() || apart.is_some_and(|apart| apart < SURE))
+                && let Some(divided) = self.divided(membrane, zone, sizing.clone())
+            {
+                let found = self.solve_on(membrane, divided, start.clone(), None, at, progress);
+                if found.reason == Reason::Interrupted || (found.reason.converged() && !found.jumped) {
+                    return found;
+                }
+                before = found.before + found.iterations;
+            }
+            let coarse = zone.on_grid(&membrane.grid);
+            let state = Equilibrium::solve(membrane, &coarse, &mut Elements::new(membrane)).ok();
+            let way = |state| Fronts::new(state, true).farthest(&coarse, scales, |x| sizing.at(x));
+            if state.as_ref().is_some_and(|state| way(state) < NEAR) {
+                before += 1;
+                cells = self.divided(membrane, zone, sizing);
+            } else {
+                // It is the first one on undivided cells.
+                looked = state;
+            }
+        }
+        let cells = cells.unwrap_or_else(|| membrane.clone());
+        let mut found = self.solve_on(membrane, cells, start, looked, at, progress);
+        found.before += before;
+        found
+    }
+
+    /// Solves an increment on some cells first, on which the state around its start may be known.
+    fn solve_on<Z: Zone<D>>(
+        &self,
+        membrane: &Membrane<D>,
+        cells: Membrane<D>,
+        start: Start<Z>,
+        known: Option<Equilibrium<D>>,
+        at: (usize, f64),
+        progress: &mut dyn Progress,
+    ) -> Solution<D, Z> {
         let start = match start {
             Start::Zone(zone, scales, branch) => Start::Zone(zone, scales.on(&cells), branch),
             other => other,
@@ -150,8 +188,7 @@ impl<const D: usize> Refinement<D> {
         };
         let last = cells.sizing.is_some() || D != 2 || self.most == 0;
         let rest = if last { Rest::Final } else { Rest::BeforeDivision };
-        let mut found = ils::solve(&cells, &mut Elements::new(&cells), start, rest, at, progress);
-        found.before = looks;
+        let found = ils::solve_from(&cells, &mut Elements::new(&cells), start, known, rest, at, progress);
         let mut search =
             Search { refinement: self, membrane, branch, at, progress, cells, found, finer: 0, predicted: false };
         (0..MOST_ROUNDS).take_while(|_| search.goes_on().is_some()).count();
@@ -301,13 +338,6 @@ impl<const D: usize, Z: Zone<D>> Search<'_, D, Z> {
         }
         next
     }
-}
-
-/// Whether the fronts have not so far to go that the way is cheaper on undivided cells.
-fn is_near<const D: usize, Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z, scales: &Scales, sizing: &Sizing<D>) -> bool {
-    let zone = zone.on_grid(&membrane.grid);
-    let state = Equilibrium::solve(membrane, &zone, &mut Elements::new(membrane));
-    state.is_ok_and(|state| Fronts::new(&state, true).farthest(&zone, scales, |x| sizing.at(x)) < NEAR)
 }
 
 /// Whether the cells at the fronts of a zone are hardly larger than these want them.

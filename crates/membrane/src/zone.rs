@@ -214,6 +214,12 @@ pub trait Zone<const D: usize>: Division<D> + Clone + Send {
     /// these differ in more than the place of the fronts.
     fn extrapolated(&self, grid: &Grid<D>, before: &[(&Self, f64)]) -> Option<Self>;
 
+    /// How far the fronts are from those of a zone that was extrapolated from the same one, at the place where that is
+    /// farthest relative to a size; none where that is not told.
+    fn farthest_from(&self, _other: &Self, _size: &dyn Fn(&Point<D>) -> f64) -> Option<f64> {
+        None
+    }
+
     /// The zone within outlines on each side, with modes as long as cells of the given sizes can tell apart.
     fn within(grid: &Grid<D>, _sizing: &Arc<Sizing<D>>, _outlines: &[(Side, Vec<Point<D>>)]) -> Self {
         Self::empty(grid)

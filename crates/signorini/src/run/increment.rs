@@ -194,10 +194,10 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         self.start_near(zone, Branch::Stable);
     }
 
-    /// Where the fronts will be by the polynomial through the states nearest on the path of what drives them. Without
-    /// adhesion the state depends on nothing else, and a path that turns comes by where it was; with it only the way ahead
-    /// is like the way just gone.
-    fn ahead(&self, plan: &MembranePlan<D>, membrane: &Membrane<D>, time: f64) -> Option<Z> {
+    /// Where the fronts will be by the polynomial through the states nearest on the path of what drives them, and, to tell how
+    /// true that is, by another one through one state less, or one more. Without adhesion the state depends on nothing else, and a path that turns comes
+    /// by where it was; with it only the way ahead is like the way just gone.
+    fn ahead(&self, plan: &MembranePlan<D>, membrane: &Membrane<D>, time: f64) -> Option<(Z, Option<Z>)> {
         let times: Vec<f64> = self.trail.iter().map(|(t, _)| *t).chain([time]).collect();
         let places = plan.places(&times);
         let (next, states) = places.split_last()?;
@@ -220,12 +220,20 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         if (next - states[from]).abs() > FARTHEST * step || !near.iter().all(|&k| apart(k)) {
             return None;
         }
-        let weight = |k: usize| {
-            let others = near.iter().filter(|&&o| o != k);
-            others.map(|&o| (next - states[o]) / (states[k] - states[o])).product::<f64>()
+        let through = |near: &[usize]| {
+            let weight = |k: usize| {
+                let others = near.iter().filter(|&&o| o != k);
+                others.map(|&o| (next - states[o]) / (states[k] - states[o])).product::<f64>()
+            };
+            let multiples: Vec<(&Z, f64)> = near[1..].iter().map(|&k| (&self.trail[k].1, -weight(k))).collect();
+            self.trail[from].1.extrapolated(&membrane.grid, &multiples)
         };
-        let multiples: Vec<(&Z, f64)> = near[1..].iter().map(|&k| (&self.trail[k].1, -weight(k))).collect();
-        self.trail[from].1.extrapolated(&membrane.grid, &multiples)
+        let (ahead, rough) = (through(&near)?, through(&near[..near.len() - 1]));
+        // Short waves on fronts of degree 1, which come and go with the cells, grow with the degree of the polynomial.
+        Some(match rough {
+            Some(rough) if near.len() == NEAREST && membrane.cells.degree() == 1 => (rough, Some(ahead)),
+            rough => (ahead, rough),
+        })
     }
 
     /// Keeps a state as one of those that tell where the path goes on. A place that was there before is told again.
@@ -300,11 +308,14 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             (None, previous) => matches!(previous, Some((_, _, Branch::Nearest))),
         };
         let large = plan.by_multigrid(membrane) && !nearby;
-        let mut solves = 0;
+        let (mut solves, mut other) = (0, None);
         let start = match (self.asked.take(), self.previous.take()) {
             (Some(zone), _) => Start::Asked(zone, Branch::Nearest),
             (None, Some((zone, scales, branch))) => {
-                let mut ahead = self.ahead(plan, membrane, at.1);
+                let mut ahead = None;
+                if let Some(predicted) = self.ahead(plan, membrane, at.1) {
+                    (ahead, other) = (Some(predicted.0), predicted.1);
+                }
                 if ahead.is_none() && !large && !nearby {
                     let approached = self.refinement.approached(membrane, &zone, &scales, at, progress);
                     (ahead, solves) = approached.map_or((None, 0), |(zone, solves)| (Some(zone), solves));
@@ -321,7 +332,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
                 Some(message) => {
                     Solution { reason: Reason::LinearSolver(message), ..Solution::begin(Z::empty(&membrane.grid)) }
                 }
-                None => self.refinement.solve(membrane, start, at, progress),
+                None => self.refinement.solve(membrane, start, other.as_ref(), at, progress),
             },
         };
         solution.before += solves;

@@ -1,6 +1,6 @@
 //! Membranes that stick: equilibria, their stability, jumps, energies, and paths through folds.
 
-use super::{CELLS, error, last_step, number, reference, set, summary};
+use super::{CELLS, DEGREE, error, last_step, number, reference, set, summary};
 use serde_json::Value;
 use std::f64::consts::{E, PI};
 
@@ -418,4 +418,28 @@ fn the_loop_of_the_cosine_floor() {
     }
     let released: f64 = events.iter().map(|e| number(&e["energy_released"])).sum();
     assert!(released > 2e-3 && (work / released - 1.0).abs() < 0.03, "work {work}, released {released}");
+}
+
+/// On small increments no state is far from where it is expected: between snap-in and pull-off a solve or two bring the fronts
+/// there, and nothing is taken for a jump, on cells of degree 1 either, which leave waves on fronts.
+#[test]
+fn a_sticky_path_takes_few_solves() {
+    for (cells, degree) in [(24, 1), (20, 2)] {
+        let rest = "[functions.f]\ntable = { t = [0, 1, 2], value = [0, 0.15, -0.15] }\n\
+            [[steps]]\nto = 0.4\n[[steps]]\nto = 1\nincrements = 12\n[[steps]]\nto = 1.6\nincrements = 16\n";
+        let case = disc(cells, "-f(t)", "1e-3", None, rest)
+            .replace("height = -0.1", "height = \"-(15 + 5*cos(2*pi*x)*cos(2*pi*y))/1000\"");
+        let found = summary(&case, &set(&[(DEGREE, degree.to_string())]));
+        last_step(&found);
+        let steps = found["steps"].as_array().expect("steps");
+        assert!(steps.iter().all(|step| touch(step)["zones"] == 1), "contact was lost");
+        // The first two have no two states before them that tell where the path goes on.
+        for step in &steps[2..] {
+            let solves = ["iterations", "iterations_before"].map(|key| step[key].as_u64().expect("a number"));
+            assert!(solves[0] + solves[1] <= 5, "degree {degree}: {solves:?} at {}", step["time"]);
+        }
+        let warnings = found["warnings"].as_array().expect("warnings");
+        let jumps = warnings.iter().filter(|w| w.as_str().is_some_and(|w| w.contains("jumped"))).count();
+        assert_eq!(jumps, 0, "{warnings:?}");
+    }
 }

@@ -158,19 +158,22 @@ fn the_change_of_the_discrete_slope_jump_is_predicted() {
     }
 }
 
-/// From a front that is off by a thousandth of a cell in all waves.
+/// The solution with a front that is off by a thousandth of a cell in all waves, and its scales.
+fn beside_the_solution(membrane: &Membrane<2>, elements: &mut Elements<2>) -> (PlaneZone, Scales) {
+    let solution = solve::<2, PlaneZone>(membrane, elements, Start::Free, Rest::Final, (0, 0.0), &mut Silent);
+    assert_eq!(solution.reason, Reason::Converged);
+    let n = solution.zone.mode_offsets(ModeSpace::Fine)[1];
+    let off: Vec<f64> = (0..n).map(|i| 1e-3 * membrane.grid.h() * (1.0 + (0.9 * i as f64).sin())).collect();
+    let zone = solution.zone.advanced(&membrane.grid, ModeSpace::Fine, &off, 1.0).zone;
+    (zone, solution.scales.expect("scales"))
+}
+
 #[test]
 fn fronts_come_to_rest_quadratically() {
     for degree in 1..=3 {
         let membrane = membrane(24, degree, Side::Below);
         let mut elements = Elements::new(&membrane);
-        let start = Start::Free;
-        let solution = solve::<2, PlaneZone>(&membrane, &mut elements, start, Rest::Final, (0, 0.0), &mut Silent);
-        assert_eq!(solution.reason, Reason::Converged);
-        let scales = solution.scales.expect("scales");
-        let n = solution.zone.mode_offsets(ModeSpace::Fine)[1];
-        let off: Vec<f64> = (0..n).map(|i| 1e-3 * membrane.grid.h() * (1.0 + (0.9 * i as f64).sin())).collect();
-        let mut zone = solution.zone.advanced(&membrane.grid, ModeSpace::Fine, &off, 1.0).zone;
+        let (mut zone, scales) = beside_the_solution(&membrane, &mut elements);
         let mut left = Vec::new();
         for _ in 0..3 {
             let state = Equilibrium::solve(&membrane, &zone, &mut elements).expect("an equilibrium");
@@ -194,13 +197,7 @@ fn fronts_held_by_adhesion_come_to_rest_quadratically() {
         let energy = move |[x, y]: [Jet<2>; 2]| c(0.01) + c(0.004) * x - c(0.003) * x * y;
         membrane.obstacles.0[0].adhesion = Some(Arc::new(Formula(energy)));
         let mut elements = Elements::new(&membrane);
-        let start = Start::Free;
-        let solution = solve::<2, PlaneZone>(&membrane, &mut elements, start, Rest::Final, (0, 0.0), &mut Silent);
-        assert_eq!(solution.reason, Reason::Converged);
-        let scales = solution.scales.expect("scales");
-        let n = solution.zone.mode_offsets(ModeSpace::Fine)[1];
-        let off: Vec<f64> = (0..n).map(|i| 1e-3 * membrane.grid.h() * (1.0 + (0.9 * i as f64).sin())).collect();
-        let begin = solution.zone.advanced(&membrane.grid, ModeSpace::Fine, &off, 1.0).zone;
+        let (begin, scales) = beside_the_solution(&membrane, &mut elements);
         let mut left = [Vec::new(), Vec::new()];
         for (discrete, left) in [true, false].into_iter().zip(&mut left) {
             let mut zone = begin.clone();

@@ -50,6 +50,8 @@ pub struct Linearised {
     force: Vec<f64>,
     second_variation: Vec<f64>,
     mass: Vec<f64>,
+    /// The mass with lengths in cells.
+    mass_in_cells: Vec<f64>,
     /// Stiffness of a mode that the floor's pressure alone would give.
     pub scale: f64,
 }
@@ -109,9 +111,10 @@ impl<const D: usize> Fronts<'_, D> {
             force: vec![0.0; n],
             second_variation: vec![0.0; n * n],
             mass: vec![0.0; n * n],
+            mass_in_cells: vec![0.0; n * n],
             scale: 0.0,
         };
-        let excess = self.excess();
+        let (excess, cells) = (self.excess(), self.cell_sizes());
         let mut total = 0.0;
         for (i, p) in points.iter().enumerate() {
             let (weight, stiffness) = (p.weight, self.tension[i] * slope[i]);
@@ -127,7 +130,9 @@ impl<const D: usize> Fronts<'_, D> {
                     out.second_variation[row * n + mode] += weight * stiffness * v * column[i];
                 }
                 for &(mode, w) in &frames[i].modes {
-                    out.mass[row * n + mode] += weight * v * w;
+                    let part = weight * v * w;
+                    out.mass[row * n + mode] += part;
+                    out.mass_in_cells[row * n + mode] += part / (cells[i] * cells[i]);
                 }
             }
         }
@@ -167,7 +172,7 @@ impl Linearised {
             dense::solve(&self.rate, &negative).unwrap_or_else(|| vec![0.0; self.n])
         };
         let step = |coefficients: Vec<f64>, kind, reach| {
-            let length = self.size(&coefficients) / scales.h;
+            let length = self.mean(&self.mass_in_cells, &coefficients);
             Step { length, space: self.space, coefficients, kind, reach }
         };
         let spectrum = if branch == Branch::Stable { self.spectrum() } else { None };
@@ -206,9 +211,14 @@ impl Linearised {
 
     /// Root mean square of a displacement of the fronts.
     fn size(&self, coefficients: &[f64]) -> f64 {
+        self.mean(&self.mass, coefficients)
+    }
+
+    /// Root mean square of a displacement of the fronts by a mass of the modes.
+    fn mean(&self, mass: &[f64], coefficients: &[f64]) -> f64 {
         let n = self.n;
         let square: f64 =
-            (0..n).map(|i| coefficients[i] * (0..n).map(|j| self.mass[i * n + j] * coefficients[j]).sum::<f64>()).sum();
+            (0..n).map(|i| coefficients[i] * (0..n).map(|j| mass[i * n + j] * coefficients[j]).sum::<f64>()).sum();
         let total: f64 = self.growth.iter().sum();
         (square.max(0.0) / total.max(f64::MIN_POSITIVE)).sqrt()
     }

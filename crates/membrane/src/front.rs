@@ -377,7 +377,7 @@ impl<'a, const D: usize> Fronts<'a, D> {
     }
 
     /// The sizes of the cells that the points of the fronts lie in.
-    fn cell_sizes(&self) -> Vec<f64> {
+    pub(crate) fn cell_sizes(&self) -> Vec<f64> {
         let Equilibrium { membrane, quadrature, .. } = self.equilibrium;
         let size = |p: &FrontPoint<D>| match membrane.sizing {
             None => membrane.grid.h(),

@@ -29,8 +29,8 @@ const FREE: f64 = -1e-10;
 const SMALL: f64 = 0.7;
 /// Holes of fewer cells are nowhere far from their outlines.
 const FEW: f64 = 16.0;
-/// Steps shorter than this fraction of a cell are made with the derivative of the discrete equations ...
-const CLOSE: f64 = 0.3;
+/// Steps shorter than so many cells are made with the derivative of the discrete equations ...
+const CLOSE: f64 = 1.0;
 /// ... on fronts that curve by less than this within a cell ...
 const BLUNT: f64 = 1.0;
 /// ... unless they get longer by this factor.

@@ -811,7 +811,13 @@ impl Zone<2> for PlaneZone {
             if !(0..now.samples().len()).all(|k| small(&now.point(now.sample_parameter(k)))) {
                 return None;
             }
-            let curve = now.offset(4 * now.knots(), |p| ahead(&p.position));
+            let n = 4 * now.knots();
+            let mut ways: Vec<f64> = (0..n).map(|k| ahead(&now.position(k as f64 / n as f64))).collect();
+            if self.grid.degree() == 1 {
+                // Waves as short as the cells of a state come and go with these: from one state to another they only add up.
+                ways = without_waves(&ways, n / self.mode_counts[i]);
+            }
+            let curve = now.offset(n, |p| ways[(p.s * n as f64).round() as usize % n]);
             // The next cells have sizes of their own, and modes too.
             moved.push(if now.unevenness() > CROWDED {
                 curve
@@ -1078,6 +1084,18 @@ fn at_knots(curve: &ClosedCurve) -> impl Iterator<Item = CurvePoint> + '_ {
     (0..knots).map(move |k| curve.point(k as f64 / knots as f64))
 }
 
+/// Values evenly round a curve without their waves of a length, given in values: they are gone, those twice as long are halved.
+fn without_waves(values: &[f64], length: usize) -> Vec<f64> {
+    let n = values.len();
+    if length == 0 || 2 * length > n {
+        return values.to_vec();
+    }
+    let bell: Vec<f64> =
+        (0..2 * length).map(|k| 1.0 - (std::f64::consts::PI * k as f64 / length as f64).cos()).collect();
+    let mean = |i: usize| bell.iter().enumerate().map(|(k, w)| w * values[(i + n + k - length) % n]).sum::<f64>();
+    (0..n).map(|i| mean(i) / (2 * length) as f64).collect()
+}
+
 /// The curvatures of a curve at its samples, without their signs.
 fn curvatures(curve: &ClosedCurve) -> impl Iterator<Item = f64> + '_ {
     (0..curve.samples().len()).map(|i| curve.point(curve.sample_parameter(i)).curvature.abs())
@@ -1211,6 +1229,49 @@ mod tests {
         // A front that has become much longer gets what it wants.
         let far = moved(0.25);
         assert_eq!(count(&far), wanted(&far));
+    }
+
+    /// A circle with a wave on it.
+    fn waved(grid: &Grid<2>, radius: f64, waves: usize, height: f64) -> PlaneZone {
+        let points: Vec<Point<2>> = (0..40 * waves)
+            .map(|i| std::f64::consts::TAU * i as f64 / (40 * waves) as f64)
+            .map(|a| (radius + height * (waves as f64 * a).cos()) * Point::<2>::new(a.cos(), a.sin()))
+            .collect();
+        PlaneZone::new(grid, vec![(Side::Below, ClosedCurve::through(&points, 7))]).on_grid(grid)
+    }
+
+    fn square(degree: usize) -> Grid<2> {
+        Grid::new(Aabb::new(Point::<2>::new(-1.0, -1.0), Point::<2>::new(1.0, 1.0)), [40, 40], degree)
+    }
+
+    #[test]
+    fn fronts_go_on_the_way_that_they_went() {
+        for (degree, part) in [(1, 0.06), (2, 0.03)] {
+            let grid = square(degree);
+            let [before, now, next] = [0.52, 0.5, 0.48].map(|radius| waved(&grid, radius, 4, 0.1 * (1.0 - radius)));
+            let ahead = now.extrapolated(&grid, &[(&before, 1.0)]).expect("two fronts that are alike");
+            let far = ahead.farthest_from(&next, &|_| 1.0).expect("as many fronts");
+            let gone = now.farthest_from(&next, &|_| 1.0).expect("as many fronts");
+            assert!((gone - 0.022).abs() < 1e-3 && far < part * gone, "degree {degree}: {far} after {gone}");
+            assert!(now.farthest_from(&PlaneZone::empty(&grid), &|_| 1.0).is_none());
+        }
+    }
+
+    /// What cells of degree 1 leave on a front differs from state to state, and would be there threefold.
+    #[test]
+    fn waves_as_short_as_cells_do_not_grow() {
+        let more = |degree: usize| {
+            let (grid, height, waves) = (square(degree), 1e-3, 8);
+            let [before, now] = [(0.52, -height), (0.5, height)].map(|(r, height)| waved(&grid, r, waves, height));
+            let ahead = now.extrapolated(&grid, &[(&before, 1.0)]).expect("two fronts that are alike");
+            ahead.farthest_from(&waved(&grid, 0.48, waves, height), &|_| 1.0).expect("as many fronts") / height
+        };
+        assert!(more(1) < 1.3 && more(2) > 1.7, "{} {}", more(1), more(2));
+        let wave = |length: usize| move |k: usize| (std::f64::consts::TAU * k as f64 / length as f64).cos();
+        let values: Vec<f64> = (0..240).map(|k| 2.0 + wave(12)(k) + wave(24)(k)).collect();
+        for (k, value) in without_waves(&values, 12).iter().enumerate() {
+            assert!((value - 2.0 - 0.5 * wave(24)(k)).abs() < 1e-14);
+        }
     }
 
     #[test]

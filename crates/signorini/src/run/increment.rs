@@ -195,23 +195,15 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
     }
 
     /// Where the fronts will be by the polynomial through the states nearest on the path of what drives them, and, to tell how
-    /// true that is, by another one through one state less, or one more. Without adhesion the state depends on nothing else, and a path that turns comes
-    /// by where it was; with it only the way ahead is like the way just gone.
+    /// true that is, by another one through one state less, or one more. Along a branch of equilibria the state depends on
+    /// nothing else, and a path that turns comes by where it was.
     fn ahead(&self, plan: &MembranePlan<D>, membrane: &Membrane<D>, time: f64) -> Option<(Z, Option<Z>)> {
         let times: Vec<f64> = self.trail.iter().map(|(t, _)| *t).chain([time]).collect();
         let places = plan.places(&times);
         let (next, states) = places.split_last()?;
         let counts = self.trail.last()?.1.counts();
         let alike = |k: &usize| self.trail[*k].1.counts() == counts;
-        let latest = (0..states.len()).rev();
-        let mut near: Vec<usize> = latest.clone().filter(alike).collect();
-        if membrane.obstacles.are_sticky() {
-            near = latest.take_while(alike).take(NEAREST).collect();
-            let [last, before, ..] = near[..] else { return None };
-            if (next - states[last]) * (states[last] - states[before]) <= 0.0 {
-                return None;
-            }
-        }
+        let mut near: Vec<usize> = (0..states.len()).rev().filter(alike).collect();
         near.sort_by(|&a, &b| (next - states[a]).abs().total_cmp(&(next - states[b]).abs()));
         near.truncate(NEAREST);
         let [from, second, ..] = near[..] else { return None };
@@ -228,7 +220,9 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             let multiples: Vec<(&Z, f64)> = near[1..].iter().map(|&k| (&self.trail[k].1, -weight(k))).collect();
             self.trail[from].1.extrapolated(&membrane.grid, &multiples)
         };
-        let (ahead, rough) = (through(&near)?, through(&near[..near.len() - 1]));
+        let ahead = through(&near)?;
+        // Nobody asks on a line.
+        let rough = if D == 2 { through(&near[..near.len() - 1]) } else { None };
         // Short waves on fronts of degree 1, which come and go with the cells, grow with the degree of the polynomial.
         Some(match rough {
             Some(rough) if near.len() == NEAREST && membrane.cells.degree() == 1 => (rough, Some(ahead)),

@@ -7,11 +7,11 @@ use crate::adhesion::Branch;
 use crate::equilibrium::{Elements, Equilibrium};
 use crate::field::Constant;
 use crate::front::Fronts;
-use crate::ils::{Reason, Solution, Start, is_clear, solve};
+use crate::ils::{Reason, Solution, Start, is_clear};
 use crate::obstacle::{Obstacles, Side};
 use crate::problem::Membrane;
+use crate::refinement::Refinement;
 use crate::report::Report;
-use crate::rest::Rest;
 use crate::zone::{Zone, is_free};
 use signorini_geometry::Point;
 use signorini_solve::{Silent, SolveError};
@@ -35,6 +35,7 @@ pub struct OtherState {
 /// contact is looked at, which costs one solve.
 pub fn others<const D: usize, Z: Zone<D>>(
     membrane: &Membrane<D>,
+    refinement: &Refinement<D>,
     known: f64,
     zones: bool,
 ) -> Result<Vec<OtherState>, SolveError> {
@@ -65,8 +66,7 @@ pub fn others<const D: usize, Z: Zone<D>>(
         for family in families(membrane, &free, &mut elements)? {
             for zone in near_equilibria(membrane, &family, &mut elements)? {
                 let start = Start::Asked(zone, Branch::Nearest);
-                let solution: Solution<D, Z> =
-                    solve(membrane, &mut elements, start, Rest::Final, (0, 0.0), &mut Silent);
+                let solution: Solution<D, Z> = refinement.solve(membrane, start, None, (0, 0.0), &mut Silent);
                 if let (Reason::Converged, Some(report)) = (&solution.reason, Report::new(&solution)) {
                     add(OtherState {
                         area: report.area(),

@@ -4,21 +4,30 @@
 use crate::equilibrium::{Elements, Equilibrium};
 use crate::front::Fronts;
 use crate::problem::Membrane;
+use crate::refinement::Refinement;
+use crate::rest::SHARPEST;
 use crate::scales::Scales;
 use crate::zone::{Zone, contact_index};
 use signorini_solve::{Progress, SolveError, dense};
 
-/// Corrections of a state before it is given up.
+/// Corrections of a state before it is given up ...
 const MOST_CORRECTIONS: usize = 25;
+/// ... on so many cells.
+const MOST_CELLS: usize = 3;
+/// What a constraint may lack, relative to its scales; and what it may where a correction does not lessen that.
+const EXACT: f64 = 1e-10;
+const MET: f64 = 1e-6;
 /// The time moves at most by this fraction of its range in one correction.
 const TIME_REACH: f64 = 0.25;
 /// A front moves at most this fraction of the membrane's extent in one correction.
 const REACH: f64 = 0.1;
 
 /// A state on a path.
-#[derive(Clone, Debug)]
-pub struct PathState<Z> {
+#[derive(Clone)]
+pub struct PathState<const D: usize, Z> {
     pub zone: Z,
+    /// The membrane on the cells that the state was found on.
+    pub cells: Membrane<D>,
     pub time: f64,
     pub area: f64,
     /// Direction of the path in area and time, of unit length in their scales.
@@ -34,9 +43,10 @@ pub struct Constraint {
     pub value: f64,
 }
 
-/// A membrane whose data depend on time, and the scales of its path.
+/// A membrane whose data depend on time, where its cells are divided, and the scales of its path.
 pub struct Path<'a, const D: usize> {
     pub membrane: &'a dyn Fn(f64) -> Membrane<D>,
+    pub refinement: &'a Refinement<D>,
     pub scales: Scales,
     /// Scales of area and time.
     pub size: [f64; 2],
@@ -58,7 +68,7 @@ struct Linear {
 
 impl<const D: usize> Path<'_, D> {
     /// A step of length `ds` along the path.
-    pub fn constraint<Z>(&self, from: &PathState<Z>, ds: f64) -> Constraint {
+    pub fn constraint<Z>(&self, from: &PathState<D, Z>, ds: f64) -> Constraint {
         let weights = [0, 1].map(|k| from.tangent[k] / self.size[k]);
         Constraint { weights, value: weights[0] * from.area + weights[1] * from.time + ds }
     }
@@ -72,61 +82,81 @@ impl<const D: usize> Path<'_, D> {
         constraint: Constraint,
         forward: [f64; 2],
         progress: &dyn Progress,
-    ) -> Result<(Option<PathState<Z>>, usize), SolveError> {
-        let mut solves = 0;
-        let mut zone = zone.on_grid(&(self.membrane)(time).grid);
+    ) -> Result<(Option<PathState<D, Z>>, usize), SolveError> {
+        let (mut solves, mut divided) = (0, 1);
+        let (mut cells, mut zone) = self.divided(zone, time);
+        let mut before = f64::INFINITY;
         for _ in 0..MOST_CORRECTIONS {
-            if zone.is_empty() || progress.interrupted() {
+            // A front that has no shape any more leads nowhere, and costs as much as all others.
+            if zone.is_empty() || zone.bend() > SHARPEST || progress.interrupted() {
                 break;
             }
-            let linear = self.linearise(&zone, time)?;
+            let linear = self.linearise(&zone, time, &cells)?;
             solves += linear.solves;
             let [a, t] = constraint.weights;
             let lacking = constraint.value - a * linear.area - t * time;
             let scale = a.abs() * self.size[0] + t.abs() * self.size[1];
-            if linear.error <= 0.5 && lacking.abs() <= 1e-10 * scale {
-                let tangent = linear.tangent(forward, self.size);
-                return Ok((Some(PathState { zone, time, area: linear.area, tangent, linear }), solves));
+            // Cells tell an area only so far: then what it lacks does not get less.
+            let met = lacking.abs() <= EXACT * scale || (lacking.abs() <= MET * scale && lacking.abs() > 0.5 * before);
+            before = lacking.abs();
+            if linear.error <= 0.5 && met {
+                if divided == MOST_CELLS || self.refinement.resolves(&(self.membrane)(time), &cells, &zone) {
+                    let tangent = linear.tangent(forward, self.size);
+                    return Ok((Some(PathState { zone, cells, time, area: linear.area, tangent, linear }), solves));
+                }
+                divided += 1;
+                (cells, zone) = self.divided(zone, time);
+                continue;
             }
-            let Some((step, mut tau)) = linear.solve(constraint.weights, lacking) else { break };
-            let reach = TIME_REACH * self.size[1];
-            tau = tau.clamp(-reach, reach);
-            time += tau;
-            let membrane = (self.membrane)(time);
-            zone = zone.advanced(&membrane.grid, membrane.modes.finest(), &step, REACH * self.scales.length).zone;
+            let Some((mut step, tau)) = linear.solve(constraint.weights, lacking) else { break };
+            let part = (TIME_REACH * self.size[1].abs() / tau.abs()).min(1.0);
+            step.iter_mut().for_each(|w| *w *= part);
+            time += part * tau;
+            zone = zone.advanced(&cells.grid, cells.modes.finest(), &step, REACH * self.scales.length).zone;
         }
         Ok((None, solves))
     }
 
     /// The state that is at rest at a time, with the direction in which the path goes on as the time grows by `sense`.
-    pub fn begin<Z: Zone<D>>(&self, zone: Z, time: f64, sense: f64) -> Result<PathState<Z>, SolveError> {
-        let zone = zone.on_grid(&(self.membrane)(time).grid);
-        let linear = self.linearise(&zone, time)?;
+    pub fn begin<Z: Zone<D>>(&self, zone: Z, time: f64, sense: f64) -> Result<PathState<D, Z>, SolveError> {
+        let (cells, zone) = self.divided(zone, time);
+        let linear = self.linearise(&zone, time, &cells)?;
         let tangent = linear.tangent([0.0, sense], self.size);
-        Ok(PathState { zone, time, area: linear.area, tangent, linear })
+        Ok(PathState { zone, cells, time, area: linear.area, tangent, linear })
+    }
+
+    /// The membrane at a time on cells divided about a zone, and the zone with modes as these can tell them apart.
+    fn divided<Z: Zone<D>>(&self, zone: Z, time: f64) -> (Membrane<D>, Z) {
+        let cells = self.refinement.about(&(self.membrane)(time), &zone);
+        let zone = match &cells.sizing {
+            Some(sizing) => zone.on_sizes(&cells.grid, sizing),
+            None => zone.on_grid(&cells.grid),
+        };
+        (cells, zone)
     }
 
     /// A zone and a time that satisfy a constraint, ahead of a state: the start of the next correction.
-    pub fn predict<Z: Zone<D>>(&self, from: &PathState<Z>, constraint: &Constraint) -> (Z, f64) {
+    pub fn predict<Z: Zone<D>>(&self, from: &PathState<D, Z>, constraint: &Constraint) -> (Z, f64) {
         let Some((step, tau)) = from.linear.direction(constraint.weights) else {
             return (from.zone.clone(), from.time);
         };
         let ds = constraint.value - constraint.weights[0] * from.area - constraint.weights[1] * from.time;
         let step: Vec<f64> = step.iter().map(|w| w * ds).collect();
-        let Membrane { grid, modes, .. } = (self.membrane)(from.time);
-        let zone = from.zone.advanced(&grid, modes.finest(), &step, REACH * self.scales.length).zone;
+        let Membrane { grid, modes, .. } = &from.cells;
+        let zone = from.zone.advanced(grid, modes.finest(), &step, REACH * self.scales.length).zone;
         (zone, from.time + tau * ds)
     }
 
-    fn linearise<Z: Zone<D>>(&self, zone: &Z, time: f64) -> Result<Linear, SolveError> {
-        let membrane = (self.membrane)(time);
+    fn linearise<Z: Zone<D>>(&self, zone: &Z, time: f64, cells: &Membrane<D>) -> Result<Linear, SolveError> {
+        let membrane = (self.membrane)(time).on_cells_of(cells);
+        let scales = self.scales.on(cells);
         let equilibrium = Equilibrium::solve(&membrane, zone, &mut Elements::new(&membrane))?;
         let fronts = Fronts::new(&equilibrium, true);
-        let linearised = fronts.linearise(zone, membrane.modes.finest(), &self.scales)?;
-        let error = fronts.residual(zone, membrane.modes.finest()) / self.scales.slope_tolerance();
+        let linearised = fronts.linearise(zone, membrane.modes.finest(), &scales)?;
+        let error = fronts.residual(zone, membrane.modes.finest()) / scales.slope_tolerance();
         // The same zone a little later: its quadrature is the same.
         let dt = 1e-5 * self.size[1];
-        let later = (self.membrane)(time + dt);
+        let later = (self.membrane)(time + dt).on_cells_of(cells);
         let state = Equilibrium::solve(&later, zone, &mut Elements::new(&later))?;
         let after = Fronts::new(&state, true).excess();
         let rate: Vec<f64> = fronts.excess().iter().zip(&after).map(|(a, b)| (b - a) / dt).collect();

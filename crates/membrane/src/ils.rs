@@ -147,6 +147,27 @@ pub enum Start<Z> {
     Asked(Z, Branch),
 }
 
+impl<Z> Start<Z> {
+    /// The same start on the cells of a membrane.
+    pub(crate) fn on<const D: usize>(self, membrane: &Membrane<D>) -> Self {
+        match self {
+            Start::Zone(zone, scales, branch) => Start::Zone(zone, scales.on(membrane), branch),
+            other => other,
+        }
+    }
+}
+
+/// The solution next to a start that is one but for round-off, on the cells of the membrane as they are; no state where it
+/// penetrates a body.
+pub fn solve_here<const D: usize, Z: Zone<D>>(
+    membrane: &Membrane<D>,
+    start: Start<Z>,
+    at: (usize, f64),
+    progress: &mut dyn Progress,
+) -> Solution<D, Z> {
+    solve(membrane, &mut Elements::new(membrane), start.on(membrane), Rest::Uncorrected, at, progress)
+}
+
 /// Solves one increment.
 pub fn solve<const D: usize, Z: Zone<D>>(
     membrane: &Membrane<D>,
@@ -303,7 +324,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         }
         match start {
             Start::Zone(zone, scales, branch) if !zone.is_empty() => {
-                self.solution.zone = self.on_cells(zone);
+                self.solution.zone = if self.rest == Rest::Uncorrected { zone } else { self.on_cells(zone) };
                 self.solution.scales = Some(scales);
                 self.branch = branch;
             }
@@ -411,6 +432,12 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 solution.unresolved = Some(-conditions.least_gap_outside);
                 solution.conditions = Some(conditions);
                 return Ok(Reason::Converged);
+            }
+            if self.rest == Rest::Uncorrected {
+                let nearly = conditions.nearly_hold_about(&solution.zone, scales, self.membrane);
+                solution.unresolved = nearly.then_some(-conditions.least_gap_outside);
+                solution.conditions = Some(conditions);
+                return Ok(if nearly { Reason::Converged } else { Reason::NoSuchState });
             }
             // Corrected and settled again it would come back to itself: the grid cannot tell whether zones touch.
             let state = (solution.zone.counts(), conditions.least_gap_outside);

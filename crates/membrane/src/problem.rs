@@ -155,4 +155,10 @@ impl<const D: usize> Membrane<D> {
         let domain = DomainOnCells::new(self.domain.domain.clone(), &*cells);
         Self { cells, domain, sizing: None, ..self.clone() }
     }
+
+    /// The same membrane on the cells of another one of the same domain.
+    pub fn on_cells_of(self, other: &Self) -> Self {
+        let Self { cells, grid, domain, sizing, .. } = other.clone();
+        Self { cells, grid, domain, sizing, ..self }
+    }
 }

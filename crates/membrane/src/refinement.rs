@@ -71,6 +71,17 @@ impl<const D: usize> Refinement<D> {
         Some(Membrane { cells, grid, domain, sizing: Some(Arc::new(sizing)), ..membrane.clone() })
     }
 
+    /// The membrane on cells that are divided as the fronts of a zone want it.
+    pub fn about<Z: Zone<D>>(&self, membrane: &Membrane<D>, zone: &Z) -> Membrane<D> {
+        let divided = self.sizing(membrane, zone, 0).and_then(|sizing| self.divided(membrane, zone, sizing));
+        divided.unwrap_or_else(|| membrane.clone())
+    }
+
+    /// Whether cells of the membrane are hardly larger than the fronts of a zone want them.
+    pub fn resolves<Z: Zone<D>>(&self, membrane: &Membrane<D>, cells: &Membrane<D>, zone: &Z) -> bool {
+        self.sizing(membrane, zone, 0).is_none_or(|sizing| resolves(cells, zone, &sizing))
+    }
+
     /// The zone on cells of twice the size, if these resolve it, and the solves that it took: fronts that have far to go
     /// need few steps from there, however small the cells are. Not with adhesion, which may jump elsewhere on other cells.
     pub fn approached<Z: Zone<D>>(
@@ -178,10 +189,7 @@ impl<const D: usize> Refinement<D> {
         at: (usize, f64),
         progress: &mut dyn Progress,
     ) -> Solution<D, Z> {
-        let start = match start {
-            Start::Zone(zone, scales, branch) => Start::Zone(zone, scales.on(&cells), branch),
-            other => other,
-        };
+        let start = start.on(&cells);
         let branch = match &start {
             Start::Zone(_, _, branch) | Start::Asked(_, branch) => *branch,
             Start::Free => Branch::Stable,

@@ -29,7 +29,7 @@ const SETTLED_SHIFTED: f64 = 0.1;
 /// A residual that has fallen so often in a row has not settled, however slowly it falls: a front may be on its way to vanish.
 const SLOWLY: usize = 5;
 /// A front sharper than this, relative to a cell, is no front any more.
-const SHARPEST: f64 = 10.0;
+pub(crate) const SHARPEST: f64 = 10.0;
 /// Fronts that lack no more than so many times the tolerance, and gained nothing by a step, rest: that is little beside what
 /// the grid resolves, and a jump of the discrete slope lies in the way.
 const STUCK: f64 = 5.0;
@@ -51,6 +51,8 @@ const DOUBTED: usize = 2;
 pub enum Rest {
     /// Until nothing more changes that counts.
     Final,
+    /// The same, next to a zone that is one already: it is not corrected where a body is penetrated.
+    Uncorrected,
     /// Until the cells about them may as well be divided.
     BeforeDivision,
     /// The same on cells that are divided, perhaps not enough.

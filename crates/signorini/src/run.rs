@@ -23,7 +23,6 @@ use increment::{Engine, Increment};
 use path::{Along, Follower};
 use serde_json::{Value, json};
 use signorini_geometry::Point;
-use signorini_membrane::adhesion::Branch;
 use signorini_membrane::coexisting::{OtherState, others};
 use signorini_membrane::line_zone::LineZone;
 use signorini_membrane::obstacle::Side;
@@ -135,7 +134,7 @@ struct Runner<const D: usize, Z> {
     frames: Vec<(f64, String)>,
     unknowns: usize,
     events: Vec<Event>,
-    path: Option<Follower<Z>>,
+    path: Option<Follower<D, Z>>,
     film: Film<D>,
     /// The state to go on from.
     resumed: Option<(usize, Option<Known<Z>>)>,
@@ -255,11 +254,12 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             let mut time = planned.time;
             let mut solves = 0;
             let told = (self.events.len(), self.warnings.len());
+            let on_path = (planned.control != Control::Time).then(|| self.engine.save());
             if planned.control != Control::Time {
                 match self.along(planned, known.as_ref(), &mut logged)? {
-                    Along::State { zone, time: found, solves: taken } => {
+                    Along::State { zone, cells, time: found, solves: taken } => {
                         (time, solves) = (found, taken);
-                        self.engine.start_near(zone, Branch::Nearest);
+                        self.engine.start_on(zone, *cells);
                     }
                     Along::Ended(why) => {
                         self.warnings.push(why);
@@ -284,6 +284,19 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             let last_of_step = increments.get(index + 1).is_none_or(|next| next.step != planned.step);
             self.engine.estimates = last_of_step;
             let mut increment = self.engine.solve(&self.plan, &membrane, (index, time), &mut logged);
+            if let (Some(saved), Some(follower)) = (on_path, &mut self.path)
+                && (increment.converged || increment.reason == "no_such_state")
+                && let Some(why) = follower.left(planned.control, self.engine.zone(), increment.area())
+            {
+                // The state of the path penetrates a body, and the membrane went elsewhere.
+                self.engine.restore(saved);
+                self.warnings.push(why);
+                if follower.done {
+                    continue;
+                }
+                (ending, reason) = (Ending::NotConverged, "path_lost".into());
+                break;
+            }
             if let (false, Control::Time, Some(from)) = (increment.converged, planned.control, &known)
                 && let Some(taken) = self.approach(index, from, time, &mut logged)
             {
@@ -291,6 +304,15 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                 increment = self.engine.solve(&self.plan, &membrane, (index, time), &mut logged);
             }
             increment.before += solves;
+            if let (Control::ArcLength(_), true, true) = (planned.control, increment.converged, last_of_step)
+                && self.path.as_ref().is_some_and(|path| !path.done)
+            {
+                let [_, to] = planned.range;
+                self.warnings.push(format!(
+                    "the path goes on: its last increment is at t = {time}, and the step ends at t = {to}; give the step more \
+                     increments, or leave them out to follow the path to its end"
+                ));
+            }
             let mut after = self.engine.known(time, &increment);
             if planned.control != Control::Time {
                 // Nothing jumps along a path.
@@ -429,7 +451,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         planned: &PlannedIncrement,
         known: Option<&Known<Z>>,
         progress: &mut dyn Progress,
-    ) -> Result<Along<Z>, RunError> {
+    ) -> Result<Along<D, Z>, RunError> {
         let lost = |e: SolveError| Along::Failed(e.to_string());
         let mut follower = match self.path.take().filter(|p| p.step == planned.step) {
             Some(follower) => follower,
@@ -559,7 +581,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         {
             self.warnings.push(UNSTABLE.into());
         }
-        others::<D, Z>(membrane, increment.area(), zones).unwrap_or_default()
+        others::<D, Z>(membrane, &self.plan.refinement, increment.area(), zones).unwrap_or_default()
     }
 
     fn record(&mut self, time: f64, membrane: &Membrane<D>, increment: &Increment<D>, others: Vec<OtherState>) {

@@ -10,6 +10,9 @@ use crate::expression::Scope;
 const DRIVEN_AT: usize = 9;
 const STRAIGHT: f64 = 1e-9;
 
+/// The length of the longest path, in areas of the membrane and times of its step.
+const LONGEST: f64 = 10.0;
+
 /// One increment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannedIncrement {
@@ -70,7 +73,13 @@ impl Planner<'_> {
                     .error(key.to.span(), format!("the step ends at t = {to}, not after t = {t}")));
             }
             let n = match &key.increments {
-                None => 1,
+                None => match key.control.as_ref().map(|control| control.get_ref()) {
+                    // As far as the path goes, which nobody knows before.
+                    Some(statement::Control::ArcLength(arc)) => {
+                        ((LONGEST / *arc.size.get_ref()) as usize).clamp(1, 100_000)
+                    }
+                    _ => 1,
+                },
                 Some(n) if (1..=100_000).contains(n.get_ref()) => *n.get_ref() as usize,
                 Some(n) => {
                     return Err(self

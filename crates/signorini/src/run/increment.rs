@@ -48,6 +48,8 @@ pub struct Engine<const D: usize, Z> {
     scales: Option<Scales>,
     /// The last states of the path and their times.
     trail: Vec<(f64, Z)>,
+    /// The cells of a state that was found on a path of equilibria, for the next increment.
+    cells: Option<Membrane<D>>,
     refinement: Refinement<D>,
     /// Whether lengths are lengths; without units the problem may be scaled at will.
     has_units: bool,
@@ -146,6 +148,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             asked,
             scales: None,
             trail: Vec::new(),
+            cells: None,
             refinement: plan.refinement.clone(),
             estimates: false,
             has_units: plan.document.case.units.is_some(),
@@ -256,6 +259,12 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         self.previous = self.scales.map(|scales| (zone, scales, branch));
     }
 
+    /// Starts the next increment from a state that is known to be one, on the cells that it was found on.
+    pub fn start_on(&mut self, zone: Z, cells: Membrane<D>) {
+        self.start_near(zone, Branch::Nearest);
+        self.cells = Some(cells);
+    }
+
     /// The scales of the problem, once a state is known.
     pub fn scales(&self) -> Option<Scales> {
         self.scales
@@ -326,7 +335,10 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
                 Some(message) => {
                     Solution { reason: Reason::LinearSolver(message), ..Solution::begin(Z::empty(&membrane.grid)) }
                 }
-                None => self.refinement.solve(membrane, start, other.as_ref(), at, progress),
+                None => match self.cells.take().map(|cells| membrane.clone().on_cells_of(&cells)) {
+                    Some(cells) => ils::solve_here(&cells, start, at, progress),
+                    None => self.refinement.solve(membrane, start, other.as_ref(), at, progress),
+                },
             },
         };
         solution.before += solves;

@@ -3,18 +3,21 @@
 use crate::plan::{Control, MembranePlan, PlannedIncrement};
 use signorini_membrane::coexisting::zone_of_area;
 use signorini_membrane::continuation::{Constraint, Path, PathState};
+use signorini_membrane::problem::Membrane;
 use signorini_membrane::scales::Scales;
 use signorini_membrane::zone::Zone;
 use signorini_solve::{Progress, SolveError};
 
 /// Halvings of an increment before the path is given up.
 const MOST_HALVINGS: i32 = 7;
+/// States whose areas differ by more, relative to the membrane, are not the same.
+const OTHER: f64 = 1e-2;
 
 /// Where a path stands within its step.
-pub struct Follower<Z> {
+pub struct Follower<const D: usize, Z> {
     pub step: usize,
     /// The last state; none before the first where the membrane is free.
-    state: Option<PathState<Z>>,
+    state: Option<PathState<D, Z>>,
     /// Area and time at the beginning of the step.
     begin: [f64; 2],
     /// Scales of area and time.
@@ -25,9 +28,11 @@ pub struct Follower<Z> {
 }
 
 /// What came of an increment.
-pub enum Along<Z> {
+pub enum Along<const D: usize, Z> {
     State {
         zone: Z,
+        /// The membrane on the cells that the zone was found on.
+        cells: Box<Membrane<D>>,
         time: f64,
         solves: usize,
     },
@@ -36,37 +41,32 @@ pub enum Along<Z> {
     Failed(String),
 }
 
-impl<Z> Follower<Z> {
+impl<const D: usize, Z: Zone<D>> Follower<D, Z> {
     /// Begins a step at a state of equilibrium, or at a free membrane.
-    pub fn begin<const D: usize>(
+    pub fn begin(
         plan: &MembranePlan<D>,
         planned: &PlannedIncrement,
         zone: Z,
         time: f64,
         scales: Scales,
-    ) -> Result<Self, SolveError>
-    where
-        Z: Zone<D>,
-    {
+    ) -> Result<Self, SolveError> {
         let [from, to] = planned.range;
         let size = [plan.area(), to - from];
-        let path = Path { membrane: &|t| plan.at(t), scales, size };
+        let path = Path { membrane: &|t| plan.at(t), refinement: &plan.refinement, scales, size };
         let state = if zone.is_empty() { None } else { Some(path.begin(zone, time, (to - time).signum())?) };
         let area = state.as_ref().map_or(0.0, |s| s.area);
         Ok(Self { step: planned.step, state, begin: [area, time], size, scales, done: false })
     }
 
     /// One increment on.
-    pub fn advance<const D: usize>(
+    pub fn advance(
         &mut self,
         plan: &MembranePlan<D>,
         planned: &PlannedIncrement,
         progress: &dyn Progress,
-    ) -> Result<Along<Z>, SolveError>
-    where
-        Z: Zone<D>,
-    {
-        let path = Path { membrane: &|t| plan.at(t), scales: self.scales, size: self.size };
+    ) -> Result<Along<D, Z>, SolveError> {
+        let (scales, size) = (self.scales, self.size);
+        let path = Path { membrane: &|t| plan.at(t), refinement: &plan.refinement, scales, size };
         match planned.control {
             Control::ArcLength(size) => self.by_arc_length(&path, size, planned.range[1], progress),
             Control::Area { to, part, parts } => {
@@ -77,16 +77,13 @@ impl<Z> Follower<Z> {
         }
     }
 
-    fn by_area<const D: usize>(
+    fn by_area(
         &mut self,
         path: &Path<'_, D>,
         target: f64,
         sense: f64,
         progress: &dyn Progress,
-    ) -> Result<Along<Z>, SolveError>
-    where
-        Z: Zone<D>,
-    {
+    ) -> Result<Along<D, Z>, SolveError> {
         let mut total = 0;
         let mut part = 1.0;
         for _ in 0..1 << MOST_HALVINGS {
@@ -118,16 +115,13 @@ impl<Z> Follower<Z> {
         Ok(Along::Failed(format!("no equilibrium with a contact area of {target} was found")))
     }
 
-    fn by_arc_length<const D: usize>(
+    fn by_arc_length(
         &mut self,
         path: &Path<'_, D>,
         size: f64,
         to: f64,
         progress: &dyn Progress,
-    ) -> Result<Along<Z>, SolveError>
-    where
-        Z: Zone<D>,
-    {
+    ) -> Result<Along<D, Z>, SolveError> {
         let Some(state) = self.state.clone() else {
             return Ok(Along::Failed(
                 "control.arc_length begins at a state with contact: lead there by a step of time or of area, or by `initial_zone`".into(),
@@ -163,12 +157,24 @@ impl<Z> Follower<Z> {
         })
     }
 
-    fn accept(&mut self, state: PathState<Z>, solves: usize) -> Along<Z>
-    where
-        Z: Clone,
-    {
-        let (zone, time) = (state.zone.clone(), state.time);
+    /// Whether the state that was reached last is none: next to it an increment found another one, of an area, or none at all.
+    /// Tells why; along the arc length the path ends there.
+    pub fn left(&mut self, control: Control, found: Option<Z>, area: f64) -> Option<String> {
+        let state = self.state.as_ref()?;
+        let same = found.is_some_and(|zone| zone.counts() == state.zone.counts());
+        if same && (area - state.area).abs() < OTHER * self.size[0] {
+            return None;
+        }
+        self.done = matches!(control, Control::ArcLength(_));
+        Some(format!(
+            "the path ends near t = {}, at a contact area of {}: from there on the membrane would penetrate a body elsewhere",
+            state.time, state.area
+        ))
+    }
+
+    fn accept(&mut self, state: PathState<D, Z>, solves: usize) -> Along<D, Z> {
+        let (zone, cells, time) = (state.zone.clone(), Box::new(state.cells.clone()), state.time);
         self.state = Some(state);
-        Along::State { zone, time, solves }
+        Along::State { zone, cells, time, solves }
     }
 }

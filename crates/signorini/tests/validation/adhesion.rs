@@ -340,6 +340,71 @@ fn a_path_through_the_fold() {
     assert!(warnings.contains("unstable states") && warnings.contains("vanishes"), "{warnings}");
 }
 
+/// The sticky cosine floor, loaded to 0.15 at t = 1 and pulled to -0.25 at t = 2, where contact is lost at t = 1.517.
+fn cosine(cells: usize, steps: &str) -> String {
+    let rest = format!("[functions.f]\ntable = {{ t = [0, 1, 2], value = [0, 0.15, -0.25] }}\n{steps}");
+    disc(cells, "-f(t)", "1e-3", None, &rest)
+        .replace("height = -0.1", "height = \"-(15 + 5*cos(2*pi*x)*cos(2*pi*y))/1000\"")
+}
+
+/// In the plane, with a front that is no circle and on cells divided along it: the area that belongs to a time leads back to
+/// that time, and smaller ones through the fold.
+#[test]
+fn a_front_that_is_no_circle_by_the_area_of_contact() {
+    let to = |t: f64, n: usize| format!("[[steps]]\nto = {t}\nincrements = {n}\n");
+    let by_time = to(0.4, 1) + &to(1.0, 4) + &to(1.4, 4);
+    let degree = [(DEGREE, "2".to_string())];
+    let found = summary(&cosine(20, &(by_time.clone() + &to(1.5, 2))), &set(&degree));
+    let area = number(&touch(last_step(&found))["area"]);
+    let by_area = |t: f64, n: usize, a: f64| to(t, n) + &format!("control.area = {{ of = \"touch\", to = {a} }}\n");
+    let steps = by_time + &by_area(1.6, 1, area) + &by_area(1.7, 4, 0.22);
+    let found = summary(&cosine(20, &steps), &set(&degree));
+    last_step(&found);
+    let states: Vec<(f64, f64, bool)> = found["steps"].as_array().expect("steps")[9..]
+        .iter()
+        .map(|step| (number(&step["time"]), number(&touch(step)["area"]), touch(step)["stable"] == true))
+        .collect();
+    assert_eq!(states.len(), 5);
+    assert!((states[0].0 - 1.5).abs() < 2e-6, "{states:?}");
+    for (k, (_, a, _)) in states.iter().enumerate() {
+        let wanted = area + (0.22 - area) * k as f64 / 4.0;
+        // The second step begins on other cells, which tell the area that it has to go on from to so much.
+        let exact = if k == 0 || k == 4 { 1e-9 } else { 1e-6 };
+        assert!((a - wanted).abs() < exact, "{states:?}");
+    }
+    let stable: Vec<bool> = states.iter().map(|state| state.2).collect();
+    assert_eq!(stable, [true, true, true, false, false]);
+    // The time is stationary at the fold.
+    let turns = states.windows(2).map(|pair| (pair[1].0 > pair[0].0) as usize).sum::<usize>();
+    let latest = states.iter().map(|state| state.0).fold(0.0, f64::max);
+    assert!(turns == 2 && latest > 1.512 && latest < 1.517, "{states:?}");
+}
+
+/// On cells of degree 1, by the arc length as far as it goes: along the unstable branch, until the membrane, held in the middle by
+/// less and less, would lie below the bumps around it.
+#[test]
+fn a_path_of_the_cosine_floor_to_its_end() {
+    let by_time = "[[steps]]\nto = 0.4\n[[steps]]\nto = 1\nincrements = 4\n[[steps]]\nto = 1.4\nincrements = 4\n";
+    let path = |more: &str| {
+        let arc = format!("[[steps]]\nto = 2\ncontrol.arc_length = {{ size = 0.05 }}\n{more}");
+        let found = summary(&cosine(24, &(by_time.to_string() + &arc)), &set(&[(DEGREE, "1".to_string())]));
+        last_step(&found);
+        found
+    };
+    let found = path("");
+    let steps = &found["steps"].as_array().expect("steps")[9..];
+    let unstable = steps.iter().filter(|step| touch(step)["stable"] == false).count();
+    let latest = steps.iter().map(|step| number(&step["time"])).fold(0.0, f64::max);
+    assert!(unstable >= 6 && steps.len() - unstable >= 4, "{unstable} of {}", steps.len());
+    assert!(latest > 1.512 && latest < 1.518, "{latest}");
+    let area = number(&touch(&steps[steps.len() - 1])["area"]);
+    let warnings = found["warnings"].to_string();
+    assert!(area < 0.04 && warnings.contains("would penetrate a body elsewhere"), "{area}, {warnings}");
+    // Fewer increments than that are told.
+    let warnings = path("increments = 2\n")["warnings"].to_string();
+    assert!(warnings.contains("the path goes on"), "{warnings}");
+}
+
 #[test]
 fn mistakes_are_told() {
     let plain = || round("-1", 0.1, "0.01", None, "");
@@ -426,11 +491,8 @@ fn the_loop_of_the_cosine_floor() {
 #[test]
 fn a_sticky_path_takes_few_solves() {
     for (cells, degree) in [(24, 1), (20, 2)] {
-        let rest = "[functions.f]\ntable = { t = [0, 1, 2], value = [0, 0.15, -0.25] }\n\
-            [[steps]]\nto = 0.4\n[[steps]]\nto = 1\nincrements = 12\n[[steps]]\nto = 1.5\nincrements = 15\n";
-        let case = disc(cells, "-f(t)", "1e-3", None, rest)
-            .replace("height = -0.1", "height = \"-(15 + 5*cos(2*pi*x)*cos(2*pi*y))/1000\"");
-        let found = summary(&case, &set(&[(DEGREE, degree.to_string())]));
+        let steps = "[[steps]]\nto = 0.4\n[[steps]]\nto = 1\nincrements = 12\n[[steps]]\nto = 1.5\nincrements = 15\n";
+        let found = summary(&cosine(cells, steps), &set(&[(DEGREE, degree.to_string())]));
         last_step(&found);
         let steps = found["steps"].as_array().expect("steps");
         assert!(steps.iter().all(|step| touch(step)["zones"] == 1), "contact was lost");

@@ -30,7 +30,9 @@ const SMALL: f64 = 0.7;
 /// Holes of fewer cells are nowhere far from their outlines.
 const FEW: f64 = 16.0;
 /// Steps shorter than so many cells are made with the derivative of the discrete equations ...
-const CLOSE: f64 = 1.0;
+const CLOSE: f64 = 0.3;
+/// ... or, with adhesion, than so many: near the loss of a state the derivative in the continuum lacks much of it ...
+const CLOSE_STICKY: f64 = 1.0;
 /// ... on fronts that curve by less than this within a cell ...
 const BLUNT: f64 = 1.0;
 /// ... unless they get longer by this factor.
@@ -646,7 +648,8 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             }
             // Short of adhesion fronts rest without a slope: the pressure of the floor is nearly all of the derivative in the
             // continuum. Near the solution the rest of it, which cells add, makes the convergence quadratic.
-            let near = step.length < CLOSE && course.is_smooth() && bend < BLUNT && step.kind != StepKind::Descent;
+            let close = if self.adhering { CLOSE_STICKY } else { CLOSE };
+            let near = step.length < close && course.is_smooth() && bend < BLUNT && step.kind != StepKind::Descent;
             let exact = match D > 1 && near && !shifted && equilibrium.responds() {
                 true => fronts.discrete_step(zone, self.elements, &scales, linearised.as_ref())?,
                 false => None,

@@ -167,7 +167,8 @@ impl<const D: usize, Z: Zone<D>> Follower<D, Z> {
         }
         self.done = matches!(control, Control::ArcLength(_));
         Some(format!(
-            "the path ends near t = {}, at a contact area of {}: from there on the membrane would penetrate a body elsewhere",
+            "the path ends near t = {}, at a contact area of {}: from there on the membrane would penetrate a body elsewhere, or hang where \
+             nothing holds it",
             state.time, state.area
         ))
     }

@@ -66,7 +66,8 @@ pub fn others<const D: usize, Z: Zone<D>>(
         for family in families(membrane, &free, &mut elements)? {
             for zone in near_equilibria(membrane, &family, &mut elements)? {
                 let start = Start::Asked(zone, Branch::Nearest);
-                let solution: Solution<D, Z> = refinement.solve(membrane, start, None, (0, 0.0), &mut Silent);
+                let solution: Solution<D, Z> =
+                    refinement.solve(membrane, &mut elements, start, None, (0, 0.0), &mut Silent);
                 if let (Reason::Converged, Some(report)) = (&solution.reason, Report::new(&solution)) {
                     add(OtherState {
                         area: report.area(),

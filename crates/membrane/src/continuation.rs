@@ -128,10 +128,7 @@ impl<const D: usize> Path<'_, D> {
     /// The membrane at a time on cells divided about a zone, and the zone with modes as these can tell them apart.
     fn divided<Z: Zone<D>>(&self, zone: Z, time: f64) -> (Membrane<D>, Z) {
         let cells = self.refinement.about(&(self.membrane)(time), &zone);
-        let zone = match &cells.sizing {
-            Some(sizing) => zone.on_sizes(&cells.grid, sizing),
-            None => zone.on_grid(&cells.grid),
-        };
+        let zone = zone.on_cells(&cells);
         (cells, zone)
     }
 

@@ -10,9 +10,9 @@ use crate::front::{Fronts, Step, StepKind};
 use crate::problem::Membrane;
 use crate::published::{ModeSchedule, Transport};
 pub use crate::rest::Rest;
-use crate::rest::{Course, SETTLED, Sight, Verdict};
+use crate::rest::{Course, SETTLED, SHARP, Sight, Verdict};
 use crate::scales::Scales;
-use crate::zone::{Zone, contact_index};
+use crate::zone::{Advance, Zone, contact_index};
 use signorini_fem::Grid;
 use signorini_geometry::Point;
 use signorini_solve::{Acceleration, Iteration, Progress, SolveError};
@@ -99,8 +99,9 @@ pub struct Solution<const D: usize, Z> {
     pub unrefined: bool,
     /// Length of the last step relative to a cell, where the fronts settled on a jump of the discrete slope.
     pub settled_within: Option<f64>,
-    /// Whether they were left to smaller cells before they came to rest.
+    /// Whether they were left to smaller cells before they came to rest, and whether they may stay so where there are none.
     pub unfinished: bool,
+    pub near_enough: bool,
     /// Whether multigrid found it, and not a factorisation.
     pub multigrid: bool,
     /// What the nodal method predicted on the way, if it was asked.
@@ -127,6 +128,7 @@ impl<const D: usize, Z> Solution<D, Z> {
             unrefined: false,
             settled_within: None,
             unfinished: false,
+            near_enough: false,
             multigrid: false,
             predicted: None,
         }
@@ -326,7 +328,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         }
         match start {
             Start::Zone(zone, scales, branch) if !zone.is_empty() => {
-                self.solution.zone = if self.rest == Rest::Uncorrected { zone } else { self.on_cells(zone) };
+                self.solution.zone = if self.rest == Rest::Uncorrected { zone } else { zone.on_cells(self.membrane) };
                 self.solution.scales = Some(scales);
                 self.branch = branch;
             }
@@ -334,7 +336,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             Start::Asked(zone, branch) => {
                 // Without contact, for the scales.
                 self.settle_fronts()?;
-                self.solution.zone = self.on_cells(zone);
+                self.solution.zone = zone.on_cells(self.membrane);
                 self.branch = branch;
             }
         }
@@ -513,11 +515,6 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         Ok(self.resized(prediction(self.membrane, known, &|| self.progress.interrupted())?))
     }
 
-    /// A zone from other cells with modes as these can tell them apart.
-    fn on_cells(&self, zone: Z) -> Z {
-        if self.membrane.sizing.is_some() { self.resized(zone) } else { zone.on_grid(&self.membrane.grid) }
-    }
-
     /// A zone whose fronts were drawn anew on the grid, with modes as long as the cells are large.
     fn resized(&self, zone: Z) -> Z {
         match &self.membrane.sizing {
@@ -597,14 +594,14 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                     None => fronts.newton_step(zone, &scales)?,
                 },
             };
-            course.take(residual, step.kind, shifted);
+            course.take(residual, area.iter().sum::<f64>() / scales.length.powi(D as i32), step.kind, shifted);
             let bend = if D > 1 { zone.bend() } else { 0.0 };
             let sight = Sight {
                 residual,
                 step: step.length,
                 kind: step.kind,
                 bend,
-                tips: bend >= 1.0 && self.has_lost_tips(zone),
+                tips: !shifted && !self.adhering && bend >= SHARP && zone.has_tips(SHARP),
                 shifted,
                 adhering: self.adhering,
                 kinks: scales.degree == 1,
@@ -635,10 +632,11 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                     }
                     self.solution.lowest_eigenvalue = lowest;
                 }
-                let settled = matches!(verdict, Verdict::Settled { .. });
+                let settled = verdict != Verdict::AtRest;
                 self.report(residual, if settled { "settled" } else { "at rest" });
                 self.solution.settled_within = settled.then_some(step.length);
-                self.solution.unfinished = verdict == Verdict::Settled { unfinished: true };
+                self.solution.unfinished = matches!(verdict, Verdict::Left { .. });
+                self.solution.near_enough = verdict == Verdict::Left { settled: true };
                 self.solution.equilibrium = Some(equilibrium);
                 return Ok(Fixed::AtRest);
             }
@@ -673,8 +671,14 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             let mut advance = advanced(&step);
             if D > 1 && !self.adhering && !shifted {
                 let sharpest = f64::max(WILD, SHARPENED * bend);
+                // A short step that leaves as many zones and holes folds a tip.
+                let folds = |zone: &Z| step.length < CLOSE && zone.counts() == self.solution.zone.counts();
+                let shapeless = |advance: &Advance<Z>| match advance.topology_changed {
+                    true => folds(&advance.zone),
+                    false => advance.zone.bend() > sharpest,
+                };
                 for doublings in 0..MOST_SMOOTHINGS {
-                    if advance.topology_changed || advance.zone.bend() <= sharpest {
+                    if !shapeless(&advance) {
                         break;
                     }
                     step.coefficients = fronts.smoothed(zone, &step, scales.h * f64::from(1u32 << doublings));

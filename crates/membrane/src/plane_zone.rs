@@ -1010,8 +1010,8 @@ impl Zone<2> for PlaneZone {
     fn fronts_are_long(&self) -> bool {
         self.curves.iter().all(|curve| self.relative_length(curve) >= LONG)
     }
-    fn has_lost_tips(&self) -> bool {
-        let mut sharp = (0..self.curves.len()).filter(|c| self.bend_of(*c) >= 1.0).peekable();
+    fn has_tips(&self, bend: f64) -> bool {
+        let mut sharp = (0..self.curves.len()).filter(|c| self.bend_of(*c) >= bend).peekable();
         sharp.peek().is_some() && sharp.all(|c| self.relative_length(&self.curves[c]) >= LONG)
     }
     fn divided(

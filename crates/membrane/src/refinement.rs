@@ -1,6 +1,7 @@
 //! Cells divided where the fronts need it: where they curve within a cell or come near each other.
 
 use crate::adhesion::Branch;
+use crate::conditions::Conditions;
 use crate::deferred::Known;
 use crate::domain::DomainOnCells;
 use crate::equilibrium::{Elements, Equilibrium};
@@ -8,7 +9,7 @@ use crate::front::Fronts;
 use crate::ils::{self, Reason, Solution, Start};
 use crate::problem::Membrane;
 use crate::published::Formulation;
-use crate::rest::{Rest, SETTLED, SETTLED_COARSE};
+use crate::rest::{Rest, SETTLED_COARSE};
 use crate::scales::Scales;
 use crate::sizing::Sizing;
 use crate::zone::Zone;
@@ -143,6 +144,7 @@ impl<const D: usize> Refinement<D> {
     pub fn solve<Z: Zone<D>>(
         &self,
         membrane: &Membrane<D>,
+        elements: &mut Elements<D>,
         start: Start<Z>,
         other: Option<&Z>,
         at: (usize, f64),
@@ -156,25 +158,32 @@ impl<const D: usize> Refinement<D> {
             if (membrane.obstacles.are_sticky() || apart.is_some_and(|apart| apart < SURE))
                 && let Some(divided) = self.divided(membrane, zone, sizing.clone())
             {
-                let found = self.solve_on(membrane, divided, start.clone(), None, at, progress);
+                let of_divided = &mut Elements::new(&divided);
+                let found = self.solve_on(membrane, divided, of_divided, start.clone(), None, at, progress);
                 if found.reason == Reason::Interrupted || (found.reason.converged() && !found.jumped) {
                     return found;
                 }
                 before = found.before + found.iterations;
-            }
-            let coarse = zone.on_grid(&membrane.grid);
-            let state = Equilibrium::solve(membrane, &coarse, &mut Elements::new(membrane)).ok();
-            let way = |state| Fronts::new(state, true).farthest(&coarse, scales, |x| sizing.at(x));
-            if state.as_ref().is_some_and(|state| way(state) < NEAR) {
-                before += 1;
-                cells = self.divided(membrane, zone, sizing);
             } else {
-                // It is the first one on undivided cells.
-                looked = state;
+                let coarse = zone.on_grid(&membrane.grid);
+                let state = Equilibrium::solve(membrane, &coarse, elements).ok();
+                let way = |state| Fronts::new(state, true).farthest(&coarse, scales, |x| sizing.at(x));
+                if state.as_ref().is_some_and(|state| way(state) < NEAR) {
+                    before += 1;
+                    cells = self.divided(membrane, zone, sizing);
+                } else {
+                    // It is the first one on undivided cells.
+                    looked = state;
+                }
             }
         }
-        let cells = cells.unwrap_or_else(|| membrane.clone());
-        let mut found = self.solve_on(membrane, cells, start, looked, at, progress);
+        let mut found = match cells {
+            Some(cells) => {
+                let of_divided = &mut Elements::new(&cells);
+                self.solve_on(membrane, cells, of_divided, start, None, at, progress)
+            }
+            None => self.solve_on(membrane, membrane.clone(), elements, start, looked, at, progress),
+        };
         found.before += before;
         found
     }
@@ -184,6 +193,7 @@ impl<const D: usize> Refinement<D> {
         &self,
         membrane: &Membrane<D>,
         cells: Membrane<D>,
+        elements: &mut Elements<D>,
         start: Start<Z>,
         known: Option<Equilibrium<D>>,
         at: (usize, f64),
@@ -196,7 +206,7 @@ impl<const D: usize> Refinement<D> {
         };
         let last = cells.sizing.is_some() || D != 2 || self.most == 0;
         let rest = if last { Rest::Final } else { Rest::BeforeDivision };
-        let found = ils::solve_from(&cells, &mut Elements::new(&cells), start, known, rest, at, progress);
+        let found = ils::solve_from(&cells, elements, start, known, rest, at, progress);
         let mut search =
             Search { refinement: self, membrane, branch, at, progress, cells, found, finer: 0, predicted: false };
         (0..MOST_ROUNDS).take_while(|_| search.goes_on().is_some()).count();
@@ -326,10 +336,17 @@ impl<const D: usize, Z: Zone<D>> Search<'_, D, Z> {
     /// What was found, brought to rest.
     fn finished(self) -> Solution<D, Z> {
         let Self { cells, mut found, at, progress, .. } = self;
-        // What sharp fronts lack in the end may be less than what other fronts settle with.
-        let at_rest = !found.unfinished || found.settled_within.is_some_and(|step| step < SETTLED);
-        if at_rest || !found.reason.converged() {
+        if !found.unfinished || !found.reason.converged() {
             return found;
+        }
+        if let (true, Some(state), Some(scales)) = (found.near_enough, &found.equilibrium, &found.scales) {
+            let conditions = Conditions::check(state, &found.zone, scales, false);
+            let hold = conditions.hold(scales);
+            if hold || (found.zone.has_lost_tips() && conditions.nearly_hold_about(&found.zone, scales, &cells)) {
+                found.unresolved = (!hold).then_some(-conditions.least_gap_outside);
+                found.conditions = Some(conditions);
+                return found;
+            }
         }
         // Smaller cells turned out not to be wanted, or not to be had.
         let left = (found.zone.clone(), found.conditions.take(), found.settled_within, found.unresolved.take());

@@ -24,6 +24,9 @@ pub(crate) const SETTLED: f64 = 1e-3;
 pub(crate) const SETTLED_COARSE: f64 = 0.03;
 /// ... or, on tips that no cell shows where both are so, by less than this.
 const SETTLED_AT_TIPS: f64 = 0.1;
+/// ... without waiting for more where the last step, a hundred times as long as what then lacks elsewhere, changed the area of
+/// contact by less than this part of the square of the membrane's size.
+const STILL: f64 = 1e-6;
 /// ... or, where they are moved as a level set on nodes, by less than this.
 const SETTLED_SHIFTED: f64 = 0.1;
 /// A residual that has fallen so often in a row has not settled, however slowly it falls: a front may be on its way to vanish.
@@ -36,7 +39,7 @@ const STUCK: f64 = 5.0;
 /// A step of this fraction of a cell that does not improve on the last is round-off.
 const ROUND_OFF: f64 = 1e-8;
 /// Fronts that curve by more than this within a cell are left to smaller cells ...
-const SHARP: f64 = 0.5;
+pub(crate) const SHARP: f64 = 0.5;
 /// ... where they lack less than this fraction of one ...
 const NEARLY: f64 = 0.05;
 /// ... or gain nothing by a step that is shorter than this.
@@ -104,27 +107,33 @@ impl Rest {
         if sight.residual <= 1.0 {
             return Verdict::AtRest;
         }
-        // Newton's method is slow on fronts as sharp as a cell, and fast on the smaller ones that they want.
-        let slow = || (course.waited >= 1 && sight.step < ASTRAY) || (sight.farthest)() < NEARLY;
-        if self.leaves() && !sight.adhering && sight.bend >= SHARP && slow() {
-            return Verdict::Settled { unfinished: true };
-        }
-        let patience = match (sight.shifted, sight.tips) {
+        let sharp = sight.bend >= 1.0;
+        let lost = sight.tips && sharp;
+        let patience = match (sight.shifted, lost) {
             // A level set on nodes shifts the fronts with every step: there is no coming closer than that.
             (true, _) => DAMPED_AFTER,
             (_, true) => PATIENCE_AT_TIPS,
             _ => PATIENCE,
         };
-        let sharp = sight.bend >= 1.0;
         let enough = || match (sight.shifted, sharp && sight.bend < SHARPEST) {
             (true, _) => SETTLED_SHIFTED,
-            (_, true) if sight.tips && (sight.unseen)(1.0) => SETTLED_AT_TIPS,
+            (_, true) if lost && (sight.unseen)(1.0) => SETTLED_AT_TIPS,
             (_, sharp) if sharp || (sight.unseen)(1.0) => SETTLED_COARSE,
             _ => SETTLED,
         };
         let waited = (course.waited >= patience || sight.last) && (sight.shifted || course.falls < SLOWLY);
-        if waited && sight.kind != StepKind::Descent && sight.step < enough() {
-            return Verdict::Settled { unfinished: false };
+        let settled = waited && sight.kind != StepKind::Descent && sight.step < enough();
+        // Tips that cells hardly show move on and on, each time by a little, when all the rest has long been in its place.
+        let at_tips = sight.tips && !sight.kinks && sight.step < SETTLED_AT_TIPS && course.grown < STILL;
+        let settled = settled || at_tips;
+        // Newton's method is slow on fronts as sharp as a cell, and fast on the smaller ones that they want.
+        let slow = || at_tips || (course.waited >= 1 && sight.step < ASTRAY) || (sight.farthest)() < NEARLY;
+        if self.leaves() && !sight.adhering && sight.bend >= SHARP && slow() {
+            // What sharp fronts lack in the end may be less than what other fronts settle with.
+            return Verdict::Left { settled: settled || sight.step < SETTLED };
+        }
+        if settled {
+            return Verdict::Settled;
         }
         let round_off = course.waited >= 1 && sight.step < ROUND_OFF;
         let stuck = sight.kinks && course.waited >= 1 && sight.residual <= STUCK;
@@ -146,7 +155,7 @@ pub struct Sight<'a> {
     pub kind: StepKind,
     /// The largest product of curvature and cell size; 0 in one dimension.
     pub bend: f64,
-    /// Whether there are tips on which Newton's method does not converge.
+    /// Whether there are tips on which Newton's method converges slowly.
     pub tips: bool,
     /// Whether every step shifts the fronts on its own account.
     pub shifted: bool,
@@ -166,9 +175,11 @@ pub struct Sight<'a> {
 pub enum Verdict {
     Moving,
     AtRest,
-    /// As near as they come on these cells, or left to smaller ones.
-    Settled {
-        unfinished: bool,
+    /// As near as they come on these cells.
+    Settled,
+    /// Left to smaller cells; whether they are near enough where there are none.
+    Left {
+        settled: bool,
     },
 }
 
@@ -177,6 +188,9 @@ pub enum Verdict {
 pub struct Course {
     best: f64,
     previous: f64,
+    area: f64,
+    /// What the last step changed the area of contact by.
+    grown: f64,
     /// Steps since it last fell well below the best before.
     pub waited: usize,
     /// Falls in a row.
@@ -187,14 +201,24 @@ pub struct Course {
 
 impl Default for Course {
     fn default() -> Self {
-        Self { best: f64::INFINITY, previous: f64::INFINITY, waited: 0, falls: 0, last: None, doubted: 0 }
+        Self {
+            best: f64::INFINITY,
+            previous: f64::INFINITY,
+            area: f64::INFINITY,
+            grown: f64::INFINITY,
+            waited: 0,
+            falls: 0,
+            last: None,
+            doubted: 0,
+        }
     }
 }
 
 impl Course {
-    /// Takes the residual after a solve into account, from which a step of a kind may follow; fronts that every step shifts
-    /// do not fall slowly.
-    pub fn take(&mut self, residual: f64, kind: StepKind, shifted: bool) {
+    /// Takes the residual and the area of contact after a solve into account, from which a step of a kind may follow; fronts
+    /// that every step shifts do not fall slowly.
+    pub fn take(&mut self, residual: f64, area: f64, kind: StepKind, shifted: bool) {
+        (self.grown, self.area) = ((area - self.area).abs(), area);
         let lower = residual < 0.98 * self.best;
         self.waited = if residual < 0.7 * self.best || kind == StepKind::Descent { 0 } else { self.waited + 1 };
         self.best = self.best.min(residual);
@@ -230,24 +254,43 @@ impl Course {
 mod tests {
     use super::*;
 
+    /// Blunt fronts that move by a hundredth of a cell.
+    fn seen(residual: f64) -> Sight<'static> {
+        Sight {
+            residual,
+            step: 0.01,
+            kind: StepKind::Local,
+            bend: 0.1,
+            tips: false,
+            shifted: false,
+            adhering: false,
+            kinks: false,
+            last: false,
+            unseen: &|_| false,
+            farthest: &|| 1.0,
+        }
+    }
+
+    #[test]
+    fn tips_rest_once_the_area_does() {
+        let verdict = |areas: [f64; 2], tips: bool, kinks: bool| {
+            let mut course = Course::default();
+            areas.iter().zip([1e5, 1e3]).for_each(|(a, r)| course.take(r, *a, StepKind::Local, false));
+            let sight = Sight { bend: 1.5, tips, kinks, ..seen(1e3) };
+            Rest::Final.judge(&course, &sight)
+        };
+        assert_eq!(verdict([1.0, 1.0 + 5e-7], true, false), Verdict::Settled);
+        assert_eq!(verdict([1.0, 1.0 + 5e-6], true, false), Verdict::Moving);
+        assert_eq!(verdict([1.0, 1.0 + 5e-7], false, false), Verdict::Moving);
+        assert_eq!(verdict([1.0, 1.0 + 5e-7], true, true), Verdict::Moving);
+    }
+
     #[test]
     fn a_jump_of_the_slope_is_put_up_with_where_there_are_such_jumps() {
         let verdict = |residuals: &[f64], kinks: bool| {
             let mut course = Course::default();
-            residuals.iter().for_each(|r| course.take(*r, StepKind::Local, false));
-            let sight = Sight {
-                residual: *residuals.last().expect("a residual"),
-                step: 0.01,
-                kind: StepKind::Local,
-                bend: 0.1,
-                tips: false,
-                shifted: false,
-                adhering: false,
-                kinks,
-                last: false,
-                unseen: &|_| false,
-                farthest: &|| 1.0,
-            };
+            residuals.iter().for_each(|r| course.take(*r, 1.0, StepKind::Local, false));
+            let sight = Sight { kinks, ..seen(*residuals.last().expect("a residual")) };
             Rest::Final.judge(&course, &sight)
         };
         assert_eq!(verdict(&[90.0, 4.0, 4.5], true), Verdict::AtRest);

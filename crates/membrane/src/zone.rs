@@ -252,9 +252,14 @@ pub trait Zone<const D: usize>: Division<D> + Clone + Send {
     fn fronts_are_long(&self) -> bool {
         true
     }
-    /// Whether fronts are sharper than a cell, and only such as are many cells long: tips, not holes or zones of a few cells.
-    fn has_lost_tips(&self) -> bool {
+    /// Whether fronts curve by so much or more within a cell, and only such as are many cells long: tips, not holes or zones of a
+    /// few cells.
+    fn has_tips(&self, _bend: f64) -> bool {
         false
+    }
+    /// Whether there are tips sharper than a cell.
+    fn has_lost_tips(&self) -> bool {
+        self.has_tips(1.0)
     }
     /// The zone with fronts of as many modes as another grid can tell apart.
     fn on_grid(&self, grid: &Grid<D>) -> Self;
@@ -262,6 +267,13 @@ pub trait Zone<const D: usize>: Division<D> + Clone + Send {
     /// those of the grid.
     fn on_sizes(&self, grid: &Grid<D>, _sizing: &Arc<Sizing<D>>) -> Self {
         self.on_grid(grid)
+    }
+    /// The zone with fronts of as many modes as the cells of a membrane can tell apart.
+    fn on_cells(&self, membrane: &Membrane<D>) -> Self {
+        match &membrane.sizing {
+            Some(sizing) => self.on_sizes(&membrane.grid, sizing),
+            None => self.on_grid(&membrane.grid),
+        }
     }
     /// The sizes that the fronts want of cells: those of `grid` divided at least and at most so often, and `finer` times more
     /// often than would do; none where cells are not divided or need not be.

@@ -337,7 +337,10 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
                 }
                 None => match self.cells.take().map(|cells| membrane.clone().on_cells_of(&cells)) {
                     Some(cells) => ils::solve_here(&cells, start, at, progress),
-                    None => self.refinement.solve(membrane, start, other.as_ref(), at, progress),
+                    None => {
+                        let elements = &mut Elements::new(membrane);
+                        self.refinement.solve(membrane, elements, start, other.as_ref(), at, progress)
+                    }
                 },
             },
         };

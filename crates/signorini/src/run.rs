@@ -6,6 +6,7 @@ pub(crate) mod events;
 mod increment;
 mod mergers;
 mod path;
+mod seek;
 mod sizes;
 pub(crate) mod solid;
 mod solid_checkpoint;
@@ -21,6 +22,7 @@ use checkpoint::Checkpoint;
 use events::{Between, Bounded, Event, Known, jump, locate, locate_jump};
 use increment::{Engine, Increment};
 use path::{Along, Follower};
+use seek::Seeker;
 use serde_json::{Value, json};
 use signorini_geometry::Point;
 use signorini_membrane::coexisting::{OtherState, others};
@@ -135,6 +137,7 @@ struct Runner<const D: usize, Z> {
     unknowns: usize,
     events: Vec<Event>,
     path: Option<Follower<D, Z>>,
+    seeker: Option<Seeker>,
     film: Film<D>,
     /// The state to go on from.
     resumed: Option<(usize, Option<Known<Z>>)>,
@@ -189,6 +192,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             unknowns: 0,
             events: vec![],
             path: None,
+            seeker: None,
             film: Film::default(),
             resumed: None,
         })
@@ -211,6 +215,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             unknowns: found.unknowns,
             events: found.events,
             path: None,
+            seeker: None,
             film,
             resumed: Some((found.next, found.known)),
         })
@@ -245,7 +250,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         let mut last: Option<Snapshot<D>> = None;
         let (first, mut known) = self.resumed.take().unwrap_or((0, None));
         for (index, planned) in increments.iter().enumerate().skip(first) {
-            if self.path.as_ref().is_some_and(|p| p.done && p.step == planned.step) {
+            if self.is_done(planned.step) {
                 continue;
             }
             progress.step(index, increments.len(), planned.time);
@@ -254,8 +259,19 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             let mut time = planned.time;
             let mut solves = 0;
             let told = (self.events.len(), self.warnings.len());
-            let on_path = (planned.control != Control::Time).then(|| self.engine.save());
-            if planned.control != Control::Time {
+            // With adhesion a time may have several states, which a path tells apart.
+            let by_time = planned.control == Control::Time;
+            let on_path = !by_time && self.plan.at(planned.range[0]).obstacles.are_sticky();
+            if !by_time && !on_path {
+                match self.seek(index, planned, known.as_ref(), &mut logged) {
+                    Ok(found) => (time, solves) = found,
+                    Err(why) => {
+                        (ending, reason) = self.lost(why, logged.interrupted());
+                        break;
+                    }
+                }
+            }
+            if on_path {
                 match self.along(planned, known.as_ref(), &mut logged)? {
                     Along::State { zone, cells, time: found, solves: taken } => {
                         (time, solves) = (found, taken);
@@ -266,9 +282,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                         continue;
                     }
                     Along::Failed(why) => {
-                        self.warnings.push(why);
-                        ending = if logged.interrupted() { Ending::Interrupted } else { Ending::NotConverged };
-                        reason = if logged.interrupted() { "interrupted".into() } else { "path_lost".into() };
+                        (ending, reason) = self.lost(why, logged.interrupted());
                         break;
                     }
                 }
@@ -284,17 +298,18 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             let last_of_step = increments.get(index + 1).is_none_or(|next| next.step != planned.step);
             self.engine.estimates = last_of_step;
             let mut increment = self.engine.solve(&self.plan, &membrane, (index, time), &mut logged);
-            if let (Some(saved), Some(follower)) = (on_path, &mut self.path)
-                && (increment.converged || increment.reason == "no_such_state")
-                && let Some(why) = follower.left(planned.control, self.engine.zone(), increment.area())
-            {
-                // The state of the path penetrates a body, and the membrane went elsewhere.
-                self.engine.restore(saved);
-                self.warnings.push(why);
-                if follower.done {
+            if let (true, "no_such_state", Some(follower)) = (on_path, increment.reason.as_str(), &mut self.path) {
+                // The state of the path penetrates a body: on from the one before, which did not.
+                if let Some(before) = &known {
+                    self.engine.start_from(before.zone.clone());
+                }
+                let why = follower.ends();
+                if let Control::ArcLength(_) = planned.control {
+                    follower.done = true;
+                    self.warnings.push(why);
                     continue;
                 }
-                (ending, reason) = (Ending::NotConverged, "path_lost".into());
+                (ending, reason) = self.lost(why, false);
                 break;
             }
             if let (false, Control::Time, Some(from)) = (increment.converged, planned.control, &known)
@@ -305,7 +320,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             }
             increment.before += solves;
             if let (Control::ArcLength(_), true, true) = (planned.control, increment.converged, last_of_step)
-                && self.path.as_ref().is_some_and(|path| !path.done)
+                && !self.is_done(planned.step)
             {
                 let [_, to] = planned.range;
                 self.warnings.push(format!(
@@ -314,7 +329,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                 ));
             }
             let mut after = self.engine.known(time, &increment);
-            if planned.control != Control::Time {
+            if on_path {
                 // Nothing jumps along a path.
             } else if let (Some(before), true) = (&before, membrane.obstacles.are_sticky()) {
                 let mut from = before.clone();
@@ -327,7 +342,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                     increment = self.engine.solve(&self.plan, &membrane, (index, time), &mut logged);
                     after = self.engine.known(time, &increment);
                 }
-            } else if increment.stability.jumped && index > 0 {
+            } else if by_time && increment.stability.jumped && index > 0 {
                 let a = known.as_ref().map_or(0.0, |k| k.area);
                 self.warnings.push(format!(
                     "the contact jumped to another state on the way to t = {time}: its area went from {a:.6} to {:.6}; \
@@ -352,8 +367,8 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             self.engine.estimates = false;
             let others = self.other_states(&membrane, &increment, D == 1 || last_of_step);
             self.record(time, &membrane, &increment, others);
-            if let (Control::Time, Some(before), Some(after), false) =
-                (planned.control, &before, &after, membrane.obstacles.are_sticky())
+            if let (Some(before), Some(after), false) = (&before, &after, membrane.obstacles.are_sticky())
+                && before.time < after.time
             {
                 self.find_events(index, before, after, &mut logged);
                 if logged.interrupted() {
@@ -410,6 +425,57 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         }
         let increment = self.engine.solve(&self.plan, &start, (0, 0.0), progress);
         self.engine.known(0.0, &increment)
+    }
+
+    /// Whether a step ended before its increments did.
+    fn is_done(&self, step: usize) -> bool {
+        self.path.as_ref().is_some_and(|path| path.done && path.step == step)
+            || self.seeker.as_ref().is_some_and(|seeker| seeker.done && seeker.step == step)
+    }
+
+    /// The end of a run of which no state was found any more, for a reason.
+    fn lost(&mut self, why: String, interrupted: bool) -> (Ending, String) {
+        self.warnings.push(why);
+        match interrupted {
+            true => (Ending::Interrupted, "interrupted".into()),
+            false => (Ending::NotConverged, "path_lost".into()),
+        }
+    }
+
+    /// The time of an increment without adhesion of which the area or a length is given, and the equilibrium solves it took;
+    /// the increment at that time gives the state that was looked at.
+    fn seek(
+        &mut self,
+        index: usize,
+        planned: &PlannedIncrement,
+        known: Option<&Known<Z>>,
+        progress: &mut dyn Progress,
+    ) -> Result<(f64, usize), String> {
+        let (plan, engine, mut solves) = (&self.plan, &mut self.engine, 0);
+        let mut look = |engine: &mut Engine<D, Z>, time: f64| {
+            let membrane = plan.at(time);
+            plan.check_fields(&membrane, time).ok()?;
+            let increment = engine.solve(plan, &membrane, (index, time), progress);
+            solves += increment.before + increment.iterations;
+            increment.converged.then(|| increment.area())
+        };
+        let from = match known {
+            Some(state) => [state.time, state.area],
+            None => {
+                let time = planned.range[0];
+                [time, look(engine, time).ok_or_else(|| format!("no state was found at t = {time}"))?]
+            }
+        };
+        let seeker = self.seeker.take().filter(|seeker| seeker.step == planned.step);
+        let mut seeker = seeker.unwrap_or_else(|| Seeker::begin(planned, from[1], plan.area()));
+        let saved = engine.save();
+        let found = seeker.advance(planned, from, &mut |time| {
+            engine.restore(saved.clone());
+            look(engine, time)
+        });
+        engine.restore(saved);
+        self.seeker = Some(seeker);
+        found.map(|time| (time, solves))
     }
 
     /// Takes back the events and warnings beyond the given numbers of them.

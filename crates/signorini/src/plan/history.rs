@@ -10,8 +10,11 @@ use crate::expression::Scope;
 const DRIVEN_AT: usize = 9;
 const STRAIGHT: f64 = 1e-9;
 
-/// The length of the longest path, in areas of the membrane and times of its step.
+/// The length of the longest path, in areas of the membrane and times of its step, of the shortest increment on it, and how many
+/// there may be.
 const LONGEST: f64 = 10.0;
+const SHORTEST: f64 = 1e-6;
+const MOST_INCREMENTS: usize = 100_000;
 
 /// One increment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,7 +79,15 @@ impl Planner<'_> {
                 None => match key.control.as_ref().map(|control| control.get_ref()) {
                     // As far as the path goes, which nobody knows before.
                     Some(statement::Control::ArcLength(arc)) => {
-                        ((LONGEST / *arc.size.get_ref()) as usize).clamp(1, 100_000)
+                        let size = *arc.size.get_ref();
+                        if (SHORTEST..LONGEST / MOST_INCREMENTS as f64).contains(&size) {
+                            let message = format!("with increments of {size} a path takes too many of them to its end");
+                            return Err(self
+                                .document
+                                .error(arc.size.span(), message)
+                                .help("give the step `increments`, or make them larger: try 0.02"));
+                        }
+                        ((LONGEST / size) as usize).clamp(1, MOST_INCREMENTS)
                     }
                     _ => 1,
                 },
@@ -129,10 +140,10 @@ impl Planner<'_> {
             statement::Control::Time(_) => Ok(Control::Time),
             statement::Control::ArcLength(arc) => {
                 let size = *arc.size.get_ref();
-                if !(size > 0.0 && size <= 1.0) {
+                if !(size >= SHORTEST && size <= 1.0) {
                     return Err(self
                         .document
-                        .error(arc.size.span(), format!("an increment of {size} is not between 0 and 1"))
+                        .error(arc.size.span(), format!("an increment of {size} is not between {SHORTEST} and 1"))
                         .help("1 is the area of the membrane, or the time that the step takes: try 0.02"));
                 }
                 Ok(Control::ArcLength(size))

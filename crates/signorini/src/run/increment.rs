@@ -58,6 +58,7 @@ pub struct Engine<const D: usize, Z> {
 }
 
 /// What an engine carries from one increment to the next.
+#[derive(Clone)]
 pub struct Saved<Z> {
     previous: Option<(Z, Scales, Branch)>,
     scales: Option<Scales>,

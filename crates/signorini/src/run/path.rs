@@ -10,8 +10,6 @@ use signorini_solve::{Progress, SolveError};
 
 /// Halvings of an increment before the path is given up.
 const MOST_HALVINGS: i32 = 7;
-/// States whose areas differ by more, relative to the membrane, are not the same.
-const OTHER: f64 = 1e-2;
 
 /// Where a path stands within its step.
 pub struct Follower<const D: usize, Z> {
@@ -157,20 +155,13 @@ impl<const D: usize, Z: Zone<D>> Follower<D, Z> {
         })
     }
 
-    /// Whether the state that was reached last is none: next to it an increment found another one, of an area, or none at all.
-    /// Tells why; along the arc length the path ends there.
-    pub fn left(&mut self, control: Control, found: Option<Z>, area: f64) -> Option<String> {
-        let state = self.state.as_ref()?;
-        let same = found.is_some_and(|zone| zone.counts() == state.zone.counts());
-        if same && (area - state.area).abs() < OTHER * self.size[0] {
-            return None;
-        }
-        self.done = matches!(control, Control::ArcLength(_));
-        Some(format!(
-            "the path ends near t = {}, at a contact area of {}: from there on the membrane would penetrate a body elsewhere, or hang where \
-             nothing holds it",
-            state.time, state.area
-        ))
+    /// Why the path ends where it is, once its last state turned out to be none.
+    pub fn ends(&self) -> String {
+        let (time, area) = self.state.as_ref().map_or((f64::NAN, f64::NAN), |state| (state.time, state.area));
+        format!(
+            "the path ends near t = {time}, at a contact area of {area}: from there on the membrane would penetrate a body elsewhere, or hang \
+             where nothing holds it"
+        )
     }
 
     fn accept(&mut self, state: PathState<D, Z>, solves: usize) -> Along<D, Z> {

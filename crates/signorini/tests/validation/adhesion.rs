@@ -423,8 +423,10 @@ fn mistakes_are_told() {
     }
     let step = |control: &str| round("-1", 0.1, "0.01", None, &format!("[[steps]]\nto = 1\n{control}\n"));
     for (control, word) in [
-        ("control.arc_length = { size = -1 }", "between 0 and 1"),
-        ("control.arc_length = { size = nan }", "between 0 and 1"),
+        ("control.arc_length = { size = -1 }", "between 0.000001 and 1"),
+        ("control.arc_length = { size = 1e-300 }\nincrements = 3", "between 0.000001 and 1"),
+        ("control.arc_length = { size = 1e-5 }", "too many"),
+        ("control.arc_length = { size = nan }", "between 0.000001 and 1"),
         ("control.area = { of = \"touhc\", to = 1 }", "no contact `touhc`"),
         ("control.area = { of = \"touch\", to = 0 }", "not positive"),
         ("control.area = { of = \"touch\" }", "missing key `to`"),

@@ -1,6 +1,6 @@
 //! Changes of topology along load paths, located.
 
-use super::{error, example, number, set, summary};
+use super::{CELLS, DEGREE, error, example, number, set, summary};
 use serde_json::Value;
 
 fn events(summary: &Value) -> Vec<(String, f64)> {
@@ -35,6 +35,58 @@ fn the_hole_of_the_ring_closes() {
     assert!(events[0].0 == "hole_closed" && (events[0].1 - exact).abs() <= 1e-3, "{events:?}");
     let at = &found["events"][0]["at"];
     assert!(number(&at[0]).abs() < 1e-3 && number(&at[1]).abs() < 1e-3);
+}
+
+/// By the area of contact too, without adhesion: from an open hole to an area at which it has closed.
+#[test]
+fn the_hole_closes_on_the_way_to_an_area() {
+    let steps =
+        "[[steps]]\nto = 0.37\n[[steps]]\nto = 0.4\nevents = 1e-3\ncontrol.area = { of = \"touch\", to = 1.35 }";
+    let case = example("cosine_disc").replace("[[steps]]\nto = 0.4\nincrements = 4", steps);
+    let found = summary(&case, &set(&[(CELLS, "[24, 24]".into()), (DEGREE, "2".into())]));
+    assert_eq!(found["converged"], true, "{}", found["verdict"]);
+    let [first, last] = found["steps"].as_array().expect("steps").as_slice() else { panic!("two increments") };
+    let touch = |step: &Value| step["contacts"]["touch"].clone();
+    assert_eq!((&touch(first)["holes"], &touch(last)["holes"]), (&1.into(), &0.into()));
+    assert!((number(&touch(last)["area"]) - 1.35).abs() < 1e-6, "{last}");
+    let exact = 0.04 * std::f64::consts::PI.powi(2);
+    let events = events(&found);
+    assert!(events.len() == 1 && events[0].0 == "hole_closed", "{events:?}");
+    assert!((events[0].1 - exact).abs() <= 1e-3 && number(&last["time"]) > exact, "{events:?}");
+}
+
+/// Without adhesion a length of contact tells the time, on the way up from no contact at all, and down; and so does the way in
+/// length and time.
+#[test]
+fn a_string_by_its_length_of_contact_and_along_its_path() {
+    let by_length = |to: f64, end: f64| {
+        format!("[[steps]]\nto = {end}\nincrements = 2\ncontrol.area = {{ of = \"touch\", to = {to} }}\n")
+    };
+    let case = example("string").replace("normal = -1.0", "normal = \"-t\"")
+        + "\n"
+        + &by_length(1.0, 1.0)
+        + &by_length(0.4, 2.0)
+        + "[[steps]]\nto = 3\ncontrol.arc_length = { size = 0.25 }\n";
+    let found = summary(&case, &set(&[]));
+    assert_eq!(found["converged"], true, "{}", found["verdict"]);
+    let states: Vec<[f64; 2]> = found["steps"]
+        .as_array()
+        .expect("steps")
+        .iter()
+        .map(|step| [number(&step["time"]), number(&step["contacts"]["touch"]["area"])])
+        .collect();
+    for (state, length) in states.iter().zip([0.5, 1.0, 0.7, 0.4]) {
+        assert!((state[1] - length).abs() < 1e-8, "{states:?}");
+    }
+    for [time, length] in &states {
+        // A parabola that meets the floor at the end of contact: t (1 - length / 2)² / 2 = depth.
+        assert!((time - 0.2 / (1.0 - 0.5 * length).powi(2)).abs() < 1e-8, "{states:?}");
+    }
+    let along: Vec<f64> =
+        states[3..].windows(2).map(|s| (0.5 * (s[1][1] - s[0][1])).hypot(s[1][0] - s[0][0])).collect();
+    let [most @ .., last] = along.as_slice() else { panic!("no path") };
+    assert!(most.len() >= 4 && most.iter().all(|length| (length - 0.25).abs() < 1e-4) && *last < 0.25, "{along:?}");
+    assert_eq!(states[states.len() - 1][0], 3.0);
 }
 
 /// From a state in which it is hardly open any more it is not found open beyond that load.

@@ -412,7 +412,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 self.predict()?;
                 continue;
             }
-            let tips = self.has_lost_tips(&self.solution.zone);
+            let [tips, sharp] = [1.0, SHARP].map(|bend| self.has_tips(&self.solution.zone, bend));
             if (self.rest == Rest::BeforeMoreDivision && self.solution.unfinished)
                 || (self.rest == Rest::BeforeDivision && tips)
             {
@@ -429,10 +429,10 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 solution.conditions = Some(conditions);
                 return Ok(if solution.zone.is_empty() { Reason::NoContact } else { Reason::Converged });
             }
-            // What fronts sharper than a cell leave between them is for smaller cells, or for none.
-            let unresolvable =
-                tips && (solution.unfinished || conditions.nearly_hold_about(&solution.zone, scales, self.membrane));
-            if unresolvable {
+            // What fronts about as sharp as a cell leave between them is for smaller cells, or for none.
+            let at_tips = tips || (sharp && solution.settled_within.is_some());
+            let nearly = || conditions.nearly_hold_about(&solution.zone, scales, self.membrane);
+            if (tips && solution.unfinished) || (at_tips && nearly()) {
                 solution.unresolved = Some(-conditions.least_gap_outside);
                 solution.conditions = Some(conditions);
                 return Ok(Reason::Converged);
@@ -483,10 +483,10 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         self.membrane.formulation.transport() != Transport::Exact
     }
 
-    /// Whether long fronts are sharper than a cell. Newton's method does not converge on such tips, whose radius is the length
-    /// on which it may move them.
-    fn has_lost_tips(&self, zone: &Z) -> bool {
-        !self.is_shifted() && !self.adhering && zone.has_lost_tips()
+    /// Whether long fronts curve by so much within a cell. On tips sharper than one Newton's method does not converge, as their
+    /// radius is the length on which it may move them.
+    fn has_tips(&self, zone: &Z, bend: f64) -> bool {
+        !self.is_shifted() && !self.adhering && zone.has_tips(bend)
     }
 
     /// Whether fronts that moved to the last, sharper than the grid, are those of zones that have merged or split.
@@ -601,7 +601,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 step: step.length,
                 kind: step.kind,
                 bend,
-                tips: !shifted && !self.adhering && bend >= SHARP && zone.has_tips(SHARP),
+                tips: bend >= SHARP && self.has_tips(zone, SHARP),
                 shifted,
                 adhering: self.adhering,
                 kinks: scales.degree == 1,

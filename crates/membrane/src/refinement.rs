@@ -159,7 +159,7 @@ impl<const D: usize> Refinement<D> {
                 && let Some(divided) = self.divided(membrane, zone, sizing.clone())
             {
                 let of_divided = &mut Elements::new(&divided);
-                let found = self.solve_on(membrane, divided, of_divided, start.clone(), None, at, progress);
+                let found = self.solve_on((divided, of_divided), membrane, start.clone(), None, at, progress);
                 if found.reason == Reason::Interrupted || (found.reason.converged() && !found.jumped) {
                     return found;
                 }
@@ -180,9 +180,9 @@ impl<const D: usize> Refinement<D> {
         let mut found = match cells {
             Some(cells) => {
                 let of_divided = &mut Elements::new(&cells);
-                self.solve_on(membrane, cells, of_divided, start, None, at, progress)
+                self.solve_on((cells, of_divided), membrane, start, None, at, progress)
             }
-            None => self.solve_on(membrane, membrane.clone(), elements, start, looked, at, progress),
+            None => self.solve_on((membrane.clone(), elements), membrane, start, looked, at, progress),
         };
         found.before += before;
         found
@@ -191,9 +191,8 @@ impl<const D: usize> Refinement<D> {
     /// Solves an increment on some cells first, on which the state around its start may be known.
     fn solve_on<Z: Zone<D>>(
         &self,
+        (cells, elements): (Membrane<D>, &mut Elements<D>),
         membrane: &Membrane<D>,
-        cells: Membrane<D>,
-        elements: &mut Elements<D>,
         start: Start<Z>,
         known: Option<Equilibrium<D>>,
         at: (usize, f64),
@@ -235,10 +234,13 @@ impl<const D: usize, Z: Zone<D>> Search<'_, D, Z> {
     /// Goes on to smaller cells; none where they are small enough, or there are no smaller ones.
     fn goes_on(&mut self) -> Option<()> {
         let scales = self.found.scales.filter(|_| !self.found.zone.is_empty())?;
-        if matches!(self.found.reason, Reason::Interrupted | Reason::NoSuchState | Reason::LinearSolver(_)) {
-            return None;
-        }
-        let too_large = self.found.reason == Reason::IterationLimit || self.found.unresolved.is_some();
+        let too_large = match self.found.reason {
+            Reason::Interrupted | Reason::NoSuchState => return None,
+            // Fronts that fold within a cell leave no equations to solve; without a prediction nothing ever did.
+            Reason::LinearSolver(_) if self.found.predicted.is_none() => return None,
+            Reason::IterationLimit | Reason::LinearSolver(_) => true,
+            Reason::Converged | Reason::NoContact => self.found.unresolved.is_some(),
+        };
         if too_large && self.cells.sizing.is_some() {
             self.finer += 1;
         }

@@ -140,7 +140,7 @@ impl Planner<'_> {
             statement::Control::Time(_) => Ok(Control::Time),
             statement::Control::ArcLength(arc) => {
                 let size = *arc.size.get_ref();
-                if !(size >= SHORTEST && size <= 1.0) {
+                if !(SHORTEST..=1.0).contains(&size) {
                     return Err(self
                         .document
                         .error(arc.size.span(), format!("an increment of {size} is not between {SHORTEST} and 1"))

@@ -137,6 +137,21 @@ fn a_path_up_and_down_takes_few_solves() {
     }
 }
 
+/// Just before the square's ring meets itself its tips are like cusps, sharper than the smallest cells: no more than five solves
+/// are made there, and the area is that of tips that were brought to rest.
+#[test]
+fn tips_like_cusps_take_few_solves() {
+    let steps = ("steps", "[{ to = 0.25 }, { to = 0.28, increments = 3 }]".to_string());
+    let case = example("cosine_square").replace("normal = -0.4", "normal = \"-t\"");
+    let summary = summary(&case, &set(&[(CELLS, "[32, 32]".into()), (DEGREE, "3".into()), steps]));
+    let contact = &last_step(&summary)["contacts"]["touch"];
+    let solves: Vec<u64> =
+        summary["steps"].as_array().expect("steps").iter().filter_map(|s| s["iterations"].as_u64()).collect();
+    assert!(solves[1..].iter().all(|n| *n <= 5), "{solves:?}");
+    assert_eq!((&contact["zones"], &contact["holes"]), (&1.into(), &1.into()));
+    assert!((number(&contact["area"]) - 1.377_733_681).abs() < 1e-7, "{contact}");
+}
+
 /// Nor does Newton's method go round in circles on tips that cells cannot resolve: 0.12 is 0.9 % below the load at which the four
 /// zones of the square merge. Reference: degree 3 on 32 x 32 cells, with an estimated error of 1e-8.
 #[test]

@@ -99,8 +99,9 @@ pub struct Solution<const D: usize, Z> {
     pub unrefined: bool,
     /// Length of the last step relative to a cell, where the fronts settled on a jump of the discrete slope.
     pub settled_within: Option<f64>,
-    /// Whether they were left to smaller cells before they came to rest, and whether they may stay so where there are none.
+    /// Whether they were left to smaller cells before they came to rest ...
     pub unfinished: bool,
+    /// ... and whether they may stay so where there are none.
     pub near_enough: bool,
     /// Whether multigrid found it, and not a factorisation.
     pub multigrid: bool,

@@ -259,6 +259,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             let mut time = planned.time;
             let mut solves = 0;
             let told = (self.events.len(), self.warnings.len());
+            let before = self.known(index, known.clone(), &mut logged);
             // With adhesion a time may have several states, which a path tells apart.
             let by_time = planned.control == Control::Time;
             let on_path = !by_time && self.plan.at(planned.range[0]).obstacles.are_sticky();
@@ -294,7 +295,6 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                 self.finish(Ending::NotConverged, "input", start, &mesh, last.as_ref())?;
                 return Err(error.into());
             }
-            let before = self.known(index, known.clone(), &mut logged);
             let last_of_step = increments.get(index + 1).is_none_or(|next| next.step != planned.step);
             self.engine.estimates = last_of_step;
             let mut increment = self.engine.solve(&self.plan, &membrane, (index, time), &mut logged);

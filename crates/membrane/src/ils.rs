@@ -431,7 +431,8 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 return Ok(if solution.zone.is_empty() { Reason::NoContact } else { Reason::Converged });
             }
             // What fronts about as sharp as a cell leave between them is for smaller cells, or for none.
-            let at_tips = tips || (sharp && solution.settled_within.is_some());
+            let divided = self.membrane.sizing.is_some();
+            let at_tips = tips || (sharp && divided && solution.settled_within.is_some());
             let nearly = || conditions.nearly_hold_about(&solution.zone, scales, self.membrane);
             if (tips && solution.unfinished) || (at_tips && nearly()) {
                 solution.unresolved = Some(-conditions.least_gap_outside);
@@ -603,6 +604,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 kind: step.kind,
                 bend,
                 tips: bend >= SHARP && self.has_tips(zone, SHARP),
+                divided: self.membrane.sizing.is_some(),
                 shifted,
                 adhering: self.adhering,
                 kinks: scales.degree == 1,

@@ -124,7 +124,8 @@ impl Rest {
         let waited = (course.waited >= patience || sight.last) && (sight.shifted || course.falls < SLOWLY);
         let settled = waited && sight.kind != StepKind::Descent && sight.step < enough();
         // Tips that cells hardly show move on and on, each time by a little, when all the rest has long been in its place.
-        let at_tips = sight.tips && !sight.kinks && sight.step < SETTLED_AT_TIPS && course.grown < STILL;
+        let at_tips =
+            sight.tips && sight.divided && !sight.kinks && sight.step < SETTLED_AT_TIPS && course.grown < STILL;
         let settled = settled || at_tips;
         // Newton's method is slow on fronts as sharp as a cell, and fast on the smaller ones that they want.
         let slow = || at_tips || (course.waited >= 1 && sight.step < ASTRAY) || (sight.farthest)() < NEARLY;
@@ -157,6 +158,8 @@ pub struct Sight<'a> {
     pub bend: f64,
     /// Whether there are tips on which Newton's method converges slowly.
     pub tips: bool,
+    /// Whether the cells are divided about the fronts.
+    pub divided: bool,
     /// Whether every step shifts the fronts on its own account.
     pub shifted: bool,
     pub adhering: bool,
@@ -262,6 +265,7 @@ mod tests {
             kind: StepKind::Local,
             bend: 0.1,
             tips: false,
+            divided: true,
             shifted: false,
             adhering: false,
             kinks: false,
@@ -273,16 +277,17 @@ mod tests {
 
     #[test]
     fn tips_rest_once_the_area_does() {
-        let verdict = |areas: [f64; 2], tips: bool, kinks: bool| {
+        let verdict = |areas: [f64; 2], [tips, divided, kinks]: [bool; 3]| {
             let mut course = Course::default();
             areas.iter().zip([1e5, 1e3]).for_each(|(a, r)| course.take(r, *a, StepKind::Local, false));
-            let sight = Sight { bend: 1.5, tips, kinks, ..seen(1e3) };
+            let sight = Sight { bend: 1.5, tips, divided, kinks, ..seen(1e3) };
             Rest::Final.judge(&course, &sight)
         };
-        assert_eq!(verdict([1.0, 1.0 + 5e-7], true, false), Verdict::Settled);
-        assert_eq!(verdict([1.0, 1.0 + 5e-6], true, false), Verdict::Moving);
-        assert_eq!(verdict([1.0, 1.0 + 5e-7], false, false), Verdict::Moving);
-        assert_eq!(verdict([1.0, 1.0 + 5e-7], true, true), Verdict::Moving);
+        assert_eq!(verdict([1.0, 1.0 + 5e-7], [true, true, false]), Verdict::Settled);
+        assert_eq!(verdict([1.0, 1.0 + 5e-6], [true, true, false]), Verdict::Moving);
+        for other in [[false, true, false], [true, false, false], [true, true, true]] {
+            assert_eq!(verdict([1.0, 1.0 + 5e-7], other), Verdict::Moving);
+        }
     }
 
     #[test]

@@ -411,7 +411,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
         }
         if let Some(depth) = solution.unresolved {
             warnings.push(format!(
-                "the grid cannot tell whether zones touch at t = {}: the membrane penetrates what lies between them by {depth:.0e} between them",
+                "the grid cannot tell whether zones touch at t = {}: the membrane penetrates what lies between them by {depth:.0e}",
                 at.1
             ));
         }

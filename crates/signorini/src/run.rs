@@ -451,10 +451,13 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         known: Option<&Known<Z>>,
         progress: &mut dyn Progress,
     ) -> Result<(f64, usize), String> {
-        let (plan, engine, mut solves) = (&self.plan, &mut self.engine, 0);
+        let (plan, engine, mut solves, mut invalid) = (&self.plan, &mut self.engine, 0, None);
         let mut look = |engine: &mut Engine<D, Z>, time: f64| {
             let membrane = plan.at(time);
-            plan.check_fields(&membrane, time).ok()?;
+            if let Err(error) = plan.check_fields(&membrane, time) {
+                invalid.get_or_insert(error.one_line());
+                return None;
+            }
             let increment = engine.solve(plan, &membrane, (index, time), progress);
             solves += increment.before + increment.iterations;
             increment.converged.then(|| increment.area())
@@ -475,7 +478,9 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         });
         engine.restore(saved);
         self.seeker = Some(seeker);
-        found.map(|time| (time, solves))
+        // A value that is none beyond some time may be why.
+        let why = |why: String| invalid.map_or(why.clone(), |error| format!("{why}; on the way there: {error}"));
+        found.map(|time| (time, solves)).map_err(why)
     }
 
     /// Takes back the events and warnings beyond the given numbers of them.

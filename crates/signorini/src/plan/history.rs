@@ -10,10 +10,10 @@ use crate::expression::Scope;
 const DRIVEN_AT: usize = 9;
 const STRAIGHT: f64 = 1e-9;
 
-/// The length of the longest path, in areas of the membrane and times of its step, of the shortest increment on it, and how many
-/// there may be.
+/// The length of the longest path, in areas of the membrane and times of its step, and of the shortest increment on it.
 const LONGEST: f64 = 10.0;
 const SHORTEST: f64 = 1e-6;
+/// Increments of a step.
 const MOST_INCREMENTS: usize = 100_000;
 
 /// One increment.
@@ -91,11 +91,12 @@ impl Planner<'_> {
                     }
                     _ => 1,
                 },
-                Some(n) if (1..=100_000).contains(n.get_ref()) => *n.get_ref() as usize,
+                Some(n) if (1..=MOST_INCREMENTS as i64).contains(n.get_ref()) => *n.get_ref() as usize,
                 Some(n) => {
-                    return Err(self
-                        .document
-                        .error(n.span(), format!("{} increments: give a number from 1 to 100000", n.get_ref())));
+                    return Err(self.document.error(
+                        n.span(),
+                        format!("{} increments: give a number from 1 to {MOST_INCREMENTS}", n.get_ref()),
+                    ));
                 }
             };
             let events = key.events.as_ref().map(|e| *e.get_ref());

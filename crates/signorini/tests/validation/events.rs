@@ -89,6 +89,17 @@ fn a_string_by_its_length_of_contact_and_along_its_path() {
     assert_eq!(states[states.len() - 1][0], 3.0);
 }
 
+/// A load that is none beyond a time is named, where that is why an area is not reached.
+#[test]
+fn a_load_that_ends_on_the_way_to_an_area_is_named() {
+    let case = example("string").replace("normal = -1.0", "normal = \"-0.25 - sqrt(0.1 - t)\"")
+        + "\n[[steps]]\nto = 1\ncontrol.area = { of = \"touch\", to = 0.9 }\n";
+    let found = summary(&case, &set(&[]));
+    assert_eq!((&found["converged"], &found["reason"]), (&false.into(), &"path_lost".into()));
+    let warnings = found["warnings"].to_string();
+    assert!(warnings.contains("no state with a contact area of 0.9") && warnings.contains("loads.press"), "{warnings}");
+}
+
 /// From a state in which it is hardly open any more it is not found open beyond that load.
 #[test]
 fn a_hole_does_not_outlive_its_load() {

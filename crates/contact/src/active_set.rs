@@ -2,12 +2,20 @@
 //! Kunisch 2002).
 //!
 //! The bodies are linear, so everything happens on the pressures: with the compliance `V = K⁻¹Bᵀ` of the nodes that were
-//! ever active, each step solves a dense system for the pressures of the active set. A node is active next if
-//! `λ - c g/w > 0`; after the first step one of the two is zero, so the constant `c` decides nothing and units do not
-//! matter. Bodies that only contact holds are held by springs meanwhile, whose forces the same dense system takes away.
+//! ever active, each iteration solves a dense system for the pressures of the active set. A node is active next if
+//! `λ - c g/w > 0`; after the first iteration one of the two is zero, so the constant `c` decides nothing and units do
+//! not matter. Where the number of nodes that change does not fall any more, one node changes at a time, always the last:
+//! this ends for every positive definite compliance (Murty 1974; the combination is that of Júdice & Pires 1994).
+//!
+//! Bodies that only contact holds are held by springs in `K`, whose forces the dense system takes away again. As long as
+//! no contact holds them, all but a share of the spring is taken away, and the share goes to zero: the states tend to
+//! the one without springs (Tikhonov), and the active set is that one's after a few.
+
+mod dense;
 
 use crate::mortar::WeightedGap;
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn, FullPivLU};
+use dense::Dense;
+use nalgebra::DMatrix;
 use signorini_solve::SolveError;
 use std::collections::{BTreeSet, HashMap};
 
@@ -16,8 +24,12 @@ use std::collections::{BTreeSet, HashMap};
 pub enum ActiveSetError {
     #[error(transparent)]
     Solve(#[from] SolveError),
+    /// A motion that no contact found resists: what each spring lacks.
     #[error("the contact found does not hold the bodies")]
-    Free,
+    Free { motion: Vec<f64> },
+    /// Rows that say the same as others, or as a support.
+    #[error("the conditions of the contacts depend on each other")]
+    Dependent,
     /// Rows that change from one state to the other for ever.
     #[error("the contact state alternates between open and closed at {} points", rows.len())]
     Chatter { rows: Vec<usize> },
@@ -81,9 +93,40 @@ pub struct ContactState {
     pub iterations: usize,
 }
 
-const MOST_ITERATIONS: usize = 60;
+const MOST_ITERATIONS: usize = 200;
+/// Iterations without fewer changes than ever before after which one node changes at a time.
+const PATIENCE: usize = 10;
+/// The share of the springs that is left, one after the other: from springs that keep a body near to nearly none. Beyond
+/// the last a body that contact holds feels less of its spring than of round-off.
+const SPRINGS_LEFT: [f64; 7] = [1.0, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
 /// Columns solved for at once.
 const COLUMNS: usize = 32;
+
+/// What is solved for: rows, how they give way, springs, and the displacement without contact.
+struct Problem<'a> {
+    system: &'a dyn Compliance,
+    rows: &'a [WeightedGap],
+    soft: &'a [Softness],
+    springs: &'a [Spring],
+    load: &'a [f64],
+    /// Displacement of the touched unknowns without contact, springs included.
+    free_at: Vec<f64>,
+}
+
+/// Pressures and spring forces for which no row changes any more.
+struct Balanced {
+    dense: Dense,
+    active: Vec<usize>,
+    pressures: Vec<f64>,
+    forces: Vec<f64>,
+    gaps: Vec<f64>,
+}
+
+/// Counts iterations and tells of them; what comes back says whether to go on.
+struct Iterations<'a> {
+    count: usize,
+    report: &'a mut dyn FnMut(usize, usize) -> bool,
+}
 
 impl ActiveSet {
     /// Begins with these rows; with none, with those that the displacement without contact closes.
@@ -105,7 +148,7 @@ impl ActiveSet {
     /// [`Softness`] says.
     ///
     /// `report` is called after every iteration with its number and how many nodes changed; it returns whether to go
-    /// on.
+    /// on. After an error the active set is the one before.
     pub fn solve(
         &mut self,
         system: &dyn Compliance,
@@ -118,19 +161,66 @@ impl ActiveSet {
         debug_assert_eq!(rows.len(), soft.len());
         self.refresh(rows, springs);
         let free = system.solve_accurately(load)?;
-        let free_at: Vec<f64> = self.touched.iter().map(|&i| free[i as usize]).collect();
+        let free_at = self.touched.iter().map(|&i| free[i as usize]).collect();
+        let problem = Problem { system, rows, soft, springs, load, free_at };
+        let mut iterations = Iterations { count: 0, report };
+        let before = self.active.clone();
+        let balanced = self.balance(&problem, &mut iterations);
+        let Balanced { dense, active, pressures, forces, gaps } = balanced.inspect_err(|_| self.active = before)?;
+        let mut found = ContactState {
+            u: Vec::new(),
+            pressure: vec![0.0; rows.len()],
+            gap: gaps,
+            active: (0..rows.len()).map(|k| self.active.contains(&k)).collect(),
+            iterations: iterations.count,
+        };
+        self.refine(&problem, &dense, (&active, pressures, forces), &mut found)?;
+        Ok(found)
+    }
+
+    /// The state without springs: from the active set of before, or where that does not hold the bodies, from states with
+    /// less and less of the springs.
+    fn balance(&mut self, problem: &Problem<'_>, iterations: &mut Iterations<'_>) -> Result<Balanced, ActiveSetError> {
+        let hopeful = |error: &ActiveSetError| !matches!(error, ActiveSetError::Solve(_) | ActiveSetError::Interrupted);
         if self.active.is_empty() {
-            self.active = start(rows, &free, springs);
+            self.active = (0..problem.rows.len())
+                .filter(|&k| problem.rows[k].gap + self.product(&problem.rows[k].terms, &problem.free_at) < 0.0)
+                .collect();
         }
+        let mut found = self.pivot(problem, 0.0, iterations);
+        if problem.springs.is_empty() {
+            return found;
+        }
+        for left in SPRINGS_LEFT {
+            match &found {
+                Err(error) if hopeful(error) => {}
+                _ => break,
+            }
+            found = match self.pivot(problem, left, iterations) {
+                Err(error) if !hopeful(&error) => Err(error),
+                _ => self.pivot(problem, 0.0, iterations),
+            };
+        }
+        found
+    }
+
+    /// Changes the active set until no row wants to, with a share of the springs left.
+    fn pivot(
+        &mut self,
+        problem: &Problem<'_>,
+        left: f64,
+        iterations: &mut Iterations<'_>,
+    ) -> Result<Balanced, ActiveSetError> {
+        let Problem { rows, soft, .. } = *problem;
         let size = rows.iter().map(|r| (r.gap / r.weight).abs()).fold(0.0, f64::max);
-        let mut seen: HashMap<Vec<usize>, usize> = HashMap::new();
+        let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
         let mut last_flips = Vec::new();
-        for iteration in 1..=MOST_ITERATIONS {
+        for _ in 0..MOST_ITERATIONS {
             let active: Vec<usize> = self.active.iter().copied().collect();
-            let dense = self.dense(system, rows, soft, springs, &active)?;
-            let gaps_now = self.defects((rows, soft), springs, &active, &free_at, (&[], &[]));
-            let (pressures, forces) = dense.solve(&gaps_now)?;
-            let mut at = free_at.clone();
+            let dense = self.dense(problem, left, &active)?;
+            let (pressures, forces) =
+                dense.solve(&self.defects(problem, left, &active, &problem.free_at, (&[], &[])))?;
+            let mut at = problem.free_at.clone();
             for (&k, p) in active.iter().zip(&pressures) {
                 add(&mut at, &self.columns[&k], *p);
             }
@@ -153,28 +243,24 @@ impl ActiveSet {
                 }
             }
             let flips: Vec<usize> = next.symmetric_difference(&self.active).copied().collect();
-            if !report(iteration, flips.len()) {
+            iterations.count += 1;
+            if !(iterations.report)(iterations.count, flips.len()) {
                 return Err(ActiveSetError::Interrupted);
             }
-            if flips.is_empty() {
-                let mut found = ContactState {
-                    u: Vec::new(),
-                    pressure: vec![0.0; rows.len()],
-                    gap: gaps,
-                    active: (0..rows.len()).map(|k| self.active.contains(&k)).collect(),
-                    iterations: iteration,
-                };
-                self.refine(system, (rows, soft, springs), load, &dense, (&active, pressures, forces), &mut found)?;
-                return Ok(found);
+            let Some(last) = flips.last() else { return Ok(Balanced { dense, active, pressures, forces, gaps }) };
+            if flips.len() < fewest {
+                (fewest, patience) = (flips.len(), PATIENCE);
+            } else if patience > 0 {
+                patience -= 1;
             }
-            if seen.insert(active, iteration).is_some() {
-                let rows: BTreeSet<usize> = flips.into_iter().chain(last_flips).collect();
-                return Err(ActiveSetError::Chatter { rows: rows.into_iter().collect() });
+            if patience > 0 {
+                self.active = next;
+            } else if !self.active.remove(last) {
+                self.active.insert(*last);
             }
             last_flips = flips;
-            self.active = next;
         }
-        Err(ActiveSetError::TooMany { iterations: MOST_ITERATIONS })
+        Err(ActiveSetError::Chatter { rows: last_flips })
     }
 
     /// Forgets what changed since the last step.
@@ -220,22 +306,24 @@ impl ActiveSet {
         Ok(())
     }
 
-    /// The dense system of the active rows and the springs.
-    fn dense(
-        &mut self,
-        system: &dyn Compliance,
-        rows: &[WeightedGap],
-        soft: &[Softness],
-        springs: &[Spring],
-        active: &[usize],
-    ) -> Result<Dense, ActiveSetError> {
-        let held: Vec<[(u32, f64); 1]> = springs.iter().map(|s| [(s.unknown, 1.0)]).collect();
-        let all = (active.iter().map(|&k| (k, rows[k].push())))
-            .chain(held.iter().enumerate().map(|(s, terms)| (rows.len() + s, &terms[..])));
-        let missing: Vec<(usize, &[(u32, f64)])> = all.filter(|(k, _)| !self.columns.contains_key(k)).collect();
+    /// The dense system of the active rows, and of the springs where less than all of them is left.
+    fn dense(&mut self, problem: &Problem<'_>, left: f64, active: &[usize]) -> Result<Dense, ActiveSetError> {
+        let Problem { system, rows, soft, .. } = *problem;
+        let springs = taken(problem, left);
+        let missing: Vec<(usize, &[(u32, f64)])> =
+            active.iter().filter(|k| !self.columns.contains_key(k)).map(|&k| (k, rows[k].push())).collect();
         self.add_columns(system, &missing)?;
+        for (s, spring) in springs.iter().enumerate() {
+            // What a spring moves is nearly rigid: only to the last digit does it tell what holds the body.
+            if !self.columns.contains_key(&(rows.len() + s)) {
+                let mut unit = vec![0.0; system.size()];
+                unit[spring.unknown as usize] = 1.0;
+                let column = system.solve_accurately(&unit)?;
+                self.columns.insert(rows.len() + s, self.touched.iter().map(|&i| column[i as usize]).collect());
+            }
+        }
         let (n, m) = (active.len(), springs.len());
-        let numbers: Vec<usize> = active.iter().copied().chain((0..m).map(|s| rows.len() + s)).collect();
+        let column = |c: usize| if c < n { active[c] } else { rows.len() + c - n };
         let symmetric = active.iter().all(|&k| rows[k].forces.is_empty());
         let mut matrix = DMatrix::<f64>::zeros(n + m, n + m);
         for r in 0..n + m {
@@ -247,77 +335,53 @@ impl ActiveSet {
                 &spring
             };
             for c in 0..if symmetric { r + 1 } else { n + m } {
-                let value = self.product(terms, &self.columns[&numbers[c]]);
+                let value = self.product(terms, &self.columns[&column(c)]);
                 matrix[(r, c)] = value;
                 if symmetric {
                     matrix[(c, r)] = value;
                 }
             }
         }
-        // Compliances of bodies and springs may differ by orders of magnitude: with a diagonal of ones pivots say
-        // something.
-        let own = |k: usize| matrix[(k, k)].abs() + active.get(k).map_or(0.0, |r| soft[*r].compliance);
-        let scale: Vec<f64> = (0..n + m).map(|k| 1.0 / own(k).sqrt()).collect();
-        for (s, spring) in springs.iter().enumerate() {
-            matrix[(n + s, n + s)] -= 1.0 / spring.stiffness;
-        }
         for (r, &k) in active.iter().enumerate() {
             matrix[(r, r)] += soft[k].compliance;
         }
-        for r in 0..n + m {
-            for c in 0..n + m {
-                matrix[(r, c)] *= scale[r] * scale[c];
-            }
+        for (s, spring) in springs.iter().enumerate() {
+            matrix[(n + s, n + s)] -= 1.0 / (spring.stiffness * (1.0 - left));
         }
-        let factor = if m == 0 && symmetric { matrix.clone().cholesky().map(Factored::Definite) } else { None };
-        let factor = match factor {
-            Some(factor) => factor,
-            None => {
-                let largest = matrix.amax();
-                let lu = matrix.full_piv_lu();
-                if lu.u().diagonal().iter().any(|p| p.abs() <= 1e-11 * largest) {
-                    return Err(ActiveSetError::Free);
-                }
-                Factored::Indefinite(Box::new(lu))
-            }
-        };
-        Ok(Dense { factor, scale, active: n })
+        let stiffness: Vec<f64> = springs.iter().map(|s| s.stiffness).collect();
+        Dense::new(matrix, n, &stiffness, symmetric, left == 0.0)
     }
 
     /// Weighted gaps of the active rows, and what the springs lack, at displacements of the touched unknowns.
     fn defects(
         &self,
-        (rows, soft): (&[WeightedGap], &[Softness]),
-        springs: &[Spring],
+        problem: &Problem<'_>,
+        left: f64,
         active: &[usize],
         at: &[f64],
         (pressures, forces): (&[f64], &[f64]),
     ) -> Vec<f64> {
+        let Problem { rows, soft, .. } = *problem;
         let gap = |(place, &k): (usize, &usize)| {
             let carried = pressures.get(place).copied().unwrap_or(0.0) - soft[k].shift;
             rows[k].gap + self.product(&rows[k].terms, at) + soft[k].compliance * carried
         };
-        let lack = |s: usize, spring: &Spring| {
-            self.product(&[(spring.unknown, 1.0)], at) - forces.get(s).copied().unwrap_or(0.0) / spring.stiffness
+        let lack = |(s, spring): (usize, &Spring)| {
+            let force = forces.get(s).copied().unwrap_or(0.0);
+            self.product(&[(spring.unknown, 1.0)], at) - force / (spring.stiffness * (1.0 - left))
         };
-        active
-            .iter()
-            .enumerate()
-            .map(gap)
-            .chain(springs.iter().enumerate().map(|(s, spring)| lack(s, spring)))
-            .collect()
+        (active.iter().enumerate().map(gap)).chain(taken(problem, left).iter().enumerate().map(lack)).collect()
     }
 
     /// The displacement of all unknowns; what the closed gaps still lack by the round-off of the columns is made good.
     fn refine(
         &self,
-        system: &dyn Compliance,
-        (rows, soft, springs): (&[WeightedGap], &[Softness], &[Spring]),
-        load: &[f64],
+        problem: &Problem<'_>,
         dense: &Dense,
         (active, mut pressures, mut forces): (&[usize], Vec<f64>, Vec<f64>),
         found: &mut ContactState,
     ) -> Result<(), ActiveSetError> {
+        let Problem { system, rows, soft, springs, load, .. } = *problem;
         for round in 0..2 {
             let mut b = load.to_vec();
             for (&k, p) in active.iter().zip(&pressures) {
@@ -333,8 +397,7 @@ impl ActiveSet {
                 break;
             }
             let at: Vec<f64> = self.touched.iter().map(|&i| found.u[i as usize]).collect();
-            let (more, others) =
-                dense.solve(&self.defects((rows, soft), springs, active, &at, (&pressures, &forces)))?;
+            let (more, others) = dense.solve(&self.defects(problem, 0.0, active, &at, (&pressures, &forces)))?;
             pressures.iter_mut().zip(more).for_each(|(p, m)| *p += m);
             forces.iter_mut().zip(others).for_each(|(f, m)| *f += m);
         }
@@ -346,45 +409,13 @@ impl ActiveSet {
     }
 }
 
-enum Factored {
-    Definite(Cholesky<f64, Dyn>),
-    Indefinite(Box<FullPivLU<f64, Dyn, Dyn>>),
-}
-
-/// The factorised dense system, with the factors of its rows and columns.
-struct Dense {
-    factor: Factored,
-    scale: Vec<f64>,
-    active: usize,
-}
-
-impl Dense {
-    /// Pressures of the active rows and forces at the springs that bring the defects to zero.
-    fn solve(&self, defects: &[f64]) -> Result<(Vec<f64>, Vec<f64>), ActiveSetError> {
-        let rhs = DVector::from_iterator(defects.len(), defects.iter().zip(&self.scale).map(|(d, s)| -d * s));
-        let x = match &self.factor {
-            Factored::Definite(factor) => factor.solve(&rhs),
-            Factored::Indefinite(factor) => factor.solve(&rhs).ok_or(ActiveSetError::Free)?,
-        };
-        let mut x = x.iter().zip(&self.scale).map(|(x, s)| x * s);
-        let pressures = x.by_ref().take(self.active).collect();
-        Ok((pressures, x.collect()))
-    }
-}
-
 fn add(at: &mut [f64], column: &[f64], factor: f64) {
     for (a, c) in at.iter_mut().zip(column) {
         *a += factor * c;
     }
 }
 
-/// The rows that the free displacement closes; where springs hold a body, also those that are nearly closest.
-fn start(rows: &[WeightedGap], free: &[f64], springs: &[Spring]) -> BTreeSet<usize> {
-    if springs.is_empty() {
-        return (0..rows.len()).filter(|&k| rows[k].at(free) < 0.0).collect();
-    }
-    let gaps: Vec<f64> = rows.iter().map(|r| r.gap / r.weight).collect();
-    let least = gaps.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = gaps.iter().copied().fold(least, f64::max);
-    (0..rows.len()).filter(|&k| gaps[k] <= least + 0.05 * (most - least)).collect()
+/// The springs whose forces are taken away: none while all of them is left.
+fn taken<'a>(problem: &Problem<'a>, left: f64) -> &'a [Spring] {
+    if left < 1.0 { problem.springs } else { &[] }
 }

@@ -9,12 +9,14 @@
 //! - [`obstacle`]: the closest point of a slave point, on faces, edges and vertices, or on a rigid body.
 //! - [`points`]: the points under test, their rows, and the one assembler of residual and tangent.
 //! - [`active_set`]: which nodes carry.
+//! - [`balance`]: whether contact can hold free bodies against their loads.
 //! - [`recovery`]: the pressure as it is shown.
 //!
 //! The gap is `(x_slave - x_master)·n` with the outward normal of the master, negative where the bodies penetrate; a
 //! pressure is positive.
 
 pub mod active_set;
+pub mod balance;
 pub mod kinematics;
 pub mod mortar;
 pub mod multiplier;
@@ -25,6 +27,7 @@ pub mod segments;
 pub mod surface;
 
 pub use active_set::{ActiveSet, ActiveSetError, Compliance, ContactState, Softness, Spring};
+pub use balance::unbalanced;
 pub use kinematics::{GapJet, Kinematics, Partner, ShapeFunction};
 pub use mortar::{Given, Shares, WeightedGap, compress, shares, weighted_gaps};
 pub use multiplier::PressureNodes;

@@ -37,9 +37,9 @@ pub(crate) fn assemble<const D: usize>(bodies: &Bodies<D>, supports: &[Support])
     }
     let beds = beds(bodies, supports);
     let cells = cliques.len();
-    cliques.extend(beds.iter().map(|b| b.0.clone()));
+    cliques.extend(beds.iter().map(|b| b.1.clone()));
     let mut matrix = SymmetricMatrix::from_cliques(bodies.unknowns(), &cliques);
-    for ((unknowns, values), _) in beds.iter().zip(cells..) {
+    for ((_, unknowns, values), _) in beds.iter().zip(cells..) {
         matrix.add(unknowns, values, 1.0);
     }
     let mut number = 0;

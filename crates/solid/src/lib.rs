@@ -3,7 +3,8 @@
 //! - [`material`]: linear elasticity in the plane, around an axis and in space.
 //! - [`body`]: bodies and the parts of their boundary.
 //! - [`stiffness`]: cells, and how they avoid locking.
-//! - [`supports`]: what is prescribed, and the unknowns that remain; [`rigid_modes`]: what nothing holds.
+//! - [`supports`]: what is prescribed, and the unknowns that remain; [`rigid_modes`]: what nothing holds;
+//!   `reactions`: the forces of the supports; `held`: whether contact can hold the rest.
 //! - [`contact`]: two sides that may touch.
 //! - [`loads`]: forces on sides and in volumes.
 //! - [`model`]: everything together, solved at one time; [`mod@sliding`]: Newton's method where contacts slide far.
@@ -12,11 +13,13 @@
 mod assembly;
 pub mod body;
 pub mod contact;
+mod held;
 pub mod loads;
 pub mod material;
 pub mod model;
 mod nitsche;
-pub mod rigid_modes;
+mod reactions;
+mod rigid_modes;
 pub mod sliding;
 pub mod state;
 pub mod stiffness;

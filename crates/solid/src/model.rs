@@ -3,6 +3,7 @@
 use crate::assembly::{assemble, positions};
 use crate::body::Bodies;
 use crate::contact::{Contact, Enforcement, RigidGap, Sliding};
+use crate::held::check_held;
 use crate::rigid_modes::{FreeMode, free_modes};
 use crate::sliding::Settled;
 use crate::state::{Found, State};
@@ -23,6 +24,9 @@ pub enum StepError {
     Contact { contact: String, error: ActiveSetError, places: Vec<String> },
     #[error("body `{body}` is free {motion}")]
     Free { body: String, motion: String },
+    /// The loads pull a body away from all that could hold it.
+    #[error("body `{body}` is pulled away {direction}")]
+    PulledAway { body: String, direction: String },
     #[error("contact `{contact}`: a face of the master makes no shape: {message}")]
     Shape { contact: String, message: String },
     /// Most of the slave side is inside the master before anything moves.
@@ -46,10 +50,11 @@ pub struct Model<const D: usize> {
     pub(crate) stiffness: SymmetricMatrix,
     /// What Nitsche's method adds to it.
     pub(crate) added: Option<SymmetricMatrix>,
-    /// The stiffness of the unknowns that remain, springs included; kept where contact adds to it.
+    /// The stiffness of the unknowns that remain, springs included; handed on to its factor unless contact adds to it.
     pub(crate) reduced: Option<SymmetricMatrix>,
     pub(crate) symbolic: Symbolic,
-    factor: Factor,
+    /// Factorised when it is first solved with.
+    factor: Option<Factor>,
     pub(crate) springs: Vec<Spring>,
     free: Vec<FreeMode>,
     active: ActiveSet,
@@ -93,7 +98,7 @@ impl Compliance for System<'_> {
 }
 
 impl<const D: usize> Model<D> {
-    /// Assembles and factorises the stiffness.
+    /// Assembles the stiffness.
     pub fn new(bodies: Bodies<D>, supports: Vec<Support>, contacts: Vec<Contact<D>>) -> Result<Self, StepError> {
         let reduction = Reduction::new(&bodies, &supports)?;
         let mut contacts = contacts;
@@ -118,14 +123,11 @@ impl<const D: usize> Model<D> {
             springs.push(Spring { unknown: *unknown, stiffness });
             reduced.add(&[*unknown], &[stiffness], 1.0);
         }
-        let mut symbolic = if D == 3 {
+        let symbolic = if D == 3 {
             Symbolic::ordered(nested_dissection(&reduced, &positions(&bodies, &reduction)))
         } else {
             Symbolic::default()
         };
-        let sliding = contacts.iter().any(|c| c.sliding == Sliding::Finite);
-        let kept = sliding.then(|| reduced.clone());
-        let factor = symbolic.factor(reduced)?;
         Ok(Model {
             bodies,
             supports,
@@ -133,9 +135,9 @@ impl<const D: usize> Model<D> {
             reduction,
             stiffness,
             added,
-            reduced: kept,
+            reduced: Some(reduced),
             symbolic,
-            factor,
+            factor: None,
             springs,
             free,
             active: ActiveSet::default(),
@@ -173,6 +175,7 @@ impl<const D: usize> Model<D> {
         }
         let load = self.reduction.restrict(&load);
         let ends = self.search(now, &[], false)?;
+        self.check_held(&now.load)?;
         let rows: Vec<WeightedGap> = (self.contacts.iter())
             .flat_map(|contact| contact.rows.iter().map(|row| reduced(row, &self.reduction, &offset)))
             .collect();
@@ -181,8 +184,12 @@ impl<const D: usize> Model<D> {
             residuals.push(changed as f64);
             report(iteration, changed as f64)
         };
+        if let Some(stiffness) = self.reduced.take() {
+            self.factor = Some(self.symbolic.factor(stiffness)?);
+        }
+        let Some(factor) = &self.factor else { return Err(self.free_body(&[])) };
         let mut active = std::mem::take(&mut self.active);
-        let found = self.solve_enforced(&self.factor, &mut active, &rows, &ends, &load, &mut logged);
+        let found = self.solve_enforced(factor, &mut active, &rows, &ends, &load, &mut logged);
         self.active = active;
         let (found, _) = found.map_err(|error| self.explained(error, &ends))?;
         let u = self.reduction.expand(&found.u, &offset);
@@ -215,7 +222,7 @@ impl<const D: usize> Model<D> {
 
     /// Whether a contact slides finitely.
     pub fn slides(&self) -> bool {
-        self.reduced.is_some()
+        self.contacts.iter().any(|c| c.sliding == Sliding::Finite)
     }
 
     /// Finds the rows of all contacts, with the bodies displaced by `u` where contacts slide finitely; the ends of those of
@@ -240,7 +247,7 @@ impl<const D: usize> Model<D> {
             self.started = true;
         }
         if count == 0 && !self.free.is_empty() {
-            return Err(self.free_body());
+            return Err(self.free_body(&[]));
         }
         Ok(ends)
     }
@@ -260,6 +267,8 @@ impl<const D: usize> Model<D> {
         let range = |k: usize| if k == 0 { 0..ends[0] } else { ends[k - 1]..ends[k] };
         // Multiples of the stiffness of the cells.
         let mut factor = vec![100.0; self.contacts.len()];
+        // The penetration that augmented Lagrangians left the last time.
+        let mut left = vec![f64::INFINITY; self.contacts.len()];
         let mut total = 0;
         for outer in 0..MOST_OUTER {
             for (k, contact) in self.contacts.iter().enumerate() {
@@ -297,6 +306,11 @@ impl<const D: usize> Model<D> {
                         let worst = open.by_ref().map(|r| (found.gap[r] / rows[r].weight).abs()).fold(0.0, f64::max);
                         if worst > 1e-11 * moved {
                             range(k).for_each(|r| soft[r].shift = found.pressure[r]);
+                            // More conditions than the surface can follow converge slowly at one penalty.
+                            if worst > 0.25 * left[k] {
+                                factor[k] = (10.0 * factor[k]).min(MOST_STIFFNESS);
+                            }
+                            left[k] = worst;
                             again = true;
                         }
                     }
@@ -313,13 +327,20 @@ impl<const D: usize> Model<D> {
     pub(crate) fn explained(&self, error: ActiveSetError, ends: &[usize]) -> StepError {
         match error {
             ActiveSetError::Interrupted => StepError::Interrupted,
-            ActiveSetError::Free => self.free_body(),
+            ActiveSetError::Free { motion } => self.free_body(&motion),
             error => self.contact_error(error, ends),
         }
     }
 
-    pub(crate) fn free_body(&self) -> StepError {
-        match self.free.first() {
+    /// Whether the contacts, as they were found last, can balance the loads on bodies that nothing else holds.
+    pub(crate) fn check_held(&self, load: &[f64]) -> Result<(), StepError> {
+        check_held(&self.bodies, &self.contacts, &self.free, load)
+    }
+
+    /// The body that moves most under a motion of the springs.
+    pub(crate) fn free_body(&self, motion: &[f64]) -> StepError {
+        let most = (0..motion.len()).max_by(|&a, &b| motion[a].abs().total_cmp(&motion[b].abs()));
+        match self.free.get(most.unwrap_or(0)) {
             Some(mode) => StepError::Free { body: mode.body.clone(), motion: mode.motion.clone() },
             None => StepError::Free { body: String::new(), motion: "to move".into() },
         }
@@ -348,6 +369,10 @@ impl<const D: usize> Model<D> {
 
 /// The most outer iterations of a penalty that is adjusted, or of an augmented Lagrangian.
 const MOST_OUTER: usize = 60;
+
+/// The stiffest penalty of an augmented Lagrangian, as a multiple of the stiffness of the cells: beyond it the penetration
+/// is less than the round-off of the compliances.
+const MOST_STIFFNESS: f64 = 1e8;
 
 /// A row in the unknowns that remain.
 pub(crate) fn reduced<const D: usize>(row: &WeightedGap, reduction: &Reduction<D>, offset: &[f64]) -> WeightedGap {

@@ -3,7 +3,7 @@
 use crate::body::Bodies;
 use crate::material::Space;
 use crate::supports::{Reduction, Support, SupportKind};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use signorini_geometry::Point;
 use std::collections::{HashMap, HashSet};
 
@@ -15,6 +15,9 @@ pub struct FreeMode {
     pub motion: String,
     /// The unknown of the bodies that moves most, and does in no mode listed before.
     pub unknown: usize,
+    /// The displacement of the vertices of the part, by unknowns of the bodies, the largest 1. On cells with curved
+    /// edges, where other functions turn along, rotations have none.
+    pub field: Option<Vec<(u32, f64)>>,
 }
 
 /// The free rigid modes of all bodies. Elastic beds hold as supports do.
@@ -30,6 +33,7 @@ pub fn free_modes<const D: usize>(bodies: &Bodies<D>, supports: &[Support], redu
         }
     }
     for body in &bodies.list {
+        let curved = (0..body.mesh.cell_count()).any(|c| body.mesh.map(c).order() > 1);
         for part in parts(body) {
             let functions: Vec<(u32, Point<D>)> = part
                 .iter()
@@ -94,27 +98,32 @@ pub fn free_modes<const D: usize>(bodies: &Bodies<D>, supports: &[Support], redu
             }
             let eigen = held.symmetric_eigen();
             let limit = 1e-12 * functions.len() as f64;
-            let mut used: Vec<DMatrix<f64>> = Vec::new();
+            let mut used: Vec<(DMatrix<f64>, DVector<f64>)> = Vec::new();
             for k in 0..modes.len() {
                 if eigen.eigenvalues[k] > limit {
                     continue;
                 }
-                let combination = eigen.eigenvectors.column(k).into_owned();
+                let mut combination = eigen.eigenvectors.column(k).into_owned();
+                let name = modes[combination.iamax()].name::<D>();
                 let mut field = DMatrix::from_column_slice(n, 1, (&motion * &combination).as_slice());
-                for other in &used {
+                for (other, its) in &used {
                     // Modes before this one are held where they move most.
                     let at = other.iamax_full().0;
                     let factor = field[(at, 0)] / other[(at, 0)];
                     field -= other * factor;
+                    combination -= its * factor;
                 }
                 let at = field.iamax_full().0;
-                let largest = combination.iamax();
+                let turned = modes.iter().zip(&combination).any(|(m, c)| m.is_rotation() && c.abs() > 1e-12);
+                let number = |row: usize| (body.first + functions[row / D].0 as usize * D + row % D) as u32;
+                let values = || field.iter().enumerate().map(|(row, u)| (number(row), u / field[(at, 0)].abs()));
                 out.push(FreeMode {
                     body: body.name.clone(),
-                    motion: modes[largest].name::<D>(),
-                    unknown: body.first + functions[at / D].0 as usize * D + at % D,
+                    motion: name,
+                    unknown: number(at) as usize,
+                    field: (!(turned && curved)).then(|| values().filter(|(_, u)| *u != 0.0).collect()),
                 });
-                used.push(field);
+                used.push((field, combination));
             }
         }
     }
@@ -128,6 +137,10 @@ enum Mode {
 }
 
 impl Mode {
+    fn is_rotation(&self) -> bool {
+        matches!(self, Mode::Rotation(..))
+    }
+
     fn at<const D: usize>(&self, x: &Point<D>) -> Point<D> {
         let mut u = Point::<D>::zeros();
         match *self {

@@ -11,7 +11,7 @@
 use crate::contact::Contact;
 use crate::model::{Circumstances, Model, StepError, reduced};
 use crate::state::{Found, State};
-use signorini_contact::{ActiveSet, Softness, WeightedGap};
+use signorini_contact::{ActiveSet, ActiveSetError, Softness, WeightedGap};
 use signorini_solve::{SolveError, SymmetricMatrix};
 use std::collections::HashMap;
 
@@ -138,7 +138,7 @@ impl<const D: usize> Model<D> {
             cliques.extend(contact.curvature(&|number| pressure.get(&(k, number)).copied().unwrap_or(0.0)));
         }
         let mut curvature = SymmetricMatrix::of_cliques(around.u.len(), &cliques);
-        let Some(stiffness) = &self.reduced else { return Err(self.free_body()) };
+        let Some(stiffness) = &self.reduced else { return Err(self.free_body(&[])) };
         let with = |curvature: &SymmetricMatrix| {
             stiffness.plus(&curvature.transformed(self.reduction.unknowns, |i| self.reduction.row(i)))
         };
@@ -164,7 +164,11 @@ impl<const D: usize> Model<D> {
         let mut active = ActiveSet::starting_with(start);
         let (found, soft) = self
             .solve_enforced(&factor, &mut active, &rows, &around.ends, &load, &mut |_, _| true)
-            .map_err(|error| self.explained(error, &around.ends))?;
+            .map_err(|error| match self.check_held(&now.load) {
+                // Nothing is found because there is nothing.
+                Err(pulled) if error != ActiveSetError::Interrupted => pulled,
+                _ => self.explained(error, &around.ends),
+            })?;
         let keys = || around.rows.iter().map(|(key, _)| *key);
         Ok(Step {
             u: self.reduction.expand(&found.u, offset),

@@ -65,12 +65,7 @@ impl<const D: usize> Model<D> {
         let moved = u.iter().fold(0.0f64, |m, u| m.max(u.abs()));
         let scale = scale.max(1e-8 * self.stiffness.largest() * moved);
         let imbalance = unbalanced.iter().fold(0.0f64, |m, f| m.max(f.abs())) / scale;
-        let support_forces = (self.reduction.reactions.iter())
-            .map(|list| {
-                let of = |f: &u32| Point::<D>::from_fn(|i, _| forces[*f as usize * D + i]);
-                list.iter().map(of).sum::<Point<D>>()
-            })
-            .collect();
+        let support_forces = self.support_forces(&forces, &u);
         State {
             u,
             contacts: results,

@@ -4,13 +4,13 @@
 //! stay free. `u = T y + c`, with `T` from the directions and `c` from the prescribed values, which may change with time
 //! while `T` stays.
 
-use crate::body::Bodies;
-use signorini_contact::ContactSurface;
-use signorini_fem::Group;
+use crate::body::{Bodies, Body};
+use nalgebra::DMatrix;
+use signorini_contact::{ContactSurface, FacePoint};
+use signorini_fem::hierarchic::{Mode, Values};
 use signorini_fem::rules::rule;
+use signorini_fem::{CellShape, Group, Local, Side};
 use signorini_geometry::Point;
-use signorini_solve::SymmetricMatrix;
-use signorini_solve::cholesky::Symbolic;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What a support does.
@@ -54,6 +54,7 @@ enum Source {
     },
     /// The common displacement of a uniform support in one component.
     Tied {
+        support: usize,
         unknown: u32,
         vertex: bool,
     },
@@ -114,7 +115,7 @@ impl<const D: usize> Reduction<D> {
                     for i in (0..D).filter(|&i| which[i]) {
                         let unknown = tied;
                         tied += 1;
-                        hold(axis(i), &|f| Source::Tied { unknown, vertex: on_vertices.contains(&f) });
+                        hold(axis(i), &|f| Source::Tied { support: number, unknown, vertex: on_vertices.contains(&f) });
                     }
                 }
                 SupportKind::Spring(_) => {}
@@ -141,7 +142,7 @@ impl<const D: usize> Reduction<D> {
                     }
                 }
                 for h in list {
-                    if let Source::Tied { unknown, vertex: true } = h.source
+                    if let Source::Tied { unknown, vertex: true, .. } = h.source
                         && h.direction[i] != 0.0
                     {
                         entries.push((unknown, h.direction[i]));
@@ -161,6 +162,13 @@ impl<const D: usize> Reduction<D> {
     /// The first so many unknowns are common displacements of uniform supports.
     pub fn tied(&self) -> u32 {
         self.tied
+    }
+
+    /// The supports that constrain a vector function, and along which directions.
+    pub(crate) fn constraints(&self, function: u32) -> impl Iterator<Item = (usize, Point<D>)> {
+        self.held.get(&function).into_iter().flatten().map(|h| match h.source {
+            Source::Prescribed { support } | Source::Tied { support, .. } => (support, h.direction),
+        })
     }
 
     /// Whether an unknown of the bodies is prescribed.
@@ -202,12 +210,16 @@ impl<const D: usize> Reduction<D> {
                 _ => BTreeMap::new(),
             });
         }
+        // Values of the same point are the same up to the round-off of the fields that they come from.
+        let sizes: Vec<f64> = coefficients.iter().map(|c| c.values().map(|u| u.amax()).fold(0.0, f64::max)).collect();
         let mut offset = vec![0.0; bodies.unknowns()];
         for (&f, list) in &self.held {
             let mut known: Vec<(Point<D>, f64)> = Vec::new();
             let mut value = Point::<D>::zeros();
+            let mut size = 0.0f64;
             for h in list {
                 let Source::Prescribed { support } = h.source else { continue };
+                size = size.max(sizes[support]);
                 let wanted = coefficients[support].get(&f).map_or(0.0, |c| {
                     if supports[support].kind == SupportKind::Normal { c[0] } else { h.direction.dot(c) }
                 });
@@ -220,7 +232,7 @@ impl<const D: usize> Reduction<D> {
                     let unit = rest.normalize();
                     value += unit * along;
                     known.push((unit, along));
-                } else if (h.direction.dot(&value) - wanted).abs() > 1e-9 * (wanted.abs() + value.norm()) {
+                } else if (h.direction.dot(&value) - wanted).abs() > 1e-9 * size {
                     let first = list.iter().find_map(|o| match o.source {
                         Source::Prescribed { support: s } if s != support => Some(s),
                         _ => None,
@@ -377,81 +389,129 @@ fn project<const D: usize>(
             out.insert(global(bodies, support.body, f), value);
         }
     }
-    if body.degree == 1 || support.group.sides.is_empty() {
+    if body.degree == 1 {
         return out;
     }
-    // What vertices leave over goes to the other functions by least squares.
-    let surface = bodies.surface(support.body, support.group.sides.clone());
-    let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
-    let mut cliques = Vec::new();
-    let mut trace = Vec::new();
-    for face in 0..surface.sides.len() {
-        trace.clear();
-        surface.trace(face, &surface.shape(face).centre(), &mut trace);
-        let mut clique = Vec::new();
-        for (unknown, _) in &trace {
-            let f = *unknown / D as u32;
-            if !out.contains_key(&f) {
-                let next = numbers.len() as u32;
-                clique.push(*numbers.entry(f).or_insert(next));
-            }
-        }
-        cliques.push(clique);
+    // What vertices leave over goes to the edges by least squares, and what these leave over to the sides: so that two
+    // groups agree on the edge that they share.
+    for entity in edges(body, &support.group.sides).iter().chain(&interiors(body, &support.group.sides)) {
+        fit(bodies, support.body, entity, scale, displacement, &mut out);
     }
-    let n = numbers.len();
-    let mut mass = SymmetricMatrix::from_cliques(n, &cliques);
-    let mut rhs = vec![vec![0.0; n]; D];
-    let mut worst = 0.0f64;
-    for (face, clique) in cliques.iter().enumerate() {
-        let m = clique.len();
-        let mut local = vec![0.0; m * m];
-        for (s, w) in rule(surface.shape(face), body.degree + 2) {
-            let point = surface.at(face, &s);
-            let w = w * point.area_normal().norm();
-            trace.clear();
-            surface.trace(face, &s, &mut trace);
-            let mut rest = displacement(&point.x);
-            let mut values = vec![0.0; m];
-            let mut at = 0;
-            for (unknown, value) in &trace {
-                match out.get(&(*unknown / D as u32)) {
-                    Some(known) => rest -= known * *value,
-                    None => {
-                        values[at] = *value;
-                        at += 1;
-                    }
-                }
+    out
+}
+
+/// An edge or a side of a cell: the places of its own functions in the list of the cell, and quadrature points in the
+/// coordinates of the cell with their weights.
+struct Entity {
+    cell: usize,
+    own: Vec<usize>,
+    points: Vec<(Local, f64)>,
+}
+
+/// The edges of sides of cells; those shared by several sides once for each.
+fn edges<const D: usize>(body: &Body<D>, sides: &[Side]) -> Vec<Entity> {
+    let mut out = Vec::new();
+    let mut at = Values::default();
+    for side in sides {
+        let (cell, shape) = (side.cell as usize, body.mesh.shape(side.cell as usize));
+        let corners = shape.sides()[side.side as usize];
+        for (e, [a, b]) in shape.edges().iter().enumerate() {
+            if !(corners.contains(a) && corners.contains(b)) {
+                continue;
             }
-            worst = worst.max(rest.amax());
-            for a in 0..m {
-                for i in 0..D {
-                    rhs[i][clique[a] as usize] += w * values[a] * rest[i];
-                }
-                for b in 0..m {
-                    local[a * m + b] += w * values[a] * values[b];
-                }
-            }
-        }
-        mass.add(clique, &local, 1.0);
-    }
-    if worst <= 1e-14 * scale || n == 0 {
-        return out;
-    }
-    if let Ok(factor) = Symbolic::default().factor(mass) {
-        let solved: Vec<Vec<f64>> = rhs.iter().filter_map(|b| factor.solve(b).ok()).collect();
-        if solved.len() == D {
-            for (f, k) in numbers {
-                out.insert(f, Point::<D>::from_fn(|i, _| solved[i][k as usize]));
-            }
+            let own = |mode: &Mode| matches!(mode, Mode::Edge(edge, _) if *edge as usize == e);
+            let [from, to] = [shape.vertices()[*a], shape.vertices()[*b]];
+            let along: Local = std::array::from_fn(|k| 0.5 * (to[k] - from[k]));
+            let points = (rule(CellShape::Line, body.degree + 2).into_iter())
+                .map(|(s, w)| {
+                    let xi: Local = std::array::from_fn(|k| from[k] + (1.0 + s[0]) * along[k]);
+                    body.mesh.map(cell).tabulate(&xi, &mut at);
+                    let (_, jacobian) = body.mesh.jacobian(cell, &at);
+                    (xi, w * (jacobian * Point::<D>::from_fn(|k, _| along[k])).norm())
+                })
+                .collect();
+            out.push(Entity { cell, own: places(body, cell, own), points });
         }
     }
     out
 }
 
-/// Stiffness of elastic beds: unknowns of each side, its matrix, and the factor in each direction.
-pub(crate) fn beds<const D: usize>(bodies: &Bodies<D>, supports: &[Support]) -> Vec<(Vec<u32>, Vec<f64>)> {
+/// The sides themselves, in space.
+fn interiors<const D: usize>(body: &Body<D>, sides: &[Side]) -> Vec<Entity> {
+    let entity = |side: &Side| {
+        let (cell, shape) = (side.cell as usize, body.mesh.shape(side.cell as usize));
+        let own = |mode: &Mode| matches!(mode, Mode::Side(number, _) if *number == side.side);
+        let points = (rule(body.mesh.side_shape(*side), body.degree + 2).into_iter())
+            .map(|(s, w)| {
+                let (x, tangents) = body.mesh.on_side(*side, &s);
+                (shape.on_side(side.side as usize, &s).0, w * FacePoint { x, tangents }.area_normal().norm())
+            })
+            .collect();
+        Entity { cell, own: places(body, cell, own), points }
+    };
+    if D == 3 { sides.iter().map(entity).collect() } else { Vec::new() }
+}
+
+fn places<const D: usize>(body: &Body<D>, cell: usize, own: impl Fn(&Mode) -> bool) -> Vec<usize> {
+    let modes = body.dofs.basis(cell).modes();
+    (0..modes.len()).filter(|&k| own(&modes[k])).collect()
+}
+
+/// Fits the functions of an edge or side to what those known leave over of a displacement, unless that is round-off of
+/// `scale`.
+fn fit<const D: usize>(
+    bodies: &Bodies<D>,
+    number: usize,
+    entity: &Entity,
+    scale: f64,
+    displacement: &dyn Fn(&Point<D>) -> Point<D>,
+    known: &mut BTreeMap<u32, Point<D>>,
+) {
+    let body = &bodies.list[number];
+    let n = entity.own.len();
+    let function = |k: usize| {
+        let (f, sign) = body.dofs.function(entity.cell, k);
+        (global(bodies, number, f), sign)
+    };
+    if entity.own.iter().all(|&k| known.contains_key(&function(k).0)) {
+        return;
+    }
+    let (mut at, mut of_map) = (Values::default(), Values::default());
+    let mut mass = DMatrix::<f64>::zeros(n, n);
+    let mut rhs = DMatrix::<f64>::zeros(n, D);
+    let mut worst = 0.0f64;
+    for (xi, w) in &entity.points {
+        body.dofs.basis(entity.cell).tabulate(xi, &mut at);
+        body.mesh.map(entity.cell).tabulate(xi, &mut of_map);
+        let mut left = displacement(&body.mesh.position(entity.cell, &of_map));
+        for (k, value) in at.value.iter().enumerate() {
+            let (f, sign) = function(k);
+            if let Some(u) = known.get(&f) {
+                left -= u * (sign * value);
+            }
+        }
+        worst = worst.max(left.amax());
+        for (a, &k) in entity.own.iter().enumerate() {
+            let of = |k: usize| function(k).1 * at.value[k];
+            for i in 0..D {
+                rhs[(a, i)] += w * of(k) * left[i];
+            }
+            for (b, &l) in entity.own.iter().enumerate() {
+                mass[(a, b)] += w * of(k) * of(l);
+            }
+        }
+    }
+    let solved = mass.cholesky().filter(|_| worst > 1e-14 * scale).map(|factor| factor.solve(&rhs));
+    for (a, &k) in entity.own.iter().enumerate() {
+        let value = solved.as_ref().map_or(Point::<D>::zeros(), |s| Point::<D>::from_fn(|i, _| s[(a, i)]));
+        known.insert(function(k).0, value);
+    }
+}
+
+/// Stiffness of elastic beds: the support, the unknowns of each side, and its matrix.
+pub(crate) fn beds<const D: usize>(bodies: &Bodies<D>, supports: &[Support]) -> Vec<(usize, Vec<u32>, Vec<f64>)> {
     let mut out = Vec::new();
-    for support in supports {
+    for (number, support) in supports.iter().enumerate() {
         let SupportKind::Spring(stiffness) = &support.kind else { continue };
         let surface = bodies.surface(support.body, support.group.sides.clone());
         let mut trace = Vec::new();
@@ -476,7 +536,7 @@ pub(crate) fn beds<const D: usize>(bodies: &Bodies<D>, supports: &[Support]) -> 
                     }
                 }
             }
-            out.push((unknowns, matrix));
+            out.push((number, unknowns, matrix));
         }
     }
     out

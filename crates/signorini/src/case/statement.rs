@@ -935,7 +935,7 @@ pub enum FrontModes {
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EnforcedKey {
-    /// How the conditions of contact are enforced; by multipliers if left out.
+    /// How the conditions of contact are enforced; by multipliers if left out, at quadrature points by penalties.
     #[serde(default)]
     #[schemars(with = "Option<Enforcement>")]
     pub enforcement: Option<Spanned<Enforcement>>,

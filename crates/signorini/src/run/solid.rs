@@ -39,6 +39,14 @@ struct Runner<const D: usize> {
 struct Failure {
     reason: &'static str,
     text: String,
+    /// What was left after each iteration until then.
+    residuals: Vec<f64>,
+}
+
+impl Failure {
+    fn new(reason: &'static str, text: String) -> Self {
+        Failure { reason, text, residuals: Vec::new() }
+    }
 }
 
 /// Runs a plan, or goes on with an earlier run of it, and writes its results.
@@ -142,14 +150,14 @@ impl<const D: usize> Runner<D> {
                     ending = if failed.reason == "interrupted" { Ending::Interrupted } else { Ending::NotConverged };
                     self.steps.push(json!({
                         "index": index, "time": time, "converged": false, "reason": failed.reason,
-                        "iterations": 0, "residual_history": [], "contacts": {}, "support_forces": {},
+                        "iterations": failed.residuals.len(), "residual_history": failed.residuals, "contacts": {}, "support_forces": {},
                         "load_forces": {}, "probes": {},
                     }));
                     failure = Some(failed);
                     break;
                 }
                 Err(error) => {
-                    let failed = Failure { reason: "input", text: "a value became invalid along the way".into() };
+                    let failed = Failure::new("input", "a value became invalid along the way".into());
                     self.finish(Ending::NotConverged, Some(&failed), start, &display, last.as_ref())?;
                     return Err(error.into());
                 }
@@ -218,10 +226,11 @@ impl<const D: usize> Runner<D> {
                     reached = target;
                     size *= 1.5;
                 }
-                Err(failed) => {
+                Err(mut failed) => {
+                    residuals.append(&mut failed.residuals);
                     let curable = matches!(failed.reason, "newton" | "contact" | "linear_solver" | "free_body");
                     if !self.model.slides() || !curable || size <= SMALLEST_INCREMENT * (time - before) {
-                        return Ok(Err(failed));
+                        return Ok(Err(Failure { residuals, ..failed }));
                     }
                     size *= 0.25;
                 }
@@ -237,6 +246,7 @@ impl<const D: usize> Runner<D> {
     ) -> Result<Result<State<D>, Failure>, CaseError> {
         let document = &self.plan.document;
         let mut stopped = false;
+        let mut residuals = Vec::new();
         let (action, figure) =
             if self.model.slides() { ("newton", "residual") } else { ("active set", "nodes_changed") };
         let mut report = |iteration: usize, residual: f64| {
@@ -248,6 +258,7 @@ impl<const D: usize> Runner<D> {
                 action,
                 figures: &[(figure, residual)],
             });
+            residuals.push(residual);
             stopped = progress.interrupted();
             !stopped
         };
@@ -269,7 +280,7 @@ impl<const D: usize> Runner<D> {
                     .error(place, format!("the bodies of `{contact}` start {depth:.4e} deep in each other"))
                     .help("move them apart; or does the normal of a rigid plane point into it, or `side` name the wrong side?"))
             }
-            Err(error) => Ok(Err(failure(&error))),
+            Err(error) => Ok(Err(Failure { residuals, ..failure(&error) })),
         }
     }
 
@@ -291,14 +302,12 @@ impl<const D: usize> Runner<D> {
             "equilibrium_residual": state.imbalance,
             "support_forces": {}, "load_forces": {}, "contacts": {}, "probes": {},
         });
-        // A support of several kinds is one for its reader.
+        // A support of several kinds is one for its reader; the axis is none.
         let mut supports: std::collections::BTreeMap<&str, Point<D>> = Default::default();
-        let mut seen = std::collections::HashSet::new();
         for (support, force) in self.plan.supports.iter().zip(&state.support_forces) {
-            if support.name == "axis" || !seen.insert((support.name.as_str(), support.body)) {
-                continue;
+            if support.name != "axis" {
+                *supports.entry(&support.name).or_insert_with(Point::<D>::zeros) += force;
             }
-            *supports.entry(&support.name).or_insert_with(Point::<D>::zeros) += force;
         }
         for (name, force) in supports {
             step["support_forces"][name] = json!(vector(&force));
@@ -549,34 +558,41 @@ fn flat_gap<const D: usize>(gap: impl Fn(&Point<3>) -> GapJet<3> + Sync + Send +
 }
 
 fn failure(error: &StepError) -> Failure {
-    match error {
-        StepError::Interrupted => Failure { reason: "interrupted", text: "interrupted".into() },
-        StepError::Free { body, motion } => Failure {
-            reason: "free_body",
-            text: format!(
+    let (reason, text) = match error {
+        StepError::Interrupted => ("interrupted", "interrupted".into()),
+        StepError::Free { body, motion } => (
+            "free_body",
+            format!(
                 "body `{body}` is free {motion}: neither its supports nor the contact found hold it; add a support, or a spring"
             ),
-        },
-        StepError::Solve(error) => Failure {
-            reason: "linear_solver",
-            text: format!("{error}; are all bodies held, and are their stiffnesses of one scale?"),
-        },
-        StepError::Support(_) | StepError::Deep { .. } | StepError::Shape { .. } | StepError::NitscheSlides { .. } => {
-            Failure { reason: "input", text: error.to_string() }
+        ),
+        StepError::PulledAway { body, direction } => (
+            "free_body",
+            format!(
+                "body `{body}` is pulled away {direction}: only contact holds it there, and contact does not pull; turn the \
+                 load round, or add a support, or a spring"
+            ),
+        ),
+        StepError::Solve(error) => {
+            ("linear_solver", format!("{error}; are all bodies held, and are their stiffnesses of one scale?"))
         }
-        StepError::Newton { history, place, .. } => Failure {
-            reason: "newton",
-            text: format!(
+        StepError::Support(_) | StepError::Deep { .. } | StepError::Shape { .. } | StepError::NitscheSlides { .. } => {
+            ("input", error.to_string())
+        }
+        StepError::Newton { history, place, .. } => (
+            "newton",
+            format!(
                 "{error}, worst at {place}; what was left after each: {}; try more increments, or a finer mesh there",
                 history.iter().map(|r| format!("{r:.1e}")).collect::<Vec<_>>().join(", ")
             ),
-        },
-        StepError::Contact { contact, error, places } => Failure {
-            reason: "contact",
-            text: format!(
+        ),
+        StepError::Contact { contact, error, places } => (
+            "contact",
+            format!(
                 "contact `{contact}`: {error}{}; try more increments, or a finer mesh there",
                 if places.is_empty() { String::new() } else { format!(" ({})", places.join(", ")) }
             ),
-        },
-    }
+        ),
+    };
+    Failure::new(reason, text)
 }

@@ -118,6 +118,159 @@ fn failures_say_what_happened() {
     assert!(found["verdict"].as_str().unwrap().contains("open"));
 }
 
+/// Two blocks on each other, without friction; `a` is guided at its left side only.
+const PAIR: &str = r#"
+space = "plane_strain"
+[bodies.a.solid]
+mesh.box = { min = [-2, 0], max = [2, 2], cells = [4, 2] }
+degree = 1
+material.linear_elastic = { youngs_modulus = 100, poissons_ratio = 0.3 }
+[bodies.b.solid]
+mesh.box = { min = [-3, -2], max = [3, 0], cells = [6, 2] }
+degree = 1
+material.linear_elastic = { youngs_modulus = 100, poissons_ratio = 0.3 }
+[supports.base]
+on = "b:bottom"
+displacement = [0, 0]
+[supports.guide]
+on = "a:left"
+normal = 0
+[loads.push]
+on = "a:top"
+pressure = "if(t > 1.5, -1, 1)"
+[contacts.touch]
+between = ["a:bottom", "b:top"]
+[[steps]]
+to = 2
+increments = 2
+[output]
+pictures = false
+"#;
+
+/// Contact does not pull: a body that its load pulls off is named, and what was found before stays.
+#[test]
+fn what_is_pulled_off_is_named() {
+    let on_a_plane = r#"
+space = "3d"
+[bodies.a.solid]
+mesh.box = { min = [-1,-1,0], max = [1,1,1], cells = [2,2,1] }
+degree = 1
+material.linear_elastic = { youngs_modulus = 100, poissons_ratio = 0.3 }
+[bodies.plate.rigid]
+shape.plane = { point = [0,0,0], normal = [0,0,1] }
+[supports.x]
+on = "a:left"
+normal = 0
+[supports.y]
+on = "a:front"
+normal = 0
+[loads.up]
+on = "a:top"
+force = [0, 0, "20*t - 21"]
+[contacts.touch]
+between = ["a:bottom", "plate"]
+[[steps]]
+to = 2
+increments = 2
+[output]
+pictures = false
+"#;
+    for (case, axis) in [(PAIR, "+y"), (on_a_plane, "+z")] {
+        for (degree, sliding) in [("1", "small"), ("2", "small"), ("3", "small"), ("2", "finite")] {
+            let case = case.replace("degree = 1", &format!("degree = {degree}"));
+            let case = case.replace("[[steps]]", &format!("sliding = \"{sliding}\"\n[[steps]]"));
+            let found = summary(&case, &set(&[]));
+            let verdict = found["verdict"].as_str().unwrap();
+            assert_eq!((&found["converged"], &found["reason"]), (&Value::from(false), &Value::from("free_body")));
+            assert!(verdict.contains(&format!("`a` is pulled away along {axis}")), "{degree} {sliding}: {verdict}");
+            assert_eq!(found["steps"][0]["converged"], true, "{degree} {sliding}");
+        }
+    }
+}
+
+/// A stack is well posed with any gaps and overlaps: every contact carries the pressure on top.
+#[test]
+fn a_stack_of_three_bodies_settles() {
+    let bodies = [("a", 1.0, 3), ("b", 2.0, 5), ("c", 5.0, 4)];
+    for (gap, degree) in [(1e-9, 2), (-1e-9, 1), (0.3, 1), (-1e-3, 2)] {
+        let mut case = String::from("space = \"plane_strain\"\n");
+        for (k, (name, modulus, cells)) in bodies.iter().enumerate() {
+            let below = k as f64 * (1.0 + gap);
+            case += &format!(
+                "[bodies.{name}.solid]\nmesh.box = {{ min = [0, {below:?}], max = [1, {:?}], cells = [{cells}, {cells}] }}\n\
+                 degree = {degree}\nmaterial.linear_elastic = {{ youngs_modulus = {modulus:?}, poissons_ratio = 0.3 }}\n\
+                 [supports.{name}]\non = \"{name}:left\"\nnormal = 0\n",
+                below + 1.0
+            );
+        }
+        case += "[supports.base]\non = \"a:bottom\"\nnormal = 0\n[loads.p]\non = \"c:top\"\npressure = 1e-3\n\
+                 [contacts.ab]\nbetween = [\"a:top\", \"b:bottom\"]\n[contacts.bc]\nbetween = [\"b:top\", \"c:bottom\"]\n\
+                 [output]\npictures = false\n";
+        let found = summary(&case, &set(&[]));
+        assert_eq!(found["converged"], true, "{gap}: {}", found["verdict"]);
+        for contact in ["ab", "bc"] {
+            for figure in ["max_pressure", "min_pressure"] {
+                let p = at(last_step(&found), &format!("/contacts/{contact}/{figure}"));
+                assert!((p / 1e-3 - 1.0).abs() < 1e-6, "{gap}, {contact}: {figure} {p}");
+            }
+        }
+    }
+}
+
+/// Supports that meet at an edge agree on it; all forces are counted once, and balance.
+#[test]
+fn supports_that_share_edges_agree() {
+    let case = |degree: usize, second: &str| {
+        format!(
+            r#"
+space = "3d"
+[bodies.b.solid]
+mesh.box = {{ min = [0,0,0], max = [1,1,1], cells = [2,2,2] }}
+degree = {degree}
+material.linear_elastic = {{ youngs_modulus = 1, poissons_ratio = 0.3 }}
+[bodies.p.rigid]
+shape.plane = {{ point = [0,0,0], normal = [0,0,1] }}
+[supports.first]
+on = "b:right"
+displacement = ["1e-3*y/(1 + z^2)", "1e-3*y/(1 + z^2)", "free"]
+[supports.second]
+{second}
+[supports.bed]
+on = "b:top"
+spring = [0.1, 0.2, 0.3]
+[loads.down]
+on = "b:top"
+pressure = 1e-2
+[contacts.c]
+between = ["b:bottom","p"]
+[output]
+pictures = false
+"#
+        )
+    };
+    for degree in [1, 2, 3] {
+        for second in [
+            "on = \"b:front\"\nnormal = 0",
+            "on = \"b:back\"\ndisplacement = [\"1e-3*y/(1 + z^2)\", \"1e-3*y/(1 + z^2)\", \"free\"]",
+        ] {
+            let found = summary(&case(degree, second), &set(&[]));
+            assert_eq!(found["converged"], true, "degree {degree}, {second}: {}", found["verdict"]);
+            let step = last_step(&found);
+            for axis in 0..3 {
+                let of = |kind: &str| {
+                    let list = step[kind].as_object().unwrap().values();
+                    list.map(|v| number(v.get("force").unwrap_or(v).get(axis).unwrap())).sum::<f64>()
+                };
+                let sum = of("support_forces") + of("load_forces") + of("contacts");
+                assert!(sum.abs() < 1e-13, "degree {degree}, {second}, axis {axis}: {sum:e}");
+            }
+        }
+    }
+    let contradiction = case(2, "on = \"b:back\"\ndisplacement = [\"1.001e-3*y/(1 + z^2)\", 0, 0]");
+    let told = error(&contradiction).message;
+    assert!(told.contains("prescribe different displacements"), "{told}");
+}
+
 fn at(step: &Value, place: &str) -> f64 {
     number(step.pointer(place).unwrap_or_else(|| panic!("{place} is not there")))
 }

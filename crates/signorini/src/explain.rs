@@ -51,7 +51,7 @@ pub const WORDS: [Word; 34] = [
     word(
         "free_body",
         "reason",
-        "A body can move without resistance in the way that is named: hold it, or press it into contact.",
+        "A body can move without resistance in the way that is named, or its load pulls it away: hold it, or press it into contact.",
     ),
     word("newton", "reason", "The iteration on large sliding did not end. Try smaller increments."),
     word(

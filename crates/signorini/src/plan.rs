@@ -30,7 +30,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-pub use domain::{Pieces, memory_estimate, mesh_multigrid_estimate, multigrid_estimate};
+pub use domain::{Pieces, memory_at_hand, memory_estimate, mesh_multigrid_estimate, multigrid_estimate};
 pub use history::{Control, PlannedIncrement};
 pub use surface::Contact;
 
@@ -967,7 +967,7 @@ impl<const D: usize> MembranePlan<D> {
     pub fn lacks_memory(&self) -> Option<String> {
         let unknowns = self.cells.function_count() as f64;
         let bytes = memory_estimate(unknowns, self.cells.degree(), D);
-        (bytes > domain::memory_at_hand()).then(|| {
+        (bytes > memory_at_hand()).then(|| {
             format!(
                 "multigrid did not find the state, and a factorisation of {unknowns:.1e} unknowns needs about {:.1} GiB: \
                  more than are free; try fewer cells first, to see what makes the state hard to find",

@@ -39,7 +39,8 @@ use std::path::Path;
 
 /// What a run of solids would have to do, after checking that their supports and contacts make sense.
 fn solid_sizes<const D: usize>(plan: &crate::plan::solid::SolidPlan<D>) -> Result<Value, CaseError> {
-    let model = solid::model(plan)?;
+    let mut model = solid::model(plan)?;
+    let cost = solid::cost(plan, &mut model)?;
     let free: Vec<String> = model
         .free_modes()
         .iter()
@@ -50,6 +51,8 @@ fn solid_sizes<const D: usize>(plan: &crate::plan::solid::SolidPlan<D>) -> Resul
         "bodies": plan.bodies.len(),
         "cells": plan.bodies.iter().map(|b| b.mesh.cell_count()).sum::<usize>(),
         "unknowns": model.unknowns(),
+        "memory_about": format!("{:.2} GiB", solid::memory(&cost) / f64::from(1u32 << 30)),
+        "factorisation_about": format!("{:.1} s", cost.operations / solid::OPERATIONS_PER_SECOND),
         "increments": plan.times.len(),
         "supports": plan.document.case.supports.len(),
         "loads": plan.loads.len(),

@@ -9,7 +9,7 @@ use crate::sliding::Settled;
 use crate::state::{Found, State};
 use crate::supports::{Displacement, Reduction, Support, SupportError};
 use signorini_contact::{ActiveSet, ActiveSetError, Compliance, ContactState, Softness, Spring, WeightedGap, compress};
-use signorini_solve::cholesky::Symbolic;
+use signorini_solve::cholesky::{Cost, Symbolic};
 use signorini_solve::dissection::nested_dissection;
 use signorini_solve::{Factor, SolveError, SymmetricMatrix};
 
@@ -149,6 +149,14 @@ impl<const D: usize> Model<D> {
     /// Motions that only contact can hold.
     pub fn free_modes(&self) -> &[FreeMode] {
         &self.free
+    }
+
+    /// What the factorisation takes, without doing it; nothing where it is done.
+    ///
+    /// # Errors
+    /// A structure that does not fit into memory.
+    pub fn cost(&mut self) -> Result<Cost, SolveError> {
+        self.reduced.as_ref().map_or(Ok(Cost { bytes: 0.0, operations: 0.0 }), |matrix| self.symbolic.cost(matrix))
     }
 
     /// Number of unknowns that are solved for.

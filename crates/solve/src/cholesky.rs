@@ -8,7 +8,8 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltError;
 use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
@@ -35,7 +36,19 @@ const RESIDUAL: f64 = 1e-10;
 pub struct Symbolic {
     /// The order of elimination where it is given.
     order: Option<Vec<usize>>,
-    cached: Option<Arc<(Vec<usize>, Vec<usize>, SymbolicCholesky<usize>)>>,
+    cached: Option<Analysis>,
+}
+
+/// Column starts and rows of a matrix, and the structure of its factor.
+type Analysis = Arc<(Vec<usize>, Vec<usize>, SymbolicCholesky<usize>)>;
+
+/// What a factorisation takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// Memory of the factor.
+    pub bytes: f64,
+    /// Multiplications, each with an addition.
+    pub operations: f64,
 }
 
 impl Symbolic {
@@ -45,31 +58,52 @@ impl Symbolic {
         Symbolic { order: Some(order), cached: None }
     }
 
+    /// What a factorisation would take, from the structure of the factor.
+    pub fn cost(&mut self, a: &SymmetricMatrix) -> Result<Cost, SolveError> {
+        let analysis = self.analyse(a)?;
+        let squares = |rows: usize, columns: usize| (0..columns).map(|k| ((rows - k) as f64).powi(2)).sum::<f64>();
+        let operations = match analysis.2.raw() {
+            SymbolicCholeskyRaw::Simplicial(factor) => {
+                factor.col_ptr().windows(2).map(|w| squares(w[1] - w[0], 1)).sum()
+            }
+            SymbolicCholeskyRaw::Supernodal(factor) => (factor.supernode_begin().iter())
+                .zip(factor.supernode_end())
+                .zip(factor.col_ptr_for_row_idx().windows(2))
+                .map(|((begin, end), below)| squares(end - begin + below[1] - below[0], end - begin))
+                .sum::<f64>(),
+        };
+        Ok(Cost { bytes: 8.0 * analysis.2.len_val() as f64, operations })
+    }
+
+    fn analyse(&mut self, a: &SymmetricMatrix) -> Result<Analysis, SolveError> {
+        let size = a.size();
+        let pattern = SymbolicSparseColMatRef::new_checked(size, size, &a.column_start, None, &a.row);
+        let reusable = self.cached.as_ref().filter(|c| c.0 == a.column_start && c.1 == a.row);
+        if let Some(analysis) = reusable {
+            return Ok(analysis.clone());
+        }
+        let places = self.order.as_ref().filter(|o| o.len() == size).map(|order| {
+            let mut place = vec![0; size];
+            order.iter().enumerate().for_each(|(new, &old)| place[old] = new);
+            (order, place)
+        });
+        let ordering = match &places {
+            Some((order, place)) => SymmetricOrdering::Custom(PermRef::new_checked(order, place, size)),
+            None => SymmetricOrdering::Amd,
+        };
+        let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, ordering, CholeskySymbolicParams::default())
+            .map_err(|_| SolveError::OutOfMemory { size })?;
+        let analysis = Arc::new((a.column_start.clone(), a.row.clone(), symbolic));
+        self.cached = Some(analysis.clone());
+        Ok(analysis)
+    }
+
     /// Factorises a matrix `A = L Lᵀ`, which is kept for the residuals.
     pub fn factor(&mut self, a: SymmetricMatrix) -> Result<Factor, SolveError> {
         let size = a.size();
         let out_of_memory = |_| SolveError::OutOfMemory { size };
+        let analysis = self.analyse(&a)?;
         let pattern = SymbolicSparseColMatRef::new_checked(size, size, &a.column_start, None, &a.row);
-        let reusable = self.cached.as_ref().filter(|c| c.0 == a.column_start && c.1 == a.row);
-        let analysis = match reusable {
-            Some(analysis) => analysis.clone(),
-            None => {
-                let places = self.order.as_ref().filter(|o| o.len() == size).map(|order| {
-                    let mut place = vec![0; size];
-                    order.iter().enumerate().for_each(|(new, &old)| place[old] = new);
-                    (order, place)
-                });
-                let ordering = match &places {
-                    Some((order, place)) => SymmetricOrdering::Custom(PermRef::new_checked(order, place, size)),
-                    None => SymmetricOrdering::Amd,
-                };
-                let symbolic =
-                    factorize_symbolic_cholesky(pattern, Side::Lower, ordering, CholeskySymbolicParams::default())
-                        .map_err(|_| SolveError::OutOfMemory { size })?;
-                Arc::new((a.column_start.clone(), a.row.clone(), symbolic))
-            }
-        };
-        self.cached = Some(analysis.clone());
         let symbolic = &analysis.2;
         let mut values = Vec::new();
         values.try_reserve_exact(symbolic.len_val()).map_err(|_| SolveError::OutOfMemory { size })?;
@@ -94,7 +128,7 @@ impl Symbolic {
 /// A factorised matrix, with the matrix itself for residuals.
 pub struct Factor {
     matrix: SymmetricMatrix,
-    analysis: Arc<(Vec<usize>, Vec<usize>, SymbolicCholesky<usize>)>,
+    analysis: Analysis,
     values: Vec<f64>,
 }
 
@@ -256,6 +290,20 @@ mod tests {
                 assert_eq!(solved(40 - count, count), alone[n * (40 - count)..], "the last {count}");
             }
         }
+    }
+
+    #[test]
+    fn the_cost_is_that_of_the_factor() {
+        // Full: every column has all entries below it.
+        let n = 6;
+        let full = SymmetricMatrix::from_columns(n, |j, out| out.extend((j..n).map(|i| (i, f64::from(i == j)))));
+        let cost = Symbolic::default().cost(&full).unwrap();
+        assert!(cost.bytes >= 8.0 * 21.0 && cost.bytes <= 8.0 * 36.0, "{cost:?}");
+        assert_eq!(cost.operations, (1..=6).map(|k| f64::from(k * k)).sum::<f64>());
+        // A grid in two dimensions by minimum degree: about n^1.5 operations for n unknowns.
+        let [small, large] = [20, 80].map(|n| Symbolic::default().cost(&laplacian(n)).unwrap().operations);
+        let order = (large / small).ln() / 16f64.ln();
+        assert!((1.2..1.8).contains(&order), "{order}");
     }
 
     #[test]

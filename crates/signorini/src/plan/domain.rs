@@ -272,7 +272,7 @@ pub fn mesh_multigrid_estimate(unknowns: f64, degree: usize) -> f64 {
 }
 
 /// Memory that a solve may take at most.
-pub(super) fn memory_at_hand() -> f64 {
+pub fn memory_at_hand() -> f64 {
     MEMORY_SHARE * free_memory()
 }
 

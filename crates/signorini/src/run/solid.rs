@@ -7,8 +7,8 @@ use crate::case::statement::Space as Stated;
 use crate::case::value::Interpreted;
 use crate::output::solid_fields::{ContactDisplay, SolidDisplay, SolidFields};
 use crate::output::{Folder, OutputError, solid_pictures, tables, vtk};
-use crate::plan::Placed;
 use crate::plan::solid::{Opposite, SolidLoad, SolidPlan, evaluate};
+use crate::plan::{Placed, memory_at_hand};
 use serde_json::{Value, json};
 use signorini_contact::GapJet;
 use signorini_geometry::Point;
@@ -17,6 +17,7 @@ use signorini_solid::{
     Bodies, Circumstances, Contact, Load, LoadKind, Master, Memory, Method, Model, RigidGap, Sliding, Space, State,
     StepError, Support, SupportError, SupportKind, facing,
 };
+use signorini_solve::cholesky::Cost;
 use signorini_solve::{Iteration, Progress};
 use std::cell::RefCell;
 use std::path::Path;
@@ -58,7 +59,11 @@ pub fn run<const D: usize>(
     progress: &mut dyn Progress,
 ) -> Result<Outcome, RunError> {
     // Everything that can be checked is checked before the folder is touched.
-    let model = model(&plan)?;
+    let mut model = model(&plan)?;
+    let cost = cost(&plan, &mut model)?;
+    if memory(&cost) > memory_at_hand() {
+        return Err(too_large(&plan, model.unknowns(), &cost).into());
+    }
     if resumed {
         let found = SolidCheckpoint::read(folder, &plan.document.text).map_err(not_resumed)?;
         if !model.fits(&found.memory) || found.next >= plan.times.len() {
@@ -130,6 +135,31 @@ pub fn model<const D: usize>(plan: &SolidPlan<D>) -> Result<Model<D>, CaseError>
         };
         plan.document.error(place, error.to_string())
     })
+}
+
+/// Multiplications with additions that a factorisation does in a second on one core, about: `check` tells a time by it.
+pub(super) const OPERATIONS_PER_SECOND: f64 = 5e9;
+
+/// What the factorisation of a model takes.
+pub(super) fn cost<const D: usize>(plan: &SolidPlan<D>, model: &mut Model<D>) -> Result<Cost, CaseError> {
+    model.cost().map_err(|error| plan.document.error(plan.document.case.space.span(), error.to_string()))
+}
+
+/// The memory of a run, about: the factor and, of about half its size at most, matrices and results.
+pub(super) fn memory(cost: &Cost) -> f64 {
+    1.5 * cost.bytes
+}
+
+fn too_large<const D: usize>(plan: &SolidPlan<D>, unknowns: usize, cost: &Cost) -> CaseError {
+    let gib = |bytes: f64| bytes / f64::from(1u32 << 30);
+    let message = format!(
+        "{unknowns} unknowns need about {:.1} GiB, and {:.1} GiB are free for them",
+        gib(memory(cost)),
+        gib(memory_at_hand())
+    );
+    plan.document
+        .error(plan.document.case.space.span(), message)
+        .help("fewer cells, a lower degree, symmetry, or cells graded towards the contact")
 }
 
 impl<const D: usize> Runner<D> {

@@ -1,5 +1,6 @@
 //! Progress on the terminal, and the key that interrupts.
 
+use crate::console::tell;
 use indicatif::{ProgressBar, ProgressStyle};
 use signorini::run::{Iteration, Progress};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -67,7 +68,7 @@ fn stop_flag() -> Arc<AtomicBool> {
             if handler.swap(true, Ordering::SeqCst) {
                 std::process::exit(130);
             }
-            eprintln!("stopping after this iteration; what is done stays on disk");
+            tell!("stopping after this iteration; what is done stays on disk");
         });
         flag
     })
@@ -93,7 +94,7 @@ impl Progress for Bar {
         );
         // Where no bar can be drawn, a line now and then says that work goes on.
         if self.bar.is_hidden() && !self.json && self.spoke.elapsed().as_secs() >= 10 {
-            eprintln!("[{:.0} s] {line}", self.started.elapsed().as_secs_f64());
+            tell!("[{:.0} s] {line}", self.started.elapsed().as_secs_f64());
             self.spoke = std::time::Instant::now();
         }
         self.bar.set_message(line);

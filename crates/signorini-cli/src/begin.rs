@@ -1,6 +1,7 @@
 //! What helps to begin: templates, explanations, the schema, problems with known answers.
 
-use crate::commands::{DONE, NOT_CONVERGED, WRONG_INPUT, report, unknown_example};
+use crate::commands::{DONE, INTERRUPTED, NOT_CONVERGED, WRONG_INPUT, report, unknown_example};
+use crate::console::{self, say, tell};
 use serde_json::{Value, json};
 use signorini::case::{CaseError, schema};
 use signorini::explain::{WORDS, explain as explanation};
@@ -31,9 +32,9 @@ pub fn new(template: &str, folder: Option<PathBuf>, json: bool) -> u8 {
     }
     let path = folder.join("case.toml");
     if json {
-        println!("{}", json!({"case": path.display().to_string()}));
+        say!("{}", json!({"case": path.display().to_string()}));
     } else {
-        println!("{}\n\nRun it with  signorini run {}", path.display(), path.display());
+        say!("{}\n\nRun it with  signorini run {}", path.display(), path.display());
     }
     DONE
 }
@@ -47,9 +48,9 @@ fn write_all(folder: &Path, files: &[(String, String)]) -> std::io::Result<()> {
 pub fn explain(word: Option<&str>, json: bool) -> u8 {
     let Some(word) = word else {
         for w in &WORDS {
-            println!("{:22} {}", w.word, w.kind);
+            say!("{:22} {}", w.word, w.kind);
         }
-        println!(
+        say!(
             "\nAnd every key of the case file: signorini explain contacts.method  (all of them: signorini schema --markdown)"
         );
         return DONE;
@@ -58,9 +59,9 @@ pub fn explain(word: Option<&str>, json: bool) -> u8 {
         Err(error) => report(&error, json),
         Ok(text) => {
             if json {
-                println!("{}", json!({"explanation": text}));
+                say!("{}", json!({"explanation": text}));
             } else {
-                print!("{text}");
+                console::print(format_args!("{text}"));
             }
             DONE
         }
@@ -72,7 +73,8 @@ fn schema_text() -> String {
 }
 
 pub fn schema(markdown: bool) -> u8 {
-    print!("{}", if markdown { schema::markdown() } else { schema_text() });
+    let text = if markdown { schema::markdown() } else { schema_text() };
+    console::print(format_args!("{text}"));
     DONE
 }
 
@@ -80,27 +82,27 @@ pub fn schema(markdown: bool) -> u8 {
 pub fn reproduce(names: &[String], folder: &Path) -> u8 {
     if names.is_empty() {
         for figure in &FIGURES {
-            println!("{:18} {}", figure.name, figure.about);
+            say!("{:18} {}", figure.name, figure.about);
         }
-        println!("\nsignorini reproduce NAME computes one of them, signorini reproduce all computes all.");
+        say!("\nsignorini reproduce NAME computes one of them, signorini reproduce all computes all.");
         return DONE;
     }
     let all = names.iter().any(|n| n == "all");
     if let Some(unknown) = names.iter().find(|n| *n != "all" && FIGURES.iter().all(|f| f.name != **n)) {
         let names: Vec<&str> = FIGURES.iter().map(|f| f.name).collect();
-        eprintln!("there is no figure `{unknown}`; there are {} and all", names.join(", "));
+        tell!("there is no figure `{unknown}`; there are {} and all", names.join(", "));
         return WRONG_INPUT;
     }
     for figure in FIGURES.iter().filter(|f| all || names.iter().any(|n| n == f.name)) {
         match reproduced(figure, folder) {
-            Ok(text) => println!("{text}"),
+            Ok(text) => say!("{text}"),
             Err(why) => {
-                eprintln!("{}: {why}", figure.name);
+                tell!("{}: {why}", figure.name);
                 return NOT_CONVERGED;
             }
         }
     }
-    println!("Pages and pictures are in {}.", folder.display());
+    say!("Pages and pictures are in {}.", folder.display());
     DONE
 }
 
@@ -109,9 +111,13 @@ pub fn verify(json: bool) -> u8 {
     let mut wrong = 0;
     let mut list: Vec<Value> = Vec::new();
     if !json {
-        println!("{:58} {:>14} {:>14} {:>9} {:>9}", "problem", "found", "exact", "error", "allowed");
+        say!("{:58} {:>14} {:>14} {:>9} {:>9}", "problem", "found", "exact", "error", "allowed");
     }
     for problem in &PROBLEMS {
+        // Nobody is left to tell it, and nothing but the table comes of it.
+        if console::ended() {
+            return INTERRUPTED;
+        }
         let folder = std::env::temp_dir().join(format!("signorini-verify-{}", std::process::id()));
         let result = verified(problem, &folder);
         // What cannot be removed stays in the folder for temporary files.
@@ -125,9 +131,13 @@ pub fn verify(json: bool) -> u8 {
                 }));
                 if !json {
                     let mark = if v.holds() { "" } else { "  WRONG" };
-                    println!(
+                    say!(
                         "{:58} {:>14.8} {:>14.8} {:>9.1e} {:>9.1e}{mark}",
-                        v.name, v.found, v.exact, v.error, v.allowed
+                        v.name,
+                        v.found,
+                        v.exact,
+                        v.error,
+                        v.allowed
                     );
                 }
             }
@@ -135,17 +145,17 @@ pub fn verify(json: bool) -> u8 {
                 wrong += 1;
                 list.push(json!({"problem": problem.name, "holds": false, "error": why}));
                 if !json {
-                    println!("{:58} {why}", problem.name);
+                    say!("{:58} {why}", problem.name);
                 }
             }
         }
     }
     if json {
-        println!("{}", Value::from(list));
+        say!("{}", Value::from(list));
     } else if wrong == 0 {
-        println!("\nAll {} hold.", PROBLEMS.len());
+        say!("\nAll {} hold.", PROBLEMS.len());
     } else {
-        println!("\n{wrong} of {} do not hold.", PROBLEMS.len());
+        say!("\n{wrong} of {} do not hold.", PROBLEMS.len());
     }
     if wrong == 0 { DONE } else { NOT_CONVERGED }
 }

@@ -1,6 +1,7 @@
 //! What the commands do. Each returns the exit status.
 
 use crate::bar::{Bar, Counter};
+use crate::console::{self, say, tell};
 use serde_json::{Value, json};
 use signorini::case::{CaseError, Document, override_key};
 use signorini::fit::fit;
@@ -16,7 +17,7 @@ use std::path::{Path, PathBuf};
 pub const DONE: u8 = 0;
 pub const WRONG_INPUT: u8 = 1;
 pub const NOT_CONVERGED: u8 = 2;
-const INTERRUPTED: u8 = 130;
+pub const INTERRUPTED: u8 = 130;
 
 pub fn run_file(case: &Path, output: Option<PathBuf>, set: &[String], resumed: bool, json: bool) -> u8 {
     let (name, text) = match read(case) {
@@ -37,16 +38,13 @@ pub fn fit_file(case: &Path, output: Option<PathBuf>, set: &[String], json: bool
         Err(RunError::Output(error)) => report(&output_error(&error), json),
         Ok(fitted) => {
             if json {
-                println!("{}", fitted.summary);
+                say!("{}", fitted.summary);
             } else {
                 for warning in fitted.summary["warnings"].as_array().into_iter().flatten() {
-                    println!("warning: {}", warning.as_str().unwrap_or(""));
+                    say!("warning: {}", warning.as_str().unwrap_or(""));
                 }
-                println!("{}", fitted.summary["verdict"].as_str().unwrap_or(""));
-                println!(
-                    "\nResults in {}: open pictures/fit.png; numbers in summary.json and fit.csv.",
-                    folder.display()
-                );
+                say!("{}", fitted.summary["verdict"].as_str().unwrap_or(""));
+                say!("\nResults in {}: open pictures/fit.png; numbers in summary.json and fit.csv.", folder.display());
             }
             if fitted.converged { DONE } else { NOT_CONVERGED }
         }
@@ -79,9 +77,9 @@ pub fn run_example(name: &str, output: Option<PathBuf>, set: &[String], json: bo
 pub fn show_example(name: &str, json: bool) -> u8 {
     match find(name) {
         Some(example) if json => {
-            println!("{}", json!({"name": example.name, "about": example.about, "case": example.case}))
+            say!("{}", json!({"name": example.name, "about": example.about, "case": example.case}))
         }
-        Some(example) => print!("{}", example.case),
+        Some(example) => console::print(format_args!("{}", example.case)),
         None => return report(&unknown_example(name), json),
     }
     DONE
@@ -90,13 +88,13 @@ pub fn show_example(name: &str, json: bool) -> u8 {
 pub fn gallery(json: bool) -> u8 {
     if json {
         let list: Vec<Value> = all().map(|e| json!({"name": e.name, "about": e.about})).collect();
-        println!("{}", Value::from(list));
+        say!("{}", Value::from(list));
         return DONE;
     }
     for example in all() {
-        println!("{:14} {}", example.name, example.about);
+        say!("{:14} {}", example.name, example.about);
     }
-    println!("\nRun one with  signorini gallery run NAME");
+    say!("\nRun one with  signorini gallery run NAME");
     DONE
 }
 
@@ -109,9 +107,9 @@ pub fn check(case: &Path, set: &[String], picture: Option<&Path>, json: bool) ->
             Ok(scene) => {
                 let sizes = json!({"bodies": scene.bodies.len(), "frames": scene.times.len()});
                 if json {
-                    println!("{sizes}")
+                    say!("{sizes}")
                 } else {
-                    println!("{name}: the scene is right: {} frames.", scene.times.len())
+                    say!("{name}: the scene is right: {} frames.", scene.times.len())
                 }
                 DONE
             }
@@ -135,21 +133,21 @@ pub fn check(case: &Path, set: &[String], picture: Option<&Path>, json: bool) ->
         Err(error) => report(&error, json),
         Ok((document, sizes)) => {
             if json {
-                println!("{sizes}");
+                say!("{sizes}");
             } else {
-                println!("{}: the case is right.", document.name);
+                say!("{}: the case is right.", document.name);
                 for (key, value) in sizes.as_object().into_iter().flatten() {
                     match value {
                         Value::Array(list) if list.is_empty() => {}
                         Value::Array(list) => {
-                            println!("  {}", key.replace('_', " "));
-                            list.iter().for_each(|v| println!("    {}", echo(v)));
+                            say!("  {}", key.replace('_', " "));
+                            list.iter().for_each(|v| say!("    {}", echo(v)));
                         }
-                        value => println!("  {:22} {}", key.replace('_', " "), value.to_string().trim_matches('"')),
+                        value => say!("  {:22} {}", key.replace('_', " "), value.to_string().trim_matches('"')),
                     }
                 }
                 if let Some(file) = picture {
-                    println!("Picture in {}.", file.display());
+                    say!("Picture in {}.", file.display());
                 }
             }
             DONE
@@ -198,18 +196,18 @@ fn execute_scene(name: &str, text: &str, folder: &Path, set: &[String], json: bo
         Err(SceneError::Case(error)) => report(&error, json),
         Err(SceneError::Output(error)) => report(&output_error(&error), json),
         Ok(summary) if json => {
-            println!("{summary}");
+            say!("{summary}");
             DONE
         }
         Ok(summary) => {
-            println!("{}: {} frames", scene.title, summary["frames"]);
+            say!("{}: {} frames", scene.title, summary["frames"]);
             for (kind, count) in summary["contact_pair_kinds"].as_object().into_iter().flatten() {
-                println!("  {kind:18} the contact in {count} frames");
+                say!("  {kind:18} the contact in {count} frames");
             }
             let closest = &summary["closest"];
             let text = |key: &str| closest["pair"][key].as_str().unwrap_or_default().to_string();
-            println!("closest at t = {}: {} to {}, gap {}", closest["time"], text("a"), text("b"), closest["gap"]);
-            println!(
+            say!("closest at t = {}: {} to {}, gap {}", closest["time"], text("a"), text("b"), closest["gap"]);
+            say!(
                 "\nResults in {}: open pictures/scene.png (animated) in a browser, bodies.pvd and pairs.pvd in ParaView; numbers in pairs.csv.",
                 folder.display()
             );
@@ -227,9 +225,9 @@ pub fn closest(queries: &Path, output: &Path, local_minima: bool, json: bool) ->
         Ok(report) => report,
         Err(error) => {
             if json {
-                println!("{}", json!({"error": error.to_string()}));
+                say!("{}", json!({"error": error.to_string()}));
             } else {
-                eprintln!("error: {error}");
+                tell!("error: {error}");
             }
             return WRONG_INPUT;
         }
@@ -247,22 +245,24 @@ pub fn closest(queries: &Path, output: &Path, local_minima: bool, json: bool) ->
             "slowest": slowest.map(|(id, ms)| json!({"id": id, "milliseconds": ms})),
             "answers": output.display().to_string(),
         });
-        println!("{summary}");
+        say!("{summary}");
     } else {
         for error in &report.wrong {
-            eprintln!("error: {error}");
+            tell!("error: {error}");
         }
         if report.wrong_count > report.wrong.len() {
-            eprintln!("error: {} more, each with its reason in the answers", report.wrong_count - report.wrong.len());
+            tell!("error: {} more, each with its reason in the answers", report.wrong_count - report.wrong.len());
         }
-        println!(
+        say!(
             "{} queries in {seconds:.2} s, {} of them wrong, {} not unique",
-            report.answered, report.wrong_count, report.not_unique
+            report.answered,
+            report.wrong_count,
+            report.not_unique
         );
         if let Some((id, ms)) = slowest {
-            println!("slowest: {id}, {ms:.2} ms");
+            say!("slowest: {id}, {ms:.2} ms");
         }
-        println!("answers: {}", output.display());
+        say!("answers: {}", output.display());
     }
     match (counter.interrupted(), report.wrong_count) {
         (true, _) => INTERRUPTED,
@@ -291,11 +291,11 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], resumed: bool,
         Err(RunError::Output(error)) => report(&output_error(&error), json),
         Ok(outcome) => {
             if json {
-                println!("{}", outcome.summary);
+                say!("{}", outcome.summary);
             } else {
                 table(&outcome.summary);
                 let first = if is_membrane(&outcome.summary) { "deflection" } else { "deformed" };
-                println!(
+                say!(
                     "\nResults in {}: open pictures/{first}.png first, fields.pvd in ParaView; numbers in summary.json.",
                     folder.display()
                 );
@@ -311,23 +311,23 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], resumed: bool,
 
 /// The increments as a table, the warnings, and the verdict.
 fn table(summary: &Value) {
-    println!("{}\n", summary["case"].as_str().unwrap_or(""));
+    say!("{}\n", summary["case"].as_str().unwrap_or(""));
     if is_membrane(summary) {
         membrane_table(summary)
     } else {
         solid_table(summary)
     }
-    println!();
+    say!();
     for event in summary["events"].as_array().into_iter().flatten() {
         let number = |v: &Value| v.as_f64().map_or(String::new(), |v| format!("{v:.6}"));
         let at: Vec<String> = event["at"].as_array().into_iter().flatten().map(number).collect();
         let kind = event["kind"].as_str().unwrap_or("").replace('_', " ");
-        println!("t = {}: {kind} at ({})", number(&event["time"]), at.join(", "));
+        say!("t = {}: {kind} at ({})", number(&event["time"]), at.join(", "));
     }
     for warning in summary["warnings"].as_array().into_iter().flatten() {
-        println!("warning: {}", warning.as_str().unwrap_or(""));
+        say!("warning: {}", warning.as_str().unwrap_or(""));
     }
-    println!("{}", summary["verdict"].as_str().unwrap_or(""));
+    say!("{}", summary["verdict"].as_str().unwrap_or(""));
 }
 
 fn is_membrane(summary: &Value) -> bool {
@@ -336,9 +336,16 @@ fn is_membrane(summary: &Value) -> bool {
 
 /// One line per increment and contact.
 fn solid_table(summary: &Value) {
-    println!(
+    say!(
         "{:>9} {:>7}  {:14} {:>16} {:>14} {:>14} {:>6} {:>10}",
-        "t", "solves", "contact", "force", "area", "max pressure", "zones", "balance"
+        "t",
+        "solves",
+        "contact",
+        "force",
+        "area",
+        "max pressure",
+        "zones",
+        "balance"
     );
     for step in summary["steps"].as_array().into_iter().flatten() {
         let time = format!("{:.6}", step["time"].as_f64().unwrap_or(f64::NAN));
@@ -348,7 +355,7 @@ fn solid_table(summary: &Value) {
             let force = contact["force"]
                 .as_array()
                 .map(|f| f.iter().filter_map(Value::as_f64).map(|v| v * v).sum::<f64>().sqrt());
-            println!(
+            say!(
                 "{time:>9} {:>7}  {name:14} {:>16} {:>14} {:>14} {:>6} {balance:>10}",
                 solves(step),
                 number(force),
@@ -358,7 +365,7 @@ fn solid_table(summary: &Value) {
             );
         }
         if step["contacts"].as_object().is_none_or(|c| c.is_empty()) {
-            println!(
+            say!(
                 "{time:>9} {:>7}  {:14} {:>16} {:>14} {:>14} {:>6} {balance:>10}",
                 solves(step),
                 "-",
@@ -382,15 +389,12 @@ fn membrane_table(summary: &Value) {
     if summary["steps"].as_array().into_iter().flatten().any(several) {
         return solid_table(summary);
     }
-    println!(
-        "{:>9} {:>7} {:>16} {:>16} {:>6} {:>6} {:>10}",
-        "t", "solves", "area", "force", "zones", "holes", "balance"
-    );
+    say!("{:>9} {:>7} {:>16} {:>16} {:>6} {:>6} {:>10}", "t", "solves", "area", "force", "zones", "holes", "balance");
     let steps = summary["steps"].as_array().cloned().unwrap_or_default();
     for step in &steps {
         let contact = step["contacts"].as_object().and_then(|c| c.values().next()).cloned().unwrap_or(Value::Null);
         let number = |v: &Value| v.as_f64().map_or("-".to_string(), |v| format!("{v:.10}"));
-        println!(
+        say!(
             "{:>9} {:>7} {:>16} {:>16} {:>6} {:>6} {:>10}",
             format!("{:.6}", step["time"].as_f64().unwrap_or(f64::NAN)),
             solves(step),
@@ -431,9 +435,9 @@ pub fn report(error: &CaseError, json: bool) -> u8 {
             let (line, column) = p.line_and_column();
             json!({"file": p.name, "line": line, "column": column})
         });
-        println!("{}", json!({"error": error.message, "help": error.help, "place": place}));
+        say!("{}", json!({"error": error.message, "help": error.help, "place": place}));
     } else {
-        eprintln!("{:?}", miette::Report::new(error.clone()));
+        tell!("{:?}", miette::Report::new(error.clone()));
     }
     WRONG_INPUT
 }

@@ -1,10 +1,15 @@
 //! The `signorini` command.
 
+// What cannot be printed must not panic: see `console`.
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
 mod bar;
 mod begin;
 mod commands;
+mod console;
 
 use clap::{CommandFactory, Parser, Subcommand};
+use console::tell;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -19,8 +24,8 @@ const EXAMPLES: &str = "Examples:
   signorini new flat_disc                             a case of your own to begin with
   signorini explain iteration_limit                   what a word means, and what to do
 
-Exit status: 0 done, 1 the input is wrong, 2 not converged (results so far are on disk), 3 a fault of ours,
-130 interrupted.";
+Exit status: 0 done, 1 the input is wrong or the output cannot be written, 2 not converged (results so far are on disk),
+3 a fault of ours, 130 interrupted.";
 
 const CLOSEST_HELP: &str = r#"Example:
   echo '{"format": "cpp-corpus-1", "cases": [{"id": "first",
@@ -175,14 +180,18 @@ fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
-            let _ = error.print();
             // Asking for help is no error; a wrong command line is wrong input.
-            return ExitCode::from(u8::from(error.use_stderr()));
+            if error.use_stderr() {
+                let _ = error.print();
+                return ExitCode::from(commands::WRONG_INPUT);
+            }
+            console::note(error.print());
+            return ExitCode::from(console::finish(commands::DONE));
         }
     };
     let threads = arguments.threads.unwrap_or(0);
     if arguments.threads == Some(0) || threads > 1024 {
-        eprintln!("error: --threads {threads}: give a number from 1 to 1024");
+        tell!("error: --threads {threads}: give a number from 1 to 1024");
         return ExitCode::from(1);
     }
     // A pool that cannot be built leaves the default one.
@@ -199,8 +208,10 @@ fn main() -> ExitCode {
         Command::Verify => begin::verify(json),
         Command::Reproduce { names, output } => begin::reproduce(&names, &output),
         Command::Completions { shell } => {
-            clap_complete::generate(shell, &mut Arguments::command(), "signorini", &mut std::io::stdout());
-            0
+            let mut text = Vec::new();
+            clap_complete::generate(shell, &mut Arguments::command(), "signorini", &mut text);
+            console::print(format_args!("{}", String::from_utf8_lossy(&text)));
+            commands::DONE
         }
         Command::Gallery { action: None } => commands::gallery(json),
         Command::Gallery { action: Some(GalleryAction::Run { name, options }) } => {
@@ -209,9 +220,9 @@ fn main() -> ExitCode {
         Command::Gallery { action: Some(GalleryAction::Show { name }) } => commands::show_example(&name, json),
     });
     match result {
-        Ok(code) => ExitCode::from(code),
+        Ok(code) => ExitCode::from(console::finish(code)),
         Err(_) => {
-            eprintln!("signorini has a fault of its own: please report the case and the message above.");
+            tell!("signorini has a fault of its own: please report the case and the message above.");
             ExitCode::from(3)
         }
     }

@@ -7,6 +7,7 @@
 //! 2012). A node that is hardly covered gives its function to a neighbour.
 
 use crate::multiplier::PressureNodes;
+use crate::recovery::unpressed;
 use crate::segments::GapPoint;
 use crate::surface::ContactSurface;
 use nalgebra::DMatrix;
@@ -126,6 +127,29 @@ pub fn shares<const D: usize>(
         }
     }
     out
+}
+
+/// The nodes whose Lagrange functions have no integral, such as the vertices of quadratic triangles and, from degree 2, the
+/// nodes on an axis, and the folded ones: each with the nearest node that keeps its own.
+pub fn weightless<const D: usize>(
+    slave: &dyn ContactSurface<D>,
+    nodes: &PressureNodes<D>,
+    folded: &dyn Fn(u32) -> bool,
+) -> Vec<Given> {
+    let (mut whole, mut share_of_area) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
+    let mut at = Values::default();
+    for p in unpressed(slave, nodes) {
+        let own = nodes.of_face(p.face);
+        nodes.map(p.face).tabulate(&p.s, &mut at);
+        for ((node, _), v) in own.iter().zip(&at.value) {
+            whole[*node as usize] += p.area * v;
+            share_of_area[*node as usize] += p.area / own.len() as f64;
+        }
+    }
+    let weightless: Vec<bool> = whole.iter().zip(&share_of_area).map(|(w, a)| *w < WEIGHTLESS * a).collect();
+    let weak: Vec<bool> = (0..nodes.len()).map(|k| weightless[k] || folded(k as u32)).collect();
+    let pairs = fold(nodes, &weak, &vec![true; nodes.len()]);
+    pairs.into_iter().map(|[from, to]| Given { from, to, weightless: weightless[from as usize] }).collect()
 }
 
 /// The weighted gaps of all pressure nodes that the points cover, at rest.

@@ -6,9 +6,10 @@
 //! `-Σ p Δδg` beside the rows themselves.
 
 use crate::kinematics::Kinematics;
-use crate::mortar::{Shares, WeightedGap, compress};
+use crate::mortar::{Given, Shares, WeightedGap, compress};
 use crate::multiplier::PressureNodes;
 use crate::obstacle::Obstacle;
+use crate::recovery::unpressed;
 use crate::segments::GapPoint;
 use crate::surface::{ContactSurface, looks_at};
 use rayon::prelude::*;
@@ -44,25 +45,23 @@ pub struct Tests {
 }
 
 impl Tests {
-    /// One row for each pressure node, at the node, with the area of its Lagrange function.
-    pub fn at_nodes<const D: usize>(slave: &dyn ContactSurface<D>, nodes: &PressureNodes<D>) -> Self {
+    /// One row for each pressure node, at the node, with the area of its Lagrange function; none for the nodes given.
+    pub fn at_nodes<const D: usize>(slave: &dyn ContactSurface<D>, nodes: &PressureNodes<D>, given: &[Given]) -> Self {
         let mut weight = vec![0.0; nodes.len()];
         let mut place: Vec<Option<(usize, Local)>> = vec![None; nodes.len()];
         let mut at = signorini_fem::hierarchic::Values::default();
-        for face in 0..nodes.face_count() {
-            let map = nodes.map(face);
-            for (s, w) in rule(map.shape(), map.order() + 2) {
-                map.tabulate(&s, &mut at);
-                let point = slave.at(face, &s);
-                let w = w * point.area_normal().norm() * slave.measure(&point.x);
-                for ((node, _), v) in nodes.of_face(face).iter().zip(&at.value) {
-                    weight[*node as usize] += w * v;
-                }
+        for p in unpressed(slave, nodes) {
+            nodes.map(p.face).tabulate(&p.s, &mut at);
+            for ((node, _), v) in nodes.of_face(p.face).iter().zip(&at.value) {
+                weight[*node as usize] += p.area * v;
             }
-            for ((node, _), s) in nodes.of_face(face).iter().zip(map.nodes()) {
+        }
+        for face in 0..nodes.face_count() {
+            for ((node, _), s) in nodes.of_face(face).iter().zip(nodes.map(face).nodes()) {
                 place[*node as usize].get_or_insert((face, s));
             }
         }
+        given.iter().for_each(|g| weight[g.from as usize] = 0.0);
         let mut out = Tests::default();
         for (node, place) in place.into_iter().enumerate() {
             if let Some((face, s)) = place {
@@ -142,6 +141,11 @@ pub struct Measured {
 }
 
 impl Measured {
+    /// Whether a point of the tests met something.
+    pub fn meets(&self, point: usize) -> bool {
+        self.kinematics[point].is_some()
+    }
+
     /// The rows: weighted gaps and their derivatives; those that meet something, with their place in the list of the
     /// tests.
     pub fn rows(&self, tests: &Tests) -> Vec<(usize, WeightedGap)> {

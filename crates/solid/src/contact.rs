@@ -4,8 +4,8 @@ use crate::body::BodySurface;
 use crate::model::StepError;
 use crate::supports::Reduction;
 use signorini_contact::{
-    ContactSurface, Faces, GapJet, GapPoint, Given, Measured, Moved, Obstacle, PressureNodes, Rigid, Tests,
-    WeightedGap, looks_at, rigid_points, segments, shares, weighted_gaps,
+    ContactSurface, Faces, GapJet, GapPoint, Given, Measured, Moved, Obstacle, Pressed, PressureNodes, Rigid, Tests,
+    WeightedGap, looks_at, rigid_points, segments, shares, unpressed, weighted_gaps, weightless,
 };
 use signorini_fem::hierarchic::Values;
 use signorini_fem::{Local, Side};
@@ -97,10 +97,12 @@ pub struct Contact<const D: usize> {
     pub(crate) rows: Vec<WeightedGap>,
     /// Nodes that share the pressure of another.
     pub(crate) given: Vec<Given>,
+    /// Nodes whose Lagrange functions have no integral.
+    pub(crate) weightless: Vec<Given>,
     /// Normal and displacement function of the pressure nodes at vertices.
     vertex_nodes: HashMap<u32, (Point<D>, u32)>,
-    /// Points under test where there are some.
-    tests: Tests,
+    /// Points under test.
+    pub(crate) tests: Tests,
     /// Their gaps at the last configuration.
     measured: Option<Measured>,
     /// Face and coordinates of the rows that are points.
@@ -126,6 +128,7 @@ impl<const D: usize> Contact<D> {
                 }
             }
         }
+        let weightless = weightless(&slave, &nodes, &|_| false);
         let face_stiffness = (0..slave.sides.len()).map(|face| face_stiffness(&slave, face)).collect();
         Contact {
             name: name.to_string(),
@@ -138,6 +141,7 @@ impl<const D: usize> Contact<D> {
             points: Vec::new(),
             rows: Vec::new(),
             given: Vec::new(),
+            weightless,
             vertex_nodes,
             tests: Tests::default(),
             measured: None,
@@ -207,9 +211,12 @@ impl<const D: usize> Contact<D> {
             self.tests = Tests::in_the_mean(&self.points, &shares);
             self.given = shares.given;
         } else if self.method != Method::Mortar && self.tests.points.is_empty() {
-            self.tests = match self.method {
-                Method::GaussPoint => Tests::at_quadrature_points(&self.slave),
-                _ => Tests::at_nodes(&self.slave, &self.nodes),
+            (self.given, self.tests) = if self.method == Method::GaussPoint {
+                (self.weightless.clone(), Tests::at_quadrature_points(&self.slave))
+            } else {
+                let given = weightless(&self.slave, &self.nodes, &|k| self.is_folded(reduction, k));
+                let tests = Tests::at_nodes(&self.slave, &self.nodes, &given);
+                (given, tests)
             };
         }
         let faces;
@@ -313,7 +320,29 @@ impl<const D: usize> Contact<D> {
         }
         let shares = shares(&self.slave, &self.nodes, &self.points, &|node| self.is_folded(reduction, node));
         self.rows = weighted_gaps(&self.slave, self.master.surface(), &self.points, &shares);
+        self.tests = Tests::in_the_mean(&self.points, &shares);
         self.given = shares.given;
+    }
+
+    /// The points of the slave side with the forces on them, from the pressures of the rows.
+    pub(crate) fn pressed(&self, pressures: &[f64]) -> Vec<Pressed> {
+        let of_row: HashMap<u32, f64> = self.rows.iter().zip(pressures).map(|(row, p)| (row.node, *p)).collect();
+        let met = |k: usize| self.measured.as_ref().is_none_or(|m| m.meets(k));
+        let forces = (self.tests.points.iter().enumerate()).filter(|(k, _)| met(*k)).map(|(_, point)| {
+            let of = |row: u32| of_row.get(&self.tests.rows[row as usize].number).copied().unwrap_or(0.0);
+            let force = point.shares.iter().map(|(row, share)| share * of(*row)).sum();
+            // Nodes carry forces, but stand for no area of their own.
+            let area = if self.at_nodes() { 0.0 } else { point.shares.iter().map(|(_, share)| share).sum() };
+            Pressed { face: point.face, s: point.s, area, force }
+        });
+        let mut out = if self.at_nodes() { unpressed(&self.slave, &self.nodes) } else { Vec::new() };
+        out.extend(forces);
+        out
+    }
+
+    /// Whether every row is a node.
+    fn at_nodes(&self) -> bool {
+        self.method == Method::Node && !self.at_points()
     }
 
     /// Whether the displacement of a pressure node is prescribed along its normal: it cannot have a pressure then.
@@ -415,6 +444,7 @@ impl<const D: usize> Contact<D> {
                 carries[n] |= active[k] && *v > 0.1;
             }
         }
+        self.weightless.iter().for_each(|g| weight[g.from as usize] = 0.0);
         (0..count)
             .filter(|&n| weight[n] > 0.0)
             .map(|n| {

@@ -38,6 +38,8 @@ impl<const D: usize> Contact<D> {
         }
         self.rows = weighted_gaps(&self.slave, self.master.surface(), &self.points, &own);
         self.places = self.rows.iter().map(|row| places[row.node as usize]).collect();
+        self.tests = Tests::in_the_mean(&self.points, &own);
+        self.given = self.weightless.clone();
     }
 
     /// `1/c ∫ δσ σ` over all points, which the method adds to the stiffness; nothing with other enforcements. The points

@@ -1,6 +1,6 @@
 //! What one time came to: displacement, pressures, forces.
 
-use crate::contact::{Contact, ContactResult, Method, PressureNode};
+use crate::contact::{Contact, ContactResult, PressureNode};
 use crate::model::Model;
 use signorini_contact::recovered;
 use signorini_geometry::Point;
@@ -114,25 +114,19 @@ fn result<const D: usize>(
         result.nodes = contact.averaged(pressures, gaps, actives);
     }
     let count = contact.nodes.len();
-    let (mut multiplier, mut weight, mut active) = (vec![0.0; count], vec![0.0; count], vec![false; count]);
-    let mut weightless = vec![false; count];
+    let (mut multiplier, mut active) = (vec![0.0; count], vec![false; count]);
     for given in &contact.given {
         // A node may have given its function on to one that gave its own away.
         let Some(to) = result.nodes.iter().find(|n| n.number == given.to).copied() else { continue };
         let x = contact.nodes().positions[given.from as usize];
-        weightless[given.from as usize] = given.weightless;
         result.nodes.push(PressureNode { x, weight: 0.0, number: given.from, ..to });
     }
     for node in &result.nodes {
         let k = node.number as usize;
-        (multiplier[k], weight[k], active[k]) = (node.multiplier, node.weight, node.active);
+        (multiplier[k], active[k]) = (node.multiplier, node.active);
     }
-    let pressure = match contact.method {
-        Method::Mortar if !contact.at_points() => {
-            recovered(&contact.nodes, &contact.points, &multiplier, &weight, &active, &weightless)
-        }
-        _ => multiplier,
-    };
+    let points = contact.pressed(pressures);
+    let pressure = recovered(&contact.slave, &contact.nodes, &points, &multiplier, &active, &contact.given);
     result.nodes.iter_mut().for_each(|node| node.pressure = pressure[node.number as usize]);
     result
 }

@@ -54,7 +54,7 @@ impl<const D: usize> Scene<D> {
     fn tests(&self, method: Method, rigid: bool) -> Tests {
         let nodes = PressureNodes::new(&self.slave);
         match method {
-            Method::Node => Tests::at_nodes(&self.slave, &nodes),
+            Method::Node => Tests::at_nodes(&self.slave, &nodes, &[]),
             Method::GaussPoint => Tests::at_quadrature_points(&self.slave),
             Method::Mortar => {
                 let [slave, master] = [&self.slave, &self.master].map(|surface| Moved { surface, u: &self.u });

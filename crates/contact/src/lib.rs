@@ -10,7 +10,7 @@
 //! - [`points`]: the points under test, their rows, and the one assembler of residual and tangent.
 //! - [`active_set`]: which nodes carry.
 //! - [`balance`]: whether contact can hold free bodies against their loads.
-//! - [`recovery`]: the pressure as it is shown.
+//! - [`recovery`]: the pressure as it is shown; [`mod@zone`]: where the zone of contact ends.
 //!
 //! The gap is `(x_slave - x_master)·n` with the outward normal of the master, negative where the bodies penetrate; a
 //! pressure is positive.
@@ -25,6 +25,7 @@ pub mod points;
 pub mod recovery;
 pub mod segments;
 pub mod surface;
+pub mod zone;
 
 pub use active_set::{ActiveSet, ActiveSetError, Compliance, ContactState, Softness, Spring};
 pub use balance::unbalanced;
@@ -36,3 +37,4 @@ pub use points::{Measured, TestPoint, TestRow, Tests};
 pub use recovery::{Pressed, recovered, unpressed};
 pub use segments::{GapPoint, rigid_points, segments};
 pub use surface::{ContactSurface, FacePoint, Moved, looks_at};
+pub use zone::{ContactZone, NodeState, zone};

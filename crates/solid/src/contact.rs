@@ -3,9 +3,10 @@
 use crate::body::BodySurface;
 use crate::model::StepError;
 use crate::supports::Reduction;
+use nalgebra::{DMatrix, DVector};
 use signorini_contact::{
-    ContactSurface, Faces, GapJet, GapPoint, Given, Measured, Moved, Obstacle, Pressed, PressureNodes, Rigid, Tests,
-    WeightedGap, looks_at, rigid_points, segments, shares, unpressed, weighted_gaps, weightless,
+    ContactSurface, ContactZone, Faces, GapJet, GapPoint, Given, Measured, Moved, Obstacle, Pressed, PressureNodes,
+    Rigid, Tests, WeightedGap, looks_at, rigid_points, segments, shares, unpressed, weighted_gaps, weightless,
 };
 use signorini_fem::hierarchic::Values;
 use signorini_fem::{Local, Side};
@@ -409,8 +410,10 @@ pub struct ContactResult<const D: usize> {
     pub nodes: Vec<PressureNode<D>>,
     /// Force on the slave.
     pub force: Point<D>,
-    /// Area of the nodes in contact.
+    /// Area in contact.
     pub area: f64,
+    /// The same by face, and where it ends.
+    pub zone: ContactZone,
 }
 
 /// The state of a pressure node.
@@ -428,20 +431,38 @@ pub struct PressureNode<const D: usize> {
 }
 
 impl<const D: usize> Contact<D> {
-    /// Pressures and gaps of quadrature points as means over the pressure nodes.
+    /// Pressures of quadrature points as means over the pressure nodes, and their gaps at the nodes.
     pub(crate) fn averaged(&self, pressure: &[f64], gap: &[f64], active: &[bool]) -> Vec<PressureNode<D>> {
         let count = self.nodes.len();
-        let (mut weight, mut force, mut gaps, mut carries) =
-            (vec![0.0; count], vec![0.0; count], vec![0.0; count], vec![false; count]);
+        let (mut weight, mut force, mut gaps, mut area, mut carries) =
+            (vec![0.0; count], vec![0.0; count], vec![0.0; count], vec![0.0; count], vec![false; count]);
         let mut at = Values::default();
-        for (k, (face, s)) in self.places.iter().enumerate() {
-            self.nodes.map(*face).tabulate(s, &mut at);
-            for ((node, _), v) in self.nodes.of_face(*face).iter().zip(&at.value) {
-                let (n, w) = (*node as usize, v * self.rows[k].weight);
-                weight[n] += w;
-                force[n] += w * pressure[k];
-                gaps[n] += v * gap[k];
-                carries[n] |= active[k] && *v > 0.1;
+        let mut of_face: Vec<Vec<usize>> = vec![Vec::new(); self.nodes.face_count()];
+        self.places.iter().enumerate().for_each(|(k, (face, _))| of_face[*face].push(k));
+        for (face, list) in of_face.iter().enumerate().filter(|(_, list)| !list.is_empty()) {
+            let own = self.nodes.of_face(face);
+            let mut functions = DMatrix::<f64>::zeros(own.len(), list.len());
+            for (q, &k) in list.iter().enumerate() {
+                self.nodes.map(face).tabulate(&self.places[k].1, &mut at);
+                for (i, ((node, _), v)) in own.iter().zip(&at.value).enumerate() {
+                    let (n, w) = (*node as usize, v * self.rows[k].weight);
+                    functions[(i, q)] = *v;
+                    weight[n] += w;
+                    force[n] += w * pressure[k];
+                    carries[n] |= active[k] && *v > 0.1;
+                }
+            }
+            // The polynomial through the gaps of the face; where a few points do not make one, their mean.
+            let whole: f64 = list.iter().map(|&k| self.rows[k].weight).sum();
+            let mut weighted = functions.clone();
+            (list.iter().enumerate()).for_each(|(q, &k)| weighted.column_mut(q).scale_mut(self.rows[k].weight));
+            let measured = DVector::from_iterator(list.len(), list.iter().map(|&k| gap[k] / self.rows[k].weight));
+            let factor = (&weighted * functions.transpose()).cholesky().filter(|_| list.len() >= own.len());
+            let mean = list.iter().map(|&k| gap[k]).sum::<f64>() / whole;
+            let values = factor.map_or(DVector::repeat(own.len(), mean), |f| f.solve(&(&weighted * measured)));
+            for ((node, _), value) in own.iter().zip(values.iter()) {
+                area[*node as usize] += whole;
+                gaps[*node as usize] += whole * value;
             }
         }
         self.weightless.iter().for_each(|g| weight[g.from as usize] = 0.0);
@@ -453,7 +474,7 @@ impl<const D: usize> Contact<D> {
                     x: self.nodes.positions[n],
                     multiplier: mean,
                     pressure: mean,
-                    gap: gaps[n] / weight[n],
+                    gap: gaps[n] / area[n],
                     active: carries[n],
                     weight: weight[n],
                     number: n as u32,

@@ -2,7 +2,7 @@
 
 use crate::contact::{Contact, ContactResult, PressureNode};
 use crate::model::Model;
-use signorini_contact::recovered;
+use signorini_contact::{ContactZone, NodeState, recovered, zone};
 use signorini_geometry::Point;
 
 /// The solution at one time.
@@ -87,14 +87,12 @@ fn result<const D: usize>(
     actives: &[bool],
     contact_force: &mut [f64],
 ) -> ContactResult<D> {
-    let mut result = ContactResult::<D> { nodes: Vec::new(), force: Point::<D>::zeros(), area: 0.0 };
+    let mut result =
+        ContactResult::<D> { nodes: Vec::new(), force: Point::<D>::zeros(), area: 0.0, zone: ContactZone::default() };
     let mut own = vec![0.0; contact_force.len()];
     for (k, row) in contact.rows.iter().enumerate() {
         for (unknown, c) in row.push() {
             own[*unknown as usize] += c * pressures[k];
-        }
-        if actives[k] {
-            result.area += row.weight;
         }
         if !contact.at_points() {
             result.nodes.push(PressureNode {
@@ -115,10 +113,14 @@ fn result<const D: usize>(
     }
     let count = contact.nodes.len();
     let (mut multiplier, mut active) = (vec![0.0; count], vec![false; count]);
+    let mut states = vec![NodeState::Bare; count];
+    let state_of = |n: &PressureNode<D>, gap| if n.active { NodeState::Active } else { NodeState::Open(gap) };
+    result.nodes.iter().for_each(|n| states[n.number as usize] = state_of(n, Some(n.gap)));
     for given in &contact.given {
         // A node may have given its function on to one that gave its own away.
         let Some(to) = result.nodes.iter().find(|n| n.number == given.to).copied() else { continue };
         let x = contact.nodes().positions[given.from as usize];
+        states[given.from as usize] = state_of(&to, None);
         result.nodes.push(PressureNode { x, weight: 0.0, number: given.from, ..to });
     }
     for node in &result.nodes {
@@ -127,6 +129,8 @@ fn result<const D: usize>(
     }
     let points = contact.pressed(pressures);
     let pressure = recovered(&contact.slave, &contact.nodes, &points, &multiplier, &active, &contact.given);
+    result.zone = zone(&contact.slave, &contact.nodes, &points, &states);
+    result.area = result.zone.face_area.iter().sum();
     result.nodes.iter_mut().for_each(|node| node.pressure = pressure[node.number as usize]);
     result
 }

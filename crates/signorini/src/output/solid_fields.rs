@@ -242,6 +242,14 @@ pub struct ContactDisplay<const D: usize> {
     pub gap: Vec<f64>,
     pub active: Vec<bool>,
     pub faces: Vec<Vec<u32>>,
+    /// The face of the slave side that each of `faces` is a part of.
+    of_face: Vec<usize>,
+    /// Area in contact of every face of the slave side.
+    face_area: Vec<f64>,
+    /// Where the zone ends, displaced: points in the plane, given twice, and pieces of outlines in space.
+    pub boundary: Vec<[Point<D>; 2]>,
+    /// In the plane, the intervals in contact, displaced.
+    pub intervals: Vec<[Point<D>; 2]>,
 }
 
 impl<const D: usize> ContactDisplay<D> {
@@ -255,6 +263,10 @@ impl<const D: usize> ContactDisplay<D> {
             gap: vec![f64::NAN; count],
             active: vec![false; count],
             faces: Vec::new(),
+            of_face: Vec::new(),
+            face_area: state.contacts[number].zone.face_area.clone(),
+            boundary: Vec::new(),
+            intervals: Vec::new(),
         };
         for node in &state.contacts[number].nodes {
             let k = node.number as usize;
@@ -278,10 +290,22 @@ impl<const D: usize> ContactDisplay<D> {
                 CellShape::Triangle => vec![vec![0, 1, 2]],
                 _ => lattice(shape, degree).1.into_iter().map(|p| p.1).collect(),
             };
+            display.of_face.extend(std::iter::repeat_n(face, parts.len()));
             display
                 .faces
                 .extend(parts.into_iter().map(|p| p.iter().map(|&k| list[k as usize].0).collect::<Vec<u32>>()));
         }
+        let mut displaced = |(face, ends): &(usize, [Local; 2])| {
+            ends.map(|s| {
+                trace.clear();
+                contact.slave.trace(*face, &s, &mut trace);
+                let moved = trace.iter().map(|(f, v)| Point::<D>::from_fn(|i, _| v * state.u[*f as usize + i]));
+                contact.slave.at(*face, &s).x + moved.sum::<Point<D>>()
+            })
+        };
+        let zone = &state.contacts[number].zone;
+        display.boundary = zone.boundary.iter().map(&mut displaced).collect();
+        display.intervals = zone.intervals.iter().map(&mut displaced).collect();
         // Nodes without a gap of their own, such as those on a support, take that of a neighbour.
         for face in &display.faces {
             let known = face.iter().map(|&k| display.gap[k as usize]).find(|g| g.is_finite());
@@ -318,6 +342,15 @@ impl<const D: usize> ContactDisplay<D> {
             lists.entry(root(&mut zone, k)).or_default().push(k);
         }
         lists.into_values().collect()
+    }
+
+    /// The area of a zone of nodes: of the faces that have some of them.
+    pub fn area(&self, zone: &[usize]) -> f64 {
+        let within: std::collections::BTreeSet<usize> = (self.faces.iter().zip(&self.of_face))
+            .filter(|(list, _)| list.iter().any(|&k| zone.binary_search(&(k as usize)).is_ok()))
+            .map(|(_, face)| *face)
+            .collect();
+        within.iter().map(|&f| self.face_area[f]).sum()
     }
 
     /// A VTP of the slave side with pressure, gap and status.

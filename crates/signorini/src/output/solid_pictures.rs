@@ -332,11 +332,8 @@ fn deformed<const D: usize>(
     if D == 2 {
         // Where the bodies touch.
         for shown in contacts {
-            for face in shown.faces.iter().filter(|f| f.iter().all(|&k| shown.active[k as usize])) {
-                let ends: Vec<(f64, f64)> = face
-                    .iter()
-                    .map(|&k| view.at(&(shown.points[k as usize] + shown.displacement[k as usize] * factor)))
-                    .collect();
+            for ends in &shown.intervals {
+                let ends = ends.map(|x| view.at(&x));
                 let _ = write!(
                     out,
                     "<line x1=\"{:.2}\" y1=\"{:.2}\" x2=\"{:.2}\" y2=\"{:.2}\" stroke=\"#d53c28\" stroke-width=\"3\" stroke-linecap=\"round\"/>",
@@ -537,6 +534,14 @@ fn map<const D: usize>(name: &str, time: f64, shown: &ContactDisplay<D>, labels:
         } else {
             polygon(&mut out, &corners, "#e4e4e4");
         }
+    }
+    for ends in &shown.boundary {
+        let [a, b] = ends.map(|x| view.at(&x));
+        let _ = write!(
+            out,
+            "<line x1=\"{:.2}\" y1=\"{:.2}\" x2=\"{:.2}\" y2=\"{:.2}\" stroke=\"#d53c28\" stroke-width=\"2\" stroke-linecap=\"round\"/>",
+            a.0, a.1, b.0, b.1
+        );
     }
     out += "</g>";
     ruler(&mut out, &view, labels);

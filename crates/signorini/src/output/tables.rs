@@ -102,3 +102,15 @@ pub fn pressure<const D: usize>(shown: &super::solid_fields::ContactDisplay<D>) 
     }
     text
 }
+
+/// Both ends of every piece of the outlines of a contact zone, where it is now; in the plane an end of the zone.
+pub fn solid_outline<const D: usize>(pieces: &[[signorini_geometry::Point<D>; 2]]) -> String {
+    let mut text = format!("piece,{}\n", ["x", "y", "z"][..D].join(","));
+    for (k, ends) in pieces.iter().enumerate() {
+        for x in &ends[..if D == 2 { 1 } else { 2 }] {
+            let x: Vec<String> = x.iter().map(|v| format!("{v:.15e}")).collect();
+            text += &format!("{k},{}\n", x.join(","));
+        }
+    }
+    text
+}

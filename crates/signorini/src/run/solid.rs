@@ -353,8 +353,9 @@ impl<const D: usize> Runner<D> {
             let components: Vec<Value> = (shown.zones().iter())
                 .map(|zone| {
                     let of = |k: usize| weight.get(&(k as u32)).copied().unwrap_or(0.0);
-                    let area: f64 = zone.iter().map(|&k| of(k)).sum();
-                    let centroid = zone.iter().map(|&k| shown.points[k] * of(k)).sum::<Point<D>>() / area;
+                    let area = shown.area(zone);
+                    let weight: f64 = zone.iter().map(|&k| of(k)).sum();
+                    let centroid = zone.iter().map(|&k| shown.points[k] * of(k)).sum::<Point<D>>() / weight;
                     let force: f64 = zone.iter().map(|&k| of(k) * shown.pressure[k]).sum();
                     json!({"area": area, "force": force, "centroid": vector(&centroid)})
                 })
@@ -393,7 +394,7 @@ impl<const D: usize> Runner<D> {
                     "contact `{}`: no part of the slave faces the master: do the normals look at each other?",
                     contact.name
                 )
-            } else if result.area == 0.0 {
+            } else if result.nodes.iter().all(|n| !n.active) {
                 let gap = result.nodes.iter().map(|n| n.gap).fold(f64::INFINITY, f64::min);
                 format!("contact `{}`: the bodies do not touch at t = {time} (smallest gap {gap:.6e})", contact.name)
             } else {
@@ -417,6 +418,8 @@ impl<const D: usize> Runner<D> {
         for (contact, shown) in self.plan.contacts.iter().zip(contacts) {
             self.folder.write(&format!("contact/{}_{name}.vtp", contact.name), &shown.vtp()?)?;
             self.folder.write(&format!("contact/{}_{name}.csv", contact.name), tables::pressure(shown).as_bytes())?;
+            let outline = tables::solid_outline(&shown.boundary);
+            self.folder.write(&format!("contact/{}_{name}_outline.csv", contact.name), outline.as_bytes())?;
         }
         self.frames.push((time, name));
         let list: Vec<(f64, String)> =

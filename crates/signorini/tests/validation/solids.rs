@@ -376,9 +376,9 @@ fn hertz_between_elastic_bodies() {
         assert!((at(step, "/contacts/touch/force/1") / 500.0 - 1.0).abs() < 1e-8);
         at(step, "/contacts/touch/max_pressure") / 1492.271904049647 - 1.0
     };
+    // The bodies are finite, which changes the pressure by a thousandth; the cells change it by no more.
     let errors = [6, 12, 24].map(|n| pressure(1, n).abs());
-    let orders = [(errors[0] / errors[1]).log2(), (errors[1] / errors[2]).log2()];
-    assert!(orders.iter().all(|o| *o > 1.4), "{errors:?} {orders:?}");
+    assert!(errors.iter().all(|e| *e < 2e-3), "{errors:?}");
     let quadratic = pressure(2, 12);
     assert!(quadratic.abs() < 3e-3, "{quadratic:e}");
 }
@@ -421,8 +421,8 @@ fn hertz_of_a_cylinder_on_a_plane() {
     println!("linear {errors:?}, orders {orders:?}; quadratic {:?}", solve(2, 24));
     assert!(orders.iter().all(|o| *o > 1.4), "{errors:?} {orders:?}");
     let [peak, width] = solve(2, 24);
-    // The edge is known to the distance of two nodes.
-    assert!(peak.abs() < 5e-4 && width.abs() < 0.05, "{peak:e} {width:e}");
+    // The edge is known to a hundredth of the distance of two nodes.
+    assert!(peak.abs() < 5e-4 && width.abs() < 5e-4, "{peak:e} {width:e}");
 }
 
 /// The heights of a function on a grid, as a CSV file; the entry of a case that names it.

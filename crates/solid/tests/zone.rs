@@ -1,0 +1,94 @@
+//! The area of contact against Hertz (1882) and Sneddon (1965): a body of revolution on a rigid plane, with the
+//! displacement of a half space far away (Boussinesq 1885). The edge of the zone has the radius 1.
+
+use signorini_fem::block::{block, graded};
+use signorini_geometry::Point;
+use signorini_solid::*;
+use std::f64::consts::PI;
+
+const NU: f64 = 0.3;
+const SLOPE: f64 = 1e-3;
+
+#[derive(Clone, Copy, Debug)]
+enum Profile {
+    /// `r²/2R`.
+    Sphere,
+    /// `r tan α`.
+    Cone,
+}
+
+/// Relative error of the area of contact. Cells are even up to `even`.
+fn error(profile: Profile, way: (Method, Enforcement), degree: usize, cells: usize, even: f64) -> f64 {
+    const FAR: f64 = 30.0;
+    let h = even / cells as f64;
+    let growth = 1.25f64.powf(8.0 / cells as f64 * even);
+    let reach = |m: i32| h * growth * (growth.powi(m) - 1.0) / (growth - 1.0);
+    let growing = (1..).find(|&m| reach(m) >= FAR - even).unwrap() as usize;
+    let axis = |to: f64, n: usize| {
+        let mut out = vec![0.0];
+        out.extend(graded(0.0, to, n, 1.0));
+        out.extend(graded(to, FAR, growing, growth));
+        out
+    };
+    let height = |r: f64| match profile {
+        Profile::Sphere => 0.5 * SLOPE * r * r,
+        Profile::Cone => SLOPE * r,
+    };
+    let mesh = block::<2>(&[axis(even, cells), axis(0.5 * even, cells / 2)], degree, |x| {
+        Point::<2>::new(x[0], x[1] + height(x[0]) * (1.0 - x[1] / FAR))
+    });
+    let groups = mesh.groups().clone();
+    let modulus = 1.0 / (1.0 - NU * NU);
+    let (force, depth) = match profile {
+        Profile::Sphere => (4.0 / 3.0 * modulus * SLOPE, SLOPE),
+        Profile::Cone => (0.5 * PI * modulus * SLOPE, 0.5 * PI * SLOPE),
+    };
+    let mut bodies = Bodies::<2>::new(Space::Axisymmetric);
+    bodies.add("body", mesh, degree, Elastic { youngs_modulus: 1.0, poissons_ratio: NU });
+    let supports = ["top", "right", "left"].map(|group| Support {
+        name: group.into(),
+        body: 0,
+        group: groups[group].clone(),
+        kind: SupportKind::Components(vec![true, group != "left"]),
+    });
+    let slave = bodies.surface(0, groups["bottom"].sides.clone());
+    let mut contact = Contact::new("touch", slave, Master::Rigid);
+    (contact.method, contact.enforcement) = way;
+    let mut model = Model::new(bodies, supports.to_vec(), vec![contact]).unwrap();
+    let up = Point::<2>::new(0.0, 1.0);
+    let far = move |x: &Point<2>| {
+        let (d, c) = (x.norm(), force * (1.0 + NU) / (2.0 * PI));
+        Point::<2>::new(
+            c * (x[0] * x[1] / d.powi(3) - (1.0 - 2.0 * NU) * x[0] / (d * (d + x[1]))),
+            c * (x[1] * x[1] / d.powi(3) + 2.0 * (1.0 - NU) / d) - depth,
+        )
+    };
+    let now = Circumstances {
+        displacement: &|s, x| if s == 2 { Point::<2>::zeros() } else { far(x) },
+        load: vec![0.0; model.bodies.unknowns()],
+        rigid: vec![Some(Box::new(move |x: &Point<2>| signorini_contact::GapJet::flat(x[1], up)))],
+    };
+    let state = model.solve(&now, &mut |_, _| true).unwrap();
+    state.contacts[0].area / PI - 1.0
+}
+
+/// The largest error with the edge in two places of a cell.
+fn worst(profile: Profile, way: (Method, Enforcement), degree: usize, cells: usize) -> f64 {
+    [1.5, 1.55].iter().map(|even| error(profile, way, degree, cells, *even).abs()).fold(0.0, f64::max)
+}
+
+/// Counted nodes would be off by half a cell: 6 % with the finer cells.
+#[test]
+fn areas_are_of_second_order() {
+    let mortar = (Method::Mortar, Enforcement::Multiplier);
+    for profile in [Profile::Sphere, Profile::Cone] {
+        for degree in [1, 2] {
+            let [coarse, fine] = [6, 24].map(|n| worst(profile, mortar, degree, n));
+            let order = 0.5 * (coarse / fine).log2();
+            println!("{profile:?}, degree {degree}: {coarse:e} {fine:e}, order {order}");
+            assert!(fine < 2e-3 && order > 1.7, "{profile:?}, degree {degree}: {coarse:e} {fine:e}, order {order}");
+        }
+    }
+    let fine = worst(Profile::Cone, (Method::Mortar, Enforcement::Nitsche), 1, 24);
+    assert!(fine < 4e-3, "{fine:e}");
+}

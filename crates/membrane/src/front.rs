@@ -234,13 +234,15 @@ impl<'a, const D: usize> Fronts<'a, D> {
     /// with the mass and stiffness of the modes and `l` the extent of the membrane over 2π.
     ///
     /// The variational flux is true to `h^{2p}` against smooth functions, and only there: from cell to cell it goes up and
-    /// down by `h^p`, so do fronts, and `L²` would see little else.
+    /// down by `h^p`, so do fronts, and `L²` would see little else. In one dimension fronts are points, each with a slope jump
+    /// of its own, whatever the length of the circle that it stands for.
     pub fn residual<Z: Zone<D>>(&self, zone: &Z, space: ModeSpace) -> f64 {
-        let (mut matrix, b) = self.mass(zone, space);
-        if D > 1 {
-            let length = self.equilibrium.membrane.size() / std::f64::consts::TAU;
-            stiffen(&mut matrix, zone, space, length);
+        if D == 1 {
+            return self.excess().iter().map(|r| r * r).sum::<f64>().sqrt();
         }
+        let (mut matrix, b) = self.mass(zone, space);
+        let length = self.equilibrium.membrane.size() / std::f64::consts::TAU;
+        stiffen(&mut matrix, zone, space, length);
         let square = matrix.solve(&b).map(|c| c.iter().zip(&b).map(|(c, b)| c * b).sum::<f64>());
         square.map_or_else(|| self.project(zone, space).norm, |square| square.max(0.0).sqrt())
     }

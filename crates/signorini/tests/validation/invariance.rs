@@ -50,6 +50,76 @@ fn units_change_neither_digits_nor_iterations() {
     }
 }
 
+/// A film over a dish or beside a wall, every quantity with its unit.
+fn film(system: &str, space: &str, degree: usize, method: &str, steps: &str) -> Value {
+    let load = if steps.is_empty() { "1" } else { "t" };
+    let case = format!(
+        r#"
+units = "{system}"
+space = "{space}"
+[bodies.film.membrane]
+domain.interval = {{ from = 0, to = "150 um" }}
+mesh.grid = {{ cells = [60] }}
+degree = {degree}
+tension = "20 N/m"
+[bodies.floor.rigid]
+shape.height = "-3 um"
+[supports.rim]
+on = "film:boundary"
+displacement = 0
+[loads.gas]
+on = "film"
+normal = "-(20*{load}) kPa"
+[contacts.touch]
+between = ["film", "floor"]
+{method}
+{steps}
+"#
+    );
+    summary(&case, &set(&[]))
+}
+
+#[test]
+fn units_change_nothing_in_one_dimension() {
+    let sticky = "adhesion.energy = \"1 mN/m\"";
+    let by_arc = "control.arc_length = { size = 0.1 }";
+    let steps = [
+        "[[steps]]\nto = 2\nincrements = 3\nevents = 1e-3".to_string(),
+        format!("[[steps]]\nto = 1\n[[steps]]\nto = 2\nincrements = 2\n{by_arc}"),
+    ];
+    let published = "method.inequality_level_set.formulation = \"published\"";
+    let cases = [
+        ("axisymmetric", 3, "", ""),
+        ("axisymmetric", 1, "", &steps[0]),
+        ("axisymmetric", 3, sticky, &steps[1]),
+        ("axisymmetric", 2, published, ""),
+        ("line", 1, "", &steps[0]),
+    ];
+    for (space, degree, method, steps) in cases {
+        let base = film("m-N-Pa", space, degree, method, steps);
+        for (system, length, force) in [("mm-N-MPa", 1e-3f64, 1.0), ("um-uN-MPa", 1e-6, 1e-6)] {
+            let what = format!("{space}, degree {degree}, {method}, {steps}, {system}");
+            let other = film(system, space, degree, method, steps);
+            let list = |s: &Value| s["steps"].as_array().cloned().expect("steps");
+            let power = if space == "line" { 1 } else { 2 };
+            assert_eq!(list(&base).len(), list(&other).len(), "{what}");
+            for (a, b) in list(&base).iter().zip(&list(&other)) {
+                for key in ["iterations", "iterations_before"] {
+                    assert_eq!(a[key], b[key], "{what}");
+                }
+                let same = |a: f64, b: f64| assert!((a - b).abs() <= 1e-9 * a.abs(), "{what}: {a} and {b}");
+                let [here, there] = [a, b].map(|step| &step["contacts"]["touch"]);
+                same(number(&here["area"]), number(&there["area"]) * length.powi(power));
+                // The force on a string is one per length across it.
+                same(number(&here["force"][2]), number(&there["force"][2]) * force * length.powi(power - 2));
+                same(number(&a["time"]), number(&b["time"]));
+            }
+            let events = |s: &Value| s["events"].as_array().map_or(0, Vec::len);
+            assert_eq!(events(&base), events(&other), "{what}");
+        }
+    }
+}
+
 #[test]
 fn the_number_of_threads_changes_nothing() {
     let run = |threads: usize| {

@@ -138,7 +138,7 @@ pub fn model<const D: usize>(plan: &SolidPlan<D>) -> Result<Model<D>, CaseError>
 }
 
 /// Multiplications with additions that a factorisation does in a second on one core, about: `check` tells a time by it.
-pub(super) const OPERATIONS_PER_SECOND: f64 = 5e9;
+pub(super) const OPERATIONS_PER_SECOND: f64 = 2e10;
 
 /// What the factorisation of a model takes.
 pub(super) fn cost<const D: usize>(plan: &SolidPlan<D>, model: &mut Model<D>) -> Result<Cost, CaseError> {

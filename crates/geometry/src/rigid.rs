@@ -30,6 +30,12 @@ impl RigidMotion {
         self.rotation * v
     }
 
+    /// The box around a moved box.
+    pub(crate) fn hull(&self, [low, high]: &[Point<3>; 2]) -> [Point<3>; 2] {
+        let (middle, half) = (self.point(&((low + high) * 0.5)), self.rotation.abs() * ((high - low) * 0.5));
+        [middle - half, middle + half]
+    }
+
     fn axes(&self, a: &Axes) -> Axes {
         Axes { origin: self.point(&a.origin), ex: self.vector(&a.ex), ey: self.vector(&a.ey), ez: self.vector(&a.ez) }
     }
@@ -53,7 +59,7 @@ impl RigidMotion {
             CurveChart::Power { coefficients, rational, bounds } => CurveChart::Power {
                 coefficients: self.coefficients(coefficients, *rational),
                 rational: *rational,
-                bounds: bounds.clone(),
+                bounds: bounds.moved(self),
             },
             CurveChart::Harmonic { origin, a, b, c, middle, half } => CurveChart::Harmonic {
                 origin: self.point(origin),
@@ -72,7 +78,7 @@ impl RigidMotion {
                 degree: *degree,
                 coefficients: self.coefficients(coefficients, *rational),
                 rational: *rational,
-                bounds: bounds.clone(),
+                bounds: bounds.moved(self),
             },
             SurfaceChart::Quadric { origin, axes, f, g, middle, half } => SurfaceChart::Quadric {
                 origin: self.point(origin),

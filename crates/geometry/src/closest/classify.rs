@@ -142,6 +142,7 @@ where
         certified_to: found.certified_to,
         margin: found.margin,
         effort: found.pairs,
+        certificate: found.certificate,
     }
 }
 
@@ -156,7 +157,7 @@ where
     Piece<B, CB>: Named<B>,
 {
     let (piece_a, piece_b) = (&a.pieces[c.piece[0] as usize], &b.pieces[c.piece[1] as usize]);
-    let z: [f64; N] = std::array::from_fn(|k| if k < A { c.a[k] } else { c.b[k - A] });
+    let z: [f64; N] = c.parameters();
     let at = Difference::<N>::new(&piece_a.chart, &piece_b.chart, &z);
     let free = std::array::from_fn(|k| {
         let sides = if k < A { &piece_a.sides[k] } else { &piece_b.sides[k - A] };

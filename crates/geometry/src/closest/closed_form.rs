@@ -49,7 +49,7 @@ pub(super) fn settle(p: &Point<3>, candidates: &[Candidate], dimension: usize, s
         (0, false) => Uniqueness::Multiple,
         (dimension, _) => Uniqueness::Continuum { dimension },
     };
-    Projection { closest: best, uniqueness, others, certified_to: 0.0, margin: 0.0, effort: 0 }
+    Projection::known(best, uniqueness, others)
 }
 
 /// The closed form for a point and a curve, where there is one.
@@ -485,7 +485,7 @@ fn segments([p0, p1]: &[Point<3>; 2], [q0, q1]: &[Point<3>; 2], size: f64) -> Pr
     } else if !parallel && closest.lambda_min < 1e-6 {
         uniqueness = Uniqueness::NearContinuum { lambda: closest.lambda_min };
     }
-    Projection { closest, uniqueness, others, certified_to: 0.0, margin: 0.0, effort: 0 }
+    Projection::known(closest, uniqueness, others)
 }
 
 /// Two whole spheres about the same centre touch nowhere more than elsewhere.
@@ -514,5 +514,5 @@ pub fn sphere_sphere(s: &Surface, t: &Surface) -> Option<Projection> {
         lambda_min: 0.0,
     };
     let uniqueness = Uniqueness::Continuum { dimension: 2 };
-    Some(Projection { closest, uniqueness, others: Vec::new(), certified_to: 0.0, margin: 0.0, effort: 0 })
+    Some(Projection::known(closest, uniqueness, Vec::new()))
 }

@@ -18,7 +18,7 @@ mod track;
 
 pub(crate) use closed_form::{segment_parameters, triangle as closest_on_triangle};
 pub use hessian::gap_hessian;
-pub use result::{ClosestPair, Entity, Feature, FeatureKind, Foot, Projection, Uniqueness};
+pub use result::{Certificate, ClosestPair, Entity, Feature, FeatureKind, Foot, Projection, Uniqueness};
 pub(crate) use track::clearance_of;
 pub use track::{Step, Tracker};
 
@@ -125,7 +125,7 @@ fn point_mesh(p: &Point<3>, mesh: &TriangleMesh, query: &Query) -> Projection {
     let closest = pairs.next().expect("a mesh has a triangle");
     let others: Vec<ClosestPair> = pairs.collect();
     let uniqueness = if others.is_empty() { Uniqueness::Unique } else { Uniqueness::Multiple };
-    Projection { closest, uniqueness, others, certified_to: 0.0, margin: 0.0, effort: 0 }
+    Projection::known(closest, uniqueness, others)
 }
 
 fn point_implicit(p: &Point<3>, surface: &ImplicitSurface) -> Projection {
@@ -137,7 +137,7 @@ fn point_implicit(p: &Point<3>, surface: &ImplicitSurface) -> Projection {
         lambda_min: f64::NAN,
     };
     let uniqueness = if foot.unique { Uniqueness::Unique } else { Uniqueness::Multiple };
-    Projection { closest, uniqueness, others: Vec::new(), certified_to: surface.cell(), margin: 0.0, effort: 0 }
+    Projection { certified_to: surface.cell(), ..Projection::known(closest, uniqueness, Vec::new()) }
 }
 
 /// The distance with the sign of the side of `b` on which the closest point of `a` lies: negative inside a closed mesh
@@ -173,7 +173,7 @@ fn mesh_mesh(m: &TriangleMesh, n: &TriangleMesh) -> Projection {
         (_, true) => Uniqueness::Continuum { dimension: 2 },
         _ => Uniqueness::Unique,
     };
-    Projection { closest, uniqueness, others: Vec::new(), certified_to: 0.0, margin: 0.0, effort: 0 }
+    Projection::known(closest, uniqueness, Vec::new())
 }
 
 fn swapped(mut projection: Projection) -> Projection {
@@ -185,7 +185,8 @@ fn swapped(mut projection: Projection) -> Projection {
 }
 
 fn point_atlas(p: &Point<3>) -> Atlas<0, PointChart> {
-    Atlas::new(vec![Piece::new(PointChart(*p), crate::patch::ParameterMap::Affine { low: [], high: [] }, [])])
+    let map = crate::patch::ParameterMap::Projective { low: [], high: [], ratio: [] };
+    Atlas::new(vec![Piece::new(PointChart(*p), map, [])])
 }
 
 /// The length of a vector without overflow or underflow.
@@ -207,14 +208,7 @@ fn point_point(p: &Point<3>, q: &Point<3>) -> Projection {
         b: Foot::of_point(*q),
         lambda_min: f64::INFINITY,
     };
-    Projection {
-        closest,
-        uniqueness: Uniqueness::Unique,
-        others: Vec::new(),
-        certified_to: 0.0,
-        margin: f64::INFINITY,
-        effort: 0,
-    }
+    Projection { margin: f64::INFINITY, ..Projection::known(closest, Uniqueness::Unique, Vec::new()) }
 }
 
 fn general<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>(
@@ -231,6 +225,7 @@ where
     let effort = Effort {
         tie: if query.local_minima { f64::INFINITY } else { query.tie * size },
         tolerance: 64.0 * f64::EPSILON * magnitude,
+        proof: query.tie * size,
         most_pairs: [0, 3_000, 6_000, 15_000, 40_000][N],
         magnitude,
     };

@@ -185,6 +185,16 @@ impl Uniqueness {
     }
 }
 
+/// Whether it is proved that nothing is closer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Certificate {
+    /// The search came to its end, or there is a closed form.
+    Complete,
+    /// The search reached the most pairs of cells that it examines: something closer, by `certified_to` at most, is not
+    /// excluded.
+    Stopped,
+}
+
 /// The answer to a closest-point query.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Projection {
@@ -199,9 +209,16 @@ pub struct Projection {
     pub margin: f64,
     /// Pairs of cells that were examined; zero for a closed form.
     pub effort: usize,
+    pub certificate: Certificate,
 }
 
 impl Projection {
+    /// The answer of a closed form, which needs no search.
+    pub(crate) fn known(closest: ClosestPair, uniqueness: Uniqueness, others: Vec<ClosestPair>) -> Self {
+        let certificate = Certificate::Complete;
+        Projection { closest, uniqueness, others, certified_to: 0.0, margin: 0.0, effort: 0, certificate }
+    }
+
     pub fn distance(&self) -> f64 {
         self.closest.distance
     }

@@ -10,6 +10,7 @@ use std::collections::{BinaryHeap, HashMap};
 
 use super::bounds::{PairExpansion, SecondOrder, box_bound};
 use super::newton::{Difference, minimise};
+use super::result::Certificate;
 use crate::Point;
 use crate::patch::{Atlas, Cell, Chart};
 
@@ -20,6 +21,8 @@ pub struct Effort {
     pub tie: f64,
     /// What rounding leaves undecided.
     pub tolerance: f64,
+    /// The distance is proved where nothing is closer by more than this.
+    pub proof: f64,
     /// Cell pairs after which the search gives up proving and reports what it could prove.
     pub most_pairs: usize,
     /// Size of the coordinates.
@@ -37,6 +40,13 @@ pub struct Candidate<const A: usize, const B: usize> {
     pub distance: f64,
 }
 
+impl<const A: usize, const B: usize> Candidate<A, B> {
+    /// The parameters of both partners in one list; `N = A + B`.
+    pub fn parameters<const N: usize>(&self) -> [f64; N] {
+        std::array::from_fn(|k| if k < A { self.a[k] } else { self.b[k - A] })
+    }
+}
+
 /// What a search found.
 #[derive(Clone, Debug)]
 pub struct Found<const A: usize, const B: usize> {
@@ -52,6 +62,7 @@ pub struct Found<const A: usize, const B: usize> {
     pub pairs: usize,
     /// The search stopped at intersecting surfaces, which share a whole curve.
     pub intersecting: bool,
+    pub certificate: Certificate,
 }
 
 /// One shape in a search: its tree and the cells added below it.
@@ -152,8 +163,8 @@ struct Search<'a, const A: usize, const B: usize, const N: usize, CA, CB> {
     effort: Effort,
     /// An upper bound of the distance: the distance of some pair of points.
     best: f64,
-    /// The cells whose middles are the closest so far.
-    nearest: Option<Pair>,
+    /// The points that are `best` apart, and whether Newton has started from them.
+    nearest: Option<(Candidate<A, B>, bool)>,
     isolated: Vec<Candidate<A, B>>,
     heap: BinaryHeap<Pair>,
     /// The smallest bound of all that was pruned.
@@ -193,7 +204,15 @@ impl<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>
         let expansion = PairExpansion::<N>::new(cell_a, cell_b);
         if expansion.distance < self.best {
             self.best = expansion.distance;
-            self.nearest = Some(Pair { bound: 0.0, a, b });
+            let nearest = Candidate {
+                piece: [cell_a.piece, cell_b.piece],
+                a: cell_a.middle,
+                b: cell_b.middle,
+                xa: cell_a.x,
+                xb: cell_b.x,
+                distance: expansion.distance,
+            };
+            self.nearest = Some((nearest, false));
         }
         let bound = expansion.linear_bound(cell_a, cell_b).max(boxes);
         self.push_bound(Pair { bound, a, b });
@@ -233,27 +252,32 @@ impl<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>
             }
         }
         let margin = (self.pruned - self.best).max(0.0);
-        let certified_to;
+        let stopped = !intersecting && pairs > self.effort.most_pairs;
         let mut open = flat;
-        if intersecting || pairs <= self.effort.most_pairs {
-            certified_to = open.iter().map(|p| self.best - p.bound).fold(0.0, f64::max);
-            if intersecting {
-                open.extend(self.heap.drain().take(1));
-            }
-        } else {
+        if stopped {
             open.extend(std::mem::take(&mut self.heap).into_sorted_vec().into_iter().rev());
-            certified_to = open.iter().map(|p| self.best - p.bound).fold(0.0, f64::max);
         }
-        if self.isolated.is_empty() {
-            open.extend(self.nearest);
+        let certified_to = open.iter().map(|p| self.best - p.bound).fold(0.0, f64::max);
+        if intersecting {
+            open.extend(self.heap.drain().take(1));
         }
-        let degenerate = self.sample(&open);
-        let best = self.isolated.iter().chain(&degenerate).map(|c| c.distance).fold(f64::INFINITY, f64::min);
+        let certificate =
+            if stopped && certified_to > self.effort.proof { Certificate::Stopped } else { Certificate::Complete };
+        let mut degenerate = self.sample(&open);
+        let mut best = self.isolated.iter().chain(&degenerate).map(|c| c.distance).fold(f64::INFINITY, f64::min);
+        // What all bounds were compared with is an answer too, though no cell led to it.
+        if let Some((nearest, _)) = self.nearest
+            && best > self.best + self.effort.tolerance
+        {
+            let (found, _) = self.newton(nearest.piece, &[-1.0; N], &[1.0; N], nearest.parameters());
+            degenerate.push(if found.distance <= nearest.distance { found } else { nearest });
+            best = best.min(found.distance).min(nearest.distance);
+        }
         let tie = self.effort.tie;
         self.isolated.retain(|c| c.distance <= best + tie);
         self.isolated.sort_by(|p, q| p.distance.total_cmp(&q.distance).then(p.piece.cmp(&q.piece)));
         let degenerate = degenerate.into_iter().filter(|c| c.distance <= best + tie).collect();
-        Found { isolated: self.isolated, degenerate, certified_to, margin, pairs, intersecting }
+        Found { isolated: self.isolated, degenerate, certified_to, margin, pairs, intersecting, certificate }
     }
 
     /// Works on one pair of cells; returns it where nothing more can be decided.
@@ -326,18 +350,11 @@ impl<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>
 
     /// Newton from the closest middles so far: a good upper bound lets bad cells go early.
     fn improve(&mut self) {
-        let Some(pair) = self.nearest.filter(|p| p.bound == 0.0) else { return };
-        // Marked as used until something closer comes.
-        self.nearest = Some(Pair { bound: 1.0, ..pair });
-        let (a, b) = (self.a.cell(pair.a), self.b.cell(pair.b));
-        let piece = [a.piece, b.piece];
-        let start = std::array::from_fn(|k| if k < A { a.middle[k] } else { b.middle[k - A] });
-        let (candidate, _) = self.newton(piece, &[-1.0; N], &[1.0; N], start);
+        let Some((nearest, false)) = self.nearest else { return };
+        self.nearest = Some((nearest, true));
+        let (candidate, _) = self.newton(nearest.piece, &[-1.0; N], &[1.0; N], nearest.parameters());
         if candidate.distance < self.best {
-            self.best = candidate.distance;
-            if self.is_minimiser(&candidate) {
-                self.isolated.push(candidate);
-            }
+            self.take(candidate);
         }
     }
 
@@ -436,17 +453,24 @@ impl<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>
         let stopped = |z: f64, k: usize| z.abs() < 1.0 && (z == low[k] || z == high[k]);
         if (0..A).any(|k| stopped(candidate.a[k], k)) || (0..B).any(|k| stopped(candidate.b[k], A + k)) {
             // Where the cell ends but not the piece, the neighbours hold something better.
-            let z = std::array::from_fn(|k| if k < A { candidate.a[k] } else { candidate.b[k - A] });
-            candidate = self.newton(piece, &[-1.0; N], &[1.0; N], z).0;
+            candidate = self.newton(piece, &[-1.0; N], &[1.0; N], candidate.parameters()).0;
         }
         if candidate.distance > self.best + self.effort.tie {
             return true;
         }
-        self.best = self.best.min(candidate.distance);
+        self.take(candidate);
+        true
+    }
+
+    /// Keeps what Newton found.
+    fn take(&mut self, candidate: Candidate<A, B>) {
+        if candidate.distance < self.best {
+            self.best = candidate.distance;
+            self.nearest = Some((candidate, true));
+        }
         if self.is_minimiser(&candidate) {
             self.isolated.push(candidate);
         }
-        true
     }
 
     /// Newton inside a box, and whether it arrived.
@@ -464,7 +488,7 @@ impl<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>
     fn is_minimiser(&self, c: &Candidate<A, B>) -> bool {
         let piece_a = &self.a.atlas.pieces[c.piece[0] as usize];
         let piece_b = &self.b.atlas.pieces[c.piece[1] as usize];
-        let z: [f64; N] = std::array::from_fn(|k| if k < A { c.a[k] } else { c.b[k - A] });
+        let z: [f64; N] = c.parameters();
         let at = Difference::<N>::new(&piece_a.chart, &piece_b.chart, &z);
         (0..N).all(|k| {
             let length = at.metric[k][k].sqrt();
@@ -495,8 +519,7 @@ impl<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>
                 let start = std::array::from_fn(|k| 0.5 * (low[k] + high[k]));
                 // First inside the cells, then wherever the piece allows: the cells may only touch the minimum.
                 let (near, _) = self.newton(piece, &low, &high, start);
-                let z = std::array::from_fn(|k| if k < A { near.a[k] } else { near.b[k - A] });
-                self.newton(piece, &[-1.0; N], &[1.0; N], z).0
+                self.newton(piece, &[-1.0; N], &[1.0; N], near.parameters()).0
             })
             .collect()
     }

@@ -10,6 +10,7 @@ use std::collections::BinaryHeap;
 use super::bounds::{PairExpansion, box_bound};
 use super::classify::{Named, describe};
 use super::newton::minimise;
+use super::result::Certificate as CertificateOfSearch;
 use super::search::{Candidate, Pair, Partner, held};
 use super::{ClosestPair, Projection, Query, Uniqueness, closest, point_atlas, swapped};
 use crate::Point;
@@ -117,7 +118,8 @@ impl Tracker {
         let projection = closest(a, b, &self.query);
         self.certificate = None;
         // A closed form costs less than its certificate.
-        if projection.uniqueness == Uniqueness::Unique && projection.effort > 0 {
+        let proved = projection.certificate == CertificateOfSearch::Complete;
+        if proved && projection.uniqueness == Uniqueness::Unique && projection.effort > 0 {
             let found = &projection.closest;
             self.certificate = match (a, b) {
                 (Shape::Point(p), Shape::Curve(c)) => {
@@ -382,13 +384,6 @@ impl<const A: usize, const B: usize, const N: usize> Certificate<A, B, N> {
             distance: found.distance,
         };
         let (closest, _) = describe::<A, B, N, CA, CB>(a, b, &candidate);
-        Some(Projection {
-            closest,
-            uniqueness: Uniqueness::Unique,
-            others: Vec::new(),
-            certified_to: 0.0,
-            margin,
-            effort: 0,
-        })
+        Some(Projection { margin, ..Projection::known(closest, Uniqueness::Unique, Vec::new()) })
     }
 }

@@ -3,6 +3,7 @@
 //! A control value is homogeneous, `[w x, w y, w z, w]`; for polynomial shapes the last number is one (of a position)
 //! or zero (of a derivative). Kernels do not work in this form: see [`super::chart`].
 
+use crate::Point;
 use nalgebra::DMatrix;
 
 /// A control value in homogeneous coordinates.
@@ -92,8 +93,8 @@ fn apply(matrix: &DMatrix<f64>, values: &[Control]) -> Vec<Control> {
         .collect()
 }
 
-/// Both halves of a Bezier curve (de Casteljau).
-pub fn halves(control: &[Control]) -> [Vec<Control>; 2] {
+/// Both parts of a Bezier curve that is cut at a parameter in `[0, 1]` (de Casteljau).
+pub fn cut(control: &[Control], t: f64) -> [Vec<Control>; 2] {
     let n = control.len();
     let mut work = control.to_vec();
     let mut left = Vec::with_capacity(n);
@@ -102,7 +103,7 @@ pub fn halves(control: &[Control]) -> [Vec<Control>; 2] {
         left.push(work[0]);
         right[n - 1 - r] = work[n - 1 - r];
         for j in 0..n - 1 - r {
-            work[j] = combine(0.5, &work[j], 0.5, &work[j + 1]);
+            work[j] = combine(1.0 - t, &work[j], t, &work[j + 1]);
         }
     }
     [left, right]
@@ -201,10 +202,11 @@ impl Net {
         Net { degree: [p, self.degree[1]], control }
     }
 
-    pub fn halves(&self, axis: usize) -> [Net; 2] {
+    /// See the free function [`cut`].
+    pub fn cut(&self, axis: usize, t: f64) -> [Net; 2] {
         [0, 1].map(|side| {
-            let half = |c: &[Control]| halves(c)[side].clone();
-            if axis == 0 { self.map_columns(half) } else { self.map_rows(half) }
+            let part = |c: &[Control]| cut(c, t)[side].clone();
+            if axis == 0 { self.map_columns(part) } else { self.map_rows(part) }
         })
     }
 
@@ -260,6 +262,17 @@ impl Net {
     pub fn powers(&self) -> Net {
         self.map_columns(powers).map_rows(powers)
     }
+}
+
+/// The box around the control points, which holds the piece where the weights are positive.
+pub fn hull(control: &[Control]) -> [Point<3>; 2] {
+    let mut low = Point::<3>::repeat(f64::INFINITY);
+    let mut high = -low;
+    for c in control {
+        let x = Point::<3>::new(c[0], c[1], c[2]) / c[3];
+        (low, high) = (low.inf(&x), high.sup(&x));
+    }
+    [low, high]
 }
 
 /// The largest length of the first three components: bounds a vector-valued polynomial (convex hull property).

@@ -4,7 +4,8 @@
 //! Horner's scheme gives value and derivatives for a few operations per coefficient; pieces of high degree are cut
 //! until the coefficients decay, which keeps this as accurate as Bernstein form.
 
-use super::bernstein::{Control, Net, derivative, halves, largest, largest_weight, powers, times_power};
+use super::bernstein::{Control, Net, cut, derivative, hull, largest, largest_weight, powers, times_power};
+use crate::rigid::RigidMotion;
 use crate::{Point, Vector};
 use std::array::from_fn;
 
@@ -16,9 +17,10 @@ pub struct Jet2<const M: usize> {
     pub dd: [[Vector<3>; M]; M],
 }
 
-/// Upper bounds of the second and third derivatives over a whole chart.
+/// A box around a chart or a part of it, and upper bounds of its second and third derivatives there.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounds<const M: usize> {
+    pub hull: [Point<3>; 2],
     pub second: [[f64; M]; M],
     pub third: [[[f64; M]; M]; M],
 }
@@ -27,6 +29,7 @@ impl<const M: usize> Bounds<M> {
     /// Bounds that hold where either does.
     fn or(&self, other: &Self) -> Self {
         Bounds {
+            hull: [self.hull[0].inf(&other.hull[0]), self.hull[1].sup(&other.hull[1])],
             second: from_fn(|a| from_fn(|b| self.second[a][b].max(other.second[a][b]))),
             third: from_fn(|a| from_fn(|b| from_fn(|c| self.third[a][b][c].max(other.third[a][b][c])))),
         }
@@ -46,6 +49,12 @@ impl<const M: usize> Bounds<M> {
     }
 }
 
+/// The box of a chart that has no better one than its expansions.
+pub const EVERYWHERE: [Point<3>; 2] = [
+    Point::<3>::new(f64::NEG_INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY),
+    Point::<3>::new(f64::INFINITY, f64::INFINITY, f64::INFINITY),
+];
+
 /// Bounds for the fields of a regular grid over `[-1, 1]^M`. Derivatives of free-form pieces peak in a corner, and one
 /// bound for the whole piece would be many times too large elsewhere.
 #[derive(Clone, Debug)]
@@ -55,6 +64,12 @@ pub struct BoundsTable<const M: usize> {
 }
 
 impl<const M: usize> BoundsTable<M> {
+    /// The table of the moved chart.
+    pub fn moved(&self, motion: &RigidMotion) -> Self {
+        let bounds = self.bounds.iter().map(|b| Bounds { hull: motion.hull(&b.hull), ..*b }).collect();
+        BoundsTable { fields: self.fields, bounds }
+    }
+
     /// The bounds over `middle ± half`.
     fn over(&self, middle: &[f64; M], half: &[f64; M]) -> Bounds<M> {
         if let [only] = &self.bounds[..] {
@@ -106,7 +121,7 @@ impl Chart<0> for PointChart {
     }
 
     fn bounds(&self, _: &[f64; 0], _: &[f64; 0]) -> Bounds<0> {
-        Bounds { second: [], third: [] }
+        Bounds { hull: EVERYWHERE, second: [], third: [] }
     }
 }
 
@@ -127,9 +142,9 @@ fn xyz(c: &Control) -> Vector<3> {
 impl CurveChart {
     /// A Bezier curve over `s` in `[-1, 1]`.
     pub fn bezier(control: &[Control]) -> Self {
-        let rational = control.iter().any(|c| c[3] != control[0][3]);
+        let rational = is_rational(control);
         let control: Vec<Control> =
-            if rational { control.to_vec() } else { control.iter().map(|c| c.map(|v| v / control[0][3])).collect() };
+            if rational { control.to_vec() } else { control.iter().map(|c| c.map(|v| v / c[3])).collect() };
         let bounds = curve_table(&control, rational);
         let mut coefficients = powers(&control);
         while !rational && coefficients.len() > 1 && coefficients.last() == Some(&[0.0; 4]) {
@@ -156,6 +171,12 @@ impl CurveChart {
             }
         }
     }
+}
+
+/// Whether weights differ by more than rounding.
+fn is_rational(control: &[Control]) -> bool {
+    let w = control[0][3];
+    control.iter().any(|c| (c[3] - w).abs() > 16.0 * f64::EPSILON * w)
 }
 
 /// Taylor coefficients (value, derivative, second derivative / 2, ...) of a vector polynomial.
@@ -226,7 +247,7 @@ impl Chart<1> for CurveChart {
             CurveChart::Power { bounds, .. } => bounds.over(middle, half),
             CurveChart::Harmonic { a, b, half, .. } => {
                 let r = a.norm().max(b.norm());
-                Bounds { second: [[r * half * half]], third: [[[r * half * half * half]]] }
+                Bounds { hull: EVERYWHERE, second: [[r * half * half]], third: [[[r * half * half * half]]] }
             }
         }
     }
@@ -245,7 +266,7 @@ fn curve_table(control: &[Control], rational: bool) -> BoundsTable<1> {
     let n = fields(control.len() - 1, rational);
     let mut parts = vec![control.to_vec()];
     while parts.len() < n {
-        parts = parts.iter().flat_map(|part| halves(part)).collect();
+        parts = parts.iter().flat_map(|part| cut(part, 0.5)).collect();
     }
     let bounds = parts.iter().map(|part| curve_bounds(part, rational).stretched([n as f64])).collect();
     BoundsTable { fields: [n], bounds }
@@ -255,13 +276,13 @@ fn surface_table(net: &Net, rational: bool) -> BoundsTable<2> {
     let fields = net.degree.map(|degree| fields(degree, rational));
     let mut rows = vec![net.clone()];
     while rows.len() < fields[0] {
-        rows = rows.iter().flat_map(|part| part.halves(0)).collect();
+        rows = rows.iter().flat_map(|part| part.cut(0, 0.5)).collect();
     }
     let mut bounds = Vec::with_capacity(fields[0] * fields[1]);
     for row in rows {
         let mut parts = vec![row];
         while parts.len() < fields[1] {
-            parts = parts.iter().flat_map(|part| part.halves(1)).collect();
+            parts = parts.iter().flat_map(|part| part.cut(1, 0.5)).collect();
         }
         bounds.extend(parts.iter().map(|part| surface_bounds(part, rational).stretched(fields.map(|n| n as f64))));
     }
@@ -278,7 +299,7 @@ fn curve_bounds(control: &[Control], rational: bool) -> Bounds<1> {
             *value = largest(&net);
             net = if net.len() > 1 { derivative(&net) } else { vec![[0.0; 4]] };
         }
-        return Bounds { second: [[p[2]]], third: [[[p[3]]]] };
+        return Bounds { hull: hull(control), second: [[p[2]]], third: [[[p[3]]]] };
     }
     let [x, d, dd, _] = quotient_curve(horner_curve::<4>(&powers(control), 0.0), true);
     let mut numerator = times_power(control, 0);
@@ -301,7 +322,7 @@ fn curve_bounds(control: &[Control], rational: bool) -> Bounds<1> {
     let x1 = (p[1] + w[1] * x0) / w_min;
     let x2 = (p[2] + 2.0 * w[1] * x1 + w[2] * x0) / w_min;
     let x3 = (p[3] + 3.0 * w[1] * x2 + 3.0 * w[2] * x1 + w[3] * x0) / w_min;
-    Bounds { second: [[dd.norm() + x3.min(x2)]], third: [[[x3]]] }
+    Bounds { hull: hull(control), second: [[dd.norm() + x3.min(x2)]], third: [[[x3]]] }
 }
 
 /// A surface piece.
@@ -329,12 +350,11 @@ pub struct Jet3 {
 
 impl SurfaceChart {
     pub fn bezier(net: &Net) -> Self {
-        let w0 = net.control[0][3];
-        let rational = net.control.iter().any(|c| c[3] != w0);
+        let rational = is_rational(&net.control);
         let net = if rational {
             net.clone()
         } else {
-            Net { degree: net.degree, control: net.control.iter().map(|c| c.map(|v| v / w0)).collect() }
+            Net { degree: net.degree, control: net.control.iter().map(|c| c.map(|v| v / c[3])).collect() }
         };
         let bounds = surface_table(&net, rational);
         SurfaceChart::Power { degree: net.degree, coefficients: net.powers().control, rational, bounds }
@@ -354,6 +374,7 @@ impl SurfaceChart {
         let uuv = speed * h * h;
         let uvv = second * h;
         let bounds = Bounds {
+            hull: EVERYWHERE,
             second: [[uu, speed * h], [speed * h, second]],
             third: [[[uu * h, uuv], [uuv, uvv]], [[uuv, uvv], [uvv, third]]],
         };
@@ -511,6 +532,7 @@ impl Chart<2> for SurfaceChart {
                 let vv = (radial * f2).hypot(g2) * k * k;
                 let (uuv, uvv) = (radial * f1 * h * h * k, radial * f2 * h * k * k);
                 Bounds {
+                    hull: EVERYWHERE,
                     second: [[uu, uv], [uv, vv]],
                     third: [[[uu * h, uuv], [uuv, uvv]], [[uuv, uvv], [uvv, (radial * f3).hypot(g3) * k * k * k]]],
                 }
@@ -586,6 +608,7 @@ fn surface_bounds(net: &Net, rational: bool) -> Bounds<2> {
     }
     let second = [x[2][0] + centre[0], x[1][1] + centre[1], x[0][2] + centre[2]];
     Bounds {
+        hull: hull(&net.control),
         second: [[second[0], second[1]], [second[1], second[2]]],
         third: [[[x[3][0], x[2][1]], [x[2][1], x[1][2]]], [[x[2][1], x[1][2]], [x[1][2], x[0][3]]]],
     }

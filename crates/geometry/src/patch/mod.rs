@@ -7,6 +7,7 @@
 
 pub mod bernstein;
 pub mod chart;
+pub mod weights;
 
 use crate::{Point, Vector};
 pub use chart::{Bounds, Chart, CurveChart, Jet3, PointChart, SurfaceChart};
@@ -51,10 +52,9 @@ pub enum Border {
 /// How the local parameters of a piece give those of the shape.
 #[derive(Clone, Debug)]
 pub enum ParameterMap<const M: usize> {
-    Affine {
-        low: [f64; M],
-        high: [f64; M],
-    },
+    /// In each direction from `low` at `s = -1` to `high` at `s = 1`, with `ratio` times the weight at the end
+    /// ([`weights`]); affine where the ratio is one.
+    Projective { low: [f64; M], high: [f64; M], ratio: [f64; M] },
     /// Corners at `(-1,-1), (1,-1), (1,1), (-1,1)`: quadrilateral parts of a triangle.
     Bilinear([[f64; M]; 4]),
 }
@@ -62,7 +62,7 @@ pub enum ParameterMap<const M: usize> {
 impl<const M: usize> ParameterMap<M> {
     pub fn apply(&self, s: &[f64; M]) -> [f64; M] {
         match self {
-            ParameterMap::Affine { low, high } => std::array::from_fn(|k| {
+            ParameterMap::Projective { low, high, ratio } => std::array::from_fn(|k| {
                 // Exact at both ends.
                 if s[k] == 1.0 {
                     high[k]
@@ -70,7 +70,8 @@ impl<const M: usize> ParameterMap<M> {
                     low[k]
                 } else {
                     // Rounding must not lead out of the domain.
-                    let value = 0.5 * (low[k] * (1.0 - s[k]) + high[k] * (1.0 + s[k]));
+                    let (p, q) = (1.0 - s[k], ratio[k] * (1.0 + s[k]));
+                    let value = (low[k] * p + high[k] * q) / (p + q);
                     value.clamp(low[k].min(high[k]), low[k].max(high[k]))
                 }
             }),
@@ -84,6 +85,41 @@ impl<const M: usize> ParameterMap<M> {
                 ];
                 std::array::from_fn(|k| (0..4).map(|i| weights[i] * corners[i][k]).sum())
             }
+        }
+    }
+}
+
+/// One direction of a projective map.
+#[derive(Clone, Copy, Debug)]
+pub struct Interval {
+    pub from: f64,
+    pub to: f64,
+    pub ratio: f64,
+}
+
+impl Interval {
+    /// The local parameter in `[-1, 1]`.
+    pub fn local(&self, t: f64) -> f64 {
+        let (p, q) = (t - self.from, self.ratio * (self.to - t));
+        (p - q) / (p + q)
+    }
+
+    /// The first three derivatives of the local parameter.
+    pub fn derivatives(&self, t: f64) -> [f64; 3] {
+        let Interval { from, to, ratio } = *self;
+        let d = (t - from) + ratio * (to - t);
+        let bend = (1.0 - ratio) / d;
+        let first = 2.0 * ratio * (to - from) / (d * d);
+        [first, -2.0 * bend * first, 6.0 * bend * bend * first]
+    }
+}
+
+impl<const M: usize> ParameterMap<M> {
+    /// One direction of the map; triangles, whose directions depend on each other, have none.
+    pub fn interval(&self, k: usize) -> Interval {
+        match self {
+            ParameterMap::Projective { low, high, ratio } => Interval { from: low[k], to: high[k], ratio: ratio[k] },
+            ParameterMap::Bilinear(_) => unreachable!("the parameters of triangles are not mapped one by one"),
         }
     }
 }
@@ -144,7 +180,7 @@ pub struct Cell<const M: usize> {
 impl<const M: usize> Cell<M> {
     fn new<C: Chart<M>>(number: u32, piece: &Piece<M, C>, middle: [f64; M], half: [f64; M]) -> Self {
         let jet = piece.chart.jet(&middle);
-        let Bounds { second, third } = &piece.chart.bounds(&middle, &half);
+        let Bounds { hull, second, third } = &piece.chart.bounds(&middle, &half);
         let mut cell = Cell {
             piece: number,
             children: [0; 2],
@@ -190,7 +226,9 @@ impl<const M: usize> Cell<M> {
         for j in &cell.j {
             extent += j.abs();
         }
-        cell.hull = [cell.x - extent, cell.x + extent];
+        // Rounding must not turn the box inside out.
+        let low = (cell.x - extent).sup(&hull[0]);
+        cell.hull = [low, (cell.x + extent).inf(&hull[1]).sup(&low)];
         for a in 0..M {
             for b in 0..M {
                 for c in 0..M {
@@ -348,12 +386,7 @@ fn extent<const M: usize>(cells: &[Cell<M>]) -> (Point<3>, Point<3>) {
     let mut low = Point::<3>::repeat(f64::INFINITY);
     let mut high = -low;
     for cell in cells {
-        // The box of the expansion, second-order terms included.
-        for k in 0..3 {
-            let reach = cell.j.iter().map(|j| j[k].abs()).sum::<f64>() + cell.rho2;
-            low[k] = low[k].min(cell.x[k] - reach);
-            high[k] = high[k].max(cell.x[k] + reach);
-        }
+        (low, high) = (low.inf(&cell.hull[0]), high.sup(&cell.hull[1]));
     }
     (low, high)
 }

@@ -3,8 +3,9 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::error::{Axes, ShapeError, interval, knots, number, position, positive, weight};
-use crate::patch::bernstein::{Control, MAX_DEGREE, bezier_spans, halves, interpolate};
-use crate::patch::{Atlas, Border, CurveChart, ParameterMap, Piece, Side};
+use crate::patch::bernstein::{Control, MAX_DEGREE, bezier_spans, cut, interpolate};
+use crate::patch::weights::{even, even_middle, uneven};
+use crate::patch::{Atlas, Border, Chart, CurveChart, ParameterMap, Piece, Side};
 use crate::{Point, Vector};
 
 /// Position and derivatives to third order with respect to the parameter.
@@ -38,6 +39,8 @@ pub struct Curve {
 struct Part {
     from: f64,
     to: f64,
+    /// See [`ParameterMap::Projective`].
+    ratio: f64,
     chart: CurveChart,
     /// Whether only continuity is known where it ends.
     may_turn: bool,
@@ -69,7 +72,7 @@ impl Curve {
                     0 => Side::Boundary(Border::Start),
                     _ => ends[k - 1],
                 };
-                let map = ParameterMap::Affine { low: [part.from], high: [part.to] };
+                let map = ParameterMap::Projective { low: [part.from], high: [part.to], ratio: [part.ratio] };
                 Piece::new(part.chart, map, [[start, ends[k]]])
             })
             .collect();
@@ -128,7 +131,7 @@ impl Curve {
                 let (from, to) = (at(k), at(k + 1));
                 let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
                 let chart = CurveChart::Harmonic { origin, a, b, c, middle, half };
-                Part { from, to, chart, may_turn: false }
+                Part { from, to, ratio: 1.0, chart, may_turn: false }
             })
             .collect();
         Ok(Self::assemble(kind, parts, closed))
@@ -225,7 +228,8 @@ impl Curve {
         let curve = Self::assemble(CurveKind::Other, parts, closed);
         if closed {
             let last = curve.atlas.pieces.len() - 1;
-            let gap = curve.local_jet(0, -1.0).x - curve.local_jet(last, 1.0).x;
+            let pieces = &curve.atlas.pieces;
+            let gap = pieces[0].chart.position(&[-1.0]) - pieces[last].chart.position(&[1.0]);
             if gap.norm() > 1e-9 * (curve.atlas.size + curve.atlas.magnitude) {
                 return Err(ShapeError::new("closed", "the ends of the curve do not meet"));
             }
@@ -295,34 +299,22 @@ impl Curve {
     pub(crate) fn locate(&self, t: f64) -> (usize, f64) {
         let t = wrap(t, self.domain, self.closed);
         let pieces = &self.atlas.pieces;
-        let k = pieces.partition_point(|p| affine(&p.map)[0][0] <= t).clamp(1, pieces.len()) - 1;
-        let [[from], [to]] = affine(&pieces[k].map);
-        (k, ((t - from) - (to - t)) / (to - from))
+        let k = pieces.partition_point(|p| p.map.interval(0).from <= t).clamp(1, pieces.len()) - 1;
+        (k, pieces[k].map.interval(0).local(t))
     }
 
     /// Position and derivatives; parameters outside the domain are wrapped where the curve is closed, else clamped.
     pub fn jet(&self, t: f64) -> CurveJet {
         let (piece, s) = self.locate(t);
-        self.local_jet(piece, s)
-    }
-
-    fn local_jet(&self, piece: usize, s: f64) -> CurveJet {
-        let [[from], [to]] = affine(&self.atlas.pieces[piece].map);
-        let half = 0.5 * (to - from);
-        let [x, d1, d2, d3] = self.atlas.pieces[piece].chart.jet3(s);
-        CurveJet { x, d1: d1 / half, d2: d2 / (half * half), d3: d3 / (half * half * half) }
+        let Piece { chart, map, .. } = &self.atlas.pieces[piece];
+        let [p, q, r] = map.interval(0).derivatives(map.apply(&[s])[0]);
+        let [x, d1, d2, d3] = chart.jet3(s);
+        CurveJet { x, d1: d1 * p, d2: d2 * (p * p) + d1 * q, d3: d3 * (p * p * p) + d2 * (3.0 * p * q) + d1 * r }
     }
 
     /// Position.
     pub fn position(&self, t: f64) -> Point<3> {
         self.jet(t).x
-    }
-}
-
-pub(crate) fn affine<const M: usize>(map: &ParameterMap<M>) -> [[f64; M]; 2] {
-    match map {
-        ParameterMap::Affine { low, high } => [*low, *high],
-        ParameterMap::Bilinear(_) => unreachable!("only triangles have bilinear parameter maps"),
     }
 }
 
@@ -365,39 +357,29 @@ pub(crate) fn closed_range(range: [f64; 2], closed: bool) -> Result<(), ShapeErr
 
 /// Cuts a Bezier curve until its powers decay and its weights are even.
 fn bezier_parts(from: f64, to: f64, control: &[Control], may_turn: bool) -> Vec<Part> {
-    if cuts_needed(control) && to - from > f64::EPSILON * 64.0 * from.abs().max(to.abs()) {
-        let middle = 0.5 * (from + to);
-        let [left, right] = halves(control);
-        let mut parts = cut(from, middle, &left, false, control.len() - 1, 1);
-        parts.extend(cut(middle, to, &right, may_turn, control.len() - 1, 1));
+    cut_parts(from, to, control, may_turn, 0)
+}
+
+fn cut_parts(from: f64, to: f64, control: &[Control], may_turn: bool, depth: u32) -> Vec<Part> {
+    let (even, ratio) = even(control);
+    let t = even_middle(ratio);
+    let middle = from + (to - from) * t;
+    let resolved = (middle - from).min(to - middle) > 32.0 * f64::EPSILON * from.abs().max(to.abs());
+    if resolved && depth < DEEPEST && (is_high(control.len() - 1, depth) || uneven(&even)) {
+        let [left, right] = cut(control, t);
+        let mut parts = cut_parts(from, middle, &left, false, depth + 1);
+        parts.extend(cut_parts(middle, to, &right, may_turn, depth + 1));
         return parts;
     }
-    vec![Part { from, to, chart: CurveChart::bezier(control), may_turn }]
+    vec![Part { from, to, ratio, chart: CurveChart::bezier(&even), may_turn }]
 }
 
-fn cut(from: f64, to: f64, control: &[Control], may_turn: bool, degree: usize, depth: u32) -> Vec<Part> {
-    let high = degree > 6 && 6 * (1usize << depth) < 2 * degree;
-    if depth < 8 && (high || uneven(control)) {
-        let middle = 0.5 * (from + to);
-        let [left, right] = halves(control);
-        let mut parts = cut(from, middle, &left, false, degree, depth + 1);
-        parts.extend(cut(middle, to, &right, may_turn, degree, depth + 1));
-        return parts;
-    }
-    vec![Part { from, to, chart: CurveChart::bezier(control), may_turn }]
-}
+/// Cuts one in another that no weights need.
+pub(crate) const DEEPEST: u32 = 8;
 
-fn cuts_needed(control: &[Control]) -> bool {
-    control.len() > 7 || uneven(control)
-}
-
-pub(crate) fn uneven<'a>(control: impl IntoIterator<Item = &'a Control>) -> bool {
-    let (mut low, mut high) = (f64::INFINITY, 0.0f64);
-    for c in control {
-        low = low.min(c[3]);
-        high = high.max(c[3]);
-    }
-    high > 2.0 * low
+/// Whether powers of this degree decay too slowly after so many cuts: six of them may count in a piece.
+pub(crate) fn is_high(degree: usize, depth: u32) -> bool {
+    degree > 6 && 6 * (1usize << depth) < 2 * degree
 }
 
 /// Whether the tangent jumps between two consecutive parts.

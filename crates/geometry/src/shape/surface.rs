@@ -5,7 +5,7 @@ mod elementary;
 mod grid;
 mod spline;
 
-use super::curve::{affine, wrap};
+use super::curve::wrap;
 use super::error::Axes;
 use crate::patch::{Atlas, Border, Chart, Jet3, ParameterMap, Piece, Side, SurfaceChart};
 use crate::{Point, Vector};
@@ -58,13 +58,16 @@ struct Parts {
     may_turn: [Vec<bool>; 2],
     /// Row by row, the second direction fastest.
     charts: Vec<SurfaceChart>,
+    /// Of each chart, see [`ParameterMap::Projective`].
+    ratios: Vec<[f64; 2]>,
 }
 
 impl Surface {
     fn assemble(kind: SurfaceKind, parts: Parts, closed: [bool; 2], smooth_poles: bool) -> Self {
-        let Parts { breaks, may_turn, charts } = parts;
+        let Parts { breaks, may_turn, charts, ratios } = parts;
         let (n, m) = (breaks[0].len() - 1, breaks[1].len() - 1);
         let at = |i: usize, j: usize| &charts[i * m + j];
+        let ratio = |i: usize, j: usize, axis: usize| ratios[i * m + j][axis];
         let size = charts.iter().map(|c| c.jet(&[0.0; 2]).d.iter().map(|d| d.norm()).sum::<f64>()).fold(0.0, f64::max);
         let mut creases = 0;
         // What lies at the end of every interval, for every piece along it.
@@ -82,8 +85,9 @@ impl Surface {
                 if last || may_turn[axis][k] {
                     let next = (k + 1) % count;
                     for (l, side) in sides.iter_mut().enumerate() {
-                        let (p, q) = if axis == 0 { (at(k, l), at(next, l)) } else { (at(l, k), at(l, next)) };
-                        *side = meet(p, q, axis, creases);
+                        let ((i, j), (p, q)) = if axis == 0 { ((k, l), (next, l)) } else { ((l, k), (l, next)) };
+                        let shift = ratio(i, j, 1 - axis) / ratio(p, q, 1 - axis);
+                        *side = meet(at(i, j), at(p, q), axis, shift, creases);
                     }
                     if sides.iter().any(|s| matches!(s, Side::Crease(_))) {
                         creases += 1;
@@ -115,9 +119,10 @@ impl Surface {
                         }
                     }
                 }
-                let map = ParameterMap::Affine {
+                let map = ParameterMap::Projective {
                     low: [breaks[0][i], breaks[1][j]],
                     high: [breaks[0][i + 1], breaks[1][j + 1]],
+                    ratio: ratios[i * m + j],
                 };
                 pieces.push(Piece::new(at(i, j).clone(), map, sides));
             }
@@ -163,26 +168,23 @@ impl Surface {
     pub fn jet(&self, u: f64, v: f64) -> SurfaceJet {
         if let Some(chart) = &self.triangle {
             let (u, v) = (u.clamp(0.0, 1.0), v.clamp(0.0, 1.0));
-            return scaled(&chart.jet3(&[2.0 * u - 1.0, 2.0 * v - 1.0]), [0.5; 2]);
+            return in_parameters(&chart.jet3(&[2.0 * u - 1.0, 2.0 * v - 1.0]), [[2.0, 0.0, 0.0]; 2]);
         }
         let (piece, s) = self.locate([u, v]);
-        let [low, high] = affine(&self.atlas.pieces[piece].map);
-        scaled(&self.atlas.pieces[piece].chart.jet3(&s), [0, 1].map(|k| 0.5 * (high[k] - low[k])))
+        let Piece { chart, map, .. } = &self.atlas.pieces[piece];
+        let z = map.apply(&s);
+        in_parameters(&chart.jet3(&s), [0, 1].map(|k| map.interval(k).derivatives(z[k])))
     }
 
     /// The piece in which parameters lie, and its local parameters; not for triangles.
     pub(crate) fn locate(&self, z: [f64; 2]) -> (usize, [f64; 2]) {
-        let mut number = 0;
-        let mut s = [0.0; 2];
-        for k in 0..2 {
-            let t = wrap(z[k], self.domain[k], self.closed[k]);
+        let t = [0, 1].map(|k| wrap(z[k], self.domain[k], self.closed[k]));
+        let [i, j] = [0, 1].map(|k| {
             let breaks = &self.breaks[k];
-            let interval = breaks.partition_point(|&b| b <= t).clamp(1, breaks.len() - 1) - 1;
-            let [from, to] = [breaks[interval], breaks[interval + 1]];
-            s[k] = ((t - from) - (to - t)) / (to - from);
-            number = if k == 0 { interval * (self.breaks[1].len() - 1) } else { number + interval };
-        }
-        (number, s)
+            breaks.partition_point(|&b| b <= t[k]).clamp(1, breaks.len() - 1) - 1
+        });
+        let number = i * (self.breaks[1].len() - 1) + j;
+        (number, [0, 1].map(|k| self.atlas.pieces[number].map.interval(k).local(t[k])))
     }
 
     /// Position.
@@ -191,27 +193,31 @@ impl Surface {
     }
 }
 
-fn scaled(j: &Jet3, [h, k]: [f64; 2]) -> SurfaceJet {
+/// A jet in the parameters of the surface, from the first three derivatives of the local ones.
+fn in_parameters(j: &Jet3, [[p, p2, p3], [q, q2, q3]]: [[f64; 3]; 2]) -> SurfaceJet {
+    let ([u, v], [uu, uv, vv], [uuu, uuv, uvv, vvv]) = (j.d, j.dd, j.ddd);
     SurfaceJet {
         x: j.x,
-        u: j.d[0] / h,
-        v: j.d[1] / k,
-        uu: j.dd[0] / (h * h),
-        uv: j.dd[1] / (h * k),
-        vv: j.dd[2] / (k * k),
-        uuu: j.ddd[0] / (h * h * h),
-        uuv: j.ddd[1] / (h * h * k),
-        uvv: j.ddd[2] / (h * k * k),
-        vvv: j.ddd[3] / (k * k * k),
+        u: u * p,
+        v: v * q,
+        uu: uu * (p * p) + u * p2,
+        uv: uv * (p * q),
+        vv: vv * (q * q) + v * q2,
+        uuu: uuu * (p * p * p) + uu * (3.0 * p * p2) + u * p3,
+        uuv: uuv * (p * p * q) + uv * (p2 * q),
+        uvv: uvv * (p * q * q) + uv * (p * q2),
+        vvv: vvv * (q * q * q) + vv * (3.0 * q * q2) + v * q3,
     }
 }
 
-/// How two consecutive pieces join, judged at several points of their common side.
-fn meet(left: &SurfaceChart, right: &SurfaceChart, axis: usize, number: u32) -> Side {
+/// How two consecutive pieces join, judged at several points of their common side, on which the ratio of the left one
+/// is `shift` times that of the right one.
+fn meet(left: &SurfaceChart, right: &SurfaceChart, axis: usize, shift: f64, number: u32) -> Side {
     let mut side = Side::Smooth;
     for k in 0..=8 {
         let s = -1.0 + 0.25 * k as f64;
-        let (mut at, mut then) = ([s; 2], [s; 2]);
+        let (before, after) = (1.0 - s, shift * (1.0 + s));
+        let (mut at, mut then) = ([s; 2], [(after - before) / (after + before); 2]);
         at[axis] = 1.0;
         then[axis] = -1.0;
         let (p, q) = (left.jet(&at), right.jet(&then));

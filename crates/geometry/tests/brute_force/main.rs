@@ -4,6 +4,7 @@
 //! `SIGNORINI_BRUTE_FORCE=1000` multiplies that.
 
 mod shapes;
+mod weights;
 
 use shapes::{CURVES, Random, SURFACES, Sample, curve, surface};
 use signorini_geometry::Point;

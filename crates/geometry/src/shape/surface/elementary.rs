@@ -7,7 +7,7 @@ use super::{Parts, Surface, SurfaceKind};
 use crate::patch::SurfaceChart;
 use crate::patch::bernstein::Net;
 use crate::shape::Curve;
-use crate::shape::curve::{affine, closed_range, homogeneous};
+use crate::shape::curve::{closed_range, homogeneous};
 use crate::shape::error::{Axes, ShapeError, interval, number, position, positive};
 use crate::{Point, Vector};
 
@@ -50,7 +50,8 @@ impl Surface {
             }
         }
         let may_turn = [vec![false; breaks[0].len()], vec![false; breaks[1].len()]];
-        Ok(Self::assemble(kind, Parts { breaks, may_turn, charts }, closed, turning))
+        let ratios = vec![[1.0; 2]; charts.len()];
+        Ok(Self::assemble(kind, Parts { breaks, may_turn, charts, ratios }, closed, turning))
     }
 
     /// `o + r cos u ex + r sin u ey + v ez`.
@@ -170,17 +171,18 @@ impl Surface {
         closed_range(range, closed)?;
         let turns = cuts(range, FRAC_PI_2);
         let pieces = &profile.atlas.pieces;
-        let mut along: Vec<f64> = pieces.iter().map(|p| affine(&p.map)[0][0]).collect();
+        let mut along: Vec<f64> = pieces.iter().map(|p| p.map.interval(0).from).collect();
         along.push(profile.domain()[1]);
-        let mut charts = Vec::new();
+        let (mut charts, mut ratios) = (Vec::new(), Vec::new());
         for u in turns.windows(2) {
             for piece in pieces {
                 let (middle, half) = (0.5 * (u[0] + u[1]), 0.5 * (u[1] - u[0]));
                 charts.push(SurfaceChart::revolved(origin, axis, piece.chart.clone(), middle, half));
+                ratios.push([1.0, piece.map.interval(0).ratio]);
             }
         }
         let may_turn = [vec![false; turns.len()], vec![true; along.len()]];
-        let parts = Parts { breaks: [turns, along], may_turn, charts };
+        let parts = Parts { breaks: [turns, along], may_turn, charts, ratios };
         Ok(Self::assemble(SurfaceKind::Other, parts, [closed, profile.is_closed()], false))
     }
 }

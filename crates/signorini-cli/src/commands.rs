@@ -240,6 +240,7 @@ pub fn closest(queries: &Path, output: &Path, local_minima: bool, json: bool) ->
             "wrong": report.wrong_count,
             "errors": report.wrong,
             "not_unique": report.not_unique,
+            "not_certified": report.not_certified,
             "interrupted": counter.interrupted(),
             "seconds": seconds,
             "slowest": slowest.map(|(id, ms)| json!({"id": id, "milliseconds": ms})),
@@ -254,19 +255,18 @@ pub fn closest(queries: &Path, output: &Path, local_minima: bool, json: bool) ->
             tell!("error: {} more, each with its reason in the answers", report.wrong_count - report.wrong.len());
         }
         say!(
-            "{} queries in {seconds:.2} s, {} of them wrong, {} not unique",
-            report.answered,
-            report.wrong_count,
-            report.not_unique
+            "{} queries in {seconds:.2} s, {} of them wrong, {} not certified, {} not unique",
+            report.answered, report.wrong_count, report.not_certified, report.not_unique
         );
         if let Some((id, ms)) = slowest {
             say!("slowest: {id}, {ms:.2} ms");
         }
         say!("answers: {}", output.display());
     }
-    match (counter.interrupted(), report.wrong_count) {
-        (true, _) => INTERRUPTED,
-        (false, 0) => DONE,
+    match (counter.interrupted(), report.wrong_count, report.not_certified) {
+        (true, ..) => INTERRUPTED,
+        (false, 0, 0) => DONE,
+        (false, 0, _) => NOT_CONVERGED,
         _ => WRONG_INPUT,
     }
 }

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use scanner::{RawCase, ScanError, Scanner};
 use serde_json::{Map, Value, json};
 pub use signorini_geometry::closest::Query;
-use signorini_geometry::closest::{ClosestPair, FeatureKind, Projection, Uniqueness, closest, signed_gap};
+use signorini_geometry::closest::{Certificate, ClosestPair, FeatureKind, Projection, Uniqueness, closest, signed_gap};
 use signorini_geometry::shape::Shape;
 
 /// A query: two shapes with a name.
@@ -46,6 +46,8 @@ pub struct Report {
     pub wrong: Vec<String>,
     pub wrong_count: usize,
     pub not_unique: usize,
+    /// Answers for which the search reached its cap of effort before the proof was complete.
+    pub not_certified: usize,
     pub elapsed: Duration,
     /// The query that took longest.
     pub slowest: Option<(String, Duration)>,
@@ -113,6 +115,7 @@ pub fn answer(projection: &Projection, query: &PairQuery) -> Value {
     };
     fields.insert("uniqueness".into(), json!(name));
     fields.insert("continuum_dim".into(), json!(dimension));
+    fields.insert("certified".into(), json!(projection.certificate == Certificate::Complete));
     fields.insert("certified_to".into(), json!(projection.certified_to));
     fields.insert("others".into(), projection.others.iter().map(minimiser).collect());
     out
@@ -250,7 +253,10 @@ impl Report {
     fn note(&mut self, answered: &Answered) {
         self.answered += 1;
         match &answered.result {
-            Ok((projection, _)) => self.not_unique += usize::from(!projection.uniqueness.is_unique()),
+            Ok((projection, _)) => {
+                self.not_unique += usize::from(!projection.uniqueness.is_unique());
+                self.not_certified += usize::from(projection.certificate == Certificate::Stopped);
+            }
             Err(error) => {
                 self.wrong_count += 1;
                 if self.wrong.len() < QUOTED {

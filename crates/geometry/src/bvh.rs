@@ -4,7 +4,7 @@
 //! the number of boxes alone, so that subtrees are built in parallel into their final places and the tree is the same
 //! on any number of threads.
 
-use crate::{Aabb, Point};
+use crate::{Aabb, Point, Vector};
 
 /// Boxes in a leaf.
 const LEAF: usize = 4;
@@ -168,6 +168,27 @@ impl Bvh {
                     stack[top] = (d[side], node.children[side]);
                     top += 1;
                 }
+            }
+        }
+    }
+
+    /// Visits every box that a ray may meet.
+    pub fn along_ray(&self, from: &Point<3>, direction: &Vector<3>, mut visit: impl FnMut(usize)) {
+        let inverse = direction.map(|x| 1.0 / x);
+        let meets = |b: &Aabb<3>| {
+            let (p, q) = ((b.min - from).component_mul(&inverse), (b.max - from).component_mul(&inverse));
+            // Wider than rounding can make it narrower.
+            let (near, far) = (p.inf(&q).max(), p.sup(&q).min());
+            far >= 0.0 && near <= far + 1e-12 * (near.abs() + far)
+        };
+        let mut stack = vec![self.root];
+        while let Some(child) = stack.pop() {
+            if child.count > 0 {
+                self.order[child.first as usize..(child.first + child.count) as usize]
+                    .iter()
+                    .for_each(|&k| visit(k as usize));
+            } else if let Some(node) = self.nodes.get(child.first as usize) {
+                stack.extend((0..2).filter(|&side| meets(&node.boxes[side])).map(|side| node.children[side]));
             }
         }
     }

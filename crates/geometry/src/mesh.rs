@@ -1,5 +1,7 @@
 //! Triangle meshes: closest points with the face, edge or vertex they lie on, and the side where there is one.
 
+mod side;
+
 use std::collections::HashMap;
 use std::sync::OnceLock;
 
@@ -44,6 +46,10 @@ pub struct TriangleMesh {
     vertex_normals: Vec<Vector<3>>,
     bvh: Bvh,
     quality: MeshQuality,
+    /// The largest coordinate.
+    magnitude: f64,
+    /// Found at the first point whose side is asked for.
+    rule: OnceLock<side::Rule>,
     atlas: OnceLock<Atlas<2, SurfaceChart>>,
 }
 
@@ -57,6 +63,7 @@ impl Clone for TriangleMesh {
             edge_normals: self.edge_normals.clone(),
             vertex_normals: self.vertex_normals.clone(),
             bvh: self.bvh.clone(),
+            rule: self.rule.clone(),
             atlas: OnceLock::new(),
             ..*self
         }
@@ -77,7 +84,7 @@ pub struct MeshFoot {
     pub number: usize,
     /// Face normal, or the angle-weighted mean at edges and vertices (Baerentzen & Aanaes 2005).
     pub normal: Vector<3>,
-    /// Distance with a sign, negative inside; `None` where the mesh bounds no body.
+    /// Distance with a sign, negative inside; `None` where the mesh bounds no body or the side has no meaning.
     pub gap: Option<f64>,
 }
 
@@ -113,6 +120,8 @@ impl TriangleMesh {
             }
         }
         let corners = |t: &[u32; 3]| t.map(|v| vertices[v as usize]);
+        let largest = vertices.iter().map(|x| x.amax()).fold(0.0, f64::max);
+        let unit = unit_for(largest);
         let boxes: Vec<Aabb<3>> = kept.iter().map(|t| triangle_box(&corners(t))).collect();
         let mut numbers: HashMap<[u32; 2], u32> = HashMap::with_capacity(2 * kept.len());
         // Number of triangles of each edge, and the balance of their directions.
@@ -121,7 +130,8 @@ impl TriangleMesh {
         let mut face_normals = Vec::with_capacity(kept.len());
         for t in &kept {
             let [a, b, c] = corners(t);
-            let normal = (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default();
+            // A power of two changes no digit.
+            let normal = ((b - a) * unit).cross(&((c - a) * unit)).try_normalize(0.0).unwrap_or_default();
             quality.degenerate_triangles += usize::from(normal == Vector::<3>::zeros());
             face_normals.push(normal);
             edges.push([[t[0], t[1]], [t[0], t[2]], [t[1], t[2]]].map(|pair| {
@@ -151,7 +161,7 @@ impl TriangleMesh {
             let x = corners(t);
             for i in 0..3 {
                 edge_normals[edges[k][i] as usize] += face_normals[k];
-                let (p, q) = (x[(i + 1) % 3] - x[i], x[(i + 2) % 3] - x[i]);
+                let (p, q) = ((x[(i + 1) % 3] - x[i]) * unit, (x[(i + 2) % 3] - x[i]) * unit);
                 let angle = p.cross(&q).norm().atan2(p.dot(&q));
                 vertex_normals[t[i] as usize] += face_normals[k] * angle;
             }
@@ -160,6 +170,7 @@ impl TriangleMesh {
             *normal = normal.try_normalize(0.0).unwrap_or_default();
         }
         let bvh = Bvh::new(&boxes);
+        let magnitude = bvh.bounds().min.amax().max(bvh.bounds().max.amax());
         Ok(TriangleMesh {
             vertices,
             triangles: kept,
@@ -170,6 +181,8 @@ impl TriangleMesh {
             vertex_normals,
             bvh,
             quality,
+            magnitude,
+            rule: OnceLock::new(),
             atlas: OnceLock::new(),
         })
     }
@@ -230,11 +243,13 @@ impl TriangleMesh {
 
     /// All closest points of a point: several where different places share the distance within `tie`.
     pub fn closest(&self, p: &Point<3>, tie: f64) -> Vec<MeshFoot> {
+        let unit = unit_for(self.magnitude.max(p.amax()));
+        let scaled = p * unit;
         let mut best = f64::INFINITY;
         let mut feet: Vec<(f64, usize, Point<3>, [f64; 2], Feature)> = Vec::with_capacity(2);
         self.bvh.nearest(p, f64::INFINITY, |k| {
             let corners = self.corners(k);
-            let ([u, v], feature) = closest_on_triangle(p, &corners);
+            let ([u, v], feature) = closest_on_triangle(&scaled, &corners.map(|x| x * unit));
             let x = corners[0] + (corners[1] - corners[0]) * u + (corners[2] - corners[0]) * v;
             let d = (x - p).norm();
             if d <= best + tie {
@@ -265,7 +280,7 @@ impl TriangleMesh {
         feature: Feature,
     ) -> MeshFoot {
         let (number, normal) = self.numbered(triangle, feature);
-        let gap = self.quality.has_inside().then(|| if (p - point).dot(&normal) < 0.0 { -distance } else { distance });
+        let gap = self.signed(p, &(p - point), &normal, distance);
         MeshFoot { distance, point, triangle, parameters, feature, number, normal, gap }
     }
 
@@ -319,6 +334,13 @@ impl TriangleMesh {
             Atlas::new(pieces)
         })
     }
+}
+
+/// The power of two that brings coordinates near one where products of four to eight of them would leave the range of
+/// doubles; one elsewhere, where it would change nothing.
+fn unit_for(magnitude: f64) -> f64 {
+    let safe = magnitude == 0.0 || (1e-30..=1e30).contains(&magnitude);
+    if safe { 1.0 } else { 2f64.powi(-(magnitude.log2().round() as i32)) }
 }
 
 /// A closest pair of points of two meshes.

@@ -162,3 +162,72 @@ fn moved_vertices_are_found_where_they_are() {
     }
     assert!(mesh.move_vertices(vec![]).is_err());
 }
+
+/// A box between two corners, its triangles facing outwards.
+fn cuboid(low: [f64; 3], high: [f64; 3]) -> (Vec<Point<3>>, Vec<[u32; 3]>) {
+    let corner = |k: usize| Point::<3>::from_fn(|axis, _| if k >> axis & 1 == 1 { high[axis] } else { low[axis] });
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    ((0..8).map(corner).collect(), faces.iter().flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]]).collect())
+}
+
+#[test]
+fn shells_that_overlap_or_touch_make_their_union() {
+    for shift in [0.4, 0.9, 1.0, 1.5] {
+        let (mut vertices, mut triangles) = cuboid([0.0; 3], [1.0; 3]);
+        let (more, faces) = cuboid([shift, 0.1, 0.1], [shift + 1.0, 1.1, 1.1]);
+        triangles.extend(faces.iter().map(|f| f.map(|v| v + 8)));
+        vertices.extend(more);
+        let mesh = TriangleMesh::new(vertices, &triangles).unwrap();
+        let shape: Shape = mesh.clone().into();
+        let mut r = Random(11);
+        for _ in 0..2000 {
+            let p = Point::<3>::new(r.between(-0.5, 3.0), r.between(-0.5, 1.5), r.between(-0.5, 1.5));
+            let within = |x: f64, low: f64| low < x && x < low + 1.0;
+            let inside =
+                (0..3).all(|k| within(p[k], 0.0)) || (within(p.x, shift) && within(p.y, 0.1) && within(p.z, 0.1));
+            let gap = mesh.closest(&p, 0.0)[0].gap.unwrap();
+            assert_eq!(gap < 0.0, inside, "{p:?}, shifted by {shift}: {gap}");
+            let answer = closest(&Shape::Point(p), &shape, &Query::default());
+            let signed = signorini_geometry::closest::signed_gap(&answer.closest, &shape);
+            assert_eq!(signed, Some(gap));
+        }
+    }
+}
+
+#[test]
+fn an_edge_closed_by_a_triangle_without_area_has_two_sides() {
+    let s = 0.267_949_192_431_122_7;
+    let vertices = [
+        [0.0, 0.0, 0.0],
+        [0.0, 0.0, 2.0],
+        [0.0, 0.0, 1.0],
+        [1.0, s, 0.0],
+        [1.0, s, 2.0],
+        [1.0, -s, 0.0],
+        [1.0, -s, 2.0],
+    ];
+    let triangles =
+        [[0, 2, 3], [2, 4, 3], [2, 1, 4], [0, 5, 6], [0, 6, 1], [3, 4, 6], [3, 6, 5], [0, 3, 5], [1, 6, 4], [0, 1, 2]];
+    let mesh = TriangleMesh::new(vertices.map(Point::<3>::from).to_vec(), &triangles).unwrap();
+    for (x, y, z) in [(-0.018, -0.0466, 0.3), (-0.018, 0.0466, 1.3), (-0.05, 0.0, 1.0)] {
+        let gap = mesh.closest(&Point::<3>::new(x, y, z), 0.0)[0].gap.unwrap();
+        assert!((gap - x.hypot(y)).abs() < 1e-12, "{gap} at {x}, {y}, {z}");
+    }
+    assert!(mesh.closest(&Point::<3>::new(0.5, 0.05, 0.4), 0.0)[0].gap.unwrap() < 0.0);
+}
+
+#[test]
+fn distances_scale_with_the_unit_of_length() {
+    let mesh = ball(6, Point::<3>::new(0.3, -0.2, 0.1));
+    let mut r = Random(21);
+    for exponent in [-460, -300, -100, 0, 100, 259, 460] {
+        let unit = 2f64.powi(exponent);
+        let scaled = TriangleMesh::new(mesh.vertices().iter().map(|v| v * unit).collect(), mesh.triangles()).unwrap();
+        for _ in 0..50 {
+            let p = r.vector(2.0);
+            let (one, other) = (mesh.closest(&p, 0.0)[0], scaled.closest(&(p * unit), 0.0)[0]);
+            assert!((other.distance / unit / one.distance - 1.0).abs() < 1e-14, "2^{exponent}: {p:?}");
+            assert_eq!(other.gap.unwrap() < 0.0, one.gap.unwrap() < 0.0, "2^{exponent}: {p:?}");
+        }
+    }
+}

@@ -149,7 +149,10 @@ pub fn signed_gap(pair: &ClosestPair, b: &Shape) -> Option<f64> {
             let &[u, v] = pair.b.parameters() else { return None };
             d.dot(&SurfaceFrame::new(&s.jet(u, v))?.normal)
         }
-        Shape::Mesh(m) if m.quality().has_inside() => d.dot(&m.normal_at(pair.b.element, pair.b.feature)),
+        Shape::Mesh(m) => {
+            let normal = m.normal_at(pair.b.element, pair.b.feature);
+            return m.signed(&pair.a.point, &d, &normal, pair.distance);
+        }
         Shape::Implicit(s) => s.body().value(&pair.a.point),
         _ => return None,
     };

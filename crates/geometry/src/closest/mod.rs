@@ -232,8 +232,16 @@ where
         most_pairs: [0, 3_000, 6_000, 15_000, 40_000][N],
         magnitude,
     };
-    projection::<A, B, N, CA, CB>(a, b, query, size, search::<A, B, N, CA, CB>(a, b, effort))
+    let found = projection::<A, B, N, CA, CB>(a, b, query, size, search::<A, B, N, CA, CB>(a, b, effort));
+    let largest = a.magnitude.max(b.magnitude);
+    if largest == 0.0 || SEARCHED.contains(&largest) {
+        return found;
+    }
+    Projection { certificate: Certificate::Stopped, certified_to: found.distance(), ..found }
 }
+
+/// Coordinates of which products of four stay in the range of doubles: bounds of a search need them.
+const SEARCHED: std::ops::RangeInclusive<f64> = 1e-70..=1e70;
 
 #[cfg(test)]
 mod tests {

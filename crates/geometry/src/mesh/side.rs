@@ -103,8 +103,8 @@ impl TriangleMesh {
             let [a, b, c] = self.corners(k).map(|x| x * self.unit());
             let longest = (b - a).norm().max((c - a).norm()).max((c - b).norm());
             let height = (b - a).cross(&(c - a)).norm() / longest;
-            // Written so that a triangle that is a point is thin.
-            !(height > 1e4 * f64::EPSILON * self.unit() * self.magnitude)
+            // A triangle that is a point has no height at all.
+            height.is_nan() || height <= 1e4 * f64::EPSILON * self.unit() * self.magnitude
         })
     }
 

@@ -8,7 +8,7 @@
 use super::bernstein::{Control, Net};
 
 /// How many times the least weight of a line of control points the largest may be. Bounds of a rational piece grow with
-/// a power of this, pieces become more as it falls; between 2 and 8 the time of shape and search hardly changes.
+/// a power of this, pieces become more as it falls.
 const APART: f64 = 4.0;
 
 /// A line of control points in its most even parameter, with the ratio that leads there.

@@ -40,7 +40,7 @@ pub fn bezier_grid(breaks: [Vec<f64>; 2], may_turn: [Vec<bool>; 2], nets: Vec<Ne
     let depth = [0, 1].map(|axis| vec![0; breaks[axis].len() - 1]);
     let mut grid = Grid { breaks, may_turn, depth, nets };
     // Directions in turn: a cut in one makes the weights more even in the other too.
-    while (0..2).fold(false, |cut, axis| grid.cut(axis) || cut) {}
+    while grid.cut(0) | grid.cut(1) {}
     let (nets, ratios): (Vec<Net>, Vec<[f64; 2]>) = grid.nets.iter().map(Net::even).unzip();
     let charts = nets.iter().map(SurfaceChart::bezier).collect();
     Parts { charts, ratios, breaks: grid.breaks, may_turn: grid.may_turn }

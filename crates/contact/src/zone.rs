@@ -1,8 +1,9 @@
 //! Where a zone of contact ends: a place within the faces, not a node.
 //!
 //! Beside the zone of smooth bodies the gap grows with the distance to the power 3/2, so `g^(2/3)` of the open nodes is
-//! nearly linear, and vanishes where the zone ends. It is fitted beside every face that has nodes of both states. The
-//! nodes of that face are left out: they have the error of the discretised edge. Where the slave side or what it faces
+//! nearly linear, and vanishes where the zone ends. It is fitted beside every face that has nodes of both states. In the
+//! plane the nodes of that face are left out: they have the error of the discretised edge. In space there are enough others
+//! to average it, and without the nearest nodes the fit would have to reach too far. Where the slave side or what it faces
 //! ends within the zone there are no open nodes, and the zone ends with what is covered.
 
 use crate::multiplier::PressureNodes;
@@ -138,14 +139,14 @@ fn fit<const D: usize>(
         // The nodes of other faces on the edge have its error too.
         let clear = |k: &u32| {
             let beside = faces_of[*k as usize].iter().flat_map(|&f| nodes.of_face(f));
-            !beside.into_iter().any(|(n, _)| states[*n as usize] == NodeState::Active)
+            D == 3 || !beside.into_iter().any(|(n, _)| states[*n as usize] == NodeState::Active)
         };
         chosen.extend(ring.iter().copied().filter(clear));
         if chosen.len() >= plenty(D) {
             break;
         }
     }
-    if chosen.len() < D {
+    if D == 3 || chosen.len() < D {
         chosen.extend(near);
     }
     let at = slave.at(face, &slave.shape(face).centre());

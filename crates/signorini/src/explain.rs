@@ -78,7 +78,7 @@ pub const WORDS: [Word; 34] = [
     word(
         "error_estimate",
         "result",
-        "What the discretisation leaves uncertain, estimated with functions of one degree more: `front`, the root mean square of the distance by which fronts are off; `area`; `force`. Told for the last increment of a step.",
+        "What the discretisation leaves uncertain, estimated with functions of one degree more: `front`, the root mean square of the distance by which fronts are off; `area`; `force`. Told for the last increment of a step. For solids `force`, `area` and `max_pressure` of the last increment, with small sliding and where functions of one degree more exist and are not too many.",
     ),
     word("equilibrium_residual", "result", "Sum of all forces, relative to the largest: round-off where all is well."),
     word(

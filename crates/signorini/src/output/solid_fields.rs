@@ -28,6 +28,8 @@ pub struct SolidFields<const D: usize> {
     pub displacement: Vec<Point<D>>,
     pub stress: Vec<Matrix3<f64>>,
     pub von_mises: Vec<f64>,
+    /// The largest principal strain by its absolute value.
+    pub strain: Vec<f64>,
 }
 
 /// Local points of a shape divided `m` times along every edge, and its parts.
@@ -178,9 +180,10 @@ impl<const D: usize> SolidDisplay<D> {
 
     /// Displacement and stress at all points; stress is the mean of the cells that meet.
     pub fn fields(&self, model: &Model<D>, u: &[f64]) -> SolidFields<D> {
-        let mut fields = SolidFields { displacement: Vec::new(), stress: Vec::new(), von_mises: Vec::new() };
+        let mut fields =
+            SolidFields { displacement: Vec::new(), stress: Vec::new(), von_mises: Vec::new(), strain: Vec::new() };
         for list in &self.samples {
-            let mut stress = Matrix3::zeros();
+            let (mut stress, mut strain) = (Matrix3::zeros(), Matrix3::zeros());
             let mut displacement = Point::<D>::zeros();
             for (k, (number, cell, xi)) in list.iter().enumerate() {
                 let body = &model.bodies.list[*number as usize];
@@ -191,12 +194,19 @@ impl<const D: usize> SolidDisplay<D> {
                     displacement = moved;
                 }
                 stress += body.material.stress(model.bodies.space, &gradient) / list.len() as f64;
+                strain += (gradient + gradient.transpose()) * (0.5 / list.len() as f64);
             }
             fields.displacement.push(displacement);
             fields.von_mises.push(von_mises(&stress));
             fields.stress.push(stress);
+            fields.strain.push(strain.symmetric_eigenvalues().amax());
         }
         fields
+    }
+
+    /// Name of the body of a point.
+    pub fn body_of<'a>(&self, model: &'a Model<D>, point: usize) -> &'a str {
+        &model.bodies.list[self.body[point] as usize].name
     }
 
     /// A VTU with displacement, stress and its equivalent after von Mises.

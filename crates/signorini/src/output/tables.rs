@@ -57,6 +57,7 @@ pub fn outlines<const D: usize>(s: &Snapshot<D>) -> String {
 
 /// One line per increment of solids: forces, area and largest pressure of every contact, forces of supports, probes.
 pub fn solid_history<const D: usize>(steps: &[Value], plan: &crate::plan::solid::SolidPlan<D>) -> String {
+    const ESTIMATED: [&str; 3] = ["force", "area", "max_pressure"];
     let axes = &["x", "y", "z"][..D];
     let supports: std::collections::BTreeSet<&str> =
         plan.supports.iter().map(|s| s.name.as_str()).filter(|n| *n != "axis").collect();
@@ -65,6 +66,7 @@ pub fn solid_history<const D: usize>(steps: &[Value], plan: &crate::plan::solid:
     for c in &plan.contacts {
         header.extend(axes.iter().map(|a| format!("{}:force_{a}", c.name)));
         header.extend(["area", "max_pressure", "max_penetration"].iter().map(|k| format!("{}:{k}", c.name)));
+        header.extend(ESTIMATED.iter().map(|k| format!("{}:{k}_error", c.name)));
     }
     for s in &supports {
         header.extend(axes.iter().map(|a| format!("{s}:force_{a}")));
@@ -81,6 +83,7 @@ pub fn solid_history<const D: usize>(steps: &[Value], plan: &crate::plan::solid:
             let c = &step["contacts"][&c.name];
             row.extend((0..D).map(|k| cell(&c["force"][k])));
             row.extend(["area", "max_pressure", "max_penetration"].iter().map(|k| cell(&c[*k])));
+            row.extend(ESTIMATED.iter().map(|k| cell(&c["error_estimate"][*k])));
         }
         for s in &supports {
             row.extend((0..D).map(|k| cell(&step["support_forces"][*s][k])));

@@ -14,13 +14,24 @@ use signorini_contact::GapJet;
 use signorini_geometry::Point;
 use signorini_solid::loads::{forces, resultant};
 use signorini_solid::{
-    Bodies, Circumstances, Contact, Load, LoadKind, Master, Memory, Method, Model, RigidGap, Sliding, Space, State,
-    StepError, Support, SupportError, SupportKind, facing,
+    Bodies, Circumstances, Contact, ContactResult, Load, LoadKind, Master, Memory, Method, Model, RigidGap, Sliding,
+    Space, State, StepError, Support, SupportError, SupportKind, facing,
 };
 use signorini_solve::cholesky::Cost;
 use signorini_solve::{Iteration, Progress};
 use std::cell::RefCell;
 use std::path::Path;
+
+/// Strain from which the theory of small strains is off by more than a few per cent of the result: the terms left out are
+/// half the square of the displacement gradient, and rotations come with strains.
+const LARGE_STRAIN: f64 = 0.05;
+/// Beginning of the warning about it.
+const STRAINED: &str = "the strain is not small";
+
+/// The most unknowns of one degree more for which errors are estimated, in the plane; they take a fraction of a second.
+const AFFORDABLE: usize = 30_000;
+/// The estimate is as likely too small as too large: this makes it seldom too small.
+const SAFETY: f64 = 1.5;
 
 /// Share of an increment below which it is not cut any more.
 const SMALLEST_INCREMENT: f64 = 1e-3;
@@ -89,6 +100,11 @@ pub fn run<const D: usize>(
 
 /// Bodies, supports and contacts of a plan.
 pub fn model<const D: usize>(plan: &SolidPlan<D>) -> Result<Model<D>, CaseError> {
+    raised(plan, 0)
+}
+
+/// The same with functions of a higher degree.
+fn raised<const D: usize>(plan: &SolidPlan<D>, by: usize) -> Result<Model<D>, CaseError> {
     let space = match plan.space {
         Stated::PlaneStrain => Space::PlaneStrain,
         Stated::PlaneStress => Space::PlaneStress,
@@ -97,7 +113,7 @@ pub fn model<const D: usize>(plan: &SolidPlan<D>) -> Result<Model<D>, CaseError>
     };
     let mut bodies = Bodies::<D>::new(space);
     for b in &plan.bodies {
-        bodies.add(&b.name, b.mesh.clone(), b.degree, b.material);
+        bodies.add(&b.name, b.mesh.clone(), b.degree + by, b.material);
     }
     let supports = (plan.supports.iter())
         .map(|s| Support { name: s.name.clone(), body: s.body, group: s.group.clone(), kind: s.kind.clone() })
@@ -196,6 +212,9 @@ impl<const D: usize> Runner<D> {
             let contacts: Vec<ContactDisplay<D>> =
                 self.model.contacts.iter().enumerate().map(|(k, c)| ContactDisplay::new(c, k, &state)).collect();
             self.record(index, time, &state, &contacts, &display, &fields);
+            if index + 1 == times.len() {
+                self.estimate(time, &state);
+            }
             if index % self.plan.every == self.plan.every - 1 || index + 1 == times.len() {
                 self.write_fields(index, time, &display, &fields, &contacts)?;
             }
@@ -371,6 +390,7 @@ impl<const D: usize> Runner<D> {
                 "max_pressure": result.nodes.iter().map(|n| n.pressure).fold(0.0, f64::max),
                 "min_pressure": result.nodes.iter().filter(|n| n.active).map(|n| n.pressure).reduce(f64::min),
                 "radius": radius(self.plan.space, result.area, components.len()),
+                "error_estimate": null,
             });
         }
         for (name, (_, x)) in &self.plan.probes {
@@ -383,6 +403,18 @@ impl<const D: usize> Runner<D> {
                     "von_mises": fields.von_mises[k],
                 });
             }
+        }
+        let most = (0..fields.strain.len()).max_by(|&a, &b| fields.strain[a].total_cmp(&fields.strain[b]));
+        let told = self.warnings.iter().any(|w| w.starts_with(STRAINED));
+        if let Some(k) = most.filter(|&k| !told && fields.strain[k] >= LARGE_STRAIN) {
+            let x: Vec<String> = display.points[k].iter().map(|v| format!("{v:.4}")).collect();
+            self.warnings.push(format!(
+                "{STRAINED}: {:.0} % at ({}) of `{}` at t = {time}; the theory is that of small strains, and errs by as much from {:.0} % on",
+                100.0 * fields.strain[k],
+                x.join(", "),
+                display.body_of(&self.model, k),
+                100.0 * LARGE_STRAIN,
+            ));
         }
         for (contact, result) in self.plan.contacts.iter().zip(&state.contacts) {
             // Of pairs that were not named most never meet.
@@ -403,6 +435,34 @@ impl<const D: usize> Runner<D> {
             self.warnings.push(message);
         }
         self.steps.push(step);
+    }
+
+    /// What the cells leave uncertain, in the last step recorded: the change with functions of one degree more. Not with
+    /// finite sliding, whose path would have to be gone again, nor where these functions do not exist or are too many.
+    fn estimate(&mut self, time: f64, state: &State<D>) {
+        // In space unknowns cost several times as much.
+        let most = if D == 3 { AFFORDABLE / 4 } else { AFFORDABLE };
+        let raises = |b: &crate::plan::solid::PlannedBody<D>| {
+            let simplices = (0..b.mesh.cell_count()).any(|c| !b.mesh.shape(c).is_tensor());
+            b.degree < if simplices { 2 } else { 8 }
+        };
+        let growth: f64 =
+            self.plan.bodies.iter().map(|b| (1.0 + 1.0 / b.degree as f64).powi(D as i32)).fold(1.0, f64::max);
+        let finite = self.model.slides() || self.plan.contacts.is_empty();
+        if finite || !self.plan.bodies.iter().all(raises) || growth * self.model.unknowns() as f64 > most as f64 {
+            return;
+        }
+        let Ok(mut fine) = raised(&self.plan, 1) else { return };
+        let solved = at_time(&self.plan, &mut fine, time, |model, now| model.solve(now, &mut |_, _| true));
+        let (Ok(Ok(fine)), Some(step)) = (solved, self.steps.last_mut()) else { return };
+        for ((contact, coarse), fine) in self.plan.contacts.iter().zip(&state.contacts).zip(&fine.contacts) {
+            let peak = |c: &ContactResult<D>| c.nodes.iter().map(|n| n.pressure).fold(0.0, f64::max);
+            step["contacts"][&contact.name]["error_estimate"] = json!({
+                "force": SAFETY * (fine.force - coarse.force).norm(),
+                "area": SAFETY * (fine.area - coarse.area).abs(),
+                "max_pressure": SAFETY * (peak(fine) - peak(coarse)).abs(),
+            });
+        }
     }
 
     fn write_fields(
@@ -478,21 +538,28 @@ impl<const D: usize> Runner<D> {
                 let list: Vec<String> = (self.plan.contacts.iter())
                     .map(|c| {
                         let found = &step["contacts"][&c.name];
-                        let figure = |v: &Value| v.as_f64().map_or("-".into(), |v| format!("{v:.6}"));
+                        let error = |key: &str| found["error_estimate"][key].as_f64();
+                        let figure = |v: &Value, e: Option<f64>| v.as_f64().map_or("-".into(), |v| rounded(v, e));
+                        let within =
+                            |e: Option<f64>| e.filter(|e| *e > 0.0).map_or(String::new(), |e| format!(" ± {e:.0e}"));
                         let zones = found["zones"].as_u64().unwrap_or(0);
                         if zones == 0 {
                             return format!("`{}` is open", c.name);
                         }
-                        let force: Vec<String> =
-                            found["force"].as_array().into_iter().flatten().take(D).map(figure).collect();
+                        let force: Vec<String> = (found["force"].as_array().into_iter().flatten().take(D))
+                            .map(|v| figure(v, error("force")))
+                            .collect();
                         format!(
-                            "`{}` carries ({}) over {} {} in {zones} zone{}, at most {}",
+                            "`{}` carries ({}){} over {} {}{} in {zones} zone{}, at most {}{}",
                             c.name,
                             force.join(", "),
+                            within(error("force")),
                             if D == 3 || self.plan.space == Stated::Axisymmetric { "area" } else { "length" },
-                            figure(&found["area"]),
+                            figure(&found["area"], error("area")),
+                            within(error("area")),
                             if zones == 1 { "" } else { "s" },
-                            figure(&found["max_pressure"]),
+                            figure(&found["max_pressure"], error("max_pressure")),
+                            within(error("max_pressure")),
                         )
                     })
                     .collect();
@@ -568,6 +635,17 @@ fn method<const D: usize>(plan: &SolidPlan<D>) -> String {
     let mut list: Vec<&str> = plan.contacts.iter().map(|c| name(c.method)).collect();
     list.dedup();
     if list.is_empty() { "none".into() } else { list.join(", ") }
+}
+
+/// A figure with the digits that its error leaves; six places where that is not known.
+fn rounded(value: f64, error: Option<f64>) -> String {
+    let Some(error) = error.filter(|e| *e > 0.0) else { return format!("{value:.6}") };
+    let places = (-error.log10().floor()) as i32;
+    if places >= 0 {
+        return format!("{value:.*}", places.min(12) as usize);
+    }
+    let unit = 10f64.powi(-places);
+    format!("{:.0}", (value / unit).round() * unit)
 }
 
 /// Half the length of one interval, or the radius of the disc of one area.

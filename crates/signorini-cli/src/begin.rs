@@ -47,7 +47,7 @@ fn write_all(folder: &Path, files: &[(String, String)]) -> std::io::Result<()> {
 /// Explains a key or a word, or lists all words.
 pub fn explain(word: Option<&str>, json: bool) -> u8 {
     let Some(word) = word else {
-        for w in &WORDS {
+        for w in WORDS {
             say!("{:22} {}", w.word, w.kind);
         }
         say!(

@@ -8,9 +8,10 @@ use signorini::fit::fit;
 use signorini::gallery::{all, find};
 use signorini::output::OutputError;
 use signorini::output::chart::save_as;
+use signorini::output::figure::figure;
 use signorini::plan::plan;
 use signorini::queries::{Query, answer_file};
-use signorini::run::{Ending, RunError, preview, resume, run, sizes};
+use signorini::run::{Begun, Ending, RunError, begun, preview, resume, run, sizes};
 use signorini::scene::{self, Scene, SceneError};
 use std::path::{Path, PathBuf};
 
@@ -160,14 +161,19 @@ fn echo(v: &Value) -> String {
     match (v.as_str(), &v["text"], v["value"].as_f64()) {
         (Some(text), ..) => text.to_string(),
         (None, Value::String(text), Some(value)) => {
-            format!("line {}: `{text}` is {value} {}", v["line"], v["unit"].as_str().unwrap_or(""))
+            format!("{}: `{text}` is {value} {}", line(v), v["unit"].as_str().unwrap_or(""))
         }
         (None, Value::String(text), None) => {
             let unit = v["unit"].as_str().unwrap_or("");
-            format!("line {}: `{text}`, whose unit is {} {unit}", v["line"], v["factor"])
+            format!("{}: `{text}`, whose unit is {} {unit}", line(v), v["factor"])
         }
         _ => v.to_string(),
     }
+}
+
+/// Where a value with a unit stands.
+fn line(v: &Value) -> String {
+    v["line"].as_u64().map_or("--set".into(), |line| format!("line {line}"))
 }
 
 /// An error of the results folder, with what to do.
@@ -180,8 +186,9 @@ pub fn output_error(error: &OutputError) -> CaseError {
 }
 
 fn read_scene(name: &str, text: &str, set: &[String]) -> Result<Scene, CaseError> {
-    let text = if set.is_empty() { text.to_string() } else { override_key::apply(name, text, set)? };
-    Scene::parse(name, &text, Path::new(name).parent().unwrap_or(Path::new("")))
+    let (text, origins) = override_key::apply(name, text, set)?;
+    let folder = Path::new(name).parent().unwrap_or(Path::new(""));
+    Scene::parse(name, &text, folder).map_err(|error| origins.relocated(error))
 }
 
 fn execute_scene(name: &str, text: &str, folder: &Path, set: &[String], json: bool) -> u8 {
@@ -283,6 +290,19 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], resumed: bool,
         Ok(document) => document,
         Err(error) => return report(&error, json),
     };
+    let earlier = match resumed.then(|| begun(&document, folder)).transpose() {
+        Ok(earlier) => earlier,
+        Err(error) => return report(&error, json),
+    };
+    match earlier {
+        Some(Begun::Anew) => {
+            eprintln!("note: the earlier run in {} kept no increment: it begins anew", folder.display())
+        }
+        Some(Begun::Done) => {
+            eprintln!("note: the run in {} is done: its results are left as they are", folder.display())
+        }
+        _ => {}
+    }
     let mut bar = Bar::new(json);
     let result = if resumed { resume(&document, folder, &mut bar) } else { run(&document, folder, &mut bar) };
     bar.finish();
@@ -393,13 +413,16 @@ fn membrane_table(summary: &Value) {
     let steps = summary["steps"].as_array().cloned().unwrap_or_default();
     for step in &steps {
         let contact = step["contacts"].as_object().and_then(|c| c.values().next()).cloned().unwrap_or(Value::Null);
-        let number = |v: &Value| v.as_f64().map_or("-".to_string(), |v| format!("{v:.10}"));
+        let number = |v: &Value, key: &str| {
+            let within = contact["error_estimate"][key].as_f64();
+            v.as_f64().map_or("-".to_string(), |v| figure(v, within))
+        };
         say!(
             "{:>9} {:>7} {:>16} {:>16} {:>6} {:>6} {:>10}",
             format!("{:.6}", step["time"].as_f64().unwrap_or(f64::NAN)),
             solves(step),
-            number(&contact["area"]),
-            number(&contact["force"][2]),
+            number(&contact["area"], "area"),
+            number(&contact["force"][2], "force"),
             contact["zones"].to_string(),
             contact["holes"].to_string(),
             step["equilibrium_residual"].as_f64().map_or("-".to_string(), |v| format!("{v:.1e}")),

@@ -52,6 +52,28 @@ fn a_run_leaves_everything_it_promises() {
 }
 
 #[test]
+fn a_run_that_is_done_is_left_alone_and_one_without_increments_begins_anew() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("case.toml"), example("string")).expect("a file");
+    let resumed =
+        || signorini(folder.path()).args(["run", "case.toml", "-o", "out", "--resume"]).output().expect("a run");
+    let first = signorini(folder.path()).args(["run", "case.toml", "-o", "out"]).output().expect("a run");
+    assert_eq!(first.status.code(), Some(0));
+    let written =
+        || std::fs::metadata(folder.path().join("out/history.csv")).and_then(|m| m.modified()).expect("a file");
+    let before = written();
+    let done = resumed();
+    assert_eq!(done.status.code(), Some(0));
+    assert!(text(&done.stderr).contains("is done") && text(&done.stdout).contains("In contact"));
+    assert_eq!(written(), before);
+    // As if it had been killed.
+    std::fs::remove_file(folder.path().join("out/summary.json")).expect("a file");
+    let anew = resumed();
+    assert!(anew.status.code() == Some(0) && text(&anew.stderr).contains("begins anew"));
+    assert_ne!(written(), before);
+}
+
+#[test]
 fn wrong_input_ends_with_one_and_says_where() {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("case.toml"), example("string").replace("tension", "tensoin")).expect("a file");

@@ -1,4 +1,4 @@
-//! Height maps from files: CSV, NPY, and 16-bit TIFF.
+//! Height maps from files: CSV, NPY and TIFF.
 //!
 //! The first value is the height at the origin; columns run along x, rows along y. The values are joined by a bicubic
 //! spline, which passes through all of them and has continuous curvature.
@@ -23,7 +23,7 @@ struct Table {
 ///
 /// # Errors
 /// In words: files of another kind, damaged or ragged ones, numbers that are missing or not finite, fewer than four
-/// rows or columns, images of another depth than 16 bits.
+/// rows or columns, images that are not grey, or of 8 bits.
 pub fn read(path: &Path, bytes: &[u8], origin: [f64; 2], spacing: [f64; 2], scale: f64) -> Result<Sampled, String> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     let table = match extension.as_str() {
@@ -147,7 +147,7 @@ fn npy(bytes: &[u8]) -> Result<Table, String> {
     Ok(Table { rows, columns, values })
 }
 
-/// A grey image of 16 bits.
+/// A grey image: integers of 16 bits, or numbers of 32 or 64.
 fn tiff(bytes: &[u8]) -> Result<Table, String> {
     let wrong = |e: tiff::TiffError| format!("no TIFF that can be read: {e}");
     let mut decoder = tiff::decoder::Decoder::new(std::io::Cursor::new(bytes)).map_err(wrong)?;
@@ -157,15 +157,25 @@ fn tiff(bytes: &[u8]) -> Result<Table, String> {
         return Err(format!("{rows} x {columns} heights are too many"));
     }
     match decoder.colortype().map_err(wrong)? {
-        tiff::ColorType::Gray(16) => {}
+        tiff::ColorType::Gray(16 | 32 | 64) => {}
         other => {
-            return Err(format!("the image is {other:?}: 16 bits of grey are wanted, 8 are too coarse for heights"));
+            return Err(format!(
+                "the image is {other:?}: one grey value of 16 bits or more is wanted, 8 are too coarse for heights"
+            ));
         }
     }
     let values = match decoder.read_image().map_err(wrong)? {
         tiff::decoder::DecodingResult::U16(values) => values.into_iter().map(f64::from).collect::<Vec<f64>>(),
         tiff::decoder::DecodingResult::I16(values) => values.into_iter().map(f64::from).collect(),
-        _ => return Err("the image does not hold integers of 16 bits".into()),
+        tiff::decoder::DecodingResult::U32(values) => values.into_iter().map(f64::from).collect(),
+        tiff::decoder::DecodingResult::I32(values) => values.into_iter().map(f64::from).collect(),
+        tiff::decoder::DecodingResult::F32(values) => values.into_iter().map(f64::from).collect(),
+        tiff::decoder::DecodingResult::F64(values) => values,
+        _ => {
+            return Err(
+                "the image holds numbers of a kind that is not known: save as float32 or as integers of 16 bits".into(),
+            );
+        }
     };
     if values.len() != rows * columns {
         return Err(format!("{} heights where {rows} x {columns} are announced", values.len()));
@@ -178,6 +188,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
     use signorini_geometry::Jet;
+    use tiff::encoder::colortype::{Gray16, Gray32Float, Gray64Float};
 
     fn plane(i: usize, j: usize) -> f64 {
         2.0 * i as f64 - 3.0 * j as f64 + 100.0
@@ -192,11 +203,14 @@ mod tests {
         out
     }
 
-    fn tiff_bytes() -> Vec<u8> {
+    fn tiff_bytes<C: tiff::encoder::colortype::ColorType>(number: impl Fn(f64) -> C::Inner) -> Vec<u8>
+    where
+        [C::Inner]: tiff::encoder::TiffValue,
+    {
         let mut out = std::io::Cursor::new(Vec::new());
-        let image: Vec<u16> = (0..5).flat_map(|j| (0..6).map(move |i| plane(i, j) as u16)).collect();
+        let image: Vec<C::Inner> = (0..30).map(|k| number(plane(k % 6, k / 6))).collect();
         let mut encoder = tiff::encoder::TiffEncoder::new(&mut out).unwrap();
-        encoder.write_image::<tiff::encoder::colortype::Gray16>(6, 5, &image).unwrap();
+        encoder.write_image::<C>(6, 5, &image).unwrap();
         out.into_inner()
     }
 
@@ -215,7 +229,9 @@ mod tests {
             ("map.txt", rows(" ")),
             ("map.npy", npy_bytes("<f8", "False", &c)),
             ("map.npy", npy_bytes(">i2", "True", &f)),
-            ("map.tif", tiff_bytes()),
+            ("map.tif", tiff_bytes::<Gray16>(|v| v as u16)),
+            ("map.tif", tiff_bytes::<Gray32Float>(|v| v as f32)),
+            ("map.tiff", tiff_bytes::<Gray64Float>(|v| v)),
         ]
     }
 

@@ -139,6 +139,8 @@ pub(crate) struct Planner<'a> {
     pub document: &'a Document,
     pub reader: Reader<'a>,
     pub space: Space,
+    /// What looks wrong in files that were read.
+    pub warnings: RefCell<Vec<String>>,
 }
 
 /// The value of a key that could be a vector elsewhere.
@@ -178,6 +180,7 @@ impl<'a> Planner<'a> {
             document,
             reader: Reader { document, units, names: Names::default(), interpreted: RefCell::default() },
             space: *case.space.get_ref(),
+            warnings: RefCell::default(),
         };
         planner.define_constants()?;
         planner.define_functions()?;
@@ -316,6 +319,14 @@ impl<'a> Planner<'a> {
         }
     }
 
+    /// Refuses a contact with friction.
+    fn frictionless(&self, contact: &statement::Contact) -> Result<(), CaseError> {
+        let Some(friction) = &contact.friction else { return Ok(()) };
+        Err(self.unavailable(friction.span(), "friction").help(
+            "leave `friction` out: bodies slide along each other without resistance; membranes may have `adhesion`",
+        ))
+    }
+
     fn unavailable(&self, span: Range<usize>, what: &str) -> CaseError {
         self.document.error(span, format!("{what} is not available in this version"))
     }
@@ -433,7 +444,7 @@ impl<'a> Planner<'a> {
         supports: Vec<PlannedSupport>,
         contacts: Vec<Contact>,
         method: MethodChoice,
-        warnings: Vec<String>,
+        mut warnings: Vec<String>,
     ) -> Result<MembranePlan<D>, CaseError>
     where
         Self: domain::ReadDomain<D>,
@@ -456,7 +467,8 @@ impl<'a> Planner<'a> {
         let initial_zone = self.initial_zone(&contacts, &on.grid)?;
         let names: Vec<&str> = contacts.iter().map(|c| c.name.as_str()).collect();
         let increments = self.increments(D, &names)?;
-        let plan = MembranePlan {
+        warnings.append(&mut self.warnings.borrow_mut());
+        let mut plan = MembranePlan {
             document: self.document.clone(),
             space: self.space,
             cells: on.cells,
@@ -479,6 +491,12 @@ impl<'a> Planner<'a> {
             interpreted: self.reader.echo(),
         };
         plan.check_time()?;
+        let membrane = plan.at(plan.increments[0].range[0]);
+        for (name, x) in plan.probes.iter().filter(|(_, x)| !membrane.contains(x)) {
+            let at: Vec<String> = x.iter().map(f64::to_string).collect();
+            plan.warnings
+                .push(format!("the probe `{name}` at ({}) lies outside `{body}`: it tells nothing", at.join(", ")));
+        }
         Ok(plan)
     }
 
@@ -621,9 +639,7 @@ impl<'a> Planner<'a> {
         let method = stated.map_or(Ok(MethodChoice::default()), |c| self.method(c.get_ref(), size))?;
         for (name, key) in &document.case.contacts {
             let contact = key.get_ref();
-            if let Some(friction) = &contact.friction {
-                return Err(self.unavailable(friction.span(), "friction of a membrane"));
-            }
+            self.frictionless(contact)?;
             if let Some(own) = &contact.method
                 && self.method(contact, size)? != method
             {

@@ -14,6 +14,7 @@ mod solid_checkpoint;
 use crate::case::statement::Space;
 use crate::case::value::Interpreted;
 use crate::case::{CaseError, Document};
+use crate::output::figure::figure;
 use crate::output::film::Film;
 use crate::output::{Folder, OutputError, pictures, tables, vtk};
 use crate::plan::{Contact, Control, MembranePlan, MethodChoice, Plan, PlannedIncrement, plan};
@@ -41,6 +42,7 @@ use std::path::Path;
 fn solid_sizes<const D: usize>(plan: &crate::plan::solid::SolidPlan<D>) -> Result<Value, CaseError> {
     let mut model = solid::model(plan)?;
     let cost = solid::cost(plan, &mut model)?;
+    let judged = solid::judge(plan, &mut model)?;
     let free: Vec<String> = model
         .free_modes()
         .iter()
@@ -59,7 +61,7 @@ fn solid_sizes<const D: usize>(plan: &crate::plan::solid::SolidPlan<D>) -> Resul
         "contacts": plan.contacts.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", "),
         "free": free,
         "interpreted": plan.interpreted.iter().map(Interpreted::to_json).collect::<Vec<_>>(),
-        "warnings": plan.warnings.iter().cloned().chain(sizes::odd_solids(plan)).collect::<Vec<_>>(),
+        "warnings": plan.warnings.iter().cloned().chain(sizes::odd_solids(plan)).chain(judged).collect::<Vec<_>>(),
     }))
 }
 
@@ -104,24 +106,51 @@ pub struct Outcome {
 
 /// Runs a case and writes its results into a folder, with the threads of rayon's current pool.
 pub fn run(document: &Document, folder: &Path, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
-    begin(document, folder, false, progress)
+    begin(document, folder, Begun::Fresh, progress)
 }
 
-/// Goes on with a run that was interrupted or killed, from its last increment; to the same digits.
+/// Where a run begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Begun {
+    /// At its beginning, as was asked.
+    Fresh,
+    /// After the last increment that an earlier run kept.
+    Resumed,
+    /// At its beginning, as the earlier run kept no increment.
+    Anew,
+    /// Nowhere: the earlier run is done.
+    Done,
+}
+
+/// Where a run of a case would go on in the folder of an earlier one.
+///
+/// # Errors
+/// A folder without a run, or with one of another case.
+pub fn begun(document: &Document, folder: &Path) -> Result<Begun, CaseError> {
+    checkpoint::begun(folder, &document.text).map_err(not_resumed)
+}
+
+/// Goes on with a run that was interrupted or killed, from its last increment; to the same digits. Of a run that is done
+/// the summary is read, and nothing is written.
 ///
 /// # Errors
 /// Those of [`run`], and a folder without such a run, or with one of another case.
 pub fn resume(document: &Document, folder: &Path, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
-    begin(document, folder, true, progress)
+    let begun = begun(document, folder)?;
+    if begun == Begun::Done {
+        let summary = checkpoint::summary(folder).map_err(not_resumed)?;
+        return Ok(Outcome { summary, ending: Ending::Converged });
+    }
+    begin(document, folder, begun, progress)
 }
 
-fn begin(document: &Document, folder: &Path, resumed: bool, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
+fn begin(document: &Document, folder: &Path, begun: Begun, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
     let start = std::time::Instant::now();
     match plan(document)? {
-        Plan::Line(p) => Runner::<1, LineZone>::new(p, folder, resumed)?.run(start, progress),
-        Plan::Plane(p) => Runner::<2, PlaneZone>::new(p, folder, resumed)?.run(start, progress),
-        Plan::PlaneSolids(p) => solid::run(*p, folder, resumed, start, progress),
-        Plan::Solids(p) => solid::run(*p, folder, resumed, start, progress),
+        Plan::Line(p) => Runner::<1, LineZone>::new(p, folder, begun)?.run(start, progress),
+        Plan::Plane(p) => Runner::<2, PlaneZone>::new(p, folder, begun)?.run(start, progress),
+        Plan::PlaneSolids(p) => solid::run(*p, folder, begun, start, progress),
+        Plan::Solids(p) => solid::run(*p, folder, begun, start, progress),
     }
 }
 
@@ -174,12 +203,12 @@ impl Progress for Logged<'_> {
 }
 
 impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
-    fn new(plan: MembranePlan<D>, folder: &Path, resumed: bool) -> Result<Self, RunError> {
+    fn new(plan: MembranePlan<D>, folder: &Path, begun: Begun) -> Result<Self, RunError> {
         // Everything that can be checked is checked before the folder is touched.
-        let first = &plan.increments[0];
-        let time = if first.control == Control::Time { first.time } else { first.range[0] };
-        plan.check_fields(&plan.at(time), time)?;
-        if resumed {
+        if let Some(&time) = plan.known_times().first() {
+            plan.check_fields(&plan.at(time), time)?;
+        }
+        if begun == Begun::Resumed {
             return Self::resume(plan, folder);
         }
         let folder = Folder::create(folder)?;
@@ -292,7 +321,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                 }
             }
             let membrane = self.plan.at(time);
-            let checked = if index > 0 { self.plan.check_fields(&membrane, time) } else { Ok(()) };
+            let checked = if index == 0 && by_time { Ok(()) } else { self.plan.check_fields(&membrane, time) };
             if let Err(error) = checked {
                 // What was found so far stays; the summary says how far it goes.
                 self.finish(Ending::NotConverged, "input", start, &mesh, last.as_ref())?;
@@ -770,7 +799,11 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                 let sentences: Vec<String> =
                     told.iter().map(|c| self.contact_verdict(c, &step["contacts"][&c.name])).collect();
                 match sentences.is_empty() {
-                    true => "The membrane touches nothing.".into(),
+                    true => {
+                        let time = step["time"].as_f64().unwrap_or(0.0);
+                        let why = sizes::clearance::<D, Z>(&self.plan, time);
+                        format!("The membrane touches nothing{}.", why.map_or(String::new(), |why| format!(": {why}")))
+                    }
                     false => format!(
                         "{}; forces balance to {balance:.0e}.{}",
                         sentences.join("; ").replacen('i', "I", 1),
@@ -783,16 +816,15 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
 
     /// One contact in a clause.
     fn contact_verdict(&self, contact: &Contact, c: &Value) -> String {
-        let figure = |v: &Value| format!("{:.9}", v.as_f64().unwrap_or(f64::NAN));
         let within = |v: &Value| v.as_f64().map_or(String::new(), |v| format!(" ± {v:.0e}"));
         let measure = if D == 1 && self.plan.space == Space::Line { "length" } else { "area" };
         let (zones, holes) = (c["zones"].as_u64().unwrap_or(0), c["holes"].as_u64().unwrap_or(0));
         let staircase = if let MethodChoice::ActiveSet(_) = self.plan.method { " (a staircase of nodes)" } else { "" };
         let force = c["force"][2].as_f64().unwrap_or(f64::NAN);
         format!(
-            "in contact{} over {measure} {}{}{staircase} in {zones} zone{}{}, pushed {} by {:.9}{}",
+            "in contact{} over {measure} {}{}{staircase} in {zones} zone{}{}, pushed {} by {}{}",
             if self.plan.contacts.len() > 1 { format!(" with {}", contact.body) } else { String::new() },
-            figure(&c["area"]),
+            figure(c["area"].as_f64().unwrap_or(f64::NAN), c["error_estimate"]["area"].as_f64()),
             within(&c["error_estimate"]["area"]),
             if zones == 1 { "" } else { "s" },
             match holes {
@@ -801,7 +833,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                 n => format!(" with {n} holes"),
             },
             if contact.side == Side::Below { "up" } else { "down" },
-            contact.side.sign() * force,
+            figure(contact.side.sign() * force, c["error_estimate"]["force"].as_f64()),
             within(&c["error_estimate"]["force"]),
         )
     }

@@ -205,6 +205,23 @@ impl<const D: usize> Model<D> {
         Ok(self.state(Found { u, pressure, gap, active, iterations, residuals }, &now.load, &ends))
     }
 
+    /// Looks without solving whether supports, contacts and loads make sense at a time, with the bodies at rest.
+    pub fn examine(&mut self, now: &Circumstances<'_, D>) -> Result<(), StepError> {
+        self.reduction.offset(&self.bodies, &self.supports, now.displacement)?;
+        self.started = false;
+        let searched = self.search(now, &vec![0.0; self.bodies.unknowns()], false);
+        self.started = false;
+        searched?;
+        self.check_held(&now.load)
+    }
+
+    /// Looks whether the supports agree with each other at a time, and whether what faces what, as it was found last, can
+    /// hold the bodies against the loads.
+    pub fn examine_again(&self, now: &Circumstances<'_, D>) -> Result<(), StepError> {
+        self.reduction.offset(&self.bodies, &self.supports, now.displacement)?;
+        self.check_held(&now.load)
+    }
+
     /// Whether something saved can be of this model.
     pub fn fits(&self, memory: &Memory) -> bool {
         let (active, rows) = &memory.active;
@@ -222,6 +239,8 @@ impl<const D: usize> Model<D> {
     /// # Errors
     /// Those of a first search that the model saved did not have.
     pub fn restore(&mut self, memory: Memory, first: &Circumstances<'_, D>) -> Result<(), StepError> {
+        // The increment to the first time may have been cut: where the bodies lie then says nothing of the start.
+        self.started = true;
         self.search(first, &vec![0.0; self.bodies.unknowns()], false)?;
         self.active = ActiveSet::restored(memory.active);
         self.settled = memory.settled;

@@ -110,6 +110,14 @@ pub fn from_toml(name: &str, text: &str, error: &toml::de::Error) -> CaseError {
     } else if let Some(key) = message.strip_prefix("missing field `").and_then(|r| r.strip_suffix('`')) {
         ours.message = format!("missing key `{key}`");
         ours.help = Some(format!("add `{key} = …` to this table"));
+    } else if let (true, Some(name)) =
+        (message.contains("wanted exactly 1 element"), body_without_kind(text, error.span()))
+    {
+        ours.message = format!("what kind of body `{name}` is, is not said, or said twice");
+        ours.help = Some(format!(
+            "[bodies.{name}.KIND] with one of the kinds {}",
+            super::schema::keys_in("bodies.NAME").join(", ")
+        ));
     } else if message.contains("wanted exactly 1 element") || message.contains("wanted string or table") {
         ours.message = "expected a choice: one word in quotes, or a table with exactly one key".into();
         ours.help = key_before(text, error.span()).map(|key| format!("`signorini explain {key}` tells the choices"));
@@ -125,6 +133,17 @@ pub fn from_toml(name: &str, text: &str, error: &toml::de::Error) -> CaseError {
     let end =
         text[span.start.min(text.len())..span.end.min(text.len())].find('\n').map_or(span.end, |n| span.start + n);
     ours.at(name, text, span.start..end.max(span.start))
+}
+
+/// The body without a kind, or with several, that an error at a place is about.
+fn body_without_kind(text: &str, span: Option<Range<usize>>) -> Option<String> {
+    let document = toml_edit::Document::parse(text).ok()?;
+    let bodies = document.get("bodies")?.as_table_like()?;
+    let start = span?.start;
+    let wrong = |item: &toml_edit::Item| {
+        item.as_table_like().is_some_and(|kinds| kinds.len() != 1) && item.span().is_none_or(|s| s.start == start)
+    };
+    bodies.iter().find(|(_, item)| wrong(item)).map(|(name, _)| name.to_string())
 }
 
 /// Whether a place in a text is one in quotes.

@@ -1,21 +1,30 @@
 //! `--set KEY=VALUE`: replaces or adds a key of the case file before it is read.
 
-use crate::case::CaseError;
+use crate::case::{CaseError, Origins};
 use std::str::FromStr;
 use toml_edit::{DocumentMut, Item, Table, Value};
 
-/// Applies overrides to the text of a case file; the rest of the text stays as it is, so places stay right.
-pub fn apply(name: &str, text: &str, overrides: &[String]) -> Result<String, CaseError> {
+/// Applies overrides to the text of a case file, the rest of which stays as it is; and tells where its parts come from.
+pub fn apply(name: &str, text: &str, overrides: &[String]) -> Result<(String, Origins), CaseError> {
+    let mut origins = Origins::of_file(text);
+    if overrides.is_empty() {
+        return Ok((text.into(), origins));
+    }
     let mut document = DocumentMut::from_str(text)
         .map_err(|e| CaseError::new(e.message().to_string()).at(name, text, e.span().unwrap_or(0..0)))?;
+    let mut before = document.to_string();
     for setting in overrides {
         let (key, value) = setting.split_once('=').ok_or_else(|| {
             CaseError::new(format!("`--set {setting}` has no `=`")).help("write  --set loads.press.normal=-0.3")
         })?;
         set(document.as_table_mut(), key.trim(), parse_value(value.trim()))
             .map_err(|message| CaseError::new(format!("`--set {setting}`: {message}")))?;
+        let after = document.to_string();
+        origins.set(setting, [&before, &after]);
+        before = after;
     }
-    Ok(document.to_string())
+    origins.finish(&before);
+    Ok((before, origins))
 }
 
 /// A TOML value, or else a string: `--set loads.press.normal=-2*t` needs no quotes.
@@ -62,7 +71,7 @@ mod tests {
     #[test]
     fn keys_are_replaced_added_and_refused() {
         let text = "a = 1 # one\n[b.c]\nd = \"x\"\n[[steps]]\nto = 1\n";
-        let set = |s: &str| apply("case", text, &[s.to_string()]);
+        let set = |s: &str| apply("case", text, &[s.to_string()]).map(|(text, _)| text);
         assert!(set("b.c.d=-2*t").unwrap().contains("d = \"-2*t\""));
         assert!(set("a=3").unwrap().starts_with("a = 3 # one"));
         assert!(set("b.e.f=2.5").unwrap().contains("f = 2.5"));

@@ -279,7 +279,7 @@ pub struct BoxKey {
     pub map: Option<Values>,
 }
 
-/// One direction of a box: stretches that end at `to`, with so many cells, each `growth` times the one before.
+/// One direction of a box: stretches that end at `to`, with so many cells, each `growth` times as long as the one before.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AxisKey {
@@ -292,7 +292,7 @@ pub struct AxisKey {
     /// Number of cells of each stretch.
     #[schemars(with = "Vec<i64>")]
     pub cells: Spanned<Vec<Spanned<i64>>>,
-    /// Ratio of the last cell to the first of each stretch, 1 if left out.
+    /// Of each stretch the ratio of the length of a cell to that of the one before, 1 if left out.
     #[serde(default)]
     #[schemars(with = "Option<Vec<f64>>")]
     pub growth: Option<Spanned<Vec<f64>>>,
@@ -828,7 +828,7 @@ pub struct Contact {
     pub adhesion: Option<Adhesion>,
     #[serde(default)]
     #[schemars(skip)]
-    pub friction: Option<Spanned<toml::Table>>,
+    pub friction: Option<Spanned<toml::Value>>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]

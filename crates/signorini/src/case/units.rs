@@ -21,22 +21,24 @@ pub struct Units {
     pub names: [&'static str; 3],
 }
 
-const LENGTHS: [(&str, f64); 8] =
-    [("m", 1.0), ("km", 1e3), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6), ("µm", 1e-6), ("nm", 1e-9), ("in", 0.0254)];
-const FORCES: [(&str, f64); 8] = [
-    ("N", 1.0),
-    ("kN", 1e3),
-    ("MN", 1e6),
-    ("mN", 1e-3),
-    ("uN", 1e-6),
-    ("µN", 1e-6),
-    ("nN", 1e-9),
-    ("lbf", 4.4482216152605),
-];
+const LENGTHS: [(&str, f64); 7] =
+    [("m", 1.0), ("km", 1e3), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6), ("nm", 1e-9), ("in", 0.0254)];
+const FORCES: [(&str, f64); 7] =
+    [("N", 1.0), ("kN", 1e3), ("MN", 1e6), ("mN", 1e-3), ("uN", 1e-6), ("nN", 1e-9), ("lbf", 4.4482216152605)];
 const TIMES: [(&str, f64); 5] = [("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("min", 60.0), ("h", 3600.0)];
 const PRESSURES: [(&str, f64); 8] =
     [("Pa", 1.0), ("hPa", 1e2), ("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9), ("mPa", 1e-3), ("bar", 1e5), ("mbar", 1e2)];
 const ENERGIES: [(&str, f64); 4] = [("J", 1.0), ("mJ", 1e-3), ("uJ", 1e-6), ("nJ", 1e-9)];
+
+/// A name with the letter u for micro, which has two code points in Unicode: the micro sign and the Greek letter mu.
+fn plain(name: &str) -> String {
+    name.replace(['\u{b5}', '\u{3bc}'], "u")
+}
+
+/// Whether a text is a unit.
+pub fn is_unit(text: &str) -> bool {
+    parse_unit(text).is_ok()
+}
 
 /// All named units with their size and dimension.
 fn named() -> BTreeMap<&'static str, (f64, Dimension)> {
@@ -53,10 +55,10 @@ fn named() -> BTreeMap<&'static str, (f64, Dimension)> {
 impl Units {
     /// One of the named systems: `m-N-Pa`, `mm-N-MPa`, `um-uN-MPa`.
     pub fn system(name: &str) -> Option<Self> {
-        Some(match name {
+        Some(match plain(name).as_str() {
             "m-N-Pa" => Self { length: 1.0, force: 1.0, time: 1.0, names: ["m", "N", "s"] },
             "mm-N-MPa" => Self { length: 1e-3, force: 1.0, time: 1.0, names: ["mm", "N", "s"] },
-            "um-uN-MPa" | "µm-µN-MPa" => Self { length: 1e-6, force: 1e-6, time: 1.0, names: ["um", "uN", "s"] },
+            "um-uN-MPa" => Self { length: 1e-6, force: 1e-6, time: 1.0, names: ["um", "uN", "s"] },
             _ => return None,
         })
     }
@@ -64,7 +66,7 @@ impl Units {
     /// A system from the names of its base units.
     pub fn from_names(length: &str, force: &str, time: &str) -> Result<Self, String> {
         let find = |list: &[(&'static str, f64)], what: &str, name: &str| {
-            list.iter().find(|(n, _)| *n == name).copied().ok_or_else(|| {
+            list.iter().find(|(n, _)| *n == plain(name)).copied().ok_or_else(|| {
                 let known: Vec<&str> = list.iter().map(|(n, _)| *n).collect();
                 format!("`{name}` is not a unit of {what}: known are {}", known.join(", "))
             })
@@ -112,7 +114,7 @@ fn parse_unit(text: &str) -> Result<(f64, Dimension), String> {
             }
             None => (rest[..end].trim(), 1),
         };
-        let Some((value, d)) = names.get(word) else {
+        let Some((value, d)) = names.get(plain(word).as_str()) else {
             let known: Vec<&str> = names.keys().copied().collect();
             return Err(format!("unknown unit `{word}`: {}", super::suggestion(word, &known)));
         };
@@ -152,6 +154,12 @@ mod tests {
         let um = Units::system("um-uN-MPa").unwrap();
         assert!((um.factor("uN/um^2").unwrap().0 - 1.0).abs() < 1e-12);
         assert!((um.factor("J/m^2").unwrap().0 - 1.0).abs() < 1e-12);
+        for micro in ["\u{b5}", "\u{3bc}"] {
+            assert_eq!(um.factor(&format!("{micro}N/{micro}m^2")), um.factor("uN/um^2"));
+            assert_eq!(mm.factor(&format!("{micro}J/m^2")), mm.factor("uJ/m^2"));
+            assert_eq!(Units::system(&format!("{micro}m-{micro}N-MPa")), Some(um));
+            assert_eq!(Units::from_names(&format!("{micro}m"), "uN", &format!("{micro}s")).unwrap().length, 1e-6);
+        }
         assert!(mm.factor("furlong").unwrap_err().contains("unknown unit"));
         assert!(mm.factor("mm^x").is_err() && mm.factor("").is_err());
     }

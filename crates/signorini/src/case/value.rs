@@ -1,6 +1,6 @@
 //! Values: a number, a quantity with a unit, or an expression.
 
-use super::units::{Dimension, Units, describe};
+use super::units::{Dimension, Units, describe, is_unit};
 use super::{CaseError, Document};
 use crate::expression::{Expression, Names, parse};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -108,7 +108,8 @@ impl<'de> Deserialize<'de> for OneOrMany {
 /// A value with a unit, and what it is in the base units of its case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interpreted {
-    pub line: usize,
+    /// In the file; none where `--set` says it.
+    pub line: Option<usize>,
     pub text: String,
     /// None where it is an expression of position or time.
     pub value: Option<f64>,
@@ -235,7 +236,7 @@ impl Reader<'_> {
     }
 }
 
-/// Splits `"0.1 mm"` and `"(2 + x) MPa"` into the value and its unit.
+/// Splits `"0.1 mm"`, `"0.1mm"` and `"(2 + x) MPa"` into the value and its unit.
 fn split_unit(text: &str) -> (&str, Option<&str>) {
     let trimmed = text.trim_start();
     let offset = text.len() - trimmed.len();
@@ -255,8 +256,9 @@ fn split_unit(text: &str) -> (&str, Option<&str>) {
     let Some(end) = end.map(|e| e + offset) else { return (text, None) };
     let rest = &text[end..];
     let unit = rest.trim_start();
-    let separated = unit.len() < rest.len();
-    if separated && unit.starts_with(|c: char| c.is_alphabetic()) { (&text[..end], Some(unit)) } else { (text, None) }
+    // Without a space between them only what is a unit is one: `150um`, but not `2x`.
+    let told = unit.len() < rest.len() || is_unit(unit);
+    if told && unit.starts_with(|c: char| c.is_alphabetic()) { (&text[..end], Some(unit)) } else { (text, None) }
 }
 
 #[cfg(test)]
@@ -269,6 +271,10 @@ mod tests {
         assert_eq!(split_unit("-1e-3 N/m"), ("-1e-3", Some("N/m")));
         assert_eq!(split_unit("(2 + x) MPa"), ("(2 + x)", Some("MPa")));
         assert_eq!(split_unit("-(2 + x) kPa"), ("-(2 + x)", Some("kPa")));
+        assert_eq!(split_unit("150um"), ("150", Some("um")));
+        assert_eq!(split_unit("-1e-3N/m"), ("-1e-3", Some("N/m")));
+        assert_eq!(split_unit("(2 + x)kPa"), ("(2 + x)", Some("kPa")));
+        assert_eq!(split_unit("2x"), ("2x", None));
         assert_eq!(split_unit("(2 + x)*y"), ("(2 + x)*y", None));
         assert_eq!(split_unit("2*x"), ("2*x", None));
         assert_eq!(split_unit("x"), ("x", None));

@@ -6,7 +6,7 @@
 mod parse;
 
 pub(crate) use parse::number_length;
-pub use parse::{Names, ParseError, parse};
+pub use parse::{Names, ParseError, function_names, parse};
 
 use crate::relief::{self, Relief};
 use signorini_geometry::Real;

@@ -274,12 +274,7 @@ impl Parser<'_> {
             "if" => return wrong("three arguments: if(condition, a, b)"),
             _ => {
                 let own = self.names.functions.keys().map(String::as_str);
-                let known: Vec<&str> = FUNCTIONS
-                    .iter()
-                    .map(|f| f.0)
-                    .chain(["min", "max", "atan2", "hypot", "pow", "if"])
-                    .chain(own)
-                    .collect();
+                let known: Vec<&str> = function_names().map(|name| &name[..]).chain(own).collect();
                 return Err(ParseError {
                     message: format!("unknown function `{name}`"),
                     help: Some(crate::case::suggestion(name, &known)),
@@ -338,6 +333,14 @@ const FUNCTIONS: [(&str, Function); 18] = [
     ("floor", Function::Floor),
     ("ceil", Function::Ceil),
 ];
+
+/// Functions of several arguments.
+const OF_SEVERAL: [&str; 6] = ["min", "max", "atan2", "hypot", "pow", "if"];
+
+/// The names of all functions.
+pub fn function_names() -> impl Iterator<Item = &'static str> {
+    FUNCTIONS.iter().map(|f| f.0).chain(OF_SEVERAL)
+}
 
 fn function(name: &str) -> Option<Function> {
     FUNCTIONS.iter().find(|(n, _)| *n == name).map(|(_, f)| *f)

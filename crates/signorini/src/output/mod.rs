@@ -1,6 +1,7 @@
 //! Result files: each written under another name first and then renamed, so that a file is whole or absent.
 
 pub mod chart;
+pub mod figure;
 pub mod film;
 pub mod folder;
 pub mod pictures;

@@ -172,6 +172,18 @@ impl Planner<'_> {
 }
 
 impl<const D: usize> MembranePlan<D> {
+    /// The times at which a run is sure to look at the membrane: the ends of the increments whose time is given, and the
+    /// beginnings of the others; one where nothing depends on time.
+    pub fn known_times(&self) -> Vec<f64> {
+        let known = |i: &PlannedIncrement| if i.control == Control::Time { i.time } else { i.range[0] };
+        let mut times: Vec<f64> = self.increments.iter().map(known).collect();
+        times.dedup();
+        if !self.expressions().any(|p| p.expression.uses_time()) {
+            times.truncate(1);
+        }
+        times
+    }
+
     /// Where times lie along the path of what drives the membrane, the values at a few points of all that depends on time;
     /// the times themselves where that path is no straight line.
     pub fn places(&self, times: &[f64]) -> Vec<f64> {

@@ -1,7 +1,7 @@
 //! Rigid bodies that solids press on: the gap to them and their outward normal, anywhere and at any time.
 
 use super::{Placed, Planner};
-use crate::case::statement::{Motion, Rigid, Shape, Side};
+use crate::case::statement::{Motion, Rigid, Shape, Side, Space};
 use crate::case::units::{LENGTH, NONE};
 use crate::case::{CaseError, Document, Values};
 use crate::expression::{Expression, Scope};
@@ -207,6 +207,21 @@ pub(super) fn read<const D: usize>(
             .error(span, format!("a {what} is a shape in space"))
             .help("in the plane: plane, sphere (a circle), cylinder, ellipsoid (an ellipse)"))
     };
+    // Round an axis in space, which in the plane can be that of an axisymmetric problem.
+    let round = |what: &str, place: &Values, axis: &Values| {
+        if D == 3 || planner.space != Space::Axisymmetric {
+            return only_in_space(rigid.shape.span(), what);
+        }
+        match (spatial(place, LENGTH)?[0] == 0.0, direction(axis)?[0] == 0.0) {
+            (true, true) => Ok(()),
+            (on_axis, _) => Err(document
+                .error(
+                    if on_axis { axis.span() } else { place.span() },
+                    format!("the {what} does not stand on the axis"),
+                )
+                .help("in an axisymmetric problem its place is [0, z], and its axis [0, 1] or [0, -1]")),
+        }
+    };
     if let Some(lies) = &rigid.lies {
         return Err(document.error(lies.span(), "`lies` is for bodies beside a membrane"));
     }
@@ -238,7 +253,7 @@ pub(super) fn read<const D: usize>(
             }
         }
         Shape::Cone(key) => {
-            only_in_space(rigid.shape.span(), "cone")?;
+            round("cone", &key.apex, &key.axis)?;
             let angle = planner.reader.positive(&key.half_angle, NONE)?;
             if angle >= FRAC_PI_2 {
                 return Err(document
@@ -249,7 +264,7 @@ pub(super) fn read<const D: usize>(
             Form::Cone { apex: spatial(&key.apex, LENGTH)?, axis: direction(&key.axis)?, sin, cos }
         }
         Shape::Torus(key) => {
-            only_in_space(rigid.shape.span(), "torus")?;
+            round("torus", &key.center, &key.axis)?;
             let major = planner.reader.positive(&key.major_radius, LENGTH)?;
             let minor = planner.reader.positive(&key.minor_radius, LENGTH)?;
             if minor >= major {
@@ -274,7 +289,7 @@ pub(super) fn read<const D: usize>(
             Form::General { shape: shape.into(), outward: true }
         }
         Shape::Paraboloid(key) => {
-            only_in_space(rigid.shape.span(), "paraboloid")?;
+            round("paraboloid", &key.apex, &key.axis)?;
             let radius = planner.reader.positive(&key.radius, LENGTH)?;
             let ez = direction(&key.axis)?;
             let ex = any_normal(&ez);

@@ -11,6 +11,7 @@ use crate::case::{CaseError, Document, Literal, OneOrMany, Value, Values, sugges
 use crate::expression::Scope;
 use signorini_fem::{Group, Mesh, Side};
 use signorini_geometry::Point;
+use signorini_geometry::mesh::TriangleMesh;
 use signorini_solid::{Elastic, LoadKind, Method as ContactMethod, SupportKind};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -131,19 +132,40 @@ impl Planner<'_> {
     }
 
     /// A triangle mesh that bounds a body.
-    pub(super) fn closed_mesh(
-        &self,
-        key: &statement::FileKey,
-    ) -> Result<signorini_geometry::mesh::TriangleMesh, CaseError> {
+    pub(super) fn closed_mesh(&self, key: &statement::FileKey) -> Result<TriangleMesh, CaseError> {
         let (path, _) = self.read_file(&key.file)?;
         let mesh = crate::mesh_file::read(&path).map_err(|e| self.document.error(key.file.span(), e.to_string()))?;
         if mesh.quality().has_inside() {
-            return Ok(mesh);
+            return self.turned_outwards(mesh, key);
         }
         Err(self
             .document
             .error(key.file.span(), format!("the surface in `{}` is not closed", key.file.get_ref()))
             .help("a rigid body needs an inside: close the holes, or model it by another shape"))
+    }
+
+    /// A closed surface with its normals outwards: one whose volume is negative is turned round, and that is said.
+    fn turned_outwards(&self, mesh: TriangleMesh, key: &statement::FileKey) -> Result<TriangleMesh, CaseError> {
+        let centre = mesh.bounds().center();
+        let signed = |triangle: usize| {
+            let [a, b, c] = mesh.corners(triangle).map(|x| x - centre);
+            a.dot(&b.cross(&c)) / 6.0
+        };
+        let volume: f64 = (0..mesh.triangles().len()).map(signed).sum();
+        if volume >= 0.0 {
+            return Ok(mesh);
+        }
+        let warning = format!(
+            "the surface in `{}` is inside out, its volume is {volume:.4e}: it is turned round",
+            key.file.get_ref()
+        );
+        let mut warnings = self.warnings.borrow_mut();
+        if !warnings.contains(&warning) {
+            warnings.push(warning);
+        }
+        let turned: Vec<[u32; 3]> = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
+        TriangleMesh::new(mesh.vertices().to_vec(), &turned)
+            .map_err(|e| self.document.error(key.file.span(), e.to_string()))
     }
 
     fn coordinates<const D: usize>(&self) -> &'static [&'static str] {
@@ -191,7 +213,22 @@ impl Planner<'_> {
             let nearest = (bodies.iter().enumerate())
                 .map(|(k, b)| (b.mesh.nodes().iter().map(|n| (n - x).norm()).fold(f64::INFINITY, f64::min), k))
                 .min_by(|a, b| a.0.total_cmp(&b.0));
-            probes.insert(name.clone(), (nearest.map_or(0, |n| n.1), x));
+            let near = nearest.map_or(0, |n| n.1);
+            let within = |b: &PlannedBody<D>| {
+                let nodes = || b.mesh.nodes().iter();
+                let low = nodes().fold(Point::<D>::repeat(f64::INFINITY), |l, n| l.inf(n));
+                let high = nodes().fold(Point::<D>::repeat(f64::NEG_INFINITY), |h, n| h.sup(n));
+                (0..D).all(|k| x[k] >= low[k] && x[k] <= high[k])
+            };
+            if !bodies.iter().any(within) {
+                let at: Vec<String> = x.iter().map(f64::to_string).collect();
+                warnings.push(format!(
+                    "the probe `{name}` at ({}) lies outside all bodies: it tells of the nearest point of `{}`",
+                    at.join(", "),
+                    bodies[near].name
+                ));
+            }
+            probes.insert(name.clone(), (near, x));
         }
         let every = match &case.output.every {
             None => 1,
@@ -204,6 +241,7 @@ impl Planner<'_> {
         if case.steps.iter().any(|s| s.get_ref().events.is_some()) {
             warnings.push("`events` are located for membranes only".into());
         }
+        warnings.append(&mut self.warnings.borrow_mut());
         Ok(SolidPlan {
             document: document.clone(),
             space: self.space,
@@ -527,9 +565,7 @@ impl Planner<'_> {
             if let Some(within) = &key.within {
                 return Err(self.unavailable(within.span(), "contact of a body with itself"));
             }
-            if let Some(friction) = &key.friction {
-                return Err(self.unavailable(friction.span(), "friction of solids"));
-            }
+            self.frictionless(key)?;
             if let Some(adhesion) = &key.adhesion
                 && self.reader.number(&adhesion.energy, [-1, 1, 0])? != 0.0
             {
@@ -545,12 +581,24 @@ impl Planner<'_> {
             };
             match (&key.between, &key.all) {
                 (Some(pair), None) if pair.get_ref().len() == 2 => {
+                    let rigid = |on: &toml::Spanned<String>| match document.case.bodies.get(on.get_ref())?.get_ref() {
+                        Body::Rigid(rigid) => Some(rigid),
+                        _ => None,
+                    };
                     let [first, second] = [&pair.get_ref()[0], &pair.get_ref()[1]];
-                    let opposite = match document.case.bodies.get(second.get_ref()).map(|b| b.get_ref()) {
-                        Some(Body::Rigid(rigid)) => {
-                            Opposite::Rigid(rigid::read::<D>(self, second.get_ref(), rigid, &around)?)
-                        }
-                        _ => {
+                    // The slave is the solid, in whichever order they are named.
+                    let [first, second] = if rigid(first).is_some() { [second, first] } else { [first, second] };
+                    if rigid(first).is_some() {
+                        return Err(document.error(pair.span(), "both bodies of this contact are rigid").help(
+                            format!(
+                                "a contact is between solids, or a solid and a rigid body: `{}`, for example",
+                                bodies[0].name
+                            ),
+                        ));
+                    }
+                    let opposite = match rigid(second) {
+                        Some(body) => Opposite::Rigid(rigid::read::<D>(self, second.get_ref(), body, &around)?),
+                        None => {
                             let (body, sides, whole) = self.contact_side(second, bodies)?;
                             Opposite::Body { body, sides, whole }
                         }
@@ -575,7 +623,7 @@ impl Planner<'_> {
                 }
                 _ => {
                     return Err(document.error(contact.span(), "who touches whom is not said").help(
-                        "between = [\"BODY:GROUP\", \"BODY:GROUP\"], the slave first; a rigid body comes second; or  all = true",
+                        "between = [\"BODY:GROUP\", \"BODY:GROUP\"], the slave first where both are solids; or  all = true",
                     ));
                 }
             }

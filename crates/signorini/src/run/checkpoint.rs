@@ -1,6 +1,7 @@
 //! What an interrupted run needs to go on: written after every increment, whole or not at all, and read by
 //! `run --resume`. Numbers are read as they were written, to the last bit.
 
+use super::Begun;
 use super::events::{Event, Known};
 use super::increment::Saved;
 use crate::output::{Folder, OutputError};
@@ -50,9 +51,41 @@ pub fn read(path: &Path, case: &str) -> Result<Value, String> {
         return Err(format!("`{}` is of another version of this program", file.display()));
     }
     if v["case"] != case {
-        return Err(format!("`{}` is of another case, or of this one before it was changed", file.display()));
+        return Err(of_another_case(&file));
     }
     Ok(v)
+}
+
+/// Where a run of a case would go on in the folder of an earlier one.
+///
+/// # Errors
+/// In words: no run, or one of another case.
+pub fn begun(path: &Path, case: &str) -> Result<Begun, String> {
+    if path.join(FILE).exists() {
+        return Ok(Begun::Resumed);
+    }
+    let file = path.join("case.toml");
+    let text = std::fs::read_to_string(&file)
+        .map_err(|e| format!("there is no run to go on with: cannot read `{}`: {e}", file.display()))?;
+    if text != case {
+        return Err(of_another_case(&file));
+    }
+    let done = summary(path).is_ok_and(|summary| summary["converged"] == true);
+    Ok(if done { Begun::Done } else { Begun::Anew })
+}
+
+/// The summary of an earlier run.
+///
+/// # Errors
+/// In words: a file that cannot be read, or is no JSON.
+pub fn summary(path: &Path) -> Result<Value, String> {
+    let file = path.join("summary.json");
+    let text = std::fs::read_to_string(&file).map_err(|e| format!("cannot read `{}`: {e}", file.display()))?;
+    serde_json::from_str(&text).map_err(|e| format!("`{}` is damaged: {e}", file.display()))
+}
+
+fn of_another_case(file: &Path) -> String {
+    format!("`{}` is of another case, or of this one before it was changed", file.display())
 }
 
 pub fn damaged(path: &Path) -> String {

@@ -34,8 +34,8 @@ const MODULI: RangeInclusive<f64> = 1e1..=3e12;
 /// More unknowns than this are not solved for just to look.
 const LOOK: usize = 200_000;
 
-/// What a run of a plan would have to do: size, time, for a membrane the gap before any load, and warnings; after checking
-/// the fields at the first and the last time.
+/// What a run of a plan would have to do: size, time, for a membrane the gap before any load, and warnings; after all that a
+/// run checks at the times that are known before it.
 ///
 /// # Errors
 /// Fields that cannot be used, at their place.
@@ -49,7 +49,8 @@ pub fn sizes(plan: &Plan) -> Result<Value, CaseError> {
 }
 
 fn of_membrane<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>) -> Result<Value, CaseError> {
-    for time in [plan.increments.first(), plan.increments.last()].into_iter().flatten().map(|i| i.time) {
+    let times = plan.known_times();
+    for &time in &times {
         plan.check_fields(&plan.at(time), time)?;
     }
     let unknowns = plan.cells.function_count();
@@ -91,7 +92,7 @@ fn of_membrane<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>) -> Result<Val
         warnings.extend(odd_length(units, plan.grid.bounds().size().max(), "the membrane"));
     }
     if unknowns <= LOOK {
-        look::<D, Z>(plan, &mut sizes, &mut warnings);
+        look::<D, Z>(plan, times.last().copied().unwrap_or(0.0), &mut sizes, &mut warnings);
     }
     sizes["interpreted"] = plan.interpreted.iter().map(Interpreted::to_json).collect();
     sizes["warnings"] = json!(warnings);
@@ -192,9 +193,44 @@ fn unresolved<const D: usize>(plan: &MembranePlan<D>, time: f64) -> Vec<String> 
     out
 }
 
+/// A membrane that its load brings nearer to a body by less than this part of the gap is hardly loaded.
+const HARDLY: f64 = 1e-2;
+
+/// Why a membrane touches nothing at a time: the least gap, and whether the load moves it away or hardly at all; none where it
+/// touches something, or cannot be looked at.
+pub(super) fn clearance<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>, time: f64) -> Option<String> {
+    let loaded = plan.at(time);
+    if plan.cells.function_count() > LOOK || loaded.obstacles.is_empty() {
+        return None;
+    }
+    let none = Z::empty(&plan.grid);
+    let least = |membrane: &Membrane<D>| {
+        let state = Equilibrium::solve(membrane, &none, &mut Elements::new(membrane)).ok()?;
+        let (gap, side, _) = least_free_gap(&state, &none);
+        Some((gap, side))
+    };
+    let (gap, side) = least(&loaded).filter(|(gap, _)| *gap > 0.0)?;
+    let (before, _) = least(&Membrane { load: Arc::new(Constant(0.0)), ..loaded.clone() })?;
+    let nearer = before - gap;
+    let away = if side == Side::Below { "up, away from what lies below" } else { "down, away from what lies above" };
+    let hint = if nearer < 0.0 {
+        format!("; the load moves it {away}: `normal` is positive upwards")
+    } else if nearer < HARDLY * before {
+        let size = plan.grid.bounds().size().max();
+        let unit = plan.units.map_or(String::new(), |u| format!(" {}", u.names[0]));
+        format!(
+            "; the load brings it nearer by {nearer:.1e} only: it is {size:.4}{unit} wide, are its size, load and tension in the \
+             units of the case?"
+        )
+    } else {
+        String::new()
+    };
+    Some(format!("the least gap at t = {time} is {gap:.4e}{hint}"))
+}
+
 /// Solves for the membrane without contact, at rest and under its last load.
-fn look<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>, sizes: &mut Value, warnings: &mut Vec<String>) {
-    let (Some(first), Some(last)) = (plan.increments.first(), plan.increments.last()) else { return };
+fn look<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>, last: f64, sizes: &mut Value, warnings: &mut Vec<String>) {
+    let Some(first) = plan.increments.first() else { return };
     let none = Z::empty(&plan.grid);
     let free = |membrane: &Membrane<D>| Equilibrium::solve(membrane, &none, &mut Elements::new(membrane)).ok();
     let at_rest = Membrane { load: Arc::new(Constant(0.0)), ..plan.at(first.range[0]) };
@@ -203,8 +239,9 @@ fn look<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>, sizes: &mut Value, w
         let place: Vec<String> = x.iter().map(|v| format!("{v:.4}")).collect();
         sizes["least_gap_before_load"] = json!(format!("{gap:.4e} at ({})", place.join(", ")));
     }
+    warnings.extend(clearance::<D, Z>(plan, last).map(|why| format!("the membrane touches nothing: {why}")));
     let start = std::time::Instant::now();
-    let Some(state) = free(&plan.at(last.time)) else {
+    let Some(state) = free(&plan.at(last)) else {
         warnings.push("the membrane without contact could not be solved for: is it held?".into());
         return;
     };

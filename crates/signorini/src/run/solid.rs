@@ -1,7 +1,7 @@
 //! Solids in contact: from the plan to results.
 
 use super::solid_checkpoint::SolidCheckpoint;
-use super::{Ending, Logged, Outcome, RunError, SCHEMA, checkpoint, environment, not_resumed};
+use super::{Begun, Ending, Logged, Outcome, RunError, SCHEMA, checkpoint, environment, not_resumed};
 use crate::case::CaseError;
 use crate::case::statement::Space as Stated;
 use crate::case::value::Interpreted;
@@ -65,7 +65,7 @@ impl Failure {
 pub fn run<const D: usize>(
     plan: SolidPlan<D>,
     folder: &Path,
-    resumed: bool,
+    begun: Begun,
     start: std::time::Instant,
     progress: &mut dyn Progress,
 ) -> Result<Outcome, RunError> {
@@ -75,7 +75,7 @@ pub fn run<const D: usize>(
     if memory(&cost) > memory_at_hand() {
         return Err(too_large(&plan, model.unknowns(), &cost).into());
     }
-    if resumed {
+    if begun == Begun::Resumed {
         let found = SolidCheckpoint::read(folder, &plan.document.text).map_err(not_resumed)?;
         if !model.fits(&found.memory) || found.next >= plan.times.len() {
             return Err(not_resumed(checkpoint::damaged(folder)).into());
@@ -277,7 +277,7 @@ impl<const D: usize> Runner<D> {
                 }
                 Err(mut failed) => {
                     residuals.append(&mut failed.residuals);
-                    let curable = matches!(failed.reason, "newton" | "contact" | "linear_solver" | "free_body");
+                    let curable = matches!(failed.reason, "newton" | "contact" | "linear_solver" | "free_body" | "increment");
                     if !self.model.slides() || !curable || size <= SMALLEST_INCREMENT * (time - before) {
                         return Ok(Err(Failure { residuals, ..failed }));
                     }
@@ -293,7 +293,6 @@ impl<const D: usize> Runner<D> {
         time: f64,
         progress: &mut dyn Progress,
     ) -> Result<Result<State<D>, Failure>, CaseError> {
-        let document = &self.plan.document;
         let mut stopped = false;
         let mut residuals = Vec::new();
         let (action, figure) =
@@ -314,22 +313,10 @@ impl<const D: usize> Runner<D> {
         let solved = at_time(&self.plan, &mut self.model, time, |model, now| model.solve(now, &mut report))?;
         match solved {
             Ok(state) => Ok(Ok(state)),
-            // What cannot be meant is an error of the case.
-            Err(StepError::Support(error)) => {
-                let name = match &error {
-                    SupportError::NotFlat { support, .. } => support,
-                    SupportError::Contradiction { second, .. } => second,
-                };
-                let place = document.case.supports.get(name).map_or(document.case.space.span(), |s| s.span());
-                Err(document.error(place, error.to_string()))
-            }
-            Err(StepError::Deep { contact, depth }) => {
-                let place = document.case.contacts.get(&contact).map_or(document.case.space.span(), |c| c.span());
-                Err(document
-                    .error(place, format!("the bodies of `{contact}` start {depth:.4e} deep in each other"))
-                    .help("move them apart; or does the normal of a rigid plane point into it, or `side` name the wrong side?"))
-            }
-            Err(error) => Ok(Err(Failure { residuals, ..failure(&error) })),
+            Err(error) => match blamed(&self.plan, &mut self.model, time, &error) {
+                Some(error) => Err(error),
+                None => Ok(Err(Failure { residuals, ..failure(&error) })),
+            },
         }
     }
 
@@ -614,6 +601,67 @@ fn at_time<const D: usize, R>(
     wrong.into_inner().map_or(Ok(result), Err)
 }
 
+/// What can be said of a plan without solving: supports and loads are looked at for all times, and where the bodies lie for
+/// the first. What a run would find no solution for is told in words.
+///
+/// # Errors
+/// What a run refuses.
+pub(super) fn judge<const D: usize>(plan: &SolidPlan<D>, model: &mut Model<D>) -> Result<Vec<String>, CaseError> {
+    let mut told = Vec::new();
+    for (index, &time) in plan.times.iter().enumerate() {
+        let look = |model: &mut Model<D>, now: &Circumstances<'_, D>| match index {
+            0 => model.examine(now),
+            _ => model.examine_again(now),
+        };
+        let Err(error) = at_time(plan, model, time, look)? else { continue };
+        match blamed(plan, model, time, &error) {
+            Some(error) => return Err(error),
+            // With finite sliding the increment will be cut.
+            None if matches!(error, StepError::Deep { .. }) => {}
+            None => told.push(format!("at t = {time}: {}", failure(&error).text)),
+        }
+    }
+    Ok(told)
+}
+
+/// The error of the case behind that of a time, at its place; none where a run may find a way.
+fn blamed<const D: usize>(
+    plan: &SolidPlan<D>,
+    model: &mut Model<D>,
+    time: f64,
+    error: &StepError,
+) -> Option<CaseError> {
+    let document = &plan.document;
+    let space = document.case.space.span();
+    match error {
+        StepError::Support(error) => {
+            let name = match error {
+                SupportError::NotFlat { support, .. } => support,
+                SupportError::Contradiction { second, .. } => second,
+            };
+            let place = document.case.supports.get(name).map_or(space, |s| s.span());
+            Some(document.error(place, error.to_string()))
+        }
+        StepError::Deep { contact, depth } => {
+            let place = document.case.contacts.get(contact).map_or(space, |c| c.span());
+            let start = at_time(plan, model, 0.0, |model, now| model.examine(now));
+            match start {
+                Ok(Err(StepError::Deep { depth, .. })) => Some(document
+                    .error(place, format!("the bodies of `{contact}` start {depth:.4e} deep in each other"))
+                    .help("move them apart; or does the normal of a rigid plane point into it, or `side` name the wrong side?")),
+                _ if model.slides() => None,
+                _ => Some(document
+                    .error(
+                        place,
+                        format!("the first increment, to t = {time}, is too large: it brings the bodies of `{contact}` {depth:.4e} deep into each other"),
+                    )
+                    .help("more `increments`, a smaller motion, or  sliding = \"finite\"  in the contact, which cuts increments that are too large")),
+            }
+        }
+        _ => None,
+    }
+}
+
 /// The forces of a load on the unknowns of the bodies.
 fn load<const D: usize>(bodies: &Bodies<D>, l: &SolidLoad, value: &dyn Fn(&Placed, &Point<D>) -> f64) -> Vec<f64> {
     let load = Load { name: l.name.clone(), body: l.body, group: l.group.clone(), kind: l.kind };
@@ -687,7 +735,13 @@ fn failure(error: &StepError) -> Failure {
         StepError::Solve(error) => {
             ("linear_solver", format!("{error}; are all bodies held, and are their stiffnesses of one scale?"))
         }
-        StepError::Support(_) | StepError::Deep { .. } | StepError::Shape { .. } | StepError::NitscheSlides { .. } => {
+        StepError::Deep { contact, depth } => (
+            "increment",
+            format!(
+                "the increment is too large: it brings the bodies of `{contact}` {depth:.4e} deep into each other; try more increments"
+            ),
+        ),
+        StepError::Support(_) | StepError::Shape { .. } | StepError::NitscheSlides { .. } => {
             ("input", error.to_string())
         }
         StepError::Newton { history, place, .. } => (

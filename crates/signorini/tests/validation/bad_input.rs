@@ -124,3 +124,123 @@ proptest! {
         }
     }
 }
+
+/// A block under a ball in space, as coarse as can be.
+fn ball(height: f64, motion: &str, more: &str) -> String {
+    format!(
+        r#"
+space = "3d"
+[bodies.block.solid]
+mesh.box = {{ min = [-2, -2, -2], max = [2, 2, 0], cells = [4, 4, 2] }}
+material.linear_elastic = {{ youngs_modulus = 100, poissons_ratio = 0.3 }}
+[bodies.ball.rigid]
+shape.sphere = {{ center = [0, 0, {height}], radius = 5 }}
+motion.prescribed = {{ displacement = [0, 0, "{motion}"] }}
+[supports.base]
+on = "block:bottom"
+displacement = [0, 0, 0]
+[contacts.touch]
+between = ["ball", "block:top"]
+[[steps]]
+to = 1
+increments = 2
+{more}
+"#
+    )
+}
+
+/// What `check` says of a case: the message of an error, or its warnings.
+fn checked(case: &str) -> Result<String, String> {
+    let check = || {
+        let document = Document::parse("case.toml", case, &[])?;
+        signorini::run::sizes(&signorini::plan::plan(&document)?)
+    };
+    check().map(|sizes| sizes["warnings"].to_string()).map_err(|e| e.message)
+}
+
+#[test]
+fn a_check_refuses_what_a_run_refuses() {
+    let twice = "[supports.more]\non = \"block:bottom\"\ndisplacement = [0, 0, \"t*(t - 0.5)\"]";
+    for (case, word) in [
+        (ball(4.0, "-0.1*t", ""), "start 1."),
+        (ball(5.0, "-5*t", ""), "the first increment, to t = 0.5, is too large"),
+        // Where they first contradict each other is the end of the second increment.
+        (ball(5.0, "-0.1*t", twice), "different displacements"),
+    ] {
+        let message = checked(&case).expect_err(word);
+        assert!(message.contains(word), "{message}");
+        assert_eq!(error(&case).message, message);
+    }
+    assert!(checked(&ball(5.0, "-0.1*t", "")).is_ok());
+    // With finite sliding the increment is cut.
+    let finite = ball(5.0, "-0.9*t", "").replace("[contacts.touch]", "[contacts.touch]\nsliding = \"finite\"");
+    assert!(checked(&ball(5.0, "-0.9*t", "")).is_err() && checked(&finite).is_ok());
+    let found = super::summary(&finite, &super::set(&[]));
+    assert_ne!(found["steps"][0]["reason"], "increment", "{}", found["verdict"]);
+    // The height of this ball is sought: it lies above the membrane at the end of the step, which is never reached.
+    assert!(checked(example("ball")).is_ok());
+    // A field that is invalid between the first time and the last.
+    let dip = example("flat_disc").replace("tension = 1.0", "tension = \"abs(t - 0.5) - 0.01\"")
+        + "\n[[steps]]\nto = 1.0\nincrements = 4\n";
+    assert!(checked(&dip).is_err_and(|m| m.contains("tension must be positive")));
+}
+
+#[test]
+fn a_body_without_a_kind_is_told_which_there_are() {
+    for body in ["[bodies.x]", "bodies.x = {}", "[bodies]\nx = {}", "[bodies.x]\nsolid = {}\nrigid = {}"] {
+        let e = error(&format!("space = \"plane\"\n{body}\n"));
+        assert!(e.message.contains("`x`"), "{body}: {}", e.message);
+        assert!(e.help.is_some_and(|h| h.contains("membrane, ") && h.contains("solid")), "{body}");
+    }
+}
+
+#[test]
+fn errors_of_settings_are_told_at_them() {
+    let case = example("flat_disc");
+    let told = |settings: &[&str]| {
+        let settings: Vec<String> = settings.iter().map(|s| s.to_string()).collect();
+        let found = Document::parse("case.toml", case, &settings)
+            .and_then(|d| signorini::run::sizes(&signorini::plan::plan(&d)?));
+        let place = found.expect_err("an error").place.expect("a place");
+        (place.name.clone(), place.text[place.span.clone()].to_string(), place.line_and_column().0)
+    };
+    let setting = |s: &[&str], part: &str| assert_eq!(told(s), ("--set".into(), part.into(), 1), "{s:?}");
+    setting(&["loads.press.normall=3"], "normall");
+    setting(&["bodies.film.membrane.tension=-2"], "-2");
+    setting(&["bodies.film.membrane.tension=1 + q"], "q");
+    setting(&["title=text", "bodies.film.membrane.degree=77"], "77");
+    // What stands in the file keeps its line, also behind what was added.
+    let file = case.lines().count();
+    let wrong = case.replace("shape.height = \"-0.1\"", "shape.height = \"0.1\"");
+    let line = wrong.lines().position(|l| l.contains("shape.height")).expect("a line") + 1;
+    let add = ["constants.a=1".to_string(), "bodies.film.membrane.degree=2".to_string()];
+    let document = Document::parse("case.toml", &wrong, &add).expect("a case");
+    let e = signorini::plan::plan(&document).and_then(|p| signorini::run::sizes(&p)).expect_err("a floor above");
+    let place = e.place.expect("a place");
+    assert_eq!((place.name.as_str(), place.line_and_column().0), ("case.toml", line));
+    assert!(line <= file);
+}
+
+#[test]
+fn what_touches_nothing_is_told_why() {
+    let flat = |from: &str, to: &str| example("flat_disc").replace(from, to);
+    let told = |case: &str| {
+        let run = super::summary(case, &super::set(&[]))["verdict"].to_string();
+        (checked(case).expect("a case"), run)
+    };
+    for (case, word) in [
+        (flat("normal = -1.0", "normal = 1.0"), "away from what lies below"),
+        (flat("radius = 1.0", "radius = 0.001"), "nearer by"),
+        (flat("normal = -1.0", "normal = -0.2"), "the least gap at t = 0 is 5.0000e-2"),
+    ] {
+        let (check, run) = told(&case);
+        assert!(check.contains(word) && run.contains(word), "{word}: {check} {run}");
+    }
+    assert!(!told(example("flat_disc")).0.contains("touches nothing"));
+    let probe =
+        |at: &str| checked(&(example("flat_disc").to_string() + "\n[output.probes]\np = " + at)).expect("a case");
+    assert!(probe("[3, 0]").contains("probe `p` at (3, 0) lies outside `film`"));
+    assert!(!probe("[0.5, 0]").contains("probe"));
+    let solid = |at: &str| checked(&ball(5.0, "-0.1*t", &format!("[output.probes]\np = {at}"))).expect("a case");
+    assert!(solid("[0, 0, 9]").contains("outside all bodies") && !solid("[0, 0, -1]").contains("outside"));
+}

@@ -14,6 +14,7 @@ mod published;
 mod refinement;
 mod resume;
 mod solids;
+mod words;
 
 use serde_json::Value;
 use signorini::case::{CaseError, Document};

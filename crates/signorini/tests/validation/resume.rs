@@ -3,7 +3,7 @@
 use super::{example, set};
 use serde_json::Value;
 use signorini::case::Document;
-use signorini::run::{Ending, RunError, resume, run};
+use signorini::run::{Begun, Ending, RunError, begun, resume, run};
 use signorini_solve::{Iteration, Progress, Silent};
 
 /// Stops a run after so many iterations.
@@ -56,8 +56,10 @@ fn a_resumed_run_gives_the_same_digits() {
             let _ = resume(&document, &path, &mut Until(12.into())).expect("a run");
             let rest = resume(&document, &path, &mut Silent).expect("a run").summary;
             assert_eq!(results(&rest), results(&whole), "{name} after {done} increments");
-            // A run that is done has nothing to go on with.
-            assert!(matches!(resume(&document, &path, &mut Silent), Err(RunError::Case(_))));
+            // A run that is done is left as it is.
+            assert_eq!(begun(&document, &path).expect("a run"), Begun::Done);
+            let done = resume(&document, &path, &mut Until(0.into())).expect("a run");
+            assert_eq!((done.ending, done.summary), (Ending::Converged, rest));
         }
     }
 }
@@ -74,6 +76,12 @@ fn what_cannot_be_resumed_is_told() {
         |pairs: &[(&str, String)]| Document::parse("case.toml", example("snap_in"), &set(pairs)).expect("a case");
     let case = parse(&[]);
     assert!(message(&case).contains("no run to go on with"));
+    // Stopped before its first increment was kept it begins anew.
+    run(&case, &path, &mut Until(1.into())).expect("a run");
+    assert_eq!(begun(&case, &path).expect("a run"), Begun::Anew);
+    let begun_anew = resume(&case, &path, &mut Until(1.into())).expect("a run");
+    assert!(begun_anew.ending == Ending::Interrupted);
+    assert!(message(&parse(&[("contacts.touch.adhesion.energy", "0.06".into())])).contains("another case"));
     run(&case, &path, &mut Until(40.into())).expect("a run");
     assert!(message(&parse(&[("contacts.touch.adhesion.energy", "0.06".into())])).contains("another case"));
     let checkpoint = path.join("checkpoint.json");

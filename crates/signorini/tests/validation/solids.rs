@@ -44,14 +44,7 @@ fn each_mistake_is_told_at_its_place() {
         ("hertz", "normal = [0, 1]", "normal = [0, -1]", "deep in each other", "[contacts.touch]", "normal"),
         ("hertz", "map = [\"x\", ", "map = [\"-x\", ", "inverted", "mesh", "positive volume"),
         ("hertz", "cells = [15, 16]", "cells = [15]", "`cells` 1", "{ from", ""),
-        (
-            "hertz",
-            "[\"block:bottom\", \"plane\"]",
-            "[\"plane\", \"block:bottom\"]",
-            "`plane` is rigid",
-            "\"plane\"",
-            "",
-        ),
+        ("hertz", "[\"block:bottom\", \"plane\"]", "[\"plane\", \"plane\"]", "both bodies", "plane", "`block`"),
         (
             "hertz",
             "[\"block:bottom\", \"plane\"]",
@@ -510,5 +503,62 @@ fn only_what_looks_at_each_other_meets() {
         assert!((at(last_step(&found), "/contacts/any_lower_floor/force/2") - 10.0).abs() < 1e-9);
         assert_eq!(at(last_step(&found), "/contacts/any_upper_floor/area"), 0.0);
         assert_eq!(found["warnings"].as_array().map(Vec::len), Some(0));
+    }
+}
+
+/// An axisymmetric block under a rigid body on its axis; the force of the last increment.
+fn round(shape: &str, between: &str) -> Value {
+    summary(
+        &format!(
+            r#"
+space = "axisymmetric"
+[bodies.block.solid]
+mesh.box = {{ min = [0, -4], max = [4, 0], cells = [16, 12] }}
+degree = 2
+material.linear_elastic = {{ youngs_modulus = 100, poissons_ratio = 0.3 }}
+[bodies.punch.rigid]
+shape.{shape}
+motion.prescribed = {{ displacement = [0, "-0.02*t"] }}
+[supports.base]
+on = "block:bottom"
+displacement = [0, 0]
+[contacts.touch]
+between = {between}
+[[steps]]
+to = 1
+"#
+        ),
+        &set(&[]),
+    )
+}
+
+#[test]
+fn shapes_stand_on_the_axis_and_come_in_any_order() {
+    let force = |shape: &str, between: &str| {
+        let summary = round(shape, between);
+        number(&last_step(&summary)["contacts"]["touch"]["force"][1])
+    };
+    let pair = "[\"block:top\", \"punch\"]";
+    let ball = force("sphere = { center = [0, 10], radius = 10 }", pair);
+    assert!(ball.abs() > 1.0, "{ball}");
+    assert_eq!(force("sphere = { center = [0, 10], radius = 10 }", "[\"punch\", \"block:top\"]"), ball);
+    let parabola = force("paraboloid = { apex = [0, 0], axis = [0, 1], radius = 10 }", pair);
+    assert!((parabola / ball - 1.0).abs() < 5e-3, "{parabola} and {ball}");
+    for other in [
+        "cone = { apex = [0, 0], axis = [0, 1], half_angle = 1.54 }",
+        "torus = { center = [0, 1], axis = [0, 1], major_radius = 2, minor_radius = 1 }",
+    ] {
+        assert!(force(other, pair).abs() > 0.1, "{other}");
+    }
+    for (off, word) in [
+        ("cone = { apex = [1, 0], axis = [0, 1], half_angle = 1.4 }", "stand on the axis"),
+        ("torus = { center = [0, 1], axis = [1, 1], major_radius = 2, minor_radius = 1 }", "stand on the axis"),
+    ] {
+        let case = format!(
+            "space = \"axisymmetric\"\n[bodies.block.solid]\nmesh.box = {{ min = [0, -4], max = [4, 0], cells = [4, 4] }}\n\
+             material.linear_elastic = {{ youngs_modulus = 1, poissons_ratio = 0.3 }}\n[bodies.punch.rigid]\nshape.{off}\n\
+             [contacts.touch]\nbetween = {pair}\n"
+        );
+        assert!(super::error(&case).message.contains(word), "{off}");
     }
 }

@@ -1,0 +1,111 @@
+//! Where the parts of a case text come from: the file, or a `--set` on the command line.
+
+use super::CaseError;
+use super::error::Place;
+use std::ops::Range;
+use toml_edit::{Document, TableLike};
+
+/// A case text with its settings, and what is needed to tell where each part was written.
+#[derive(Clone, Debug, Default)]
+pub struct Origins {
+    /// The text of the file.
+    file: String,
+    edits: Vec<Edit>,
+    /// Places of the keys that were set and of their values in the text with all settings.
+    set: Vec<(Range<usize>, String)>,
+}
+
+/// What one setting changed, in bytes of the text before it and after it.
+#[derive(Clone, Debug)]
+struct Edit {
+    setting: String,
+    before: Range<usize>,
+    after: Range<usize>,
+}
+
+/// Where a byte of the text comes from.
+enum Origin<'a> {
+    File(usize),
+    Setting(&'a str),
+}
+
+impl Origins {
+    /// The origins of a text that nothing was set in.
+    pub fn of_file(text: &str) -> Self {
+        Self { file: text.into(), ..Self::default() }
+    }
+
+    /// Takes into account that a setting made one text of another.
+    pub fn set(&mut self, setting: &str, [before, after]: [&str; 2]) {
+        let [a, b] = [before, after].map(str::as_bytes);
+        let start = a.iter().zip(b).take_while(|(a, b)| a == b).count();
+        let most = a.len().min(b.len()) - start;
+        let end = a.iter().rev().zip(b.iter().rev()).take(most).take_while(|(a, b)| a == b).count();
+        self.edits.push(Edit { setting: setting.into(), before: start..a.len() - end, after: start..b.len() - end });
+    }
+
+    /// Finds the keys that were set in the text with all settings.
+    pub fn finish(&mut self, text: &str) {
+        let Ok(document) = Document::parse(text) else { return };
+        self.set = (self.edits.iter())
+            .filter_map(|edit| {
+                let key: Vec<&str> = edit.setting.split_once('=')?.0.split('.').map(str::trim).collect();
+                Some((place_of(document.as_table(), &key)?, edit.setting.clone()))
+            })
+            .collect();
+    }
+
+    fn of(&self, mut at: usize) -> Origin<'_> {
+        if let Some((_, setting)) = self.set.iter().rev().find(|(place, _)| place.contains(&at)) {
+            return Origin::Setting(setting);
+        }
+        for edit in self.edits.iter().rev() {
+            if edit.after.contains(&at) {
+                return Origin::Setting(&edit.setting);
+            }
+            if at >= edit.after.end {
+                at = at - edit.after.end + edit.before.end;
+            }
+        }
+        Origin::File(at)
+    }
+
+    /// The line of the file that a byte of the text comes from, from one; none for what was set.
+    pub fn line(&self, byte: usize) -> Option<usize> {
+        match self.of(byte) {
+            Origin::File(at) => Some(self.file.as_bytes().iter().take(at).filter(|b| **b == b'\n').count() + 1),
+            Origin::Setting(_) => None,
+        }
+    }
+
+    /// An error at a place of the text, told at the place where that was written.
+    pub fn relocated(&self, mut error: CaseError) -> CaseError {
+        error.place = error.place.map(|place| match self.of(place.span.start) {
+            Origin::Setting(setting) => {
+                let part = place.text.get(place.span).unwrap_or("").trim_matches(['"', '\'']);
+                let start = if part.is_empty() { None } else { setting.find(part) };
+                let span = start.map_or(0..setting.len(), |start| start..start + part.len());
+                Place { name: "--set".into(), text: setting.into(), span }
+            }
+            Origin::File(start) => {
+                let end = match self.of(place.span.end) {
+                    Origin::File(end) => end.max(start),
+                    Origin::Setting(_) => start,
+                };
+                Place { text: self.file.clone(), span: start..end, ..place }
+            }
+        });
+        error
+    }
+}
+
+/// The place of a key of a parsed table, with its value.
+fn place_of(table: &dyn TableLike, key: &[&str]) -> Option<Range<usize>> {
+    let (first, rest) = key.split_first()?;
+    let (name, item) = table.get_key_value(first)?;
+    match (item.as_array_of_tables(), rest) {
+        (_, []) => Some(name.span()?.start..item.span()?.end),
+        (Some(list), [index, rest @ ..]) => place_of(list.get(index.parse().ok()?)?, rest),
+        _ => place_of(item.as_table_like()?, rest),
+    }
+}

@@ -1,0 +1,69 @@
+//! The words that results are told in.
+
+use super::{example, set};
+use signorini::case::Document;
+use signorini::run::run;
+use signorini_solve::Silent;
+
+/// The keys of a table and of all within it, but for those of tables whose keys are names of the case.
+fn words(v: &serde_json::Value, out: &mut std::collections::BTreeSet<String>) {
+    const NAMED: [&str; 4] = ["contacts", "probes", "support_forces", "load_forces"];
+    match v {
+        serde_json::Value::Object(table) => {
+            for (key, inner) in table {
+                out.insert(key.clone());
+                match inner.as_object().filter(|_| NAMED.contains(&key.as_str())) {
+                    Some(named) => named.values().for_each(|v| words(v, out)),
+                    None => words(inner, out),
+                }
+            }
+        }
+        serde_json::Value::Array(list) => list.iter().for_each(|v| words(v, out)),
+        _ => {}
+    }
+}
+
+/// Every word of the summary, the check, the log, the tables and the files for ParaView is one that `explain` knows.
+#[test]
+fn every_word_of_the_results_is_explained() {
+    // The headings of the terminal's tables.
+    let headings = ["t", "solves", "contact", "force", "area", "max pressure", "zones", "holes", "balance"];
+    let mut found: std::collections::BTreeSet<String> = headings.iter().map(|w| w.to_string()).collect();
+    let probe = ("output.probes.p", "[0.1, 0]".to_string());
+    let steps = ("steps", "[{ to = 1, increments = 2, events = 0.1 }]".to_string());
+    let load = ("loads.press.normal", "\"-t\"".to_string());
+    let adhesion = ("contacts.touch.adhesion.energy", "1e-3".to_string());
+    for (name, pairs) in [
+        (
+            "flat_disc",
+            vec![probe.clone(), steps.clone(), load, ("bodies.film.membrane.mesh.grid.cells", "[12, 12]".into())],
+        ),
+        ("string", vec![adhesion]),
+        ("high_order_blocks", vec![probe]),
+    ] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let document = Document::parse("case.toml", example(name), &set(&pairs)).expect("a case");
+        let sizes = signorini::run::sizes(&signorini::plan::plan(&document).expect("a plan")).expect("sizes");
+        words(&sizes, &mut found);
+        let summary = run(&document, folder.path(), &mut Silent).expect("a run").summary;
+        words(&summary, &mut found);
+        for kind in summary["events"].as_array().into_iter().flatten() {
+            found.extend(["kind", "by"].map(|key| kind[key].as_str().unwrap_or_default().to_string()));
+        }
+        let read = |file: &str| std::fs::read_to_string(folder.path().join(file)).expect(file);
+        for line in read("log.jsonl").lines() {
+            words(&serde_json::from_str(line).expect("JSON"), &mut found);
+        }
+        let header = read("history.csv").lines().next().unwrap_or_default().to_string();
+        let own = |w: &&str| !["p", "p:displacement_x", "p:displacement_y"].contains(w) && !w.contains("force_");
+        found.extend(header.split(',').filter(own).map(|w| w.rsplit(':').next().unwrap_or(w).to_string()));
+        let vtu = read("fields/fields_00000.vtu");
+        found.extend(vtu.split("Name=\"").skip(1).filter_map(|w| w.split('"').next()).map(str::to_string));
+    }
+    for of_vtk in ["connectivity", "offsets", "types", "Points", "signorini", "-"] {
+        found.remove(of_vtk);
+    }
+    found.retain(|w| !w.is_empty());
+    let unknown: Vec<&String> = found.iter().filter(|w| signorini::explain::explain(w).is_err()).collect();
+    assert!(unknown.is_empty() && found.len() > 70, "{unknown:?} of {}", found.len());
+}

@@ -104,6 +104,10 @@ pub trait Cells<const D: usize>: Send + Sync {
     }
     /// The same cells with functions of one degree more, where there are such.
     fn raised(&self) -> Option<Arc<dyn Cells<D>>>;
+    /// Twice as many cells in each direction, with functions of the same degree, where a mesh is divided.
+    fn halved(self: Arc<Self>) -> Option<Arc<dyn Cells<D>>> {
+        None
+    }
     /// Half as many cells in each direction, with functions of degree 1.
     fn coarser(&self) -> Option<Arc<dyn Cells<D>>>;
     /// Quadrature of a cell that is not cut.

@@ -719,6 +719,9 @@ impl Cells<2> for MeshCells {
     fn mesh(self: Arc<Self>) -> Option<Arc<MeshCells>> {
         Some(self)
     }
+    fn halved(self: Arc<Self>) -> Option<Arc<dyn Cells<2>>> {
+        Some(Arc::new(self.refined()))
+    }
     fn outlines(&self, value: &dyn Fn(&Point<2>) -> f64) -> Option<Vec<Vec<Point<2>>>> {
         let cells = (0..self.count()).map(|cell| self.mesh.vertices(cell).collect());
         let place = |vertex: u32| self.mesh.nodes()[vertex as usize];

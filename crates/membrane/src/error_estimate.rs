@@ -1,7 +1,9 @@
-//! How far front, area and force may be off: the fronts of a state, judged with functions of one degree more.
+//! How far front, area and force may be off: the fronts of a state, judged with finer functions: of one degree more, or,
+//! where cells have no such, on cells of half the size.
 //!
-//! The variational slope jump of the finer functions on the same cells does not vanish where the fronts are; the Newton
-//! step that would make it vanish is, to leading order, what they are off.
+//! The variational slope jump of the finer functions does not vanish where the fronts are; the Newton step that would make
+//! it vanish is, to leading order, what they are off. On halved cells that lacks what these are off themselves, 2^-2p of
+//! it.
 
 use crate::adhesion::Branch;
 use crate::equilibrium::{Elements, Equilibrium};
@@ -31,17 +33,16 @@ pub struct ErrorEstimate {
 
 impl ErrorEstimate {
     /// Estimates the errors of a solution, at the price of one solve; none without contact, or where the cells have no
-    /// functions of a higher degree.
+    /// finer functions.
     ///
     /// # Errors
     /// Equations that cannot be solved.
     pub fn of<const D: usize, Z: Zone<D>>(solution: &Solution<D, Z>) -> Result<Option<Self>, SolveError> {
         let (Some(coarse), Some(scales)) = (&solution.equilibrium, &solution.scales) else { return Ok(None) };
         let zone = &solution.zone;
-        let Some(cells) = coarse.membrane.cells.raised().filter(|_| !zone.is_empty()) else { return Ok(None) };
+        let Some(finer) = finer(&coarse.membrane).filter(|_| !zone.is_empty()) else { return Ok(None) };
         // Splines see what a few waves may have left out.
-        let membrane =
-            Membrane { cells, modes: Modes::Local, formulation: Formulation::OneSided, ..coarse.membrane.clone() };
+        let membrane = Membrane { modes: Modes::Local, formulation: Formulation::OneSided, ..finer };
         let fine = Equilibrium::solve(&membrane, zone, &mut Elements::new(&membrane))?;
         let sticky = membrane.obstacles.are_sticky();
         let fronts = Fronts::new(&fine, sticky);
@@ -76,5 +77,13 @@ impl ErrorEstimate {
             area: SAFETY * area.abs() + cancelled * area_size,
             force: SAFETY * force.abs() + cancelled * force_size + left.abs(),
         }))
+    }
+}
+
+/// The same membrane with finer functions: of one degree more, or on halved cells.
+fn finer<const D: usize>(membrane: &Membrane<D>) -> Option<Membrane<D>> {
+    match membrane.cells.raised() {
+        Some(cells) => Some(Membrane { cells, ..membrane.clone() }),
+        None => Some(membrane.on(membrane.cells.clone().halved()?)),
     }
 }

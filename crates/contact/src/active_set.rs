@@ -250,8 +250,8 @@ impl ActiveSet {
             let Some(last) = flips.last() else { return Ok(Balanced { dense, active, pressures, forces, gaps }) };
             if flips.len() < fewest {
                 (fewest, patience) = (flips.len(), PATIENCE);
-            } else if patience > 0 {
-                patience -= 1;
+            } else {
+                patience = patience.saturating_sub(1);
             }
             if patience > 0 {
                 self.active = next;

@@ -263,7 +263,10 @@ pub fn closest(queries: &Path, output: &Path, local_minima: bool, json: bool) ->
         }
         say!(
             "{} queries in {seconds:.2} s, {} of them wrong, {} not certified, {} not unique",
-            report.answered, report.wrong_count, report.not_certified, report.not_unique
+            report.answered,
+            report.wrong_count,
+            report.not_certified,
+            report.not_unique
         );
         if let Some((id, ms)) = slowest {
             say!("slowest: {id}, {ms:.2} ms");
@@ -296,10 +299,10 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], resumed: bool,
     };
     match earlier {
         Some(Begun::Anew) => {
-            eprintln!("note: the earlier run in {} kept no increment: it begins anew", folder.display())
+            tell!("note: the earlier run in {} kept no increment: it begins anew", folder.display())
         }
         Some(Begun::Done) => {
-            eprintln!("note: the run in {} is done: its results are left as they are", folder.display())
+            tell!("note: the run in {} is done: its results are left as they are", folder.display())
         }
         _ => {}
     }

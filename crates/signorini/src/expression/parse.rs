@@ -273,8 +273,8 @@ impl Parser<'_> {
             "if" if count == 3 => return Ok(Node::If(next(), next(), next())),
             "if" => return wrong("three arguments: if(condition, a, b)"),
             _ => {
-                let own = self.names.functions.keys().map(String::as_str);
-                let known: Vec<&str> = function_names().map(|name| &name[..]).chain(own).collect();
+                let mut known: Vec<&str> = function_names().collect();
+                known.extend(self.names.functions.keys().map(String::as_str));
                 return Err(ParseError {
                     message: format!("unknown function `{name}`"),
                     help: Some(crate::case::suggestion(name, &known)),

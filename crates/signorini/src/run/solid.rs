@@ -277,7 +277,8 @@ impl<const D: usize> Runner<D> {
                 }
                 Err(mut failed) => {
                     residuals.append(&mut failed.residuals);
-                    let curable = matches!(failed.reason, "newton" | "contact" | "linear_solver" | "free_body" | "increment");
+                    let curable =
+                        matches!(failed.reason, "newton" | "contact" | "linear_solver" | "free_body" | "increment");
                     if !self.model.slides() || !curable || size <= SMALLEST_INCREMENT * (time - before) {
                         return Ok(Err(Failure { residuals, ..failed }));
                     }
@@ -606,8 +607,7 @@ fn at_time<const D: usize, R>(
 ///
 /// # Errors
 /// What a run refuses.
-pub(super) fn judge<const D: usize>(plan: &SolidPlan<D>, model: &mut Model<D>) -> Result<Vec<String>, CaseError> {
-    let mut told = Vec::new();
+pub(super) fn judge<const D: usize>(plan: &SolidPlan<D>, model: &mut Model<D>) -> Result<Option<String>, CaseError> {
     for (index, &time) in plan.times.iter().enumerate() {
         let look = |model: &mut Model<D>, now: &Circumstances<'_, D>| match index {
             0 => model.examine(now),
@@ -618,10 +618,11 @@ pub(super) fn judge<const D: usize>(plan: &SolidPlan<D>, model: &mut Model<D>) -
             Some(error) => return Err(error),
             // With finite sliding the increment will be cut.
             None if matches!(error, StepError::Deep { .. }) => {}
-            None => told.push(format!("at t = {time}: {}", failure(&error).text)),
+            // A run ends there.
+            None => return Ok(Some(format!("at t = {time}: {}", failure(&error).text))),
         }
     }
-    Ok(told)
+    Ok(None)
 }
 
 /// The error of the case behind that of a time, at its place; none where a run may find a way.

@@ -10,7 +10,7 @@ use signorini::output::OutputError;
 use signorini::output::chart::save_as;
 use signorini::output::figure::figure;
 use signorini::plan::plan;
-use signorini::queries::{Query, answer_file};
+use signorini::queries::{Query, answer_file, answer_points};
 use signorini::run::{Begun, Ending, RunError, begun, preview, resume, run, sizes};
 use signorini::scene::{self, Scene, SceneError};
 use std::path::{Path, PathBuf};
@@ -223,10 +223,14 @@ fn execute_scene(name: &str, text: &str, folder: &Path, set: &[String], json: bo
     }
 }
 
-pub fn closest(queries: &Path, output: &Path, local_minima: bool, json: bool) -> u8 {
+pub fn closest(queries: &Path, to: Option<&Path>, output: &Path, local_minima: bool, json: bool) -> u8 {
     let query = Query { local_minima, ..Query::default() };
     let counter = Counter::new(json);
-    let result = answer_file(queries, output, &query, &mut |answered| counter.show(answered));
+    let progress = &mut |answered| counter.show(answered);
+    let result = match to {
+        Some(shape) => answer_points(queries, shape, output, &query, progress),
+        None => answer_file(queries, output, &query, progress),
+    };
     counter.finish();
     let report = match result {
         Ok(report) => report,

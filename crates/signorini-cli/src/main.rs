@@ -27,7 +27,8 @@ const EXAMPLES: &str = "Examples:
 Exit status: 0 done, 1 the input is wrong or the output cannot be written, 2 not converged (results so far are on disk),
 3 a fault of ours, 130 interrupted.";
 
-const CLOSEST_HELP: &str = r#"Example:
+const CLOSEST_HELP: &str = r#"Examples:
+  signorini closest points.npy --to part.stl -o answers.npy
   echo '{"format": "cpp-corpus-1", "cases": [{"id": "first",
     "a": {"type": "point", "p": [0, 0, 2]},
     "b": {"type": "segment", "p0": [1, 0, 0], "p1": [3, 0, 0]}}]}' > queries.json
@@ -87,9 +88,13 @@ enum Command {
     /// Closest points of pairs of shapes
     #[command(after_help = CLOSEST_HELP)]
     Closest {
-        /// The queries, JSON in the form of docs/closest-points.md; - reads them from standard input
+        /// The queries, JSON in the form of docs/closest-points.md, or with --to points, CSV or NPY; - reads them from
+        /// standard input
         queries: PathBuf,
-        /// File for the answers
+        /// The shape to which the points are to be projected: STL, OBJ, PLY, or JSON as in a query
+        #[arg(long, value_name = "SHAPE")]
+        to: Option<PathBuf>,
+        /// File for the answers: .json, .csv or .npy
         #[arg(short, long, value_name = "ANSWERS")]
         output: PathBuf,
         /// Find every local minimiser too
@@ -201,7 +206,9 @@ fn main() -> ExitCode {
         Command::Run { case, options, resume } => commands::run_file(&case, options.output, &options.set, resume, json),
         Command::Check { case, set, picture } => commands::check(&case, &set, picture.as_deref(), json),
         Command::Fit { case, options } => commands::fit_file(&case, options.output, &options.set, json),
-        Command::Closest { queries, output, local_minima } => commands::closest(&queries, &output, local_minima, json),
+        Command::Closest { queries, to, output, local_minima } => {
+            commands::closest(&queries, to.as_deref(), &output, local_minima, json)
+        }
         Command::New { template, folder } => begin::new(&template, folder, json),
         Command::Explain { word } => begin::explain(word.as_deref(), json),
         Command::Schema { markdown } => begin::schema(markdown),

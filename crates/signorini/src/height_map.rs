@@ -3,7 +3,9 @@
 //! The first value is the height at the origin; columns run along x, rows along y. The values are joined by a bicubic
 //! spline, which passes through all of them and has continuous curvature.
 
+use crate::npy;
 use crate::relief::Sampled;
+use crate::text_table::{self, Numbers, Row};
 use signorini_geometry::Vector;
 use signorini_geometry::grid_spline::GridSpline;
 use std::path::Path;
@@ -50,100 +52,34 @@ pub fn read(path: &Path, bytes: &[u8], origin: [f64; 2], spacing: [f64; 2], scal
     Ok(Sampled { spline, ends: true })
 }
 
-/// Numbers in lines, between commas, semicolons, tabs or blanks; lines that begin with `#` are skipped.
+/// Rows of numbers.
 fn csv(bytes: &[u8]) -> Result<Table, String> {
-    let text = std::str::from_utf8(bytes).map_err(|e| format!("no text: {e}"))?;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut numbers = Numbers::default();
     let (mut values, mut columns, mut rows) = (Vec::new(), 0, 0);
-    for (number, line) in text.lines().enumerate() {
-        let line = line.trim();
-        if line.is_empty() || line.starts_with('#') {
-            continue;
-        }
-        let before = values.len();
-        let separated = line.contains([',', ';', '\t']);
-        let entries: Vec<&str> =
-            if separated { line.split([',', ';', '\t']).collect() } else { line.split_whitespace().collect() };
+    for Row { line, entries } in text_table::rows(bytes)? {
         for (column, entry) in entries.iter().enumerate() {
-            let entry = entry.trim();
-            let value: f64 = entry.parse().map_err(|_| {
-                let what = if entry.is_empty() { "is empty".to_string() } else { format!("`{entry}` is no number") };
-                format!("line {}, column {}: {what}", number + 1, column + 1)
-            })?;
-            values.push(value);
+            let place = |what| format!("line {line}, column {}: {what}", column + 1);
+            values.push(numbers.read(line, entry).map_err(place)?);
         }
-        let found = values.len() - before;
+        let found = entries.len();
         if rows > 0 && found != columns {
-            return Err(format!("line {}: {found} numbers where the lines before have {columns}", number + 1));
+            return Err(format!("line {line}: {found} numbers where the lines before have {columns}"));
         }
         (columns, rows) = (found, rows + 1);
         if values.len() > MOST {
             return Err(format!("more than {MOST} heights"));
         }
     }
+    numbers.finish()?;
     Ok(Table { rows, columns, values })
 }
 
-/// A two-dimensional array of numbers as NumPy saves it (format 1 to 3).
+/// A two-dimensional array.
 fn npy(bytes: &[u8]) -> Result<Table, String> {
-    if bytes.len() < 10 || !bytes.starts_with(b"\x93NUMPY") {
-        return Err("no NPY: its first bytes are not those of one".into());
-    }
-    let at = |k: usize| bytes.get(k).copied().map_or(0, usize::from);
-    let (start, length): (usize, usize) = if bytes[6] == 1 {
-        (10, at(8) + (at(9) << 8))
-    } else {
-        (12, at(8) + (at(9) << 8) + (at(10) << 16) + (at(11) << 24))
-    };
-    let header = bytes.get(start..start.saturating_add(length)).ok_or("the header is cut off")?;
-    let header = std::str::from_utf8(header).map_err(|e| format!("the header is no text: {e}"))?;
-    let field = |name: &str| {
-        let after = header.split(&format!("'{name}'")).nth(1)?;
-        Some(after.trim_start().strip_prefix(':')?.trim_start())
-    };
-    let kind = field("descr").and_then(|d| d.split('\'').nth(1)).ok_or("the header has no kind of number")?;
-    let by_columns = field("fortran_order").is_some_and(|f| f.starts_with("True"));
-    let shape = field("shape").and_then(|s| s.strip_prefix('(')?.split(')').next()).ok_or("the header has no shape")?;
-    let shape: Vec<usize> = (shape.split(',').map(str::trim).filter(|s| !s.is_empty()))
-        .map(|s| s.parse().map_err(|_| format!("`{s}` is no number of rows or columns")))
-        .collect::<Result<_, _>>()?;
+    let npy::Array { shape, values } = npy::read(bytes, MOST)?;
     let &[rows, columns] = &shape[..] else {
         return Err(format!("an array of {} dimensions: a height map has two", shape.len()));
     };
-    let count =
-        rows.checked_mul(columns).filter(|n| *n <= MOST).ok_or(format!("{rows} x {columns} heights are too many"))?;
-    let unknown = || format!("numbers of kind `{kind}` are not known; save as float64");
-    let width: usize =
-        kind.get(2..).and_then(|w| w.parse().ok()).filter(|w| (1..=8).contains(w)).ok_or_else(unknown)?;
-    let data = &bytes[start + length..];
-    if data.len() < count.saturating_mul(width) {
-        return Err(format!("{count} numbers of {width} bytes are announced, the file ends before"));
-    }
-    let big = kind.starts_with('>');
-    let number = |k: usize| -> Option<f64> {
-        let mut raw = [0u8; 8];
-        let piece = &data[k * width..(k + 1) * width];
-        for (i, b) in piece.iter().enumerate() {
-            raw[if big { width - 1 - i } else { i }] = *b;
-        }
-        let [a, b, c, d, ..] = raw;
-        Some(match kind.get(1..)? {
-            "f8" => f64::from_le_bytes(raw),
-            "f4" => f64::from(f32::from_le_bytes([a, b, c, d])),
-            "u1" => f64::from(a),
-            "u2" => f64::from(u16::from_le_bytes([a, b])),
-            "u4" => f64::from(u32::from_le_bytes([a, b, c, d])),
-            "i1" => f64::from(a as i8),
-            "i2" => f64::from(i16::from_le_bytes([a, b])),
-            "i4" => f64::from(i32::from_le_bytes([a, b, c, d])),
-            "i8" => i64::from_le_bytes(raw) as f64,
-            "u8" => u64::from_le_bytes(raw) as f64,
-            _ => return None,
-        })
-    };
-    let place = |k: usize| if by_columns { k % columns * rows + k / columns } else { k };
-    let values = (0..count).map(|k| number(place(k))).collect::<Option<Vec<f64>>>();
-    let values = values.ok_or_else(unknown)?;
     Ok(Table { rows, columns, values })
 }
 
@@ -253,6 +189,7 @@ mod tests {
         assert!(read("a.csv", b"1,2,3,4\n1,2,x,4\n").contains("`x` is no number"));
         assert!(read("a.csv", b"1,2,3,4\n1,2\n").contains("2 numbers where the lines before have 4"));
         assert!(read("a.csv", b"1 2 3 4\n").contains("1 rows"));
+        assert!(read("a.csv", b"1;2;3;4\n1;2;3,125;4\n").contains("line 2: `3,125`"));
         assert!(read("a.csv", b"1 2 3 4\n1 2 nan 4\n1 2 3 4\n1 2 3 4\n").contains("row 2, column 3 is NaN"));
         assert!(read("a.npy", b"1 2 3 4\n").contains("no NPY"));
         assert!(read("a.npy", &npy_bytes("<f8", "False", &[0; 16])).contains("the file ends before"));

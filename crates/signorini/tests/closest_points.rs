@@ -4,7 +4,7 @@
 //! subdivision proof and polished in 60-digit arithmetic.
 
 use serde_json::{Value, json};
-use signorini::queries::{QueriesError, Query, Report, answer_file};
+use signorini::queries::{QueriesError, Query, Report, answer_file, answer_points};
 use std::path::Path;
 
 fn run(text: &str) -> (Result<Report, QueriesError>, Value) {
@@ -104,7 +104,7 @@ fn one_wrong_query_stops_no_other() {
         (r#"{"type": "point", "p": [1, 2, NaN]}"#.into(), &["NaN"]),
         (r#"{"type": "point", "p": [1, 2, -Infinity]}"#.into(), &["Infinity"]),
         (r#"{"type": "segment", "p0": [1e300, 0, 0], "p1": [0, 0, 0]}"#.into(), &["b.p0", "change the unit"]),
-        (r#"{"type": "segment", "p0": [1e400, 0, 0], "p1": [0, 0, 0]}"#.into(), &["case"]),
+        (r#"{"type": "segment", "p0": [1e400, 0, 0], "p1": [0, 0, 0]}"#.into(), &["b: not JSON", "out of range"]),
         (r#"{"type": "bezier", "control_points": [[0,0,0]]}"#.into(), &["b.control_points", "2 to 16"]),
         (r#"{"type": "bezier", "control_points": [[0,0,0],[1,0,0]], "weights": [1]}"#.into(), &["b.weights", "1 for 2"]),
         (r#"{"type": "bezier", "control_points": [[0,0,0],[1,0,0]], "weights": [1, -1]}"#.into(), &["b.weights", "-1"]),
@@ -156,6 +156,96 @@ fn cases_that_are_no_queries_are_named() {
     for word in ["given twice", "unknown key", "but the shapes are a point-point", "not JSON", "an object"] {
         assert!(text.contains(word), "{word}: {text}");
     }
+}
+
+const TETRAHEDRON: &str = r#"{"type": "triangle_mesh", "vertices": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]],
+    "triangles": [[0,2,1],[0,1,3],[0,3,2],[1,2,3]]}"#;
+
+#[test]
+fn shapes_have_names() {
+    let file = |shapes: &str, b: &str| {
+        format!(
+            r#"{{"format": "cpp-corpus-1", {shapes} "cases": [
+                {{"id": "one", "a": {{"type": "point", "p": [0.1, 0.2, -2]}}, "b": {b}}}]}}"#
+        )
+    };
+    let shapes = format!(r#""shapes": {{"body": {TETRAHEDRON}}},"#);
+    let (report, named) = run(&file(&shapes, r#""body""#));
+    assert_eq!(report.unwrap().wrong_count, 0, "{named}");
+    assert_eq!(named["one"]["gap"], 2.0);
+    assert_eq!(named, run(&file("", TETRAHEDRON)).1);
+    for (shapes, b, words) in [
+        (&*shapes, r#""bodi""#, "b: no shape is called `bodi`: did you mean `body`?"),
+        ("", r#""body""#, "b: no shape is called `body`: the file has no `shapes`"),
+    ] {
+        assert_eq!(run(&file(shapes, b)).1["one"]["error"], words);
+    }
+    // Shapes that are wrong end everything, with their line.
+    let folder = tempfile::tempdir().unwrap();
+    let (queries, answers) = (folder.path().join("q.json"), folder.path().join("a.json"));
+    for (shapes, words) in [
+        (r#""shapes": {"s": {"type": "point"}},"#, "line 1: shapes.s.p: missing"),
+        ("\n\"shapes\": {\"s\": {\"type\": \"circel\"}},", "line 2: shapes.s.type: `circel`"),
+        (r#""shapes": [],"#, "line 1: shapes: an array of 0 instead of an object"),
+        (r#""shapes": {"s": {"type": "point", "p": [0,0,0]}, "s": 1},"#, "shapes.s: given twice"),
+        (r#""cases": [], "shapes": {},"#, "line 1: `shapes` comes after `cases`"),
+    ] {
+        std::fs::write(&queries, file(shapes, r#""s""#)).unwrap();
+        let error = answer_file(&queries, &answers, &Query::default(), &mut |_| true).unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    }
+}
+
+#[test]
+fn points_of_a_file_are_answered_in_every_format() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::write(path("body.json"), TETRAHEDRON).unwrap();
+    std::fs::write(path("points.csv"), "x;y;z\n0,1;0,2;-2\n-1;0,25;0,5\n").unwrap();
+    let answer = |points: &str, shape: &str, answers: &str| {
+        answer_points(&path(points), &path(shape), &path(answers), &Query::default(), &mut |_| true)
+    };
+    let report = answer("points.csv", "body.json", "answers.json").unwrap();
+    assert_eq!((report.answered, report.not_unique), (2, 0));
+    let json: Value = serde_json::from_str(&std::fs::read_to_string(path("answers.json")).unwrap()).unwrap();
+    assert_eq!((&json["0"]["gap"], &json["1"]["xb"]), (&json!(2.0), &json!([0.0, 0.25, 0.5])));
+
+    answer("points.csv", "body.json", "answers.csv").unwrap();
+    let csv = std::fs::read_to_string(path("answers.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = csv.lines().map(|l| l.split(',').collect()).collect();
+    assert_eq!(
+        (rows.len(), &rows[0][..3], &rows[2][..3]),
+        (3, &["id", "distance", "gap"][..], &["1", "1.0", "1.0"][..])
+    );
+    assert!(rows.iter().all(|r| r.len() == rows[0].len()), "{csv}");
+
+    // Rows of 8 + 8 + 16 + 16 + 24 + 24 + 24 + 8 + 8 + 8 + 8 + 14 + 8 + 8 + 8 + 8 bytes after a head whose length it tells.
+    answer("points.csv", "body.json", "answers.npy").unwrap();
+    let npy = std::fs::read(path("answers.npy")).unwrap();
+    let start = 10 + usize::from(u16::from_le_bytes([npy[8], npy[9]]));
+    assert_eq!((start % 64, npy.len()), (0, start + 2 * 198));
+    let head = std::str::from_utf8(&npy[10..start]).unwrap();
+    assert!(head.contains("('gap', '<f8'), ('a', '<f8', (2,))") && head.contains("'shape': (2,)"), "{head}");
+    let number = |at: usize| f64::from_le_bytes(npy[start + at..][..8].try_into().unwrap());
+    assert!((number(0), number(8), number(198 + 8)) == (2.0, 2.0, 1.0) && number(16).is_nan());
+    assert_eq!(&npy[start + 120..][..16], b"point\0\0\0interior");
+
+    // The queries of a file are answered in tables too; a wrong one is a row without numbers.
+    let wrong = r#"{"id": "wrong, indeed", "a": {"type": "point", "p": [0, 0]}, "b": {"type": "point"}}"#;
+    std::fs::write(path("queries.json"), corpus(&[GOOD, wrong])).unwrap();
+    for name in ["table.csv", "table.npy"] {
+        let report = answer_file(&path("queries.json"), &path(name), &Query::default(), &mut |_| true).unwrap();
+        assert_eq!((report.answered, report.wrong_count), (2, 1));
+    }
+    let csv = std::fs::read_to_string(path("table.csv")).unwrap();
+    assert!(csv.ends_with("\n\"wrong, indeed\",,,,,,,,,,,,,,,,,,,,,,,,,,,,a.p: 2 numbers instead of 3\n"), "{csv}");
+    assert_eq!(std::fs::read(path("table.npy")).unwrap().len(), npy.len());
+
+    std::fs::write(path("points.csv"), "1,2,3\n4,5\n").unwrap();
+    let error = answer("points.csv", "body.json", "none.npy").unwrap_err().to_string();
+    assert!(error.contains("points.csv: line 2: 2 entries") && !path("none.npy").exists(), "{error}");
+    let error = answer("points.csv", "body.step", "none.npy").unwrap_err().to_string();
+    assert!(error.contains("body.step: `step` is no format of shapes"), "{error}");
 }
 
 #[test]

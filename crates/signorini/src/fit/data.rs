@@ -1,7 +1,8 @@
-//! Measurements from a CSV file.
+//! Measurements from a text table with a row of names.
 
 use crate::case::statement::FitKey;
 use crate::case::{CaseError, Document, suggestion};
+use crate::text_table::{self, Numbers, Row};
 use std::path::Path;
 use toml::Spanned;
 
@@ -20,9 +21,9 @@ pub(super) fn read(document: &Document, key: &FitKey, column: &Spanned<String>) 
     let path = beside.join(key.data.get_ref());
     let told = |message: String| document.error(key.data.span(), format!("`{}`: {message}", path.display()));
     let bytes = std::fs::read(&path).map_err(|e| told(format!("{e}")))?;
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(bytes.as_slice());
-    let header = reader.headers().map_err(|e| told(format!("{e}")))?.clone();
-    let names: Vec<&str> = header.iter().collect();
+    let rows = text_table::rows(&bytes).map_err(told)?;
+    let Some((header, rows)) = rows.split_first() else { return Err(told("is empty".into())) };
+    let names: Vec<&str> = header.entries.iter().collect();
     let find = |name: &Spanned<String>| {
         let matching: Vec<usize> = (0..names.len()).filter(|&i| names[i] == name.get_ref()).collect();
         match matching[..] {
@@ -36,15 +37,19 @@ pub(super) fn read(document: &Document, key: &FitKey, column: &Spanned<String>) 
     };
     let columns = [find(&key.time)?, find(column)?];
     let mut found = [Vec::new(), Vec::new()];
-    for record in reader.records() {
-        let record = record.map_err(|e| told(format!("{e}")))?;
-        let line = record.position().map_or(0, |p| p.line());
+    let mut numbers = Numbers::default();
+    for Row { line, entries } in rows {
+        if entries.len() != names.len() {
+            let message = format!("line {line}: {} entries under {} names", entries.len(), names.len());
+            return Err(told(message).help("write decimals with a point, and texts with commas in quotes"));
+        }
         for (list, &k) in found.iter_mut().zip(&columns) {
-            let text = record.get(k).unwrap_or("");
             let place = format!("line {line}, column `{}`", names[k]);
-            let value: f64 = match text {
-                "" => return Err(told(format!("{place}: is empty")).help("delete the line, or give the value")),
-                text => text.parse().map_err(|_| told(format!("{place}: `{text}` is no number")))?,
+            let value = match numbers.read(*line, &entries[k]) {
+                Err(what) if entries[k].is_empty() => {
+                    return Err(told(format!("{place}: {what}")).help("delete the line, or give the value"));
+                }
+                read => read.map_err(|what| told(format!("{place}: {what}")))?,
             };
             if !value.is_finite() {
                 return Err(told(format!("{place}: {value} is not finite")));
@@ -52,6 +57,7 @@ pub(super) fn read(document: &Document, key: &FitKey, column: &Spanned<String>) 
             list.push(value);
         }
     }
+    numbers.finish().map_err(told)?;
     let [time, value] = found;
     if time.is_empty() {
         return Err(told("holds no measurements".into()));

@@ -23,6 +23,14 @@ pub struct FieldError {
     pub message: String,
 }
 
+impl FieldError {
+    /// The same, of a field of `path`.
+    pub fn within(self, path: &str) -> Self {
+        let path = if self.path.is_empty() { path.to_string() } else { format!("{path}.{}", self.path) };
+        FieldError { path, ..self }
+    }
+}
+
 /// The types of shapes, in the order of the manual.
 pub const TYPES: [&str; 30] = [
     "point",
@@ -226,7 +234,7 @@ impl<'a> Fields<'a> {
     }
 }
 
-fn kind(value: &Value) -> String {
+pub(super) fn kind(value: &Value) -> String {
     match value {
         Value::Null => "null".to_string(),
         Value::Bool(b) => b.to_string(),

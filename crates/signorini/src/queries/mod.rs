@@ -1,30 +1,40 @@
-//! Closest points as a service: a file of queries in, a file of answers out.
+//! Closest points as a service: a file of queries or of points in, a file of answers out.
 //!
 //! Queries are read as a stream and answered in parallel; answers keep the order of the queries. A query that is wrong
 //! gets an answer that says so and stops no other.
 
+pub mod answer;
 pub mod geometry;
+mod object;
+mod output;
+mod points;
 pub mod scanner;
+mod shapes;
 
 use std::collections::HashSet;
-use std::io::{self, BufRead, BufReader, BufWriter, Write};
+use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use geometry::{FieldError, Fields};
+use crate::mesh_file;
+use answer::{Answer, Format};
+use geometry::FieldError;
+use object::Object;
+use output::Output;
 use rayon::prelude::*;
 use scanner::{RawCase, ScanError, Scanner};
-use serde_json::{Map, Value, json};
+use serde_json::Value;
+use shapes::Shapes;
 pub use signorini_geometry::closest::Query;
-use signorini_geometry::closest::{Certificate, ClosestPair, FeatureKind, Projection, Uniqueness, closest, signed_gap};
+use signorini_geometry::closest::{Certificate, Projection, Uniqueness, closest};
 use signorini_geometry::shape::Shape;
 
-/// A query: two shapes with a name.
+/// A query: two shapes.
 #[derive(Clone, Debug)]
 pub struct PairQuery {
-    pub id: String,
-    pub a: Shape,
-    pub b: Shape,
+    pub a: Arc<Shape>,
+    pub b: Arc<Shape>,
 }
 
 /// Why a file of queries could not be answered to its end.
@@ -36,6 +46,10 @@ pub enum QueriesError {
     Write { path: PathBuf, source: io::Error },
     #[error("{}: {source}; the {answered} cases before it are answered", path.display())]
     Scan { path: PathBuf, source: ScanError, answered: usize },
+    #[error("{}: line {line}: {source}", path.display())]
+    Shapes { path: PathBuf, line: usize, source: FieldError },
+    #[error("{}: {message}", path.display())]
+    Input { path: PathBuf, message: String },
 }
 
 /// What was done with a file of queries.
@@ -60,81 +74,61 @@ const QUOTED: usize = 20;
 /// Cases answered between two writes.
 const BATCH: usize = 512;
 
+/// One entry of `cases`, before its shapes are built.
+struct Case<'a> {
+    id: String,
+    a: &'a str,
+    b: &'a str,
+    pair: Option<&'a str>,
+}
+
+impl<'a> Case<'a> {
+    fn parse(text: &'a [u8]) -> Result<Self, FieldError> {
+        let fail = |path: &str, message: String| FieldError { path: path.into(), message };
+        let object = Object::parse(text).map_err(|e| e.within("case"))?;
+        let (mut id, mut a, mut b, mut pair) = (None, None, None, None);
+        for (key, value) in &object.entries {
+            let value = value.get();
+            match key.as_str() {
+                "id" => {
+                    let text = serde_json::from_str::<String>(value);
+                    id = Some(text.map_err(|_| fail("id", format!("{value} instead of a string")))?);
+                }
+                "a" => a = Some(value),
+                "b" => b = Some(value),
+                "pair" => pair = Some(value),
+                "scale" if serde_json::from_str::<f64>(value).is_ok_and(|s| s >= 0.0) => {}
+                "scale" => return Err(fail("scale", format!("{value} is not a length"))),
+                key if ANNOTATIONS.contains(&key) => {}
+                key => return Err(fail(key, "unknown key; valid are a, b, id, pair, scale".into())),
+            }
+        }
+        let missing = |key: &str| fail(key, "missing".into());
+        let id = id.ok_or_else(|| missing("id"))?;
+        Ok(Case { id, a: a.ok_or_else(|| missing("a"))?, b: b.ok_or_else(|| missing("b"))?, pair })
+    }
+
+    fn query(&self, shapes: &Shapes) -> Result<PairQuery, FieldError> {
+        let a = shapes.partner(self.a).map_err(|e| e.within("a"))?;
+        let b = shapes.partner(self.b).map_err(|e| e.within("b"))?;
+        if let Some(pair) = self.pair {
+            let name = |s: &Shape| ["point", "curve", "surface"][s.dimension()];
+            let found = format!("\"{}-{}\"", name(&a), name(&b));
+            if pair != found {
+                let message = format!("{pair}, but the shapes are a {}", found.trim_matches('"'));
+                return Err(FieldError { path: "pair".into(), message });
+            }
+        }
+        Ok(PairQuery { a, b })
+    }
+}
+
 /// Reads one case; files that it names are looked for in `folder`.
 ///
 /// # Errors
 /// What is wrong, with the path of the field.
 pub fn parse(text: &[u8], folder: &Path) -> Result<PairQuery, FieldError> {
-    let value: Value = serde_json::from_slice(text).map_err(|e| {
-        let text = String::from_utf8_lossy(text);
-        let word = ["NaN", "Infinity"].into_iter().find(|w| text.contains(w));
-        let message = match word {
-            Some(word) => format!("{word} is not a number of JSON"),
-            None => format!("not JSON: {e}"),
-        };
-        FieldError { path: "case".into(), message }
-    })?;
-    let mut fields = Fields::new("", &value)?;
-    let id = fields.text("id")?.to_string();
-    let (a, b) = (fields.required("a")?, fields.required("b")?);
-    let (a, b) = (geometry::shape("a", a, folder)?, geometry::shape("b", b, folder)?);
-    if let Some(pair) = fields.optional("pair") {
-        let name = |s: &Shape| ["point", "curve", "surface"][s.dimension()];
-        let found = format!("{}-{}", name(&a), name(&b));
-        if pair.as_str() != Some(&found) {
-            return Err(fields.error("pair", format!("{pair}, but the shapes are a {found}")));
-        }
-    }
-    if let Some(scale) = fields.optional("scale")
-        && !scale.as_f64().is_some_and(|s| s >= 0.0)
-    {
-        return Err(fields.error("scale", format!("{scale} is not a length")));
-    }
-    fields.finish(&ANNOTATIONS)?;
-    Ok(PairQuery { id, a, b })
-}
-
-/// The answer to a query as JSON.
-pub fn answer(projection: &Projection, query: &PairQuery) -> Value {
-    let mut out = minimiser(&projection.closest);
-    if let Some(gap) = signed_gap(&projection.closest, &query.b) {
-        out["gap"] = json!(gap);
-    }
-    for (key, shape, foot) in [("a", &query.a, &projection.closest.a), ("b", &query.b, &projection.closest.b)] {
-        if matches!(shape, Shape::Mesh(_)) {
-            out[format!("triangle_{key}")] = json!(foot.element);
-        }
-    }
-    let fields = out.as_object_mut().expect("an object");
-    fields.insert("unique".into(), json!(projection.uniqueness.is_unique()));
-    let (name, dimension) = match projection.uniqueness {
-        Uniqueness::Unique => ("unique", 0),
-        Uniqueness::Multiple => ("multiple", 0),
-        Uniqueness::Continuum { dimension } => ("continuum", dimension),
-        Uniqueness::NearContinuum { .. } => ("near-continuum", 0),
-    };
-    fields.insert("uniqueness".into(), json!(name));
-    fields.insert("continuum_dim".into(), json!(dimension));
-    fields.insert("certified".into(), json!(projection.certificate == Certificate::Complete));
-    fields.insert("certified_to".into(), json!(projection.certified_to));
-    fields.insert("others".into(), projection.others.iter().map(minimiser).collect());
-    out
-}
-
-fn minimiser(pair: &ClosestPair) -> Value {
-    let mut out = Map::new();
-    out.insert("distance".into(), json!(pair.distance));
-    for (key, foot) in [("a", &pair.a), ("b", &pair.b)] {
-        out.insert(key.into(), json!(foot.parameters()));
-        out.insert(format!("x{key}"), json!(foot.point.as_slice()));
-        out.insert(format!("feature_{key}"), json!(foot.feature.kind.to_string()));
-        if foot.feature.kind != FeatureKind::Point {
-            out.insert(format!("entity_{key}"), json!(foot.feature.entity.to_string()));
-        }
-    }
-    out.insert("normal".into(), pair.direction().map_or(Value::Null, |n| json!(n.as_slice())));
-    out.insert("lambda_min".into(), json!(pair.lambda_min));
-    Value::Object(out)
+    Case::parse(text)?.query(&Shapes::new(folder))
 }
 
 /// A finite name for a case that has none.
@@ -152,46 +146,78 @@ fn quoted_id(text: &str) -> Option<String> {
     Some(rest.split_once('"')?.0.to_string())
 }
 
+/// An answer as it is written.
 struct Answered {
     id: String,
     line: usize,
-    /// The projection and what is written of it.
-    result: Result<(Projection, Value), FieldError>,
+    /// Whether the closest points are the only ones and certified, or what is wrong.
+    found: Result<(Uniqueness, Certificate), FieldError>,
+    text: Vec<u8>,
     time: Duration,
 }
 
-/// Answers a file of queries; `progress` is told the number answered so far and returns whether to go on.
+impl Answered {
+    fn new(
+        id: String,
+        line: usize,
+        first: bool,
+        format: Format,
+        result: Result<(PairQuery, Projection), FieldError>,
+    ) -> Self {
+        let mut text = Vec::new();
+        let found = match result {
+            Ok((query, projection)) => {
+                format.row(&mut text, &id, first, Ok(&Answer::new(&projection, &query)));
+                Ok((projection.uniqueness, projection.certificate))
+            }
+            Err(error) => {
+                format.row(&mut text, &id, first, Err((&error.to_string(), line)));
+                Err(error)
+            }
+        };
+        Answered { id, line, found, text, time: Duration::ZERO }
+    }
+}
+
+/// The bytes of a file; - is standard input.
+fn read_bytes(path: &Path) -> Result<Vec<u8>, QueriesError> {
+    let open = |source| QueriesError::Open { path: path.to_path_buf(), source };
+    let mut bytes = Vec::new();
+    open_file(path)?.read_to_end(&mut bytes).map_err(open)?;
+    Ok(bytes)
+}
+
+fn open_file(path: &Path) -> Result<Box<dyn BufRead>, QueriesError> {
+    let open = |source| QueriesError::Open { path: path.to_path_buf(), source };
+    if path == Path::new("-") {
+        return Ok(Box::new(io::stdin().lock()));
+    }
+    if path.is_dir() {
+        return Err(open(io::Error::other("a folder, not a file")));
+    }
+    Ok(Box::new(BufReader::with_capacity(1 << 20, std::fs::File::open(path).map_err(open)?)))
+}
+
+/// Answers a file of queries; `progress` is told the number answered so far and returns whether to go on. The name of
+/// the file of answers tells their format: CSV, NPY, else JSON.
 ///
 /// # Errors
-/// Files that cannot be read or written, and input that is not a file of queries. The answers up to there are written.
+/// Files that cannot be read or written, shapes that are wrong, and input that is not a file of queries. The answers up
+/// to there are written.
 pub fn answer_file(
     queries: &Path,
     answers: &Path,
     query: &Query,
     progress: &mut dyn FnMut(usize) -> bool,
 ) -> Result<Report, QueriesError> {
-    let open = |source| QueriesError::Open { path: queries.to_path_buf(), source };
-    let write = |source| QueriesError::Write { path: answers.to_path_buf(), source };
-    let input: Box<dyn BufRead> = if queries == Path::new("-") {
-        Box::new(io::stdin().lock())
-    } else {
-        if queries.is_dir() {
-            return Err(open(io::Error::other("a folder, not a file")));
-        }
-        Box::new(BufReader::with_capacity(1 << 20, std::fs::File::open(queries).map_err(open)?))
-    };
-    let folder = queries.parent().unwrap_or(Path::new("")).to_path_buf();
-    let mut part = answers.as_os_str().to_owned();
-    part.push(".part");
-    let part = PathBuf::from(part);
-    let mut out = BufWriter::new(std::fs::File::create(&part).map_err(write)?);
+    let folder = queries.parent().unwrap_or(Path::new(""));
+    let mut scanner = Scanner::new(open_file(queries)?);
+    let mut shapes = Shapes::new(folder);
+    let mut out = Output::create(answers)?;
     let start = Instant::now();
     let mut report = Report::default();
-    let mut scanner = Scanner::new(input);
     let mut names = HashSet::new();
-    let mut first = true;
     let mut stopped = None;
-    out.write_all(b"{").map_err(write)?;
     loop {
         let mut batch = Vec::with_capacity(BATCH);
         while batch.len() < BATCH {
@@ -204,31 +230,45 @@ pub fn answer_file(
                 }
             }
         }
-        let last = batch.len() < BATCH;
-        let mut done: Vec<Answered> = Vec::with_capacity(batch.len());
-        batch.par_iter().map(|case| answer_case(case, query, &folder)).collect_into_vec(&mut done);
-        for mut answered in done {
-            if !names.insert(answered.id.clone()) {
-                answered.result = Err(FieldError { path: "id".into(), message: "given twice".into() });
-                answered.id = format!("{} (line {})", answered.id, answered.line);
-                names.insert(answered.id.clone());
+        if let Some(RawCase { line, text }) = scanner.take_shapes() {
+            let wrong = |source| QueriesError::Shapes { path: queries.to_path_buf(), line, source };
+            if let Err(error) = shapes.name(&text) {
+                out.discard();
+                return Err(wrong(error));
             }
-            report.note(&answered);
-            let value = match &answered.result {
-                Ok((_, answer)) => answer.clone(),
-                Err(error) => json!({ "error": error.to_string(), "line": answered.line }),
-            };
-            let separator = if first { "\n" } else { ",\n" };
-            first = false;
-            write!(out, "{separator}{}: {value}", Value::from(answered.id)).map_err(write)?;
         }
+        let last = batch.len() < BATCH;
+        let mut cases: Vec<_> = batch.par_iter().map(|raw| Case::parse(&raw.text)).collect();
+        let mut ids = Vec::with_capacity(batch.len());
+        for (case, raw) in cases.iter_mut().zip(&batch) {
+            let mut id = case.as_ref().map_or_else(|_| name_of(raw), |c| c.id.clone());
+            if !names.insert(id.clone()) {
+                *case = Err(FieldError { path: "id".into(), message: "given twice".into() });
+                id = format!("{id} (line {})", raw.line);
+                names.insert(id.clone());
+            }
+            ids.push(id);
+        }
+        shapes.prepare(cases.iter().flatten().flat_map(|c| [c.a, c.b]));
+        let answered = (batch.par_iter().zip(&cases).zip(ids).enumerate()).map(|(k, ((raw, case), id))| {
+            let start = Instant::now();
+            let first = report.answered + k == 0;
+            let pair = case.as_ref().map_err(Clone::clone).and_then(|c| c.query(&shapes));
+            let result = pair.map(|pair| {
+                let projection = closest(&pair.a, &pair.b, query);
+                (pair, projection)
+            });
+            let answered = Answered::new(id, raw.line, first, out.format(), result);
+            Answered { time: start.elapsed(), ..answered }
+        });
+        let answered: Vec<Answered> = answered.collect();
+        out.write(&answered)?;
+        answered.iter().for_each(|a| report.note(a));
         if !progress(report.answered) || last {
             break;
         }
     }
-    out.write_all(b"\n}\n").map_err(write)?;
-    out.into_inner().map_err(|e| write(e.into_error()))?.sync_all().map_err(write)?;
-    std::fs::rename(&part, answers).map_err(write)?;
+    out.finish()?;
     report.elapsed = start.elapsed();
     match stopped {
         Some(source) => Err(QueriesError::Scan { path: queries.to_path_buf(), source, answered: report.answered }),
@@ -236,26 +276,66 @@ pub fn answer_file(
     }
 }
 
-fn answer_case(case: &RawCase, query: &Query, folder: &Path) -> Answered {
+/// Answers for each point of a file where the shape of another file comes closest to it, like [`answer_file`]; the
+/// answers are called after the rows, counted from zero. The shape is a triangle mesh (STL, OBJ, PLY) or, in JSON, a
+/// partner of a query.
+///
+/// # Errors
+/// Files that cannot be read or written, points or a shape that are wrong; then nothing is written.
+pub fn answer_points(
+    points: &Path,
+    shape: &Path,
+    answers: &Path,
+    query: &Query,
+    progress: &mut dyn FnMut(usize) -> bool,
+) -> Result<Report, QueriesError> {
+    let wrong = |path: &Path, message: String| QueriesError::Input { path: path.to_path_buf(), message };
     let start = Instant::now();
-    let (id, result) = match parse(&case.text, folder) {
-        Ok(pair) => {
+    let b = Arc::new(read_shape(shape)?);
+    let points = points::read(&read_bytes(points)?).map_err(|e| wrong(points, e))?;
+    let mut out = Output::create(answers)?;
+    let mut report = Report::default();
+    for batch in points.chunks(BATCH) {
+        let answered = batch.par_iter().enumerate().map(|(k, p)| {
+            let start = Instant::now();
+            let row = report.answered + k;
+            let pair = PairQuery { a: Arc::new(Shape::Point(*p)), b: b.clone() };
             let projection = closest(&pair.a, &pair.b, query);
-            let value = answer(&projection, &pair);
-            (pair.id, Ok((projection, value)))
+            let answered = Answered::new(row.to_string(), row, row == 0, out.format(), Ok((pair, projection)));
+            Answered { time: start.elapsed(), ..answered }
+        });
+        let answered: Vec<Answered> = answered.collect();
+        out.write(&answered)?;
+        answered.iter().for_each(|a| report.note(a));
+        if !progress(report.answered) {
+            break;
         }
-        Err(error) => (name_of(case), Err(error)),
-    };
-    Answered { id, line: case.line, result, time: start.elapsed() }
+    }
+    out.finish()?;
+    report.elapsed = start.elapsed();
+    Ok(report)
+}
+
+fn read_shape(path: &Path) -> Result<Shape, QueriesError> {
+    let wrong = |message: String| QueriesError::Input { path: path.to_path_buf(), message };
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    match extension.as_str() {
+        "stl" | "obj" | "ply" => mesh_file::read(path).map(Shape::from).map_err(|e| wrong(e.message)),
+        "json" => {
+            let text = String::from_utf8(read_bytes(path)?).map_err(|e| wrong(format!("no text: {e}")))?;
+            shapes::build(&text, path.parent().unwrap_or(Path::new(""))).map_err(|e| wrong(e.to_string()))
+        }
+        other => Err(wrong(format!("`{other}` is no format of shapes; valid are json, stl, obj and ply"))),
+    }
 }
 
 impl Report {
     fn note(&mut self, answered: &Answered) {
         self.answered += 1;
-        match &answered.result {
-            Ok((projection, _)) => {
-                self.not_unique += usize::from(!projection.uniqueness.is_unique());
-                self.not_certified += usize::from(projection.certificate == Certificate::Stopped);
+        match &answered.found {
+            Ok((uniqueness, certificate)) => {
+                self.not_unique += usize::from(!uniqueness.is_unique());
+                self.not_certified += usize::from(*certificate == Certificate::Stopped);
             }
             Err(error) => {
                 self.wrong_count += 1;

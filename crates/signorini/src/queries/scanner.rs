@@ -4,7 +4,7 @@
 use std::io::{self, BufRead};
 
 /// The largest case that is read.
-const LARGEST_CASE: usize = 256 << 20;
+pub const LARGEST_CASE: usize = 256 << 20;
 
 /// Why a file cannot be read further.
 #[derive(Debug, thiserror::Error)]
@@ -15,18 +15,20 @@ pub enum ScanError {
     Syntax { line: usize, message: String },
 }
 
-/// One entry of `cases`, as text, with the line on which it begins.
+/// One entry of `cases`, or the shapes, as text, with the line on which it begins.
 pub struct RawCase {
     pub line: usize,
     pub text: Vec<u8>,
 }
 
-/// A reader of `{"format": ..., "cases": [ ... ]}`.
+/// A reader of `{"format": ..., "shapes": { ... }, "cases": [ ... ]}`; `shapes` may be left out.
 pub struct Scanner<R> {
     input: R,
     line: usize,
     state: State,
     format_seen: bool,
+    shapes: Option<RawCase>,
+    cases_seen: bool,
 }
 
 #[derive(PartialEq)]
@@ -39,7 +41,7 @@ enum State {
 
 impl<R: BufRead> Scanner<R> {
     pub fn new(input: R) -> Self {
-        Scanner { input, line: 1, state: State::Start, format_seen: false }
+        Scanner { input, line: 1, state: State::Start, format_seen: false, shapes: None, cases_seen: false }
     }
 
     fn fail<T>(&self, message: impl Into<String>) -> Result<T, ScanError> {
@@ -163,6 +165,11 @@ impl<R: BufRead> Scanner<R> {
         result
     }
 
+    /// The named shapes, as text, once a case has been asked for.
+    pub fn take_shapes(&mut self) -> Option<RawCase> {
+        self.shapes.take()
+    }
+
     fn advance(&mut self) -> Result<Option<RawCase>, ScanError> {
         loop {
             match self.state {
@@ -180,6 +187,7 @@ impl<R: BufRead> Scanner<R> {
                     match key.as_str() {
                         "cases" => {
                             self.expect(b'[')?;
+                            self.cases_seen = true;
                             self.state = State::Cases { first: true };
                             continue;
                         }
@@ -191,7 +199,21 @@ impl<R: BufRead> Scanner<R> {
                             }
                             self.format_seen = true;
                         }
-                        other => return self.fail(format!("unknown key `{other}`, valid are `format` and `cases`")),
+                        "shapes" => {
+                            if self.cases_seen {
+                                return self.fail("`shapes` comes after `cases`: put it before them");
+                            }
+                            self.next_token()?;
+                            let line = self.line;
+                            let text = self.value()?;
+                            if self.shapes.replace(RawCase { line, text }).is_some() {
+                                return self.fail("`shapes` is given twice");
+                            }
+                        }
+                        other => {
+                            return self
+                                .fail(format!("unknown key `{other}`, valid are `format`, `shapes` and `cases`"));
+                        }
                     }
                     self.after_value()?;
                 }

@@ -14,7 +14,7 @@ enum Separator {
     Blanks,
 }
 
-/// A row of a table: the line on which it begins, counted from 1, and its entries without the blanks around them.
+/// A row of a table: the line on which it ends, counted from 1, and its entries without the blanks around them.
 pub struct Row {
     pub line: u64,
     pub entries: StringRecord,
@@ -37,15 +37,19 @@ pub fn rows(bytes: &[u8]) -> Result<Vec<Row>, String> {
         }
         Separator::Byte(byte) => byte,
     };
-    let mut reader = csv::ReaderBuilder::new();
-    let reader = reader.delimiter(byte).trim(csv::Trim::All).comment(Some(b'#')).has_headers(false).flexible(true);
+    let mut builder = csv::ReaderBuilder::new();
+    builder.delimiter(byte).trim(csv::Trim::All).comment(Some(b'#')).has_headers(false).flexible(true);
+    let mut reader = builder.from_reader(text.as_bytes());
     let mut rows = Vec::new();
-    for record in reader.from_reader(text.as_bytes()).into_records() {
-        let entries = record.map_err(|e| e.to_string())?;
-        let line = entries.position().map_or(0, csv::Position::line);
+    let mut entries = StringRecord::new();
+    while reader.read_record(&mut entries).map_err(|e| e.to_string())? {
+        // A record begins before the comments that are left out: its end tells its line.
+        let end = reader.position();
+        let ended = text.as_bytes()[..end.byte() as usize].ends_with(b"\n");
+        let line = end.line() - u64::from(ended);
         let empty = entries.iter().all(str::is_empty) && entries.len() < 2;
         if !empty && !entries.iter().next().is_some_and(|e| e.starts_with('#')) {
-            rows.push(Row { line, entries });
+            rows.push(Row { line, entries: entries.clone() });
         }
     }
     Ok(rows)

@@ -238,7 +238,7 @@ fn points_of_a_file_are_answered_in_every_format() {
         assert_eq!((report.answered, report.wrong_count), (2, 1));
     }
     let csv = std::fs::read_to_string(path("table.csv")).unwrap();
-    let blank = ",".repeat(24);
+    let blank = ",".repeat(25);
     assert!(csv.ends_with(&format!("\n\"wrong, indeed\"{blank}a.p: 2 numbers instead of 3\n")), "{csv}");
     assert_eq!(std::fs::read(path("table.npy")).unwrap().len(), npy.len());
 

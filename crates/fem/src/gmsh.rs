@@ -24,8 +24,9 @@ pub enum GmshError {
     Count { section: &'static str, count: i64 },
     #[error("element {element} is a {what}, which cannot be used: only cells of order 1 and 2, no pyramids")]
     Element { element: u64, what: String },
-    #[error("element {element} has the node {node}, which the file does not define")]
-    NoNode { element: u64, node: u64 },
+    /// `place` is the line of a text file, with what parts it from the rest; empty where there is none.
+    #[error("{place}element {element} has the node {node}, which the file does not define")]
+    NoNode { place: String, element: u64, node: u64 },
     #[error("node {node} appears twice")]
     Twice { node: u64 },
     #[error("there is no physical group `{group}` of dimension {dimension}; the file has {known}")]
@@ -305,6 +306,7 @@ impl GmshFile {
                 let tags = (0..s.count(tags)?).map(|_| s.text_integer()).collect::<Result<Vec<_>, _>>()?;
                 let nodes = (0..node_count(number, kind)?).map(|_| Ok(s.text_integer()? as u64));
                 let nodes = nodes.collect::<Result<Vec<u64>, GmshError>>()?;
+                self.check_nodes(s, number, &nodes)?;
                 self.element(number, kind, &tags, nodes);
             }
             return Ok(());
@@ -324,12 +326,20 @@ impl GmshFile {
                 let tags = (0..tags).map(|_| s.integer()).collect::<Result<Vec<_>, _>>()?;
                 let nodes = (0..node_count(number, kind)?).map(|_| Ok(s.integer()? as u64));
                 let nodes = nodes.collect::<Result<Vec<u64>, GmshError>>()?;
+                self.check_nodes(s, number, &nodes)?;
                 self.element(number, kind, &tags, nodes);
             }
             read += block;
         }
         s.binary = false;
         Ok(())
+    }
+
+    /// Whether the nodes of an element that was just read are there, of cells and of parts of their boundary alike.
+    fn check_nodes(&self, s: &Source<'_>, element: u64, nodes: &[u64]) -> Result<(), GmshError> {
+        let Some(&node) = nodes.iter().find(|n| !self.nodes.contains_key(n)) else { return Ok(()) };
+        let place = if s.binary { String::new() } else { format!("line {}: ", s.line_number()) };
+        Err(GmshError::NoNode { place, element, node })
     }
 
     /// In version 2 the first tag is the physical group; zero is none.
@@ -353,6 +363,7 @@ impl GmshFile {
                 let number = s.size()? as u64;
                 let nodes = (0..node_count(number, kind)?).map(|_| Ok(s.size()? as u64));
                 let nodes = nodes.collect::<Result<Vec<u64>, GmshError>>()?;
+                self.check_nodes(s, number, &nodes)?;
                 self.elements.push(Element { number, kind, groups: groups.clone(), nodes });
             }
         }
@@ -398,7 +409,7 @@ impl GmshFile {
         for e in &cells {
             for tag in &e.nodes {
                 let Some(x) = self.nodes.get(tag) else {
-                    return Err(GmshError::NoNode { element: e.number, node: *tag });
+                    return Err(GmshError::NoNode { place: String::new(), element: e.number, node: *tag });
                 };
                 magnitude = x.iter().fold(magnitude, |m, v| m.max(v.abs()));
                 numbers.entry(*tag).or_insert_with(|| {

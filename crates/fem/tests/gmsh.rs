@@ -116,6 +116,20 @@ fn mistakes_are_named() {
     let missing = file.mesh::<2>(Some("blok")).unwrap_err().to_string();
     assert!(missing.contains("`blok`") && missing.contains("`block` (2)"), "{missing}");
     assert!(matches!(file.mesh::<3>(None), Err(GmshError::NoCells { dimension: 3, .. })));
+    // The first element, a part of the boundary: the last of its nodes is not there.
+    for name in ["tri6_41_txt", "tri6_22_txt"] {
+        let text = String::from_utf8(read(name)).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        let from = lines.iter().position(|l| *l == "$Elements").unwrap() + 1;
+        let first = if name.contains("41") { from + 2 } else { from + 1 };
+        let start = lines[first].trim_end().rsplit_once(' ').unwrap().0;
+        let mut changed = lines.clone();
+        let line = format!("{start} 99999");
+        changed[first] = &line;
+        let error = of(&changed.join("\n")).unwrap_err().to_string();
+        let place = format!("line {}: element", first + 1);
+        assert!(error.starts_with(&place) && error.contains("the node 99999, which"), "{name}: {error}");
+    }
 }
 
 proptest! {

@@ -19,7 +19,7 @@ pub mod material;
 pub mod model;
 mod nitsche;
 mod reactions;
-mod rigid_modes;
+pub mod rigid_modes;
 pub mod sliding;
 pub mod state;
 pub mod stiffness;

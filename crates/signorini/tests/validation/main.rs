@@ -7,12 +7,14 @@ mod events;
 mod fit;
 mod flat_floor;
 mod floors;
+mod free_bodies;
 mod gallery;
 mod invariance;
 mod meshes;
 mod published;
 mod refinement;
 mod resume;
+mod solid_theory;
 mod solids;
 mod words;
 

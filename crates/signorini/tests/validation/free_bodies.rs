@@ -1,0 +1,212 @@
+//! Solids that contact alone holds, or nothing: mistakes are told at their place, what can be solved is.
+
+use super::solids::at;
+use super::{error, example, last_step, set, summary};
+use serde_json::Value;
+
+/// Replaces a part of a gallery case, and returns the error with the text it points at.
+fn spoiled(name: &str, from: &str, to: &str) -> (String, String, String) {
+    let case = example(name);
+    assert!(case.contains(from), "`{from}` is not in the case");
+    let error = error(&case.replacen(from, to, 1));
+    let place = error.place.clone().unwrap_or_else(|| panic!("no place: {}", error.message));
+    let at = place.text[place.span.start..place.span.end.min(place.text.len())].to_string();
+    (error.message, at, error.help.unwrap_or_default())
+}
+
+#[test]
+fn each_mistake_is_told_at_its_place() {
+    let table = [
+        ("hertz", "\"block:top\"", "\"block:tpo\"", "has no group `tpo`", "block:tpo", "`top`"),
+        ("hertz", "\"block:left\"", "\"blok:left\"", "no body `blok`", "blok:left", "`block`"),
+        ("hertz", "youngs_modulus = 1000", "youngs_modulus = 0", "must be positive", "0", ""),
+        (
+            "hertz",
+            "[bodies.plane.rigid]",
+            "[bodies.plane.rigid]\nmotion.prescribed = { displacement = [0, \"0*log(-1)\"] }",
+            "displacement[1]` is NaN",
+            "\"0*log(-1)\"",
+            "",
+        ),
+        (
+            "hertz",
+            "[bodies.plane.rigid]",
+            "[bodies.plane.rigid]\nmotion.prescribed = { rotation = [\"1/(t-t)\"] }",
+            "rotation[0]` is inf",
+            "\"1/(t-t)\"",
+            "",
+        ),
+        ("hertz", "poissons_ratio = 0.3", "poissons_ratio = 0.5", "ratio is 0.5", "0.5", "0.4999"),
+        ("hertz", "degree = 2", "degree = 9", "between 1 and 8", "9", ""),
+        ("hertz", "[0, \"-0.085*t\"]", "[0]", "expected 2 components", "[0]", ""),
+        ("hertz", "[0, \"-0.085*t\"]", "0", "is a vector", "0", "free"),
+        ("hertz", "\"-0.085*t\"", "\"-0.085/(t-t)\"", "not a finite number", "\"-0.085/(t-t)\"", ""),
+        ("hertz", "normal = [0, 1]", "normal = [0, 0]", "no length", "[0, 0]", ""),
+        ("hertz", "normal = [0, 1]", "normal = [0, -1]", "deep in each other", "[contacts.touch]", "normal"),
+        ("hertz", "map = [\"x\", ", "map = [\"-x\", ", "inverted", "mesh", "positive volume"),
+        ("hertz", "cells = [15, 16]", "cells = [15]", "`cells` 1", "{ from", ""),
+        ("hertz", "[\"block:bottom\", \"plane\"]", "[\"plane\", \"plane\"]", "both bodies", "plane", "`block`"),
+        (
+            "hertz",
+            "[\"block:bottom\", \"plane\"]",
+            "[\"block:bottom\"]",
+            "who touches whom",
+            "[contacts.touch]",
+            "slave first",
+        ),
+        (
+            "hertz",
+            "[contacts.touch]",
+            "[contacts.touch]\nfriction.coulomb = { mu = 0.3 }",
+            "not available",
+            "friction",
+            "",
+        ),
+        ("hertz", "[contacts.touch]", "[contacts.touch]\nmethod.active_set = {}", "for membranes", "method", "mortar"),
+        ("hertz", "space = \"plane_strain\"", "space = \"3d\"", "expected 3", "[", ""),
+        (
+            "hertz",
+            "[supports.symmetry]",
+            "[supports.other]\non = \"block:top\"\ndisplacement = [0.1, \"free\"]\n[supports.symmetry]",
+            "different displacements",
+            "[supports.",
+            "",
+        ),
+        ("hertz", "on = \"block:left\"", "on = \"block:bottom\"", "flat group", "[supports.symmetry]", ""),
+        ("punch", "force = [0, \"-10*t\"]", "normal = -1", "load of a membrane", "-1", "pressure"),
+        ("punch", "uniform = true", "", "prescribes nothing", "[supports.punch_head]", "uniform"),
+        ("torus", "minor_radius = 0.3", "minor_radius = 1.3", "not smaller", "1.3", ""),
+        ("hertz", "mesh.box", "mesh.gmsh = { file = \"none.msh\" }\n# mesh.box", "cannot be read", "none.msh", ""),
+    ];
+    for (name, from, to, message, at, help) in table {
+        // A table may spread over several lines; commenting its first out needs the rest gone too.
+        let (from, to) = if to.contains("gmsh") {
+            let case = example(name);
+            let start = case.find("mesh.box").unwrap();
+            let end = case.find("degree").unwrap();
+            (case[start..end].to_string(), "mesh.gmsh = { file = \"none.msh\" }\n".to_string())
+        } else {
+            (from.to_string(), to.to_string())
+        };
+        let (found, place, advice) = spoiled(name, &from, &to);
+        assert!(found.contains(message), "{to}: `{found}` has no `{message}`");
+        assert!(place.contains(at), "{to}: points at `{place}`, not `{at}`");
+        assert!(advice.contains(help), "{to}: `{advice}` has no `{help}`");
+    }
+}
+
+/// What nothing holds is named with its motion, what does not meet is said.
+#[test]
+fn failures_say_what_happened() {
+    let case = example("punch")
+        .replace("between = [\"punch:bottom\", \"block:top\"]", "between = [\"punch:top\", \"block:bottom\"]");
+    let found = summary(&case, &set(&[]));
+    assert_eq!(found["converged"], false);
+    let verdict = found["verdict"].as_str().unwrap();
+    assert!(found["reason"] == "free_body" && verdict.contains("`punch` is free to translate along y"), "{verdict}");
+
+    let far = example("hertz").replace("point = [0, 0]", "point = [0, -1]");
+    let found = summary(&far, &set(&[]));
+    let warnings = found["warnings"].to_string();
+    assert!(warnings.contains("do not touch") && warnings.contains("smallest gap"), "{warnings}");
+    assert!(found["verdict"].as_str().unwrap().contains("open"));
+}
+
+/// Two blocks on each other, without friction; `a` is guided at its left side only.
+const PAIR: &str = r#"
+space = "plane_strain"
+[bodies.a.solid]
+mesh.box = { min = [-2, 0], max = [2, 2], cells = [4, 2] }
+degree = 1
+material.linear_elastic = { youngs_modulus = 100, poissons_ratio = 0.3 }
+[bodies.b.solid]
+mesh.box = { min = [-3, -2], max = [3, 0], cells = [6, 2] }
+degree = 1
+material.linear_elastic = { youngs_modulus = 100, poissons_ratio = 0.3 }
+[supports.base]
+on = "b:bottom"
+displacement = [0, 0]
+[supports.guide]
+on = "a:left"
+normal = 0
+[loads.push]
+on = "a:top"
+pressure = "if(t > 1.5, -1, 1)"
+[contacts.touch]
+between = ["a:bottom", "b:top"]
+[[steps]]
+to = 2
+increments = 2
+[output]
+pictures = false
+"#;
+
+/// Contact does not pull: a body that its load pulls off is named, and what was found before stays.
+#[test]
+fn what_is_pulled_off_is_named() {
+    let on_a_plane = r#"
+space = "3d"
+[bodies.a.solid]
+mesh.box = { min = [-1,-1,0], max = [1,1,1], cells = [2,2,1] }
+degree = 1
+material.linear_elastic = { youngs_modulus = 100, poissons_ratio = 0.3 }
+[bodies.plate.rigid]
+shape.plane = { point = [0,0,0], normal = [0,0,1] }
+[supports.x]
+on = "a:left"
+normal = 0
+[supports.y]
+on = "a:front"
+normal = 0
+[loads.up]
+on = "a:top"
+force = [0, 0, "20*t - 21"]
+[contacts.touch]
+between = ["a:bottom", "plate"]
+[[steps]]
+to = 2
+increments = 2
+[output]
+pictures = false
+"#;
+    for (case, axis) in [(PAIR, "+y"), (on_a_plane, "+z")] {
+        for (degree, sliding) in [("1", "small"), ("2", "small"), ("3", "small"), ("2", "finite")] {
+            let case = case.replace("degree = 1", &format!("degree = {degree}"));
+            let case = case.replace("[[steps]]", &format!("sliding = \"{sliding}\"\n[[steps]]"));
+            let found = summary(&case, &set(&[]));
+            let verdict = found["verdict"].as_str().unwrap();
+            assert_eq!((&found["converged"], &found["reason"]), (&Value::from(false), &Value::from("free_body")));
+            assert!(verdict.contains(&format!("`a` is pulled away along {axis}")), "{degree} {sliding}: {verdict}");
+            assert_eq!(found["steps"][0]["converged"], true, "{degree} {sliding}");
+        }
+    }
+}
+
+/// A stack is well posed with any gaps and overlaps: every contact carries the pressure on top.
+#[test]
+fn a_stack_of_three_bodies_settles() {
+    let bodies = [("a", 1.0, 3), ("b", 2.0, 5), ("c", 5.0, 4)];
+    for (gap, degree) in [(1e-9, 2), (-1e-9, 1), (0.3, 1), (-1e-3, 2)] {
+        let mut case = String::from("space = \"plane_strain\"\n");
+        for (k, (name, modulus, cells)) in bodies.iter().enumerate() {
+            let below = k as f64 * (1.0 + gap);
+            case += &format!(
+                "[bodies.{name}.solid]\nmesh.box = {{ min = [0, {below:?}], max = [1, {:?}], cells = [{cells}, {cells}] }}\n\
+                 degree = {degree}\nmaterial.linear_elastic = {{ youngs_modulus = {modulus:?}, poissons_ratio = 0.3 }}\n\
+                 [supports.{name}]\non = \"{name}:left\"\nnormal = 0\n",
+                below + 1.0
+            );
+        }
+        case += "[supports.base]\non = \"a:bottom\"\nnormal = 0\n[loads.p]\non = \"c:top\"\npressure = 1e-3\n\
+                 [contacts.ab]\nbetween = [\"a:top\", \"b:bottom\"]\n[contacts.bc]\nbetween = [\"b:top\", \"c:bottom\"]\n\
+                 [output]\npictures = false\n";
+        let found = summary(&case, &set(&[]));
+        assert_eq!(found["converged"], true, "{gap}: {}", found["verdict"]);
+        for contact in ["ab", "bc"] {
+            for figure in ["max_pressure", "min_pressure"] {
+                let p = at(last_step(&found), &format!("/contacts/{contact}/{figure}"));
+                assert!((p / 1e-3 - 1.0).abs() < 1e-6, "{gap}, {contact}: {figure} {p}");
+            }
+        }
+    }
+}

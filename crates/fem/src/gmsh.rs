@@ -41,8 +41,17 @@ pub enum GmshError {
 struct Element {
     number: u64,
     kind: i64,
+    /// The curve, surface or volume that it is a part of.
+    entity: i64,
     groups: Vec<i64>,
     nodes: Vec<u64>,
+}
+
+impl Element {
+    /// Dimension of its shape, which is known once it was read.
+    fn dimension(&self) -> usize {
+        kind(self.kind).and_then(|kind| kind.shape).map_or(0, CellShape::dimension)
+    }
 }
 
 /// What a mesh file holds.
@@ -342,10 +351,11 @@ impl GmshFile {
         Err(GmshError::NoNode { place, element, node })
     }
 
-    /// In version 2 the first tag is the physical group; zero is none.
+    /// In version 2 the first tag is the physical group, where zero is none, and the second the entity.
     fn element(&mut self, number: u64, kind: i64, tags: &[i64], nodes: Vec<u64>) {
         let groups = tags.first().filter(|g| **g != 0).map(|g| g.abs()).into_iter().collect();
-        self.elements.push(Element { number, kind, groups, nodes });
+        let entity = tags.get(1).copied().unwrap_or(0);
+        self.elements.push(Element { number, kind, entity, groups, nodes });
     }
 
     fn elements_41(
@@ -364,7 +374,7 @@ impl GmshFile {
                 let nodes = (0..node_count(number, kind)?).map(|_| Ok(s.size()? as u64));
                 let nodes = nodes.collect::<Result<Vec<u64>, GmshError>>()?;
                 self.check_nodes(s, number, &nodes)?;
-                self.elements.push(Element { number, kind, groups: groups.clone(), nodes });
+                self.elements.push(Element { number, kind, entity, groups: groups.clone(), nodes });
             }
         }
         s.binary = false;
@@ -375,16 +385,33 @@ impl GmshFile {
         self.names.get(&(dimension, group)).cloned().unwrap_or_else(|| group.to_string())
     }
 
+    /// The elements of all cells of a dimension, or of those in a physical group.
+    fn cells<'a>(&'a self, dimension: usize, group: Option<&'a str>) -> impl Iterator<Item = &'a Element> {
+        self.elements.iter().filter(move |e| {
+            let named = |name: &str| e.groups.iter().any(|g| self.name(dimension, *g) == name);
+            e.dimension() == dimension && group.is_none_or(named)
+        })
+    }
+
+    /// Where a cell of [`GmshFile::mesh`] comes from: the number of its element, and in words its surface or volume with
+    /// the physical groups of it.
+    pub fn origin<const D: usize>(&self, group: Option<&str>, cell: usize) -> Option<(u64, String)> {
+        let element = self.cells(D, group).nth(cell)?;
+        let what = if D == 2 { "surface" } else { "volume" };
+        let names: Vec<String> = element.groups.iter().map(|g| format!("`{}`", self.name(D, *g))).collect();
+        let names = if names.is_empty() { String::new() } else { format!(" ({})", names.join(", ")) };
+        Some((element.number, format!("{what} {}{names}", element.entity)))
+    }
+
     /// The mesh of all cells, or of those in a physical group, with the other groups that touch it.
     ///
     /// # Errors
     /// An unknown group, no cells, nodes that do not exist, or a plane mesh out of its plane.
     pub fn mesh<const D: usize>(&self, group: Option<&str>) -> Result<Mesh<D>, GmshError> {
-        let dimension_of = |e: &Element| kind(e.kind).map_or(0, |k| k.shape.map_or(0, CellShape::dimension));
         let mut known = BTreeSet::new();
         for e in &self.elements {
             for g in &e.groups {
-                known.insert((dimension_of(e), self.name(dimension_of(e), *g)));
+                known.insert((e.dimension(), self.name(e.dimension(), *g)));
             }
         }
         if let Some(group) = group
@@ -394,10 +421,7 @@ impl GmshFile {
             let known = if list.is_empty() { "none".into() } else { list.join(", ") };
             return Err(GmshError::NoGroup { group: group.to_string(), dimension: D, known });
         }
-        let wanted = |e: &&Element| {
-            dimension_of(e) == D && group.is_none_or(|name| e.groups.iter().any(|g| self.name(D, *g) == name))
-        };
-        let cells: Vec<&Element> = self.elements.iter().filter(wanted).collect();
+        let cells: Vec<&Element> = self.cells(D, group).collect();
         if cells.is_empty() {
             let hint =
                 "are the cells left out because no physical group holds them, or is the dimension of `space` another?";

@@ -5,6 +5,7 @@
 //! - [`cell_map`]: Lagrange functions that map reference cells to space; [`mesh`] and [`block`] are made of them.
 //! - [`gmsh`]: meshes from files.
 //! - [`adjacency`]: which cells of a mesh share sides.
+//! - [`overlap`]: whether cells of a mesh cover the same place.
 //! - [`mesh_refinement`]: meshes of the plane, each cell divided into four; [`graded_mesh`]: only where it matters.
 //! - [`rules`]: quadrature on reference cells.
 //! - [`lagrange`]: tensor-product Lagrange bases of any degree on Gauss-Lobatto points.
@@ -30,6 +31,7 @@ mod lists;
 pub mod mesh;
 pub mod mesh_cells;
 pub mod mesh_refinement;
+pub mod overlap;
 pub mod reference;
 pub mod refined_grid;
 pub mod rules;
@@ -44,6 +46,7 @@ pub use grid::Grid;
 pub use lagrange::TensorBasis;
 pub use mesh::{Group, Mesh, MeshError, Side};
 pub use mesh_cells::MeshCells;
+pub use overlap::Overlap;
 pub use reference::{CellShape, Local};
 pub use refined_grid::RefinedGrid;
 pub use signorini_geometry::rule::gauss_legendre;

@@ -54,7 +54,7 @@ pub enum MeshError {
 }
 
 /// A position for messages.
-pub(crate) fn position<const D: usize>(x: &Point<D>) -> String {
+pub fn position<const D: usize>(x: &Point<D>) -> String {
     let list: Vec<String> = x.iter().map(|v| format!("{v:.6}")).collect();
     format!("({})", list.join(", "))
 }

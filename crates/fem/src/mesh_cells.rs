@@ -447,7 +447,7 @@ impl MeshCells {
         let mut best: Option<(f64, Local)> = None;
         for start in [linear, middle].into_iter().chain(vertices) {
             let Some(xi) = self.newton(cell, x, start) else { continue };
-            let beyond = self.beyond_reference(cell, &xi);
+            let beyond = self.mesh.shape(cell).beyond(&xi);
             if best.is_none_or(|(b, _)| beyond < b) {
                 best = Some((beyond, xi));
             }
@@ -482,14 +482,7 @@ impl MeshCells {
 
     /// How far a point lies beyond a cell, in reference coordinates.
     fn beyond(&self, cell: usize, x: &Point<2>) -> f64 {
-        self.beyond_reference(cell, &self.local(cell, x))
-    }
-
-    fn beyond_reference(&self, cell: usize, [a, b, _]: &Local) -> f64 {
-        match self.mesh.shape(cell) {
-            CellShape::Triangle => (-a).max(-b).max(a + b - 1.0),
-            _ => a.abs().max(b.abs()) - 1.0,
-        }
+        self.mesh.shape(cell).beyond(&self.local(cell, x))
     }
 }
 

@@ -113,6 +113,19 @@ impl CellShape {
         std::array::from_fn(|k| vertices.iter().map(|v| v[k]).sum::<f64>() / vertices.len() as f64)
     }
 
+    /// How far a position lies beyond the cell, in its coordinates; negative inside.
+    pub fn beyond(self, [a, b, c]: &Local) -> f64 {
+        let triangle = (-a).max(-b).max(a + b - 1.0);
+        match self {
+            Line => a.abs() - 1.0,
+            Triangle => triangle,
+            Quadrilateral => a.abs().max(b.abs()) - 1.0,
+            Tetrahedron => (-a).max(-b).max(-c).max(a + b + c - 1.0),
+            Hexahedron => a.abs().max(b.abs()).max(c.abs()) - 1.0,
+            Wedge => triangle.max(c.abs() - 1.0),
+        }
+    }
+
     /// The position in the cell of the point `s` of one of its sides, and its derivatives with respect to `s`.
     pub fn on_side(self, side: usize, s: &Local) -> (Local, [Local; 2]) {
         let corners: Vec<Local> = self.sides()[side].iter().map(|&v| self.vertices()[v]).collect();

@@ -418,11 +418,6 @@ impl ReadDomain<2> for Planner<'_> {
                 .help("leave `domain` out, or take mesh.grid"));
         }
         let mesh = self.gmsh::<2>(&statement::GmshKey { file: key.file.clone(), group: key.group.clone() })?;
-        mesh.check().map_err(|e| {
-            document
-                .error(key.file.span(), format!("`{}`: {e}", key.file.get_ref()))
-                .help("every cell needs a positive area")
-        })?;
         let order = (0..mesh.cell_count()).map(|c| mesh.map(c).order()).max().unwrap_or(1);
         let degree = self.degree(film)?.unwrap_or(order);
         let triangles = (0..mesh.cell_count()).any(|c| !mesh.shape(c).is_tensor());

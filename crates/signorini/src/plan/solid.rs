@@ -298,11 +298,6 @@ impl Planner<'_> {
             SolidMesh::Gmsh(g) => self.gmsh::<D>(g)?,
             SolidMesh::Nurbs(_) => return Err(self.unavailable(key.mesh.span(), "a NURBS solid")),
         };
-        mesh.check().map_err(|e| {
-            document
-                .error(key.mesh.span(), format!("the mesh of `{name}`: {e}"))
-                .help("every cell needs a positive volume; look at the place named, and at `map` where there is one")
-        })?;
         let simplices = (0..mesh.cell_count()).any(|c| !mesh.shape(c).is_tensor());
         let order = (0..mesh.cell_count()).map(|c| mesh.map(c).order()).max().unwrap_or(1);
         let degree = stated.unwrap_or(order);

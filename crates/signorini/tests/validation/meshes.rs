@@ -319,3 +319,65 @@ fn hostile_meshes_are_survived() {
     }
     assert!(refused > 100 && accepted > 5, "{refused} refused, {accepted} accepted");
 }
+
+/// Squares of one cell each from their lower left corners, side by side in one file of version 2.2; all are the physical
+/// group `film`, and their bottoms and tops the groups of these names.
+pub fn separate_squares(corners: &[[f64; 2]]) -> String {
+    let mut nodes = String::new();
+    let mut elements = String::new();
+    for (k, [x, y]) in corners.iter().enumerate() {
+        let first = 4 * k + 1;
+        for (i, [a, b]) in [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].iter().enumerate() {
+            nodes += &format!("{} {} {} 0\n", first + i, x + a, y + b);
+        }
+        let n: Vec<usize> = (first..first + 4).collect();
+        elements += &format!("{} 3 2 1 {} {} {} {} {}\n", 3 * k + 1, k + 1, n[0], n[1], n[2], n[3]);
+        elements += &format!("{} 1 2 2 {} {} {}\n", 3 * k + 2, 4 * k + 1, n[0], n[1]);
+        elements += &format!("{} 1 2 3 {} {} {}\n", 3 * k + 3, 4 * k + 3, n[2], n[3]);
+    }
+    let names = "3\n2 1 \"film\"\n1 2 \"bottom\"\n1 3 \"top\"\n";
+    let (n, m) = (4 * corners.len(), 3 * corners.len());
+    format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n{names}$EndPhysicalNames\n$Nodes\n{n}\n{nodes}$EndNodes\n\
+         $Elements\n{m}\n{elements}$EndElements\n"
+    )
+}
+
+/// A membrane and a solid on a mesh from a file: cells that cover the same place are refused where the file is named.
+#[test]
+fn overlapping_cells_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("two.msh");
+    std::fs::write(&path, separate_squares(&[[0.0, 0.0], [0.4, 0.3]])).expect("a mesh");
+    let path = path.display().to_string().replace('\\', "/");
+    let film = case("MESH").replace(&file("MESH"), &path).replace("film:rim", "film:bottom");
+    let solid = SQUARES_HELD.replace("MESH", &path);
+    for text in [film, solid] {
+        let error = error(&text);
+        for part in
+            ["two.msh", "surface 1 (`film`) and surface 2 (`film`) overlap", "elements 1 and 4", "both cover (0."]
+        {
+            assert!(error.message.contains(part), "{}", error.message);
+        }
+        assert!(error.help.is_some_and(|h| h.contains("BooleanUnion")));
+        assert!(error.place.is_some_and(|p| p.text[p.span].contains("two.msh")));
+    }
+}
+
+/// A solid on a mesh of squares, held on top and pressed on a plane.
+const SQUARES_HELD: &str = r#"
+space = "plane_strain"
+[bodies.a.solid]
+mesh.gmsh = { file = "MESH" }
+degree = 2
+material.linear_elastic = { youngs_modulus = 100, poissons_ratio = 0.3 }
+[bodies.floor.rigid]
+shape.plane = { point = [0, 0], normal = [0, 1] }
+[supports.head]
+on = "a:top"
+displacement = [0, "-0.01*t"]
+[contacts.touch]
+between = ["a:bottom", "floor"]
+[[steps]]
+to = 1
+"#;

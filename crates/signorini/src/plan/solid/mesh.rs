@@ -5,8 +5,9 @@ use crate::case::CaseError;
 use crate::case::statement;
 use crate::case::units::LENGTH;
 use crate::plan::{Placed, Planner};
-use signorini_fem::Mesh;
 use signorini_fem::block::{block, graded};
+use signorini_fem::mesh::position;
+use signorini_fem::{Mesh, Overlap};
 use signorini_geometry::Point;
 use std::ops::Range;
 
@@ -51,16 +52,22 @@ impl Planner<'_> {
                 }
             }
             _ => {
-                return Err(document.error(span, format!("the box of `{name}` is not said, or said twice")).help(
+                return Err(document.error(span.clone(), format!("the box of `{name}` is not said, or said twice")).help(
                     "either min, max and cells, or axes = [{ from = 0, to = [1, 4], cells = [8, 6], growth = [1, 1.2] }, …]",
                 ));
             }
         }
         let cells: usize = axes.iter().map(|a| a.len() - 1).product();
         if cells > 20_000_000 {
-            return Err(document.error(span, format!("{cells} cells are more than this program can take")));
+            return Err(document.error(span.clone(), format!("{cells} cells are more than this program can take")));
         }
-        let Some(map) = &key.map else { return Ok(block::<D>(&axes, 1, |x| x)) };
+        let checked = |mesh: Mesh<D>| match mesh.check() {
+            Ok(()) => Ok(mesh),
+            Err(e) => Err(document
+                .error(span.clone(), format!("the mesh of `{name}`: {e}"))
+                .help("every cell needs a positive volume; look at the place named, and at `map` where there is one")),
+        };
+        let Some(map) = &key.map else { return checked(block::<D>(&axes, 1, |x| x)) };
         let list = map.get_ref();
         if list.len() != D {
             return Err(document.error(map.span(), format!("expected {D} expressions, found {}", list.len())));
@@ -85,10 +92,15 @@ impl Planner<'_> {
             }
             y
         });
-        match failure {
-            Some(error) => Err(error),
-            None => Ok(mesh),
+        if let Some(error) = failure {
+            return Err(error);
         }
+        let mesh = checked(mesh)?;
+        if let Some(Overlap { cells: [a, b], at }) = mesh.overlap() {
+            let message = format!("the mesh of `{name}`: its cells {a} and {b} overlap at {}", position(&at));
+            return Err(document.error(map.span(), message).help("`map` must bring no two places to the same one"));
+        }
+        Ok(mesh)
     }
 
     fn axis(
@@ -126,6 +138,20 @@ impl Planner<'_> {
         let (path, bytes) = self.read_file(&key.file)?;
         let fail = |message: String| self.document.error(key.file.span(), format!("`{}`: {message}", path.display()));
         let file = signorini_fem::gmsh::GmshFile::parse(&bytes).map_err(|e| fail(e.to_string()))?;
-        file.mesh::<D>(key.group.as_deref()).map_err(|e| fail(e.to_string()))
+        let mesh = file.mesh::<D>(key.group.as_deref()).map_err(|e| fail(e.to_string()))?;
+        let volume = if D == 2 { "area" } else { "volume" };
+        mesh.check().map_err(|e| {
+            fail(e.to_string()).help(format!("every cell needs a positive {volume}; look at the place named"))
+        })?;
+        let Some(Overlap { cells, at }) = mesh.overlap() else { return Ok(mesh) };
+        let of = |cell| file.origin::<D>(key.group.as_deref(), cell).unwrap_or_default();
+        let [(first, from), (second, other)] = cells.map(of);
+        let parts =
+            if from == other { format!("{from} overlaps itself") } else { format!("{from} and {other} overlap") };
+        let entity = if D == 2 { "Surface" } else { "Volume" };
+        Err(fail(format!("{parts}: the elements {first} and {second} both cover {}", position(&at))).help(format!(
+            "a body covers each place once: in Gmsh unite them before meshing, for example with BooleanUnion{{ {entity}{{1}}; \
+             Delete; }}{{ {entity}{{2}}; Delete; }}, or name the one that is meant by `group`"
+        )))
     }
 }

@@ -41,8 +41,8 @@ use std::path::Path;
 /// What a run of solids would have to do, after checking that their supports and contacts make sense.
 fn solid_sizes<const D: usize>(plan: &crate::plan::solid::SolidPlan<D>) -> Result<Value, CaseError> {
     let mut model = solid::model(plan)?;
-    let cost = solid::cost(plan, &mut model)?;
     let judged = solid::judge(plan, &mut model)?;
+    let cost = solid::cost(plan, &model)?;
     let free: Vec<String> = model
         .free_modes()
         .iter()

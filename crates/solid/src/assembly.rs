@@ -22,6 +22,26 @@ pub(crate) fn positions<const D: usize>(bodies: &Bodies<D>, reduction: &Reductio
     out
 }
 
+/// The graph of the functions that move: which share a cell, as the pattern of a matrix, and where they are.
+pub(crate) fn graph<const D: usize>(bodies: &Bodies<D>, reduction: &Reduction<D>) -> (SymmetricMatrix, Vec<[f64; D]>) {
+    let moves = |f: usize| (0..D).any(|i| !reduction.is_held(f * D + i));
+    let mut places = Vec::new();
+    let mut cliques: Vec<Vec<u32>> = Vec::new();
+    for body in &bodies.list {
+        let first = body.first / D;
+        let positions = body.function_positions();
+        // Numbers of those that move.
+        let mut number = vec![None; positions.len()];
+        for f in (0..positions.len()).filter(|&f| moves(first + f)) {
+            number[f] = Some(places.len() as u32);
+            places.push(std::array::from_fn(|k| positions[f][k]));
+        }
+        let of_cell = |cell| body.dofs.functions(cell).iter().filter_map(|f| number[*f as usize]).collect();
+        cliques.extend((0..body.mesh.cell_count()).map(of_cell));
+    }
+    (SymmetricMatrix::from_cliques(places.len(), &cliques), places)
+}
+
 /// The stiffness of all bodies and elastic beds.
 pub(crate) fn assemble<const D: usize>(bodies: &Bodies<D>, supports: &[Support]) -> SymmetricMatrix {
     let mut cliques: Vec<Vec<u32>> = Vec::new();

@@ -71,7 +71,8 @@ pub fn run<const D: usize>(
 ) -> Result<Outcome, RunError> {
     // Everything that can be checked is checked before the folder is touched.
     let mut model = model(&plan)?;
-    let cost = cost(&plan, &mut model)?;
+    judge(&plan, &mut model)?;
+    let cost = cost(&plan, &model)?;
     if memory(&cost) > memory_at_hand() {
         return Err(too_large(&plan, model.unknowns(), &cost).into());
     }
@@ -157,7 +158,7 @@ fn raised<const D: usize>(plan: &SolidPlan<D>, by: usize) -> Result<Model<D>, Ca
 pub(super) const OPERATIONS_PER_SECOND: f64 = 2e10;
 
 /// What the factorisation of a model takes.
-pub(super) fn cost<const D: usize>(plan: &SolidPlan<D>, model: &mut Model<D>) -> Result<Cost, CaseError> {
+pub(super) fn cost<const D: usize>(plan: &SolidPlan<D>, model: &Model<D>) -> Result<Cost, CaseError> {
     model.cost().map_err(|error| plan.document.error(plan.document.case.space.span(), error.to_string()))
 }
 

@@ -321,8 +321,8 @@ fn hostile_meshes_are_survived() {
 }
 
 /// Squares of one cell each from their lower left corners, side by side in one file of version 2.2; all are the physical
-/// group `film`, and their bottoms and tops the groups of these names.
-pub fn separate_squares(corners: &[[f64; 2]]) -> String {
+/// group `film`, and the bottom and top of the first the groups `bottom1` and `top1`.
+fn separate_squares(corners: &[[f64; 2]]) -> String {
     let mut nodes = String::new();
     let mut elements = String::new();
     for (k, [x, y]) in corners.iter().enumerate() {
@@ -332,10 +332,13 @@ pub fn separate_squares(corners: &[[f64; 2]]) -> String {
         }
         let n: Vec<usize> = (first..first + 4).collect();
         elements += &format!("{} 3 2 1 {} {} {} {} {}\n", 3 * k + 1, k + 1, n[0], n[1], n[2], n[3]);
-        elements += &format!("{} 1 2 2 {} {} {}\n", 3 * k + 2, 4 * k + 1, n[0], n[1]);
-        elements += &format!("{} 1 2 3 {} {} {}\n", 3 * k + 3, 4 * k + 3, n[2], n[3]);
+        elements += &format!("{} 1 2 {} {} {} {}\n", 3 * k + 2, 2 * k + 2, 4 * k + 1, n[0], n[1]);
+        elements += &format!("{} 1 2 {} {} {} {}\n", 3 * k + 3, 2 * k + 3, 4 * k + 3, n[2], n[3]);
     }
-    let names = "3\n2 1 \"film\"\n1 2 \"bottom\"\n1 3 \"top\"\n";
+    let mut names = format!("{}\n2 1 \"film\"\n", 1 + 2 * corners.len());
+    for k in 0..corners.len() {
+        names += &format!("1 {} \"bottom{}\"\n1 {} \"top{}\"\n", 2 * k + 2, k + 1, 2 * k + 3, k + 1);
+    }
     let (n, m) = (4 * corners.len(), 3 * corners.len());
     format!(
         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n{names}$EndPhysicalNames\n$Nodes\n{n}\n{nodes}$EndNodes\n\
@@ -350,7 +353,7 @@ fn overlapping_cells_are_refused() {
     let path = folder.path().join("two.msh");
     std::fs::write(&path, separate_squares(&[[0.0, 0.0], [0.4, 0.3]])).expect("a mesh");
     let path = path.display().to_string().replace('\\', "/");
-    let film = case("MESH").replace(&file("MESH"), &path).replace("film:rim", "film:bottom");
+    let film = case("MESH").replace(&file("MESH"), &path).replace("film:rim", "film:bottom1");
     let solid = SQUARES_HELD.replace("MESH", &path);
     for text in [film, solid] {
         let error = error(&text);
@@ -364,7 +367,7 @@ fn overlapping_cells_are_refused() {
     }
 }
 
-/// A solid on a mesh of squares, held on top and pressed on a plane.
+/// A solid on a mesh of squares, of which the second is held on top, and the first lies on a plane.
 const SQUARES_HELD: &str = r#"
 space = "plane_strain"
 [bodies.a.solid]
@@ -374,10 +377,26 @@ material.linear_elastic = { youngs_modulus = 100, poissons_ratio = 0.3 }
 [bodies.floor.rigid]
 shape.plane = { point = [0, 0], normal = [0, 1] }
 [supports.head]
-on = "a:top"
+on = "a:top2"
 displacement = [0, "-0.01*t"]
 [contacts.touch]
-between = ["a:bottom", "floor"]
+between = ["a:bottom1", "floor"]
 [[steps]]
 to = 1
 "#;
+
+/// Supports that contradict each other at a later time are refused before anything is computed.
+#[test]
+fn supports_that_contradict_later_are_refused_at_once() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("one.msh");
+    std::fs::write(&path, separate_squares(&[[0.0, 0.0], [3.0, 0.0]])).expect("a mesh");
+    let text = SQUARES_HELD.replace("MESH", &path.display().to_string().replace('\\', "/"));
+    let text = text.replace("to = 1", "to = 1\nincrements = 4")
+        + "[supports.middle]\non = \"a:top1\"\ndisplacement = [0, 0]\n[supports.again]\non = \"a:top1\"\ndisplacement = [0, \"max(0, t - 0.6)\"]\n";
+    let document = signorini::case::Document::parse("case.toml", &text, &[]).expect("a case");
+    let out = folder.path().join("out");
+    let refused = signorini::run::run(&document, &out, &mut signorini_solve::Silent).err().expect("an error");
+    assert!(refused.to_string().contains("prescribe different displacements"), "{refused}");
+    assert!(!out.exists());
+}

@@ -5,7 +5,7 @@
 //! - [`cell_map`]: Lagrange functions that map reference cells to space; [`mesh`] and [`block`] are made of them.
 //! - [`gmsh`]: meshes from files.
 //! - [`adjacency`]: which cells of a mesh share sides.
-//! - [`overlap`]: whether cells of a mesh cover the same place.
+//! - [`overlap`]: whether cells of a mesh cover the same place; [`pieces`]: which hang together.
 //! - [`mesh_refinement`]: meshes of the plane, each cell divided into four; [`graded_mesh`]: only where it matters.
 //! - [`rules`]: quadrature on reference cells.
 //! - [`lagrange`]: tensor-product Lagrange bases of any degree on Gauss-Lobatto points.
@@ -32,6 +32,7 @@ pub mod mesh;
 pub mod mesh_cells;
 pub mod mesh_refinement;
 pub mod overlap;
+pub mod pieces;
 pub mod reference;
 pub mod refined_grid;
 pub mod rules;

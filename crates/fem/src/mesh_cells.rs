@@ -17,6 +17,7 @@ use crate::lagrange::Tabulation;
 use crate::lists::Lists;
 use crate::mesh::{Mesh, Side};
 use crate::mesh_refinement::{PARTS, parts};
+use crate::overlap::BULGE;
 use crate::reference::{CellShape, Local};
 use crate::rules::{Rule, rule};
 use crate::small;
@@ -158,8 +159,7 @@ impl MeshCells {
             }
             let mut bounds = box_round(mesh.cell_nodes(cell).iter().map(|&n| mesh.nodes()[n as usize]));
             if map.order() > 1 {
-                // A curved side bulges beyond its nodes by no more than it bulges at them.
-                bounds = bounds.scaled(1.25);
+                bounds = bounds.scaled(BULGE);
             }
             let regular = least > 0.2 * volume / if vertices.len() == 3 { 0.5 } else { 4.0 };
             bent_at.push(bent.len() as u32);

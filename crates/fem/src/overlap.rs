@@ -16,8 +16,9 @@ use signorini_geometry::{Aabb, Point};
 const DEPTH: f64 = 0.02;
 /// Parts of a side between the points that are looked at, in the plane and in space.
 const PARTS: [usize; 2] = [8, 3];
-/// A cell of order 2 or more bulges beyond the box of its nodes by no more than this part of it: MeshCells has the same.
-const BULGE: f64 = 1.25;
+/// By what the box round the nodes of a cell of order 2 or more is enlarged: a curved side bulges beyond its nodes by no
+/// more than it bulges at them.
+pub(crate) const BULGE: f64 = 1.25;
 
 /// Two cells that cover the same place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +31,18 @@ impl<const D: usize> Mesh<D> {
     /// Two cells that cover the same place, in a mesh that [`Mesh::check`] accepts; none where cells at most touch each
     /// other. Cells that overlap by less than about a fiftieth of their size may be passed over.
     pub fn overlap(&self) -> Option<Overlap<D>> {
+        self.meeting(DEPTH, |_, _| true)
+    }
+
+    /// Two cells of different pieces, as [`Mesh::pieces`] tells them, that meet at a side or a corner without a gap of more than
+    /// about a fiftieth of their size.
+    pub fn touching(&self, pieces: &[u32]) -> Option<Overlap<D>> {
+        self.meeting(-DEPTH, |cell, other| pieces[cell] != pieces[other])
+    }
+
+    /// A place at a depth behind a side that is not between two cells, or at a height before it where the depth is
+    /// negative, that another cell covers too.
+    fn meeting(&self, depth: f64, wanted: impl Fn(usize, usize) -> bool) -> Option<Overlap<D>> {
         let boxes: Vec<Aabb<3>> = (0..self.cell_count()).map(|cell| self.box_of(cell)).collect();
         let tree = Bvh::new(&boxes);
         let mut at = Values::default();
@@ -38,12 +51,12 @@ impl<const D: usize> Mesh<D> {
             let (shape, centre) = (self.shape(cell), self.shape(cell).centre());
             for s in points_of(self.side_shape(side)) {
                 let on_side = shape.on_side(side.side as usize, &s).0;
-                let xi: Local = std::array::from_fn(|k| on_side[k] + DEPTH * (centre[k] - on_side[k]));
+                let xi: Local = std::array::from_fn(|k| on_side[k] + depth * (centre[k] - on_side[k]));
                 self.map(cell).tabulate(&xi, &mut at);
                 let x = self.position(cell, &at);
                 let mut other = None;
                 tree.nearest(&in_space(&x), 0.0, |k| {
-                    if other.is_none() && k != cell && self.covers(k, &x) {
+                    if other.is_none() && k != cell && wanted(cell, k) && self.covers(k, &x) {
                         other = Some(k);
                     }
                     0.0
@@ -161,8 +174,11 @@ mod tests {
     fn blocks_that_touch_do_not_overlap_and_those_that_reach_into_each_other_do() {
         for order in [1, 2] {
             for bent in [0.0, 0.4] {
-                for moved in [[0.0, 1.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.2]] {
-                    assert_eq!(two::<2>(3, order, moved.into(), bent).overlap(), None, "{order} {bent} {moved:?}");
+                for (moved, touch) in [([0.0, 1.0], true), ([1.0, 0.1], true), ([1.0, 1.0], true), ([0.0, 1.2], false)]
+                {
+                    let mesh = two::<2>(3, order, moved.into(), bent);
+                    assert_eq!(mesh.overlap(), None, "{order} {bent} {moved:?}");
+                    assert_eq!(mesh.touching(&mesh.pieces()).is_some(), touch, "{order} {bent} {moved:?}");
                 }
                 // Also on the very same nodes, by a tenth of a cell, and at a corner.
                 for moved in [[0.0, 0.0], [0.0, 0.967], [-0.967, 0.1], [0.95, 0.95], [0.5, 0.5]] {

@@ -2,6 +2,7 @@
 
 mod domain;
 mod history;
+pub(crate) mod pieces;
 mod rigid;
 mod shapes;
 pub mod solid;
@@ -26,12 +27,13 @@ use signorini_membrane::quadrature::Quadrature;
 use signorini_membrane::refinement::Refinement;
 use signorini_membrane::zone::{Modes, NoZone};
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
 pub use domain::{Pieces, memory_at_hand, memory_estimate, mesh_multigrid_estimate, multigrid_estimate};
 pub use history::{Control, PlannedIncrement};
+use pieces::UNITE;
 pub use surface::Contact;
 
 /// A problem that is ready to be solved.
@@ -580,6 +582,14 @@ impl<'a> Planner<'a> {
                 .document
                 .error(self.document.case.space.span(), "nothing holds the membrane")
                 .help(format!("add  [supports.rim]  on = \"{body}:boundary\"  displacement = 0.0")));
+        }
+        if let Some((apart, rims)) = &pieces.apart {
+            let held = |rim: &BTreeSet<usize>| supports.iter().any(|s| s.pieces.iter().any(|p| rim.contains(p)));
+            if let Some(loose) = rims.iter().position(|rim| !held(rim)) {
+                let place = document.case.bodies.get(body).map_or(document.case.space.span(), |b| b.span());
+                return Err(document.error(place, apart.held_by_nothing(body, loose as u32)).help(UNITE));
+            }
+            self.warnings.borrow_mut().extend(apart.warning(body));
         }
         Ok(supports)
     }

@@ -5,12 +5,14 @@ use crate::material::Space;
 use crate::supports::{Reduction, Support, SupportKind};
 use nalgebra::{DMatrix, DVector};
 use signorini_geometry::Point;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 /// A free rigid motion of a part of a body.
 #[derive(Clone, Debug)]
 pub struct FreeMode {
     pub body: String,
+    /// The piece of its mesh, as [`signorini_fem::Mesh::pieces`] numbers them.
+    pub piece: u32,
     /// In words, such as "to translate along x".
     pub motion: String,
     /// The unknown of the bodies that moves most, and does in no mode listed before.
@@ -34,7 +36,7 @@ pub fn free_modes<const D: usize>(bodies: &Bodies<D>, supports: &[Support], redu
     }
     for body in &bodies.list {
         let curved = (0..body.mesh.cell_count()).any(|c| body.mesh.map(c).order() > 1);
-        for part in parts(body) {
+        for (piece, part) in parts(body).into_iter().enumerate() {
             let functions: Vec<(u32, Point<D>)> = part
                 .iter()
                 .filter_map(|&node| Some((body.dofs.vertex(node)?, body.mesh.nodes()[node as usize])))
@@ -60,8 +62,7 @@ pub fn free_modes<const D: usize>(bodies: &Bodies<D>, supports: &[Support], redu
                 let unknown = |i: usize| body.first + *f as usize * D + i;
                 let rows: Vec<&[(u32, f64)]> = (0..D).map(|i| reduction.row(unknown(i))).collect();
                 // The projection of a motion on what the row space of T allows.
-                let columns: std::collections::BTreeSet<u32> =
-                    rows.iter().flat_map(|r| r.iter().map(|e| e.0)).collect();
+                let columns: BTreeSet<u32> = rows.iter().flat_map(|r| r.iter().map(|e| e.0)).collect();
                 let values: Vec<Point<D>> =
                     (0..modes.len()).map(|m| Point::<D>::from_fn(|i, _| motion[(row * D + i, m)])).collect();
                 let mut rest = values.clone();
@@ -119,6 +120,7 @@ pub fn free_modes<const D: usize>(bodies: &Bodies<D>, supports: &[Support], redu
                 let values = || field.iter().enumerate().map(|(row, u)| (number(row), u / field[(at, 0)].abs()));
                 out.push(FreeMode {
                     body: body.name.clone(),
+                    piece: piece as u32,
                     motion: name,
                     unknown: number(at) as usize,
                     field: (!(turned && curved)).then(|| values().filter(|(_, u)| *u != 0.0).collect()),
@@ -175,37 +177,11 @@ fn modes<const D: usize>(space: Space) -> Vec<Mode> {
     }
 }
 
-/// Vertices of every connected part of a body.
+/// Vertices of every piece of a body.
 fn parts<const D: usize>(body: &crate::body::Body<D>) -> Vec<Vec<u32>> {
-    let count = body.mesh.nodes().len();
-    let mut parent: Vec<u32> = (0..count as u32).collect();
-    fn root(parent: &mut [u32], mut v: u32) -> u32 {
-        while parent[v as usize] != v {
-            parent[v as usize] = parent[parent[v as usize] as usize];
-            v = parent[v as usize];
-        }
-        v
+    let mut lists: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();
+    for (cell, piece) in body.mesh.pieces().into_iter().enumerate() {
+        lists.entry(piece).or_default().extend(body.mesh.vertices(cell));
     }
-    let mut used = vec![false; count];
-    for cell in 0..body.mesh.cell_count() {
-        let mut first = None;
-        for v in body.mesh.vertices(cell) {
-            used[v as usize] = true;
-            let r = root(&mut parent, v);
-            match first {
-                None => first = Some(r),
-                Some(f) => {
-                    let f = root(&mut parent, f);
-                    parent[r.max(f) as usize] = r.min(f);
-                }
-            }
-        }
-    }
-    let mut lists: std::collections::BTreeMap<u32, Vec<u32>> = Default::default();
-    for v in 0..count as u32 {
-        if used[v as usize] {
-            lists.entry(root(&mut parent, v)).or_default().push(v);
-        }
-    }
-    lists.into_values().collect()
+    lists.into_values().map(|list| list.into_iter().collect()).collect()
 }

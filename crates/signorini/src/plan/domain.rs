@@ -1,6 +1,7 @@
 //! The domain of a membrane and its cells: a background grid, or a mesh from a file.
 
 use super::Planner;
+use super::pieces::Apart;
 use crate::case::CaseError;
 use crate::case::statement::{self, Domain, Mesh, Space};
 use crate::case::units::{LENGTH, NONE};
@@ -12,6 +13,7 @@ use signorini_membrane::domain::{
     BoxDomain, CellStatus, Domain as MembraneDomain, DomainOnCells, ImplicitDomain, MeshDomain, PolygonDomain,
 };
 use signorini_membrane::refinement::Refinement;
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -30,11 +32,13 @@ const MEMORY_SHARE: f64 = 0.8;
 /// Named groups of boundary pieces.
 pub struct Pieces {
     pub groups: Vec<(String, Vec<usize>)>,
+    /// The pieces of a mesh that falls into several, and the pieces of the boundary of each.
+    pub(super) apart: Option<(Apart<2>, Vec<BTreeSet<usize>>)>,
 }
 
 impl Pieces {
     fn new(groups: &[(&str, &[usize])]) -> Self {
-        Self { groups: groups.iter().map(|(n, p)| (n.to_string(), p.to_vec())).collect() }
+        Self { groups: groups.iter().map(|(n, p)| (n.to_string(), p.to_vec())).collect(), apart: None }
     }
 }
 
@@ -439,7 +443,15 @@ impl ReadDomain<2> for Planner<'_> {
         let unknowns = vertices * (degree * degree) as f64;
         let by_multigrid = if divisions > 0 { mesh_multigrid_estimate(unknowns, degree) } else { f64::INFINITY };
         self.check_bytes(unknowns, memory_estimate(unknowns, degree, 2).min(by_multigrid), span)?;
+        let apart = Apart::new(&mesh);
         let undivided = Arc::new(MeshCells::new(mesh, degree));
+        let apart = apart.map(|apart| {
+            let mut rims = vec![BTreeSet::new(); apart.count()];
+            for side in undivided.boundary_sides() {
+                rims[apart.of_cell[side.cell] as usize].insert(side.piece);
+            }
+            (apart, rims)
+        });
         let cells = (0..divisions).fold(undivided, |cells, _| Arc::new(cells.refined()));
         let grid = cells.grid();
         let refinement = match &key.refine {
@@ -453,7 +465,7 @@ impl ReadDomain<2> for Planner<'_> {
             None if degree > MOST_ON_TRIANGLES => Refinement::default(),
             refine => self.refinement(refine.as_ref(), &grid)?,
         };
-        let pieces = Pieces { groups: cells.groups().to_vec() };
+        let pieces = Pieces { groups: cells.groups().to_vec(), apart };
         let domain: Arc<dyn MembraneDomain<2>> = Arc::new(MeshDomain(cells.clone()));
         let on_request = key.refine.as_ref().is_some_and(|refine| refine.get_ref().negative_where.is_some());
         let divided = on_request.then(|| cells.graded(&[], 0, &*refinement.always)).flatten();
@@ -563,6 +575,6 @@ impl Planner<'_> {
             .extend((0..n).map(|i| (format!("side_{}", i + 1), vec![if clockwise { (2 * n - 2 - i) % n } else { i }])));
         let bounds =
             corners.iter().fold(Aabb::new(corners[0], corners[0]), |b, p| Aabb::new(b.min.inf(p), b.max.sup(p)));
-        Ok((Arc::new(PolygonDomain::new(corners)), bounds.scaled(MARGIN), Pieces { groups }))
+        Ok((Arc::new(PolygonDomain::new(corners)), bounds.scaled(MARGIN), Pieces { groups, apart: None }))
     }
 }

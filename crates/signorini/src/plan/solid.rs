@@ -2,6 +2,7 @@
 
 mod mesh;
 
+use super::pieces::Apart;
 use super::rigid::{self, RigidBody};
 use super::{Placed, Planner};
 use crate::case::statement::{self, Body, Enforcement, Material, Method, SolidMesh, Space};
@@ -314,6 +315,7 @@ impl Planner<'_> {
                 material.poissons_ratio
             ));
         }
+        warnings.extend(Apart::new(&mesh).and_then(|apart| apart.warning(name)));
         Ok(PlannedBody { name: name.to_string(), mesh, degree, material })
     }
 

@@ -3,10 +3,11 @@
 use super::solid_checkpoint::SolidCheckpoint;
 use super::{Begun, Ending, Logged, Outcome, RunError, SCHEMA, checkpoint, environment, not_resumed};
 use crate::case::CaseError;
-use crate::case::statement::Space as Stated;
+use crate::case::statement::{Body, Space as Stated};
 use crate::case::value::Interpreted;
 use crate::output::solid_fields::{ContactDisplay, SolidDisplay, SolidFields};
 use crate::output::{Folder, OutputError, solid_pictures, tables, vtk};
+use crate::plan::pieces::{Apart, UNITE};
 use crate::plan::solid::{Opposite, SolidLoad, SolidPlan, evaluate};
 use crate::plan::{Placed, memory_at_hand};
 use serde_json::{Value, json};
@@ -20,6 +21,7 @@ use signorini_solid::{
 use signorini_solve::cholesky::Cost;
 use signorini_solve::{Iteration, Progress};
 use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Strain from which the theory of small strains is off by more than a few per cent of the result: the terms left out are
@@ -609,6 +611,9 @@ fn at_time<const D: usize, R>(
 /// # Errors
 /// What a run refuses.
 pub(super) fn judge<const D: usize>(plan: &SolidPlan<D>, model: &mut Model<D>) -> Result<Option<String>, CaseError> {
+    if let Some(error) = loose_piece(plan, model) {
+        return Err(error);
+    }
     for (index, &time) in plan.times.iter().enumerate() {
         let look = |model: &mut Model<D>, now: &Circumstances<'_, D>| match index {
             0 => model.examine(now),
@@ -624,6 +629,39 @@ pub(super) fn judge<const D: usize>(plan: &SolidPlan<D>, model: &mut Model<D>) -
         }
     }
     Ok(None)
+}
+
+/// The error of a mesh that falls into pieces one of which nothing holds: neither supports nor a contact of its own, or it
+/// lies on another one, to which it should hold by the nodes that they do not share.
+fn loose_piece<const D: usize>(plan: &SolidPlan<D>, model: &Model<D>) -> Option<CaseError> {
+    for (number, body) in plan.bodies.iter().enumerate() {
+        let free: BTreeSet<u32> =
+            (model.free_modes().iter()).filter(|m| m.body == body.name).map(|m| m.piece).collect();
+        if free.is_empty() {
+            continue;
+        }
+        let Some(apart) = Apart::new(&body.mesh) else { continue };
+        let in_contact: BTreeSet<u32> = (plan.contacts.iter())
+            .flat_map(|c| {
+                let own = (c.body == number).then_some(&c.sides);
+                let other = match &c.opposite {
+                    Opposite::Body { body, sides, .. } if *body == number => Some(sides),
+                    _ => None,
+                };
+                own.into_iter().chain(other).flatten()
+            })
+            .map(|side| apart.of_cell[side.cell as usize])
+            .collect();
+        if let Some(&loose) = free.iter().find(|piece| apart.touching.is_some() || !in_contact.contains(piece)) {
+            let document = &plan.document;
+            let place = match document.case.bodies.get(&body.name).map(|b| b.get_ref()) {
+                Some(Body::Solid(solid)) => solid.mesh.span(),
+                _ => document.case.space.span(),
+            };
+            return Some(document.error(place, apart.held_by_nothing(&body.name, loose)).help(UNITE));
+        }
+    }
+    None
 }
 
 /// The error of the case behind that of a time, at its place; none where a run may find a way.

@@ -385,6 +385,39 @@ between = ["a:bottom1", "floor"]
 to = 1
 "#;
 
+/// A body in two pieces: where nothing holds one of them a run, and `check` by the same words, says why; where both are held
+/// but lie on each other it is a warning.
+#[test]
+fn a_body_in_pieces_is_called_that() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("two.msh");
+    let name = path.display().to_string().replace('\\', "/");
+    let film = case("MESH").replace(&file("MESH"), &name).replace("film:rim", "film:top2");
+    let solid = SQUARES_HELD.replace("MESH", &name);
+    let checked = |text: &str| {
+        let document = signorini::case::Document::parse("case.toml", text, &[]).expect("a case");
+        signorini::plan::plan(&document).and_then(|plan| signorini::run::sizes(&plan))
+    };
+    for (second, lie) in [([0.0, 1.0], true), ([3.0, 0.0], false)] {
+        std::fs::write(&path, separate_squares(&[[0.0, 0.0], second])).expect("a mesh");
+        let apart = solid.replace("a:bottom1", "a:bottom2");
+        for text in [&film, if lie { &solid } else { &apart }] {
+            let error = error(text);
+            for part in
+                ["falls into 2 pieces that share no node: 1 cell about (0.5", "nothing holds the 1 cell about (0.5"]
+            {
+                assert!(error.message.contains(part), "{}", error.message);
+            }
+            assert_eq!(error.message.contains("lie on each other at"), lie, "{}", error.message);
+            assert!(error.help.as_ref().is_some_and(|h| h.contains("Coherence")));
+            assert_eq!(checked(text).expect_err("an error").message, error.message);
+        }
+        let both = format!("{solid}\n[supports.middle]\non = \"a:top1\"\ndisplacement = [0, 0]\n");
+        let found = checked(&both).expect("a case that is right");
+        assert_eq!(found["warnings"].to_string().contains("2 pieces"), lie, "{}", found["warnings"]);
+    }
+}
+
 /// Supports that contradict each other at a later time are refused before anything is computed.
 #[test]
 fn supports_that_contradict_later_are_refused_at_once() {

@@ -1,0 +1,77 @@
+//! Bodies whose mesh falls into pieces that share no node.
+
+use signorini_fem::Mesh;
+use signorini_fem::mesh::position;
+use signorini_geometry::Point;
+
+/// More pieces than this are counted, not listed.
+const LISTED: usize = 4;
+
+/// What helps against pieces that should be one.
+pub(crate) const UNITE: &str = "pieces that lie on each other are no body until they share nodes: in Gmsh `Coherence;` or BooleanFragments \
+     before meshing, or `Coherence Mesh;` after it; pieces that are to move by themselves are bodies of their own, with \
+     `group`, supports and contacts";
+
+/// The pieces of a mesh, at least two.
+pub(crate) struct Apart<const D: usize> {
+    /// The piece of each cell.
+    pub of_cell: Vec<u32>,
+    /// Number of cells and mean of their vertices, by piece.
+    pieces: Vec<(usize, Point<D>)>,
+    /// A place where two of them lie on each other.
+    pub touching: Option<Point<D>>,
+}
+
+impl<const D: usize> Apart<D> {
+    /// None of a mesh that hangs together.
+    pub fn new(mesh: &Mesh<D>) -> Option<Self> {
+        let of_cell = mesh.pieces();
+        let count = of_cell.iter().max().map_or(0, |last| *last as usize + 1);
+        if count < 2 {
+            return None;
+        }
+        let mut pieces = vec![(0, Point::<D>::zeros()); count];
+        for (cell, &piece) in of_cell.iter().enumerate() {
+            let vertices: Vec<Point<D>> = mesh.vertices(cell).map(|n| mesh.nodes()[n as usize]).collect();
+            let (cells, sum) = &mut pieces[piece as usize];
+            *cells += 1;
+            *sum += vertices.iter().sum::<Point<D>>() / vertices.len() as f64;
+        }
+        pieces.iter_mut().for_each(|(cells, sum)| *sum /= *cells as f64);
+        let touching = mesh.touching(&of_cell).map(|place| place.at);
+        Some(Self { of_cell, pieces, touching })
+    }
+
+    /// Number of pieces.
+    pub fn count(&self) -> usize {
+        self.pieces.len()
+    }
+
+    /// A piece in words, by its middle.
+    pub fn describe(&self, piece: u32) -> String {
+        let (cells, middle) = &self.pieces[piece as usize];
+        format!("{cells} cell{} about {}", if *cells == 1 { "" } else { "s" }, position(middle))
+    }
+
+    /// What is to say of the mesh of a body.
+    pub fn text(&self, body: &str) -> String {
+        let count = self.count();
+        let mut list: Vec<String> = (0..count.min(LISTED) as u32).map(|piece| self.describe(piece)).collect();
+        if count > LISTED {
+            list.push(format!("{} more", count - LISTED));
+        }
+        let touching =
+            self.touching.map_or(String::new(), |x| format!(", two of which lie on each other at {}", position(&x)));
+        format!("the mesh of `{body}` falls into {count} pieces that share no node: {}{touching}", list.join(", "))
+    }
+
+    /// ... where nothing holds one of the pieces.
+    pub fn held_by_nothing(&self, body: &str, piece: u32) -> String {
+        format!("{}; nothing holds the {}", self.text(body), self.describe(piece))
+    }
+
+    /// The warning about pieces that lie on each other.
+    pub fn warning(&self, body: &str) -> Option<String> {
+        self.touching.map(|_| format!("{}; {UNITE}", self.text(body)))
+    }
+}

@@ -377,17 +377,19 @@ fn solid_table(summary: &Value) {
     for step in summary["steps"].as_array().into_iter().flatten() {
         let time = format!("{:.6}", step["time"].as_f64().unwrap_or(f64::NAN));
         let balance = step["equilibrium_residual"].as_f64().map_or("-".to_string(), |v| format!("{v:.1e}"));
-        let number = |v: Option<f64>| v.map_or("-".to_string(), |v| format!("{v:.8}"));
         for (name, contact) in step["contacts"].as_object().into_iter().flatten() {
+            let number = |v: Option<f64>, key: &str| {
+                v.map_or("-".to_string(), |v| figure(v, contact["error_estimate"][key].as_f64()))
+            };
             let force = contact["force"]
                 .as_array()
                 .map(|f| f.iter().filter_map(Value::as_f64).map(|v| v * v).sum::<f64>().sqrt());
             say!(
                 "{time:>9} {:>7}  {name:14} {:>16} {:>14} {:>14} {:>6} {balance:>10}",
                 solves(step),
-                number(force),
-                number(contact["area"].as_f64()),
-                number(contact["max_pressure"].as_f64()),
+                number(force, "force"),
+                number(contact["area"].as_f64(), "area"),
+                number(contact["max_pressure"].as_f64(), "max_pressure"),
                 contact["zones"].to_string(),
             );
         }

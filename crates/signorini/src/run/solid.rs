@@ -5,6 +5,7 @@ use super::{Begun, Ending, Logged, Outcome, RunError, SCHEMA, checkpoint, enviro
 use crate::case::CaseError;
 use crate::case::statement::{Body, Space as Stated};
 use crate::case::value::Interpreted;
+use crate::output::figure::figure;
 use crate::output::solid_fields::{ContactDisplay, SolidDisplay, SolidFields};
 use crate::output::{Folder, OutputError, solid_pictures, tables, vtk};
 use crate::plan::pieces::{Apart, UNITE};
@@ -530,7 +531,7 @@ impl<const D: usize> Runner<D> {
                     .map(|c| {
                         let found = &step["contacts"][&c.name];
                         let error = |key: &str| found["error_estimate"][key].as_f64();
-                        let figure = |v: &Value, e: Option<f64>| v.as_f64().map_or("-".into(), |v| rounded(v, e));
+                        let figure = |v: &Value, e: Option<f64>| v.as_f64().map_or("-".into(), |v| figure(v, e));
                         let within =
                             |e: Option<f64>| e.filter(|e| *e > 0.0).map_or(String::new(), |e| format!(" ± {e:.0e}"));
                         let zones = found["zones"].as_u64().unwrap_or(0);
@@ -723,17 +724,6 @@ fn method<const D: usize>(plan: &SolidPlan<D>) -> String {
     let mut list: Vec<&str> = plan.contacts.iter().map(|c| name(c.method)).collect();
     list.dedup();
     if list.is_empty() { "none".into() } else { list.join(", ") }
-}
-
-/// A figure with the digits that its error leaves; six places where that is not known.
-fn rounded(value: f64, error: Option<f64>) -> String {
-    let Some(error) = error.filter(|e| *e > 0.0) else { return format!("{value:.6}") };
-    let places = (-error.log10().floor()) as i32;
-    if places >= 0 {
-        return format!("{value:.*}", places.min(12) as usize);
-    }
-    let unit = 10f64.powi(-places);
-    format!("{:.0}", (value / unit).round() * unit)
 }
 
 /// Half the length of one interval, or the radius of the disc of one area.

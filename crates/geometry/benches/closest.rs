@@ -39,9 +39,15 @@ fn nurbs_curve(r: &mut Random, height: f64) -> Shape {
 }
 
 fn nurbs_surface(r: &mut Random, height: f64) -> Shape {
+    weighted_surface(r, height, 0.15)
+}
+
+/// Weights up to `10^±decades`.
+fn weighted_surface(r: &mut Random, height: f64, decades: f64) -> Shape {
     let mut points = net(r, 6, 7, 0.2);
     points.iter_mut().flatten().for_each(|p| p.z += height);
-    let weights: Vec<Vec<f64>> = (0..6).map(|_| (0..7).map(|_| r.between(0.7, 1.4)).collect()).collect();
+    let mut weight = || 10f64.powf(r.between(-decades, decades));
+    let weights: Vec<Vec<f64>> = (0..6).map(|_| (0..7).map(|_| weight()).collect()).collect();
     Surface::nurbs([3, 3], [&knots(6, 3), &knots(7, 3)], &points, Some(&weights), [false; 2]).unwrap().into()
 }
 
@@ -76,7 +82,7 @@ fn time(name: &str, queries: &[(usize, Shape)], shapes: &[Shape]) {
     }
     let count = (rounds * queries.len()) as f64;
     println!(
-        "{name:22} {:>12.3e} queries/s  {:>9.3} us  {:>7.1} cell pairs   (mean distance {:.3})",
+        "{name:23} {:>12.3e} queries/s  {:>9.3} us  {:>7.1} cell pairs   (mean distance {:.3})",
         count / start.elapsed().as_secs_f64(),
         start.elapsed().as_secs_f64() / count * 1e6,
         effort as f64 / count,
@@ -103,7 +109,7 @@ fn track(name: &str, shapes: &[Shape], r: &mut Random) {
     }
     let seconds = start.elapsed().as_secs_f64();
     println!(
-        "{name:22} {:>12.3e} steps/s    {:>8.1} % warm",
+        "{name:23} {:>12.3e} steps/s    {:>8.1} % warm",
         steps as f64 / seconds,
         100.0 * warm as f64 / steps as f64
     );
@@ -150,6 +156,7 @@ fn main() {
         Surface::nurbs([3, 3], [&knots(6, 3), &knots(7, 3)], &points, None, [false; 2]).unwrap().into()
     });
     run("point-NURBS 6x7", "point", &mut |r, _| nurbs_surface(r, 0.0));
+    run("point-weights 0.1 to 10", "point", &mut |r, _| weighted_surface(r, 0.0, 1.0));
     run("curve-curve NURBS", "curve", &mut |r, _| nurbs_curve(r, 0.0));
     run("curve-surface NURBS", "curve", &mut |r, _| nurbs_surface(r, 0.0));
     run("surface-surface NURBS", "surface", &mut |r, _| nurbs_surface(r, 0.0));
@@ -159,13 +166,22 @@ fn main() {
             std::hint::black_box(make(&mut r));
             count += 1;
         }
-        println!("{name:22} {:>9.1} us to build", start.elapsed().as_secs_f64() / f64::from(count) * 1e6);
+        println!("{name:23} {:>9.1} us to build", start.elapsed().as_secs_f64() / f64::from(count) * 1e6);
     };
     println!();
     build("curve NURBS", &mut |r| nurbs_curve(r, 0.0));
     build("quad9", &mut |r| Surface::lagrange_quad(&net(r, 3, 3, 0.25)).unwrap().into());
     build("bicubic", &mut |r| Surface::bezier(&net(r, 4, 4, 0.4), None).unwrap().into());
     build("surface NURBS 6x7", &mut |r| nurbs_surface(r, 0.0));
+    build("weights 0.1 to 10", &mut |r| weighted_surface(r, 0.0, 1.0));
+    // Much of a surface is built when a query first looks there.
+    let (mut count, start) = (0, Instant::now());
+    while start.elapsed().as_secs_f64() < 0.3 {
+        let surface = weighted_surface(&mut r, 0.0, 1.0);
+        std::hint::black_box(closest(&Shape::Point(r.vector(1.2)), &surface, &Query::default()));
+        count += 1;
+    }
+    println!("built and asked once   {:>9.1} us", start.elapsed().as_secs_f64() / f64::from(count) * 1e6);
     println!();
     let curves: Vec<Shape> = (0..12).map(|_| nurbs_curve(&mut r, 0.0)).collect();
     track("point-curve, warm", &curves, &mut r);

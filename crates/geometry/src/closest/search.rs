@@ -80,17 +80,18 @@ impl<'a, const M: usize, C: Chart<M>> Partner<'a, M, C> {
 
     #[inline]
     pub fn cell(&self, id: u32) -> &Cell<M> {
-        let built = self.atlas.nodes.len();
-        if (id as usize) < built { &self.atlas.nodes[id as usize] } else { &self.extra[id as usize - built] }
+        match id.checked_sub(self.atlas.count()) {
+            None => self.atlas.node(id),
+            Some(extra) => &self.extra[extra as usize],
+        }
     }
 
     fn add(&mut self, cell: Cell<M>) -> u32 {
         self.extra.push(cell);
-        (self.atlas.nodes.len() + self.extra.len() - 1) as u32
+        self.atlas.count() + self.extra.len() as u32 - 1
     }
 
     pub fn children(&mut self, id: u32) -> [u32; 2] {
-        let built = self.atlas.nodes.len();
         let cell = self.cell(id);
         if cell.children != [0; 2] {
             return cell.children;
@@ -100,10 +101,9 @@ impl<'a, const M: usize, C: Chart<M>> Partner<'a, M, C> {
         }
         let halves = self.atlas.halve(cell);
         let children = halves.map(|half| self.add(half));
-        if (id as usize) < built {
-            self.grown.insert(id, children);
-        } else {
-            self.extra[id as usize - built].children = children;
+        match id.checked_sub(self.atlas.count()) {
+            None => _ = self.grown.insert(id, children),
+            Some(extra) => self.extra[extra as usize].children = children,
         }
         children
     }

@@ -81,7 +81,7 @@ pub fn interpolate(degree: usize, values: &[Control]) -> Vec<Control> {
     apply(&matrix, values)
 }
 
-fn apply(matrix: &DMatrix<f64>, values: &[Control]) -> Vec<Control> {
+pub fn apply(matrix: &DMatrix<f64>, values: &[Control]) -> Vec<Control> {
     (0..matrix.nrows())
         .map(|i| {
             let mut sum = [0.0; 4];
@@ -159,111 +159,6 @@ fn middle(control: &[Control]) -> Control {
     work[0]
 }
 
-/// A tensor-product control net, `control[i * (q + 1) + j]` for degrees `(p, q)`.
-#[derive(Clone)]
-pub struct Net {
-    pub degree: [usize; 2],
-    pub control: Vec<Control>,
-}
-
-impl Net {
-    pub fn row(&self, i: usize) -> &[Control] {
-        let m = self.degree[1] + 1;
-        &self.control[i * m..(i + 1) * m]
-    }
-
-    pub fn column(&self, j: usize) -> Vec<Control> {
-        (0..=self.degree[0]).map(|i| self.control[i * (self.degree[1] + 1) + j]).collect()
-    }
-
-    /// The net of bidegree `degree` through the values of a function at equidistant points of the unit square.
-    pub fn interpolating(degree: [usize; 2], f: impl Fn(f64, f64) -> Control) -> Net {
-        let at = |i: usize, n: usize| if n == 0 { 0.5 } else { i as f64 / n as f64 };
-        let values: Vec<Control> = (0..=degree[0])
-            .flat_map(|i| (0..=degree[1]).map(move |j| (i, j)))
-            .map(|(i, j)| f(at(i, degree[0]), at(j, degree[1])))
-            .collect();
-        let [along_u, along_v] = degree.map(interpolation_matrix);
-        let net = Net { degree, control: values };
-        net.map_columns(|c| apply(&along_u, c)).map_rows(|r| apply(&along_v, r))
-    }
-
-    /// Applies an operation on curves to every row (the second direction).
-    pub fn map_rows(&self, f: impl Fn(&[Control]) -> Vec<Control>) -> Net {
-        let rows: Vec<Vec<Control>> = (0..=self.degree[0]).map(|i| f(self.row(i))).collect();
-        Net { degree: [self.degree[0], rows[0].len() - 1], control: rows.concat() }
-    }
-
-    /// Applies an operation on curves to every column (the first direction).
-    pub fn map_columns(&self, f: impl Fn(&[Control]) -> Vec<Control>) -> Net {
-        let columns: Vec<Vec<Control>> = (0..=self.degree[1]).map(|j| f(&self.column(j))).collect();
-        let p = columns[0].len() - 1;
-        let control = (0..=p).flat_map(|i| columns.iter().map(move |c| c[i])).collect();
-        Net { degree: [p, self.degree[1]], control }
-    }
-
-    /// See the free function [`cut`].
-    pub fn cut(&self, axis: usize, t: f64) -> [Net; 2] {
-        [0, 1].map(|side| {
-            let part = |c: &[Control]| cut(c, t)[side].clone();
-            if axis == 0 { self.map_columns(part) } else { self.map_rows(part) }
-        })
-    }
-
-    /// See the free function [`derivative`]; zero where the degree is.
-    pub fn derivative(&self, axis: usize) -> Net {
-        let mut degree = self.degree;
-        if degree[axis] == 0 {
-            return Net { degree, control: vec![[0.0; 4]; self.control.len()] };
-        }
-        let factor = 0.5 * degree[axis] as f64;
-        degree[axis] -= 1;
-        let step = self.step(axis);
-        Net::from_fn(degree, |i, j| {
-            let at = i * self.step(0) + j;
-            combine(factor, &self.control[at + step], -factor, &self.control[at])
-        })
-    }
-
-    /// See [`times_power`].
-    pub fn times_power(&self, axis: usize, power: usize) -> Net {
-        let once = self.times_linear(axis, if power > 0 { -1.0 } else { 1.0 });
-        once.times_linear(axis, if power > 1 { -1.0 } else { 1.0 })
-    }
-
-    fn times_linear(&self, axis: usize, at_start: f64) -> Net {
-        let mut degree = self.degree;
-        degree[axis] += 1;
-        let (n, step) = (degree[axis], self.step(axis));
-        Net::from_fn(degree, |i, j| {
-            let k = [i, j][axis];
-            let at = i * self.step(0) + j;
-            let low = if k < n { self.control[at] } else { [0.0; 4] };
-            let high = if k > 0 { self.control[at - step] } else { [0.0; 4] };
-            combine((n - k) as f64 / n as f64 * at_start, &low, k as f64 / n as f64, &high)
-        })
-    }
-
-    fn from_fn(degree: [usize; 2], mut f: impl FnMut(usize, usize) -> Control) -> Net {
-        let mut control = Vec::with_capacity((degree[0] + 1) * (degree[1] + 1));
-        for i in 0..=degree[0] {
-            for j in 0..=degree[1] {
-                control.push(f(i, j));
-            }
-        }
-        Net { degree, control }
-    }
-
-    /// Distance of neighbours in one direction.
-    fn step(&self, axis: usize) -> usize {
-        if axis == 0 { self.degree[1] + 1 } else { 1 }
-    }
-
-    pub fn powers(&self) -> Net {
-        self.map_columns(powers).map_rows(powers)
-    }
-}
-
 /// The box around the control points, which holds the piece where the weights are positive.
 pub fn hull(control: &[Control]) -> [Point<3>; 2] {
     let mut low = Point::<3>::repeat(f64::INFINITY);
@@ -277,7 +172,7 @@ pub fn hull(control: &[Control]) -> [Point<3>; 2] {
 
 /// The largest length of the first three components: bounds a vector-valued polynomial (convex hull property).
 pub fn largest(control: &[Control]) -> f64 {
-    control.iter().map(|c| (c[0] * c[0] + c[1] * c[1] + c[2] * c[2]).sqrt()).fold(0.0, f64::max)
+    control.iter().map(|c| c[0] * c[0] + c[1] * c[1] + c[2] * c[2]).fold(0.0, f64::max).sqrt()
 }
 
 /// The largest magnitude of the last component.

@@ -4,10 +4,10 @@
 //! Horner's scheme gives value and derivatives for a few operations per coefficient; pieces of high degree are cut
 //! until the coefficients decay, which keeps this as accurate as Bernstein form.
 
-use super::bernstein::{Control, Net, cut, derivative, hull, largest, largest_weight, powers, times_power};
-use crate::rigid::RigidMotion;
+use super::bernstein::{Control, powers};
+use super::bounds::{BoundsTable, Derivatives, EVERYWHERE, Hull, curve_table, surface_table};
+use super::net::Net;
 use crate::{Point, Vector};
-use std::array::from_fn;
 
 /// Position and partial derivatives to second order.
 #[derive(Clone, Copy, Debug)]
@@ -17,94 +17,16 @@ pub struct Jet2<const M: usize> {
     pub dd: [[Vector<3>; M]; M],
 }
 
-/// A box around a chart or a part of it, and upper bounds of its second and third derivatives there.
-#[derive(Clone, Copy, Debug)]
-pub struct Bounds<const M: usize> {
-    pub hull: [Point<3>; 2],
-    pub second: [[f64; M]; M],
-    pub third: [[[f64; M]; M]; M],
-}
-
-impl<const M: usize> Bounds<M> {
-    /// Bounds that hold where either does.
-    fn or(&self, other: &Self) -> Self {
-        Bounds {
-            hull: [self.hull[0].inf(&other.hull[0]), self.hull[1].sup(&other.hull[1])],
-            second: from_fn(|a| from_fn(|b| self.second[a][b].max(other.second[a][b]))),
-            third: from_fn(|a| from_fn(|b| from_fn(|c| self.third[a][b][c].max(other.third[a][b][c])))),
-        }
-    }
-
-    /// The bounds of a part of the domain in coordinates of its own, `scale` times as long, in those of the whole.
-    fn stretched(mut self, scale: [f64; M]) -> Self {
-        for a in 0..M {
-            for b in 0..M {
-                self.second[a][b] *= scale[a] * scale[b];
-                for c in 0..M {
-                    self.third[a][b][c] *= scale[a] * scale[b] * scale[c];
-                }
-            }
-        }
-        self
-    }
-}
-
-/// The box of a chart that has no better one than its expansions.
-pub const EVERYWHERE: [Point<3>; 2] = [
-    Point::<3>::new(f64::NEG_INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY),
-    Point::<3>::new(f64::INFINITY, f64::INFINITY, f64::INFINITY),
-];
-
-/// Bounds for the fields of a regular grid over `[-1, 1]^M`. Derivatives of free-form pieces peak in a corner, and one
-/// bound for the whole piece would be many times too large elsewhere.
-#[derive(Clone, Debug)]
-pub struct BoundsTable<const M: usize> {
-    fields: [usize; M],
-    bounds: Vec<Bounds<M>>,
-}
-
-impl<const M: usize> BoundsTable<M> {
-    /// The table of the moved chart.
-    pub fn moved(&self, motion: &RigidMotion) -> Self {
-        let bounds = self.bounds.iter().map(|b| Bounds { hull: motion.hull(&b.hull), ..*b }).collect();
-        BoundsTable { fields: self.fields, bounds }
-    }
-
-    /// The bounds over `middle ± half`.
-    fn over(&self, middle: &[f64; M], half: &[f64; M]) -> Bounds<M> {
-        if let [only] = &self.bounds[..] {
-            return *only;
-        }
-        let range = |k: usize| {
-            let n = self.fields[k];
-            let at = |s: f64| 0.5 * (s + 1.0) * n as f64;
-            let low = (at(middle[k] - half[k]) as usize).min(n - 1);
-            let high = (at(middle[k] + half[k]).ceil() as usize).clamp(low + 1, n);
-            low..high
-        };
-        let (first, last) = (range(0), range(M - 1));
-        let columns = if M == 1 { 0..1 } else { last };
-        let mut bounds = self.bounds[first.start * columns_of(self.fields) + columns.start];
-        for i in first {
-            for j in columns.clone() {
-                bounds = bounds.or(&self.bounds[i * columns_of(self.fields) + j]);
-            }
-        }
-        bounds
-    }
-}
-
-/// Fields per row of a table.
-fn columns_of<const M: usize>(fields: [usize; M]) -> usize {
-    if M == 1 { 1 } else { fields[M - 1] }
-}
-
 /// A smooth map from `[-1, 1]^M` to space.
 pub trait Chart<const M: usize>: Send + Sync {
     fn jet(&self, s: &[f64; M]) -> Jet2<M>;
     fn position(&self, s: &[f64; M]) -> Point<3>;
-    /// Bounds of the derivatives over `middle ± half`, which lies in the domain.
-    fn bounds(&self, middle: &[f64; M], half: &[f64; M]) -> Bounds<M>;
+    /// A box around the part over `middle ± half`, which lies in the domain, and bounds of the derivatives there.
+    fn bounds(&self, middle: &[f64; M], half: &[f64; M]) -> (Hull, Derivatives<M>);
+    /// The box around the chart, where that is at hand before its bounds are, which take long.
+    fn early_hull(&self) -> Option<Hull> {
+        None
+    }
 }
 
 /// The chart of a single point.
@@ -120,8 +42,8 @@ impl Chart<0> for PointChart {
         self.0
     }
 
-    fn bounds(&self, _: &[f64; 0], _: &[f64; 0]) -> Bounds<0> {
-        Bounds { hull: EVERYWHERE, second: [], third: [] }
+    fn bounds(&self, _: &[f64; 0], _: &[f64; 0]) -> (Hull, Derivatives<0>) {
+        (EVERYWHERE, Derivatives { second: [], third: [] })
     }
 }
 
@@ -181,7 +103,7 @@ fn is_rational(control: &[Control]) -> bool {
 
 /// Taylor coefficients (value, derivative, second derivative / 2, ...) of a vector polynomial.
 #[inline]
-fn horner_curve<const K: usize>(c: &[Control], s: f64) -> [Control; K] {
+pub(super) fn horner_curve<const K: usize>(c: &[Control], s: f64) -> [Control; K] {
     let mut out = [[0.0; 4]; K];
     for row in c.iter().rev() {
         for k in (1..K).rev() {
@@ -198,7 +120,7 @@ fn horner_curve<const K: usize>(c: &[Control], s: f64) -> [Control; K] {
 
 /// Derivatives of `P / w` from Taylor coefficients of both.
 #[inline]
-fn quotient_curve<const K: usize>(taylor: [Control; K], rational: bool) -> [Vector<3>; K] {
+pub(super) fn quotient_curve<const K: usize>(taylor: [Control; K], rational: bool) -> [Vector<3>; K] {
     let mut x = [Vector::<3>::zeros(); K];
     let mut factorial = 1.0;
     let inverse = if rational { 1.0 / taylor[0][3] } else { 1.0 };
@@ -242,87 +164,15 @@ impl Chart<1> for CurveChart {
         }
     }
 
-    fn bounds(&self, middle: &[f64; 1], half: &[f64; 1]) -> Bounds<1> {
+    fn bounds(&self, middle: &[f64; 1], half: &[f64; 1]) -> (Hull, Derivatives<1>) {
         match self {
             CurveChart::Power { bounds, .. } => bounds.over(middle, half),
             CurveChart::Harmonic { a, b, half, .. } => {
                 let r = a.norm().max(b.norm());
-                Bounds { hull: EVERYWHERE, second: [[r * half * half]], third: [[[r * half * half * half]]] }
+                (EVERYWHERE, Derivatives { second: [[r * half * half]], third: [[[r * half * half * half]]] })
             }
         }
     }
-}
-
-/// Fields in each direction of the tables of rational and of polynomial pieces of this degree.
-fn fields(degree: usize, rational: bool) -> usize {
-    match (rational, degree) {
-        (true, 2..) => 8,
-        (false, 3..) => 4,
-        _ => 1,
-    }
-}
-
-fn curve_table(control: &[Control], rational: bool) -> BoundsTable<1> {
-    let n = fields(control.len() - 1, rational);
-    let mut parts = vec![control.to_vec()];
-    while parts.len() < n {
-        parts = parts.iter().flat_map(|part| cut(part, 0.5)).collect();
-    }
-    let bounds = parts.iter().map(|part| curve_bounds(part, rational).stretched([n as f64])).collect();
-    BoundsTable { fields: [n], bounds }
-}
-
-fn surface_table(net: &Net, rational: bool) -> BoundsTable<2> {
-    let fields = net.degree.map(|degree| fields(degree, rational));
-    let mut rows = vec![net.clone()];
-    while rows.len() < fields[0] {
-        rows = rows.iter().flat_map(|part| part.cut(0, 0.5)).collect();
-    }
-    let mut bounds = Vec::with_capacity(fields[0] * fields[1]);
-    for row in rows {
-        let mut parts = vec![row];
-        while parts.len() < fields[1] {
-            parts = parts.iter().flat_map(|part| part.cut(1, 0.5)).collect();
-        }
-        bounds.extend(parts.iter().map(|part| surface_bounds(part, rational).stretched(fields.map(|n| n as f64))));
-    }
-    BoundsTable { fields, bounds }
-}
-
-/// Bounds from control nets. For a rational curve the quadratic Taylor polynomial about the middle is subtracted first
-/// (times the weight, in the numerator): what is left has small lower derivatives, and the quotient rule stays tight.
-fn curve_bounds(control: &[Control], rational: bool) -> Bounds<1> {
-    if !rational {
-        let mut net = control.to_vec();
-        let mut p = [0.0; 4];
-        for value in &mut p {
-            *value = largest(&net);
-            net = if net.len() > 1 { derivative(&net) } else { vec![[0.0; 4]] };
-        }
-        return Bounds { hull: hull(control), second: [[p[2]]], third: [[[p[3]]]] };
-    }
-    let [x, d, dd, _] = quotient_curve(horner_curve::<4>(&powers(control), 0.0), true);
-    let mut numerator = times_power(control, 0);
-    for (power, term) in [x, d, dd * 0.5].iter().enumerate() {
-        for (value, c) in numerator.iter_mut().zip(times_power(control, power)) {
-            for k in 0..3 {
-                value[k] -= term[k] * c[3];
-            }
-        }
-    }
-    let w_min = control.iter().map(|c| c[3]).fold(f64::INFINITY, f64::min);
-    let mut p = [0.0; 4];
-    let mut w = [0.0; 4];
-    for k in 0..4 {
-        p[k] = largest(&numerator);
-        w[k] = largest_weight(&numerator);
-        numerator = derivative(&numerator);
-    }
-    let x0 = p[0] / w_min;
-    let x1 = (p[1] + w[1] * x0) / w_min;
-    let x2 = (p[2] + 2.0 * w[1] * x1 + w[2] * x0) / w_min;
-    let x3 = (p[3] + 3.0 * w[1] * x2 + 3.0 * w[2] * x1 + w[3] * x0) / w_min;
-    Bounds { hull: hull(control), second: [[dd.norm() + x3.min(x2)]], third: [[[x3]]] }
 }
 
 /// A surface piece.
@@ -334,7 +184,7 @@ pub enum SurfaceChart {
     /// `g = g0 + g1 v + g2 sin v`: cylinder, cone, sphere, ellipsoid, torus.
     Quadric { origin: Point<3>, axes: [Vector<3>; 3], f: [f64; 3], g: [f64; 3], middle: [f64; 2], half: [f64; 2] },
     /// A profile curve (second parameter) turned about an axis by the angle `u = middle + half s`.
-    Revolved { origin: Point<3>, axis: Vector<3>, profile: CurveChart, middle: f64, half: f64, bounds: Bounds<2> },
+    Revolved { origin: Point<3>, axis: Vector<3>, profile: CurveChart, middle: f64, half: f64, bounds: Derivatives<2> },
 }
 
 /// Position and partial derivatives to third order of a surface.
@@ -362,7 +212,7 @@ impl SurfaceChart {
 
     pub fn revolved(origin: Point<3>, axis: Vector<3>, profile: CurveChart, middle: f64, half: f64) -> Self {
         // |r_perp| and |P'| over the profile from its Taylor expansion at the middle.
-        let bounds = profile.bounds(&[0.0], &[1.0]);
+        let (_, bounds) = profile.bounds(&[0.0], &[1.0]);
         let second = bounds.second[0][0];
         let [x, d, _, _] = profile.jet3(0.0);
         let third = bounds.third[0][0][0];
@@ -373,8 +223,7 @@ impl SurfaceChart {
         let uu = radius * h * h;
         let uuv = speed * h * h;
         let uvv = second * h;
-        let bounds = Bounds {
-            hull: EVERYWHERE,
+        let bounds = Derivatives {
             second: [[uu, speed * h], [speed * h, second]],
             third: [[[uu * h, uuv], [uuv, uvv]], [[uuv, uvv], [uvv, third]]],
         };
@@ -442,7 +291,7 @@ impl SurfaceChart {
 
 /// Taylor coefficients `out[a][b]` of order `a` in the first and `b` in the second parameter, `a + b < K`.
 #[inline]
-fn horner_surface<const K: usize>(degree: [usize; 2], c: &[Control], s: &[f64; 2]) -> [[Control; K]; K] {
+pub(super) fn horner_surface<const K: usize>(degree: [usize; 2], c: &[Control], s: &[f64; 2]) -> [[Control; K]; K] {
     let mut out = [[[0.0; 4]; K]; K];
     for row in c.chunks_exact(degree[1] + 1).rev() {
         let r = horner_curve::<K>(row, s[1]);
@@ -464,7 +313,7 @@ fn horner_surface<const K: usize>(degree: [usize; 2], c: &[Control], s: &[f64; 2
 
 /// Taylor coefficients of `P / w`.
 #[inline]
-fn quotient_surface<const K: usize>(t: &[[Control; K]; K], rational: bool) -> [[Vector<3>; K]; K] {
+pub(super) fn quotient_surface<const K: usize>(t: &[[Control; K]; K], rational: bool) -> [[Vector<3>; K]; K] {
     let mut x = [[Vector::<3>::zeros(); K]; K];
     let inverse = if rational { 1.0 / t[0][0][3] } else { 1.0 };
     for order in 0..K {
@@ -511,10 +360,10 @@ impl Chart<2> for SurfaceChart {
         }
     }
 
-    fn bounds(&self, middle: &[f64; 2], half: &[f64; 2]) -> Bounds<2> {
+    fn bounds(&self, middle: &[f64; 2], half: &[f64; 2]) -> (Hull, Derivatives<2>) {
         match self {
             SurfaceChart::Power { bounds, .. } => bounds.over(middle, half),
-            SurfaceChart::Revolved { bounds, .. } => *bounds,
+            SurfaceChart::Revolved { bounds, .. } => (EVERYWHERE, *bounds),
             SurfaceChart::Quadric { axes, f, g, middle, half, .. } => {
                 let [h, k] = *half;
                 let v = middle[1].abs() + k;
@@ -531,12 +380,19 @@ impl Chart<2> for SurfaceChart {
                 let uv = radial * f1 * h * k;
                 let vv = (radial * f2).hypot(g2) * k * k;
                 let (uuv, uvv) = (radial * f1 * h * h * k, radial * f2 * h * k * k);
-                Bounds {
-                    hull: EVERYWHERE,
+                let bounds = Derivatives {
                     second: [[uu, uv], [uv, vv]],
                     third: [[[uu * h, uuv], [uuv, uvv]], [[uuv, uvv], [uvv, (radial * f3).hypot(g3) * k * k * k]]],
-                }
+                };
+                (EVERYWHERE, bounds)
             }
+        }
+    }
+
+    fn early_hull(&self) -> Option<Hull> {
+        match self {
+            SurfaceChart::Power { bounds, .. } if bounds.is_divided() => Some(bounds.hull()),
+            _ => None,
         }
     }
 }
@@ -549,67 +405,4 @@ fn largest_cosine(middle: f64, half: f64) -> f64 {
 
 fn largest_sine(middle: f64, half: f64) -> f64 {
     largest_cosine(middle - std::f64::consts::FRAC_PI_2, half)
-}
-
-/// See [`curve_bounds`].
-fn surface_bounds(net: &Net, rational: bool) -> Bounds<2> {
-    let mut numerator = net.clone();
-    let mut centre = [0.0; 3];
-    if rational {
-        let t = quotient_surface(&horner_surface::<3>(net.degree, &net.powers().control, &[0.0; 2]), true);
-        let powers = [0, 1, 2].map(|a| net.times_power(0, a));
-        let less = |value: &mut Control, t: &Vector<3>, c: &Control| (0..3).for_each(|k| value[k] -= t[k] * c[3]);
-        // Sorted by the power of the second parameter.
-        let mut parts = [powers[0].clone(), powers[0].clone(), powers[0].clone()];
-        parts[1..].iter_mut().for_each(|part| part.control.fill([0.0; 4]));
-        for (b, part) in parts.iter_mut().enumerate() {
-            for a in 0..3 - b {
-                part.control.iter_mut().zip(&powers[a].control).for_each(|(value, c)| less(value, &t[a][b], c));
-            }
-        }
-        let [mut first, second, third] = [0, 1, 2].map(|b| parts[b].times_power(1, b));
-        for (value, (p, q)) in first.control.iter_mut().zip(second.control.iter().zip(&third.control)) {
-            (0..3).for_each(|k| value[k] += p[k] + q[k]);
-        }
-        numerator = first;
-        centre = [2.0 * t[2][0].norm(), t[1][1].norm(), 2.0 * t[0][2].norm()];
-    }
-    let w_min = net.control.iter().map(|c| c[3]).fold(f64::INFINITY, f64::min);
-    let mut p = [[0.0; 4]; 4];
-    let mut w = [[0.0; 4]; 4];
-    let mut along = numerator;
-    for a in 0..4 {
-        let mut net = along.clone();
-        for b in 0..4 - a {
-            p[a][b] = largest(&net.control);
-            w[a][b] = largest_weight(&net.control);
-            net = net.derivative(1);
-        }
-        along = along.derivative(0);
-    }
-    let mut x = p;
-    if rational {
-        x[0][0] = p[0][0] / w_min;
-        let binomial = [[1.0, 0.0, 0.0, 0.0], [1.0, 1.0, 0.0, 0.0], [1.0, 2.0, 1.0, 0.0], [1.0, 3.0, 3.0, 1.0]];
-        for order in 1..4 {
-            for a in 0..=order {
-                let b = order - a;
-                let mut sum = p[a][b];
-                for i in 0..=a {
-                    for j in 0..=b {
-                        if i + j < order {
-                            sum += binomial[a][i] * binomial[b][j] * w[a - i][b - j] * x[i][j];
-                        }
-                    }
-                }
-                x[a][b] = sum / w_min;
-            }
-        }
-    }
-    let second = [x[2][0] + centre[0], x[1][1] + centre[1], x[0][2] + centre[2]];
-    Bounds {
-        hull: hull(&net.control),
-        second: [[second[0], second[1]], [second[1], second[2]]],
-        third: [[[x[3][0], x[2][1]], [x[2][1], x[1][2]]], [[x[2][1], x[1][2]], [x[1][2], x[0][3]]]],
-    }
 }

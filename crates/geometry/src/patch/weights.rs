@@ -5,7 +5,8 @@
 //! weights is the best in the sense of least squares. Halving a piece in its even parameter halves what is left of the
 //! logarithms, so that a few cuts make any weights even.
 
-use super::bernstein::{Control, Net};
+use super::bernstein::Control;
+use super::net::Net;
 
 /// How many times the least weight of a line of control points the largest may be. Bounds of a rational piece grow with
 /// a power of this, pieces become more as it falls.

@@ -56,8 +56,8 @@ impl Shape {
         let hull = |hull: &[Point<3>; 2]| Aabb::new(hull[0], hull[1]);
         match self {
             Shape::Point(p) => Aabb::new(*p, *p),
-            Shape::Curve(c) => hull(&c.atlas.nodes[0].hull),
-            Shape::Surface(s) => hull(&s.atlas.nodes[0].hull),
+            Shape::Curve(c) => hull(c.atlas.hull()),
+            Shape::Surface(s) => hull(s.atlas.hull()),
             Shape::Mesh(m) => *m.bounds(),
             Shape::Implicit(s) => *s.mesh().bounds(),
         }

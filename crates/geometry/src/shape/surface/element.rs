@@ -3,7 +3,8 @@
 use super::grid::{bezier_grid, control_net};
 use super::{Surface, SurfaceKind};
 use crate::Point;
-use crate::patch::bernstein::{Control, MAX_DEGREE, Net, combine};
+use crate::patch::bernstein::{Control, MAX_DEGREE, combine};
+use crate::patch::net::Net;
 use crate::patch::{Atlas, Border, ParameterMap, Piece, Side, SurfaceChart};
 use crate::shape::curve::homogeneous;
 use crate::shape::error::{ShapeError, position};

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use super::grid::bezier_grid;
 use super::{Parts, Surface, SurfaceKind};
 use crate::patch::SurfaceChart;
-use crate::patch::bernstein::Net;
+use crate::patch::net::Net;
 use crate::shape::Curve;
 use crate::shape::curve::{closed_range, homogeneous};
 use crate::shape::error::{Axes, ShapeError, interval, number, position, positive};

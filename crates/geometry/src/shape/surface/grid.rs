@@ -3,7 +3,7 @@
 use super::Parts;
 use crate::Point;
 use crate::patch::SurfaceChart;
-use crate::patch::bernstein::Net;
+use crate::patch::net::Net;
 use crate::patch::weights::even_middle;
 use crate::shape::curve::{DEEPEST, homogeneous, is_high};
 use crate::shape::error::{ShapeError, position, weight};

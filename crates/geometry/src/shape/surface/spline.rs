@@ -4,7 +4,8 @@ use super::grid::{bezier_grid, control_net};
 use super::{Surface, SurfaceKind};
 use crate::Point;
 use crate::patch::Chart;
-use crate::patch::bernstein::{Control, MAX_DEGREE, Net, bezier_spans};
+use crate::patch::bernstein::{Control, MAX_DEGREE, bezier_spans};
+use crate::patch::net::Net;
 use crate::shape::error::{Axes, ShapeError, knots, number, positive};
 
 impl Surface {

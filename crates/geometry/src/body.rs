@@ -1,7 +1,8 @@
 //! Bodies made of many shapes: the closest pair between two of them, and the pairs that may come to touch.
 
 use crate::bvh::Bvh;
-use crate::closest::{Projection, Query, closest, scaled_norm};
+use crate::closest::{Projection, Query, closest};
+use crate::scale::length;
 use crate::shape::Shape;
 use crate::{Aabb, Point};
 
@@ -56,7 +57,7 @@ impl Body {
         self.bvh.nearest_pairs(&other.bvh, f64::INFINITY, |i, j| {
             let limit = best.as_ref().map_or(f64::INFINITY, |b| b.projection.distance());
             let apart = (self.boxes[i].min - other.boxes[j].max).sup(&(other.boxes[j].min - self.boxes[i].max));
-            if scaled_norm(&apart.map(|x| x.max(0.0))) > limit {
+            if length(&apart.map(|x| x.max(0.0))) > limit {
                 return limit * limit;
             }
             offer(&mut best, [i, j], || closest(&self.shapes[i], &other.shapes[j], query))

@@ -11,10 +11,11 @@ use std::sync::Arc;
 
 use triangulate::triangulate;
 
-use crate::closest::{FeatureKind, scaled_norm};
+use crate::closest::FeatureKind;
 use crate::grid_spline::GridSpline;
 use crate::jet::Jet;
 use crate::mesh::TriangleMesh;
+use crate::scale::length;
 use crate::shape::ShapeError;
 use crate::{Aabb, Matrix, Point, Vector};
 
@@ -181,7 +182,7 @@ impl ImplicitSurface {
                 if self.body.value(&y).abs() > 1e-9 * size * gradient_scale(&leaves, &set, &y) {
                     continue;
                 }
-                let distance = scaled_norm(&(x - y));
+                let distance = length(&(x - y));
                 if found.iter().all(|(_, p, _)| (p - y).norm() > 1e-7 * size) {
                     found.push((distance, y, set));
                 }

@@ -38,7 +38,9 @@ pub(crate) mod patch;
 pub mod polygon;
 pub mod rigid;
 pub mod rule;
+mod scale;
 pub mod shape;
+mod similarity;
 pub mod spline;
 
 pub use aabb::Aabb;

@@ -8,6 +8,7 @@ use std::sync::OnceLock;
 use crate::bvh::Bvh;
 use crate::closest::{Entity, Feature, FeatureKind, closest_on_triangle, segment_parameters};
 use crate::patch::{Atlas, Border, SurfaceChart};
+use crate::scale::unit_for;
 use crate::shape::{ShapeError, Surface};
 use crate::{Aabb, Point, Vector};
 
@@ -207,6 +208,11 @@ impl TriangleMesh {
         self.bvh.bounds()
     }
 
+    /// The largest coordinate.
+    pub(crate) fn magnitude(&self) -> f64 {
+        self.magnitude
+    }
+
     /// Diagonal of the bounding box.
     pub fn size(&self) -> f64 {
         self.bvh.bounds().size().norm()
@@ -334,13 +340,6 @@ impl TriangleMesh {
             Atlas::new(pieces)
         })
     }
-}
-
-/// The power of two that brings coordinates near one where products of four to eight of them would leave the range of
-/// doubles; one elsewhere, where it would change nothing.
-fn unit_for(magnitude: f64) -> f64 {
-    let safe = magnitude == 0.0 || (1e-30..=1e30).contains(&magnitude);
-    if safe { 1.0 } else { 2f64.powi(-(magnitude.log2().round() as i32)) }
 }
 
 /// A closest pair of points of two meshes.

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::patch::{Atlas, CurveChart, Piece, SurfaceChart};
-use crate::shape::{Axes, Curve, CurveKind, Shape, Surface, SurfaceKind};
+use crate::shape::{Curve, Shape, Surface};
+use crate::similarity::Similarity;
 use crate::{Matrix, Point, Vector};
 
 /// A rotation followed by a translation.
@@ -30,113 +30,23 @@ impl RigidMotion {
         self.rotation * v
     }
 
-    /// The box around a moved box.
-    pub(crate) fn hull(&self, [low, high]: &[Point<3>; 2]) -> [Point<3>; 2] {
-        let (middle, half) = (self.point(&((low + high) * 0.5)), self.rotation.abs() * ((high - low) * 0.5));
-        [middle - half, middle + half]
-    }
-
-    fn axes(&self, a: &Axes) -> Axes {
-        Axes { origin: self.point(&a.origin), ex: self.vector(&a.ex), ey: self.vector(&a.ey), ez: self.vector(&a.ez) }
-    }
-
-    /// Homogeneous coefficients of powers: the weight of each carries the translation.
-    fn coefficients(&self, c: &[[f64; 4]], rational: bool) -> Vec<[f64; 4]> {
-        c.iter()
-            .enumerate()
-            .map(|(k, c)| {
-                let x = self.rotation * Vector::<3>::new(c[0], c[1], c[2]);
-                // Without weights the function is one, whose only power is the first.
-                let w = if rational { c[3] } else { f64::from(u8::from(k == 0)) };
-                let x = x + self.translation * w;
-                [x.x, x.y, x.z, c[3]]
-            })
-            .collect()
-    }
-
-    fn curve_chart(&self, chart: &CurveChart) -> CurveChart {
-        match chart {
-            CurveChart::Power { coefficients, rational, bounds } => CurveChart::Power {
-                coefficients: self.coefficients(coefficients, *rational),
-                rational: *rational,
-                bounds: bounds.moved(self),
-            },
-            CurveChart::Harmonic { origin, a, b, c, middle, half } => CurveChart::Harmonic {
-                origin: self.point(origin),
-                a: self.vector(a),
-                b: self.vector(b),
-                c: self.vector(c),
-                middle: *middle,
-                half: *half,
-            },
-        }
-    }
-
-    fn surface_chart(&self, chart: &SurfaceChart) -> SurfaceChart {
-        match chart {
-            SurfaceChart::Power { degree, coefficients, rational, bounds } => SurfaceChart::Power {
-                degree: *degree,
-                coefficients: self.coefficients(coefficients, *rational),
-                rational: *rational,
-                bounds: bounds.moved(self),
-            },
-            SurfaceChart::Quadric { origin, axes, f, g, middle, half } => SurfaceChart::Quadric {
-                origin: self.point(origin),
-                axes: axes.map(|a| self.vector(&a)),
-                f: *f,
-                g: *g,
-                middle: *middle,
-                half: *half,
-            },
-            SurfaceChart::Revolved { origin, axis, profile, middle, half, bounds } => SurfaceChart::Revolved {
-                origin: self.point(origin),
-                axis: self.vector(axis),
-                profile: self.curve_chart(profile),
-                middle: *middle,
-                half: *half,
-                bounds: *bounds,
-            },
-        }
+    fn similarity(&self) -> Similarity {
+        Similarity { factor: 1.0, rotation: self.rotation, translation: self.translation }
     }
 
     /// A moved curve.
     pub fn curve(&self, c: &Curve) -> Curve {
-        let kind = match &c.kind {
-            CurveKind::Segment { p0, p1 } => CurveKind::Segment { p0: self.point(p0), p1: self.point(p1) },
-            CurveKind::Circle { axes, radius } => CurveKind::Circle { axes: self.axes(axes), radius: *radius },
-            CurveKind::Ellipse { axes, a, b } => CurveKind::Ellipse { axes: self.axes(axes), a: *a, b: *b },
-            CurveKind::Other => CurveKind::Other,
-        };
-        let pieces = moved(&c.atlas.pieces, |chart| self.curve_chart(chart));
-        c.with(kind, Atlas::new(pieces))
+        self.similarity().curve(c)
     }
 
     /// A moved surface.
     pub fn surface(&self, s: &Surface) -> Surface {
-        let kind = match &s.kind {
-            SurfaceKind::Plane { axes } => SurfaceKind::Plane { axes: self.axes(axes) },
-            SurfaceKind::Cylinder { axes, radius } => SurfaceKind::Cylinder { axes: self.axes(axes), radius: *radius },
-            SurfaceKind::Cone { axes, sin, cos } => SurfaceKind::Cone { axes: self.axes(axes), sin: *sin, cos: *cos },
-            SurfaceKind::Sphere { axes, radius } => SurfaceKind::Sphere { axes: self.axes(axes), radius: *radius },
-            SurfaceKind::Ellipsoid { axes, semi_axes } => {
-                SurfaceKind::Ellipsoid { axes: self.axes(axes), semi_axes: *semi_axes }
-            }
-            SurfaceKind::Torus { axes, major, minor } => {
-                SurfaceKind::Torus { axes: self.axes(axes), major: *major, minor: *minor }
-            }
-            SurfaceKind::Triangle { nodes } => SurfaceKind::Triangle { nodes: nodes.map(|n| self.point(&n)) },
-            SurfaceKind::Other => SurfaceKind::Other,
-        };
-        let pieces = moved(&s.atlas.pieces, |chart| self.surface_chart(chart));
-        s.with(kind, Atlas::new(pieces), |chart| self.surface_chart(chart))
+        self.similarity().surface(s)
     }
 
     /// A moved shape. An implicit surface keeps its functions and cannot be moved: `None`.
     pub fn shape(&self, shape: &Shape) -> Option<Shape> {
         Some(match shape {
-            Shape::Point(p) => Shape::Point(self.point(p)),
-            Shape::Curve(c) => self.curve(c).into(),
-            Shape::Surface(s) => self.surface(s).into(),
             Shape::Mesh(m) => {
                 let mut mesh = m.as_ref().clone();
                 mesh.move_vertices(m.vertices().iter().map(|v| self.point(v)).collect()).ok()?;
@@ -147,19 +57,16 @@ impl RigidMotion {
             {
                 Shape::Implicit(Arc::clone(s))
             }
-            Shape::Implicit(_) => return None,
+            _ => return self.similarity().shape(shape),
         })
     }
-}
-
-fn moved<const M: usize, C>(pieces: &[Piece<M, C>], chart: impl Fn(&C) -> C) -> Vec<Piece<M, C>> {
-    pieces.iter().map(|p| Piece { chart: chart(&p.chart), map: p.map.clone(), sides: p.sides }).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::closest::{Query, closest};
+    use crate::shape::Axes;
 
     #[test]
     fn moving_both_partners_changes_no_distance() {

@@ -1,10 +1,11 @@
 //! From minimisers to an answer: names of features, uniqueness, continua.
 
+use super::Query;
 use super::newton::Difference;
 use super::result::{ClosestPair, Entity, Feature, FeatureKind, Foot, Projection, Uniqueness};
 use super::search::{Candidate, Found};
-use super::{Query, scaled_norm};
 use crate::patch::{Atlas, Chart, CurveChart, Piece, PointChart, Side, SurfaceChart};
+use crate::scale::length;
 
 /// Pieces that can say on which feature of the shape a local parameter lies.
 pub trait Named<const M: usize> {
@@ -75,9 +76,8 @@ where
     Piece<B, CB>: Named<B>,
 {
     let describe = |c: &Candidate<A, B>| describe::<A, B, N, CA, CB>(a, b, c);
-    let apart = |p: &ClosestPair, q: &ClosestPair| {
-        scaled_norm(&(p.a.point - q.a.point)).max(scaled_norm(&(p.b.point - q.b.point)))
-    };
+    let apart =
+        |p: &ClosestPair, q: &ClosestPair| length(&(p.a.point - q.a.point)).max(length(&(p.b.point - q.b.point)));
     // Where the Hessian is singular or undefined, rounding leaves the minimiser this uncertain.
     let same = |p: &ClosestPair, q: &ClosestPair| {
         let least = p.lambda_min.min(q.lambda_min);

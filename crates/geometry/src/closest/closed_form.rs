@@ -6,10 +6,11 @@
 
 use std::f64::consts::{PI, TAU};
 
+use super::Query;
 use super::ellipsoid;
 use super::result::{ClosestPair, Entity, Feature, FeatureKind, Foot, Projection, Uniqueness};
-use super::{Query, scaled_norm};
 use crate::patch::Border;
+use crate::scale::length;
 use crate::shape::{Axes, Curve, CurveKind, Surface, SurfaceKind};
 use crate::{Point, Vector};
 
@@ -19,7 +20,7 @@ type Candidate = (Foot, f64);
 /// Picks the best of a complete set of candidates; `dimension` is that of the continuum around the best, if any.
 pub(super) fn settle(p: &Point<3>, candidates: &[Candidate], dimension: usize, size: f64, query: &Query) -> Projection {
     let pair = |(foot, lambda_min): &Candidate| ClosestPair {
-        distance: scaled_norm(&(foot.point - p)),
+        distance: length(&(foot.point - p)),
         a: Foot::of_point(*p),
         b: *foot,
         lambda_min: *lambda_min,
@@ -37,7 +38,7 @@ pub(super) fn settle(p: &Point<3>, candidates: &[Candidate], dimension: usize, s
             // At a centre of curvature rounding alone separates what is one foot.
             let same = |x: &ClosestPair| {
                 let radius = if x.lambda_min.min(other.lambda_min) < 1e-3 { 2e-2 } else { 1e-9 };
-                scaled_norm(&(x.b.point - other.b.point)) <= radius * size
+                length(&(x.b.point - other.b.point)) <= radius * size
             };
             if other.distance <= best.distance + tie && !same(&best) && !others.iter().any(same) {
                 others.push(other);
@@ -326,7 +327,7 @@ fn revolution(p: &Point<3>, surface: &Surface, axes: &Axes, profile: &Profile, q
             if v_free || free_v {
                 lambda = lambda.min(lambda_v);
             }
-            let distance = scaled_norm(&(point - p));
+            let distance = length(&(point - p));
             if distance < best.0 {
                 best = (distance, usize::from(free_v) + usize::from(on_axis && !collapses && f != 0.0));
                 // The centre of a sphere: the angle is free wherever the latitude is.
@@ -429,7 +430,7 @@ fn segments([p0, p1]: &[Point<3>; 2], [q0, q1]: &[Point<3>; 2], size: f64) -> Pr
     let pair = |s: f64, t: f64, lambda_min: f64| {
         let (x, y) = (along(p0, p1, s), along(q0, q1, t));
         ClosestPair {
-            distance: scaled_norm(&(x - y)),
+            distance: length(&(x - y)),
             a: Foot::new(x, end_feature(s, [0.0, 1.0], false), &[s]),
             b: Foot::new(y, end_feature(t, [0.0, 1.0], false), &[t]),
             lambda_min,

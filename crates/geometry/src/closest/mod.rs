@@ -13,6 +13,7 @@ mod ellipsoid;
 mod hessian;
 mod newton;
 mod result;
+mod scaled;
 mod search;
 mod track;
 
@@ -22,12 +23,12 @@ pub use result::{Certificate, ClosestPair, Entity, Feature, FeatureKind, Foot, P
 pub(crate) use track::clearance_of;
 pub use track::{Step, Tracker};
 
-use crate::frame::SurfaceFrame;
+use crate::Point;
 use crate::implicit_surface::ImplicitSurface;
 use crate::mesh::TriangleMesh;
 use crate::patch::{Atlas, Chart, Piece, PointChart};
+use crate::scale::{direction, length};
 use crate::shape::Shape;
-use crate::{Point, Vector};
 use classify::{Named, projection};
 use rayon::prelude::*;
 use search::{Effort, search};
@@ -80,6 +81,11 @@ pub fn closest_pairs(a: &[Shape], b: &[Shape], pairs: &[(usize, usize)], query: 
 /// assert!((answer.distance() - 5.0).abs() < 1e-15);
 /// ```
 pub fn closest(a: &Shape, b: &Shape, query: &Query) -> Projection {
+    scaled::closest(a, b, query).unwrap_or_else(|| closest_near_one(a, b, query))
+}
+
+/// See [`closest`], with coordinates of which products stay in the range of doubles.
+fn closest_near_one(a: &Shape, b: &Shape, query: &Query) -> Projection {
     match (a, b) {
         (Shape::Point(p), Shape::Point(q)) => point_point(p, q),
         (Shape::Point(p), Shape::Curve(c)) => closed_form::point_curve(p, c, query)
@@ -147,7 +153,13 @@ pub fn signed_gap(pair: &ClosestPair, b: &Shape) -> Option<f64> {
     let side = match b {
         Shape::Surface(s) => {
             let &[u, v] = pair.b.parameters() else { return None };
-            d.dot(&SurfaceFrame::new(&s.jet(u, v))?.normal)
+            let jet = s.jet(u, v);
+            let normal = direction(&jet.u)?.cross(&direction(&jet.v)?);
+            // Parallel to rounding: the surface has no normal there.
+            if normal.norm() <= 1e-12 {
+                return None;
+            }
+            d.dot(&normal)
         }
         Shape::Mesh(m) => {
             let normal = m.normal_at(pair.b.element, pair.b.feature);
@@ -192,21 +204,9 @@ fn point_atlas(p: &Point<3>) -> Atlas<0, PointChart> {
     Atlas::new(vec![Piece::new(PointChart(*p), map, [])])
 }
 
-/// The length of a vector without overflow or underflow.
-pub(crate) fn scaled_norm(d: &Vector<3>) -> f64 {
-    let largest = d.amax();
-    if largest == 0.0 || !largest.is_finite() { largest } else { largest * (d / largest).norm() }
-}
-
-/// The direction of a vector without overflow or underflow.
-pub(crate) fn scaled_direction(d: &Vector<3>) -> Option<Vector<3>> {
-    let largest = d.amax();
-    (largest > 0.0).then(|| (d / largest).normalize())
-}
-
 fn point_point(p: &Point<3>, q: &Point<3>) -> Projection {
     let closest = ClosestPair {
-        distance: scaled_norm(&(p - q)),
+        distance: length(&(p - q)),
         a: Foot::of_point(*p),
         b: Foot::of_point(*q),
         lambda_min: f64::INFINITY,
@@ -232,16 +232,8 @@ where
         most_pairs: [0, 3_000, 6_000, 15_000, 40_000][N],
         magnitude,
     };
-    let found = projection::<A, B, N, CA, CB>(a, b, query, size, search::<A, B, N, CA, CB>(a, b, effort));
-    let largest = a.magnitude.max(b.magnitude);
-    if largest == 0.0 || SEARCHED.contains(&largest) {
-        return found;
-    }
-    Projection { certificate: Certificate::Stopped, certified_to: found.distance(), ..found }
+    projection::<A, B, N, CA, CB>(a, b, query, size, search::<A, B, N, CA, CB>(a, b, effort))
 }
-
-/// Coordinates of which products of four stay in the range of doubles: bounds of a search need them.
-const SEARCHED: std::ops::RangeInclusive<f64> = 1e-70..=1e70;
 
 #[cfg(test)]
 mod tests {

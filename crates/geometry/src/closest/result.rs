@@ -133,6 +133,15 @@ impl Foot {
         Self::new(point, Feature::POINT, &[])
     }
 
+    /// The foot in coordinates this many times as large, as are the parameters that are lengths.
+    pub(crate) fn scaled(mut self, factor: f64, lengths: [bool; 2]) -> Self {
+        self.point *= factor;
+        for (parameter, _) in self.parameters.iter_mut().zip(lengths).filter(|(_, is_length)| *is_length) {
+            *parameter *= factor;
+        }
+        self
+    }
+
     /// As many numbers as the shape has parameters.
     pub fn parameters(&self) -> &[f64] {
         &self.parameters[..self.dimension]
@@ -154,7 +163,7 @@ pub struct ClosestPair {
 impl ClosestPair {
     /// Unit vector from the closest point of `b` to that of `a`; `None` where they coincide.
     pub fn direction(&self) -> Option<Vector<3>> {
-        crate::closest::scaled_direction(&(self.a.point - self.b.point))
+        crate::scale::direction(&(self.a.point - self.b.point))
     }
 
     pub(crate) fn swapped(self) -> Self {

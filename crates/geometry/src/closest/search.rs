@@ -362,13 +362,13 @@ impl<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>
         let (a, b) = (self.a.cell(pair.a), self.b.cell(pair.b));
         // What is straight gains little from halving.
         let weight = |radius: f64, rho: f64, group: bool, width: bool| {
-            if group {
-                f64::MAX.min(1e30 * (1.0 + radius))
-            } else if !width {
-                -1.0
-            } else {
-                radius - 0.5 * f64::from(u8::from(rho == 0.0)) * radius
-            }
+            let weight = match width {
+                _ if group => radius,
+                false => -1.0,
+                true => radius - 0.5 * f64::from(u8::from(rho == 0.0)) * radius,
+            };
+            // Groups first.
+            (group, weight)
         };
         let width_a = a.half.iter().any(|&h| h > 0.0);
         let width_b = b.half.iter().any(|&h| h > 0.0);

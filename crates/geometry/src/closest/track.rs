@@ -11,6 +11,7 @@ use super::bounds::{PairExpansion, box_bound};
 use super::classify::{Named, describe};
 use super::newton::minimise;
 use super::result::Certificate as CertificateOfSearch;
+use super::scaled::unit_of;
 use super::search::{Candidate, Pair, Partner, held};
 use super::{ClosestPair, Projection, Query, Uniqueness, closest, point_atlas, swapped};
 use crate::Point;
@@ -91,7 +92,8 @@ impl Tracker {
             let (projection, step) = self.closest(b, a, [motion[1], motion[0]]);
             return (swapped(projection), step);
         }
-        if self.query.local_minima {
+        // The bounds of certificates are products of lengths.
+        if self.query.local_minima || unit_of(a, b) != 1.0 {
             return (closest(a, b, &self.query), Step::Cold);
         }
         let warm = match (&mut self.certificate, a, b) {
@@ -157,6 +159,9 @@ pub(crate) fn clearance_of(p: &Point<3>, shape: &Shape, found: &ClosestPair) -> 
             most *= 0.7;
         }
         0.0
+    }
+    if unit_of(&Shape::Point(*p), shape) != 1.0 {
+        return 0.0;
     }
     let mut found = *found;
     match shape {

@@ -5,7 +5,8 @@
 //! the winding number is: how often a ray leaves through the mesh, less how often it enters. Shells that overlap make
 //! the union of what they hold; a shell turned inwards takes a cavity away.
 
-use super::{TriangleMesh, triangle_box, triangle_triangle, unit_for};
+use super::{TriangleMesh, triangle_box, triangle_triangle};
+use crate::scale::unit_for;
 use crate::{Point, Vector};
 
 /// How a mesh tells the side of a point.

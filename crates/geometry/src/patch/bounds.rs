@@ -3,7 +3,7 @@
 use super::bernstein::{Control, cut, derivative, hull, largest, largest_weight, powers, times_power};
 use super::chart::{horner_curve, horner_surface, quotient_curve, quotient_surface};
 use super::net::Net;
-use crate::rigid::RigidMotion;
+use crate::similarity::Similarity;
 use crate::{Point, Vector};
 use std::array::from_fn;
 use std::sync::{Arc, LazyLock};
@@ -21,6 +21,14 @@ impl<const M: usize> Derivatives<M> {
         Derivatives {
             second: from_fn(|a| from_fn(|b| self.second[a][b].max(other.second[a][b]))),
             third: from_fn(|a| from_fn(|b| from_fn(|c| self.third[a][b][c].max(other.third[a][b][c])))),
+        }
+    }
+
+    /// The bounds of a chart this many times as large.
+    pub fn times(&self, factor: f64) -> Self {
+        Derivatives {
+            second: self.second.map(|row| row.map(|x| x * factor)),
+            third: self.third.map(|rows| rows.map(|row| row.map(|x| x * factor))),
         }
     }
 
@@ -59,16 +67,18 @@ pub struct BoundsTable<const M: usize> {
     fields: [usize; M],
     hulls: Vec<Hull>,
     /// Made when they are first asked for: they take most of the time to build a shape, and a query that looks at a few
-    /// pieces needs those of the few. They do not change as the chart moves.
+    /// pieces needs those of the few. They do not change as the chart moves, and grow with it by the factor.
     derivatives: Arc<LazyLock<Vec<Derivatives<M>>, Later<M>>>,
+    factor: f64,
 }
 
 type Later<const M: usize> = Box<dyn FnOnce() -> Vec<Derivatives<M>> + Send>;
 
 impl<const M: usize> BoundsTable<M> {
     /// The table of the moved chart.
-    pub fn moved(&self, motion: &RigidMotion) -> Self {
-        BoundsTable { hulls: self.hulls.iter().map(|h| motion.hull(h)).collect(), ..self.clone() }
+    pub fn moved(&self, motion: &Similarity) -> Self {
+        let hulls = self.hulls.iter().map(|h| motion.hull(h)).collect();
+        BoundsTable { hulls, factor: self.factor * motion.factor, ..self.clone() }
     }
 
     /// The box around all fields.
@@ -84,7 +94,7 @@ impl<const M: usize> BoundsTable<M> {
     /// The bounds over `middle ± half`.
     pub(super) fn over(&self, middle: &[f64; M], half: &[f64; M]) -> (Hull, Derivatives<M>) {
         if !self.is_divided() {
-            return (self.hulls[0], self.derivatives[0]);
+            return (self.hulls[0], self.derivatives[0].times(self.factor));
         }
         let range = |k: usize| {
             let n = self.fields[k];
@@ -96,11 +106,12 @@ impl<const M: usize> BoundsTable<M> {
         let per_row = if M == 1 { 1 } else { self.fields[M - 1] };
         let columns = if M == 1 { 0..1 } else { range(M - 1) };
         let derivatives: &[Derivatives<M>] = &self.derivatives;
-        range(0)
+        let (hull, bounds) = range(0)
             .flat_map(|i| columns.clone().map(move |j| i * per_row + j))
             .map(|field| (self.hulls[field], derivatives[field]))
             .reduce(|a, b| (around(&a.0, &b.0), a.1.or(&b.1)))
-            .expect("one field at least")
+            .expect("one field at least");
+        (hull, bounds.times(self.factor))
     }
 }
 
@@ -122,7 +133,7 @@ pub(super) fn curve_table(control: &[Control], rational: bool) -> BoundsTable<1>
     let hulls = parts.iter().map(|part| hull(part)).collect();
     let later: Later<1> =
         Box::new(move || parts.iter().map(|part| curve_bounds(part, rational).stretched([n as f64])).collect());
-    BoundsTable { fields: [n], hulls, derivatives: Arc::new(LazyLock::new(later)) }
+    BoundsTable { fields: [n], hulls, derivatives: Arc::new(LazyLock::new(later)), factor: 1.0 }
 }
 
 pub(super) fn surface_table(net: &Net, rational: bool) -> BoundsTable<2> {
@@ -149,7 +160,7 @@ pub(super) fn surface_table(net: &Net, rational: bool) -> BoundsTable<2> {
             })
             .collect()
     });
-    BoundsTable { fields, hulls, derivatives: Arc::new(LazyLock::new(later)) }
+    BoundsTable { fields, hulls, derivatives: Arc::new(LazyLock::new(later)), factor: 1.0 }
 }
 
 /// The nets of the fields, row by row.

@@ -120,6 +120,17 @@ impl Interval {
 }
 
 impl<const M: usize> ParameterMap<M> {
+    /// The map to parameters this many times as large.
+    pub fn scaled(&self, factor: [f64; M]) -> Self {
+        let times = |x: &[f64; M]| std::array::from_fn(|k| x[k] * factor[k]);
+        match self {
+            ParameterMap::Projective { low, high, ratio } => {
+                ParameterMap::Projective { low: times(low), high: times(high), ratio: *ratio }
+            }
+            ParameterMap::Bilinear(corners) => ParameterMap::Bilinear(corners.each_ref().map(times)),
+        }
+    }
+
     /// One direction of the map; triangles, whose directions depend on each other, have none.
     pub fn interval(&self, k: usize) -> Interval {
         match self {

@@ -6,6 +6,7 @@ use super::error::{Axes, ShapeError, interval, knots, number, position, positive
 use crate::patch::bernstein::{Control, MAX_DEGREE, bezier_spans, cut, interpolate};
 use crate::patch::weights::{even, even_middle, uneven};
 use crate::patch::{Atlas, Border, Chart, CurveChart, ParameterMap, Piece, Side};
+use crate::scale::same_direction;
 use crate::{Point, Vector};
 
 /// Position and derivatives to third order with respect to the parameter.
@@ -276,8 +277,9 @@ impl Curve {
         Ok(Self::assemble(CurveKind::Other, parts, false))
     }
 
-    pub(crate) fn with(&self, kind: CurveKind, atlas: Atlas<1, CurveChart>) -> Self {
-        Curve { kind, atlas, ..*self }
+    /// The curve in other coordinates.
+    pub(crate) fn with(&self, kind: CurveKind, pieces: Vec<Piece<1, CurveChart>>) -> Self {
+        Curve { kind, atlas: Atlas::new(pieces), ..*self }
     }
 
     /// The parameter interval.
@@ -385,6 +387,5 @@ pub(crate) fn is_high(degree: usize, depth: u32) -> bool {
 /// Whether the tangent jumps between two consecutive parts.
 fn turns(left: &Part, right: &Part) -> bool {
     let (p, q) = (left.chart.jet3(1.0)[1], right.chart.jet3(-1.0)[1]);
-    let lengths = p.norm() * q.norm();
-    lengths == 0.0 || p.dot(&q) <= 0.0 || p.cross(&q).norm() > 1e-8 * lengths
+    !same_direction(&p, &q)
 }

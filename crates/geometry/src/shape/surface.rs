@@ -8,6 +8,7 @@ mod spline;
 use super::curve::wrap;
 use super::error::Axes;
 use crate::patch::{Atlas, Border, Chart, Jet3, ParameterMap, Piece, Side, SurfaceChart};
+use crate::scale::{direction, same_direction};
 use crate::{Point, Vector};
 
 /// Position and partial derivatives to third order with respect to the parameters.
@@ -36,6 +37,17 @@ pub(crate) enum SurfaceKind {
     Torus { axes: Axes, major: f64, minor: f64 },
     Triangle { nodes: [Point<3>; 3] },
     Other,
+}
+
+impl SurfaceKind {
+    /// Which parameters are lengths.
+    pub fn length_parameters(&self) -> [bool; 2] {
+        match self {
+            SurfaceKind::Plane { .. } => [true; 2],
+            SurfaceKind::Cylinder { .. } | SurfaceKind::Cone { .. } => [false, true],
+            _ => [false; 2],
+        }
+    }
 }
 
 /// A surface with its parameter domain: a rectangle, periodic or not in either direction, or the unit triangle.
@@ -131,13 +143,23 @@ impl Surface {
         Surface { kind, atlas: Atlas::new(pieces), domain, closed, breaks, triangle: None }
     }
 
+    /// The surface in other coordinates, in which parameters that are lengths are this many times as large.
     pub(crate) fn with(
         &self,
         kind: SurfaceKind,
-        atlas: Atlas<2, SurfaceChart>,
+        pieces: Vec<Piece<2, SurfaceChart>>,
         chart: impl Fn(&SurfaceChart) -> SurfaceChart,
+        lengths: f64,
     ) -> Self {
-        Surface { kind, atlas, breaks: self.breaks.clone(), triangle: self.triangle.as_ref().map(chart), ..*self }
+        let factor = kind.length_parameters().map(|is_length| if is_length { lengths } else { 1.0 });
+        Surface {
+            kind,
+            atlas: Atlas::new(pieces.into_iter().map(|p| Piece { map: p.map.scaled(factor), ..p }).collect()),
+            domain: [0, 1].map(|k| self.domain[k].map(|t| t * factor[k])),
+            closed: self.closed,
+            breaks: [0, 1].map(|k| self.breaks[k].iter().map(|t| t * factor[k]).collect()),
+            triangle: self.triangle.as_ref().map(chart),
+        }
     }
 
     pub(crate) fn into_pieces(self) -> Vec<Piece<2, SurfaceChart>> {
@@ -222,12 +244,11 @@ fn meet(left: &SurfaceChart, right: &SurfaceChart, axis: usize, shift: f64, numb
         then[axis] = -1.0;
         let (p, q) = (left.jet(&at), right.jet(&then));
         let (cross_p, cross_q) = (p.d[axis], q.d[axis]);
-        let parallel = |a: &Vector<3>, b: &Vector<3>| a.dot(b) > 0.0 && a.cross(b).norm() <= 1e-8 * a.norm() * b.norm();
-        if parallel(&cross_p, &cross_q) {
+        if same_direction(&cross_p, &cross_q) {
             continue;
         }
         let (n, m) = (p.d[0].cross(&p.d[1]), q.d[0].cross(&q.d[1]));
-        if !parallel(&n, &m) {
+        if !same_direction(&n, &m) {
             return Side::Crease(number);
         }
         side = Side::Inner;
@@ -263,7 +284,7 @@ fn is_pole(charts: &[SurfaceChart], n: usize, m: usize, axis: usize, high: bool,
             z[axis] = if high { 1.0 } else { -1.0 };
             let jet = chart.jet(&z);
             // The side itself has no tangent; its rate of growth away from the pole takes that place.
-            let Some(n) = jet.d[axis].cross(&jet.dd[0][1]).try_normalize(0.0) else { return false };
+            let Some(n) = direction(&jet.d[axis].cross(&jet.dd[0][1])) else { return false };
             let reference = *normal.get_or_insert(n);
             if n.cross(&reference).norm() > 1e-8 || n.dot(&reference) < 0.0 {
                 return false;

@@ -194,6 +194,51 @@ fn shells_that_overlap_or_touch_make_their_union() {
     }
 }
 
+/// The sign of the gap at a point; zero where there is none.
+fn side(mesh: &TriangleMesh, p: &Point<3>) -> i32 {
+    mesh.closest(p, 0.0)[0].gap.map_or(0, |gap| if gap < 0.0 { -1 } else { 1 })
+}
+
+/// Prisms over polygons that cross themselves, each one connected shell, and the same inside out. The truth is how often
+/// the polygon goes around a point: the sum of the angles under which its sides are seen.
+#[test]
+fn a_shell_that_meets_itself_holds_what_it_goes_around() {
+    let star = |k: usize| (0.8 * std::f64::consts::PI * k as f64).sin_cos();
+    // One inner loop within the outer one.
+    let loops = |k: usize| {
+        let t = std::f64::consts::TAU * k as f64 / 24.0;
+        ((0.4 + t.cos()) * t.cos() - 0.6, (0.4 + t.cos()) * t.sin())
+    };
+    let bow = [(-0.9, -0.5), (1.0, 0.2), (1.0, -0.2), (-0.9, 0.5)];
+    let mut seen = [0; 4];
+    for polygon in [(0..5).rev().map(star).collect(), (0..24).map(loops).collect(), bow.to_vec()] {
+        let n = polygon.len() as u32;
+        let vertices: Vec<Point<3>> =
+            [-0.5, 0.5].iter().flat_map(|z| polygon.iter().map(|(x, y)| Point::<3>::new(*x, *y, *z))).collect();
+        let caps = (1..n - 1).flat_map(|k| [[0, k + 1, k], [n, n + k, n + k + 1]]);
+        let sides = (0..n).flat_map(|k| [[k, (k + 1) % n, (k + 1) % n + n], [k, (k + 1) % n + n, k + n]]);
+        let triangles: Vec<[u32; 3]> = caps.chain(sides).collect();
+        let outward = TriangleMesh::new(vertices.clone(), &triangles).unwrap();
+        let turned: Vec<[u32; 3]> = triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
+        let inward = TriangleMesh::new(vertices, &turned).unwrap();
+        let mut r = Random(5);
+        for _ in 0..2000 {
+            let p = r.vector(1.1);
+            let angles = (0..polygon.len()).map(|k| {
+                let [(a, b), (c, d)] = [k, (k + 1) % polygon.len()].map(|k| (polygon[k].0 - p.x, polygon[k].1 - p.y));
+                (a * d - b * c).atan2(a * c + b * d)
+            });
+            let around = (angles.sum::<f64>() / std::f64::consts::TAU).round() as i32;
+            let around = if p.z.abs() < 0.5 { around } else { 0 };
+            seen[(around + 1) as usize] += 1;
+            let expected = [0, 1, -1, -1][(around + 1) as usize];
+            assert_eq!(side(&outward, &p), expected, "{p:?}, {around} times around");
+            assert_eq!(side(&inward, &p), -expected, "{p:?}, {around} times around, inside out");
+        }
+    }
+    assert!(seen.iter().all(|&count| count > 20), "{seen:?}");
+}
+
 #[test]
 fn an_edge_closed_by_a_triangle_without_area_has_two_sides() {
     let s = 0.267_949_192_431_122_7;

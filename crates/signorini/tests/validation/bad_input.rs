@@ -244,3 +244,35 @@ fn what_touches_nothing_is_told_why() {
     let solid = |at: &str| checked(&ball(5.0, "-0.1*t", &format!("[output.probes]\np = {at}"))).expect("a case");
     assert!(solid("[0, 0, 9]").contains("outside all bodies") && !solid("[0, 0, -1]").contains("outside"));
 }
+
+/// The volume of a closed surface tells which way round it is: one inside out is turned, told once, by `check` and `run`.
+#[test]
+fn a_surface_inside_out_is_turned_round_and_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let corner = |k: usize| [6 * (k & 1) as i32 - 3, 3 * (k & 2) as i32 - 3, (k >> 2) as i32];
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let case = |name: &str, order: [usize; 3]| {
+        let mut text = String::from("solid box\n");
+        for triangle in faces.iter().flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]]) {
+            let vertex = |k: usize| corner(triangle[order[k]]).map(|x| x.to_string()).join(" ");
+            let [a, b, c] = [0, 1, 2].map(vertex);
+            text += &format!("facet normal 0 0 0\nouter loop\nvertex {a}\nvertex {b}\nvertex {c}\nendloop\nendfacet\n");
+        }
+        let path = folder.path().join(name);
+        std::fs::write(&path, text + "endsolid\n").expect("a file");
+        let stl = format!("shape.stl = {{ file = \"{}\" }}", path.display());
+        ball(5.0, "-0.1*t", "").replace("shape.sphere = { center = [0, 0, 5], radius = 5 }", &stl)
+    };
+    let (outward, inward) = (case("outward.stl", [0, 1, 2]), case("inward.stl", [0, 2, 1]));
+    let told = checked(&inward).expect("a case that runs");
+    assert_eq!(told.matches("inside out").count(), 1, "{told}");
+    assert!(told.contains("inward.stl"), "{told}");
+    assert!(!checked(&outward).expect("a case that runs").contains("inside out"));
+    let force = |case: &str| {
+        let found = super::summary(case, &super::set(&[]));
+        (super::last_step(&found)["contacts"]["touch"]["force"].clone(), found["warnings"].to_string())
+    };
+    let (right, turned) = (force(&outward), force(&inward));
+    assert_eq!(right.0, turned.0);
+    assert!(turned.1.contains("inside out") && !right.1.contains("inside out"), "{}", turned.1);
+}

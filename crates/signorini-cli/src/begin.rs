@@ -4,8 +4,9 @@ use crate::commands::{DONE, INTERRUPTED, NOT_CONVERGED, WRONG_INPUT, report, unk
 use crate::console::{self, say, tell};
 use serde_json::{Value, json};
 use signorini::case::{CaseError, schema};
-use signorini::explain::{WORDS, explain as explanation};
+use signorini::explain::{explain as explanation, reference, words as all_words};
 use signorini::gallery::{asset, find};
+use signorini::report::words;
 use signorini::reproduce::{FIGURES, reproduce as reproduced};
 use signorini::template::{SCHEMA_FILE, annotated};
 use signorini::verify::{PROBLEMS, verify as verified};
@@ -47,11 +48,11 @@ fn write_all(folder: &Path, files: &[(String, String)]) -> std::io::Result<()> {
 /// Explains a key or a word, or lists all words.
 pub fn explain(word: Option<&str>, json: bool) -> u8 {
     let Some(word) = word else {
-        for w in WORDS {
-            say!("{:22} {}", w.word, w.kind);
+        for (word, kind) in all_words() {
+            say!("{word:22} {kind}");
         }
         say!(
-            "\nAnd every key of the case file: signorini explain contacts.method  (all of them: signorini schema --markdown)"
+            "\nAnd every key of the case file and of summary.json: signorini explain contacts.method  (all of them: signorini schema --markdown)"
         );
         return DONE;
     };
@@ -72,8 +73,13 @@ fn schema_text() -> String {
     serde_json::to_string_pretty(&schema::schema()).unwrap_or_default() + "\n"
 }
 
-pub fn schema(markdown: bool) -> u8 {
-    let text = if markdown { schema::markdown() } else { schema_text() };
+/// Prints what may stand in a case file, or in the summary of a run.
+pub fn schema(of_summary: bool, markdown: bool) -> u8 {
+    let text = match (markdown, of_summary) {
+        (true, _) => reference(),
+        (false, true) => serde_json::to_string_pretty(&words::schema()).unwrap_or_default() + "\n",
+        (false, false) => schema_text(),
+    };
     console::print(format_args!("{text}"));
     DONE
 }

@@ -8,9 +8,9 @@ use signorini::fit::fit;
 use signorini::gallery::{all, find};
 use signorini::output::OutputError;
 use signorini::output::chart::save_as;
-use signorini::output::figure::figure;
 use signorini::plan::plan;
 use signorini::queries::{Query, answer_file, answer_points};
+use signorini::report::{Summary, table};
 use signorini::run::{Begun, Ending, RunError, begun, preview, resume, run, sizes};
 use signorini::scene::{self, Scene, SceneError};
 use std::path::{Path, PathBuf};
@@ -156,8 +156,11 @@ pub fn check(case: &Path, set: &[String], picture: Option<&Path>, json: bool) ->
     }
 }
 
-/// An entry of a list: a text as it is, a value with a unit as it was understood.
+/// An entry of a list: a text as it is, a warning, a value with a unit as it was understood.
 fn echo(v: &Value) -> String {
+    if let Some(message) = v["message"].as_str() {
+        return message.to_string();
+    }
     match (v.as_str(), &v["text"], v["value"].as_f64()) {
         (Some(text), ..) => text.to_string(),
         (None, Value::String(text), Some(value)) => {
@@ -318,14 +321,11 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], resumed: bool,
         Err(RunError::Output(error)) => report(&output_error(&error), json),
         Ok(outcome) => {
             if json {
-                say!("{}", outcome.summary);
+                say!("{}", json!(outcome.summary));
             } else {
-                table(&outcome.summary);
-                let first = if is_membrane(&outcome.summary) { "deflection" } else { "deformed" };
-                say!(
-                    "\nResults in {}: open pictures/{first}.png first, fields.pvd in ParaView; numbers in summary.json.",
-                    folder.display()
-                );
+                show(&outcome.summary);
+                let first = outcome.summary.first_picture.map_or(String::new(), |file| format!("open {file} first, "));
+                say!("\nResults in {}: {first}fields.pvd in ParaView; numbers in summary.json.", folder.display());
             }
             match outcome.ending {
                 Ending::Converged => DONE,
@@ -336,107 +336,18 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], resumed: bool,
     }
 }
 
-/// The increments as a table, the warnings, and the verdict.
-fn table(summary: &Value) {
-    say!("{}\n", summary["case"].as_str().unwrap_or(""));
-    if is_membrane(summary) {
-        membrane_table(summary)
-    } else {
-        solid_table(summary)
+/// The increments as a table, the events and warnings, and the verdict.
+fn show(summary: &Summary) {
+    say!("{}\n", summary.case);
+    say!("{}", table(summary));
+    for event in &summary.events {
+        let at: Vec<String> = event.at.iter().map(|x| format!("{x:.6}")).collect();
+        say!("t = {:.6}: {} at ({})", event.time, event.kind.words(), at.join(", "));
     }
-    say!();
-    for event in summary["events"].as_array().into_iter().flatten() {
-        let number = |v: &Value| v.as_f64().map_or(String::new(), |v| format!("{v:.6}"));
-        let at: Vec<String> = event["at"].as_array().into_iter().flatten().map(number).collect();
-        let kind = event["kind"].as_str().unwrap_or("").replace('_', " ");
-        say!("t = {}: {kind} at ({})", number(&event["time"]), at.join(", "));
+    for warning in &summary.warnings {
+        say!("warning: {warning}");
     }
-    for warning in summary["warnings"].as_array().into_iter().flatten() {
-        say!("warning: {}", warning.as_str().unwrap_or(""));
-    }
-    say!("{}", summary["verdict"].as_str().unwrap_or(""));
-}
-
-fn is_membrane(summary: &Value) -> bool {
-    summary["method"] == "inequality_level_set" || summary["method"] == "active_set"
-}
-
-/// One line per increment and contact.
-fn solid_table(summary: &Value) {
-    say!(
-        "{:>9} {:>7}  {:14} {:>16} {:>14} {:>14} {:>6} {:>10}",
-        "t",
-        "solves",
-        "contact",
-        "force",
-        "area",
-        "max pressure",
-        "zones",
-        "balance"
-    );
-    for step in summary["steps"].as_array().into_iter().flatten() {
-        let time = format!("{:.6}", step["time"].as_f64().unwrap_or(f64::NAN));
-        let balance = step["equilibrium_residual"].as_f64().map_or("-".to_string(), |v| format!("{v:.1e}"));
-        for (name, contact) in step["contacts"].as_object().into_iter().flatten() {
-            let number = |v: Option<f64>, key: &str| {
-                v.map_or("-".to_string(), |v| figure(v, contact["error_estimate"][key].as_f64()))
-            };
-            let force = contact["force"]
-                .as_array()
-                .map(|f| f.iter().filter_map(Value::as_f64).map(|v| v * v).sum::<f64>().sqrt());
-            say!(
-                "{time:>9} {:>7}  {name:14} {:>16} {:>14} {:>14} {:>6} {balance:>10}",
-                solves(step),
-                number(force, "force"),
-                number(contact["area"].as_f64(), "area"),
-                number(contact["max_pressure"].as_f64(), "max_pressure"),
-                contact["zones"].to_string(),
-            );
-        }
-        if step["contacts"].as_object().is_none_or(|c| c.is_empty()) {
-            say!(
-                "{time:>9} {:>7}  {:14} {:>16} {:>14} {:>14} {:>6} {balance:>10}",
-                solves(step),
-                "-",
-                "-",
-                "-",
-                "-",
-                "-"
-            );
-        }
-    }
-}
-
-/// All that was solved for a state, also on larger cells before.
-fn solves(step: &Value) -> String {
-    let count = |key: &str| step[key].as_u64().unwrap_or(0);
-    (count("iterations_before") + count("iterations")).to_string()
-}
-
-fn membrane_table(summary: &Value) {
-    let several = |s: &Value| s["contacts"].as_object().is_some_and(|c| c.len() > 1);
-    if summary["steps"].as_array().into_iter().flatten().any(several) {
-        return solid_table(summary);
-    }
-    say!("{:>9} {:>7} {:>16} {:>16} {:>6} {:>6} {:>10}", "t", "solves", "area", "force", "zones", "holes", "balance");
-    let steps = summary["steps"].as_array().cloned().unwrap_or_default();
-    for step in &steps {
-        let contact = step["contacts"].as_object().and_then(|c| c.values().next()).cloned().unwrap_or(Value::Null);
-        let number = |v: &Value, key: &str| {
-            let within = contact["error_estimate"][key].as_f64();
-            v.as_f64().map_or("-".to_string(), |v| figure(v, within))
-        };
-        say!(
-            "{:>9} {:>7} {:>16} {:>16} {:>6} {:>6} {:>10}",
-            format!("{:.6}", step["time"].as_f64().unwrap_or(f64::NAN)),
-            solves(step),
-            number(&contact["area"], "area"),
-            number(&contact["force"][2], "force"),
-            contact["zones"].to_string(),
-            contact["holes"].to_string(),
-            step["equilibrium_residual"].as_f64().map_or("-".to_string(), |v| format!("{v:.1e}")),
-        );
-    }
+    say!("{}", summary.verdict);
 }
 
 fn read(case: &Path) -> Result<(String, String), CaseError> {

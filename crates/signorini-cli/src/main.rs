@@ -119,12 +119,15 @@ enum Command {
         /// A key or the end of one, or a word; without it, all words
         word: Option<String>,
     },
-    /// Print the JSON Schema of case files, for editors
+    /// Print the JSON Schema of case files, for editors, or of the summary, for programs
     #[command(
-        after_help = "Example:\n  signorini schema > case.schema.json\n\nand as the first line of a case\n  #:schema ./case.schema.json"
+        after_help = "Examples:\n  signorini schema > case.schema.json\n\nand as the first line of a case\n  #:schema ./case.schema.json\n\nof what a run tells:\n  signorini schema --summary"
     )]
     Schema {
-        /// As a table for people
+        /// Of summary.json
+        #[arg(long, conflicts_with = "markdown")]
+        summary: bool,
+        /// Of both, as tables for people
         #[arg(long)]
         markdown: bool,
     },
@@ -211,7 +214,7 @@ fn main() -> ExitCode {
         }
         Command::New { template, folder } => begin::new(&template, folder, json),
         Command::Explain { word } => begin::explain(word.as_deref(), json),
-        Command::Schema { markdown } => begin::schema(markdown),
+        Command::Schema { summary, markdown } => begin::schema(summary, markdown),
         Command::Verify => begin::verify(json),
         Command::Reproduce { names, output } => begin::reproduce(&names, &output),
         Command::Completions { shell } => {

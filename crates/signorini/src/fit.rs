@@ -111,7 +111,7 @@ fn write(
 ) -> Result<Fitted, OutputError> {
     let entry = |p: &Parameter| json!({"value": p.value, "interval": p.interval, "relative_error": p.relative_error});
     let summary = json!({
-        "schema": crate::run::SCHEMA,
+        "schema": crate::report::SCHEMA,
         "case": document.case.title.clone().unwrap_or_else(|| document.name.clone()),
         "converged": estimate.converged,
         "measurements": measured.time.len(),

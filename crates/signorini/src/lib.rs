@@ -12,6 +12,7 @@ pub mod output;
 pub mod plan;
 pub mod queries;
 pub mod relief;
+pub mod report;
 pub mod reproduce;
 pub mod run;
 pub mod scene;

@@ -13,6 +13,7 @@ use crate::case::units::{FORCE_PER_LENGTH, LENGTH, PRESSURE, Units};
 use crate::case::value::{Interpreted, Reader};
 use crate::case::{CaseError, Document, OneOrMany, Value, suggestion};
 use crate::expression::{Definition, Expression, Names, Scope};
+use crate::report::Warning;
 use signorini_fem::cut::QuadraturePoint;
 use signorini_fem::{Cells, Grid};
 use signorini_geometry::{Jet, Point, Real, Vector};
@@ -115,7 +116,7 @@ pub struct MembranePlan<const D: usize> {
     pub probes: BTreeMap<String, Point<D>>,
     pub every: usize,
     pub pictures: bool,
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
     pub units: Option<Units>,
     /// What the values with units were taken for.
     pub interpreted: Vec<Interpreted>,
@@ -142,7 +143,7 @@ pub(crate) struct Planner<'a> {
     pub reader: Reader<'a>,
     pub space: Space,
     /// What looks wrong in files that were read.
-    pub warnings: RefCell<Vec<String>>,
+    pub warnings: RefCell<Vec<Warning>>,
 }
 
 /// The value of a key that could be a vector elsewhere.
@@ -446,7 +447,7 @@ impl<'a> Planner<'a> {
         supports: Vec<PlannedSupport>,
         contacts: Vec<Contact>,
         method: MethodChoice,
-        mut warnings: Vec<String>,
+        mut warnings: Vec<Warning>,
     ) -> Result<MembranePlan<D>, CaseError>
     where
         Self: domain::ReadDomain<D>,
@@ -496,8 +497,8 @@ impl<'a> Planner<'a> {
         let membrane = plan.at(plan.increments[0].range[0]);
         for (name, x) in plan.probes.iter().filter(|(_, x)| !membrane.contains(x)) {
             let at: Vec<String> = x.iter().map(f64::to_string).collect();
-            plan.warnings
-                .push(format!("the probe `{name}` at ({}) lies outside `{body}`: it tells nothing", at.join(", ")));
+            let message = format!("the probe `{name}` at ({}) lies outside `{body}`: it tells nothing", at.join(", "));
+            plan.warnings.push(message.into());
         }
         Ok(plan)
     }
@@ -589,7 +590,7 @@ impl<'a> Planner<'a> {
                 let place = document.case.bodies.get(body).map_or(document.case.space.span(), |b| b.span());
                 return Err(document.error(place, apart.held_by_nothing(body, loose as u32)).help(UNITE));
             }
-            self.warnings.borrow_mut().extend(apart.warning(body));
+            self.warnings.borrow_mut().extend(apart.warning(body).map(Warning::from));
         }
         Ok(supports)
     }
@@ -632,7 +633,7 @@ impl<'a> Planner<'a> {
         body: &str,
         supports: &[PlannedSupport],
         grid: &Grid<D>,
-        warnings: &mut Vec<String>,
+        warnings: &mut Vec<Warning>,
     ) -> Result<(Vec<Contact>, MethodChoice), CaseError> {
         let document = self.document;
         let levels: Option<Vec<f64>> = supports.iter().map(|s| s.displacement.expression.constant()).collect();

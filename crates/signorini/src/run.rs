@@ -12,21 +12,23 @@ pub(crate) mod solid;
 mod solid_checkpoint;
 
 use crate::case::statement::Space;
-use crate::case::value::Interpreted;
 use crate::case::{CaseError, Document};
 use crate::output::figure::figure;
 use crate::output::film::Film;
 use crate::output::{Folder, OutputError, pictures, tables, vtk};
 use crate::plan::{Contact, Control, MembranePlan, MethodChoice, Plan, PlannedIncrement, plan};
+use crate::report::{
+    ContactReport, Event, OtherState, Reason, SCHEMA, StepReport, Summary, Warning, WarningKind, history,
+};
 use crate::snapshot::{DisplayMesh, Snapshot};
 use checkpoint::Checkpoint;
-use events::{Between, Bounded, Event, Known, jump, locate, locate_jump};
+use events::{Between, Bounded, Known, jump, locate, locate_jump};
 use increment::{Engine, Increment};
 use path::{Along, Follower};
 use seek::Seeker;
 use serde_json::{Value, json};
 use signorini_geometry::Point;
-use signorini_membrane::coexisting::{OtherState, others};
+use signorini_membrane::coexisting::{self, others};
 use signorini_membrane::line_zone::LineZone;
 use signorini_membrane::obstacle::Side;
 use signorini_membrane::plane_zone::PlaneZone;
@@ -60,8 +62,8 @@ fn solid_sizes<const D: usize>(plan: &crate::plan::solid::SolidPlan<D>) -> Resul
         "loads": plan.loads.len(),
         "contacts": plan.contacts.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", "),
         "free": free,
-        "interpreted": plan.interpreted.iter().map(Interpreted::to_json).collect::<Vec<_>>(),
-        "warnings": plan.warnings.iter().cloned().chain(sizes::odd_solids(plan)).chain(judged).collect::<Vec<_>>(),
+        "interpreted": plan.interpreted,
+        "warnings": plan.warnings.iter().cloned().chain(sizes::odd_solids(plan).into_iter().chain(judged).map(Warning::from)).collect::<Vec<_>>(),
     }))
 }
 
@@ -71,9 +73,6 @@ const UNSTABLE: &str =
 
 /// An increment is cut to this fraction of itself before it is given up.
 const SMALLEST_INCREMENT: f64 = 1.0 / 32.0;
-
-/// Version of the summary's keys.
-pub const SCHEMA: u32 = 1;
 
 /// Why a run has no summary.
 #[derive(Debug, thiserror::Error)]
@@ -100,7 +99,7 @@ pub enum Ending {
 
 /// What a run leaves behind.
 pub struct Outcome {
-    pub summary: Value,
+    pub summary: Summary,
     pub ending: Ending,
 }
 
@@ -163,8 +162,8 @@ struct Runner<const D: usize, Z> {
     plan: MembranePlan<D>,
     folder: Folder,
     engine: Engine<D, Z>,
-    steps: Vec<Value>,
-    warnings: Vec<String>,
+    steps: Vec<StepReport>,
+    warnings: Vec<Warning>,
     frames: Vec<(f64, String)>,
     unknowns: usize,
     events: Vec<Event>,
@@ -278,7 +277,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         let increments = self.plan.increments.clone();
         let mesh = DisplayMesh::new(&self.plan, &self.plan.at(increments[0].range[0]));
         let mut ending = Ending::Converged;
-        let mut reason = "converged".to_string();
+        let mut reason = Reason::Converged;
         let mut last: Option<Snapshot<D>> = None;
         let (first, mut known) = self.resumed.take().unwrap_or((0, None));
         for (index, planned) in increments.iter().enumerate().skip(first) {
@@ -311,7 +310,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                         self.engine.start_on(zone, *cells);
                     }
                     Along::Ended(why) => {
-                        self.warnings.push(why);
+                        self.warnings.push(Warning::new(WarningKind::Path, why));
                         continue;
                     }
                     Along::Failed(why) => {
@@ -324,13 +323,13 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             let checked = if index == 0 && by_time { Ok(()) } else { self.plan.check_fields(&membrane, time) };
             if let Err(error) = checked {
                 // What was found so far stays; the summary says how far it goes.
-                self.finish(Ending::NotConverged, "input", start, &mesh, last.as_ref())?;
+                self.finish(Ending::NotConverged, Reason::Input, start, &mesh, last.as_ref())?;
                 return Err(error.into());
             }
             let last_of_step = increments.get(index + 1).is_none_or(|next| next.step != planned.step);
             self.engine.estimates = last_of_step;
             let mut increment = self.engine.solve(&self.plan, &membrane, (index, time), &mut logged);
-            if let (true, "no_such_state", Some(follower)) = (on_path, increment.reason.as_str(), &mut self.path) {
+            if let (true, Reason::NoSuchState, Some(follower)) = (on_path, increment.reason, &mut self.path) {
                 // The state of the path penetrates a body: on from the one before, which did not.
                 if let Some(before) = &known {
                     self.engine.start_from(before.zone.clone());
@@ -338,7 +337,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                 let why = follower.ends();
                 if let Control::ArcLength(_) = planned.control {
                     follower.done = true;
-                    self.warnings.push(why);
+                    self.warnings.push(Warning::new(WarningKind::Path, why));
                     continue;
                 }
                 (ending, reason) = self.lost(why, false);
@@ -355,10 +354,11 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                 && !self.is_done(planned.step)
             {
                 let [_, to] = planned.range;
-                self.warnings.push(format!(
+                let message = format!(
                     "the path goes on: its last increment is at t = {time}, and the step ends at t = {to}; give the step more \
                      increments, or leave them out to follow the path to its end"
-                ));
+                );
+                self.warnings.push(Warning::new(WarningKind::Path, message).at_time(time));
             }
             let mut after = self.engine.known(time, &increment);
             if on_path {
@@ -376,22 +376,22 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                 }
             } else if by_time && increment.stability.jumped && index > 0 {
                 let a = known.as_ref().map_or(0.0, |k| k.area);
-                self.warnings.push(format!(
+                let message = format!(
                     "the contact jumped to another state on the way to t = {time}: its area went from {a:.6} to {:.6}; \
                      `events` in the step locates where",
                     increment.area()
-                ));
+                );
+                self.warnings.push(Warning::new(WarningKind::Jump, message).at_time(time));
             }
             if logged.interrupted() {
                 // It may have ended early; what it told is told anew when the run goes on.
-                (increment.converged, increment.reason) = (false, "interrupted".into());
+                (increment.converged, increment.reason) = (false, Reason::Interrupted);
                 self.forget(told);
             }
             self.unknowns = self.unknowns.max(increment.unknowns);
             for warning in &increment.warnings {
                 // What is said of many increments is said once, of the first.
-                let kind = |w: &str| w.chars().take_while(|c| !c.is_ascii_digit()).collect::<String>();
-                if !self.warnings.iter().any(|w| kind(w) == kind(warning)) {
+                if !self.warnings.iter().any(|w| w.kind == warning.kind) {
                     self.warnings.push(warning.clone());
                 }
             }
@@ -405,7 +405,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                 self.find_events(index, before, after, &mut logged);
                 if logged.interrupted() {
                     self.forget(told);
-                    (ending, reason) = (Ending::Interrupted, "interrupted".into());
+                    (ending, reason) = (Ending::Interrupted, Reason::Interrupted);
                     last = snapshot.or(last);
                     break;
                 }
@@ -423,12 +423,13 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             }
             last = snapshot.or(last);
             if !increment.converged {
-                ending = if increment.reason == "interrupted" { Ending::Interrupted } else { Ending::NotConverged };
-                reason = increment.reason.clone();
+                ending =
+                    if increment.reason == Reason::Interrupted { Ending::Interrupted } else { Ending::NotConverged };
+                reason = increment.reason;
                 break;
             }
             if increments.len() == 1 {
-                reason = increment.reason.clone();
+                reason = increment.reason;
             }
             // Along a path the way back leads to the beginning of its step.
             if planned.control == Control::Time && increments.len() > 1 {
@@ -436,7 +437,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                 self.checkpoint(index + 1, &known, frame)?;
             }
         }
-        let summary = self.finish(ending, &reason, start, &mesh, last.as_ref())?;
+        let summary = self.finish(ending, reason, start, &mesh, last.as_ref())?;
         if ending == Ending::Converged {
             self.folder.remove(checkpoint::FILE);
             self.folder.remove("checkpoint");
@@ -466,11 +467,11 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
     }
 
     /// The end of a run of which no state was found any more, for a reason.
-    fn lost(&mut self, why: String, interrupted: bool) -> (Ending, String) {
-        self.warnings.push(why);
+    fn lost(&mut self, why: String, interrupted: bool) -> (Ending, Reason) {
+        self.warnings.push(Warning::new(WarningKind::Path, why));
         match interrupted {
-            true => (Ending::Interrupted, "interrupted".into()),
-            false => (Ending::NotConverged, "path_lost".into()),
+            true => (Ending::Interrupted, Reason::Interrupted),
+            false => (Ending::NotConverged, Reason::PathLost),
         }
     }
 
@@ -564,8 +565,10 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                     None => {
                         let time = planned.range[0];
                         let membrane = self.plan.at(time);
-                        let reason = self.engine.solve(&self.plan, &membrane, (0, time), progress).reason;
-                        let Some(zone) = self.engine.zone() else { return Ok(Along::Failed(reason)) };
+                        self.engine.solve(&self.plan, &membrane, (0, time), progress);
+                        let Some(zone) = self.engine.zone() else {
+                            return Ok(Along::Failed(format!("no state was found at t = {time}")));
+                        };
                         (zone, time)
                     }
                 };
@@ -664,38 +667,50 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         for event in &mut found {
             let membrane = self.plan.at(event.time);
             let at = Point::<D>::from_fn(|k, _| event.at[k]);
-            let touched = membrane.obstacles.index_at(event.side, &at).and_then(|k| self.plan.contacts.get(k));
+            let side = if event.above { Side::Above } else { Side::Below };
+            let touched = membrane.obstacles.index_at(side, &at).and_then(|k| self.plan.contacts.get(k));
             event.contact = touched.map_or(String::new(), |c| c.name.clone());
         }
         if let Some(coarse) = found.iter().find(|e| e.within > tolerance) {
             let [from, to] = [-0.5, 0.5].map(|s| coarse.time + s * coarse.within);
-            self.warnings.push(format!("an event between t = {from} and {to} could not be located more closely"));
+            let message = format!("an event between t = {from} and {to} could not be located more closely");
+            self.warnings.push(Warning::new(WarningKind::EventInterval, message).at_time(coarse.time));
         }
         self.events.extend(found);
     }
 
     /// Other equilibria of an adhesive membrane; with `zones` those with contact too, which are searched for.
-    fn other_states(&mut self, membrane: &Membrane<D>, increment: &Increment<D>, zones: bool) -> Vec<OtherState> {
+    fn other_states(
+        &mut self,
+        membrane: &Membrane<D>,
+        increment: &Increment<D>,
+        zones: bool,
+    ) -> Vec<coexisting::OtherState> {
         if !membrane.obstacles.are_sticky() || !increment.converged {
             return Vec::new();
         }
         if increment.stability.lowest_eigenvalue.is_some_and(|v| v <= 0.0)
-            && !self.warnings.iter().any(|w| w == UNSTABLE)
+            && !self.warnings.iter().any(|w| w.kind == WarningKind::Unstable)
         {
-            self.warnings.push(UNSTABLE.into());
+            self.warnings.push(Warning::new(WarningKind::Unstable, UNSTABLE));
         }
         others::<D, Z>(membrane, &self.plan.refinement, increment.area(), zones).unwrap_or_default()
     }
 
-    fn record(&mut self, time: f64, membrane: &Membrane<D>, increment: &Increment<D>, others: Vec<OtherState>) {
-        let mut step = increment.to_json(&self.plan, &self.plan.load_resultants(membrane, time));
-        for contact in self.plan.contacts.iter().filter(|_| !others.is_empty()) {
-            let list =
-                others.iter().map(|o| json!({"area": o.area, "energy_total": o.energy_total, "stable": o.stable}));
-            step["contacts"][&contact.name]["other_states"] = list.collect();
+    fn record(
+        &mut self,
+        time: f64,
+        membrane: &Membrane<D>,
+        increment: &Increment<D>,
+        others: Vec<coexisting::OtherState>,
+    ) {
+        let loads = self.plan.load_resultants(membrane, time);
+        let mut step = increment.step_report(&self.plan, (self.steps.len(), time), &loads);
+        let state =
+            |o: &coexisting::OtherState| OtherState { area: o.area, energy_total: o.energy_total, stable: o.stable };
+        for contact in step.contacts.values_mut() {
+            contact.other_states = others.iter().map(state).collect();
         }
-        step["index"] = json!(self.steps.len());
-        step["time"] = json!(time);
         self.steps.push(step);
     }
 
@@ -723,68 +738,62 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
     fn finish(
         &self,
         ending: Ending,
-        reason: &str,
+        reason: Reason,
         start: std::time::Instant,
         mesh: &DisplayMesh<D>,
         last: Option<&Snapshot<D>>,
-    ) -> Result<Value, OutputError> {
-        let probes: Vec<String> = self.plan.probes.keys().cloned().collect();
-        let contacts: Vec<&str> = self.plan.contacts.iter().map(|c| c.name.as_str()).collect();
-        self.folder.write("history.csv", tables::history(&self.steps, &contacts, &probes).as_bytes())?;
+    ) -> Result<Summary, OutputError> {
+        self.folder.write("history.csv", history(&self.steps).as_bytes())?;
         if let (true, Some(snapshot)) = (self.plan.pictures, last) {
             self.film.write(&self.folder, &self.plan, mesh)?;
             pictures::draw(&self.folder, &self.plan, mesh, snapshot, &self.steps, &self.events)?;
         }
-        let summary = json!({
-            "schema": SCHEMA,
-            "case": self.plan.document.case.title.clone().unwrap_or_else(|| self.plan.document.name.clone()),
-            "converged": ending == Ending::Converged,
-            "reason": reason,
-            "verdict": self.verdict(ending, reason),
-            "method": self.plan.method.name(),
-            "unknowns": self.unknowns,
-            "warnings": self.warnings,
-            "interpreted": self.plan.interpreted.iter().map(Interpreted::to_json).collect::<Vec<_>>(),
-            "steps": self.steps,
-            "events": self.events.iter().map(Event::to_json).collect::<Vec<_>>(),
-            "environment": environment::describe(start, rayon::current_num_threads(), &self.plan.document.text),
-        });
-        let text = serde_json::to_string_pretty(&summary).unwrap_or_default();
-        self.folder.write("summary.json", (text + "\n").as_bytes())?;
+        let summary = Summary {
+            schema: SCHEMA,
+            case: self.plan.document.case.title.clone().unwrap_or_else(|| self.plan.document.name.clone()),
+            converged: ending == Ending::Converged,
+            reason,
+            verdict: self.verdict(ending, reason),
+            method: self.plan.method.name().into(),
+            unknowns: self.unknowns,
+            first_picture: (self.plan.pictures && last.is_some()).then(|| "pictures/deflection.png".into()),
+            warnings: self.warnings.clone(),
+            interpreted: self.plan.interpreted.clone(),
+            steps: self.steps.clone(),
+            events: self.events.clone(),
+            environment: environment::describe(start, rayon::current_num_threads(), &self.plan.document.text),
+        };
+        self.folder.write("summary.json", summary.to_json().as_bytes())?;
         Ok(summary)
     }
 
     /// The result in a sentence, with what to try where there is none.
-    fn verdict(&self, ending: Ending, reason: &str) -> String {
-        let done = self.steps.iter().filter(|s| s["converged"] == true).count();
+    fn verdict(&self, ending: Ending, reason: Reason) -> String {
+        let done = self.steps.iter().filter(|s| s.converged).count();
         let count = self.plan.increments.len();
         match ending {
             Ending::Interrupted => format!("Interrupted: {done} of {count} increments are done and on disk."),
             Ending::NotConverged => {
                 let advice = match reason {
-                    "linear_solver" => {
+                    Reason::LinearSolver => {
                         "the equations could not be solved: check that the membrane is held and that its data are of one scale"
                     }
-                    "input" => "a value became invalid along the way",
-                    "no_such_state" => {
+                    Reason::Input => "a value became invalid along the way",
+                    Reason::NoSuchState => {
                         "there is no equilibrium with contact near `initial_zone`: at this load adhesion may hold none; try another zone, a larger adhesion energy, or the load at which the contact exists"
                     }
-                    "path_lost" => "the last warning says where; try smaller increments, or more cells",
+                    Reason::PathLost => "the last warning says where; try smaller increments, or more cells",
                     _ => {
                         "try more cells where the zones are small or close to each other, a lower degree, or smaller increments; method.active_set = {} shows a coarse picture of the zones"
                     }
                 };
-                let history =
-                    self.steps.last().and_then(|s| s["residual_history"].as_array()).map_or(String::new(), |r| {
-                        let last: Vec<String> = r
-                            .iter()
-                            .rev()
-                            .take(3)
-                            .rev()
-                            .map(|v| format!("{:.1e}", v.as_f64().unwrap_or(f64::NAN)))
-                            .collect();
-                        format!(" (last residuals relative to the tolerance: {})", last.join(", "))
-                    });
+                let residuals = self.steps.last().map_or(&[][..], |s| &s.residual_history);
+                let last: Vec<String> =
+                    residuals[residuals.len().saturating_sub(3)..].iter().map(|v| format!("{v:.1e}")).collect();
+                let history = match last.is_empty() {
+                    true => String::new(),
+                    false => format!(" (last residuals relative to the tolerance: {})", last.join(", ")),
+                };
                 format!("Not converged in increment {} of {count}{history}: {advice}.", self.steps.len().max(1))
             }
             Ending::Converged => {
@@ -792,16 +801,15 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                 if self.plan.contacts.is_empty() {
                     return "The membrane is in equilibrium; no contact was stated.".into();
                 }
-                let touching = |c: &&Contact| step["contacts"][&c.name]["zones"].as_u64().unwrap_or(0) > 0;
-                let told: Vec<&Contact> = self.plan.contacts.iter().filter(touching).collect();
-                let balance = step["equilibrium_residual"].as_f64().unwrap_or(f64::NAN);
-                let unstable = told.iter().any(|c| step["contacts"][&c.name]["stable"] == false);
-                let sentences: Vec<String> =
-                    told.iter().map(|c| self.contact_verdict(c, &step["contacts"][&c.name])).collect();
+                let found = |c: &Contact| step.contacts.get(&c.name).filter(|found| found.zones > 0);
+                let told: Vec<(&Contact, &ContactReport)> =
+                    self.plan.contacts.iter().filter_map(|c| Some((c, found(c)?))).collect();
+                let balance = step.equilibrium_residual.unwrap_or(f64::NAN);
+                let unstable = told.iter().any(|(_, found)| found.stable == Some(false));
+                let sentences: Vec<String> = told.iter().map(|(c, found)| self.contact_verdict(c, found)).collect();
                 match sentences.is_empty() {
                     true => {
-                        let time = step["time"].as_f64().unwrap_or(0.0);
-                        let why = sizes::clearance::<D, Z>(&self.plan, time);
+                        let why = sizes::clearance::<D, Z>(&self.plan, step.time);
                         format!("The membrane touches nothing{}.", why.map_or(String::new(), |why| format!(": {why}")))
                     }
                     false => format!(
@@ -815,26 +823,25 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
     }
 
     /// One contact in a clause.
-    fn contact_verdict(&self, contact: &Contact, c: &Value) -> String {
-        let within = |v: &Value| v.as_f64().map_or(String::new(), |v| format!(" ± {v:.0e}"));
+    fn contact_verdict(&self, contact: &Contact, c: &ContactReport) -> String {
+        let told = |value: f64, within: Option<f64>| {
+            figure(value, within) + &within.map_or(String::new(), |within| format!(" ± {within:.0e}"))
+        };
         let measure = if D == 1 && self.plan.space == Space::Line { "length" } else { "area" };
-        let (zones, holes) = (c["zones"].as_u64().unwrap_or(0), c["holes"].as_u64().unwrap_or(0));
         let staircase = if let MethodChoice::ActiveSet(_) = self.plan.method { " (a staircase of nodes)" } else { "" };
-        let force = c["force"][2].as_f64().unwrap_or(f64::NAN);
         format!(
-            "in contact{} over {measure} {}{}{staircase} in {zones} zone{}{}, pushed {} by {}{}",
+            "in contact{} over {measure} {}{staircase} in {} zone{}{}, pushed {} by {}",
             if self.plan.contacts.len() > 1 { format!(" with {}", contact.body) } else { String::new() },
-            figure(c["area"].as_f64().unwrap_or(f64::NAN), c["error_estimate"]["area"].as_f64()),
-            within(&c["error_estimate"]["area"]),
-            if zones == 1 { "" } else { "s" },
-            match holes {
+            told(c.area, c.error_estimate.map(|e| e.area)),
+            c.zones,
+            if c.zones == 1 { "" } else { "s" },
+            match c.holes.unwrap_or(0) {
                 0 => String::new(),
                 1 => " with 1 hole".into(),
                 n => format!(" with {n} holes"),
             },
             if contact.side == Side::Below { "up" } else { "down" },
-            figure(contact.side.sign() * force, c["error_estimate"]["force"].as_f64()),
-            within(&c["error_estimate"]["force"]),
+            told(contact.side.sign() * c.force[2], c.error_estimate.map(|e| e.force)),
         )
     }
 }

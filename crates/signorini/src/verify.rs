@@ -2,7 +2,7 @@
 
 use crate::case::Document;
 use crate::run::run;
-use serde_json::Value;
+use serde_json::{Value, json};
 use signorini_solve::Silent;
 use signorini_verify::flat_floor::{FlatFloor, Kind};
 use std::path::Path;
@@ -139,10 +139,10 @@ pub fn verify(problem: &Problem, folder: &Path) -> Result<Verdict, String> {
     set.push("output.pictures=false".into());
     let document = Document::parse(example.name, example.case, &set).map_err(|e| e.one_line())?;
     let outcome = run(&document, folder, &mut Silent).map_err(|e| e.to_string())?;
-    if outcome.summary["converged"] != true {
-        return Err(outcome.summary["verdict"].as_str().unwrap_or("not converged").into());
+    if !outcome.summary.converged {
+        return Err(outcome.summary.verdict);
     }
-    let found = figure(&outcome.summary, problem.figure).ok_or("the figure is not in the summary")?;
+    let found = figure(&json!(outcome.summary), problem.figure).ok_or("the figure is not in the summary")?;
     let exact = (problem.exact)();
     let error = (found - exact).abs() / exact.abs();
     let Problem { name, allowed, source, .. } = *problem;

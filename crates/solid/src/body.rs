@@ -30,6 +30,15 @@ impl<const D: usize> Body<D> {
         vertices.filter_map(|v| self.dofs.vertex(v)).map(|f| self.first + D * f as usize)
     }
 
+    /// For every unknown of the body the direction that a force on it counts for in the resultant; none where it does not.
+    pub fn directions(&self) -> Vec<Option<usize>> {
+        let mut out = vec![None; self.unknowns()];
+        for k in self.vertex_unknowns() {
+            (0..D).for_each(|i| out[k - self.first + i] = Some(i));
+        }
+        out
+    }
+
     /// The resultant of forces on the unknowns of all bodies, those on this one.
     pub fn resultant(&self, forces: &[f64]) -> Point<D> {
         self.vertex_unknowns().map(|k| Point::<D>::from_fn(|i, _| forces[k + i])).sum()

@@ -424,6 +424,8 @@ pub struct PressureNode<const D: usize> {
     pub multiplier: f64,
     /// The recovered pressure.
     pub pressure: f64,
+    /// On the slave; zero where another node carries the force of this one.
+    pub force: Point<D>,
     pub gap: f64,
     pub active: bool,
     pub weight: f64,
@@ -432,8 +434,15 @@ pub struct PressureNode<const D: usize> {
 
 impl<const D: usize> Contact<D> {
     /// Pressures of quadrature points as means over the pressure nodes, and their gaps at the nodes.
-    pub(crate) fn averaged(&self, pressure: &[f64], gap: &[f64], active: &[bool]) -> Vec<PressureNode<D>> {
+    pub(crate) fn averaged(
+        &self,
+        pressure: &[f64],
+        forces: &[Point<D>],
+        gap: &[f64],
+        active: &[bool],
+    ) -> Vec<PressureNode<D>> {
         let count = self.nodes.len();
+        let mut resultant = vec![Point::<D>::zeros(); count];
         let (mut weight, mut force, mut gaps, mut area, mut carries) =
             (vec![0.0; count], vec![0.0; count], vec![0.0; count], vec![0.0; count], vec![false; count]);
         let mut at = Values::default();
@@ -449,6 +458,7 @@ impl<const D: usize> Contact<D> {
                     functions[(i, q)] = *v;
                     weight[n] += w;
                     force[n] += w * pressure[k];
+                    resultant[n] += forces[k] * *v;
                     carries[n] |= active[k] && *v > 0.1;
                 }
             }
@@ -474,6 +484,7 @@ impl<const D: usize> Contact<D> {
                     x: self.nodes.positions[n],
                     multiplier: mean,
                     pressure: mean,
+                    force: resultant[n],
                     gap: gaps[n] / area[n],
                     active: carries[n],
                     weight: weight[n],

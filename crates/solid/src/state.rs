@@ -90,15 +90,24 @@ fn result<const D: usize>(
     let mut result =
         ContactResult::<D> { nodes: Vec::new(), force: Point::<D>::zeros(), area: 0.0, zone: ContactZone::default() };
     let mut own = vec![0.0; contact_force.len()];
+    let body = contact.slave.body();
+    let directions = body.directions();
+    // On the slave, of each row.
+    let mut forces = vec![Point::<D>::zeros(); contact.rows.len()];
     for (k, row) in contact.rows.iter().enumerate() {
         for (unknown, c) in row.push() {
             own[*unknown as usize] += c * pressures[k];
+            let of_slave = (*unknown as usize).checked_sub(body.first).and_then(|n| *directions.get(n)?);
+            if let Some(direction) = of_slave {
+                forces[k][direction] += c * pressures[k];
+            }
         }
         if !contact.at_points() {
             result.nodes.push(PressureNode {
                 x: contact.nodes.positions[row.node as usize],
                 multiplier: pressures[k],
                 pressure: pressures[k],
+                force: forces[k],
                 gap: gaps[k] / row.weight,
                 active: actives[k],
                 weight: row.weight,
@@ -106,10 +115,10 @@ fn result<const D: usize>(
             });
         }
     }
-    result.force = contact.slave.body().resultant(&own);
+    result.force = body.resultant(&own);
     contact_force.iter_mut().zip(&own).for_each(|(sum, f)| *sum += f);
     if contact.at_points() {
-        result.nodes = contact.averaged(pressures, gaps, actives);
+        result.nodes = contact.averaged(pressures, &forces, gaps, actives);
     }
     let count = contact.nodes.len();
     let (mut multiplier, mut active) = (vec![0.0; count], vec![false; count]);
@@ -121,7 +130,7 @@ fn result<const D: usize>(
         let Some(to) = result.nodes.iter().find(|n| n.number == given.to).copied() else { continue };
         let x = contact.nodes().positions[given.from as usize];
         states[given.from as usize] = state_of(&to, None);
-        result.nodes.push(PressureNode { x, weight: 0.0, number: given.from, ..to });
+        result.nodes.push(PressureNode { x, weight: 0.0, force: Point::zeros(), number: given.from, ..to });
     }
     for node in &result.nodes {
         let k = node.number as usize;

@@ -105,25 +105,19 @@ impl<'de> Deserialize<'de> for OneOrMany {
     }
 }
 
-/// A value with a unit, and what it is in the base units of its case.
-#[derive(Clone, Debug, PartialEq)]
+/// What a value with a unit was taken for.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
 pub struct Interpreted {
-    /// In the file; none where `--set` says it.
+    /// Line of the case file; null for what `--set` says.
     pub line: Option<usize>,
+    /// The value as it is written.
     pub text: String,
-    /// None where it is an expression of position or time.
+    /// The value in the base unit; null where it depends on position or time.
     pub value: Option<f64>,
-    /// The base unit, and how many of it make one of the stated unit.
+    /// The base unit of the case.
     pub unit: String,
+    /// How many base units make one of the stated unit.
     pub factor: f64,
-}
-
-impl Interpreted {
-    pub fn to_json(&self) -> serde_json::Value {
-        serde_json::json!({
-            "line": self.line, "text": self.text, "value": self.value, "unit": self.unit, "factor": self.factor,
-        })
-    }
 }
 
 /// Turns values into expressions in base units.

@@ -5,11 +5,10 @@ use super::{Folder, OutputError};
 use crate::case::statement::Space;
 use crate::exact;
 use crate::plan::MembranePlan;
-use crate::run::events::Event;
+use crate::report::{ContactReport, Event, StepReport};
 use crate::snapshot::{DisplayMesh, Snapshot};
 use plotters::prelude::*;
 use rayon::prelude::*;
-use serde_json::Value;
 use signorini_geometry::{Aabb, Point, polygon};
 use signorini_verify::flat_floor::FlatFloor;
 
@@ -34,7 +33,7 @@ pub fn draw<const D: usize>(
     plan: &MembranePlan<D>,
     mesh: &DisplayMesh<D>,
     s: &Snapshot<D>,
-    steps: &[Value],
+    steps: &[StepReport],
     events: &[Event],
 ) -> Result<(), OutputError> {
     if mesh.cells.is_empty() {
@@ -494,15 +493,12 @@ fn gap_profile<const D: usize>(mesh: &DisplayMesh<D>, s: &Snapshot<D>, units: &L
 }
 
 /// Residuals of all increments, relative to the tolerance.
-fn convergence(steps: &[Value]) -> Result<String, OutputError> {
+fn convergence(steps: &[StepReport]) -> Result<String, OutputError> {
     let histories: Vec<Vec<(f64, f64)>> = steps
         .iter()
         .map(|s| {
-            let list = s["residual_history"].as_array().cloned().unwrap_or_default();
-            list.iter()
-                .enumerate()
-                .filter_map(|(i, v)| v.as_f64().filter(|v| *v > 0.0).map(|v| (i as f64 + 1.0, v)))
-                .collect()
+            let list = s.residual_history.iter().enumerate();
+            list.filter(|(_, v)| **v > 0.0).map(|(i, v)| (i as f64 + 1.0, *v)).collect()
         })
         .collect();
     let longest = histories.iter().flatten().map(|p| p.0).fold(2.0, f64::max);
@@ -547,12 +543,12 @@ struct Drive<'a> {
 
 impl<'a> Drive<'a> {
     /// The first of the two that changes.
-    fn of<const D: usize>(plan: &'a MembranePlan<D>, steps: &[Value], units: &Labels) -> Option<Self> {
+    fn of<const D: usize>(plan: &'a MembranePlan<D>, steps: &[StepReport], units: &Labels) -> Option<Self> {
         let load = move |t: f64| -plan.load_resultants(&plan.at(t), t).values().sum::<f64>();
         let moving = plan.contacts.iter().find(|c| !c.displacement.is_empty());
         let height = move |t: f64| moving.map_or(0.0, |c| c.displacement_at(t)[2]);
         let changes = |f: &dyn Fn(f64) -> f64| {
-            let times = steps.iter().filter_map(|s| s["time"].as_f64());
+            let times = steps.iter().map(|s| s.time);
             let (low, high) = times.map(f).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
             high - low > 1e-12 * high.abs().max(low.abs())
         };
@@ -571,17 +567,17 @@ impl<'a> Drive<'a> {
 /// as arrows.
 fn loop_of_states(
     drive: &Drive,
-    steps: &[Value],
+    steps: &[StepReport],
     events: &[Event],
     contact: &str,
     space: Space,
     units: &Labels,
 ) -> Result<String, OutputError> {
     let measure = if space == Space::Line { units.length("length of contact") } else { units.area("area of contact") };
-    type Reading = fn(&Value) -> Option<f64>;
+    type Reading = fn(&ContactReport) -> f64;
     let readings: [(Reading, fn(&Event) -> [f64; 2], String); 2] = [
-        (|c| c["area"].as_f64(), |e| e.area, measure),
-        (|c| c["force"][2].as_f64(), |e| e.force, units.force("contact force")),
+        (|c| c.area, |e| [e.area_before, e.area_after], measure),
+        (|c| c.force[2], |e| [e.force_before, e.force_after], units.force("contact force")),
     ];
     let jumps: Vec<&Event> = events.iter().filter(|e| e.energy_released.is_some_and(|v| v != 0.0)).collect();
     svg((820, 720), |root| {
@@ -589,8 +585,8 @@ fn loop_of_states(
             let states: Vec<(f64, f64, bool, f64)> = steps
                 .iter()
                 .filter_map(|s| {
-                    let (t, c) = (s["time"].as_f64()?, &s["contacts"][contact]);
-                    Some(((drive.at)(t), read(c)?, c["stable"] != false, t))
+                    let c = s.contacts.get(contact)?;
+                    Some(((drive.at)(s.time), read(c), c.stable != Some(false), s.time))
                 })
                 .collect();
             let arrows: Vec<[(f64, f64); 2]> = jumps.iter().map(|e| ends(e).map(|v| ((drive.at)(e.time), v))).collect();
@@ -631,7 +627,7 @@ fn loop_of_states(
 
 /// Area and force over time, with the changes of topology.
 fn history(
-    steps: &[Value],
+    steps: &[StepReport],
     events: &[Event],
     contacts: &[&str],
     space: Space,
@@ -640,24 +636,22 @@ fn history(
     // Changes at one time are one line.
     let mut marks: Vec<(f64, String)> = Vec::new();
     for Event { time, kind, .. } in events {
-        let word = kind.replace('_', " ");
+        let word = kind.words();
         match marks.last_mut() {
             Some((t, words)) if *t == *time => {
-                if !words.contains(&word) {
+                if !words.contains(word) {
                     *words += &format!(", {word}");
                 }
             }
-            _ => marks.push((*time, word)),
+            _ => marks.push((*time, word.into())),
         }
     }
-    let series = |f: &dyn Fn(&Value) -> Option<f64>| -> Vec<Vec<(f64, f64)>> {
-        let of = |contact: &&str| {
-            steps.iter().filter_map(|s| Some((s["time"].as_f64()?, f(&s["contacts"][*contact])?))).collect()
-        };
+    let series = |f: &dyn Fn(&ContactReport) -> f64| -> Vec<Vec<(f64, f64)>> {
+        let of = |contact: &&str| steps.iter().filter_map(|s| Some((s.time, f(s.contacts.get(*contact)?)))).collect();
         contacts.iter().map(of).collect()
     };
-    let area = series(&|c| c["area"].as_f64());
-    let force = series(&|c| c["force"][2].as_f64());
+    let area = series(&|c| c.area);
+    let force = series(&|c| c.force[2]);
     let measure = if space == Space::Line { units.length("length of contact") } else { units.area("area of contact") };
     svg((820, 640), |root| {
         let parts = root.split_evenly((2, 1));

@@ -5,8 +5,8 @@ use super::pictures::Labels;
 use super::solid_fields::{ContactDisplay, SolidDisplay, SolidFields};
 use super::{Folder, OutputError};
 use crate::plan::solid::{Opposite, SolidPlan};
+use crate::report::StepReport;
 use plotters::prelude::*;
-use serde_json::Value;
 use signorini_geometry::Point;
 use std::fmt::Write as _;
 
@@ -25,7 +25,7 @@ pub fn draw<const D: usize>(
     display: &SolidDisplay<D>,
     fields: &SolidFields<D>,
     contacts: &[ContactDisplay<D>],
-    steps: &[Value],
+    steps: &[StepReport],
 ) -> Result<(), OutputError> {
     let labels = Labels::new(&plan.document);
     save(folder, "deformed", &deformed(plan, time, display, fields, contacts, &labels, None))?;
@@ -550,14 +550,14 @@ fn map<const D: usize>(name: &str, time: f64, shown: &ContactDisplay<D>, labels:
 }
 
 /// The force of every contact over time.
-fn history<const D: usize>(plan: &SolidPlan<D>, steps: &[Value], labels: &Labels) -> Result<String, OutputError> {
+fn history<const D: usize>(plan: &SolidPlan<D>, steps: &[StepReport], labels: &Labels) -> Result<String, OutputError> {
     let series: Vec<(String, Vec<(f64, f64)>)> = (plan.contacts.iter())
         .map(|c| {
-            let force = |s: &Value| -> Option<f64> {
-                let list = s["contacts"][&c.name]["force"].as_array()?;
-                Some(list.iter().filter_map(|v| v.as_f64()).map(|v| v * v).sum::<f64>().sqrt())
+            let force = |s: &StepReport| {
+                let force = s.contacts.get(&c.name)?.force;
+                Some((s.time, force.iter().map(|v| v * v).sum::<f64>().sqrt()))
             };
-            (c.name.clone(), steps.iter().filter_map(|s| Some((s["time"].as_f64()?, force(s)?))).collect())
+            (c.name.clone(), steps.iter().filter_map(force).collect())
         })
         .collect();
     let all = || series.iter().flat_map(|s| s.1.iter());

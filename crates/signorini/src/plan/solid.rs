@@ -10,6 +10,7 @@ use crate::case::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE, Units};
 use crate::case::value::Interpreted;
 use crate::case::{CaseError, Document, Literal, OneOrMany, Value, Values, suggestion};
 use crate::expression::Scope;
+use crate::report::Warning;
 use signorini_fem::{Group, Mesh, Side};
 use signorini_geometry::Point;
 use signorini_geometry::mesh::TriangleMesh;
@@ -80,7 +81,7 @@ pub struct SolidPlan<const D: usize> {
     pub probes: BTreeMap<String, (usize, Point<D>)>,
     pub every: usize,
     pub pictures: bool,
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
     pub units: Option<Units>,
     /// What the values with units were taken for.
     pub interpreted: Vec<Interpreted>,
@@ -160,6 +161,7 @@ impl Planner<'_> {
             "the surface in `{}` is inside out, its volume is {volume:.4e}: it is turned round",
             key.file.get_ref()
         );
+        let warning = Warning::from(warning);
         let mut warnings = self.warnings.borrow_mut();
         if !warnings.contains(&warning) {
             warnings.push(warning);
@@ -223,11 +225,14 @@ impl Planner<'_> {
             };
             if !bodies.iter().any(within) {
                 let at: Vec<String> = x.iter().map(f64::to_string).collect();
-                warnings.push(format!(
-                    "the probe `{name}` at ({}) lies outside all bodies: it tells of the nearest point of `{}`",
-                    at.join(", "),
-                    bodies[near].name
-                ));
+                warnings.push(
+                    format!(
+                        "the probe `{name}` at ({}) lies outside all bodies: it tells of the nearest point of `{}`",
+                        at.join(", "),
+                        bodies[near].name
+                    )
+                    .into(),
+                );
             }
             probes.insert(name.clone(), (near, x));
         }
@@ -265,7 +270,7 @@ impl Planner<'_> {
         name: &str,
         key: &statement::Solid,
         span: Range<usize>,
-        warnings: &mut Vec<String>,
+        warnings: &mut Vec<Warning>,
     ) -> Result<PlannedBody<D>, CaseError> {
         let document = self.document;
         if let Some(strain) = &key.strain
@@ -310,12 +315,15 @@ impl Planner<'_> {
         }
         let locks = |c: usize| signorini_solid::stiffness::locks(mesh.shape(c), degree, &material);
         if (0..mesh.cell_count()).any(locks) {
-            warnings.push(format!(
-                "`{name}`: triangles or tetrahedra of degree 1 lock with Poisson's ratio {}: use degree 2",
-                material.poissons_ratio
-            ));
+            warnings.push(
+                format!(
+                    "`{name}`: triangles or tetrahedra of degree 1 lock with Poisson's ratio {}: use degree 2",
+                    material.poissons_ratio
+                )
+                .into(),
+            );
         }
-        warnings.extend(Apart::new(&mesh).and_then(|apart| apart.warning(name)));
+        warnings.extend(Apart::new(&mesh).and_then(|apart| apart.warning(name)).map(Warning::from));
         Ok(PlannedBody { name: name.to_string(), mesh, degree, material })
     }
 

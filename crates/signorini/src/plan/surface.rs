@@ -6,6 +6,7 @@ use crate::case::statement::{self, Lies, Motion, Rigid, Shape, Space};
 use crate::case::units::{LENGTH, NONE};
 use crate::expression::{Expression, Scope};
 use crate::relief::{LevelSetTop, Sampled};
+use crate::report::Warning;
 use signorini_geometry::{Point, Vector};
 use signorini_membrane::field::Moved;
 use signorini_membrane::obstacle::{Obstacle, Side};
@@ -53,7 +54,7 @@ pub(super) struct Scene<'a> {
     /// The box round the membrane, and the distance of what it can tell apart.
     pub around: [Vector<2>; 2],
     pub resolution: f64,
-    pub warnings: &'a mut Vec<String>,
+    pub warnings: &'a mut Vec<Warning>,
 }
 
 /// Reads a contact between the membrane and a rigid body.
@@ -170,7 +171,7 @@ fn height(
                  its shadow it falls off",
                 key.file.get_ref(),
                 scene.resolution
-            ));
+            ).into());
             Ok(placed(Expression::relief(sampled), "stl"))
         }
         Shape::Stl(_) => {

@@ -13,7 +13,7 @@ use crate::case::Document;
 use crate::output::Folder;
 use crate::run::run;
 use plot::Plot;
-use serde_json::Value;
+use serde_json::{Value, json};
 use signorini_solve::Silent;
 use std::fmt::Write;
 use std::path::Path;
@@ -82,10 +82,10 @@ fn solved(scratch: &Path, case: &str, set: &[String]) -> Result<Value, String> {
     // Every run has a folder of its own kind: the last one goes.
     let _ = std::fs::remove_dir_all(scratch);
     let outcome = run(&document, scratch, &mut Silent).map_err(|e| e.to_string())?;
-    if outcome.summary["converged"] != true {
-        return Err(format!("{case} with {set:?}: {}", outcome.summary["verdict"]));
+    if !outcome.summary.converged {
+        return Err(format!("{case} with {set:?}: {}", outcome.summary.verdict));
     }
-    Ok(outcome.summary)
+    Ok(json!(outcome.summary))
 }
 
 fn document(case: &str, set: &[String]) -> Result<Document, String> {

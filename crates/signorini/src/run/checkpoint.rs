@@ -2,9 +2,10 @@
 //! `run --resume`. Numbers are read as they were written, to the last bit.
 
 use super::Begun;
-use super::events::{Event, Known};
+use super::events::Known;
 use super::increment::Saved;
 use crate::output::{Folder, OutputError};
+use crate::report::{Event, StepReport, Summary, Warning};
 use crate::snapshot::Snapshot;
 use serde_json::{Value, json};
 use signorini_fem::Grid;
@@ -16,7 +17,7 @@ use std::path::Path;
 pub const FILE: &str = "checkpoint.json";
 /// The folder of the frames of the film.
 const FRAMES: &str = "checkpoint";
-const VERSION: u64 = 1;
+const VERSION: u64 = 2;
 
 /// The state of a run between two increments.
 pub struct Checkpoint<const D: usize, Z> {
@@ -24,8 +25,8 @@ pub struct Checkpoint<const D: usize, Z> {
     pub next: usize,
     pub engine: Saved<Z>,
     pub known: Option<Known<Z>>,
-    pub steps: Vec<Value>,
-    pub warnings: Vec<String>,
+    pub steps: Vec<StepReport>,
+    pub warnings: Vec<Warning>,
     pub frames: Vec<(f64, String)>,
     pub unknowns: usize,
     pub events: Vec<Event>,
@@ -70,15 +71,15 @@ pub fn begun(path: &Path, case: &str) -> Result<Begun, String> {
     if text != case {
         return Err(of_another_case(&file));
     }
-    let done = summary(path).is_ok_and(|summary| summary["converged"] == true);
+    let done = summary(path).is_ok_and(|summary| summary.converged);
     Ok(if done { Begun::Done } else { Begun::Anew })
 }
 
 /// The summary of an earlier run.
 ///
 /// # Errors
-/// In words: a file that cannot be read, or is no JSON.
-pub fn summary(path: &Path) -> Result<Value, String> {
+/// In words: a file that cannot be read, or is no summary of this version.
+pub fn summary(path: &Path) -> Result<Summary, String> {
     let file = path.join("summary.json");
     let text = std::fs::read_to_string(&file).map_err(|e| format!("cannot read `{}`: {e}", file.display()))?;
     serde_json::from_str(&text).map_err(|e| format!("`{}` is damaged: {e}", file.display()))
@@ -110,7 +111,7 @@ impl<const D: usize, Z: Zone<D>> Checkpoint<D, Z> {
             "warnings": self.warnings,
             "frames": self.frames,
             "unknowns": self.unknowns,
-            "events": self.events.iter().map(Event::to_json).collect::<Vec<_>>(),
+            "events": self.events,
         });
         write(folder, case, &mut state)
     }
@@ -136,7 +137,6 @@ impl<const D: usize, Z: Zone<D>> Checkpoint<D, Z> {
                 margin: k["margin"].as_f64(),
             }),
         };
-        let list = |key: &str| v[key].as_array().cloned().ok_or_else(damaged);
         let mut film = Vec::new();
         for index in 0..next {
             // Without pictures there are none.
@@ -150,14 +150,11 @@ impl<const D: usize, Z: Zone<D>> Checkpoint<D, Z> {
             next,
             engine: Saved::from_json(&v["engine"], |z| Z::from_json(grid, z)).ok_or_else(damaged)?,
             known,
-            steps: list("steps")?,
+            steps: serde_json::from_value(v["steps"].clone()).map_err(|_| damaged())?,
             warnings: serde_json::from_value(v["warnings"].clone()).map_err(|_| damaged())?,
             frames: serde_json::from_value(v["frames"].clone()).map_err(|_| damaged())?,
             unknowns: v["unknowns"].as_u64().ok_or_else(damaged)? as usize,
-            events: list("events")?
-                .iter()
-                .map(|e| Event::from_json(e).ok_or_else(damaged))
-                .collect::<Result<_, _>>()?,
+            events: serde_json::from_value(v["events"].clone()).map_err(|_| damaged())?,
             film,
         })
     }

@@ -1,17 +1,17 @@
 //! What may differ between two runs of one case: time, memory, version.
 
-use serde_json::{Value, json};
+use crate::report::Environment;
 
 /// The `environment` of a summary.
-pub fn describe(start: std::time::Instant, threads: usize, input: &str) -> Value {
-    json!({
-        "version": env!("CARGO_PKG_VERSION"),
-        "wall_seconds": start.elapsed().as_secs_f64(),
-        "cpu_seconds": cpu_seconds(),
-        "peak_memory": peak_memory(),
-        "threads": threads,
-        "input_hash": format!("{:016x}", fnv1a(input.as_bytes())),
-    })
+pub fn describe(start: std::time::Instant, threads: usize, input: &str) -> Environment {
+    Environment {
+        version: env!("CARGO_PKG_VERSION").into(),
+        wall_seconds: start.elapsed().as_secs_f64(),
+        cpu_seconds: cpu_seconds(),
+        peak_memory: peak_memory(),
+        threads,
+        input_hash: format!("{:016x}", fnv1a(input.as_bytes())),
+    }
 }
 
 /// User and system time of the process, where the system tells.

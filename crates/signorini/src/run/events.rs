@@ -5,74 +5,12 @@
 //! goes, are seen only if the ends of a part differ.
 
 use super::mergers::{self, Bridge, Merger, nearest};
-use serde_json::{Value, json};
+use crate::report::{Event, EventKind, LocatedBy, vector};
 use signorini_fem::Grid;
 use signorini_geometry::Point;
 use signorini_membrane::obstacle::Side;
 use signorini_membrane::zone::{Zone, contact_index, is_free};
 use signorini_solve::{Iteration, Progress};
-
-/// One change of topology.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Event {
-    pub kind: &'static str,
-    /// What the zone touches, and the contact that this is.
-    pub side: Side,
-    pub contact: String,
-    /// The middle of the interval of time that holds the change, and its length.
-    pub time: f64,
-    pub within: f64,
-    /// How it was found: by `bisection`, or by `extrapolation` from both sides.
-    pub by: &'static str,
-    pub at: Vec<f64>,
-    /// Zones and holes before and after.
-    pub before: (usize, usize),
-    pub after: (usize, usize),
-    /// Area of contact and force of the floor before and after.
-    pub area: [f64; 2],
-    pub force: [f64; 2],
-    /// Energy set free by a jump, told once where one jump is several events; none without adhesion.
-    pub energy_released: Option<f64>,
-}
-
-impl Event {
-    pub fn to_json(&self) -> Value {
-        json!({
-            "contact": self.contact, "above": self.side == Side::Above, "kind": self.kind, "time": self.time, "within": self.within, "by": self.by, "at": self.at,
-            "zones_before": self.before.0, "zones_after": self.after.0,
-            "holes_before": self.before.1, "holes_after": self.after.1,
-            "area_before": self.area[0], "area_after": self.area[1],
-            "force_before": self.force[0], "force_after": self.force[1],
-            "energy_released": self.energy_released,
-        })
-    }
-}
-
-/// All kinds of events.
-const KINDS: [&str; 8] =
-    ["nucleation", "release", "merge", "split", "hole_opened", "hole_closed", "snap_in", "pull_off"];
-
-impl Event {
-    /// What [`Event::to_json`] wrote.
-    pub fn from_json(v: &Value) -> Option<Self> {
-        let number = |key: &str| v[key].as_f64();
-        let count = |key: &str| v[key].as_u64().map(|n| n as usize);
-        Some(Self {
-            kind: KINDS.into_iter().find(|k| v["kind"] == *k)?,
-            side: if v["above"].as_bool()? { Side::Above } else { Side::Below },
-            contact: v["contact"].as_str()?.to_string(),
-            time: number("time")?,
-            within: number("within")?,
-            by: ["bisection", "extrapolation"].into_iter().find(|by| v["by"] == *by)?,
-            at: serde_json::from_value(v["at"].clone()).ok()?,
-            before: (count("zones_before")?, count("holes_before")?),
-            after: (count("zones_after")?, count("holes_after")?),
-            area: [number("area_before")?, number("area_after")?],
-            force: [number("force_before")?, number("force_after")?],
-            energy_released: number("energy_released"),
-        })
-    }
-}
 
 /// A state on the path.
 #[derive(Clone)]
@@ -221,26 +159,15 @@ pub fn jump<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Known<Z>, b: &Known<
     let mut events = differences(grid, a, b);
     for event in &mut events {
         event.kind = match event.kind {
-            "nucleation" => "snap_in",
-            "release" => "pull_off",
+            EventKind::Nucleation => EventKind::SnapIn,
+            EventKind::Release => EventKind::PullOff,
             other => other,
         };
     }
     if events.is_empty() {
-        events.push(Event {
-            kind: if b.area > a.area { "snap_in" } else { "pull_off" },
-            side: if b.zone.is_empty() { a.zone.side_of(0) } else { b.zone.side_of(0) },
-            contact: String::new(),
-            time: 0.5 * (a.time + b.time),
-            within: b.time - a.time,
-            by: "bisection",
-            at: moved(grid, &a.zone, &b.zone).iter().copied().collect(),
-            before: a.zone.counts(),
-            after: b.zone.counts(),
-            area: [a.area, b.area],
-            force: [a.force, b.force],
-            energy_released: None,
-        });
+        let kind = if b.area > a.area { EventKind::SnapIn } else { EventKind::PullOff };
+        let side = if b.zone.is_empty() { a.zone.side_of(0) } else { b.zone.side_of(0) };
+        events.push(between(a, b, kind, side, moved(grid, &a.zone, &b.zone)));
     }
     for (k, event) in events.iter_mut().enumerate() {
         event.energy_released = Some(if k == 0 { a.energy_total - b.energy_total } else { 0.0 });
@@ -259,45 +186,53 @@ fn moved<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Z, b: &Z) -> Point<D> {
     mean(&out)
 }
 
+/// An event somewhere between two states.
+fn between<const D: usize, Z: Zone<D>>(a: &Known<Z>, b: &Known<Z>, kind: EventKind, side: Side, at: Point<D>) -> Event {
+    let [before, after] = [a.zone.counts(), b.zone.counts()];
+    Event {
+        contact: String::new(),
+        kind,
+        time: 0.5 * (a.time + b.time),
+        within: b.time - a.time,
+        by: LocatedBy::Bisection,
+        at: vector(&at),
+        above: side == Side::Above,
+        zones_before: before.0,
+        zones_after: after.0,
+        holes_before: before.1,
+        holes_after: after.1,
+        area_before: a.area,
+        area_after: b.area,
+        force_before: a.force,
+        force_after: b.force,
+        energy_released: None,
+    }
+}
+
 /// The changes between two zones that differ little.
 pub fn differences<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Known<Z>, b: &Known<Z>) -> Vec<Event> {
     let (parts_a, parts_b) = (parts(grid, &a.zone), parts(grid, &b.zone));
     let overlap = overlaps(grid, &a.zone, &b.zone, [parts_a.len(), parts_b.len()]);
     let mut out = Vec::new();
-    let mut add = |kind, side, at: Point<D>| {
-        out.push(Event {
-            kind,
-            side,
-            contact: String::new(),
-            time: 0.5 * (a.time + b.time),
-            within: b.time - a.time,
-            by: "bisection",
-            at: at.iter().copied().collect(),
-            before: a.zone.counts(),
-            after: b.zone.counts(),
-            area: [a.area, b.area],
-            force: [a.force, b.force],
-            energy_released: None,
-        });
-    };
+    let mut add = |kind, side, at: Point<D>| out.push(between(a, b, kind, side, at));
     for (j, part) in parts_b.iter().enumerate() {
         let from: Vec<&Part<D>> = (0..parts_a.len()).filter(|&i| overlap[i][j]).map(|i| &parts_a[i]).collect();
         if from.is_empty() {
-            add("nucleation", b.zone.side_of(j), middle(grid, part));
+            add(EventKind::Nucleation, b.zone.side_of(j), middle(grid, part));
         }
-        bridges(&from).iter().for_each(|bridge| add("merge", b.zone.side_of(j), bridge.middle()));
+        bridges(&from).iter().for_each(|bridge| add(EventKind::Merge, b.zone.side_of(j), bridge.middle()));
     }
     for (i, part) in parts_a.iter().enumerate() {
         let into: Vec<&Part<D>> = (0..parts_b.len()).filter(|&j| overlap[i][j]).map(|j| &parts_b[j]).collect();
         if into.is_empty() {
-            add("release", a.zone.side_of(i), middle(grid, part));
+            add(EventKind::Release, a.zone.side_of(i), middle(grid, part));
         }
-        bridges(&into).iter().for_each(|bridge| add("split", a.zone.side_of(i), bridge.middle()));
+        bridges(&into).iter().for_each(|bridge| add(EventKind::Split, a.zone.side_of(i), bridge.middle()));
     }
     for side in Side::BOTH {
         let [holes_a, holes_b] = [a, b].map(|state| holes(grid, &state.zone, side));
-        unmatched(&holes_b, &holes_a).into_iter().for_each(|x| add("hole_opened", side, x));
-        unmatched(&holes_a, &holes_b).into_iter().for_each(|x| add("hole_closed", side, x));
+        unmatched(&holes_b, &holes_a).into_iter().for_each(|x| add(EventKind::HoleOpened, side, x));
+        unmatched(&holes_a, &holes_b).into_iter().for_each(|x| add(EventKind::HoleClosed, side, x));
     }
     out
 }

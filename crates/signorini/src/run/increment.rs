@@ -3,6 +3,7 @@
 use super::events::Known;
 use crate::case::statement::Space;
 use crate::plan::{MembranePlan, MethodChoice};
+use crate::report::{self, Reason, StepReport, Warning, WarningKind, vector};
 use crate::snapshot::{DisplayMesh, Sample, Snapshot};
 use serde_json::{Value, json};
 use signorini_geometry::Point;
@@ -11,7 +12,7 @@ use signorini_membrane::adhesion::Branch;
 use signorini_membrane::conditions::Extremes;
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::error_estimate::ErrorEstimate;
-use signorini_membrane::ils::{self, Reason, Solution, Start};
+use signorini_membrane::ils::{self, Solution, Start};
 use signorini_membrane::problem::Membrane;
 use signorini_membrane::published::Transport;
 use signorini_membrane::refinement::Refinement;
@@ -108,7 +109,7 @@ type Sampler<'a, const D: usize> = Box<dyn Fn(&Point<D>) -> Option<Sample> + 'a>
 /// The result of an increment.
 pub struct Increment<'a, const D: usize> {
     pub converged: bool,
-    pub reason: String,
+    pub reason: Reason,
     /// Equilibrium solves on the cells of the state, and on larger ones before that.
     pub iterations: usize,
     pub before: usize,
@@ -116,7 +117,7 @@ pub struct Increment<'a, const D: usize> {
     pub unknowns: usize,
     /// What solved the equations.
     pub solver: &'static str,
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
     report: Option<Report<D>>,
     outlines: Vec<Vec<Point<D>>>,
     sample: Option<Sampler<'a, D>>,
@@ -334,7 +335,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             Some(solution) => solution,
             None => match if large && !progress.interrupted() { plan.lacks_memory() } else { None } {
                 Some(message) => {
-                    Solution { reason: Reason::LinearSolver(message), ..Solution::begin(Z::empty(&membrane.grid)) }
+                    Solution { reason: ils::Reason::LinearSolver(message), ..Solution::begin(Z::empty(&membrane.grid)) }
                 }
                 None => match self.cells.take().map(|cells| membrane.clone().on_cells_of(&cells)) {
                     Some(cells) => ils::solve_here(&cells, start, at, progress),
@@ -363,69 +364,85 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             }
         }
         let mut warnings = Vec::new();
+        let mut warn = |kind, message: String| warnings.push(Warning::new(kind, message).at_time(at.1));
         let steepest = report.as_ref().map_or(0.0, |r| r.max_slope);
-        if let Some(kink) = solution.conditions.as_ref().and_then(|c| c.kink).filter(|_| estimated) {
-            let place: Vec<String> = kink.place.iter().map(|v| format!("{v:.4}")).collect();
-            warnings.push(format!(
-                "what the membrane touches has a kink within the contact, near ({}): along it the pressure is a line force that the method \
-                 leaves out, and the error estimate does not see it; round the kink off by a few cells",
-                place.join(", ")
-            ));
-        }
         if self.has_units && steepest > LINEAR {
-            warnings.push(format!(
-                "slopes reach {steepest:.1}: the linear theory of the membrane holds below about {LINEAR}, beyond it the tension grows"
-            ));
+            warn(
+                WarningKind::SteepSlopes,
+                format!(
+                    "slopes reach {steepest:.1}: the linear theory of the membrane holds below about {LINEAR}, beyond it the tension grows"
+                ),
+            );
         }
         let sharp = solution.zone.bend();
         if D == 2 && !solution.zone.is_empty() && sharp > RESOLVED {
-            warnings.push(format!(
-                "a front has a radius of curvature of {:.2} cells at t = {}: below two cells its shape is approximate, use more cells",
-                1.0 / sharp,
-                at.1
-            ));
+            warn(
+                WarningKind::SharpFront,
+                format!(
+                    "a front has a radius of curvature of {:.2} cells at t = {}: below two cells its shape is approximate, use more cells",
+                    1.0 / sharp,
+                    at.1
+                ),
+            );
         }
         if solution.unrefined {
-            warnings
-                .push(format!("no state was found on smaller cells at t = {}: the one on larger cells stands", at.1));
+            warn(
+                WarningKind::NotRefined,
+                format!("no state was found on smaller cells at t = {}: the one on larger cells stands", at.1),
+            );
         }
         if let Some(fewest) = membrane.modes.reduced(&solution.zone) {
-            warnings.push(format!(
-                "a front has {fewest} modes at t = {}, fewer than `mode_count`: its cells tell no more apart",
-                at.1
-            ));
+            warn(
+                WarningKind::FewerModes,
+                format!(
+                    "a front has {fewest} modes at t = {}, fewer than `mode_count`: its cells tell no more apart",
+                    at.1
+                ),
+            );
         }
         let on_nodes = membrane.formulation.transport() != Transport::Exact;
         if let Some(step) = solution.settled_within {
-            warnings.push(format!(
-                "the fronts settled to {step:.0e} of a cell at t = {}, {}",
-                at.1,
-                if on_nodes {
-                    "as far as a level set on nodes shifts them with every step: `transport = \"exact\"` does not"
-                } else if step < 1e-3 {
-                    "on a jump of the discrete slope"
-                } else {
-                    "where they are sharper than the grid: zones, areas and forces are known to that only"
-                }
-            ));
+            let why = if on_nodes {
+                "as far as a level set on nodes shifts them with every step: `transport = \"exact\"` does not"
+            } else if step < 1e-3 {
+                "on a jump of the discrete slope"
+            } else {
+                "where they are sharper than the grid: zones, areas and forces are known to that only"
+            };
+            warn(
+                WarningKind::FrontsAtRest,
+                format!("the fronts settled to {step:.0e} of a cell at t = {}, {why}", at.1),
+            );
         }
         if let Some(depth) = solution.unresolved {
-            warnings.push(format!(
-                "the grid cannot tell whether zones touch at t = {}: the membrane penetrates what lies between them by {depth:.0e}",
-                at.1
-            ));
+            warn(
+                WarningKind::NotResolved,
+                format!(
+                    "the grid cannot tell whether zones touch at t = {}: the membrane penetrates what lies between them by {depth:.0e}",
+                    at.1
+                ),
+            );
         }
         let reason = match &solution.reason {
-            Reason::Converged => "converged".to_string(),
-            Reason::NoContact => "no_contact".to_string(),
-            Reason::NoSuchState => "no_such_state".to_string(),
-            Reason::IterationLimit => "iteration_limit".to_string(),
-            Reason::Interrupted => "interrupted".to_string(),
-            Reason::LinearSolver(message) => {
-                warnings.push(message.clone());
-                "linear_solver".to_string()
+            ils::Reason::Converged => Reason::Converged,
+            ils::Reason::NoContact => Reason::NoContact,
+            ils::Reason::NoSuchState => Reason::NoSuchState,
+            ils::Reason::IterationLimit => Reason::IterationLimit,
+            ils::Reason::Interrupted => Reason::Interrupted,
+            ils::Reason::LinearSolver(message) => {
+                warn(WarningKind::LinearSolver, message.clone());
+                Reason::LinearSolver
             }
         };
+        if let Some(kink) = solution.conditions.as_ref().and_then(|c| c.kink).filter(|_| estimated) {
+            let place: Vec<String> = kink.place.iter().map(|v| format!("{v:.4}")).collect();
+            let message = format!(
+                "what the membrane touches has a kink within the contact, near ({}): along it the pressure is a line force that the method \
+                 leaves out, and the error estimate does not see it; round the kink off by a few cells",
+                place.join(", ")
+            );
+            warnings.insert(0, Warning::new(WarningKind::Kink, message).at_time(at.1).at(vector(&kink.place)));
+        }
         let outlines = solution.zone.outlines();
         let resolved = solution.is_resolved();
         let residuals = std::mem::take(&mut solution.residuals);
@@ -469,15 +486,15 @@ fn active_set<'a, const D: usize, Z: Zone<D>>(
     at: (usize, f64),
     progress: &mut dyn Progress,
 ) -> Increment<'a, D> {
-    let failed = |reason: &str, warnings| Increment {
+    let failed = |message: String| Increment {
         converged: false,
-        reason: reason.into(),
+        reason: Reason::LinearSolver,
         iterations: 0,
         before: 0,
         residuals: Vec::new(),
         unknowns: 0,
         solver: "direct",
-        warnings,
+        warnings: vec![Warning::new(WarningKind::LinearSolver, message).at_time(at.1)],
         report: None,
         outlines: Vec::new(),
         sample: None,
@@ -486,7 +503,7 @@ fn active_set<'a, const D: usize, Z: Zone<D>>(
         errors: None,
     };
     if membrane.obstacles.is_empty() {
-        return failed("linear_solver", vec!["method.active_set needs something to touch".into()]);
+        return failed("method.active_set needs something to touch".into());
     }
     let solved = {
         let shared = &*progress;
@@ -494,7 +511,7 @@ fn active_set<'a, const D: usize, Z: Zone<D>>(
     };
     let solution = match solved {
         Ok(solution) => solution,
-        Err(error) => return failed("linear_solver", vec![error.to_string()]),
+        Err(error) => return failed(error.to_string()),
     };
     let zones = Staircase::new(membrane, &solution);
     for (i, changed) in solution.changes.iter().enumerate() {
@@ -508,14 +525,14 @@ fn active_set<'a, const D: usize, Z: Zone<D>>(
         });
     }
     let reason = match (solution.converged, progress.interrupted(), zones.components.is_empty()) {
-        (true, _, true) => "no_contact",
-        (true, ..) => "converged",
-        (false, true, _) => "interrupted",
-        (false, false, _) => "iteration_limit",
+        (true, _, true) => Reason::NoContact,
+        (true, ..) => Reason::Converged,
+        (false, true, _) => Reason::Interrupted,
+        (false, false, _) => Reason::IterationLimit,
     };
     Increment {
         converged: solution.converged,
-        reason: reason.into(),
+        reason,
         iterations: solution.iterations,
         before: 0,
         residuals: solution.changes.iter().map(|c| *c as f64).collect(),
@@ -596,76 +613,83 @@ impl<const D: usize> Increment<'_, D> {
         Some(Snapshot::new(mesh, membrane, time, self.outlines.clone(), sample))
     }
 
-    /// The entry of the summary, without index and time.
-    pub fn to_json(&self, plan: &MembranePlan<D>, loads: &BTreeMap<String, f64>) -> Value {
-        let upward = |f: f64| json!([0.0, 0.0, f]);
-        let mut step = json!({
-            "converged": self.converged,
-            "reason": self.reason,
-            "iterations": self.iterations,
-            "iterations_before": self.before,
-            "solver": self.solver,
-            "residual_history": self.residuals,
-            "energy": self.report.as_ref().map(|r| r.energy),
-            "energy_total": self.report.as_ref().map(|r| r.energy_total()),
-            "volume": self.report.as_ref().map(|r| r.volume),
-            "max_slope": self.report.as_ref().map(|r| r.max_slope),
-            "equilibrium_residual": self.report.as_ref().map(|r| r.equilibrium_residual),
-            "support_forces": {}, "load_forces": {}, "contacts": {}, "probes": {},
-        });
+    /// The entry of the summary, with the resultants of the loads.
+    pub fn step_report(
+        &self,
+        plan: &MembranePlan<D>,
+        (index, time): (usize, f64),
+        loads: &BTreeMap<String, f64>,
+    ) -> StepReport {
+        let upward = |f: f64| [0.0, 0.0, f];
+        let step = StepReport {
+            index,
+            time,
+            converged: self.converged,
+            reason: self.reason,
+            iterations: self.iterations,
+            iterations_before: self.before,
+            solver: self.solver.into(),
+            residual_history: self.residuals.clone(),
+            ..StepReport::default()
+        };
         let Some(report) = &self.report else { return step };
-        for (support, force) in plan.supports.iter().zip(&report.support_forces) {
-            step["support_forces"][&support.name] = upward(*force);
+        let probe = |x: &Point<D>| {
+            let found = self.sample.as_ref().and_then(|sample| sample(x))?;
+            Some(report::Probe {
+                at: vector(x),
+                displacement: upward(found.displacement),
+                in_contact: Some(found.in_contact),
+                pressure: Some(found.pressure),
+                von_mises: None,
+            })
+        };
+        let supports = plan.supports.iter().zip(&report.support_forces);
+        let contacts = plan.contacts.iter().zip(&report.contacts);
+        StepReport {
+            energy: Some(report.energy),
+            energy_total: Some(report.energy_total()),
+            volume: Some(report.volume),
+            max_slope: Some(report.max_slope),
+            equilibrium_residual: Some(report.equilibrium_residual),
+            support_forces: supports.map(|(support, force)| (support.name.clone(), upward(*force))).collect(),
+            load_forces: loads.iter().map(|(name, force)| (name.clone(), upward(*force))).collect(),
+            contacts: contacts.map(|(c, found)| (c.name.clone(), self.contact_report(found, plan.space))).collect(),
+            probes: plan.probes.iter().map(|(name, x)| (name.clone(), probe(x))).collect(),
+            ..step
         }
-        for (name, force) in loads {
-            step["load_forces"][name] = upward(*force);
-        }
-        for (contact, report) in plan.contacts.iter().zip(&report.contacts) {
-            step["contacts"][&contact.name] = self.contact_json(report, plan.space);
-        }
-        for (name, x) in &plan.probes {
-            let state = self.sample.as_ref().and_then(|s| s(x));
-            step["probes"][name] = match state {
-                Some(s) => json!({"displacement": s.displacement, "in_contact": s.in_contact, "pressure": s.pressure}),
-                None => Value::Null,
-            };
-        }
-        step
     }
 
-    fn contact_json(&self, c: &ContactReport<D>, space: Space) -> Value {
-        let components: Vec<Value> = c
-            .components
-            .iter()
-            .map(|k: &Component<D>| {
-                json!({
-                    "area": k.area, "force": [0.0, 0.0, k.force], "holes": k.holes,
-                    "centroid": k.centroid.iter().copied().collect::<Vec<f64>>(),
-                })
-            })
-            .collect();
-        json!({
-            "force": [0.0, 0.0, c.force],
-            "area": c.area,
-            "zones": c.components.len(),
-            "holes": c.holes,
-            "components": components,
-            "boundary_length": c.boundary_length,
-            "max_penetration": c.max_penetration,
-            "min_gap_outside": c.min_gap_outside,
-            "max_pressure": c.max_pressure,
-            "min_pressure": c.min_pressure,
-            "line_force": c.line_force,
-            "adhesion_energy": c.adhesion_energy,
-            "radius": self.radius(c, space),
-            "stable": self.stability.lowest_eigenvalue.is_none_or(|v| v > 0.0),
-            "lowest_eigenvalue": self.stability.lowest_eigenvalue,
-            "error_estimate": self.errors.map(|e| json!({"front": e.front, "area": e.area, "force": e.force})),
-            "other_states": [],
-            "stick_area": null,
-            "slip_area": null,
-            "max_friction_utilisation": null,
-        })
+    fn contact_report(&self, c: &ContactReport<D>, space: Space) -> report::ContactReport {
+        let component = |k: &Component<D>| report::Component {
+            area: k.area,
+            force: [0.0, 0.0, k.force],
+            centroid: vector(&k.centroid),
+            holes: Some(k.holes),
+        };
+        report::ContactReport {
+            force: [0.0, 0.0, c.force],
+            area: c.area,
+            zones: c.components.len(),
+            holes: Some(c.holes),
+            components: c.components.iter().map(component).collect(),
+            radius: self.radius(c, space),
+            boundary_length: Some(c.boundary_length),
+            max_penetration: c.max_penetration,
+            min_gap_outside: c.min_gap_outside,
+            max_pressure: c.max_pressure,
+            min_pressure: Some(c.min_pressure),
+            line_force: Some(c.line_force),
+            adhesion_energy: Some(c.adhesion_energy),
+            stable: Some(self.stability.lowest_eigenvalue.is_none_or(|v| v > 0.0)),
+            lowest_eigenvalue: self.stability.lowest_eigenvalue,
+            error_estimate: self.errors.map(|e| report::ErrorEstimate {
+                front: Some(e.front),
+                area: e.area,
+                force: e.force,
+                max_pressure: None,
+            }),
+            ..report::ContactReport::default()
+        }
     }
 
     /// The radius of a zone that is a disc to two hundredths, or half the length of one that is an interval.

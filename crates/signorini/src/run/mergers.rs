@@ -9,7 +9,8 @@
 //! examples of singularities in a free boundary, Ann. Sc. Norm. Super. Pisa 4 (1977) 133). So `δ²` from states before,
 //! and `w` from states after, both tell the load at which they vanish; how far they differ tells how well it is known.
 
-use super::events::{Between, Event, Known, bridges_closed, differences, mouths_closed};
+use super::events::{Between, Known, bridges_closed, differences, mouths_closed};
+use crate::report::{Event, EventKind, LocatedBy};
 use signorini_fem::Grid;
 use signorini_geometry::Point;
 use signorini_membrane::zone::Zone;
@@ -133,8 +134,9 @@ pub fn locate<const D: usize, Z: Zone<D>>(
     solve: &mut dyn FnMut(f64, [&Z; 2]) -> Between<Z>,
 ) -> Merger<Z> {
     let found = differences(grid, a, b);
-    let all = |kind: &str, hole: &str| !found.is_empty() && found.iter().all(|e| e.kind == kind || e.kind == hole);
-    let merge = match (all("merge", "hole_opened"), all("split", "hole_closed")) {
+    let all =
+        |kind: EventKind, hole: EventKind| !found.is_empty() && found.iter().all(|e| e.kind == kind || e.kind == hole);
+    let merge = match (all(EventKind::Merge, EventKind::HoleOpened), all(EventKind::Split, EventKind::HoleClosed)) {
         (true, _) => true,
         (_, true) => false,
         _ => return Merger::Unknown,
@@ -199,19 +201,19 @@ pub fn locate<const D: usize, Z: Zone<D>>(
     };
     let (apart, joined) = if merge { (before, after) } else { (after, before) };
     let bridges = bridges(grid, &apart.zone, &joined.zone).unwrap_or_default();
-    let of_zones = events.iter().any(|e| !e.kind.starts_with("hole"));
+    let of_zones = events.iter().any(|e| !e.kind.is_of_hole());
     for event in &mut events {
         let at = Point::<D>::from_fn(|k, _| event.at[k]);
         let nearest = (0..bridges.len())
             .min_by(|&i, &j| (bridges[i].middle() - at).norm().total_cmp(&(bridges[j].middle() - at).norm()));
         // A hole between zones is there as soon as the last neck is, and as long as the first is not gone.
         let hole = known.iter().copied().reduce(|x, y| if (x[0] + x[1] < y[0] + y[1]) == merge { y } else { x });
-        let own = if of_zones && event.kind.starts_with("hole") { hole } else { nearest.map(|k| known[k]) };
+        let own = if of_zones && event.kind.is_of_hole() { hole } else { nearest.map(|k| known[k]) };
         let Some([low, high]) = own else { continue };
         event.time = (0.5 * (low + high)).clamp(before.time, after.time);
         // Estimates that agree by chance say no more than was asked for.
         event.within = (2.0 * (high - low)).max(tolerance).min(bracket);
-        event.by = "extrapolation";
+        event.by = LocatedBy::Extrapolation;
     }
     Merger::Located(events)
 }

@@ -4,11 +4,11 @@ use super::RunError;
 use super::increment::LINEAR;
 use crate::case::CaseError;
 use crate::case::units::Units;
-use crate::case::value::Interpreted;
 use crate::output::solid_fields::SolidDisplay;
 use crate::output::{pictures, solid_pictures};
 use crate::plan::solid::SolidPlan;
 use crate::plan::{MembranePlan, Plan, memory_estimate, mesh_multigrid_estimate, multigrid_estimate};
+use crate::report::{Warning, WarningKind};
 use crate::snapshot::{DisplayMesh, Sample, Snapshot};
 use serde_json::{Value, json};
 use signorini_geometry::Point;
@@ -87,14 +87,15 @@ fn of_membrane<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>) -> Result<Val
         "loads": plan.loads.len(),
         "contact": if plan.contacts.is_empty() { "none".to_string() } else { contacts.join(", ") },
     });
-    warnings.extend(unresolved(plan, plan.increments.first().map_or(0.0, |i| i.range[0])));
+    warnings
+        .extend(unresolved(plan, plan.increments.first().map_or(0.0, |i| i.range[0])).into_iter().map(Warning::from));
     if let Some(units) = plan.units {
-        warnings.extend(odd_length(units, plan.grid.bounds().size().max(), "the membrane"));
+        warnings.extend(odd_length(units, plan.grid.bounds().size().max(), "the membrane").map(Warning::from));
     }
     if unknowns <= LOOK {
         look::<D, Z>(plan, times.last().copied().unwrap_or(0.0), &mut sizes, &mut warnings);
     }
-    sizes["interpreted"] = plan.interpreted.iter().map(Interpreted::to_json).collect();
+    sizes["interpreted"] = json!(plan.interpreted);
     sizes["warnings"] = json!(warnings);
     Ok(sizes)
 }
@@ -229,7 +230,7 @@ pub(super) fn clearance<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>, time
 }
 
 /// Solves for the membrane without contact, at rest and under its last load.
-fn look<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>, last: f64, sizes: &mut Value, warnings: &mut Vec<String>) {
+fn look<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>, last: f64, sizes: &mut Value, warnings: &mut Vec<Warning>) {
     let Some(first) = plan.increments.first() else { return };
     let none = Z::empty(&plan.grid);
     let free = |membrane: &Membrane<D>| Equilibrium::solve(membrane, &none, &mut Elements::new(membrane)).ok();
@@ -239,7 +240,8 @@ fn look<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>, last: f64, sizes: &m
         let place: Vec<String> = x.iter().map(|v| format!("{v:.4}")).collect();
         sizes["least_gap_before_load"] = json!(format!("{gap:.4e} at ({})", place.join(", ")));
     }
-    warnings.extend(clearance::<D, Z>(plan, last).map(|why| format!("the membrane touches nothing: {why}")));
+    let apart = clearance::<D, Z>(plan, last).map(|why| format!("the membrane touches nothing: {why}"));
+    warnings.extend(apart.map(|message| Warning::new(WarningKind::Apart, message).at_time(last)));
     let start = std::time::Instant::now();
     let Some(state) = free(&plan.at(last)) else {
         warnings.push("the membrane without contact could not be solved for: is it held?".into());
@@ -253,9 +255,10 @@ fn look<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>, last: f64, sizes: &m
     });
     sizes["steepest_slope_without_contact"] = json!(format!("{steepest:.2e}"));
     if plan.document.case.units.is_some() && steepest > LINEAR {
-        warnings.push(format!(
-            "without contact slopes would reach {steepest:.1}: the linear theory holds below about {LINEAR}"
-        ));
+        warnings.push(
+            format!("without contact slopes would reach {steepest:.1}: the linear theory holds below about {LINEAR}")
+                .into(),
+        );
     }
     if plan.document.case.units.is_some() && steepest > 100.0 {
         warnings.push("such slopes come from units that do not fit: are load and tension what they should be?".into());

@@ -1,40 +1,43 @@
 //! Solids in contact: from the plan to results.
 
 use super::solid_checkpoint::SolidCheckpoint;
-use super::{Begun, Ending, Logged, Outcome, RunError, SCHEMA, checkpoint, environment, not_resumed};
+use super::{Begun, Ending, Logged, Outcome, RunError, checkpoint, environment, not_resumed};
 use crate::case::CaseError;
 use crate::case::statement::{Body, Space as Stated};
-use crate::case::value::Interpreted;
 use crate::output::figure::figure;
 use crate::output::solid_fields::{ContactDisplay, SolidDisplay, SolidFields};
 use crate::output::{Folder, OutputError, solid_pictures, tables, vtk};
 use crate::plan::pieces::{Apart, UNITE};
 use crate::plan::solid::{Opposite, SolidLoad, SolidPlan, evaluate};
 use crate::plan::{Placed, memory_at_hand};
-use serde_json::{Value, json};
+use crate::report::{
+    Component, ContactReport, ErrorEstimate, Probe, Reason, SCHEMA, StepReport, Summary, Warning, WarningKind, history,
+    vector,
+};
 use signorini_contact::GapJet;
 use signorini_geometry::Point;
 use signorini_solid::loads::{forces, resultant};
 use signorini_solid::{
-    Bodies, Circumstances, Contact, ContactResult, Load, LoadKind, Master, Memory, Method, Model, RigidGap, Sliding,
-    Space, State, StepError, Support, SupportError, SupportKind, facing,
+    Bodies, Circumstances, Contact, ContactResult, Load, LoadKind, Master, Memory, Method, Model, PressureNode,
+    RigidGap, Sliding, Space, State, StepError, Support, SupportError, SupportKind, facing,
 };
 use signorini_solve::cholesky::Cost;
 use signorini_solve::{Iteration, Progress};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 /// Strain from which the theory of small strains is off by more than a few per cent of the result: the terms left out are
 /// half the square of the displacement gradient, and rotations come with strains.
 const LARGE_STRAIN: f64 = 0.05;
-/// Beginning of the warning about it.
-const STRAINED: &str = "the strain is not small";
-
 /// The most unknowns of one degree more for which errors are estimated, in the plane; they take a fraction of a second.
 const AFFORDABLE: usize = 30_000;
 /// The estimate is as likely too small as too large: this makes it seldom too small.
 const SAFETY: f64 = 1.5;
+
+/// What solves the equations.
+const SOLVER: &str = "direct";
 
 /// Share of an increment below which it is not cut any more.
 const SMALLEST_INCREMENT: f64 = 1e-3;
@@ -45,21 +48,21 @@ struct Runner<const D: usize> {
     model: Model<D>,
     /// The increment to begin with.
     next: usize,
-    steps: Vec<Value>,
-    warnings: Vec<String>,
+    steps: Vec<StepReport>,
+    warnings: Vec<Warning>,
     frames: Vec<(f64, String)>,
 }
 
 /// A failure in words: the reason for the summary, what happened and what to try.
 struct Failure {
-    reason: &'static str,
+    reason: Reason,
     text: String,
     /// What was left after each iteration until then.
     residuals: Vec<f64>,
 }
 
 impl Failure {
-    fn new(reason: &'static str, text: String) -> Self {
+    fn new(reason: Reason, text: String) -> Self {
         Failure { reason, text, residuals: Vec::new() }
     }
 }
@@ -197,17 +200,23 @@ impl<const D: usize> Runner<D> {
             let state = match self.advance(index, [before, time], &mut logged) {
                 Ok(Ok(state)) => state,
                 Ok(Err(failed)) => {
-                    ending = if failed.reason == "interrupted" { Ending::Interrupted } else { Ending::NotConverged };
-                    self.steps.push(json!({
-                        "index": index, "time": time, "converged": false, "reason": failed.reason,
-                        "iterations": failed.residuals.len(), "residual_history": failed.residuals, "contacts": {}, "support_forces": {},
-                        "load_forces": {}, "probes": {},
-                    }));
+                    ending =
+                        if failed.reason == Reason::Interrupted { Ending::Interrupted } else { Ending::NotConverged };
+                    self.steps.push(StepReport {
+                        index,
+                        time,
+                        converged: false,
+                        reason: failed.reason,
+                        iterations: failed.residuals.len(),
+                        solver: SOLVER.into(),
+                        residual_history: failed.residuals.clone(),
+                        ..StepReport::default()
+                    });
                     failure = Some(failed);
                     break;
                 }
                 Err(error) => {
-                    let failed = Failure::new("input", "a value became invalid along the way".into());
+                    let failed = Failure::new(Reason::Input, "a value became invalid along the way".into());
                     self.finish(Ending::NotConverged, Some(&failed), start, &display, last.as_ref())?;
                     return Err(error.into());
                 }
@@ -281,8 +290,7 @@ impl<const D: usize> Runner<D> {
                 }
                 Err(mut failed) => {
                     residuals.append(&mut failed.residuals);
-                    let curable =
-                        matches!(failed.reason, "newton" | "contact" | "linear_solver" | "free_body" | "increment");
+                    let curable = !matches!(failed.reason, Reason::Interrupted | Reason::Input);
                     if !self.model.slides() || !curable || size <= SMALLEST_INCREMENT * (time - before) {
                         return Ok(Err(Failure { residuals, ..failed }));
                     }
@@ -334,97 +342,83 @@ impl<const D: usize> Runner<D> {
         display: &SolidDisplay<D>,
         fields: &SolidFields<D>,
     ) {
-        let vector = |x: &Point<D>| -> Vec<f64> { (0..3).map(|k| if k < D { x[k] } else { 0.0 }).collect() };
-        let mut step = json!({
-            "index": index, "time": time, "converged": true, "reason": "converged",
-            "iterations": state.iterations,
-            "residual_history": state.residuals,
-            "energy": state.energy,
-            "equilibrium_residual": state.imbalance,
-            "support_forces": {}, "load_forces": {}, "contacts": {}, "probes": {},
-        });
         // A support of several kinds is one for its reader; the axis is none.
-        let mut supports: std::collections::BTreeMap<&str, Point<D>> = Default::default();
+        let mut supports: BTreeMap<String, Point<D>> = BTreeMap::new();
         for (support, force) in self.plan.supports.iter().zip(&state.support_forces) {
             if support.name != "axis" {
-                *supports.entry(&support.name).or_insert_with(Point::<D>::zeros) += force;
+                *supports.entry(support.name.clone()).or_insert_with(Point::<D>::zeros) += force;
             }
-        }
-        for (name, force) in supports {
-            step["support_forces"][name] = json!(vector(&force));
         }
         let value = |p: &Placed, x: &Point<D>| evaluate(&self.plan.document, p, x, time).unwrap_or(0.0);
-        for l in &self.plan.loads {
-            let total = resultant(&self.model.bodies, &load(&self.model.bodies, l, &value));
-            step["load_forces"][&l.name] = json!(vector(&total));
-        }
-        for ((contact, result), shown) in self.plan.contacts.iter().zip(&state.contacts).zip(contacts) {
-            let weight: std::collections::HashMap<u32, f64> =
-                result.nodes.iter().map(|n| (n.number, n.weight)).collect();
-            let components: Vec<Value> = (shown.zones().iter())
-                .map(|zone| {
-                    let of = |k: usize| weight.get(&(k as u32)).copied().unwrap_or(0.0);
-                    let area = shown.area(zone);
-                    let weight: f64 = zone.iter().map(|&k| of(k)).sum();
-                    let centroid = zone.iter().map(|&k| shown.points[k] * of(k)).sum::<Point<D>>() / weight;
-                    let force: f64 = zone.iter().map(|&k| of(k) * shown.pressure[k]).sum();
-                    json!({"area": area, "force": force, "centroid": vector(&centroid)})
-                })
-                .collect();
-            let open = || result.nodes.iter().filter(|n| !n.active);
-            step["contacts"][&contact.name] = json!({
-                "force": vector(&result.force),
-                "area": result.area,
-                "zones": components.len(),
-                "components": components,
-                "max_penetration": result.nodes.iter().map(|n| -n.gap).fold(0.0, f64::max),
-                "min_gap_outside": open().map(|n| n.gap).reduce(f64::min),
-                "max_pressure": result.nodes.iter().map(|n| n.pressure).fold(0.0, f64::max),
-                "min_pressure": result.nodes.iter().filter(|n| n.active).map(|n| n.pressure).reduce(f64::min),
-                "radius": radius(self.plan.space, result.area, components.len()),
-                "error_estimate": null,
-            });
-        }
-        for (name, (_, x)) in &self.plan.probes {
-            let nearest = (0..display.points.len())
-                .min_by(|&a, &b| (display.points[a] - x).norm().total_cmp(&(display.points[b] - x).norm()));
-            if let Some(k) = nearest {
-                step["probes"][name] = json!({
-                    "at": vector(&display.points[k]),
-                    "displacement": vector(&fields.displacement[k]),
-                    "von_mises": fields.von_mises[k],
-                });
-            }
-        }
+        let bodies = &self.model.bodies;
+        let loads =
+            self.plan.loads.iter().map(|l| (l.name.clone(), vector(&resultant(bodies, &load(bodies, l, &value)))));
+        let probe = |x: &Point<D>| {
+            let distance = |k: &usize| (display.points[*k] - x).norm();
+            let nearest = (0..display.points.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+            Some(Probe {
+                at: vector(&display.points[nearest]),
+                displacement: vector(&fields.displacement[nearest]),
+                in_contact: None,
+                pressure: None,
+                von_mises: Some(fields.von_mises[nearest]),
+            })
+        };
         let most = (0..fields.strain.len()).max_by(|&a, &b| fields.strain[a].total_cmp(&fields.strain[b]));
-        let told = self.warnings.iter().any(|w| w.starts_with(STRAINED));
+        let step = StepReport {
+            index,
+            time,
+            converged: true,
+            reason: Reason::Converged,
+            iterations: state.iterations,
+            solver: SOLVER.into(),
+            residual_history: state.residuals.clone(),
+            energy: Some(state.energy),
+            max_strain: most.map(|k| fields.strain[k]),
+            equilibrium_residual: Some(state.imbalance),
+            support_forces: supports.iter().map(|(name, force)| (name.clone(), vector(force))).collect(),
+            load_forces: loads.collect(),
+            contacts: (self.plan.contacts.iter().zip(&state.contacts).zip(contacts))
+                .map(|((contact, result), shown)| {
+                    (contact.name.clone(), contact_report(self.plan.space, result, shown))
+                })
+                .collect(),
+            probes: self.plan.probes.iter().map(|(name, (_, x))| (name.clone(), probe(x))).collect(),
+            ..StepReport::default()
+        };
+        let told = self.warnings.iter().any(|w| w.kind == WarningKind::LargeStrain);
         if let Some(k) = most.filter(|&k| !told && fields.strain[k] >= LARGE_STRAIN) {
             let x: Vec<String> = display.points[k].iter().map(|v| format!("{v:.4}")).collect();
-            self.warnings.push(format!(
-                "{STRAINED}: {:.0} % at ({}) of `{}` at t = {time}; the theory is that of small strains, and errs by as much from {:.0} % on",
+            let message = format!(
+                "the strain is not small: {:.0} % at ({}) of `{}` at t = {time}; the theory is that of small strains, and errs by as much from {:.0} % on",
                 100.0 * fields.strain[k],
                 x.join(", "),
                 display.body_of(&self.model, k),
                 100.0 * LARGE_STRAIN,
-            ));
+            );
+            let warning = Warning::new(WarningKind::LargeStrain, message);
+            self.warnings.push(warning.at_time(time).at(vector(&display.points[k])));
         }
         for (contact, result) in self.plan.contacts.iter().zip(&state.contacts) {
             // Of pairs that were not named most never meet.
             if !self.plan.document.case.contacts.contains_key(&contact.name) {
                 continue;
             }
-            let message = if result.nodes.is_empty() {
-                format!(
-                    "contact `{}`: no part of the slave faces the master: do the normals look at each other?",
-                    contact.name
-                )
+            let name = &contact.name;
+            let warning = if result.nodes.is_empty() {
+                let message = format!(
+                    "contact `{name}`: no part of the slave faces the master: do the normals look at each other?"
+                );
+                Warning::new(WarningKind::NotFacing, message)
             } else if result.nodes.iter().all(|n| !n.active) {
                 let gap = result.nodes.iter().map(|n| n.gap).fold(f64::INFINITY, f64::min);
-                format!("contact `{}`: the bodies do not touch at t = {time} (smallest gap {gap:.6e})", contact.name)
+                let message =
+                    format!("contact `{name}`: the bodies do not touch at t = {time} (smallest gap {gap:.6e})");
+                Warning::new(WarningKind::Apart, message)
             } else {
                 continue;
             };
-            self.warnings.push(message);
+            self.warnings.push(warning.at_time(time));
         }
         self.steps.push(step);
     }
@@ -449,10 +443,12 @@ impl<const D: usize> Runner<D> {
         let (Ok(Ok(fine)), Some(step)) = (solved, self.steps.last_mut()) else { return };
         for ((contact, coarse), fine) in self.plan.contacts.iter().zip(&state.contacts).zip(&fine.contacts) {
             let peak = |c: &ContactResult<D>| c.nodes.iter().map(|n| n.pressure).fold(0.0, f64::max);
-            step["contacts"][&contact.name]["error_estimate"] = json!({
-                "force": SAFETY * (fine.force - coarse.force).norm(),
-                "area": SAFETY * (fine.area - coarse.area).abs(),
-                "max_pressure": SAFETY * (peak(fine) - peak(coarse)).abs(),
+            let Some(found) = step.contacts.get_mut(&contact.name) else { continue };
+            found.error_estimate = Some(ErrorEstimate {
+                front: None,
+                force: SAFETY * (fine.force - coarse.force).norm(),
+                area: SAFETY * (fine.area - coarse.area).abs(),
+                max_pressure: Some(SAFETY * (peak(fine) - peak(coarse)).abs()),
             });
         }
     }
@@ -490,32 +486,32 @@ impl<const D: usize> Runner<D> {
         start: std::time::Instant,
         display: &SolidDisplay<D>,
         last: Option<&(f64, SolidFields<D>, Vec<ContactDisplay<D>>)>,
-    ) -> Result<Value, OutputError> {
-        self.folder.write("history.csv", tables::solid_history(&self.steps, &self.plan).as_bytes())?;
+    ) -> Result<Summary, OutputError> {
+        self.folder.write("history.csv", history(&self.steps).as_bytes())?;
         if let (true, Some((time, fields, contacts))) = (self.plan.pictures, last) {
             solid_pictures::draw(&self.folder, &self.plan, *time, display, fields, contacts, &self.steps)?;
         }
-        let summary = json!({
-            "schema": SCHEMA,
-            "case": self.plan.document.case.title.clone().unwrap_or_else(|| self.plan.document.name.clone()),
-            "converged": ending == Ending::Converged,
-            "reason": failure.map_or("converged", |f| f.reason),
-            "verdict": self.verdict(ending, failure),
-            "method": method(&self.plan),
-            "unknowns": self.model.unknowns(),
-            "warnings": self.warnings,
-            "interpreted": self.plan.interpreted.iter().map(Interpreted::to_json).collect::<Vec<_>>(),
-            "steps": self.steps,
-            "events": [],
-            "environment": environment::describe(start, rayon::current_num_threads(), &self.plan.document.text),
-        });
-        let text = serde_json::to_string_pretty(&summary).unwrap_or_default();
-        self.folder.write("summary.json", (text + "\n").as_bytes())?;
+        let summary = Summary {
+            schema: SCHEMA,
+            case: self.plan.document.case.title.clone().unwrap_or_else(|| self.plan.document.name.clone()),
+            converged: ending == Ending::Converged,
+            reason: failure.map_or(Reason::Converged, |f| f.reason),
+            verdict: self.verdict(ending, failure),
+            method: method(&self.plan),
+            unknowns: self.model.unknowns(),
+            first_picture: (self.plan.pictures && last.is_some()).then(|| "pictures/deformed.png".into()),
+            warnings: self.warnings.clone(),
+            interpreted: self.plan.interpreted.clone(),
+            steps: self.steps.clone(),
+            events: Vec::new(),
+            environment: environment::describe(start, rayon::current_num_threads(), &self.plan.document.text),
+        };
+        self.folder.write("summary.json", summary.to_json().as_bytes())?;
         Ok(summary)
     }
 
     fn verdict(&self, ending: Ending, failure: Option<&Failure>) -> String {
-        let done = self.steps.iter().filter(|s| s["converged"] == true).count();
+        let done = self.steps.iter().filter(|s| s.converged).count();
         let count = self.plan.times.len();
         match (ending, failure) {
             (Ending::Interrupted, _) => format!("Interrupted: {done} of {count} increments are done and on disk."),
@@ -527,41 +523,64 @@ impl<const D: usize> Runner<D> {
                 if self.plan.contacts.is_empty() {
                     return "The bodies are in equilibrium; no contact was stated.".into();
                 }
-                let list: Vec<String> = (self.plan.contacts.iter())
-                    .map(|c| {
-                        let found = &step["contacts"][&c.name];
-                        let error = |key: &str| found["error_estimate"][key].as_f64();
-                        let figure = |v: &Value, e: Option<f64>| v.as_f64().map_or("-".into(), |v| figure(v, e));
-                        let within =
-                            |e: Option<f64>| e.filter(|e| *e > 0.0).map_or(String::new(), |e| format!(" ± {e:.0e}"));
-                        let zones = found["zones"].as_u64().unwrap_or(0);
-                        if zones == 0 {
-                            return format!("`{}` is open", c.name);
-                        }
-                        let force: Vec<String> = (found["force"].as_array().into_iter().flatten().take(D))
-                            .map(|v| figure(v, error("force")))
-                            .collect();
-                        format!(
-                            "`{}` carries ({}){} over {} {}{} in {zones} zone{}, at most {}{}",
-                            c.name,
-                            force.join(", "),
-                            within(error("force")),
-                            if D == 3 || self.plan.space == Stated::Axisymmetric { "area" } else { "length" },
-                            figure(&found["area"], error("area")),
-                            within(error("area")),
-                            if zones == 1 { "" } else { "s" },
-                            figure(&found["max_pressure"], error("max_pressure")),
-                            within(error("max_pressure")),
-                        )
-                    })
-                    .collect();
-                format!(
-                    "{}; forces balance to {:.0e}.",
-                    list.join("; "),
-                    step["equilibrium_residual"].as_f64().unwrap_or(f64::NAN)
-                )
+                let list: Vec<String> = (step.contacts.iter()).map(|(name, c)| self.contact_verdict(name, c)).collect();
+                format!("{}; forces balance to {:.0e}.", list.join("; "), step.equilibrium_residual.unwrap_or(f64::NAN))
             }
         }
+    }
+
+    /// One contact in a clause.
+    fn contact_verdict(&self, name: &str, c: &ContactReport) -> String {
+        if c.zones == 0 {
+            return format!("`{name}` is open");
+        }
+        let errors = c.error_estimate;
+        let within = |e: Option<f64>| e.filter(|e| *e > 0.0).map_or(String::new(), |e| format!(" ± {e:.0e}"));
+        let (force_error, area_error) = (errors.map(|e| e.force), errors.map(|e| e.area));
+        let pressure_error = errors.and_then(|e| e.max_pressure);
+        let force: Vec<String> = c.force[..D].iter().map(|f| figure(*f, force_error)).collect();
+        format!(
+            "`{name}` carries ({}){} over {} {}{} in {} zone{}, at most {}{}",
+            force.join(", "),
+            within(force_error),
+            if D == 3 || self.plan.space == Stated::Axisymmetric { "area" } else { "length" },
+            figure(c.area, area_error),
+            within(area_error),
+            c.zones,
+            if c.zones == 1 { "" } else { "s" },
+            figure(c.max_pressure, pressure_error),
+            within(pressure_error),
+        )
+    }
+}
+
+/// A contact of a state as it is told.
+fn contact_report<const D: usize>(
+    space: Stated,
+    result: &ContactResult<D>,
+    shown: &ContactDisplay<D>,
+) -> ContactReport {
+    let node: HashMap<usize, &PressureNode<D>> = result.nodes.iter().map(|n| (n.number as usize, n)).collect();
+    let component = |zone: &Vec<usize>| {
+        let own = || zone.iter().filter_map(|k| node.get(k));
+        let whole: f64 = own().map(|n| n.weight).sum();
+        let centroid = zone.iter().filter_map(|k| Some(shown.points[*k] * node.get(k)?.weight)).sum::<Point<D>>();
+        let force: Point<D> = own().map(|n| n.force).sum();
+        Component { area: shown.area(zone), force: vector(&force), centroid: vector(&(centroid / whole)), holes: None }
+    };
+    let components: Vec<Component> = shown.zones().iter().map(component).collect();
+    let closed = || result.nodes.iter().filter(|n| n.active);
+    ContactReport {
+        force: vector(&result.force),
+        area: result.area,
+        zones: components.len(),
+        radius: radius(space, result.area, components.len()),
+        components,
+        max_penetration: result.nodes.iter().map(|n| -n.gap).fold(0.0, f64::max),
+        min_gap_outside: result.nodes.iter().filter(|n| !n.active).map(|n| n.gap).reduce(f64::min),
+        max_pressure: result.nodes.iter().map(|n| n.pressure).fold(0.0, f64::max),
+        min_pressure: closed().map(|n| n.pressure).reduce(f64::min),
+        ..ContactReport::default()
     }
 }
 
@@ -748,41 +767,41 @@ fn flat_gap<const D: usize>(gap: impl Fn(&Point<3>) -> GapJet<3> + Sync + Send +
 
 fn failure(error: &StepError) -> Failure {
     let (reason, text) = match error {
-        StepError::Interrupted => ("interrupted", "interrupted".into()),
+        StepError::Interrupted => (Reason::Interrupted, "interrupted".into()),
         StepError::Free { body, motion } => (
-            "free_body",
+            Reason::FreeBody,
             format!(
                 "body `{body}` is free {motion}: neither its supports nor the contact found hold it; add a support, or a spring"
             ),
         ),
         StepError::PulledAway { body, direction } => (
-            "free_body",
+            Reason::FreeBody,
             format!(
                 "body `{body}` is pulled away {direction}: only contact holds it there, and contact does not pull; turn the \
                  load round, or add a support, or a spring"
             ),
         ),
         StepError::Solve(error) => {
-            ("linear_solver", format!("{error}; are all bodies held, and are their stiffnesses of one scale?"))
+            (Reason::LinearSolver, format!("{error}; are all bodies held, and are their stiffnesses of one scale?"))
         }
         StepError::Deep { contact, depth } => (
-            "increment",
+            Reason::Increment,
             format!(
                 "the increment is too large: it brings the bodies of `{contact}` {depth:.4e} deep into each other; try more increments"
             ),
         ),
         StepError::Support(_) | StepError::Shape { .. } | StepError::NitscheSlides { .. } => {
-            ("input", error.to_string())
+            (Reason::Input, error.to_string())
         }
         StepError::Newton { history, place, .. } => (
-            "newton",
+            Reason::Newton,
             format!(
                 "{error}, worst at {place}; what was left after each: {}; try more increments, or a finer mesh there",
                 history.iter().map(|r| format!("{r:.1e}")).collect::<Vec<_>>().join(", ")
             ),
         ),
         StepError::Contact { contact, error, places } => (
-            "contact",
+            Reason::Contact,
             format!(
                 "contact `{contact}`: {error}{}; try more increments, or a finer mesh there",
                 if places.is_empty() { String::new() } else { format!(" ({})", places.join(", ")) }

@@ -2,6 +2,7 @@
 
 use super::checkpoint;
 use crate::output::{Folder, OutputError};
+use crate::report::{StepReport, Warning};
 use serde_json::{Value, json};
 use signorini_solid::{Memory, Settled};
 use std::path::Path;
@@ -11,8 +12,8 @@ pub struct SolidCheckpoint {
     /// The next increment.
     pub next: usize,
     pub memory: Memory,
-    pub steps: Vec<Value>,
-    pub warnings: Vec<String>,
+    pub steps: Vec<StepReport>,
+    pub warnings: Vec<Warning>,
     pub frames: Vec<(f64, String)>,
 }
 

@@ -28,7 +28,7 @@ pub fn summary(case: &str, set: &[String]) -> Value {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let document = Document::parse("case.toml", case, set).unwrap_or_else(|e| panic!("{}", e.one_line()));
     match run(&document, &folder.path().join("out"), &mut Silent) {
-        Ok(outcome) => outcome.summary,
+        Ok(outcome) => serde_json::json!(outcome.summary),
         Err(error) => panic!("{error}"),
     }
 }
@@ -43,7 +43,7 @@ pub fn error(case: &str) -> CaseError {
     match run(&document, &folder.path().join("out"), &mut Silent) {
         Err(RunError::Case(error)) => *error,
         Err(other) => panic!("{other}"),
-        Ok(outcome) => panic!("the case ran: {}", outcome.summary["verdict"]),
+        Ok(outcome) => panic!("the case ran: {}", outcome.summary.verdict),
     }
 }
 

@@ -1,0 +1,322 @@
+//! What a run tells: one summary for all models, with the same keys and the same types.
+//!
+//! Numbers stand in the base units of the case. Vectors have three entries in every space: on a line and for membranes seen
+//! from above `[x, y, z]` with z upward, in the plane and around an axis `[x, y, 0]`, x the radius around an axis. A figure
+//! that a model does not have is null. The comments on the fields are what `signorini explain` and the reference tell.
+
+mod reason;
+mod table;
+pub mod words;
+
+use crate::case::value::Interpreted;
+pub use reason::{Reason, Warning, WarningKind};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+pub use table::{history, table};
+
+/// Version of the keys of the summary.
+pub const SCHEMA: u32 = 2;
+
+/// The results of a run in numbers and words: the content of summary.json.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Summary {
+    /// Version of the keys of the summary.
+    pub schema: u32,
+    /// The title of the case, or the name of its file.
+    pub case: String,
+    /// Whether all increments were solved, each to its tolerance.
+    pub converged: bool,
+    /// Why the run or the increment ended as it did: a word of its own, which `explain` knows.
+    pub reason: Reason,
+    /// The result in a sentence.
+    pub verdict: String,
+    /// How the contact was found; as in `contacts.NAME.method`.
+    pub method: String,
+    /// Number of unknowns that were solved for, at most.
+    pub unknowns: usize,
+    /// The picture to open first, within the folder; null without pictures.
+    pub first_picture: Option<String>,
+    /// What looked wrong before or during the run.
+    pub warnings: Vec<Warning>,
+    /// What the values with units were taken for: line, text, value, unit and factor.
+    pub interpreted: Vec<Interpreted>,
+    /// One entry for each increment.
+    pub steps: Vec<StepReport>,
+    /// Changes of topology, in steps that ask for `events`.
+    pub events: Vec<Event>,
+    /// Where and when it ran: all that differs between two runs of one case.
+    pub environment: Environment,
+}
+
+/// The state at the end of an increment.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct StepReport {
+    /// Number of the increment, from 0.
+    pub index: usize,
+    /// The end of the increment, in the time of the case.
+    pub time: f64,
+    /// Whether the increment was solved to its tolerance.
+    pub converged: bool,
+    /// Why the run or the increment ended as it did: a word of its own, which `explain` knows.
+    pub reason: Reason,
+    /// Equilibrium solves on the cells of the state; for solids the steps of the active set or of Newton's method.
+    pub iterations: usize,
+    /// Equilibrium solves on larger cells, and on the way to the state.
+    pub iterations_before: usize,
+    /// `direct` by factorisation, or `multigrid`.
+    pub solver: String,
+    /// Residual of each solve, relative to its tolerance; for solids with small sliding the nodes that changed their state.
+    pub residual_history: Vec<f64>,
+    /// Elastic energy less the work of the load.
+    pub energy: Option<f64>,
+    /// `energy` less what adhesion gives back.
+    pub energy_total: Option<f64>,
+    /// Integral of the deflection of a membrane.
+    pub volume: Option<f64>,
+    /// Steepest slope of the membrane: the theory is linear, for slopes well below 1.
+    pub max_slope: Option<f64>,
+    /// Largest principal strain of solids: the theory is that of small strains.
+    pub max_strain: Option<f64>,
+    /// Sum of all forces, relative to the largest: round-off where all is well.
+    pub equilibrium_residual: Option<f64>,
+    /// Force of each support on the body, by its name.
+    pub support_forces: BTreeMap<String, [f64; 3]>,
+    /// Resultant of each load, by its name.
+    pub load_forces: BTreeMap<String, [f64; 3]>,
+    /// Results by the name of the contact.
+    pub contacts: BTreeMap<String, ContactReport>,
+    /// Values at the probes of `output.probes`, by their names; null outside the body.
+    pub probes: BTreeMap<String, Option<Probe>>,
+}
+
+/// A contact at the end of an increment.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ContactReport {
+    /// Force of the contact on the first body that it names; for a round membrane, on the whole of it.
+    pub force: [f64; 3],
+    /// Area of contact; a length for a string and in the plane.
+    pub area: f64,
+    /// Number of connected zones of contact.
+    pub zones: usize,
+    /// Number of holes in the zones.
+    pub holes: Option<usize>,
+    /// The connected zones of a contact one by one.
+    pub components: Vec<Component>,
+    /// Radius of a zone that is a disc; half the length of one that is an interval.
+    pub radius: Option<f64>,
+    /// Length of the fronts together; their number on a line.
+    pub boundary_length: Option<f64>,
+    /// How deep the bodies lie in each other at worst.
+    pub max_penetration: f64,
+    /// Least gap outside the zones, for membranes further than half a cell from the fronts.
+    pub min_gap_outside: Option<f64>,
+    /// Largest contact pressure.
+    pub max_pressure: f64,
+    /// Least contact pressure within the zones; negative only by round-off.
+    pub min_pressure: Option<f64>,
+    /// Part of the contact force along the fronts; it vanishes with the slope jump, and is what adhesion holds.
+    pub line_force: Option<f64>,
+    /// What adhesion gives back: the integral of its energy over the zones.
+    pub adhesion_energy: Option<f64>,
+    /// Whether the second variation of the energy is positive.
+    pub stable: Option<bool>,
+    /// Of the second variation of the energy: the state is stable where it is positive.
+    pub lowest_eigenvalue: Option<f64>,
+    /// What the discretisation leaves uncertain, estimated with functions of one degree more in the last increment of a step.
+    pub error_estimate: Option<ErrorEstimate>,
+    /// Other equilibria at the same load: area, energy, and whether they are stable.
+    pub other_states: Vec<OtherState>,
+    /// Area that sticks by friction; null, as friction is not available.
+    pub stick_area: Option<f64>,
+    /// Area that slips; null, as friction is not available.
+    pub slip_area: Option<f64>,
+    /// Share of the friction limit; null, as friction is not available.
+    pub max_friction_utilisation: Option<f64>,
+}
+
+/// One connected zone of contact.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Component {
+    /// Area of contact; a length for a string and in the plane.
+    pub area: f64,
+    /// Force of the zone on the first body of the contact.
+    pub force: [f64; 3],
+    /// Middle of a zone, weighted by area.
+    pub centroid: [f64; 3],
+    /// Number of holes in the zones.
+    pub holes: Option<usize>,
+}
+
+/// How far figures may be off, as ±.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ErrorEstimate {
+    /// In `error_estimate`: root mean square of the distance by which fronts are off; null for solids.
+    pub front: Option<f64>,
+    /// Of the area of contact.
+    pub area: f64,
+    /// Of the size of the contact force.
+    pub force: f64,
+    /// Of the largest pressure.
+    pub max_pressure: Option<f64>,
+}
+
+/// Another equilibrium of an adhesive membrane at the same load.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct OtherState {
+    /// Area of contact.
+    pub area: f64,
+    /// Elastic energy less the work of the load and what adhesion gives back.
+    pub energy_total: f64,
+    /// Whether the second variation of the energy is positive.
+    pub stable: bool,
+}
+
+/// Values at a place that `output.probes` names.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Probe {
+    /// The place where the values stand, at rest; of solids the nearest point of the display.
+    pub at: [f64; 3],
+    /// How far the point has moved.
+    pub displacement: [f64; 3],
+    /// Whether the point is within a zone of contact; null for solids.
+    pub in_contact: Option<bool>,
+    /// Contact pressure at the point; null for solids.
+    pub pressure: Option<f64>,
+    /// Equivalent stress of von Mises; null for membranes.
+    pub von_mises: Option<f64>,
+}
+
+/// One change of topology.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Event {
+    /// The contact that it changes.
+    pub contact: String,
+    /// What happens.
+    pub kind: EventKind,
+    /// The middle of the interval of time that holds the event.
+    pub time: f64,
+    /// Length of the interval of time that holds the event.
+    pub within: f64,
+    /// How the event was located.
+    pub by: LocatedBy,
+    /// Where: coordinates of the place.
+    pub at: [f64; 3],
+    /// Whether what the zone touches lies above the membrane.
+    pub above: bool,
+    /// Zones before the event.
+    pub zones_before: usize,
+    /// Zones after the event.
+    pub zones_after: usize,
+    /// Holes before the event.
+    pub holes_before: usize,
+    /// Holes after the event.
+    pub holes_after: usize,
+    /// Area of contact before the event.
+    pub area_before: f64,
+    /// Area of contact after the event.
+    pub area_after: f64,
+    /// Contact force before the event, along z.
+    pub force_before: f64,
+    /// Contact force after the event, along z.
+    pub force_after: f64,
+    /// Energy that a jump of an adhesive contact sets free; told once where one jump is several events.
+    pub energy_released: Option<f64>,
+}
+
+/// Kinds of events.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum EventKind {
+    /// A zone of contact appears.
+    Nucleation,
+    /// A zone of contact vanishes.
+    Release,
+    /// Two zones become one.
+    Merge,
+    /// A zone becomes two.
+    Split,
+    /// A hole appears in a zone.
+    HoleOpened,
+    /// A hole in a zone vanishes.
+    HoleClosed,
+    /// Adhesion draws the membrane into contact at once; `energy_released` is what is lost in the jump.
+    SnapIn,
+    /// The contact jumps open; `energy_released` is what is lost in the jump.
+    PullOff,
+}
+
+impl EventKind {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Nucleation => "nucleation",
+            Self::Release => "release",
+            Self::Merge => "merge",
+            Self::Split => "split",
+            Self::HoleOpened => "hole opened",
+            Self::HoleClosed => "hole closed",
+            Self::SnapIn => "snap in",
+            Self::PullOff => "pull off",
+        }
+    }
+
+    /// Whether it is one of holes.
+    pub fn is_of_hole(self) -> bool {
+        matches!(self, Self::HoleOpened | Self::HoleClosed)
+    }
+}
+
+/// Ways to locate an event.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum LocatedBy {
+    /// Way in which an event was located: the increment was halved.
+    Bisection,
+    /// Way in which a merger was located: from how the distance before it and the neck after it vanish.
+    Extrapolation,
+}
+
+/// All that may differ between two runs of one case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Environment {
+    /// Version of the program.
+    pub version: String,
+    /// Time that the run took.
+    pub wall_seconds: f64,
+    /// Processor time that the run took, over all threads.
+    pub cpu_seconds: Option<f64>,
+    /// Most memory in use, in bytes.
+    pub peak_memory: Option<u64>,
+    /// Number of threads; results do not depend on it.
+    pub threads: usize,
+    /// Fingerprint of the text of the case.
+    pub input_hash: String,
+}
+
+impl Summary {
+    /// As JSON, the keys in the order of the types.
+    pub fn to_json(&self) -> String {
+        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+    }
+}
+
+impl StepReport {
+    /// All that was solved for a state, also on larger cells before.
+    pub fn solves(&self) -> usize {
+        self.iterations_before + self.iterations
+    }
+}
+
+/// A place or a vector of the plane or of a line, with zeros for what it does not have.
+pub fn vector<const D: usize>(x: &signorini_geometry::Point<D>) -> [f64; 3] {
+    std::array::from_fn(|k| if k < D { x[k] } else { 0.0 })
+}
+
+/// The size of a force, with the sign of its largest component.
+pub fn signed_size(force: &[f64; 3]) -> f64 {
+    let largest = force.iter().copied().fold(0.0, |m: f64, v| if v.abs() > m.abs() { v } else { m });
+    let size = force.iter().map(|v| v * v).sum::<f64>().sqrt();
+    // One component alone keeps its digits.
+    if size == largest.abs() { largest } else { size.copysign(largest) }
+}

@@ -6,8 +6,8 @@ use serde_json::{Value, json};
 use signorini::case::{CaseError, Document, override_key};
 use signorini::fit::fit;
 use signorini::gallery::{all, find};
-use signorini::output::OutputError;
 use signorini::output::chart::save_as;
+use signorini::output::{Earlier, OutputError};
 use signorini::plan::plan;
 use signorini::queries::{Query, answer_file, answer_points};
 use signorini::report::{Summary, table};
@@ -34,6 +34,7 @@ pub fn fit_file(case: &Path, output: Option<PathBuf>, set: &[String], json: bool
         Err(error) => return report(&error, json),
     };
     let folder = output.unwrap_or_else(|| default_folder(case));
+    let replaced = Earlier::in_folder(&folder);
     match fit(&document, &folder) {
         Err(RunError::Case(error)) => report(&error, json),
         Err(RunError::Output(error)) => report(&output_error(&error), json),
@@ -46,9 +47,18 @@ pub fn fit_file(case: &Path, output: Option<PathBuf>, set: &[String], json: bool
                 }
                 say!("{}", fitted.summary["verdict"].as_str().unwrap_or(""));
                 say!("\nResults in {}: open pictures/fit.png; numbers in summary.json and fit.csv.", folder.display());
+                say_replaced(replaced);
             }
             if fitted.converged { DONE } else { NOT_CONVERGED }
         }
+    }
+}
+
+/// Says which results are gone.
+fn say_replaced(earlier: Option<Earlier>) {
+    if let Some(Earlier { case, written }) = earlier {
+        let of = case.map_or(String::new(), |case| format!(" of {case}"));
+        say!("They replace those{of} that were written on {written}.");
     }
 }
 
@@ -199,6 +209,7 @@ fn execute_scene(name: &str, text: &str, folder: &Path, set: &[String], json: bo
         Ok(scene) => scene,
         Err(error) => return report(&error, json),
     };
+    let replaced = Earlier::in_folder(folder);
     let mut bar = Bar::new(json);
     let result = scene::run(&scene, folder, &mut bar);
     bar.finish();
@@ -221,6 +232,7 @@ fn execute_scene(name: &str, text: &str, folder: &Path, set: &[String], json: bo
                 "\nResults in {}: open pictures/scene.png (animated) in a browser, bodies.pvd and pairs.pvd in ParaView; numbers in pairs.csv.",
                 folder.display()
             );
+            say_replaced(replaced);
             DONE
         }
     }
@@ -313,6 +325,7 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], resumed: bool,
         }
         _ => {}
     }
+    let replaced = if resumed { None } else { Earlier::in_folder(folder) };
     let mut bar = Bar::new(json);
     let result = if resumed { resume(&document, folder, &mut bar) } else { run(&document, folder, &mut bar) };
     bar.finish();
@@ -326,6 +339,7 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], resumed: bool,
                 show(&outcome.summary);
                 let first = outcome.summary.first_picture.map_or(String::new(), |file| format!("open {file} first, "));
                 say!("\nResults in {}: {first}fields.pvd in ParaView; numbers in summary.json.", folder.display());
+                say_replaced(replaced);
             }
             match outcome.ending {
                 Ending::Converged => DONE,

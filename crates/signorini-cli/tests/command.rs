@@ -46,9 +46,12 @@ fn a_run_leaves_everything_it_promises() {
     let summary = std::fs::read_to_string(out.join("summary.json")).expect("a summary");
     let summary: Value = serde_json::from_str(&summary).expect("JSON");
     assert_eq!(summary["converged"], true);
-    // A second run takes the place of the first.
+    // A second run takes the place of the first, and says so.
+    assert!(!text(&output.stdout).contains("They replace"));
     let again = signorini(folder.path()).args(["gallery", "run", "string"]).output().expect("a run");
     assert_eq!(again.status.code(), Some(0));
+    let title = summary["case"].as_str().expect("a title");
+    assert!(text(&again.stdout).contains(&format!("They replace those of `{title}` that were written on 20")));
 }
 
 #[test]
@@ -182,4 +185,19 @@ fn queries_are_answered_and_wrong_ones_named() {
     assert_eq!(output.status.code(), Some(1));
     assert!(text(&output.stderr).contains("none.json"));
     assert!(!folder.path().join("c.json").exists());
+}
+
+/// What the commands of the manual write lands where git does not see it.
+#[test]
+fn results_of_the_readme_are_ignored_by_git() {
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+    let read = |name: &str| std::fs::read_to_string(format!("{root}/{name}")).expect("a file");
+    let ignored = read(".gitignore");
+    assert!(ignored.lines().any(|line| line == "/out"));
+    let commands: Vec<String> = read("README.md")
+        .lines()
+        .filter(|l| l.starts_with("cargo run") && l.contains(" run "))
+        .map(String::from)
+        .collect();
+    assert!(!commands.is_empty() && commands.iter().all(|c| c.contains(" -o out/")), "{commands:?}");
 }

@@ -36,6 +36,46 @@ pub enum OutputError {
     Picture(String),
 }
 
+/// The results of an earlier run, which a new one in their folder replaces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Earlier {
+    /// Title or file of its case, where it is known.
+    pub case: Option<String>,
+    /// Date and time of the last of them, in UTC.
+    pub written: String,
+}
+
+impl Earlier {
+    /// Those in a folder; none where no run has written there.
+    pub fn in_folder(path: &Path) -> Option<Self> {
+        let text = std::fs::read_to_string(path.join(MARKER)).ok()?;
+        if !text.starts_with(FIRST_LINE) {
+            return None;
+        }
+        let time = |name: &str| std::fs::metadata(path.join(name)).and_then(|m| m.modified()).ok();
+        let last = OWN.iter().filter_map(|name| time(name)).max()?;
+        let summary = std::fs::read_to_string(path.join("summary.json")).ok();
+        let summary = summary.and_then(|text| serde_json::from_str::<serde_json::Value>(&text).ok());
+        let case = summary.and_then(|s| Some(format!("`{}`", s["case"].as_str()?)));
+        let seconds = last.duration_since(std::time::UNIX_EPOCH).ok()?.as_secs();
+        Some(Self { case, written: date(seconds) })
+    }
+}
+
+/// Date and time in UTC from seconds since 1970 (days to civil date after Hinnant).
+fn date(seconds: u64) -> String {
+    let days = seconds / 86400 + 719_468;
+    let (era, day) = (days / 146_097, days % 146_097);
+    let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
+    let of_year = day - (365 * year + year / 4 - year / 100);
+    // Months from March on.
+    let month = (5 * of_year + 2) / 153;
+    let day = of_year - (153 * month + 2) / 5 + 1;
+    let (year, month) = if month < 10 { (year, month + 3) } else { (year + 1, month - 9) };
+    let (hour, minute) = (seconds / 3600 % 24, seconds / 60 % 60);
+    format!("{:04}-{month:02}-{day:02} at {hour:02}:{minute:02} UTC", year + 400 * era)
+}
+
 /// A folder that belongs to one run.
 #[derive(Clone, Debug)]
 pub struct Folder {
@@ -132,6 +172,20 @@ mod tests {
         std::fs::create_dir(&other).unwrap();
         std::fs::write(other.join("summary.json"), "{}").unwrap();
         assert!(Folder::create(&other).is_err());
+    }
+
+    #[test]
+    fn earlier_results_are_known_by_their_case_and_date() {
+        assert_eq!(date(0), "1970-01-01 at 00:00 UTC");
+        assert_eq!(date(951_868_799), "2000-02-29 at 23:59 UTC");
+        assert_eq!(date(951_868_800), "2000-03-01 at 00:00 UTC");
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("out");
+        assert_eq!(Earlier::in_folder(&path), None);
+        let folder = Folder::create(&path).unwrap();
+        assert_eq!(Earlier::in_folder(&path).unwrap().case, None);
+        folder.write("summary.json", b"{\"case\": \"A disc\"}").unwrap();
+        assert_eq!(Earlier::in_folder(&path).unwrap().case.unwrap(), "`A disc`");
     }
 
     /// Every write to /dev/full fails as on a full disk.

@@ -10,4 +10,4 @@ pub mod solid_pictures;
 pub mod tables;
 pub mod vtk;
 
-pub use folder::{Folder, OutputError};
+pub use folder::{Earlier, Folder, OutputError};

@@ -328,7 +328,7 @@ impl<const D: usize> Runner<D> {
             Ok(state) => Ok(Ok(state)),
             Err(error) => match blamed(&self.plan, &mut self.model, time, &error) {
                 Some(error) => Err(error),
-                None => Ok(Err(Failure { residuals, ..failure(&error) })),
+                None => Ok(Err(Failure { residuals, ..explained(&self.plan, &error) })),
             },
         }
     }
@@ -645,7 +645,7 @@ pub(super) fn judge<const D: usize>(plan: &SolidPlan<D>, model: &mut Model<D>) -
             // With finite sliding the increment will be cut.
             None if matches!(error, StepError::Deep { .. }) => {}
             // A run ends there.
-            None => return Ok(Some(format!("at t = {time}: {}", failure(&error).text))),
+            None => return Ok(Some(format!("at t = {time}: {}", explained(plan, &error).text))),
         }
     }
     Ok(None)
@@ -763,6 +763,17 @@ fn flat_gap<const D: usize>(gap: impl Fn(&Point<3>) -> GapJet<3> + Sync + Send +
             hessian: signorini_geometry::Matrix::<D>::from_fn(|r, c| found.hessian[(r, c)]),
         }
     })
+}
+
+/// A failure, and what may be behind it: of a body that is free, that its mesh falls into pieces.
+fn explained<const D: usize>(plan: &SolidPlan<D>, error: &StepError) -> Failure {
+    let mut failed = failure(error);
+    if let StepError::Free { body, .. } | StepError::PulledAway { body, .. } = error
+        && let Some(apart) = plan.bodies.iter().find(|b| b.name == *body).and_then(|b| Apart::new(&b.mesh))
+    {
+        failed.text += &format!("; {}", apart.text(body));
+    }
+    failed
 }
 
 fn failure(error: &StepError) -> Failure {

@@ -11,7 +11,7 @@ use crate::front::Fronts;
 use crate::ils::Solution;
 use crate::problem::Membrane;
 use crate::published::Formulation;
-use crate::zone::{ModeSpace, Modes, Zone};
+use crate::zone::{ModeSpace, Modes, Zone, contact_of};
 use signorini_solve::SolveError;
 
 /// The estimate is as likely too small as too large: this makes it seldom too small.
@@ -29,6 +29,8 @@ pub struct ErrorEstimate {
     pub area: f64,
     /// Of the force of the floor on the membrane.
     pub force: f64,
+    /// Of the largest pressure.
+    pub max_pressure: f64,
 }
 
 impl ErrorEstimate {
@@ -54,6 +56,10 @@ impl ErrorEstimate {
         let frames = fronts.frames(zone, step.space);
         let (mut area, mut area_size, mut force, mut force_size) = (0.0, 0.0, 0.0, 0.0);
         let (mut square, mut total) = (0.0, 0.0);
+        // In contact the pressure follows from the shape of the body: what is uncertain is where it is largest, between the
+        // points of the quadrature, and at a front, which may lie on either side of where it was found.
+        let found = peaks(coarse);
+        let mut peak = peaks(&fine);
         for (i, (p, frame)) in fine.quadrature.front.iter().zip(&*frames).enumerate() {
             let w: f64 = frame.modes.iter().map(|(k, v)| v * step.coefficients[*k]).sum();
             // The force is that of the pressure within, less what adhesion pulls along the front.
@@ -65,6 +71,10 @@ impl ErrorEstimate {
             area_size += p.weight * w.abs();
             force += p.weight * w * rate;
             force_size += p.weight * (w * rate).abs();
+            let Some(body) = membrane.obstacles.index_at(p.side, &p.x) else { continue };
+            for x in [p.x + w * p.normal, p.x - w * p.normal] {
+                peak[body] = peak[body].max(membrane.pressure(p.side, &x));
+            }
         }
         // What Newton's method left of the slope jump pulls too.
         let rest = Fronts::new(coarse, sticky);
@@ -76,8 +86,24 @@ impl ErrorEstimate {
             front,
             area: SAFETY * area.abs() + cancelled * area_size,
             force: SAFETY * force.abs() + cancelled * force_size + left.abs(),
+            max_pressure: SAFETY
+                * found.iter().zip(&peak).map(|(a, b)| (a - b).abs()).filter(|e| e.is_finite()).fold(0.0, f64::max),
         }))
     }
+}
+
+/// The largest pressure of each body at the points of a state that are in contact; below all numbers where there is none.
+fn peaks<const D: usize>(state: &Equilibrium<D>) -> Vec<f64> {
+    let membrane = &state.membrane;
+    let mut peaks = vec![f64::NEG_INFINITY; membrane.obstacles.0.len()];
+    state.for_each_point(|_, region, x, _| {
+        if let Some((side, _)) = contact_of(region)
+            && let Some(body) = membrane.obstacles.index_at(side, x)
+        {
+            peaks[body] = peaks[body].max(membrane.pressure(side, x));
+        }
+    });
+    peaks
 }
 
 /// The same membrane with finer functions: of one degree more, or on halved cells.

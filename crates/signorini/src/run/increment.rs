@@ -686,7 +686,7 @@ impl<const D: usize> Increment<'_, D> {
                 front: Some(e.front),
                 area: e.area,
                 force: e.force,
-                max_pressure: None,
+                max_pressure: Some(e.max_pressure),
             }),
             ..report::ContactReport::default()
         }

@@ -423,8 +423,8 @@ impl<const D: usize> Runner<D> {
         self.steps.push(step);
     }
 
-    /// What the cells leave uncertain, in the last step recorded: the change with functions of one degree more. Not with
-    /// finite sliding, whose path would have to be gone again, nor where these functions do not exist or are too many.
+    /// What the cells leave uncertain, in the last step recorded: the change with functions of one degree more. With finite
+    /// sliding the path is gone again with them. Not where these functions do not exist or are too many.
     fn estimate(&mut self, time: f64, state: &State<D>) {
         // In space unknowns cost several times as much.
         let most = if D == 3 { AFFORDABLE / 4 } else { AFFORDABLE };
@@ -434,13 +434,20 @@ impl<const D: usize> Runner<D> {
         };
         let growth: f64 =
             self.plan.bodies.iter().map(|b| (1.0 + 1.0 / b.degree as f64).powi(D as i32)).fold(1.0, f64::max);
-        let finite = self.model.slides() || self.plan.contacts.is_empty();
-        if finite || !self.plan.bodies.iter().all(raises) || growth * self.model.unknowns() as f64 > most as f64 {
+        let way = if self.model.slides() { self.plan.times.as_slice() } else { std::slice::from_ref(&time) };
+        let unknowns = growth * (way.len() * self.model.unknowns()) as f64;
+        if self.plan.contacts.is_empty() || !self.plan.bodies.iter().all(raises) || unknowns > most as f64 {
             return;
         }
         let Ok(mut fine) = raised(&self.plan, 1) else { return };
-        let solved = at_time(&self.plan, &mut fine, time, |model, now| model.solve(now, &mut |_, _| true));
-        let (Ok(Ok(fine)), Some(step)) = (solved, self.steps.last_mut()) else { return };
+        let mut solve = |&time: &f64| {
+            at_time(&self.plan, &mut fine, time, |model, now| model.solve(now, &mut |_, _| true)).ok()?.ok()
+        };
+        let Some(fine) = way.iter().map(&mut solve).collect::<Option<Vec<_>>>().and_then(|mut states| states.pop())
+        else {
+            return;
+        };
+        let Some(step) = self.steps.last_mut() else { return };
         for ((contact, coarse), fine) in self.plan.contacts.iter().zip(&state.contacts).zip(&fine.contacts) {
             let peak = |c: &ContactResult<D>| c.nodes.iter().map(|n| n.pressure).fold(0.0, f64::max);
             let Some(found) = step.contacts.get_mut(&contact.name) else { continue };

@@ -126,3 +126,25 @@ fn the_ellipse() {
     assert!((number(&contact["force"][2]) - number(&row["contact_force"])).abs() <= 1e-7);
     assert!((number(&last_step(&summary)["energy"]) - number(&row["energy"])).abs() <= 1e-7);
 }
+
+/// On a floor that falls away with the fourth power the pressure is largest at the fronts: how far it may be off is told.
+#[test]
+fn the_error_of_the_largest_pressure_is_told() {
+    // u'' = 1 from the front at a, where it is tangential, to the rim at 1, where u = 0.
+    let rim = |a: f64| -0.1 - 0.02 * a.powi(4) - 0.08 * a.powi(3) * (1.0 - a) + 0.5 * (1.0 - a).powi(2);
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if rim(middle) > 0.0 { low = middle } else { high = middle }
+    }
+    let exact = 1.0 + 0.24 * low * low;
+    for (cells, degree) in [(10, 1), (40, 1), (10, 2), (40, 3)] {
+        let mut pairs = line(cells, degree);
+        pairs.push(("bodies.floor.rigid.shape.height", "\"-0.1 - 0.02*x^4\"".to_string()));
+        let summary = summary(example("string"), &set(&pairs));
+        let contact = &last_step(&summary)["contacts"]["touch"];
+        let error = (number(&contact["max_pressure"]) - exact).abs();
+        let told = number(&contact["error_estimate"]["max_pressure"]);
+        assert!(told >= 0.5 * error && told <= 20.0 * error, "{cells}, {degree}: off by {error:e}, told {told:e}");
+    }
+}

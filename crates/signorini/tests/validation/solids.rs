@@ -156,6 +156,13 @@ fn errors_and_large_strains_are_told() {
     let estimate = at(step, "/contacts/touch/error_estimate/area");
     assert!((at(step, "/contacts/touch/area") - 2.444551).abs() < 1.5 * estimate && estimate < 0.01, "{estimate}");
     assert!(found["verdict"].as_str().is_some_and(|v| v.contains("over length 2.439 ± 5e-3")), "{}", found["verdict"]);
+    let slides = summary(
+        example("hertz"),
+        &set(&[("contacts.touch.sliding", "\"finite\"".to_string()), ("steps", "[{ to = 1.0 }]".to_string())]),
+    );
+    let contact = &last_step(&slides)["contacts"]["touch"];
+    let estimate = at(contact, "/error_estimate/area");
+    assert!((at(contact, "/area") - 2.444551).abs() < 1.5 * estimate && estimate < 0.01, "sliding: {estimate}");
     let strained = |v: &Value| v["warnings"].to_string().contains("the strain is not small: ");
     assert!(!strained(&found) && strained(&summary(example("punch"), &set(&[]))));
 }

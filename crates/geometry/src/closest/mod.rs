@@ -15,6 +15,7 @@ mod newton;
 mod result;
 mod scaled;
 mod search;
+mod symmetric;
 mod track;
 
 pub(crate) use closed_form::{segment_parameters, triangle as closest_on_triangle};
@@ -93,11 +94,14 @@ fn closest_near_one(a: &Shape, b: &Shape, query: &Query) -> Projection {
         (Shape::Point(p), Shape::Surface(s)) => closed_form::point_surface(p, s, query)
             .unwrap_or_else(|| general::<0, 2, 2, _, _>(&point_atlas(p), &s.atlas, query)),
         (Shape::Curve(c), Shape::Curve(d)) => closed_form::segment_segment(c, d, query)
+            .or_else(|| symmetric::closest(a, b, query))
             .unwrap_or_else(|| general::<1, 1, 2, _, _>(&c.atlas, &d.atlas, query)),
-        (Shape::Curve(c), Shape::Surface(s)) => general::<1, 2, 3, _, _>(&c.atlas, &s.atlas, query),
-        (Shape::Surface(s), Shape::Surface(t)) => {
-            closed_form::sphere_sphere(s, t).unwrap_or_else(|| general::<2, 2, 4, _, _>(&s.atlas, &t.atlas, query))
+        (Shape::Curve(c), Shape::Surface(s)) => {
+            symmetric::closest(a, b, query).unwrap_or_else(|| general::<1, 2, 3, _, _>(&c.atlas, &s.atlas, query))
         }
+        (Shape::Surface(s), Shape::Surface(t)) => closed_form::sphere_sphere(s, t)
+            .or_else(|| symmetric::closest(a, b, query))
+            .unwrap_or_else(|| general::<2, 2, 4, _, _>(&s.atlas, &t.atlas, query)),
         (Shape::Point(p), Shape::Mesh(m)) if !query.local_minima => point_mesh(p, m, query),
         (Shape::Point(p), Shape::Mesh(m)) => on_triangles(general::<0, 2, 2, _, _>(&point_atlas(p), m.atlas(), query)),
         (Shape::Curve(c), Shape::Mesh(m)) => on_triangles(general::<1, 2, 3, _, _>(&c.atlas, m.atlas(), query)),

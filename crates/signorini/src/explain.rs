@@ -100,6 +100,59 @@ pub const WORDS: &[Word] = &[
     ),
     word("pi", "function", "Ratio of the circumference of a circle to its diameter."),
     word("e", "function", "Base of the natural logarithm."),
+    word("distance", "answer", "Distance of two shapes: no two points of theirs are closer."),
+    word(
+        "a",
+        "answer",
+        "Parameters of the closest point on the first shape; the table of docs/closest-points.md tells which.",
+    ),
+    word("b", "answer", "Parameters of the closest point on the second shape."),
+    word("xa", "answer", "The closest point of the first shape."),
+    word("xb", "answer", "The closest point of the second shape."),
+    word("normal", "answer", "Unit vector from `xb` to `xa`; none where they coincide."),
+    word("feature_a", "answer", "Where on the first shape: `interior`, `edge`, `vertex` or `point`."),
+    word("feature_b", "answer", "Where on the second shape: `interior`, `edge`, `vertex` or `point`."),
+    word(
+        "entity_a",
+        "answer",
+        "Which side, corner, crease or pole of the first shape, such as `u0`, `u0+v1`, `start`, `pole`.",
+    ),
+    word("entity_b", "answer", "Which side, corner, crease or pole of the second shape."),
+    word("triangle_a", "answer", "Triangle of the first shape, a mesh, counted from 0."),
+    word("triangle_b", "answer", "Triangle of the second shape, a mesh, counted from 0."),
+    word("unique", "answer", "Whether one pair of points is closer than every other."),
+    word("uniqueness", "answer", "`unique`, `multiple`, `continuum` or `near-continuum`."),
+    word("multiple", "answer", "Several separate pairs of points are as close; all are told."),
+    word(
+        "continuum",
+        "answer",
+        "A curve or a surface of pairs is as close, as of coaxial cylinders; `others` are samples.",
+    ),
+    word("near-continuum", "answer", "One pair of points is closest, in a valley that is flat to rounding."),
+    word("continuum_dim", "answer", "Dimension of a continuum of closest points: 1 a curve, 2 a surface; else 0."),
+    word("others", "answer", "Further closest points; in a table their number."),
+    word(
+        "lambda_min",
+        "answer",
+        "Smallest eigenvalue of the Hessian of half the squared distance: 1 - d κ for a point and a surface, 0 on a focal set.",
+    ),
+    word("certified", "answer", "Whether it is proved that nothing is closer; if not, the exit status is 2."),
+    word("certified_to", "answer", "No two points are closer than the distance less this."),
+    word("id", "answer", "Name of a query; of points from a file the number of the row, from 0."),
+    word("error", "answer", "What is wrong with a query; the others are answered, and the exit status is 1."),
+    word(
+        "to",
+        "option of closest",
+        "signorini closest points.npy --to part.stl -o answers.npy: the shape to which the points of a file are projected. Points are an array of NumPy of shape (n, 3), or text with three numbers a line or columns named x, y, z.",
+    ),
+    word("output", "option of closest", "File for the answers; .json, .csv and .npy tell its form."),
+    word("local_minima", "option of closest", "Every local minimiser is told in `others`, too."),
+    word(
+        "shapes",
+        "queries of closest",
+        "Shapes named once, before the cases: \"shapes\": {\"part\": {…}}; a query uses one by its name, \"b\": \"part\".",
+    ),
+    word("cases", "queries of closest", "The queries: [{\"id\": …, \"a\": SHAPE, \"b\": SHAPE}, …]."),
     word(
         "exit status",
         "command",
@@ -151,8 +204,9 @@ pub fn reference() -> String {
 /// A word that nothing is known of, with the nearest one that is.
 pub fn explain(asked: &str) -> Result<String, CaseError> {
     let mut text = String::new();
-    let plain = asked.trim().to_lowercase().replace([' ', '-'], "_");
-    for w in WORDS.iter().filter(|w| w.word.replace(' ', "_") == plain) {
+    let as_one = |word: &str| word.replace([' ', '-'], "_");
+    let plain = as_one(asked.trim().trim_start_matches("--").to_lowercase().as_str());
+    for w in WORDS.iter().filter(|w| as_one(w.word) == plain) {
         text += &format!("{} ({})\n  {}\n", w.word, w.kind, w.about);
     }
     for w in words::words().iter().filter(|w| w.word == plain) {
@@ -199,6 +253,8 @@ mod tests {
         assert!(explain("bodies.film.membrane.tension").expect("known").contains("Force per length"));
         assert!(explain("domain").expect("known").contains("with disc, "));
         assert!(explain("exit status").expect("known").contains("130"));
+        assert!(explain("--to").expect("known").contains("NumPy"));
+        assert!(explain("near-continuum").expect("known").contains("flat"));
         let wrong = explain("tensoin").expect_err("unknown");
         assert!(wrong.help.expect("help").contains("tension"));
         assert!(explain("").is_err());

@@ -210,6 +210,10 @@ fn points_of_a_file_are_answered_in_every_format() {
     let json: Value = serde_json::from_str(&std::fs::read_to_string(path("answers.json")).unwrap()).unwrap();
     assert_eq!((&json["0"]["gap"], &json["1"]["xb"]), (&json!(2.0), &json!([0.0, 0.25, 0.5])));
 
+    for word in json["0"].as_object().unwrap().keys().map(String::as_str).chain(["id", "error", "shapes", "--to"]) {
+        assert!(signorini::explain::explain(word).is_ok(), "{word}");
+    }
+
     answer("points.csv", "body.json", "answers.csv").unwrap();
     let csv = std::fs::read_to_string(path("answers.csv")).unwrap();
     let rows: Vec<Vec<&str>> = csv.lines().map(|l| l.split(',').collect()).collect();

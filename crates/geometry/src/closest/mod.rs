@@ -10,15 +10,17 @@ mod bounds;
 mod classify;
 mod closed_form;
 mod ellipsoid;
+mod flat;
 mod hessian;
 mod newton;
+mod partner;
 mod result;
 mod scaled;
 mod search;
 mod symmetric;
 mod track;
 
-pub(crate) use closed_form::{segment_parameters, triangle as closest_on_triangle};
+pub(crate) use flat::{segment_parameters, triangle as closest_on_triangle};
 pub use hessian::gap_hessian;
 pub use result::{Certificate, ClosestPair, Entity, Feature, FeatureKind, Foot, Projection, Uniqueness};
 pub(crate) use track::clearance_of;
@@ -93,7 +95,7 @@ fn closest_near_one(a: &Shape, b: &Shape, query: &Query) -> Projection {
             .unwrap_or_else(|| general::<0, 1, 1, _, _>(&point_atlas(p), &c.atlas, query)),
         (Shape::Point(p), Shape::Surface(s)) => closed_form::point_surface(p, s, query)
             .unwrap_or_else(|| general::<0, 2, 2, _, _>(&point_atlas(p), &s.atlas, query)),
-        (Shape::Curve(c), Shape::Curve(d)) => closed_form::segment_segment(c, d, query)
+        (Shape::Curve(c), Shape::Curve(d)) => flat::segment_segment(c, d, query)
             .or_else(|| symmetric::closest(a, b, query))
             .unwrap_or_else(|| general::<1, 1, 2, _, _>(&c.atlas, &d.atlas, query)),
         (Shape::Curve(c), Shape::Surface(s)) => {
@@ -181,7 +183,7 @@ fn mesh_mesh(m: &TriangleMesh, n: &TriangleMesh) -> Projection {
     let found = m.closest_to_mesh(n);
     let foot = |mesh: &TriangleMesh, k: usize| {
         let point = mesh.position(found.triangles[k], found.parameters[k]);
-        let feature = closed_form::triangle(&point, &mesh.corners(found.triangles[k])).1;
+        let feature = flat::triangle(&point, &mesh.corners(found.triangles[k])).1;
         Foot::new(point, feature, &found.parameters[k]).on_element(found.triangles[k])
     };
     let closest = ClosestPair { distance: found.distance, a: foot(m, 0), b: foot(n, 1), lambda_min: f64::NAN };

@@ -5,14 +5,14 @@
 //! distance, nothing better exists. The search goes on a little further, by `tie`, to find minimisers that share the
 //! distance.
 
-use std::cmp::Ordering;
-use std::collections::{BinaryHeap, HashMap};
+use std::collections::BinaryHeap;
 
 use super::bounds::{PairExpansion, SecondOrder, box_bound};
 use super::newton::{Difference, minimise};
+use super::partner::{Pair, Partner, held};
 use super::result::Certificate;
 use crate::Point;
-use crate::patch::{Atlas, Cell, Chart};
+use crate::patch::{Atlas, Chart};
 
 /// How far a search goes.
 #[derive(Clone, Copy, Debug)]
@@ -63,95 +63,6 @@ pub struct Found<const A: usize, const B: usize> {
     /// The search stopped at intersecting surfaces, which share a whole curve.
     pub intersecting: bool,
     pub certificate: Certificate,
-}
-
-/// One shape in a search: its tree and the cells added below it.
-pub(super) struct Partner<'a, const M: usize, C> {
-    atlas: &'a Atlas<M, C>,
-    extra: Vec<Cell<M>>,
-    /// Children of the leaves of the tree.
-    grown: HashMap<u32, [u32; 2]>,
-}
-
-impl<'a, const M: usize, C: Chart<M>> Partner<'a, M, C> {
-    pub fn new(atlas: &'a Atlas<M, C>) -> Self {
-        Partner { atlas, extra: Vec::new(), grown: HashMap::new() }
-    }
-
-    #[inline]
-    pub fn cell(&self, id: u32) -> &Cell<M> {
-        match id.checked_sub(self.atlas.count()) {
-            None => self.atlas.node(id),
-            Some(extra) => &self.extra[extra as usize],
-        }
-    }
-
-    fn add(&mut self, cell: Cell<M>) -> u32 {
-        self.extra.push(cell);
-        self.atlas.count() + self.extra.len() as u32 - 1
-    }
-
-    pub fn children(&mut self, id: u32) -> [u32; 2] {
-        let cell = self.cell(id);
-        if cell.children != [0; 2] {
-            return cell.children;
-        }
-        if let Some(&children) = self.grown.get(&id) {
-            return children;
-        }
-        let halves = self.atlas.halve(cell);
-        let children = halves.map(|half| self.add(half));
-        match id.checked_sub(self.atlas.count()) {
-            None => _ = self.grown.insert(id, children),
-            Some(extra) => self.extra[extra as usize].children = children,
-        }
-        children
-    }
-
-    fn face(&mut self, id: u32, axis: usize, high: bool) -> u32 {
-        let face = self.atlas.face(self.cell(id), axis, high);
-        self.add(face)
-    }
-}
-
-#[derive(Clone, Copy)]
-pub(super) struct Pair {
-    pub bound: f64,
-    pub a: u32,
-    pub b: u32,
-}
-
-impl PartialEq for Pair {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-impl Eq for Pair {}
-impl PartialOrd for Pair {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for Pair {
-    /// The lowest bound is the greatest, as a heap wants it; the numbers of the cells decide ties.
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.bound.total_cmp(&self.bound).then(other.a.cmp(&self.a)).then(other.b.cmp(&self.b))
-    }
-}
-
-/// The sides of a pair of cells behind which the shapes do not simply go on.
-pub(super) fn held<const A: usize, const B: usize, const N: usize, CA: Chart<A>, CB: Chart<B>>(
-    a: &Partner<'_, A, CA>,
-    b: &Partner<'_, B, CB>,
-    pair: Pair,
-) -> [[bool; 2]; N] {
-    fn sides<const M: usize, C: Chart<M>>(partner: &Partner<'_, M, C>, id: u32, k: usize) -> [bool; 2] {
-        let cell = partner.cell(id);
-        let sides = &partner.atlas.pieces[cell.piece as usize].sides[k];
-        let [low, high] = cell.range(k);
-        [low == -1.0 && !sides[0].is_smooth(), high == 1.0 && !sides[1].is_smooth()]
-    }
-    std::array::from_fn(|k| if k < A { sides(a, pair.a, k) } else { sides(b, pair.b, k - A) })
 }
 
 /// The number of cells sampled where the minimum is degenerate.

@@ -7,10 +7,11 @@ use signorini::case::{CaseError, Document, override_key};
 use signorini::fit::fit;
 use signorini::gallery::{all, find};
 use signorini::output::chart::save_as;
+use signorini::output::figure::{figures, told};
 use signorini::output::{Earlier, OutputError};
 use signorini::plan::plan;
 use signorini::queries::{Query, answer_file, answer_points};
-use signorini::report::{Summary, table};
+use signorini::report::{Summary, UnitNames, table};
 use signorini::run::{Begun, Ending, RunError, begun, preview, resume, run, sizes};
 use signorini::scene::{self, Scene, SceneError};
 use std::path::{Path, PathBuf};
@@ -354,9 +355,11 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], resumed: bool,
 fn show(summary: &Summary) {
     say!("{}\n", summary.case);
     say!("{}", table(summary));
+    let unit = |of: fn(&UnitNames) -> &String| summary.units.as_ref().map_or("", |u| of(u));
     for event in &summary.events {
-        let at: Vec<String> = event.at.iter().map(|x| format!("{x:.6}")).collect();
-        say!("t = {:.6}: {} at ({})", event.time, event.kind.words(), at.join(", "));
+        let place = format!("{} {}", figures(&event.at, None), unit(|u| &u.length));
+        let load = told(event.load_force, None, unit(|u| &u.force));
+        say!("t = {:.6}, load {load}: {} at {}", event.time, event.kind.words(), place.trim_end());
     }
     for warning in &summary.warnings {
         say!("warning: {warning}");

@@ -13,7 +13,7 @@ use crate::case::units::{FORCE_PER_LENGTH, LENGTH, PRESSURE, Units};
 use crate::case::value::{Interpreted, Reader};
 use crate::case::{CaseError, Document, OneOrMany, Value, suggestion};
 use crate::expression::{Definition, Expression, Names, Scope};
-use crate::report::Warning;
+use crate::report::{UnitNames, Warning};
 use signorini_fem::cut::QuadraturePoint;
 use signorini_fem::{Cells, Grid};
 use signorini_geometry::{Jet, Point, Real, Vector};
@@ -892,6 +892,11 @@ pub(crate) fn field<const D: usize>(expression: &Expression, time: f64) -> Share
 }
 
 impl<const D: usize> MembranePlan<D> {
+    /// What the base units of the case are called; none where it states none.
+    pub fn unit_names(&self) -> Option<UnitNames> {
+        self.units.as_ref().map(|units| UnitNames::new(units, self.space))
+    }
+
     fn expressions(&self) -> impl Iterator<Item = &Placed> {
         let touched =
             self.contacts.iter().flat_map(|c| std::iter::once(&c.height).chain(&c.displacement).chain(&c.adhesion));

@@ -13,12 +13,12 @@ mod solid_checkpoint;
 
 use crate::case::statement::Space;
 use crate::case::{CaseError, Document};
-use crate::output::figure::figure;
+use crate::output::figure::told;
 use crate::output::film::Film;
 use crate::output::{Folder, OutputError, pictures, tables, vtk};
 use crate::plan::{Contact, Control, MembranePlan, MethodChoice, Plan, PlannedIncrement, plan};
 use crate::report::{
-    ContactReport, Event, OtherState, Reason, SCHEMA, StepReport, Summary, Warning, WarningKind, history,
+    ContactReport, Event, OtherState, Reason, SCHEMA, StepReport, Summary, UnitNames, Warning, WarningKind, history,
 };
 use crate::snapshot::{DisplayMesh, Snapshot};
 use checkpoint::Checkpoint;
@@ -669,6 +669,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             let at = Point::<D>::from_fn(|k, _| event.at[k]);
             let side = if event.above { Side::Above } else { Side::Below };
             let touched = membrane.obstacles.index_at(side, &at).and_then(|k| self.plan.contacts.get(k));
+            event.load_force = self.plan.load_resultants(&membrane, event.time).values().sum();
             event.contact = touched.map_or(String::new(), |c| c.name.clone());
         }
         if let Some(coarse) = found.iter().find(|e| e.within > tolerance) {
@@ -743,7 +744,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
         mesh: &DisplayMesh<D>,
         last: Option<&Snapshot<D>>,
     ) -> Result<Summary, OutputError> {
-        self.folder.write("history.csv", history(&self.steps).as_bytes())?;
+        self.folder.write("history.csv", history(&self.steps, self.plan.unit_names().as_ref()).as_bytes())?;
         if let (true, Some(snapshot)) = (self.plan.pictures, last) {
             self.film.write(&self.folder, &self.plan, mesh)?;
             pictures::draw(&self.folder, &self.plan, mesh, snapshot, &self.steps, &self.events)?;
@@ -756,6 +757,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
             verdict: self.verdict(ending, reason),
             method: self.plan.method.name().into(),
             unknowns: self.unknowns,
+            units: self.plan.unit_names(),
             first_picture: (self.plan.pictures && last.is_some()).then(|| "pictures/deflection.png".into()),
             warnings: self.warnings.clone(),
             interpreted: self.plan.interpreted.clone(),
@@ -824,15 +826,14 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
 
     /// One contact in a clause.
     fn contact_verdict(&self, contact: &Contact, c: &ContactReport) -> String {
-        let told = |value: f64, within: Option<f64>| {
-            figure(value, within) + &within.map_or(String::new(), |within| format!(" ± {within:.0e}"))
-        };
+        let units = self.plan.unit_names();
+        let unit = |of: fn(&UnitNames) -> &String| units.as_ref().map_or("", |u| of(u));
         let measure = if D == 1 && self.plan.space == Space::Line { "length" } else { "area" };
         let staircase = if let MethodChoice::ActiveSet(_) = self.plan.method { " (a staircase of nodes)" } else { "" };
         format!(
             "in contact{} over {measure} {}{staircase} in {} zone{}{}, pushed {} by {}",
             if self.plan.contacts.len() > 1 { format!(" with {}", contact.body) } else { String::new() },
-            told(c.area, c.error_estimate.map(|e| e.area)),
+            told(c.area, c.error_estimate.map(|e| e.area), unit(|u| &u.area)),
             c.zones,
             if c.zones == 1 { "" } else { "s" },
             match c.holes.unwrap_or(0) {
@@ -841,7 +842,7 @@ impl<const D: usize, Z: Zone<D>> Runner<D, Z> {
                 n => format!(" with {n} holes"),
             },
             if contact.side == Side::Below { "up" } else { "down" },
-            told(contact.side.sign() * c.force[2], c.error_estimate.map(|e| e.force)),
+            told(contact.side.sign() * c.force[2], c.error_estimate.map(|e| e.force), unit(|u| &u.force)),
         )
     }
 }

@@ -9,6 +9,9 @@ pub const NONE: Dimension = [0, 0, 0];
 pub const LENGTH: Dimension = [1, 0, 0];
 pub const FORCE_PER_LENGTH: Dimension = [-1, 1, 0];
 pub const PRESSURE: Dimension = [-2, 1, 0];
+pub const FORCE: Dimension = [0, 1, 0];
+pub const AREA: Dimension = [2, 0, 0];
+pub const ENERGY: Dimension = [1, 1, 0];
 pub const TIME: Dimension = [0, 0, 1];
 
 /// The base units of a case, in metres, newtons and seconds.
@@ -44,10 +47,10 @@ pub fn is_unit(text: &str) -> bool {
 fn named() -> BTreeMap<&'static str, (f64, Dimension)> {
     let of = |list: &'static [(&'static str, f64)], d: Dimension| list.iter().map(move |&(n, v)| (n, (v, d)));
     of(&LENGTHS, LENGTH)
-        .chain(of(&FORCES, [0, 1, 0]))
+        .chain(of(&FORCES, FORCE))
         .chain(of(&TIMES, TIME))
         .chain(of(&PRESSURES, PRESSURE))
-        .chain(of(&ENERGIES, [1, 1, 0]))
+        .chain(of(&ENERGIES, ENERGY))
         .chain([("1", (1.0, NONE))])
         .collect()
 }
@@ -89,6 +92,25 @@ impl Units {
             (true, _) => format!("1/{}", below.join("/")),
             _ => format!("{}/{}", above.join("*"), below.join("/")),
         }
+    }
+
+    /// What the base unit of a dimension is called as people write it: `MPa` for a newton per square millimetre, `µm`.
+    pub fn written(&self, dimension: Dimension) -> String {
+        let [length, force, time] = dimension;
+        let size = self.length.powi(length) * self.force.powi(force) * self.time.powi(time);
+        let own = PRESSURES.iter().map(|u| (u, PRESSURE)).chain(ENERGIES.iter().map(|u| (u, ENERGY)));
+        let named = own.filter(|(_, d)| *d == dimension).find(|((_, v), _)| (v / size - 1.0).abs() < 1e-12);
+        let name = named.map_or_else(|| self.name_of(dimension), |((name, _), _)| name.to_string());
+        // A letter u before a unit is micro.
+        let micro = |word: &str| match word.strip_prefix('u') {
+            Some(rest) if !rest.is_empty() => format!("µ{rest}"),
+            _ => word.to_string(),
+        };
+        let mut out = String::new();
+        for word in name.split_inclusive(['*', '/']) {
+            out += &micro(word);
+        }
+        out.replace("^2", "²").replace("^3", "³").replace('*', "·")
     }
 
     /// The factor that turns a number in `unit` into base units, and the dimension of the unit.
@@ -160,6 +182,8 @@ mod tests {
             assert_eq!(Units::system(&format!("{micro}m-{micro}N-MPa")), Some(um));
             assert_eq!(Units::from_names(&format!("{micro}m"), "uN", &format!("{micro}s")).unwrap().length, 1e-6);
         }
+        assert_eq!([PRESSURE, LENGTH, AREA, ENERGY].map(|d| mm.written(d)), ["MPa", "mm", "mm²", "mJ"]);
+        assert_eq!([PRESSURE, LENGTH, FORCE, ENERGY].map(|d| um.written(d)), ["MPa", "µm", "µN", "µN·µm"]);
         assert!(mm.factor("furlong").unwrap_err().contains("unknown unit"));
         assert!(mm.factor("mm^x").is_err() && mm.factor("").is_err());
     }

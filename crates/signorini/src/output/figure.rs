@@ -1,25 +1,54 @@
 //! Numbers as people read them: with the digits that they have.
 
-/// Decimals of a figure of which nobody knows how far it may be off.
-const UNKNOWN: i32 = 6;
-/// The most decimals.
-const MOST: i32 = 9;
+/// Digits after the first of a figure of which nobody knows how far it may be off.
+const DIGITS: i32 = 6;
+/// The most digits after the first that a number has.
+const MOST: i32 = 14;
+/// Numbers below and from these powers of ten on are told by their power.
+const PLAIN: std::ops::Range<i32> = -4..9;
 
-/// A value, with no more digits than what it may be off by leaves it: the last is of the order of that.
+/// A value, the last digit of the order of what it may be off by.
 pub fn figure(value: f64, within: Option<f64>) -> String {
-    let last = |within: f64| (-within.log10().floor()) as i32;
-    let decimals = within.filter(|w| w.is_finite() && *w > 0.0).map_or(UNKNOWN, |w| last(w).min(MOST));
-    if decimals >= 0 {
-        return format!("{value:.*}", decimals as usize);
+    let power = |v: f64| v.abs().log10().floor() as i32;
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}").replace("-0", "0");
     }
-    let unit = 10f64.powi(-decimals);
-    // Zero has no sign.
-    format!("{:.0}", (value / unit).round() * unit + 0.0)
+    let within = within.filter(|w| w.is_finite() && *w > 0.0);
+    let last = within.map_or(power(value) - DIGITS, |w| power(w).max(power(value) - MOST));
+    if !PLAIN.contains(&power(value)) && last <= power(value) {
+        return format!("{value:.*e}", (power(value) - last) as usize);
+    }
+    let text = match u32::try_from(last) {
+        Err(_) => format!("{value:.*}", (-last) as usize),
+        Ok(places) => {
+            let unit = 10f64.powi(places as i32);
+            format!("{:.0}", (value / unit).round() * unit)
+        }
+    };
+    // Nothing is left of a value below what it may be off by, its sign neither.
+    match text.strip_prefix('-') {
+        Some(size) if size.chars().all(|c| c == '0' || c == '.') => size.to_string(),
+        _ => text,
+    }
+}
+
+/// The entries of a vector, all with the last digit of the largest: `(0.000, 26.070)`.
+pub fn figures(values: &[f64], within: Option<f64>) -> String {
+    let largest = values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    let within = within.filter(|w| *w > 0.0).or((largest > 0.0).then(|| largest * 10f64.powi(-DIGITS)));
+    let entries: Vec<String> = values.iter().map(|v| figure(*v, within)).collect();
+    format!("({})", entries.join(", "))
+}
+
+/// The same with ± and a unit: `26.07 ± 9e-3 N`.
+pub fn told(value: f64, within: Option<f64>, unit: &str) -> String {
+    let error = within.filter(|w| *w > 0.0).map_or(String::new(), |w| format!(" ± {w:.0e}"));
+    format!("{}{error} {unit}", figure(value, within)).trim_end().to_string()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::figure;
+    use super::*;
 
     #[test]
     fn no_digit_is_told_that_a_figure_does_not_have() {
@@ -29,6 +58,22 @@ mod tests {
         assert_eq!(figure(-0.5, Some(30.0)), "0");
         assert_eq!(figure(1.25, None), "1.250000");
         assert_eq!(figure(1.25, Some(0.0)), "1.250000");
-        assert_eq!(figure(1.0 / 3.0, Some(1e-14)), "0.333333333");
+        assert_eq!(figure(1.0 / 3.0, Some(1e-11)), "0.33333333333");
+        assert_eq!(figure(1e-9, Some(1e-3)), "0.000");
+        assert_eq!(figure(-1e-9, Some(1e-3)), "0.000");
+        assert_eq!(figure(0.0, None), "0");
+    }
+
+    #[test]
+    fn small_and_large_numbers_keep_their_digits() {
+        assert_eq!(figure(1.2345678e-8, None), "1.234568e-8");
+        assert_eq!(figure(1.2345678e-8, Some(2e-10)), "1.23e-8");
+        assert_eq!(figure(2.5e12, None), "2.500000e12");
+        assert_eq!(figure(-3.25e-3, None), "-0.003250000");
+        assert_eq!(figure(f64::NAN, None), "NaN");
+        assert_eq!(told(26.0704, Some(9e-3), "N"), "26.070 ± 9e-3 N");
+        assert_eq!(figures(&[-2e-16, 28.4182, -3e-2], None), "(0.00000, 28.41820, -0.03000)");
+        assert_eq!(figures(&[0.0, 26.0704], Some(9e-3)), "(0, 26.070)");
+        assert_eq!(told(1.5, None, ""), "1.500000");
     }
 }

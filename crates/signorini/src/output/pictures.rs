@@ -5,7 +5,7 @@ use super::{Folder, OutputError};
 use crate::case::statement::Space;
 use crate::exact;
 use crate::plan::MembranePlan;
-use crate::report::{ContactReport, Event, StepReport};
+use crate::report::{ContactReport, Event, StepReport, UnitNames};
 use crate::snapshot::{DisplayMesh, Snapshot};
 use plotters::prelude::*;
 use rayon::prelude::*;
@@ -40,7 +40,7 @@ pub fn draw<const D: usize>(
         // A domain thinner than the display can show.
         return Ok(());
     }
-    let units = &Labels::new(&plan.document);
+    let units = &Labels(plan.unit_names());
     let exact = exact::of(plan, s.time);
     let own = |values: &[f64]| range(values.iter().copied());
     type Drawing<'a> = Box<dyn Fn() -> Result<String, OutputError> + Sync + 'a>;
@@ -131,43 +131,27 @@ fn sheet(pictures: &[String]) -> String {
 }
 
 /// Axis labels with the units of the case.
-pub(super) struct Labels {
-    length: Option<String>,
-    force: Option<String>,
-}
+pub(super) struct Labels(pub Option<UnitNames>);
 
 impl Labels {
-    pub fn new(document: &crate::case::Document) -> Self {
-        use crate::case::statement::UnitsKey;
-        let (length, force) = match document.case.units.as_ref().map(|u| u.get_ref()) {
-            None => (None, None),
-            Some(UnitsKey::Base(b)) => (Some(b.length.clone()), Some(b.force.clone())),
-            Some(UnitsKey::System(name)) => {
-                let mut parts = name.split('-').map(str::to_string);
-                (parts.next(), parts.next())
-            }
-        };
-        Self { length, force }
-    }
-
-    fn with(&self, what: &str, unit: Option<String>) -> String {
-        unit.map_or_else(|| what.to_string(), |u| format!("{what} [{u}]"))
+    fn with(&self, what: &str, unit: fn(&UnitNames) -> &String) -> String {
+        self.0.as_ref().map_or_else(|| what.to_string(), |units| format!("{what} [{}]", unit(units)))
     }
 
     pub fn length(&self, what: &str) -> String {
-        self.with(what, self.length.clone())
+        self.with(what, |u| &u.length)
     }
 
     pub fn area(&self, what: &str) -> String {
-        self.with(what, self.length.as_ref().map(|l| format!("{l}²")))
+        self.with(what, |u| &u.area)
     }
 
     pub fn force(&self, what: &str) -> String {
-        self.with(what, self.force.clone())
+        self.with(what, |u| &u.force)
     }
 
     pub fn pressure(&self, what: &str) -> String {
-        self.with(what, self.force.as_ref().zip(self.length.as_ref()).map(|(f, l)| format!("{f}/{l}²")))
+        self.with(what, |u| &u.pressure)
     }
 }
 
@@ -178,7 +162,7 @@ pub(super) fn frame<const D: usize>(
     s: &Snapshot<D>,
     (lo, hi): (f64, f64),
 ) -> Result<String, OutputError> {
-    let units = &Labels::new(&plan.document);
+    let units = &Labels(plan.unit_names());
     if D == 1 {
         return profile(plan, mesh, s, None, units, (lo, hi));
     }
@@ -573,7 +557,7 @@ fn loop_of_states(
     space: Space,
     units: &Labels,
 ) -> Result<String, OutputError> {
-    let measure = if space == Space::Line { units.length("length of contact") } else { units.area("area of contact") };
+    let measure = units.area(if space == Space::Line { "length of contact" } else { "area of contact" });
     type Reading = fn(&ContactReport) -> f64;
     let readings: [(Reading, fn(&Event) -> [f64; 2], String); 2] = [
         (|c| c.area, |e| [e.area_before, e.area_after], measure),
@@ -652,7 +636,7 @@ fn history(
     };
     let area = series(&|c| c.area);
     let force = series(&|c| c.force[2]);
-    let measure = if space == Space::Line { units.length("length of contact") } else { units.area("area of contact") };
+    let measure = units.area(if space == Space::Line { "length of contact" } else { "area of contact" });
     svg((820, 640), |root| {
         let parts = root.split_evenly((2, 1));
         for (part, points, y) in [(&parts[0], &area, measure), (&parts[1], &force, units.force("contact force"))] {

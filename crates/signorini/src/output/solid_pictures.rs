@@ -27,7 +27,7 @@ pub fn draw<const D: usize>(
     contacts: &[ContactDisplay<D>],
     steps: &[StepReport],
 ) -> Result<(), OutputError> {
-    let labels = Labels::new(&plan.document);
+    let labels = Labels(plan.unit_names());
     save(folder, "deformed", &deformed(plan, time, display, fields, contacts, &labels, None))?;
     if let Some(window) = window(display, contacts) {
         save(folder, "contact_zone", &deformed(plan, time, display, fields, contacts, &labels, Some(window)))?;
@@ -49,7 +49,7 @@ pub fn draw<const D: usize>(
 
 /// The bodies before they deform.
 pub fn preview<const D: usize>(plan: &SolidPlan<D>, display: &SolidDisplay<D>, fields: &SolidFields<D>) -> String {
-    deformed(plan, 0.0, display, fields, &[], &Labels::new(&plan.document), None)
+    deformed(plan, 0.0, display, fields, &[], &Labels(plan.unit_names()), None)
 }
 
 /// A view along a direction that holds a set of points.

@@ -10,7 +10,7 @@ use crate::case::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE, Units};
 use crate::case::value::Interpreted;
 use crate::case::{CaseError, Document, Literal, OneOrMany, Value, Values, suggestion};
 use crate::expression::Scope;
-use crate::report::Warning;
+use crate::report::{UnitNames, Warning};
 use signorini_fem::{Group, Mesh, Side};
 use signorini_geometry::Point;
 use signorini_geometry::mesh::TriangleMesh;
@@ -18,11 +18,16 @@ use signorini_solid::{Elastic, LoadKind, Method as ContactMethod, SupportKind};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
+/// Cells up to which a mesh is made with curves of one degree more too: errors are estimated on no more.
+const MOST_RAISED: usize = 30_000;
+
 /// A solid body.
 #[derive(Clone)]
 pub struct PlannedBody<const D: usize> {
     pub name: String,
     pub mesh: Mesh<D>,
+    /// The same cells with curves of one degree more, where the mesh follows a map: for estimates of errors.
+    pub raised: Option<Mesh<D>>,
     pub degree: usize,
     pub material: Elastic,
 }
@@ -85,6 +90,13 @@ pub struct SolidPlan<const D: usize> {
     pub units: Option<Units>,
     /// What the values with units were taken for.
     pub interpreted: Vec<Interpreted>,
+}
+
+impl<const D: usize> SolidPlan<D> {
+    /// What the base units of the case are called; none where it states none.
+    pub fn unit_names(&self) -> Option<UnitNames> {
+        self.units.as_ref().map(|units| UnitNames::new(units, self.space))
+    }
 }
 
 /// The value of an expression at a point and time, or an error that names it.
@@ -324,7 +336,13 @@ impl Planner<'_> {
             );
         }
         warnings.extend(Apart::new(&mesh).and_then(|apart| apart.warning(name)).map(Warning::from));
-        Ok(PlannedBody { name: name.to_string(), mesh, degree, material })
+        let raised = match key.mesh.get_ref() {
+            SolidMesh::Box(b) if b.map.is_some() && mesh.cell_count() <= MOST_RAISED => {
+                self.block::<D>(name, b, key.mesh.span(), degree + 1).ok()
+            }
+            _ => None,
+        };
+        Ok(PlannedBody { name: name.to_string(), mesh, raised, degree, material })
     }
 
     /// Looks up `BODY` or `BODY:GROUP`.

@@ -8,6 +8,8 @@ mod reason;
 mod table;
 pub mod words;
 
+use crate::case::statement::Space;
+use crate::case::units::{self, Units};
 use crate::case::value::Interpreted;
 pub use reason::{Reason, Warning, WarningKind};
 use schemars::JsonSchema;
@@ -35,6 +37,8 @@ pub struct Summary {
     pub method: String,
     /// Number of unknowns that were solved for, at most.
     pub unknowns: usize,
+    /// The base units of the case by name; null where it states none.
+    pub units: Option<UnitNames>,
     /// The picture to open first, within the folder; null without pictures.
     pub first_picture: Option<String>,
     /// What looked wrong before or during the run.
@@ -47,6 +51,38 @@ pub struct Summary {
     pub events: Vec<Event>,
     /// Where and when it ran: all that differs between two runs of one case.
     pub environment: Environment,
+}
+
+/// What the base units of a case are called, as people write them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct UnitNames {
+    /// Of places, displacements and gaps.
+    pub length: String,
+    /// Of areas of contact: of length for a string and in the plane.
+    pub area: String,
+    /// Of forces; in the plane of a body of thickness one.
+    pub force: String,
+    /// Of pressures and stresses.
+    pub pressure: String,
+    /// Of energies.
+    pub energy: String,
+    /// Of times that stand for times.
+    pub time: String,
+}
+
+impl UnitNames {
+    /// Those of the results of a case.
+    pub fn new(units: &Units, space: Space) -> Self {
+        let is_length = matches!(space, Space::Line | Space::PlaneStrain | Space::PlaneStress);
+        Self {
+            length: units.written(units::LENGTH),
+            area: units.written(if is_length { units::LENGTH } else { units::AREA }),
+            force: units.written(units::FORCE),
+            pressure: units.written(units::PRESSURE),
+            energy: units.written(units::ENERGY),
+            time: units.written(units::TIME),
+        }
+    }
 }
 
 /// The state at the end of an increment.
@@ -220,6 +256,8 @@ pub struct Event {
     pub force_before: f64,
     /// Contact force after the event, along z.
     pub force_after: f64,
+    /// Resultant of all loads along z at that time.
+    pub load_force: f64,
     /// Energy that a jump of an adhesive contact sets free; told once where one jump is several events.
     pub energy_released: Option<f64>,
 }

@@ -1,6 +1,6 @@
 //! The summary as text: the table of the terminal, and the history as CSV.
 
-use super::{ContactReport, StepReport, Summary, signed_size};
+use super::{ContactReport, StepReport, Summary, UnitNames, signed_size};
 use crate::output::figure::figure;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,28 +13,36 @@ pub fn table(summary: &Summary) -> String {
         })
         .collect();
     type Cell = fn(&StepReport, Option<(&str, &ContactReport)>) -> Option<String>;
-    let columns: [(&str, Cell); 10] = [
-        ("t", |s, _| Some(format!("{:.6}", s.time))),
-        ("solves", |s, _| Some(s.solves().to_string())),
-        ("contact", |_, c| Some(c?.0.to_string())),
-        ("area", |_, c| c.map(|(_, c)| figure(c.area, c.error_estimate.map(|e| e.area)))),
-        ("force", |_, c| c.map(|(_, c)| figure(signed_size(&c.force), c.error_estimate.map(|e| e.force)))),
-        ("max pressure", |_, c| c.map(|(_, c)| figure(c.max_pressure, c.error_estimate.and_then(|e| e.max_pressure)))),
-        ("radius", |_, c| c?.1.radius.map(|r| figure(r, None))),
-        ("zones", |_, c| Some(c?.1.zones.to_string())),
-        ("holes", |_, c| Some(c?.1.holes?.to_string())),
-        ("balance", |s, _| Some(format!("{:.1e}", s.equilibrium_residual?))),
+    let unit = |of: fn(&UnitNames) -> &String| summary.units.as_ref().map_or("", |u| of(u));
+    let columns: [(&str, &str, Cell); 10] = [
+        ("t", "", |s, _| Some(format!("{:.6}", s.time))),
+        ("solves", "", |s, _| Some(s.solves().to_string())),
+        ("contact", "", |_, c| Some(c?.0.to_string())),
+        ("area", unit(|u| &u.area), |_, c| c.map(|(_, c)| figure(c.area, c.error_estimate.map(|e| e.area)))),
+        ("force", unit(|u| &u.force), |_, c| {
+            c.map(|(_, c)| figure(signed_size(&c.force), c.error_estimate.map(|e| e.force)))
+        }),
+        ("max pressure", unit(|u| &u.pressure), |_, c| {
+            c.map(|(_, c)| figure(c.max_pressure, c.error_estimate.and_then(|e| e.max_pressure)))
+        }),
+        ("radius", unit(|u| &u.length), |_, c| c?.1.radius.map(|r| figure(r, None))),
+        ("zones", "", |_, c| Some(c?.1.zones.to_string())),
+        ("holes", "", |_, c| Some(c?.1.holes?.to_string())),
+        ("balance", "", |s, _| Some(format!("{:.1e}", s.equilibrium_residual?))),
     ];
     let several = summary.steps.iter().any(|s| s.contacts.len() > 1);
     let mut rows: Vec<String> = vec![String::new(); lines.len() + 1];
-    for (title, cell) in columns {
+    for (title, unit, cell) in columns {
         let cells: Vec<Option<String>> = lines.iter().map(|(s, c)| cell(s, *c)).collect();
         if cells.iter().all(Option::is_none) || (title == "contact" && !several) {
             continue;
         }
         let cells: Vec<String> = cells.into_iter().map(|c| c.unwrap_or("-".into())).collect();
-        let width = cells.iter().map(String::len).chain([title.len()]).max().unwrap_or(0);
-        for (row, text) in rows.iter_mut().zip(std::iter::once(title).chain(cells.iter().map(String::as_str))) {
+        let heading = headed(title, unit);
+        let width = cells.iter().map(String::len).chain([heading.chars().count()]).max().unwrap_or(0);
+        for (row, text) in
+            rows.iter_mut().zip(std::iter::once(heading.as_str()).chain(cells.iter().map(String::as_str)))
+        {
             // Names stand to the left.
             *row += &if title == "contact" { format!("  {text:width$}") } else { format!("  {text:>width$}") };
         }
@@ -42,8 +50,15 @@ pub fn table(summary: &Summary) -> String {
     rows.iter().map(|row| format!("{}\n", row.trim_end())).collect()
 }
 
+/// A heading with its unit: `area [mm²]`.
+fn headed(title: &str, unit: &str) -> String {
+    if unit.is_empty() { title.to_string() } else { format!("{title} [{unit}]") }
+}
+
 /// One line per increment as CSV: contacts, supports, loads and probes by their names; what there is not is left empty.
-pub fn history(steps: &[StepReport]) -> String {
+/// With the units of the case in the header, where it states some.
+pub fn history(steps: &[StepReport], units: Option<&UnitNames>) -> String {
+    let unit = |of: fn(&UnitNames) -> &String| units.map_or("", |u| of(u));
     fn names<'a, V: 'a>(
         steps: &'a [StepReport],
         of: impl Fn(&'a StepReport) -> &'a BTreeMap<String, V>,
@@ -59,35 +74,37 @@ pub fn history(steps: &[StepReport]) -> String {
     let mut rows: Vec<Vec<String>> = (steps.iter())
         .map(|s| vec![s.index.to_string(), number(Some(s.time)), s.converged.to_string(), s.iterations.to_string()])
         .collect();
-    let mut add = |title: String, value: &dyn Fn(&StepReport) -> Option<f64>| {
-        header.push(title);
+    let mut add = |title: String, unit: &str, value: &dyn Fn(&StepReport) -> Option<f64>| {
+        header.push(headed(&title, unit));
         rows.iter_mut().zip(steps).for_each(|(row, step)| row.push(number(value(step))));
     };
-    add("energy".into(), &|s| s.energy);
-    add("equilibrium_residual".into(), &|s| s.equilibrium_residual);
+    add("energy".into(), unit(|u| &u.energy), &|s| s.energy);
+    add("equilibrium_residual".into(), "", &|s| s.equilibrium_residual);
     const AXES: [&str; 3] = ["x", "y", "z"];
     for name in names(steps, |s| &s.contacts) {
         let of = |s: &StepReport| s.contacts.get(name).cloned();
         for (k, axis) in AXES.iter().enumerate() {
-            add(format!("{name}:force_{axis}"), &|s| Some(of(s)?.force[k]));
+            add(format!("{name}:force_{axis}"), unit(|u| &u.force), &|s| Some(of(s)?.force[k]));
         }
         type Reading = fn(&ContactReport) -> Option<f64>;
-        let readings: [(&str, Reading); 12] = [
-            ("area", |c| Some(c.area)),
-            ("radius", |c| c.radius),
-            ("zones", |c| Some(c.zones as f64)),
-            ("holes", |c| c.holes.map(|n| n as f64)),
-            ("boundary_length", |c| c.boundary_length),
-            ("max_penetration", |c| Some(c.max_penetration)),
-            ("min_gap_outside", |c| c.min_gap_outside),
-            ("max_pressure", |c| Some(c.max_pressure)),
-            ("min_pressure", |c| c.min_pressure),
-            ("force_error", |c| c.error_estimate.map(|e| e.force)),
-            ("area_error", |c| c.error_estimate.map(|e| e.area)),
-            ("max_pressure_error", |c| c.error_estimate?.max_pressure),
+        let (area, length) = (unit(|u| &u.area), unit(|u| &u.length));
+        let (force, pressure) = (unit(|u| &u.force), unit(|u| &u.pressure));
+        let readings: [(&str, &str, Reading); 12] = [
+            ("area", area, |c| Some(c.area)),
+            ("radius", length, |c| c.radius),
+            ("zones", "", |c| Some(c.zones as f64)),
+            ("holes", "", |c| c.holes.map(|n| n as f64)),
+            ("boundary_length", length, |c| c.boundary_length),
+            ("max_penetration", length, |c| Some(c.max_penetration)),
+            ("min_gap_outside", length, |c| c.min_gap_outside),
+            ("max_pressure", pressure, |c| Some(c.max_pressure)),
+            ("min_pressure", pressure, |c| c.min_pressure),
+            ("force_error", force, |c| c.error_estimate.map(|e| e.force)),
+            ("area_error", area, |c| c.error_estimate.map(|e| e.area)),
+            ("max_pressure_error", pressure, |c| c.error_estimate?.max_pressure),
         ];
-        for (key, read) in readings {
-            add(format!("{name}:{key}"), &|s| read(&of(s)?));
+        for (key, unit, read) in readings {
+            add(format!("{name}:{key}"), unit, &|s| read(&of(s)?));
         }
     }
     type Forces = fn(&StepReport) -> &BTreeMap<String, [f64; 3]>;
@@ -95,13 +112,15 @@ pub fn history(steps: &[StepReport]) -> String {
     for of in forces {
         for name in names(steps, of) {
             for (k, axis) in AXES.iter().enumerate() {
-                add(format!("{name}:force_{axis}"), &|s| of(s).get(name).map(|f| f[k]));
+                add(format!("{name}:force_{axis}"), unit(|u| &u.force), &|s| of(s).get(name).map(|f| f[k]));
             }
         }
     }
     for name in names(steps, |s| &s.probes) {
         for (k, axis) in AXES.iter().enumerate() {
-            add(format!("{name}:displacement_{axis}"), &|s| Some(s.probes.get(name)?.as_ref()?.displacement[k]));
+            add(format!("{name}:displacement_{axis}"), unit(|u| &u.length), &|s| {
+                Some(s.probes.get(name)?.as_ref()?.displacement[k])
+            });
         }
     }
     let lines = std::iter::once(header).chain(rows).map(|row| row.join(",") + "\n");

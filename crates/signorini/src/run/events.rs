@@ -205,6 +205,7 @@ fn between<const D: usize, Z: Zone<D>>(a: &Known<Z>, b: &Known<Z>, kind: EventKi
         area_after: b.area,
         force_before: a.force,
         force_after: b.force,
+        load_force: 0.0,
         energy_released: None,
     }
 }

@@ -4,15 +4,15 @@ use super::solid_checkpoint::SolidCheckpoint;
 use super::{Begun, Ending, Logged, Outcome, RunError, checkpoint, environment, not_resumed};
 use crate::case::CaseError;
 use crate::case::statement::{Body, Space as Stated};
-use crate::output::figure::figure;
+use crate::output::figure::{figures, told};
 use crate::output::solid_fields::{ContactDisplay, SolidDisplay, SolidFields};
 use crate::output::{Folder, OutputError, solid_pictures, tables, vtk};
 use crate::plan::pieces::{Apart, UNITE};
 use crate::plan::solid::{Opposite, SolidLoad, SolidPlan, evaluate};
 use crate::plan::{Placed, memory_at_hand};
 use crate::report::{
-    Component, ContactReport, ErrorEstimate, Probe, Reason, SCHEMA, StepReport, Summary, Warning, WarningKind, history,
-    vector,
+    Component, ContactReport, ErrorEstimate, Probe, Reason, SCHEMA, StepReport, Summary, UnitNames, Warning,
+    WarningKind, history, vector,
 };
 use signorini_contact::GapJet;
 use signorini_geometry::Point;
@@ -110,7 +110,7 @@ pub fn model<const D: usize>(plan: &SolidPlan<D>) -> Result<Model<D>, CaseError>
     raised(plan, 0)
 }
 
-/// The same with functions of a higher degree.
+/// The same with functions of a higher degree, on cells whose curves are.
 fn raised<const D: usize>(plan: &SolidPlan<D>, by: usize) -> Result<Model<D>, CaseError> {
     let space = match plan.space {
         Stated::PlaneStrain => Space::PlaneStrain,
@@ -120,7 +120,8 @@ fn raised<const D: usize>(plan: &SolidPlan<D>, by: usize) -> Result<Model<D>, Ca
     };
     let mut bodies = Bodies::<D>::new(space);
     for b in &plan.bodies {
-        bodies.add(&b.name, b.mesh.clone(), b.degree + by, b.material);
+        let mesh = b.raised.as_ref().filter(|_| by > 0).unwrap_or(&b.mesh);
+        bodies.add(&b.name, mesh.clone(), b.degree + by, b.material);
     }
     let supports = (plan.supports.iter())
         .map(|s| Support { name: s.name.clone(), body: s.body, group: s.group.clone(), kind: s.kind.clone() })
@@ -494,7 +495,7 @@ impl<const D: usize> Runner<D> {
         display: &SolidDisplay<D>,
         last: Option<&(f64, SolidFields<D>, Vec<ContactDisplay<D>>)>,
     ) -> Result<Summary, OutputError> {
-        self.folder.write("history.csv", history(&self.steps).as_bytes())?;
+        self.folder.write("history.csv", history(&self.steps, self.plan.unit_names().as_ref()).as_bytes())?;
         if let (true, Some((time, fields, contacts))) = (self.plan.pictures, last) {
             solid_pictures::draw(&self.folder, &self.plan, *time, display, fields, contacts, &self.steps)?;
         }
@@ -506,6 +507,7 @@ impl<const D: usize> Runner<D> {
             verdict: self.verdict(ending, failure),
             method: method(&self.plan),
             unknowns: self.model.unknowns(),
+            units: self.plan.unit_names(),
             first_picture: (self.plan.pictures && last.is_some()).then(|| "pictures/deformed.png".into()),
             warnings: self.warnings.clone(),
             interpreted: self.plan.interpreted.clone(),
@@ -542,21 +544,19 @@ impl<const D: usize> Runner<D> {
             return format!("`{name}` is open");
         }
         let errors = c.error_estimate;
-        let within = |e: Option<f64>| e.filter(|e| *e > 0.0).map_or(String::new(), |e| format!(" ± {e:.0e}"));
-        let (force_error, area_error) = (errors.map(|e| e.force), errors.map(|e| e.area));
-        let pressure_error = errors.and_then(|e| e.max_pressure);
-        let force: Vec<String> = c.force[..D].iter().map(|f| figure(*f, force_error)).collect();
+        let units = self.plan.unit_names();
+        let unit = |of: fn(&UnitNames) -> &String| units.as_ref().map_or("", |u| of(u));
+        let of_force = errors.map(|e| e.force);
+        let within = of_force.filter(|e| *e > 0.0).map_or(String::new(), |e| format!(" ± {e:.0e}"));
         format!(
-            "`{name}` carries ({}){} over {} {}{} in {} zone{}, at most {}{}",
-            force.join(", "),
-            within(force_error),
+            "`{name}` carries {}{within}{} over {} {} in {} zone{}, at most {}",
+            figures(&c.force[..D], of_force),
+            units.as_ref().map_or(String::new(), |u| format!(" {}", u.force)),
             if D == 3 || self.plan.space == Stated::Axisymmetric { "area" } else { "length" },
-            figure(c.area, area_error),
-            within(area_error),
+            told(c.area, errors.map(|e| e.area), unit(|u| &u.area)),
             c.zones,
             if c.zones == 1 { "" } else { "s" },
-            figure(c.max_pressure, pressure_error),
-            within(pressure_error),
+            told(c.max_pressure, errors.and_then(|e| e.max_pressure), unit(|u| &u.pressure)),
         )
     }
 }

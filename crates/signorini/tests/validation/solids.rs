@@ -163,6 +163,12 @@ fn errors_and_large_strains_are_told() {
     let contact = &last_step(&slides)["contacts"]["touch"];
     let estimate = at(contact, "/error_estimate/area");
     assert!((at(contact, "/area") - 2.444551).abs() < 1.5 * estimate && estimate < 0.01, "sliding: {estimate}");
+    // The finer functions of linear cells stand on curves of degree 2 too, not on the facets.
+    let linear = [("bodies.block.solid.degree", "1".to_string()), ("steps", "[{ to = 1.0 }]".to_string())];
+    let linear = summary(example("hertz"), &set(&linear));
+    let contact = &last_step(&linear)["contacts"]["touch"];
+    let estimate = at(contact, "/error_estimate/max_pressure");
+    assert!((at(contact, "/max_pressure") - 13.5745).abs() < 1.5 * estimate && estimate < 0.1, "linear: {estimate}");
     let strained = |v: &Value| v["warnings"].to_string().contains("the strain is not small: ");
     assert!(!strained(&found) && strained(&summary(example("punch"), &set(&[]))));
 }

@@ -1,7 +1,8 @@
 //! What a run of a membrane would have to do, and what looks wrong before it starts.
 
 use super::RunError;
-use super::increment::LINEAR;
+use super::membrane::increment::LINEAR;
+use super::solid;
 use crate::case::CaseError;
 use crate::case::units::Units;
 use crate::output::solid_fields::SolidDisplay;
@@ -43,8 +44,8 @@ pub fn sizes(plan: &Plan) -> Result<Value, CaseError> {
     match plan {
         Plan::Line(plan) => of_membrane::<1, LineZone>(plan),
         Plan::Plane(plan) => of_membrane::<2, PlaneZone>(plan),
-        Plan::PlaneSolids(plan) => super::solid_sizes(plan),
-        Plan::Solids(plan) => super::solid_sizes(plan),
+        Plan::PlaneSolids(plan) => of_solids(plan),
+        Plan::Solids(plan) => of_solids(plan),
     }
 }
 
@@ -100,6 +101,33 @@ fn of_membrane<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>) -> Result<Val
     Ok(sizes)
 }
 
+/// What a run of solids would have to do, after checking that their supports and contacts make sense.
+fn of_solids<const D: usize>(plan: &SolidPlan<D>) -> Result<Value, CaseError> {
+    let mut model = solid::model(plan)?;
+    let judged = solid::judge(plan, &mut model)?;
+    let cost = solid::cost(plan, &model)?;
+    let free: Vec<String> = model
+        .free_modes()
+        .iter()
+        .map(|m| format!("`{}` is free {} until contact holds it", m.body, m.motion))
+        .collect();
+    Ok(json!({
+        "method": "mortar",
+        "bodies": plan.bodies.len(),
+        "cells": plan.bodies.iter().map(|b| b.mesh.cell_count()).sum::<usize>(),
+        "unknowns": model.unknowns(),
+        "memory_about": format!("{:.2} GiB", solid::memory(&cost) / f64::from(1u32 << 30)),
+        "factorisation_about": format!("{:.1} s", cost.operations / solid::OPERATIONS_PER_SECOND),
+        "increments": plan.times.len(),
+        "supports": plan.document.case.supports.len(),
+        "loads": plan.loads.len(),
+        "contacts": plan.contacts.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", "),
+        "free": free,
+        "interpreted": plan.interpreted,
+        "warnings": plan.warnings.iter().cloned().chain(odd_solids(plan).into_iter().chain(judged).map(Warning::from)).collect::<Vec<_>>(),
+    }))
+}
+
 /// What is odd about the size of a body.
 fn odd_length(units: Units, length: f64, what: &str) -> Option<String> {
     let metres = length * units.length;
@@ -148,7 +176,7 @@ pub fn preview(plan: &Plan) -> Result<Option<String>, RunError> {
         Ok(Some(pictures::preview(plan, &mesh, &snapshot)?))
     }
     fn solids<const D: usize>(plan: &SolidPlan<D>) -> Result<Option<String>, RunError> {
-        let model = super::solid::model(plan)?;
+        let model = solid::model(plan)?;
         let display = SolidDisplay::new(&model);
         let fields = display.fields(&model, &vec![0.0; model.bodies.unknowns()]);
         Ok(Some(solid_pictures::preview(plan, &display, &fields)))

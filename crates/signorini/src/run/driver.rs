@@ -1,0 +1,177 @@
+//! One driver for all models: increments, files, what a later run goes on from, and the end.
+
+use super::checkpoint::{self, Checkpoint};
+use super::record::Record;
+use super::{Ending, Outcome, RunError};
+use crate::case::CaseError;
+use crate::output::{Folder, OutputError};
+use crate::report::Reason;
+use serde_json::{Value, json};
+use signorini_solve::{Iteration, Progress};
+use std::path::Path;
+
+/// What came of an increment.
+pub enum Advanced {
+    /// A state, entered as the last step of the record.
+    State,
+    /// Nothing: its step of the history has ended before.
+    Nothing,
+    /// No state. What is known of the failure stands in the record.
+    Failed(Reason),
+}
+
+/// A problem that is solved increment by increment.
+pub trait Model {
+    /// Number of increments.
+    fn increments(&self) -> usize;
+
+    /// The end of an increment as far as it is known before.
+    fn time(&self, index: usize) -> f64;
+
+    /// Solves an increment, starting from the state of the one before, and enters what was found.
+    ///
+    /// # Errors
+    /// A value of the case that is none at that time.
+    fn advance(
+        &mut self,
+        index: usize,
+        record: &mut Record,
+        progress: &mut dyn Progress,
+    ) -> Result<Advanced, CaseError>;
+
+    /// Writes the fields of the last state.
+    ///
+    /// # Errors
+    /// Files that cannot be written.
+    fn write_fields(&mut self, index: usize, record: &mut Record) -> Result<(), OutputError>;
+
+    /// Draws the last state and the history.
+    ///
+    /// # Errors
+    /// Pictures that cannot be drawn or written.
+    fn draw(&self, record: &Record) -> Result<(), OutputError>;
+
+    /// The picture to open first; none where there is none.
+    fn first_picture(&self) -> Option<String>;
+
+    /// The result in a sentence, with what to try where there is none.
+    fn verdict(&self, record: &Record, reason: Reason) -> String;
+
+    /// How the contact is found.
+    fn method(&self) -> String;
+
+    /// The last state, enough to go on from to the same digits; none where one cannot go on from there.
+    ///
+    /// # Errors
+    /// Files beside the checkpoint that cannot be written.
+    fn save(&self, folder: &Folder, next: usize) -> Result<Option<Value>, OutputError>;
+
+    /// Goes on from what [`Model::save`] told.
+    ///
+    /// # Errors
+    /// In words, where that is not the state of such a model.
+    fn restore(&mut self, state: Value, folder: &Path, next: usize) -> Result<(), String>;
+}
+
+/// Writes every iteration to the log on its way to the user's progress.
+struct Logged<'a> {
+    folder: &'a Folder,
+    inner: &'a mut dyn Progress,
+}
+
+impl Progress for Logged<'_> {
+    fn step(&mut self, index: usize, count: usize, time: f64) {
+        self.inner.step(index, count, time);
+    }
+    fn iteration(&mut self, i: &Iteration) {
+        let mut line = json!({
+            "event": "iteration", "step": i.step, "time": i.time, "iteration": i.iteration,
+            "residual": i.residual, "action": i.action,
+        });
+        for (name, value) in i.figures {
+            line[*name] = json!(value);
+        }
+        // A log that cannot be written will be told by the files that follow.
+        let _ = self.folder.log(&line);
+        self.inner.iteration(i);
+    }
+    fn interrupted(&self) -> bool {
+        self.inner.interrupted()
+    }
+}
+
+/// Runs a model from an increment on to its end.
+///
+/// # Errors
+/// A value of the case that is none at some time, after what was found so far is written; files that cannot be written.
+pub fn drive(
+    model: &mut dyn Model,
+    mut record: Record,
+    first: usize,
+    start: std::time::Instant,
+    progress: &mut dyn Progress,
+) -> Result<Outcome, RunError> {
+    let count = model.increments();
+    let mut reason = Reason::Converged;
+    for index in first..count {
+        progress.step(index, count, model.time(index));
+        let folder = record.folder.clone();
+        let mut logged = Logged { folder: &folder, inner: progress };
+        match model.advance(index, &mut record, &mut logged) {
+            Ok(Advanced::State) => {}
+            Ok(Advanced::Nothing) => continue,
+            Ok(Advanced::Failed(why)) => {
+                reason = why;
+                break;
+            }
+            Err(error) => {
+                // What was found so far stays; the summary says how far it goes.
+                record.finish(model, Reason::Input, start)?;
+                return Err(error.into());
+            }
+        }
+        let found = record.steps.last().map_or(reason, |step| step.reason);
+        let last = index + 1 == count;
+        if last || index % record.every == record.every - 1 || !found.is_converged() {
+            model.write_fields(index, &mut record)?;
+        }
+        if !found.is_converged() || count == 1 {
+            reason = found;
+        }
+        if !found.is_converged() {
+            break;
+        }
+        // After the last there is nothing to go on to.
+        if !last && let Some(state) = model.save(&record.folder, index + 1)? {
+            checkpoint::write(&record, index + 1, state)?;
+        }
+    }
+    let summary = record.finish(model, reason, start)?;
+    let ending = Ending::of(reason);
+    if ending == Ending::Converged {
+        checkpoint::remove(&record.folder);
+    }
+    Ok(Outcome { summary, ending })
+}
+
+/// Goes on with an earlier run in its folder.
+///
+/// # Errors
+/// Those of [`drive`], and in words, where there is nothing to go on with.
+pub fn go_on(
+    model: &mut dyn Model,
+    record: Record,
+    path: &Path,
+    start: std::time::Instant,
+    progress: &mut dyn Progress,
+) -> Result<Outcome, RunError> {
+    let Checkpoint { next, state, record } = checkpoint::read(path, record).map_err(super::not_resumed)?;
+    if next >= model.increments() {
+        return Err(super::not_resumed(checkpoint::damaged(path)).into());
+    }
+    model.restore(state, path, next).map_err(super::not_resumed)?;
+    drive(model, record, next, start, progress)
+}
+
+#[cfg(test)]
+mod tests;

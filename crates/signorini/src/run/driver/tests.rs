@@ -1,0 +1,101 @@
+//! The driver on the smallest model there is: a spring that is pressed on a wall.
+
+use super::*;
+use crate::case::Document;
+use crate::report::{ContactReport, StepReport};
+use crate::run::record::{Head, begin, of_earlier_run};
+use signorini_solve::Silent;
+
+/// A spring of stiffness two whose end is pushed by the time; a wall stands at 0.3.
+#[derive(Default)]
+struct Spring {
+    force: f64,
+    /// The increment in which it fails.
+    fails_in: Option<usize>,
+}
+
+impl Model for Spring {
+    fn increments(&self) -> usize {
+        4
+    }
+    fn time(&self, index: usize) -> f64 {
+        0.25 * (index + 1) as f64
+    }
+    fn advance(
+        &mut self,
+        index: usize,
+        record: &mut Record,
+        progress: &mut dyn Progress,
+    ) -> Result<Advanced, CaseError> {
+        if progress.interrupted() {
+            return Ok(Advanced::Failed(Reason::Interrupted));
+        }
+        if self.fails_in == Some(index) {
+            return Ok(Advanced::Failed(Reason::Newton));
+        }
+        // From the state before, as other models do.
+        let pressed = (self.time(index) - 0.3).max(0.0);
+        let step = if index == 0 { pressed } else { pressed - (self.time(index - 1) - 0.3).max(0.0) };
+        self.force += 2.0 * step;
+        let contact = ContactReport { force: [self.force, 0.0, 0.0], zones: 1, ..ContactReport::default() };
+        record.steps.push(StepReport {
+            index,
+            time: self.time(index),
+            converged: true,
+            iterations: 1,
+            contacts: [("wall".to_string(), contact)].into(),
+            ..StepReport::default()
+        });
+        Ok(Advanced::State)
+    }
+    fn write_fields(&mut self, index: usize, record: &mut Record) -> Result<(), OutputError> {
+        record.add_frame(self.time(index), format!("{index:05}"), &[])
+    }
+    fn draw(&self, record: &Record) -> Result<(), OutputError> {
+        record.folder.write("pictures/spring.svg", b"<svg/>")
+    }
+    fn first_picture(&self) -> Option<String> {
+        Some("pictures/spring.svg".into())
+    }
+    fn verdict(&self, _: &Record, _: Reason) -> String {
+        format!("The spring presses with {}.", self.force)
+    }
+    fn method(&self) -> String {
+        "by hand".into()
+    }
+    fn save(&self, _: &Folder, _: usize) -> Result<Option<Value>, OutputError> {
+        Ok(Some(json!(self.force)))
+    }
+    fn restore(&mut self, state: Value, _: &Path, _: usize) -> Result<(), String> {
+        self.force = state.as_f64().ok_or("no number")?;
+        Ok(())
+    }
+}
+
+#[test]
+fn a_model_runs_fails_goes_on_draws_and_reports() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let document = Document::parse("spring.toml", crate::gallery::GALLERY[0].case, &[]).expect("a case");
+    let head = Head { document: &document, units: None, interpreted: &[], warnings: &[], every: 2, pictures: true };
+    let start = std::time::Instant::now();
+    let whole = folder.path().join("whole");
+    let outcome = drive(&mut Spring::default(), begin(&head, &whole).expect("a folder"), 0, start, &mut Silent);
+    let whole = outcome.expect("a run");
+    assert!(whole.ending == Ending::Converged && whole.summary.steps.len() == 4);
+    assert!((whole.summary.steps[3].contacts["wall"].force[0] - 1.4).abs() < 1e-15);
+    // It fails in the third increment, and goes on from there.
+    let path = folder.path().join("parts");
+    let mut failing = Spring { fails_in: Some(2), ..Spring::default() };
+    let failed = drive(&mut failing, begin(&head, &path).expect("a folder"), 0, start, &mut Silent).expect("a run");
+    assert!(failed.ending == Ending::NotConverged && failed.summary.reason == Reason::Newton);
+    assert_eq!(failed.summary.steps, whole.summary.steps[..2]);
+    let rest = go_on(&mut Spring::default(), of_earlier_run(&head, &path), &path, start, &mut Silent).expect("a run");
+    assert_eq!(rest.summary.steps, whole.summary.steps);
+    assert_eq!(rest.summary.verdict, whole.summary.verdict);
+    let read = |name: &str| std::fs::read_to_string(path.join(name)).expect(name);
+    assert!(read("history.csv").contains("wall:force_x") && read("pictures/spring.svg").contains("svg"));
+    assert_eq!(read("fields.pvd").matches("<DataSet").count(), 2);
+    assert!(!path.join("checkpoint.json").exists());
+    // There is nothing to go on with any more.
+    assert!(go_on(&mut Spring::default(), of_earlier_run(&head, &path), &path, start, &mut Silent).is_err());
+}

@@ -1,0 +1,131 @@
+//! What a run has found so far, and where it writes it.
+
+use super::driver::Model;
+use super::environment;
+use crate::case::Document;
+use crate::case::value::Interpreted;
+use crate::output::{Folder, OutputError, vtk};
+use crate::report::{Event, Reason, SCHEMA, StepReport, Summary, UnitNames, Warning, history};
+
+/// The results of a run that are the same for all models.
+pub struct Record {
+    pub folder: Folder,
+    /// The title of the case, or the name of its file.
+    pub case: String,
+    /// The text of the case.
+    pub text: String,
+    pub units: Option<UnitNames>,
+    pub interpreted: Vec<Interpreted>,
+    /// Increments from one file of fields to the next.
+    pub every: usize,
+    /// Whether pictures are wanted.
+    pub pictures: bool,
+    pub steps: Vec<StepReport>,
+    pub warnings: Vec<Warning>,
+    pub events: Vec<Event>,
+    /// Times and numbers of the files of fields.
+    pub frames: Vec<(f64, String)>,
+    /// The most unknowns solved for.
+    pub unknowns: usize,
+}
+
+/// What a plan tells of the record of its run.
+pub struct Head<'a> {
+    pub document: &'a Document,
+    pub units: Option<UnitNames>,
+    pub interpreted: &'a [Interpreted],
+    pub warnings: &'a [Warning],
+    pub every: usize,
+    pub pictures: bool,
+}
+
+impl Record {
+    /// An empty record.
+    pub fn new(head: &Head, folder: Folder) -> Self {
+        let document = head.document;
+        Self {
+            folder,
+            case: document.case.title.clone().unwrap_or_else(|| document.name.clone()),
+            text: document.text.clone(),
+            units: head.units.clone(),
+            interpreted: head.interpreted.to_vec(),
+            every: head.every,
+            pictures: head.pictures,
+            steps: Vec::new(),
+            warnings: head.warnings.to_vec(),
+            events: Vec::new(),
+            frames: Vec::new(),
+            unknowns: 0,
+        }
+    }
+
+    /// Adds a warning; what is said of many increments is said once, of the first.
+    pub fn warn_once(&mut self, warning: Warning) {
+        if !self.warnings.iter().any(|w| w.kind == warning.kind) {
+            self.warnings.push(warning);
+        }
+    }
+
+    /// Enters files of fields, `fields/fields_N.vtu` and for each contact `contact/NAME_N.vtp`, into their collections.
+    ///
+    /// # Errors
+    /// Collections that cannot be written.
+    pub fn add_frame(&mut self, time: f64, number: String, contacts: &[&str]) -> Result<(), OutputError> {
+        self.frames.push((time, number));
+        let fields: Vec<_> = self.frames.iter().map(|(t, n)| (*t, format!("fields/fields_{n}.vtu"))).collect();
+        let of_frame =
+            |(t, n): &(f64, String)| contacts.iter().map(|c| (*t, format!("contact/{c}_{n}.vtp"))).collect::<Vec<_>>();
+        let surfaces: Vec<_> = self.frames.iter().flat_map(of_frame).collect();
+        self.folder.write("fields.pvd", vtk::collection(&fields).as_bytes())?;
+        self.folder.write("contact.pvd", vtk::collection(&surfaces).as_bytes())
+    }
+
+    /// Number of increments that were solved.
+    pub fn done(&self) -> usize {
+        self.steps.iter().filter(|s| s.converged).count()
+    }
+
+    /// Writes history, pictures and summary.
+    ///
+    /// # Errors
+    /// Files that cannot be written.
+    pub fn finish(&self, model: &dyn Model, reason: Reason, start: std::time::Instant) -> Result<Summary, OutputError> {
+        self.folder.write("history.csv", history(&self.steps, self.units.as_ref()).as_bytes())?;
+        if self.pictures {
+            model.draw(self)?;
+        }
+        let summary = Summary {
+            schema: SCHEMA,
+            case: self.case.clone(),
+            converged: reason.is_converged(),
+            reason,
+            verdict: model.verdict(self, reason),
+            method: model.method(),
+            unknowns: self.unknowns,
+            units: self.units.clone(),
+            first_picture: model.first_picture().filter(|_| self.pictures),
+            warnings: self.warnings.clone(),
+            interpreted: self.interpreted.clone(),
+            steps: self.steps.clone(),
+            events: self.events.clone(),
+            environment: environment::describe(start, rayon::current_num_threads(), &self.text),
+        };
+        self.folder.write("summary.json", summary.to_json().as_bytes())?;
+        Ok(summary)
+    }
+}
+
+/// The folder of a run that begins, with the text of its case.
+///
+/// # Errors
+/// A folder that cannot be made or holds what no run has written.
+pub fn begin(head: &Head, path: &std::path::Path) -> Result<Record, OutputError> {
+    let record = Record::new(head, Folder::create(path)?);
+    record.folder.write("case.toml", record.text.as_bytes())?;
+    Ok(record)
+}
+
+/// The record of a run that goes on in a folder.
+pub fn of_earlier_run(head: &Head, path: &std::path::Path) -> Record {
+    Record::new(head, Folder::of_earlier_run(path))
+}

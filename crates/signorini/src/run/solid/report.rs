@@ -1,0 +1,199 @@
+//! What is told of a state of solids.
+
+use super::setup::load;
+use crate::case::statement::Space as Stated;
+use crate::output::figure::{figures, told};
+use crate::output::solid_fields::{ContactDisplay, SolidDisplay, SolidFields};
+use crate::plan::Placed;
+use crate::plan::solid::{SolidPlan, evaluate};
+use crate::report::{Component, ContactReport, Probe, Reason, StepReport, UnitNames, Warning, WarningKind, vector};
+use crate::run::record::Record;
+use signorini_geometry::Point;
+use signorini_solid::loads::resultant;
+use signorini_solid::{ContactResult, Method, Model, PressureNode, State};
+use std::collections::{BTreeMap, HashMap};
+
+/// Strain from which the theory of small strains is off by more than a few per cent of the result: the terms left out are
+/// half the square of the displacement gradient, and rotations come with strains.
+const LARGE_STRAIN: f64 = 0.05;
+
+/// What solves the equations.
+pub const SOLVER: &str = "direct";
+
+/// A state as it is shown.
+pub struct Shown<const D: usize> {
+    pub index: usize,
+    pub time: f64,
+    pub fields: SolidFields<D>,
+    pub contacts: Vec<ContactDisplay<D>>,
+}
+
+/// The step of the summary that a state is.
+pub fn step_report<const D: usize>(
+    plan: &SolidPlan<D>,
+    model: &Model<D>,
+    display: &SolidDisplay<D>,
+    state: &State<D>,
+    shown: &Shown<D>,
+) -> StepReport {
+    let Shown { index, time, fields, contacts } = shown;
+    let (index, time) = (*index, *time);
+    // A support of several kinds is one for its reader; the axis is none.
+    let mut supports: BTreeMap<String, Point<D>> = BTreeMap::new();
+    for (support, force) in plan.supports.iter().zip(&state.support_forces) {
+        if support.name != "axis" {
+            *supports.entry(support.name.clone()).or_insert_with(Point::<D>::zeros) += force;
+        }
+    }
+    let value = |p: &Placed, x: &Point<D>| evaluate(&plan.document, p, x, time).unwrap_or(0.0);
+    let bodies = &model.bodies;
+    let loads = plan.loads.iter().map(|l| (l.name.clone(), vector(&resultant(bodies, &load(bodies, l, &value)))));
+    let probe = |x: &Point<D>| {
+        let distance = |k: &usize| (display.points[*k] - x).norm();
+        let nearest = (0..display.points.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+        Some(Probe {
+            at: vector(&display.points[nearest]),
+            displacement: vector(&fields.displacement[nearest]),
+            in_contact: None,
+            pressure: None,
+            von_mises: Some(fields.von_mises[nearest]),
+        })
+    };
+    let most = (0..fields.strain.len()).max_by(|&a, &b| fields.strain[a].total_cmp(&fields.strain[b]));
+    StepReport {
+        index,
+        time,
+        converged: true,
+        reason: Reason::Converged,
+        iterations: state.iterations,
+        solver: SOLVER.into(),
+        residual_history: state.residuals.clone(),
+        energy: Some(state.energy),
+        max_strain: most.map(|k| fields.strain[k]),
+        equilibrium_residual: Some(state.imbalance),
+        support_forces: supports.iter().map(|(name, force)| (name.clone(), vector(force))).collect(),
+        load_forces: loads.collect(),
+        contacts: (plan.contacts.iter().zip(&state.contacts).zip(contacts))
+            .map(|((contact, result), shown)| (contact.name.clone(), contact_report(plan.space, result, shown)))
+            .collect(),
+        probes: plan.probes.iter().map(|(name, (_, x))| (name.clone(), probe(x))).collect(),
+        ..StepReport::default()
+    }
+}
+
+/// Warns of what looks wrong with a state.
+pub fn warn<const D: usize>(
+    plan: &SolidPlan<D>,
+    model: &Model<D>,
+    display: &SolidDisplay<D>,
+    state: &State<D>,
+    shown: &Shown<D>,
+    record: &mut Record,
+) {
+    let Shown { time, fields, .. } = shown;
+    let most = (0..fields.strain.len()).max_by(|&a, &b| fields.strain[a].total_cmp(&fields.strain[b]));
+    if let Some(k) = most.filter(|&k| fields.strain[k] >= LARGE_STRAIN) {
+        let x: Vec<String> = display.points[k].iter().map(|v| format!("{v:.4}")).collect();
+        let message = format!(
+            "the strain is not small: {:.0} % at ({}) of `{}` at t = {time}; the theory is that of small strains, and errs by as much from {:.0} % on",
+            100.0 * fields.strain[k],
+            x.join(", "),
+            display.body_of(model, k),
+            100.0 * LARGE_STRAIN,
+        );
+        let warning = Warning::new(WarningKind::LargeStrain, message);
+        record.warn_once(warning.at_time(*time).at(vector(&display.points[k])));
+    }
+    for (contact, result) in plan.contacts.iter().zip(&state.contacts) {
+        // Of pairs that were not named most never meet.
+        if !plan.document.case.contacts.contains_key(&contact.name) {
+            continue;
+        }
+        let name = &contact.name;
+        let warning = if result.nodes.is_empty() {
+            let message =
+                format!("contact `{name}`: no part of the slave faces the master: do the normals look at each other?");
+            Warning::new(WarningKind::NotFacing, message)
+        } else if result.nodes.iter().all(|n| !n.active) {
+            let gap = result.nodes.iter().map(|n| n.gap).fold(f64::INFINITY, f64::min);
+            let message = format!("contact `{name}`: the bodies do not touch at t = {time} (smallest gap {gap:.6e})");
+            Warning::new(WarningKind::Apart, message)
+        } else {
+            continue;
+        };
+        record.warnings.push(warning.at_time(*time));
+    }
+}
+
+/// A contact of a state as it is told.
+fn contact_report<const D: usize>(
+    space: Stated,
+    result: &ContactResult<D>,
+    shown: &ContactDisplay<D>,
+) -> ContactReport {
+    let node: HashMap<usize, &PressureNode<D>> = result.nodes.iter().map(|n| (n.number as usize, n)).collect();
+    let component = |zone: &Vec<usize>| {
+        let own = || zone.iter().filter_map(|k| node.get(k));
+        let whole: f64 = own().map(|n| n.weight).sum();
+        let centroid = zone.iter().filter_map(|k| Some(shown.points[*k] * node.get(k)?.weight)).sum::<Point<D>>();
+        let force: Point<D> = own().map(|n| n.force).sum();
+        Component { area: shown.area(zone), force: vector(&force), centroid: vector(&(centroid / whole)), holes: None }
+    };
+    let components: Vec<Component> = shown.zones().iter().map(component).collect();
+    let closed = || result.nodes.iter().filter(|n| n.active);
+    ContactReport {
+        force: vector(&result.force),
+        area: result.area,
+        zones: components.len(),
+        radius: radius(space, result.area, components.len()),
+        components,
+        max_penetration: result.nodes.iter().map(|n| -n.gap).fold(0.0, f64::max),
+        min_gap_outside: result.nodes.iter().filter(|n| !n.active).map(|n| n.gap).reduce(f64::min),
+        max_pressure: result.nodes.iter().map(|n| n.pressure).fold(0.0, f64::max),
+        min_pressure: closed().map(|n| n.pressure).reduce(f64::min),
+        ..ContactReport::default()
+    }
+}
+
+/// One contact in a clause.
+pub fn contact_verdict<const D: usize>(plan: &SolidPlan<D>, name: &str, c: &ContactReport) -> String {
+    if c.zones == 0 {
+        return format!("`{name}` is open");
+    }
+    let errors = c.error_estimate;
+    let units = plan.unit_names();
+    let unit = |of: fn(&UnitNames) -> &String| units.as_ref().map_or("", |u| of(u));
+    let of_force = errors.map(|e| e.force);
+    let within = of_force.filter(|e| *e > 0.0).map_or(String::new(), |e| format!(" ± {e:.0e}"));
+    format!(
+        "`{name}` carries {}{within}{} over {} {} in {} zone{}, at most {}",
+        figures(&c.force[..D], of_force),
+        units.as_ref().map_or(String::new(), |u| format!(" {}", u.force)),
+        if D == 3 || plan.space == Stated::Axisymmetric { "area" } else { "length" },
+        told(c.area, errors.map(|e| e.area), unit(|u| &u.area)),
+        c.zones,
+        if c.zones == 1 { "" } else { "s" },
+        told(c.max_pressure, errors.and_then(|e| e.max_pressure), unit(|u| &u.pressure)),
+    )
+}
+
+/// The method of the contacts, all names where there are several.
+pub fn method<const D: usize>(plan: &SolidPlan<D>) -> String {
+    let name = |m: Method| match m {
+        Method::Mortar => "mortar",
+        Method::Node => "node",
+        Method::GaussPoint => "gauss_point",
+    };
+    let mut list: Vec<&str> = plan.contacts.iter().map(|c| name(c.method)).collect();
+    list.dedup();
+    if list.is_empty() { "none".into() } else { list.join(", ") }
+}
+
+/// Half the length of one interval, or the radius of the disc of one area.
+fn radius(space: Stated, area: f64, zones: usize) -> Option<f64> {
+    match (zones, space) {
+        (1, Stated::PlaneStrain | Stated::PlaneStress) => Some(0.5 * area),
+        (1, _) => Some((area / std::f64::consts::PI).sqrt()),
+        _ => None,
+    }
+}

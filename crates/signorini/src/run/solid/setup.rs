@@ -1,0 +1,259 @@
+//! From a plan of solids to their model, and what the plan has for it at each time.
+
+use super::failure::explained;
+use crate::case::CaseError;
+use crate::case::statement::{Body, Space as Stated};
+use crate::plan::pieces::{Apart, UNITE};
+use crate::plan::solid::{Opposite, SolidLoad, SolidPlan, evaluate};
+use crate::plan::{Placed, memory_at_hand};
+use signorini_contact::GapJet;
+use signorini_geometry::Point;
+use signorini_solid::loads::forces;
+use signorini_solid::{
+    Bodies, Circumstances, Contact, Load, LoadKind, Master, Model, RigidGap, Sliding, Space, StepError, Support,
+    SupportError, SupportKind, facing,
+};
+use signorini_solve::cholesky::Cost;
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+
+/// Bodies, supports and contacts of a plan.
+pub fn model<const D: usize>(plan: &SolidPlan<D>) -> Result<Model<D>, CaseError> {
+    raised(plan, 0)
+}
+
+/// The same with functions of a higher degree, on cells whose curves are.
+pub fn raised<const D: usize>(plan: &SolidPlan<D>, by: usize) -> Result<Model<D>, CaseError> {
+    let space = match plan.space {
+        Stated::PlaneStrain => Space::PlaneStrain,
+        Stated::PlaneStress => Space::PlaneStress,
+        Stated::Axisymmetric => Space::Axisymmetric,
+        _ => Space::Solid,
+    };
+    let mut bodies = Bodies::<D>::new(space);
+    for b in &plan.bodies {
+        let mesh = b.raised.as_ref().filter(|_| by > 0).unwrap_or(&b.mesh);
+        bodies.add(&b.name, mesh.clone(), b.degree + by, b.material);
+    }
+    let supports = (plan.supports.iter())
+        .map(|s| Support { name: s.name.clone(), body: s.body, group: s.group.clone(), kind: s.kind.clone() })
+        .collect();
+    let contacts = (plan.contacts.iter())
+        .map(|c| {
+            let mut slave = bodies.surface(c.body, c.sides.clone());
+            let master = match &c.opposite {
+                Opposite::Body { body, sides, whole } => {
+                    let mut master = bodies.surface(*body, sides.clone());
+                    // Where bodies may slide, any part may come to meet any other.
+                    if c.sliding == Sliding::Small {
+                        let looking = |a: &_, b: &_| facing(a, b).ok().filter(|list| !list.is_empty());
+                        let of_slave = c.whole.then(|| looking(&slave, &master)).flatten();
+                        let of_master = whole.then(|| looking(&master, &slave)).flatten();
+                        slave = of_slave.map_or(slave, |list| bodies.surface(c.body, list));
+                        master = of_master.map_or(master, |list| bodies.surface(*body, list));
+                    }
+                    Master::Surface(master)
+                }
+                Opposite::Rigid(_) => Master::Rigid,
+            };
+            let mut contact = Contact::new(&c.name, slave, master);
+            (contact.method, contact.enforcement, contact.sliding) = (c.method, c.enforcement, c.sliding);
+            contact
+        })
+        .collect();
+    Model::new(bodies, supports, contacts).map_err(|error| {
+        let place = plan.document.case.space.span();
+        let place = match &error {
+            StepError::Support(signorini_solid::SupportError::NotFlat { support, .. }) => {
+                plan.document.case.supports.get(support).map_or(place, |s| s.span())
+            }
+            _ => place,
+        };
+        plan.document.error(place, error.to_string())
+    })
+}
+
+/// Multiplications with additions that a factorisation does in a second on one core, about: `check` tells a time by it.
+pub const OPERATIONS_PER_SECOND: f64 = 2e10;
+
+/// What the factorisation of a model takes.
+pub fn cost<const D: usize>(plan: &SolidPlan<D>, model: &Model<D>) -> Result<Cost, CaseError> {
+    model.cost().map_err(|error| plan.document.error(plan.document.case.space.span(), error.to_string()))
+}
+
+/// The memory of a run, about: the factor and, of about half its size at most, matrices and results.
+pub fn memory(cost: &Cost) -> f64 {
+    1.5 * cost.bytes
+}
+
+pub fn too_large<const D: usize>(plan: &SolidPlan<D>, unknowns: usize, cost: &Cost) -> CaseError {
+    let gib = |bytes: f64| bytes / f64::from(1u32 << 30);
+    let message = format!(
+        "{unknowns} unknowns need about {:.1} GiB, and {:.1} GiB are free for them",
+        gib(memory(cost)),
+        gib(memory_at_hand())
+    );
+    plan.document
+        .error(plan.document.case.space.span(), message)
+        .help("fewer cells, a lower degree, symmetry, or cells graded towards the contact")
+}
+
+/// Does something with a model and what the plan has for it at one time.
+///
+/// # Errors
+/// An expression of the case whose value is no number there.
+pub fn at_time<const D: usize, R>(
+    plan: &SolidPlan<D>,
+    model: &mut Model<D>,
+    time: f64,
+    act: impl FnOnce(&mut Model<D>, &Circumstances<'_, D>) -> R,
+) -> Result<R, CaseError> {
+    let document = &plan.document;
+    let wrong: RefCell<Option<CaseError>> = RefCell::new(None);
+    let value = |placed: &Placed, x: &Point<D>| match evaluate(document, placed, x, time) {
+        Ok(v) => v,
+        Err(error) => {
+            wrong.borrow_mut().get_or_insert(error);
+            0.0
+        }
+    };
+    let mut forces = vec![0.0; model.bodies.unknowns()];
+    for l in &plan.loads {
+        forces.iter_mut().zip(load(&model.bodies, l, &value)).for_each(|(sum, f)| *sum += f);
+    }
+    let displacement = |number: usize, x: &Point<D>| {
+        let support = &plan.supports[number];
+        let along = |k: usize| support.values.get(k).and_then(|p| p.as_ref()).map_or(0.0, |p| value(p, x));
+        match support.kind {
+            SupportKind::Normal => Point::<D>::from_fn(|k, _| if k == 0 { along(0) } else { 0.0 }),
+            _ => Point::<D>::from_fn(|k, _| along(k)),
+        }
+    };
+    let rigid: Vec<Option<RigidGap<D>>> = (plan.contacts.iter())
+        .map(|c| match &c.opposite {
+            Opposite::Rigid(body) => Ok(Some(flat_gap::<D>(body.gap_at(document, time)?))),
+            Opposite::Body { .. } => Ok(None),
+        })
+        .collect::<Result<_, CaseError>>()?;
+    let result = act(model, &Circumstances { displacement: &displacement, load: forces, rigid });
+    wrong.into_inner().map_or(Ok(result), Err)
+}
+
+/// What can be said of a plan without solving: supports and loads are looked at for all times, and where the bodies lie for
+/// the first. What a run would find no solution for is told in words.
+///
+/// # Errors
+/// What a run refuses.
+pub fn judge<const D: usize>(plan: &SolidPlan<D>, model: &mut Model<D>) -> Result<Option<String>, CaseError> {
+    if let Some(error) = loose_piece(plan, model) {
+        return Err(error);
+    }
+    for (index, &time) in plan.times.iter().enumerate() {
+        let look = |model: &mut Model<D>, now: &Circumstances<'_, D>| match index {
+            0 => model.examine(now),
+            _ => model.examine_again(now),
+        };
+        let Err(error) = at_time(plan, model, time, look)? else { continue };
+        match blamed(plan, model, time, &error) {
+            Some(error) => return Err(error),
+            // With finite sliding the increment will be cut.
+            None if matches!(error, StepError::Deep { .. }) => {}
+            // A run ends there.
+            None => return Ok(Some(format!("at t = {time}: {}", explained(plan, &error).text))),
+        }
+    }
+    Ok(None)
+}
+
+/// The error of a mesh that falls into pieces one of which nothing holds: neither supports nor a contact of its own, or it
+/// lies on another one, to which it should hold by the nodes that they do not share.
+pub fn loose_piece<const D: usize>(plan: &SolidPlan<D>, model: &Model<D>) -> Option<CaseError> {
+    for (number, body) in plan.bodies.iter().enumerate() {
+        let free: BTreeSet<u32> =
+            (model.free_modes().iter()).filter(|m| m.body == body.name).map(|m| m.piece).collect();
+        if free.is_empty() {
+            continue;
+        }
+        let Some(apart) = Apart::new(&body.mesh) else { continue };
+        let in_contact: BTreeSet<u32> = (plan.contacts.iter())
+            .flat_map(|c| {
+                let own = (c.body == number).then_some(&c.sides);
+                let other = match &c.opposite {
+                    Opposite::Body { body, sides, .. } if *body == number => Some(sides),
+                    _ => None,
+                };
+                own.into_iter().chain(other).flatten()
+            })
+            .map(|side| apart.of_cell[side.cell as usize])
+            .collect();
+        if let Some(&loose) = free.iter().find(|piece| apart.touching.is_some() || !in_contact.contains(piece)) {
+            let document = &plan.document;
+            let place = match document.case.bodies.get(&body.name).map(|b| b.get_ref()) {
+                Some(Body::Solid(solid)) => solid.mesh.span(),
+                _ => document.case.space.span(),
+            };
+            return Some(document.error(place, apart.held_by_nothing(&body.name, loose)).help(UNITE));
+        }
+    }
+    None
+}
+
+/// The error of the case behind that of a time, at its place; none where a run may find a way.
+pub fn blamed<const D: usize>(
+    plan: &SolidPlan<D>,
+    model: &mut Model<D>,
+    time: f64,
+    error: &StepError,
+) -> Option<CaseError> {
+    let document = &plan.document;
+    let space = document.case.space.span();
+    match error {
+        StepError::Support(error) => {
+            let name = match error {
+                SupportError::NotFlat { support, .. } => support,
+                SupportError::Contradiction { second, .. } => second,
+            };
+            let place = document.case.supports.get(name).map_or(space, |s| s.span());
+            Some(document.error(place, error.to_string()))
+        }
+        StepError::Deep { contact, depth } => {
+            let place = document.case.contacts.get(contact).map_or(space, |c| c.span());
+            let start = at_time(plan, model, 0.0, |model, now| model.examine(now));
+            match start {
+                Ok(Err(StepError::Deep { depth, .. })) => Some(document
+                    .error(place, format!("the bodies of `{contact}` start {depth:.4e} deep in each other"))
+                    .help("move them apart; or does the normal of a rigid plane point into it, or `side` name the wrong side?")),
+                _ if model.slides() => None,
+                _ => Some(document
+                    .error(
+                        place,
+                        format!("the first increment, to t = {time}, is too large: it brings the bodies of `{contact}` {depth:.4e} deep into each other"),
+                    )
+                    .help("more `increments`, a smaller motion, or  sliding = \"finite\"  in the contact, which cuts increments that are too large")),
+            }
+        }
+        _ => None,
+    }
+}
+
+/// The forces of a load on the unknowns of the bodies.
+pub fn load<const D: usize>(bodies: &Bodies<D>, l: &SolidLoad, value: &dyn Fn(&Placed, &Point<D>) -> f64) -> Vec<f64> {
+    let load = Load { name: l.name.clone(), body: l.body, group: l.group.clone(), kind: l.kind };
+    forces(bodies, &load, &|x| {
+        Point::<D>::from_fn(|k, _| {
+            let k = if l.kind == LoadKind::Pressure { 0 } else { k };
+            l.values.get(k).map_or(0.0, |p| value(p, x))
+        })
+    })
+}
+
+pub fn flat_gap<const D: usize>(gap: impl Fn(&Point<3>) -> GapJet<3> + Sync + Send + 'static) -> RigidGap<D> {
+    Box::new(move |x| {
+        let found = gap(&Point::<3>::from_fn(|k, _| if k < D { x[k] } else { 0.0 }));
+        GapJet {
+            gap: found.gap,
+            normal: Point::<D>::from_fn(|k, _| found.normal[k]),
+            hessian: signorini_geometry::Matrix::<D>::from_fn(|r, c| found.hessian[(r, c)]),
+        }
+    })
+}

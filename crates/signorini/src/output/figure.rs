@@ -2,14 +2,18 @@
 
 /// Digits after the first of a figure of which nobody knows how far it may be off.
 const DIGITS: i32 = 6;
-/// The most digits after the first that a number has.
-const MOST: i32 = 14;
+/// The most digits after the first that are told, however well a figure is known: people read no more, and conditions hold
+/// to hardly more.
+const MOST: i32 = 9;
 /// Numbers below and from these powers of ten on are told by their power.
 const PLAIN: std::ops::Range<i32> = -4..9;
 
+fn power(v: f64) -> i32 {
+    v.abs().log10().floor() as i32
+}
+
 /// A value, the last digit of the order of what it may be off by.
 pub fn figure(value: f64, within: Option<f64>) -> String {
-    let power = |v: f64| v.abs().log10().floor() as i32;
     if value == 0.0 || !value.is_finite() {
         return format!("{value}").replace("-0", "0");
     }
@@ -35,15 +39,28 @@ pub fn figure(value: f64, within: Option<f64>) -> String {
 /// The entries of a vector, all with the last digit of the largest: `(0.000, 26.070)`.
 pub fn figures(values: &[f64], within: Option<f64>) -> String {
     let largest = values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-    let within = within.filter(|w| *w > 0.0).or((largest > 0.0).then(|| largest * 10f64.powi(-DIGITS)));
+    let least = largest * 10f64.powi(-MOST);
+    let within = within.map(|w| w.max(least)).filter(|w| *w > 0.0);
+    let within = within.or((largest > 0.0).then(|| largest * 10f64.powi(-DIGITS)));
     let entries: Vec<String> = values.iter().map(|v| figure(*v, within)).collect();
     format!("({})", entries.join(", "))
 }
 
-/// The same with ± and a unit: `26.07 ± 9e-3 N`.
+/// A value with ± and its unit: `26.070 ± 9e-3 N`.
 pub fn told(value: f64, within: Option<f64>, unit: &str) -> String {
-    let error = within.filter(|w| *w > 0.0).map_or(String::new(), |w| format!(" ± {w:.0e}"));
-    format!("{}{error} {unit}", figure(value, within)).trim_end().to_string()
+    format!("{}{} {unit}", figure(value, within), error(value, within)).trim_end().to_string()
+}
+
+/// A vector with ± and its unit: `(0, 26.070) ± 9e-3 N`.
+pub fn told_vector(values: &[f64], within: Option<f64>, unit: &str) -> String {
+    let largest = values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    format!("{}{} {unit}", figures(values, within), error(largest, within)).trim_end().to_string()
+}
+
+/// The ± of a value, no smaller than its last digit.
+fn error(value: f64, within: Option<f64>) -> String {
+    let least = if value == 0.0 { 0.0 } else { 10f64.powi(power(value) - MOST) };
+    within.filter(|w| *w > 0.0).map_or(String::new(), |w| format!(" ± {:.0e}", w.max(least)))
 }
 
 #[cfg(test)]
@@ -58,7 +75,7 @@ mod tests {
         assert_eq!(figure(-0.5, Some(30.0)), "0");
         assert_eq!(figure(1.25, None), "1.250000");
         assert_eq!(figure(1.25, Some(0.0)), "1.250000");
-        assert_eq!(figure(1.0 / 3.0, Some(1e-11)), "0.33333333333");
+        assert_eq!(figure(1.0 / 3.0, Some(1e-11)), "0.3333333333");
         assert_eq!(figure(1e-9, Some(1e-3)), "0.000");
         assert_eq!(figure(-1e-9, Some(1e-3)), "0.000");
         assert_eq!(figure(0.0, None), "0");
@@ -74,6 +91,8 @@ mod tests {
         assert_eq!(told(26.0704, Some(9e-3), "N"), "26.070 ± 9e-3 N");
         assert_eq!(figures(&[-2e-16, 28.4182, -3e-2], None), "(0.00000, 28.41820, -0.03000)");
         assert_eq!(figures(&[0.0, 26.0704], Some(9e-3)), "(0, 26.070)");
+        assert_eq!(told_vector(&[0.0, -1e-3], Some(4e-17), "N"), "(0, -0.001000000000) ± 1e-12 N");
+        assert_eq!(told(1.10557280900, Some(2e-12), ""), "1.105572809 ± 1e-9");
         assert_eq!(told(1.5, None, ""), "1.500000");
     }
 }

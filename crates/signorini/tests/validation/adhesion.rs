@@ -446,6 +446,7 @@ fn mistakes_are_told() {
 /// A sticky cosine floor from above, loaded, pulled and let go: contact snaps in and pulls off, and the work of the load over
 /// the loop is what the jumps set free.
 #[test]
+#[ignore = "takes 39 processor seconds"]
 fn the_loop_of_the_cosine_floor() {
     let step = |to: usize| format!("[[steps]]\nto = {to}\nincrements = 8\nevents = 1e-2\n");
     let rest = format!(
@@ -491,6 +492,7 @@ fn the_loop_of_the_cosine_floor() {
 /// few solves bring the fronts there, also where the path turns; and nothing is taken for a jump, on cells of degree 1 either,
 /// which leave waves on fronts.
 #[test]
+#[ignore = "takes 17 processor seconds"]
 fn a_sticky_path_takes_few_solves() {
     for (cells, degree) in [(24, 1), (20, 2)] {
         let steps = "[[steps]]\nto = 0.4\n[[steps]]\nto = 1\nincrements = 12\n[[steps]]\nto = 1.5\nincrements = 15\n";

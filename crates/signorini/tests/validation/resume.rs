@@ -162,7 +162,7 @@ fn a_damaged_checkpoint_of_solids_is_told() {
     }
     // A number of rows that no model has is that of other rows: it begins anew.
     let mut state: Value = serde_json::from_str(&text).expect("a checkpoint");
-    state["active"][1] = u64::MAX.into();
+    state["state"]["active"][1] = u64::MAX.into();
     std::fs::write(&checkpoint, state.to_string()).expect("written");
     assert!(resume(&document, &path, &mut Silent).is_ok_and(|o| o.ending == Ending::Converged));
 }

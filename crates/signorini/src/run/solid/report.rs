@@ -2,7 +2,7 @@
 
 use super::setup::load;
 use crate::case::statement::Space as Stated;
-use crate::output::figure::{figures, told};
+use crate::output::figure::{told, told_vector};
 use crate::output::solid_fields::{ContactDisplay, SolidDisplay, SolidFields};
 use crate::plan::Placed;
 use crate::plan::solid::{SolidPlan, evaluate};
@@ -163,12 +163,9 @@ pub fn contact_verdict<const D: usize>(plan: &SolidPlan<D>, name: &str, c: &Cont
     let errors = c.error_estimate;
     let units = plan.unit_names();
     let unit = |of: fn(&UnitNames) -> &String| units.as_ref().map_or("", |u| of(u));
-    let of_force = errors.map(|e| e.force);
-    let within = of_force.filter(|e| *e > 0.0).map_or(String::new(), |e| format!(" ± {e:.0e}"));
     format!(
-        "`{name}` carries {}{within}{} over {} {} in {} zone{}, at most {}",
-        figures(&c.force[..D], of_force),
-        units.as_ref().map_or(String::new(), |u| format!(" {}", u.force)),
+        "`{name}` carries {} over {} {} in {} zone{}, at most {}",
+        told_vector(&c.force[..D], errors.map(|e| e.force), unit(|u| &u.force)),
         if D == 3 || plan.space == Stated::Axisymmetric { "area" } else { "length" },
         told(c.area, errors.map(|e| e.area), unit(|u| &u.area)),
         c.zones,

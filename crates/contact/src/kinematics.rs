@@ -4,8 +4,9 @@
 //! here the shape functions of the partners are inserted, whatever they are: low or high order, or splines. A pair knows
 //! neither pressures nor penalties.
 
+use signorini_geometry::Vector;
 use signorini_geometry::measures::{Measures, PartnerJet, Variation};
-use signorini_geometry::{Point, Vector};
+use signorini_geometry::rigid_shape::GapJet;
 
 /// A function that moves a point of a partner: the first of its unknowns, its value and its slopes along the
 /// coordinates of the partner (those beyond the number of its coordinates are not read).
@@ -95,32 +96,6 @@ impl Kinematics {
             }
         }
         out
-    }
-}
-
-/// The gap of a point to a rigid body, negative inside, its gradient (the outward normal) and its Hessian.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GapJet<const D: usize> {
-    pub gap: f64,
-    pub normal: Point<D>,
-    pub hessian: signorini_geometry::Matrix<D>,
-}
-
-impl<const D: usize> GapJet<D> {
-    /// A flat boundary; or one whose curvature is not needed, as with small sliding.
-    pub fn flat(gap: f64, normal: Point<D>) -> Self {
-        GapJet { gap, normal, hessian: signorini_geometry::Matrix::<D>::zeros() }
-    }
-
-    /// A ball, or in the plane a disc. At its centre the normal is that along the last axis, without curvature.
-    pub fn ball(x: &Point<D>, centre: &Point<D>, radius: f64) -> Self {
-        let d = x - centre;
-        let distance = d.norm();
-        let last = Point::<D>::from_fn(|k, _| f64::from(u8::from(k + 1 == D)));
-        let normal = d.try_normalize(0.0).unwrap_or(last);
-        let across = signorini_geometry::Matrix::<D>::identity() - normal * normal.transpose();
-        let curvature = if distance > 0.0 { 1.0 / distance } else { 0.0 };
-        GapJet { gap: distance - radius, normal, hessian: across * curvature }
     }
 }
 

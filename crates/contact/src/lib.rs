@@ -29,12 +29,13 @@ pub mod zone;
 
 pub use active_set::{ActiveSet, ActiveSetError, Compliance, ContactState, Softness, Spring};
 pub use balance::unbalanced;
-pub use kinematics::{GapJet, Kinematics, Partner, ShapeFunction};
+pub use kinematics::{Kinematics, Partner, ShapeFunction};
 pub use mortar::{Given, Shares, WeightedGap, compress, shares, weighted_gaps, weightless};
 pub use multiplier::PressureNodes;
 pub use obstacle::{Faces, Obstacle, Rigid};
 pub use points::{Measured, TestPoint, TestRow, Tests};
 pub use recovery::{Pressed, recovered, unpressed};
 pub use segments::{GapPoint, rigid_points, segments};
+pub use signorini_geometry::rigid_shape::GapJet;
 pub use surface::{ContactSurface, FacePoint, Moved, looks_at};
 pub use zone::{ContactZone, NodeState, zone};

@@ -4,12 +4,13 @@
 //! face to edge to vertex without gaps, and no point is lost or counted twice. On a face the gap is measured along its
 //! normal (a point and a surface), at an edge or vertex along the line to it (a point and a curve, two points).
 
-use crate::kinematics::{GapJet, Kinematics, Partner, ShapeFunction};
+use crate::kinematics::{Kinematics, Partner, ShapeFunction};
 use crate::surface::ContactSurface;
 use signorini_fem::{CellShape, Local};
 use signorini_geometry::body::Body;
 use signorini_geometry::closest::{FeatureKind, Query};
 use signorini_geometry::measures::PartnerJet;
+use signorini_geometry::rigid_shape::GapJet;
 use signorini_geometry::shape::{Curve, CurveJet, Shape, ShapeError, Surface, SurfaceJet};
 use signorini_geometry::{Point, Vector};
 use std::collections::HashMap;

@@ -7,7 +7,6 @@
 mod plane;
 mod space;
 
-use crate::kinematics::GapJet;
 use crate::multiplier::PressureNodes;
 use crate::surface::ContactSurface;
 use plane::intervals;
@@ -15,6 +14,7 @@ use signorini_fem::hierarchic::Values;
 use signorini_fem::rules::rule;
 use signorini_fem::{CellShape, Local};
 use signorini_geometry::bvh::Bvh;
+use signorini_geometry::rigid_shape::GapJet;
 use signorini_geometry::{Aabb, Matrix, Point, Vector};
 use space::polygons;
 

@@ -16,6 +16,7 @@
 //! - [`mesh`]: triangle meshes; [`bvh`]: the search tree under them.
 //! - [`implicit_surface`]: bodies given by functions, with the exact closest point of their boundary.
 //! - [`rigid`]: rigid motion of shapes.
+//! - [`rigid_shape`]: gap, normal and curvature of rigid bodies, one file a shape.
 //! - [`grid_spline`]: functions given by values on a grid.
 //! - [`outline`]: closed outlines of a function sampled on a grid.
 //! - [`polygon`]: winding numbers, areas and crossings of polygons.
@@ -37,6 +38,7 @@ pub mod outline;
 pub(crate) mod patch;
 pub mod polygon;
 pub mod rigid;
+pub mod rigid_shape;
 pub mod rule;
 mod scale;
 pub mod shape;

@@ -4,140 +4,28 @@ use super::{Placed, Planner};
 use crate::case::statement::{Motion, Rigid, Shape, Side, Space};
 use crate::case::units::{LENGTH, NONE};
 use crate::case::{CaseError, Document, Values};
-use crate::expression::{Expression, Scope};
+use crate::expression::Scope;
 use crate::queries::geometry;
-use signorini_contact::GapJet;
-use signorini_geometry::closest::{Query, closest, gap_hessian, signed_gap};
-use signorini_geometry::frame::SurfaceFrame;
 use signorini_geometry::implicit_surface::{ImplicitBody, ImplicitSurface};
 use signorini_geometry::rigid::RigidMotion;
-use signorini_geometry::shape::{Axes, Shape as Geometry, ShapeError, Surface};
+use signorini_geometry::rigid_shape::{
+    ClosestPoints, Cone, Cylinder, Ellipsoid, GapJet, Normals, Paraboloid, Plane, RigidShape, Sphere, Torus,
+};
+use signorini_geometry::shape::{Shape as Geometry, ShapeError};
 use signorini_geometry::{Aabb, Jet, Point, Real, Vector};
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 /// A rigid body and how it moves.
 #[derive(Clone)]
 pub struct RigidBody {
     pub name: String,
-    form: Arc<Form>,
+    shape: Arc<dyn RigidShape>,
     inside: bool,
     /// Displacement along x, y, z as expressions of time; empty for a body at rest.
     pub displacement: Vec<Placed>,
-    /// Rotation vector in radians, about the centre.
+    /// Rotation vector in radians, about the centre of the shape.
     pub rotation: Vec<Placed>,
-    centre: Point<3>,
-}
-
-/// Shapes with closed forms, unbounded where they are; everything else through certified closest points.
-enum Form {
-    Plane {
-        point: Point<3>,
-        normal: Vector<3>,
-    },
-    Sphere {
-        center: Point<3>,
-        radius: f64,
-    },
-    Cylinder {
-        point: Point<3>,
-        axis: Vector<3>,
-        radius: f64,
-    },
-    Cone {
-        apex: Point<3>,
-        axis: Vector<3>,
-        sin: f64,
-        cos: f64,
-    },
-    Torus {
-        center: Point<3>,
-        axis: Vector<3>,
-        major: f64,
-        minor: f64,
-    },
-    Implicit(Box<ImplicitSurface>),
-    /// Whether normals of the shape point out of the body.
-    General {
-        shape: Geometry,
-        outward: bool,
-    },
-}
-
-impl Form {
-    /// Distance, negative inside, with its derivatives.
-    fn gap(&self, x: &Point<3>) -> GapJet<3> {
-        let unit = |v: Vector<3>, else_: Vector<3>| v.try_normalize(0.0).unwrap_or(else_);
-        match self {
-            Form::Plane { point, normal } => GapJet::flat(normal.dot(&(x - point)), *normal),
-            Form::Sphere { center, radius } => GapJet::ball(x, center, *radius),
-            Form::Cylinder { point, axis, radius } => {
-                let d = x - point;
-                let across = d - axis * axis.dot(&d);
-                let normal = unit(across, any_normal(axis));
-                let around = axis.cross(&normal);
-                let hessian = around * around.transpose() * inverse(across.norm());
-                GapJet { gap: across.norm() - radius, normal, hessian }
-            }
-            Form::Cone { apex, axis, sin, cos } => {
-                let d = x - apex;
-                let along = axis.dot(&d);
-                let across = d - axis * along;
-                let e = unit(across, any_normal(axis));
-                let r = across.norm();
-                // Beyond the apex the apex itself is closest.
-                if along * cos + r * sin < 0.0 {
-                    return GapJet::ball(x, apex, 0.0);
-                }
-                let around = axis.cross(&e);
-                let hessian = around * around.transpose() * (cos * inverse(r));
-                GapJet { gap: r * cos - along * sin, normal: e * *cos - axis * *sin, hessian }
-            }
-            Form::Torus { center, axis, major, minor } => {
-                let d = x - center;
-                let across = d - axis * axis.dot(&d);
-                let e = unit(across, any_normal(axis));
-                let from_ring = d - e * *major;
-                let normal = unit(from_ring, *axis);
-                let around = axis.cross(&e);
-                let tube = around.cross(&normal);
-                let hessian = tube * tube.transpose() * inverse(from_ring.norm())
-                    + around * around.transpose() * (normal.dot(&e) * inverse(across.norm()));
-                GapJet { gap: from_ring.norm() - minor, normal, hessian }
-            }
-            Form::Implicit(surface) => {
-                let foot = surface.closest(x);
-                GapJet { gap: foot.gap, normal: foot.normal, hessian: foot.hessian }
-            }
-            Form::General { shape, outward } => {
-                let found = closest(&Geometry::Point(*x), shape, &Query::default()).closest;
-                let d = found.a.point - found.b.point;
-                let sign = if *outward { 1.0 } else { -1.0 };
-                let gap = sign * signed_gap(&found, shape).unwrap_or(found.distance);
-                let frame = || match (shape, found.b.parameters()) {
-                    (Geometry::Surface(s), &[u, v]) => SurfaceFrame::new(&s.jet(u, v)).map(|f| f.normal * sign),
-                    (Geometry::Mesh(m), _) => Some(m.normal_at(found.b.element, found.b.feature)),
-                    _ => None,
-                };
-                let scale = 1e-9 * shape.size();
-                let along = (gap.abs() > scale).then(|| d * (1.0 / gap));
-                let normal = along.or_else(frame).unwrap_or_else(|| unit(d, Vector::<3>::z()));
-                GapJet { gap, normal, hessian: gap_hessian(&found, shape, &normal) }
-            }
-        }
-    }
-}
-
-/// Curvatures are left out where they are infinite.
-fn inverse(radius: f64) -> f64 {
-    if radius > 0.0 { 1.0 / radius } else { 0.0 }
-}
-
-/// Some unit vector across another.
-fn any_normal(axis: &Vector<3>) -> Vector<3> {
-    let mut across = Vector::<3>::zeros();
-    across[axis.iamin()] = 1.0;
-    (across - axis * axis.dot(&across)).normalize()
 }
 
 impl RigidBody {
@@ -165,11 +53,11 @@ impl RigidBody {
         time: f64,
     ) -> Result<impl Fn(&Point<3>) -> GapJet<3> + Sync + Send + 'static, CaseError> {
         let [moved, turned] = self.motion_at(document, time)?;
-        let back = RigidMotion::new(-turned, self.centre, Vector::<3>::zeros());
-        let forth = RigidMotion::new(turned, self.centre, Vector::<3>::zeros());
-        let (form, inside) = (Arc::clone(&self.form), self.inside);
+        let back = RigidMotion::new(-turned, self.shape.centre(), Vector::<3>::zeros());
+        let forth = RigidMotion::new(turned, self.shape.centre(), Vector::<3>::zeros());
+        let (shape, inside) = (Arc::clone(&self.shape), self.inside);
         Ok(move |x: &Point<3>| {
-            let found = form.gap(&back.point(&(x - moved)));
+            let found = shape.gap(&back.point(&(x - moved)));
             let turn = forth.rotation;
             let sign = if inside { -1.0 } else { 1.0 };
             GapJet {
@@ -225,14 +113,13 @@ pub(super) fn read<const D: usize>(
     if let Some(lies) = &rigid.lies {
         return Err(document.error(lies.span(), "`lies` is for bodies beside a membrane"));
     }
-    let whole = [[0.0, TAU], [-FRAC_PI_2, FRAC_PI_2]];
     let wrong = |error: ShapeError| document.error(rigid.shape.span(), error.to_string());
-    let form = match rigid.shape.get_ref() {
-        Shape::Plane(key) => Form::Plane { point: spatial(&key.point, LENGTH)?, normal: direction(&key.normal)? },
-        Shape::Sphere(key) => Form::Sphere {
+    let shape: Arc<dyn RigidShape> = match rigid.shape.get_ref() {
+        Shape::Plane(key) => Arc::new(Plane { point: spatial(&key.point, LENGTH)?, normal: direction(&key.normal)? }),
+        Shape::Sphere(key) => Arc::new(Sphere {
             center: spatial(&key.center, LENGTH)?,
             radius: planner.reader.positive(&key.radius, LENGTH)?,
-        },
+        }),
         Shape::Cylinder(key) => {
             let axis = match (&key.axis, D) {
                 (Some(axis), 3) => direction(axis)?,
@@ -246,22 +133,21 @@ pub(super) fn read<const D: usize>(
                     return Err(document.error(rigid.shape.span(), "missing key `axis`").help("axis = [0, 1, 0]"));
                 }
             };
-            Form::Cylinder {
+            Arc::new(Cylinder {
                 point: spatial(&key.point, LENGTH)?,
                 axis,
                 radius: planner.reader.positive(&key.radius, LENGTH)?,
-            }
+            })
         }
         Shape::Cone(key) => {
             round("cone", &key.apex, &key.axis)?;
-            let angle = planner.reader.positive(&key.half_angle, NONE)?;
-            if angle >= FRAC_PI_2 {
+            let half_angle = planner.reader.positive(&key.half_angle, NONE)?;
+            if half_angle >= FRAC_PI_2 {
                 return Err(document
-                    .error(key.half_angle.span(), format!("the half angle is {angle}"))
+                    .error(key.half_angle.span(), format!("the half angle is {half_angle}"))
                     .help("an angle in radians below pi/2"));
             }
-            let (sin, cos) = angle.sin_cos();
-            Form::Cone { apex: spatial(&key.apex, LENGTH)?, axis: direction(&key.axis)?, sin, cos }
+            Arc::new(Cone { apex: spatial(&key.apex, LENGTH)?, axis: direction(&key.axis)?, half_angle })
         }
         Shape::Torus(key) => {
             round("torus", &key.center, &key.axis)?;
@@ -273,7 +159,7 @@ pub(super) fn read<const D: usize>(
                     format!("the minor radius {minor} is not smaller than the major radius {major}"),
                 ));
             }
-            Form::Torus { center: spatial(&key.center, LENGTH)?, axis: direction(&key.axis)?, major, minor }
+            Arc::new(Torus { center: spatial(&key.center, LENGTH)?, axis: direction(&key.axis)?, major, minor })
         }
         Shape::Ellipsoid(key) => {
             let mut semi_axes = [0.0; 3];
@@ -284,24 +170,17 @@ pub(super) fn read<const D: usize>(
                 // Long across the plane, so that closest points stay in it.
                 semi_axes[2] = 10.0 * semi_axes[0].max(semi_axes[1]);
             }
-            let axes = Axes::standard(spatial(&key.center, LENGTH)?);
-            let shape = Surface::ellipsoid(axes, semi_axes, whole, true).map_err(wrong)?;
-            Form::General { shape: shape.into(), outward: true }
+            Arc::new(Ellipsoid::new(spatial(&key.center, LENGTH)?, semi_axes).map_err(wrong)?)
         }
         Shape::Paraboloid(key) => {
             round("paraboloid", &key.apex, &key.axis)?;
             let radius = planner.reader.positive(&key.radius, LENGTH)?;
-            let ez = direction(&key.axis)?;
-            let ex = any_normal(&ez);
-            let axes = Axes { origin: spatial(&key.apex, LENGTH)?, ex, ey: ez.cross(&ex), ez };
-            let range = [[-4.0 * radius, 4.0 * radius]; 2];
-            let shape = Surface::graph(axes, [0.5 / radius, 0.5 / radius, 0.0], range).map_err(wrong)?;
-            // The axis points into the body, so does the normal of the graph.
-            Form::General { shape: shape.into(), outward: false }
+            let (apex, axis) = (spatial(&key.apex, LENGTH)?, direction(&key.axis)?);
+            Arc::new(Paraboloid::new(apex, axis, radius).map_err(wrong)?)
         }
         Shape::Stl(key) => {
             only_in_space(rigid.shape.span(), "triangulated surface")?;
-            Form::General { shape: planner.closed_mesh(key)?.into(), outward: true }
+            Arc::new(ClosestPoints { shape: planner.closed_mesh(key)?.into(), normals: Normals::Outward })
         }
         Shape::Nurbs(key) => {
             only_in_space(rigid.shape.span(), "NURBS surface")?;
@@ -313,7 +192,7 @@ pub(super) fn read<const D: usize>(
             if !matches!(shape, Geometry::Surface(_)) {
                 return Err(document.error(key.file.span(), format!("`{}` is not a surface", path.display())));
             }
-            Form::General { shape, outward: true }
+            Arc::new(ClosestPoints { shape, normals: Normals::Outward })
         }
         Shape::LevelSet(key) => {
             let (low, high) = (spatial(&key.min, LENGTH)?, spatial(&key.max, LENGTH)?);
@@ -324,7 +203,12 @@ pub(super) fn read<const D: usize>(
             };
             let variables: &[&'static str] = if D == 2 { &["x", "y"] } else { &["x", "y", "z"] };
             let expression = planner.reader.expression(&key.negative_inside, LENGTH, variables)?;
-            implicit(expression, flat_box::<D>(low, high), cells).map_err(wrong)?
+            let field = move |x: &Point<3>| {
+                let position = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));
+                expression.evaluate(&Scope { position, time: Jet::<3>::constant(0.0) })
+            };
+            let bounds = flat_box::<D>(low, high);
+            Arc::new(ImplicitSurface::new(ImplicitBody::field(field), bounds, cells).map_err(wrong)?)
         }
         Shape::Height(value) => {
             // The body below the height: z - h(x, y), or y - h(x) in the plane.
@@ -338,7 +222,7 @@ pub(super) fn read<const D: usize>(
             let surface = ImplicitSurface::new(ImplicitBody::field(field), *around, 64).map_err(|e| {
                 wrong(e).help("the height must cross the box around the solids, twice as long as they are")
             })?;
-            Form::Implicit(Box::new(surface))
+            Arc::new(surface)
         }
         Shape::HeightMap(key) => {
             only_in_space(rigid.shape.span(), "height map")?;
@@ -360,18 +244,8 @@ pub(super) fn read<const D: usize>(
             let surface = ImplicitSurface::new(ImplicitBody::field(field), bounds, 96).map_err(|e| {
                 wrong(e).help("the heights must lie within the box around the solids, twice as long as they are")
             })?;
-            Form::Implicit(Box::new(surface))
+            Arc::new(surface)
         }
-    };
-    let centre = match &form {
-        Form::Plane { point, .. } | Form::Cylinder { point, .. } => *point,
-        Form::Sphere { center, .. } | Form::Torus { center, .. } => *center,
-        Form::Cone { apex, .. } => *apex,
-        Form::Implicit(_) | Form::General { .. } => match rigid.shape.get_ref() {
-            Shape::Ellipsoid(key) => spatial(&key.center, LENGTH)?,
-            Shape::Paraboloid(key) => spatial(&key.apex, LENGTH)?,
-            _ => Point::<3>::zeros(),
-        },
     };
     let inside = rigid.side.as_ref().is_some_and(|s| *s.get_ref() == Side::Inside);
     let (mut displacement, mut rotation) = (Vec::new(), Vec::new());
@@ -410,16 +284,7 @@ pub(super) fn read<const D: usize>(
             }
         }
     }
-    Ok(RigidBody { name: name.to_string(), form: Arc::new(form), inside, displacement, rotation, centre })
-}
-
-/// A body where an expression is negative.
-fn implicit(expression: Expression, bounds: Aabb<3>, cells: usize) -> Result<Form, ShapeError> {
-    let field = move |x: &Point<3>| {
-        let position = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));
-        expression.evaluate(&Scope { position, time: Jet::<3>::constant(0.0) })
-    };
-    Ok(Form::Implicit(Box::new(ImplicitSurface::new(ImplicitBody::field(field), bounds, cells)?)))
+    Ok(RigidBody { name: name.to_string(), shape, inside, displacement, rotation })
 }
 
 /// In the plane bodies reach across it on both sides, so that closest points stay in it.
@@ -435,88 +300,22 @@ pub(super) fn flat_box<const D: usize>(low: Vector<3>, high: Vector<3>) -> Aabb<
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::expression::Expression;
 
     #[test]
     fn a_turned_body_turns_its_gap_and_normal() {
         let number = |v: f64| Placed { expression: Expression::number(v), span: 0..0, key: String::new() };
-        let form = Form::Plane { point: Point::<3>::new(1.0, 0.0, 0.0), normal: Vector::<3>::y() };
+        let plane = Plane { point: Point::<3>::new(1.0, 0.0, 0.0), normal: Vector::<3>::y() };
         let body = RigidBody {
             name: "plane".into(),
-            form: Arc::new(form),
+            shape: Arc::new(plane),
             inside: false,
             displacement: vec![number(0.0), number(0.5)],
             rotation: vec![number(FRAC_PI_2)],
-            centre: Point::<3>::new(1.0, 0.0, 0.0),
         };
         // A quarter turn lets the plane look along -x, through (1, 0.5, 0).
         let document = Document::parse("case", "space = \"3d\"\n[bodies]\n", &[]).unwrap();
         let GapJet { gap, normal, .. } = body.gap_at(&document, 0.0).unwrap()(&Point::<3>::new(0.25, 7.0, 0.0));
         assert!((gap - 0.75).abs() < 1e-14 && (normal + Vector::<3>::x()).norm() < 1e-14, "{gap} {normal:?}");
-    }
-
-    fn tetrahedron() -> signorini_geometry::mesh::TriangleMesh {
-        let corners = [[0.0, 0.0, 0.0], [0.4, 0.0, 0.1], [0.0, 0.3, 0.0], [0.1, 0.1, 0.5]].map(Point::<3>::from);
-        let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
-        signorini_geometry::mesh::TriangleMesh::new(corners.to_vec(), &faces).unwrap()
-    }
-
-    #[test]
-    fn normals_and_curvatures_are_derivatives_of_the_gap() {
-        let unit = |x: f64, y: f64, z: f64| Vector::<3>::new(x, y, z).normalize();
-        let axes = Axes::standard(Point::<3>::new(0.1, 0.2, -0.1));
-        let paraboloid = Surface::graph(axes, [0.5, 0.5, 0.0], [[-4.0, 4.0]; 2]).unwrap();
-        let forms = [
-            Form::Plane { point: Point::<3>::new(0.0, 0.0, 0.1), normal: unit(0.1, 0.2, 1.0) },
-            Form::Sphere { center: Point::<3>::new(0.1, 0.0, 0.3), radius: 0.4 },
-            Form::Cylinder { point: Point::<3>::zeros(), axis: unit(0.0, 1.0, 0.3), radius: 0.3 },
-            Form::Cone {
-                apex: Point::<3>::new(0.0, 0.0, -1.0),
-                axis: unit(0.1, 0.0, 1.0),
-                sin: 0.5,
-                cos: 0.75f64.sqrt(),
-            },
-            Form::Torus { center: Point::<3>::zeros(), axis: unit(0.0, 0.2, 1.0), major: 0.8, minor: 0.2 },
-            Form::General {
-                shape: Surface::ellipsoid(axes, [0.6, 0.4, 0.3], [[0.0, TAU], [-FRAC_PI_2, FRAC_PI_2]], true)
-                    .unwrap()
-                    .into(),
-                outward: true,
-            },
-            Form::General { shape: paraboloid.into(), outward: false },
-            Form::General { shape: tetrahedron().into(), outward: true },
-            implicit(
-                crate::expression::parse(
-                    "x^2 + 2*y^2 + 3*z^2 - 0.2",
-                    &crate::expression::Names { variables: vec!["x", "y", "z"], ..Default::default() },
-                )
-                .unwrap(),
-                Aabb::new(Point::<3>::repeat(-1.0), Point::<3>::repeat(1.0)),
-                40,
-            )
-            .unwrap(),
-        ];
-        for (k, form) in forms.iter().enumerate() {
-            for x in [
-                Point::<3>::new(0.5, 0.4, 0.6),
-                Point::<3>::new(0.45, -0.3, 0.2),
-                Point::<3>::new(-0.3, 0.2, 0.05),
-                Point::<3>::new(0.0, -0.4, 0.3),
-                Point::<3>::new(0.2, 0.4, -0.1),
-            ] {
-                let GapJet { normal, hessian, .. } = form.gap(&x);
-                assert!((normal.norm() - 1.0).abs() < 1e-9, "form {k}");
-                for i in 0..3 {
-                    let h = 1e-6;
-                    let mut step = Vector::<3>::zeros();
-                    step[i] = h;
-                    let [after, before] = [form.gap(&(x + step)), form.gap(&(x - step))];
-                    let slope = (after.gap - before.gap) / (2.0 * h);
-                    assert!((slope - normal[i]).abs() < 1e-7, "form {k} at {x:?}: {slope} and {}", normal[i]);
-                    let turn = (after.normal - before.normal) / (2.0 * h);
-                    let error = (turn - hessian.column(i)).norm();
-                    assert!(error < 1e-6 * (1.0 + hessian.norm()), "form {k} at {x:?}: {turn:?} and {hessian:?}");
-                }
-            }
-        }
     }
 }

@@ -1,0 +1,56 @@
+//! A round cone without end.
+
+use super::{GapJet, RigidShape, any_normal, curvature, unit};
+use crate::{Point, Vector};
+
+/// A round cone without end.
+#[derive(Clone, Copy, Debug)]
+pub struct Cone {
+    pub apex: Point<3>,
+    /// Unit vector along the axis, from the apex into the body.
+    pub axis: Vector<3>,
+    /// Angle between the axis and the surface, between 0 and π/2.
+    pub half_angle: f64,
+}
+
+impl RigidShape for Cone {
+    fn gap(&self, x: &Point<3>) -> GapJet<3> {
+        let (sin, cos) = self.half_angle.sin_cos();
+        let axis = &self.axis;
+        let d = x - self.apex;
+        let along = axis.dot(&d);
+        let across = d - axis * along;
+        let e = unit(across, any_normal(axis));
+        let r = across.norm();
+        // Beyond the apex the apex itself is closest.
+        if along * cos + r * sin < 0.0 {
+            return GapJet::ball(x, &self.apex, 0.0);
+        }
+        let around = axis.cross(&e);
+        let hessian = around * around.transpose() * (cos * curvature(r));
+        GapJet { gap: r * cos - along * sin, normal: e * cos - axis * sin, hessian }
+    }
+
+    fn centre(&self) -> Point<3> {
+        self.apex
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing;
+    use super::*;
+
+    #[test]
+    fn the_gap_of_a_cone() {
+        let axis = Vector::<3>::new(0.1, 0.0, 1.0).normalize();
+        let cone = Cone { apex: Point::<3>::new(0.0, 0.0, -1.0), axis, half_angle: 0.5 };
+        let on_it = cone.apex + axis * 0.5f64.cos() + Vector::<3>::y() * 0.5f64.sin();
+        testing::check(&cone, &[cone.apex, on_it]);
+        testing::check_moved(&cone, |m| Cone { apex: m.point(&cone.apex), axis: m.vector(&axis), ..cone });
+        // Beyond the apex the distance is that of the apex.
+        let beyond = cone.apex - axis * 0.3 + Vector::<3>::y() * 0.1;
+        assert!((cone.gap(&beyond).gap - 0.1f64.sqrt()).abs() < 1e-15);
+        testing::check_derivatives(&cone, &beyond);
+    }
+}

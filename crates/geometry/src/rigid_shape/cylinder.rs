@@ -1,0 +1,49 @@
+//! A round cylinder without ends.
+
+use super::{GapJet, RigidShape, any_normal, curvature, unit};
+use crate::{Point, Vector};
+
+/// A round cylinder without ends.
+#[derive(Clone, Copy, Debug)]
+pub struct Cylinder {
+    /// A point of the axis.
+    pub point: Point<3>,
+    /// Unit vector along the axis.
+    pub axis: Vector<3>,
+    pub radius: f64,
+}
+
+impl RigidShape for Cylinder {
+    fn gap(&self, x: &Point<3>) -> GapJet<3> {
+        let axis = &self.axis;
+        let d = x - self.point;
+        let across = d - axis * axis.dot(&d);
+        let normal = unit(across, any_normal(axis));
+        let around = axis.cross(&normal);
+        let hessian = around * around.transpose() * curvature(across.norm());
+        GapJet { gap: across.norm() - self.radius, normal, hessian }
+    }
+
+    fn centre(&self) -> Point<3> {
+        self.point
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing;
+    use super::*;
+
+    #[test]
+    fn the_gap_of_a_cylinder() {
+        let axis = Vector::<3>::new(0.0, 1.0, 0.3).normalize();
+        let cylinder = Cylinder { point: Point::<3>::new(0.1, 0.0, -0.1), axis, radius: 0.3 };
+        let on_it = cylinder.point + Vector::<3>::x() * 0.3;
+        testing::check(&cylinder, &[on_it, on_it + axis * 7.0]);
+        testing::check_moved(&cylinder, |m| Cylinder {
+            point: m.point(&cylinder.point),
+            axis: m.vector(&axis),
+            ..cylinder
+        });
+    }
+}

@@ -1,0 +1,56 @@
+//! An ellipsoid along the axes.
+
+use super::{ClosestPoints, GapJet, Normals, RigidShape};
+use crate::Point;
+use crate::shape::{Axes, ShapeError, Surface};
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// An ellipsoid along the axes.
+#[derive(Clone, Debug)]
+pub struct Ellipsoid {
+    center: Point<3>,
+    surface: ClosestPoints,
+}
+
+impl Ellipsoid {
+    /// # Errors
+    /// A semi-axis that is not positive.
+    pub fn new(center: Point<3>, semi_axes: [f64; 3]) -> Result<Self, ShapeError> {
+        let whole = [[0.0, TAU], [-FRAC_PI_2, FRAC_PI_2]];
+        let surface = Surface::ellipsoid(Axes::standard(center), semi_axes, whole, true)?;
+        Ok(Ellipsoid { center, surface: ClosestPoints { shape: surface.into(), normals: Normals::Outward } })
+    }
+}
+
+impl RigidShape for Ellipsoid {
+    fn gap(&self, x: &Point<3>) -> GapJet<3> {
+        self.surface.gap(x)
+    }
+
+    fn centre(&self) -> Point<3> {
+        self.center
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing;
+    use super::*;
+    use crate::Vector;
+
+    #[test]
+    fn the_gap_of_an_ellipsoid() {
+        let center = Point::<3>::new(0.1, 0.2, -0.1);
+        let ellipsoid = Ellipsoid::new(center, [0.6, 0.4, 0.3]).unwrap();
+        let ways = [[1.0, 0.0, 0.0], [0.48, -0.6, 0.64], [0.0, 0.0, -1.0]].map(Vector::<3>::from);
+        let on_it = ways.map(|w| center + w.component_mul(&Vector::<3>::new(0.6, 0.4, 0.3)));
+        testing::check(&ellipsoid, &on_it);
+        // Along its axes it may only be shifted, not turned.
+        let shift = Vector::<3>::new(1.0, -2.0, 0.5);
+        let moved = Ellipsoid::new(center + shift, [0.6, 0.4, 0.3]).unwrap();
+        for x in testing::PLACES.map(Point::<3>::from) {
+            assert!((moved.gap(&(x + shift)).gap - ellipsoid.gap(&x).gap).abs() < 1e-14);
+        }
+        assert!(Ellipsoid::new(center, [0.6, 0.0, 0.3]).is_err());
+    }
+}

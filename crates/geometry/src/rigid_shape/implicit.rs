@@ -1,0 +1,38 @@
+//! Bodies given by functions, through the exact closest point of their boundary.
+
+use super::{GapJet, RigidShape};
+use crate::Point;
+use crate::implicit_surface::ImplicitSurface;
+
+impl RigidShape for ImplicitSurface {
+    fn gap(&self, x: &Point<3>) -> GapJet<3> {
+        let foot = self.closest(x);
+        GapJet { gap: foot.gap, normal: foot.normal, hessian: foot.hessian }
+    }
+
+    /// The origin: a function says no other.
+    fn centre(&self) -> Point<3> {
+        Point::<3>::zeros()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing;
+    use super::*;
+    use crate::implicit_surface::ImplicitBody;
+    use crate::jet::{Jet, Real};
+    use crate::{Aabb, Vector};
+
+    #[test]
+    fn the_gap_of_a_body_given_by_a_function() {
+        let field = |x: &Point<3>| {
+            let [x, y, z] = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));
+            let c = Jet::<3>::constant;
+            x * x + c(2.0) * y * y + c(3.0) * z * z - c(0.2)
+        };
+        let bounds = Aabb::new(Point::<3>::repeat(-1.0), Point::<3>::repeat(1.0));
+        let surface = ImplicitSurface::new(ImplicitBody::field(field), bounds, 40).unwrap();
+        testing::check(&surface, &[Vector::<3>::x() * 0.2f64.sqrt(), Vector::<3>::y() * 0.1f64.sqrt()]);
+    }
+}

@@ -1,0 +1,67 @@
+//! Rigid shapes: the gap of a point to them with its gradient and Hessian, one file a shape.
+//!
+//! With `g` the gap, `n = ∇g` the outward normal and `H = ∇∇g`:
+//!
+//! | shape | `g` | `H` |
+//! |---|---|---|
+//! | [`Plane`] | `n·(x - p)` | `0` |
+//! | [`Sphere`] | `\|x - c\| - R` | `(I - nn) / \|x - c\|` |
+//! | [`Cylinder`] about `k` | `ρ - R` | `tt / ρ`, `t = k × n` |
+//! | [`Cone`] of half angle `γ` about `k` | `ρ cos γ - z sin γ` | `tt cos γ / ρ`, `t = k × e_ρ` |
+//! | [`Torus`] about `k` | `d - r`, `d = \|x - R e_ρ\|` | `mm / d + tt (n·e_ρ) / ρ`, `m = t × n` |
+//! | [`Ellipsoid`], [`Paraboloid`], [`ClosestPoints`] | certified closest point | of the surface at that point |
+//! | [`ImplicitSurface`](crate::implicit_surface::ImplicitSurface) | Newton on the foot | `S (I + g S)⁻¹` |
+//!
+//! Where a shape has no tangent plane (on an axis, at an apex) the normal is one of those that it has beside that place,
+//! and infinite curvatures are left out.
+
+mod closest_points;
+mod cone;
+mod cylinder;
+mod ellipsoid;
+mod gap;
+mod implicit;
+mod paraboloid;
+mod plane;
+mod sphere;
+#[cfg(test)]
+mod testing;
+mod torus;
+
+pub use closest_points::{ClosestPoints, Normals};
+pub use cone::Cone;
+pub use cylinder::Cylinder;
+pub use ellipsoid::Ellipsoid;
+pub use gap::GapJet;
+pub use paraboloid::Paraboloid;
+pub use plane::Plane;
+pub use sphere::Sphere;
+pub use torus::Torus;
+
+use crate::{Point, Vector};
+
+/// A body that does not deform.
+pub trait RigidShape: Send + Sync {
+    /// The gap of a point, negative inside, with its derivatives.
+    fn gap(&self, x: &Point<3>) -> GapJet<3>;
+
+    /// The point about which the body turns.
+    fn centre(&self) -> Point<3>;
+}
+
+/// The inverse of a radius of curvature; zero where the curvature is infinite.
+fn curvature(radius: f64) -> f64 {
+    if radius > 0.0 { 1.0 / radius } else { 0.0 }
+}
+
+/// The unit vector along another one, or `otherwise` where that has no length.
+fn unit(v: Vector<3>, otherwise: Vector<3>) -> Vector<3> {
+    v.try_normalize(0.0).unwrap_or(otherwise)
+}
+
+/// Some unit vector across a unit vector.
+fn any_normal(axis: &Vector<3>) -> Vector<3> {
+    let mut across = Vector::<3>::zeros();
+    across[axis.iamin()] = 1.0;
+    (across - axis * axis.dot(&across)).normalize()
+}

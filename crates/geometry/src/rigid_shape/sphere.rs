@@ -1,0 +1,38 @@
+//! A ball.
+
+use super::{GapJet, RigidShape};
+use crate::Point;
+
+/// A ball.
+#[derive(Clone, Copy, Debug)]
+pub struct Sphere {
+    pub center: Point<3>,
+    pub radius: f64,
+}
+
+impl RigidShape for Sphere {
+    fn gap(&self, x: &Point<3>) -> GapJet<3> {
+        GapJet::ball(x, &self.center, self.radius)
+    }
+
+    fn centre(&self) -> Point<3> {
+        self.center
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing;
+    use super::*;
+    use crate::Vector;
+
+    #[test]
+    fn the_gap_of_a_sphere() {
+        let sphere = Sphere { center: Point::<3>::new(0.1, 0.0, 0.3), radius: 0.4 };
+        let way = Vector::<3>::new(0.48, -0.6, 0.64);
+        testing::check(&sphere, &[sphere.center + Vector::<3>::y() * 0.4, sphere.center + way * 0.4]);
+        testing::check_moved(&sphere, |m| Sphere { center: m.point(&sphere.center), ..sphere });
+        let inside = sphere.gap(&sphere.center);
+        assert_eq!((inside.gap, inside.normal.norm()), (-0.4, 1.0));
+    }
+}

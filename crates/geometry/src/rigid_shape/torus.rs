@@ -1,0 +1,51 @@
+//! A ring.
+
+use super::{GapJet, RigidShape, any_normal, curvature, unit};
+use crate::{Point, Vector};
+
+/// A ring: everything closer than `minor` to a circle of radius `major`.
+#[derive(Clone, Copy, Debug)]
+pub struct Torus {
+    pub center: Point<3>,
+    /// Unit vector along the axis.
+    pub axis: Vector<3>,
+    /// Radius of the circle in the middle of the tube.
+    pub major: f64,
+    /// Radius of the tube, less than `major`.
+    pub minor: f64,
+}
+
+impl RigidShape for Torus {
+    fn gap(&self, x: &Point<3>) -> GapJet<3> {
+        let axis = &self.axis;
+        let d = x - self.center;
+        let across = d - axis * axis.dot(&d);
+        let e = unit(across, any_normal(axis));
+        let from_ring = d - e * self.major;
+        let normal = unit(from_ring, *axis);
+        let around = axis.cross(&e);
+        let tube = around.cross(&normal);
+        let hessian = tube * tube.transpose() * curvature(from_ring.norm())
+            + around * around.transpose() * (normal.dot(&e) * curvature(across.norm()));
+        GapJet { gap: from_ring.norm() - self.minor, normal, hessian }
+    }
+
+    fn centre(&self) -> Point<3> {
+        self.center
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing;
+    use super::*;
+
+    #[test]
+    fn the_gap_of_a_torus() {
+        let axis = Vector::<3>::new(0.0, 0.2, 1.0).normalize();
+        let torus = Torus { center: Point::<3>::new(0.0, 0.1, 0.0), axis, major: 0.8, minor: 0.2 };
+        let ring = torus.center + Vector::<3>::x() * 0.8;
+        testing::check(&torus, &[ring + axis * 0.2, ring + Vector::<3>::x() * 0.2, ring - Vector::<3>::x() * 0.2]);
+        testing::check_moved(&torus, |m| Torus { center: m.point(&torus.center), axis: m.vector(&axis), ..torus });
+    }
+}

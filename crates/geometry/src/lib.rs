@@ -17,6 +17,7 @@
 //! - [`implicit_surface`]: bodies given by functions, with the exact closest point of their boundary.
 //! - [`rigid`]: rigid motion of shapes.
 //! - [`rigid_shape`]: gap, normal and curvature of rigid bodies, one file a shape.
+//! - [`height_field`]: heights over a plane, as bodies are seen from above or below.
 //! - [`grid_spline`]: functions given by values on a grid.
 //! - [`outline`]: closed outlines of a function sampled on a grid.
 //! - [`polygon`]: winding numbers, areas and crossings of polygons.
@@ -29,6 +30,7 @@ pub mod closest;
 pub mod existence;
 pub mod frame;
 pub mod grid_spline;
+pub mod height_field;
 pub mod implicit;
 pub mod implicit_surface;
 pub mod jet;

@@ -175,7 +175,11 @@ mod tests {
     fn all_formats_say_the_same() {
         for (name, bytes) in files() {
             let map = read(Path::new(name), &bytes, [1.0, 2.0], [0.5, 0.25], 0.1).unwrap();
-            let jet = crate::relief::evaluate(&map, Jet::<3>::variable(2.2, 0), Jet::<3>::variable(2.6, 1));
+            let jet = signorini_geometry::height_field::evaluate(
+                &map,
+                Jet::<3>::variable(2.2, 0),
+                Jet::<3>::variable(2.6, 1),
+            );
             assert!((jet.value - 0.1 * (2.0 * 2.4 - 3.0 * 2.4 + 100.0)).abs() < 1e-12, "{name}: {}", jet.value);
             assert!((jet.gradient - Vector::<3>::new(0.4, -1.2, 0.0)).norm() < 1e-12, "{name}");
             assert_eq!(map.bounds(), [[1.0, 2.0], [3.5, 3.0]]);

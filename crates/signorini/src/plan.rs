@@ -1,10 +1,11 @@
 //! From the statement to the model: every key looked up, every value read, every contradiction named.
 
 mod domain;
+mod height;
 mod history;
 pub(crate) mod pieces;
 mod rigid;
-mod shapes;
+mod rigid_shape;
 pub mod solid;
 mod surface;
 
@@ -1054,7 +1055,7 @@ impl<const D: usize> MembranePlan<D> {
             }
         }
         for contact in &self.contacts {
-            let Some([low, high]) = contact.height.expression.as_relief().and_then(|r| r.known_within()) else {
+            let Some([low, high]) = contact.height.expression.as_height().and_then(|r| r.known_within()) else {
                 continue;
             };
             let shift = contact.displacement_at(time);

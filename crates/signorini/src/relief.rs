@@ -2,43 +2,9 @@
 
 use crate::expression::{Expression, Scope};
 use signorini_geometry::grid_spline::GridSpline;
+use signorini_geometry::height_field::{HeightField, View};
 use signorini_geometry::mesh::TriangleMesh;
 use signorini_geometry::{Jet, Real, Vector};
-
-/// A height over x and y with its derivatives.
-pub trait Relief: std::fmt::Debug + Send + Sync {
-    fn jet(&self, x: &Vector<2>) -> Jet<2>;
-
-    fn value(&self, x: &Vector<2>) -> f64 {
-        self.jet(x).value
-    }
-
-    /// The rectangle beyond which nothing is known of the height, by its corners; none where there is no such place.
-    fn known_within(&self) -> Option<[Vector<2>; 2]> {
-        None
-    }
-}
-
-/// The height at a place, with derivatives where the place is a jet.
-pub(crate) fn evaluate<R: Real>(relief: &dyn Relief, x: R, y: R) -> R {
-    let at = Vector::<2>::new(x.value(), y.value());
-    if !at.iter().all(|v| v.is_finite()) {
-        return R::constant(f64::NAN);
-    }
-    if x.is_constant() && y.is_constant() {
-        return R::constant(relief.value(&at));
-    }
-    let Jet { value, gradient: g, hessian: h } = relief.jet(&at);
-    // Jets end with the second order, and so does this.
-    let (dx, dy) = (x - R::constant(at[0]), y - R::constant(at[1]));
-    let c = R::constant;
-    c(value)
-        + c(g[0]) * dx
-        + c(g[1]) * dy
-        + c(0.5 * h[(0, 0)]) * dx * dx
-        + c(h[(0, 1)]) * dx * dy
-        + c(0.5 * h[(1, 1)]) * dy * dy
-}
 
 /// Samples along a vertical between which a level set changes its sign at most once.
 const LAYERS: usize = 96;
@@ -53,8 +19,8 @@ pub struct LevelSetTop {
     pub inside: Expression,
     pub low: f64,
     pub high: f64,
-    /// Whether the body is looked at from below: its lowest places, and the top of the box.
-    pub underside: bool,
+    /// From below its lowest places are seen, and the top of the box.
+    pub view: View,
 }
 
 impl LevelSetTop {
@@ -64,7 +30,10 @@ impl LevelSetTop {
 
     /// The height along a vertical, if the body is there.
     fn top(&self, x: &Vector<2>) -> Option<f64> {
-        let (from, to) = if self.underside { (self.low, self.high) } else { (self.high, self.low) };
+        let (from, to) = match self.view {
+            View::FromAbove => (self.high, self.low),
+            View::FromBelow => (self.low, self.high),
+        };
         let z = |k: usize| from + (to - from) * k as f64 / LAYERS as f64;
         // What is not a number is told as such, not passed over.
         let mut values = (0..=LAYERS).map(|k| self.at(x, z(k)));
@@ -91,9 +60,12 @@ impl LevelSetTop {
     }
 }
 
-impl Relief for LevelSetTop {
+impl HeightField for LevelSetTop {
     fn value(&self, x: &Vector<2>) -> f64 {
-        self.top(x).unwrap_or(if self.underside { self.high } else { self.low })
+        self.top(x).unwrap_or(match self.view {
+            View::FromAbove => self.low,
+            View::FromBelow => self.high,
+        })
     }
 
     /// By the implicit function theorem: `h_i = -F_i / F_z`, and once more.
@@ -126,7 +98,7 @@ pub struct Sampled {
     pub ends: bool,
 }
 
-impl Relief for Sampled {
+impl HeightField for Sampled {
     fn jet(&self, x: &Vector<2>) -> Jet<2> {
         self.spline.jet(x)
     }
@@ -150,19 +122,14 @@ impl Sampled {
     ///
     /// # Errors
     /// A mesh that has no shadow on the rectangle, or one that cannot be sampled so finely.
-    pub fn of_mesh(
-        mesh: &TriangleMesh,
-        [low, high]: [Vector<2>; 2],
-        spacing: f64,
-        underside: bool,
-    ) -> Result<Self, String> {
+    pub fn of_mesh(mesh: &TriangleMesh, [low, high]: [Vector<2>; 2], spacing: f64, view: View) -> Result<Self, String> {
         const MOST: usize = 1 << 24;
         let count: [usize; 2] = std::array::from_fn(|k| ((high[k] - low[k]) / spacing).ceil() as usize + 4);
         if count[0].saturating_mul(count[1]) > MOST {
             return Err(format!("{} x {} samples are too many", count[0], count[1]));
         }
         let origin = low - Vector::<2>::repeat(spacing);
-        let sign = if underside { -1.0 } else { 1.0 };
+        let sign = view.sign();
         // Row by row along x; the first index of the spline is that along x.
         let mut heights = vec![f64::NEG_INFINITY; count[0] * count[1]];
         for triangle in 0..mesh.triangles().len() {
@@ -232,16 +199,16 @@ mod tests {
     use super::*;
     use crate::expression::{Names, parse};
 
-    fn ball(underside: bool) -> LevelSetTop {
+    fn ball(view: View) -> LevelSetTop {
         let names = Names { variables: vec!["x", "y", "z"], ..Names::default() };
         let inside = parse("x^2 + (y - 0.1)^2 + (z + 0.2)^2 - 0.25", &names).expect("an expression");
-        LevelSetTop { inside, low: -1.0, high: 1.0, underside }
+        LevelSetTop { inside, low: -1.0, high: 1.0, view }
     }
 
     #[test]
     fn the_top_of_a_ball_is_that_of_its_formula() {
-        for (underside, sign) in [(false, 1.0), (true, -1.0)] {
-            let top = ball(underside);
+        for view in [View::FromAbove, View::FromBelow] {
+            let (top, sign) = (ball(view), view.sign());
             for (x, y) in [(0.0, 0.1), (0.2, -0.1), (-0.3, 0.3)] {
                 let [jx, jy] = [Jet::<2>::variable(x, 0), Jet::<2>::variable(y, 1)];
                 let c = Jet::<2>::constant;
@@ -264,13 +231,13 @@ mod tests {
         let faces = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [0, 2, 1], [0, 3, 2]];
         let mesh = TriangleMesh::new(vertices, &faces).expect("a mesh");
         let around = [Vector::<2>::new(-2.0, -2.0), Vector::<2>::new(2.0, 2.0)];
-        let top = Sampled::of_mesh(&mesh, around, 0.05, false).expect("a relief");
+        let top = Sampled::of_mesh(&mesh, around, 0.05, View::FromAbove).expect("heights");
         assert!((top.value(&Vector::<2>::new(0.5, 0.0)) - 0.5).abs() < 1e-3);
         assert!((top.value(&Vector::<2>::new(0.2, 0.55)) - 0.45).abs() < 1e-3);
         assert!((top.value(&Vector::<2>::new(1.5, 0.0)) + 0.5 * FALL).abs() < 0.06);
-        let under = Sampled::of_mesh(&mesh, around, 0.05, true).expect("a relief");
+        let under = Sampled::of_mesh(&mesh, around, 0.05, View::FromBelow).expect("heights");
         assert!(under.value(&Vector::<2>::new(0.3, 0.3)).abs() < 1e-3);
         let apart = [Vector::<2>::new(5.0, 5.0), Vector::<2>::new(6.0, 6.0)];
-        assert!(Sampled::of_mesh(&mesh, apart, 0.05, false).is_err());
+        assert!(Sampled::of_mesh(&mesh, apart, 0.05, View::FromAbove).is_err());
     }
 }

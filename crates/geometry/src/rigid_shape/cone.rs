@@ -1,7 +1,10 @@
 //! A round cone without end.
 
-use super::{GapJet, RigidShape, any_normal, curvature, unit};
-use crate::{Point, Vector};
+use super::height::{points_away, rising, sqrt, squared_distance};
+use super::{GapJet, NoHeight, RigidShape, any_normal, curvature, unit};
+use crate::height_field::{HeightField, View};
+use crate::{Jet, Point, Real, Vector};
+use std::sync::Arc;
 
 /// A round cone without end.
 #[derive(Clone, Copy, Debug)]
@@ -34,6 +37,17 @@ impl RigidShape for Cone {
     fn centre(&self) -> Point<3> {
         self.apex
     }
+
+    fn height(&self, view: View, rounding: f64) -> Result<Arc<dyn HeightField>, NoHeight> {
+        if !points_away(&self.axis, view) {
+            return Err(NoHeight::AxisNotAway);
+        }
+        let (apex, slope) = (self.apex, 1.0 / self.half_angle.tan());
+        let c = Jet::<2>::constant;
+        Ok(rising(view, apex[2], move |x| {
+            -c(slope) * sqrt(squared_distance(x, &apex, [1.0; 2]) + c(rounding * rounding))
+        }))
+    }
 }
 
 #[cfg(test)]
@@ -47,6 +61,13 @@ mod tests {
         let cone = Cone { apex: Point::<3>::new(0.0, 0.0, -1.0), axis, half_angle: 0.5 };
         let on_it = cone.apex + axis * 0.5f64.cos() + Vector::<3>::y() * 0.5f64.sin();
         testing::check(&cone, &[cone.apex, on_it]);
+        assert_eq!(cone.height(View::FromBelow, 0.0).unwrap_err(), NoHeight::AxisNotAway);
+        let upright = Cone { axis: Vector::<3>::z(), ..cone };
+        testing::check_height(&upright, View::FromBelow);
+        assert_eq!(upright.height(View::FromAbove, 0.0).unwrap_err(), NoHeight::AxisNotAway);
+        // The apex is rounded off in proportion to its slope.
+        let apex = upright.height(View::FromBelow, 1e-3).unwrap().jet(&Vector::<2>::zeros());
+        assert!(apex.is_finite() && (apex.value - (-1.0 + 1e-3 / 0.5f64.tan())).abs() < 1e-15, "{apex:?}");
         testing::check_moved(&cone, |m| Cone { apex: m.point(&cone.apex), axis: m.vector(&axis), ..cone });
         // Beyond the apex the distance is that of the apex.
         let beyond = cone.apex - axis * 0.3 + Vector::<3>::y() * 0.1;

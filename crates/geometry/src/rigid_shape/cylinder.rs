@@ -1,7 +1,10 @@
 //! A round cylinder without ends.
 
-use super::{GapJet, RigidShape, any_normal, curvature, unit};
-use crate::{Point, Vector};
+use super::height::{circle, is_flat, rising};
+use super::{GapJet, NoHeight, RigidShape, any_normal, curvature, unit};
+use crate::height_field::{HeightField, View};
+use crate::{Jet, Point, Real, Vector};
+use std::sync::Arc;
 
 /// A round cylinder without ends.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +30,20 @@ impl RigidShape for Cylinder {
     fn centre(&self) -> Point<3> {
         self.point
     }
+
+    fn height(&self, view: View, _: f64) -> Result<Arc<dyn HeightField>, NoHeight> {
+        let Cylinder { point, axis, radius } = *self;
+        if !is_flat(&axis) {
+            return Err(NoHeight::AxisNotFlat);
+        }
+        let length = axis[0].hypot(axis[1]);
+        let across = [-axis[1] / length, axis[0] / length];
+        let c = Jet::<2>::constant;
+        Ok(rising(view, point[2], move |[x, y]| {
+            let distance = c(across[0]) * (x - c(point[0])) + c(across[1]) * (y - c(point[1]));
+            circle(distance * distance, radius)
+        }))
+    }
 }
 
 #[cfg(test)]
@@ -40,6 +57,10 @@ mod tests {
         let cylinder = Cylinder { point: Point::<3>::new(0.1, 0.0, -0.1), axis, radius: 0.3 };
         let on_it = cylinder.point + Vector::<3>::x() * 0.3;
         testing::check(&cylinder, &[on_it, on_it + axis * 7.0]);
+        assert_eq!(cylinder.height(View::FromAbove, 0.0).unwrap_err(), NoHeight::AxisNotFlat);
+        let flat = Cylinder { axis: Vector::<3>::new(0.6, 0.8, 0.0), ..cylinder };
+        testing::check_height(&flat, View::FromAbove);
+        testing::check_height(&flat, View::FromBelow);
         testing::check_moved(&cylinder, |m| Cylinder {
             point: m.point(&cylinder.point),
             axis: m.vector(&axis),

@@ -1,14 +1,18 @@
 //! An ellipsoid along the axes.
 
-use super::{ClosestPoints, GapJet, Normals, RigidShape};
-use crate::Point;
+use super::height::{circle, rising, squared_distance};
+use super::{ClosestPoints, GapJet, NoHeight, Normals, RigidShape};
+use crate::height_field::{HeightField, View};
 use crate::shape::{Axes, ShapeError, Surface};
+use crate::{Jet, Point, Real};
 use std::f64::consts::{FRAC_PI_2, TAU};
+use std::sync::Arc;
 
 /// An ellipsoid along the axes.
 #[derive(Clone, Debug)]
 pub struct Ellipsoid {
     center: Point<3>,
+    semi_axes: [f64; 3],
     surface: ClosestPoints,
 }
 
@@ -18,7 +22,7 @@ impl Ellipsoid {
     pub fn new(center: Point<3>, semi_axes: [f64; 3]) -> Result<Self, ShapeError> {
         let whole = [[0.0, TAU], [-FRAC_PI_2, FRAC_PI_2]];
         let surface = Surface::ellipsoid(Axes::standard(center), semi_axes, whole, true)?;
-        Ok(Ellipsoid { center, surface: ClosestPoints { shape: surface.into(), normals: Normals::Outward } })
+        Ok(Ellipsoid { center, semi_axes, surface: ClosestPoints { shape: surface.into(), normals: Normals::Outward } })
     }
 }
 
@@ -29,6 +33,12 @@ impl RigidShape for Ellipsoid {
 
     fn centre(&self) -> Point<3> {
         self.center
+    }
+
+    fn height(&self, view: View, _: f64) -> Result<Arc<dyn HeightField>, NoHeight> {
+        let (center, [a, b, stretch]) = (self.center, self.semi_axes);
+        let c = Jet::<2>::constant;
+        Ok(rising(view, center[2], move |x| c(stretch) * circle(squared_distance(x, &center, [a, b]), 1.0)))
     }
 }
 
@@ -45,6 +55,8 @@ mod tests {
         let ways = [[1.0, 0.0, 0.0], [0.48, -0.6, 0.64], [0.0, 0.0, -1.0]].map(Vector::<3>::from);
         let on_it = ways.map(|w| center + w.component_mul(&Vector::<3>::new(0.6, 0.4, 0.3)));
         testing::check(&ellipsoid, &on_it);
+        testing::check_height(&ellipsoid, View::FromAbove);
+        testing::check_height(&ellipsoid, View::FromBelow);
         // Along its axes it may only be shifted, not turned.
         let shift = Vector::<3>::new(1.0, -2.0, 0.5);
         let moved = Ellipsoid::new(center + shift, [0.6, 0.4, 0.3]).unwrap();

@@ -1,4 +1,5 @@
-//! Rigid shapes: the gap of a point to them with its gradient and Hessian, one file a shape.
+//! Rigid shapes: the gap of a point to them with its gradient and Hessian, and the height in which a membrane sees them,
+//! one file a shape.
 //!
 //! With `g` the gap, `n = ∇g` the outward normal and `H = ∇∇g`:
 //!
@@ -20,6 +21,7 @@ mod cone;
 mod cylinder;
 mod ellipsoid;
 mod gap;
+mod height;
 mod implicit;
 mod paraboloid;
 mod plane;
@@ -33,12 +35,15 @@ pub use cone::Cone;
 pub use cylinder::Cylinder;
 pub use ellipsoid::Ellipsoid;
 pub use gap::GapJet;
+pub use height::NoHeight;
 pub use paraboloid::Paraboloid;
 pub use plane::Plane;
 pub use sphere::Sphere;
 pub use torus::Torus;
 
+use crate::height_field::{HeightField, View};
 use crate::{Point, Vector};
+use std::sync::Arc;
 
 /// A body that does not deform.
 pub trait RigidShape: Send + Sync {
@@ -47,6 +52,16 @@ pub trait RigidShape: Send + Sync {
 
     /// The point about which the body turns.
     fn centre(&self) -> Point<3>;
+
+    /// The height over (x, y) of the surface that is seen from above or below, by a closed form. A point on the axis where
+    /// the surface has no tangent plane is rounded off by the length `rounding`.
+    ///
+    /// # Errors
+    /// Why there is no such height.
+    fn height(&self, view: View, rounding: f64) -> Result<Arc<dyn HeightField>, NoHeight> {
+        let _ = (view, rounding);
+        Err(NoHeight::NoFormula)
+    }
 }
 
 /// The inverse of a radius of curvature; zero where the curvature is infinite.

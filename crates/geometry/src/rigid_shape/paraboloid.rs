@@ -1,13 +1,18 @@
 //! A paraboloid of revolution.
 
-use super::{ClosestPoints, GapJet, Normals, RigidShape, any_normal};
+use super::height::{points_away, rising, squared_distance};
+use super::{ClosestPoints, GapJet, NoHeight, Normals, RigidShape, any_normal};
+use crate::height_field::{HeightField, View};
 use crate::shape::{Axes, ShapeError, Surface};
-use crate::{Point, Vector};
+use crate::{Jet, Point, Real, Vector};
+use std::sync::Arc;
 
 /// A paraboloid of revolution, as far as four radii from its axis.
 #[derive(Clone, Debug)]
 pub struct Paraboloid {
     apex: Point<3>,
+    axis: Vector<3>,
+    radius: f64,
     surface: ClosestPoints,
 }
 
@@ -22,7 +27,12 @@ impl Paraboloid {
         let range = [[-4.0 * radius, 4.0 * radius]; 2];
         let surface = Surface::graph(axes, [0.5 / radius, 0.5 / radius, 0.0], range)?;
         // The axis points into the body, so does the normal of the graph.
-        Ok(Paraboloid { apex, surface: ClosestPoints { shape: surface.into(), normals: Normals::Inward } })
+        Ok(Paraboloid {
+            apex,
+            axis,
+            radius,
+            surface: ClosestPoints { shape: surface.into(), normals: Normals::Inward },
+        })
     }
 }
 
@@ -33,6 +43,15 @@ impl RigidShape for Paraboloid {
 
     fn centre(&self) -> Point<3> {
         self.apex
+    }
+
+    fn height(&self, view: View, _: f64) -> Result<Arc<dyn HeightField>, NoHeight> {
+        if !points_away(&self.axis, view) {
+            return Err(NoHeight::AxisNotAway);
+        }
+        let (apex, diameter) = (self.apex, 2.0 * self.radius);
+        let c = Jet::<2>::constant;
+        Ok(rising(view, apex[2], move |x| -squared_distance(x, &apex, [1.0; 2]) / c(diameter)))
     }
 }
 
@@ -46,6 +65,8 @@ mod tests {
         let (apex, axis) = (Point::<3>::new(0.1, 0.2, -0.1), Vector::<3>::z());
         let paraboloid = Paraboloid::new(apex, axis, 1.0).unwrap();
         testing::check(&paraboloid, &[apex, apex + Vector::<3>::new(0.6, 0.8, 0.5)]);
+        testing::check_height(&paraboloid, View::FromBelow);
+        assert_eq!(paraboloid.height(View::FromAbove, 0.0).unwrap_err(), NoHeight::AxisNotAway);
         testing::check_moved(&paraboloid, |m| Paraboloid::new(m.point(&apex), m.vector(&axis), 1.0).unwrap());
         // The axis points into the body.
         assert!(paraboloid.gap(&(apex + axis * 0.2)).gap < 0.0);

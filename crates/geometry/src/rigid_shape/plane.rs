@@ -1,7 +1,10 @@
 //! The half space below a plane.
 
-use super::{GapJet, RigidShape};
-use crate::{Point, Vector};
+use super::height::formula;
+use super::{GapJet, NoHeight, RigidShape};
+use crate::height_field::{HeightField, View};
+use crate::{Jet, Point, Real, Vector};
+use std::sync::Arc;
 
 /// The half space below a plane.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +22,16 @@ impl RigidShape for Plane {
     fn centre(&self) -> Point<3> {
         self.point
     }
+
+    fn height(&self, view: View, _: f64) -> Result<Arc<dyn HeightField>, NoHeight> {
+        let (p, n) = (self.point, self.normal);
+        if view.sign() * n[2] <= 0.0 {
+            return Err(NoHeight::LooksAway);
+        }
+        let slopes = [n[0] / n[2], n[1] / n[2]];
+        let c = Jet::<2>::constant;
+        Ok(formula(move |[x, y]| c(p[2]) - c(slopes[0]) * (x - c(p[0])) - c(slopes[1]) * (y - c(p[1]))))
+    }
 }
 
 #[cfg(test)]
@@ -32,6 +45,8 @@ mod tests {
         let plane = Plane { point: Point::<3>::new(0.0, 0.0, 0.1), normal };
         let along = normal.cross(&Vector::<3>::x());
         testing::check(&plane, &[plane.point, plane.point + along * 3.0]);
+        testing::check_height(&plane, View::FromAbove);
+        assert_eq!(plane.height(View::FromBelow, 0.0).unwrap_err(), NoHeight::LooksAway);
         testing::check_moved(&plane, |m| Plane { point: m.point(&plane.point), normal: m.vector(&normal) });
     }
 }

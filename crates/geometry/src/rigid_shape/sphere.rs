@@ -1,7 +1,10 @@
 //! A ball.
 
-use super::{GapJet, RigidShape};
+use super::height::{circle, rising, squared_distance};
+use super::{GapJet, NoHeight, RigidShape};
 use crate::Point;
+use crate::height_field::{HeightField, View};
+use std::sync::Arc;
 
 /// A ball.
 #[derive(Clone, Copy, Debug)]
@@ -18,6 +21,11 @@ impl RigidShape for Sphere {
     fn centre(&self) -> Point<3> {
         self.center
     }
+
+    fn height(&self, view: View, _: f64) -> Result<Arc<dyn HeightField>, NoHeight> {
+        let Sphere { center, radius } = *self;
+        Ok(rising(view, center[2], move |x| circle(squared_distance(x, &center, [1.0; 2]), radius)))
+    }
 }
 
 #[cfg(test)]
@@ -31,6 +39,8 @@ mod tests {
         let sphere = Sphere { center: Point::<3>::new(0.1, 0.0, 0.3), radius: 0.4 };
         let way = Vector::<3>::new(0.48, -0.6, 0.64);
         testing::check(&sphere, &[sphere.center + Vector::<3>::y() * 0.4, sphere.center + way * 0.4]);
+        testing::check_height(&sphere, View::FromAbove);
+        testing::check_height(&sphere, View::FromBelow);
         testing::check_moved(&sphere, |m| Sphere { center: m.point(&sphere.center), ..sphere });
         let inside = sphere.gap(&sphere.center);
         assert_eq!((inside.gap, inside.normal.norm()), (-0.4, 1.0));

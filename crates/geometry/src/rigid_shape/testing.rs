@@ -1,6 +1,7 @@
 //! What every rigid shape must fulfil.
 
 use super::RigidShape;
+use crate::height_field::View;
 use crate::rigid::RigidMotion;
 use crate::{Point, Vector};
 
@@ -49,4 +50,25 @@ pub fn check_moved<S: RigidShape>(shape: &dyn RigidShape, moved: impl Fn(&RigidM
         assert!((hessian - after.hessian).norm() < 1e-8 * (1.0 + hessian.norm()), "at {x:?}");
     }
     assert!((motion.point(&shape.centre()) - moved.centre()).norm() < 1e-12 || shape.centre() == Point::<3>::zeros());
+}
+
+/// What is seen lies on the surface, turned to the viewer, and the height has the derivatives that it says; for shapes that
+/// are seen at (0.1, 0.15) and thereabout.
+pub fn check_height(shape: &dyn RigidShape, view: View) {
+    let height = shape.height(view, 0.0).unwrap();
+    for x in [[0.1, 0.15], [0.15, 0.13], [0.08, 0.1]].map(Vector::<2>::from) {
+        let jet = height.jet(&x);
+        let found = shape.gap(&Point::<3>::new(x[0], x[1], jet.value));
+        assert!(found.gap.abs() < 1e-13 && found.normal[2] * view.sign() > 0.0, "at {x:?}: {jet:?}, {found:?}");
+        // The normal is along (-∇h, 1).
+        let slope = -found.normal.fixed_rows::<2>(0) / found.normal[2];
+        assert!((slope - jet.gradient).norm() < 1e-9, "at {x:?}: {slope:?} and {jet:?}");
+        for k in 0..2 {
+            let mut step = Vector::<2>::zeros();
+            step[k] = 1e-6;
+            let [after, before] = [x + step, x - step].map(|x| height.jet(&x).gradient);
+            let bend = (after - before) / 2e-6;
+            assert!((bend - jet.hessian.column(k)).norm() < 1e-6 * (1.0 + jet.hessian.norm()), "at {x:?}: {bend:?}");
+        }
+    }
 }

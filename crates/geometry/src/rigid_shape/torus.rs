@@ -1,7 +1,10 @@
 //! A ring.
 
-use super::{GapJet, RigidShape, any_normal, curvature, unit};
-use crate::{Point, Vector};
+use super::height::{circle, is_upright, rising, sqrt, squared_distance};
+use super::{GapJet, NoHeight, RigidShape, any_normal, curvature, unit};
+use crate::height_field::{HeightField, View};
+use crate::{Jet, Point, Real, Vector};
+use std::sync::Arc;
 
 /// A ring: everything closer than `minor` to a circle of radius `major`.
 #[derive(Clone, Copy, Debug)]
@@ -33,6 +36,18 @@ impl RigidShape for Torus {
     fn centre(&self) -> Point<3> {
         self.center
     }
+
+    fn height(&self, view: View, rounding: f64) -> Result<Arc<dyn HeightField>, NoHeight> {
+        let Torus { center, axis, major, minor } = *self;
+        if !is_upright(&axis) {
+            return Err(NoHeight::AxisNotUpright);
+        }
+        let c = Jet::<2>::constant;
+        Ok(rising(view, center[2], move |x| {
+            let across = sqrt(squared_distance(x, &center, [1.0; 2]) + c(rounding * rounding)) - c(major);
+            circle(across * across, minor)
+        }))
+    }
 }
 
 #[cfg(test)]
@@ -46,6 +61,10 @@ mod tests {
         let torus = Torus { center: Point::<3>::new(0.0, 0.1, 0.0), axis, major: 0.8, minor: 0.2 };
         let ring = torus.center + Vector::<3>::x() * 0.8;
         testing::check(&torus, &[ring + axis * 0.2, ring + Vector::<3>::x() * 0.2, ring - Vector::<3>::x() * 0.2]);
+        assert_eq!(torus.height(View::FromAbove, 0.0).unwrap_err(), NoHeight::AxisNotUpright);
+        let upright = Torus { axis: Vector::<3>::z(), major: 0.2, minor: 0.19, ..torus };
+        testing::check_height(&upright, View::FromAbove);
+        testing::check_height(&upright, View::FromBelow);
         testing::check_moved(&torus, |m| Torus { center: m.point(&torus.center), axis: m.vector(&axis), ..torus });
     }
 }

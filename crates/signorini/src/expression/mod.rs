@@ -8,8 +8,8 @@ mod parse;
 pub(crate) use parse::number_length;
 pub use parse::{Names, ParseError, function_names, parse};
 
-use crate::relief::{self, Relief};
 use signorini_geometry::Real;
+use signorini_geometry::height_field::{self, HeightField};
 use std::sync::Arc;
 
 /// Deepest nesting of an expression: deeper ones are refused, so that no input exhausts the stack.
@@ -43,8 +43,8 @@ enum Node {
     Pair(PairFunction, Box<Node>, Box<Node>),
     If(Box<Node>, Box<Node>, Box<Node>),
     User(Arc<Definition>, Box<Node>),
-    /// A height over x and y that no formula gives.
-    Relief(Arc<dyn Relief>),
+    /// A height over x and y that no expression states.
+    Height(Arc<dyn HeightField>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -139,15 +139,15 @@ impl Expression {
         Self { root: Node::Number(value) }
     }
 
-    /// A height over x and y that no formula gives.
-    pub fn relief(relief: impl Relief + 'static) -> Self {
-        Self { root: Node::Relief(Arc::new(relief)) }
+    /// A height over x and y that no expression states.
+    pub fn height(height: Arc<dyn HeightField>) -> Self {
+        Self { root: Node::Height(height) }
     }
 
-    /// The height that the expression is, if no formula gives it.
-    pub fn as_relief(&self) -> Option<&dyn Relief> {
+    /// The height that the expression is, if no expression states it.
+    pub fn as_height(&self) -> Option<&dyn HeightField> {
         match &self.root {
-            Node::Relief(height) => Some(&**height),
+            Node::Height(height) => Some(&**height),
             _ => None,
         }
     }
@@ -183,7 +183,7 @@ impl Expression {
     pub fn uses_position(&self, axis: usize) -> bool {
         self.root.any(&|n| match n {
             Node::Position(k) => *k == axis,
-            Node::Relief(_) => axis < 2,
+            Node::Height(_) => axis < 2,
             _ => false,
         })
     }
@@ -197,7 +197,7 @@ impl Expression {
 impl Node {
     fn children(&self) -> Vec<&Node> {
         match self {
-            Node::Number(_) | Node::Position(_) | Node::Time | Node::Relief(_) => vec![],
+            Node::Number(_) | Node::Position(_) | Node::Time | Node::Height(_) => vec![],
             Node::Negate(a) | Node::Not(a) | Node::Call(_, a) | Node::User(_, a) => vec![a],
             Node::Binary(_, a, b) | Node::Compare(_, a, b) | Node::Pair(_, a, b) => vec![a, b],
             Node::If(a, b, c) => vec![a, b, c],
@@ -211,7 +211,7 @@ impl Node {
     fn map(&self, f: &impl Fn(&Node) -> Node) -> Node {
         let sub = |n: &Node| Box::new(f(n));
         match self {
-            Node::Number(_) | Node::Position(_) | Node::Time | Node::Relief(_) => self.clone(),
+            Node::Number(_) | Node::Position(_) | Node::Time | Node::Height(_) => self.clone(),
             Node::Negate(a) => Node::Negate(sub(a)),
             Node::Not(a) => Node::Not(sub(a)),
             Node::Call(g, a) => Node::Call(*g, sub(a)),
@@ -232,7 +232,7 @@ impl Node {
 
     /// Parts without position and time replaced by their value.
     fn folded(self) -> Node {
-        if self.any(&|n| matches!(n, Node::Position(_) | Node::Time | Node::Relief(_))) {
+        if self.any(&|n| matches!(n, Node::Position(_) | Node::Time | Node::Height(_))) {
             return self.map(&|n| n.clone().folded());
         }
         Node::Number(self.evaluate(&Scope { position: [f64::NAN; 3], time: f64::NAN }))
@@ -257,7 +257,7 @@ impl Node {
                 branch.evaluate(scope)
             }
             Node::User(f, a) => f.evaluate(a.evaluate(scope)),
-            Node::Relief(height) => relief::evaluate(&**height, scope.position[0], scope.position[1]),
+            Node::Height(height) => height_field::evaluate(&**height, scope.position[0], scope.position[1]),
         }
     }
 }

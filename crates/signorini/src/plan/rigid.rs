@@ -1,20 +1,21 @@
 //! Rigid bodies that solids press on: the gap to them and their outward normal, anywhere and at any time.
 
+use super::rigid_shape::{self, ShapeKeys};
 use super::{Placed, Planner};
-use crate::case::statement::{Motion, Rigid, Shape, Side, Space};
-use crate::case::units::{LENGTH, NONE};
+use crate::case::statement::{CylinderKey, EllipsoidKey, Motion, Rigid, Shape, Side, Space};
+use crate::case::units::{Dimension, LENGTH, NONE};
 use crate::case::{CaseError, Document, Values};
 use crate::expression::Scope;
 use crate::queries::geometry;
+use signorini_geometry::height_field;
 use signorini_geometry::implicit_surface::{ImplicitBody, ImplicitSurface};
 use signorini_geometry::rigid::RigidMotion;
-use signorini_geometry::rigid_shape::{
-    ClosestPoints, Cone, Cylinder, Ellipsoid, GapJet, Normals, Paraboloid, Plane, RigidShape, Sphere, Torus,
-};
+use signorini_geometry::rigid_shape::{ClosestPoints, GapJet, Normals, RigidShape};
 use signorini_geometry::shape::{Shape as Geometry, ShapeError};
 use signorini_geometry::{Aabb, Jet, Point, Real, Vector};
-use std::f64::consts::FRAC_PI_2;
+use std::ops::Range;
 use std::sync::Arc;
+use toml::Spanned;
 
 /// A rigid body and how it moves.
 #[derive(Clone)]
@@ -78,176 +79,179 @@ pub(super) fn read<const D: usize>(
     rigid: &Rigid,
     around: &Aabb<3>,
 ) -> Result<RigidBody, CaseError> {
-    let document = planner.document;
-    let spatial = |values: &Values, dimension| -> Result<Vector<3>, CaseError> {
-        let list = planner.reader.numbers::<D>(values, dimension)?;
+    if let Some(lies) = &rigid.lies {
+        return Err(planner.document.error(lies.span(), "`lies` is for bodies beside a membrane"));
+    }
+    let keys = BesideSolids::<D> { planner };
+    keys.check_round(&rigid.shape)?;
+    let shape = match rigid_shape::read(&keys, &rigid.shape)? {
+        Some((shape, _)) => shape,
+        None => keys.without_closed_form(&rigid.shape, around)?,
+    };
+    let inside = rigid.side.as_ref().is_some_and(|s| *s.get_ref() == Side::Inside);
+    let [displacement, rotation] = motion::<D>(planner, name, rigid)?;
+    Ok(RigidBody { name: name.to_string(), shape, inside, displacement, rotation })
+}
+
+/// Shapes beside solids: in the plane with two coordinates.
+struct BesideSolids<'a, 'b, const D: usize> {
+    planner: &'a Planner<'b>,
+}
+
+impl<const D: usize> ShapeKeys for BesideSolids<'_, '_, D> {
+    fn planner(&self) -> &Planner<'_> {
+        self.planner
+    }
+
+    fn vector(&self, values: &Values, dimension: Dimension) -> Result<Vector<3>, CaseError> {
+        let list = self.planner.reader.numbers::<D>(values, dimension)?;
         Ok(Vector::<3>::from_fn(|k, _| if k < D { list[k] } else { 0.0 }))
-    };
-    let direction = |values: &Values| -> Result<Vector<3>, CaseError> {
-        let v = spatial(values, NONE)?;
-        v.try_normalize(0.0).ok_or_else(|| document.error(values.span(), "the direction has no length"))
-    };
-    let only_in_space = |span: std::ops::Range<usize>, what: &str| {
+    }
+
+    fn cylinder_axis(&self, key: &CylinderKey, shape: Range<usize>) -> Result<Vector<3>, CaseError> {
+        let document = self.planner.document;
+        match (&key.axis, D) {
+            (Some(axis), 3) => self.direction(axis),
+            (None, 2) => Ok(Vector::<3>::z()),
+            (Some(axis), _) => {
+                Err(document.error(axis.span(), "in the plane a cylinder stands across it: leave `axis` out"))
+            }
+            (None, _) => Err(document.error(shape, "missing key `axis`").help("axis = [0, 1, 0]")),
+        }
+    }
+
+    fn semi_axes(&self, key: &EllipsoidKey) -> Result<[f64; 3], CaseError> {
+        let list = self.planner.reader.numbers::<D>(&key.semi_axes, LENGTH)?;
+        // Long across the plane, so that closest points stay in it.
+        let across = 10.0 * list.iter().fold(0.0, |a: f64, b| a.max(*b));
+        Ok(std::array::from_fn(|k| if k < D { list[k] } else { across }))
+    }
+}
+
+impl<const D: usize> BesideSolids<'_, '_, D> {
+    fn check_in_space(&self, span: Range<usize>, what: &str) -> Result<(), CaseError> {
         if D == 3 {
             return Ok(());
         }
-        Err(document
+        Err(self
+            .planner
+            .document
             .error(span, format!("a {what} is a shape in space"))
             .help("in the plane: plane, sphere (a circle), cylinder, ellipsoid (an ellipse)"))
-    };
-    // Round an axis in space, which in the plane can be that of an axisymmetric problem.
-    let round = |what: &str, place: &Values, axis: &Values| {
-        if D == 3 || planner.space != Space::Axisymmetric {
-            return only_in_space(rigid.shape.span(), what);
+    }
+
+    /// Shapes round an axis are shapes in space, which in the plane can be that of an axisymmetric problem.
+    fn check_round(&self, shape: &Spanned<Shape>) -> Result<(), CaseError> {
+        let (what, place, axis) = match shape.get_ref() {
+            Shape::Cone(key) => ("cone", &key.apex, &key.axis),
+            Shape::Torus(key) => ("torus", &key.center, &key.axis),
+            Shape::Paraboloid(key) => ("paraboloid", &key.apex, &key.axis),
+            _ => return Ok(()),
+        };
+        if D == 3 || self.planner.space != Space::Axisymmetric {
+            return self.check_in_space(shape.span(), what);
         }
-        match (spatial(place, LENGTH)?[0] == 0.0, direction(axis)?[0] == 0.0) {
+        match (self.vector(place, LENGTH)?[0] == 0.0, self.direction(axis)?[0] == 0.0) {
             (true, true) => Ok(()),
-            (on_axis, _) => Err(document
+            (on_axis, _) => Err(self
+                .planner
+                .document
                 .error(
                     if on_axis { axis.span() } else { place.span() },
                     format!("the {what} does not stand on the axis"),
                 )
                 .help("in an axisymmetric problem its place is [0, z], and its axis [0, 1] or [0, -1]")),
         }
-    };
-    if let Some(lies) = &rigid.lies {
-        return Err(document.error(lies.span(), "`lies` is for bodies beside a membrane"));
     }
-    let wrong = |error: ShapeError| document.error(rigid.shape.span(), error.to_string());
-    let shape: Arc<dyn RigidShape> = match rigid.shape.get_ref() {
-        Shape::Plane(key) => Arc::new(Plane { point: spatial(&key.point, LENGTH)?, normal: direction(&key.normal)? }),
-        Shape::Sphere(key) => Arc::new(Sphere {
-            center: spatial(&key.center, LENGTH)?,
-            radius: planner.reader.positive(&key.radius, LENGTH)?,
-        }),
-        Shape::Cylinder(key) => {
-            let axis = match (&key.axis, D) {
-                (Some(axis), 3) => direction(axis)?,
-                (None, 2) => Vector::<3>::z(),
-                (Some(axis), _) => {
-                    return Err(
-                        document.error(axis.span(), "in the plane a cylinder stands across it: leave `axis` out")
-                    );
+
+    /// Shapes from files and functions.
+    fn without_closed_form(&self, shape: &Spanned<Shape>, around: &Aabb<3>) -> Result<Arc<dyn RigidShape>, CaseError> {
+        let planner = self.planner;
+        let document = planner.document;
+        let wrong = |error: ShapeError| document.error(shape.span(), error.to_string());
+        Ok(match shape.get_ref() {
+            Shape::Stl(key) => {
+                self.check_in_space(shape.span(), "triangulated surface")?;
+                Arc::new(ClosestPoints { shape: planner.closed_mesh(key)?.into(), normals: Normals::Outward })
+            }
+            Shape::Nurbs(key) => {
+                self.check_in_space(shape.span(), "NURBS surface")?;
+                let (path, bytes) = planner.read_file(&key.file)?;
+                let value: serde_json::Value = serde_json::from_slice(&bytes)
+                    .map_err(|e| document.error(key.file.span(), format!("`{}` is not JSON: {e}", path.display())))?;
+                let surface = geometry::shape("surface", &value, path.parent().unwrap_or(std::path::Path::new("")))
+                    .map_err(|e| document.error(key.file.span(), format!("`{}`: {e}", path.display())))?;
+                if !matches!(surface, Geometry::Surface(_)) {
+                    return Err(document.error(key.file.span(), format!("`{}` is not a surface", path.display())));
                 }
-                (None, _) => {
-                    return Err(document.error(rigid.shape.span(), "missing key `axis`").help("axis = [0, 1, 0]"));
+                Arc::new(ClosestPoints { shape: surface, normals: Normals::Outward })
+            }
+            Shape::LevelSet(key) => {
+                let (low, high) = (self.vector(&key.min, LENGTH)?, self.vector(&key.max, LENGTH)?);
+                let cells = match &key.cells {
+                    None => 64,
+                    Some(n) if (2..=512).contains(n.get_ref()) => *n.get_ref() as usize,
+                    Some(n) => return Err(document.error(n.span(), "give a number of cells from 2 to 512")),
+                };
+                let variables: &[&'static str] = if D == 2 { &["x", "y"] } else { &["x", "y", "z"] };
+                let expression = planner.reader.expression(&key.negative_inside, LENGTH, variables)?;
+                let field = move |x: &Point<3>| {
+                    let position = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));
+                    expression.evaluate(&Scope { position, time: Jet::<3>::constant(0.0) })
+                };
+                let bounds = flat_box::<D>(low, high);
+                Arc::new(ImplicitSurface::new(ImplicitBody::field(field), bounds, cells).map_err(wrong)?)
+            }
+            Shape::Height(value) => {
+                // The body below the height: z - h(x, y), or y - h(x) in the plane.
+                let variables: &[&'static str] = if D == 2 { &["x"] } else { &["x", "y"] };
+                let height = planner.reader.expression(value, LENGTH, variables)?;
+                let up = D - 1;
+                let field = move |x: &Point<3>| {
+                    let position = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));
+                    position[up] - height.evaluate(&Scope { position, time: Jet::<3>::constant(0.0) })
+                };
+                let surface = ImplicitSurface::new(ImplicitBody::field(field), *around, 64).map_err(|e| {
+                    wrong(e).help("the height must cross the box around the solids, twice as long as they are")
+                })?;
+                Arc::new(surface)
+            }
+            Shape::HeightMap(key) => {
+                self.check_in_space(shape.span(), "height map")?;
+                let map = planner.height_map(key)?;
+                // Beyond its rectangle the map is not known.
+                let [low, high] = map.bounds();
+                let bounds = Aabb::new(
+                    Point::<3>::new(around.min[0].max(low[0]), around.min[1].max(low[1]), around.min[2]),
+                    Point::<3>::new(around.max[0].min(high[0]), around.max[1].min(high[1]), around.max[2]),
+                );
+                if (0..2).any(|k| bounds.min[k] >= bounds.max[k]) {
+                    let misses = ShapeError::new("height_map", "it does not lie under the solids".to_string());
+                    return Err(wrong(misses).help("see `origin`"));
                 }
-            };
-            Arc::new(Cylinder {
-                point: spatial(&key.point, LENGTH)?,
-                axis,
-                radius: planner.reader.positive(&key.radius, LENGTH)?,
-            })
-        }
-        Shape::Cone(key) => {
-            round("cone", &key.apex, &key.axis)?;
-            let half_angle = planner.reader.positive(&key.half_angle, NONE)?;
-            if half_angle >= FRAC_PI_2 {
-                return Err(document
-                    .error(key.half_angle.span(), format!("the half angle is {half_angle}"))
-                    .help("an angle in radians below pi/2"));
+                let field = move |x: &Point<3>| {
+                    let [x, y, z] = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));
+                    z - height_field::evaluate(&map, x, y)
+                };
+                let surface = ImplicitSurface::new(ImplicitBody::field(field), bounds, 96).map_err(|e| {
+                    wrong(e).help("the heights must lie within the box around the solids, twice as long as they are")
+                })?;
+                Arc::new(surface)
             }
-            Arc::new(Cone { apex: spatial(&key.apex, LENGTH)?, axis: direction(&key.axis)?, half_angle })
-        }
-        Shape::Torus(key) => {
-            round("torus", &key.center, &key.axis)?;
-            let major = planner.reader.positive(&key.major_radius, LENGTH)?;
-            let minor = planner.reader.positive(&key.minor_radius, LENGTH)?;
-            if minor >= major {
-                return Err(document.error(
-                    key.minor_radius.span(),
-                    format!("the minor radius {minor} is not smaller than the major radius {major}"),
-                ));
-            }
-            Arc::new(Torus { center: spatial(&key.center, LENGTH)?, axis: direction(&key.axis)?, major, minor })
-        }
-        Shape::Ellipsoid(key) => {
-            let mut semi_axes = [0.0; 3];
-            for (o, v) in semi_axes.iter_mut().zip(planner.reader.numbers::<D>(&key.semi_axes, LENGTH)?) {
-                *o = v;
-            }
-            if D == 2 {
-                // Long across the plane, so that closest points stay in it.
-                semi_axes[2] = 10.0 * semi_axes[0].max(semi_axes[1]);
-            }
-            Arc::new(Ellipsoid::new(spatial(&key.center, LENGTH)?, semi_axes).map_err(wrong)?)
-        }
-        Shape::Paraboloid(key) => {
-            round("paraboloid", &key.apex, &key.axis)?;
-            let radius = planner.reader.positive(&key.radius, LENGTH)?;
-            let (apex, axis) = (spatial(&key.apex, LENGTH)?, direction(&key.axis)?);
-            Arc::new(Paraboloid::new(apex, axis, radius).map_err(wrong)?)
-        }
-        Shape::Stl(key) => {
-            only_in_space(rigid.shape.span(), "triangulated surface")?;
-            Arc::new(ClosestPoints { shape: planner.closed_mesh(key)?.into(), normals: Normals::Outward })
-        }
-        Shape::Nurbs(key) => {
-            only_in_space(rigid.shape.span(), "NURBS surface")?;
-            let (path, bytes) = planner.read_file(&key.file)?;
-            let value: serde_json::Value = serde_json::from_slice(&bytes)
-                .map_err(|e| document.error(key.file.span(), format!("`{}` is not JSON: {e}", path.display())))?;
-            let shape = geometry::shape("surface", &value, path.parent().unwrap_or(std::path::Path::new("")))
-                .map_err(|e| document.error(key.file.span(), format!("`{}`: {e}", path.display())))?;
-            if !matches!(shape, Geometry::Surface(_)) {
-                return Err(document.error(key.file.span(), format!("`{}` is not a surface", path.display())));
-            }
-            Arc::new(ClosestPoints { shape, normals: Normals::Outward })
-        }
-        Shape::LevelSet(key) => {
-            let (low, high) = (spatial(&key.min, LENGTH)?, spatial(&key.max, LENGTH)?);
-            let cells = match &key.cells {
-                None => 64,
-                Some(n) if (2..=512).contains(n.get_ref()) => *n.get_ref() as usize,
-                Some(n) => return Err(document.error(n.span(), "give a number of cells from 2 to 512")),
-            };
-            let variables: &[&'static str] = if D == 2 { &["x", "y"] } else { &["x", "y", "z"] };
-            let expression = planner.reader.expression(&key.negative_inside, LENGTH, variables)?;
-            let field = move |x: &Point<3>| {
-                let position = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));
-                expression.evaluate(&Scope { position, time: Jet::<3>::constant(0.0) })
-            };
-            let bounds = flat_box::<D>(low, high);
-            Arc::new(ImplicitSurface::new(ImplicitBody::field(field), bounds, cells).map_err(wrong)?)
-        }
-        Shape::Height(value) => {
-            // The body below the height: z - h(x, y), or y - h(x) in the plane.
-            let variables: &[&'static str] = if D == 2 { &["x"] } else { &["x", "y"] };
-            let height = planner.reader.expression(value, LENGTH, variables)?;
-            let up = D - 1;
-            let field = move |x: &Point<3>| {
-                let position = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));
-                position[up] - height.evaluate(&Scope { position, time: Jet::<3>::constant(0.0) })
-            };
-            let surface = ImplicitSurface::new(ImplicitBody::field(field), *around, 64).map_err(|e| {
-                wrong(e).help("the height must cross the box around the solids, twice as long as they are")
-            })?;
-            Arc::new(surface)
-        }
-        Shape::HeightMap(key) => {
-            only_in_space(rigid.shape.span(), "height map")?;
-            let map = planner.height_map(key)?;
-            // Beyond its rectangle the map is not known.
-            let [low, high] = map.bounds();
-            let bounds = Aabb::new(
-                Point::<3>::new(around.min[0].max(low[0]), around.min[1].max(low[1]), around.min[2]),
-                Point::<3>::new(around.max[0].min(high[0]), around.max[1].min(high[1]), around.max[2]),
-            );
-            if (0..2).any(|k| bounds.min[k] >= bounds.max[k]) {
-                let misses = ShapeError::new("height_map", "it does not lie under the solids".to_string());
-                return Err(wrong(misses).help("see `origin`"));
-            }
-            let field = move |x: &Point<3>| {
-                let [x, y, z] = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));
-                z - crate::relief::evaluate(&map, x, y)
-            };
-            let surface = ImplicitSurface::new(ImplicitBody::field(field), bounds, 96).map_err(|e| {
-                wrong(e).help("the heights must lie within the box around the solids, twice as long as they are")
-            })?;
-            Arc::new(surface)
-        }
-    };
-    let inside = rigid.side.as_ref().is_some_and(|s| *s.get_ref() == Side::Inside);
+            Shape::Plane(_)
+            | Shape::Sphere(_)
+            | Shape::Cylinder(_)
+            | Shape::Cone(_)
+            | Shape::Ellipsoid(_)
+            | Shape::Torus(_)
+            | Shape::Paraboloid(_) => return Err(planner.unavailable(shape.span(), "this shape beside a solid")),
+        })
+    }
+}
+
+/// How a rigid body moves: displacement and rotation, each empty for one at rest.
+fn motion<const D: usize>(planner: &Planner<'_>, name: &str, rigid: &Rigid) -> Result<[Vec<Placed>; 2], CaseError> {
+    let document = planner.document;
     let (mut displacement, mut rotation) = (Vec::new(), Vec::new());
     match rigid.motion.as_ref().map(|m| (m.get_ref(), m.span())) {
         None | Some((Motion::Fixed(_), _)) => {}
@@ -284,7 +288,7 @@ pub(super) fn read<const D: usize>(
             }
         }
     }
-    Ok(RigidBody { name: name.to_string(), shape, inside, displacement, rotation })
+    Ok([displacement, rotation])
 }
 
 /// In the plane bodies reach across it on both sides, so that closest points stay in it.
@@ -301,6 +305,8 @@ pub(super) fn flat_box<const D: usize>(low: Vector<3>, high: Vector<3>) -> Aabb<
 mod tests {
     use super::*;
     use crate::expression::Expression;
+    use signorini_geometry::rigid_shape::Plane;
+    use std::f64::consts::FRAC_PI_2;
 
     #[test]
     fn a_turned_body_turns_its_gap_and_normal() {

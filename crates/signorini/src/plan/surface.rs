@@ -7,6 +7,7 @@ use crate::case::units::{LENGTH, NONE};
 use crate::expression::{Expression, Scope};
 use crate::relief::{LevelSetTop, Sampled};
 use crate::report::Warning;
+use signorini_geometry::height_field::View;
 use signorini_geometry::{Point, Vector};
 use signorini_membrane::field::Moved;
 use signorini_membrane::obstacle::{Obstacle, Side};
@@ -120,6 +121,14 @@ fn side(planner: &Planner<'_>, rigid: &Rigid, level: Option<f64>) -> Result<Side
     }
 }
 
+/// From where the membrane sees a body.
+pub(super) fn view(side: Side) -> View {
+    match side {
+        Side::Below => View::FromAbove,
+        Side::Above => View::FromBelow,
+    }
+}
+
 /// The height of a body as seen from the membrane.
 fn height(
     planner: &Planner<'_>,
@@ -129,7 +138,7 @@ fn height(
     scene: &mut Scene<'_>,
 ) -> Result<Placed, CaseError> {
     let document = planner.document;
-    let underside = side == Side::Above;
+    let view = view(side);
     let placed = |expression, shape: &str| Placed {
         expression,
         span: rigid.shape.span(),
@@ -141,7 +150,7 @@ fn height(
             Ok(Placed { span: value.span(), ..placed(expression, "height") })
         }
         Shape::HeightMap(map) if planner.space == Space::Plane => {
-            let expression = Expression::relief(planner.height_map(map)?);
+            let expression = Expression::height(Arc::new(planner.height_map(map)?));
             Ok(Placed { span: map.file.span(), ..placed(expression, "height_map") })
         }
         Shape::HeightMap(_) => Err(document
@@ -160,11 +169,11 @@ fn height(
                     .error(key.max.span(), format!("the box is empty: z from {low} to {high}"))
                     .help("`max` is the upper corner"));
             }
-            Ok(placed(Expression::relief(LevelSetTop { inside, low, high, underside }), "level_set"))
+            Ok(placed(Expression::height(Arc::new(LevelSetTop { inside, low, high, view })), "level_set"))
         }
         Shape::Stl(key) if planner.space == Space::Plane => {
             let mesh = planner.closed_mesh(key)?;
-            let sampled = Sampled::of_mesh(&mesh, scene.around, scene.resolution, underside)
+            let sampled = Sampled::of_mesh(&mesh, scene.around, scene.resolution, view)
                 .map_err(|e| document.error(key.file.span(), format!("`{}`: {e}", key.file.get_ref())))?;
             scene.warnings.push(format!(
                 "`{}` is sampled every {:.3e} and joined by a bicubic spline: its edges are rounded by that much, and beyond \
@@ -172,12 +181,12 @@ fn height(
                 key.file.get_ref(),
                 scene.resolution
             ).into());
-            Ok(placed(Expression::relief(sampled), "stl"))
+            Ok(placed(Expression::height(Arc::new(sampled)), "stl"))
         }
         Shape::Stl(_) => {
             Err(document.error(rigid.shape.span(), "a triangle mesh is a surface beside a membrane in the plane"))
         }
-        _ => match super::shapes::height(planner, rigid, side)? {
+        _ => match super::height::read(planner, rigid, side, scene.around)? {
             Some((expression, shape)) => Ok(placed(expression, shape)),
             None => Err(planner.unavailable(rigid.shape.span(), "this shape beside a membrane")),
         },

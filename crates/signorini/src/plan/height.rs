@@ -1,0 +1,129 @@
+//! The height in which a membrane sees rigid shapes that have closed forms.
+
+use super::Planner;
+use super::rigid_shape::{self, ShapeKeys};
+use super::surface::view;
+use crate::case::statement::{CylinderKey, EllipsoidKey, Rigid, Shape, Space};
+use crate::case::units::{Dimension, LENGTH};
+use crate::case::{CaseError, Values};
+use crate::expression::Expression;
+use signorini_geometry::Vector;
+use signorini_geometry::rigid_shape::NoHeight;
+use signorini_membrane::obstacle::Side;
+use toml::Spanned;
+
+/// Points without a tangent plane are rounded off by this part of the size of the membrane: far below its cells, and well
+/// above round-off.
+const ROUNDING: f64 = 1e-6;
+
+/// The height of a shape on one side of a membrane within a box, and the name of the shape; none for shapes without a
+/// closed form.
+pub(super) fn read(
+    planner: &Planner<'_>,
+    rigid: &Rigid,
+    side: Side,
+    [low, high]: [Vector<2>; 2],
+) -> Result<Option<(Expression, &'static str)>, CaseError> {
+    let keys = BesideMembrane { planner };
+    if planner.space == Space::Axisymmetric {
+        keys.check_round(rigid.shape.get_ref())?;
+    }
+    let Some((shape, name)) = rigid_shape::read(&keys, &rigid.shape)? else { return Ok(None) };
+    match shape.height(view(side), ROUNDING * (high - low).max()) {
+        Ok(height) => Ok(Some((Expression::height(height), name))),
+        Err(NoHeight::NoFormula) => Ok(None),
+        Err(why) => Err(told(planner, &rigid.shape, side, why)),
+    }
+}
+
+/// What is wrong with the direction of a shape.
+fn told(planner: &Planner<'_>, shape: &Spanned<Shape>, side: Side, why: NoHeight) -> CaseError {
+    let span = match shape.get_ref() {
+        Shape::Plane(key) => key.normal.span(),
+        Shape::Cone(key) => key.axis.span(),
+        Shape::Paraboloid(key) => key.axis.span(),
+        Shape::Torus(key) => key.axis.span(),
+        Shape::Cylinder(key) => key.axis.as_ref().map_or(shape.span(), Spanned::span),
+        _ => shape.span(),
+    };
+    let below = side == Side::Below;
+    let (message, help) = match why {
+        NoHeight::LooksAway if below => ("the normal does not point towards the membrane", "normal = [0, 0, 1]"),
+        NoHeight::LooksAway => ("the normal does not point towards the membrane", "normal = [0, 0, -1]"),
+        NoHeight::AxisNotAway if below => ("the axis has to point straight down, into the body", "axis = [0, 0, -1]"),
+        NoHeight::AxisNotAway => ("the axis has to point straight up, into the body", "axis = [0, 0, 1]"),
+        NoHeight::AxisNotUpright => ("the axis has to stand upright", "axis = [0, 0, 1]"),
+        NoHeight::AxisNotFlat => ("a cylinder under a membrane lies flat", "axis = [1, 0, 0]"),
+        NoHeight::NoFormula => return planner.unavailable(span, "this shape beside a membrane"),
+    };
+    planner.document.error(span, message).help(help)
+}
+
+/// Shapes beside a membrane: with three coordinates, or two on a line.
+struct BesideMembrane<'a, 'b> {
+    planner: &'a Planner<'b>,
+}
+
+impl BesideMembrane<'_, '_> {
+    /// Round an axis of symmetry shapes stand on it and are round themselves.
+    fn check_round(&self, shape: &Shape) -> Result<(), CaseError> {
+        let place = match shape {
+            Shape::Sphere(key) => &key.center,
+            Shape::Cylinder(key) => &key.point,
+            Shape::Cone(key) => &key.apex,
+            Shape::Ellipsoid(key) => &key.center,
+            Shape::Torus(key) => &key.center,
+            Shape::Paraboloid(key) => &key.apex,
+            _ => return Ok(()),
+        };
+        let document = self.planner.document;
+        let at = self.vector(place, LENGTH)?;
+        if at[0] != 0.0 || at[1] != 0.0 {
+            return Err(document
+                .error(place.span(), "in an axisymmetric problem the shape stands on the axis")
+                .help("x = y = 0"));
+        }
+        if let Shape::Ellipsoid(key) = shape {
+            let [a, b, _] = self.semi_axes(key)?;
+            if a != b {
+                return Err(document.error(key.semi_axes.span(), "round an axis the first two semi-axes are equal"));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl ShapeKeys for BesideMembrane<'_, '_> {
+    fn planner(&self) -> &Planner<'_> {
+        self.planner
+    }
+
+    fn vector(&self, values: &Values, dimension: Dimension) -> Result<Vector<3>, CaseError> {
+        let reader = &self.planner.reader;
+        if values.get_ref().len() == 2 && self.planner.space != Space::Plane {
+            return reader.numbers::<2>(values, dimension).map(|[x, z]| Vector::<3>::new(x, 0.0, z));
+        }
+        let mut found = Vector::<3>::from(reader.numbers::<3>(values, dimension)?);
+        // A string sees places as if they were in its plane.
+        if self.planner.space == Space::Line && dimension == LENGTH {
+            found[1] = 0.0;
+        }
+        Ok(found)
+    }
+
+    fn cylinder_axis(&self, key: &CylinderKey, _: std::ops::Range<usize>) -> Result<Vector<3>, CaseError> {
+        match &key.axis {
+            // On a line a cylinder stands across it.
+            None if self.planner.space != Space::Plane => Ok(Vector::<3>::y()),
+            None => {
+                let error = self.planner.document.error(key.point.span(), "the cylinder needs an `axis`");
+                Err(error.help("axis = [1, 0, 0]"))
+            }
+            Some(axis) => self.direction(axis),
+        }
+    }
+
+    fn semi_axes(&self, key: &EllipsoidKey) -> Result<[f64; 3], CaseError> {
+        self.planner.reader.numbers::<3>(&key.semi_axes, LENGTH)
+    }
+}

@@ -1,0 +1,91 @@
+//! Reads the keys of rigid shapes that have closed forms, for solids and membranes alike.
+
+use super::Planner;
+use crate::case::statement::{CylinderKey, EllipsoidKey, Shape};
+use crate::case::units::{Dimension, LENGTH, NONE};
+use crate::case::{CaseError, Values};
+use signorini_geometry::Vector;
+use signorini_geometry::rigid_shape::{Cone, Cylinder, Ellipsoid, Paraboloid, Plane, RigidShape, Sphere, Torus};
+use std::f64::consts::FRAC_PI_2;
+use std::ops::Range;
+use std::sync::Arc;
+use toml::Spanned;
+
+/// How places and directions are stated: it depends on the space, and on what the shape lies beside.
+pub(super) trait ShapeKeys {
+    fn planner(&self) -> &Planner<'_>;
+
+    /// A place or a direction.
+    fn vector(&self, values: &Values, dimension: Dimension) -> Result<Vector<3>, CaseError>;
+
+    /// The unit vector along the axis of a cylinder, whose shape is stated at a place of the file.
+    fn cylinder_axis(&self, key: &CylinderKey, shape: Range<usize>) -> Result<Vector<3>, CaseError>;
+
+    fn semi_axes(&self, key: &EllipsoidKey) -> Result<[f64; 3], CaseError>;
+
+    /// A unit vector.
+    fn direction(&self, values: &Values) -> Result<Vector<3>, CaseError> {
+        let v = self.vector(values, NONE)?;
+        v.try_normalize(0.0).ok_or_else(|| self.planner().document.error(values.span(), "the direction has no length"))
+    }
+}
+
+/// A shape that has a closed form, and its name; none for the others.
+pub(super) fn read(
+    keys: &impl ShapeKeys,
+    shape: &Spanned<Shape>,
+) -> Result<Option<(Arc<dyn RigidShape>, &'static str)>, CaseError> {
+    let planner = keys.planner();
+    let (document, reader) = (planner.document, &planner.reader);
+    let wrong = |error: signorini_geometry::shape::ShapeError| document.error(shape.span(), error.to_string());
+    Ok(Some(match shape.get_ref() {
+        Shape::Plane(key) => {
+            let (point, normal) = (keys.vector(&key.point, LENGTH)?, keys.direction(&key.normal)?);
+            (Arc::new(Plane { point, normal }), "plane")
+        }
+        Shape::Sphere(key) => {
+            let (center, radius) = (keys.vector(&key.center, LENGTH)?, reader.positive(&key.radius, LENGTH)?);
+            (Arc::new(Sphere { center, radius }), "sphere")
+        }
+        Shape::Cylinder(key) => {
+            let (axis, point) = (keys.cylinder_axis(key, shape.span())?, keys.vector(&key.point, LENGTH)?);
+            (Arc::new(Cylinder { point, axis, radius: reader.positive(&key.radius, LENGTH)? }), "cylinder")
+        }
+        Shape::Cone(key) => {
+            let half_angle = reader.positive(&key.half_angle, NONE)?;
+            if half_angle >= FRAC_PI_2 {
+                return Err(document
+                    .error(key.half_angle.span(), format!("the half angle is {half_angle}"))
+                    .help("an angle in radians below pi/2"));
+            }
+            let (apex, axis) = (keys.vector(&key.apex, LENGTH)?, keys.direction(&key.axis)?);
+            (Arc::new(Cone { apex, axis, half_angle }), "cone")
+        }
+        Shape::Torus(key) => {
+            let major = reader.positive(&key.major_radius, LENGTH)?;
+            let minor = reader.positive(&key.minor_radius, LENGTH)?;
+            if minor >= major {
+                return Err(document.error(
+                    key.minor_radius.span(),
+                    format!("the minor radius {minor} is not smaller than the major radius {major}"),
+                ));
+            }
+            let (center, axis) = (keys.vector(&key.center, LENGTH)?, keys.direction(&key.axis)?);
+            (Arc::new(Torus { center, axis, major, minor }), "torus")
+        }
+        Shape::Ellipsoid(key) => {
+            let semi_axes = keys.semi_axes(key)?;
+            if semi_axes.iter().any(|a| *a <= 0.0) {
+                return Err(document.error(key.semi_axes.span(), "all semi-axes must be positive"));
+            }
+            let ellipsoid = Ellipsoid::new(keys.vector(&key.center, LENGTH)?, semi_axes).map_err(wrong)?;
+            (Arc::new(ellipsoid), "ellipsoid")
+        }
+        Shape::Paraboloid(key) => {
+            let radius = reader.positive(&key.radius, LENGTH)?;
+            let (apex, axis) = (keys.vector(&key.apex, LENGTH)?, keys.direction(&key.axis)?);
+            (Arc::new(Paraboloid::new(apex, axis, radius).map_err(wrong)?), "paraboloid")
+        }
+        _ => return Ok(None),
+    }))
+}

@@ -183,8 +183,14 @@ impl Image {
         }
     }
 
+    #[cfg(test)]
+    pub fn get(&self, x: usize, y: usize) -> RGBColor {
+        let pixel = self.pixmap.pixels()[y * self.width() + x].demultiply();
+        RGBColor(pixel.red(), pixel.green(), pixel.blue())
+    }
+
     /// Puts the image into an SVG, above the background and below everything else.
-    pub fn insert(&self, svg: &mut String, x: (i32, i32), y: (i32, i32)) -> Result<(), OutputError> {
+    pub fn insert(&self, svg: &mut String, x: (f64, f64), y: (f64, f64)) -> Result<(), OutputError> {
         let data = base64::engine::general_purpose::STANDARD.encode(encoded(&self.pixmap, png::Compression::Balanced)?);
         let element = format!(
             "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" xlink:href=\"data:image/png;base64,{data}\" xmlns:xlink=\"http://www.w3.org/1999/xlink\"/>\n",
@@ -281,4 +287,34 @@ pub fn rounded(v: f64, span: f64) -> f64 {
 pub fn padded((lo, hi): (f64, f64)) -> std::ops::Range<f64> {
     let pad = 0.05 * (hi - lo);
     lo - pad..hi + pad
+}
+
+/// Round values from `low` to `high`, about `wanted` of them, at least two where there are such.
+pub fn ticks(low: f64, high: f64, wanted: usize) -> Vec<f64> {
+    let span = high - low;
+    if !(span > 0.0 && span.is_finite()) {
+        return vec![low];
+    }
+    let rough = span / wanted.max(2) as f64;
+    let power = 10f64.powf(rough.log10().floor());
+    let step = [1.0, 2.0, 5.0].into_iter().map(|d| d * power).find(|s| *s >= 0.999 * rough).unwrap_or(10.0 * power);
+    let slack = 1e-9 * span;
+    let first = ((low - slack) / step).ceil() as i64;
+    let last = ((high + slack) / step).floor() as i64;
+    // Divided rather than multiplied where the step is below one: 0.3 and not 0.30000000000000004.
+    let at = |k: i64| if step < 1.0 { k as f64 / (1.0 / step).round() } else { k as f64 * step };
+    (first..=last).map(at).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_within_the_range() {
+        assert_eq!(ticks(-1.0, 1.0, 4), [-1.0, -0.5, 0.0, 0.5, 1.0]);
+        assert_eq!(ticks(0.0409, 19.5, 5), [5.0, 10.0, 15.0]);
+        assert_eq!(ticks(0.0, 0.31, 4), [0.0, 0.1, 0.2, 0.3]);
+        assert_eq!(ticks(2.0, 2.0, 4), [2.0]);
+    }
 }

@@ -248,7 +248,8 @@ fn map<const D: usize>(
     })?;
     let mut image = Image::new((pixels.0.1 - pixels.0.0).max(1) as u32, (pixels.1.1 - pixels.1.0).max(1) as u32)?;
     fill(&mut image, mesh, s, (values, across), &bounds, (lo, hi));
-    image.insert(&mut text, pixels.0, pixels.1)?;
+    let page = |p: (i32, i32)| (f64::from(p.0), f64::from(p.1));
+    image.insert(&mut text, page(pixels.0), page(pixels.1))?;
     // The front is drawn in fractions of a pixel, which the chart's own lines are rounded to.
     let at = |p: &Point<D>| {
         let t = (p - bounds.min).component_div(&extent);

@@ -1,6 +1,7 @@
 //! Fields of solids on cells small enough to be drawn flat, for ParaView and for pictures.
 
 use super::OutputError;
+use super::level::OF_HEXAHEDRON;
 use super::vtk::to_bytes;
 use nalgebra::Matrix3;
 use signorini_contact::ContactSurface;
@@ -17,7 +18,8 @@ use vtkio::model::{
 pub struct SolidDisplay<const D: usize> {
     pub points: Vec<Point<D>>,
     samples: Vec<Vec<(u32, u32, Local)>>,
-    body: Vec<u32>,
+    /// The body of every point.
+    pub body: Vec<u32>,
     cells: Vec<(CellType, Vec<u32>)>,
     /// What a picture shows: all cells in the plane, the boundary in space.
     pub polygons: Vec<Vec<u32>>,
@@ -202,6 +204,21 @@ impl<const D: usize> SolidDisplay<D> {
             fields.strain.push(strain.symmetric_eigenvalues().amax());
         }
         fields
+    }
+
+    /// The cells in space as tetrahedra.
+    pub fn tetrahedra(&self) -> impl Iterator<Item = [u32; 4]> {
+        const OF_TETRAHEDRON: [[usize; 4]; 1] = [[0, 1, 2, 3]];
+        const OF_WEDGE: [[usize; 4]; 3] = [[0, 1, 2, 5], [0, 1, 5, 4], [0, 4, 5, 3]];
+        self.cells.iter().flat_map(|(kind, list)| {
+            let parts: &[[usize; 4]] = match kind {
+                CellType::Hexahedron => &OF_HEXAHEDRON,
+                CellType::Wedge => &OF_WEDGE,
+                CellType::Tetra => &OF_TETRAHEDRON,
+                _ => &[],
+            };
+            parts.iter().map(|part| part.map(|k| list[k]))
+        })
     }
 
     /// Name of the body of a point.

@@ -179,7 +179,7 @@ pub fn preview(plan: &Plan) -> Result<Option<String>, RunError> {
         let model = solid::model(plan)?;
         let display = SolidDisplay::new(&model);
         let fields = display.fields(&model, &vec![0.0; model.bodies.unknowns()]);
-        Ok(Some(solid_pictures::preview(plan, &display, &fields)))
+        Ok(Some(solid_pictures::preview(plan, &display, &fields)?))
     }
     match plan {
         Plan::Line(plan) => membrane::<1, LineZone>(plan),

@@ -1,0 +1,131 @@
+//! Level sets in space as triangles, by marching tetrahedra.
+
+use rayon::prelude::*;
+use signorini_contact::GapJet;
+use signorini_geometry::Vector;
+use std::collections::{BTreeSet, HashMap};
+
+/// A point on the edge between two corners, at a share of the way from the first.
+pub type OnEdge = (u32, u32, f64);
+
+/// The six tetrahedra of a hexahedron around the diagonal from corner 0 to corner 6, corners as in VTK.
+pub const OF_HEXAHEDRON: [[usize; 4]; 6] =
+    [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]];
+
+/// Cubes along the longest side of the box in which a rigid body is drawn: each a few pixels wide.
+const CUBES: usize = 48;
+/// Cubes along the sides of the blocks with which the search for a surface begins, a power of two.
+const BLOCK: usize = 8;
+
+/// Where values at the corners of tetrahedra change sign: points on edges, and triangles between them.
+pub fn level(tetrahedra: impl Iterator<Item = [u32; 4]>, value: impl Fn(u32) -> f64) -> (Vec<OnEdge>, Vec<[u32; 3]>) {
+    let (mut points, mut triangles) = (Vec::new(), Vec::new());
+    let mut numbers: HashMap<(u32, u32), u32> = HashMap::new();
+    for corners in tetrahedra {
+        let (below, above): (Vec<u32>, Vec<u32>) = corners.iter().partition(|&&k| value(k) < 0.0);
+        let mut on = |a: u32, b: u32| {
+            let (a, b) = (a.min(b), a.max(b));
+            *numbers.entry((a, b)).or_insert_with(|| {
+                points.push((a, b, value(a) / (value(a) - value(b))));
+                points.len() as u32 - 1
+            })
+        };
+        match (&below[..], &above[..]) {
+            ([a], [b, c, d]) | ([b, c, d], [a]) => triangles.push([on(*a, *b), on(*a, *c), on(*a, *d)]),
+            ([a, b], [c, d]) => {
+                let [p, q, r, s] = [on(*a, *c), on(*a, *d), on(*b, *d), on(*b, *c)];
+                triangles.extend([[p, q, r], [p, r, s]]);
+            }
+            _ => {}
+        }
+    }
+    (points, triangles)
+}
+
+/// The surface of a rigid body within a box: points, their outward normals, and triangles.
+///
+/// `gap` is the distance to the surface, negative inside: blocks of cubes that are farther from it than their corners
+/// reach are left out.
+pub fn surface(
+    gap: &(dyn Fn(&Vector<3>) -> GapJet<3> + Sync),
+    [low, high]: [Vector<3>; 2],
+) -> (Vec<Vector<3>>, Vec<Vector<3>>, Vec<[u32; 3]>) {
+    let size = high - low;
+    let cube = size.max() / CUBES as f64;
+    let count: [usize; 3] = std::array::from_fn(|k| ((size[k] / cube).ceil() as usize).max(1));
+    let side: Vector<3> = Vector::<3>::from_fn(|k, _| size[k] / count[k] as f64);
+    let at = |i: [f64; 3]| Vector::<3>::from_fn(|k, _| low[k] + side[k] * i[k]);
+    let blocks = |k: usize| (0..count[k]).step_by(BLOCK);
+    let mut cubes: Vec<[usize; 3]> =
+        blocks(0).flat_map(|i| blocks(1).flat_map(move |j| blocks(2).map(move |k| [i, j, k]))).collect();
+    let mut wide = BLOCK;
+    loop {
+        let reach = 0.5 * wide as f64 * side.norm();
+        cubes = (cubes.into_par_iter())
+            .filter(|c| gap(&at(c.map(|i| i as f64 + 0.5 * wide as f64))).gap.abs() <= reach * (1.0 + 1e-9))
+            .collect();
+        if wide == 1 {
+            break;
+        }
+        wide /= 2;
+        cubes = (cubes.into_iter())
+            .flat_map(|c| (0..8).map(move |o| [0, 1, 2].map(|k| c[k] + wide * (o >> k & 1))))
+            .filter(|c| (0..3).all(|k| c[k] < count[k]))
+            .collect();
+    }
+    let number = |i: [usize; 3]| ((i[2] * (count[1] + 1) + i[1]) * (count[0] + 1) + i[0]) as u32;
+    let place = |n: u32| {
+        let (n, x, y) = (n as usize, count[0] + 1, count[1] + 1);
+        at([n % x, n / x % y, n / (x * y)].map(|i| i as f64))
+    };
+    const CORNERS: [[usize; 3]; 8] =
+        [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+    let corners: Vec<[u32; 8]> =
+        cubes.iter().map(|c| CORNERS.map(|o| number([c[0] + o[0], c[1] + o[1], c[2] + o[2]]))).collect();
+    let nodes: Vec<u32> = corners.iter().flatten().copied().collect::<BTreeSet<u32>>().into_iter().collect();
+    let gaps: HashMap<u32, f64> =
+        nodes.par_iter().map(|&n| (n, gap(&place(n)).gap)).collect::<Vec<_>>().into_iter().collect();
+    let tetrahedra = corners.iter().flat_map(|c| OF_HEXAHEDRON.map(|t| t.map(|k| c[k])));
+    let (edges, mut triangles) = level(tetrahedra, |n| gaps[&n]);
+    let found: Vec<(Vector<3>, Vector<3>, bool)> = (edges.par_iter())
+        .map(|&(a, b, t)| {
+            let x = place(a) * (1.0 - t) + place(b) * t;
+            let jet = gap(&x);
+            // Where the sign changes far from the surface, as beyond the rim of an open one, there is no surface.
+            (x - jet.normal * jet.gap, jet.normal, jet.gap.abs() < 0.25 * cube)
+        })
+        .collect();
+    triangles.retain(|t| t.iter().all(|&k| found[k as usize].2));
+    (found.iter().map(|f| f.0).collect(), found.iter().map(|f| f.1).collect(), triangles)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_surface_of_a_ball_lies_on_it_and_has_its_area() {
+        let gap = |x: &Vector<3>| GapJet::ball(x, &Vector::<3>::zeros(), 0.8);
+        let (points, normals, triangles) = surface(&gap, [Vector::<3>::repeat(-1.0), Vector::<3>::repeat(1.0)]);
+        assert!(points.iter().zip(&normals).all(|(x, n)| (x - n * 0.8).norm() < 1e-12));
+        let x = |k: u32| points[k as usize];
+        let area: f64 = triangles.iter().map(|t| 0.5 * (x(t[1]) - x(t[0])).cross(&(x(t[2]) - x(t[0]))).norm()).sum();
+        assert!((area / (4.0 * std::f64::consts::PI * 0.64) - 1.0).abs() < 2e-3, "{area}");
+    }
+
+    #[test]
+    fn an_open_surface_ends_at_its_rim() {
+        // A disc of radius 0.5 at z = 0 whose sides are told apart everywhere by the sign of z.
+        let gap = |x: &Vector<3>| {
+            let r = x.xy().norm();
+            let foot =
+                if r > 0.5 { Vector::<3>::new(x.x, x.y, 0.0) * (0.5 / r) } else { Vector::<3>::new(x.x, x.y, 0.0) };
+            let d = (x - foot).norm();
+            GapJet::flat(if x.z < 0.0 { -d } else { d }, Vector::<3>::z())
+        };
+        let (points, _, triangles) =
+            surface(&gap, [Vector::<3>::new(-1.0, -1.0, -0.9), Vector::<3>::new(1.0, 1.0, 1.0)]);
+        assert!(!triangles.is_empty());
+        assert!(triangles.iter().flatten().all(|&k| points[k as usize].xy().norm() < 0.5 + 2.0 / CUBES as f64));
+    }
+}

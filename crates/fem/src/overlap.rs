@@ -16,6 +16,8 @@ use signorini_geometry::{Aabb, Point};
 const DEPTH: f64 = 0.02;
 /// Parts of a side between the points that are looked at, in the plane and in space.
 const PARTS: [usize; 2] = [8, 3];
+/// Steps of Newton's method, in coordinates of a cell, from which on it converges quadratically.
+const SHORT: f64 = 0.25;
 /// By what the box round the nodes of a cell of order 2 or more is enlarged: a curved side bulges beyond its nodes by no
 /// more than it bulges at them.
 pub(crate) const BULGE: f64 = 1.25;
@@ -110,6 +112,10 @@ impl<const D: usize> Mesh<D> {
             // A cell has the size 1 or 2 in its own coordinates.
             let factor = (0.5 / length).min(1.0);
             (0..D).for_each(|k| xi[k] += factor * step[k]);
+            // Where steps are short against the cell each is less than half the one before: the way left is no longer.
+            if length < SHORT && shape.beyond(&xi) > length {
+                return false;
+            }
             if length < 1e-9 {
                 return shape.beyond(&xi) <= 0.0;
             }

@@ -312,7 +312,11 @@ impl Planner<'_> {
             Some(d) => return Err(document.error(d.span(), format!("degree {} is not between 1 and 8", d.get_ref()))),
         };
         let mesh = match key.mesh.get_ref() {
-            SolidMesh::Box(b) => self.block::<D>(name, b, key.mesh.span(), stated.unwrap_or(1))?,
+            SolidMesh::Box(b) => {
+                let mesh = self.block::<D>(name, b, key.mesh.span(), stated.unwrap_or(1))?;
+                self.check_overlap(name, b, &mesh)?;
+                mesh
+            }
             SolidMesh::Gmsh(g) => self.gmsh::<D>(g)?,
             SolidMesh::Nurbs(_) => return Err(self.unavailable(key.mesh.span(), "a NURBS solid")),
         };

@@ -95,12 +95,20 @@ impl Planner<'_> {
         if let Some(error) = failure {
             return Err(error);
         }
-        let mesh = checked(mesh)?;
-        if let Some(Overlap { cells: [a, b], at }) = mesh.overlap() {
-            let message = format!("the mesh of `{name}`: its cells {a} and {b} overlap at {}", position(&at));
-            return Err(document.error(map.span(), message).help("`map` must bring no two places to the same one"));
-        }
-        Ok(mesh)
+        checked(mesh)
+    }
+
+    /// Refuses a box whose `map` brings cells over each other.
+    pub(super) fn check_overlap<const D: usize>(
+        &self,
+        name: &str,
+        key: &statement::BoxKey,
+        mesh: &Mesh<D>,
+    ) -> Result<(), CaseError> {
+        let Some(map) = &key.map else { return Ok(()) };
+        let Some(Overlap { cells: [a, b], at }) = mesh.overlap() else { return Ok(()) };
+        let message = format!("the mesh of `{name}`: its cells {a} and {b} overlap at {}", position(&at));
+        Err(self.document.error(map.span(), message).help("`map` must bring no two places to the same one"))
     }
 
     fn axis(

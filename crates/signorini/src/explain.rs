@@ -5,7 +5,7 @@ use crate::report::words;
 
 /// A word of the results: a reason, an event, a figure.
 #[derive(Clone, Copy, Debug)]
-pub struct Word {
+struct Word {
     pub word: &'static str,
     pub kind: &'static str,
     pub about: &'static str,
@@ -16,7 +16,7 @@ const fn word(word: &'static str, kind: &'static str, about: &'static str) -> Wo
 }
 
 /// What `explain` knows besides the keys and words of case file and summary.
-pub const WORDS: &[Word] = &[
+const WORDS: &[Word] = &[
     word("force", "result", "Force of the floor on the membrane; for a round membrane, of the whole of it."),
     word("t", "result", "Time, as in the tables of the terminal: the end of the increment."),
     word("solves", "result", "Equilibrium solves of an increment: `iterations` and `iterations_before` together."),

@@ -10,14 +10,12 @@ mod solid;
 
 use crate::case::{CaseError, Document};
 use crate::output::OutputError;
-use crate::plan::{MembranePlan, Plan, plan};
+use crate::plan::{Plan, plan};
 use crate::report::{Reason, Summary};
 use driver::{Model, drive, go_on};
 use membrane::MembraneModel;
-use record::{Head, Record};
 use signorini_membrane::line_zone::LineZone;
 use signorini_membrane::plane_zone::PlaneZone;
-use signorini_membrane::zone::Zone;
 pub use signorini_solve::{Iteration, Progress, Silent};
 pub use sizes::{preview, sizes};
 use solid::SolidModel;
@@ -108,57 +106,26 @@ fn begin(document: &Document, folder: &Path, begun: Begun, progress: &mut dyn Pr
     let start = Instant::now();
     // Everything that can be checked is checked before the folder is touched.
     match plan(document)? {
-        Plan::Line(p) => run_membrane::<1, LineZone>(p, folder, begun, start, progress),
-        Plan::Plane(p) => run_membrane::<2, PlaneZone>(p, folder, begun, start, progress),
-        Plan::PlaneSolids(p) => run_solids(*p, folder, begun, start, progress),
-        Plan::Solids(p) => run_solids(*p, folder, begun, start, progress),
-    }
-}
-
-fn run_membrane<const D: usize, Z: Zone<D>>(
-    plan: MembranePlan<D>,
-    folder: &Path,
-    begun: Begun,
-    start: Instant,
-    progress: &mut dyn Progress,
-) -> Result<Outcome, RunError> {
-    let mut model = MembraneModel::<D, Z>::new(plan)?;
-    let record = record_in(&model.head(), folder, begun)?;
-    run_model(&mut model, record, folder, begun, start, progress)
-}
-
-fn run_solids<const D: usize>(
-    plan: crate::plan::solid::SolidPlan<D>,
-    folder: &Path,
-    begun: Begun,
-    start: Instant,
-    progress: &mut dyn Progress,
-) -> Result<Outcome, RunError> {
-    let mut model = SolidModel::new(plan)?;
-    let mut record = record_in(&model.head(), folder, begun)?;
-    record.unknowns = model.unknowns();
-    run_model(&mut model, record, folder, begun, start, progress)
-}
-
-fn record_in(head: &Head, folder: &Path, begun: Begun) -> Result<Record, OutputError> {
-    match begun {
-        Begun::Resumed => Ok(record::of_earlier_run(head, folder)),
-        _ => record::begin(head, folder),
+        Plan::Line(p) => run_model(&mut MembraneModel::<1, LineZone>::new(p)?, folder, begun, start, progress),
+        Plan::Plane(p) => run_model(&mut MembraneModel::<2, PlaneZone>::new(p)?, folder, begun, start, progress),
+        Plan::PlaneSolids(p) => run_model(&mut SolidModel::new(*p)?, folder, begun, start, progress),
+        Plan::Solids(p) => run_model(&mut SolidModel::new(*p)?, folder, begun, start, progress),
     }
 }
 
 fn run_model(
     model: &mut dyn Model,
-    record: Record,
     folder: &Path,
     begun: Begun,
     start: Instant,
     progress: &mut dyn Progress,
 ) -> Result<Outcome, RunError> {
-    match begun {
-        Begun::Resumed => go_on(model, record, folder, start, progress),
-        _ => drive(model, record, 0, start, progress),
+    if begun == Begun::Resumed {
+        let record = record::of_earlier_run(&model.head(), folder);
+        return go_on(model, record, folder, start, progress);
     }
+    let record = record::begin(&model.head(), folder)?;
+    drive(model, record, 0, start, progress)
 }
 
 /// Why there is nothing to go on with, for a user.

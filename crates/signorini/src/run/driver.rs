@@ -1,7 +1,7 @@
 //! One driver for all models: increments, files, what a later run goes on from, and the end.
 
 use super::checkpoint::{self, Checkpoint};
-use super::record::Record;
+use super::record::{Head, Record};
 use super::{Ending, Outcome, RunError};
 use crate::case::CaseError;
 use crate::output::{Folder, OutputError};
@@ -22,6 +22,9 @@ pub enum Advanced {
 
 /// A problem that is solved increment by increment.
 pub trait Model {
+    /// What the record of a run needs to know.
+    fn head(&self) -> Head<'_>;
+
     /// Number of increments.
     fn increments(&self) -> usize;
 

@@ -65,19 +65,6 @@ impl<const D: usize, Z: Zone<D>> MembraneModel<D, Z> {
         Ok(Self { plan, mesh, engine, path: None, seeker: None, film: Film::default(), known: None, last: None })
     }
 
-    /// What the record of a run needs to know.
-    pub fn head(&self) -> Head<'_> {
-        let plan = &self.plan;
-        Head {
-            document: &plan.document,
-            units: plan.unit_names(),
-            interpreted: &plan.interpreted,
-            warnings: &plan.warnings,
-            every: plan.every,
-            pictures: plan.pictures,
-        }
-    }
-
     /// The state at the beginning of an increment whose events are wanted: that of the one before, or at t = 0.
     fn known(&mut self, index: usize, last: Option<Known<Z>>, progress: &mut dyn Progress) -> Option<Known<Z>> {
         let planned = &self.plan.increments[index];
@@ -323,6 +310,18 @@ impl<const D: usize, Z: Zone<D>> MembraneModel<D, Z> {
 }
 
 impl<const D: usize, Z: Zone<D>> Model for MembraneModel<D, Z> {
+    fn head(&self) -> Head<'_> {
+        let plan = &self.plan;
+        Head {
+            document: &plan.document,
+            units: plan.unit_names(),
+            interpreted: &plan.interpreted,
+            warnings: &plan.warnings,
+            every: plan.every,
+            pictures: plan.pictures,
+        }
+    }
+
     fn increments(&self) -> usize {
         self.plan.increments.len()
     }

@@ -58,24 +58,6 @@ impl<const D: usize> SolidModel<D> {
         Ok(Self { plan, solids, display, last: None, failure: None })
     }
 
-    /// What the record of a run needs to know.
-    pub fn head(&self) -> Head<'_> {
-        let plan = &self.plan;
-        Head {
-            document: &plan.document,
-            units: plan.unit_names(),
-            interpreted: &plan.interpreted,
-            warnings: &plan.warnings,
-            every: plan.every,
-            pictures: plan.pictures,
-        }
-    }
-
-    /// Number of unknowns.
-    pub fn unknowns(&self) -> usize {
-        self.solids.unknowns()
-    }
-
     /// Solves for the end of an increment. With finite sliding an increment that has no solution at once is cut: after an
     /// error the model still has the state before, from which the next try starts.
     fn reach(
@@ -183,6 +165,18 @@ impl<const D: usize> SolidModel<D> {
 }
 
 impl<const D: usize> Model for SolidModel<D> {
+    fn head(&self) -> Head<'_> {
+        let plan = &self.plan;
+        Head {
+            document: &plan.document,
+            units: plan.unit_names(),
+            interpreted: &plan.interpreted,
+            warnings: &plan.warnings,
+            every: plan.every,
+            pictures: plan.pictures,
+        }
+    }
+
     fn increments(&self) -> usize {
         self.plan.times.len()
     }
@@ -197,6 +191,7 @@ impl<const D: usize> Model for SolidModel<D> {
         record: &mut Record,
         progress: &mut dyn Progress,
     ) -> Result<Advanced, CaseError> {
+        record.unknowns = self.solids.unknowns();
         let time = self.plan.times[index];
         let before = if index == 0 { 0.0 } else { self.plan.times[index - 1] };
         let state = match self.reach(index, [before, time], progress)? {

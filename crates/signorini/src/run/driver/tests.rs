@@ -7,14 +7,24 @@ use crate::run::record::{Head, begin, of_earlier_run};
 use signorini_solve::Silent;
 
 /// A spring of stiffness two whose end is pushed by the time; a wall stands at 0.3.
-#[derive(Default)]
 struct Spring {
+    document: Document,
     force: f64,
     /// The increment in which it fails.
     fails_in: Option<usize>,
 }
 
+impl Spring {
+    fn new(fails_in: Option<usize>) -> Self {
+        let document = Document::parse("spring.toml", crate::gallery::GALLERY[0].case, &[]).expect("a case");
+        Spring { document, force: 0.0, fails_in }
+    }
+}
+
 impl Model for Spring {
+    fn head(&self) -> Head<'_> {
+        Head { document: &self.document, units: None, interpreted: &[], warnings: &[], every: 2, pictures: true }
+    }
     fn increments(&self) -> usize {
         4
     }
@@ -75,21 +85,21 @@ impl Model for Spring {
 #[test]
 fn a_model_runs_fails_goes_on_draws_and_reports() {
     let folder = tempfile::tempdir().expect("a folder");
-    let document = Document::parse("spring.toml", crate::gallery::GALLERY[0].case, &[]).expect("a case");
-    let head = Head { document: &document, units: None, interpreted: &[], warnings: &[], every: 2, pictures: true };
+    let spring = Spring::new(None);
+    let head = spring.head();
     let start = std::time::Instant::now();
     let whole = folder.path().join("whole");
-    let outcome = drive(&mut Spring::default(), begin(&head, &whole).expect("a folder"), 0, start, &mut Silent);
+    let outcome = drive(&mut Spring::new(None), begin(&head, &whole).expect("a folder"), 0, start, &mut Silent);
     let whole = outcome.expect("a run");
     assert!(whole.ending == Ending::Converged && whole.summary.steps.len() == 4);
     assert!((whole.summary.steps[3].contacts["wall"].force[0] - 1.4).abs() < 1e-15);
     // It fails in the third increment, and goes on from there.
     let path = folder.path().join("parts");
-    let mut failing = Spring { fails_in: Some(2), ..Spring::default() };
+    let mut failing = Spring::new(Some(2));
     let failed = drive(&mut failing, begin(&head, &path).expect("a folder"), 0, start, &mut Silent).expect("a run");
     assert!(failed.ending == Ending::NotConverged && failed.summary.reason == Reason::Newton);
     assert_eq!(failed.summary.steps, whole.summary.steps[..2]);
-    let rest = go_on(&mut Spring::default(), of_earlier_run(&head, &path), &path, start, &mut Silent).expect("a run");
+    let rest = go_on(&mut Spring::new(None), of_earlier_run(&head, &path), &path, start, &mut Silent).expect("a run");
     assert_eq!(rest.summary.steps, whole.summary.steps);
     assert_eq!(rest.summary.verdict, whole.summary.verdict);
     let read = |name: &str| std::fs::read_to_string(path.join(name)).expect(name);
@@ -97,5 +107,5 @@ fn a_model_runs_fails_goes_on_draws_and_reports() {
     assert_eq!(read("fields.pvd").matches("<DataSet").count(), 2);
     assert!(!path.join("checkpoint.json").exists());
     // There is nothing to go on with any more.
-    assert!(go_on(&mut Spring::default(), of_earlier_run(&head, &path), &path, start, &mut Silent).is_err());
+    assert!(go_on(&mut Spring::new(None), of_earlier_run(&head, &path), &path, start, &mut Silent).is_err());
 }

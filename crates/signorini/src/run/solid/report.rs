@@ -28,6 +28,14 @@ pub struct Shown<const D: usize> {
     pub contacts: Vec<ContactDisplay<D>>,
 }
 
+impl<const D: usize> Shown<D> {
+    /// The point of the display with the largest strain.
+    fn most_strained(&self) -> Option<usize> {
+        let strain = &self.fields.strain;
+        (0..strain.len()).max_by(|&a, &b| strain[a].total_cmp(&strain[b]))
+    }
+}
+
 /// The step of the summary that a state is.
 pub fn step_report<const D: usize>(
     plan: &SolidPlan<D>,
@@ -59,7 +67,7 @@ pub fn step_report<const D: usize>(
             von_mises: Some(fields.von_mises[nearest]),
         })
     };
-    let most = (0..fields.strain.len()).max_by(|&a, &b| fields.strain[a].total_cmp(&fields.strain[b]));
+    let most = shown.most_strained();
     StepReport {
         index,
         time,
@@ -91,7 +99,7 @@ pub fn warn<const D: usize>(
     record: &mut Record,
 ) {
     let Shown { time, fields, .. } = shown;
-    let most = (0..fields.strain.len()).max_by(|&a, &b| fields.strain[a].total_cmp(&fields.strain[b]));
+    let most = shown.most_strained();
     if let Some(k) = most.filter(|&k| fields.strain[k] >= LARGE_STRAIN) {
         let x: Vec<String> = display.points[k].iter().map(|v| format!("{v:.4}")).collect();
         let message = format!(

@@ -1,9 +1,9 @@
 #![no_main]
 use libfuzzer_sys::fuzz_target;
-use signorini::case::Document;
+use signorini::problem::Problem;
 
 fuzz_target!(|text: &str| {
-    if let Ok(document) = Document::parse("case.toml", text, &[]) {
-        let _ = signorini::plan::plan(&document);
+    if let Ok(problem) = signorini::case::read("case.toml", text, &[]) {
+        let _ = signorini::plan::plan(&problem);
     }
 });

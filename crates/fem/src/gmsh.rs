@@ -513,6 +513,52 @@ impl GmshFile {
     }
 }
 
+/// The cells of a shape by its name and number of nodes, in the order of a Gmsh file.
+pub struct ListedCells<'a> {
+    pub shape: &'a str,
+    pub nodes: &'a [Vec<u32>],
+}
+
+impl GmshFile {
+    /// The file that would hold some points and cells, with neither groups nor sides.
+    ///
+    /// # Errors
+    /// In words: an unknown shape or number of nodes, of which cell; a node that is no point.
+    pub fn from_arrays(points: Vec<[f64; 3]>, cells: &[ListedCells]) -> Result<Self, String> {
+        let count = points.len();
+        let nodes = points.into_iter().enumerate().map(|(k, x)| (k as u64, x)).collect();
+        let mut elements = Vec::new();
+        for block in cells {
+            for (cell, list) in block.nodes.iter().enumerate() {
+                let what = || format!("cell {cell} of the {}s", block.shape);
+                let kind = match (block.shape, list.len()) {
+                    ("triangle", 3) => 2,
+                    ("quadrilateral", 4) => 3,
+                    ("tetrahedron", 4) => 4,
+                    ("hexahedron", 8) => 5,
+                    ("wedge", 6) => 6,
+                    ("triangle", 6) => 9,
+                    ("quadrilateral", 9) => 10,
+                    ("tetrahedron", 10) => 11,
+                    ("hexahedron", 27) => 12,
+                    ("wedge", 18) => 13,
+                    ("quadrilateral", 8) => 16,
+                    ("hexahedron", 20) => 17,
+                    ("wedge", 15) => 18,
+                    (_, found) => return Err(format!("{}: no such cell has {found} nodes", what())),
+                };
+                if let Some(beyond) = list.iter().find(|n| **n as usize >= count) {
+                    return Err(format!("{}: there is no point {beyond}, the last is {}", what(), count.max(1) - 1));
+                }
+                let number = elements.len() as u64;
+                let nodes = list.iter().map(|n| u64::from(*n)).collect();
+                elements.push(Element { number, kind, entity: 0, groups: Vec::new(), nodes });
+            }
+        }
+        Ok(Self { nodes, elements, names: BTreeMap::new() })
+    }
+}
+
 fn signed_area<const D: usize>(shape: CellShape, order: usize, nodes: &[u32], x: &[Point<D>]) -> f64 {
     let corners: Vec<Point<D>> =
         CellMap::new(shape, order).vertex_nodes().iter().map(|&k| x[nodes[k] as usize]).collect();

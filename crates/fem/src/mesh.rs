@@ -98,6 +98,11 @@ impl<const D: usize> Mesh<D> {
         (self.nodes.len() - 1) as u32
     }
 
+    /// Moves all nodes.
+    pub fn move_nodes(&mut self, to: impl Fn(&Point<D>) -> Point<D>) {
+        self.nodes.iter_mut().for_each(|x| *x = to(x));
+    }
+
     pub fn group_mut(&mut self, name: &str) -> &mut Group {
         self.groups.entry(name.to_string()).or_default()
     }

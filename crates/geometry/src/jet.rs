@@ -79,6 +79,38 @@ impl<const D: usize> Jet<D> {
     }
 }
 
+/// The elementary functions, for fields that a program states.
+impl<const D: usize> Jet<D> {
+    #[must_use]
+    pub fn sin(self) -> Self {
+        let (sin, cos) = self.value.sin_cos();
+        self.chain(sin, cos, -sin)
+    }
+
+    #[must_use]
+    pub fn cos(self) -> Self {
+        let (sin, cos) = self.value.sin_cos();
+        self.chain(cos, -sin, -cos)
+    }
+
+    #[must_use]
+    pub fn exp(self) -> Self {
+        let e = self.value.exp();
+        self.chain(e, e, e)
+    }
+
+    #[must_use]
+    pub fn ln(self) -> Self {
+        let r = 1.0 / self.value;
+        self.chain(self.value.ln(), r, -r * r)
+    }
+
+    #[must_use]
+    pub fn sqrt(self) -> Self {
+        self.powf(0.5)
+    }
+}
+
 impl<const D: usize> Real for Jet<D> {
     fn constant(value: f64) -> Self {
         Self { value, gradient: Vector::zeros(), hessian: Matrix::zeros() }
@@ -144,6 +176,34 @@ impl<const D: usize> Div for Jet<D> {
     }
 }
 
+impl<const D: usize> Add<f64> for Jet<D> {
+    type Output = Self;
+    fn add(self, c: f64) -> Self {
+        Self { value: self.value + c, ..self }
+    }
+}
+
+impl<const D: usize> Sub<f64> for Jet<D> {
+    type Output = Self;
+    fn sub(self, c: f64) -> Self {
+        Self { value: self.value - c, ..self }
+    }
+}
+
+impl<const D: usize> Mul<f64> for Jet<D> {
+    type Output = Self;
+    fn mul(self, c: f64) -> Self {
+        Self { value: self.value * c, gradient: self.gradient * c, hessian: self.hessian * c }
+    }
+}
+
+impl<const D: usize> Div<f64> for Jet<D> {
+    type Output = Self;
+    fn div(self, c: f64) -> Self {
+        Self { value: self.value / c, gradient: self.gradient / c, hessian: self.hessian / c }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -155,12 +215,12 @@ mod tests {
         for &(x, y) in &[(0.3, -1.2), (2.0, 0.7), (-0.4, 0.1)] {
             let (jx, jy) = (Jet::<2>::variable(x, 0), Jet::<2>::variable(y, 1));
             let s = jx * jx + jy * jy;
-            let sin = s.chain(s.value.sin(), s.value.cos(), -s.value.sin());
-            let jet = sin / (Jet::constant(2.0) + jx * jy) - s.powf(1.5);
+            let sin = s.sin();
+            let jet = sin / (jx * jy + 2.0) - s.powf(1.5) + (s * 0.5 - 0.1).cos().exp() / 3.0 - s.sqrt().ln();
             let (f, gradient, hessian) = num_dual::hessian(
                 |v| {
                     let s = v[0] * v[0] + v[1] * v[1];
-                    s.sin() / (v[0] * v[1] + 2.0) - s.powf(1.5)
+                    s.sin() / (v[0] * v[1] + 2.0) - s.powf(1.5) + (s * 0.5 - 0.1).cos().exp() / 3.0 - s.sqrt().ln()
                 },
                 &nalgebra::SVector::<f64, 2>::new(x, y),
             );

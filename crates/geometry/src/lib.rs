@@ -44,7 +44,7 @@ pub mod rigid_shape;
 pub mod rule;
 mod scale;
 pub mod shape;
-mod similarity;
+pub mod similarity;
 pub mod spline;
 
 pub use aabb::Aabb;

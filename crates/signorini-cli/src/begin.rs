@@ -3,9 +3,10 @@
 use crate::commands::{DONE, INTERRUPTED, NOT_CONVERGED, WRONG_INPUT, report, unknown_example};
 use crate::console::{self, say, tell};
 use serde_json::{Value, json};
-use signorini::case::{CaseError, schema};
+use signorini::case::schema;
 use signorini::explain::{explain as explanation, reference, words as all_words};
 use signorini::gallery::{asset, find};
+use signorini::problem::CaseError;
 use signorini::report::words;
 use signorini::reproduce::{FIGURES, reproduce as reproduced};
 use signorini::template::{SCHEMA_FILE, annotated};

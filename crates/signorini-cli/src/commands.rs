@@ -3,13 +3,14 @@
 use crate::bar::{Bar, Counter};
 use crate::console::{self, say, tell};
 use serde_json::{Value, json};
-use signorini::case::{CaseError, Document, override_key};
+use signorini::case::override_key;
 use signorini::fit::fit;
 use signorini::gallery::{all, find};
 use signorini::output::chart::save_as;
 use signorini::output::figure::{figures, told};
 use signorini::output::{Earlier, OutputError};
 use signorini::plan::plan;
+use signorini::problem::CaseError;
 use signorini::queries::{Query, answer_file, answer_points};
 use signorini::report::{Summary, UnitNames, table};
 use signorini::run::{Begun, Ending, RunError, begun, preview, resume, run, sizes};
@@ -30,13 +31,13 @@ pub fn run_file(case: &Path, output: Option<PathBuf>, set: &[String], resumed: b
 }
 
 pub fn fit_file(case: &Path, output: Option<PathBuf>, set: &[String], json: bool) -> u8 {
-    let document = match read(case).and_then(|(name, text)| Document::parse(&name, &text, set)) {
-        Ok(document) => document,
+    let problem = match read(case).and_then(|(name, text)| signorini::case::read(&name, &text, set)) {
+        Ok(problem) => problem,
         Err(error) => return report(&error, json),
     };
     let folder = output.unwrap_or_else(|| default_folder(case));
     let replaced = Earlier::in_folder(&folder);
-    match fit(&document, &folder) {
+    match fit(&problem, &folder) {
         Err(RunError::Case(error)) => report(&error, json),
         Err(RunError::Output(error)) => report(&output_error(&error), json),
         Ok(fitted) => {
@@ -127,8 +128,8 @@ pub fn check(case: &Path, set: &[String], picture: Option<&Path>, json: bool) ->
             }
         };
     }
-    let checked = read(case).and_then(|(name, text)| Document::parse(&name, &text, set)).and_then(|document| {
-        let plan = plan(&document)?;
+    let checked = read(case).and_then(|(name, text)| signorini::case::read(&name, &text, set)).and_then(|problem| {
+        let plan = plan(&problem)?;
         let sizes = sizes(&plan)?;
         if let Some(file) = picture {
             let drawn = match preview(&plan) {
@@ -139,15 +140,15 @@ pub fn check(case: &Path, set: &[String], picture: Option<&Path>, json: bool) ->
             let nothing = || CaseError::new("there is nothing to draw: the membrane could not be solved for");
             save_as(file, &drawn.ok_or_else(nothing)?).map_err(|e| output_error(&e))?;
         }
-        Ok((document, sizes))
+        Ok((problem, sizes))
     });
     match checked {
         Err(error) => report(&error, json),
-        Ok((document, sizes)) => {
+        Ok((problem, sizes)) => {
             if json {
                 say!("{sizes}");
             } else {
-                say!("{}: the case is right.", document.name);
+                say!("{}: the case is right.", problem.source.name);
                 for (key, value) in sizes.as_object().into_iter().flatten() {
                     match value {
                         Value::Array(list) if list.is_empty() => {}
@@ -309,11 +310,11 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], resumed: bool,
         }
         return execute_scene(name, text, folder, set, json);
     }
-    let document = match Document::parse(name, text, set) {
-        Ok(document) => document,
+    let problem = match signorini::case::read(name, text, set) {
+        Ok(problem) => problem,
         Err(error) => return report(&error, json),
     };
-    let earlier = match resumed.then(|| begun(&document, folder)).transpose() {
+    let earlier = match resumed.then(|| begun(&problem, folder)).transpose() {
         Ok(earlier) => earlier,
         Err(error) => return report(&error, json),
     };
@@ -328,7 +329,7 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], resumed: bool,
     }
     let replaced = if resumed { None } else { Earlier::in_folder(folder) };
     let mut bar = Bar::new(json);
-    let result = if resumed { resume(&document, folder, &mut bar) } else { run(&document, folder, &mut bar) };
+    let result = if resumed { resume(&problem, folder, &mut bar) } else { run(&problem, folder, &mut bar) };
     bar.finish();
     match result {
         Err(RunError::Case(error)) => report(&error, json),
@@ -386,7 +387,7 @@ fn read(case: &Path) -> Result<(String, String), CaseError> {
 
 pub fn unknown_example(name: &str) -> CaseError {
     let names: Vec<&str> = all().map(|e| e.name).collect();
-    CaseError::new(format!("the gallery has no case `{name}`")).help(signorini::case::suggestion(name, &names))
+    CaseError::new(format!("the gallery has no case `{name}`")).help(signorini::problem::suggestion(name, &names))
 }
 
 pub fn report(error: &CaseError, json: bool) -> u8 {

@@ -1,7 +1,7 @@
 //! The exact solution of a case, where it is one of those that have one.
 
-use crate::case::statement::Space;
 use crate::plan::MembranePlan;
+use crate::problem::Space;
 use signorini_membrane::obstacle::Side;
 use signorini_verify::flat_floor::{FlatFloor, Kind};
 

@@ -1,6 +1,7 @@
 //! Words that results are told in, and what to do about them.
 
-use crate::case::{CaseError, schema, suggestion};
+use crate::case::schema;
+use crate::problem::{CaseError, suggestion};
 use crate::report::words;
 
 /// A word of the results: a reason, an event, a figure.

@@ -14,10 +14,10 @@ pub use data::Measurements;
 pub use estimate::{Estimate, Parameter};
 pub use model::{Model, Quantity};
 
-use crate::case::statement::{FitUnknown, Noise, Space};
-use crate::case::{CaseError, Document};
 use crate::output::{Folder, OutputError};
 use crate::plan::{Plan, plan};
+use crate::problem::{CaseError, Problem};
+use crate::problem::{FitUnknown, Noise, Space};
 use crate::run::RunError;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -30,42 +30,42 @@ pub struct Fitted {
 }
 
 /// Fits the unknowns of a case to its measurements, and writes the results into a folder.
-pub fn fit(document: &Document, folder: &Path) -> Result<Fitted, RunError> {
-    let Some(key) = &document.case.fit else {
-        return Err(CaseError::new(format!("{} has no table [fit]", document.name))
+pub fn fit(problem: &Problem, folder: &Path) -> Result<Fitted, RunError> {
+    let Some(key) = &problem.fit else {
+        return Err(CaseError::new(format!("{} has no table [fit]", problem.name()))
             .help("add  [fit]  data = \"measured.csv\"  time = \"pressure\"  radius = \"radius\"")
             .into());
     };
-    let settings = key.get_ref();
-    let Plan::Line(planned) = plan(document)? else {
-        let space = &document.case.space;
-        return Err(document
-            .error(space.span(), "a fit needs a zone that one number describes")
+    let settings = key;
+    let Plan::Line(planned) = plan(problem)? else {
+        let space = &problem.space;
+        return Err(problem
+            .error(space, "a fit needs a zone that one number describes")
             .help("space = \"axisymmetric\" for a round membrane, \"line\" for a strip")
             .into());
     };
     if planned.contacts.len() != 1 {
         let found = planned.contacts.len();
-        return Err(document.error(key.span(), format!("one contact is measured, there are {found}")).into());
+        return Err(problem.error(key, format!("one contact is measured, there are {found}")).into());
     }
     if planned.space == Space::Axisymmetric && planned.grid.bounds().min[0] != 0.0 {
-        return Err(document.error(document.case.space.span(), "a fit needs a disc: its radius begins at 0").into());
+        return Err(problem.error(&problem.space, "a fit needs a disc: its radius begins at 0").into());
     }
-    let confidence = settings.confidence.as_ref().map_or(0.95, |c| *c.get_ref());
+    let confidence = settings.confidence.as_ref().map_or(0.95, |c| *c);
     if let Some(c) = &settings.confidence
         && !(confidence > 0.0 && confidence < 1.0)
     {
-        return Err(document.error(c.span(), format!("a confidence of {confidence} is not between 0 and 1")).into());
+        return Err(problem.error(c, format!("a confidence of {confidence} is not between 0 and 1")).into());
     }
     let unknown: Vec<FitUnknown> = match &settings.unknown {
         None => vec![FitUnknown::Adhesion],
-        Some(list) => list.get_ref().iter().map(|u| *u.get_ref()).collect(),
+        Some(list) => list.iter().map(|u| *u).collect(),
     };
     let with_tension = unknown.contains(&FitUnknown::Tension);
     if !unknown.contains(&FitUnknown::Adhesion) {
-        let span = settings.unknown.as_ref().map_or(key.span(), |u| u.span());
-        return Err(document
-            .error(span, "the energy of adhesion is what the contact tells")
+        let span = settings.unknown.as_ref().map_or_else(|| problem.key(key), |u| problem.key(u));
+        return Err(problem
+            .error(&span, "the energy of adhesion is what the contact tells")
             .help("unknown = [\"adhesion\"], or [\"adhesion\", \"tension\"]")
             .into());
     }
@@ -73,18 +73,18 @@ pub fn fit(document: &Document, folder: &Path) -> Result<Fitted, RunError> {
         (Some(column), None) => (Quantity::Radius, column),
         (None, Some(column)) => (Quantity::Area, column),
         _ => {
-            return Err(document
-                .error(key.span(), "the fit needs either `radius` or `area`")
+            return Err(problem
+                .error(key, "the fit needs either `radius` or `area`")
                 .help("radius = \"NAME OF THE COLUMN\"")
                 .into());
         }
     };
-    let measured = data::read(document, settings, column)?;
+    let measured = data::read(problem, settings, column)?;
     let parameters = 1 + usize::from(with_tension);
     if measured.time.len() <= parameters {
-        return Err(document
+        return Err(problem
             .error(
-                settings.data.span(),
+                &settings.data,
                 format!("{} measurements are too few for {parameters} unknowns", measured.time.len()),
             )
             .help("at least one more than there are unknowns")
@@ -94,16 +94,16 @@ pub fn fit(document: &Document, folder: &Path) -> Result<Fitted, RunError> {
         planned.check_fields(&planned.at(time), time)?;
     }
     let model = Model::new(&planned, quantity, &measured.time)
-        .map_err(|e| document.error(key.span(), format!("the membrane cannot be solved: {e}")))?;
-    model.check(document, settings, &measured)?;
+        .map_err(|e| problem.error(key, format!("the membrane cannot be solved: {e}")))?;
+    model.check(problem, settings, &measured)?;
     let relative = settings.noise.unwrap_or_default() == Noise::Relative;
     let estimate = Estimate::new(&model, &measured.value, with_tension, relative, confidence);
     let folder = Folder::create(folder)?;
-    write(document, &folder, &measured, &estimate, confidence).map_err(RunError::from)
+    write(problem, &folder, &measured, &estimate, confidence).map_err(RunError::from)
 }
 
 fn write(
-    document: &Document,
+    problem: &Problem,
     folder: &Folder,
     measured: &Measurements,
     estimate: &Estimate,
@@ -112,7 +112,7 @@ fn write(
     let entry = |p: &Parameter| json!({"value": p.value, "interval": p.interval, "relative_error": p.relative_error});
     let summary = json!({
         "schema": crate::report::SCHEMA,
-        "case": document.case.title.clone().unwrap_or_else(|| document.name.clone()),
+        "case": problem.name(),
         "converged": estimate.converged,
         "measurements": measured.time.len(),
         "confidence": confidence,
@@ -127,7 +127,7 @@ fn write(
     for (i, t) in measured.time.iter().enumerate() {
         rows += &format!("{t},{},{},{}\n", measured.value[i], estimate.fitted[i], estimate.residuals[i]);
     }
-    folder.write("case.toml", document.text.as_bytes())?;
+    folder.write("case.toml", crate::case::text(problem).as_bytes())?;
     folder.write("fit.csv", rows.as_bytes())?;
     crate::output::chart::save(folder, "fit", &picture::draw(measured, estimate)?)?;
     let text = serde_json::to_string_pretty(&summary).unwrap_or_default() + "\n";

@@ -6,8 +6,6 @@
 use crate::npy;
 use crate::relief::Sampled;
 use crate::text_table::{self, Numbers, Row};
-use signorini_geometry::Vector;
-use signorini_geometry::grid_spline::GridSpline;
 use std::path::Path;
 
 /// The most values of a map.
@@ -15,7 +13,6 @@ const MOST: usize = 64 << 20;
 
 /// Rows of heights as a file has them.
 struct Table {
-    rows: usize,
     columns: usize,
     values: Vec<f64>,
 }
@@ -34,22 +31,8 @@ pub fn read(path: &Path, bytes: &[u8], origin: [f64; 2], spacing: [f64; 2], scal
         "tif" | "tiff" => tiff(bytes),
         other => Err(format!("`{other}` is no format of height maps; valid are csv, npy and tif")),
     }?;
-    let Table { rows, columns, values } = table;
-    if rows < 4 || columns < 4 {
-        return Err(format!("{rows} rows of {columns} heights: at least 4 of each are needed"));
-    }
-    if let Some(k) = values.iter().position(|v| !v.is_finite()) {
-        let (row, column) = (k / columns + 1, k % columns + 1);
-        return Err(format!("row {row}, column {column} is {}: fill the gap, or crop the map", values[k]));
-    }
-    // The first index of the spline is that along x.
-    let mut turned = Vec::with_capacity(values.len());
-    for i in 0..columns {
-        turned.extend((0..rows).map(|j| scale * values[j * columns + i]));
-    }
-    let spline =
-        GridSpline::new(Vector::<2>::from(origin), spacing, [columns, rows], turned).map_err(|e| e.to_string())?;
-    Ok(Sampled { spline, ends: true })
+    let heights: Vec<f64> = table.values.iter().map(|v| scale * v).collect();
+    Sampled::of_rows(origin, spacing, table.columns, &heights)
 }
 
 /// Rows of numbers.
@@ -71,16 +54,16 @@ fn csv(bytes: &[u8]) -> Result<Table, String> {
         }
     }
     numbers.finish()?;
-    Ok(Table { rows, columns, values })
+    Ok(Table { columns, values })
 }
 
 /// A two-dimensional array.
 fn npy(bytes: &[u8]) -> Result<Table, String> {
     let npy::Array { shape, values } = npy::read(bytes, MOST)?;
-    let &[rows, columns] = &shape[..] else {
+    let &[_, columns] = &shape[..] else {
         return Err(format!("an array of {} dimensions: a height map has two", shape.len()));
     };
-    Ok(Table { rows, columns, values })
+    Ok(Table { columns, values })
 }
 
 /// A grey image: integers of 16 bits, or numbers of 32 or 64.
@@ -116,14 +99,15 @@ fn tiff(bytes: &[u8]) -> Result<Table, String> {
     if values.len() != rows * columns {
         return Err(format!("{} heights where {rows} x {columns} are announced", values.len()));
     }
-    Ok(Table { rows, columns, values })
+    Ok(Table { columns, values })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
-    use signorini_geometry::Jet;
+    use signorini_geometry::height_field::HeightField;
+    use signorini_geometry::{Jet, Vector};
     use tiff::encoder::colortype::{Gray16, Gray32Float, Gray64Float};
 
     fn plane(i: usize, j: usize) -> f64 {
@@ -182,7 +166,8 @@ mod tests {
             );
             assert!((jet.value - 0.1 * (2.0 * 2.4 - 3.0 * 2.4 + 100.0)).abs() < 1e-12, "{name}: {}", jet.value);
             assert!((jet.gradient - Vector::<3>::new(0.4, -1.2, 0.0)).norm() < 1e-12, "{name}");
-            assert_eq!(map.bounds(), [[1.0, 2.0], [3.5, 3.0]]);
+            let known = map.known_within().map(|corners| corners.map(|x| [x[0], x[1]]));
+            assert_eq!(known, Some([[1.0, 2.0], [3.5, 3.0]]));
         }
     }
 

@@ -1,20 +1,24 @@
 //! From the statement to the model: every key looked up, every value read, every contradiction named.
 
+mod arrays;
 mod domain;
+mod head;
 mod height;
 mod history;
 pub(crate) mod pieces;
+mod placement;
+pub mod reader;
 mod rigid;
 mod rigid_shape;
 pub mod solid;
 mod surface;
 
-use crate::case::statement::{self, Body, FormulationKey, Method, Space, TransportKey, ZoneMultiplierKey};
-use crate::case::units::{FORCE_PER_LENGTH, LENGTH, PRESSURE, Units};
-use crate::case::value::{Interpreted, Reader};
-use crate::case::{CaseError, Document, OneOrMany, Value, suggestion};
 use crate::expression::{Definition, Expression, Names, Scope};
-use crate::report::{UnitNames, Warning};
+use crate::plan::reader::Reader;
+use crate::problem::units::{FORCE_PER_LENGTH, LENGTH, PRESSURE, Units};
+use crate::problem::{self, Body, FormulationKey, Method, Space, TransportKey, ZoneMultiplierKey};
+use crate::problem::{CaseError, Components, KeyPath, Location, Problem, ProblemPart, Value, suggestion};
+use crate::report::Warning;
 use signorini_fem::cut::QuadraturePoint;
 use signorini_fem::{Cells, Grid};
 use signorini_geometry::{Jet, Point, Real, Vector};
@@ -30,10 +34,10 @@ use signorini_membrane::refinement::Refinement;
 use signorini_membrane::zone::{Modes, NoZone};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
 use std::sync::Arc;
 
 pub use domain::{Pieces, memory_at_hand, memory_estimate, mesh_multigrid_estimate, multigrid_estimate};
+pub use head::Head;
 pub use history::{Control, PlannedIncrement};
 use pieces::UNITE;
 pub use surface::Contact;
@@ -76,13 +80,11 @@ impl MethodChoice {
     }
 }
 
-/// An expression and the place it comes from.
+/// An expression and the key it comes from.
 #[derive(Clone)]
 pub struct Placed {
     pub expression: Expression,
-    pub span: Range<usize>,
-    /// The key, for messages.
-    pub key: String,
+    pub key: KeyPath,
 }
 
 /// A support: its name and the displacement it prescribes.
@@ -95,7 +97,7 @@ pub struct PlannedSupport {
 
 /// A membrane, what it may touch, and its history.
 pub struct MembranePlan<const D: usize> {
-    pub document: Document,
+    pub head: Head,
     pub space: Space,
     /// What the displacement is computed on.
     pub cells: Arc<dyn Cells<D>>,
@@ -115,32 +117,29 @@ pub struct MembranePlan<const D: usize> {
     pub initial_zone: Option<(Side, Arc<dyn Domain<D>>)>,
     pub increments: Vec<PlannedIncrement>,
     pub probes: BTreeMap<String, Point<D>>,
-    pub every: usize,
-    pub pictures: bool,
-    pub warnings: Vec<Warning>,
-    pub units: Option<Units>,
-    /// What the values with units were taken for.
-    pub interpreted: Vec<Interpreted>,
 }
 
-/// Reads a document into a plan.
-pub fn plan(document: &Document) -> Result<Plan, CaseError> {
-    match *document.case.space.get_ref() {
+/// Reads a problem into a plan.
+///
+/// # Errors
+/// What is wrong with the problem, with its key.
+pub fn plan(problem: &Problem) -> Result<Plan, CaseError> {
+    match problem.space {
         Space::PlaneStrain | Space::PlaneStress => {
-            Ok(Plan::PlaneSolids(Box::new(Planner::new(document)?.solids::<2>()?)))
+            Ok(Plan::PlaneSolids(Box::new(Planner::new(problem)?.solids::<2>()?)))
         }
-        Space::ThreeD => Ok(Plan::Solids(Box::new(Planner::new(document)?.solids::<3>()?))),
-        Space::Axisymmetric if document.case.bodies.values().any(|b| matches!(b.get_ref(), Body::Solid(_))) => {
-            Ok(Plan::PlaneSolids(Box::new(Planner::new(document)?.solids::<2>()?)))
+        Space::ThreeD => Ok(Plan::Solids(Box::new(Planner::new(problem)?.solids::<3>()?))),
+        Space::Axisymmetric if problem.bodies.values().any(|b| matches!(b, Body::Solid(_))) => {
+            Ok(Plan::PlaneSolids(Box::new(Planner::new(problem)?.solids::<2>()?)))
         }
-        Space::Line | Space::Axisymmetric => Ok(Plan::Line(Planner::new(document)?.membrane::<1>()?)),
-        Space::Plane => Ok(Plan::Plane(Planner::new(document)?.membrane::<2>()?)),
+        Space::Line | Space::Axisymmetric => Ok(Plan::Line(Planner::new(problem)?.membrane::<1>()?)),
+        Space::Plane => Ok(Plan::Plane(Planner::new(problem)?.membrane::<2>()?)),
     }
 }
 
-/// Reads values in the context of one document.
+/// Reads values in the context of one problem.
 pub(crate) struct Planner<'a> {
-    pub document: &'a Document,
+    pub problem: &'a Problem,
     pub reader: Reader<'a>,
     pub space: Space,
     /// What looks wrong in files that were read.
@@ -148,11 +147,11 @@ pub(crate) struct Planner<'a> {
 }
 
 /// The value of a key that could be a vector elsewhere.
-fn one(document: &Document, key: &toml::Spanned<OneOrMany>) -> Result<Value, CaseError> {
-    match key.get_ref() {
-        OneOrMany::One(literal) => Ok(toml::Spanned::new(key.span(), literal.clone())),
-        OneOrMany::Many(_) => Err(document
-            .error(key.span(), "the displacement of a membrane is one number")
+fn one<'p>(problem: &Problem, key: &'p Components) -> Result<&'p Value, CaseError> {
+    match &key.0[..] {
+        [value] => Ok(value),
+        _ => Err(problem
+            .error(key, "the displacement of a membrane is one number")
             .help("write for example  displacement = 0.0")),
     }
 }
@@ -166,24 +165,24 @@ fn coordinates(space: Space) -> &'static [&'static str] {
 }
 
 impl<'a> Planner<'a> {
-    fn new(document: &'a Document) -> Result<Self, CaseError> {
-        let case = &document.case;
-        let units = match &case.units {
+    fn new(problem: &'a Problem) -> Result<Self, CaseError> {
+        let units = match &problem.units {
             None => None,
-            Some(key) => Some(match key.get_ref() {
-                statement::UnitsKey::System(name) => Units::system(name).ok_or_else(|| {
-                    document
-                        .error(key.span(), format!("unknown system of units `{name}`"))
+            Some(key) => Some(match key {
+                problem::UnitSystem::System(name) => Units::system(name).ok_or_else(|| {
+                    problem
+                        .error(key, format!("unknown system of units `{name}`"))
                         .help(suggestion(name, &["m-N-Pa", "mm-N-MPa", "um-uN-MPa"]))
                 })?,
-                statement::UnitsKey::Base(b) => Units::from_names(&b.length, &b.force, &b.time)
-                    .map_err(|message| document.error(key.span(), message))?,
+                problem::UnitSystem::Base(b) => {
+                    Units::from_names(&b.length, &b.force, &b.time).map_err(|message| problem.error(key, message))?
+                }
             }),
         };
         let mut planner = Self {
-            document,
-            reader: Reader { document, units, names: Names::default(), interpreted: RefCell::default() },
-            space: *case.space.get_ref(),
+            problem,
+            reader: Reader { problem, units, names: Names::default(), interpreted: RefCell::default() },
+            space: problem.space,
             warnings: RefCell::default(),
         };
         planner.define_constants()?;
@@ -193,9 +192,9 @@ impl<'a> Planner<'a> {
 
     /// Constants may use each other in any order, but not in a circle.
     fn define_constants(&mut self) -> Result<(), CaseError> {
-        let mut open: Vec<(&String, &Value)> = self.document.case.constants.iter().collect();
+        let mut open: Vec<(&String, &Value)> = self.problem.constants.iter().collect();
         for (name, value) in &open {
-            self.check_name(name, value.span())?;
+            self.check_name(name, self.key(*value))?;
         }
         while !open.is_empty() {
             let before = open.len();
@@ -207,8 +206,8 @@ impl<'a> Planner<'a> {
                         let v = e.constant().unwrap_or(f64::NAN);
                         if !v.is_finite() {
                             return Err(self
-                                .document
-                                .error(value.span(), format!("the constant `{name}` is {v}, not a finite number")));
+                                .problem
+                                .error(value, format!("the constant `{name}` is {v}, not a finite number")));
                         }
                         self.reader.names.constants.insert(name.clone(), v);
                     }
@@ -223,8 +222,8 @@ impl<'a> Planner<'a> {
                 let circle = open.iter().all(|(_, v)| self.mentions(v, open.iter().map(|(n, _)| n.as_str())));
                 return Err(match first_error {
                     Some(_) if circle => self
-                        .document
-                        .error(open[0].1.span(), format!("the constant `{}` is defined in a circle", open[0].0))
+                        .problem
+                        .error(open[0].1, format!("the constant `{}` is defined in a circle", open[0].0))
                         .help("a constant may use others, but not itself by way of them"),
                     Some(error) => error,
                     None => CaseError::new("constants"),
@@ -236,12 +235,12 @@ impl<'a> Planner<'a> {
 
     /// Functions may use each other in any order, but not in a circle.
     fn define_functions(&mut self) -> Result<(), CaseError> {
-        let document = self.document;
-        let mut open: Vec<_> = document.case.functions.iter().collect();
+        let problem = self.problem;
+        let mut open: Vec<_> = problem.functions.iter().collect();
         for (name, key) in &open {
-            self.check_name(name, key.span())?;
+            self.check_name(name, self.key(*key))?;
             if self.reader.names.constants.contains_key(*name) {
-                return Err(document.error(key.span(), format!("`{name}` is both a constant and a function")));
+                return Err(problem.error(*key, format!("`{name}` is both a constant and a function")));
             }
         }
         while !open.is_empty() {
@@ -262,12 +261,12 @@ impl<'a> Planner<'a> {
             open = left;
             if open.len() == before {
                 let names: Vec<&str> = open.iter().map(|(n, _)| n.as_str()).collect();
-                let circle = open.iter().find(|(_, k)| {
-                    k.get_ref().expression.as_ref().is_some_and(|v| self.mentions(v, names.iter().copied()))
-                });
+                let circle = open
+                    .iter()
+                    .find(|(_, k)| k.expression.as_ref().is_some_and(|v| self.mentions(v, names.iter().copied())));
                 return Err(match (circle, first_error) {
-                    (Some((name, key)), _) => document
-                        .error(key.span(), format!("the function `{name}` calls itself, directly or by way of others"))
+                    (Some((name, key)), _) => problem
+                        .error(*key, format!("the function `{name}` calls itself, directly or by way of others"))
                         .help("functions may use each other, but not in a circle"),
                     (None, Some(error)) => error,
                     (None, None) => CaseError::new("functions"),
@@ -277,109 +276,116 @@ impl<'a> Planner<'a> {
         Ok(())
     }
 
-    fn function(&self, name: &str, key: &toml::Spanned<statement::FunctionKey>) -> Result<Definition, CaseError> {
-        let error = |span: Range<usize>, message: String| self.document.error(span, message);
-        match (&key.get_ref().table, &key.get_ref().expression) {
+    fn function(&self, name: &str, key: &problem::TimeFunction) -> Result<Definition, CaseError> {
+        let error = |at: &KeyPath, message: String| self.problem.error(at, message);
+        match (&key.table, &key.expression) {
             (Some(table), None) => {
-                let (t, value) = (&table.get_ref().t, &table.get_ref().value);
+                let (t, value) = (&table.t, &table.value);
                 if t.is_empty() || t.len() != value.len() {
                     return Err(error(
-                        table.span(),
+                        &self.key(table),
                         format!("`t` has {} entries and `value` {}", t.len(), value.len()),
                     )
                     .help("both need the same number of entries, at least one"));
                 }
                 if t.iter().chain(value).any(|v| !v.is_finite()) {
-                    return Err(error(table.span(), "the table holds a number that is not finite".into()));
+                    return Err(error(&self.key(table), "the table holds a number that is not finite".into()));
                 }
                 if let Some(i) = (1..t.len()).find(|&i| t[i] <= t[i - 1]) {
-                    return Err(error(table.span(), format!("`t` does not increase: {} follows {}", t[i], t[i - 1])));
+                    return Err(error(
+                        &self.key(table),
+                        format!("`t` does not increase: {} follows {}", t[i], t[i - 1]),
+                    ));
                 }
                 Ok(Definition::Table { t: t.clone(), value: value.clone() })
             }
             (None, Some(value)) => Ok(Definition::Formula(self.reader.any(value, &["t"])?.0)),
-            _ => Err(error(key.span(), format!("the function `{name}` needs either `table` or `expression`"))),
+            _ => Err(error(&self.key(key), format!("the function `{name}` needs either `table` or `expression`"))),
         }
     }
 
     /// Whether a value's text uses one of the names as a word.
     fn mentions<'b>(&self, value: &Value, mut names: impl Iterator<Item = &'b str>) -> bool {
-        let crate::case::Literal::Text(text) = value.get_ref() else { return false };
+        let Value::Text(text) = value else { return false };
         let words: Vec<&str> = text.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
         names.any(|n| words.contains(&n))
     }
 
-    fn check_name(&self, name: &str, span: Range<usize>) -> Result<(), CaseError> {
+    fn check_name(&self, name: &str, span: KeyPath) -> Result<(), CaseError> {
         let word =
             name.chars().all(|c| c.is_alphanumeric() || c == '_') && !name.starts_with(|c: char| c.is_ascii_digit());
         let taken = ["x", "y", "z", "t", "pi", "e", "if"].contains(&name);
         match (word, taken) {
             (true, false) => Ok(()),
-            (true, true) => Err(self.document.error(span, format!("`{name}` already has a meaning in expressions"))),
+            (true, true) => Err(self.problem.error(&span, format!("`{name}` already has a meaning in expressions"))),
             (false, _) => Err(self
-                .document
-                .error(span, format!("`{name}` cannot be used in an expression"))
+                .problem
+                .error(&span, format!("`{name}` cannot be used in an expression"))
                 .help("a name consists of letters, digits and _, and does not begin with a digit")),
         }
     }
 
     /// Refuses a contact with friction.
-    fn frictionless(&self, contact: &statement::Contact) -> Result<(), CaseError> {
+    fn frictionless(&self, contact: &problem::Contact) -> Result<(), CaseError> {
         let Some(friction) = &contact.friction else { return Ok(()) };
-        Err(self.unavailable(friction.span(), "friction").help(
+        Err(self.unavailable(friction, "friction").help(
             "leave `friction` out: bodies slide along each other without resistance; membranes may have `adhesion`",
         ))
     }
 
-    fn unavailable(&self, span: Range<usize>, what: &str) -> CaseError {
-        self.document.error(span, format!("{what} is not available in this version"))
+    fn unavailable(&self, at: &impl Location, what: &str) -> CaseError {
+        self.problem.error(at, format!("{what} is not available in this version"))
     }
 
-    fn placed(&self, key: String, value: &Value, dimension: [i32; 3]) -> Result<Placed, CaseError> {
+    /// The way to a part of the problem.
+    fn key<T: ProblemPart>(&self, part: &T) -> KeyPath {
+        self.problem.key(part)
+    }
+
+    fn placed(&self, value: &Value, dimension: [i32; 3]) -> Result<Placed, CaseError> {
         let expression = self.reader.expression(value, dimension, coordinates(self.space))?;
-        Ok(Placed { expression, span: value.span(), key })
+        Ok(Placed { expression, key: self.key(value) })
     }
 
     fn membrane<const D: usize>(&self) -> Result<MembranePlan<D>, CaseError>
     where
         Self: domain::ReadDomain<D>,
     {
-        let document = self.document;
-        let case = &document.case;
-        let mut films = case.bodies.iter().filter_map(|(name, b)| match b.get_ref() {
-            Body::Membrane(film) => Some((name, b.span(), film)),
+        let problem = self.problem;
+        let mut films = self.problem.bodies.iter().filter_map(|(name, b)| match b {
+            Body::Membrane(film) => Some((name, b, film)),
             _ => None,
         });
-        let Some((body, span, film)) = films.next() else {
-            return Err(document
-                .error(case.space.span(), "there is no membrane")
+        let Some((body, _, film)) = films.next() else {
+            return Err(problem
+                .error(&self.problem.space, "there is no membrane")
                 .help("add a body, for example  [bodies.film.membrane]"));
         };
-        if let Some((_, span, _)) = films.next() {
-            return Err(self.unavailable(span, "more than one membrane"));
+        if let Some((_, second, _)) = films.next() {
+            return Err(self.unavailable(second, "more than one membrane"));
         }
-        for (name, b) in &case.bodies {
-            let what = match b.get_ref() {
+        for (name, b) in &self.problem.bodies {
+            let what = match b {
                 Body::Membrane(_) | Body::Rigid(_) => continue,
                 Body::Solid(_) => "solid",
                 Body::Cells(_) => "cells",
                 Body::Rope(_) => "rope",
                 Body::Beam(_) => "beam",
             };
-            return Err(self.unavailable(b.span(), &format!("the body `{name}`: `{what}`")));
+            return Err(self.unavailable(b, &format!("the body `{name}`: `{what}`")));
         }
-        let mut on = domain::ReadDomain::<D>::domain(self, film, span.clone())?;
-        let tension = self.placed(format!("bodies.{body}.membrane.tension"), &film.tension, FORCE_PER_LENGTH)?;
+        let mut on = domain::ReadDomain::<D>::domain(self, film)?;
+        let tension = self.placed(&film.tension, FORCE_PER_LENGTH)?;
         let loads = self.loads(body)?;
         let supports = self.supports(body, &on.pieces)?;
         let mut warnings = Vec::new();
         let (contacts, method) = self.contacts(body, &supports, &on.grid, &mut warnings)?;
         if !matches!(method, MethodChoice::InequalityLevelSet { .. })
-            && case.steps.iter().any(|s| s.get_ref().events.is_some())
+            && self.problem.steps.iter().any(|s| s.events.is_some())
         {
             warnings.push("`events` are located by method.inequality_level_set only".into());
         }
-        if contacts.is_empty() && case.bodies.len() > 1 {
+        if contacts.is_empty() && self.problem.bodies.len() > 1 {
             warnings.push(
                 "no contact is stated: rigid bodies are ignored (add [contacts.NAME] between = [film, floor])".into(),
             );
@@ -388,9 +394,9 @@ impl<'a> Planner<'a> {
             self.on_plain_cells(film, &mut on)?;
         }
         if let MethodChoice::ActiveSet(_) = method {
-            if let statement::Mesh::Gmsh(key) = film.mesh.get_ref() {
-                return Err(document
-                    .error(key.file.span(), "method.active_set works on a grid")
+            if let problem::Mesh::Gmsh(key) = &film.mesh {
+                return Err(problem
+                    .error(&key.file, "method.active_set works on a grid")
                     .help("mesh.grid = { cells = [40, 40] }, or method.inequality_level_set = {}"));
             }
             if on.grid.degree() != 1 && film.degree.is_some() {
@@ -404,7 +410,7 @@ impl<'a> Planner<'a> {
         let start = plan.increments.first().map_or(0.0, |i| i.range[0]);
         if !plan.by_multigrid(&plan.at(start)) {
             let unknowns = plan.cells.function_count() as f64;
-            self.check_unknowns::<D>(unknowns, plan.cells.degree(), film.mesh.span())?;
+            self.check_unknowns::<D>(unknowns, plan.cells.degree(), &film.mesh)?;
         }
         Ok(plan)
     }
@@ -418,21 +424,20 @@ impl<'a> Planner<'a> {
     where
         Self: domain::ReadDomain<D>,
     {
-        let mut asked =
-            self.document.case.contacts.iter().filter_map(|(name, c)| match c.get_ref().method.as_ref()?.get_ref() {
-                Method::InequalityLevelSet(k) => Some((name, k.initial_zone.as_ref()?)),
-                _ => None,
-            });
+        let mut asked = self.problem.contacts.iter().filter_map(|(name, c)| match c.method.as_ref()? {
+            Method::InequalityLevelSet(k) => Some((name, k.initial_zone.as_ref()?)),
+            _ => None,
+        });
         let Some((name, key)) = asked.next() else { return Ok(None) };
         if let Some((_, second)) = asked.next() {
-            return Err(self.unavailable(second.span(), "more than one `initial_zone`"));
+            return Err(self.unavailable(second, "more than one `initial_zone`"));
         }
         let zone = domain::ReadDomain::<D>::initial_zone(self, key, grid)?;
         // A contact with several bodies has a name for each of them.
         let Some(contact) = contacts.iter().find(|c| c.name == *name) else {
             return Err(self
-                .document
-                .error(key.span(), format!("`{name}` has several bodies: which of them the zone touches is not said"))
+                .problem
+                .error(key, format!("`{name}` has several bodies: which of them the zone touches is not said"))
                 .help("give the body a contact of its own, with `between`"));
         };
         Ok(Some((contact.side, zone)))
@@ -448,20 +453,14 @@ impl<'a> Planner<'a> {
         supports: Vec<PlannedSupport>,
         contacts: Vec<Contact>,
         method: MethodChoice,
-        mut warnings: Vec<Warning>,
+        warnings: Vec<Warning>,
     ) -> Result<MembranePlan<D>, CaseError>
     where
         Self: domain::ReadDomain<D>,
     {
-        let output = &self.document.case.output;
-        let every = match &output.every {
-            None => 1,
-            Some(n) if *n.get_ref() >= 1 => *n.get_ref() as usize,
-            Some(n) => return Err(self.document.error(n.span(), "`every` must be at least 1")),
-        };
         let mut probes = BTreeMap::new();
-        for (name, at) in &output.probes {
-            let x = if D == 1 && at.get_ref().len() == 2 {
+        for (name, at) in &self.problem.output.probes {
+            let x = if D == 1 && at.len() == 2 {
                 self.reader.numbers::<2>(at, LENGTH)?.to_vec()
             } else {
                 self.reader.numbers::<D>(at, LENGTH)?.to_vec()
@@ -471,9 +470,8 @@ impl<'a> Planner<'a> {
         let initial_zone = self.initial_zone(&contacts, &on.grid)?;
         let names: Vec<&str> = contacts.iter().map(|c| c.name.as_str()).collect();
         let increments = self.increments(D, &names)?;
-        warnings.append(&mut self.warnings.borrow_mut());
         let mut plan = MembranePlan {
-            document: self.document.clone(),
+            head: self.head(warnings)?,
             space: self.space,
             cells: on.cells,
             grid: on.grid,
@@ -488,108 +486,96 @@ impl<'a> Planner<'a> {
             initial_zone,
             increments,
             probes,
-            every,
-            pictures: output.pictures.unwrap_or(true),
-            warnings,
-            units: self.reader.units,
-            interpreted: self.reader.echo(),
         };
         plan.check_time()?;
         let membrane = plan.at(plan.increments[0].range[0]);
         for (name, x) in plan.probes.iter().filter(|(_, x)| !membrane.contains(x)) {
             let at: Vec<String> = x.iter().map(f64::to_string).collect();
             let message = format!("the probe `{name}` at ({}) lies outside `{body}`: it tells nothing", at.join(", "));
-            plan.warnings.push(message.into());
+            plan.head.warnings.push(message.into());
         }
         Ok(plan)
     }
 
     fn loads(&self, body: &str) -> Result<BTreeMap<String, Placed>, CaseError> {
         let mut loads = BTreeMap::new();
-        for (name, load) in &self.document.case.loads {
-            let key = load.get_ref();
+        for (name, load) in &self.problem.loads {
+            let key = load;
             self.check_place(&key.on, body, &[])?;
             let others = [
-                ("traction", key.traction.as_ref().map(|v| v.span())),
-                ("pressure", key.pressure.as_ref().map(|v| v.span())),
-                ("force", key.force.as_ref().map(|v| v.span())),
-                ("body_force", key.body_force.as_ref().map(|v| v.span())),
+                ("traction", key.traction.as_ref().map(|v| self.key(v))),
+                ("pressure", key.pressure.as_ref().map(|v| self.key(v))),
+                ("force", key.force.as_ref().map(|v| self.key(v))),
+                ("body_force", key.body_force.as_ref().map(|v| self.key(v))),
             ];
-            if let Some((what, span)) = others.iter().find_map(|(w, s)| s.clone().map(|s| (w, s))) {
+            if let Some((what, span)) = others.iter().find_map(|(w, s)| s.clone().map(|s| (*w, s))) {
                 return Err(self
-                    .document
-                    .error(span, format!("a membrane has no `{what}`"))
+                    .problem
+                    .error(&span, format!("a membrane has no `{what}`"))
                     .help("its load is  normal = …  : force per area along +z, negative where it presses downwards"));
             }
             let Some(normal) = &key.normal else {
                 return Err(self
-                    .document
-                    .error(load.span(), format!("the load `{name}` says nothing"))
+                    .problem
+                    .error(load, format!("the load `{name}` says nothing"))
                     .help("add  normal = …"));
             };
-            loads.insert(name.clone(), self.placed(format!("loads.{name}.normal"), normal, PRESSURE)?);
+            loads.insert(name.clone(), self.placed(normal, PRESSURE)?);
         }
         Ok(loads)
     }
 
     fn supports(&self, body: &str, pieces: &Pieces) -> Result<Vec<PlannedSupport>, CaseError> {
-        let document = self.document;
+        let problem = self.problem;
         let mut supports: Vec<PlannedSupport> = Vec::new();
         let groups: Vec<&str> = pieces.groups.iter().map(|(n, _)| n.as_str()).collect();
-        for (name, support) in &self.document.case.supports {
-            let key = support.get_ref();
+        for (name, support) in &self.problem.supports {
+            let key = support;
             let group = self.check_place(&key.on, body, &groups)?;
             let Some(group) = group else {
                 return Err(self
-                    .document
-                    .error(key.on.span(), "a membrane is held at its boundary")
+                    .problem
+                    .error(&key.on, "a membrane is held at its boundary")
                     .help(format!("write  on = \"{body}:boundary\"  or one of: {}", groups.join(", "))));
             };
             let others = [
-                ("normal", key.normal.as_ref().map(|v| v.span())),
-                ("uniform", key.uniform.as_ref().map(|v| v.span())),
-                ("spring", key.spring.as_ref().map(|v| v.span())),
+                ("normal", key.normal.as_ref().map(|v| self.key(v))),
+                ("uniform", key.uniform.as_ref().map(|v| self.key(v))),
+                ("spring", key.spring.as_ref().map(|v| self.key(v))),
             ];
-            if let Some((what, span)) = others.iter().find_map(|(w, s)| s.clone().map(|s| (w, s))) {
-                return Err(self.unavailable(span, &format!("`{what}` on the support of a membrane")));
+            if let Some((what, span)) = others.iter().find_map(|(w, s)| s.clone().map(|s| (*w, s))) {
+                return Err(self.unavailable(&span, &format!("`{what}` on the support of a membrane")));
             }
             let Some(displacement) = &key.displacement else {
                 return Err(self
-                    .document
-                    .error(support.span(), format!("the support `{name}` prescribes nothing"))
+                    .problem
+                    .error(support, format!("the support `{name}` prescribes nothing"))
                     .help("add  displacement = 0.0"));
             };
             let held = pieces.groups.iter().find(|(n, _)| *n == group).map(|(_, p)| p.clone()).unwrap_or_default();
             if let Some(other) = supports.iter().find(|s| s.pieces.iter().any(|p| held.contains(p))) {
                 return Err(self
-                    .document
-                    .error(
-                        key.on.span(),
-                        format!("`{}` is already held by the support `{}`", key.on.get_ref(), other.name),
-                    )
+                    .problem
+                    .error(&key.on, format!("`{}` is already held by the support `{}`", key.on, other.name))
                     .help("a part of the boundary has one support"));
             }
             supports.push(PlannedSupport {
                 name: name.clone(),
-                displacement: self.placed(
-                    format!("supports.{name}.displacement"),
-                    &one(document, displacement)?,
-                    LENGTH,
-                )?,
+                displacement: self.placed(one(problem, displacement)?, LENGTH)?,
                 pieces: held,
             });
         }
         if supports.is_empty() {
             return Err(self
-                .document
-                .error(self.document.case.space.span(), "nothing holds the membrane")
+                .problem
+                .error(&self.problem.space, "nothing holds the membrane")
                 .help(format!("add  [supports.rim]  on = \"{body}:boundary\"  displacement = 0.0")));
         }
         if let Some((apart, rims)) = &pieces.apart {
             let held = |rim: &BTreeSet<usize>| supports.iter().any(|s| s.pieces.iter().any(|p| rim.contains(p)));
             if let Some(loose) = rims.iter().position(|rim| !held(rim)) {
-                let place = document.case.bodies.get(body).map_or(document.case.space.span(), |b| b.span());
-                return Err(document.error(place, apart.held_by_nothing(body, loose as u32)).help(UNITE));
+                let place = problem.bodies.get(body).map_or_else(|| self.key(&problem.space), |b| self.key(b));
+                return Err(problem.error(&place, apart.held_by_nothing(body, loose as u32)).help(UNITE));
             }
             self.warnings.borrow_mut().extend(apart.warning(body).map(Warning::from));
         }
@@ -597,33 +583,22 @@ impl<'a> Planner<'a> {
     }
 
     /// Checks a `BODY` or `BODY:GROUP` and returns the group.
-    fn check_place(
-        &self,
-        on: &toml::Spanned<String>,
-        body: &str,
-        groups: &[&str],
-    ) -> Result<Option<String>, CaseError> {
-        let (name, group) = match on.get_ref().split_once(':') {
+    fn check_place(&self, on: &String, body: &str, groups: &[&str]) -> Result<Option<String>, CaseError> {
+        let (name, group) = match on.split_once(':') {
             Some((name, group)) => (name, Some(group)),
-            None => (on.get_ref().as_str(), None),
+            None => (on.as_str(), None),
         };
-        let bodies: Vec<&str> = self.document.case.bodies.keys().map(String::as_str).collect();
+        let bodies: Vec<&str> = self.problem.bodies.keys().map(String::as_str).collect();
         if !bodies.contains(&name) {
-            return Err(self
-                .document
-                .error(on.span(), format!("there is no body `{name}`"))
-                .help(suggestion(name, &bodies)));
+            return Err(self.problem.error(on, format!("there is no body `{name}`")).help(suggestion(name, &bodies)));
         }
         if name != body {
-            return Err(self
-                .document
-                .error(on.span(), format!("`{name}` is rigid: only `{body}` can be held or loaded")));
+            return Err(self.problem.error(on, format!("`{name}` is rigid: only `{body}` can be held or loaded")));
         }
         match group {
-            Some(g) if !groups.contains(&g) => Err(self
-                .document
-                .error(on.span(), format!("`{name}` has no group `{g}` here"))
-                .help(suggestion(g, groups))),
+            Some(g) if !groups.contains(&g) => {
+                Err(self.problem.error(on, format!("`{name}` has no group `{g}` here")).help(suggestion(g, groups)))
+            }
             group => Ok(group.map(str::to_string)),
         }
     }
@@ -636,7 +611,7 @@ impl<'a> Planner<'a> {
         grid: &Grid<D>,
         warnings: &mut Vec<Warning>,
     ) -> Result<(Vec<Contact>, MethodChoice), CaseError> {
-        let document = self.document;
+        let problem = self.problem;
         let levels: Option<Vec<f64>> = supports.iter().map(|s| s.displacement.expression.constant()).collect();
         let corner = |x: Point<D>| Vector::<2>::new(x[0], if D == 2 { x[D - 1] } else { 0.0 });
         let mut scene = surface::Scene {
@@ -646,40 +621,39 @@ impl<'a> Planner<'a> {
             warnings,
         };
         let mut out: Vec<Contact> = Vec::new();
-        let stated = document.case.contacts.values().find(|c| c.get_ref().method.is_some());
+        let stated = problem.contacts.values().find(|c| c.method.is_some());
         let size = grid.bounds().size().max();
-        let method = stated.map_or(Ok(MethodChoice::default()), |c| self.method(c.get_ref(), size))?;
-        for (name, key) in &document.case.contacts {
-            let contact = key.get_ref();
+        let method = stated.map_or(Ok(MethodChoice::default()), |c| self.method(c, size))?;
+        for (name, key) in &problem.contacts {
+            let contact = key;
             self.frictionless(contact)?;
             if let Some(own) = &contact.method
                 && self.method(contact, size)? != method
             {
-                return Err(document
-                    .error(own.span(), format!("`{name}` has another method than the contact before"))
+                return Err(problem
+                    .error(own, format!("`{name}` has another method than the contact before"))
                     .help("all contacts of a membrane are solved together: state the method once"));
             }
             let adhesion = match &contact.adhesion {
                 None => None,
                 Some(adhesion) => {
-                    let key = format!("contacts.{name}.adhesion.energy");
-                    let placed = self.placed(key, &adhesion.energy, FORCE_PER_LENGTH)?;
+                    let placed = self.placed(&adhesion.energy, FORCE_PER_LENGTH)?;
                     (placed.expression.constant() != Some(0.0)).then_some(placed)
                 }
             };
             if let (Some(adhesion), MethodChoice::ActiveSet(_)) = (&adhesion, method) {
-                return Err(document
-                    .error(adhesion.span.clone(), "method.active_set knows no adhesion")
+                return Err(problem
+                    .error(&adhesion.key, "method.active_set knows no adhesion")
                     .help("method.inequality_level_set = {}"));
             }
             let touched = self.touched(body, key)?;
             for other in &touched {
                 if let Some(before) = out.iter().find(|c| c.body == *other) {
                     let message = format!("`{other}` is already touched by the contact `{}`", before.name);
-                    return Err(document.error(key.span(), message).help("a body has one contact with the membrane"));
+                    return Err(problem.error(key, message).help("a body has one contact with the membrane"));
                 }
-                let Some(Body::Rigid(rigid)) = document.case.bodies.get(other).map(|b| b.get_ref()) else {
-                    return Err(document.error(key.span(), format!("`{other}` is not rigid")));
+                let Some(Body::Rigid(rigid)) = problem.bodies.get(other).map(|b| b) else {
+                    return Err(problem.error(key, format!("`{other}` is not rigid")));
                 };
                 let name = if touched.len() == 1 { name.clone() } else { format!("{name}:{other}") };
                 let contact = surface::read(self, &name, other, rigid, &mut scene)?;
@@ -690,79 +664,74 @@ impl<'a> Planner<'a> {
     }
 
     /// The rigid bodies that a contact names.
-    fn touched(&self, body: &str, contact: &toml::Spanned<statement::Contact>) -> Result<Vec<String>, CaseError> {
-        let document = self.document;
-        let key = contact.get_ref();
-        let rigid: Vec<&str> = document
-            .case
-            .bodies
-            .iter()
-            .filter(|(_, b)| matches!(b.get_ref(), Body::Rigid(_)))
-            .map(|(n, _)| n.as_str())
-            .collect();
+    fn touched(&self, body: &str, contact: &problem::Contact) -> Result<Vec<String>, CaseError> {
+        let problem = self.problem;
+        let key = contact;
+        let rigid: Vec<&str> =
+            problem.bodies.iter().filter(|(_, b)| matches!(b, Body::Rigid(_))).map(|(n, _)| n.as_str()).collect();
         match (&key.between, &key.within, &key.all) {
             (Some(pair), None, None) => {
-                let list = pair.get_ref();
-                let bodies: Vec<&str> = document.case.bodies.keys().map(String::as_str).collect();
+                let list = pair;
+                let bodies: Vec<&str> = problem.bodies.keys().map(String::as_str).collect();
                 for b in list {
-                    let plain = b.get_ref().split(':').next().unwrap_or("");
+                    let plain = b.split(':').next().unwrap_or("");
                     if !bodies.contains(&plain) {
-                        return Err(document
-                            .error(b.span(), format!("there is no body `{plain}`"))
+                        return Err(problem
+                            .error(b, format!("there is no body `{plain}`"))
                             .help(suggestion(plain, &bodies)));
                     }
                 }
-                let others: Vec<&String> = list.iter().map(|b| b.get_ref()).filter(|b| *b != body).collect();
+                let others: Vec<&String> = list.iter().map(|b| b).filter(|b| *b != body).collect();
                 let known = others.iter().all(|b| rigid.contains(&b.as_str()));
                 match known && others.len() + 1 == list.len() && !others.is_empty() {
                     true => Ok(others.into_iter().cloned().collect()),
-                    false => Err(document
-                        .error(pair.span(), "a contact is between the membrane and a rigid body")
+                    false => Err(problem
+                        .error(pair, "a contact is between the membrane and a rigid body")
                         .help(format!("between = [\"{body}\", \"{}\"]", rigid.first().unwrap_or(&"floor")))),
                 }
             }
-            (None, None, Some(all)) if *all.get_ref() => match rigid.is_empty() {
+            (None, None, Some(all)) if *all => match rigid.is_empty() {
                 false => Ok(rigid.into_iter().map(str::to_string).collect()),
-                true => Err(document
-                    .error(all.span(), "there is no rigid body to touch")
+                true => Err(problem
+                    .error(all, "there is no rigid body to touch")
                     .help("add for example  [bodies.floor.rigid]  shape.height = \"-0.1\"")),
             },
-            _ => Err(document
-                .error(contact.span(), "who touches whom is not said, or said twice")
+            _ => Err(problem
+                .error(contact, "who touches whom is not said, or said twice")
                 .help(format!("between = [\"{body}\", \"{}\"]", rigid.first().unwrap_or(&"floor")))),
         }
     }
 
     /// The formulation that a contact asks for, of a membrane of a certain extent.
-    fn formulation(&self, key: &statement::LevelSetKey, size: f64) -> Result<Formulation, CaseError> {
-        let published = key.formulation.as_ref().is_some_and(|f| *f.get_ref() == FormulationKey::Published);
+    fn formulation(&self, key: &problem::LevelSetMethod, size: f64) -> Result<Formulation, CaseError> {
+        let published = key.formulation.as_ref().is_some_and(|f| *f == FormulationKey::Published);
         let kind = key.multiplier.as_ref();
         if !published {
             let spans = [
-                kind.map(|m| m.span()),
-                key.multiplier_length.as_ref().map(|l| l.span()),
-                key.transport.as_ref().map(|t| t.span()),
+                kind.map(|m| self.key(m)),
+                key.multiplier_length.as_ref().map(|l| self.key(l)),
+                key.transport.as_ref().map(|t| self.key(t)),
             ];
             return match spans.into_iter().flatten().next() {
                 None => Ok(Formulation::OneSided),
                 Some(span) => Err(self
-                    .document
-                    .error(span, "this key belongs to the published formulation")
+                    .problem
+                    .error(&span, "this key belongs to the published formulation")
                     .help("formulation = \"published\"")),
             };
         }
-        let multiplier = match (kind.map(|m| *m.get_ref()), &key.multiplier_length) {
+        let multiplier = match (kind.map(|m| *m), &key.multiplier_length) {
             (Some(ZoneMultiplierKey::L2), None) => ZoneMultiplier::L2,
             (Some(ZoneMultiplierKey::L2), Some(length)) => {
                 return Err(self
-                    .document
-                    .error(length.span(), "a multiplier without gradients has no length")
+                    .problem
+                    .error(length, "a multiplier without gradients has no length")
                     .help("multiplier = \"h1\""));
             }
             (_, None) => ZoneMultiplier::H1 { length: size },
             (_, Some(length)) => ZoneMultiplier::H1 { length: self.reader.positive(length, LENGTH)? },
         };
-        let transport = match key.transport.as_ref().map(|t| *t.get_ref()) {
+        let transport = match key.transport.as_ref().map(|t| *t) {
             None | Some(TransportKey::Exact) => Transport::Exact,
             Some(TransportKey::Redistancing) => Transport::Redistancing,
             Some(TransportKey::HamiltonJacobi) => Transport::HamiltonJacobi,
@@ -773,45 +742,42 @@ impl<'a> Planner<'a> {
     /// The cells of a membrane in the published formulation, which knows neither divided cells nor, in the plane, degrees.
     fn on_plain_cells<const D: usize>(
         &self,
-        film: &statement::Membrane,
+        film: &problem::Membrane,
         on: &mut domain::OnCells<D>,
     ) -> Result<(), CaseError> {
-        let case = &self.document.case;
-        if let (2, Some(degree)) = (D, film.degree.as_ref().filter(|d| *d.get_ref() != 1)) {
+        if let (2, Some(degree)) = (D, film.degree.as_ref().filter(|d| **d != 1)) {
             return Err(self
-                .document
-                .error(
-                    degree.span(),
-                    format!("the published formulation has degree 1 in the plane, not {}", degree.get_ref()),
-                )
+                .problem
+                .error(degree, format!("the published formulation has degree 1 in the plane, not {}", degree))
                 .help("degree = 1, or  formulation = \"one_sided\""));
         }
-        let refine = match film.mesh.get_ref() {
-            statement::Mesh::Grid(key) => &key.refine,
-            statement::Mesh::Gmsh(key) => &key.refine,
+        let refine = match &film.mesh {
+            problem::Mesh::Grid(key) => &key.refine,
+            problem::Mesh::Gmsh(key) => &key.refine,
+            problem::Mesh::Arrays(_) => &None,
         };
         if let Some(refine) = refine {
             return Err(self
-                .document
-                .error(refine.span(), "the published formulation works on cells that are not divided")
+                .problem
+                .error(refine, "the published formulation works on cells that are not divided")
                 .help("more cells, or  formulation = \"one_sided\""));
         }
-        if let statement::Mesh::Grid(_) = film.mesh.get_ref() {
+        if let problem::Mesh::Grid(_) = &film.mesh {
             if D == 2 {
                 on.grid = Grid::new(*on.grid.bounds(), on.grid.cells(), 1);
                 on.cells = Arc::new(on.grid.clone());
             }
         } else if on.cells.degree() != 1 {
             return Err(self
-                .document
-                .error(film.mesh.span(), "the published formulation has degree 1 in the plane")
+                .problem
+                .error(&film.mesh, "the published formulation has degree 1 in the plane")
                 .help("degree = 1, or  formulation = \"one_sided\""));
         }
-        let mut controls = case.steps.iter().filter_map(|s| s.get_ref().control.as_ref());
-        if let Some(control) = controls.find(|c| !matches!(c.get_ref(), statement::Control::Time(_))) {
+        let mut controls = self.problem.steps.iter().filter_map(|s| s.control.as_ref());
+        if let Some(control) = controls.find(|c| !matches!(c, problem::Control::Time(_))) {
             return Err(self
-                .document
-                .error(control.span(), "the published formulation follows time only")
+                .problem
+                .error(control, "the published formulation follows time only")
                 .help("control.time = {}, or  formulation = \"one_sided\""));
         }
         on.refinement = Refinement::default();
@@ -819,34 +785,34 @@ impl<'a> Planner<'a> {
     }
 
     /// How many modes a front may have.
-    fn mode_count(&self, key: &statement::LevelSetKey) -> Result<Option<usize>, CaseError> {
+    fn mode_count(&self, key: &problem::LevelSetMethod) -> Result<Option<usize>, CaseError> {
         let Some(count) = &key.mode_count else { return Ok(None) };
-        match usize::try_from(*count.get_ref()) {
+        match usize::try_from(*count) {
             Ok(most @ 1..) => Ok(Some(most)),
             _ => Err(self
-                .document
-                .error(count.span(), format!("a front has one mode at least, not {}", count.get_ref()))
+                .problem
+                .error(count, format!("a front has one mode at least, not {}", count))
                 .help("mode_count = 21")),
         }
     }
 
-    fn method(&self, key: &statement::Contact, size: f64) -> Result<MethodChoice, CaseError> {
+    fn method(&self, key: &problem::Contact, size: f64) -> Result<MethodChoice, CaseError> {
         let Some(method) = &key.method else { return Ok(MethodChoice::default()) };
-        match method.get_ref() {
+        match method {
             Method::InequalityLevelSet(k) => {
                 if let Some(v) = &k.front_degree {
-                    return Err(self.unavailable(v.span(), "`front_degree`"));
+                    return Err(self.unavailable(v, "`front_degree`"));
                 }
                 let formulation = self.formulation(k, size)?;
-                let modes = match (k.modes.as_ref().map(|m| *m.get_ref()), formulation) {
-                    (Some(statement::FrontModes::Fourier), _) | (None, Formulation::Published(_)) => {
+                let modes = match (k.modes.as_ref().map(|m| *m), formulation) {
+                    (Some(problem::FrontModes::Fourier), _) | (None, Formulation::Published(_)) => {
                         Modes::Fourier { most: self.mode_count(k)?.unwrap_or(usize::MAX) }
                     }
                     _ => match &k.mode_count {
                         Some(count) => {
                             return Err(self
-                                .document
-                                .error(count.span(), "splines along a front are as many as its cells can tell apart")
+                                .problem
+                                .error(count, "splines along a front are as many as its cells can tell apart")
                                 .help("modes = \"fourier\", or no `mode_count`"));
                         }
                         None => Modes::Local,
@@ -854,13 +820,13 @@ impl<'a> Planner<'a> {
                 };
                 Ok(MethodChoice::InequalityLevelSet { modes, formulation })
             }
-            Method::ActiveSet(k) => Ok(MethodChoice::ActiveSet(match k.start.as_ref().map(|s| *s.get_ref()) {
-                Some(statement::ActiveSetStart::Cold) => NodalStart::Cold,
+            Method::ActiveSet(k) => Ok(MethodChoice::ActiveSet(match k.start.as_ref().map(|s| *s) {
+                Some(problem::ActiveSetStart::Cold) => NodalStart::Cold,
                 _ => NodalStart::Nested,
             })),
             _ => Err(self
-                .document
-                .error(method.span(), "this method is for solids")
+                .problem
+                .error(method, "this method is for solids")
                 .help("membranes have  method.inequality_level_set = {}  and  method.active_set = {}")),
         }
     }
@@ -893,11 +859,6 @@ pub(crate) fn field<const D: usize>(expression: &Expression, time: f64) -> Share
 }
 
 impl<const D: usize> MembranePlan<D> {
-    /// What the base units of the case are called; none where it states none.
-    pub fn unit_names(&self) -> Option<UnitNames> {
-        self.units.as_ref().map(|units| UnitNames::new(units, self.space))
-    }
-
     fn expressions(&self) -> impl Iterator<Item = &Placed> {
         let touched =
             self.contacts.iter().flat_map(|c| std::iter::once(&c.height).chain(&c.displacement).chain(&c.adhesion));
@@ -909,14 +870,15 @@ impl<const D: usize> MembranePlan<D> {
 
     /// Something that depends on time needs steps.
     fn check_time(&self) -> Result<(), CaseError> {
-        if !self.document.case.steps.is_empty() {
+        if !self.head.problem.steps.is_empty() {
             return Ok(());
         }
         match self.expressions().find(|p| p.expression.uses_time()) {
             None => Ok(()),
             Some(p) => Err(self
-                .document
-                .error(p.span.clone(), format!("`{}` depends on t, but there are no steps", p.key))
+                .head
+                .problem
+                .error(&p.key, format!("`{}` depends on t, but there are no steps", p.key))
                 .help("add for example  [[steps]]  to = 1.0  increments = 10")),
         }
     }
@@ -956,8 +918,8 @@ impl<const D: usize> MembranePlan<D> {
 
     /// The radius of a membrane that is stated as a disc.
     pub fn disc_radius(&self) -> Option<f64> {
-        let Body::Membrane(film) = self.document.case.bodies.get(&self.body)?.get_ref() else { return None };
-        let statement::Domain::Disc(_) = film.domain.as_ref()?.get_ref() else { return None };
+        let Body::Membrane(film) = self.head.problem.bodies.get(&self.body)? else { return None };
+        let problem::Domain::Disc(_) = film.domain.as_ref()? else { return None };
         Some(0.5 * self.grid.bounds().size()[0] / domain::MARGIN)
     }
 
@@ -1016,8 +978,7 @@ impl<const D: usize> MembranePlan<D> {
         let mut failure: Option<CaseError> = None;
         let wrong = |p: &Placed, x: &Point<D>, v: f64, what: &str| {
             let at: Vec<String> = x.iter().map(|c| format!("{c:.6}")).collect();
-            self.document
-                .error(p.span.clone(), format!("`{}` is {v} at ({}), t = {time}: {what}", p.key, at.join(", ")))
+            self.head.problem.error(&p.key, format!("`{}` is {v} at ({}), t = {time}: {what}", p.key, at.join(", ")))
         };
         let finite = "it must be a finite number everywhere in the membrane";
         let fields: Vec<(&Placed, SharedField<D>, bool)> =
@@ -1042,7 +1003,7 @@ impl<const D: usize> MembranePlan<D> {
                         } else if i == 0 && jet.value <= 0.0 {
                             failure
                                 .get_or_insert_with(|| wrong(placed, &p.x, jet.value, "the tension must be positive"));
-                        } else if jet.value < 0.0 && placed.key.ends_with("adhesion.energy") {
+                        } else if jet.value < 0.0 && placed.key.ends_with("energy") {
                             failure.get_or_insert_with(|| {
                                 wrong(placed, &p.x, jet.value, "the energy that adhesion gives is not negative")
                             });
@@ -1077,8 +1038,9 @@ impl<const D: usize> MembranePlan<D> {
                             high[1] + shift[1]
                         );
                         return Err(self
-                            .document
-                            .error(contact.height.span.clone(), message)
+                            .head
+                            .problem
+                            .error(&contact.height.key, message)
                             .help("give a larger map, see `origin` and `spacing`, or move it less"));
                     }
                 }

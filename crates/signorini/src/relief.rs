@@ -4,7 +4,7 @@ use crate::expression::{Expression, Scope};
 use signorini_geometry::grid_spline::GridSpline;
 use signorini_geometry::height_field::{HeightField, View};
 use signorini_geometry::mesh::TriangleMesh;
-use signorini_geometry::{Jet, Real, Vector};
+use signorini_geometry::{Jet, Matrix, Real, Vector};
 
 /// Samples along a vertical between which a level set changes its sign at most once.
 const LAYERS: usize = 96;
@@ -85,7 +85,7 @@ impl HeightField for LevelSetTop {
         Jet {
             value: z,
             gradient: slope.into(),
-            hessian: signorini_geometry::Matrix::<2>::new(bend(0, 0), bend(0, 1), bend(1, 0), bend(1, 1)),
+            hessian: Matrix::<2>::new(bend(0, 0), bend(0, 1), bend(1, 0), bend(1, 1)),
         }
     }
 }
@@ -108,13 +108,68 @@ impl HeightField for Sampled {
     }
 }
 
+/// A height that is turned about the origin of its plane, then moved.
+#[derive(Debug)]
+pub struct MovedHeight<H> {
+    pub height: H,
+    /// In radians.
+    pub angle: f64,
+    pub shift: [f64; 3],
+}
+
+impl<H: HeightField> MovedHeight<H> {
+    fn turn(&self) -> Matrix<2> {
+        let (sin, cos) = self.angle.sin_cos();
+        Matrix::<2>::new(cos, -sin, sin, cos)
+    }
+
+    fn shift_in_plane(&self) -> Vector<2> {
+        Vector::<2>::new(self.shift[0], self.shift[1])
+    }
+}
+
+impl<H: HeightField> HeightField for MovedHeight<H> {
+    fn jet(&self, x: &Vector<2>) -> Jet<2> {
+        let turn = self.turn();
+        let Jet { value, gradient, hessian } = self.height.jet(&(turn.transpose() * (x - self.shift_in_plane())));
+        Jet { value: value + self.shift[2], gradient: turn * gradient, hessian: turn * hessian * turn.transpose() }
+    }
+
+    /// The largest rectangle of the proportions of the box round the turned one that lies in that; the box itself for
+    /// right angles.
+    fn known_within(&self) -> Option<[Vector<2>; 2]> {
+        let [low, high] = self.height.known_within()?;
+        let (half, turn) = ((high - low) * 0.5, self.turn());
+        let around = turn.abs() * half;
+        let back = turn.abs().transpose() * around;
+        let share = (half[0] / back[0]).min(half[1] / back[1]);
+        let centre = turn * (low + half) + self.shift_in_plane();
+        Some([centre - around * share, centre + around * share])
+    }
+}
+
 /// Beyond its shadow a mesh falls off with this slope.
 const FALL: f64 = 1.0;
 
 impl Sampled {
-    /// The corners of the rectangle that is covered.
-    pub fn bounds(&self) -> [[f64; 2]; 2] {
-        self.spline.bounds().map(|x| [x[0], x[1]])
+    /// Heights by rows along x, of so many columns each, the first at the origin.
+    ///
+    /// # Errors
+    /// In words: fewer than four rows or columns, numbers that are not finite.
+    pub fn of_rows(origin: [f64; 2], spacing: [f64; 2], columns: usize, values: &[f64]) -> Result<Self, String> {
+        let rows = values.len() / columns.max(1);
+        if rows < 4 || columns < 4 {
+            return Err(format!("{rows} rows of {columns} heights: at least 4 of each are needed"));
+        }
+        if let Some(k) = values.iter().position(|v| !v.is_finite()) {
+            let (row, column) = (k / columns + 1, k % columns + 1);
+            return Err(format!("row {row}, column {column} is {}: fill the gap, or crop the map", values[k]));
+        }
+        // The first index of the spline is that along x.
+        let turned = (0..columns).flat_map(|i| (0..rows).map(move |j| values[j * columns + i])).collect();
+        let spline =
+            GridSpline::new(Vector::<2>::from(origin), spacing, [columns, rows], turned).map_err(|e| e.to_string())?;
+        Ok(Self { spline, ends: true })
     }
 
     /// The top of a triangle mesh over a rectangle, sampled with a spacing; or its underside. Beyond the shadow of the
@@ -220,6 +275,28 @@ mod tests {
             }
             let beyond = top.jet(&Vector::<2>::new(0.9, 0.0));
             assert_eq!((beyond.value, beyond.gradient.norm()), (-sign, 0.0));
+        }
+    }
+
+    /// A turned map is the map of the turned function, and is known in a rectangle of its own.
+    #[test]
+    fn a_height_is_turned_and_moved() {
+        let values: Vec<f64> = (0..30).map(|k| 0.1 * f64::from(k % 6) - 0.3 * f64::from(k / 6)).collect();
+        let map = Sampled::of_rows([0.0; 2], [1.0; 2], 6, &values).expect("a map");
+        let moved = MovedHeight { height: map, angle: std::f64::consts::FRAC_PI_2, shift: [10.0, 20.0, 0.5] };
+        // What lay at (x, y) lies at (10 - y, 20 + x).
+        let found = moved.jet(&Vector::<2>::new(10.0 - 2.5, 20.0 + 3.25));
+        assert!((found.value - (0.325 - 0.75 + 0.5)).abs() < 1e-12, "{found:?}");
+        assert!((found.gradient - Vector::<2>::new(0.3, 0.1)).norm() < 1e-12 && found.hessian.norm() < 1e-12);
+        let [low, high] = moved.known_within().expect("a rectangle");
+        assert!(
+            (low - Vector::<2>::new(6.0, 20.0)).norm() < 1e-12 && (high - Vector::<2>::new(10.0, 25.0)).norm() < 1e-12
+        );
+        let askew = MovedHeight { angle: 0.4, ..moved };
+        let [low, high] = askew.known_within().expect("a rectangle");
+        for corner in [low, high, Vector::<2>::new(low[0], high[1]), Vector::<2>::new(high[0], low[1])] {
+            let back = askew.turn().transpose() * (corner - askew.shift_in_plane());
+            assert!((-1e-9..5.0 + 1e-9).contains(&back[0]) && (-1e-9..4.0 + 1e-9).contains(&back[1]), "{back}");
         }
     }
 

@@ -8,9 +8,10 @@ mod record;
 mod sizes;
 mod solid;
 
-use crate::case::{CaseError, Document};
+use crate::fields::ShownState;
 use crate::output::OutputError;
 use crate::plan::{Plan, plan};
+use crate::problem::{CaseError, Problem};
 use crate::report::{Reason, Summary};
 use driver::{Model, drive, go_on};
 use membrane::MembraneModel;
@@ -60,11 +61,13 @@ impl Ending {
 pub struct Outcome {
     pub summary: Summary,
     pub ending: Ending,
+    /// The states of [`solve`], as often as the output asks for; of a run with a folder they are there.
+    pub states: Vec<ShownState>,
 }
 
 /// Runs a case and writes its results into a folder, with the threads of rayon's current pool.
-pub fn run(document: &Document, folder: &Path, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
-    begin(document, folder, Begun::Fresh, progress)
+pub fn run(problem: &Problem, folder: &Path, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
+    begin(problem, folder, Begun::Fresh, progress)
 }
 
 /// Where a run begins.
@@ -84,8 +87,8 @@ pub enum Begun {
 ///
 /// # Errors
 /// A folder without a run, or with one of another case.
-pub fn begun(document: &Document, folder: &Path) -> Result<Begun, CaseError> {
-    checkpoint::begun(folder, &document.text).map_err(not_resumed)
+pub fn begun(problem: &Problem, folder: &Path) -> Result<Begun, CaseError> {
+    checkpoint::begun(folder, &crate::case::text(problem)).map_err(not_resumed)
 }
 
 /// Goes on with a run that was interrupted or killed, from its last increment; to the same digits. Of a run that is done
@@ -93,39 +96,47 @@ pub fn begun(document: &Document, folder: &Path) -> Result<Begun, CaseError> {
 ///
 /// # Errors
 /// Those of [`run`], and a folder without such a run, or with one of another case.
-pub fn resume(document: &Document, folder: &Path, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
-    let begun = begun(document, folder)?;
+pub fn resume(problem: &Problem, folder: &Path, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
+    let begun = begun(problem, folder)?;
     if begun == Begun::Done {
         let summary = checkpoint::summary(folder).map_err(not_resumed)?;
-        return Ok(Outcome { summary, ending: Ending::Converged });
+        return Ok(Outcome { summary, ending: Ending::Converged, states: Vec::new() });
     }
-    begin(document, folder, begun, progress)
+    begin(problem, folder, begun, progress)
 }
 
-fn begin(document: &Document, folder: &Path, begun: Begun, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
+/// Solves a problem and keeps its results in memory: no file is read but those it names, and none is written.
+///
+/// # Errors
+/// What is wrong with the problem, by its key. A history that does not converge is no error: [`Outcome::ending`] and the
+/// reason of the summary tell of it, and the states before are there.
+pub fn solve(problem: &Problem, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
+    let start = Instant::now();
+    let mut model = model(problem)?;
+    let record = record::in_memory(model.head());
+    drive(&mut *model, record, 0, start, progress)
+}
+
+fn begin(problem: &Problem, folder: &Path, begun: Begun, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
     let start = Instant::now();
     // Everything that can be checked is checked before the folder is touched.
-    match plan(document)? {
-        Plan::Line(p) => run_model(&mut MembraneModel::<1, LineZone>::new(p)?, folder, begun, start, progress),
-        Plan::Plane(p) => run_model(&mut MembraneModel::<2, PlaneZone>::new(p)?, folder, begun, start, progress),
-        Plan::PlaneSolids(p) => run_model(&mut SolidModel::new(*p)?, folder, begun, start, progress),
-        Plan::Solids(p) => run_model(&mut SolidModel::new(*p)?, folder, begun, start, progress),
+    let mut model = model(problem)?;
+    if begun == Begun::Resumed {
+        let record = record::of_earlier_run(model.head(), folder);
+        return go_on(&mut *model, record, folder, start, progress);
     }
+    let record = record::begin(model.head(), folder)?;
+    drive(&mut *model, record, 0, start, progress)
 }
 
-fn run_model(
-    model: &mut dyn Model,
-    folder: &Path,
-    begun: Begun,
-    start: Instant,
-    progress: &mut dyn Progress,
-) -> Result<Outcome, RunError> {
-    if begun == Begun::Resumed {
-        let record = record::of_earlier_run(&model.head(), folder);
-        return go_on(model, record, folder, start, progress);
-    }
-    let record = record::begin(&model.head(), folder)?;
-    drive(model, record, 0, start, progress)
+/// The model of a problem at its beginning.
+fn model(problem: &Problem) -> Result<Box<dyn Model>, CaseError> {
+    Ok(match plan(problem)? {
+        Plan::Line(p) => Box::new(MembraneModel::<1, LineZone>::new(p)?),
+        Plan::Plane(p) => Box::new(MembraneModel::<2, PlaneZone>::new(p)?),
+        Plan::PlaneSolids(p) => Box::new(SolidModel::new(*p)?),
+        Plan::Solids(p) => Box::new(SolidModel::new(*p)?),
+    })
 }
 
 /// Why there is nothing to go on with, for a user.

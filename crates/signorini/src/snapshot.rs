@@ -1,6 +1,8 @@
 //! A state sampled for files and pictures, whatever method found it.
 
+use crate::fields::Fields;
 use crate::plan::MembranePlan;
+use signorini_fem::CellShape;
 use signorini_geometry::Point;
 use signorini_membrane::domain::CellStatus;
 use signorini_membrane::obstacle::Side;
@@ -137,4 +139,47 @@ impl<const D: usize> Snapshot<D> {
         }
         snapshot
     }
+
+    /// The fields of the membrane by its name.
+    pub fn to_fields(&self, name: &str, mesh: &DisplayMesh<D>) -> Fields {
+        let shape = |corners: usize| match corners {
+            2 => CellShape::Line,
+            3 => CellShape::Triangle,
+            _ => CellShape::Quadrilateral,
+        };
+        let fields = Fields {
+            name: name.into(),
+            points: mesh.points.iter().map(in_space).collect(),
+            cells: mesh.cells.iter().map(|list| (Some(shape(list.len())), list.clone())).collect(),
+            arrays: Vec::new(),
+        }
+        .vector("displacement", self.displacement.iter().flat_map(|u| [0.0, 0.0, *u]).collect());
+        if !self.has_obstacles() {
+            return fields;
+        }
+        fields
+            .scalar("gap", self.gap.clone())
+            .scalar("contact_pressure", self.pressure.clone())
+            .scalar("contact_status", self.in_contact.iter().map(|c| f64::from(u8::from(*c))).collect())
+    }
+
+    /// The edges of all zones: closed lines, points in one dimension.
+    pub fn edges(&self) -> Fields {
+        let mut fields = Fields { name: "contact".into(), ..Fields::default() };
+        for outline in &self.outlines {
+            let first = fields.points.len() as u32;
+            fields.points.extend(outline.iter().map(in_space));
+            let n = outline.len() as u32;
+            if D > 1 {
+                let line = |k: u32| (Some(CellShape::Line), vec![first + k, first + (k + 1) % n]);
+                fields.cells.extend((0..n).map(line));
+            }
+        }
+        fields
+    }
+}
+
+/// A point in space.
+fn in_space<const D: usize>(x: &Point<D>) -> [f64; 3] {
+    std::array::from_fn(|k| if k < D { x[k] } else { 0.0 })
 }

@@ -63,7 +63,6 @@ fn is_path(key: &str, path: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::case::Document;
     use crate::gallery::GALLERY;
 
     #[test]
@@ -72,7 +71,7 @@ mod tests {
             let text = annotated(example);
             let values = |text: &str| text.parse::<toml::Table>().expect("TOML");
             assert_eq!(values(&text), values(example.case), "{}", example.name);
-            Document::parse(example.name, &text, &[]).expect("a case");
+            crate::case::read(example.name, &text, &[]).expect("a case");
             let comments = text.lines().filter(|l| l.starts_with("# ")).count();
             assert!(comments > 8, "{}: {comments}", example.name);
         }

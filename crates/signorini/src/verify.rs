@@ -1,6 +1,5 @@
 //! Problems with known answers, run here and now.
 
-use crate::case::Document;
 use crate::run::run;
 use serde_json::{Value, json};
 use signorini_solve::Silent;
@@ -137,8 +136,8 @@ pub fn verify(problem: &Problem, folder: &Path) -> Result<Verdict, String> {
     let example = crate::gallery::find(problem.case).ok_or_else(|| format!("no case `{}`", problem.case))?;
     let mut set: Vec<String> = problem.set.iter().map(|s| s.to_string()).collect();
     set.push("output.pictures=false".into());
-    let document = Document::parse(example.name, example.case, &set).map_err(|e| e.one_line())?;
-    let outcome = run(&document, folder, &mut Silent).map_err(|e| e.to_string())?;
+    let stated = crate::case::read(example.name, example.case, &set).map_err(|e| e.one_line())?;
+    let outcome = run(&stated, folder, &mut Silent).map_err(|e| e.to_string())?;
     if !outcome.summary.converged {
         return Err(outcome.summary.verdict);
     }

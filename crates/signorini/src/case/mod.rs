@@ -1,46 +1,90 @@
-//! The statement of a problem: the case file, its values and units, and its errors.
+//! Case files: a problem as TOML. Lines and columns are known here alone.
 
-pub mod error;
 mod origin;
 pub mod override_key;
 pub mod schema;
-pub mod statement;
-pub mod units;
-pub mod value;
+mod spans;
+pub(crate) mod toml_error;
 
-pub use error::{CaseError, suggestion};
-pub use origin::Origins;
-pub use statement::Case;
-pub use value::{Literal, OneOrMany, Value, Values};
-
+use crate::problem::error::Place;
+use crate::problem::source::{Source, Text};
+use crate::problem::{CaseError, KeyPath, Problem};
+use origin::Origins;
+use spans::Spans;
 use std::ops::Range;
+use std::sync::Arc;
 
-/// A case file that was read: the statement and its text, to which errors point.
-#[derive(Clone, Debug)]
-pub struct Document {
-    /// What the file is called in messages.
-    pub name: String,
-    pub text: String,
-    pub case: Case,
-    /// Where the parts of the text were written.
-    origins: Origins,
+/// Reads a problem from a text that is called `name`: the path of its file, by which files beside it are found. `overrides`
+/// are `KEY=VALUE` pairs that replace or add keys.
+///
+/// # Errors
+/// What is no case, with its place.
+pub fn read(name: &str, text: &str, overrides: &[String]) -> Result<Problem, CaseError> {
+    let (text, origins) = override_key::apply(name, text, overrides)?;
+    let wrong = |e| origins.relocated(toml_error::from_toml(name, &text, &e));
+    let mut problem: Problem = toml::from_str(&text).map_err(wrong)?;
+    let spans = Spans::of(&text);
+    let text = CaseText { name: name.to_string(), text, origins, spans };
+    problem.source = Source { name: name.to_string(), text: Some(Arc::new(text)) };
+    Ok(problem)
 }
 
-impl Document {
-    /// Reads a statement. `overrides` are `KEY=VALUE` pairs that replace or add keys.
-    pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Self, CaseError> {
-        let (text, origins) = override_key::apply(name, text, overrides)?;
-        let case: Case = toml::from_str(&text).map_err(|e| origins.relocated(error::from_toml(name, &text, &e)))?;
-        Ok(Self { name: name.to_string(), text, case, origins })
+/// The text of a problem: the one it was read from, or else one that states the same.
+pub fn text(problem: &Problem) -> String {
+    match &problem.source.text {
+        Some(text) => text.text().to_string(),
+        None => toml::to_string(problem).unwrap_or_default(),
+    }
+}
+
+/// The text of a case file, and where its parts were written.
+struct CaseText {
+    name: String,
+    /// With all settings.
+    text: String,
+    origins: Origins,
+    spans: Spans,
+}
+
+impl Text for CaseText {
+    fn text(&self) -> &str {
+        &self.text
     }
 
-    /// The line of the file that a byte of the text comes from, from one; none for what `--set` says.
-    pub fn line_of(&self, byte: usize) -> Option<usize> {
-        self.origins.line(byte)
+    fn place(&self, key: &KeyPath, within: Option<(&str, Range<usize>)>) -> Place {
+        let mut span = self.spans.nearest(key);
+        // Some bytes of a quoted text, if it stands there without escapes.
+        if let Some((text, part)) = within
+            && let Some(at) = self.text.get(span.clone()).and_then(|quoted| quoted.find(text))
+        {
+            let start = span.start + at;
+            span = start + part.start..start + part.end.max(part.start);
+        }
+        self.origins.relocate(Place { name: self.name.clone(), text: self.text.clone(), span })
     }
 
-    /// An error at a place of this file.
-    pub fn error(&self, span: Range<usize>, message: impl Into<String>) -> CaseError {
-        self.origins.relocated(CaseError::new(message).at(&self.name, &self.text, span))
+    fn order(&self, key: &KeyPath) -> usize {
+        self.spans.nearest(key).start
+    }
+
+    fn line(&self, key: &KeyPath) -> Option<usize> {
+        self.origins.line(self.order(key))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A problem that is stated in types is the one that its text states.
+    #[test]
+    fn a_problem_is_written_as_the_text_that_states_it() {
+        for example in crate::gallery::GALLERY {
+            let problem = read(example.name, example.case, &[]).unwrap();
+            let written = toml::to_string(&problem).unwrap();
+            let again = read(example.name, &written, &[]).unwrap();
+            assert_eq!(toml::to_string(&again).unwrap(), written, "{}", example.name);
+            assert_eq!(format!("{:?}", again.bodies), format!("{:?}", problem.bodies), "{}", example.name);
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Where the parts of a case text come from: the file, or a `--set` on the command line.
 
-use super::CaseError;
-use super::error::Place;
+use crate::problem::CaseError;
+use crate::problem::error::Place;
 use std::ops::Range;
 use toml_edit::{Document, TableLike};
 
@@ -80,7 +80,13 @@ impl Origins {
 
     /// An error at a place of the text, told at the place where that was written.
     pub fn relocated(&self, mut error: CaseError) -> CaseError {
-        error.place = error.place.map(|place| match self.of(place.span.start) {
+        error.place = error.place.map(|place| self.relocate(place));
+        error
+    }
+
+    /// A place of the text, where it was written.
+    pub fn relocate(&self, place: Place) -> Place {
+        match self.of(place.span.start) {
             Origin::Setting(setting) => {
                 let part = place.text.get(place.span).unwrap_or("").trim_matches(['"', '\'']);
                 let start = if part.is_empty() { None } else { setting.find(part) };
@@ -94,8 +100,7 @@ impl Origins {
                 };
                 Place { text: self.file.clone(), span: start..end, ..place }
             }
-        });
-        error
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! What may stand in a case file, told by the types that read it: as a JSON Schema, key by key, as a table.
 
-use super::Case;
+use crate::problem::Problem;
 use serde_json::{Map, Value, json};
 
 /// A key of the case file.
@@ -18,7 +18,7 @@ pub struct Key {
 
 /// The JSON Schema of case files (draft 2020-12), for editors and other programs.
 pub fn schema() -> Value {
-    let mut schema = schemars::schema_for!(Case).to_value();
+    let mut schema = schemars::schema_for!(Problem).to_value();
     // Editors tell a file by what it names; the line itself is a comment to TOML.
     if let Some(table) = schema.as_object_mut() {
         table.insert("title".into(), json!("signorini case"));

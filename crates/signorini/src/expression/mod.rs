@@ -3,8 +3,10 @@
 //! An expression is parsed once and evaluated on plain numbers or on jets, which yields exact first and second
 //! derivatives. Errors point at the character.
 
+mod function;
 mod parse;
 
+pub use function::{FieldFunction, InTime};
 pub(crate) use parse::number_length;
 pub use parse::{Names, ParseError, function_names, parse};
 
@@ -45,6 +47,8 @@ enum Node {
     User(Arc<Definition>, Box<Node>),
     /// A height over x and y that no expression states.
     Height(Arc<dyn HeightField>),
+    /// A function of the program.
+    Field(FieldFunction),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -144,6 +148,11 @@ impl Expression {
         Self { root: Node::Height(height) }
     }
 
+    /// A function of the program.
+    pub fn function(function: FieldFunction) -> Self {
+        Self { root: Node::Field(function) }
+    }
+
     /// The height that the expression is, if no expression states it.
     pub fn as_height(&self) -> Option<&dyn HeightField> {
         match &self.root {
@@ -176,7 +185,11 @@ impl Expression {
 
     /// Whether the expression depends on time.
     pub fn uses_time(&self) -> bool {
-        self.root.any(&|n| matches!(n, Node::Time))
+        self.root.any(&|n| match n {
+            Node::Time => true,
+            Node::Field(f) => f.varies(),
+            _ => false,
+        })
     }
 
     /// Whether the expression depends on a coordinate (0, 1, 2).
@@ -184,6 +197,7 @@ impl Expression {
         self.root.any(&|n| match n {
             Node::Position(k) => *k == axis,
             Node::Height(_) => axis < 2,
+            Node::Field(_) => true,
             _ => false,
         })
     }
@@ -197,7 +211,7 @@ impl Expression {
 impl Node {
     fn children(&self) -> Vec<&Node> {
         match self {
-            Node::Number(_) | Node::Position(_) | Node::Time | Node::Height(_) => vec![],
+            Node::Number(_) | Node::Position(_) | Node::Time | Node::Height(_) | Node::Field(_) => vec![],
             Node::Negate(a) | Node::Not(a) | Node::Call(_, a) | Node::User(_, a) => vec![a],
             Node::Binary(_, a, b) | Node::Compare(_, a, b) | Node::Pair(_, a, b) => vec![a, b],
             Node::If(a, b, c) => vec![a, b, c],
@@ -211,7 +225,7 @@ impl Node {
     fn map(&self, f: &impl Fn(&Node) -> Node) -> Node {
         let sub = |n: &Node| Box::new(f(n));
         match self {
-            Node::Number(_) | Node::Position(_) | Node::Time | Node::Height(_) => self.clone(),
+            Node::Number(_) | Node::Position(_) | Node::Time | Node::Height(_) | Node::Field(_) => self.clone(),
             Node::Negate(a) => Node::Negate(sub(a)),
             Node::Not(a) => Node::Not(sub(a)),
             Node::Call(g, a) => Node::Call(*g, sub(a)),
@@ -226,13 +240,14 @@ impl Node {
     fn with_time(&self, time: f64) -> Node {
         match self {
             Node::Time => Node::Number(time),
+            Node::Field(f) => Node::Field(f.at_time(time)),
             other => other.map(&|n| n.with_time(time)),
         }
     }
 
     /// Parts without position and time replaced by their value.
     fn folded(self) -> Node {
-        if self.any(&|n| matches!(n, Node::Position(_) | Node::Time | Node::Height(_))) {
+        if self.any(&|n| matches!(n, Node::Position(_) | Node::Time | Node::Height(_) | Node::Field(_))) {
             return self.map(&|n| n.clone().folded());
         }
         Node::Number(self.evaluate(&Scope { position: [f64::NAN; 3], time: f64::NAN }))
@@ -258,6 +273,7 @@ impl Node {
             }
             Node::User(f, a) => f.evaluate(a.evaluate(scope)),
             Node::Height(height) => height_field::evaluate(&**height, scope.position[0], scope.position[1]),
+            Node::Field(f) => f.evaluate(scope),
         }
     }
 }

@@ -240,7 +240,7 @@ impl Parser<'_> {
         } else if ["r", "radius"].contains(&name) {
             "the radius is `x` in an axisymmetric case, and `hypot(x, y)` in the plane".into()
         } else {
-            crate::case::suggestion(name, &known)
+            crate::problem::suggestion(name, &known)
         };
         Err(ParseError { message: format!("unknown name `{name}`"), help: Some(help), span })
     }
@@ -277,7 +277,7 @@ impl Parser<'_> {
                 known.extend(self.names.functions.keys().map(String::as_str));
                 return Err(ParseError {
                     message: format!("unknown function `{name}`"),
-                    help: Some(crate::case::suggestion(name, &known)),
+                    help: Some(crate::problem::suggestion(name, &known)),
                     span: span.clone(),
                 });
             }

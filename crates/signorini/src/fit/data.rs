@@ -1,10 +1,8 @@
 //! Measurements from a text table with a row of names.
 
-use crate::case::statement::FitKey;
-use crate::case::{CaseError, Document, suggestion};
+use crate::problem::Fit;
+use crate::problem::{CaseError, Problem, suggestion};
 use crate::text_table::{self, Numbers, Row};
-use std::path::Path;
-use toml::Spanned;
 
 /// Times and what was measured then.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,23 +14,21 @@ pub struct Measurements {
 }
 
 /// Reads the two columns that a case names.
-pub(super) fn read(document: &Document, key: &FitKey, column: &Spanned<String>) -> Result<Measurements, CaseError> {
-    let beside = Path::new(&document.name).parent().unwrap_or(Path::new(""));
-    let path = beside.join(key.data.get_ref());
-    let told = |message: String| document.error(key.data.span(), format!("`{}`: {message}", path.display()));
+pub(super) fn read(problem: &Problem, key: &Fit, column: &String) -> Result<Measurements, CaseError> {
+    let path = problem.source.folder().join(&key.data);
+    let told = |message: String| problem.error(&key.data, format!("`{}`: {message}", path.display()));
     let bytes = std::fs::read(&path).map_err(|e| told(format!("{e}")))?;
     let rows = text_table::rows(&bytes).map_err(told)?;
     let Some((header, rows)) = rows.split_first() else { return Err(told("is empty".into())) };
     let names: Vec<&str> = header.entries.iter().collect();
-    let find = |name: &Spanned<String>| {
-        let matching: Vec<usize> = (0..names.len()).filter(|&i| names[i] == name.get_ref()).collect();
+    let find = |name: &String| {
+        let matching: Vec<usize> = (0..names.len()).filter(|&i| names[i] == name).collect();
         match matching[..] {
             [one] => Ok(one),
-            [] => Err(document
-                .error(name.span(), format!("`{}` has no column `{}`", path.display(), name.get_ref()))
-                .help(suggestion(name.get_ref(), &names))),
-            _ => Err(document
-                .error(name.span(), format!("`{}` has two columns called `{}`", path.display(), name.get_ref()))),
+            [] => Err(problem
+                .error(name, format!("`{}` has no column `{}`", path.display(), name))
+                .help(suggestion(name, &names))),
+            _ => Err(problem.error(name, format!("`{}` has two columns called `{}`", path.display(), name))),
         }
     };
     let columns = [find(&key.time)?, find(column)?];

@@ -1,9 +1,9 @@
 //! The radius of contact that a membrane has at each measurement, as a function of adhesion and tension.
 
 use super::Measurements;
-use crate::case::statement::{FitKey, Space};
-use crate::case::{CaseError, Document};
 use crate::plan::MembranePlan;
+use crate::problem::{CaseError, Problem};
+use crate::problem::{Fit, Space};
 use rayon::prelude::*;
 use signorini_geometry::Point;
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
@@ -89,13 +89,13 @@ impl Model {
     }
 
     /// Refuses measurements that no zone of the membrane has.
-    pub(super) fn check(&self, document: &Document, key: &FitKey, measured: &Measurements) -> Result<(), CaseError> {
+    pub(super) fn check(&self, problem: &Problem, key: &Fit, measured: &Measurements) -> Result<(), CaseError> {
         let largest = self.measure(self.radii[self.radii.len() - 1]);
         match measured.value.iter().find(|v| !(**v > 0.0 && **v < largest)) {
             None => Ok(()),
-            Some(v) => Err(document
+            Some(v) => Err(problem
                 .error(
-                    key.data.span(),
+                    &key.data,
                     format!("`{}` is {v}: a zone of this membrane has between 0 and {largest:.6}", measured.names[1]),
                 )
                 .help("numbers are in the base units of the case; rows without contact do not belong here")),

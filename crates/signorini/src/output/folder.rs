@@ -76,10 +76,10 @@ fn date(seconds: u64) -> String {
     format!("{:04}-{month:02}-{day:02} at {hour:02}:{minute:02} UTC", year + 400 * era)
 }
 
-/// A folder that belongs to one run.
-#[derive(Clone, Debug)]
+/// A folder that belongs to one run; or nothing, where a program keeps the results in its memory.
+#[derive(Clone, Debug, Default)]
 pub struct Folder {
-    path: PathBuf,
+    path: Option<PathBuf>,
 }
 
 impl Folder {
@@ -102,30 +102,32 @@ impl Folder {
             }
         }
         std::fs::create_dir_all(path).map_err(fail)?;
-        let folder = Self { path: path.to_path_buf() };
+        let folder = Self { path: Some(path.to_path_buf()) };
         folder.write(MARKER, format!("{FIRST_LINE},\"version\":\"{}\"}}\n", env!("CARGO_PKG_VERSION")).as_bytes())?;
         Ok(folder)
     }
 
     /// The folder of an earlier run, as it is.
     pub fn of_earlier_run(path: &Path) -> Self {
-        Self { path: path.to_path_buf() }
+        Self { path: Some(path.to_path_buf()) }
     }
 
     /// Removes a file or a folder of ours; what cannot be removed stays.
     pub fn remove(&self, name: &str) {
-        let path = self.path.join(name);
+        let Some(path) = self.path.as_ref().map(|p| p.join(name)) else { return };
         let _ = if path.is_dir() { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) };
     }
 
-    pub fn path(&self) -> &Path {
-        &self.path
+    /// Its path; none of what is nowhere.
+    pub fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
     }
 
     /// Writes a file whole, or not at all.
     pub fn write(&self, name: &str, content: &[u8]) -> Result<(), OutputError> {
-        let path = self.path.join(name);
-        let part = self.path.join(format!("{name}.part"));
+        let Some(folder) = &self.path else { return Ok(()) };
+        let path = folder.join(name);
+        let part = folder.join(format!("{name}.part"));
         let write = || -> io::Result<()> {
             if let Some(parent) = path.parent() {
                 std::fs::create_dir_all(parent)?;
@@ -143,7 +145,7 @@ impl Folder {
 
     /// Appends a line to the log.
     pub fn log(&self, line: &serde_json::Value) -> Result<(), OutputError> {
-        let path = self.path.join(MARKER);
+        let Some(path) = self.path.as_ref().map(|p| p.join(MARKER)) else { return Ok(()) };
         let append = || -> io::Result<()> {
             let mut file = std::fs::OpenOptions::new().append(true).open(&path)?;
             io::Write::write_all(&mut file, format!("{line}\n").as_bytes())
@@ -195,10 +197,10 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let folder = Folder::create(&root.path().join("out")).unwrap();
         folder.write("summary.json", b"earlier").unwrap();
-        std::os::unix::fs::symlink("/dev/full", folder.path().join("summary.json.part")).unwrap();
+        std::os::unix::fs::symlink("/dev/full", folder.path().unwrap().join("summary.json.part")).unwrap();
         let error = folder.write("summary.json", b"later").unwrap_err();
         assert!(error.to_string().contains("summary.json") && error.to_string().contains("space"), "{error}");
-        assert_eq!(std::fs::read(folder.path().join("summary.json")).unwrap(), b"earlier");
-        assert!(!folder.path().join("summary.json.part").exists());
+        assert_eq!(std::fs::read(folder.path().unwrap().join("summary.json")).unwrap(), b"earlier");
+        assert!(!folder.path().unwrap().join("summary.json.part").exists());
     }
 }

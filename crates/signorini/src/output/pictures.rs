@@ -2,9 +2,9 @@
 
 use super::chart::{Axes, FONT, Image, axes, failed, label, line, padded, range, rounded, save, svg, viridis, word};
 use super::{Folder, OutputError};
-use crate::case::statement::Space;
 use crate::exact;
 use crate::plan::MembranePlan;
+use crate::problem::Space;
 use crate::report::{ContactReport, Event, StepReport, UnitNames};
 use crate::snapshot::{DisplayMesh, Snapshot};
 use plotters::prelude::*;
@@ -40,7 +40,7 @@ pub fn draw<const D: usize>(
         // A domain thinner than the display can show.
         return Ok(());
     }
-    let units = &Labels(plan.unit_names());
+    let units = &Labels(plan.head.unit_names());
     let exact = exact::of(plan, s.time);
     let own = |values: &[f64]| range(values.iter().copied());
     type Drawing<'a> = Box<dyn Fn() -> Result<String, OutputError> + Sync + 'a>;
@@ -162,7 +162,7 @@ pub(super) fn frame<const D: usize>(
     s: &Snapshot<D>,
     (lo, hi): (f64, f64),
 ) -> Result<String, OutputError> {
-    let units = &Labels(plan.unit_names());
+    let units = &Labels(plan.head.unit_names());
     if D == 1 {
         return profile(plan, mesh, s, None, units, (lo, hi));
     }

@@ -3,6 +3,7 @@
 use super::OutputError;
 use super::level::OF_HEXAHEDRON;
 use super::vtk::to_bytes;
+use crate::fields::{FieldArray, Fields};
 use nalgebra::Matrix3;
 use signorini_contact::ContactSurface;
 use signorini_fem::{CellShape, Local};
@@ -226,6 +227,25 @@ impl<const D: usize> SolidDisplay<D> {
         &model.bodies.list[self.body[point] as usize].name
     }
 
+    /// The fields of a body by its number.
+    pub fn of_body(&self, name: &str, number: u32, fields: &SolidFields<D>) -> Fields {
+        let own: Vec<usize> = (0..self.points.len()).filter(|&k| self.body[k] == number).collect();
+        let first = own.first().copied().unwrap_or(0) as u32;
+        // The points of a body follow each other.
+        let cells = (self.cells.iter().filter(|(_, list)| self.body[list[0] as usize] == number))
+            .map(|(kind, list)| (shape_of(*kind), list.iter().map(|k| k - first).collect()));
+        let spatial = |list: &[Point<D>]| own.iter().flat_map(|&k| in_space(&list[k])).collect::<Vec<f64>>();
+        let stress = own.iter().flat_map(|&k| components(&fields.stress[k])).collect();
+        Fields {
+            name: name.into(),
+            points: own.iter().map(|&k| in_space(&self.points[k])).collect(),
+            cells: cells.collect(),
+            arrays: vec![FieldArray { name: "stress_xx_yy_zz_xy_yz_xz", components: 6, values: stress }],
+        }
+        .vector("displacement", spatial(&fields.displacement))
+        .scalar("von_mises", own.iter().map(|&k| fields.von_mises[k]).collect())
+    }
+
     /// A VTU with displacement, stress and its equivalent after von Mises.
     pub fn vtu(&self, fields: &SolidFields<D>) -> Result<Vec<u8>, OutputError> {
         let spatial = |list: &[Point<D>]| -> Vec<f64> {
@@ -240,9 +260,7 @@ impl<const D: usize> SolidDisplay<D> {
                 Some(*at)
             })
             .collect();
-        let stress: Vec<f64> = (fields.stress.iter())
-            .flat_map(|s| [s[(0, 0)], s[(1, 1)], s[(2, 2)], s[(0, 1)], s[(1, 2)], s[(0, 2)]])
-            .collect();
+        let stress: Vec<f64> = (fields.stress.iter()).flat_map(components).collect();
         let point = vec![
             Attribute::vectors("displacement").with_data(spatial(&fields.displacement)),
             Attribute::scalars("stress_xx_yy_zz_xy_yz_xz", 6).with_data(stress),
@@ -258,6 +276,29 @@ impl<const D: usize> SolidDisplay<D> {
             data: Attributes { point, cell: Vec::new() },
         };
         to_bytes("solids", DataSet::inline(piece))
+    }
+}
+
+/// A point of the plane or of space in space.
+fn in_space<const D: usize>(x: &Point<D>) -> [f64; 3] {
+    std::array::from_fn(|k| if k < D { x[k] } else { 0.0 })
+}
+
+/// The components of a symmetric tensor: xx, yy, zz, xy, yz, xz.
+fn components(s: &Matrix3<f64>) -> [f64; 6] {
+    [s[(0, 0)], s[(1, 1)], s[(2, 2)], s[(0, 1)], s[(1, 2)], s[(0, 2)]]
+}
+
+/// The shape that VTK knows by a type.
+fn shape_of(kind: CellType) -> Option<CellShape> {
+    match kind {
+        CellType::Line => Some(CellShape::Line),
+        CellType::Triangle => Some(CellShape::Triangle),
+        CellType::Quad => Some(CellShape::Quadrilateral),
+        CellType::Tetra => Some(CellShape::Tetrahedron),
+        CellType::Hexahedron => Some(CellShape::Hexahedron),
+        CellType::Wedge => Some(CellShape::Wedge),
+        _ => None,
     }
 }
 
@@ -378,6 +419,26 @@ impl<const D: usize> ContactDisplay<D> {
             .map(|(_, face)| *face)
             .collect();
         within.iter().map(|&f| self.face_area[f]).sum()
+    }
+
+    /// The fields of the slave side.
+    pub fn to_fields(&self, name: &str) -> Fields {
+        let shape = |corners: usize| match (D, corners) {
+            (_, 2) => Some(CellShape::Line),
+            (_, 3) => Some(CellShape::Triangle),
+            (_, 4) => Some(CellShape::Quadrilateral),
+            _ => None,
+        };
+        Fields {
+            name: name.into(),
+            points: self.points.iter().map(in_space).collect(),
+            cells: self.faces.iter().map(|list| (shape(list.len()), list.clone())).collect(),
+            arrays: Vec::new(),
+        }
+        .vector("displacement", self.displacement.iter().flat_map(in_space).collect())
+        .scalar("contact_pressure", self.pressure.clone())
+        .scalar("gap", self.gap.clone())
+        .scalar("contact_status", self.active.iter().map(|a| f64::from(u8::from(*a))).collect())
     }
 
     /// A VTP of the slave side with pressure, gap and status.

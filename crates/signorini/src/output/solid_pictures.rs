@@ -23,7 +23,7 @@ pub fn draw<const D: usize>(
     contacts: &[ContactDisplay<D>],
     steps: &[StepReport],
 ) -> Result<(), OutputError> {
-    let labels = Labels(plan.unit_names());
+    let labels = Labels(plan.head.unit_names());
     if D == 3 {
         solid_space::draw(folder, plan, time, display, fields, contacts, &labels)?;
     } else {
@@ -51,7 +51,7 @@ pub fn preview<const D: usize>(
     display: &SolidDisplay<D>,
     fields: &SolidFields<D>,
 ) -> Result<String, OutputError> {
-    let labels = Labels(plan.unit_names());
+    let labels = Labels(plan.head.unit_names());
     if D == 3 {
         return solid_space::preview(plan, display, fields, &labels);
     }
@@ -211,7 +211,7 @@ fn deformed<const D: usize>(
 fn rigid_raster<const D: usize>(out: &mut String, plan: &SolidPlan<D>, time: f64, view: &View) {
     let bodies: Vec<_> = (plan.contacts.iter())
         .filter_map(|c| match &c.opposite {
-            Opposite::Rigid(body) => body.gap_at(&plan.document, time).ok(),
+            Opposite::Rigid(body) => body.gap_at(&plan.head.problem, time).ok(),
             Opposite::Body { .. } => None,
         })
         .collect();

@@ -79,7 +79,7 @@ impl<'a, const D: usize> State<'a, D> {
             if rigid.iter().any(|(name, _)| *name == body.name) {
                 continue;
             }
-            let Ok(gap) = body.gap_at(&plan.document, time) else { continue };
+            let Ok(gap) = body.gap_at(&plan.head.problem, time) else { continue };
             let (points, normals, triangles) = surface(&gap, [low - pad, high + pad]);
             let normals = triangles.iter().map(|t| t.map(|k| normals[k as usize])).collect();
             let sheet = Body { points, triangles, normals, paint: Paint::Plain(RIGID), opacity: VEIL };

@@ -2,19 +2,19 @@
 
 use super::Planner;
 use super::pieces::Apart;
-use crate::case::CaseError;
-use crate::case::statement::{self, Domain, Mesh, Space};
-use crate::case::units::{LENGTH, NONE};
+use super::placement::PlacementKeys;
 use crate::expression::{Expression, Scope};
+use crate::problem::units::{LENGTH, NONE};
+use crate::problem::{self, Domain, Mesh, Space};
+use crate::problem::{CaseError, KeyPath, Location, Value};
 use signorini_fem::mesh_cells::MOST_ON_TRIANGLES;
-use signorini_fem::{Cells, Grid, MeshCells, RefinedGrid};
+use signorini_fem::{Cells, Grid, Mesh as FemMesh, MeshCells, RefinedGrid};
 use signorini_geometry::{Aabb, Ellipse, ImplicitShape, Jet, Point, Real, Vector, polygon};
 use signorini_membrane::domain::{
     BoxDomain, CellStatus, Domain as MembraneDomain, DomainOnCells, ImplicitDomain, MeshDomain, PolygonDomain,
 };
 use signorini_membrane::refinement::Refinement;
 use std::collections::BTreeSet;
-use std::ops::Range;
 use std::sync::Arc;
 
 /// The box of a grid that the boundary cuts is larger than the domain by this factor, so that no boundary runs along
@@ -45,18 +45,14 @@ impl Pieces {
 /// Reads domains of one dimension.
 pub(crate) trait ReadDomain<const D: usize> {
     /// A shape, its bounding box and its groups.
-    fn shape(&self, key: &toml::Spanned<Domain>) -> Result<(Arc<dyn MembraneDomain<D>>, Aabb<D>, Pieces), CaseError>;
+    fn shape(&self, key: &Domain) -> Result<(Arc<dyn MembraneDomain<D>>, Aabb<D>, Pieces), CaseError>;
 
     /// The zone of contact that a case asks for, as a shape; sides that reach the membrane's own reach beyond it.
-    fn initial_zone(
-        &self,
-        key: &toml::Spanned<Domain>,
-        grid: &Grid<D>,
-    ) -> Result<Arc<dyn MembraneDomain<D>>, CaseError> {
+    fn initial_zone(&self, key: &Domain, grid: &Grid<D>) -> Result<Arc<dyn MembraneDomain<D>>, CaseError> {
         let (shape, bounds, _) = self.shape(key)?;
         let whole = grid.bounds();
         if (0..D).any(|k| bounds.max[k] <= whole.min[k] || bounds.min[k] >= whole.max[k]) {
-            return Err(self.planner().document.error(key.span(), "the initial zone lies beside the membrane"));
+            return Err(self.planner().problem.error(key, "the initial zone lies beside the membrane"));
         }
         if !shape.is_box() {
             return Ok(shape);
@@ -83,32 +79,36 @@ pub(crate) trait ReadDomain<const D: usize> {
     fn divided(&self, grid: &Grid<D>, wanted: &Wanted<D>) -> Arc<dyn Cells<D>>;
 
     /// The cells of a mesh from a file.
-    fn mesh(&self, key: &statement::DividedGmshKey, film: &statement::Membrane) -> Result<OnCells<D>, CaseError>;
+    fn mesh_of_file(&self, key: &problem::DividedGmshMesh, film: &problem::Membrane) -> Result<OnCells<D>, CaseError>;
+
+    /// The cells of a mesh from arrays.
+    fn mesh_of_arrays(&self, key: &problem::MeshArrays, film: &problem::Membrane) -> Result<OnCells<D>, CaseError>;
 
     /// The domain on its cells.
-    fn domain(&self, film: &statement::Membrane, span: Range<usize>) -> Result<OnCells<D>, CaseError> {
+    fn domain(&self, film: &problem::Membrane) -> Result<OnCells<D>, CaseError> {
         let planner = self.planner();
-        let grid = match film.mesh.get_ref() {
-            Mesh::Gmsh(key) => return self.mesh(key, film),
+        let grid = match &film.mesh {
+            Mesh::Gmsh(key) => return self.mesh_of_file(key, film),
+            Mesh::Arrays(key) => return self.mesh_of_arrays(key, film),
             Mesh::Grid(grid) => grid,
         };
         let degree = planner.degree(film)?.unwrap_or(2);
-        let (shape, bounds, pieces) = self.shape(planner.domain_key(film, span.clone())?)?;
+        let (shape, bounds, pieces) = self.shape(planner.domain_key(film)?)?;
         let (cells, place) = planner.cells(film, grid, &bounds)?;
-        planner.check_size(&cells, degree, place.clone())?;
+        planner.check_size(&cells, degree, &place)?;
         let coarse = Grid::new(bounds, cells, degree);
         let refinement = self.refinement(grid.refine.as_ref(), &coarse)?;
         let cells: Arc<dyn Cells<D>> = match &grid.refine {
-            Some(key) if key.get_ref().negative_where.is_some() => self.divided(&coarse, &refinement.always),
+            Some(key) if key.negative_where.is_some() => self.divided(&coarse, &refinement.always),
             _ => Arc::new(coarse.clone()),
         };
         let grid = coarse;
         let domain = DomainOnCells::new(shape, &*cells);
         if domain.status.iter().all(|s| *s == CellStatus::Outside) {
-            let span = film.domain.as_ref().map_or(span, |d| d.span());
+            let span = film.domain.as_ref().map_or_else(|| planner.key(film), |d| planner.key(d));
             return Err(planner
-                .document
-                .error(span, "the domain is empty: no point of it was found on the grid")
+                .problem
+                .error(&span, "the domain is empty: no point of it was found on the grid")
                 .help("check the sign (negative inside) and the bounds min, max, or use more cells"));
         }
         Ok(OnCells { cells, grid, domain, pieces, refinement })
@@ -116,7 +116,7 @@ pub(crate) trait ReadDomain<const D: usize> {
 }
 
 /// What a case says of where cells are divided.
-type RefineEntry = toml::Spanned<statement::RefineKey>;
+type RefineEntry = problem::Refine;
 
 /// Whether a cell is divided, from its box and how often it was divided.
 type Wanted<const D: usize> = Arc<dyn Fn(&Aabb<D>, usize) -> bool + Send + Sync>;
@@ -132,38 +132,36 @@ pub(crate) struct OnCells<const D: usize> {
 
 impl Planner<'_> {
     /// The degree that a membrane states.
-    fn degree(&self, film: &statement::Membrane) -> Result<Option<usize>, CaseError> {
+    fn degree(&self, film: &problem::Membrane) -> Result<Option<usize>, CaseError> {
         match &film.degree {
             None => Ok(None),
-            Some(d) if (1..=6).contains(d.get_ref()) => Ok(Some(*d.get_ref() as usize)),
-            Some(d) => Err(self.document.error(d.span(), format!("degree {} is not between 1 and 6", d.get_ref()))),
+            Some(d) if (1..=6).contains(d) => Ok(Some(*d as usize)),
+            Some(d) => Err(self.problem.error(d, format!("degree {} is not between 1 and 6", d))),
         }
     }
 
     fn cells<const D: usize>(
         &self,
-        film: &statement::Membrane,
-        grid: &statement::GridKey,
+        film: &problem::Membrane,
+        grid: &problem::GridMesh,
         bounds: &Aabb<D>,
-    ) -> Result<([usize; D], Range<usize>), CaseError> {
-        let document = self.document;
+    ) -> Result<([usize; D], KeyPath), CaseError> {
+        let problem = self.problem;
         match (&grid.cells, &grid.cell_size) {
             (Some(cells), None) => {
-                let list = cells.get_ref();
+                let list = cells;
                 if list.len() != D {
-                    return Err(
-                        document.error(cells.span(), format!("expected {D} numbers of cells, found {}", list.len()))
-                    );
+                    return Err(problem.error(cells, format!("expected {D} numbers of cells, found {}", list.len())));
                 }
                 let mut out = [0; D];
                 for (o, n) in out.iter_mut().zip(list) {
-                    let count = *n.get_ref();
+                    let count = *n;
                     if count < 1 {
-                        return Err(document.error(n.span(), format!("{count} cells: there must be at least one")));
+                        return Err(problem.error(n, format!("{count} cells: there must be at least one")));
                     }
                     *o = count as usize;
                 }
-                Ok((out, cells.span()))
+                Ok((out, self.key(cells)))
             }
             (None, Some(size)) => {
                 let h = self.reader.positive(size, LENGTH)?;
@@ -172,10 +170,10 @@ impl Planner<'_> {
                 for k in 0..D {
                     out[k] = (extent[k] / h).round().clamp(1.0, 1e15) as usize;
                 }
-                Ok((out, size.span()))
+                Ok((out, self.key(size)))
             }
-            _ => Err(document
-                .error(film.mesh.span(), "the grid needs either `cells` or `cell_size`")
+            _ => Err(problem
+                .error(&film.mesh, "the grid needs either `cells` or `cell_size`")
                 .help("mesh.grid = { cells = [40, 40] }")),
         }
     }
@@ -185,11 +183,11 @@ impl Planner<'_> {
         &self,
         cells: &[usize; D],
         degree: usize,
-        span: Range<usize>,
+        at: &impl Location,
     ) -> Result<(), CaseError> {
         let nodes: f64 = cells.iter().map(|&n| n as f64 * degree as f64 + 1.0).product();
         let bytes = memory_estimate(nodes, degree, D).min(multigrid_estimate(nodes, degree, true));
-        self.check_bytes(nodes, bytes, span)
+        self.check_bytes(nodes, bytes, at)
     }
 
     /// Tells where a factorisation needs more memory than there is.
@@ -197,22 +195,22 @@ impl Planner<'_> {
         &self,
         nodes: f64,
         degree: usize,
-        span: Range<usize>,
+        at: &impl Location,
     ) -> Result<(), CaseError> {
-        self.check_bytes(nodes, memory_estimate(nodes, degree, D), span)
+        self.check_bytes(nodes, memory_estimate(nodes, degree, D), at)
     }
 
     /// Tells where a solve of so many unknowns needs more bytes than there are.
-    fn check_bytes(&self, nodes: f64, bytes: f64, span: Range<usize>) -> Result<(), CaseError> {
+    fn check_bytes(&self, nodes: f64, bytes: f64, at: &impl Location) -> Result<(), CaseError> {
         let free = free_memory();
         if nodes < 2e9 && bytes < MEMORY_SHARE * free {
             return Ok(());
         }
         let gib = |b: f64| b / f64::from(1 << 30);
         Err(self
-            .document
+            .problem
             .error(
-                span,
+                at,
                 format!(
                     "{nodes:.1e} unknowns would need about {:.1} GiB, and {:.1} GiB are free",
                     gib(bytes),
@@ -222,14 +220,14 @@ impl Planner<'_> {
             .help("use fewer cells, or a lower degree"))
     }
 
-    fn center(&self, center: &Option<crate::case::Values>) -> Result<Point<2>, CaseError> {
+    fn center(&self, center: &Option<Vec<Value>>) -> Result<Point<2>, CaseError> {
         match center {
             None => Ok(Point::zeros()),
             Some(v) => self.reader.numbers::<2>(v, LENGTH).map(Point::<2>::from),
         }
     }
 
-    fn box_of(&self, min: &crate::case::Values, max: &crate::case::Values) -> Result<Aabb<2>, CaseError> {
+    fn box_of(&self, min: &Vec<Value>, max: &Vec<Value>) -> Result<Aabb<2>, CaseError> {
         let b = Aabb::new(
             Point::<2>::from(self.reader.numbers::<2>(min, LENGTH)?),
             Point::<2>::from(self.reader.numbers::<2>(max, LENGTH)?),
@@ -237,16 +235,12 @@ impl Planner<'_> {
         if (0..2).all(|k| b.max[k] > b.min[k]) {
             return Ok(b);
         }
-        Err(self.document.error(max.span(), "the domain is empty: `max` must exceed `min` in both directions"))
+        Err(self.problem.error(max, "the domain is empty: `max` must exceed `min` in both directions"))
     }
 
-    fn domain_key<'f>(
-        &self,
-        film: &'f statement::Membrane,
-        span: Range<usize>,
-    ) -> Result<&'f toml::Spanned<Domain>, CaseError> {
+    fn domain_key<'f>(&self, film: &'f problem::Membrane) -> Result<&'f Domain, CaseError> {
         film.domain.as_ref().ok_or_else(|| {
-            self.document.error(span, "missing key `domain`").help("add for example  domain.disc = { radius = 1.0 }")
+            self.problem.error(film, "missing key `domain`").help("add for example  domain.disc = { radius = 1.0 }")
         })
     }
 }
@@ -306,19 +300,20 @@ impl ReadDomain<1> for Planner<'_> {
         self
     }
 
-    fn mesh(&self, key: &statement::DividedGmshKey, _: &statement::Membrane) -> Result<OnCells<1>, CaseError> {
-        Err(self
-            .document
-            .error(key.file.span(), "a mesh from a file belongs to a membrane in the plane")
-            .help("space = \"plane\", or mesh.grid = { cells = [100] }"))
+    fn mesh_of_file(&self, key: &problem::DividedGmshMesh, _: &problem::Membrane) -> Result<OnCells<1>, CaseError> {
+        Err(self.in_the_plane(&key.file, "a mesh from a file"))
+    }
+
+    fn mesh_of_arrays(&self, key: &problem::MeshArrays, _: &problem::Membrane) -> Result<OnCells<1>, CaseError> {
+        Err(self.in_the_plane(key, "a mesh from arrays"))
     }
 
     fn refinement(&self, key: Option<&RefineEntry>, _: &Grid<1>) -> Result<Refinement<1>, CaseError> {
         match key {
             None => Ok(Refinement::default()),
             Some(refine) => Err(self
-                .document
-                .error(refine.span(), "cells are divided in the plane only")
+                .problem
+                .error(refine, "cells are divided in the plane only")
                 .help("leave `refine` out: in one dimension fronts are points, and more cells cost little")),
         }
     }
@@ -327,22 +322,20 @@ impl ReadDomain<1> for Planner<'_> {
         Arc::new(grid.clone())
     }
 
-    fn shape(&self, key: &toml::Spanned<Domain>) -> Result<(Arc<dyn MembraneDomain<1>>, Aabb<1>, Pieces), CaseError> {
-        let Domain::Interval(interval) = key.get_ref() else {
+    fn shape(&self, key: &Domain) -> Result<(Arc<dyn MembraneDomain<1>>, Aabb<1>, Pieces), CaseError> {
+        let Domain::Interval(interval) = key else {
             return Err(self
-                .document
-                .error(key.span(), "in one dimension this is an interval")
+                .problem
+                .error(key, "in one dimension this is an interval")
                 .help("interval = { from = -1.0, to = 1.0 }, or space = \"plane\""));
         };
         let (from, to) = (self.reader.number(&interval.from, LENGTH)?, self.reader.number(&interval.to, LENGTH)?);
         if to <= from {
-            return Err(self
-                .document
-                .error(interval.to.span(), format!("the domain is empty: {to} does not exceed {from}")));
+            return Err(self.problem.error(&interval.to, format!("the domain is empty: {to} does not exceed {from}")));
         }
         let axisymmetric = self.space == Space::Axisymmetric;
         if axisymmetric && from < 0.0 {
-            return Err(self.document.error(interval.from.span(), format!("a radius of {from} is negative")));
+            return Err(self.problem.error(&interval.from, format!("a radius of {from} is negative")));
         }
         let pieces = if axisymmetric && from == 0.0 {
             // The axis is not a boundary.
@@ -363,20 +356,18 @@ impl ReadDomain<2> for Planner<'_> {
     fn refinement(&self, key: Option<&RefineEntry>, grid: &Grid<2>) -> Result<Refinement<2>, CaseError> {
         let most = if grid.degree() == 1 { MOST_DIVISIONS_LINEAR } else { MOST_DIVISIONS };
         let mut refinement = Refinement { most, ..Refinement::default() };
-        let Some(refine) = key.map(|r| r.get_ref()) else { return Ok(refinement) };
-        let times = |key: &Option<toml::Spanned<i64>>, otherwise: usize| match key {
+        let Some(refine) = key.map(|r| r) else { return Ok(refinement) };
+        let times = |key: &Option<i64>, otherwise: usize| match key {
             None => Ok(otherwise),
-            Some(n) if (0..=8).contains(n.get_ref()) => Ok(*n.get_ref() as usize),
-            Some(n) => {
-                Err(self.document.error(n.span(), format!("cells are divided 0 to 8 times, not {}", n.get_ref())))
-            }
+            Some(n) if (0..=8).contains(n) => Ok(*n as usize),
+            Some(n) => Err(self.problem.error(n, format!("cells are divided 0 to 8 times, not {}", n))),
         };
         refinement.fronts = times(&refine.fronts, 0)?;
         refinement.most = times(&refine.most, most.max(refinement.fronts))?;
         if refinement.fronts > refinement.most {
-            let span = refine.most.as_ref().map_or(0..0, |m| m.span());
-            return Err(self.document.error(
-                span,
+            let span = refine.most.as_ref().map_or_else(|| self.key(refine), |m| self.key(m));
+            return Err(self.problem.error(
+                &span,
                 format!(
                     "at fronts cells are divided {} times, which is more than {}",
                     refinement.fronts, refinement.most
@@ -392,8 +383,8 @@ impl ReadDomain<2> for Planner<'_> {
             let at = move |x: Point<2>| expression.evaluate(&Scope { position: [x[0], x[1], 0.0], time: f64::NAN });
             let center = grid.bounds().center();
             if at(center).is_nan() {
-                return Err(self.document.error(
-                    value.span(),
+                return Err(self.problem.error(
+                    value,
                     format!("`negative_where` is not a number at ({:.6}, {:.6})", center[0], center[1]),
                 ));
             }
@@ -403,8 +394,8 @@ impl ReadDomain<2> for Planner<'_> {
             refinement.always = Arc::new(move |b, level| level < levels && sampled(b));
         } else if let Some(levels) = &refine.levels {
             return Err(self
-                .document
-                .error(levels.span(), "`levels` says how often, but nothing says where")
+                .problem
+                .error(levels, "`levels` says how often, but nothing says where")
                 .help("add negative_where = \"hypot(x, y) - 0.3\", or use `fronts`"));
         }
         Ok(refinement)
@@ -414,77 +405,26 @@ impl ReadDomain<2> for Planner<'_> {
         Arc::new(RefinedGrid::new(grid, |b, level| wanted(b, level)))
     }
 
-    fn mesh(&self, key: &statement::DividedGmshKey, film: &statement::Membrane) -> Result<OnCells<2>, CaseError> {
-        let document = self.document;
-        if let Some(domain) = &film.domain {
-            return Err(document
-                .error(domain.span(), "the mesh from a file is the domain")
-                .help("leave `domain` out, or take mesh.grid"));
-        }
-        let mesh = self.gmsh::<2>(&statement::GmshKey { file: key.file.clone(), group: key.group.clone() })?;
-        let order = (0..mesh.cell_count()).map(|c| mesh.map(c).order()).max().unwrap_or(1);
-        let degree = self.degree(film)?.unwrap_or(order);
-        let triangles = (0..mesh.cell_count()).any(|c| !mesh.shape(c).is_tensor());
-        if triangles && degree > MOST_ON_TRIANGLES {
-            let span = film.degree.as_ref().map_or(key.file.span(), |d| d.span());
-            return Err(document
-                .error(span, format!("degree {degree} on a mesh with triangles"))
-                .help("triangles have degree 1 or 2, quadrilaterals 1 to 6"));
-        }
-        let divisions = key.divisions.as_ref().map_or(0, |d| *d.get_ref());
-        let span = key.divisions.as_ref().map_or(key.file.span(), |d| d.span());
-        if !(0..=MOST_MESH_DIVISIONS).contains(&divisions) {
-            let message = format!("cells are divided 0 to {MOST_MESH_DIVISIONS} times, not {divisions}");
-            return Err(document.error(span, message));
-        }
-        // Triangles are twice as many as their vertices.
-        let share = |cell: usize| if mesh.shape(cell).is_tensor() { 1.0 } else { 0.5 };
-        let vertices = (0..mesh.cell_count()).map(share).sum::<f64>() * 4f64.powi(divisions as i32);
-        let unknowns = vertices * (degree * degree) as f64;
-        let by_multigrid = if divisions > 0 { mesh_multigrid_estimate(unknowns, degree) } else { f64::INFINITY };
-        self.check_bytes(unknowns, memory_estimate(unknowns, degree, 2).min(by_multigrid), span)?;
-        let apart = Apart::new(&mesh);
-        let undivided = Arc::new(MeshCells::new(mesh, degree));
-        let apart = apart.map(|apart| {
-            let mut rims = vec![BTreeSet::new(); apart.count()];
-            for side in undivided.boundary_sides() {
-                rims[apart.of_cell[side.cell] as usize].insert(side.piece);
-            }
-            (apart, rims)
-        });
-        let cells = (0..divisions).fold(undivided, |cells, _| Arc::new(cells.refined()));
-        let grid = cells.grid();
-        let refinement = match &key.refine {
-            Some(refine) if degree > MOST_ON_TRIANGLES => {
-                return Err(document
-                    .error(refine.span(), format!("degree {degree} on a mesh that is divided here and there"))
-                    .help(
-                        "quadrilaterals and triangles lie side by side there: degree = 1 or 2, or leave `refine` out",
-                    ));
-            }
-            None if degree > MOST_ON_TRIANGLES => Refinement::default(),
-            refine => self.refinement(refine.as_ref(), &grid)?,
-        };
-        let pieces = Pieces { groups: cells.groups().to_vec(), apart };
-        let domain: Arc<dyn MembraneDomain<2>> = Arc::new(MeshDomain(cells.clone()));
-        let on_request = key.refine.as_ref().is_some_and(|refine| refine.get_ref().negative_where.is_some());
-        let divided = on_request.then(|| cells.graded(&[], 0, &*refinement.always)).flatten();
-        let cells: Arc<dyn Cells<2>> = match divided {
-            Some(divided) => Arc::new(divided),
-            None => cells,
-        };
-        Ok(OnCells { grid, domain: DomainOnCells::new(domain, &*cells), cells, pieces, refinement })
+    fn mesh_of_file(&self, key: &problem::DividedGmshMesh, film: &problem::Membrane) -> Result<OnCells<2>, CaseError> {
+        let placement = PlacementKeys { scale: &key.scale, turn: &key.turn, moved: &key.moved };
+        let mesh = self.gmsh::<2>(&key.file, key.group.as_deref(), &placement)?;
+        self.on_mesh(mesh, &self.key(&key.file), key.divisions.as_ref(), key.refine.as_ref(), film)
     }
 
-    fn shape(&self, key: &toml::Spanned<Domain>) -> Result<(Arc<dyn MembraneDomain<2>>, Aabb<2>, Pieces), CaseError> {
-        let document = self.document;
+    fn mesh_of_arrays(&self, key: &problem::MeshArrays, film: &problem::Membrane) -> Result<OnCells<2>, CaseError> {
+        let mesh = Planner::mesh_of_arrays::<2>(self, key)?;
+        self.on_mesh(mesh, &self.key(key), None, None, film)
+    }
+
+    fn shape(&self, key: &Domain) -> Result<(Arc<dyn MembraneDomain<2>>, Aabb<2>, Pieces), CaseError> {
+        let problem = self.problem;
         let whole = || Pieces::new(&[("boundary", &[0])]);
         let ellipse = |center: Point<2>, semi_axes: [f64; 2]| {
             let half = Vector::<2>::from(semi_axes);
             let bounds = Aabb::new(center - half, center + half).scaled(MARGIN);
             (Arc::new(ImplicitDomain(Ellipse { center, semi_axes })) as Arc<dyn MembraneDomain<2>>, bounds, whole())
         };
-        Ok(match key.get_ref() {
+        Ok(match key {
             Domain::Disc(disc) => {
                 let radius = self.reader.positive(&disc.radius, LENGTH)?;
                 ellipse(self.center(&disc.center)?, [radius; 2])
@@ -492,7 +432,7 @@ impl ReadDomain<2> for Planner<'_> {
             Domain::Ellipse(e) => {
                 let semi_axes = self.reader.numbers::<2>(&e.semi_axes, LENGTH)?;
                 if semi_axes.iter().any(|a| *a <= 0.0) {
-                    return Err(document.error(e.semi_axes.span(), "both semi-axes must be positive"));
+                    return Err(problem.error(&e.semi_axes, "both semi-axes must be positive"));
                 }
                 ellipse(self.center(&e.center)?, semi_axes)
             }
@@ -520,8 +460,8 @@ impl ReadDomain<2> for Planner<'_> {
                         let x = bounds.at(&Point::<2>::new(f64::from(j) / 20.0, f64::from(k) / 20.0));
                         let v = shape.value(&x);
                         if v.is_nan() {
-                            return Err(document.error(
-                                i.negative_inside.span(),
+                            return Err(problem.error(
+                                &i.negative_inside,
                                 format!("`negative_inside` is not a number at ({:.6}, {:.6})", x[0], x[1]),
                             ));
                         }
@@ -530,8 +470,8 @@ impl ReadDomain<2> for Planner<'_> {
                 (Arc::new(ImplicitDomain(shape)), bounds, whole())
             }
             Domain::Interval(_) => {
-                return Err(document
-                    .error(key.span(), "an interval belongs to a string")
+                return Err(problem
+                    .error(key, "an interval belongs to a string")
                     .help("space = \"line\" or \"axisymmetric\", or rectangle = { min, max }"));
             }
         })
@@ -539,34 +479,31 @@ impl ReadDomain<2> for Planner<'_> {
 }
 
 impl Planner<'_> {
-    fn polygon(
-        &self,
-        points: &toml::Spanned<Vec<crate::case::Values>>,
-    ) -> Result<(Arc<dyn MembraneDomain<2>>, Aabb<2>, Pieces), CaseError> {
+    fn polygon(&self, points: &Vec<Vec<Value>>) -> Result<(Arc<dyn MembraneDomain<2>>, Aabb<2>, Pieces), CaseError> {
         let mut corners = Vec::new();
-        for p in points.get_ref() {
+        for p in points {
             corners.push(Point::<2>::from(self.reader.numbers::<2>(p, LENGTH)?));
         }
         if corners.len() < 3 {
             return Err(self
-                .document
-                .error(points.span(), format!("{} points make no polygon: there must be at least 3", corners.len())));
+                .problem
+                .error(points, format!("{} points make no polygon: there must be at least 3", corners.len())));
         }
         let n = corners.len();
         if let Some(i) = (0..n).find(|&i| (corners[i] - corners[(i + 1) % n]).norm() == 0.0) {
             return Err(self
-                .document
-                .error(points.get_ref()[i].span(), "two corners in a row are the same point")
+                .problem
+                .error(&points[i], "two corners in a row are the same point")
                 .help("leave one out; the last corner is joined to the first by itself"));
         }
         if let Some((i, j)) = polygon::self_crossing(&corners) {
             return Err(self
-                .document
-                .error(points.span(), format!("the sides {} and {} cross each other", i + 1, j + 1))
+                .problem
+                .error(points, format!("the sides {} and {} cross each other", i + 1, j + 1))
                 .help("list the corners in the order in which one walks round the domain"));
         }
         if polygon::signed_area(&corners) == 0.0 {
-            return Err(self.document.error(points.span(), "the domain is empty: the polygon has no area"));
+            return Err(self.problem.error(points, "the domain is empty: the polygon has no area"));
         }
         let clockwise = polygon::signed_area(&corners) < 0.0;
         let mut groups = vec![("boundary".to_string(), (0..n).collect::<Vec<_>>())];
@@ -576,5 +513,81 @@ impl Planner<'_> {
         let bounds =
             corners.iter().fold(Aabb::new(corners[0], corners[0]), |b, p| Aabb::new(b.min.inf(p), b.max.sup(p)));
         Ok((Arc::new(PolygonDomain::new(corners)), bounds.scaled(MARGIN), Pieces { groups, apart: None }))
+    }
+}
+
+impl Planner<'_> {
+    /// A membrane on the cells of a mesh, each divided so often, and where the case says.
+    fn on_mesh(
+        &self,
+        mesh: FemMesh<2>,
+        place: &KeyPath,
+        divided: Option<&i64>,
+        refine: Option<&RefineEntry>,
+        film: &problem::Membrane,
+    ) -> Result<OnCells<2>, CaseError> {
+        let problem = self.problem;
+        if let Some(domain) = &film.domain {
+            return Err(problem.error(domain, "the mesh is the domain").help("leave `domain` out, or take mesh.grid"));
+        }
+        let order = (0..mesh.cell_count()).map(|c| mesh.map(c).order()).max().unwrap_or(1);
+        let degree = self.degree(film)?.unwrap_or(order);
+        let triangles = (0..mesh.cell_count()).any(|c| !mesh.shape(c).is_tensor());
+        if triangles && degree > MOST_ON_TRIANGLES {
+            let span = film.degree.as_ref().map_or_else(|| place.clone(), |d| self.key(d));
+            return Err(problem
+                .error(&span, format!("degree {degree} on a mesh with triangles"))
+                .help("triangles have degree 1 or 2, quadrilaterals 1 to 6"));
+        }
+        let divisions = divided.copied().unwrap_or(0);
+        let span = divided.map_or_else(|| place.clone(), |d| self.key(d));
+        if !(0..=MOST_MESH_DIVISIONS).contains(&divisions) {
+            let message = format!("cells are divided 0 to {MOST_MESH_DIVISIONS} times, not {divisions}");
+            return Err(problem.error(&span, message));
+        }
+        // Triangles are twice as many as their vertices.
+        let share = |cell: usize| if mesh.shape(cell).is_tensor() { 1.0 } else { 0.5 };
+        let vertices = (0..mesh.cell_count()).map(share).sum::<f64>() * 4f64.powi(divisions as i32);
+        let unknowns = vertices * (degree * degree) as f64;
+        let by_multigrid = if divisions > 0 { mesh_multigrid_estimate(unknowns, degree) } else { f64::INFINITY };
+        self.check_bytes(unknowns, memory_estimate(unknowns, degree, 2).min(by_multigrid), &span)?;
+        let apart = Apart::new(&mesh);
+        let undivided = Arc::new(MeshCells::new(mesh, degree));
+        let apart = apart.map(|apart| {
+            let mut rims = vec![BTreeSet::new(); apart.count()];
+            for side in undivided.boundary_sides() {
+                rims[apart.of_cell[side.cell] as usize].insert(side.piece);
+            }
+            (apart, rims)
+        });
+        let cells = (0..divisions).fold(undivided, |cells, _| Arc::new(cells.refined()));
+        let grid = cells.grid();
+        let refinement = match refine {
+            Some(refine) if degree > MOST_ON_TRIANGLES => {
+                return Err(problem
+                    .error(refine, format!("degree {degree} on a mesh that is divided here and there"))
+                    .help(
+                        "quadrilaterals and triangles lie side by side there: degree = 1 or 2, or leave `refine` out",
+                    ));
+            }
+            None if degree > MOST_ON_TRIANGLES => Refinement::default(),
+            refine => self.refinement(refine, &grid)?,
+        };
+        let pieces = Pieces { groups: cells.groups().to_vec(), apart };
+        let domain: Arc<dyn MembraneDomain<2>> = Arc::new(MeshDomain(cells.clone()));
+        let on_request = refine.is_some_and(|refine| refine.negative_where.is_some());
+        let divided = on_request.then(|| cells.graded(&[], 0, &*refinement.always)).flatten();
+        let cells: Arc<dyn Cells<2>> = match divided {
+            Some(divided) => Arc::new(divided),
+            None => cells,
+        };
+        Ok(OnCells { grid, domain: DomainOnCells::new(domain, &*cells), cells, pieces, refinement })
+    }
+
+    /// What belongs to a membrane in the plane.
+    fn in_the_plane(&self, at: &impl Location, what: &str) -> CaseError {
+        self.problem
+            .error(at, format!("{what} belongs to a membrane in the plane"))
+            .help("space = \"plane\", or mesh.grid = { cells = [100] }")
     }
 }

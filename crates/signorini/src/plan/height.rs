@@ -3,14 +3,13 @@
 use super::Planner;
 use super::rigid_shape::{self, ShapeKeys};
 use super::surface::view;
-use crate::case::statement::{CylinderKey, EllipsoidKey, Rigid, Shape, Space};
-use crate::case::units::{Dimension, LENGTH};
-use crate::case::{CaseError, Values};
 use crate::expression::Expression;
+use crate::problem::units::{Dimension, LENGTH};
+use crate::problem::{CaseError, Value};
+use crate::problem::{Cylinder, Ellipsoid, Rigid, Shape, Space};
 use signorini_geometry::Vector;
 use signorini_geometry::rigid_shape::NoHeight;
 use signorini_membrane::obstacle::Side;
-use toml::Spanned;
 
 /// Points without a tangent plane are rounded off by this part of the size of the membrane: far below its cells, and well
 /// above round-off.
@@ -26,7 +25,7 @@ pub(super) fn read(
 ) -> Result<Option<(Expression, &'static str)>, CaseError> {
     let keys = BesideMembrane { planner };
     if planner.space == Space::Axisymmetric {
-        keys.check_round(rigid.shape.get_ref())?;
+        keys.check_round(&rigid.shape)?;
     }
     let Some((shape, name)) = rigid_shape::read(&keys, &rigid.shape)? else { return Ok(None) };
     match shape.height(view(side), ROUNDING * (high - low).max()) {
@@ -37,14 +36,14 @@ pub(super) fn read(
 }
 
 /// What is wrong with the direction of a shape.
-fn told(planner: &Planner<'_>, shape: &Spanned<Shape>, side: Side, why: NoHeight) -> CaseError {
-    let span = match shape.get_ref() {
-        Shape::Plane(key) => key.normal.span(),
-        Shape::Cone(key) => key.axis.span(),
-        Shape::Paraboloid(key) => key.axis.span(),
-        Shape::Torus(key) => key.axis.span(),
-        Shape::Cylinder(key) => key.axis.as_ref().map_or(shape.span(), Spanned::span),
-        _ => shape.span(),
+fn told(planner: &Planner<'_>, shape: &Shape, side: Side, why: NoHeight) -> CaseError {
+    let span = match shape {
+        Shape::Plane(key) => planner.key(&key.normal),
+        Shape::Cone(key) => planner.key(&key.axis),
+        Shape::Paraboloid(key) => planner.key(&key.axis),
+        Shape::Torus(key) => planner.key(&key.axis),
+        Shape::Cylinder(key) => key.axis.as_ref().map_or_else(|| planner.key(shape), |axis| planner.key(axis)),
+        _ => planner.key(shape),
     };
     let below = side == Side::Below;
     let (message, help) = match why {
@@ -54,9 +53,9 @@ fn told(planner: &Planner<'_>, shape: &Spanned<Shape>, side: Side, why: NoHeight
         NoHeight::AxisNotAway => ("the axis has to point straight up, into the body", "axis = [0, 0, 1]"),
         NoHeight::AxisNotUpright => ("the axis has to stand upright", "axis = [0, 0, 1]"),
         NoHeight::AxisNotFlat => ("a cylinder under a membrane lies flat", "axis = [1, 0, 0]"),
-        NoHeight::NoFormula => return planner.unavailable(span, "this shape beside a membrane"),
+        NoHeight::NoFormula => return planner.unavailable(&span, "this shape beside a membrane"),
     };
-    planner.document.error(span, message).help(help)
+    planner.problem.error(&span, message).help(help)
 }
 
 /// Shapes beside a membrane: with three coordinates, or two on a line.
@@ -76,17 +75,17 @@ impl BesideMembrane<'_, '_> {
             Shape::Paraboloid(key) => &key.apex,
             _ => return Ok(()),
         };
-        let document = self.planner.document;
+        let problem = self.planner.problem;
         let at = self.vector(place, LENGTH)?;
         if at[0] != 0.0 || at[1] != 0.0 {
-            return Err(document
-                .error(place.span(), "in an axisymmetric problem the shape stands on the axis")
+            return Err(problem
+                .error(place, "in an axisymmetric problem the shape stands on the axis")
                 .help("x = y = 0"));
         }
         if let Shape::Ellipsoid(key) = shape {
             let [a, b, _] = self.semi_axes(key)?;
             if a != b {
-                return Err(document.error(key.semi_axes.span(), "round an axis the first two semi-axes are equal"));
+                return Err(problem.error(&key.semi_axes, "round an axis the first two semi-axes are equal"));
             }
         }
         Ok(())
@@ -98,9 +97,9 @@ impl ShapeKeys for BesideMembrane<'_, '_> {
         self.planner
     }
 
-    fn vector(&self, values: &Values, dimension: Dimension) -> Result<Vector<3>, CaseError> {
+    fn vector(&self, values: &Vec<Value>, dimension: Dimension) -> Result<Vector<3>, CaseError> {
         let reader = &self.planner.reader;
-        if values.get_ref().len() == 2 && self.planner.space != Space::Plane {
+        if values.len() == 2 && self.planner.space != Space::Plane {
             return reader.numbers::<2>(values, dimension).map(|[x, z]| Vector::<3>::new(x, 0.0, z));
         }
         let mut found = Vector::<3>::from(reader.numbers::<3>(values, dimension)?);
@@ -111,19 +110,19 @@ impl ShapeKeys for BesideMembrane<'_, '_> {
         Ok(found)
     }
 
-    fn cylinder_axis(&self, key: &CylinderKey, _: std::ops::Range<usize>) -> Result<Vector<3>, CaseError> {
+    fn cylinder_axis(&self, key: &Cylinder, _: &Shape) -> Result<Vector<3>, CaseError> {
         match &key.axis {
             // On a line a cylinder stands across it.
             None if self.planner.space != Space::Plane => Ok(Vector::<3>::y()),
             None => {
-                let error = self.planner.document.error(key.point.span(), "the cylinder needs an `axis`");
+                let error = self.planner.problem.error(&key.point, "the cylinder needs an `axis`");
                 Err(error.help("axis = [1, 0, 0]"))
             }
             Some(axis) => self.direction(axis),
         }
     }
 
-    fn semi_axes(&self, key: &EllipsoidKey) -> Result<[f64; 3], CaseError> {
+    fn semi_axes(&self, key: &Ellipsoid) -> Result<[f64; 3], CaseError> {
         self.planner.reader.numbers::<3>(&key.semi_axes, LENGTH)
     }
 }

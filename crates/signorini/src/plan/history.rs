@@ -1,10 +1,10 @@
 //! The history of a case: its steps cut into increments, and what is given in each.
 
 use super::{MembranePlan, Planner};
-use crate::case::CaseError;
-use crate::case::statement;
-use crate::case::units::TIME;
 use crate::expression::Scope;
+use crate::problem;
+use crate::problem::CaseError;
+use crate::problem::units::TIME;
 
 /// Points at which is looked what drives a membrane, and how far from a straight line its path may be.
 const DRIVEN_AT: usize = 9;
@@ -54,10 +54,10 @@ fn plain(time: f64, step: f64) -> f64 {
 impl Planner<'_> {
     /// The ends of all increments of a history in which time is given.
     pub(super) fn times(&self) -> Result<Vec<f64>, CaseError> {
-        for step in &self.document.case.steps {
-            match step.get_ref().control.as_ref().map(|c| (c.get_ref(), c.span())) {
-                None | Some((statement::Control::Time(_), _)) => {}
-                Some((_, span)) => return Err(self.unavailable(span, "control of solids by arc length or area")),
+        for step in &self.problem.steps {
+            match step.control.as_ref().map(|c| (c, self.key(c))) {
+                None | Some((problem::Control::Time(_), _)) => {}
+                Some((_, span)) => return Err(self.unavailable(&span, "control of solids by arc length or area")),
             }
         }
         Ok(self.increments(0, &[])?.into_iter().map(|i| i.time).collect())
@@ -67,47 +67,41 @@ impl Planner<'_> {
     pub(super) fn increments(&self, dimension: usize, contacts: &[&str]) -> Result<Vec<PlannedIncrement>, CaseError> {
         let mut out = Vec::new();
         let mut t = 0.0;
-        for (step, key) in self.document.case.steps.iter().enumerate() {
-            let key = key.get_ref();
+        for (step, key) in self.problem.steps.iter().enumerate() {
+            let key = key;
             let to = self.reader.number(&key.to, TIME)?;
             if to <= t {
-                return Err(self
-                    .document
-                    .error(key.to.span(), format!("the step ends at t = {to}, not after t = {t}")));
+                return Err(self.problem.error(&key.to, format!("the step ends at t = {to}, not after t = {t}")));
             }
             let n = match &key.increments {
-                None => match key.control.as_ref().map(|control| control.get_ref()) {
+                None => match key.control.as_ref().map(|control| control) {
                     // As far as the path goes, which nobody knows before.
-                    Some(statement::Control::ArcLength(arc)) => {
-                        let size = *arc.size.get_ref();
+                    Some(problem::Control::ArcLength(arc)) => {
+                        let size = arc.size;
                         if (SHORTEST..LONGEST / MOST_INCREMENTS as f64).contains(&size) {
                             let message = format!("with increments of {size} a path takes too many of them to its end");
                             return Err(self
-                                .document
-                                .error(arc.size.span(), message)
+                                .problem
+                                .error(&arc.size, message)
                                 .help("give the step `increments`, or make them larger: try 0.02"));
                         }
                         ((LONGEST / size) as usize).clamp(1, MOST_INCREMENTS)
                     }
                     _ => 1,
                 },
-                Some(n) if (1..=MOST_INCREMENTS as i64).contains(n.get_ref()) => *n.get_ref() as usize,
+                Some(n) if (1..=MOST_INCREMENTS as i64).contains(n) => *n as usize,
                 Some(n) => {
-                    return Err(self.document.error(
-                        n.span(),
-                        format!("{} increments: give a number from 1 to {MOST_INCREMENTS}", n.get_ref()),
-                    ));
+                    return Err(self
+                        .problem
+                        .error(n, format!("{} increments: give a number from 1 to {MOST_INCREMENTS}", n)));
                 }
             };
-            let events = key.events.as_ref().map(|e| *e.get_ref());
+            let events = key.events.as_ref().map(|e| *e);
             if let Some(events) = &key.events
-                && !(*events.get_ref() > 0.0 && events.get_ref().is_finite())
+                && !(*events > 0.0 && events.is_finite())
             {
-                let message = format!("{} is no tolerance of time", events.get_ref());
-                return Err(self
-                    .document
-                    .error(events.span(), message)
-                    .help("a number greater than zero, such as 1e-3"));
+                let message = format!("{} is no tolerance of time", events);
+                return Err(self.problem.error(events, message).help("a number greater than zero, such as 1e-3"));
             }
             for part in 1..=n {
                 // The last time is exactly the stated one.
@@ -125,45 +119,43 @@ impl Planner<'_> {
 
     fn control(
         &self,
-        key: &statement::Step,
+        key: &problem::Step,
         dimension: usize,
         contacts: &[&str],
         part: usize,
         parts: usize,
     ) -> Result<Control, CaseError> {
         let Some(control) = &key.control else { return Ok(Control::Time) };
-        if let (true, statement::Control::ArcLength(_) | statement::Control::Area(_)) =
-            (contacts.is_empty(), control.get_ref())
-        {
-            return Err(self.document.error(control.span(), "there is no contact to control"));
+        if let (true, problem::Control::ArcLength(_) | problem::Control::Area(_)) = (contacts.is_empty(), control) {
+            return Err(self.problem.error(control, "there is no contact to control"));
         }
-        match control.get_ref() {
-            statement::Control::Time(_) => Ok(Control::Time),
-            statement::Control::ArcLength(arc) => {
-                let size = *arc.size.get_ref();
+        match control {
+            problem::Control::Time(_) => Ok(Control::Time),
+            problem::Control::ArcLength(arc) => {
+                let size = arc.size;
                 if !(SHORTEST..=1.0).contains(&size) {
                     return Err(self
-                        .document
-                        .error(arc.size.span(), format!("an increment of {size} is not between {SHORTEST} and 1"))
+                        .problem
+                        .error(&arc.size, format!("an increment of {size} is not between {SHORTEST} and 1"))
                         .help("1 is the area of the membrane, or the time that the step takes: try 0.02"));
                 }
                 Ok(Control::ArcLength(size))
             }
-            statement::Control::Area(area) => {
-                if !contacts.contains(&area.of.get_ref().as_str()) {
+            problem::Control::Area(area) => {
+                if !contacts.contains(&area.of.as_str()) {
                     return Err(self
-                        .document
-                        .error(area.of.span(), format!("there is no contact `{}`", area.of.get_ref()))
+                        .problem
+                        .error(&area.of, format!("there is no contact `{}`", area.of))
                         .help(format!("of = \"{}\"", contacts.first().unwrap_or(&""))));
                 }
                 if contacts.len() > 1 {
-                    return Err(self.unavailable(control.span(), "control by the area of one contact of several"));
+                    return Err(self.unavailable(control, "control by the area of one contact of several"));
                 }
                 // On a line the area is a length; of a round membrane it is that of the disc.
-                let power = if self.space == statement::Space::Line { 1 } else { 2 };
+                let power = if self.space == problem::Space::Line { 1 } else { 2 };
                 let to = self.reader.number(&area.to, [power, 0, 0])?;
                 if !(to > 0.0 && to.is_finite()) || dimension == 0 {
-                    return Err(self.document.error(area.to.span(), format!("an area of {to} is not positive")));
+                    return Err(self.problem.error(&area.to, format!("an area of {to} is not positive")));
                 }
                 Ok(Control::Area { to, part, parts })
             }

@@ -1,21 +1,20 @@
 //! Rigid bodies that solids press on: the gap to them and their outward normal, anywhere and at any time.
 
+use super::placement::PlacementKeys;
 use super::rigid_shape::{self, ShapeKeys};
 use super::{Placed, Planner};
-use crate::case::statement::{CylinderKey, EllipsoidKey, Motion, Rigid, Shape, Side, Space};
-use crate::case::units::{Dimension, LENGTH, NONE};
-use crate::case::{CaseError, Document, Values};
 use crate::expression::Scope;
+use crate::problem::units::{Dimension, LENGTH, NONE};
+use crate::problem::{CaseError, Location, Problem, Value};
+use crate::problem::{Cylinder, Ellipsoid, Motion, Rigid, Shape, Side, Space};
 use crate::queries::geometry;
-use signorini_geometry::height_field;
+use signorini_geometry::height_field::{self, HeightField};
 use signorini_geometry::implicit_surface::{ImplicitBody, ImplicitSurface};
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::{ClosestPoints, GapJet, Normals, RigidShape};
 use signorini_geometry::shape::{Shape as Geometry, ShapeError};
 use signorini_geometry::{Aabb, Jet, Point, Real, Vector};
-use std::ops::Range;
 use std::sync::Arc;
-use toml::Spanned;
 
 /// A rigid body and how it moves.
 #[derive(Clone)]
@@ -31,11 +30,11 @@ pub struct RigidBody {
 
 impl RigidBody {
     /// Displacement and rotation vector at a time; an error where the motion is not a number.
-    fn motion_at(&self, document: &Document, time: f64) -> Result<[Vector<3>; 2], CaseError> {
+    fn motion_at(&self, problem: &Problem, time: f64) -> Result<[Vector<3>; 2], CaseError> {
         let at = |p: &Placed| p.expression.evaluate(&Scope { position: [f64::NAN; 3], time });
         if let Some(p) = self.displacement.iter().chain(&self.rotation).find(|p| !at(p).is_finite()) {
             let message = format!("`{}` is {} at t = {time}: not a finite number", p.key, at(p));
-            return Err(document.error(p.span.clone(), message));
+            return Err(problem.error(&p.key, message));
         }
         let vector = |list: &[Placed]| Vector::<3>::from_fn(|k, _| list.get(k).map_or(0.0, at));
         // In the plane the one rotation there is turns about the axis across it.
@@ -50,10 +49,10 @@ impl RigidBody {
     /// A motion that is not a number then.
     pub fn gap_at(
         &self,
-        document: &Document,
+        problem: &Problem,
         time: f64,
     ) -> Result<impl Fn(&Point<3>) -> GapJet<3> + Sync + Send + 'static, CaseError> {
-        let [moved, turned] = self.motion_at(document, time)?;
+        let [moved, turned] = self.motion_at(problem, time)?;
         let back = RigidMotion::new(-turned, self.shape.centre(), Vector::<3>::zeros());
         let forth = RigidMotion::new(turned, self.shape.centre(), Vector::<3>::zeros());
         let (shape, inside) = (Arc::clone(&self.shape), self.inside);
@@ -80,7 +79,7 @@ pub(super) fn read<const D: usize>(
     around: &Aabb<3>,
 ) -> Result<RigidBody, CaseError> {
     if let Some(lies) = &rigid.lies {
-        return Err(planner.document.error(lies.span(), "`lies` is for bodies beside a membrane"));
+        return Err(planner.problem.error(lies, "`lies` is for bodies beside a membrane"));
     }
     let keys = BesideSolids::<D> { planner };
     keys.check_round(&rigid.shape)?;
@@ -88,8 +87,8 @@ pub(super) fn read<const D: usize>(
         Some((shape, _)) => shape,
         None => keys.without_closed_form(&rigid.shape, around)?,
     };
-    let inside = rigid.side.as_ref().is_some_and(|s| *s.get_ref() == Side::Inside);
-    let [displacement, rotation] = motion::<D>(planner, name, rigid)?;
+    let inside = rigid.side.as_ref().is_some_and(|s| *s == Side::Inside);
+    let [displacement, rotation] = motion::<D>(planner, rigid)?;
     Ok(RigidBody { name: name.to_string(), shape, inside, displacement, rotation })
 }
 
@@ -103,24 +102,22 @@ impl<const D: usize> ShapeKeys for BesideSolids<'_, '_, D> {
         self.planner
     }
 
-    fn vector(&self, values: &Values, dimension: Dimension) -> Result<Vector<3>, CaseError> {
+    fn vector(&self, values: &Vec<Value>, dimension: Dimension) -> Result<Vector<3>, CaseError> {
         let list = self.planner.reader.numbers::<D>(values, dimension)?;
         Ok(Vector::<3>::from_fn(|k, _| if k < D { list[k] } else { 0.0 }))
     }
 
-    fn cylinder_axis(&self, key: &CylinderKey, shape: Range<usize>) -> Result<Vector<3>, CaseError> {
-        let document = self.planner.document;
+    fn cylinder_axis(&self, key: &Cylinder, shape: &Shape) -> Result<Vector<3>, CaseError> {
+        let problem = self.planner.problem;
         match (&key.axis, D) {
             (Some(axis), 3) => self.direction(axis),
             (None, 2) => Ok(Vector::<3>::z()),
-            (Some(axis), _) => {
-                Err(document.error(axis.span(), "in the plane a cylinder stands across it: leave `axis` out"))
-            }
-            (None, _) => Err(document.error(shape, "missing key `axis`").help("axis = [0, 1, 0]")),
+            (Some(axis), _) => Err(problem.error(axis, "in the plane a cylinder stands across it: leave `axis` out")),
+            (None, _) => Err(problem.error(shape, "missing key `axis`").help("axis = [0, 1, 0]")),
         }
     }
 
-    fn semi_axes(&self, key: &EllipsoidKey) -> Result<[f64; 3], CaseError> {
+    fn semi_axes(&self, key: &Ellipsoid) -> Result<[f64; 3], CaseError> {
         let list = self.planner.reader.numbers::<D>(&key.semi_axes, LENGTH)?;
         // Long across the plane, so that closest points stay in it.
         let across = 10.0 * list.iter().fold(0.0, |a: f64, b| a.max(*b));
@@ -129,69 +126,77 @@ impl<const D: usize> ShapeKeys for BesideSolids<'_, '_, D> {
 }
 
 impl<const D: usize> BesideSolids<'_, '_, D> {
-    fn check_in_space(&self, span: Range<usize>, what: &str) -> Result<(), CaseError> {
+    fn check_in_space(&self, at: &impl Location, what: &str) -> Result<(), CaseError> {
         if D == 3 {
             return Ok(());
         }
         Err(self
             .planner
-            .document
-            .error(span, format!("a {what} is a shape in space"))
+            .problem
+            .error(at, format!("a {what} is a shape in space"))
             .help("in the plane: plane, sphere (a circle), cylinder, ellipsoid (an ellipse)"))
     }
 
     /// Shapes round an axis are shapes in space, which in the plane can be that of an axisymmetric problem.
-    fn check_round(&self, shape: &Spanned<Shape>) -> Result<(), CaseError> {
-        let (what, place, axis) = match shape.get_ref() {
+    fn check_round(&self, shape: &Shape) -> Result<(), CaseError> {
+        let (what, place, axis) = match shape {
             Shape::Cone(key) => ("cone", &key.apex, &key.axis),
             Shape::Torus(key) => ("torus", &key.center, &key.axis),
             Shape::Paraboloid(key) => ("paraboloid", &key.apex, &key.axis),
             _ => return Ok(()),
         };
         if D == 3 || self.planner.space != Space::Axisymmetric {
-            return self.check_in_space(shape.span(), what);
+            return self.check_in_space(shape, what);
         }
         match (self.vector(place, LENGTH)?[0] == 0.0, self.direction(axis)?[0] == 0.0) {
             (true, true) => Ok(()),
             (on_axis, _) => Err(self
                 .planner
-                .document
-                .error(
-                    if on_axis { axis.span() } else { place.span() },
-                    format!("the {what} does not stand on the axis"),
-                )
+                .problem
+                .error(if on_axis { axis } else { place }, format!("the {what} does not stand on the axis"))
                 .help("in an axisymmetric problem its place is [0, z], and its axis [0, 1] or [0, -1]")),
         }
     }
 
     /// Shapes from files and functions.
-    fn without_closed_form(&self, shape: &Spanned<Shape>, around: &Aabb<3>) -> Result<Arc<dyn RigidShape>, CaseError> {
+    fn without_closed_form(&self, shape: &Shape, around: &Aabb<3>) -> Result<Arc<dyn RigidShape>, CaseError> {
         let planner = self.planner;
-        let document = planner.document;
-        let wrong = |error: ShapeError| document.error(shape.span(), error.to_string());
-        Ok(match shape.get_ref() {
+        let problem = planner.problem;
+        let wrong = |error: ShapeError| problem.error(shape, error.to_string());
+        Ok(match shape {
             Shape::Stl(key) => {
-                self.check_in_space(shape.span(), "triangulated surface")?;
+                self.check_in_space(shape, "triangulated surface")?;
                 Arc::new(ClosestPoints { shape: planner.closed_mesh(key)?.into(), normals: Normals::Outward })
             }
+            Shape::Triangles(key) => {
+                self.check_in_space(shape, "triangulated surface")?;
+                let normals = Normals::Outward;
+                Arc::new(ClosestPoints { shape: planner.surface_of_arrays(key)?.into(), normals })
+            }
+            Shape::Custom(custom) => Arc::clone(&custom.0),
             Shape::Nurbs(key) => {
-                self.check_in_space(shape.span(), "NURBS surface")?;
+                self.check_in_space(shape, "NURBS surface")?;
                 let (path, bytes) = planner.read_file(&key.file)?;
                 let value: serde_json::Value = serde_json::from_slice(&bytes)
-                    .map_err(|e| document.error(key.file.span(), format!("`{}` is not JSON: {e}", path.display())))?;
+                    .map_err(|e| problem.error(&key.file, format!("`{}` is not JSON: {e}", path.display())))?;
                 let surface = geometry::shape("surface", &value, path.parent().unwrap_or(std::path::Path::new("")))
-                    .map_err(|e| document.error(key.file.span(), format!("`{}`: {e}", path.display())))?;
+                    .map_err(|e| problem.error(&key.file, format!("`{}`: {e}", path.display())))?;
                 if !matches!(surface, Geometry::Surface(_)) {
-                    return Err(document.error(key.file.span(), format!("`{}` is not a surface", path.display())));
+                    return Err(problem.error(&key.file, format!("`{}` is not a surface", path.display())));
                 }
+                let keys = PlacementKeys { scale: &key.scale, turn: &key.turn, moved: &key.moved };
+                let surface = match planner.placement::<3>(&keys)? {
+                    Some(placement) => placement.shape(&surface).unwrap_or(surface),
+                    None => surface,
+                };
                 Arc::new(ClosestPoints { shape: surface, normals: Normals::Outward })
             }
             Shape::LevelSet(key) => {
                 let (low, high) = (self.vector(&key.min, LENGTH)?, self.vector(&key.max, LENGTH)?);
                 let cells = match &key.cells {
                     None => 64,
-                    Some(n) if (2..=512).contains(n.get_ref()) => *n.get_ref() as usize,
-                    Some(n) => return Err(document.error(n.span(), "give a number of cells from 2 to 512")),
+                    Some(n) if (2..=512).contains(n) => *n as usize,
+                    Some(n) => return Err(problem.error(n, "give a number of cells from 2 to 512")),
                 };
                 let variables: &[&'static str] = if D == 2 { &["x", "y"] } else { &["x", "y", "z"] };
                 let expression = planner.reader.expression(&key.negative_inside, LENGTH, variables)?;
@@ -217,10 +222,10 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
                 Arc::new(surface)
             }
             Shape::HeightMap(key) => {
-                self.check_in_space(shape.span(), "height map")?;
+                self.check_in_space(shape, "height map")?;
                 let map = planner.height_map(key)?;
                 // Beyond its rectangle the map is not known.
-                let [low, high] = map.bounds();
+                let [low, high] = map.known_within().unwrap_or([Vector::<2>::zeros(); 2]);
                 let bounds = Aabb::new(
                     Point::<3>::new(around.min[0].max(low[0]), around.min[1].max(low[1]), around.min[2]),
                     Point::<3>::new(around.max[0].min(high[0]), around.max[1].min(high[1]), around.max[2]),
@@ -244,45 +249,41 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
             | Shape::Cone(_)
             | Shape::Ellipsoid(_)
             | Shape::Torus(_)
-            | Shape::Paraboloid(_) => return Err(planner.unavailable(shape.span(), "this shape beside a solid")),
+            | Shape::Paraboloid(_) => return Err(planner.unavailable(shape, "this shape beside a solid")),
         })
     }
 }
 
 /// How a rigid body moves: displacement and rotation, each empty for one at rest.
-fn motion<const D: usize>(planner: &Planner<'_>, name: &str, rigid: &Rigid) -> Result<[Vec<Placed>; 2], CaseError> {
-    let document = planner.document;
+fn motion<const D: usize>(planner: &Planner<'_>, rigid: &Rigid) -> Result<[Vec<Placed>; 2], CaseError> {
+    let problem = planner.problem;
     let (mut displacement, mut rotation) = (Vec::new(), Vec::new());
-    match rigid.motion.as_ref().map(|m| (m.get_ref(), m.span())) {
+    match rigid.motion.as_ref().map(|m| (m, planner.key(m))) {
         None | Some((Motion::Fixed(_), _)) => {}
-        Some((Motion::Free(_), span)) => return Err(planner.unavailable(span, "a rigid body that moves freely")),
+        Some((Motion::Free(_), span)) => return Err(planner.unavailable(&span, "a rigid body that moves freely")),
         Some((Motion::Prescribed(motion), _)) => {
             if let Some(values) = &motion.rotation {
                 let wanted = if D == 2 { 1 } else { 3 };
-                if values.get_ref().len() != wanted {
-                    let found = values.get_ref().len();
-                    return Err(document
-                        .error(values.span(), format!("expected {wanted} components of the rotation, found {found}"))
+                if values.len() != wanted {
+                    let found = values.len();
+                    return Err(problem
+                        .error(values, format!("expected {wanted} components of the rotation, found {found}"))
                         .help("in the plane [angle], in space a rotation vector, in radians"));
                 }
-                for (k, v) in values.get_ref().iter().enumerate() {
-                    rotation.push(Placed {
-                        expression: planner.reader.expression(v, NONE, &["t"])?,
-                        span: v.span(),
-                        key: format!("bodies.{name}.rigid.motion.prescribed.rotation[{k}]"),
-                    });
+                for v in values {
+                    rotation
+                        .push(Placed { expression: planner.reader.expression(v, NONE, &["t"])?, key: planner.key(v) });
                 }
             }
             if let Some(values) = &motion.displacement {
-                if values.get_ref().len() != D {
-                    let found = values.get_ref().len();
-                    return Err(document.error(values.span(), format!("expected {D} components, found {found}")));
+                if values.len() != D {
+                    let found = values.len();
+                    return Err(problem.error(values, format!("expected {D} components, found {found}")));
                 }
-                for (k, v) in values.get_ref().iter().enumerate() {
+                for v in values {
                     displacement.push(Placed {
                         expression: planner.reader.expression(v, LENGTH, &["t"])?,
-                        span: v.span(),
-                        key: format!("bodies.{name}.rigid.motion.prescribed.displacement[{k}]"),
+                        key: planner.key(v),
                     });
                 }
             }
@@ -305,12 +306,13 @@ pub(super) fn flat_box<const D: usize>(low: Vector<3>, high: Vector<3>) -> Aabb<
 mod tests {
     use super::*;
     use crate::expression::Expression;
+    use crate::problem::KeyPath;
     use signorini_geometry::rigid_shape::Plane;
     use std::f64::consts::FRAC_PI_2;
 
     #[test]
     fn a_turned_body_turns_its_gap_and_normal() {
-        let number = |v: f64| Placed { expression: Expression::number(v), span: 0..0, key: String::new() };
+        let number = |v: f64| Placed { expression: Expression::number(v), key: KeyPath::default() };
         let plane = Plane { point: Point::<3>::new(1.0, 0.0, 0.0), normal: Vector::<3>::y() };
         let body = RigidBody {
             name: "plane".into(),
@@ -320,8 +322,8 @@ mod tests {
             rotation: vec![number(FRAC_PI_2)],
         };
         // A quarter turn lets the plane look along -x, through (1, 0.5, 0).
-        let document = Document::parse("case", "space = \"3d\"\n[bodies]\n", &[]).unwrap();
-        let GapJet { gap, normal, .. } = body.gap_at(&document, 0.0).unwrap()(&Point::<3>::new(0.25, 7.0, 0.0));
+        let problem = crate::case::read("case", "space = \"3d\"\n[bodies]\n", &[]).unwrap();
+        let GapJet { gap, normal, .. } = body.gap_at(&problem, 0.0).unwrap()(&Point::<3>::new(0.25, 7.0, 0.0));
         assert!((gap - 0.75).abs() < 1e-14 && (normal + Vector::<3>::x()).norm() < 1e-14, "{gap} {normal:?}");
     }
 }

@@ -1,44 +1,42 @@
 //! Reads the keys of rigid shapes that have closed forms, for solids and membranes alike.
 
 use super::Planner;
-use crate::case::statement::{CylinderKey, EllipsoidKey, Shape};
-use crate::case::units::{Dimension, LENGTH, NONE};
-use crate::case::{CaseError, Values};
+use crate::problem::units::{Dimension, LENGTH, NONE};
+use crate::problem::{self, Shape};
+use crate::problem::{CaseError, Value};
 use signorini_geometry::Vector;
 use signorini_geometry::rigid_shape::{Cone, Cylinder, Ellipsoid, Paraboloid, Plane, RigidShape, Sphere, Torus};
 use std::f64::consts::FRAC_PI_2;
-use std::ops::Range;
 use std::sync::Arc;
-use toml::Spanned;
 
 /// How places and directions are stated: it depends on the space, and on what the shape lies beside.
 pub(super) trait ShapeKeys {
     fn planner(&self) -> &Planner<'_>;
 
     /// A place or a direction.
-    fn vector(&self, values: &Values, dimension: Dimension) -> Result<Vector<3>, CaseError>;
+    fn vector(&self, values: &Vec<Value>, dimension: Dimension) -> Result<Vector<3>, CaseError>;
 
     /// The unit vector along the axis of a cylinder, whose shape is stated at a place of the file.
-    fn cylinder_axis(&self, key: &CylinderKey, shape: Range<usize>) -> Result<Vector<3>, CaseError>;
+    fn cylinder_axis(&self, key: &problem::Cylinder, shape: &Shape) -> Result<Vector<3>, CaseError>;
 
-    fn semi_axes(&self, key: &EllipsoidKey) -> Result<[f64; 3], CaseError>;
+    fn semi_axes(&self, key: &problem::Ellipsoid) -> Result<[f64; 3], CaseError>;
 
     /// A unit vector.
-    fn direction(&self, values: &Values) -> Result<Vector<3>, CaseError> {
+    fn direction(&self, values: &Vec<Value>) -> Result<Vector<3>, CaseError> {
         let v = self.vector(values, NONE)?;
-        v.try_normalize(0.0).ok_or_else(|| self.planner().document.error(values.span(), "the direction has no length"))
+        v.try_normalize(0.0).ok_or_else(|| self.planner().problem.error(values, "the direction has no length"))
     }
 }
 
 /// A shape that has a closed form, and its name; none for the others.
 pub(super) fn read(
     keys: &impl ShapeKeys,
-    shape: &Spanned<Shape>,
+    shape: &Shape,
 ) -> Result<Option<(Arc<dyn RigidShape>, &'static str)>, CaseError> {
     let planner = keys.planner();
-    let (document, reader) = (planner.document, &planner.reader);
-    let wrong = |error: signorini_geometry::shape::ShapeError| document.error(shape.span(), error.to_string());
-    Ok(Some(match shape.get_ref() {
+    let (problem, reader) = (planner.problem, &planner.reader);
+    let wrong = |error: signorini_geometry::shape::ShapeError| problem.error(shape, error.to_string());
+    Ok(Some(match shape {
         Shape::Plane(key) => {
             let (point, normal) = (keys.vector(&key.point, LENGTH)?, keys.direction(&key.normal)?);
             (Arc::new(Plane { point, normal }), "plane")
@@ -48,14 +46,14 @@ pub(super) fn read(
             (Arc::new(Sphere { center, radius }), "sphere")
         }
         Shape::Cylinder(key) => {
-            let (axis, point) = (keys.cylinder_axis(key, shape.span())?, keys.vector(&key.point, LENGTH)?);
+            let (axis, point) = (keys.cylinder_axis(key, shape)?, keys.vector(&key.point, LENGTH)?);
             (Arc::new(Cylinder { point, axis, radius: reader.positive(&key.radius, LENGTH)? }), "cylinder")
         }
         Shape::Cone(key) => {
             let half_angle = reader.positive(&key.half_angle, NONE)?;
             if half_angle >= FRAC_PI_2 {
-                return Err(document
-                    .error(key.half_angle.span(), format!("the half angle is {half_angle}"))
+                return Err(problem
+                    .error(&key.half_angle, format!("the half angle is {half_angle}"))
                     .help("an angle in radians below pi/2"));
             }
             let (apex, axis) = (keys.vector(&key.apex, LENGTH)?, keys.direction(&key.axis)?);
@@ -65,8 +63,8 @@ pub(super) fn read(
             let major = reader.positive(&key.major_radius, LENGTH)?;
             let minor = reader.positive(&key.minor_radius, LENGTH)?;
             if minor >= major {
-                return Err(document.error(
-                    key.minor_radius.span(),
+                return Err(problem.error(
+                    &key.minor_radius,
                     format!("the minor radius {minor} is not smaller than the major radius {major}"),
                 ));
             }
@@ -76,7 +74,7 @@ pub(super) fn read(
         Shape::Ellipsoid(key) => {
             let semi_axes = keys.semi_axes(key)?;
             if semi_axes.iter().any(|a| *a <= 0.0) {
-                return Err(document.error(key.semi_axes.span(), "all semi-axes must be positive"));
+                return Err(problem.error(&key.semi_axes, "all semi-axes must be positive"));
             }
             let ellipsoid = Ellipsoid::new(keys.vector(&key.center, LENGTH)?, semi_axes).map_err(wrong)?;
             (Arc::new(ellipsoid), "ellipsoid")

@@ -3,20 +3,20 @@
 mod mesh;
 
 use super::pieces::Apart;
+use super::placement::PlacementKeys;
 use super::rigid::{self, RigidBody};
-use super::{Placed, Planner};
-use crate::case::statement::{self, Body, Enforcement, Material, Method, SolidMesh, Space};
-use crate::case::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE, Units};
-use crate::case::value::Interpreted;
-use crate::case::{CaseError, Document, Literal, OneOrMany, Value, Values, suggestion};
+use super::{Head, Placed, Planner};
 use crate::expression::Scope;
-use crate::report::{UnitNames, Warning};
+use crate::problem::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE};
+use crate::problem::{self, Body, Enforcement, Material, Method, SolidMesh, Space};
+use crate::problem::{CaseError, KeyPath, Location, Problem, Value, suggestion};
+use crate::relief::{MovedHeight, Sampled};
+use crate::report::Warning;
 use signorini_fem::{Group, Mesh, Side};
 use signorini_geometry::Point;
 use signorini_geometry::mesh::TriangleMesh;
 use signorini_solid::{Elastic, LoadKind, Method as ContactMethod, SupportKind};
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
 
 /// Cells up to which a mesh is made with curves of one degree more too: errors are estimated on no more.
 const MOST_RAISED: usize = 30_000;
@@ -76,7 +76,7 @@ pub struct SolidContact {
 
 /// Solids, what holds and pushes them, and who may touch whom.
 pub struct SolidPlan<const D: usize> {
-    pub document: Document,
+    pub head: Head,
     pub space: Space,
     pub bodies: Vec<PlannedBody<D>>,
     pub supports: Vec<SolidSupport>,
@@ -84,82 +84,75 @@ pub struct SolidPlan<const D: usize> {
     pub contacts: Vec<SolidContact>,
     pub times: Vec<f64>,
     pub probes: BTreeMap<String, (usize, Point<D>)>,
-    pub every: usize,
-    pub pictures: bool,
-    pub warnings: Vec<Warning>,
-    pub units: Option<Units>,
-    /// What the values with units were taken for.
-    pub interpreted: Vec<Interpreted>,
-}
-
-impl<const D: usize> SolidPlan<D> {
-    /// What the base units of the case are called; none where it states none.
-    pub fn unit_names(&self) -> Option<UnitNames> {
-        self.units.as_ref().map(|units| UnitNames::new(units, self.space))
-    }
 }
 
 /// The value of an expression at a point and time, or an error that names it.
-pub fn evaluate<const D: usize>(
-    document: &Document,
-    placed: &Placed,
-    x: &Point<D>,
-    time: f64,
-) -> Result<f64, CaseError> {
+pub fn evaluate<const D: usize>(problem: &Problem, placed: &Placed, x: &Point<D>, time: f64) -> Result<f64, CaseError> {
     let position = std::array::from_fn(|k| if k < D { x[k] } else { 0.0 });
     let value = placed.expression.evaluate(&Scope { position, time });
     if value.is_finite() {
         return Ok(value);
     }
     let at: Vec<String> = x.iter().map(|v| format!("{v:.6}")).collect();
-    Err(document.error(
-        placed.span.clone(),
+    Err(problem.error(
+        &placed.key,
         format!("`{}` is {value} at ({}), t = {time}: not a finite number", placed.key, at.join(", ")),
     ))
 }
 
 impl Planner<'_> {
     /// A file named in the case, beside the case; the files of the gallery are carried in the program.
-    pub(super) fn read_file(&self, name: &toml::Spanned<String>) -> Result<(std::path::PathBuf, Vec<u8>), CaseError> {
-        let folder = std::path::Path::new(&self.document.name).parent();
-        let path = folder.unwrap_or(std::path::Path::new("")).join(name.get_ref());
-        match (std::fs::read(&path), crate::gallery::asset(name.get_ref())) {
+    pub(super) fn read_file(&self, name: &String) -> Result<(std::path::PathBuf, Vec<u8>), CaseError> {
+        let path = self.problem.source.folder().join(name);
+        match (std::fs::read(&path), crate::gallery::asset(name)) {
             (Ok(bytes), _) => Ok((path, bytes)),
             (Err(_), Some(text)) => Ok((path, text.as_bytes().to_vec())),
-            (Err(e), None) => {
-                Err(self.document.error(name.span(), format!("`{}`: cannot be read: {e}", path.display())))
-            }
+            (Err(e), None) => Err(self.problem.error(name, format!("`{}`: cannot be read: {e}", path.display()))),
         }
     }
 
     /// The heights of a map.
-    pub(super) fn height_map(&self, key: &statement::HeightMapKey) -> Result<crate::relief::Sampled, CaseError> {
+    pub(super) fn height_map(&self, key: &problem::HeightMap) -> Result<MovedHeight<Sampled>, CaseError> {
         let (path, bytes) = self.read_file(&key.file)?;
         let spacing = self.reader.numbers::<2>(&key.spacing, LENGTH)?;
         if spacing.iter().any(|h| *h <= 0.0) {
-            return Err(self.document.error(key.spacing.span(), format!("the spacing {spacing:?} is not positive")));
+            return Err(self.problem.error(&key.spacing, format!("the spacing {spacing:?} is not positive")));
         }
         let origin = key.origin.as_ref().map(|o| self.reader.numbers::<2>(o, LENGTH)).transpose()?.unwrap_or_default();
         let scale = key.scale.as_ref().map(|s| self.reader.number(s, LENGTH)).transpose()?.unwrap_or(1.0);
-        crate::height_map::read(&path, &bytes, origin, spacing, scale)
-            .map_err(|message| self.document.error(key.file.span(), format!("`{}`: {message}", path.display())))
+        let angle = key.turn.as_ref().map(|t| self.reader.number(t, NONE)).transpose()?.unwrap_or(0.0);
+        let moved = key.moved.as_ref().map(|m| self.reader.numbers::<3>(m, LENGTH)).transpose()?.unwrap_or_default();
+        let height = crate::height_map::read(&path, &bytes, [0.0; 2], spacing, scale)
+            .map_err(|message| self.problem.error(&key.file, format!("`{}`: {message}", path.display())))?;
+        Ok(MovedHeight { height, angle, shift: [origin[0] + moved[0], origin[1] + moved[1], moved[2]] })
     }
 
     /// A triangle mesh that bounds a body.
-    pub(super) fn closed_mesh(&self, key: &statement::FileKey) -> Result<TriangleMesh, CaseError> {
+    pub(super) fn closed_mesh(&self, key: &problem::SurfaceFile) -> Result<TriangleMesh, CaseError> {
         let (path, _) = self.read_file(&key.file)?;
-        let mesh = crate::mesh_file::read(&path).map_err(|e| self.document.error(key.file.span(), e.to_string()))?;
+        let mut mesh = crate::mesh_file::read(&path).map_err(|e| self.problem.error(&key.file, e.to_string()))?;
+        let keys = PlacementKeys { scale: &key.scale, turn: &key.turn, moved: &key.moved };
+        if let Some(placement) = self.placement::<3>(&keys)? {
+            let placed = mesh.vertices().iter().map(|x| placement.point(x)).collect();
+            mesh = TriangleMesh::new(placed, mesh.triangles())
+                .map_err(|e| self.problem.error(&key.file, e.to_string()))?;
+        }
         if mesh.quality().has_inside() {
-            return self.turned_outwards(mesh, key);
+            return self.turned_outwards(mesh, &key.file, &format!("the surface in `{}`", key.file));
         }
         Err(self
-            .document
-            .error(key.file.span(), format!("the surface in `{}` is not closed", key.file.get_ref()))
+            .problem
+            .error(&key.file, format!("the surface in `{}` is not closed", key.file))
             .help("a rigid body needs an inside: close the holes, or model it by another shape"))
     }
 
     /// A closed surface with its normals outwards: one whose volume is negative is turned round, and that is said.
-    fn turned_outwards(&self, mesh: TriangleMesh, key: &statement::FileKey) -> Result<TriangleMesh, CaseError> {
+    pub(super) fn turned_outwards(
+        &self,
+        mesh: TriangleMesh,
+        at: &impl Location,
+        what: &str,
+    ) -> Result<TriangleMesh, CaseError> {
         let centre = mesh.bounds().center();
         let signed = |triangle: usize| {
             let [a, b, c] = mesh.corners(triangle).map(|x| x - centre);
@@ -169,18 +162,14 @@ impl Planner<'_> {
         if volume >= 0.0 {
             return Ok(mesh);
         }
-        let warning = format!(
-            "the surface in `{}` is inside out, its volume is {volume:.4e}: it is turned round",
-            key.file.get_ref()
-        );
+        let warning = format!("{what} is inside out, its volume is {volume:.4e}: it is turned round");
         let warning = Warning::from(warning);
         let mut warnings = self.warnings.borrow_mut();
         if !warnings.contains(&warning) {
             warnings.push(warning);
         }
         let turned: Vec<[u32; 3]> = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
-        TriangleMesh::new(mesh.vertices().to_vec(), &turned)
-            .map_err(|e| self.document.error(key.file.span(), e.to_string()))
+        TriangleMesh::new(mesh.vertices().to_vec(), &turned).map_err(|e| self.problem.error(at, e.to_string()))
     }
 
     fn coordinates<const D: usize>(&self) -> &'static [&'static str] {
@@ -188,30 +177,30 @@ impl Planner<'_> {
     }
 
     pub(super) fn solids<const D: usize>(&self) -> Result<SolidPlan<D>, CaseError> {
-        let document = self.document;
-        let case = &document.case;
-        let membrane = case.bodies.values().any(|b| matches!(b.get_ref(), Body::Membrane(_)));
-        if membrane && !case.bodies.values().any(|b| matches!(b.get_ref(), Body::Solid(_))) {
-            return Err(document
-                .error(case.space.span(), "this space is one of solids, and there is a membrane")
+        let problem = self.problem;
+
+        let membrane = problem.bodies.values().any(|b| matches!(b, Body::Membrane(_)));
+        if membrane && !problem.bodies.values().any(|b| matches!(b, Body::Solid(_))) {
+            return Err(problem
+                .error(&problem.space, "this space is one of solids, and there is a membrane")
                 .help("of membranes: space = \"line\", \"axisymmetric\" or \"plane\""));
         }
         let mut bodies = Vec::new();
         let mut warnings = Vec::new();
-        for (name, body) in &case.bodies {
-            match body.get_ref() {
-                Body::Solid(key) => bodies.push(self.solid::<D>(name, key, body.span(), &mut warnings)?),
+        for (name, body) in &problem.bodies {
+            match body {
+                Body::Solid(key) => bodies.push(self.solid::<D>(name, key, self.key(body), &mut warnings)?),
                 Body::Rigid(_) => {}
                 _ => {
-                    return Err(document
-                        .error(body.span(), format!("the body `{name}` cannot stand beside solids in this version"))
+                    return Err(problem
+                        .error(body, format!("the body `{name}` cannot stand beside solids in this version"))
                         .help("bodies here are `solid` or `rigid`"));
                 }
             }
         }
         if bodies.is_empty() {
-            return Err(document
-                .error(case.space.span(), "there is no solid")
+            return Err(problem
+                .error(&problem.space, "there is no solid")
                 .help("add a body, for example  [bodies.block.solid]"));
         }
         let mut supports = self.solid_supports(&bodies)?;
@@ -221,7 +210,7 @@ impl Planner<'_> {
             supports.extend(axis_supports(&bodies));
         }
         let mut probes = BTreeMap::new();
-        for (name, at) in &case.output.probes {
+        for (name, at) in &problem.output.probes {
             let x = self.reader.numbers::<D>(at, LENGTH)?;
             let x = Point::<D>::from_fn(|k, _| x[k]);
             // The vertex next to it.
@@ -248,20 +237,14 @@ impl Planner<'_> {
             }
             probes.insert(name.clone(), (near, x));
         }
-        let every = match &case.output.every {
-            None => 1,
-            Some(n) if *n.get_ref() >= 1 => *n.get_ref() as usize,
-            Some(n) => return Err(document.error(n.span(), "`every` must be at least 1")),
-        };
-        if contacts.is_empty() && case.bodies.len() > 1 {
+        if contacts.is_empty() && problem.bodies.len() > 1 {
             warnings.push("no contact is stated: the bodies do not see each other (add [contacts.NAME])".into());
         }
-        if case.steps.iter().any(|s| s.get_ref().events.is_some()) {
+        if problem.steps.iter().any(|s| s.events.is_some()) {
             warnings.push("`events` are located for membranes only".into());
         }
-        warnings.append(&mut self.warnings.borrow_mut());
         Ok(SolidPlan {
-            document: document.clone(),
+            head: self.head(warnings)?,
             space: self.space,
             bodies,
             supports,
@@ -269,64 +252,63 @@ impl Planner<'_> {
             contacts,
             times: self.times()?,
             probes,
-            every,
-            pictures: case.output.pictures.unwrap_or(true),
-            warnings,
-            units: self.reader.units,
-            interpreted: self.reader.echo(),
         })
     }
 
     fn solid<const D: usize>(
         &self,
         name: &str,
-        key: &statement::Solid,
-        span: Range<usize>,
+        key: &problem::Solid,
+        span: KeyPath,
         warnings: &mut Vec<Warning>,
     ) -> Result<PlannedBody<D>, CaseError> {
-        let document = self.document;
+        let problem = self.problem;
         if let Some(strain) = &key.strain
-            && strain.get_ref() != "small"
+            && strain != "small"
         {
-            return Err(match strain.get_ref().as_str() {
-                "finite" => self.unavailable(strain.span(), "finite strain"),
-                other => document.error(strain.span(), format!("unknown word `{other}`")).help("known here: small"),
+            return Err(match strain.as_str() {
+                "finite" => self.unavailable(strain, "finite strain"),
+                other => problem.error(strain, format!("unknown word `{other}`")).help("known here: small"),
             });
         }
-        let material = match key.material.get_ref() {
+        let material = match &key.material {
             Material::LinearElastic(m) => {
                 let youngs_modulus = self.reader.positive(&m.youngs_modulus, PRESSURE)?;
                 let poissons_ratio = self.reader.number(&m.poissons_ratio, NONE)?;
                 if !(poissons_ratio > -1.0 && poissons_ratio < 0.5) {
-                    return Err(document
-                        .error(m.poissons_ratio.span(), format!("Poisson's ratio is {poissons_ratio}"))
+                    return Err(problem
+                        .error(&m.poissons_ratio, format!("Poisson's ratio is {poissons_ratio}"))
                         .help("above -1 and below 0.5; nearly incompressible is for example 0.4999"));
                 }
                 Elastic { youngs_modulus, poissons_ratio }
             }
-            _ => return Err(self.unavailable(key.material.span(), "this material")),
+            _ => return Err(self.unavailable(&key.material, "this material")),
         };
         let stated = match &key.degree {
             None => None,
-            Some(d) if (1..=8).contains(d.get_ref()) => Some(*d.get_ref() as usize),
-            Some(d) => return Err(document.error(d.span(), format!("degree {} is not between 1 and 8", d.get_ref()))),
+            Some(d) if (1..=8).contains(d) => Some(*d as usize),
+            Some(d) => return Err(problem.error(d, format!("degree {} is not between 1 and 8", d))),
         };
-        let mesh = match key.mesh.get_ref() {
+        let mesh = match &key.mesh {
             SolidMesh::Box(b) => {
-                let mesh = self.block::<D>(name, b, key.mesh.span(), stated.unwrap_or(1))?;
+                let mesh = self.block::<D>(name, b, stated.unwrap_or(1))?;
                 self.check_overlap(name, b, &mesh)?;
                 mesh
             }
-            SolidMesh::Gmsh(g) => self.gmsh::<D>(g)?,
-            SolidMesh::Nurbs(_) => return Err(self.unavailable(key.mesh.span(), "a NURBS solid")),
+            SolidMesh::Gmsh(g) => {
+                let placement = PlacementKeys { scale: &g.scale, turn: &g.turn, moved: &g.moved };
+                self.gmsh::<D>(&g.file, g.group.as_deref(), &placement)?
+            }
+            SolidMesh::Arrays(arrays) => self.mesh_of_arrays::<D>(arrays)?,
+            SolidMesh::Nurbs(_) => return Err(self.unavailable(&key.mesh, "a NURBS solid")),
         };
         let simplices = (0..mesh.cell_count()).any(|c| !mesh.shape(c).is_tensor());
         let order = (0..mesh.cell_count()).map(|c| mesh.map(c).order()).max().unwrap_or(1);
         let degree = stated.unwrap_or(order);
         if simplices && degree > 2 {
-            let span = key.degree.as_ref().map_or(span, |d| d.span());
-            return Err(document
-                .error(span, format!("degree {degree} on a mesh with triangles, tetrahedra or wedges"))
+            let span = key.degree.as_ref().map_or(span, |d| self.key(d));
+            return Err(problem
+                .error(&span, format!("degree {degree} on a mesh with triangles, tetrahedra or wedges"))
                 .help("these have degree 1 or 2; quadrilaterals and hexahedra 1 to 8"));
         }
         let locks = |c: usize| signorini_solid::stiffness::locks(mesh.shape(c), degree, &material);
@@ -340,9 +322,9 @@ impl Planner<'_> {
             );
         }
         warnings.extend(Apart::new(&mesh).and_then(|apart| apart.warning(name)).map(Warning::from));
-        let raised = match key.mesh.get_ref() {
+        let raised = match &key.mesh {
             SolidMesh::Box(b) if b.map.is_some() && mesh.cell_count() <= MOST_RAISED => {
-                self.block::<D>(name, b, key.mesh.span(), degree + 1).ok()
+                self.block::<D>(name, b, degree + 1).ok()
             }
             _ => None,
         };
@@ -352,22 +334,19 @@ impl Planner<'_> {
     /// Looks up `BODY` or `BODY:GROUP`.
     fn solid_place<const D: usize>(
         &self,
-        on: &toml::Spanned<String>,
+        on: &String,
         bodies: &[PlannedBody<D>],
     ) -> Result<(usize, Option<Group>), CaseError> {
-        let (name, group) = match on.get_ref().split_once(':') {
+        let (name, group) = match on.split_once(':') {
             Some((name, group)) => (name, Some(group)),
-            None => (on.get_ref().as_str(), None),
+            None => (on.as_str(), None),
         };
-        let all: Vec<&str> = self.document.case.bodies.keys().map(String::as_str).collect();
+        let all: Vec<&str> = self.problem.bodies.keys().map(String::as_str).collect();
         let Some(body) = bodies.iter().position(|b| b.name == name) else {
             if all.contains(&name) {
-                return Err(self.document.error(on.span(), format!("`{name}` is rigid: its motion is stated with it")));
+                return Err(self.problem.error(on, format!("`{name}` is rigid: its motion is stated with it")));
             }
-            return Err(self
-                .document
-                .error(on.span(), format!("there is no body `{name}`"))
-                .help(suggestion(name, &all)));
+            return Err(self.problem.error(on, format!("there is no body `{name}`")).help(suggestion(name, &all)));
         };
         let Some(group) = group else { return Ok((body, None)) };
         let groups = bodies[body].mesh.groups();
@@ -375,32 +354,28 @@ impl Planner<'_> {
             Some(found) => Ok((body, Some(found.clone()))),
             None => {
                 let names: Vec<&str> = groups.keys().map(String::as_str).collect();
-                Err(self
-                    .document
-                    .error(on.span(), format!("`{name}` has no group `{group}`"))
-                    .help(suggestion(group, &names)))
+                Err(self.problem.error(on, format!("`{name}` has no group `{group}`")).help(suggestion(group, &names)))
             }
         }
     }
 
-    fn solid_value<const D: usize>(&self, key: String, v: &Value, dimension: [i32; 3]) -> Result<Placed, CaseError> {
+    fn solid_value<const D: usize>(&self, v: &Value, dimension: [i32; 3]) -> Result<Placed, CaseError> {
         let expression = self.reader.expression(v, dimension, self.coordinates::<D>())?;
-        Ok(Placed { expression, span: v.span(), key })
+        Ok(Placed { expression, key: self.key(v) })
     }
 
-    fn vector<const D: usize>(&self, key: &str, list: &Values, dimension: [i32; 3]) -> Result<Vec<Placed>, CaseError> {
-        let values = list.get_ref();
-        if values.len() != D {
-            return Err(self.document.error(list.span(), format!("expected {D} components, found {}", values.len())));
+    fn vector<const D: usize>(&self, list: &Vec<Value>, dimension: [i32; 3]) -> Result<Vec<Placed>, CaseError> {
+        if list.len() != D {
+            return Err(self.problem.error(list, format!("expected {D} components, found {}", list.len())));
         }
-        values.iter().enumerate().map(|(k, v)| self.solid_value::<D>(format!("{key}[{k}]"), v, dimension)).collect()
+        list.iter().map(|v| self.solid_value::<D>(v, dimension)).collect()
     }
 
     fn solid_supports<const D: usize>(&self, bodies: &[PlannedBody<D>]) -> Result<Vec<SolidSupport>, CaseError> {
-        let document = self.document;
+        let problem = self.problem;
         let mut out = Vec::new();
-        for (name, support) in &document.case.supports {
-            let key = support.get_ref();
+        for (name, support) in &problem.supports {
+            let key = support;
             let (body, group) = self.solid_place(&key.on, bodies)?;
             let group = group.unwrap_or_else(|| Group {
                 cells: (0..bodies[body].mesh.cell_count() as u32).collect(),
@@ -412,24 +387,21 @@ impl Planner<'_> {
             let mut prescribed = vec![false; D];
             if let Some(displacement) = &key.displacement {
                 said = true;
-                let values = match displacement.get_ref() {
-                    OneOrMany::Many(values) if values.len() == D => values,
-                    OneOrMany::Many(values) => {
-                        return Err(document
-                            .error(displacement.span(), format!("expected {D} components, found {}", values.len())));
-                    }
-                    OneOrMany::One(_) => {
-                        return Err(document
-                            .error(displacement.span(), "the displacement of a solid is a vector")
-                            .help("for example  displacement = [0, \"free\", 0]"));
-                    }
-                };
+                let values = &displacement.0;
+                if values.len() == 1 {
+                    return Err(problem
+                        .error(displacement, "the displacement of a solid is a vector")
+                        .help("for example  displacement = [0, \"free\", 0]"));
+                }
+                if values.len() != D {
+                    let message = format!("expected {D} components, found {}", values.len());
+                    return Err(problem.error(displacement, message));
+                }
                 let mut list = Vec::new();
                 for (k, v) in values.iter().enumerate() {
-                    let free = matches!(v.get_ref(), Literal::Text(text) if text.trim() == "free");
+                    let free = matches!(v, Value::Text(text) if text.trim() == "free");
                     prescribed[k] = !free;
-                    let path = format!("supports.{name}.displacement[{k}]");
-                    list.push(if free { None } else { Some(self.solid_value::<D>(path, v, LENGTH)?) });
+                    list.push(if free { None } else { Some(self.solid_value::<D>(v, LENGTH)?) });
                 }
                 if prescribed.iter().any(|p| *p) {
                     add(SupportKind::Components(prescribed.clone()), list);
@@ -438,12 +410,12 @@ impl Planner<'_> {
             if let Some(normal) = &key.normal {
                 said = true;
                 if group.sides.is_empty() {
-                    return Err(document.error(key.on.span(), "`normal` needs a part of the boundary"));
+                    return Err(problem.error(&key.on, "`normal` needs a part of the boundary"));
                 }
-                let value = self.solid_value::<D>(format!("supports.{name}.normal"), normal, LENGTH)?;
+                let value = self.solid_value::<D>(normal, LENGTH)?;
                 add(SupportKind::Normal, vec![Some(value)]);
             }
-            if key.uniform.as_ref().is_some_and(|u| *u.get_ref()) {
+            if key.uniform.as_ref().is_some_and(|u| *u) {
                 said = true;
                 add(SupportKind::Uniform(prescribed.iter().map(|p| !p).collect()), Vec::new());
             }
@@ -451,13 +423,13 @@ impl Planner<'_> {
                 said = true;
                 let stiffness = self.reader.numbers::<D>(spring, [-3, 1, 0])?;
                 if let Some(k) = stiffness.iter().position(|s| *s < 0.0) {
-                    return Err(document.error(spring.span(), format!("component {k} is negative: {}", stiffness[k])));
+                    return Err(problem.error(spring, format!("component {k} is negative: {}", stiffness[k])));
                 }
                 add(SupportKind::Spring(stiffness.to_vec()), Vec::new());
             }
             if !said {
-                return Err(document
-                    .error(support.span(), format!("the support `{name}` prescribes nothing"))
+                return Err(problem
+                    .error(support, format!("the support `{name}` prescribes nothing"))
                     .help("add  displacement = [0, 0]  or  normal = 0  or  uniform = true  or  spring = […]"));
             }
         }
@@ -465,84 +437,81 @@ impl Planner<'_> {
     }
 
     fn solid_loads<const D: usize>(&self, bodies: &[PlannedBody<D>]) -> Result<Vec<SolidLoad>, CaseError> {
-        let document = self.document;
+        let problem = self.problem;
         let force: [i32; 3] = if self.space == Space::PlaneStrain || self.space == Space::PlaneStress {
             FORCE_PER_LENGTH
         } else {
             [0, 1, 0]
         };
         let mut out = Vec::new();
-        for (name, load) in &document.case.loads {
-            let key = load.get_ref();
+        for (name, load) in &problem.loads {
+            let key = load;
             let (body, group) = self.solid_place(&key.on, bodies)?;
             if let Some(normal) = &key.normal {
-                return Err(document
-                    .error(normal.span(), "`normal` is the load of a membrane")
+                return Err(problem
+                    .error(normal, "`normal` is the load of a membrane")
                     .help("solids take pressure (positive pushes inwards), traction, force, body_force"));
             }
-            let path = |what: &str| format!("loads.{name}.{what}");
             let mut list: Vec<(LoadKind, Vec<Placed>)> = Vec::new();
             if let Some(v) = &key.pressure {
-                list.push((LoadKind::Pressure, vec![self.solid_value::<D>(path("pressure"), v, PRESSURE)?]));
+                list.push((LoadKind::Pressure, vec![self.solid_value::<D>(v, PRESSURE)?]));
             }
             if let Some(v) = &key.traction {
-                list.push((LoadKind::Traction, self.vector::<D>(&path("traction"), v, PRESSURE)?));
+                list.push((LoadKind::Traction, self.vector::<D>(v, PRESSURE)?));
             }
             if let Some(v) = &key.force {
-                list.push((LoadKind::Force, self.vector::<D>(&path("force"), v, force)?));
+                list.push((LoadKind::Force, self.vector::<D>(v, force)?));
             }
             if let Some(v) = &key.body_force {
-                list.push((LoadKind::BodyForce, self.vector::<D>(&path("body_force"), v, [-3, 1, 0])?));
+                list.push((LoadKind::BodyForce, self.vector::<D>(v, [-3, 1, 0])?));
             }
             let [(kind, values)] = <[_; 1]>::try_from(list).map_err(|list| {
-                document
-                    .error(load.span(), format!("the load `{name}` says {} things", list.len()))
+                problem
+                    .error(load, format!("the load `{name}` says {} things", list.len()))
                     .help("exactly one of pressure, traction, force, body_force")
             })?;
-            let group =
-                match (group, kind) {
-                    (Some(group), LoadKind::BodyForce) if !group.cells.is_empty() => group,
-                    (None, LoadKind::BodyForce) => {
-                        Group { cells: (0..bodies[body].mesh.cell_count() as u32).collect(), ..Group::default() }
-                    }
-                    (Some(group), _) if kind != LoadKind::BodyForce && !group.sides.is_empty() => group,
-                    _ => {
-                        let wanted = if kind == LoadKind::BodyForce { "cells" } else { "a part of the boundary" };
-                        let names: Vec<&str> = bodies[body].mesh.groups().keys().map(String::as_str).collect();
-                        return Err(document
-                            .error(key.on.span(), format!("this load acts on {wanted}"))
-                            .help(format!("`{}` has the groups {}", bodies[body].name, names.join(", "))));
-                    }
-                };
+            let group = match (group, kind) {
+                (Some(group), LoadKind::BodyForce) if !group.cells.is_empty() => group,
+                (None, LoadKind::BodyForce) => {
+                    Group { cells: (0..bodies[body].mesh.cell_count() as u32).collect(), ..Group::default() }
+                }
+                (Some(group), _) if kind != LoadKind::BodyForce && !group.sides.is_empty() => group,
+                _ => {
+                    let wanted = if kind == LoadKind::BodyForce { "cells" } else { "a part of the boundary" };
+                    let names: Vec<&str> = bodies[body].mesh.groups().keys().map(String::as_str).collect();
+                    return Err(problem.error(&key.on, format!("this load acts on {wanted}")).help(format!(
+                        "`{}` has the groups {}",
+                        bodies[body].name,
+                        names.join(", ")
+                    )));
+                }
+            };
             out.push(SolidLoad { name: name.clone(), body, group, kind, values });
         }
         Ok(out)
     }
 
-    fn solid_method(
-        &self,
-        key: &statement::Contact,
-    ) -> Result<(ContactMethod, signorini_solid::Enforcement), CaseError> {
+    fn solid_method(&self, key: &problem::Contact) -> Result<(ContactMethod, signorini_solid::Enforcement), CaseError> {
         use signorini_solid::Enforcement as Kept;
         let Some(method) = &key.method else { return Ok((ContactMethod::Mortar, Kept::Multiplier)) };
-        let (which, stated) = match method.get_ref() {
+        let (which, stated) = match method {
             Method::Mortar(k) => (ContactMethod::Mortar, &k.enforcement),
             Method::Node(k) => (ContactMethod::Node, &k.enforcement),
             Method::GaussPoint(k) => (ContactMethod::GaussPoint, &k.enforcement),
             _ => {
                 return Err(self
-                    .document
-                    .error(method.span(), "this method is for membranes")
+                    .problem
+                    .error(method, "this method is for membranes")
                     .help("solids have  method.mortar = {},  method.node = {}  and  method.gauss_point = {}"));
             }
         };
-        let kept = match stated.as_ref().map(|e| (e.get_ref(), e.span())) {
+        let kept = match stated.as_ref().map(|e| (e, self.key(e))) {
             None if which == ContactMethod::GaussPoint => Kept::Penalty { wanted_penetration: None },
             None => Kept::Multiplier,
             Some((Enforcement::Multiplier(_), span)) if which == ContactMethod::GaussPoint => {
                 return Err(self
-                    .document
-                    .error(span, "a multiplier at every quadrature point holds the surface too tightly")
+                    .problem
+                    .error(&span, "a multiplier at every quadrature point holds the surface too tightly")
                     .help("enforcement.penalty = {}, or method.mortar = {}"));
             }
             Some((Enforcement::Multiplier(_), _)) => Kept::Multiplier,
@@ -555,11 +524,11 @@ impl Planner<'_> {
                     .transpose()?,
             },
             Some((Enforcement::Nitsche(_), span)) => {
-                let slides = key.sliding.as_ref().is_some_and(|s| *s.get_ref() == statement::Sliding::Finite);
+                let slides = key.sliding.as_ref().is_some_and(|s| *s == problem::Sliding::Finite);
                 if slides || which == ContactMethod::Node {
                     return Err(self
-                        .document
-                        .error(span, "Nitsche's method is for small sliding, in the mean or at quadrature points")
+                        .problem
+                        .error(&span, "Nitsche's method is for small sliding, in the mean or at quadrature points")
                         .help("method.mortar = { enforcement.nitsche = {} }  without `sliding`"));
                 }
                 Kept::Nitsche
@@ -571,60 +540,58 @@ impl Planner<'_> {
     /// The sides of a place, and whether they are all of the body.
     fn contact_side<const D: usize>(
         &self,
-        on: &toml::Spanned<String>,
+        on: &String,
         bodies: &[PlannedBody<D>],
     ) -> Result<(usize, Vec<Side>, bool), CaseError> {
         let (body, group) = self.solid_place(on, bodies)?;
         let whole = group.is_none();
         let sides = group.map_or_else(|| bodies[body].mesh.boundary(), |g| g.sides);
         if sides.is_empty() {
-            return Err(self.document.error(on.span(), "there are no sides of cells in this group"));
+            return Err(self.problem.error(on, "there are no sides of cells in this group"));
         }
         Ok((body, sides, whole))
     }
 
     fn solid_contacts<const D: usize>(&self, bodies: &[PlannedBody<D>]) -> Result<Vec<SolidContact>, CaseError> {
-        let document = self.document;
+        let problem = self.problem;
         let around = around(bodies);
         let mut out = Vec::new();
-        for (name, contact) in &document.case.contacts {
-            let key = contact.get_ref();
+        for (name, contact) in &problem.contacts {
+            let key = contact;
             if let Some(within) = &key.within {
-                return Err(self.unavailable(within.span(), "contact of a body with itself"));
+                return Err(self.unavailable(within, "contact of a body with itself"));
             }
             self.frictionless(key)?;
             if let Some(adhesion) = &key.adhesion
                 && self.reader.number(&adhesion.energy, [-1, 1, 0])? != 0.0
             {
-                return Err(self.unavailable(adhesion.energy.span(), "adhesion of solids"));
+                return Err(self.unavailable(&adhesion.energy, "adhesion of solids"));
             }
             let (method, enforcement) = self.solid_method(key)?;
-            let sliding = match key.sliding.as_ref().map(|s| *s.get_ref()) {
-                Some(statement::Sliding::Finite) => signorini_solid::Sliding::Finite,
+            let sliding = match key.sliding.as_ref().map(|s| *s) {
+                Some(problem::Sliding::Finite) => signorini_solid::Sliding::Finite,
                 _ => signorini_solid::Sliding::Small,
             };
             let mut add = |name: String, (body, sides, whole): (usize, Vec<Side>, bool), opposite| {
                 out.push(SolidContact { name, body, sides, whole, opposite, method, enforcement, sliding });
             };
             match (&key.between, &key.all) {
-                (Some(pair), None) if pair.get_ref().len() == 2 => {
-                    let rigid = |on: &toml::Spanned<String>| match document.case.bodies.get(on.get_ref())?.get_ref() {
+                (Some(pair), None) if pair.len() == 2 => {
+                    let rigid = |on: &String| match problem.bodies.get(on)? {
                         Body::Rigid(rigid) => Some(rigid),
                         _ => None,
                     };
-                    let [first, second] = [&pair.get_ref()[0], &pair.get_ref()[1]];
+                    let [first, second] = [&pair[0], &pair[1]];
                     // The slave is the solid, in whichever order they are named.
                     let [first, second] = if rigid(first).is_some() { [second, first] } else { [first, second] };
                     if rigid(first).is_some() {
-                        return Err(document.error(pair.span(), "both bodies of this contact are rigid").help(
-                            format!(
-                                "a contact is between solids, or a solid and a rigid body: `{}`, for example",
-                                bodies[0].name
-                            ),
-                        ));
+                        return Err(problem.error(pair, "both bodies of this contact are rigid").help(format!(
+                            "a contact is between solids, or a solid and a rigid body: `{}`, for example",
+                            bodies[0].name
+                        )));
                     }
                     let opposite = match rigid(second) {
-                        Some(body) => Opposite::Rigid(rigid::read::<D>(self, second.get_ref(), body, &around)?),
+                        Some(body) => Opposite::Rigid(rigid::read::<D>(self, second, body, &around)?),
                         None => {
                             let (body, sides, whole) = self.contact_side(second, bodies)?;
                             Opposite::Body { body, sides, whole }
@@ -632,7 +599,7 @@ impl Planner<'_> {
                     };
                     add(name.clone(), self.contact_side(first, bodies)?, opposite);
                 }
-                (None, Some(all)) if *all.get_ref() => {
+                (None, Some(all)) if *all => {
                     let side = |k: usize| (k, bodies[k].mesh.boundary(), true);
                     for slave in 0..bodies.len() {
                         for master in slave + 1..bodies.len() {
@@ -640,8 +607,8 @@ impl Planner<'_> {
                             let name = format!("{name}_{}_{}", bodies[slave].name, bodies[master].name);
                             add(name, side(slave), Opposite::Body { body, sides, whole });
                         }
-                        for (other, body) in &document.case.bodies {
-                            if let Body::Rigid(rigid) = body.get_ref() {
+                        for (other, body) in &problem.bodies {
+                            if let Body::Rigid(rigid) = body {
                                 let rigid = Opposite::Rigid(rigid::read::<D>(self, other, rigid, &around)?);
                                 add(format!("{name}_{}_{other}", bodies[slave].name), side(slave), rigid);
                             }
@@ -649,7 +616,7 @@ impl Planner<'_> {
                     }
                 }
                 _ => {
-                    return Err(document.error(contact.span(), "who touches whom is not said").help(
+                    return Err(problem.error(contact, "who touches whom is not said").help(
                         "between = [\"BODY:GROUP\", \"BODY:GROUP\"], the slave first where both are solids; or  all = true",
                     ));
                 }
@@ -682,7 +649,7 @@ fn axis_supports<const D: usize>(bodies: &[PlannedBody<D>]) -> Vec<SolidSupport>
             (0..body.mesh.cell_count()).flat_map(|c| body.mesh.vertices(c)).filter(|v| on_axis(*v)).collect();
         if !vertices.is_empty() {
             let zero =
-                Placed { expression: crate::expression::Expression::number(0.0), span: 0..0, key: "axis".into() };
+                Placed { expression: crate::expression::Expression::number(0.0), key: KeyPath::of_keys(&["space"]) };
             out.push(SolidSupport {
                 name: "axis".into(),
                 body: number,

@@ -1,10 +1,10 @@
 //! The surfaces that a membrane may touch: heights, on which side of it they lie, and how they move.
 
 use super::{Placed, Planner, coordinates, field};
-use crate::case::CaseError;
-use crate::case::statement::{self, Lies, Motion, Rigid, Shape, Space};
-use crate::case::units::{LENGTH, NONE};
 use crate::expression::{Expression, Scope};
+use crate::problem::units::{LENGTH, NONE};
+use crate::problem::{self, Lies, Motion, Rigid, Shape, Space};
+use crate::problem::{CaseError, Part, Value};
 use crate::relief::{LevelSetTop, Sampled};
 use crate::report::Warning;
 use signorini_geometry::height_field::View;
@@ -66,16 +66,16 @@ pub(super) fn read(
     rigid: &Rigid,
     scene: &mut Scene<'_>,
 ) -> Result<Contact, CaseError> {
-    let document = planner.document;
+    let problem = planner.problem;
     if let Some(side) = &rigid.side
-        && *side.get_ref() == statement::Side::Inside
+        && *side == problem::Side::Inside
     {
-        return Err(document
-            .error(side.span(), "a body beside a membrane is touched from outside")
+        return Err(problem
+            .error(side, "a body beside a membrane is touched from outside")
             .help("a body above the membrane:  lies = \"above\""));
     }
-    let displacement = motion(planner, body, rigid)?;
-    let still = Placed { expression: Expression::number(0.0), span: rigid.shape.span(), key: String::new() };
+    let displacement = motion(planner, rigid)?;
+    let still = Placed { expression: Expression::number(0.0), key: planner.key(&rigid.shape) };
     let mut contact = Contact {
         name: name.to_string(),
         body: body.to_string(),
@@ -86,20 +86,20 @@ pub(super) fn read(
     };
     let rise = contact.displacement_at(0.0)[2];
     contact.side = side(planner, rigid, scene.level.map(|level| level - rise))?;
-    contact.height = height(planner, body, rigid, contact.side, scene)?;
+    contact.height = height(planner, rigid, contact.side, scene)?;
     Ok(contact)
 }
 
 /// The side of the membrane on which a body lies: as stated, or as its shape says.
 fn side(planner: &Planner<'_>, rigid: &Rigid, level: Option<f64>) -> Result<Side, CaseError> {
     if let Some(lies) = &rigid.lies {
-        return Ok(match lies.get_ref() {
+        return Ok(match lies {
             Lies::Below => Side::Below,
             Lies::Above => Side::Above,
         });
     }
-    let last = |values: &crate::case::Values, dimension| -> Result<f64, CaseError> {
-        let list = values.get_ref();
+    let last = |values: &Vec<Value>, dimension| -> Result<f64, CaseError> {
+        let list = values;
         let Some(z) = list.last().filter(|_| list.len() >= 2) else { return Ok(0.0) };
         planner.reader.number(z, dimension)
     };
@@ -109,7 +109,7 @@ fn side(planner: &Planner<'_>, rigid: &Rigid, level: Option<f64>) -> Result<Side
         let z = last(values, LENGTH)?;
         Ok(if level.is_some_and(|level| z > level) { Side::Above } else { Side::Below })
     };
-    match rigid.shape.get_ref() {
+    match &rigid.shape {
         Shape::Plane(s) => Ok(by_sign(last(&s.normal, NONE)?)),
         Shape::Cone(s) => Ok(by_sign(-last(&s.axis, NONE)?)),
         Shape::Paraboloid(s) => Ok(by_sign(-last(&s.axis, NONE)?)),
@@ -130,43 +130,37 @@ pub(super) fn view(side: Side) -> View {
 }
 
 /// The height of a body as seen from the membrane.
-fn height(
-    planner: &Planner<'_>,
-    body: &str,
-    rigid: &Rigid,
-    side: Side,
-    scene: &mut Scene<'_>,
-) -> Result<Placed, CaseError> {
-    let document = planner.document;
+fn height(planner: &Planner<'_>, rigid: &Rigid, side: Side, scene: &mut Scene<'_>) -> Result<Placed, CaseError> {
+    let problem = planner.problem;
     let view = view(side);
-    let placed = |expression, shape: &str| Placed {
-        expression,
-        span: rigid.shape.span(),
-        key: format!("bodies.{body}.rigid.shape.{shape}"),
+    let placed = |expression, shape: &str| {
+        let mut key = planner.key(&rigid.shape);
+        key.0.push(Part::Key(shape.into()));
+        Placed { expression, key }
     };
-    match rigid.shape.get_ref() {
+    match &rigid.shape {
         Shape::Height(value) => {
             let expression = planner.reader.expression(value, LENGTH, coordinates(planner.space))?;
-            Ok(Placed { span: value.span(), ..placed(expression, "height") })
+            Ok(placed(expression, "height"))
         }
         Shape::HeightMap(map) if planner.space == Space::Plane => {
             let expression = Expression::height(Arc::new(planner.height_map(map)?));
-            Ok(Placed { span: map.file.span(), ..placed(expression, "height_map") })
+            Ok(placed(expression, "height_map"))
         }
-        Shape::HeightMap(_) => Err(document
-            .error(rigid.shape.span(), "a height map is a surface beside a membrane in the plane")
+        Shape::HeightMap(_) => Err(problem
+            .error(&rigid.shape, "a height map is a surface beside a membrane in the plane")
             .help("on a line the height is a function of x:  shape.height = \"…\"")),
         Shape::LevelSet(key) => {
             let inside = planner.reader.expression(&key.negative_inside, LENGTH, &["x", "y", "z"])?;
-            let ends = [&key.min, &key.max].map(|corner| match corner.get_ref().len() {
+            let ends = [&key.min, &key.max].map(|corner| match corner.len() {
                 2 if planner.space != Space::Plane => planner.reader.numbers::<2>(corner, LENGTH).map(|c| c[1]),
                 _ => planner.reader.numbers::<3>(corner, LENGTH).map(|c| c[2]),
             });
             let [low, high] = ends;
             let (low, high) = (low?, high?);
             if low >= high {
-                return Err(document
-                    .error(key.max.span(), format!("the box is empty: z from {low} to {high}"))
+                return Err(problem
+                    .error(&key.max, format!("the box is empty: z from {low} to {high}"))
                     .help("`max` is the upper corner"));
             }
             Ok(placed(Expression::height(Arc::new(LevelSetTop { inside, low, high, view })), "level_set"))
@@ -174,50 +168,46 @@ fn height(
         Shape::Stl(key) if planner.space == Space::Plane => {
             let mesh = planner.closed_mesh(key)?;
             let sampled = Sampled::of_mesh(&mesh, scene.around, scene.resolution, view)
-                .map_err(|e| document.error(key.file.span(), format!("`{}`: {e}", key.file.get_ref())))?;
+                .map_err(|e| problem.error(&key.file, format!("`{}`: {e}", key.file)))?;
             scene.warnings.push(format!(
                 "`{}` is sampled every {:.3e} and joined by a bicubic spline: its edges are rounded by that much, and beyond \
                  its shadow it falls off",
-                key.file.get_ref(),
+                key.file,
                 scene.resolution
             ).into());
             Ok(placed(Expression::height(Arc::new(sampled)), "stl"))
         }
         Shape::Stl(_) => {
-            Err(document.error(rigid.shape.span(), "a triangle mesh is a surface beside a membrane in the plane"))
+            Err(problem.error(&rigid.shape, "a triangle mesh is a surface beside a membrane in the plane"))
         }
         _ => match super::height::read(planner, rigid, side, scene.around)? {
             Some((expression, shape)) => Ok(placed(expression, shape)),
-            None => Err(planner.unavailable(rigid.shape.span(), "this shape beside a membrane")),
+            None => Err(planner.unavailable(&rigid.shape, "this shape beside a membrane")),
         },
     }
 }
 
 /// How a body moves: expressions along x, y and z, or none for one at rest.
-fn motion(planner: &Planner<'_>, body: &str, rigid: &Rigid) -> Result<Vec<Placed>, CaseError> {
-    let document = planner.document;
+fn motion(planner: &Planner<'_>, rigid: &Rigid) -> Result<Vec<Placed>, CaseError> {
+    let problem = planner.problem;
     let mut displacement = Vec::new();
-    let motion = match rigid.motion.as_ref().map(|m| (m.get_ref(), m.span())) {
+    let motion = match rigid.motion.as_ref().map(|m| (m, planner.key(m))) {
         None | Some((Motion::Fixed(_), _)) => return Ok(displacement),
-        Some((Motion::Free(_), span)) => return Err(planner.unavailable(span, "a rigid body that moves freely")),
+        Some((Motion::Free(_), span)) => return Err(planner.unavailable(&span, "a rigid body that moves freely")),
         Some((Motion::Prescribed(motion), _)) => motion,
     };
     if let Some(rotation) = &motion.rotation {
-        for v in rotation.get_ref() {
+        for v in rotation {
             if planner.reader.expression(v, NONE, &["t"])?.constant() != Some(0.0) {
-                return Err(planner.unavailable(v.span(), "rotation of a body beside a membrane"));
+                return Err(planner.unavailable(v, "rotation of a body beside a membrane"));
             }
         }
     }
     let Some(values) = &motion.displacement else { return Ok(displacement) };
-    let list = values.get_ref();
-    for (k, v) in list.iter().enumerate() {
+    let list = values;
+    for v in list {
         let expression = planner.reader.expression(v, LENGTH, &["t"])?;
-        displacement.push(Placed {
-            expression,
-            span: v.span(),
-            key: format!("bodies.{body}.rigid.motion.prescribed.displacement[{k}]"),
-        });
+        displacement.push(Placed { expression, key: planner.key(v) });
     }
     if planner.space != Space::Plane && displacement.len() == 2 {
         let mut still = displacement[0].clone();
@@ -225,11 +215,11 @@ fn motion(planner: &Planner<'_>, body: &str, rigid: &Rigid) -> Result<Vec<Placed
         displacement.insert(1, still);
     }
     if displacement.len() != 3 {
-        return Err(document.error(values.span(), format!("expected 3 components, found {}", list.len())));
+        return Err(problem.error(values, format!("expected 3 components, found {}", list.len())));
     }
     let sideways = |p: &Placed| p.expression.constant() != Some(0.0);
     if planner.space == Space::Axisymmetric && displacement[..2].iter().any(sideways) {
-        return Err(document.error(values.span(), "in an axisymmetric problem a body moves along z only"));
+        return Err(problem.error(values, "in an axisymmetric problem a body moves along z only"));
     }
     Ok(displacement)
 }

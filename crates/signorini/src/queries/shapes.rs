@@ -7,7 +7,7 @@
 use super::geometry::{self, FieldError};
 use super::object::Object;
 use super::scanner::LARGEST_CASE;
-use crate::case::suggestion;
+use crate::problem::suggestion;
 use rayon::prelude::*;
 use serde_json::Value;
 use signorini_geometry::shape::Shape;

@@ -8,9 +8,9 @@ mod reason;
 mod table;
 pub mod words;
 
-use crate::case::statement::Space;
-use crate::case::units::{self, Units};
-use crate::case::value::Interpreted;
+use crate::plan::reader::Interpreted;
+use crate::problem::Space;
+use crate::problem::units::{self, Units};
 pub use reason::{Reason, Warning, WarningKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -2,7 +2,7 @@
 
 use super::newton::{Stage, membrane, stages};
 use super::plot::{Plot, Series};
-use super::{Figure, Page, document, solved};
+use super::{Figure, Page, problem, solved};
 use crate::plan::{Plan, plan};
 use serde_json::Value;
 use signorini_geometry::Point;
@@ -100,8 +100,8 @@ fn axisymmetric(_: &Path) -> Result<Page, String> {
             format!("{DEGREE}=4"),
             format!("contacts.touch.adhesion.energy={energy:?}"),
         ];
-        let document = document("axisymmetric", &set)?;
-        let Plan::Line(plan) = plan(&document).map_err(|e| e.one_line())? else {
+        let problem = problem("axisymmetric", &set)?;
+        let Plan::Line(plan) = plan(&problem).map_err(|e| e.one_line())? else {
             return Err("a membrane along its radius is wanted".into());
         };
         let membrane = plan.at(0.0);
@@ -191,7 +191,7 @@ fn disc(cells: usize, set: &[&str]) -> Result<Vec<String>, String> {
 }
 
 fn front_evolution(_: &Path) -> Result<Page, String> {
-    let membrane = membrane(&document("flat_disc", &disc(40, &[])?)?)?;
+    let membrane = membrane(&problem("flat_disc", &disc(40, &[])?)?)?;
     let stages = stages(&membrane, 7, false)?;
     let mut page = Page::default();
     let series = stages.iter().enumerate().map(|(i, s)| {
@@ -240,7 +240,7 @@ fn modes(_: &Path) -> Result<Page, String> {
         ("symmetric mesh", implicit("[-1.03,-1.03]", "[1.03,1.03]")),
         ("unsymmetric mesh", implicit("[-1.11,-1.05]", "[1.03,1.09]")),
     ] {
-        let membrane = membrane(&document("flat_disc", &disc(40, &[&bounds])?)?)?;
+        let membrane = membrane(&problem("flat_disc", &disc(40, &[&bounds])?)?)?;
         let stages = stages(&membrane, 8, true)?;
         let waves: &[f64] = stages.last().map_or(&[], |s: &Stage| &s.waves);
         series.push(marked(name, waves.iter().enumerate().map(|(k, v)| (k as f64, v.max(1e-17))).collect()));

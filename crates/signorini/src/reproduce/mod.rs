@@ -9,8 +9,8 @@ mod plot;
 
 pub use figures::FIGURES;
 
-use crate::case::Document;
 use crate::output::Folder;
+use crate::problem::Problem;
 use crate::run::run;
 use plot::Plot;
 use serde_json::{Value, json};
@@ -78,17 +78,17 @@ pub fn reproduce(figure: &Figure, folder: &Path) -> Result<String, String> {
 fn solved(scratch: &Path, case: &str, set: &[String]) -> Result<Value, String> {
     let mut set = set.to_vec();
     set.push("output.pictures=false".into());
-    let document = document(case, &set)?;
+    let problem = problem(case, &set)?;
     // Every run has a folder of its own kind: the last one goes.
     let _ = std::fs::remove_dir_all(scratch);
-    let outcome = run(&document, scratch, &mut Silent).map_err(|e| e.to_string())?;
+    let outcome = run(&problem, scratch, &mut Silent).map_err(|e| e.to_string())?;
     if !outcome.summary.converged {
         return Err(format!("{case} with {set:?}: {}", outcome.summary.verdict));
     }
     Ok(json!(outcome.summary))
 }
 
-fn document(case: &str, set: &[String]) -> Result<Document, String> {
+fn problem(case: &str, set: &[String]) -> Result<Problem, String> {
     let example = crate::gallery::find(case).ok_or_else(|| format!("no case `{case}`"))?;
-    Document::parse(example.name, example.case, set).map_err(|e| e.one_line())
+    crate::case::read(example.name, example.case, set).map_err(|e| e.one_line())
 }

@@ -1,7 +1,7 @@
 //! The iteration on the shape, front by front, for what the summary of a run does not hold.
 
-use crate::case::Document;
 use crate::plan::{Plan, plan};
+use crate::problem::Problem;
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::front::Fronts;
 use signorini_membrane::obstacle::Side;
@@ -23,8 +23,8 @@ pub struct Stage {
 }
 
 /// The membrane of a case in the plane.
-pub fn membrane(document: &Document) -> Result<Membrane<2>, String> {
-    match plan(document).map_err(|e| e.one_line())? {
+pub fn membrane(problem: &Problem) -> Result<Membrane<2>, String> {
+    match plan(problem).map_err(|e| e.one_line())? {
         Plan::Plane(plan) => Ok(plan.at(0.0)),
         _ => Err("a membrane in the plane is wanted".into()),
     }

@@ -1,10 +1,12 @@
 //! One driver for all models: increments, files, what a later run goes on from, and the end.
 
 use super::checkpoint::{self, Checkpoint};
-use super::record::{Head, Record};
+use super::record::Record;
 use super::{Ending, Outcome, RunError};
-use crate::case::CaseError;
+use crate::fields::ShownState;
 use crate::output::{Folder, OutputError};
+use crate::plan::Head;
+use crate::problem::CaseError;
 use crate::report::Reason;
 use serde_json::{Value, json};
 use signorini_solve::{Iteration, Progress};
@@ -23,7 +25,7 @@ pub enum Advanced {
 /// A problem that is solved increment by increment.
 pub trait Model {
     /// What the record of a run needs to know.
-    fn head(&self) -> Head<'_>;
+    fn head(&self) -> &Head;
 
     /// Number of increments.
     fn increments(&self) -> usize;
@@ -47,6 +49,9 @@ pub trait Model {
     /// # Errors
     /// Files that cannot be written.
     fn write_fields(&mut self, index: usize, record: &mut Record) -> Result<(), OutputError>;
+
+    /// What the last state shows; none before the first.
+    fn shown(&self) -> Option<ShownState>;
 
     /// Draws the last state and the history.
     ///
@@ -136,7 +141,10 @@ pub fn drive(
         let found = record.steps.last().map_or(reason, |step| step.reason);
         let last = index + 1 == count;
         if last || index % record.every == record.every - 1 || !found.is_converged() {
-            model.write_fields(index, &mut record)?;
+            match record.folder.path() {
+                Some(_) => model.write_fields(index, &mut record)?,
+                None => record.states.extend(model.shown()),
+            }
         }
         if !found.is_converged() || count == 1 {
             reason = found;
@@ -145,16 +153,20 @@ pub fn drive(
             break;
         }
         // After the last there is nothing to go on to.
-        if !last && let Some(state) = model.save(&record.folder, index + 1)? {
+        if !last
+            && record.folder.path().is_some()
+            && let Some(state) = model.save(&record.folder, index + 1)?
+        {
             checkpoint::write(&record, index + 1, state)?;
         }
     }
     let summary = record.finish(model, reason, start)?;
+    let states = std::mem::take(&mut record.states);
     let ending = Ending::of(reason);
     if ending == Ending::Converged {
         checkpoint::remove(&record.folder);
     }
-    Ok(Outcome { summary, ending })
+    Ok(Outcome { summary, ending, states })
 }
 
 /// Goes on with an earlier run in its folder.

@@ -10,11 +10,12 @@ mod verdict;
 
 use super::checkpoint;
 use super::driver::{Advanced, Model};
-use super::record::{Head, Record};
-use crate::case::CaseError;
+use super::record::Record;
+use crate::fields::ShownState;
 use crate::output::film::Film;
 use crate::output::{Folder, OutputError, pictures, tables, vtk};
-use crate::plan::{Control, MembranePlan, PlannedIncrement};
+use crate::plan::{Control, Head, MembranePlan, PlannedIncrement};
+use crate::problem::CaseError;
 use crate::report::{Event, OtherState, Reason, Warning, WarningKind};
 use crate::snapshot::{DisplayMesh, Snapshot};
 use events::{Between, Bounded, Known, jump, locate, locate_jump};
@@ -310,16 +311,8 @@ impl<const D: usize, Z: Zone<D>> MembraneModel<D, Z> {
 }
 
 impl<const D: usize, Z: Zone<D>> Model for MembraneModel<D, Z> {
-    fn head(&self) -> Head<'_> {
-        let plan = &self.plan;
-        Head {
-            document: &plan.document,
-            units: plan.unit_names(),
-            interpreted: &plan.interpreted,
-            warnings: &plan.warnings,
-            every: plan.every,
-            pictures: plan.pictures,
-        }
+    fn head(&self) -> &Head {
+        &self.plan.head
     }
 
     fn increments(&self) -> usize {
@@ -455,7 +448,7 @@ impl<const D: usize, Z: Zone<D>> Model for MembraneModel<D, Z> {
                 return Ok(Advanced::Failed(Reason::Interrupted));
             }
         }
-        if let (Some(snapshot), true) = (&snapshot, self.plan.pictures && self.plan.increments.len() > 1) {
+        if let (Some(snapshot), true) = (&snapshot, self.plan.head.pictures && self.plan.increments.len() > 1) {
             self.film.add(snapshot);
         }
         self.last = snapshot.or(self.last.take());
@@ -470,6 +463,12 @@ impl<const D: usize, Z: Zone<D>> Model for MembraneModel<D, Z> {
         record.folder.write(&format!("contact/contact_{name}.vtp"), &vtk::outlines(s)?)?;
         record.folder.write(&format!("contact/outlines_{name}.csv"), tables::outlines(s).as_bytes())?;
         record.add_frame(s.time, name, &["contact"])
+    }
+
+    fn shown(&self) -> Option<ShownState> {
+        let last = self.last.as_ref()?;
+        let bodies = vec![last.to_fields(&self.plan.body, &self.mesh)];
+        Some(ShownState { time: last.time, bodies, contacts: vec![last.edges()] })
     }
 
     fn draw(&self, record: &Record) -> Result<(), OutputError> {
@@ -495,7 +494,7 @@ impl<const D: usize, Z: Zone<D>> Model for MembraneModel<D, Z> {
         if self.plan.increments[next - 1].control != Control::Time {
             return Ok(None);
         }
-        if let Some(frame) = self.last.as_ref().filter(|_| self.plan.pictures) {
+        if let Some(frame) = self.last.as_ref().filter(|_| self.plan.head.pictures) {
             saved::write_frame(folder, next - 1, frame)?;
         }
         Ok(Some(saved::to_json(&self.engine.save(), self.known.as_ref())))

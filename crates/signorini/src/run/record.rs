@@ -2,9 +2,10 @@
 
 use super::driver::Model;
 use super::environment;
-use crate::case::Document;
-use crate::case::value::Interpreted;
+use crate::fields::ShownState;
 use crate::output::{Folder, OutputError, vtk};
+use crate::plan::Head;
+use crate::plan::reader::Interpreted;
 use crate::report::{Event, Reason, SCHEMA, StepReport, Summary, UnitNames, Warning, history};
 
 /// The results of a run that are the same for all models.
@@ -27,27 +28,19 @@ pub struct Record {
     pub frames: Vec<(f64, String)>,
     /// The most unknowns solved for.
     pub unknowns: usize,
-}
-
-/// What a plan tells of the record of its run.
-pub struct Head<'a> {
-    pub document: &'a Document,
-    pub units: Option<UnitNames>,
-    pub interpreted: &'a [Interpreted],
-    pub warnings: &'a [Warning],
-    pub every: usize,
-    pub pictures: bool,
+    /// What is kept in memory, where there is no folder.
+    pub states: Vec<ShownState>,
 }
 
 impl Record {
     /// An empty record.
     pub fn new(head: &Head, folder: Folder) -> Self {
-        let document = head.document;
+        let problem = &head.problem;
         Self {
             folder,
-            case: document.case.title.clone().unwrap_or_else(|| document.name.clone()),
-            text: document.text.clone(),
-            units: head.units.clone(),
+            case: problem.name().to_string(),
+            text: crate::case::text(problem),
+            units: head.unit_names(),
             interpreted: head.interpreted.to_vec(),
             every: head.every,
             pictures: head.pictures,
@@ -56,6 +49,7 @@ impl Record {
             events: Vec::new(),
             frames: Vec::new(),
             unknowns: 0,
+            states: Vec::new(),
         }
     }
 
@@ -91,7 +85,7 @@ impl Record {
     /// Files that cannot be written.
     pub fn finish(&self, model: &dyn Model, reason: Reason, start: std::time::Instant) -> Result<Summary, OutputError> {
         self.folder.write("history.csv", history(&self.steps, self.units.as_ref()).as_bytes())?;
-        if self.pictures {
+        if self.pictures && self.folder.path().is_some() {
             model.draw(self)?;
         }
         let summary = Summary {
@@ -103,7 +97,7 @@ impl Record {
             method: model.method(),
             unknowns: self.unknowns,
             units: self.units.clone(),
-            first_picture: model.first_picture().filter(|_| self.pictures),
+            first_picture: model.first_picture().filter(|_| self.pictures && self.folder.path().is_some()),
             warnings: self.warnings.clone(),
             interpreted: self.interpreted.clone(),
             steps: self.steps.clone(),
@@ -123,6 +117,11 @@ pub fn begin(head: &Head, path: &std::path::Path) -> Result<Record, OutputError>
     let record = Record::new(head, Folder::create(path)?);
     record.folder.write("case.toml", record.text.as_bytes())?;
     Ok(record)
+}
+
+/// The record of a run whose results stay in memory.
+pub fn in_memory(head: &Head) -> Record {
+    Record::new(head, Folder::default())
 }
 
 /// The record of a run that goes on in a folder.

@@ -3,12 +3,12 @@
 use super::RunError;
 use super::membrane::increment::LINEAR;
 use super::solid;
-use crate::case::CaseError;
-use crate::case::units::Units;
 use crate::output::solid_fields::SolidDisplay;
 use crate::output::{pictures, solid_pictures};
 use crate::plan::solid::SolidPlan;
 use crate::plan::{MembranePlan, Plan, memory_estimate, mesh_multigrid_estimate, multigrid_estimate};
+use crate::problem::CaseError;
+use crate::problem::units::Units;
 use crate::report::{Warning, WarningKind};
 use crate::snapshot::{DisplayMesh, Sample, Snapshot};
 use serde_json::{Value, json};
@@ -63,7 +63,7 @@ fn of_membrane<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>) -> Result<Val
             format!("{}: {} {place} {}", c.name, plan.body, c.body)
         })
         .collect();
-    let mut warnings = plan.warnings.clone();
+    let mut warnings = plan.head.warnings.clone();
     let membrane = plan.at(plan.increments.first().map_or(0.0, |i| i.range[0]));
     let multigrid = plan.by_multigrid(&membrane);
     let estimate = |n: f64, p: usize| match (multigrid, plan.cells.as_grid()) {
@@ -90,13 +90,13 @@ fn of_membrane<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>) -> Result<Val
     });
     warnings
         .extend(unresolved(plan, plan.increments.first().map_or(0.0, |i| i.range[0])).into_iter().map(Warning::from));
-    if let Some(units) = plan.units {
+    if let Some(units) = plan.head.units {
         warnings.extend(odd_length(units, plan.grid.bounds().size().max(), "the membrane").map(Warning::from));
     }
     if unknowns <= LOOK {
         look::<D, Z>(plan, times.last().copied().unwrap_or(0.0), &mut sizes, &mut warnings);
     }
-    sizes["interpreted"] = json!(plan.interpreted);
+    sizes["interpreted"] = json!(plan.head.interpreted);
     sizes["warnings"] = json!(warnings);
     Ok(sizes)
 }
@@ -119,12 +119,12 @@ fn of_solids<const D: usize>(plan: &SolidPlan<D>) -> Result<Value, CaseError> {
         "memory_about": format!("{:.2} GiB", solid::memory(&cost) / f64::from(1u32 << 30)),
         "factorisation_about": format!("{:.1} s", cost.operations / solid::OPERATIONS_PER_SECOND),
         "increments": plan.times.len(),
-        "supports": plan.document.case.supports.len(),
+        "supports": plan.head.problem.supports.len(),
         "loads": plan.loads.len(),
         "contacts": plan.contacts.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", "),
         "free": free,
-        "interpreted": plan.interpreted,
-        "warnings": plan.warnings.iter().cloned().chain(odd_solids(plan).into_iter().chain(judged).map(Warning::from)).collect::<Vec<_>>(),
+        "interpreted": plan.head.interpreted,
+        "warnings": plan.head.warnings.iter().cloned().chain(odd_solids(plan).into_iter().chain(judged).map(Warning::from)).collect::<Vec<_>>(),
     }))
 }
 
@@ -136,7 +136,7 @@ fn odd_length(units: Units, length: f64, what: &str) -> Option<String> {
 
 /// What is odd about sizes and stiffness of solids, where their units are known.
 pub(super) fn odd_solids<const D: usize>(plan: &SolidPlan<D>) -> Vec<String> {
-    let Some(units) = plan.units else { return Vec::new() };
+    let Some(units) = plan.head.units else { return Vec::new() };
     let mut out = Vec::new();
     for body in &plan.bodies {
         let nodes = body.mesh.nodes();
@@ -246,7 +246,7 @@ pub(super) fn clearance<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>, time
         format!("; the load moves it {away}: `normal` is positive upwards")
     } else if nearer < HARDLY * before {
         let size = plan.grid.bounds().size().max();
-        let unit = plan.units.map_or(String::new(), |u| format!(" {}", u.names[0]));
+        let unit = plan.head.units.map_or(String::new(), |u| format!(" {}", u.names[0]));
         format!(
             "; the load brings it nearer by {nearer:.1e} only: it is {size:.4}{unit} wide, are its size, load and tension in the \
              units of the case?"
@@ -282,13 +282,13 @@ fn look<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>, last: f64, sizes: &m
         steepest = state.evaluate(cell, region, x).map_or(steepest, |(_, slope)| steepest.max(slope.norm()));
     });
     sizes["steepest_slope_without_contact"] = json!(format!("{steepest:.2e}"));
-    if plan.document.case.units.is_some() && steepest > LINEAR {
+    if plan.head.problem.units.is_some() && steepest > LINEAR {
         warnings.push(
             format!("without contact slopes would reach {steepest:.1}: the linear theory holds below about {LINEAR}")
                 .into(),
         );
     }
-    if plan.document.case.units.is_some() && steepest > 100.0 {
+    if plan.head.problem.units.is_some() && steepest > 100.0 {
         warnings.push("such slopes come from units that do not fit: are load and tension what they should be?".into());
     }
 }

@@ -7,12 +7,13 @@ mod setup;
 
 use super::checkpoint;
 use super::driver::{Advanced, Model};
-use super::record::{Head, Record};
-use crate::case::CaseError;
+use super::record::Record;
+use crate::fields::ShownState;
 use crate::output::solid_fields::{ContactDisplay, SolidDisplay};
 use crate::output::{Folder, OutputError, solid_pictures, tables};
-use crate::plan::memory_at_hand;
-use crate::plan::solid::SolidPlan;
+use crate::plan::solid::{PlannedBody, SolidContact, SolidPlan};
+use crate::plan::{Head, memory_at_hand};
+use crate::problem::CaseError;
 use crate::report::{ErrorEstimate, Reason, StepReport};
 use failure::{Failure, explained};
 use report::{SOLVER, Shown};
@@ -165,16 +166,8 @@ impl<const D: usize> SolidModel<D> {
 }
 
 impl<const D: usize> Model for SolidModel<D> {
-    fn head(&self) -> Head<'_> {
-        let plan = &self.plan;
-        Head {
-            document: &plan.document,
-            units: plan.unit_names(),
-            interpreted: &plan.interpreted,
-            warnings: &plan.warnings,
-            every: plan.every,
-            pictures: plan.pictures,
-        }
+    fn head(&self) -> &Head {
+        &self.plan.head
     }
 
     fn increments(&self) -> usize {
@@ -237,6 +230,15 @@ impl<const D: usize> Model for SolidModel<D> {
         }
         let names: Vec<&str> = self.plan.contacts.iter().map(|c| c.name.as_str()).collect();
         record.add_frame(*time, name, &names)
+    }
+
+    fn shown(&self) -> Option<ShownState> {
+        let Shown { time, fields, contacts, .. } = self.last.as_ref()?;
+        let body = |(k, b): (usize, &PlannedBody<D>)| self.display.of_body(&b.name, k as u32, fields);
+        let bodies = self.plan.bodies.iter().enumerate().map(body).collect();
+        let contact = |(c, shown): (&SolidContact, &ContactDisplay<D>)| shown.to_fields(&c.name);
+        let contacts = self.plan.contacts.iter().zip(contacts).map(contact).collect();
+        Some(ShownState { time: *time, bodies, contacts })
     }
 
     fn draw(&self, record: &Record) -> Result<(), OutputError> {

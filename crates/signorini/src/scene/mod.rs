@@ -19,9 +19,9 @@ use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::shape::Shape;
 use signorini_geometry::{Point, Vector};
 
-use crate::case::CaseError;
 use crate::expression::{Expression, Names, Scope, parse};
 use crate::output::{Folder, OutputError};
+use crate::problem::CaseError;
 use crate::queries::geometry;
 use crate::run::Progress;
 
@@ -130,7 +130,8 @@ impl Scene {
     /// # Errors
     /// What is wrong with it, and what would be valid.
     pub fn parse(name: &str, text: &str, folder: &Path) -> Result<Self, CaseError> {
-        let statement: Statement = toml::from_str(text).map_err(|e| crate::case::error::from_toml(name, text, &e))?;
+        let statement: Statement =
+            toml::from_str(text).map_err(|e| crate::case::toml_error::from_toml(name, text, &e))?;
         if !(2..=100_000).contains(&statement.frames) {
             return Err(CaseError::new(format!("{name}: `frames` is {}, valid are 2 to 100000", statement.frames)));
         }

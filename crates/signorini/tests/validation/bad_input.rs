@@ -2,7 +2,6 @@
 
 use super::{error, example};
 use proptest::prelude::*;
-use signorini::case::Document;
 
 /// Replaces a line of the flat disc, and returns the error with the text it points at.
 fn spoiled(from: &str, to: &str) -> (String, String, String) {
@@ -95,8 +94,8 @@ fn a_load_that_becomes_invalid_later_keeps_what_was_found() {
         + "\n[[steps]]\nto = 2.0\nincrements = 4\n";
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("out");
-    let document = Document::parse("case.toml", &case, &[]).expect("a case");
-    let result = signorini::run::run(&document, &out, &mut signorini_solve::Silent);
+    let problem = signorini::case::read("case.toml", &case, &[]).expect("a case");
+    let result = signorini::run::run(&problem, &out, &mut signorini_solve::Silent);
     assert!(result.is_err());
     let text = std::fs::read_to_string(out.join("summary.json")).expect("a summary");
     let summary: serde_json::Value = serde_json::from_str(&text).expect("JSON");
@@ -108,7 +107,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
     #[test]
     fn no_text_makes_the_reader_panic(text in "\\PC{0,200}") {
-        let _ = Document::parse("case.toml", &text, &[]);
+        let _ = signorini::case::read("case.toml", &text, &[]);
     }
 
     #[test]
@@ -118,8 +117,8 @@ proptest! {
         let end = (at + cut).min(case.len());
         if case.is_char_boundary(at) && case.is_char_boundary(end) {
             let text = format!("{}{}{}", &case[..at], put, &case[end..]);
-            if let Ok(document) = Document::parse("case.toml", &text, &[]) {
-                let _ = signorini::plan::plan(&document);
+            if let Ok(problem) = signorini::case::read("case.toml", &text, &[]) {
+                let _ = signorini::plan::plan(&problem);
             }
         }
     }
@@ -152,8 +151,8 @@ increments = 2
 /// What `check` says of a case: the message of an error, or its warnings.
 fn checked(case: &str) -> Result<String, String> {
     let check = || {
-        let document = Document::parse("case.toml", case, &[])?;
-        signorini::run::sizes(&signorini::plan::plan(&document)?)
+        let problem = signorini::case::read("case.toml", case, &[])?;
+        signorini::run::sizes(&signorini::plan::plan(&problem)?)
     };
     check().map(|sizes| sizes["warnings"].to_string()).map_err(|e| e.message)
 }
@@ -199,7 +198,7 @@ fn errors_of_settings_are_told_at_them() {
     let case = example("flat_disc");
     let told = |settings: &[&str]| {
         let settings: Vec<String> = settings.iter().map(|s| s.to_string()).collect();
-        let found = Document::parse("case.toml", case, &settings)
+        let found = signorini::case::read("case.toml", case, &settings)
             .and_then(|d| signorini::run::sizes(&signorini::plan::plan(&d)?));
         let place = found.expect_err("an error").place.expect("a place");
         (place.name.clone(), place.text[place.span.clone()].to_string(), place.line_and_column().0)
@@ -214,8 +213,8 @@ fn errors_of_settings_are_told_at_them() {
     let wrong = case.replace("shape.height = \"-0.1\"", "shape.height = \"0.1\"");
     let line = wrong.lines().position(|l| l.contains("shape.height")).expect("a line") + 1;
     let add = ["constants.a=1".to_string(), "bodies.film.membrane.degree=2".to_string()];
-    let document = Document::parse("case.toml", &wrong, &add).expect("a case");
-    let e = signorini::plan::plan(&document).and_then(|p| signorini::run::sizes(&p)).expect_err("a floor above");
+    let problem = signorini::case::read("case.toml", &wrong, &add).expect("a case");
+    let e = signorini::plan::plan(&problem).and_then(|p| signorini::run::sizes(&p)).expect_err("a floor above");
     let place = e.place.expect("a place");
     assert_eq!((place.name.as_str(), place.line_and_column().0), ("case.toml", line));
     assert!(line <= file);

@@ -1,6 +1,5 @@
 //! Adhesion from measurements: exact data give the truth back, noisy data an interval that holds it.
 
-use signorini::case::Document;
 use signorini::fit::{Estimate, Model, Quantity, fit};
 use signorini::plan::{Plan, plan};
 use std::path::Path;
@@ -42,7 +41,7 @@ fn radius(load: f64, energy: f64, tension: f64) -> f64 {
 }
 
 fn model(times: &[f64], quantity: Quantity) -> Model {
-    let document = Document::parse("case.toml", CASE, &[]).expect("a case");
+    let document = signorini::case::read("case.toml", CASE, &[]).expect("a case");
     let Ok(Plan::Line(plan)) = plan(&document) else { panic!("a round membrane") };
     Model::new(&plan, quantity, times).expect("a model")
 }
@@ -107,7 +106,7 @@ fn fitted(rows: &str, key: &str) -> Result<serde_json::Value, String> {
     std::fs::write(folder.path().join("data.csv"), rows).expect("a file");
     let text = format!("{CASE}[fit]\ndata = \"data.csv\"\ntime = \"p\"\n{key}\n");
     let name = folder.path().join("case.toml");
-    let document = Document::parse(&name.to_string_lossy(), &text, &[]).map_err(|e| e.one_line())?;
+    let document = signorini::case::read(&name.to_string_lossy(), &text, &[]).map_err(|e| e.one_line())?;
     let result = fit(&document, &folder.path().join("out")).map(|f| f.summary).map_err(|e| e.to_string());
     let drawn = folder.path().join("out/pictures/fit.png").is_file();
     assert_eq!(result.is_ok(), drawn && Path::new(&folder.path().join("out/fit.csv")).is_file());

@@ -486,8 +486,8 @@ fn wrong_neighbours_are_told() {
 #[test]
 fn a_check_says_what_it_understood() {
     let check = |text: &str| {
-        let document = signorini::case::Document::parse("case.toml", text, &[]).unwrap_or_else(|e| panic!("{e}"));
-        let plan = signorini::plan::plan(&document).unwrap_or_else(|e| panic!("{}", e.one_line()));
+        let problem = signorini::case::read("case.toml", text, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let plan = signorini::plan::plan(&problem).unwrap_or_else(|e| panic!("{}", e.one_line()));
         assert!(signorini::run::preview(&plan).expect("a picture").is_some_and(|svg| svg.contains("</svg>")));
         signorini::run::sizes(&plan).unwrap_or_else(|e| panic!("{}", e.one_line()))
     };

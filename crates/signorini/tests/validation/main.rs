@@ -19,15 +19,15 @@ mod solids;
 mod words;
 
 use serde_json::Value;
-use signorini::case::{CaseError, Document};
+use signorini::problem::CaseError;
 use signorini::run::{RunError, run};
 use signorini_solve::Silent;
 
 /// Runs a case text with overrides and returns its summary.
 pub fn summary(case: &str, set: &[String]) -> Value {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let document = Document::parse("case.toml", case, set).unwrap_or_else(|e| panic!("{}", e.one_line()));
-    match run(&document, &folder.path().join("out"), &mut Silent) {
+    let problem = signorini::case::read("case.toml", case, set).unwrap_or_else(|e| panic!("{}", e.one_line()));
+    match run(&problem, &folder.path().join("out"), &mut Silent) {
         Ok(outcome) => serde_json::json!(outcome.summary),
         Err(error) => panic!("{error}"),
     }
@@ -36,11 +36,11 @@ pub fn summary(case: &str, set: &[String]) -> Value {
 /// The error of a case that cannot run.
 pub fn error(case: &str) -> CaseError {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let document = match Document::parse("case.toml", case, &[]) {
-        Ok(document) => document,
+    let problem = match signorini::case::read("case.toml", case, &[]) {
+        Ok(problem) => problem,
         Err(error) => return error,
     };
-    match run(&document, &folder.path().join("out"), &mut Silent) {
+    match run(&problem, &folder.path().join("out"), &mut Silent) {
         Err(RunError::Case(error)) => *error,
         Err(other) => panic!("{other}"),
         Ok(outcome) => panic!("the case ran: {}", outcome.summary.verdict),

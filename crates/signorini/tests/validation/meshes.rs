@@ -275,7 +275,7 @@ fn hostile_meshes_are_survived() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("hostile.msh");
     let case = case("mixed_2_6.msh").replace(&file("mixed_2_6.msh"), &path.display().to_string().replace('\\', "/"));
-    let document = signorini::case::Document::parse("case.toml", &case, &[]).expect("a case");
+    let problem = signorini::case::read("case.toml", &case, &[]).expect("a case");
     let mut state = 12345u64;
     let mut random = |n: usize| {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -309,7 +309,7 @@ fn hostile_meshes_are_survived() {
             }
         }
         std::fs::write(&path, lines.join("\n")).expect("written");
-        match signorini::plan::plan(&document) {
+        match signorini::plan::plan(&problem) {
             Ok(_) => accepted += 1,
             Err(error) => {
                 assert!(error.place.is_some(), "{error}");
@@ -395,8 +395,8 @@ fn a_body_in_pieces_is_called_that() {
     let film = case("MESH").replace(&file("MESH"), &name).replace("film:rim", "film:top2");
     let solid = SQUARES_HELD.replace("MESH", &name);
     let checked = |text: &str| {
-        let document = signorini::case::Document::parse("case.toml", text, &[]).expect("a case");
-        signorini::plan::plan(&document).and_then(|plan| signorini::run::sizes(&plan))
+        let problem = signorini::case::read("case.toml", text, &[]).expect("a case");
+        signorini::plan::plan(&problem).and_then(|plan| signorini::run::sizes(&plan))
     };
     for (second, lie) in [([0.0, 1.0], true), ([3.0, 0.0], false)] {
         std::fs::write(&path, separate_squares(&[[0.0, 0.0], second])).expect("a mesh");
@@ -427,9 +427,9 @@ fn supports_that_contradict_later_are_refused_at_once() {
     let text = SQUARES_HELD.replace("MESH", &path.display().to_string().replace('\\', "/"));
     let text = text.replace("to = 1", "to = 1\nincrements = 4")
         + "[supports.middle]\non = \"a:top1\"\ndisplacement = [0, 0]\n[supports.again]\non = \"a:top1\"\ndisplacement = [0, \"max(0, t - 0.6)\"]\n";
-    let document = signorini::case::Document::parse("case.toml", &text, &[]).expect("a case");
+    let problem = signorini::case::read("case.toml", &text, &[]).expect("a case");
     let out = folder.path().join("out");
-    let refused = signorini::run::run(&document, &out, &mut signorini_solve::Silent).err().expect("an error");
+    let refused = signorini::run::run(&problem, &out, &mut signorini_solve::Silent).err().expect("an error");
     assert!(refused.to_string().contains("prescribe different displacements"), "{refused}");
     assert!(!out.exists());
 }

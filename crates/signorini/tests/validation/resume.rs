@@ -2,7 +2,7 @@
 
 use super::{example, set};
 use serde_json::{Value, json};
-use signorini::case::Document;
+use signorini::problem::Problem;
 use signorini::report::Summary;
 use signorini::run::{Begun, Ending, RunError, begun, resume, run};
 use signorini_solve::{Iteration, Progress, Silent};
@@ -46,21 +46,21 @@ fn a_resumed_run_gives_the_same_digits() {
         ("steps", "[{ to = 0.1, increments = 2, events = 1e-2 }, { to = 0.4, increments = 3 }]".to_string()),
     ];
     for (name, pairs, stops) in [("cosine_disc", &waves[..], [9, 45]), ("snap_in", &[][..], [30, 170])] {
-        let document = Document::parse("case.toml", example(name), &set(pairs)).expect("a case");
+        let problem = signorini::case::read("case.toml", example(name), &set(pairs)).expect("a case");
         let folder = tempfile::tempdir().expect("a folder");
-        let whole = run(&document, &folder.path().join("whole"), &mut Silent).expect("a run").summary;
+        let whole = run(&problem, &folder.path().join("whole"), &mut Silent).expect("a run").summary;
         for stop in stops {
             let path = folder.path().join("parts");
-            let part = run(&document, &path, &mut Until(stop.into())).expect("a run");
+            let part = run(&problem, &path, &mut Until(stop.into())).expect("a run");
             assert!(part.ending == Ending::Interrupted, "{name}, {stop}");
             let done = part.summary.steps.len();
             // Stopped once more on the way, and then to the end.
-            let _ = resume(&document, &path, &mut Until(12.into())).expect("a run");
-            let rest = resume(&document, &path, &mut Silent).expect("a run").summary;
+            let _ = resume(&problem, &path, &mut Until(12.into())).expect("a run");
+            let rest = resume(&problem, &path, &mut Silent).expect("a run").summary;
             assert_eq!(results(&rest), results(&whole), "{name} after {done} increments");
             // A run that is done is left as it is.
-            assert_eq!(begun(&document, &path).expect("a run"), Begun::Done);
-            let done = resume(&document, &path, &mut Until(0.into())).expect("a run");
+            assert_eq!(begun(&problem, &path).expect("a run"), Begun::Done);
+            let done = resume(&problem, &path, &mut Until(0.into())).expect("a run");
             assert_eq!((done.ending, done.summary), (Ending::Converged, rest));
         }
     }
@@ -70,12 +70,12 @@ fn a_resumed_run_gives_the_same_digits() {
 fn what_cannot_be_resumed_is_told() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("out");
-    let message = |document: &Document| match resume(document, &path, &mut Silent) {
+    let message = |problem: &Problem| match resume(problem, &path, &mut Silent) {
         Err(RunError::Case(error)) => error.message,
         _ => panic!("resumed"),
     };
     let parse =
-        |pairs: &[(&str, String)]| Document::parse("case.toml", example("snap_in"), &set(pairs)).expect("a case");
+        |pairs: &[(&str, String)]| signorini::case::read("case.toml", example("snap_in"), &set(pairs)).expect("a case");
     let case = parse(&[]);
     assert!(message(&case).contains("no run to go on with"));
     // Stopped before its first increment was kept it begins anew.
@@ -119,17 +119,17 @@ fn solids_go_on_to_the_same_digits() {
     for (name, pairs) in cases {
         let folder = tempfile::tempdir().expect("a folder");
         let case = format!("{}/../../gallery/{name}/case.toml", env!("CARGO_MANIFEST_DIR"));
-        let document = Document::parse(&case, example(name), &set(&pairs)).expect("a case");
-        let whole = run(&document, &folder.path().join("whole"), &mut Silent).expect("a run").summary;
+        let problem = signorini::case::read(&case, example(name), &set(&pairs)).expect("a case");
+        let whole = run(&problem, &folder.path().join("whole"), &mut Silent).expect("a run").summary;
         assert!(whole.converged, "{name}");
         let increments = whole.steps.len();
         let path = folder.path().join("parts");
         // Stopped at every increment, and once more on the way.
         for stop in 1..increments {
-            let part = run(&document, &path, &mut UntilIncrement(stop)).expect("a run");
+            let part = run(&problem, &path, &mut UntilIncrement(stop)).expect("a run");
             assert!(part.ending == Ending::Interrupted, "{name}, {stop}");
-            let _ = resume(&document, &path, &mut UntilIncrement(increments - 1)).expect("a run");
-            let rest = resume(&document, &path, &mut Silent).expect("a run").summary;
+            let _ = resume(&problem, &path, &mut UntilIncrement(increments - 1)).expect("a run");
+            let rest = resume(&problem, &path, &mut Silent).expect("a run").summary;
             assert_eq!(results(&rest), results(&whole), "{name} after {stop} increments");
             for file in ["history.csv", "fields.pvd"] {
                 let [a, b] = ["whole", "parts"].map(|part| std::fs::read(folder.path().join(part).join(file)).unwrap());
@@ -142,10 +142,10 @@ fn solids_go_on_to_the_same_digits() {
 
 #[test]
 fn a_damaged_checkpoint_of_solids_is_told() {
-    let document = Document::parse("case.toml", example("high_order_blocks"), &[]).expect("a case");
+    let problem = signorini::case::read("case.toml", example("high_order_blocks"), &[]).expect("a case");
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("out");
-    run(&document, &path, &mut UntilIncrement(2)).expect("a run");
+    run(&problem, &path, &mut UntilIncrement(2)).expect("a run");
     let checkpoint = path.join("checkpoint.json");
     let text = std::fs::read_to_string(&checkpoint).expect("a checkpoint");
     for (from, to) in [
@@ -155,7 +155,7 @@ fn a_damaged_checkpoint_of_solids_is_told() {
     ] {
         assert!(text.contains(from), "{from}");
         std::fs::write(&checkpoint, text.replacen(from, to, 1)).expect("written");
-        match resume(&document, &path, &mut Silent) {
+        match resume(&problem, &path, &mut Silent) {
             Err(RunError::Case(error)) => assert!(error.message.contains("damaged"), "{}", error.message),
             _ => panic!("resumed with {to}"),
         }
@@ -164,5 +164,5 @@ fn a_damaged_checkpoint_of_solids_is_told() {
     let mut state: Value = serde_json::from_str(&text).expect("a checkpoint");
     state["state"]["active"][1] = u64::MAX.into();
     std::fs::write(&checkpoint, state.to_string()).expect("written");
-    assert!(resume(&document, &path, &mut Silent).is_ok_and(|o| o.ending == Ending::Converged));
+    assert!(resume(&problem, &path, &mut Silent).is_ok_and(|o| o.ending == Ending::Converged));
 }

@@ -1,7 +1,6 @@
 //! The words that results are told in.
 
 use super::{example, set};
-use signorini::case::Document;
 use signorini::run::run;
 use signorini_solve::Silent;
 
@@ -42,10 +41,10 @@ fn every_word_of_the_results_is_explained() {
         ("high_order_blocks", vec![probe]),
     ] {
         let folder = tempfile::tempdir().expect("a folder");
-        let document = Document::parse("case.toml", example(name), &set(&pairs)).expect("a case");
-        let sizes = signorini::run::sizes(&signorini::plan::plan(&document).expect("a plan")).expect("sizes");
+        let problem = signorini::case::read("case.toml", example(name), &set(&pairs)).expect("a case");
+        let sizes = signorini::run::sizes(&signorini::plan::plan(&problem).expect("a plan")).expect("sizes");
         words(&sizes, &mut found);
-        let summary = run(&document, folder.path(), &mut Silent).expect("a run").summary;
+        let summary = run(&problem, folder.path(), &mut Silent).expect("a run").summary;
         let summary = serde_json::json!(summary);
         words(&summary, &mut found);
         for kind in summary["events"].as_array().into_iter().flatten() {

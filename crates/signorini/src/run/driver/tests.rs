@@ -1,14 +1,15 @@
 //! The driver on the smallest model there is: a spring that is pressed on a wall.
 
 use super::*;
-use crate::case::Document;
+use crate::fields::ShownState;
+use crate::plan::Head;
 use crate::report::{ContactReport, StepReport};
-use crate::run::record::{Head, begin, of_earlier_run};
+use crate::run::record::{begin, of_earlier_run};
 use signorini_solve::Silent;
 
 /// A spring of stiffness two whose end is pushed by the time; a wall stands at 0.3.
 struct Spring {
-    document: Document,
+    head: Head,
     force: f64,
     /// The increment in which it fails.
     fails_in: Option<usize>,
@@ -16,14 +17,16 @@ struct Spring {
 
 impl Spring {
     fn new(fails_in: Option<usize>) -> Self {
-        let document = Document::parse("spring.toml", crate::gallery::GALLERY[0].case, &[]).expect("a case");
-        Spring { document, force: 0.0, fails_in }
+        let problem = crate::case::read("spring.toml", crate::gallery::GALLERY[0].case, &[]).expect("a case");
+        let head =
+            Head { problem, units: None, interpreted: Vec::new(), warnings: Vec::new(), every: 2, pictures: true };
+        Spring { head, force: 0.0, fails_in }
     }
 }
 
 impl Model for Spring {
-    fn head(&self) -> Head<'_> {
-        Head { document: &self.document, units: None, interpreted: &[], warnings: &[], every: 2, pictures: true }
+    fn head(&self) -> &Head {
+        &self.head
     }
     fn increments(&self) -> usize {
         4
@@ -60,6 +63,9 @@ impl Model for Spring {
     }
     fn write_fields(&mut self, index: usize, record: &mut Record) -> Result<(), OutputError> {
         record.add_frame(self.time(index), format!("{index:05}"), &[])
+    }
+    fn shown(&self) -> Option<ShownState> {
+        Some(ShownState { time: self.force, bodies: Vec::new(), contacts: Vec::new() })
     }
     fn draw(&self, record: &Record) -> Result<(), OutputError> {
         record.folder.write("pictures/spring.svg", b"<svg/>")

@@ -1,8 +1,8 @@
 //! One increment, by either method, and what of it goes into the summary.
 
 use super::events::Known;
-use crate::case::statement::Space;
 use crate::plan::{MembranePlan, MethodChoice};
+use crate::problem::Space;
 use crate::report::{self, Reason, StepReport, Warning, WarningKind, vector};
 use crate::snapshot::{DisplayMesh, Sample, Snapshot};
 use serde_json::{Value, json};
@@ -153,7 +153,7 @@ impl<const D: usize, Z: Zone<D>> Engine<D, Z> {
             cells: None,
             refinement: plan.refinement.clone(),
             estimates: false,
-            has_units: plan.document.case.units.is_some(),
+            has_units: plan.head.problem.units.is_some(),
         }
     }
 

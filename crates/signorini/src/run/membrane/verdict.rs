@@ -1,8 +1,8 @@
 //! What came of a membrane, in a sentence.
 
-use crate::case::statement::Space;
 use crate::output::figure::told;
 use crate::plan::{Contact, MembranePlan, MethodChoice};
+use crate::problem::Space;
 use crate::report::{ContactReport, Reason, UnitNames};
 use crate::run::record::Record;
 use crate::run::{Ending, sizes};
@@ -70,7 +70,7 @@ pub fn verdict<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>, record: &Reco
 
 /// One contact in a clause.
 fn of_contact<const D: usize>(plan: &MembranePlan<D>, contact: &Contact, c: &ContactReport) -> String {
-    let units = plan.unit_names();
+    let units = plan.head.unit_names();
     let unit = |of: fn(&UnitNames) -> &String| units.as_ref().map_or("", |u| of(u));
     let measure = if D == 1 && plan.space == Space::Line { "length" } else { "area" };
     let staircase = if let MethodChoice::ActiveSet(_) = plan.method { " (a staircase of nodes)" } else { "" };

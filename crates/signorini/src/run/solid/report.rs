@@ -1,11 +1,11 @@
 //! What is told of a state of solids.
 
 use super::setup::load;
-use crate::case::statement::Space as Stated;
 use crate::output::figure::{told, told_vector};
 use crate::output::solid_fields::{ContactDisplay, SolidDisplay, SolidFields};
 use crate::plan::Placed;
 use crate::plan::solid::{SolidPlan, evaluate};
+use crate::problem::Space as Stated;
 use crate::report::{Component, ContactReport, Probe, Reason, StepReport, UnitNames, Warning, WarningKind, vector};
 use crate::run::record::Record;
 use signorini_geometry::Point;
@@ -53,7 +53,7 @@ pub fn step_report<const D: usize>(
             *supports.entry(support.name.clone()).or_insert_with(Point::<D>::zeros) += force;
         }
     }
-    let value = |p: &Placed, x: &Point<D>| evaluate(&plan.document, p, x, time).unwrap_or(0.0);
+    let value = |p: &Placed, x: &Point<D>| evaluate(&plan.head.problem, p, x, time).unwrap_or(0.0);
     let bodies = &model.bodies;
     let loads = plan.loads.iter().map(|l| (l.name.clone(), vector(&resultant(bodies, &load(bodies, l, &value)))));
     let probe = |x: &Point<D>| {
@@ -114,7 +114,7 @@ pub fn warn<const D: usize>(
     }
     for (contact, result) in plan.contacts.iter().zip(&state.contacts) {
         // Of pairs that were not named most never meet.
-        if !plan.document.case.contacts.contains_key(&contact.name) {
+        if !plan.head.problem.contacts.contains_key(&contact.name) {
             continue;
         }
         let name = &contact.name;
@@ -169,7 +169,7 @@ pub fn contact_verdict<const D: usize>(plan: &SolidPlan<D>, name: &str, c: &Cont
         return format!("`{name}` is open");
     }
     let errors = c.error_estimate;
-    let units = plan.unit_names();
+    let units = plan.head.unit_names();
     let unit = |of: fn(&UnitNames) -> &String| units.as_ref().map_or("", |u| of(u));
     format!(
         "`{name}` carries {} over {} {} in {} zone{}, at most {}",

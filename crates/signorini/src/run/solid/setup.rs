@@ -1,11 +1,11 @@
 //! From a plan of solids to their model, and what the plan has for it at each time.
 
 use super::failure::explained;
-use crate::case::CaseError;
-use crate::case::statement::{Body, Space as Stated};
 use crate::plan::pieces::{Apart, UNITE};
 use crate::plan::solid::{Opposite, SolidLoad, SolidPlan, evaluate};
 use crate::plan::{Placed, memory_at_hand};
+use crate::problem::CaseError;
+use crate::problem::{Body, Space as Stated};
 use signorini_contact::GapJet;
 use signorini_geometry::Point;
 use signorini_solid::loads::forces;
@@ -62,14 +62,12 @@ pub fn raised<const D: usize>(plan: &SolidPlan<D>, by: usize) -> Result<Model<D>
         })
         .collect();
     Model::new(bodies, supports, contacts).map_err(|error| {
-        let place = plan.document.case.space.span();
-        let place = match &error {
-            StepError::Support(signorini_solid::SupportError::NotFlat { support, .. }) => {
-                plan.document.case.supports.get(support).map_or(place, |s| s.span())
-            }
-            _ => place,
+        let problem = &plan.head.problem;
+        let support = match &error {
+            StepError::Support(signorini_solid::SupportError::NotFlat { support, .. }) => problem.supports.get(support),
+            _ => None,
         };
-        plan.document.error(place, error.to_string())
+        problem.error(&support.map_or_else(|| problem.key(&problem.space), |s| problem.key(s)), error.to_string())
     })
 }
 
@@ -78,7 +76,7 @@ pub const OPERATIONS_PER_SECOND: f64 = 2e10;
 
 /// What the factorisation of a model takes.
 pub fn cost<const D: usize>(plan: &SolidPlan<D>, model: &Model<D>) -> Result<Cost, CaseError> {
-    model.cost().map_err(|error| plan.document.error(plan.document.case.space.span(), error.to_string()))
+    model.cost().map_err(|error| plan.head.problem.error(&plan.head.problem.space, error.to_string()))
 }
 
 /// The memory of a run, about: the factor and, of about half its size at most, matrices and results.
@@ -93,8 +91,9 @@ pub fn too_large<const D: usize>(plan: &SolidPlan<D>, unknowns: usize, cost: &Co
         gib(memory(cost)),
         gib(memory_at_hand())
     );
-    plan.document
-        .error(plan.document.case.space.span(), message)
+    plan.head
+        .problem
+        .error(&plan.head.problem.space, message)
         .help("fewer cells, a lower degree, symmetry, or cells graded towards the contact")
 }
 
@@ -108,9 +107,9 @@ pub fn at_time<const D: usize, R>(
     time: f64,
     act: impl FnOnce(&mut Model<D>, &Circumstances<'_, D>) -> R,
 ) -> Result<R, CaseError> {
-    let document = &plan.document;
+    let problem = &plan.head.problem;
     let wrong: RefCell<Option<CaseError>> = RefCell::new(None);
-    let value = |placed: &Placed, x: &Point<D>| match evaluate(document, placed, x, time) {
+    let value = |placed: &Placed, x: &Point<D>| match evaluate(problem, placed, x, time) {
         Ok(v) => v,
         Err(error) => {
             wrong.borrow_mut().get_or_insert(error);
@@ -131,7 +130,7 @@ pub fn at_time<const D: usize, R>(
     };
     let rigid: Vec<Option<RigidGap<D>>> = (plan.contacts.iter())
         .map(|c| match &c.opposite {
-            Opposite::Rigid(body) => Ok(Some(flat_gap::<D>(body.gap_at(document, time)?))),
+            Opposite::Rigid(body) => Ok(Some(flat_gap::<D>(body.gap_at(problem, time)?))),
             Opposite::Body { .. } => Ok(None),
         })
         .collect::<Result<_, CaseError>>()?;
@@ -187,12 +186,12 @@ pub fn loose_piece<const D: usize>(plan: &SolidPlan<D>, model: &Model<D>) -> Opt
             .map(|side| apart.of_cell[side.cell as usize])
             .collect();
         if let Some(&loose) = free.iter().find(|piece| apart.touching.is_some() || !in_contact.contains(piece)) {
-            let document = &plan.document;
-            let place = match document.case.bodies.get(&body.name).map(|b| b.get_ref()) {
-                Some(Body::Solid(solid)) => solid.mesh.span(),
-                _ => document.case.space.span(),
+            let problem = &plan.head.problem;
+            let place = match problem.bodies.get(&body.name) {
+                Some(Body::Solid(solid)) => problem.key(&solid.mesh),
+                _ => problem.key(&problem.space),
             };
-            return Some(document.error(place, apart.held_by_nothing(&body.name, loose)).help(UNITE));
+            return Some(problem.error(&place, apart.held_by_nothing(&body.name, loose)).help(UNITE));
         }
     }
     None
@@ -205,28 +204,28 @@ pub fn blamed<const D: usize>(
     time: f64,
     error: &StepError,
 ) -> Option<CaseError> {
-    let document = &plan.document;
-    let space = document.case.space.span();
+    let problem = &plan.head.problem;
+    let space = problem.key(&problem.space);
     match error {
         StepError::Support(error) => {
             let name = match error {
                 SupportError::NotFlat { support, .. } => support,
                 SupportError::Contradiction { second, .. } => second,
             };
-            let place = document.case.supports.get(name).map_or(space, |s| s.span());
-            Some(document.error(place, error.to_string()))
+            let place = problem.supports.get(name).map_or(space, |s| problem.key(s));
+            Some(problem.error(&place, error.to_string()))
         }
         StepError::Deep { contact, depth } => {
-            let place = document.case.contacts.get(contact).map_or(space, |c| c.span());
+            let place = problem.contacts.get(contact).map_or(space, |c| problem.key(c));
             let start = at_time(plan, model, 0.0, |model, now| model.examine(now));
             match start {
-                Ok(Err(StepError::Deep { depth, .. })) => Some(document
-                    .error(place, format!("the bodies of `{contact}` start {depth:.4e} deep in each other"))
+                Ok(Err(StepError::Deep { depth, .. })) => Some(problem
+                    .error(&place, format!("the bodies of `{contact}` start {depth:.4e} deep in each other"))
                     .help("move them apart; or does the normal of a rigid plane point into it, or `side` name the wrong side?")),
                 _ if model.slides() => None,
-                _ => Some(document
+                _ => Some(problem
                     .error(
-                        place,
+                        &place,
                         format!("the first increment, to t = {time}, is too large: it brings the bodies of `{contact}` {depth:.4e} deep into each other"),
                     )
                     .help("more `increments`, a smaller motion, or  sliding = \"finite\"  in the contact, which cuts increments that are too large")),

@@ -1,0 +1,48 @@
+//! What every plan knows besides its bodies: what its results are called, in which units, and what is written.
+
+use super::Planner;
+use super::reader::Interpreted;
+use crate::problem::units::Units;
+use crate::problem::{CaseError, Problem};
+use crate::report::{UnitNames, Warning};
+
+/// The problem as its results tell of it.
+pub struct Head {
+    pub problem: Problem,
+    pub units: Option<Units>,
+    /// What the values with units were taken for.
+    pub interpreted: Vec<Interpreted>,
+    pub warnings: Vec<Warning>,
+    /// Increments from one file of fields to the next.
+    pub every: usize,
+    /// Whether pictures are wanted.
+    pub pictures: bool,
+}
+
+impl Head {
+    /// What the base units are called; none where the problem states none.
+    pub fn unit_names(&self) -> Option<UnitNames> {
+        self.units.as_ref().map(|units| UnitNames::new(units, self.problem.space))
+    }
+}
+
+impl Planner<'_> {
+    /// The head of a plan, after everything else was read.
+    pub(super) fn head(&self, mut warnings: Vec<Warning>) -> Result<Head, CaseError> {
+        let output = &self.problem.output;
+        let every = match &output.every {
+            None => 1,
+            Some(n) if *n >= 1 => *n as usize,
+            Some(n) => return Err(self.problem.error(n, "`every` must be at least 1")),
+        };
+        warnings.append(&mut self.warnings.borrow_mut());
+        Ok(Head {
+            problem: self.problem.clone(),
+            units: self.reader.units,
+            interpreted: self.reader.echo(),
+            warnings,
+            every,
+            pictures: output.pictures.unwrap_or(true),
+        })
+    }
+}

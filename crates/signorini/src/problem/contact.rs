@@ -1,0 +1,163 @@
+//! Contacts: who may touch whom, by which method, with which law.
+
+use super::body::Domain;
+use super::{Nothing, Value};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Who may touch whom.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Contact {
+    /// Two bodies, the one whose points are tested first.
+    pub between: Option<Vec<String>>,
+    /// A body that may touch itself; not available yet.
+    pub within: Option<String>,
+    /// Whether all bodies may touch each other.
+    pub all: Option<bool>,
+    /// How the contact is found; what fits the bodies if left out.
+    pub method: Option<Method>,
+    /// How far solids slide along each other: little, or any way.
+    pub sliding: Option<Sliding>,
+    /// What the surfaces hold each other with.
+    pub adhesion: Option<Adhesion>,
+    #[serde(default)]
+    #[schemars(skip)]
+    pub friction: Option<toml::Value>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum Sliding {
+    /// Bodies slide by much less than a cell.
+    Small,
+    /// Bodies slide as far as they like.
+    Finite,
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// The contact zone of a membrane as a level set with exact fronts.
+    InequalityLevelSet(Box<LevelSetMethod>),
+    /// The classical nodal method for a membrane, of degree 1.
+    ActiveSet(ActiveSetMethod),
+    /// Between solids: dual multipliers, integrated over exact segments.
+    Mortar(SolidMethod),
+    /// Between solids: at quadrature points.
+    GaussPoint(SolidMethod),
+    /// Between solids: at nodes.
+    Node(SolidMethod),
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LevelSetMethod {
+    /// How the equilibrium beside a contact zone is formulated; `one_sided` if left out.
+    pub formulation: Option<FormulationKey>,
+    /// With `formulation = "published"`, the space of the multiplier in the contact zone; `h1` if left out.
+    pub multiplier: Option<ZoneMultiplierKey>,
+    /// With `multiplier = "h1"`, the length that weighs its gradients; the extent of the membrane if left out.
+    pub multiplier_length: Option<Value>,
+    /// With `formulation = "published"`, how fronts are moved; `exact` if left out.
+    pub transport: Option<TransportKey>,
+    /// The functions by which fronts move; `local` if left out, `fourier` in the published formulation.
+    pub modes: Option<FrontModes>,
+    /// With `modes = "fourier"`, how many of them each front has at most; where its cells tell fewer apart it has these, and the
+    /// run says so.
+    pub mode_count: Option<i64>,
+    /// Degree of the fronts as curves; not available, it follows the degree of the membrane.
+    pub front_degree: Option<i64>,
+    /// Where the search for the zone begins, in the shapes of a domain.
+    pub initial_zone: Option<Domain>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum FormulationKey {
+    /// The free membrane alone, held along the front by Nitsche's method: any degree, any path.
+    OneSided,
+    /// Both sides of the front with multipliers, as the method was published: degree 1 in the plane, 1 to 6 along a line or a
+    /// radius.
+    Published,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum ZoneMultiplierKey {
+    /// With gradients: carries the line force along a front that is not at rest.
+    H1,
+    /// Without: oscillates along such a front, to show why not.
+    L2,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum TransportKey {
+    /// As curves.
+    Exact,
+    /// As a level set on the nodes, which becomes the distance to the moved front.
+    Redistancing,
+    /// As a level set on the nodes, carried along by the equation of Hamilton and Jacobi.
+    HamiltonJacobi,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum FrontModes {
+    /// Periodic splines, each of which moves a short piece: for fronts of any shape.
+    Local,
+    /// Sines and cosines of the arc length: few suffice where fronts are nearly circles.
+    Fourier,
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SolidMethod {
+    /// How the conditions of contact are enforced; by multipliers if left out, at quadrature points by penalties.
+    pub enforcement: Option<Enforcement>,
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Enforcement {
+    /// Exactly, by multipliers.
+    Multiplier(Nothing),
+    /// Exactly, by repeated penalties.
+    AugmentedLagrangian(Nothing),
+    /// Weakly and consistently, without multipliers.
+    Nitsche(Nothing),
+    /// Approximately, by springs.
+    Penalty(Penalty),
+}
+
+/// A penalty is stated by what it may leave, never as a number of its own.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Penalty {
+    /// The penetration to be left at the largest pressure, a length.
+    pub wanted_penetration: Option<Value>,
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ActiveSetMethod {
+    /// Where the iteration begins; `nested` if left out.
+    pub start: Option<ActiveSetStart>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum ActiveSetStart {
+    /// From the solution on a coarser grid.
+    Nested,
+    /// From the membrane without contact.
+    Cold,
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Adhesion {
+    /// Energy per area.
+    pub energy: Value,
+}

@@ -1,0 +1,145 @@
+//! Errors of a problem: what is wrong, where, and what would be right.
+
+use super::KeyPath;
+use std::ops::Range;
+
+/// Something in a problem that cannot be used.
+#[derive(Clone, Debug, thiserror::Error)]
+#[error("{message}")]
+pub struct CaseError {
+    pub message: String,
+    /// What to do about it.
+    pub help: Option<String>,
+    /// The key that it is about.
+    pub key: Option<KeyPath>,
+    /// Where: file, its text, and the bytes.
+    pub place: Option<Place>,
+}
+
+/// A place in a text.
+#[derive(Clone, Debug)]
+pub struct Place {
+    pub name: String,
+    pub text: String,
+    pub span: Range<usize>,
+}
+
+impl Place {
+    /// Line and column, from one, in characters.
+    pub fn line_and_column(&self) -> (usize, usize) {
+        let mut end = self.span.start.min(self.text.len());
+        while !self.text.is_char_boundary(end) {
+            end -= 1;
+        }
+        let before = &self.text[..end];
+        let line = before.matches('\n').count() + 1;
+        (line, before.chars().rev().take_while(|c| *c != '\n').count() + 1)
+    }
+}
+
+impl CaseError {
+    pub fn new(message: impl Into<String>) -> Self {
+        Self { message: message.into(), help: None, key: None, place: None }
+    }
+
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    pub fn at(mut self, name: &str, text: &str, span: Range<usize>) -> Self {
+        self.place = Some(Place { name: name.into(), text: text.into(), span });
+        self
+    }
+
+    /// File, line, column and message in one line.
+    pub fn one_line(&self) -> String {
+        match &self.place {
+            Some(place) => {
+                let (line, column) = place.line_and_column();
+                format!("{}:{line}:{column}: {}", place.name, self.message)
+            }
+            None => match &self.key {
+                Some(key) if !key.0.is_empty() => format!("{key}: {}", self.message),
+                _ => self.message.clone(),
+            },
+        }
+    }
+}
+
+impl miette::Diagnostic for CaseError {
+    fn help<'a>(&'a self) -> Option<Box<dyn std::fmt::Display + 'a>> {
+        self.help.as_ref().map(|h| Box::new(h) as _)
+    }
+
+    fn source_code(&self) -> Option<&dyn miette::SourceCode> {
+        self.place.as_ref().map(|p| p as _)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = miette::LabeledSpan> + '_>> {
+        let place = self.place.as_ref()?;
+        let end = place.span.end.min(place.text.len());
+        let start = place.span.start.min(end);
+        Some(Box::new(std::iter::once(miette::LabeledSpan::new_with_span(Some("here".into()), start..end))))
+    }
+}
+
+impl miette::SourceCode for Place {
+    fn read_span<'a>(
+        &'a self,
+        span: &miette::SourceSpan,
+        before: usize,
+        after: usize,
+    ) -> Result<Box<dyn miette::SpanContents<'a> + 'a>, miette::MietteError> {
+        let inner = self.text.read_span(span, before, after)?;
+        Ok(Box::new(miette::MietteSpanContents::new_named(
+            self.name.clone(),
+            inner.data(),
+            *inner.span(),
+            inner.line(),
+            inner.column(),
+            inner.line_count(),
+        )))
+    }
+}
+
+/// The nearest of the known words, or all of them.
+pub fn suggestion(word: &str, known: &[&str]) -> String {
+    let nearest = known.iter().map(|k| (distance(word, k), *k)).min();
+    match nearest {
+        // Another word altogether is no suggestion.
+        Some((d, k)) if d <= 1 + word.chars().count() / 3 && d < word.chars().count() => format!("did you mean `{k}`?"),
+        Some(_) => format!("known here: {}", known.join(", ")),
+        None => "nothing is known here".into(),
+    }
+}
+
+/// Edit distance.
+fn distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, ca) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, cb) in b.iter().enumerate() {
+            let change = diagonal + usize::from(ca != *cb);
+            diagonal = row[j + 1];
+            row[j + 1] = change.min(row[j] + 1).min(row[j + 1] + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn near_words_are_suggested_and_places_are_counted_in_characters() {
+        assert_eq!(suggestion("tensoin", &["tension", "degree"]), "did you mean `tension`?");
+        assert!(suggestion("q", &["tension", "degree"]).contains("known here"));
+        assert!(suggestion("q", &["e", "x"]).contains("known here"));
+        let place = Place { name: "a".into(), text: "ä = 1\nbé = 2".into(), span: 10..11 };
+        assert_eq!(place.line_and_column(), (2, 3));
+    }
+}

@@ -1,0 +1,294 @@
+//! A problem in plain types: bodies, what holds and pushes them, who may touch whom, and the history.
+//!
+//! These types are the grammar of the case file, of Rust and of Python alike. Every variant is a table with one key, and
+//! unknown keys are refused. What a key means, and in which unit it stands, is said here once. A problem knows nothing of
+//! lines and columns: what is wrong with it is told by the way to a key, [`KeyPath`]; whoever read it from a text says
+//! where that stands ([`Source`]).
+
+pub mod arrays;
+pub mod body;
+pub mod contact;
+pub mod error;
+pub mod fit;
+pub mod history;
+pub mod key_path;
+pub mod rigid;
+pub mod source;
+pub mod units;
+pub mod value;
+
+pub use arrays::{Array, CellArrays, Grid2, MeshArrays, TriangleArrays};
+pub use body::*;
+pub use contact::*;
+pub use error::{CaseError, suggestion};
+pub use fit::{Fit, FitUnknown, Noise};
+pub use history::{ArcLength, AreaControl, Control, Step};
+pub use key_path::{KeyPath, Part, ProblemPart};
+pub use rigid::*;
+pub use source::Source;
+pub use value::{Components, Value, vector};
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// A whole problem.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Problem {
+    /// Free text, repeated in the results.
+    pub title: Option<String>,
+    /// Base units; without them numbers are in any consistent units.
+    pub units: Option<UnitSystem>,
+    /// In how many dimensions, and what the coordinates mean.
+    pub space: Space,
+    /// Named numbers for expressions.
+    #[serde(default)]
+    pub constants: BTreeMap<String, Value>,
+    /// Named functions of one argument, `t`.
+    #[serde(default)]
+    pub functions: BTreeMap<String, TimeFunction>,
+    /// The things that occupy space, by names of your own.
+    pub bodies: BTreeMap<String, Body>,
+    /// What holds bodies, by names of your own.
+    #[serde(default)]
+    pub supports: BTreeMap<String, Support>,
+    /// What pushes and pulls bodies, by names of your own.
+    #[serde(default)]
+    pub loads: BTreeMap<String, Load>,
+    /// Which bodies may touch, by names of your own.
+    #[serde(default)]
+    pub contacts: BTreeMap<String, Contact>,
+    /// The history, part by part; without steps one state is computed, at t = 0.
+    #[serde(default)]
+    pub steps: Vec<Step>,
+    /// What to write.
+    #[serde(default)]
+    pub output: Output,
+    /// What `signorini fit` is to find out from measurements.
+    pub fit: Option<Fit>,
+    /// Where it was read from.
+    #[serde(skip)]
+    pub source: Source,
+}
+
+impl Problem {
+    /// A problem without bodies.
+    pub fn new(space: Space) -> Self {
+        Self {
+            title: None,
+            units: None,
+            space,
+            constants: BTreeMap::new(),
+            functions: BTreeMap::new(),
+            bodies: BTreeMap::new(),
+            supports: BTreeMap::new(),
+            loads: BTreeMap::new(),
+            contacts: BTreeMap::new(),
+            steps: Vec::new(),
+            output: Output::default(),
+            fit: None,
+            source: Source::default(),
+        }
+    }
+
+    /// Its title, or the name of its file.
+    pub fn name(&self) -> &str {
+        match &self.title {
+            Some(title) => title,
+            None if self.source.name.is_empty() => "problem",
+            None => &self.source.name,
+        }
+    }
+
+    /// The way to a part of this problem; that of the whole for what is no part of it.
+    pub fn key<T: ProblemPart>(&self, part: &T) -> KeyPath {
+        let found = key_path::find(self, part);
+        debug_assert!(found.is_some(), "a {} is no part of the problem", std::any::type_name::<T>());
+        found.unwrap_or_default()
+    }
+
+    /// What is wrong at a part of this problem, or at a key of it.
+    pub fn error(&self, at: &impl Location, message: impl Into<String>) -> CaseError {
+        let key = at.key_in(self);
+        let place = self.source.place(&key, None);
+        CaseError { key: Some(key), place, ..CaseError::new(message) }
+    }
+
+    /// What is wrong in some bytes of a value as text.
+    pub fn error_within(
+        &self,
+        value: &Value,
+        text: &str,
+        bytes: Range<usize>,
+        message: impl Into<String>,
+    ) -> CaseError {
+        let key = self.key(value);
+        let place = self.source.place(&key, Some((text, bytes)));
+        CaseError { key: Some(key), place, ..CaseError::new(message) }
+    }
+}
+
+/// Where something is in a problem: a part of it, or the key of one.
+pub trait Location {
+    fn key_in(&self, problem: &Problem) -> KeyPath;
+}
+
+impl<T: ProblemPart> Location for T {
+    fn key_in(&self, problem: &Problem) -> KeyPath {
+        problem.key(self)
+    }
+}
+
+impl Location for KeyPath {
+    fn key_in(&self, _: &Problem) -> KeyPath {
+        self.clone()
+    }
+}
+
+/// A named system of units, or the names of the base units.
+#[derive(Clone, Debug, Serialize)]
+#[serde(untagged)]
+pub enum UnitSystem {
+    System(String),
+    Base(BaseUnits),
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BaseUnits {
+    /// Unit of length, such as "mm".
+    pub length: String,
+    /// Unit of force, such as "N".
+    pub force: String,
+    /// Unit of time; "s" if left out.
+    #[serde(default = "second")]
+    pub time: String,
+}
+
+fn second() -> String {
+    "s".into()
+}
+
+impl JsonSchema for UnitSystem {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Units".into()
+    }
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        let base = generator.subschema_for::<BaseUnits>();
+        schemars::json_schema!({ "anyOf": [{ "type": "string", "examples": ["mm-N-MPa"] }, base] })
+    }
+}
+
+impl<'de> Deserialize<'de> for UnitSystem {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Reader;
+        impl<'de> serde::de::Visitor<'de> for Reader {
+            type Value = UnitSystem;
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("a system such as \"mm-N-MPa\", or { length = \"mm\", force = \"N\", time = \"s\" }")
+            }
+            fn visit_str<E>(self, v: &str) -> Result<UnitSystem, E> {
+                Ok(UnitSystem::System(v.to_string()))
+            }
+            fn visit_map<A: serde::de::MapAccess<'de>>(self, map: A) -> Result<UnitSystem, A::Error> {
+                BaseUnits::deserialize(serde::de::value::MapAccessDeserializer::new(map)).map(UnitSystem::Base)
+            }
+        }
+        deserializer.deserialize_any(Reader)
+    }
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum Space {
+    /// A string: one coordinate, x.
+    Line,
+    /// A round membrane: x is the radius.
+    Axisymmetric,
+    /// A membrane seen from above.
+    Plane,
+    /// A slice of a long body: no strain across.
+    PlaneStrain,
+    /// A thin plate: no stress across.
+    PlaneStress,
+    /// Space itself.
+    #[serde(rename = "3d")]
+    ThreeD,
+}
+
+/// A function of one argument: a table, or an expression in `t`.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TimeFunction {
+    /// Points of a piecewise linear function.
+    pub table: Option<Table>,
+    /// An expression in t.
+    pub expression: Option<Value>,
+}
+
+/// A piecewise linear function.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Table {
+    /// Arguments, ascending.
+    pub t: Vec<f64>,
+    /// Vec<Value>, one for each argument.
+    pub value: Vec<f64>,
+}
+
+/// A table without keys.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Nothing {}
+
+/// Where something is held or moved.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Support {
+    /// `BODY` or `BODY:GROUP`.
+    pub on: String,
+    /// A value for a membrane, a vector with `"free"` where free for a solid.
+    pub displacement: Option<Components>,
+    /// The displacement along the outward normal alone.
+    pub normal: Option<Value>,
+    /// All points share one displacement in the components that are not prescribed.
+    pub uniform: Option<bool>,
+    /// Stiffness per area of an elastic bed.
+    pub spring: Option<Vec<Value>>,
+}
+
+/// What pushes.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Load {
+    /// A body, or `BODY:GROUP`.
+    pub on: String,
+    /// Force per area along +z for a membrane.
+    pub normal: Option<Value>,
+    /// Force per area along each axis.
+    pub traction: Option<Vec<Value>>,
+    /// Force per area against the outer normal.
+    pub pressure: Option<Value>,
+    /// A resultant force along each axis, spread evenly.
+    pub force: Option<Vec<Value>>,
+    /// Force per volume along each axis.
+    pub body_force: Option<Vec<Value>>,
+}
+
+/// What to write.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Output {
+    /// Increments between written fields.
+    pub every: Option<i64>,
+    /// Whether pictures are drawn; they are if left out.
+    pub pictures: Option<bool>,
+    /// Points whose histories are recorded.
+    #[serde(default)]
+    pub probes: BTreeMap<String, Vec<Value>>,
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,111 @@
+//! Problems stated in types: the way to a part, errors by keys, fields and meshes of a program.
+
+use super::*;
+use crate::plan::plan;
+use crate::run::{Ending, Silent, solve};
+
+/// A membrane over a floor on a line, by its floor.
+fn string(height: Value) -> Problem {
+    let mut problem = Problem::new(Space::Line);
+    let grid = GridMesh { cells: Some(vec![20]), ..GridMesh::default() };
+    let domain = Domain::Interval(Interval { from: (-1.0).into(), to: 1.0.into() });
+    let film = Membrane { domain: Some(domain), mesh: Mesh::Grid(grid), degree: Some(2), tension: 1.0.into() };
+    problem.bodies.insert("film".into(), Body::Membrane(film));
+    problem.bodies.insert("floor".into(), Body::Rigid(Rigid::new(Shape::Height(height))));
+    let rim = Support { on: "film:boundary".into(), displacement: Some(0.0.into()), ..Support::default() };
+    problem.supports.insert("rim".into(), rim);
+    problem.loads.insert("press".into(), Load { on: "film".into(), normal: Some((-1.0).into()), ..Load::default() });
+    let between = Some(vec!["film".into(), "floor".into()]);
+    problem.contacts.insert("touch".into(), Contact { between, ..Contact::default() });
+    problem
+}
+
+#[test]
+fn the_way_to_a_part_is_found_by_where_it_lies() {
+    let mut problem = string("-0.1".into());
+    problem.steps.extend([Step::default(), Step { events: Some(1.0), ..Step::default() }]);
+    let Some(Body::Membrane(film)) = problem.bodies.get("film") else { panic!("a membrane") };
+    assert_eq!(problem.key(&film.tension).to_string(), "bodies.film.membrane.tension");
+    assert_eq!(problem.key(film).to_string(), "bodies.film.membrane");
+    let Some(Domain::Interval(interval)) = &film.domain else { panic!("an interval") };
+    // The first part of a whole lies where the whole does, and is another type.
+    assert_eq!(problem.key(interval).to_string(), "bodies.film.membrane.domain.interval");
+    assert_eq!(problem.key(&interval.from).to_string(), "bodies.film.membrane.domain.interval.from");
+    let Mesh::Grid(grid) = &film.mesh else { panic!("a grid") };
+    let cells = grid.cells.as_ref().expect("cells");
+    assert_eq!(problem.key(cells).to_string(), "bodies.film.membrane.mesh.grid.cells");
+    assert_eq!(problem.key(&cells[0]).to_string(), "bodies.film.membrane.mesh.grid.cells[0]");
+    assert_eq!(problem.key(problem.steps[1].events.as_ref().expect("events")).to_string(), "steps[1].events");
+    let displacement = problem.supports["rim"].displacement.as_ref().expect("one");
+    assert_eq!(problem.key(&displacement.0[0]).to_string(), "supports.rim.displacement");
+}
+
+/// Errors of a problem without a text tell the key, and of an expression the place in it.
+#[test]
+fn errors_tell_the_key() {
+    let mut problem = string("-0.1".into());
+    let Some(Body::Membrane(film)) = problem.bodies.get_mut("film") else { panic!("a membrane") };
+    film.degree = Some(9);
+    let error = plan(&problem).err().expect("an error");
+    assert_eq!(error.one_line(), "bodies.film.membrane.degree: degree 9 is not between 1 and 6");
+    let error = plan(&string("-0.1*q".into())).err().expect("an error");
+    assert_eq!(error.key.expect("a key").to_string(), "bodies.floor.rigid.shape.height");
+    assert_eq!(error.place.expect("a place").span, 5..6);
+}
+
+/// A floor as a number, an expression, a function and samples is the same floor.
+#[test]
+fn fields_are_stated_in_any_way() {
+    let of = |x: f64| -0.2 + 0.05 * x;
+    let samples = (0..5).map(|_| (0..9).map(|k| of(-2.0 + 0.5 * f64::from(k))).collect()).collect::<Vec<Vec<f64>>>();
+    let samples = Grid2 { origin: [-2.0, -2.0], spacing: [0.5, 1.0], values: samples.into() };
+    let ways: [Value; 3] = ["-0.2 + 0.05*x".into(), Value::field(|[x, _, _]| x * 0.05 - 0.2), samples.into()];
+    let found = ways.map(|height| {
+        let outcome = solve(&string(height), &mut Silent).expect("a run");
+        assert_eq!(outcome.ending, Ending::Converged);
+        let state = outcome.states.last().expect("a state");
+        assert_eq!(state.bodies[0].name, "film");
+        let lowest = state.bodies[0].array("gap").expect("gaps").iter().copied().fold(f64::INFINITY, f64::min);
+        assert!(lowest.abs() < 1e-9, "{lowest}");
+        outcome.summary.steps[0].contacts["touch"].force[2]
+    });
+    assert!(found.iter().all(|f| (f - found[0]).abs() < 1e-9 && *f > 0.1), "{found:?}");
+}
+
+/// Two quadrilaterals of arrays under a pressure have the stress of a bar, and errors of arrays tell which entry.
+#[test]
+fn meshes_are_arrays() {
+    let bar = |nodes: Vec<Vec<u32>>| {
+        let mut problem = Problem::new(Space::PlaneStress);
+        let points =
+            vec![vec![0.0, 0.0], vec![1.0, 0.0], vec![2.0, 0.0], vec![0.0, 1.0], vec![1.0, 1.0], vec![2.0, 1.0]];
+        let mesh = MeshArrays {
+            points: points.into(),
+            cells: vec![CellArrays { shape: "quadrilateral".into(), nodes: nodes.into() }],
+            groups: [("left".to_string(), vec![0, 3].into()), ("right".to_string(), vec![2, 5].into())].into(),
+        };
+        let material = LinearElastic { youngs_modulus: 100.0.into(), poissons_ratio: 0.0.into() };
+        let solid = Solid {
+            mesh: SolidMesh::Arrays(mesh),
+            degree: None,
+            material: Material::LinearElastic(material),
+            strain: None,
+        };
+        problem.bodies.insert("bar".into(), Body::Solid(solid));
+        let left = Support { on: "bar:left".into(), displacement: Some([0.0, 0.0].into()), ..Support::default() };
+        problem.supports.insert("left".into(), left);
+        let right = Load { on: "bar:right".into(), traction: Some(vector([1.0, 0.0])), ..Load::default() };
+        problem.loads.insert("right".into(), right);
+        problem
+    };
+    let outcome = solve(&bar(vec![vec![0, 1, 4, 3], vec![1, 2, 5, 4]]), &mut Silent).expect("a run");
+    let fields = &outcome.states[0].bodies[0];
+    let moved = fields.array("displacement").expect("displacements");
+    for (x, u) in fields.points.iter().zip(moved.chunks(3)) {
+        assert!((u[0] - 0.01 * x[0]).abs() < 1e-12 && u[1].abs() < 1e-12, "{x:?}: {u:?}");
+    }
+    let told = |nodes| plan(&bar(nodes)).err().expect("an error").one_line();
+    assert!(told(vec![vec![0, 1, 4]]).contains("cell 0 of the quadrilaterals: no such cell has 3 nodes"));
+    assert!(told(vec![vec![0, 1, 9, 3]]).contains("there is no point 9"));
+    assert!(told(vec![vec![0, 1, 4, 3]]).starts_with("bodies.bar.solid.mesh.arrays"));
+}

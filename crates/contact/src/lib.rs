@@ -8,7 +8,7 @@
 //! - [`kinematics`]: the gap of a pair with its variations, for any shape functions.
 //! - [`obstacle`]: the closest point of a slave point, on faces, edges and vertices, or on a rigid body.
 //! - [`points`]: the points under test, their rows, and the one assembler of residual and tangent.
-//! - [`active_set`]: which nodes carry.
+//! - [`active_set`]: which nodes carry; [`mod@law`]: how they answer.
 //! - [`balance`]: whether contact can hold free bodies against their loads.
 //! - [`recovery`]: the pressure as it is shown; [`mod@zone`]: where the zone of contact ends.
 //!
@@ -18,6 +18,7 @@
 pub mod active_set;
 pub mod balance;
 pub mod kinematics;
+pub mod law;
 pub mod mortar;
 pub mod multiplier;
 pub mod obstacle;
@@ -30,6 +31,7 @@ pub mod zone;
 pub use active_set::{ActiveSet, ActiveSetError, Compliance, ContactState, Softness, Spring};
 pub use balance::unbalanced;
 pub use kinematics::{Kinematics, Partner, ShapeFunction};
+pub use law::{Coulomb, Law, LawError, Status, Tresca};
 pub use mortar::{Given, Shares, WeightedGap, compress, shares, weighted_gaps, weightless};
 pub use multiplier::PressureNodes;
 pub use obstacle::{Faces, Obstacle, Rigid};

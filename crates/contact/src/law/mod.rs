@@ -1,0 +1,113 @@
+//! Contact laws: from a trial traction to the traction, and its derivative.
+//!
+//! | symbol | meaning |
+//! |---|---|
+//! | `ζ = λ - c y` | trial traction: pressure, and two tangential components in the axes of the law |
+//! | `p` | pressure, positive where the bodies press on each other |
+//! | `Π` | the closest admissible traction |
+//! | `P = ∂Π/∂ζ`, `r = ∂Π/∂p` | its generalised derivatives |
+//!
+//! A law knows neither gaps nor shape functions, and nothing of where the trial comes from: a multiplier, a penalty or an
+//! augmented Lagrangian. The friction traction is that on the slave, against its slip; with `y` the slip, a law that
+//! returns to the closest point of a convex set is associated: the slip is normal to the set (maximum dissipation).
+
+mod coulomb;
+mod tresca;
+
+pub use coulomb::Coulomb;
+pub use tresca::Tresca;
+
+/// Whether a point carries, and whether it slips.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Status {
+    #[default]
+    Open,
+    Stick,
+    Slip,
+}
+
+/// The friction traction under a trial and a pressure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Friction {
+    pub traction: [f64; 2],
+    /// `∂traction/∂trial`, symmetric.
+    pub by_trial: [[f64; 2]; 2],
+    /// `∂traction/∂pressure`.
+    pub by_pressure: [f64; 2],
+    pub slips: bool,
+}
+
+/// The traction under a trial traction: pressure first, then the two tangential components.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Projected {
+    pub traction: [f64; 3],
+    /// `∂traction/∂trial`.
+    pub derivative: [[f64; 3]; 3],
+    pub status: Status,
+}
+
+/// Coefficients that no law can have.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("a law of friction needs finite values that are not negative, not {value}")]
+pub struct LawError {
+    pub value: f64,
+}
+
+/// A law of friction.
+pub trait Law: std::fmt::Debug + Send + Sync {
+    /// The admissible friction traction closest to the trial, under a pressure that is positive.
+    fn friction(&self, trial: [f64; 2], pressure: f64) -> Friction;
+
+    /// How much of the available friction a traction uses: 1 where it slips.
+    fn utilisation(&self, traction: [f64; 2], pressure: f64) -> f64;
+
+    /// The largest product of `w` with the friction that a unit of pressure makes available. With `w` the compliance of
+    /// a node between pressure and friction, its state is unique for every load as long as this is less than its
+    /// compliance under pressure.
+    fn coupling(&self, w: [f64; 2]) -> f64;
+
+    /// The admissible traction closest to the trial: a pressure that is not negative, and friction.
+    fn project(&self, trial: [f64; 3]) -> Projected {
+        let pressure = trial[0];
+        if pressure.is_nan() || pressure <= 0.0 {
+            return Projected::default();
+        }
+        let friction = self.friction([trial[1], trial[2]], pressure);
+        let [t, r, d] = [friction.traction, friction.by_pressure, friction.by_trial[0]];
+        let e = friction.by_trial[1];
+        Projected {
+            traction: [pressure, t[0], t[1]],
+            derivative: [[1.0, 0.0, 0.0], [r[0], d[0], d[1]], [r[1], e[0], e[1]]],
+            status: if friction.slips { Status::Slip } else { Status::Stick },
+        }
+    }
+}
+
+/// Friction that the trial itself satisfies.
+fn stuck(trial: [f64; 2]) -> Friction {
+    Friction { traction: trial, by_trial: [[1.0, 0.0], [0.0, 1.0]], by_pressure: [0.0; 2], slips: false }
+}
+
+/// The return of a trial onto a circle, and the unit vector along it.
+fn onto_circle(trial: [f64; 2], radius: f64) -> (Friction, [f64; 2]) {
+    let size = trial[0].hypot(trial[1]);
+    if size <= radius {
+        return (stuck(trial), [0.0; 2]);
+    }
+    let along = [trial[0] / size, trial[1] / size];
+    let share = radius / size;
+    let (diagonal, off) = (|k: usize| share * along[1 - k] * along[1 - k], -share * along[0] * along[1]);
+    let by_trial = [[diagonal(0), off], [off, diagonal(1)]];
+    let traction = along.map(|a| radius * a);
+    (Friction { traction, by_trial, by_pressure: [0.0; 2], slips: true }, along)
+}
+
+fn checked(values: &[f64]) -> Result<(), LawError> {
+    match values.iter().find(|v| !v.is_finite() || **v < 0.0) {
+        Some(&value) => Err(LawError { value }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests;

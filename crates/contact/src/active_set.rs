@@ -98,7 +98,7 @@ const MOST_ITERATIONS: usize = 200;
 const PATIENCE: usize = 10;
 /// The share of the springs that is left, one after the other: from springs that keep a body near to nearly none. Beyond
 /// the last a body that contact holds feels less of its spring than of round-off.
-const SPRINGS_LEFT: [f64; 7] = [1.0, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
+pub(crate) const SPRINGS_LEFT: [f64; 7] = [1.0, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
 /// Columns solved for at once.
 const COLUMNS: usize = 32;
 

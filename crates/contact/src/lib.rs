@@ -9,6 +9,7 @@
 //! - [`obstacle`]: the closest point of a slave point, on faces, edges and vertices, or on a rigid body.
 //! - [`points`]: the points under test, their rows, and the one assembler of residual and tangent.
 //! - [`active_set`]: which nodes carry; [`mod@law`]: how they answer.
+//! - [`friction`]: stick and slip.
 //! - [`balance`]: whether contact can hold free bodies against their loads.
 //! - [`recovery`]: the pressure as it is shown; [`mod@zone`]: where the zone of contact ends.
 //!
@@ -17,6 +18,7 @@
 
 pub mod active_set;
 pub mod balance;
+pub mod friction;
 pub mod kinematics;
 pub mod law;
 pub mod mortar;

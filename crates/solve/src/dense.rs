@@ -1,5 +1,10 @@
-//! Small dense systems: the Newton step on a contact front has a few dozen unknowns.
+//! Dense systems: the Newton step on a contact front has a few dozen unknowns, that on tractions of contact some
+//! thousands.
 
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::lu::partial_pivoting::{factor, solve as substitution};
+use faer::perm::PermRef;
+use faer::{Mat, MatMut, MatRef, Par};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// Solves `A x = b` for a row-major matrix by LU with partial pivoting; none if the matrix is singular.
@@ -24,6 +29,64 @@ impl Factor {
         let mut x = DVector::from_column_slice(b);
         self.0.solve_mut(&mut x);
         x.as_slice().to_vec()
+    }
+}
+
+/// `P A = L U` of an unsymmetric matrix of any size, by one thread: the digits are the same on every machine.
+pub struct Lu {
+    /// `L` below the diagonal, `U` on it and above.
+    factors: Mat<f64>,
+    rows: Vec<usize>,
+    inverse: Vec<usize>,
+    sign: f64,
+}
+
+impl Lu {
+    /// Factorises a matrix of so many rows given by its columns, one after the other, with partial pivoting.
+    pub fn new(n: usize, columns: &[f64]) -> Self {
+        let mut factors = MatRef::from_column_major_slice(columns, n, n).to_owned();
+        let (mut rows, mut inverse) = (vec![0usize; n], vec![0usize; n]);
+        let scratch = factor::lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Default::default());
+        let (info, _) = factor::lu_in_place(
+            factors.as_mut(),
+            &mut rows,
+            &mut inverse,
+            Par::Seq,
+            MemStack::new(&mut MemBuffer::new(scratch)),
+            Default::default(),
+        );
+        let sign = if info.transposition_count.is_multiple_of(2) { 1.0 } else { -1.0 };
+        Lu { factors, rows, inverse, sign }
+    }
+
+    fn pivots(&self) -> impl Iterator<Item = f64> {
+        (0..self.factors.nrows()).map(|k| self.factors[(k, k)])
+    }
+
+    /// The smallest pivot relative to the largest: of the size of round-off where the matrix is singular. 1 without
+    /// unknowns.
+    pub fn smallest_pivot(&self) -> f64 {
+        let largest = self.pivots().fold(0.0f64, |m, p| m.max(p.abs()));
+        self.pivots().fold(1.0f64, |m, p| if p.is_nan() { 0.0 } else { m.min(p.abs() / largest) })
+    }
+
+    /// The sign of the determinant.
+    pub fn determinant_sign(&self) -> f64 {
+        self.pivots().fold(self.sign, |sign, p| sign * p.signum())
+    }
+
+    /// Solves `A x = b` in `x`.
+    pub fn solve_in_place(&self, x: &mut [f64]) {
+        let n = x.len();
+        let scratch = substitution::solve_in_place_scratch::<usize, f64>(n, 1, Par::Seq);
+        substitution::solve_in_place(
+            self.factors.as_ref(),
+            self.factors.as_ref(),
+            PermRef::new_checked(&self.rows, &self.inverse, n),
+            MatMut::from_column_major_slice_mut(x, n, 1),
+            Par::Seq,
+            MemStack::new(&mut MemBuffer::new(scratch)),
+        );
     }
 }
 
@@ -59,6 +122,30 @@ mod tests {
             assert!((x.iter().zip(&bx).map(|(x, y)| x * y).sum::<f64>() - 1.0).abs() < 1e-14);
         }
         assert!(super::symmetric_eigen(&a, &[0.0; 9]).is_none());
+    }
+
+    #[test]
+    fn lu_solves_and_knows_the_sign_of_the_determinant() {
+        use nalgebra::DMatrix;
+        for n in [0, 1, 2, 7, 150] {
+            let entry = |i: usize, j: usize| ((i * 31 + j * 17 + i * j) as f64 * 0.77).sin();
+            let mut a = DMatrix::from_fn(n, n, |i, j| entry(i, j) + f64::from(u8::from(i == j)));
+            let x: Vec<f64> = (0..n).map(|k| (k as f64).cos()).collect();
+            let factor = super::Lu::new(n, a.as_slice());
+            let mut y: Vec<f64> = (0..n).map(|i| (0..n).map(|j| a[(i, j)] * x[j]).sum()).collect();
+            factor.solve_in_place(&mut y);
+            assert!(x.iter().zip(&y).all(|(x, y)| (x - y).abs() < 1e-10), "{n}");
+            assert!(factor.smallest_pivot() > 1e-4);
+            let sign = factor.determinant_sign();
+            assert_eq!(sign, a.determinant().signum());
+            if n > 1 {
+                a.swap_rows(0, 1);
+                assert_eq!(super::Lu::new(n, a.as_slice()).determinant_sign(), -sign);
+                let row = a.row(1).into_owned();
+                a.set_row(0, &row);
+                assert!(super::Lu::new(n, a.as_slice()).smallest_pivot() < 1e-14);
+            }
+        }
     }
 
     #[test]

@@ -33,6 +33,9 @@ pub enum ActiveSetError {
     /// Rows that change from one state to the other for ever.
     #[error("the contact state alternates between open and closed at {} points", rows.len())]
     Chatter { rows: Vec<usize> },
+    /// Rows of the pressures whose nodes find no state of stick and slip.
+    #[error("no state of stick and slip was found in {solves} solves")]
+    Friction { solves: usize, rows: Vec<usize> },
     #[error("no contact state was found in {iterations} iterations")]
     TooMany { iterations: usize },
     #[error("interrupted")]

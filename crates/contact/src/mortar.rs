@@ -13,6 +13,7 @@ use crate::surface::ContactSurface;
 use nalgebra::DMatrix;
 use signorini_fem::CellShape;
 use signorini_fem::hierarchic::Values;
+use signorini_geometry::Point;
 
 /// The weighted gap of one pressure node, linear in the displacement: `∫ ψ_k g = gap + Σ coefficient · unknown ≥ 0`.
 #[derive(Clone, Debug, PartialEq)]
@@ -159,6 +160,22 @@ pub fn weighted_gaps<const D: usize>(
     points: &[Vec<GapPoint<D>>],
     shares: &Shares,
 ) -> Vec<WeightedGap> {
+    let mut rows = weighted(slave, master, points, shares, &|_, _, p, _| (p.gap, p.direction));
+    rows.retain(|row| row.weight > 0.0 && !row.terms.is_empty());
+    rows
+}
+
+/// What of the way between the sides counts at a point of a face for a node, by its value at rest and its direction.
+pub(crate) type Component<'a, const D: usize> = &'a dyn Fn(usize, usize, &GapPoint<D>, u32) -> (f64, Point<D>);
+
+/// A component of the way from the master to the slave in the mean, for every pressure node.
+pub(crate) fn weighted<const D: usize>(
+    slave: &dyn ContactSurface<D>,
+    master: Option<&dyn ContactSurface<D>>,
+    points: &[Vec<GapPoint<D>>],
+    shares: &Shares,
+    component: Component<'_, D>,
+) -> Vec<WeightedGap> {
     let mut rows: Vec<WeightedGap> = (0u32..)
         .zip(&shares.weight)
         .map(|(node, weight)| WeightedGap { gap: 0.0, weight: *weight, terms: Vec::new(), forces: Vec::new(), node })
@@ -166,7 +183,7 @@ pub fn weighted_gaps<const D: usize>(
     let mut trace = Vec::new();
     for (face, list) in points.iter().enumerate() {
         let mut touched: Vec<u32> = Vec::new();
-        for (p, of_point) in list.iter().zip(&shares.of_point[face]) {
+        for (q, (p, of_point)) in list.iter().zip(&shares.of_point[face]).enumerate() {
             trace.clear();
             slave.trace(face, &p.s, &mut trace);
             let of_slave = trace.len();
@@ -175,13 +192,14 @@ pub fn weighted_gaps<const D: usize>(
             }
             for (node, share) in of_point {
                 let row = &mut rows[*node as usize];
-                row.gap += share * p.gap;
+                let (value, direction) = component(face, q, p, *node);
+                row.gap += share * value;
                 touched.push(*node);
                 for (m, (unknown, value)) in trace.iter().enumerate() {
                     let sign = if m < of_slave { *share } else { -share };
                     for i in 0..D {
-                        if p.direction[i] != 0.0 {
-                            row.terms.push((unknown + i as u32, sign * value * p.direction[i]));
+                        if direction[i] != 0.0 {
+                            row.terms.push((unknown + i as u32, sign * value * direction[i]));
                         }
                     }
                 }
@@ -192,7 +210,6 @@ pub fn weighted_gaps<const D: usize>(
         touched.dedup();
         touched.into_iter().for_each(|node| compress(&mut rows[node as usize].terms));
     }
-    rows.retain(|row| row.weight > 0.0 && !row.terms.is_empty());
     rows
 }
 

@@ -35,6 +35,7 @@ fn run<const D: usize>(n: usize, degree: usize) {
         displacement: &|_, _| Point::<D>::from_fn(|k, _| if k == up { -0.02 } else { 0.0 }),
         load: vec![0.0; model.bodies.unknowns()],
         rigid: vec![Some(Box::new(move |x: &Point<D>| signorini_contact::GapJet::ball(x, &centre, 1.0)))],
+        motion: vec![],
     };
     let state = model.solve(&now, &mut |_, _| true).expect("a solution");
     let solved = start.elapsed().as_secs_f64();

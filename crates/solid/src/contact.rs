@@ -1,6 +1,7 @@
 //! Two sides that may touch: how their contact is tested and kept, and what it came to.
 
 use crate::body::BodySurface;
+use crate::friction::{Friction, FrictionResult, RigidMotion, Rubbing, SlipHistory};
 use crate::model::StepError;
 use crate::supports::Reduction;
 use nalgebra::{DMatrix, DVector};
@@ -93,6 +94,10 @@ pub struct Contact<const D: usize> {
     pub method: Method,
     pub enforcement: Enforcement,
     pub sliding: Sliding,
+    /// Without it the sides slide freely.
+    pub friction: Option<Friction<D>>,
+    /// The slips of the rows, and what they count from.
+    pub(crate) slips: SlipHistory<D>,
     pub(crate) nodes: PressureNodes<D>,
     pub(crate) points: Vec<Vec<GapPoint<D>>>,
     pub(crate) rows: Vec<WeightedGap>,
@@ -138,6 +143,8 @@ impl<const D: usize> Contact<D> {
             method: Method::Mortar,
             enforcement: Enforcement::Multiplier,
             sliding: Sliding::Small,
+            friction: None,
+            slips: SlipHistory::default(),
             nodes,
             points: Vec::new(),
             rows: Vec::new(),
@@ -154,14 +161,15 @@ impl<const D: usize> Contact<D> {
         }
     }
 
-    /// Finds out what faces what with the bodies displaced by `u`. `rigid` is where a rigid master is now.
+    /// Finds out what faces what with the bodies displaced by `u`. `rigid` is where a rigid master is now, and `motion`
+    /// how it came there.
     ///
     /// With small sliding `u` is not read, and rows between bodies are found once. `near` says that `u` is so near the
     /// solution that the cuts of the faces may stay; what each point faces is found anew all the same.
     pub(crate) fn search(
         &mut self,
         reduction: &Reduction<D>,
-        rigid: Option<&RigidGap<D>>,
+        (rigid, motion): (Option<&RigidGap<D>>, Option<&RigidMotion<D>>),
         u: &[f64],
         near: bool,
     ) -> Result<(), StepError> {
@@ -169,7 +177,7 @@ impl<const D: usize> Contact<D> {
             // Between bodies everything is at rest: what was found once stays.
             (Sliding::Small, _) if matches!(self.master, Master::Surface(_)) && !self.rows.is_empty() => return Ok(()),
             (Sliding::Small, Method::Mortar) if self.enforcement == Enforcement::Nitsche => self.point_rows(rigid),
-            (Sliding::Small, Method::Mortar) => self.search_segments(reduction, rigid),
+            (Sliding::Small, Method::Mortar) => self.search_segments(reduction, rigid, motion)?,
             (Sliding::Small, _) => self.search_points(reduction, rigid, None, false)?,
             (Sliding::Finite, _) => self.search_points(reduction, rigid, Some(u), near)?,
         }
@@ -308,8 +316,14 @@ impl<const D: usize> Contact<D> {
         self.cut(&self.slave, self.master.surface(), &self.nodes, rigid)
     }
 
-    fn search_segments(&mut self, reduction: &Reduction<D>, rigid: Option<&RigidGap<D>>) {
+    fn search_segments(
+        &mut self,
+        reduction: &Reduction<D>,
+        rigid: Option<&RigidGap<D>>,
+        motion: Option<&RigidMotion<D>>,
+    ) -> Result<(), StepError> {
         self.points = self.cut_at_rest(rigid);
+        self.move_rigid(motion);
         if matches!(self.master, Master::Rigid) {
             // Faces that look away from a rigid body cannot touch it.
             for (face, list) in self.points.iter_mut().enumerate() {
@@ -322,7 +336,9 @@ impl<const D: usize> Contact<D> {
         let shares = shares(&self.slave, &self.nodes, &self.points, &|node| self.is_folded(reduction, node));
         self.rows = weighted_gaps(&self.slave, self.master.surface(), &self.points, &shares);
         self.tests = Tests::in_the_mean(&self.points, &shares);
+        self.find_slips(&shares)?;
         self.given = shares.given;
+        Ok(())
     }
 
     /// The points of the slave side with the forces on them, from the pressures of the rows.
@@ -414,6 +430,8 @@ pub struct ContactResult<const D: usize> {
     pub area: f64,
     /// The same by face, and where it ends.
     pub zone: ContactZone,
+    /// With friction, what it came to.
+    pub friction: Option<FrictionResult<D>>,
 }
 
 /// The state of a pressure node.
@@ -430,6 +448,8 @@ pub struct PressureNode<const D: usize> {
     pub active: bool,
     pub weight: f64,
     pub number: u32,
+    /// With friction.
+    pub rubbing: Rubbing<D>,
 }
 
 impl<const D: usize> Contact<D> {
@@ -489,6 +509,7 @@ impl<const D: usize> Contact<D> {
                     active: carries[n],
                     weight: weight[n],
                     number: n as u32,
+                    rubbing: Rubbing::default(),
                 }
             })
             .collect()

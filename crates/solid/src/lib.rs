@@ -5,7 +5,7 @@
 //! - [`stiffness`]: cells, and how they avoid locking.
 //! - [`supports`]: what is prescribed, and the unknowns that remain; [`rigid_modes`]: what nothing holds;
 //!   `reactions`: the forces of the supports; `held`: whether contact can hold the rest.
-//! - [`contact`]: two sides that may touch.
+//! - [`contact`]: two sides that may touch; [`friction`]: stick and slip between them.
 //! - [`loads`]: forces on sides and in volumes.
 //! - [`model`]: everything together, solved at one time; [`mod@sliding`]: Newton's method where contacts slide far.
 //! - [`state`]: what comes out.
@@ -13,6 +13,7 @@
 mod assembly;
 pub mod body;
 pub mod contact;
+pub mod friction;
 mod held;
 pub mod loads;
 pub mod material;
@@ -27,6 +28,7 @@ pub mod supports;
 
 pub use body::{Bodies, Body, BodySurface};
 pub use contact::{Contact, ContactResult, Enforcement, Master, Method, PressureNode, RigidGap, Sliding, facing};
+pub use friction::{Friction, FrictionHistory, FrictionResult, RigidMotion, Rubbing};
 pub use loads::{Load, LoadKind};
 pub use material::{Elastic, Space, von_mises};
 pub use model::{Circumstances, Memory, Model, StepError};

@@ -3,11 +3,13 @@
 use crate::assembly::{assemble, graph, positions};
 use crate::body::Bodies;
 use crate::contact::{Contact, Enforcement, RigidGap, Sliding};
+use crate::friction::{FrictionHistory, RigidMotion, refuse_unsupported};
 use crate::held::check_held;
 use crate::rigid_modes::{FreeMode, free_modes};
 use crate::sliding::Settled;
 use crate::state::{Found, State};
 use crate::supports::{Displacement, Reduction, Support, SupportError};
+use signorini_contact::friction::FrictionalContact;
 use signorini_contact::{ActiveSet, ActiveSetError, Compliance, ContactState, Softness, Spring, WeightedGap, compress};
 use signorini_solve::cholesky::{Cost, Symbolic};
 use signorini_solve::dissection::nested_dissection;
@@ -37,6 +39,17 @@ pub enum StepError {
     Newton { contact: String, history: Vec<f64>, place: String },
     #[error("contact `{contact}`: Nitsche's method is for small sliding")]
     NitscheSlides { contact: String },
+    #[error("contact `{contact}`: friction is for small sliding, with multipliers in the mean, and {unlike}")]
+    FrictionUnsupported { contact: String, unlike: String },
+    /// An axis of friction that lies nowhere in the surface.
+    #[error("contact `{contact}`: the axis of friction is normal to the surface at {place}")]
+    FrictionAxis { contact: String, place: String },
+    /// The loads ask for more friction than there is.
+    #[error(
+        "body `{body}` slides away {direction}: its loads ask for a friction of {demanded:.6e}, and at most \
+         {available:.6e} is available"
+    )]
+    Slides { body: String, direction: String, demanded: f64, available: f64 },
     #[error("interrupted")]
     Interrupted,
 }
@@ -55,13 +68,16 @@ pub struct Model<const D: usize> {
     /// The stiffness of the unknowns that remain, springs included; handed on to its factor unless contact adds to it.
     pub(crate) reduced: Option<SymmetricMatrix>,
     pub(crate) symbolic: Symbolic,
-    factor: Option<Factor>,
+    pub(crate) factor: Option<Factor>,
     pub(crate) springs: Vec<Spring>,
     free: Vec<FreeMode>,
     active: ActiveSet,
     started: bool,
     /// The last state found with finite sliding, from which the next one starts.
     pub(crate) settled: Option<Settled>,
+    /// With friction, what slips count from; none before the first state.
+    pub(crate) history: Option<FrictionHistory>,
+    pub(crate) rubbing: FrictionalContact,
 }
 
 /// What may change with time.
@@ -71,6 +87,9 @@ pub struct Circumstances<'a, const D: usize> {
     pub load: Vec<f64>,
     /// Where rigid masters are, by contact.
     pub rigid: Vec<Option<RigidGap<D>>>,
+    /// How their points were displaced since the start, by contact, for friction; where there is none they only move
+    /// along their normals.
+    pub motion: Vec<Option<RigidMotion<D>>>,
 }
 
 /// What a model carries from one time to the next.
@@ -80,9 +99,11 @@ pub struct Memory {
     pub active: (Vec<usize>, usize),
     /// With finite sliding: the last state found.
     pub settled: Option<Settled>,
+    /// With friction: what slips count from.
+    pub friction: Option<FrictionHistory>,
 }
 
-struct System<'a>(&'a Factor);
+pub(crate) struct System<'a>(pub &'a Factor);
 
 impl Compliance for System<'_> {
     fn solve_columns(&self, b: &mut [f64]) -> Result<(), SolveError> {
@@ -113,6 +134,7 @@ impl<const D: usize> Model<D> {
             }
             terms.extend(contact.stress_terms(&bodies));
         }
+        refuse_unsupported(&contacts)?;
         let free = free_modes(&bodies, &supports, &reduction);
         Ok(Model {
             bodies,
@@ -130,6 +152,8 @@ impl<const D: usize> Model<D> {
             active: ActiveSet::default(),
             started: false,
             settled: None,
+            history: None,
+            rubbing: FrictionalContact::default(),
         })
     }
 
@@ -220,14 +244,20 @@ impl<const D: usize> Model<D> {
         if let Some(stiffness) = self.reduced.take() {
             self.factor = Some(self.symbolic.factor(stiffness)?);
         }
+        if self.rubs() {
+            let found = self.solve_rubbing(&offset, &load, &ends, &mut logged)?;
+            return Ok(self.rubbed(found, residuals, now, (&offset, &ends)));
+        }
         let Some(factor) = &self.factor else { return Err(self.free_body(&[])) };
         let mut active = std::mem::take(&mut self.active);
-        let found = self.solve_enforced(factor, &mut active, &rows, &ends, &load, &mut logged);
+        let found = self.solve_enforced(&rows, &ends, &mut logged, &mut |soft, report| {
+            active.solve(&System(factor), &rows, soft, &self.springs, &load, report)
+        });
         self.active = active;
         let (found, _) = found.map_err(|error| self.explained(error, &ends))?;
         let u = self.reduction.expand(&found.u, &offset);
         let ContactState { pressure, gap, active, iterations, .. } = found;
-        Ok(self.state(Found { u, pressure, gap, active, iterations, residuals }, &now.load, &ends))
+        Ok(self.state(Found { u, pressure, gap, active, iterations, residuals, rubbing: None }, &now.load, &ends))
     }
 
     /// Looks without solving whether supports, contacts and loads make sense at a time, with the bodies at rest.
@@ -257,11 +287,12 @@ impl<const D: usize> Model<D> {
         let (active, rows) = &memory.active;
         active.iter().all(|row| row < rows)
             && memory.settled.as_ref().is_none_or(|s| s.u.len() == self.bodies.unknowns())
+            && memory.friction.as_ref().is_none_or(|h| self.has_history(h))
     }
 
     /// What the next time goes on from.
     pub fn save(&self) -> Memory {
-        Memory { active: self.active.save(), settled: self.settled.clone() }
+        Memory { active: self.active.save(), settled: self.settled.clone(), friction: self.history.clone() }
     }
 
     /// Goes on from what was saved; `first` are the circumstances of the first time of all, where the sides were found.
@@ -274,6 +305,7 @@ impl<const D: usize> Model<D> {
         self.search(first, &vec![0.0; self.bodies.unknowns()], false)?;
         self.active = ActiveSet::restored(memory.active);
         self.settled = memory.settled;
+        self.remember(memory.friction);
         Ok(())
     }
 
@@ -292,8 +324,9 @@ impl<const D: usize> Model<D> {
     ) -> Result<Vec<usize>, StepError> {
         let mut ends = Vec::new();
         let mut count = 0;
-        for (contact, rigid) in self.contacts.iter_mut().zip(&now.rigid) {
-            contact.search(&self.reduction, rigid.as_ref(), u, near)?;
+        let motions = now.motion.iter().map(Option::as_ref).chain(std::iter::repeat(None));
+        for ((contact, rigid), motion) in self.contacts.iter_mut().zip(&now.rigid).zip(motions) {
+            contact.search(&self.reduction, (rigid.as_ref(), motion), u, near)?;
             count += contact.rows.len();
             ends.push(count);
         }
@@ -309,18 +342,16 @@ impl<const D: usize> Model<D> {
         Ok(ends)
     }
 
-    /// The active set, with outer iterations where the enforcement asks for them; and how the rows gave way in the end.
+    /// The contact state of rows that give way as the enforcement asks, with outer iterations where it does; and how
+    /// they gave way in the end.
     pub(crate) fn solve_enforced(
         &self,
-        factor_of_bodies: &Factor,
-        active: &mut ActiveSet,
         rows: &[WeightedGap],
         ends: &[usize],
-        load: &[f64],
         report: &mut dyn FnMut(usize, usize) -> bool,
+        solve: SolveRows<'_>,
     ) -> Result<(ContactState, Vec<Softness>), ActiveSetError> {
         let mut soft = vec![Softness::default(); rows.len()];
-        let system = System(factor_of_bodies);
         let range = |k: usize| if k == 0 { 0..ends[0] } else { ends[k - 1]..ends[k] };
         // Multiples of the stiffness of the cells.
         let mut factor = vec![100.0; self.contacts.len()];
@@ -338,7 +369,7 @@ impl<const D: usize> Model<D> {
                     soft[row].compliance = rows[row].weight / (factor * stiffness);
                 }
             }
-            let mut found = active.solve(&system, rows, &soft, &self.springs, load, report)?;
+            let mut found = solve(&soft, report)?;
             total += found.iterations;
             found.iterations = total;
             let mut again = false;
@@ -407,7 +438,7 @@ impl<const D: usize> Model<D> {
     fn contact_error(&self, error: ActiveSetError, ends: &[usize]) -> StepError {
         let mut names: Vec<&str> = Vec::new();
         let mut places = Vec::new();
-        if let ActiveSetError::Chatter { rows } = &error {
+        if let ActiveSetError::Chatter { rows } | ActiveSetError::Friction { rows, .. } = &error {
             for &row in rows {
                 let which = ends.iter().position(|end| row < *end).unwrap_or(0);
                 let contact = &self.contacts[which];
@@ -423,6 +454,10 @@ impl<const D: usize> Model<D> {
         StepError::Contact { contact: names.join("`, `"), error, places }
     }
 }
+
+/// Finds the state of rows that give way as they are told.
+pub(crate) type SolveRows<'a> =
+    &'a mut dyn FnMut(&[Softness], &mut dyn FnMut(usize, usize) -> bool) -> Result<ContactState, ActiveSetError>;
 
 /// The most outer iterations of a penalty that is adjusted, or of an augmented Lagrangian.
 const MOST_OUTER: usize = 60;
@@ -472,6 +507,7 @@ mod tests {
                 displacement: &|_, _| Point::<D>::zeros(),
                 load: vec![0.0; model.bodies.unknowns()],
                 rigid: vec![],
+                motion: vec![],
             };
             model.examine(&still).unwrap();
             let told = model.cost().unwrap();

@@ -9,7 +9,7 @@
 //! pressures (the exact penalty function of Han 1977) is halved.
 
 use crate::contact::Contact;
-use crate::model::{Circumstances, Model, StepError, reduced};
+use crate::model::{Circumstances, Model, StepError, System, reduced};
 use crate::state::{Found, State};
 use signorini_contact::{ActiveSet, ActiveSetError, Softness, WeightedGap};
 use signorini_solve::{SolveError, SymmetricMatrix};
@@ -100,6 +100,7 @@ impl<const D: usize> Model<D> {
                     pressure: pressures,
                     iterations,
                     residuals: history,
+                    rubbing: None,
                 };
                 self.settled = Some(Settled { u: around.u, pressure });
                 return Ok(self.state(found, &now.load, &around.ends));
@@ -163,7 +164,9 @@ impl<const D: usize> Model<D> {
         let start = around.rows.iter().enumerate().filter(|(_, (key, _))| before(key)).map(|(k, _)| k);
         let mut active = ActiveSet::starting_with(start);
         let (found, soft) = self
-            .solve_enforced(&factor, &mut active, &rows, &around.ends, &load, &mut |_, _| true)
+            .solve_enforced(&rows, &around.ends, &mut |_, _| true, &mut |soft, report| {
+                active.solve(&System(&factor), &rows, soft, &self.springs, &load, report)
+            })
             .map_err(|error| match self.check_held(&now.load) {
                 // Nothing is found because there is nothing.
                 Err(pulled) if error != ActiveSetError::Interrupted => pulled,

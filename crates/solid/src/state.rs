@@ -1,6 +1,7 @@
 //! What one time came to: displacement, pressures, forces.
 
 use crate::contact::{Contact, ContactResult, PressureNode};
+use crate::friction::{Found as FoundFriction, FrictionAt, Rubbing, friction_result};
 use crate::model::Model;
 use signorini_contact::{ContactZone, NodeState, recovered, zone};
 use signorini_geometry::Point;
@@ -21,6 +22,8 @@ pub struct State<const D: usize> {
     /// Strain energy.
     pub energy: f64,
     pub unknowns: usize,
+    /// With friction: whether the equilibrium is one that a disturbance leaves.
+    pub unstable: bool,
 }
 
 /// Displacement of all unknowns, and pressure, weighted gap and status of all rows.
@@ -31,6 +34,8 @@ pub(crate) struct Found {
     pub active: Vec<bool>,
     pub iterations: usize,
     pub residuals: Vec<f64>,
+    /// Friction of all rows.
+    pub rubbing: Option<FoundFriction>,
 }
 
 impl<const D: usize> Model<D> {
@@ -45,12 +50,13 @@ impl<const D: usize> Model<D> {
         for (contact, &end) in self.contacts.iter().zip(ends) {
             let rows = first..end;
             let (pressure, gap, active) =
-                (&found.pressure[rows.clone()], &found.gap[rows.clone()], &found.active[rows]);
+                (&found.pressure[rows.clone()], &found.gap[rows.clone()], &found.active[rows.clone()]);
             first = end;
             // With Nitsche's method rows hold the stress too.
             let bare: Vec<f64> = contact.bare.iter().map(|row| row.at(&u)).collect();
             let gap = if contact.bare.is_empty() { gap } else { &bare };
-            results.push(result(contact, pressure, gap, active, &mut contact_force));
+            let rubbing = found.rubbing.as_ref().map(|f| f.of(rows.clone()));
+            results.push(result(contact, pressure, gap, active, rubbing, &mut contact_force));
         }
         if let Some(added) = &self.added {
             contact_force.iter_mut().zip(added.multiply(&u)).for_each(|(f, a)| *f -= a);
@@ -75,6 +81,7 @@ impl<const D: usize> Model<D> {
             imbalance,
             energy,
             unknowns: self.reduction.unknowns,
+            unstable: found.rubbing.is_some_and(|f| f.unstable),
         }
     }
 }
@@ -85,10 +92,19 @@ fn result<const D: usize>(
     pressures: &[f64],
     gaps: &[f64],
     actives: &[bool],
+    rubbing: Option<&[FrictionAt]>,
     contact_force: &mut [f64],
 ) -> ContactResult<D> {
-    let mut result =
-        ContactResult::<D> { nodes: Vec::new(), force: Point::<D>::zeros(), area: 0.0, zone: ContactZone::default() };
+    let mut result = ContactResult::<D> {
+        nodes: Vec::new(),
+        force: Point::<D>::zeros(),
+        area: 0.0,
+        zone: ContactZone::default(),
+        friction: None,
+    };
+    // With friction a row has a pressure and tractions along its tangents.
+    let rubbing = rubbing.filter(|_| contact.friction.is_some());
+    let mut of_friction = vec![0.0; if rubbing.is_some() { contact_force.len() } else { 0 }];
     let mut own = vec![0.0; contact_force.len()];
     let body = contact.slave.body();
     let directions = body.directions();
@@ -102,6 +118,18 @@ fn result<const D: usize>(
                 forces[k][direction] += c * pressures[k];
             }
         }
+        if let Some(found) = rubbing.map(|f| &f[k]) {
+            for (slip, t) in contact.slips.rows[k].rows.iter().zip(&found.traction) {
+                for (unknown, c) in slip.push() {
+                    own[*unknown as usize] += c * t;
+                    of_friction[*unknown as usize] += c * t;
+                    let of_slave = (*unknown as usize).checked_sub(body.first).and_then(|n| *directions.get(n)?);
+                    if let Some(direction) = of_slave {
+                        forces[k][direction] += c * t;
+                    }
+                }
+            }
+        }
         if !contact.at_points() {
             result.nodes.push(PressureNode {
                 x: contact.nodes.positions[row.node as usize],
@@ -112,6 +140,7 @@ fn result<const D: usize>(
                 active: actives[k],
                 weight: row.weight,
                 number: row.node,
+                rubbing: rubbing.map_or(Rubbing::default(), |f| contact.rubbing(k, pressures[k], &f[k])),
             });
         }
     }
@@ -140,6 +169,7 @@ fn result<const D: usize>(
     let pressure = recovered(&contact.slave, &contact.nodes, &points, &multiplier, &active, &contact.given);
     result.zone = zone(&contact.slave, &contact.nodes, &points, &states);
     result.area = result.zone.face_area.iter().sum();
+    result.friction = rubbing.map(|found| friction_result(&result, found, body.resultant(&of_friction)));
     result.nodes.iter_mut().for_each(|node| node.pressure = pressure[node.number as usize]);
     result
 }

@@ -29,7 +29,7 @@ fn solve<const D: usize>(
     displacement: &dyn Fn(usize, &Point<D>) -> Point<D>,
 ) -> (Model<D>, State<D>) {
     let mut model = Model::new(bodies, supports, Vec::new()).unwrap();
-    let now = Circumstances { displacement, load, rigid: Vec::new() };
+    let now = Circumstances { displacement, load, rigid: Vec::new(), motion: vec![] };
     let state = model.solve(&now, &mut |_, _| true).unwrap();
     (model, state)
 }

@@ -61,6 +61,7 @@ fn solve_on(axes: &[Vec<f64>; 2], degree: usize, length: f64, modulus: f64, angl
         displacement: &|s, _| if s == 0 { up * (-0.085 * length) } else { Point::<2>::zeros() },
         load: vec![0.0; model.bodies.unknowns()],
         rigid: vec![Some(Box::new(move |x: &Point<2>| signorini_contact::GapJet::flat(x.dot(&up), up)))],
+        motion: vec![],
     };
     let state = model.solve(&now, &mut |_, _| true).unwrap();
     let c = &state.contacts[0];

@@ -55,6 +55,7 @@ fn balance<const D: usize>() {
                     displacement: &|_, _| Point::<D>::zeros(),
                     load: vec![0.0; model.bodies.unknowns()],
                     rigid: vec![None],
+                    motion: vec![],
                 };
                 model.solve(&now, &mut |_, _| true).unwrap();
                 let mut modes: Vec<Box<dyn Fn(&Point<D>) -> Point<D>>> = Vec::new();
@@ -116,6 +117,7 @@ fn gaps_close_as_the_bodies_approach() {
                 displacement: &|_, _| Point::<2>::zeros(),
                 load: vec![0.0; model.bodies.unknowns()],
                 rigid: vec![None],
+                motion: vec![],
             };
             let state = model.solve(&now, &mut |_, _| true).unwrap();
             state.contacts[0].nodes.iter().map(|n| n.gap).fold(f64::INFINITY, f64::min)
@@ -150,6 +152,7 @@ fn enforcements_agree() {
             displacement: &|s, _| Point::<2>::new(0.0, if s == 0 { -0.02 } else { 0.0 }),
             load: vec![0.0; model.bodies.unknowns()],
             rigid: vec![Some(Box::new(move |x: &Point<2>| signorini_contact::GapJet::ball(x, &centre, 2.0)))],
+            motion: vec![],
         };
         let state = model.solve(&now, &mut |_, _| true).unwrap();
         let deepest = state.contacts[0].nodes.iter().map(|n| -n.gap).fold(0.0, f64::max);
@@ -214,6 +217,7 @@ fn nitsches_equations_hold() {
         displacement: &|_, _| Point::<2>::new(0.0, -0.03),
         load: vec![0.0; model.bodies.unknowns()],
         rigid: vec![Some(Box::new(ball))],
+        motion: vec![],
     };
     let state = model.solve(&now, &mut |_, _| true).unwrap();
     let body = &model.bodies.list[0];

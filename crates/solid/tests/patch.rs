@@ -91,7 +91,7 @@ fn deviation<const D: usize>(patch: &Patch) -> (f64, f64) {
     };
     press(1, groups[1]["top"].clone());
     let mut model = Model::new(bodies, supports, vec![contact]).unwrap();
-    let now = Circumstances { displacement: &|_, _| Point::<D>::zeros(), load, rigid: vec![None] };
+    let now = Circumstances { displacement: &|_, _| Point::<D>::zeros(), load, rigid: vec![None], motion: vec![] };
     let state = model.solve(&now, &mut |_, _| true).unwrap();
     assert!(state.iterations <= 3);
     let direction = turn(Point::<D>::from_fn(|k, _| f64::from(u8::from(k == up)))) - turn(Point::<D>::zeros());
@@ -212,7 +212,7 @@ fn overhang(degree: usize, end: f64, upper_is_slave: bool) -> (f64, usize) {
     let (slave, master) = if upper_is_slave { (high, low) } else { (low, high) };
     let contact = Contact::new("interface", slave, Master::Surface(master));
     let mut model = Model::new(bodies, supports, vec![contact]).unwrap();
-    let now = Circumstances { displacement: &|_, _| Point::<2>::zeros(), load, rigid: vec![None] };
+    let now = Circumstances { displacement: &|_, _| Point::<2>::zeros(), load, rigid: vec![None], motion: vec![] };
     let state = model.solve(&now, &mut |_, _| true).unwrap();
     let mut exact = Matrix3::zeros();
     (exact[(1, 1)], exact[(2, 2)]) = (-PRESSURE, -NU * PRESSURE);
@@ -312,7 +312,8 @@ fn tetrahedra_on_hexahedra() {
             let (slave, master) = if upper_is_slave { (high, low) } else { (low, high) };
             let contact = Contact::new("interface", slave, Master::Surface(master));
             let mut model = Model::new(bodies, supports, vec![contact]).unwrap();
-            let now = Circumstances { displacement: &|_, _| Point::<3>::zeros(), load, rigid: vec![None] };
+            let now =
+                Circumstances { displacement: &|_, _| Point::<3>::zeros(), load, rigid: vec![None], motion: vec![] };
             let state = model.solve(&now, &mut |_, _| true).unwrap();
             let mut exact = Matrix3::zeros();
             exact[(2, 2)] = -PRESSURE;

@@ -83,6 +83,7 @@ fn on_a_plane<const D: usize>(
         displacement: &|_, x| displacement(x),
         load: vec![0.0; model.bodies.unknowns()],
         rigid: vec![Some(Box::new(move |x: &Point<D>| signorini_contact::GapJet::flat(x.dot(&up), up)))],
+        motion: vec![],
     };
     model.solve(&now, &mut |_, _| true).unwrap()
 }

@@ -41,7 +41,12 @@ fn the_edge_is_singular_like_an_inverse_root() {
     let master = bodies.surface(0, groups[0]["top"].sides.clone());
     let mut model = Model::new(bodies, supports, vec![Contact::new("touch", slave, Master::Surface(master))]).unwrap();
     assert_eq!(model.free_modes().len(), 1, "the punch falls until the block holds it");
-    let now = Circumstances { displacement: &|_, _| signorini_geometry::Point::<2>::zeros(), load, rigid: vec![None] };
+    let now = Circumstances {
+        displacement: &|_, _| signorini_geometry::Point::<2>::zeros(),
+        load,
+        rigid: vec![None],
+        motion: vec![],
+    };
     let state = model.solve(&now, &mut |_, _| true).unwrap();
     let contact = &state.contacts[0];
     assert!((contact.force[1] / 10.0 - 1.0).abs() < 1e-7);

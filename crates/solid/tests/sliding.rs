@@ -61,6 +61,7 @@ fn solve<const D: usize>(
         displacement: &|s, _| if s == 0 { to } else { base },
         load: vec![0.0; model.bodies.unknowns()],
         rigid: vec![Some(Box::new(move |x: &Point<D>| GapJet::ball(x, &centre, 0.8)))],
+        motion: vec![],
     };
     model.solve(&now, &mut |iteration, _| iteration < allowed)
 }

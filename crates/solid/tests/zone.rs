@@ -67,6 +67,7 @@ fn error(profile: Profile, way: (Method, Enforcement), degree: usize, cells: usi
         displacement: &|s, x| if s == 2 { Point::<2>::zeros() } else { far(x) },
         load: vec![0.0; model.bodies.unknowns()],
         rigid: vec![Some(Box::new(move |x: &Point<2>| signorini_contact::GapJet::flat(x[1], up)))],
+        motion: vec![],
     };
     let state = model.solve(&now, &mut |_, _| true).unwrap();
     state.contacts[0].area / PI - 1.0
@@ -121,6 +122,7 @@ fn areas_in_space() {
         displacement: &|s, _| Point::<3>::new(0.0, 0.0, if s == 0 { -0.0085 } else { 0.0 }),
         load: vec![0.0; model.bodies.unknowns()],
         rigid: vec![Some(Box::new(move |x: &Point<3>| signorini_contact::GapJet::ball(x, &centre, 100.0)))],
+        motion: vec![],
     };
     let state = model.solve(&now, &mut |_, _| true).unwrap();
     let contact = &state.contacts[0];

@@ -46,8 +46,9 @@ pub struct FrictionState {
     pub iterations: usize,
     /// The step of the ladder that found it.
     pub level: usize,
-    /// The factor of all friction below which every node by itself has one state only; the least over the closed nodes.
-    pub uniqueness: f64,
+    /// For every closed node the factor of all friction below which it has one state by itself for every load: `W_nn`
+    /// over the most that friction per pressure does on `W_nt`. Infinite for open nodes.
+    pub uniqueness: Vec<f64>,
     /// Whether the equilibrium is one that a disturbance leaves: the determinant of its equations has not the sign that
     /// it has without slip.
     pub unstable: bool,
@@ -267,12 +268,10 @@ impl FrictionalContact {
     }
 }
 
-/// The factor of all friction below which every closed node by itself has one state for every load: `W_nn` over the most
-/// that friction per pressure does on `W_nt`.
-fn uniqueness(nodes: &[Node<'_>], w: &dyn RowCompliance, answers: &[Projected]) -> f64 {
-    let closed = nodes.iter().zip(answers).filter(|(_, a)| a.status != Status::Open);
-    let of = |(node, _): (&Node<'_>, &Projected)| {
-        let law = node.law?;
+/// The factor of all friction below which each closed node by itself has one state for every load.
+fn uniqueness(nodes: &[Node<'_>], w: &dyn RowCompliance, answers: &[Projected]) -> Vec<f64> {
+    let of = |(node, answer): (&Node<'_>, &Projected)| {
+        let law = node.law.filter(|_| answer.status != Status::Open)?;
         let mut along = [0.0; 2];
         for (row, v) in node.rows().skip(1).zip(&node.directions) {
             let coupled = w.entry(node.first, row);
@@ -281,5 +280,5 @@ fn uniqueness(nodes: &[Node<'_>], w: &dyn RowCompliance, answers: &[Projected]) 
         let coupling = law.coupling(along);
         (coupling > 0.0).then(|| w.entry(node.first, node.first) / coupling)
     };
-    closed.filter_map(of).fold(f64::INFINITY, f64::min)
+    nodes.iter().zip(answers).map(|pair| of(pair).unwrap_or(f64::INFINITY)).collect()
 }

@@ -10,16 +10,19 @@
 //! - [`problem`]: nodes, and what is known of the compliance; the natural residual.
 //! - [`newton`]: the semismooth Newton method (Alart & Curnier 1991; Hüeber, Stadler & Wohlmuth 2008).
 //! - [`ladder`]: what is tried where it cycles.
-//! - [`contact`]: the rows of bodies, from one increment to the next.
+//! - [`slip`]: weighted slips of two surfaces, beside their weighted gaps.
+//! - [`contact`]: the rows of bodies, and their state at one time.
 
 pub mod contact;
 pub mod ladder;
 pub mod newton;
 pub mod problem;
+pub mod slip;
 
-pub use contact::{FrictionState, FrictionalContact};
+pub use contact::{Bodies, FrictionState, FrictionalContact};
 pub use ladder::{FrictionError, Solution, solve};
 pub use problem::{Node, Problem, RowCompliance};
+pub use slip::{NoAxis, WeightedSlip, weighted_slips};
 
 #[cfg(test)]
 mod tests;

@@ -53,8 +53,8 @@ impl Law for Coulomb {
         of(0).hypot(of(1))
     }
 
-    fn coupling(&self, w: [f64; 2]) -> f64 {
-        (self.mu[0] * w[0]).hypot(self.mu[1] * w[1])
+    fn per_pressure(&self) -> Option<[f64; 2]> {
+        Some(self.mu)
     }
 }
 

@@ -61,10 +61,16 @@ pub trait Law: std::fmt::Debug + Send + Sync {
     /// How much of the available friction a traction uses: 1 where it slips.
     fn utilisation(&self, traction: [f64; 2], pressure: f64) -> f64;
 
+    /// The most friction per pressure along the axes, the semi-axes of an ellipse; none where friction is not in
+    /// proportion to the pressure.
+    fn per_pressure(&self) -> Option<[f64; 2]>;
+
     /// The largest product of `w` with the friction that a unit of pressure makes available. With `w` the compliance of
     /// a node between pressure and friction, its state is unique for every load as long as this is less than its
     /// compliance under pressure.
-    fn coupling(&self, w: [f64; 2]) -> f64;
+    fn coupling(&self, w: [f64; 2]) -> f64 {
+        self.per_pressure().map_or(0.0, |mu| (mu[0] * w[0]).hypot(mu[1] * w[1]))
+    }
 
     /// The admissible traction closest to the trial: a pressure that is not negative, and friction.
     fn project(&self, trial: [f64; 3]) -> Projected {

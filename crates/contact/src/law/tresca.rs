@@ -31,7 +31,7 @@ impl Law for Tresca {
         if size == 0.0 { 0.0 } else { size / self.limit }
     }
 
-    fn coupling(&self, _: [f64; 2]) -> f64 {
-        0.0
+    fn per_pressure(&self) -> Option<[f64; 2]> {
+        None
     }
 }

@@ -45,9 +45,12 @@ fn failure(error: &StepError) -> Failure {
                 "the increment is too large: it brings the bodies of `{contact}` {depth:.4e} deep into each other; try more increments"
             ),
         ),
-        StepError::Support(_) | StepError::Shape { .. } | StepError::NitscheSlides { .. } => {
-            (Reason::Input, error.to_string())
-        }
+        StepError::Slides { .. } => (Reason::FreeBody, error.to_string()),
+        StepError::Support(_)
+        | StepError::Shape { .. }
+        | StepError::NitscheSlides { .. }
+        | StepError::FrictionUnsupported { .. }
+        | StepError::FrictionAxis { .. } => (Reason::Input, error.to_string()),
         StepError::Newton { history, place, .. } => (
             Reason::Newton,
             format!(

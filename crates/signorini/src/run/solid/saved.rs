@@ -25,5 +25,5 @@ pub fn from_json(mut v: Value) -> Option<Memory> {
             Some(Settled { u: take(&mut s["u"])?, pressure: pressure.into_iter().collect() })
         }
     };
-    Some(Memory { active: take(&mut v["active"])?, settled })
+    Some(Memory { active: take(&mut v["active"])?, settled, friction: None })
 }

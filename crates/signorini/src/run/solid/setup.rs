@@ -134,7 +134,7 @@ pub fn at_time<const D: usize, R>(
             Opposite::Body { .. } => Ok(None),
         })
         .collect::<Result<_, CaseError>>()?;
-    let result = act(model, &Circumstances { displacement: &displacement, load: forces, rigid });
+    let result = act(model, &Circumstances { displacement: &displacement, load: forces, rigid, motion: Vec::new() });
     wrong.into_inner().map_or(Ok(result), Err)
 }
 

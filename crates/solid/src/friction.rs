@@ -146,12 +146,12 @@ impl<const D: usize> Contact<D> {
     }
 }
 
-/// Friction is for the mortar method with multipliers.
+/// Friction is for the mortar method with multipliers or a penalty.
 pub(crate) fn refuse_unsupported<const D: usize>(contacts: &[Contact<D>]) -> Result<(), StepError> {
     let slides = contacts.iter().find(|c| c.sliding == Sliding::Finite);
     for contact in contacts.iter().filter(|c| c.friction.is_some()) {
         let unlike = match (contact.method, contact.enforcement) {
-            (Method::Mortar, Enforcement::Multiplier) => match slides {
+            (Method::Mortar, Enforcement::Multiplier | Enforcement::Penalty { .. }) => match slides {
                 None => continue,
                 Some(other) => format!("`{}` slides far", other.name),
             },

@@ -1,6 +1,7 @@
 //! The state of stick and slip of all contacts of a model at one time.
 
 use super::FrictionHistory;
+use crate::contact::Enforcement;
 use crate::model::{Circumstances, Model, StepError, System, reduced};
 use crate::state::{Found as FoundState, State};
 use signorini_contact::friction::{Bodies, FrictionError, FrictionState, Node};
@@ -38,6 +39,9 @@ impl Found {
 
 /// Part of the weight of a row below which its slips move nothing that is free.
 const HELD: f64 = 1e-7;
+/// How a slip that supports hold gives way, in terms of the cells behind it: friction that moves nothing is then that of
+/// slip under a slip of this share of the deformation, and none without slip.
+const YIELDS: f64 = 1e-4;
 
 type ByNode = BTreeMap<(usize, u32), [f64; 3]>;
 
@@ -72,6 +76,7 @@ impl<const D: usize> Model<D> {
         let mut nodes: Vec<Node<'_>> = Vec::new();
         let mut start = Vec::new();
         let mut keys = Vec::new();
+        let mut held = Vec::new();
         for (k, contact) in self.contacts.iter().enumerate() {
             for (i, row) in contact.rows.iter().enumerate() {
                 let key = (k, row.node);
@@ -86,9 +91,12 @@ impl<const D: usize> Model<D> {
                         let slip = WeightedGap { gap: slip.gap - moved, ..slip.clone() };
                         reduced(&slip, &self.reduction, offset)
                     });
-                    let (list, directions) = independent(slips.collect(), HELD * row.weight);
+                    let (list, directions, of_supports) = separated(slips.collect(), HELD * row.weight);
                     (node.tangents, node.directions) = (list.len(), directions);
                     start.extend(directions.iter().take(list.len()).map(|v| v[0] * known[1] + v[1] * known[2]));
+                    let compliance = YIELDS * row.weight / contact.stiffness[i];
+                    let which = (rows.len()..rows.len() + list.len()).zip(of_supports).filter(|(_, held)| *held);
+                    held.extend(which.map(|(r, _)| (r, compliance)));
                     rows.extend(list);
                 }
                 nodes.push(node);
@@ -102,6 +110,14 @@ impl<const D: usize> Model<D> {
         let solved = self.solve_enforced(&normals, ends, report, &mut |soft, report| {
             let mut all = vec![Softness::default(); rows.len()];
             nodes.iter().zip(soft).for_each(|(node, s)| all[node.first] = *s);
+            for ((node, s), ((contact, _), _)) in nodes.iter().zip(soft).zip(&keys) {
+                // With a penalty friction gives way as the pressure does, from the traction of the last state.
+                if matches!(self.contacts[*contact].enforcement, Enforcement::Penalty { .. }) {
+                    let rows = node.rows().skip(1);
+                    rows.for_each(|r| all[r] = Softness { compliance: s.compliance, shift: start[r] });
+                }
+            }
+            held.iter().for_each(|(r, compliance)| all[*r] = Softness { compliance: *compliance, shift: 0.0 });
             let system = System(factor);
             let bodies = Bodies { system: &system, rows: &rows, soft: &all, springs: &self.springs, load };
             let state = rubbing.solve(bodies, &nodes, &start, report).map_err(|error| self.unsolved(error))?;
@@ -126,8 +142,7 @@ impl<const D: usize> Model<D> {
         let of_node = |found: &FrictionState, k: usize| {
             let node = &nodes[k];
             let (key, row) = keys[k];
-            let held = node.tangents == 0 && node.law.is_some() && found.status[k] == Status::Slip;
-            let status = if held { Status::Stick } else { found.status[k] };
+            let status = found.status[k];
             let increment = axes(node, &found.gap);
             let mut slip = slipped.get(&key).copied().unwrap_or_default();
             if status == Status::Slip && node.law.is_some() {
@@ -210,9 +225,9 @@ impl<const D: usize> Model<D> {
     }
 }
 
-/// The slips of a node that something free takes part in, and their directions in its axes: both, one of them or one
-/// between them, or none where supports hold all.
-fn independent(slips: Vec<WeightedGap>, limit: f64) -> (Vec<WeightedGap>, [[f64; 2]; 2]) {
+/// The slips of a node with their directions in its axes, and which of them supports hold altogether. Where they hold one
+/// between the axes, as on a plane of symmetry that is skew to them, the slips are those along it and across.
+fn separated(slips: Vec<WeightedGap>, limit: f64) -> (Vec<WeightedGap>, [[f64; 2]; 2], [bool; 2]) {
     let plain = [[1.0, 0.0], [0.0, 1.0]];
     let product = |a: &WeightedGap, b: &WeightedGap| {
         let mut sum = 0.0;
@@ -225,25 +240,25 @@ fn independent(slips: Vec<WeightedGap>, limit: f64) -> (Vec<WeightedGap>, [[f64;
     };
     let limit = limit * limit;
     let [first, second] = &slips[..] else {
-        let moves = slips.iter().all(|s| product(s, s) > limit);
-        return (if moves { slips } else { Vec::new() }, plain);
+        let held = slips.iter().all(|s| product(s, s) <= limit);
+        return (slips, plain, [held, false]);
     };
     let (a, b, c) = (product(first, first), product(second, second), product(first, second));
     let (mean, spread) = (0.5 * (a + b), (0.5 * (a - b)).hypot(c));
-    if mean - spread > limit {
-        return (slips, plain);
-    }
-    if mean + spread <= limit {
-        return (Vec::new(), plain);
+    if mean - spread > limit || mean + spread <= limit {
+        return (slips, plain, [mean + spread <= limit; 2]);
     }
     let (s, co) = (0.5 * (2.0 * c).atan2(a - b)).sin_cos();
-    let scaled = |list: &[(u32, f64)], f: f64| list.iter().map(|(i, v)| (*i, f * v)).collect::<Vec<_>>();
-    let mut terms = scaled(&first.terms, co);
-    terms.extend(scaled(&second.terms, s));
-    compress(&mut terms);
-    terms.retain(|(_, v)| *v != 0.0);
-    let along = WeightedGap { gap: co * first.gap + s * second.gap, terms, ..first.clone() };
-    (vec![along], [[co, s], [-s, co]])
+    let combined = |f: f64, g: f64| {
+        let scaled = |list: &[(u32, f64)], f: f64| list.iter().map(|(i, v)| (*i, f * v)).collect::<Vec<_>>();
+        let mut terms = scaled(&first.terms, f);
+        terms.extend(scaled(&second.terms, g));
+        compress(&mut terms);
+        WeightedGap { gap: f * first.gap + g * second.gap, terms, ..first.clone() }
+    };
+    let mut across = combined(-s, co);
+    across.terms.clear();
+    (vec![combined(co, s), across], [[co, s], [-s, co]], [false, true])
 }
 
 #[cfg(test)]
@@ -255,18 +270,19 @@ mod tests {
     }
 
     #[test]
-    fn slips_that_supports_hold_are_left_out() {
+    fn slips_that_supports_hold_are_told() {
         let [x, y] = [slip(0.3, &[(0, 1.0), (2, -0.5)]), slip(0.1, &[(1, 1.0), (3, -0.5)])];
-        let (rows, directions) = independent(vec![x.clone(), y.clone()], 1e-7);
-        assert_eq!((rows, directions), (vec![x.clone(), y.clone()], [[1.0, 0.0], [0.0, 1.0]]));
-        assert!(independent(vec![slip(0.3, &[(0, 1e-9)])], 1e-7).0.is_empty());
+        let both = separated(vec![x.clone(), y.clone()], 1e-7);
+        assert_eq!(both, (vec![x.clone(), y], [[1.0, 0.0], [0.0, 1.0]], [false; 2]));
+        assert_eq!(separated(vec![x], 1e-7).2, [false; 2]);
+        assert_eq!(separated(vec![slip(0.3, &[(0, 1e-9)])], 1e-7).2, [true, false]);
+        assert_eq!(separated(vec![slip(0.3, &[]), slip(0.1, &[])], 1e-7).2, [true; 2]);
         // On a plane of symmetry that is skew to the axes both slips are parts of one.
         let (s, c) = 0.4f64.sin_cos();
-        let (rows, directions) = independent(vec![slip(0.2 * c, &[(0, c)]), slip(0.2 * s, &[(0, s)])], 1e-7);
-        assert_eq!(rows.len(), 1);
+        let (rows, directions, held) = separated(vec![slip(0.2 * c, &[(0, c)]), slip(0.2 * s, &[(0, s)])], 1e-7);
+        assert_eq!((rows.len(), held), (2, [false, true]));
         assert!((directions[0][0] - c).abs() < 1e-15 && (directions[0][1] - s).abs() < 1e-15);
         assert!((rows[0].terms[0].1 - 1.0).abs() < 1e-15 && (rows[0].gap - 0.2).abs() < 1e-15);
-        let (rows, directions) = independent(vec![x.clone(), slip(0.0, &[])], 1e-7);
-        assert_eq!((rows, directions[0]), (vec![x], [1.0, 0.0]));
+        assert!(rows[1].terms.is_empty() && rows[1].gap.abs() < 1e-15);
     }
 }

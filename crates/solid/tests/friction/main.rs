@@ -8,6 +8,7 @@ use signorini_solid::*;
 use std::collections::BTreeMap;
 
 mod bodies;
+mod rigid;
 
 const E: f64 = 1000.0;
 const NU: f64 = 0.3;

@@ -325,14 +325,6 @@ impl<'a> Planner<'a> {
         }
     }
 
-    /// Refuses a contact with friction.
-    fn frictionless(&self, contact: &problem::Contact) -> Result<(), CaseError> {
-        let Some(friction) = &contact.friction else { return Ok(()) };
-        Err(self.unavailable(friction, "friction").help(
-            "leave `friction` out: bodies slide along each other without resistance; membranes may have `adhesion`",
-        ))
-    }
-
     fn unavailable(&self, at: &impl Location, what: &str) -> CaseError {
         self.problem.error(at, format!("{what} is not available in this version"))
     }
@@ -626,7 +618,11 @@ impl<'a> Planner<'a> {
         let method = stated.map_or(Ok(MethodChoice::default()), |c| self.method(c, size))?;
         for (name, key) in &problem.contacts {
             let contact = key;
-            self.frictionless(contact)?;
+            if let Some(friction) = &contact.friction {
+                return Err(self.unavailable(friction, "friction of a membrane").help(
+                    "leave `friction` out: a membrane slides along bodies without resistance; it may have `adhesion`",
+                ));
+            }
             if let Some(own) = &contact.method
                 && self.method(contact, size)? != method
             {

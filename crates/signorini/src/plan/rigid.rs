@@ -43,6 +43,20 @@ impl RigidBody {
         Ok([vector(&self.displacement), rotation])
     }
 
+    /// How far a point of the body has come at a time, by where it lay before.
+    ///
+    /// # Errors
+    /// A motion that is not a number then.
+    pub fn displacement_at(
+        &self,
+        problem: &Problem,
+        time: f64,
+    ) -> Result<impl Fn(&Point<3>) -> Vector<3> + Sync + Send + 'static, CaseError> {
+        let [moved, turned] = self.motion_at(problem, time)?;
+        let forth = RigidMotion::new(turned, self.shape.centre(), moved);
+        Ok(move |x: &Point<3>| forth.point(x) - x)
+    }
+
     /// The gap of a point with its derivatives at a time.
     ///
     /// # Errors

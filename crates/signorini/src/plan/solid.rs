@@ -1,6 +1,9 @@
 //! From the statement to solids in contact.
 
+mod friction;
 mod mesh;
+
+pub use friction::PlannedFriction;
 
 use super::pieces::Apart;
 use super::placement::PlacementKeys;
@@ -62,7 +65,7 @@ pub enum Opposite {
 
 /// Two sides that may touch.
 #[derive(Clone)]
-pub struct SolidContact {
+pub struct SolidContact<const D: usize> {
     pub name: String,
     pub body: usize,
     pub sides: Vec<Side>,
@@ -72,6 +75,7 @@ pub struct SolidContact {
     pub method: ContactMethod,
     pub enforcement: signorini_solid::Enforcement,
     pub sliding: signorini_solid::Sliding,
+    pub friction: Option<PlannedFriction<D>>,
 }
 
 /// Solids, what holds and pushes them, and who may touch whom.
@@ -81,7 +85,7 @@ pub struct SolidPlan<const D: usize> {
     pub bodies: Vec<PlannedBody<D>>,
     pub supports: Vec<SolidSupport>,
     pub loads: Vec<SolidLoad>,
-    pub contacts: Vec<SolidContact>,
+    pub contacts: Vec<SolidContact<D>>,
     pub times: Vec<f64>,
     pub probes: BTreeMap<String, (usize, Point<D>)>,
 }
@@ -552,7 +556,7 @@ impl Planner<'_> {
         Ok((body, sides, whole))
     }
 
-    fn solid_contacts<const D: usize>(&self, bodies: &[PlannedBody<D>]) -> Result<Vec<SolidContact>, CaseError> {
+    fn solid_contacts<const D: usize>(&self, bodies: &[PlannedBody<D>]) -> Result<Vec<SolidContact<D>>, CaseError> {
         let problem = self.problem;
         let around = around(bodies);
         let mut out = Vec::new();
@@ -561,19 +565,19 @@ impl Planner<'_> {
             if let Some(within) = &key.within {
                 return Err(self.unavailable(within, "contact of a body with itself"));
             }
-            self.frictionless(key)?;
             if let Some(adhesion) = &key.adhesion
                 && self.reader.number(&adhesion.energy, [-1, 1, 0])? != 0.0
             {
                 return Err(self.unavailable(&adhesion.energy, "adhesion of solids"));
             }
             let (method, enforcement) = self.solid_method(key)?;
+            let friction = key.friction.as_ref().map(|friction| self.friction::<D>(friction)).transpose()?;
             let sliding = match key.sliding.as_ref().map(|s| *s) {
                 Some(problem::Sliding::Finite) => signorini_solid::Sliding::Finite,
                 _ => signorini_solid::Sliding::Small,
             };
             let mut add = |name: String, (body, sides, whole): (usize, Vec<Side>, bool), opposite| {
-                out.push(SolidContact { name, body, sides, whole, opposite, method, enforcement, sliding });
+                out.push(SolidContact { name, body, sides, whole, opposite, method, enforcement, sliding, friction });
             };
             match (&key.between, &key.all) {
                 (Some(pair), None) if pair.len() == 2 => {

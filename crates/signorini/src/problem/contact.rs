@@ -1,7 +1,7 @@
 //! Contacts: who may touch whom, by which method, with which law.
 
 use super::body::Domain;
-use super::{Nothing, Value};
+use super::{Components, Nothing, Value};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -21,9 +21,45 @@ pub struct Contact {
     pub sliding: Option<Sliding>,
     /// What the surfaces hold each other with.
     pub adhesion: Option<Adhesion>,
-    #[serde(default)]
-    #[schemars(skip)]
-    pub friction: Option<toml::Value>,
+    /// What resists sliding, between solids; none if left out.
+    pub friction: Option<Friction>,
+}
+
+/// Laws of friction.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Friction {
+    /// In proportion to the pressure.
+    Coulomb(CoulombFriction),
+    /// Up to a limit, whatever the pressure.
+    Tresca(TrescaFriction),
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CoulombFriction {
+    /// The coefficient; in space two where it depends on the direction: along `axis`, and across it.
+    pub mu: Components,
+    /// The first direction of two coefficients; it is projected on the surface.
+    pub axis: Option<Vec<Value>>,
+    /// Which side carries the axis, `slave` if left out; while bodies slide little it is the same.
+    pub on: Option<AxisOn>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum AxisOn {
+    /// The first body of the contact.
+    Slave,
+    /// The second one.
+    Master,
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TrescaFriction {
+    /// The largest friction, a force per area.
+    pub limit: Value,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]

@@ -163,12 +163,18 @@ pub struct ContactReport {
     pub error_estimate: Option<ErrorEstimate>,
     /// Other equilibria at the same load: area, energy, and whether they are stable.
     pub other_states: Vec<OtherState>,
-    /// Area that sticks by friction; null, as friction is not available.
+    /// Area in contact that sticks; null without friction, as all that follows.
     pub stick_area: Option<f64>,
-    /// Area that slips; null, as friction is not available.
+    /// Area in contact that slips.
     pub slip_area: Option<f64>,
-    /// Share of the friction limit; null, as friction is not available.
+    /// Largest slip since the bodies touched.
+    pub max_slip: Option<f64>,
+    /// Largest share of the friction limit: 1 where it slips.
     pub max_friction_utilisation: Option<f64>,
+    /// Part of the force that is friction.
+    pub friction_force: Option<[f64; 3]>,
+    /// Energy that friction took in the increment.
+    pub dissipation: Option<f64>,
 }
 
 /// One connected zone of contact.

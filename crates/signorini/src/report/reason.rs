@@ -90,6 +90,10 @@ pub enum WarningKind {
     LargeStrain,
     /// Sides of a contact that do not face each other.
     NotFacing,
+    /// With friction more than one equilibrium may exist.
+    NotUnique,
+    /// Most of a contact with friction closes in one increment: its stick zones depend on the increments.
+    ClosesAtOnce,
 }
 
 impl Warning {

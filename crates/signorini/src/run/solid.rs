@@ -236,7 +236,7 @@ impl<const D: usize> Model for SolidModel<D> {
         let Shown { time, fields, contacts, .. } = self.last.as_ref()?;
         let body = |(k, b): (usize, &PlannedBody<D>)| self.display.of_body(&b.name, k as u32, fields);
         let bodies = self.plan.bodies.iter().enumerate().map(body).collect();
-        let contact = |(c, shown): (&SolidContact, &ContactDisplay<D>)| shown.to_fields(&c.name);
+        let contact = |(c, shown): (&SolidContact<D>, &ContactDisplay<D>)| shown.to_fields(&c.name);
         let contacts = self.plan.contacts.iter().zip(contacts).map(contact).collect();
         Some(ShownState { time: *time, bodies, contacts })
     }

@@ -10,7 +10,7 @@ use crate::report::{Component, ContactReport, Probe, Reason, StepReport, UnitNam
 use crate::run::record::Record;
 use signorini_geometry::Point;
 use signorini_solid::loads::resultant;
-use signorini_solid::{ContactResult, Method, Model, PressureNode, State};
+use signorini_solid::{ContactResult, FrictionResult, Method, Model, PressureNode, State};
 use std::collections::{BTreeMap, HashMap};
 
 /// Strain from which the theory of small strains is off by more than a few per cent of the result: the terms left out are
@@ -112,7 +112,14 @@ pub fn warn<const D: usize>(
         let warning = Warning::new(WarningKind::LargeStrain, message);
         record.warn_once(warning.at_time(*time).at(vector(&display.points[k])));
     }
+    if state.unstable {
+        let message = format!("the equilibrium with friction at t = {time} is one that a small disturbance leaves");
+        record.warn_once(Warning::new(WarningKind::Unstable, message).at_time(*time));
+    }
     for (contact, result) in plan.contacts.iter().zip(&state.contacts) {
+        if let Some(friction) = &result.friction {
+            warn_of_friction(&contact.name, friction, *time, record);
+        }
         // Of pairs that were not named most never meet.
         if !plan.head.problem.contacts.contains_key(&contact.name) {
             continue;
@@ -133,6 +140,30 @@ pub fn warn<const D: usize>(
     }
 }
 
+/// Share of the contact that closes in one increment from which the way of its slip is not known well.
+const CLOSES_AT_ONCE: f64 = 0.5;
+
+/// Warns of what friction leaves undecided.
+fn warn_of_friction<const D: usize>(name: &str, friction: &FrictionResult<D>, time: f64, record: &mut Record) {
+    if friction.uniqueness <= 1.0 {
+        let message = format!(
+            "contact `{name}`: with {:.2} times this friction each point has one state for every load, with more of it \
+             several; more than one equilibrium may exist at t = {time}, and this one was reached from that of the \
+             increment before",
+            friction.uniqueness
+        );
+        record.warn_once(Warning::new(WarningKind::NotUnique, message).at_time(time));
+    }
+    if friction.newly_closed > CLOSES_AT_ONCE {
+        let message = format!(
+            "contact `{name}`: {:.0} % of the contact closes in the increment to t = {time}, and its slip counts from before \
+             it touched; take more increments where stick zones matter",
+            100.0 * friction.newly_closed
+        );
+        record.warn_once(Warning::new(WarningKind::ClosesAtOnce, message).at_time(time));
+    }
+}
+
 /// A contact of a state as it is told.
 fn contact_report<const D: usize>(
     space: Stated,
@@ -149,6 +180,7 @@ fn contact_report<const D: usize>(
     };
     let components: Vec<Component> = shown.zones().iter().map(component).collect();
     let closed = || result.nodes.iter().filter(|n| n.active);
+    let friction = result.friction.as_ref();
     ContactReport {
         force: vector(&result.force),
         area: result.area,
@@ -159,6 +191,12 @@ fn contact_report<const D: usize>(
         min_gap_outside: result.nodes.iter().filter(|n| !n.active).map(|n| n.gap).reduce(f64::min),
         max_pressure: result.nodes.iter().map(|n| n.pressure).fold(0.0, f64::max),
         min_pressure: closed().map(|n| n.pressure).reduce(f64::min),
+        stick_area: friction.map(|f| f.stick_area),
+        slip_area: friction.map(|f| f.slip_area),
+        max_slip: friction.map(|f| f.max_slip),
+        max_friction_utilisation: friction.map(|f| f.max_utilisation),
+        friction_force: friction.map(|f| vector(&f.force)),
+        dissipation: friction.map(|f| f.dissipation),
         ..ContactReport::default()
     }
 }
@@ -171,8 +209,16 @@ pub fn contact_verdict<const D: usize>(plan: &SolidPlan<D>, name: &str, c: &Cont
     let errors = c.error_estimate;
     let units = plan.head.unit_names();
     let unit = |of: fn(&UnitNames) -> &String| units.as_ref().map_or("", |u| of(u));
+    let rubbing = match (c.friction_force, c.stick_area, c.slip_area) {
+        (Some(force), Some(stick), Some(slip)) => format!(
+            ", {} of it by friction, of which {:.0} % sticks",
+            told_vector(&force[..D], None, unit(|u| &u.force)),
+            100.0 * stick / (stick + slip)
+        ),
+        _ => String::new(),
+    };
     format!(
-        "`{name}` carries {} over {} {} in {} zone{}, at most {}",
+        "`{name}` carries {} over {} {} in {} zone{}, at most {}{rubbing}",
         told_vector(&c.force[..D], errors.map(|e| e.force), unit(|u| &u.force)),
         if D == 3 || plan.space == Stated::Axisymmetric { "area" } else { "length" },
         told(c.area, errors.map(|e| e.area), unit(|u| &u.area)),

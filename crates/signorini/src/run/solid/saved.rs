@@ -1,7 +1,7 @@
 //! What a run of solids goes on from, as JSON.
 
 use serde_json::{Value, json};
-use signorini_solid::{Memory, Settled};
+use signorini_solid::{FrictionHistory, Memory, Settled};
 
 /// The state between two increments.
 pub fn to_json(memory: Memory) -> Value {
@@ -10,7 +10,10 @@ pub fn to_json(memory: Memory) -> Value {
         pressure.sort_by_key(|(key, _)| *key);
         json!({"u": u, "pressure": pressure})
     });
-    json!({"active": memory.active, "settled": settled})
+    let friction = memory.friction.map(|FrictionHistory { u, motion, traction, slip }| {
+        json!({"u": u, "motion": motion, "traction": traction, "slip": slip})
+    });
+    json!({"active": memory.active, "settled": settled, "friction": friction})
 }
 
 /// Reads what [`to_json`] wrote; none where it is damaged.
@@ -25,5 +28,14 @@ pub fn from_json(mut v: Value) -> Option<Memory> {
             Some(Settled { u: take(&mut s["u"])?, pressure: pressure.into_iter().collect() })
         }
     };
-    Some(Memory { active: take(&mut v["active"])?, settled, friction: None })
+    let friction = match v["friction"].take() {
+        Value::Null => None,
+        mut f => Some(FrictionHistory {
+            u: take(&mut f["u"])?,
+            motion: take(&mut f["motion"])?,
+            traction: take(&mut f["traction"])?,
+            slip: take(&mut f["slip"])?,
+        }),
+    };
+    Some(Memory { active: take(&mut v["active"])?, settled, friction })
 }

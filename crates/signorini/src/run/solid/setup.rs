@@ -10,8 +10,8 @@ use signorini_contact::GapJet;
 use signorini_geometry::Point;
 use signorini_solid::loads::forces;
 use signorini_solid::{
-    Bodies, Circumstances, Contact, Load, LoadKind, Master, Model, RigidGap, Sliding, Space, StepError, Support,
-    SupportError, SupportKind, facing,
+    Bodies, Circumstances, Contact, Load, LoadKind, Master, Model, RigidGap, RigidMotion, Sliding, Space, StepError,
+    Support, SupportError, SupportKind, facing,
 };
 use signorini_solve::cholesky::Cost;
 use std::cell::RefCell;
@@ -58,6 +58,7 @@ pub fn raised<const D: usize>(plan: &SolidPlan<D>, by: usize) -> Result<Model<D>
             };
             let mut contact = Contact::new(&c.name, slave, master);
             (contact.method, contact.enforcement, contact.sliding) = (c.method, c.enforcement, c.sliding);
+            contact.friction = c.friction.map(|planned| planned.friction());
             contact
         })
         .collect();
@@ -134,7 +135,21 @@ pub fn at_time<const D: usize, R>(
             Opposite::Body { .. } => Ok(None),
         })
         .collect::<Result<_, CaseError>>()?;
-    let result = act(model, &Circumstances { displacement: &displacement, load: forces, rigid, motion: Vec::new() });
+    let motion: Vec<Option<RigidMotion<D>>> = (plan.contacts.iter())
+        .map(|c| match (&c.opposite, c.friction) {
+            (Opposite::Rigid(body), Some(_)) => {
+                let moved = body.displacement_at(problem, time)?;
+                let in_space = |x: &Point<D>| Point::<3>::from_fn(|k, _| if k < D { x[k] } else { 0.0 });
+                let of = move |x: &Point<D>| {
+                    let u = moved(&in_space(x));
+                    Point::<D>::from_fn(|k, _| u[k])
+                };
+                Ok(Some(Box::new(of) as RigidMotion<D>))
+            }
+            _ => Ok(None),
+        })
+        .collect::<Result<_, CaseError>>()?;
+    let result = act(model, &Circumstances { displacement: &displacement, load: forces, rigid, motion });
     wrong.into_inner().map_or(Ok(result), Err)
 }
 
@@ -213,6 +228,11 @@ pub fn blamed<const D: usize>(
                 SupportError::Contradiction { second, .. } => second,
             };
             let place = problem.supports.get(name).map_or(space, |s| problem.key(s));
+            Some(problem.error(&place, error.to_string()))
+        }
+        StepError::FrictionUnsupported { contact, .. } | StepError::FrictionAxis { contact, .. } => {
+            let friction = problem.contacts.get(contact).and_then(|c| c.friction.as_ref());
+            let place = friction.map_or(space, |friction| problem.key(friction));
             Some(problem.error(&place, error.to_string()))
         }
         StepError::Deep { contact, depth } => {

@@ -15,7 +15,7 @@ macro_rules! example {
 }
 
 /// Cases with mechanics, simplest first.
-pub const GALLERY: [Example; 22] = [
+pub const GALLERY: [Example; 24] = [
     example!("string", "a string on a flat floor, beside the exact solution"),
     example!("axisymmetric", "a round membrane by its radius, beside the exact solution"),
     example!("snap_in", "a sticky membrane: snap-in, pull-off, and the loop between them"),
@@ -37,6 +37,8 @@ pub const GALLERY: [Example; 22] = [
     example!("high_order_blocks", "a few cells of degree 6 on either side of a curved contact"),
     example!("torus", "an elastic block on a rigid torus, exactly round"),
     example!("ironing", "an elastic shoe drawn over an elastic block: finite sliding"),
+    example!("cattaneo_mindlin", "alike bodies pressed together and shifted to and fro: stick, slip and a loop"),
+    example!("incline", "a block on a tilting incline with a grain: friction of two kinds"),
     example!("die", "a NURBS die pressed into an elastic block"),
 ];
 

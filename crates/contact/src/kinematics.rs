@@ -33,6 +33,9 @@ pub struct Kinematics {
     /// Unknowns that the gap depends on, and its derivatives.
     pub unknowns: Vec<u32>,
     pub gradient: Vec<f64>,
+    /// First unknown of every function that moves the partners apart, and how much it does: `δ(x_a - x_b)` at the points
+    /// of the partners is the sum of these.
+    pub apart: Vec<(u32, f64)>,
     /// Second derivatives, row by row; empty where they were not asked for.
     pub hessian: Vec<f64>,
 }
@@ -58,6 +61,7 @@ impl Kinematics {
         let mut variations = Vec::new();
         for (partner, first, sign) in [(&a, 0, 1.0), (&b, of_a, -1.0)] {
             for f in partner.functions {
+                out.apart.push((f.unknown, sign * f.value));
                 for i in 0..D {
                     let along = axis(i) * sign;
                     let mut v = Variation::<N> { d: along * f.value, d_a: [zero; N], d_ab: [[zero; N]; N] };
@@ -81,6 +85,7 @@ impl Kinematics {
         let normal = Vector::<3>::from_fn(|k, _| if k < D { rigid.normal[k] } else { 0.0 });
         let mut out = Kinematics { gap: rigid.gap, normal, ..Self::default() };
         for f in functions {
+            out.apart.push((f.unknown, f.value));
             for i in 0..D {
                 out.unknowns.push(f.unknown + i as u32);
                 out.gradient.push(f.value * rigid.normal[i]);

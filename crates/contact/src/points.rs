@@ -146,6 +146,11 @@ impl Measured {
         self.kinematics[point].is_some()
     }
 
+    /// The pair of a point of the tests, if it met something.
+    pub fn pair(&self, point: usize) -> Option<&Kinematics> {
+        self.kinematics[point].as_ref()
+    }
+
     /// The rows: weighted gaps and their derivatives; those that meet something, with their place in the list of the
     /// tests.
     pub fn rows(&self, tests: &Tests) -> Vec<(usize, WeightedGap)> {

@@ -110,7 +110,7 @@ pub struct Contact<const D: usize> {
     /// Points under test.
     pub(crate) tests: Tests,
     /// Their gaps at the last configuration.
-    measured: Option<Measured>,
+    pub(crate) measured: Option<Measured>,
     /// Face and coordinates of the rows that are points.
     pub(crate) places: Vec<(usize, Local)>,
     /// Pressure per penetration of the cells behind each face, and behind each row.
@@ -178,7 +178,10 @@ impl<const D: usize> Contact<D> {
             (Sliding::Small, _) if matches!(self.master, Master::Surface(_)) && !self.rows.is_empty() => return Ok(()),
             (Sliding::Small, Method::Mortar) if self.enforcement == Enforcement::Nitsche => self.point_rows(rigid),
             (Sliding::Small, Method::Mortar) => self.search_segments(reduction, rigid, motion)?,
-            (Sliding::Small, _) => self.search_points(reduction, rigid, None, false)?,
+            (Sliding::Small, _) => {
+                self.search_points(reduction, rigid, None, false)?;
+                self.find_slips_of_points(motion)?;
+            }
             (Sliding::Finite, _) => self.search_points(reduction, rigid, Some(u), near)?,
         }
         self.check_side(rigid)?;

@@ -39,9 +39,7 @@ pub enum StepError {
     Newton { contact: String, history: Vec<f64>, place: String },
     #[error("contact `{contact}`: Nitsche's method is for small sliding")]
     NitscheSlides { contact: String },
-    #[error(
-        "contact `{contact}`: friction is for small sliding, in the mean, with multipliers or a penalty, and {unlike}"
-    )]
+    #[error("contact `{contact}`: friction is for small sliding, with multipliers or a penalty, and {unlike}")]
     FrictionUnsupported { contact: String, unlike: String },
     /// An axis of friction that lies nowhere in the surface.
     #[error("contact `{contact}`: the axis of friction is normal to the surface at {place}")]

@@ -104,6 +104,9 @@ fn result<const D: usize>(
     };
     // With friction a row has a pressure and tractions along its tangents.
     let rubbing = rubbing.filter(|_| contact.friction.is_some());
+    let of_rows: Vec<Rubbing<D>> = (rubbing.iter().flat_map(|found| found.iter().enumerate()))
+        .map(|(k, found)| contact.rubbing(k, pressures[k], found))
+        .collect();
     let mut of_friction = vec![0.0; if rubbing.is_some() { contact_force.len() } else { 0 }];
     let mut own = vec![0.0; contact_force.len()];
     let body = contact.slave.body();
@@ -140,7 +143,7 @@ fn result<const D: usize>(
                 active: actives[k],
                 weight: row.weight,
                 number: row.node,
-                rubbing: rubbing.map_or(Rubbing::default(), |f| contact.rubbing(k, pressures[k], &f[k])),
+                rubbing: of_rows.get(k).copied().unwrap_or_default(),
             });
         }
     }
@@ -148,6 +151,9 @@ fn result<const D: usize>(
     contact_force.iter_mut().zip(&own).for_each(|(sum, f)| *sum += f);
     if contact.at_points() {
         result.nodes = contact.averaged(pressures, &forces, gaps, actives);
+        if rubbing.is_some() {
+            contact.averaged_rubbing(&of_rows, &mut result.nodes);
+        }
     }
     let count = contact.nodes.len();
     let (mut multiplier, mut active) = (vec![0.0; count], vec![false; count]);
@@ -169,7 +175,8 @@ fn result<const D: usize>(
     let pressure = recovered(&contact.slave, &contact.nodes, &points, &multiplier, &active, &contact.given);
     result.zone = zone(&contact.slave, &contact.nodes, &points, &states);
     result.area = result.zone.face_area.iter().sum();
-    result.friction = rubbing.map(|found| friction_result(&result, found, body.resultant(&of_friction)));
+    let sums = (body.resultant(&of_friction), result.area);
+    result.friction = rubbing.map(|found| friction_result(contact, &of_rows, found, sums));
     result.nodes.iter_mut().for_each(|node| node.pressure = pressure[node.number as usize]);
     result
 }

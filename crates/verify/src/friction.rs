@@ -1,4 +1,5 @@
-//! Closed solutions with Coulomb's friction: Cattaneo and Mindlin's problem, a wedge, an orthotropic incline.
+//! Closed solutions with Coulomb's friction: Cattaneo and Mindlin's problem in the plane and in space, a wedge, an
+//! orthotropic incline.
 
 use std::f64::consts::PI;
 
@@ -90,6 +91,68 @@ impl HalfPlanes {
     }
 }
 
+/// Alike elastic half spaces, one of them a sphere, pressed together and then sheared (Mindlin 1949; Mindlin & Deresiewicz
+/// 1953). Slip across the force is neglected: there is none where Poisson's ratio is zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spheres {
+    /// `E*`, with `1/E*` the sum of `(1 - ν²)/E` of both.
+    pub modulus: f64,
+    pub poissons_ratio: f64,
+    pub radius: f64,
+    /// Coefficient of friction.
+    pub friction: f64,
+    /// Normal force.
+    pub force: f64,
+}
+
+impl Spheres {
+    /// Radius of the contact (Hertz 1882).
+    pub fn contact_radius(&self) -> f64 {
+        (0.75 * self.force * self.radius / self.modulus).cbrt()
+    }
+
+    /// The largest tangential force.
+    pub fn limit(&self) -> f64 {
+        self.friction * self.force
+    }
+
+    /// The approach under a normal force.
+    pub fn approach(&self, force: f64) -> f64 {
+        (0.5625 * force.max(0.0).powi(2) / (self.modulus.powi(2) * self.radius)).cbrt()
+    }
+
+    /// Tangential compliance over normal compliance.
+    fn ratio(&self) -> f64 {
+        (1.0 - 0.5 * self.poissons_ratio) / (1.0 - self.poissons_ratio)
+    }
+
+    /// The shift under a tangential force that only grew, at most to the limit; odd.
+    pub fn shift(&self, tangential: f64) -> f64 {
+        let left = self.force - tangential.abs() / self.friction;
+        tangential.signum() * self.ratio() * self.friction * (self.approach(self.force) - self.approach(left))
+    }
+
+    /// How the shift changes after a reversal, under a change of the tangential force.
+    pub fn reversed_shift(&self, change: f64) -> f64 {
+        2.0 * self.shift(0.5 * change)
+    }
+
+    /// Radius of the circle that sticks under a tangential force that only grew.
+    pub fn stick_radius(&self, tangential: f64) -> f64 {
+        self.contact_radius() * (1.0 - tangential.abs() / self.limit()).max(0.0).cbrt()
+    }
+
+    /// The energy that a cycle between a tangential force and its opposite takes.
+    pub fn dissipation(&self, peak: f64) -> f64 {
+        // The approach grows with the power 2/3 of the force.
+        let integral = |p: f64| 0.6 * p * self.approach(p);
+        let (mu, left) = (self.friction, self.force - peak / self.friction);
+        let under =
+            mu * self.ratio() * (self.approach(self.force) * peak - mu * (integral(self.force) - integral(left)));
+        4.0 * peak * self.shift(peak) - 8.0 * under
+    }
+}
+
 /// Push over weight of a block that slides up a slope under a dead weight.
 pub fn wedge(slope: f64, friction: f64) -> f64 {
     (slope + friction) / (1.0 - friction * slope)
@@ -135,6 +198,23 @@ mod tests {
         let at = |k: usize| of.traction(-1.0 + (k as f64 + 0.5) * 2.0 / n as f64, 0.6 * of.limit());
         let sum = (0..n).map(at).sum::<f64>() * 2.0 / n as f64;
         assert!((sum / of.limit() - 0.6).abs() < 1e-5);
+    }
+
+    #[test]
+    fn spheres() {
+        let of = Spheres { modulus: 1.0, poissons_ratio: 0.3, radius: 2.0, friction: 0.3, force: 0.5 };
+        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-14, "{a} {b}");
+        near(of.contact_radius(), 0.9085602964160698);
+        for (share, c, shift) in [
+            (0.25, 0.9085602964160698, 0.026239789591042208),
+            (0.5, 0.7937005259840998, 0.055637513141052544),
+            (0.75, 0.6299605249474366, 0.0906869501261599),
+        ] {
+            near(of.stick_radius(share * of.limit()) / of.contact_radius(), c);
+            near(of.shift(share * of.limit()), shift);
+        }
+        near(of.dissipation(0.8 * of.limit()), 0.003998707881016442);
+        near(of.shift(0.1) + of.reversed_shift(-0.2), -of.shift(0.1));
     }
 
     #[test]

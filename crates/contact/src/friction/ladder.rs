@@ -1,16 +1,18 @@
 //! What is tried for a friction problem, one after the other: no choice of `c` in the semismooth Newton method ends in
 //! every problem, each cycles where another does not.
 //!
-//! 0. `c_t = 1e-3/W_tt` in the plane, `1/W_tt` in space;
-//! 1. `1/W_tt` in the plane, `0.1/W_tt` in space;
+//! 0. `c_t = 1e-3/W_tt` in the plane, `0.1/W_tt` in space;
+//! 1. `1/W_tt`;
 //! 2. `1/W_tt` with a line search;
 //! 3. from the state without friction, with all nodes slipping along what they then slide;
 //! 4. a few problems with the friction of given pressures (of Tresca's kind), then Newton's method again;
 //! 5. many of them.
 //!
 //! In the plane a slipping node whose friction has the wrong sign jumps to the opposite slip with `1/W_tt`, and its
-//! neighbours make it jump back; with a small `c_t` it sticks first. A set of states that comes again is no solution:
-//! only the natural residual tells.
+//! neighbours make it jump back; with a small `c_t` it sticks first. In space a small `c_t` follows the curved edge of what
+//! is admissible badly: of 52 states of spheres shifted to and fro and round, 19 take more than 20 solves with `1/W_tt`,
+//! none more than 5 with `0.1/W_tt` and none more than 6 with `0.01/W_tt`; of 180 random compliances none, 3 and 18 do. A
+//! set of states that comes again is no solution: only the natural residual tells.
 
 use super::newton::{End, Outcome, Settings, newton};
 use super::problem::{Friction, Problem, Residual, RowCompliance};
@@ -143,7 +145,7 @@ pub fn solve(
 ) -> Result<Solution, FrictionError> {
     let planar = problem.nodes.iter().all(|n| n.tangents < 2);
     let plain = |factor: f64| Settings { factor, most: MOST_SOLVES, line_search: false };
-    let first = if planar { [plain(1e-3), plain(1.0)] } else { [plain(1.0), plain(0.1)] };
+    let first = if planar { [plain(1e-3), plain(1.0)] } else { [plain(0.1), plain(1.0)] };
     let searching = Settings { factor: 1.0, most: MOST_SOLVES_SEARCHING, line_search: true };
     let mut ladder = Ladder { problem, w, report, solves: 0 };
     let mut singular = true;

@@ -22,7 +22,7 @@ pub mod slip;
 pub use contact::{Bodies, FrictionState, FrictionalContact};
 pub use ladder::{FrictionError, Solution, solve};
 pub use problem::{Node, Problem, RowCompliance};
-pub use slip::{NoAxis, WeightedSlip, weighted_slips};
+pub use slip::{NoAxis, WeightedSlip, slips_of_points, weighted_slips};
 
 #[cfg(test)]
 mod tests;

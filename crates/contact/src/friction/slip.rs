@@ -1,7 +1,9 @@
-//! Weighted slips: the way of the slave along the master, tested with the dual functions of the pressure nodes, on the
-//! same points and with the same weights as their gaps.
+//! Weighted slips: the way of the slave along the master, at points or tested with the dual functions of the pressure nodes,
+//! on the same points and with the same weights as the gaps.
 
-use crate::mortar::{Shares, WeightedGap, weighted};
+use crate::kinematics::Kinematics;
+use crate::mortar::{Shares, WeightedGap, compress, weighted};
+use crate::points::{Measured, Tests};
 use crate::segments::GapPoint;
 use crate::surface::ContactSurface;
 use signorini_geometry::{Point, Vector};
@@ -45,24 +47,11 @@ pub fn weighted_slips<const D: usize>(
             of_point.iter().for_each(|(node, share)| mean[*node as usize] += p.direction * *share);
         }
     }
-    // The axis of each node that is to be projected: one that is far from normal.
-    let along: Vec<Point<D>> = (mean.iter())
-        .map(|n| match axis {
-            Some(a) => a / a.norm().max(f64::MIN_POSITIVE),
-            None => Point::<D>::from_fn(|k, _| f64::from(u8::from(k == n.iamin()))),
-        })
-        .collect();
-    if D == 3 {
-        for (face, (list, of_face)) in points.iter().zip(&shares.of_point).enumerate() {
-            for (p, of_point) in list.iter().zip(of_face) {
-                let normal = p.direction.normalize();
-                let lies = |(node, _): &(u32, f64)| {
-                    let a = &along[*node as usize];
-                    (a - normal * normal.dot(a)).norm() >= NORMAL
-                };
-                if !of_point.iter().all(lies) {
-                    return Err(NoAxis { x: slave.at(face, &p.s).x });
-                }
+    let along: Vec<Point<D>> = mean.iter().map(|n| projected(n, axis)).collect();
+    for (face, (list, of_face)) in points.iter().zip(&shares.of_point).enumerate() {
+        for (p, of_point) in list.iter().zip(of_face) {
+            if !of_point.iter().all(|(node, _)| lies(&p.direction, &along[*node as usize])) {
+                return Err(NoAxis { x: slave.at(face, &p.s).x });
             }
         }
     }
@@ -83,6 +72,77 @@ pub fn weighted_slips<const D: usize>(
         }
     }
     Ok(out)
+}
+
+/// The slips of the rows of tests, by their place in the list; those that meet nothing have none. `motion` is the
+/// displacement of a rigid master at a point of the tests; the axis as for [`weighted_slips`].
+///
+/// # Errors
+/// An axis that is normal to the surface somewhere.
+pub fn slips_of_points<const D: usize>(
+    slave: &dyn ContactSurface<D>,
+    tests: &Tests,
+    measured: &Measured,
+    axis: Option<&Point<D>>,
+    motion: &dyn Fn(usize) -> Point<D>,
+) -> Result<Vec<Option<WeightedSlip<D>>>, NoAxis<D>> {
+    let normal_of = |pair: &Kinematics| Point::<D>::from_fn(|k, _| pair.normal[k]);
+    let met = || tests.points.iter().enumerate().filter_map(|(k, point)| Some((k, point, measured.pair(k)?)));
+    let (mut mean, mut weight) = (vec![Point::<D>::zeros(); tests.rows.len()], vec![0.0; tests.rows.len()]);
+    for (_, point, pair) in met() {
+        for (row, share) in &point.shares {
+            mean[*row as usize] += normal_of(pair) * *share;
+            weight[*row as usize] += share;
+        }
+    }
+    let along: Vec<Point<D>> = mean.iter().map(|n| projected(n, axis)).collect();
+    let row = |k: usize| WeightedGap {
+        gap: 0.0,
+        weight: weight[k],
+        terms: Vec::new(),
+        forces: Vec::new(),
+        node: tests.rows[k].number,
+    };
+    let mut out: Vec<Option<WeightedSlip<D>>> = (0..tests.rows.len())
+        .map(|k| {
+            let axes = || (0..D - 1).map(|a| tangent(&mean[k], &along[k], a)).collect();
+            (weight[k] > 0.0).then(|| WeightedSlip { rows: vec![row(k); D - 1], axes: axes() })
+        })
+        .collect();
+    for (k, point, pair) in met() {
+        let normal = normal_of(pair);
+        for (row, share) in &point.shares {
+            let a = &along[*row as usize];
+            if !lies(&normal, a) {
+                return Err(NoAxis { x: slave.at(point.face, &point.s).x });
+            }
+            let Some(slip) = &mut out[*row as usize] else { continue };
+            for (which, row) in slip.rows.iter_mut().enumerate() {
+                let e = tangent(&normal, a, which);
+                row.gap -= share * e.dot(&motion(k));
+                for (unknown, value) in &pair.apart {
+                    let terms = (0..D).filter(|&i| e[i] != 0.0).map(|i| (unknown + i as u32, share * value * e[i]));
+                    row.terms.extend(terms);
+                }
+            }
+        }
+    }
+    out.iter_mut().flatten().flat_map(|slip| &mut slip.rows).for_each(|row| compress(&mut row.terms));
+    Ok(out)
+}
+
+/// What is projected for the first tangent: the axis, or where there is none a direction that is far from normal.
+fn projected<const D: usize>(normal: &Point<D>, axis: Option<&Point<D>>) -> Point<D> {
+    match axis {
+        Some(a) => a / a.norm().max(f64::MIN_POSITIVE),
+        None => Point::<D>::from_fn(|k, _| f64::from(u8::from(k == normal.iamin()))),
+    }
+}
+
+/// Whether an axis has a projection; in the plane it needs none.
+fn lies<const D: usize>(normal: &Point<D>, axis: &Point<D>) -> bool {
+    let n = normal.normalize();
+    D == 2 || (axis - n * n.dot(axis)).norm() >= NORMAL
 }
 
 /// A tangent of a surface with this normal, of any length: the projection of the axis, or what is across it; in the plane

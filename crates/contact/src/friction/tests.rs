@@ -1,5 +1,7 @@
 //! Friction in its rows: closed solutions on half planes, random compliances, single nodes.
 
+mod half_space;
+
 use super::newton::System;
 use super::problem::Friction;
 use super::*;

@@ -146,7 +146,7 @@ fn a_tube_in_a_sleeve() {
 }
 
 /// A block on a rigid plane, gripped above.
-fn gripped(enforcement: Enforcement) -> Model<2> {
+fn gripped(method: Method, enforcement: Enforcement) -> Model<2> {
     let mesh = block::<2>(&[even(-1.0, 1.0, 8), even(0.0, 1.0, 4)], 1, |x| x);
     let groups = mesh.groups().clone();
     let mut bodies = Bodies::<2>::new(Space::PlaneStress);
@@ -154,7 +154,7 @@ fn gripped(enforcement: Enforcement) -> Model<2> {
     let slave = bodies.surface(0, groups["bottom"].sides.clone());
     let mut contact = Contact::new("plane", slave, Master::Rigid);
     contact.friction = coulomb(0.3);
-    contact.enforcement = enforcement;
+    (contact.method, contact.enforcement) = (method, enforcement);
     let supports = vec![support("grip", 0, &groups, "top", SupportKind::Components(vec![true, true]))];
     Model::new(bodies, supports, vec![contact]).unwrap()
 }
@@ -174,7 +174,19 @@ fn moved(model: &mut Model<2>, grip: f64, plane: f64) -> State<2> {
 /// after a restart.
 #[test]
 fn a_plane_that_moves_under_a_block() {
-    let (step, model) = (moved, || gripped(Enforcement::Multiplier));
+    let penalty = Enforcement::Penalty { wanted_penetration: None };
+    for (method, enforcement) in [
+        (Method::Mortar, Enforcement::Multiplier),
+        (Method::Node, Enforcement::Multiplier),
+        (Method::Node, penalty),
+        (Method::GaussPoint, penalty),
+    ] {
+        compare_moving_grip_and_plane(&|| gripped(method, enforcement));
+    }
+}
+
+fn compare_moving_grip_and_plane(model: &dyn Fn() -> Model<2>) {
+    let step = moved;
     let (mut by_grip, mut by_plane, mut later) = (model(), model(), model());
     let mut partial = false;
     for (k, shift) in [0.0, 0.003, 0.006, -0.002, 0.004].into_iter().enumerate() {
@@ -202,20 +214,24 @@ fn a_plane_that_moves_under_a_block() {
     assert!(partial);
 }
 
-/// With a penalty the friction of a path with reversals tends to that of multipliers as the penetration goes to zero.
+/// With a penalty the friction of a path with reversals tends to that of multipliers as the penetration goes to zero; at
+/// points it is nearly that of the mortar method.
 #[test]
 fn a_penalty_tends_to_multipliers() {
-    let path = |enforcement: Enforcement| -> Vec<f64> {
-        let mut model = gripped(enforcement);
+    let path = |method: Method, enforcement: Enforcement| -> Vec<f64> {
+        let mut model = gripped(method, enforcement);
         [0.0, 0.003, 0.006, -0.002, 0.004].map(|s| moved(&mut model, s, 0.0).contacts[0].force[0]).to_vec()
     };
-    let exact = path(Enforcement::Multiplier);
-    let error = |penetration: f64| {
-        let found = path(Enforcement::Penalty { wanted_penetration: Some(penetration) });
+    let exact = path(Method::Mortar, Enforcement::Multiplier);
+    let error = |method: Method, penetration: f64| {
+        let found = path(method, Enforcement::Penalty { wanted_penetration: Some(penetration) });
         found.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / exact[2].abs()
     };
-    let [coarse, fine] = [error(1e-5), error(1e-6)];
+    let [coarse, fine] = [1e-5, 1e-6].map(|penetration| error(Method::Mortar, penetration));
     assert!(coarse < 0.01 && (7.0..14.0).contains(&(coarse / fine)), "{coarse:e} {fine:e}");
+    for method in [Method::Node, Method::GaussPoint] {
+        assert!(error(method, 1e-6) < 0.02, "{method:?}: {}", error(method, 1e-6));
+    }
 }
 
 /// A leaning column gives way sideways under pressure: with much friction more than one equilibrium may exist.
@@ -266,6 +282,7 @@ fn what_friction_cannot_do_is_refused() {
     assert!(refused(&|c| c.enforcement = Enforcement::Nitsche));
     assert!(refused(&|c| c.enforcement = Enforcement::AugmentedLagrangian));
     assert!(refused(&|c| c.method = Method::GaussPoint));
+    assert!(!refused(&|c| c.method = Method::Node));
     assert!(refused(&|c| c.sliding = Sliding::Finite));
     assert!(!refused(&|_| ()));
     let (bodies, supports, mut contact) = contact();

@@ -1,6 +1,6 @@
 //! How space is put on a page: a parallel view, and the axes of a box in it.
 
-use super::chart::{FONT, label, rounded, ticks};
+use super::chart::{FONT, tick_labels, ticks};
 use signorini_geometry::Vector;
 use std::fmt::Write as _;
 
@@ -44,6 +44,11 @@ impl Camera {
         let [x, y] = [0.5 * (area[0] + area[2]), 0.5 * (area[1] + area[3])];
         let area = [x - half[0], y - half[1], x + half[0], y + half[1]];
         Camera { right, up, towards, scale, area, middle: [0, 1].map(|k| 0.5 * (low[k] + high[k])) }
+    }
+
+    /// Sees a part of the plane, from its low to its high corner.
+    pub fn of_plane(corners: &[Vector<3>; 2], area: [f64; 4]) -> Self {
+        Self::new(&Vector::<3>::z(), &Vector::<3>::y(), corners.iter(), area)
     }
 
     /// Where a point is on the page.
@@ -112,7 +117,7 @@ impl Camera {
                 (from.0 + (to.0 - from.0) * t, from.1 + (to.1 - from.1) * t)
             };
             let ticks = ticks(low[axis], high[axis], (length / 50.0) as usize);
-            let labels: Vec<String> = ticks.iter().map(|v| label(rounded(*v, span))).collect();
+            let labels = tick_labels(&ticks);
             // Labels at corners, where axes that are seen aslant meet, would lie on each other.
             let slanted = self.towards.iter().all(|t| t.abs() > 1e-6);
             let at_corner = |v: f64| (v - low[axis]).min(high[axis] - v) * length < 14.0 * span;
@@ -122,7 +127,18 @@ impl Camera {
                 text(14.0, place(*v), 13, l);
             }
             let widest = labels.iter().map(String::len).max().unwrap_or(0) as f64 * 7.0;
-            text(32.0 + (widest - 12.0) * out.0.abs(), centre, 15, name);
+            if upright(&[from, to]) && (to.0 - from.0).abs() < 1.0 {
+                // Along the axis, as far away as the labels are wide.
+                let x = centre.0 + out.0 * (24.0 + widest);
+                let _ = write!(
+                    svg,
+                    "<text transform=\"translate({x:.1} {:.1}) rotate(-90)\" font-family=\"{FONT}\" font-size=\"15\" \
+                     text-anchor=\"middle\" dominant-baseline=\"central\">{name}</text>",
+                    centre.1
+                );
+            } else {
+                text(32.0 + (widest - 12.0) * out.0.abs(), centre, 15, name);
+            }
             let _ = write!(svg, "<path d=\"M{:.2} {:.2}L{:.2} {:.2}", from.0, from.1, to.0, to.1);
             for v in &ticks {
                 let (x, y) = place(*v);

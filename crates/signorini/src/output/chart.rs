@@ -12,7 +12,9 @@ use std::sync::{Arc, OnceLock};
 /// The font of all pictures, and what a viewer takes if it does not have it.
 pub const FONT: &str = "Ubuntu, DejaVu Sans, sans-serif";
 /// Pixels of the PNG per unit of the SVG.
-const ZOOM: f32 = 1.5;
+const ZOOM: f32 = 1.25;
+/// Sheets of several pictures are no wider than this many pixels.
+const WIDEST: f32 = 1520.0;
 
 /// A failure of the drawing library.
 pub fn failed(error: impl std::fmt::Display) -> OutputError {
@@ -65,13 +67,23 @@ fn options() -> &'static usvg::Options<'static> {
 }
 
 fn png(svg: &str) -> Result<Vec<u8>, OutputError> {
-    // More would take longer than a small problem.
-    encoded(&rendered(svg, ZOOM)?, png::Compression::Fast)
+    let width = usvg::Tree::from_str(svg, options()).map_err(failed)?.size().width();
+    encoded(&rendered(svg, ZOOM.min(WIDEST / width))?)
 }
 
-fn encoded(image: &tiny_skia::Pixmap, compression: png::Compression) -> Result<Vec<u8>, OutputError> {
+/// As a PNG: with a palette where that is enough, without transparency where there is none.
+fn encoded(image: &tiny_skia::Pixmap) -> Result<Vec<u8>, OutputError> {
     let mut bytes = Vec::new();
     let opaque = image.pixels().iter().all(|p| p.is_opaque());
+    if opaque && let Some((palette, data)) = indexed(image) {
+        let mut encoder = png::Encoder::new(&mut bytes, image.width(), image.height());
+        encoder.set_color(png::ColorType::Indexed);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_palette(palette);
+        encoder.set_compression(png::Compression::Balanced);
+        encoder.write_header().and_then(|mut writer| writer.write_image_data(&data)).map_err(failed)?;
+        return Ok(bytes);
+    }
     let pixels = image.pixels().iter().map(|p| p.demultiply());
     let (color, data): (_, Vec<u8>) = match opaque {
         true => (png::ColorType::Rgb, pixels.flat_map(|p| [p.red(), p.green(), p.blue()]).collect()),
@@ -80,9 +92,29 @@ fn encoded(image: &tiny_skia::Pixmap, compression: png::Compression) -> Result<V
     let mut encoder = png::Encoder::new(&mut bytes, image.width(), image.height());
     encoder.set_color(color);
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(compression);
+    encoder.set_compression(png::Compression::Balanced);
     encoder.write_header().and_then(|mut writer| writer.write_image_data(&data)).map_err(failed)?;
     Ok(bytes)
+}
+
+/// Up to 256 colours, and which of them every pixel has; none where there are more.
+fn indexed(image: &tiny_skia::Pixmap) -> Option<(Vec<u8>, Vec<u8>)> {
+    let mut numbers: std::collections::HashMap<[u8; 3], u8> = std::collections::HashMap::new();
+    let (mut palette, mut data) = (Vec::new(), Vec::with_capacity(image.pixels().len()));
+    for p in image.pixels() {
+        let colour = [p.red(), p.green(), p.blue()];
+        let number = match numbers.get(&colour) {
+            Some(number) => *number,
+            None => {
+                let number = u8::try_from(numbers.len()).ok()?;
+                palette.extend(colour);
+                numbers.insert(colour, number);
+                number
+            }
+        };
+        data.push(number);
+    }
+    Some((palette, data))
 }
 
 /// Width, height and RGBA of a picture.
@@ -91,27 +123,64 @@ pub fn pixels(svg: &str, zoom: f32) -> Result<(u32, u32, Vec<u8>), OutputError> 
     Ok((pixmap.width(), pixmap.height(), pixmap.take_demultiplied()))
 }
 
-/// Pictures of one size as an animated PNG, each shown for a fraction of a second.
-pub fn animation(frames: &[String], zoom: f32, (part, of): (u16, u16)) -> Result<Vec<u8>, OutputError> {
+/// A picture of an animation, and for how many milliseconds it is shown.
+pub struct Shot {
+    pub svg: String,
+    pub shown: u16,
+}
+
+/// Pictures of one size as an animated PNG. What does not change from one to the next is stored once.
+///
+/// # Errors
+/// Pictures that cannot be drawn.
+pub fn animation(shots: &[Shot], zoom: f32) -> Result<Vec<u8>, OutputError> {
     // Nothing is transparent: a quarter less to store.
     let opaque = |rgba: Vec<u8>| rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
-    let drawn: Vec<(u32, u32, Vec<u8>)> = frames
+    let drawn: Vec<(u32, u32, Vec<u8>)> = shots
         .par_iter()
-        .map(|svg| pixels(svg, zoom).map(|(width, height, rgba)| (width, height, opaque(rgba))))
+        .map(|shot| pixels(&shot.svg, zoom).map(|(width, height, rgba)| (width, height, opaque(rgba))))
         .collect::<Result<_, _>>()?;
     let Some((width, height, _)) = drawn.first() else { return Ok(Vec::new()) };
+    let (width, height) = (*width as usize, *height as usize);
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, *width, *height);
+    let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Balanced);
     encoder.set_animated(drawn.len() as u32, 0).map_err(failed)?;
-    encoder.set_frame_delay(part, of).map_err(failed)?;
     let mut writer = encoder.write_header().map_err(failed)?;
-    for (_, _, rgb) in &drawn {
-        writer.write_image_data(rgb).map_err(failed)?;
+    for (k, ((w, h, rgb), shot)) in drawn.iter().zip(shots).enumerate() {
+        if (*w as usize, *h as usize) != (width, height) {
+            return Err(failed("the pictures of an animation differ in size"));
+        }
+        let [left, top, right, bottom] = match k {
+            0 => [0, 0, width, height],
+            _ => changed(&drawn[k - 1].2, rgb, width),
+        };
+        writer.set_frame_delay(shot.shown, 1000).map_err(failed)?;
+        if k > 0 {
+            writer.reset_frame_position().map_err(failed)?;
+            writer.set_frame_dimension((right - left) as u32, (bottom - top) as u32).map_err(failed)?;
+            writer.set_frame_position(left as u32, top as u32).map_err(failed)?;
+        }
+        let part: Vec<u8> =
+            (top..bottom).flat_map(|y| &rgb[3 * (y * width + left)..3 * (y * width + right)]).copied().collect();
+        writer.write_image_data(&part).map_err(failed)?;
     }
     writer.finish().map_err(failed)?;
     Ok(bytes)
+}
+
+/// The box in which two pictures of a width differ, at least one pixel: left, top, right and bottom.
+fn changed(before: &[u8], after: &[u8], width: usize) -> [usize; 4] {
+    let mut found = [width, usize::MAX, 0, 0];
+    for (y, (a, b)) in before.chunks_exact(3 * width).zip(after.chunks_exact(3 * width)).enumerate() {
+        let differs = |x: &usize| a[3 * x..3 * x + 3] != b[3 * x..3 * x + 3];
+        let Some(first) = (0..width).find(differs) else { continue };
+        let last = (0..width).rev().find(differs).unwrap_or(first);
+        found = [found[0].min(first), found[1].min(y), found[2].max(last + 1), y + 1];
+    }
+    if found[2] == 0 { [0, 0, 1, 1] } else { found }
 }
 
 fn rendered(svg: &str, zoom: f32) -> Result<tiny_skia::Pixmap, OutputError> {
@@ -191,7 +260,7 @@ impl Image {
 
     /// Puts the image into an SVG, above the background and below everything else.
     pub fn insert(&self, svg: &mut String, x: (f64, f64), y: (f64, f64)) -> Result<(), OutputError> {
-        let data = base64::engine::general_purpose::STANDARD.encode(encoded(&self.pixmap, png::Compression::Balanced)?);
+        let data = base64::engine::general_purpose::STANDARD.encode(encoded(&self.pixmap)?);
         let element = format!(
             "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" xlink:href=\"data:image/png;base64,{data}\" xmlns:xlink=\"http://www.w3.org/1999/xlink\"/>\n",
             x.0,
@@ -231,6 +300,9 @@ pub fn word(svg: &mut String, (x, y): (f64, f64), text: &str, RGBColor(r, g, b):
     svg.insert_str(end, &element);
 }
 
+/// Steps of the colour map.
+const LEVELS: f64 = 248.0;
+
 /// The viridis colour map: even in lightness, and told apart by colour-blind eyes. `t` runs from 0 to 1.
 pub fn viridis(t: f64) -> RGBColor {
     const STOPS: [(u8, u8, u8); 9] = [
@@ -244,7 +316,9 @@ pub fn viridis(t: f64) -> RGBColor {
         (170, 220, 50),
         (253, 231, 37),
     ];
-    let t = if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.0 } * (STOPS.len() - 1) as f64;
+    let t = if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.0 };
+    // No more colours than a palette of bytes holds, beside a few others: pictures take a third of the room.
+    let t = (t * LEVELS).round() / LEVELS * (STOPS.len() - 1) as f64;
     let i = (t as usize).min(STOPS.len() - 2);
     let mix = |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * (t - i as f64)).round() as u8;
     let (a, b) = (STOPS[i], STOPS[i + 1]);
@@ -262,6 +336,36 @@ pub fn label(v: f64) -> String {
     }
     let text = format!("{v:.4}");
     text.trim_end_matches('0').trim_end_matches('.').to_string()
+}
+
+/// Round values as labels: all with the digits in which they differ.
+pub fn tick_labels(ticks: &[f64]) -> Vec<String> {
+    let largest = ticks.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    let step = ticks.windows(2).map(|w| (w[1] - w[0]).abs()).fold(f64::INFINITY, f64::min).min(largest);
+    if !(largest > 0.0 && step > 0.0) {
+        return ticks.iter().map(|v| label(*v)).collect();
+    }
+    let order = |v: f64| (v.log10() + 1e-9).floor() as i32;
+    let last = order(step);
+    if largest < 1e5 && last >= -4 {
+        let places = (-last).max(0) as usize;
+        return ticks.iter().map(|v| format!("{:.places$}", v + 0.0)).collect();
+    }
+    let name = |v: &f64| match *v {
+        0.0 => "0".into(),
+        v => format!("{v:.*e}", (order(v.abs()) - last).max(0) as usize),
+    };
+    ticks.iter().map(name).collect()
+}
+
+/// A range in which rounding is not magnified.
+pub fn rounded_range((low, high): (f64, f64)) -> (f64, f64) {
+    let size = high.abs().max(low.abs());
+    if high - low > 1e-9 * size && size > 0.0 {
+        return (low, high);
+    }
+    let pad = if size > 0.0 { 0.5 * size } else { 1.0 };
+    (low - pad, high + pad)
 }
 
 /// The range of finite values; one of some width even where they are all the same.
@@ -311,10 +415,26 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_map_is_stored_by_a_palette_and_read_back_as_it_is() {
+        let mut image = Image::new(300, 2).unwrap();
+        (0..300).for_each(|x| image.set(x, 0, viridis(x as f64 / 299.0)));
+        (0..300).for_each(|x| image.set(x, 1, RGBColor(228, 228, 228)));
+        let bytes = encoded(&image.pixmap).unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
+        assert_eq!(reader.info().color_type, png::ColorType::Indexed);
+        let back = tiny_skia::Pixmap::decode_png(&bytes).unwrap();
+        assert!(back.pixels() == image.pixmap.pixels());
+        assert!(reader.next_row().is_ok());
+    }
+
+    #[test]
     fn ticks_are_round_and_within_the_range() {
         assert_eq!(ticks(-1.0, 1.0, 4), [-1.0, -0.5, 0.0, 0.5, 1.0]);
         assert_eq!(ticks(0.0409, 19.5, 5), [5.0, 10.0, 15.0]);
         assert_eq!(ticks(0.0, 0.31, 4), [0.0, 0.1, 0.2, 0.3]);
         assert_eq!(ticks(2.0, 2.0, 4), [2.0]);
+        assert_eq!(tick_labels(&ticks(-1.0, 1.0, 4)), ["-1.0", "-0.5", "0.0", "0.5", "1.0"]);
+        assert_eq!(tick_labels(&[0.0, 5e-6, 1e-5, 1.5e-5]), ["0", "5e-6", "1.0e-5", "1.5e-5"]);
+        assert_eq!(tick_labels(&[1e5, 1.05e5]), ["1.00e5", "1.05e5"]);
     }
 }

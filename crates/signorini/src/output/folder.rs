@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 pub const MARKER: &str = "log.jsonl";
 const FIRST_LINE: &str = "{\"event\":\"signorini\"";
 /// Everything a run writes.
-const OWN: [&str; 15] = [
+const OWN: [&str; 17] = [
     "summary.json",
     "log.jsonl",
     "history.csv",
@@ -23,6 +23,8 @@ const OWN: [&str; 15] = [
     "checkpoint.json",
     "checkpoint",
     "pairs.pvd",
+    "rigid",
+    "rigid.pvd",
 ];
 
 /// Results that could not be written.

@@ -99,6 +99,85 @@ pub fn surface(
     (found.iter().map(|f| f.0).collect(), found.iter().map(|f| f.1).collect(), triangles)
 }
 
+/// Squares along the longest side of a box in the plane with which the search for a body begins, and how often they are
+/// halved at its edge: the smallest are a pixel wide.
+const SQUARES: f64 = 8.0;
+const HALVINGS: usize = 7;
+
+/// A rigid body in the plane, within a box: triangles, three points each, and the pieces of its edge.
+///
+/// `gap` is the distance to the edge, negative inside: squares that are farther from it than their corners reach are not
+/// divided.
+pub fn region(
+    gap: &(dyn Fn(&Vector<3>) -> GapJet<3> + Sync),
+    [low, high]: [Vector<3>; 2],
+) -> (Vec<[Vector<3>; 3]>, Vec<[Vector<3>; 2]>) {
+    let size = high - low;
+    let mut side = size.x.max(size.y) / SQUARES;
+    let count = [0, 1].map(|k| (size[k] / side).ceil().max(1.0) as usize);
+    let corners = |x: &Vector<3>, side: f64| {
+        [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[i, j]| x + Vector::<3>::new(i, j, 0.0) * side)
+    };
+    let mut squares: Vec<Vector<3>> = (0..count[0] * count[1])
+        .map(|k| low + Vector::<3>::new((k % count[0]) as f64, (k / count[0]) as f64, 0.0) * side)
+        .collect();
+    let (mut triangles, mut edge) = (Vec::new(), Vec::new());
+    for halving in 0..=HALVINGS {
+        let reach = side * std::f64::consts::FRAC_1_SQRT_2 * (1.0 + 1e-9);
+        let middle = Vector::<3>::new(0.5 * side, 0.5 * side, 0.0);
+        let found: Vec<f64> = squares.par_iter().map(|x| gap(&(x + middle)).gap).collect();
+        let inside = squares.iter().zip(&found).filter(|(_, g)| **g < -reach);
+        triangles.extend(inside.flat_map(|(x, _)| {
+            let [a, b, c, d] = corners(x, side);
+            [[a, b, c], [a, c, d]]
+        }));
+        squares = squares.iter().zip(&found).filter(|(_, g)| g.abs() <= reach).map(|(x, _)| *x).collect();
+        if halving < HALVINGS {
+            side *= 0.5;
+            squares = squares.iter().flat_map(|x| corners(x, side)).collect();
+        }
+    }
+    let cut: Vec<_> = squares.par_iter().map(|x| cut_square(gap, corners(x, side), side)).collect();
+    for (inside, pieces) in cut {
+        triangles.extend(inside);
+        edge.extend(pieces);
+    }
+    (triangles, edge)
+}
+
+/// What of a square is inside a body, and the pieces of the body's edge in it.
+fn cut_square(
+    gap: &(dyn Fn(&Vector<3>) -> GapJet<3> + Sync),
+    corners: [Vector<3>; 4],
+    side: f64,
+) -> (Vec<[Vector<3>; 3]>, Vec<[Vector<3>; 2]>) {
+    let values = corners.map(|x| gap(&x).gap);
+    let (mut triangles, mut edge) = (Vec::new(), Vec::new());
+    for t in [[0, 1, 2], [0, 2, 3]] {
+        let (mut kept, mut crossed) = (Vec::new(), Vec::new());
+        for k in 0..3 {
+            let (a, b) = (t[k], t[(k + 1) % 3]);
+            if values[a] < 0.0 {
+                kept.push(corners[a]);
+            }
+            if (values[a] < 0.0) != (values[b] < 0.0) {
+                let x = corners[a] + (corners[b] - corners[a]) * (values[a] / (values[a] - values[b]));
+                let jet = gap(&x);
+                // Where the sign changes far from the edge, as beyond the end of an open one, there is no edge.
+                let near = jet.gap.abs() < 0.25 * side;
+                let foot = if near { x - jet.normal * jet.gap } else { x };
+                kept.push(foot);
+                crossed.push((foot, near));
+            }
+        }
+        triangles.extend((2..kept.len()).map(|k| [kept[0], kept[k - 1], kept[k]]));
+        if let [(a, true), (b, true)] = crossed[..] {
+            edge.push([a, b]);
+        }
+    }
+    (triangles, edge)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -111,6 +190,17 @@ mod tests {
         let x = |k: u32| points[k as usize];
         let area: f64 = triangles.iter().map(|t| 0.5 * (x(t[1]) - x(t[0])).cross(&(x(t[2]) - x(t[0]))).norm()).sum();
         assert!((area / (4.0 * std::f64::consts::PI * 0.64) - 1.0).abs() < 2e-3, "{area}");
+    }
+
+    #[test]
+    fn a_body_in_the_plane_has_its_area_and_its_edge() {
+        let gap = |x: &Vector<3>| GapJet::ball(x, &Vector::<3>::zeros(), 0.8);
+        let corner = Vector::<3>::new(1.0, 1.0, 0.0);
+        let (triangles, edge) = region(&gap, [-corner, corner]);
+        let area: f64 = triangles.iter().map(|[a, b, c]| 0.5 * (b - a).cross(&(c - a)).norm()).sum();
+        let length: f64 = edge.iter().map(|[a, b]| (b - a).norm()).sum();
+        let pi = std::f64::consts::PI;
+        assert!((area / (pi * 0.64) - 1.0).abs() < 1e-4 && (length / (pi * 1.6) - 1.0).abs() < 1e-4, "{area} {length}");
     }
 
     #[test]

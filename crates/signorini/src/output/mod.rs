@@ -1,17 +1,25 @@
 //! Result files: each written under another name first and then renamed, so that a file is whole or absent.
 
-mod camera;
+pub(crate) mod camera;
 pub mod chart;
 pub mod figure;
 pub mod film;
 pub mod folder;
+mod history;
+mod labels;
 mod level;
-mod page;
+mod membrane_line;
+mod membrane_map;
+pub(crate) mod page;
+mod panel;
 pub mod pictures;
-mod render;
+pub(crate) mod render;
+pub mod rigid;
 pub mod solid_fields;
 pub mod solid_pictures;
+mod solid_plane;
 mod solid_space;
+pub mod solid_state;
 pub mod tables;
 pub mod vtk;
 

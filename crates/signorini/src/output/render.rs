@@ -7,10 +7,16 @@ use super::chart::{Image, viridis};
 use plotters::style::RGBColor;
 use signorini_geometry::Vector;
 
-/// Pixels of the raster per unit of the page: those of the PNG.
-const DENSITY: f64 = 1.5;
-/// Samples per pixel along each side.
-const SAMPLES: usize = 2;
+/// Pixels of the raster per unit of the page, and samples per pixel along each side: a few more than those of the PNG where
+/// edges are smoothed, and twice as many where edges are drawn as lines on top.
+const fn density(look: Look) -> (f64, usize) {
+    match look {
+        Look::Solid => (1.5, 2),
+        Look::Film => (1.0, 2),
+        Look::Map => (2.5, 1),
+    }
+}
+
 /// Cosine of the angle between faces from which on their edge is drawn: 30 degrees.
 const CREASE: f64 = 0.866;
 /// Translucent bodies tint what they are in front of by more than this part of the picture's width, not what they touch.
@@ -37,6 +43,11 @@ pub struct Body {
 }
 
 impl Body {
+    /// Nothing, to be coloured.
+    pub fn empty(paint: Paint) -> Self {
+        Body { points: Vec::new(), triangles: Vec::new(), normals: Vec::new(), paint, opacity: 1.0 }
+    }
+
     /// A body of flat polygons, smooth across edges that are no creases.
     ///
     /// Quadrilaterals are divided about their middle, which no diagonal shows in.
@@ -83,6 +94,12 @@ impl Body {
     pub fn clipped(&self, height: impl Fn(&Vector<3>, f64) -> f64) -> Self {
         let field = |k: usize| if let Paint::Field(values) = &self.paint { values[k] } else { 0.0 };
         let heights: Vec<f64> = self.points.iter().enumerate().map(|(k, x)| height(x, field(k))).collect();
+        self.above(&heights)
+    }
+
+    /// The part where a function, known at the points and even between them, is not negative.
+    pub fn above(&self, heights: &[f64]) -> Self {
+        let field = |k: usize| if let Paint::Field(values) = &self.paint { values[k] } else { 0.0 };
         let mut out = Body { triangles: Vec::new(), normals: Vec::new(), ..self.clone() };
         for (corners, normals) in self.triangles.iter().zip(&self.normals) {
             let mut kept: Vec<(u32, Vector<3>)> = Vec::new();
@@ -115,6 +132,8 @@ impl Body {
 pub enum Look {
     /// Lit from above, with outlines and creases.
     Solid,
+    /// The same, coarser, for frames of films.
+    Film,
     /// Colours as they are on the colour map.
     Map,
 }
@@ -135,25 +154,33 @@ struct Sample {
 /// A page without area.
 pub fn render(bodies: &[Body], camera: &Camera, look: Look) -> Result<Image, OutputError> {
     let [left, top, right, bottom] = camera.area;
-    let pixels = |length: f64| (length * DENSITY).round().max(1.0) as usize;
+    let (dense, samples) = density(look);
+    let pixels = |length: f64| (length * dense).round().max(1.0) as usize;
     let (width, height) = (pixels(right - left), pixels(bottom - top));
-    let mut layers = [const { Vec::new() }; 2];
-    for (layer, translucent) in layers.iter_mut().zip([false, true]) {
-        *layer = vec![Sample::default(); width * height * SAMPLES * SAMPLES];
-        for (k, body) in bodies.iter().enumerate().filter(|(_, b)| (b.opacity < 1.0) == translucent) {
-            rasterise(layer, width * SAMPLES, body, k as u16 + 1, camera, look);
+    // What is translucent lies on a layer of its own.
+    let mut layers: Vec<Vec<Sample>> = Vec::new();
+    for translucent in [false, true] {
+        let own = || bodies.iter().enumerate().filter(|(_, b)| (b.opacity < 1.0) == translucent);
+        if translucent && own().next().is_none() {
+            continue;
         }
+        let mut layer = vec![Sample::default(); width * height * samples * samples];
+        own().for_each(|(k, body)| rasterise(&mut layer, width * samples, body, k as u16 + 1, camera, look));
+        layers.push(layer);
     }
     // The change of depth between samples of a surface at 80 degrees.
-    let step = 6.0 / (camera.scale * DENSITY * SAMPLES as f64);
-    let lines = layers.each_ref().map(|layer| outlines(layer, width * SAMPLES, step as f32));
+    let step = 6.0 / (camera.scale * dense * samples as f64);
+    let lines: Vec<Vec<bool>> = match look {
+        Look::Solid | Look::Film => layers.iter().map(|layer| outlines(layer, width * samples, step as f32)).collect(),
+        Look::Map => vec![Vec::new(); layers.len()],
+    };
     let touching = (TOUCHING * (right - left) / camera.scale) as f32;
     let mut image = Image::new(width as u32, height as u32)?;
     for y in 0..height {
         for x in 0..width {
             let mut sum = [0.0; 3];
-            for s in 0..SAMPLES * SAMPLES {
-                let at = (y * SAMPLES + s / SAMPLES) * width * SAMPLES + x * SAMPLES + s % SAMPLES;
+            for s in 0..samples * samples {
+                let at = (y * samples + s / samples) * width * samples + x * samples + s % samples;
                 let mut colour = [255.0; 3];
                 for (layer, lines) in layers.iter().zip(&lines) {
                     let sample = &layer[at];
@@ -167,7 +194,7 @@ pub fn render(bodies: &[Body], camera: &Camera, look: Look) -> Result<Image, Out
                     for k in 0..3 {
                         colour[k] += (own[k] - colour[k]) * share;
                     }
-                    if look == Look::Solid && lines[at] {
+                    if look != Look::Map && lines[at] {
                         // Lines are light on dark colours.
                         let light = 0.3 * own[0] + 0.59 * own[1] + 0.11 * own[2];
                         let ink = if light < 80.0 { 235.0 } else { 25.0 };
@@ -176,7 +203,7 @@ pub fn render(bodies: &[Body], camera: &Camera, look: Look) -> Result<Image, Out
                 }
                 (0..3).for_each(|k| sum[k] += colour[k]);
             }
-            let [r, g, b] = sum.map(|c| (c / (SAMPLES * SAMPLES) as f64).round() as u8);
+            let [r, g, b] = sum.map(|c| (c / (samples * samples) as f64).round() as u8);
             image.set(x, y, RGBColor(r, g, b));
         }
     }
@@ -185,7 +212,8 @@ pub fn render(bodies: &[Body], camera: &Camera, look: Look) -> Result<Image, Out
 
 /// Puts a body into a layer wherever it is in front.
 fn rasterise(layer: &mut [Sample], width: usize, body: &Body, number: u16, camera: &Camera, look: Look) {
-    let zoom = DENSITY * SAMPLES as f64;
+    let (dense, samples) = density(look);
+    let zoom = dense * samples as f64;
     let height = layer.len() / width;
     let place: Vec<[f64; 3]> = (body.points.iter())
         .map(|p| {

@@ -2,8 +2,9 @@
 
 use super::OutputError;
 use super::level::OF_HEXAHEDRON;
-use super::vtk::to_bytes;
+use super::vtk::with_units;
 use crate::fields::{FieldArray, Fields};
+use crate::report::UnitNames;
 use nalgebra::Matrix3;
 use signorini_contact::ContactSurface;
 use signorini_fem::{CellShape, Local};
@@ -181,6 +182,17 @@ impl<const D: usize> SolidDisplay<D> {
         display
     }
 
+    /// Bodies at rest.
+    pub fn at_rest(&self) -> SolidFields<D> {
+        let count = self.points.len();
+        SolidFields {
+            displacement: vec![Point::<D>::zeros(); count],
+            stress: vec![Matrix3::zeros(); count],
+            von_mises: vec![0.0; count],
+            strain: vec![0.0; count],
+        }
+    }
+
     /// Displacement and stress at all points; stress is the mean of the cells that meet.
     pub fn fields(&self, model: &Model<D>, u: &[f64]) -> SolidFields<D> {
         let mut fields =
@@ -247,7 +259,7 @@ impl<const D: usize> SolidDisplay<D> {
     }
 
     /// A VTU with displacement, stress and its equivalent after von Mises.
-    pub fn vtu(&self, fields: &SolidFields<D>) -> Result<Vec<u8>, OutputError> {
+    pub fn vtu(&self, fields: &SolidFields<D>, units: Option<&UnitNames>) -> Result<Vec<u8>, OutputError> {
         let spatial = |list: &[Point<D>]| -> Vec<f64> {
             list.iter().flat_map(|x| (0..3).map(|k| if k < D { x[k] } else { 0.0 })).collect()
         };
@@ -275,7 +287,7 @@ impl<const D: usize> SolidDisplay<D> {
             },
             data: Attributes { point, cell: Vec::new() },
         };
-        to_bytes("solids", DataSet::inline(piece))
+        with_units("solids", DataSet::inline(piece), units)
     }
 }
 
@@ -311,11 +323,13 @@ pub struct ContactDisplay<const D: usize> {
     pub active: Vec<bool>,
     pub faces: Vec<Vec<u32>>,
     /// The face of the slave side that each of `faces` is a part of.
-    of_face: Vec<usize>,
+    pub of_face: Vec<usize>,
     /// Area in contact of every face of the slave side.
     face_area: Vec<f64>,
     /// Where the zone ends, displaced: points in the plane, given twice, and pieces of outlines in space.
     pub boundary: Vec<[Point<D>; 2]>,
+    /// The face of the slave side that each of these is on.
+    pub boundary_face: Vec<usize>,
     /// In the plane, the intervals in contact, displaced.
     pub intervals: Vec<[Point<D>; 2]>,
 }
@@ -334,6 +348,7 @@ impl<const D: usize> ContactDisplay<D> {
             of_face: Vec::new(),
             face_area: state.contacts[number].zone.face_area.clone(),
             boundary: Vec::new(),
+            boundary_face: state.contacts[number].zone.boundary.iter().map(|b| b.0).collect(),
             intervals: Vec::new(),
         };
         for node in &state.contacts[number].nodes {
@@ -442,7 +457,7 @@ impl<const D: usize> ContactDisplay<D> {
     }
 
     /// A VTP of the slave side with pressure, gap and status.
-    pub fn vtp(&self) -> Result<Vec<u8>, OutputError> {
+    pub fn vtp(&self, units: Option<&UnitNames>) -> Result<Vec<u8>, OutputError> {
         let spatial = |list: &[Point<D>]| -> Vec<f64> {
             list.iter().flat_map(|x| (0..3).map(|k| if k < D { x[k] } else { 0.0 })).collect()
         };
@@ -474,6 +489,6 @@ impl<const D: usize> ContactDisplay<D> {
         } else {
             piece.polys = topology
         }
-        to_bytes("contact", DataSet::inline(piece))
+        with_units("contact", DataSet::inline(piece), units)
     }
 }

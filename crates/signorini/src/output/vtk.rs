@@ -1,12 +1,38 @@
 //! Files for ParaView and pyvista: VTU fields, VTP outlines, and the PVD that puts them in time.
 
 use super::OutputError;
+use crate::report::UnitNames;
 use crate::snapshot::{DisplayMesh, Snapshot};
 use signorini_geometry::Point;
 use vtkio::model::{
     Attribute, Attributes, ByteOrder, CellType, Cells, DataSet, PolyDataPiece, UnstructuredGridPiece, Version,
     VertexNumbers, Vtk,
 };
+
+/// A data set as an XML file, with the units of its fields where the case states any: as VTK's own `UNITS_LABEL`.
+pub fn with_units(title: &str, data: DataSet, units: Option<&UnitNames>) -> Result<Vec<u8>, OutputError> {
+    let bytes = to_bytes(title, data)?;
+    let Some(units) = units else { return Ok(bytes) };
+    let mut text = String::from_utf8(bytes).map_err(|e| OutputError::Picture(format!("VTK: {e}")))?;
+    let of_fields = [
+        ("displacement", &units.length),
+        ("gap", &units.length),
+        ("contact_pressure", &units.pressure),
+        ("stress_xx_yy_zz_xy_yz_xz", &units.pressure),
+        ("von_mises", &units.pressure),
+        ("Points", &units.length),
+    ];
+    for (name, unit) in of_fields {
+        let Some(start) = text.find(&format!("Name=\"{name}\"")) else { continue };
+        let Some(end) = text[start..].find("</DataArray>") else { continue };
+        let key = format!(
+            "<InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">{}</InformationKey>",
+            super::page::escaped(unit)
+        );
+        text.insert_str(start + end, &key);
+    }
+    Ok(text.into_bytes())
+}
 
 /// A data set as an XML file.
 pub fn to_bytes(title: &str, data: DataSet) -> Result<Vec<u8>, OutputError> {
@@ -23,7 +49,11 @@ fn coordinates<const D: usize>(points: &[Point<D>], z: impl Fn(usize) -> f64) ->
 }
 
 /// The fields of a state on the undeflected membrane.
-pub fn fields<const D: usize>(mesh: &DisplayMesh<D>, s: &Snapshot<D>) -> Result<Vec<u8>, OutputError> {
+pub fn fields<const D: usize>(
+    mesh: &DisplayMesh<D>,
+    s: &Snapshot<D>,
+    units: Option<&UnitNames>,
+) -> Result<Vec<u8>, OutputError> {
     let connectivity: Vec<u64> = mesh.cells.iter().flatten().map(|&i| u64::from(i)).collect();
     let offsets: Vec<u64> = mesh
         .cells
@@ -52,7 +82,7 @@ pub fn fields<const D: usize>(mesh: &DisplayMesh<D>, s: &Snapshot<D>) -> Result<
         cells: Cells { cell_verts: VertexNumbers::XML { connectivity, offsets }, types },
         data: Attributes { point, cell: Vec::new() },
     };
-    to_bytes("membrane", DataSet::inline(piece))
+    with_units("membrane", DataSet::inline(piece), units)
 }
 
 /// The contact outlines as closed lines; points in one dimension.
@@ -89,4 +119,25 @@ pub fn collection(entries: &[(f64, String)]) -> String {
         text += &format!("    <DataSet timestep=\"{time}\" part=\"0\" file=\"{file}\"/>\n");
     }
     text + "  </Collection>\n</VTKFile>\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_stand_in_the_arrays_of_their_fields() {
+        let piece = PolyDataPiece {
+            points: vec![0.0, 0.0, 0.0].into(),
+            data: Attributes { point: vec![Attribute::scalars("gap", 1).with_data(vec![1.5f64])], cell: Vec::new() },
+            ..PolyDataPiece::default()
+        };
+        let [length, area, force, pressure, energy, time] = ["mm", "mm²", "N", "kPa", "mJ", "s"].map(String::from);
+        let units = UnitNames { length, area, force, pressure, energy, time };
+        let file = with_units("test", DataSet::inline(piece), Some(&units)).unwrap();
+        let text = String::from_utf8(file.clone()).unwrap();
+        let gap = text.split("Name=\"gap\"").nth(1).unwrap().split("</DataArray>").next().unwrap();
+        assert!(gap.ends_with("<InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">mm</InformationKey>"));
+        assert!(!text.contains("kPa"));
+    }
 }

@@ -33,6 +33,12 @@ pub trait Model {
     /// The end of an increment as far as it is known before.
     fn time(&self, index: usize) -> f64;
 
+    /// Whether it is known without solving that the state at t = 0 has neither displacements nor contact forces. Files and
+    /// pictures of the history begin with it then.
+    fn begins_at_rest(&self) -> bool {
+        false
+    }
+
     /// Solves an increment, starting from the state of the one before, and enters what was found.
     ///
     /// # Errors

@@ -10,14 +10,14 @@ mod verdict;
 
 use super::checkpoint;
 use super::driver::{Advanced, Model};
-use super::record::Record;
+use super::record::{Record, START};
 use crate::fields::ShownState;
 use crate::output::film::Film;
 use crate::output::{Folder, OutputError, pictures, tables, vtk};
 use crate::plan::{Control, Head, MembranePlan, PlannedIncrement};
 use crate::problem::CaseError;
 use crate::report::{Event, OtherState, Reason, Warning, WarningKind};
-use crate::snapshot::{DisplayMesh, Snapshot};
+use crate::snapshot::{DisplayMesh, Sample, Snapshot};
 use events::{Between, Bounded, Known, jump, locate, locate_jump};
 use increment::{Engine, Increment};
 use path::{Along, Follower};
@@ -46,7 +46,9 @@ pub struct MembraneModel<const D: usize, Z> {
     engine: Engine<D, Z>,
     path: Option<Follower<D, Z>>,
     seeker: Option<Seeker>,
-    film: Film<D>,
+    film: Film<Snapshot<D>>,
+    /// The state at t = 0, where that is one of rest.
+    rest: Option<Snapshot<D>>,
     /// The state of the last increment, where one is known.
     known: Option<Known<Z>>,
     last: Option<Snapshot<D>>,
@@ -63,7 +65,12 @@ impl<const D: usize, Z: Zone<D>> MembraneModel<D, Z> {
         }
         let mesh = DisplayMesh::new(&plan, &plan.at(plan.increments[0].range[0]));
         let engine = Engine::new(&plan);
-        Ok(Self { plan, mesh, engine, path: None, seeker: None, film: Film::default(), known: None, last: None })
+        let rest = at_rest(&plan, &mesh);
+        let mut film = Film::default();
+        if plan.head.pictures && plan.increments.len() > 1 {
+            rest.iter().for_each(|rest| film.add(rest));
+        }
+        Ok(Self { plan, mesh, engine, path: None, seeker: None, film, rest, known: None, last: None })
     }
 
     /// The state at the beginning of an increment whose events are wanted: that of the one before, or at t = 0.
@@ -310,6 +317,25 @@ impl<const D: usize, Z: Zone<D>> MembraneModel<D, Z> {
     }
 }
 
+/// The state at t = 0 where the membrane is flat then and clear of what it may touch: without loads and displacements of
+/// supports. None where a history does not begin at t = 0, or not with that state.
+fn at_rest<const D: usize>(plan: &MembranePlan<D>, mesh: &DisplayMesh<D>) -> Option<Snapshot<D>> {
+    let first = plan.increments.first()?;
+    let [from, to] = first.range;
+    // A path of equilibria begins somewhere else.
+    if from != 0.0 || to <= 0.0 || plan.initial_zone.is_some() || first.control != Control::Time {
+        return None;
+    }
+    let membrane = plan.at(0.0);
+    let still = |x: &Point<D>| {
+        membrane.load.value(x) == 0.0
+            && membrane.supports.iter().flatten().all(|s| s.displacement.value(x) == 0.0)
+            && membrane.obstacles.least_gap(x, 0.0).0 > 0.0
+    };
+    let flat = |_: &Point<D>| Some(Sample { displacement: 0.0, in_contact: false, pressure: 0.0 });
+    mesh.points.iter().all(still).then(|| Snapshot::new(mesh, &membrane, 0.0, Vec::new(), flat))
+}
+
 impl<const D: usize, Z: Zone<D>> Model for MembraneModel<D, Z> {
     fn head(&self) -> &Head {
         &self.plan.head
@@ -321,6 +347,10 @@ impl<const D: usize, Z: Zone<D>> Model for MembraneModel<D, Z> {
 
     fn time(&self, index: usize) -> f64 {
         self.plan.increments[index].time
+    }
+
+    fn begins_at_rest(&self) -> bool {
+        self.rest.is_some()
     }
 
     fn advance(
@@ -459,7 +489,13 @@ impl<const D: usize, Z: Zone<D>> Model for MembraneModel<D, Z> {
     fn write_fields(&mut self, index: usize, record: &mut Record) -> Result<(), OutputError> {
         let Some(s) = &self.last else { return Ok(()) };
         let name = format!("{index:05}");
-        record.folder.write(&format!("fields/fields_{name}.vtu"), &vtk::fields(&self.mesh, s)?)?;
+        let units = record.units.clone();
+        if let Some(rest) = self.rest.as_ref().filter(|_| record.frames.is_empty()) {
+            let file = format!("fields/fields_{START}.vtu");
+            record.folder.write(&file, &vtk::fields(&self.mesh, rest, units.as_ref())?)?;
+            record.add_frame(0.0, START.into(), &["contact"])?;
+        }
+        record.folder.write(&format!("fields/fields_{name}.vtu"), &vtk::fields(&self.mesh, s, units.as_ref())?)?;
         record.folder.write(&format!("contact/contact_{name}.vtp"), &vtk::outlines(s)?)?;
         record.folder.write(&format!("contact/outlines_{name}.csv"), tables::outlines(s).as_bytes())?;
         record.add_frame(s.time, name, &["contact"])
@@ -473,8 +509,9 @@ impl<const D: usize, Z: Zone<D>> Model for MembraneModel<D, Z> {
 
     fn draw(&self, record: &Record) -> Result<(), OutputError> {
         let Some(last) = &self.last else { return Ok(()) };
-        self.film.write(&record.folder, &self.plan, &self.mesh)?;
-        pictures::draw(&record.folder, &self.plan, &self.mesh, last, &record.steps, &record.events)
+        let states = record.history(self.rest.is_some());
+        let history = (&*states, record.events.as_slice());
+        pictures::draw(&record.folder, &self.plan, &self.mesh, last, self.film.frames(), history)
     }
 
     fn first_picture(&self) -> Option<String> {

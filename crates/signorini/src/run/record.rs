@@ -6,7 +6,11 @@ use crate::fields::ShownState;
 use crate::output::{Folder, OutputError, vtk};
 use crate::plan::Head;
 use crate::plan::reader::Interpreted;
-use crate::report::{Event, Reason, SCHEMA, StepReport, Summary, UnitNames, Warning, history};
+use crate::report::{ContactReport, Event, Probe, Reason, SCHEMA, StepReport, Summary, UnitNames, Warning, history};
+use std::borrow::Cow;
+
+/// The number of the fields at t = 0 in the names of their files.
+pub const START: &str = "start";
 
 /// The results of a run that are the same for all models.
 pub struct Record {
@@ -69,9 +73,33 @@ impl Record {
         let fields: Vec<_> = self.frames.iter().map(|(t, n)| (*t, format!("fields/fields_{n}.vtu"))).collect();
         let of_frame =
             |(t, n): &(f64, String)| contacts.iter().map(|c| (*t, format!("contact/{c}_{n}.vtp"))).collect::<Vec<_>>();
-        let surfaces: Vec<_> = self.frames.iter().flat_map(of_frame).collect();
+        let surfaces: Vec<_> = self.frames.iter().filter(|f| f.1 != START).flat_map(of_frame).collect();
         self.folder.write("fields.pvd", vtk::collection(&fields).as_bytes())?;
         self.folder.write("contact.pvd", vtk::collection(&surfaces).as_bytes())
+    }
+
+    /// Enters the files of the rigid bodies of all frames, `rigid/NAME_N.vtp`, into their collection.
+    ///
+    /// # Errors
+    /// A collection that cannot be written.
+    pub fn add_rigid(&self, names: &[String]) -> Result<(), OutputError> {
+        if names.is_empty() {
+            return Ok(());
+        }
+        let of_frame =
+            |(t, n): &(f64, String)| names.iter().map(|b| (*t, format!("rigid/{b}_{n}.vtp"))).collect::<Vec<_>>();
+        let files: Vec<_> = self.frames.iter().flat_map(of_frame).collect();
+        self.folder.write("rigid.pvd", vtk::collection(&files).as_bytes())
+    }
+
+    /// The states of the history, from the one at t = 0 on where that is one of rest.
+    pub fn history(&self, begins_at_rest: bool) -> Cow<'_, [StepReport]> {
+        match self.steps.first() {
+            Some(first) if begins_at_rest => {
+                Cow::Owned(std::iter::once(at_rest(first)).chain(self.steps.clone()).collect())
+            }
+            _ => Cow::Borrowed(&self.steps),
+        }
     }
 
     /// Number of increments that were solved.
@@ -84,7 +112,8 @@ impl Record {
     /// # Errors
     /// Files that cannot be written.
     pub fn finish(&self, model: &dyn Model, reason: Reason, start: std::time::Instant) -> Result<Summary, OutputError> {
-        self.folder.write("history.csv", history(&self.steps, self.units.as_ref()).as_bytes())?;
+        let states = self.history(model.begins_at_rest());
+        self.folder.write("history.csv", history(&states, self.units.as_ref()).as_bytes())?;
         if self.pictures && self.folder.path().is_some() {
             model.draw(self)?;
         }
@@ -106,6 +135,29 @@ impl Record {
         };
         self.folder.write("summary.json", summary.to_json().as_bytes())?;
         Ok(summary)
+    }
+}
+
+/// The state at t = 0, where nothing has happened yet, of what a later one tells.
+fn at_rest(later: &StepReport) -> StepReport {
+    let probe = |p: &Option<Probe>| {
+        p.as_ref().map(|p| Probe {
+            at: p.at,
+            displacement: [0.0; 3],
+            in_contact: p.in_contact.map(|_| false),
+            pressure: p.pressure.map(|_| 0.0),
+            von_mises: p.von_mises.map(|_| 0.0),
+        })
+    };
+    StepReport {
+        converged: true,
+        reason: Reason::Converged,
+        energy: later.energy.map(|_| 0.0),
+        contacts: later.contacts.keys().map(|name| (name.clone(), ContactReport::default())).collect(),
+        support_forces: later.support_forces.keys().map(|name| (name.clone(), [0.0; 3])).collect(),
+        load_forces: later.load_forces.keys().map(|name| (name.clone(), [0.0; 3])).collect(),
+        probes: later.probes.iter().map(|(name, p)| (name.clone(), probe(p))).collect(),
+        ..StepReport::default()
     }
 }
 

@@ -7,11 +7,13 @@ mod setup;
 
 use super::checkpoint;
 use super::driver::{Advanced, Model};
-use super::record::Record;
+use super::record::{Record, START};
 use crate::fields::ShownState;
+use crate::output::film::Film;
 use crate::output::solid_fields::{ContactDisplay, SolidDisplay};
-use crate::output::{Folder, OutputError, solid_pictures, tables};
-use crate::plan::solid::{PlannedBody, SolidContact, SolidPlan};
+use crate::output::solid_state::SolidFrame;
+use crate::output::{Folder, OutputError, rigid, solid_pictures, tables};
+use crate::plan::solid::{PlannedBody, SolidContact, SolidPlan, SolidSupport};
 use crate::plan::{Head, memory_at_hand};
 use crate::problem::CaseError;
 use crate::report::{ErrorEstimate, Reason, StepReport};
@@ -20,7 +22,8 @@ use report::{SOLVER, Shown};
 use serde_json::Value;
 pub(super) use setup::{OPERATIONS_PER_SECOND, cost, judge, memory, model};
 use setup::{at_time, blamed, raised, too_large};
-use signorini_solid::{ContactResult, Model as Solids, State};
+use signorini_geometry::Point;
+use signorini_solid::{Circumstances, ContactResult, Model as Solids, RigidGap, State};
 use signorini_solve::{Iteration, Progress};
 use std::path::Path;
 
@@ -41,6 +44,9 @@ pub struct SolidModel<const D: usize> {
     last: Option<Shown<D>>,
     /// Why there is no state after it.
     failure: Option<Failure>,
+    film: Film<SolidFrame<D>>,
+    /// Whether the state at t = 0 is that of rest.
+    rests: bool,
 }
 
 impl<const D: usize> SolidModel<D> {
@@ -56,7 +62,29 @@ impl<const D: usize> SolidModel<D> {
             return Err(too_large(&plan, solids.unknowns(), &cost));
         }
         let display = SolidDisplay::new(&solids);
-        Ok(Self { plan, solids, display, last: None, failure: None })
+        let rests = plan.times[0] > 0.0 && at_rest(&plan, &mut solids);
+        let mut film = Film::default();
+        if rests && plan.head.pictures && plan.times.len() > 1 {
+            film.add(&SolidFrame::new(0.0, &display.at_rest(), &[]));
+        }
+        Ok(Self { plan, solids, display, last: None, failure: None, film, rests })
+    }
+
+    /// Writes the rigid bodies around solids with these displacements, and returns their names.
+    fn write_rigid(
+        &self,
+        record: &Record,
+        time: f64,
+        u: &[Point<D>],
+        number: &str,
+    ) -> Result<Vec<String>, OutputError> {
+        let now = self.display.points.iter().zip(u).map(|(x, u)| x + u);
+        let mut names = Vec::new();
+        for (name, file) in rigid::files(&self.plan, time, now)? {
+            record.folder.write(&format!("rigid/{name}_{number}.vtp"), &file)?;
+            names.push(name);
+        }
+        Ok(names)
     }
 
     /// Solves for the end of an increment. With finite sliding an increment that has no solution at once is cut: after an
@@ -165,6 +193,24 @@ impl<const D: usize> SolidModel<D> {
     }
 }
 
+/// Whether the bodies are at rest at t = 0: without loads, displacements of supports, and rigid bodies that reach into them.
+fn at_rest<const D: usize>(plan: &SolidPlan<D>, solids: &mut Solids<D>) -> bool {
+    let look = |model: &mut Solids<D>, now: &Circumstances<'_, D>| {
+        let nodes = |body: usize| model.bodies.list[body].mesh.nodes();
+        let still =
+            |(k, s): (usize, &SolidSupport)| nodes(s.body).iter().all(|x| (now.displacement)(k, x).amax() == 0.0);
+        let clear = |(gap, c): (&Option<RigidGap<D>>, &SolidContact)| {
+            let reach = |gap: &RigidGap<D>| nodes(c.body).iter().map(|x| gap(x).gap).fold(f64::INFINITY, f64::min);
+            let size = nodes(c.body).iter().map(|x| x.amax()).fold(0.0, f64::max);
+            gap.as_ref().is_none_or(|gap| reach(gap) >= -1e-12 * size)
+        };
+        now.load.iter().all(|f| *f == 0.0)
+            && plan.supports.iter().enumerate().all(still)
+            && now.rigid.iter().zip(&plan.contacts).all(clear)
+    };
+    at_time(plan, solids, 0.0, look).unwrap_or(false)
+}
+
 impl<const D: usize> Model for SolidModel<D> {
     fn head(&self) -> &Head {
         &self.plan.head
@@ -176,6 +222,10 @@ impl<const D: usize> Model for SolidModel<D> {
 
     fn time(&self, index: usize) -> f64 {
         self.plan.times[index]
+    }
+
+    fn begins_at_rest(&self) -> bool {
+        self.rests
     }
 
     fn advance(
@@ -214,22 +264,35 @@ impl<const D: usize> Model for SolidModel<D> {
         }
         report::warn(&self.plan, &self.solids, &self.display, &state, &shown, record);
         record.steps.push(step);
+        if self.plan.head.pictures && self.plan.times.len() > 1 {
+            self.film.add(&SolidFrame::new(time, &shown.fields, &shown.contacts));
+        }
         self.last = Some(shown);
         Ok(Advanced::State)
     }
 
     fn write_fields(&mut self, index: usize, record: &mut Record) -> Result<(), OutputError> {
         let Some(Shown { time, fields, contacts, .. }) = &self.last else { return Ok(()) };
+        let units = record.units.clone();
+        let units = units.as_ref();
+        let names: Vec<&str> = self.plan.contacts.iter().map(|c| c.name.as_str()).collect();
+        if self.rests && record.frames.is_empty() {
+            let rest = self.display.at_rest();
+            record.folder.write(&format!("fields/fields_{START}.vtu"), &self.display.vtu(&rest, units)?)?;
+            self.write_rigid(record, 0.0, &rest.displacement, START)?;
+            record.add_frame(0.0, START.into(), &names)?;
+        }
         let (folder, name) = (&record.folder, format!("{index:05}"));
-        folder.write(&format!("fields/fields_{name}.vtu"), &self.display.vtu(fields)?)?;
+        folder.write(&format!("fields/fields_{name}.vtu"), &self.display.vtu(fields, units)?)?;
         for (contact, shown) in self.plan.contacts.iter().zip(contacts) {
             let file = |end: &str| format!("contact/{}_{name}{end}", contact.name);
-            folder.write(&file(".vtp"), &shown.vtp()?)?;
+            folder.write(&file(".vtp"), &shown.vtp(units)?)?;
             folder.write(&file(".csv"), tables::pressure(shown).as_bytes())?;
             folder.write(&file("_outline.csv"), tables::solid_outline(&shown.boundary).as_bytes())?;
         }
-        let names: Vec<&str> = self.plan.contacts.iter().map(|c| c.name.as_str()).collect();
-        record.add_frame(*time, name, &names)
+        let bodies = self.write_rigid(record, *time, &fields.displacement, &name)?;
+        record.add_frame(*time, name, &names)?;
+        record.add_rigid(&bodies)
     }
 
     fn shown(&self) -> Option<ShownState> {
@@ -243,7 +306,9 @@ impl<const D: usize> Model for SolidModel<D> {
 
     fn draw(&self, record: &Record) -> Result<(), OutputError> {
         let Some(Shown { time, fields, contacts, .. }) = &self.last else { return Ok(()) };
-        solid_pictures::draw(&record.folder, &self.plan, *time, &self.display, fields, contacts, &record.steps)
+        let last = (&SolidFrame::new(*time, fields, contacts), contacts.as_slice());
+        let states = record.history(self.rests);
+        solid_pictures::draw(&record.folder, &self.plan, &self.display, last, self.film.frames(), &states)
     }
 
     fn first_picture(&self) -> Option<String> {
@@ -275,11 +340,17 @@ impl<const D: usize> Model for SolidModel<D> {
         report::method(&self.plan)
     }
 
-    fn save(&self, _: &Folder, _: usize) -> Result<Option<Value>, OutputError> {
+    fn save(&self, folder: &Folder, next: usize) -> Result<Option<Value>, OutputError> {
+        if let Some(Shown { time, fields, contacts, .. }) = self.last.as_ref().filter(|_| self.plan.head.pictures) {
+            saved::write_frame(folder, next - 1, &SolidFrame::new(*time, fields, contacts))?;
+        }
         Ok(Some(saved::to_json(self.solids.save())))
     }
 
-    fn restore(&mut self, state: Value, folder: &Path, _: usize) -> Result<(), String> {
+    fn restore(&mut self, state: Value, folder: &Path, next: usize) -> Result<(), String> {
+        for frame in saved::frames(folder, next).ok_or_else(|| checkpoint::damaged(folder))? {
+            self.film.add(&frame);
+        }
         let damaged = || checkpoint::damaged(folder);
         let memory = saved::from_json(state).filter(|memory| self.solids.fits(memory)).ok_or_else(damaged)?;
         let first = self.plan.times[0];

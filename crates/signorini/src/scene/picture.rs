@@ -2,175 +2,189 @@
 
 use std::fmt::Write as _;
 
-use signorini_geometry::{Point, Vector};
+use plotters::style::RGBColor;
+use rayon::prelude::*;
+use signorini_geometry::Vector;
 
 use super::output::Tessellation;
 use super::{Frame, KINDS, Scene};
-use crate::output::chart::{FONT, animation};
+use crate::output::camera::Camera;
+use crate::output::chart::{FONT, Shot, animation, save};
+use crate::output::page::{Page, css, escaped, sheet};
+use crate::output::render::{Body, Look, Paint, render};
 use crate::output::{Folder, OutputError};
 
-const SIZE: (f64, f64) = (860.0, 430.0);
-/// Width of the list of pairs on the right.
+const SIZE: (f64, f64) = (900.0, 500.0);
+/// Width of the list of pairs on the right, and what of the height is the title's.
 const LIST: f64 = 270.0;
+const HEAD: f64 = 50.0;
 /// Colours of the kinds of pairs, told apart with colour-blind eyes too (Okabe & Ito).
-const COLOURS: [&str; 6] = ["#d55e00", "#e69f00", "#009e73", "#cc79a7", "#0072b2", "#555555"];
-const BODIES: [[f64; 3]; 2] = [[150.0, 170.0, 195.0], [205.0, 180.0, 140.0]];
+const COLOURS: [RGBColor; 6] = [
+    RGBColor(213, 94, 0),
+    RGBColor(230, 159, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(0, 114, 178),
+    RGBColor(85, 85, 85),
+];
+const BODIES: [RGBColor; 2] = [RGBColor(158, 182, 214), RGBColor(226, 196, 146)];
+const EDGE: RGBColor = RGBColor(60, 60, 60);
+/// How thick edges and points are on the page.
+const THICK: [f64; 2] = [0.6, 1.6];
+/// Milliseconds for which a frame is shown.
+const SHOWN: u16 = 66;
+/// Size of the frames, relative to that of pictures at their plain size.
+const ZOOM: f32 = 0.8;
 
-/// An orthographic view that holds the whole motion.
-struct View {
-    right: Vector<3>,
-    up: Vector<3>,
-    towards: Vector<3>,
-    scale: f64,
-    middle: [f64; 2],
-}
-
-impl View {
-    fn new(scene: &Scene, frames: &[Frame]) -> Self {
-        let towards = Vector::<3>::from(scene.camera.from).normalize();
-        let right = Vector::<3>::from(scene.camera.up).cross(&towards).normalize();
-        let up = towards.cross(&right);
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for shape in frames.iter().flat_map(|f| f.shapes.iter().flatten()) {
-            for p in Tessellation::new(shape).points.iter().step_by(12) {
-                for (k, axis) in [&right, &up].into_iter().enumerate() {
-                    low[k] = low[k].min(axis.dot(p));
-                    high[k] = high[k].max(axis.dot(p));
-                }
-            }
-        }
-        let width = (SIZE.0 - LIST - 40.0) / (high[0] - low[0]).max(1e-300);
-        let scale = width.min((SIZE.1 - 70.0) / (high[1] - low[1]).max(1e-300));
-        View { right, up, towards, scale, middle: [0, 1].map(|k| 0.5 * (low[k] + high[k])) }
-    }
-
-    fn at(&self, p: &Point<3>) -> (f64, f64) {
-        (
-            (SIZE.0 - LIST) / 2.0 + self.scale * (self.right.dot(p) - self.middle[0]),
-            SIZE.1 / 2.0 + 12.0 - self.scale * (self.up.dot(p) - self.middle[1]),
-        )
-    }
-}
-
+/// Draws the scene into its folder.
+///
+/// # Errors
+/// Pictures that cannot be drawn or written.
 pub fn draw(scene: &Scene, frames: &[Frame], folder: &Folder) -> Result<(), OutputError> {
-    let view = View::new(scene, frames);
-    let drawn: Vec<String> = frames.iter().map(|f| frame(scene, &view, f)).collect();
-    folder.write("pictures/scene.png", &animation(&drawn, 1.0, (1, 15))?)?;
-    // The closest moment of every kind of contact.
-    let stills: Vec<&String> = (0..KINDS.len())
+    let camera = camera(scene, &frames.iter().flat_map(seen).collect::<Vec<_>>());
+    let shots: Vec<Shot> = frames
+        .par_iter()
+        .map(|f| Ok(Shot { svg: picture(scene, &camera, f, Look::Film)?, shown: SHOWN }))
+        .collect::<Result<_, OutputError>>()?;
+    folder.write("pictures/scene.png", &animation(&shots, ZOOM)?)?;
+    // The closest moment of every kind of contact, each as large as it can be drawn.
+    let stills: Vec<&Frame> = (0..KINDS.len())
         .filter_map(|kind| {
             let of_kind = |f: &&Frame| f.pairs[f.governing].kind == kind;
             let gap = |f: &Frame| f.pairs[f.governing].pair.distance;
-            let best = frames.iter().filter(of_kind).min_by(|p, q| gap(p).total_cmp(&gap(q)))?;
-            let index = frames.iter().position(|f| f.time == best.time)?;
-            Some(&drawn[index])
+            frames.iter().filter(of_kind).min_by(|p, q| gap(p).total_cmp(&gap(q)))
         })
         .collect();
-    let rows = stills.len().div_ceil(2);
-    let mut sheet = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\">\n",
-        2.0 * SIZE.0,
-        rows as f64 * SIZE.1
-    );
-    for (k, still) in stills.iter().enumerate() {
-        let inner = still.split_once('>').map_or("", |s| s.1);
-        let (x, y) = ((k % 2) as f64 * SIZE.0, (k / 2) as f64 * SIZE.1);
-        let _ =
-            writeln!(sheet, "<g transform=\"translate({x},{y})\">{}</g>", inner.trim_end().trim_end_matches("</svg>"));
-    }
-    sheet += "</svg>\n";
-    crate::output::chart::save(folder, "kinds", &sheet)
+    let drawn: Vec<String> = (stills.par_iter())
+        .map(|f| picture(scene, &self::camera(scene, &seen(f)), f, Look::Solid))
+        .collect::<Result<_, OutputError>>()?;
+    save(folder, "kinds", &sheet(&drawn))
 }
 
-fn frame(scene: &Scene, view: &View, frame: &Frame) -> String {
-    let mut svg = format!("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\">", SIZE.0, SIZE.1);
-    let _ = write!(svg, "<rect width=\"{}\" height=\"{}\" fill=\"white\"/>", SIZE.0, SIZE.1);
-    // Polygons of both bodies, the farthest first.
-    let light = (view.towards + view.up * 0.7 - view.right * 0.4).normalize();
-    let mut polygons: Vec<(f64, String)> = Vec::new();
-    let mut lines = String::new();
-    for (body, shapes) in frame.shapes.iter().enumerate() {
+/// The points of a frame.
+fn seen(frame: &Frame) -> Vec<Vector<3>> {
+    frame.shapes.iter().flatten().flat_map(|shape| Tessellation::new(shape).points).collect()
+}
+
+/// The view of the scene that holds points.
+fn camera(scene: &Scene, points: &[Vector<3>]) -> Camera {
+    let area = [24.0, HEAD, SIZE.0 - LIST - 24.0, SIZE.1 - 16.0];
+    Camera::new(&Vector::<3>::from(scene.camera.from), &Vector::<3>::from(scene.camera.up), points.iter(), area)
+}
+
+/// Faces, edges and points as bodies, lines as thick as they are to be on the page.
+fn bodies(frame: &Frame, camera: &Camera) -> Vec<Body> {
+    let mut out = Vec::new();
+    let mut edges = Body::empty(Paint::Plain(EDGE));
+    let [thin, thick] = THICK.map(|t| t / camera.scale);
+    for (shapes, colour) in frame.shapes.iter().zip(BODIES) {
         for shape in shapes {
             let part = Tessellation::new(shape);
-            for polygon in &part.polygons {
-                let x: Vec<Point<3>> = polygon.iter().map(|&v| part.points[v]).collect();
-                let normal = (x[2] - x[0]).cross(&(x[x.len() - 1] - x[1])).try_normalize(0.0).unwrap_or_default();
-                let shade = 0.55 + 0.45 * normal.dot(&light).abs();
-                let [r, g, b] = BODIES[body].map(|c| (c * shade) as u8);
-                let depth = x.iter().map(|p| view.towards.dot(p)).sum::<f64>() / x.len() as f64;
-                let mut points = String::new();
-                for p in &x {
-                    let (px, py) = view.at(p);
-                    let _ = write!(points, "{px:.2},{py:.2} ");
-                }
-                // The stroke in the colour of the face hides the seams between polygons.
-                let colour = format!("rgb({r},{g},{b})");
-                polygons.push((
-                    depth,
-                    format!(
-                        "<polygon points=\"{points}\" fill=\"{colour}\" stroke=\"{colour}\" stroke-width=\"0.6\"/>"
-                    ),
-                ));
-            }
             for line in &part.lines {
                 for pair in line.windows(2) {
-                    let (p, q) = (part.points[pair[0]], part.points[pair[1]]);
-                    let ((x1, y1), (x2, y2)) = (view.at(&p), view.at(&q));
-                    // An edge is drawn with what it bounds: a little in front of it.
-                    let depth = 0.5 * view.towards.dot(&(p + q)) + 2.0 / view.scale;
-                    let text = format!(
-                        "<line x1=\"{x1:.2}\" y1=\"{y1:.2}\" x2=\"{x2:.2}\" y2=\"{y2:.2}\" stroke=\"#333\" stroke-width=\"0.8\"/>"
-                    );
-                    polygons.push((depth, text));
+                    rod(&mut edges, [part.points[pair[0]], part.points[pair[1]]], thin, &camera.towards);
                 }
             }
             for &v in &part.vertices {
-                let (x, y) = view.at(&part.points[v]);
-                let _ = write!(lines, "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"2\" fill=\"#333\"/>");
+                let half = camera.up * thick;
+                rod(&mut edges, [part.points[v] - half, part.points[v] + half], thick, &camera.towards);
+            }
+            if !part.polygons.is_empty() {
+                let polygons: Vec<Vec<u32>> =
+                    part.polygons.iter().map(|p| p.iter().map(|&v| v as u32).collect()).collect();
+                out.push(Body::of_polygons(part.points, polygons.iter().map(Vec::as_slice), Paint::Plain(colour)));
             }
         }
     }
-    polygons.sort_by(|p, q| p.0.total_cmp(&q.0));
-    polygons.iter().for_each(|p| svg += &p.1);
-    svg += &lines;
+    out.push(edges);
+    out
+}
+
+/// Adds a strip that looks like a rod of a radius, in front of where it is by as much.
+fn rod(body: &mut Body, ends: [Vector<3>; 2], radius: f64, towards: &Vector<3>) {
+    let Some(side) = (ends[1] - ends[0]).cross(towards).try_normalize(0.0) else { return };
+    let first = body.points.len() as u32;
+    for x in ends {
+        // Beyond its depth on a face seen at up to 80 degrees.
+        let front = x + towards * (6.0 * radius);
+        body.points.extend([front - side * radius, front + side * radius]);
+    }
+    body.triangles.extend([[first, first + 1, first + 2], [first + 1, first + 3, first + 2]]);
+    body.normals.extend([[*towards; 3]; 2]);
+}
+
+fn picture(scene: &Scene, camera: &Camera, frame: &Frame, look: Look) -> Result<String, OutputError> {
+    let mut page = Page::new(SIZE, "", "");
+    let [left, top, right, bottom] = camera.area;
+    render(&bodies(frame, camera), camera, look)?.insert(&mut page.svg, (left, right), (top, bottom))?;
+    let svg = &mut page.svg;
     let text = |svg: &mut String, x: f64, y: f64, size: f64, colour: &str, content: &str| {
-        let content = content.replace('&', "&amp;").replace('<', "&lt;");
         let _ = write!(
             svg,
-            "<text x=\"{x}\" y=\"{y}\" font-family=\"{FONT}\" font-size=\"{size}\" fill=\"{colour}\">{content}</text>"
+            "<text x=\"{x}\" y=\"{y}\" font-family=\"{FONT}\" font-size=\"{size}\" fill=\"{colour}\">{}</text>",
+            escaped(content)
         );
     };
-    text(&mut svg, 20.0, 30.0, 17.0, "black", &format!("{}, t = {:.3}", scene.title, frame.time));
+    text(svg, 20.0, 30.0, 18.0, "black", &format!("{}, t = {:.3}", scene.title, frame.time));
     let x = SIZE.0 - LIST;
-    text(&mut svg, x, 30.0, 13.0, "black", "closest pair of every kind, and its gap");
+    text(svg, x, 30.0, 13.0, "black", "closest pair of every kind, and its gap");
     // The contact pair last, on top of the others.
     let order = (0..frame.pairs.len()).filter(|&k| k != frame.governing).chain([frame.governing]);
     for k in order {
         let p = &frame.pairs[k];
         let governs = k == frame.governing;
-        let colour = COLOURS[p.kind];
-        let ((x1, y1), (x2, y2)) = (view.at(&p.pair.a.point), view.at(&p.pair.b.point));
+        let colour = css(COLOURS[p.kind]);
+        let ((x1, y1), (x2, y2)) = (camera.at(&p.pair.a.point), camera.at(&p.pair.b.point));
         let (width, radius) = if governs { (3.0, 6.0) } else { (1.2, 2.5) };
         let _ = write!(
             svg,
             "<line x1=\"{x1:.2}\" y1=\"{y1:.2}\" x2=\"{x2:.2}\" y2=\"{y2:.2}\" stroke=\"{colour}\" stroke-width=\"{width}\"/>\
-             <circle cx=\"{x1:.2}\" cy=\"{y1:.2}\" r=\"{radius}\" fill=\"{colour}\"/>\
-             <circle cx=\"{x2:.2}\" cy=\"{y2:.2}\" r=\"{radius}\" fill=\"{colour}\"/>"
+             <circle cx=\"{x1:.2}\" cy=\"{y1:.2}\" r=\"{radius}\" fill=\"{colour}\" stroke=\"white\" stroke-width=\"0.8\"/>\
+             <circle cx=\"{x2:.2}\" cy=\"{y2:.2}\" r=\"{radius}\" fill=\"{colour}\" stroke=\"white\" stroke-width=\"0.8\"/>"
         );
-        let y = 62.0 + 58.0 * k as f64;
+        let y = 66.0 + 66.0 * k as f64;
         if governs {
             let _ = write!(
                 svg,
-                "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"52\" fill=\"{colour}\" fill-opacity=\"0.18\" stroke=\"{colour}\"/>",
+                "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"54\" fill=\"{colour}\" fill-opacity=\"0.18\" stroke=\"{colour}\"/>",
                 x - 10.0,
-                y - 20.0,
+                y - 21.0,
                 LIST - 6.0
             );
         }
         let _ = write!(svg, "<circle cx=\"{}\" cy=\"{}\" r=\"6\" fill=\"{colour}\"/>", x + 2.0, y - 5.0);
-        text(&mut svg, x + 16.0, y, 14.0, "black", &format!("{}   {:.4}", KINDS[p.kind].1, p.pair.distance));
+        text(svg, x + 16.0, y, 14.0, "black", &format!("{}   {:.4}", KINDS[p.kind].1, p.pair.distance));
         let part = |b: usize| &scene.bodies[b].parts[p.parts[b]].0;
-        text(&mut svg, x + 16.0, y + 19.0, 12.0, "#444", &format!("{}  to  {}", part(0), part(1)));
+        text(svg, x + 16.0, y + 20.0, 12.0, "#444", &format!("{}  to  {}", part(0), part(1)));
     }
-    svg + "</svg>"
+    Ok(page.finish())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CASE: &str = "title = \"two triangles\"\nanalysis = \"closest_pairs\"\nframes = 2\n\
+        camera = { from = [0, 0, 1], up = [0, 1, 0] }\n\
+        [bodies.near]\nparts = [{ name = \"face\", type = \"tri3\", nodes = [[0, 0, 1], [2, 0, 1], [0, 2, 1]] }]\n\
+        [bodies.far]\nparts = [{ name = \"face\", type = \"tri3\", nodes = [[0, 0, 0], [4, 0, 0], [0, 4, 0]] }]\n";
+
+    #[test]
+    fn the_nearer_body_hides_the_farther_one_and_the_frame_is_filled() {
+        let scene = Scene::parse("test", CASE, std::path::Path::new(".")).unwrap();
+        let frame = scene.at(0.0).unwrap();
+        let camera = camera(&scene, &seen(&frame));
+        let [left, top, right, bottom] = camera.area;
+        // Of a triangle as wide as high the height is filled, less two units for outlines.
+        assert!((bottom - top - (SIZE.1 - 16.0 - HEAD) - 2.0).abs() < 1e-9, "{:?}", camera.area);
+        let image = render(&bodies(&frame, &camera), &camera, Look::Solid).unwrap();
+        let at = |x: f64, y: f64| {
+            let (px, py) = camera.at(&Vector::<3>::new(x, y, 0.0));
+            let share = ((px - left) / (right - left), (py - top) / (bottom - top));
+            image.get((share.0 * image.width() as f64) as usize, (share.1 * image.height() as f64) as usize)
+        };
+        // The far body is the first, more blue than red, the near one more red than blue.
+        let (near, far) = (at(0.5, 0.5), at(1.5, 1.5));
+        assert!(near.0 > near.2 && far.2 > far.0, "{near:?} {far:?}");
+    }
 }

@@ -1,7 +1,12 @@
-//! What a run of solids goes on from, as JSON.
+//! What a run of solids goes on from, as JSON: the state of the solids, and the frames of the film.
 
+use crate::output::solid_state::SolidFrame;
+use crate::output::{Folder, OutputError};
+use crate::run::checkpoint::BESIDE;
 use serde_json::{Value, json};
+use signorini_geometry::Point;
 use signorini_solid::{FrictionHistory, Memory, Settled};
+use std::path::Path;
 
 /// The state between two increments.
 pub fn to_json(memory: Memory) -> Value {
@@ -38,4 +43,67 @@ pub fn from_json(mut v: Value) -> Option<Memory> {
         }),
     };
     Some(Memory { active: take(&mut v["active"])?, settled, friction })
+}
+
+fn frame_file(index: usize) -> String {
+    format!("{BESIDE}/frame_{index:05}.json")
+}
+
+/// Writes the frame of an increment beside the checkpoint.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn write_frame<const D: usize>(folder: &Folder, index: usize, frame: &SolidFrame<D>) -> Result<(), OutputError> {
+    folder.write(&frame_file(index), frame_json(frame).to_string().as_bytes())
+}
+
+/// The frames of the increments before one; without pictures there are none. None where one is damaged.
+pub fn frames<const D: usize>(folder: &Path, next: usize) -> Option<Vec<SolidFrame<D>>> {
+    let texts = (0..next).filter_map(|index| std::fs::read_to_string(folder.join(frame_file(index))).ok());
+    texts.map(|text| frame_from(&serde_json::from_str(&text).ok()?)).collect()
+}
+
+fn frame_json<const D: usize>(frame: &SolidFrame<D>) -> Value {
+    let entries = |x: &Point<D>| x.iter().copied().collect::<Vec<f64>>();
+    json!({
+        "time": frame.time,
+        "von_mises": frame.von_mises,
+        "displacement": frame.displacement.iter().map(entries).collect::<Vec<_>>(),
+        "zones": frame.zones.iter().flatten().map(entries).collect::<Vec<_>>(),
+    })
+}
+
+fn frame_from<const D: usize>(v: &Value) -> Option<SolidFrame<D>> {
+    let points = |key: &str| -> Option<Vec<Point<D>>> {
+        let list: Vec<Vec<f64>> = serde_json::from_value(v[key].clone()).ok()?;
+        list.iter().map(|x| (x.len() == D).then(|| Point::<D>::from_fn(|k, _| x[k]))).collect()
+    };
+    Some(SolidFrame {
+        time: v["time"].as_f64()?,
+        displacement: points("displacement")?,
+        von_mises: serde_json::from_value(v["von_mises"].clone()).ok()?,
+        zones: points("zones")?.chunks_exact(2).map(|ends| [ends[0], ends[1]]).collect(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_is_read_as_it_was_written() {
+        let x = |a: f64, b: f64| Point::<2>::new(a, b);
+        let frame = SolidFrame {
+            time: 0.1 + 0.2,
+            displacement: vec![x(1.0 / 3.0, -2e-17), x(0.0, 5.0)],
+            von_mises: vec![1.0 / 7.0, 3e9],
+            zones: vec![[x(0.1, 0.2), x(0.3, 0.7)]],
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let own = Folder::create(&folder.path().join("out")).unwrap();
+        write_frame(&own, 1, &frame).unwrap();
+        assert_eq!(frames::<2>(own.path(), 2), Some(vec![frame]));
+        std::fs::write(own.path().join(frame_file(0)), "{}").unwrap();
+        assert_eq!(frames::<2>(own.path(), 2), None);
+    }
 }

@@ -1,0 +1,28 @@
+//! Names of axes with the units of the case.
+
+use crate::report::UnitNames;
+
+/// The units of a case, where it states any.
+pub struct Labels(pub Option<UnitNames>);
+
+impl Labels {
+    fn with(&self, what: &str, unit: fn(&UnitNames) -> &String) -> String {
+        self.0.as_ref().map_or_else(|| what.to_string(), |units| format!("{what} [{}]", unit(units)))
+    }
+
+    pub fn length(&self, what: &str) -> String {
+        self.with(what, |u| &u.length)
+    }
+
+    pub fn area(&self, what: &str) -> String {
+        self.with(what, |u| &u.area)
+    }
+
+    pub fn force(&self, what: &str) -> String {
+        self.with(what, |u| &u.force)
+    }
+
+    pub fn pressure(&self, what: &str) -> String {
+        self.with(what, |u| &u.pressure)
+    }
+}

@@ -1,0 +1,94 @@
+//! Rigid bodies as files for ParaView: their surface around the solids, in the plane their edge.
+
+use super::OutputError;
+use super::level::{region, surface};
+use super::page::ROUNDING;
+use super::solid_state::{Gap, bounds, spatial, tools};
+use super::vtk::to_bytes;
+use crate::plan::solid::SolidPlan;
+use signorini_geometry::{Point, Vector};
+use vtkio::model::{DataSet, PolyDataPiece, VertexNumbers};
+
+/// What of a rigid body is written reaches beyond the solids by this part of their largest extent.
+const AROUND: f64 = 0.15;
+
+/// The names and VTP files of the rigid bodies of a plan at a time, around solids where they are now.
+///
+/// # Errors
+/// What `vtkio` cannot write.
+pub fn files<const D: usize>(
+    plan: &SolidPlan<D>,
+    time: f64,
+    now: impl Iterator<Item = Point<D>>,
+) -> Result<Vec<(String, Vec<u8>)>, OutputError> {
+    let [low, high] = bounds(now.map(|x| spatial(&x)).collect::<Vec<_>>().iter());
+    let pad = AROUND * (high - low).max();
+    let pad = Vector::<3>::from_fn(|k, _| if k < D { pad } else { 0.0 });
+    tools(plan, time).into_iter().map(|(name, gap)| Ok((name, file::<D>(&gap, [low - pad, high + pad])?))).collect()
+}
+
+fn file<const D: usize>(gap: &Gap, corners: [Vector<3>; 2]) -> Result<Vec<u8>, OutputError> {
+    let (points, cells) = if D == 3 {
+        let (points, _, triangles) = surface(gap, corners);
+        (points, triangles.iter().map(|t| t.to_vec()).collect())
+    } else {
+        joined(&region(gap, corners).1, ROUNDING * (corners[1] - corners[0]).max())
+    };
+    let connectivity: Vec<u64> = cells.iter().flatten().map(|&k| u64::from(k)).collect();
+    let offsets: Vec<u64> = (cells.iter())
+        .scan(0, |at, c: &Vec<u32>| {
+            *at += c.len() as u64;
+            Some(*at)
+        })
+        .collect();
+    let topology = Some(VertexNumbers::XML { connectivity, offsets });
+    let mut piece = PolyDataPiece {
+        points: points.iter().flat_map(|x| [x.x, x.y, x.z]).collect::<Vec<f64>>().into(),
+        ..PolyDataPiece::default()
+    };
+    if D == 3 {
+        piece.polys = topology
+    } else {
+        piece.lines = topology
+    }
+    to_bytes("rigid", DataSet::inline(piece))
+}
+
+/// Pieces with the points in which they meet, each once: points as near as `near` are one.
+fn joined(pieces: &[[Vector<3>; 2]], near: f64) -> (Vec<Vector<3>>, Vec<Vec<u32>>) {
+    let mut numbers: std::collections::HashMap<[i64; 2], u32> = std::collections::HashMap::new();
+    let (mut points, mut cells) = (Vec::new(), Vec::new());
+    for ends in pieces {
+        let cell = ends.map(|x| {
+            let key = [x.x, x.y].map(|v| (v / near.max(f64::MIN_POSITIVE)).round() as i64);
+            *numbers.entry(key).or_insert_with(|| {
+                points.push(x);
+                points.len() as u32 - 1
+            })
+        });
+        // Where the edge passes through a corner of a square there are pieces without length.
+        if cell[0] != cell[1] {
+            cells.push(cell.to_vec());
+        }
+    }
+    (points, cells)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use signorini_contact::GapJet;
+
+    #[test]
+    fn the_edge_of_a_disc_is_a_closed_line_in_its_file() {
+        let gap: Gap = Box::new(|x| GapJet::ball(x, &Vector::<3>::zeros(), 0.5));
+        let corner = Vector::<3>::new(1.0, 1.0, 0.0);
+        let (points, cells) = joined(&region(&gap, [-corner, corner]).1, 1e-9);
+        assert!(points.len() > 100 && points.iter().all(|x| (x.norm() - 0.5).abs() < 1e-12));
+        let mut met = vec![0; points.len()];
+        cells.iter().flatten().for_each(|&k| met[k as usize] += 1);
+        assert_eq!(met.iter().position(|m| *m != 2), None);
+        let text = String::from_utf8(file::<2>(&gap, [-corner, corner]).unwrap()).unwrap();
+        assert!(text.contains("<Lines>") && text.contains(&format!("NumberOfPoints=\"{}\"", points.len())));
+    }
+}

@@ -13,7 +13,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // 2. The membrane: a disc of radius one on a grid of 24 x 24 cells of degree 2, under a tension of one.
     let disc = Disc { radius: 1.0.into(), center: None };
-    let grid = GridMesh { cells: Some(vec![24, 24]), ..GridMesh::default() };
+    let grid = GridMesh { cells: Some([24, 24].into()), ..GridMesh::default() };
     let film =
         Membrane { domain: Some(Domain::Disc(disc)), mesh: Mesh::Grid(grid), degree: Some(2), tension: 1.0.into() };
     problem.bodies.insert("film".into(), Body::Membrane(film));
@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     problem.loads.insert("press".into(), Load { on: "film".into(), normal: Some("-t".into()), ..Load::default() });
 
     // 5. The two may touch.
-    let touch = Contact { between: Some(vec!["film".into(), "floor".into()]), ..Contact::default() };
+    let touch = Contact { between: Some(["film", "floor"].into()), ..Contact::default() };
     problem.contacts.insert("touch".into(), touch);
 
     // 6. The history: up to t = 1 in four increments.

@@ -3,8 +3,8 @@
 //! `cargo run --release --example 02_solid`
 
 use signorini::problem::{
-    Body, CellArrays, Contact, LinearElastic, Material, MeshArrays, Problem, Rigid, Shape, Solid, SolidMesh, Space,
-    Sphere, Support, vector,
+    Body, CellArrays, Contact, LinearElastic, Material, MeshArrays, Named, Problem, Rigid, Shape, Solid, SolidMesh,
+    Space, Sphere, Support,
 };
 use signorini::run::{Silent, solve};
 
@@ -28,8 +28,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let top: Vec<u32> = (n * n * CELLS..n * n * n).map(|k| k as u32).collect();
     let mesh = MeshArrays {
         points: points.into(),
-        cells: vec![CellArrays { shape: "hexahedron".into(), nodes: cells.into() }],
-        groups: [("top".to_string(), top.into())].into(),
+        cells: vec![CellArrays { shape: "hexahedron".into(), nodes: cells.into() }].into(),
+        groups: Named([("top".to_string(), top.into())].into()),
     };
 
     // 2. What it is made of.
@@ -43,13 +43,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     problem.bodies.insert("block".into(), Body::Solid(block));
 
     // 3. A rigid ball below it, and the upper side moved down by a hundredth.
-    let ball = Sphere { center: vector([0.5, 0.5, -2.0]), radius: 2.0.into() };
+    let ball = Sphere { center: [0.5, 0.5, -2.0].into(), radius: 2.0.into() };
     problem.bodies.insert("ball".into(), Body::Rigid(Rigid::new(Shape::Sphere(ball))));
     let top = Support { on: "block:top".into(), displacement: Some([0.0, 0.0, -0.01].into()), ..Support::default() };
     problem.supports.insert("press".into(), top);
 
     // 4. Contact by mortar multipliers, the default.
-    let touch = Contact { between: Some(vec!["block".into(), "ball".into()]), ..Contact::default() };
+    let touch = Contact { between: Some(["block", "ball"].into()), ..Contact::default() };
     problem.contacts.insert("touch".into(), touch);
 
     // 5. Solve and read out.

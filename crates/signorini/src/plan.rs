@@ -297,7 +297,7 @@ impl<'a> Planner<'a> {
                         format!("`t` does not increase: {} follows {}", t[i], t[i - 1]),
                     ));
                 }
-                Ok(Definition::Table { t: t.clone(), value: value.clone() })
+                Ok(Definition::Table { t: t.0.clone(), value: value.0.clone() })
             }
             (None, Some(value)) => Ok(Definition::Formula(self.reader.any(value, &["t"])?.0)),
             _ => Err(error(&self.key(key), format!("the function `{name}` needs either `table` or `expression`"))),

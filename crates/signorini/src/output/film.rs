@@ -94,7 +94,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let own = Folder::create(&folder.path().join("out")).unwrap();
         write(&own, (0..4).map(|k| picture(5 * k)).collect()).unwrap();
-        let file = std::io::BufReader::new(std::fs::File::open(own.path().join("pictures/film.png")).unwrap());
+        let file = std::io::BufReader::new(std::fs::File::open(own.path().unwrap().join("pictures/film.png")).unwrap());
         let mut reader = png::Decoder::new(file).read_info().unwrap();
         assert_eq!(reader.info().animation_control.unwrap().num_frames, 4);
         let mut milliseconds = 0;

@@ -5,7 +5,7 @@ use super::pieces::Apart;
 use super::placement::PlacementKeys;
 use crate::expression::{Expression, Scope};
 use crate::problem::units::{LENGTH, NONE};
-use crate::problem::{self, Domain, Mesh, Space};
+use crate::problem::{self, Domain, List, Mesh, Space};
 use crate::problem::{CaseError, KeyPath, Location, Value};
 use signorini_fem::mesh_cells::MOST_ON_TRIANGLES;
 use signorini_fem::{Cells, Grid, Mesh as FemMesh, MeshCells, RefinedGrid};
@@ -220,14 +220,14 @@ impl Planner<'_> {
             .help("use fewer cells, or a lower degree"))
     }
 
-    fn center(&self, center: &Option<Vec<Value>>) -> Result<Point<2>, CaseError> {
+    fn center(&self, center: &Option<List<Value>>) -> Result<Point<2>, CaseError> {
         match center {
             None => Ok(Point::zeros()),
             Some(v) => self.reader.numbers::<2>(v, LENGTH).map(Point::<2>::from),
         }
     }
 
-    fn box_of(&self, min: &Vec<Value>, max: &Vec<Value>) -> Result<Aabb<2>, CaseError> {
+    fn box_of(&self, min: &List<Value>, max: &List<Value>) -> Result<Aabb<2>, CaseError> {
         let b = Aabb::new(
             Point::<2>::from(self.reader.numbers::<2>(min, LENGTH)?),
             Point::<2>::from(self.reader.numbers::<2>(max, LENGTH)?),
@@ -479,7 +479,7 @@ impl ReadDomain<2> for Planner<'_> {
 }
 
 impl Planner<'_> {
-    fn polygon(&self, points: &Vec<Vec<Value>>) -> Result<(Arc<dyn MembraneDomain<2>>, Aabb<2>, Pieces), CaseError> {
+    fn polygon(&self, points: &List<List<Value>>) -> Result<(Arc<dyn MembraneDomain<2>>, Aabb<2>, Pieces), CaseError> {
         let mut corners = Vec::new();
         for p in points {
             corners.push(Point::<2>::from(self.reader.numbers::<2>(p, LENGTH)?));

@@ -5,7 +5,7 @@ use super::rigid_shape::{self, ShapeKeys};
 use super::surface::view;
 use crate::expression::Expression;
 use crate::problem::units::{Dimension, LENGTH};
-use crate::problem::{CaseError, Value};
+use crate::problem::{CaseError, List, Value};
 use crate::problem::{Cylinder, Ellipsoid, Rigid, Shape, Space};
 use signorini_geometry::Vector;
 use signorini_geometry::rigid_shape::NoHeight;
@@ -97,7 +97,7 @@ impl ShapeKeys for BesideMembrane<'_, '_> {
         self.planner
     }
 
-    fn vector(&self, values: &Vec<Value>, dimension: Dimension) -> Result<Vector<3>, CaseError> {
+    fn vector(&self, values: &List<Value>, dimension: Dimension) -> Result<Vector<3>, CaseError> {
         let reader = &self.planner.reader;
         if values.len() == 2 && self.planner.space != Space::Plane {
             return reader.numbers::<2>(values, dimension).map(|[x, z]| Vector::<3>::new(x, 0.0, z));

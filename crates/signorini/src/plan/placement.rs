@@ -2,7 +2,7 @@
 
 use super::Planner;
 use crate::problem::units::{LENGTH, NONE};
-use crate::problem::{CaseError, Components, Value};
+use crate::problem::{CaseError, Components, List, Value};
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::similarity::Similarity;
 use signorini_geometry::{Point, Vector};
@@ -11,7 +11,7 @@ use signorini_geometry::{Point, Vector};
 pub(super) struct PlacementKeys<'p> {
     pub scale: &'p Option<Value>,
     pub turn: &'p Option<Components>,
-    pub moved: &'p Option<Vec<Value>>,
+    pub moved: &'p Option<List<Value>>,
 }
 
 impl Planner<'_> {

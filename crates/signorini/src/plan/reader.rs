@@ -2,7 +2,7 @@
 
 use crate::expression::{Expression, Names, parse};
 use crate::problem::units::{Dimension, Units, describe, is_unit};
-use crate::problem::{CaseError, KeyPath, Problem, ProblemPart, Value};
+use crate::problem::{CaseError, KeyPath, List, Problem, ProblemPart, Value};
 use crate::relief::Sampled;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -145,7 +145,7 @@ impl Reader<'_> {
     ///
     /// # Errors
     /// Those of [`Self::number`], and another number of them.
-    pub fn numbers<const N: usize>(&self, values: &Vec<Value>, dimension: Dimension) -> Result<[f64; N], CaseError> {
+    pub fn numbers<const N: usize>(&self, values: &List<Value>, dimension: Dimension) -> Result<[f64; N], CaseError> {
         if values.len() != N {
             return Err(self.error(values, format!("expected {N} numbers, found {}", values.len())));
         }

@@ -5,7 +5,7 @@ use super::rigid_shape::{self, ShapeKeys};
 use super::{Placed, Planner};
 use crate::expression::Scope;
 use crate::problem::units::{Dimension, LENGTH, NONE};
-use crate::problem::{CaseError, Location, Problem, Value};
+use crate::problem::{CaseError, List, Location, Problem, Value};
 use crate::problem::{Cylinder, Ellipsoid, Motion, Rigid, Shape, Side, Space};
 use crate::queries::geometry;
 use signorini_geometry::height_field::{self, HeightField};
@@ -116,7 +116,7 @@ impl<const D: usize> ShapeKeys for BesideSolids<'_, '_, D> {
         self.planner
     }
 
-    fn vector(&self, values: &Vec<Value>, dimension: Dimension) -> Result<Vector<3>, CaseError> {
+    fn vector(&self, values: &List<Value>, dimension: Dimension) -> Result<Vector<3>, CaseError> {
         let list = self.planner.reader.numbers::<D>(values, dimension)?;
         Ok(Vector::<3>::from_fn(|k, _| if k < D { list[k] } else { 0.0 }))
     }

@@ -2,7 +2,7 @@
 
 use super::Planner;
 use crate::problem::units::{Dimension, LENGTH, NONE};
-use crate::problem::{self, Shape};
+use crate::problem::{self, List, Shape};
 use crate::problem::{CaseError, Value};
 use signorini_geometry::Vector;
 use signorini_geometry::rigid_shape::{Cone, Cylinder, Ellipsoid, Paraboloid, Plane, RigidShape, Sphere, Torus};
@@ -14,7 +14,7 @@ pub(super) trait ShapeKeys {
     fn planner(&self) -> &Planner<'_>;
 
     /// A place or a direction.
-    fn vector(&self, values: &Vec<Value>, dimension: Dimension) -> Result<Vector<3>, CaseError>;
+    fn vector(&self, values: &List<Value>, dimension: Dimension) -> Result<Vector<3>, CaseError>;
 
     /// The unit vector along the axis of a cylinder, whose shape is stated at a place of the file.
     fn cylinder_axis(&self, key: &problem::Cylinder, shape: &Shape) -> Result<Vector<3>, CaseError>;
@@ -22,7 +22,7 @@ pub(super) trait ShapeKeys {
     fn semi_axes(&self, key: &problem::Ellipsoid) -> Result<[f64; 3], CaseError>;
 
     /// A unit vector.
-    fn direction(&self, values: &Vec<Value>) -> Result<Vector<3>, CaseError> {
+    fn direction(&self, values: &List<Value>) -> Result<Vector<3>, CaseError> {
         let v = self.vector(values, NONE)?;
         v.try_normalize(0.0).ok_or_else(|| self.planner().problem.error(values, "the direction has no length"))
     }

@@ -11,7 +11,7 @@ use super::rigid::{self, RigidBody};
 use super::{Head, Placed, Planner};
 use crate::expression::Scope;
 use crate::problem::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE};
-use crate::problem::{self, Body, Enforcement, Material, Method, SolidMesh, Space};
+use crate::problem::{self, Body, Enforcement, List, Material, Method, SolidMesh, Space};
 use crate::problem::{CaseError, KeyPath, Location, Problem, Value, suggestion};
 use crate::relief::{MovedHeight, Sampled};
 use crate::report::Warning;
@@ -368,7 +368,7 @@ impl Planner<'_> {
         Ok(Placed { expression, key: self.key(v) })
     }
 
-    fn vector<const D: usize>(&self, list: &Vec<Value>, dimension: [i32; 3]) -> Result<Vec<Placed>, CaseError> {
+    fn vector<const D: usize>(&self, list: &List<Value>, dimension: [i32; 3]) -> Result<Vec<Placed>, CaseError> {
         if list.len() != D {
             return Err(self.problem.error(list, format!("expected {D} components, found {}", list.len())));
         }

@@ -3,7 +3,7 @@
 use super::{Placed, Planner, coordinates, field};
 use crate::expression::{Expression, Scope};
 use crate::problem::units::{LENGTH, NONE};
-use crate::problem::{self, Lies, Motion, Rigid, Shape, Space};
+use crate::problem::{self, Lies, List, Motion, Rigid, Shape, Space};
 use crate::problem::{CaseError, Part, Value};
 use crate::relief::{LevelSetTop, Sampled};
 use crate::report::Warning;
@@ -98,7 +98,7 @@ fn side(planner: &Planner<'_>, rigid: &Rigid, level: Option<f64>) -> Result<Side
             Lies::Above => Side::Above,
         });
     }
-    let last = |values: &Vec<Value>, dimension| -> Result<f64, CaseError> {
+    let last = |values: &List<Value>, dimension| -> Result<f64, CaseError> {
         let list = values;
         let Some(z) = list.last().filter(|_| list.len() >= 2) else { return Ok(0.0) };
         planner.reader.number(z, dimension)

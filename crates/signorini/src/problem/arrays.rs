@@ -1,8 +1,8 @@
 //! Arrays in place of files: grids of samples, meshes, triangles.
 
+use super::{List, Named};
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::collections::BTreeMap;
 use std::ops::Deref;
 use std::sync::Arc;
 
@@ -73,10 +73,10 @@ pub struct MeshArrays {
     /// Coordinates of the points, two of each in the plane and three in space, in the base unit of length.
     pub points: Array<Vec<f64>>,
     /// The cells, by shape and order.
-    pub cells: Vec<CellArrays>,
+    pub cells: List<CellArrays>,
     /// Named parts: the points of each; a side or a cell whose corners all are among them belongs to it.
     #[serde(default)]
-    pub groups: BTreeMap<String, Array<u32>>,
+    pub groups: Named<Array<u32>>,
 }
 
 /// Cells of one shape.

@@ -1,6 +1,6 @@
 //! Deformable bodies: what they occupy, what they are computed on, and what they are made of.
 
-use super::{Components, MeshArrays, Rigid, Value};
+use super::{Components, List, MeshArrays, Rigid, Value};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -55,15 +55,15 @@ pub enum SolidMesh {
 #[serde(deny_unknown_fields)]
 pub struct BoxMesh {
     /// The lower corner, a length.
-    pub min: Option<Vec<Value>>,
+    pub min: Option<List<Value>>,
     /// The upper corner, a length.
-    pub max: Option<Vec<Value>>,
+    pub max: Option<List<Value>>,
     /// Number of cells in each direction.
-    pub cells: Option<Vec<i64>>,
+    pub cells: Option<List<i64>>,
     /// Graded directions, in place of `min`, `max` and `cells`.
-    pub axes: Option<Vec<MeshAxis>>,
+    pub axes: Option<List<MeshAxis>>,
     /// Expressions of x, y and z for the place of every point.
-    pub map: Option<Vec<Value>>,
+    pub map: Option<List<Value>>,
 }
 
 /// One direction of a box: stretches that end at `to`, with so many cells, each `growth` times as long as the one before.
@@ -73,11 +73,11 @@ pub struct MeshAxis {
     /// Where the direction begins, a length.
     pub from: Value,
     /// Where each stretch ends, lengths.
-    pub to: Vec<Value>,
+    pub to: List<Value>,
     /// Number of cells of each stretch.
-    pub cells: Vec<i64>,
+    pub cells: List<i64>,
     /// Of each stretch the ratio of the length of a cell to that of the one before, 1 if left out.
-    pub growth: Option<Vec<f64>>,
+    pub growth: Option<List<f64>>,
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
@@ -137,32 +137,32 @@ pub struct Disc {
     /// Radius, a length.
     pub radius: Value,
     /// Centre, a length in each direction; the origin if left out.
-    pub center: Option<Vec<Value>>,
+    pub center: Option<List<Value>>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Ellipse {
     /// Half the extent along x and y, lengths.
-    pub semi_axes: Vec<Value>,
+    pub semi_axes: List<Value>,
     /// Centre, a length in each direction; the origin if left out.
-    pub center: Option<Vec<Value>>,
+    pub center: Option<List<Value>>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rectangle {
     /// The lower corner, lengths.
-    pub min: Vec<Value>,
+    pub min: List<Value>,
     /// The upper corner, lengths.
-    pub max: Vec<Value>,
+    pub max: List<Value>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Polygon {
     /// The corners in order, each a length in each direction.
-    pub points: Vec<Vec<Value>>,
+    pub points: List<List<Value>>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
@@ -171,9 +171,9 @@ pub struct Implicit {
     /// An expression of x and y.
     pub negative_inside: Value,
     /// The lower corner of a box round the domain, lengths.
-    pub min: Vec<Value>,
+    pub min: List<Value>,
     /// The upper corner of the box, lengths.
-    pub max: Vec<Value>,
+    pub max: List<Value>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
@@ -201,7 +201,7 @@ pub enum Mesh {
 #[serde(deny_unknown_fields)]
 pub struct GridMesh {
     /// Number of cells in each direction.
-    pub cells: Option<Vec<i64>>,
+    pub cells: Option<List<i64>>,
     /// Size of a cell, a length, in place of `cells`.
     pub cell_size: Option<Value>,
     /// Where cells are divided.
@@ -236,7 +236,7 @@ pub struct GmshMesh {
     pub turn: Option<Components>,
     /// Displacement after scaling and turning, lengths.
     #[serde(rename = "move")]
-    pub moved: Option<Vec<Value>>,
+    pub moved: Option<List<Value>>,
 }
 
 /// A mesh from a file whose cells may be divided.
@@ -253,7 +253,7 @@ pub struct DividedGmshMesh {
     pub turn: Option<Components>,
     /// Displacement after scaling and turning, lengths.
     #[serde(rename = "move")]
-    pub moved: Option<Vec<Value>>,
+    pub moved: Option<List<Value>>,
     /// How often every cell is divided into four, curved sides along their curves; 0 if left out. The meshes before each
     /// division are the coarser levels of a multigrid method.
     pub divisions: Option<i64>,

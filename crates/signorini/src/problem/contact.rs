@@ -1,7 +1,7 @@
 //! Contacts: who may touch whom, by which method, with which law.
 
 use super::body::Domain;
-use super::{Components, Nothing, Value};
+use super::{Components, List, Nothing, Value};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct Contact {
     /// Two bodies, the one whose points are tested first.
-    pub between: Option<Vec<String>>,
+    pub between: Option<List<String>>,
     /// A body that may touch itself; not available yet.
     pub within: Option<String>,
     /// Whether all bodies may touch each other.
@@ -41,7 +41,7 @@ pub struct CoulombFriction {
     /// The coefficient; in space two where it depends on the direction: along `axis`, and across it.
     pub mu: Components,
     /// The first direction of two coefficients; it is projected on the surface.
-    pub axis: Option<Vec<Value>>,
+    pub axis: Option<List<Value>>,
     /// Which side carries the axis, `slave` if left out; while bodies slide little it is the same.
     pub on: Option<AxisOn>,
 }

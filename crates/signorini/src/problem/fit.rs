@@ -1,5 +1,6 @@
 //! Measurements of a contact, and what they are to tell.
 
+use super::List;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +17,7 @@ pub struct Fit {
     /// Column of the area of contact, in place of the radius.
     pub area: Option<String>,
     /// `adhesion`, and if wanted `tension`.
-    pub unknown: Option<Vec<FitUnknown>>,
+    pub unknown: Option<List<FitUnknown>>,
     /// Whether the scatter of the measurements is relative to their size.
     pub noise: Option<Noise>,
     /// Confidence of the intervals, 0.95 if left out.

@@ -12,6 +12,7 @@ pub mod error;
 pub mod fit;
 pub mod history;
 pub mod key_path;
+pub mod list;
 pub mod rigid;
 pub mod source;
 pub mod units;
@@ -24,13 +25,13 @@ pub use error::{CaseError, suggestion};
 pub use fit::{Fit, FitUnknown, Noise};
 pub use history::{ArcLength, AreaControl, Control, Step};
 pub use key_path::{KeyPath, Part, ProblemPart};
+pub use list::{List, Named};
 pub use rigid::*;
 pub use source::Source;
-pub use value::{Components, Value, vector};
+pub use value::{Components, Value};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// A whole problem.
@@ -45,24 +46,24 @@ pub struct Problem {
     pub space: Space,
     /// Named numbers for expressions.
     #[serde(default)]
-    pub constants: BTreeMap<String, Value>,
+    pub constants: Named<Value>,
     /// Named functions of one argument, `t`.
     #[serde(default)]
-    pub functions: BTreeMap<String, TimeFunction>,
+    pub functions: Named<TimeFunction>,
     /// The things that occupy space, by names of your own.
-    pub bodies: BTreeMap<String, Body>,
+    pub bodies: Named<Body>,
     /// What holds bodies, by names of your own.
     #[serde(default)]
-    pub supports: BTreeMap<String, Support>,
+    pub supports: Named<Support>,
     /// What pushes and pulls bodies, by names of your own.
     #[serde(default)]
-    pub loads: BTreeMap<String, Load>,
+    pub loads: Named<Load>,
     /// Which bodies may touch, by names of your own.
     #[serde(default)]
-    pub contacts: BTreeMap<String, Contact>,
+    pub contacts: Named<Contact>,
     /// The history, part by part; without steps one state is computed, at t = 0.
     #[serde(default)]
-    pub steps: Vec<Step>,
+    pub steps: List<Step>,
     /// What to write.
     #[serde(default)]
     pub output: Output,
@@ -80,13 +81,13 @@ impl Problem {
             title: None,
             units: None,
             space,
-            constants: BTreeMap::new(),
-            functions: BTreeMap::new(),
-            bodies: BTreeMap::new(),
-            supports: BTreeMap::new(),
-            loads: BTreeMap::new(),
-            contacts: BTreeMap::new(),
-            steps: Vec::new(),
+            constants: Named::default(),
+            functions: Named::default(),
+            bodies: Named::default(),
+            supports: Named::default(),
+            loads: Named::default(),
+            contacts: Named::default(),
+            steps: List::default(),
             output: Output::default(),
             fit: None,
             source: Source::default(),
@@ -233,9 +234,9 @@ pub struct TimeFunction {
 #[serde(deny_unknown_fields)]
 pub struct Table {
     /// Arguments, ascending.
-    pub t: Vec<f64>,
-    /// Vec<Value>, one for each argument.
-    pub value: Vec<f64>,
+    pub t: List<f64>,
+    /// List<Value>, one for each argument.
+    pub value: List<f64>,
 }
 
 /// A table without keys.
@@ -256,7 +257,7 @@ pub struct Support {
     /// All points share one displacement in the components that are not prescribed.
     pub uniform: Option<bool>,
     /// Stiffness per area of an elastic bed.
-    pub spring: Option<Vec<Value>>,
+    pub spring: Option<List<Value>>,
 }
 
 /// What pushes.
@@ -268,13 +269,13 @@ pub struct Load {
     /// Force per area along +z for a membrane.
     pub normal: Option<Value>,
     /// Force per area along each axis.
-    pub traction: Option<Vec<Value>>,
+    pub traction: Option<List<Value>>,
     /// Force per area against the outer normal.
     pub pressure: Option<Value>,
     /// A resultant force along each axis, spread evenly.
-    pub force: Option<Vec<Value>>,
+    pub force: Option<List<Value>>,
     /// Force per volume along each axis.
-    pub body_force: Option<Vec<Value>>,
+    pub body_force: Option<List<Value>>,
 }
 
 /// What to write.
@@ -287,7 +288,7 @@ pub struct Output {
     pub pictures: Option<bool>,
     /// Points whose histories are recorded.
     #[serde(default)]
-    pub probes: BTreeMap<String, Vec<Value>>,
+    pub probes: Named<List<Value>>,
 }
 
 #[cfg(test)]

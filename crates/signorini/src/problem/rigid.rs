@@ -1,6 +1,6 @@
 //! Rigid bodies: their shape, on which side they are touched, and how they move.
 
-use super::{Components, Nothing, TriangleArrays, Value};
+use super::{Components, List, Nothing, TriangleArrays, Value};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use signorini_geometry::rigid_shape::RigidShape;
@@ -88,32 +88,32 @@ pub struct HeightMap {
     /// The file, found from the folder of the case.
     pub file: String,
     /// Distance of the columns (along x) and of the rows (along y).
-    pub spacing: Vec<Value>,
+    pub spacing: List<Value>,
     /// Where the first height is.
-    pub origin: Option<Vec<Value>>,
+    pub origin: Option<List<Value>>,
     /// The height that one unit of the file stands for.
     pub scale: Option<Value>,
     /// Angle in radians by which the map is turned about its origin.
     pub turn: Option<Value>,
     /// Displacement after turning, lengths.
     #[serde(rename = "move")]
-    pub moved: Option<Vec<Value>>,
+    pub moved: Option<List<Value>>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Plane {
     /// A point of the plane, lengths.
-    pub point: Vec<Value>,
+    pub point: List<Value>,
     /// The normal out of the body; its length does not matter.
-    pub normal: Vec<Value>,
+    pub normal: List<Value>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Sphere {
     /// Centre, lengths.
-    pub center: Vec<Value>,
+    pub center: List<Value>,
     /// Radius, a length.
     pub radius: Value,
 }
@@ -122,9 +122,9 @@ pub struct Sphere {
 #[serde(deny_unknown_fields)]
 pub struct Cylinder {
     /// A point of the axis, lengths.
-    pub point: Vec<Value>,
+    pub point: List<Value>,
     /// In the plane a cylinder stands across it.
-    pub axis: Option<Vec<Value>>,
+    pub axis: Option<List<Value>>,
     /// Radius, a length.
     pub radius: Value,
 }
@@ -133,9 +133,9 @@ pub struct Cylinder {
 #[serde(deny_unknown_fields)]
 pub struct Cone {
     /// The tip, lengths.
-    pub apex: Vec<Value>,
+    pub apex: List<Value>,
     /// Into the body.
-    pub axis: Vec<Value>,
+    pub axis: List<Value>,
     /// In radians.
     pub half_angle: Value,
 }
@@ -144,18 +144,18 @@ pub struct Cone {
 #[serde(deny_unknown_fields)]
 pub struct Ellipsoid {
     /// Centre, lengths.
-    pub center: Vec<Value>,
+    pub center: List<Value>,
     /// Half the extents, lengths.
-    pub semi_axes: Vec<Value>,
+    pub semi_axes: List<Value>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Torus {
     /// Centre, lengths.
-    pub center: Vec<Value>,
+    pub center: List<Value>,
     /// Direction of its axis; its length does not matter.
-    pub axis: Vec<Value>,
+    pub axis: List<Value>,
     /// Radius of the ring's middle line, a length.
     pub major_radius: Value,
     /// Radius of its cross-section, a length.
@@ -166,9 +166,9 @@ pub struct Torus {
 #[serde(deny_unknown_fields)]
 pub struct Paraboloid {
     /// The lowest or highest point, lengths.
-    pub apex: Vec<Value>,
+    pub apex: List<Value>,
     /// Into the body.
-    pub axis: Vec<Value>,
+    pub axis: List<Value>,
     /// Of curvature at the apex.
     pub radius: Value,
 }
@@ -180,9 +180,9 @@ pub struct LevelSetShape {
     /// An expression of x, y and z.
     pub negative_inside: Value,
     /// The lower corner of a box round what matters of it, lengths.
-    pub min: Vec<Value>,
+    pub min: List<Value>,
     /// The upper corner of the box, lengths.
-    pub max: Vec<Value>,
+    pub max: List<Value>,
     /// Cells of the grid from which closest points are searched, along the longest side; 64 if left out.
     pub cells: Option<i64>,
 }
@@ -198,7 +198,7 @@ pub struct SurfaceFile {
     pub turn: Option<Components>,
     /// Displacement after scaling and turning, lengths.
     #[serde(rename = "move")]
-    pub moved: Option<Vec<Value>>,
+    pub moved: Option<List<Value>>,
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
@@ -216,9 +216,9 @@ pub enum Motion {
 #[serde(deny_unknown_fields)]
 pub struct Prescribed {
     /// Displacement along each axis, lengths, as expressions of t.
-    pub displacement: Option<Vec<Value>>,
+    pub displacement: Option<List<Value>>,
     /// Rotation vector in radians, as expressions of t.
-    pub rotation: Option<Vec<Value>>,
+    pub rotation: Option<List<Value>>,
 }
 
 /// A shape that a program supplies.

@@ -7,7 +7,7 @@ use crate::run::{Ending, Silent, solve};
 /// A membrane over a floor on a line, by its floor.
 fn string(height: Value) -> Problem {
     let mut problem = Problem::new(Space::Line);
-    let grid = GridMesh { cells: Some(vec![20]), ..GridMesh::default() };
+    let grid = GridMesh { cells: Some([20].into()), ..GridMesh::default() };
     let domain = Domain::Interval(Interval { from: (-1.0).into(), to: 1.0.into() });
     let film = Membrane { domain: Some(domain), mesh: Mesh::Grid(grid), degree: Some(2), tension: 1.0.into() };
     problem.bodies.insert("film".into(), Body::Membrane(film));
@@ -15,7 +15,7 @@ fn string(height: Value) -> Problem {
     let rim = Support { on: "film:boundary".into(), displacement: Some(0.0.into()), ..Support::default() };
     problem.supports.insert("rim".into(), rim);
     problem.loads.insert("press".into(), Load { on: "film".into(), normal: Some((-1.0).into()), ..Load::default() });
-    let between = Some(vec!["film".into(), "floor".into()]);
+    let between = Some(["film", "floor"].into());
     problem.contacts.insert("touch".into(), Contact { between, ..Contact::default() });
     problem
 }
@@ -81,8 +81,8 @@ fn meshes_are_arrays() {
             vec![vec![0.0, 0.0], vec![1.0, 0.0], vec![2.0, 0.0], vec![0.0, 1.0], vec![1.0, 1.0], vec![2.0, 1.0]];
         let mesh = MeshArrays {
             points: points.into(),
-            cells: vec![CellArrays { shape: "quadrilateral".into(), nodes: nodes.into() }],
-            groups: [("left".to_string(), vec![0, 3].into()), ("right".to_string(), vec![2, 5].into())].into(),
+            cells: vec![CellArrays { shape: "quadrilateral".into(), nodes: nodes.into() }].into(),
+            groups: Named([("left".to_string(), vec![0, 3].into()), ("right".to_string(), vec![2, 5].into())].into()),
         };
         let material = LinearElastic { youngs_modulus: 100.0.into(), poissons_ratio: 0.0.into() };
         let solid = Solid {
@@ -94,7 +94,7 @@ fn meshes_are_arrays() {
         problem.bodies.insert("bar".into(), Body::Solid(solid));
         let left = Support { on: "bar:left".into(), displacement: Some([0.0, 0.0].into()), ..Support::default() };
         problem.supports.insert("left".into(), left);
-        let right = Load { on: "bar:right".into(), traction: Some(vector([1.0, 0.0])), ..Load::default() };
+        let right = Load { on: "bar:right".into(), traction: Some([1.0, 0.0].into()), ..Load::default() };
         problem.loads.insert("right".into(), right);
         problem
     };

@@ -1,10 +1,11 @@
 //! Values: a number, a quantity with a unit, an expression, a function of Rust, or samples on a grid.
 
+use super::List;
 use super::arrays::Grid2;
 use crate::expression::{FieldFunction, InTime};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor, value::MapAccessDeserializer};
-use serde::ser::{Serialize, SerializeSeq, Serializer};
+use serde::ser::{Serialize, Serializer};
 use signorini_geometry::Jet;
 use std::borrow::Cow;
 use std::fmt;
@@ -110,24 +111,19 @@ impl<'de> Deserialize<'de> for Value {
     }
 }
 
-/// A vector of values: `vector([0.0, 0.0, -1.0])`.
-pub fn vector<V: Into<Value>, const N: usize>(values: [V; N]) -> Vec<Value> {
-    values.map(Into::into).into()
-}
-
 /// The components of a vector; one where a scalar is meant.
 #[derive(Clone, Debug, Default)]
-pub struct Components(pub Vec<Value>);
+pub struct Components(pub List<Value>);
 
 impl<V: Into<Value>> From<V> for Components {
     fn from(value: V) -> Self {
-        Self(vec![value.into()])
+        Self(vec![value.into()].into())
     }
 }
 
 impl<V: Into<Value>, const N: usize> From<[V; N]> for Components {
     fn from(values: [V; N]) -> Self {
-        Self(values.map(Into::into).into())
+        Self(values.into())
     }
 }
 
@@ -146,9 +142,7 @@ impl Serialize for Components {
         if let [one] = &self.0[..] {
             return serializer.serialize_newtype_struct("Components", one);
         }
-        let mut list = serializer.serialize_seq(Some(self.0.len()))?;
-        self.0.iter().try_for_each(|value| list.serialize_element(value))?;
-        list.end()
+        self.0.serialize(serializer)
     }
 }
 
@@ -174,7 +168,7 @@ impl<'de> Deserialize<'de> for Components {
                 while let Some(value) = list.next_element()? {
                     values.push(value);
                 }
-                Ok(Components(values))
+                Ok(Components(values.into()))
             }
         }
         deserializer.deserialize_any(Reader)

@@ -199,7 +199,7 @@ fn at_rest<const D: usize>(plan: &SolidPlan<D>, solids: &mut Solids<D>) -> bool 
         let nodes = |body: usize| model.bodies.list[body].mesh.nodes();
         let still =
             |(k, s): (usize, &SolidSupport)| nodes(s.body).iter().all(|x| (now.displacement)(k, x).amax() == 0.0);
-        let clear = |(gap, c): (&Option<RigidGap<D>>, &SolidContact)| {
+        let clear = |(gap, c): (&Option<RigidGap<D>>, &SolidContact<D>)| {
             let reach = |gap: &RigidGap<D>| nodes(c.body).iter().map(|x| gap(x).gap).fold(f64::INFINITY, f64::min);
             let size = nodes(c.body).iter().map(|x| x.amax()).fold(0.0, f64::max);
             gap.as_ref().is_none_or(|gap| reach(gap) >= -1e-12 * size)

@@ -117,7 +117,7 @@ impl Planner<'_> {
         let key = axis;
         let mut from = self.reader.number(&key.from, LENGTH)?;
         let (ends, cells) = (&key.to, &key.cells);
-        let growth = key.growth.as_ref().map(|g| g.clone()).unwrap_or(vec![1.0; ends.len()]);
+        let growth = key.growth.as_ref().map_or_else(|| vec![1.0; ends.len()], |g| g.0.clone());
         if ends.is_empty() || ends.len() != cells.len() || ends.len() != growth.len() {
             return Err(problem.error(
                 axis,

@@ -102,8 +102,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let own = Folder::create(&folder.path().join("out")).unwrap();
         write_frame(&own, 1, &frame).unwrap();
-        assert_eq!(frames::<2>(own.path(), 2), Some(vec![frame]));
-        std::fs::write(own.path().join(frame_file(0)), "{}").unwrap();
-        assert_eq!(frames::<2>(own.path(), 2), None);
+        assert_eq!(frames::<2>(own.path().unwrap(), 2), Some(vec![frame]));
+        std::fs::write(own.path().unwrap().join(frame_file(0)), "{}").unwrap();
+        assert_eq!(frames::<2>(own.path().unwrap(), 2), None);
     }
 }

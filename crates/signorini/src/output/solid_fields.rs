@@ -10,7 +10,8 @@ use signorini_contact::ContactSurface;
 use signorini_fem::{CellShape, Local};
 use signorini_geometry::Point;
 use signorini_solid::stiffness::displacement_at;
-use signorini_solid::{Contact, Model, State, von_mises};
+use signorini_contact::Status;
+use signorini_solid::{Contact, Model, Rubbing, State, von_mises};
 use std::collections::HashMap;
 use vtkio::model::{
     Attribute, Attributes, CellType, Cells, DataSet, PolyDataPiece, UnstructuredGridPiece, VertexNumbers,
@@ -332,6 +333,8 @@ pub struct ContactDisplay<const D: usize> {
     pub boundary_face: Vec<usize>,
     /// In the plane, the intervals in contact, displaced.
     pub intervals: Vec<[Point<D>; 2]>,
+    /// With friction, its state at every node.
+    pub rubbing: Option<Vec<Rubbing<D>>>,
 }
 
 impl<const D: usize> ContactDisplay<D> {
@@ -350,9 +353,13 @@ impl<const D: usize> ContactDisplay<D> {
             boundary: Vec::new(),
             boundary_face: state.contacts[number].zone.boundary.iter().map(|b| b.0).collect(),
             intervals: Vec::new(),
+            rubbing: contact.friction.as_ref().map(|_| vec![Rubbing::default(); count]),
         };
         for node in &state.contacts[number].nodes {
             let k = node.number as usize;
+            if let Some(rubbing) = &mut display.rubbing {
+                rubbing[k] = node.rubbing;
+            }
             (display.pressure[k], display.gap[k], display.active[k]) = (node.pressure, node.gap, node.active);
         }
         let mut trace = Vec::new();
@@ -444,7 +451,7 @@ impl<const D: usize> ContactDisplay<D> {
             (_, 4) => Some(CellShape::Quadrilateral),
             _ => None,
         };
-        Fields {
+        let fields = Fields {
             name: name.into(),
             points: self.points.iter().map(in_space).collect(),
             cells: self.faces.iter().map(|list| (shape(list.len()), list.clone())).collect(),
@@ -452,8 +459,19 @@ impl<const D: usize> ContactDisplay<D> {
         }
         .vector("displacement", self.displacement.iter().flat_map(in_space).collect())
         .scalar("contact_pressure", self.pressure.clone())
-        .scalar("gap", self.gap.clone())
-        .scalar("contact_status", self.active.iter().map(|a| f64::from(u8::from(*a))).collect())
+        .scalar("gap", self.gap.iter().map(|g| if g.is_finite() { *g } else { 0.0 }).collect())
+        .scalar("contact_status", self.active.iter().map(|a| f64::from(u8::from(*a))).collect());
+        let Some(rubbing) = &self.rubbing else { return fields };
+        let status = |r: &Rubbing<D>| match r.status {
+            Status::Open => 0.0,
+            Status::Stick => 1.0,
+            Status::Slip => 2.0,
+        };
+        fields
+            .scalar("friction_status", rubbing.iter().map(status).collect())
+            .vector("friction_traction", rubbing.iter().flat_map(|r| in_space(&r.traction)).collect())
+            .vector("slip", rubbing.iter().flat_map(|r| in_space(&r.slip)).collect())
+            .scalar("friction_utilisation", rubbing.iter().map(|r| r.utilisation).collect())
     }
 
     /// A VTP of the slave side with pressure, gap and status.
@@ -471,14 +489,12 @@ impl<const D: usize> ContactDisplay<D> {
             })
             .collect();
         let topology = Some(VertexNumbers::XML { connectivity, offsets });
-        let scalar = |name: &str, values: Vec<f64>| Attribute::scalars(name, 1).with_data(values);
-        let finite = |v: &f64| if v.is_finite() { *v } else { 0.0 };
-        let point = vec![
-            Attribute::vectors("displacement").with_data(spatial(&self.displacement)),
-            scalar("contact_pressure", self.pressure.clone()),
-            scalar("gap", self.gap.iter().map(finite).collect()),
-            scalar("contact_status", self.active.iter().map(|a| f64::from(u8::from(*a))).collect()),
-        ];
+        let point = (self.to_fields("").arrays.into_iter())
+            .map(|FieldArray { name, components, values }| match components {
+                3 => Attribute::vectors(name).with_data(values),
+                _ => Attribute::scalars(name, 1).with_data(values),
+            })
+            .collect();
         let mut piece = PolyDataPiece {
             points: spatial(&self.points).into(),
             data: Attributes { point, cell: Vec::new() },

@@ -18,6 +18,8 @@ pub fn with_units(title: &str, data: DataSet, units: Option<&UnitNames>) -> Resu
         ("displacement", &units.length),
         ("gap", &units.length),
         ("contact_pressure", &units.pressure),
+        ("friction_traction", &units.pressure),
+        ("slip", &units.length),
         ("stress_xx_yy_zz_xy_yz_xz", &units.pressure),
         ("von_mises", &units.pressure),
         ("Points", &units.length),

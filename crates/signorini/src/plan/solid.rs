@@ -392,14 +392,12 @@ impl Planner<'_> {
             if let Some(displacement) = &key.displacement {
                 said = true;
                 let values = &displacement.0;
-                if values.len() == 1 {
-                    return Err(problem
-                        .error(displacement, "the displacement of a solid is a vector")
-                        .help("for example  displacement = [0, \"free\", 0]"));
-                }
                 if values.len() != D {
-                    let message = format!("expected {D} components, found {}", values.len());
-                    return Err(problem.error(displacement, message));
+                    let found = values.len();
+                    let message =
+                        format!("the displacement of a solid is a vector: expected {D} components, found {found}");
+                    let help = if D == 2 { "[0, \"free\"]" } else { "[0, \"free\", 0]" };
+                    return Err(problem.error(displacement, message).help(format!("for example  displacement = {help}")));
                 }
                 let mut list = Vec::new();
                 for (k, v) in values.iter().enumerate() {

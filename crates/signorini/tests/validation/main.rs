@@ -8,6 +8,7 @@ mod fit;
 mod flat_floor;
 mod floors;
 mod free_bodies;
+mod friction;
 mod gallery;
 mod invariance;
 mod meshes;

@@ -175,8 +175,10 @@ fn result<const D: usize>(
     let pressure = recovered(&contact.slave, &contact.nodes, &points, &multiplier, &active, &contact.given);
     result.zone = zone(&contact.slave, &contact.nodes, &points, &states);
     result.area = result.zone.face_area.iter().sum();
-    let sums = (body.resultant(&of_friction), result.area);
-    result.friction = rubbing.map(|found| friction_result(contact, &of_rows, found, sums));
+    if let Some(found) = rubbing {
+        let sums = (body.resultant(&of_friction), result.area);
+        result.friction = Some(friction_result(contact, &of_rows, found, sums));
+    }
     result.nodes.iter_mut().for_each(|node| node.pressure = pressure[node.number as usize]);
     result
 }

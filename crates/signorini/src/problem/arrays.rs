@@ -72,7 +72,7 @@ pub struct Grid2 {
 pub struct MeshArrays {
     /// Coordinates of the points, two of each in the plane and three in space, in the base unit of length.
     pub points: Array<Vec<f64>>,
-    /// The cells, by shape and order.
+    /// The cells, by shape.
     pub cells: List<CellArrays>,
     /// Named parts: the points of each; a side or a cell whose corners all are among them belongs to it.
     #[serde(default)]

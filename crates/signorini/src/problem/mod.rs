@@ -235,7 +235,7 @@ pub struct TimeFunction {
 pub struct Table {
     /// Arguments, ascending.
     pub t: List<f64>,
-    /// List<Value>, one for each argument.
+    /// Values, one for each argument.
     pub value: List<f64>,
 }
 

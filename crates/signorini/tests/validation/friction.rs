@@ -24,14 +24,13 @@ fn alike_bodies_that_are_shifted_follow_the_loop_of_cattaneo_and_mindlin() {
         let step = steps.iter().find(|s| (number(&s["time"]) - time).abs() < 1e-9).expect("a step");
         let contact = &step["contacts"]["touch"];
         let [x, y] = [0, 1].map(|k| number(&contact["force"][k]));
-        assert!((y / normal - 1.0).abs() < 2e-3, "t = {time}: {y} across, not {normal}");
-        assert!((x + across).abs() < 1e-2 * 0.0092349, "t = {time}: {x} along, not {}", -across);
-        assert!((number(&contact["friction_force"][0]) - x).abs() < 1e-9, "t = {time}");
-        // Of the half width in contact the part that sticks.
+        assert!((y / normal - 1.0).abs() < 5e-4, "t = {time}: {y} across, not {normal}");
+        assert!((x + across).abs() < 5e-3 * 0.0092349, "t = {time}: {x} along, not {}", -across);
+        // Of the width in contact the part that sticks, to the distance of two nodes on each side.
         if time == 4.0 || time == 8.0 || time == 13.0 {
             let stick = number(&contact["stick_area"]) / number(&contact["area"]);
             let exact = (1.0 - across.abs() / (0.4 * normal)).sqrt();
-            assert!((stick - exact).abs() < 0.05, "t = {time}: {stick} sticks, not {exact}");
+            assert!((stick - exact).abs() < 0.09, "t = {time}: {stick} sticks, not {exact}");
         }
     }
 }

@@ -7,10 +7,10 @@ use crate::fields::{FieldArray, Fields};
 use crate::report::UnitNames;
 use nalgebra::Matrix3;
 use signorini_contact::ContactSurface;
+use signorini_contact::Status;
 use signorini_fem::{CellShape, Local};
 use signorini_geometry::Point;
 use signorini_solid::stiffness::displacement_at;
-use signorini_contact::Status;
 use signorini_solid::{Contact, Model, Rubbing, State, von_mises};
 use std::collections::HashMap;
 use vtkio::model::{

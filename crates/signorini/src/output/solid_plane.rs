@@ -18,6 +18,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 const LINE: RGBColor = RGBColor(31, 81, 140);
+/// Of the colours that those who are blind to red or green tell from the line (Okabe & Ito 2008).
+const FRICTION: RGBColor = RGBColor(213, 94, 0);
 /// What is seen around the bodies, as a part of their largest extent.
 const AROUND: f64 = 0.06;
 /// A window that shows the zone of contact is larger by this part of it on every side; where it would be more than this
@@ -209,6 +211,12 @@ pub fn profile<const D: usize>(
     if nodes.len() <= FEW {
         panel.dots(&nodes, LINE, 2.6, Dots::Full);
     }
+    if let Some([friction, available]) = friction(shown, &now, axis) {
+        panel.line(&available, Sign::Dashes(FRICTION), 1.4);
+        panel.line(&friction, Sign::Line(FRICTION), 2.0);
+        key.push((Sign::Line(FRICTION), "friction, its size".into()));
+        key.push((Sign::Dashes(FRICTION), "friction available".into()));
+    }
     let rims: Vec<(f64, f64)> = shown.boundary.iter().map(|b| (b[0][axis], 0.0)).collect();
     if !rims.is_empty() {
         panel.dots(&rims, FRONT, 4.5, Dots::Full);
@@ -216,6 +224,17 @@ pub fn profile<const D: usize>(
     }
     panel.key(&key);
     page.finish()
+}
+
+/// Along an axis the size of the friction of nodes in contact, and what is available of it; none without friction.
+fn friction<const D: usize>(shown: &ContactDisplay<D>, now: &[Point<D>], axis: usize) -> Option<[Vec<(f64, f64)>; 2]> {
+    let rubbing = shown.rubbing.as_ref()?;
+    let mut nodes: Vec<usize> = (0..now.len()).filter(|&k| shown.active[k]).collect();
+    nodes.sort_by(|&a, &b| now[a][axis].total_cmp(&now[b][axis]));
+    let size = nodes.iter().map(|&k| (now[k][axis], rubbing[k].traction.norm())).collect();
+    let limit = nodes.iter().filter(|&&k| rubbing[k].utilisation > 0.0);
+    let available = limit.map(|&k| (now[k][axis], rubbing[k].traction.norm() / rubbing[k].utilisation)).collect();
+    Some([size, available])
 }
 
 /// Three digits of a value.

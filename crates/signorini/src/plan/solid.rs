@@ -397,7 +397,9 @@ impl Planner<'_> {
                     let message =
                         format!("the displacement of a solid is a vector: expected {D} components, found {found}");
                     let help = if D == 2 { "[0, \"free\"]" } else { "[0, \"free\", 0]" };
-                    return Err(problem.error(displacement, message).help(format!("for example  displacement = {help}")));
+                    return Err(problem
+                        .error(displacement, message)
+                        .help(format!("for example  displacement = {help}")));
                 }
                 let mut list = Vec::new();
                 for (k, v) in values.iter().enumerate() {

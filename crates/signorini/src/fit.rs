@@ -59,7 +59,7 @@ pub fn fit(problem: &Problem, folder: &Path) -> Result<Fitted, RunError> {
     }
     let unknown: Vec<FitUnknown> = match &settings.unknown {
         None => vec![FitUnknown::Adhesion],
-        Some(list) => list.iter().map(|u| *u).collect(),
+        Some(list) => list.iter().copied().collect(),
     };
     let with_tension = unknown.contains(&FitUnknown::Tension);
     if !unknown.contains(&FitUnknown::Adhesion) {

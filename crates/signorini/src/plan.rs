@@ -648,7 +648,7 @@ impl<'a> Planner<'a> {
                     let message = format!("`{other}` is already touched by the contact `{}`", before.name);
                     return Err(problem.error(key, message).help("a body has one contact with the membrane"));
                 }
-                let Some(Body::Rigid(rigid)) = problem.bodies.get(other).map(|b| b) else {
+                let Some(Body::Rigid(rigid)) = problem.bodies.get(other) else {
                     return Err(problem.error(key, format!("`{other}` is not rigid")));
                 };
                 let name = if touched.len() == 1 { name.clone() } else { format!("{name}:{other}") };
@@ -677,7 +677,7 @@ impl<'a> Planner<'a> {
                             .help(suggestion(plain, &bodies)));
                     }
                 }
-                let others: Vec<&String> = list.iter().map(|b| b).filter(|b| *b != body).collect();
+                let others: Vec<&String> = list.iter().filter(|b| *b != body).collect();
                 let known = others.iter().all(|b| rigid.contains(&b.as_str()));
                 match known && others.len() + 1 == list.len() && !others.is_empty() {
                     true => Ok(others.into_iter().cloned().collect()),
@@ -716,7 +716,7 @@ impl<'a> Planner<'a> {
                     .help("formulation = \"published\"")),
             };
         }
-        let multiplier = match (kind.map(|m| *m), &key.multiplier_length) {
+        let multiplier = match (kind.copied(), &key.multiplier_length) {
             (Some(ZoneMultiplierKey::L2), None) => ZoneMultiplier::L2,
             (Some(ZoneMultiplierKey::L2), Some(length)) => {
                 return Err(self

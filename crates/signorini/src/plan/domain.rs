@@ -356,7 +356,7 @@ impl ReadDomain<2> for Planner<'_> {
     fn refinement(&self, key: Option<&RefineEntry>, grid: &Grid<2>) -> Result<Refinement<2>, CaseError> {
         let most = if grid.degree() == 1 { MOST_DIVISIONS_LINEAR } else { MOST_DIVISIONS };
         let mut refinement = Refinement { most, ..Refinement::default() };
-        let Some(refine) = key.map(|r| r) else { return Ok(refinement) };
+        let Some(refine) = key else { return Ok(refinement) };
         let times = |key: &Option<i64>, otherwise: usize| match key {
             None => Ok(otherwise),
             Some(n) if (0..=8).contains(n) => Ok(*n as usize),

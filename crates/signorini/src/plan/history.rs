@@ -68,13 +68,12 @@ impl Planner<'_> {
         let mut out = Vec::new();
         let mut t = 0.0;
         for (step, key) in self.problem.steps.iter().enumerate() {
-            let key = key;
             let to = self.reader.number(&key.to, TIME)?;
             if to <= t {
                 return Err(self.problem.error(&key.to, format!("the step ends at t = {to}, not after t = {t}")));
             }
             let n = match &key.increments {
-                None => match key.control.as_ref().map(|control| control) {
+                None => match key.control.as_ref() {
                     // As far as the path goes, which nobody knows before.
                     Some(problem::Control::ArcLength(arc)) => {
                         let size = arc.size;

@@ -11,7 +11,7 @@ pub struct CaseError {
     /// What to do about it.
     pub help: Option<String>,
     /// The key that it is about.
-    pub key: Option<KeyPath>,
+    pub key: Option<Box<KeyPath>>,
     /// Where: file, its text, and the bytes.
     pub place: Option<Place>,
 }

@@ -114,7 +114,7 @@ impl Problem {
     pub fn error(&self, at: &impl Location, message: impl Into<String>) -> CaseError {
         let key = at.key_in(self);
         let place = self.source.place(&key, None);
-        CaseError { key: Some(key), place, ..CaseError::new(message) }
+        CaseError { key: Some(Box::new(key)), place, ..CaseError::new(message) }
     }
 
     /// What is wrong in some bytes of a value as text.
@@ -127,7 +127,7 @@ impl Problem {
     ) -> CaseError {
         let key = self.key(value);
         let place = self.source.place(&key, Some((text, bytes)));
-        CaseError { key: Some(key), place, ..CaseError::new(message) }
+        CaseError { key: Some(Box::new(key)), place, ..CaseError::new(message) }
     }
 }
 

@@ -95,17 +95,17 @@ fn a_model_runs_fails_goes_on_draws_and_reports() {
     let head = spring.head();
     let start = std::time::Instant::now();
     let whole = folder.path().join("whole");
-    let outcome = drive(&mut Spring::new(None), begin(&head, &whole).expect("a folder"), 0, start, &mut Silent);
+    let outcome = drive(&mut Spring::new(None), begin(head, &whole).expect("a folder"), 0, start, &mut Silent);
     let whole = outcome.expect("a run");
     assert!(whole.ending == Ending::Converged && whole.summary.steps.len() == 4);
     assert!((whole.summary.steps[3].contacts["wall"].force[0] - 1.4).abs() < 1e-15);
     // It fails in the third increment, and goes on from there.
     let path = folder.path().join("parts");
     let mut failing = Spring::new(Some(2));
-    let failed = drive(&mut failing, begin(&head, &path).expect("a folder"), 0, start, &mut Silent).expect("a run");
+    let failed = drive(&mut failing, begin(head, &path).expect("a folder"), 0, start, &mut Silent).expect("a run");
     assert!(failed.ending == Ending::NotConverged && failed.summary.reason == Reason::Newton);
     assert_eq!(failed.summary.steps, whole.summary.steps[..2]);
-    let rest = go_on(&mut Spring::new(None), of_earlier_run(&head, &path), &path, start, &mut Silent).expect("a run");
+    let rest = go_on(&mut Spring::new(None), of_earlier_run(head, &path), &path, start, &mut Silent).expect("a run");
     assert_eq!(rest.summary.steps, whole.summary.steps);
     assert_eq!(rest.summary.verdict, whole.summary.verdict);
     let read = |name: &str| std::fs::read_to_string(path.join(name)).expect(name);
@@ -113,5 +113,5 @@ fn a_model_runs_fails_goes_on_draws_and_reports() {
     assert_eq!(read("fields.pvd").matches("<DataSet").count(), 2);
     assert!(!path.join("checkpoint.json").exists());
     // There is nothing to go on with any more.
-    assert!(go_on(&mut Spring::new(None), of_earlier_run(&head, &path), &path, start, &mut Silent).is_err());
+    assert!(go_on(&mut Spring::new(None), of_earlier_run(head, &path), &path, start, &mut Silent).is_err());
 }

@@ -1,6 +1,5 @@
 #![no_main]
 use libfuzzer_sys::fuzz_target;
-use signorini::problem::Problem;
 
 fuzz_target!(|text: &str| {
     if let Ok(problem) = signorini::case::read("case.toml", text, &[]) {

@@ -66,6 +66,21 @@ impl<const D: usize> Jet<D> {
         jet
     }
 
+    /// The expansion at steps from its point that vanish but for what they carry as jets: that is chained through it. Jets
+    /// end with the second order, and so does this; along steps that carry nothing no derivative is read.
+    pub fn expanded<R: Real>(&self, steps: [R; D]) -> R {
+        let c = R::constant;
+        let first = (0..D)
+            .filter(|&i| !steps[i].is_constant())
+            .fold(c(self.value), |sum, i| sum + c(self.gradient[i]) * steps[i]);
+        let carries = |&(i, j): &(usize, usize)| !steps[i].is_constant() && !steps[j].is_constant();
+        let pairs = (0..D).flat_map(|i| (i..D).map(move |j| (i, j))).filter(carries);
+        pairs.fold(first, |sum, (i, j)| {
+            let share = if i == j { 0.5 } else { 1.0 };
+            sum + c(share * self.hessian[(i, j)]) * steps[i] * steps[j]
+        })
+    }
+
     /// Trace of the Hessian.
     pub fn laplacian(&self) -> f64 {
         self.hessian.trace()

@@ -36,7 +36,6 @@ pub fn fit(problem: &Problem, folder: &Path) -> Result<Fitted, RunError> {
             .help("add  [fit]  data = \"measured.csv\"  time = \"pressure\"  radius = \"radius\"")
             .into());
     };
-    let settings = key;
     let Plan::Line(planned) = plan(problem)? else {
         let space = &problem.space;
         return Err(problem
@@ -51,25 +50,25 @@ pub fn fit(problem: &Problem, folder: &Path) -> Result<Fitted, RunError> {
     if planned.space == Space::Axisymmetric && planned.grid.bounds().min[0] != 0.0 {
         return Err(problem.error(&problem.space, "a fit needs a disc: its radius begins at 0").into());
     }
-    let confidence = settings.confidence.as_ref().map_or(0.95, |c| *c);
-    if let Some(c) = &settings.confidence
+    let confidence = key.confidence.unwrap_or(0.95);
+    if let Some(c) = &key.confidence
         && !(confidence > 0.0 && confidence < 1.0)
     {
         return Err(problem.error(c, format!("a confidence of {confidence} is not between 0 and 1")).into());
     }
-    let unknown: Vec<FitUnknown> = match &settings.unknown {
+    let unknown: Vec<FitUnknown> = match &key.unknown {
         None => vec![FitUnknown::Adhesion],
         Some(list) => list.iter().copied().collect(),
     };
     let with_tension = unknown.contains(&FitUnknown::Tension);
     if !unknown.contains(&FitUnknown::Adhesion) {
-        let span = settings.unknown.as_ref().map_or_else(|| problem.key(key), |u| problem.key(u));
+        let at = key.unknown.as_ref().map_or_else(|| problem.key(key), |u| problem.key(u));
         return Err(problem
-            .error(&span, "the energy of adhesion is what the contact tells")
+            .error(&at, "the energy of adhesion is what the contact tells")
             .help("unknown = [\"adhesion\"], or [\"adhesion\", \"tension\"]")
             .into());
     }
-    let (quantity, column) = match (&settings.radius, &settings.area) {
+    let (quantity, column) = match (&key.radius, &key.area) {
         (Some(column), None) => (Quantity::Radius, column),
         (None, Some(column)) => (Quantity::Area, column),
         _ => {
@@ -79,14 +78,11 @@ pub fn fit(problem: &Problem, folder: &Path) -> Result<Fitted, RunError> {
                 .into());
         }
     };
-    let measured = data::read(problem, settings, column)?;
+    let measured = data::read(problem, key, column)?;
     let parameters = 1 + usize::from(with_tension);
     if measured.time.len() <= parameters {
         return Err(problem
-            .error(
-                &settings.data,
-                format!("{} measurements are too few for {parameters} unknowns", measured.time.len()),
-            )
+            .error(&key.data, format!("{} measurements are too few for {parameters} unknowns", measured.time.len()))
             .help("at least one more than there are unknowns")
             .into());
     }
@@ -95,8 +91,8 @@ pub fn fit(problem: &Problem, folder: &Path) -> Result<Fitted, RunError> {
     }
     let model = Model::new(&planned, quantity, &measured.time)
         .map_err(|e| problem.error(key, format!("the membrane cannot be solved: {e}")))?;
-    model.check(problem, settings, &measured)?;
-    let relative = settings.noise.unwrap_or_default() == Noise::Relative;
+    model.check(problem, key, &measured)?;
+    let relative = key.noise.unwrap_or_default() == Noise::Relative;
     let estimate = Estimate::new(&model, &measured.value, with_tension, relative, confidence);
     let folder = Folder::create(folder)?;
     write(problem, &folder, &measured, &estimate, confidence).map_err(RunError::from)

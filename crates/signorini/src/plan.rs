@@ -311,16 +311,16 @@ impl<'a> Planner<'a> {
         names.any(|n| words.contains(&n))
     }
 
-    fn check_name(&self, name: &str, span: KeyPath) -> Result<(), CaseError> {
+    fn check_name(&self, name: &str, at: KeyPath) -> Result<(), CaseError> {
         let word =
             name.chars().all(|c| c.is_alphanumeric() || c == '_') && !name.starts_with(|c: char| c.is_ascii_digit());
         let taken = ["x", "y", "z", "t", "pi", "e", "if"].contains(&name);
         match (word, taken) {
             (true, false) => Ok(()),
-            (true, true) => Err(self.problem.error(&span, format!("`{name}` already has a meaning in expressions"))),
+            (true, true) => Err(self.problem.error(&at, format!("`{name}` already has a meaning in expressions"))),
             (false, _) => Err(self
                 .problem
-                .error(&span, format!("`{name}` cannot be used in an expression"))
+                .error(&at, format!("`{name}` cannot be used in an expression"))
                 .help("a name consists of letters, digits and _, and does not begin with a digit")),
         }
     }
@@ -491,8 +491,7 @@ impl<'a> Planner<'a> {
 
     fn loads(&self, body: &str) -> Result<BTreeMap<String, Placed>, CaseError> {
         let mut loads = BTreeMap::new();
-        for (name, load) in &self.problem.loads {
-            let key = load;
+        for (name, key) in &self.problem.loads {
             self.check_place(&key.on, body, &[])?;
             let others = [
                 ("traction", key.traction.as_ref().map(|v| self.key(v))),
@@ -500,17 +499,14 @@ impl<'a> Planner<'a> {
                 ("force", key.force.as_ref().map(|v| self.key(v))),
                 ("body_force", key.body_force.as_ref().map(|v| self.key(v))),
             ];
-            if let Some((what, span)) = others.iter().find_map(|(w, s)| s.clone().map(|s| (*w, s))) {
+            if let Some((what, at)) = others.iter().find_map(|(w, s)| s.clone().map(|s| (*w, s))) {
                 return Err(self
                     .problem
-                    .error(&span, format!("a membrane has no `{what}`"))
+                    .error(&at, format!("a membrane has no `{what}`"))
                     .help("its load is  normal = …  : force per area along +z, negative where it presses downwards"));
             }
             let Some(normal) = &key.normal else {
-                return Err(self
-                    .problem
-                    .error(load, format!("the load `{name}` says nothing"))
-                    .help("add  normal = …"));
+                return Err(self.problem.error(key, format!("the load `{name}` says nothing")).help("add  normal = …"));
             };
             loads.insert(name.clone(), self.placed(normal, PRESSURE)?);
         }
@@ -521,8 +517,7 @@ impl<'a> Planner<'a> {
         let problem = self.problem;
         let mut supports: Vec<PlannedSupport> = Vec::new();
         let groups: Vec<&str> = pieces.groups.iter().map(|(n, _)| n.as_str()).collect();
-        for (name, support) in &self.problem.supports {
-            let key = support;
+        for (name, key) in &self.problem.supports {
             let group = self.check_place(&key.on, body, &groups)?;
             let Some(group) = group else {
                 return Err(self
@@ -535,13 +530,13 @@ impl<'a> Planner<'a> {
                 ("uniform", key.uniform.as_ref().map(|v| self.key(v))),
                 ("spring", key.spring.as_ref().map(|v| self.key(v))),
             ];
-            if let Some((what, span)) = others.iter().find_map(|(w, s)| s.clone().map(|s| (*w, s))) {
-                return Err(self.unavailable(&span, &format!("`{what}` on the support of a membrane")));
+            if let Some((what, at)) = others.iter().find_map(|(w, s)| s.clone().map(|s| (*w, s))) {
+                return Err(self.unavailable(&at, &format!("`{what}` on the support of a membrane")));
             }
             let Some(displacement) = &key.displacement else {
                 return Err(self
                     .problem
-                    .error(support, format!("the support `{name}` prescribes nothing"))
+                    .error(key, format!("the support `{name}` prescribes nothing"))
                     .help("add  displacement = 0.0"));
             };
             let held = pieces.groups.iter().find(|(n, _)| *n == group).map(|(_, p)| p.clone()).unwrap_or_default();
@@ -660,16 +655,14 @@ impl<'a> Planner<'a> {
     }
 
     /// The rigid bodies that a contact names.
-    fn touched(&self, body: &str, contact: &problem::Contact) -> Result<Vec<String>, CaseError> {
+    fn touched(&self, body: &str, key: &problem::Contact) -> Result<Vec<String>, CaseError> {
         let problem = self.problem;
-        let key = contact;
         let rigid: Vec<&str> =
             problem.bodies.iter().filter(|(_, b)| matches!(b, Body::Rigid(_))).map(|(n, _)| n.as_str()).collect();
         match (&key.between, &key.within, &key.all) {
             (Some(pair), None, None) => {
-                let list = pair;
                 let bodies: Vec<&str> = problem.bodies.keys().map(String::as_str).collect();
-                for b in list {
+                for b in pair {
                     let plain = b.split(':').next().unwrap_or("");
                     if !bodies.contains(&plain) {
                         return Err(problem
@@ -677,9 +670,9 @@ impl<'a> Planner<'a> {
                             .help(suggestion(plain, &bodies)));
                     }
                 }
-                let others: Vec<&String> = list.iter().filter(|b| *b != body).collect();
+                let others: Vec<&String> = pair.iter().filter(|b| *b != body).collect();
                 let known = others.iter().all(|b| rigid.contains(&b.as_str()));
-                match known && others.len() + 1 == list.len() && !others.is_empty() {
+                match known && others.len() + 1 == pair.len() && !others.is_empty() {
                     true => Ok(others.into_iter().cloned().collect()),
                     false => Err(problem
                         .error(pair, "a contact is between the membrane and a rigid body")
@@ -693,7 +686,7 @@ impl<'a> Planner<'a> {
                     .help("add for example  [bodies.floor.rigid]  shape.height = \"-0.1\"")),
             },
             _ => Err(problem
-                .error(contact, "who touches whom is not said, or said twice")
+                .error(key, "who touches whom is not said, or said twice")
                 .help(format!("between = [\"{body}\", \"{}\"]", rigid.first().unwrap_or(&"floor")))),
         }
     }
@@ -710,9 +703,9 @@ impl<'a> Planner<'a> {
             ];
             return match spans.into_iter().flatten().next() {
                 None => Ok(Formulation::OneSided),
-                Some(span) => Err(self
+                Some(at) => Err(self
                     .problem
-                    .error(&span, "this key belongs to the published formulation")
+                    .error(&at, "this key belongs to the published formulation")
                     .help("formulation = \"published\"")),
             };
         }
@@ -727,7 +720,7 @@ impl<'a> Planner<'a> {
             (_, None) => ZoneMultiplier::H1 { length: size },
             (_, Some(length)) => ZoneMultiplier::H1 { length: self.reader.positive(length, LENGTH)? },
         };
-        let transport = match key.transport.as_ref().map(|t| *t) {
+        let transport = match key.transport {
             None | Some(TransportKey::Exact) => Transport::Exact,
             Some(TransportKey::Redistancing) => Transport::Redistancing,
             Some(TransportKey::HamiltonJacobi) => Transport::HamiltonJacobi,
@@ -800,7 +793,7 @@ impl<'a> Planner<'a> {
                     return Err(self.unavailable(v, "`front_degree`"));
                 }
                 let formulation = self.formulation(k, size)?;
-                let modes = match (k.modes.as_ref().map(|m| *m), formulation) {
+                let modes = match (k.modes, formulation) {
                     (Some(problem::FrontModes::Fourier), _) | (None, Formulation::Published(_)) => {
                         Modes::Fourier { most: self.mode_count(k)?.unwrap_or(usize::MAX) }
                     }
@@ -816,7 +809,7 @@ impl<'a> Planner<'a> {
                 };
                 Ok(MethodChoice::InequalityLevelSet { modes, formulation })
             }
-            Method::ActiveSet(k) => Ok(MethodChoice::ActiveSet(match k.start.as_ref().map(|s| *s) {
+            Method::ActiveSet(k) => Ok(MethodChoice::ActiveSet(match k.start {
                 Some(problem::ActiveSetStart::Cold) => NodalStart::Cold,
                 _ => NodalStart::Nested,
             })),

@@ -2,6 +2,7 @@
 
 use crate::fields::Fields;
 use crate::plan::MembranePlan;
+use crate::report::vector;
 use signorini_fem::CellShape;
 use signorini_geometry::Point;
 use signorini_membrane::domain::CellStatus;
@@ -149,7 +150,7 @@ impl<const D: usize> Snapshot<D> {
         };
         let fields = Fields {
             name: name.into(),
-            points: mesh.points.iter().map(in_space).collect(),
+            points: mesh.points.iter().map(vector).collect(),
             cells: mesh.cells.iter().map(|list| (Some(shape(list.len())), list.clone())).collect(),
             arrays: Vec::new(),
         }
@@ -168,7 +169,7 @@ impl<const D: usize> Snapshot<D> {
         let mut fields = Fields { name: "contact".into(), ..Fields::default() };
         for outline in &self.outlines {
             let first = fields.points.len() as u32;
-            fields.points.extend(outline.iter().map(in_space));
+            fields.points.extend(outline.iter().map(vector));
             let n = outline.len() as u32;
             if D > 1 {
                 let line = |k: u32| (Some(CellShape::Line), vec![first + k, first + (k + 1) % n]);
@@ -177,9 +178,4 @@ impl<const D: usize> Snapshot<D> {
         }
         fields
     }
-}
-
-/// A point in space.
-fn in_space<const D: usize>(x: &Point<D>) -> [f64; 3] {
-    std::array::from_fn(|k| if k < D { x[k] } else { 0.0 })
 }

@@ -43,18 +43,8 @@ impl FieldFunction {
     pub fn evaluate<R: Real>(&self, scope: &Scope<R>) -> R {
         let place = scope.position.map(|x| x.value());
         let time = if let InTime::At(time) = self.in_time { time } else { scope.time.value() };
-        let Jet { value, gradient, hessian } = (self.value)([0, 1, 2].map(|k| Jet::variable(place[k], k)), time);
-        // Jets end with the second order, and so does this.
-        let c = R::constant;
-        let mut sum = c(value);
-        for i in (0..3).filter(|&i| !scope.position[i].is_constant()) {
-            let step = |k: usize| scope.position[k] - c(place[k]);
-            sum = sum + c(gradient[i]) * step(i);
-            for j in (0..3).filter(|&j| !scope.position[j].is_constant()) {
-                sum = sum + c(0.5 * hessian[(i, j)]) * step(i) * step(j);
-            }
-        }
-        sum
+        let jet = (self.value)([0, 1, 2].map(|k| Jet::variable(place[k], k)), time);
+        jet.expanded([0, 1, 2].map(|k| scope.position[k] - R::constant(place[k])))
     }
 }
 

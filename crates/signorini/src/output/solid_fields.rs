@@ -4,7 +4,7 @@ use super::OutputError;
 use super::level::OF_HEXAHEDRON;
 use super::vtk::with_units;
 use crate::fields::{FieldArray, Fields};
-use crate::report::UnitNames;
+use crate::report::{UnitNames, vector};
 use nalgebra::Matrix3;
 use signorini_contact::ContactSurface;
 use signorini_contact::Status;
@@ -247,11 +247,11 @@ impl<const D: usize> SolidDisplay<D> {
         // The points of a body follow each other.
         let cells = (self.cells.iter().filter(|(_, list)| self.body[list[0] as usize] == number))
             .map(|(kind, list)| (shape_of(*kind), list.iter().map(|k| k - first).collect()));
-        let spatial = |list: &[Point<D>]| own.iter().flat_map(|&k| in_space(&list[k])).collect::<Vec<f64>>();
+        let spatial = |list: &[Point<D>]| own.iter().flat_map(|&k| vector(&list[k])).collect::<Vec<f64>>();
         let stress = own.iter().flat_map(|&k| components(&fields.stress[k])).collect();
         Fields {
             name: name.into(),
-            points: own.iter().map(|&k| in_space(&self.points[k])).collect(),
+            points: own.iter().map(|&k| vector(&self.points[k])).collect(),
             cells: cells.collect(),
             arrays: vec![FieldArray { name: "stress_xx_yy_zz_xy_yz_xz", components: 6, values: stress }],
         }
@@ -261,9 +261,7 @@ impl<const D: usize> SolidDisplay<D> {
 
     /// A VTU with displacement, stress and its equivalent after von Mises.
     pub fn vtu(&self, fields: &SolidFields<D>, units: Option<&UnitNames>) -> Result<Vec<u8>, OutputError> {
-        let spatial = |list: &[Point<D>]| -> Vec<f64> {
-            list.iter().flat_map(|x| (0..3).map(|k| if k < D { x[k] } else { 0.0 })).collect()
-        };
+        let spatial = |list: &[Point<D>]| list.iter().flat_map(vector).collect::<Vec<f64>>();
         let connectivity: Vec<u64> = self.cells.iter().flat_map(|c| c.1.iter().map(|&i| u64::from(i))).collect();
         let offsets: Vec<u64> = self
             .cells
@@ -290,11 +288,6 @@ impl<const D: usize> SolidDisplay<D> {
         };
         with_units("solids", DataSet::inline(piece), units)
     }
-}
-
-/// A point of the plane or of space in space.
-fn in_space<const D: usize>(x: &Point<D>) -> [f64; 3] {
-    std::array::from_fn(|k| if k < D { x[k] } else { 0.0 })
 }
 
 /// The components of a symmetric tensor: xx, yy, zz, xy, yz, xz.
@@ -453,11 +446,11 @@ impl<const D: usize> ContactDisplay<D> {
         };
         let fields = Fields {
             name: name.into(),
-            points: self.points.iter().map(in_space).collect(),
+            points: self.points.iter().map(vector).collect(),
             cells: self.faces.iter().map(|list| (shape(list.len()), list.clone())).collect(),
             arrays: Vec::new(),
         }
-        .vector("displacement", self.displacement.iter().flat_map(in_space).collect())
+        .vector("displacement", self.displacement.iter().flat_map(vector).collect())
         .scalar("contact_pressure", self.pressure.clone())
         .scalar("gap", self.gap.iter().map(|g| if g.is_finite() { *g } else { 0.0 }).collect())
         .scalar("contact_status", self.active.iter().map(|a| f64::from(u8::from(*a))).collect());
@@ -469,16 +462,14 @@ impl<const D: usize> ContactDisplay<D> {
         };
         fields
             .scalar("friction_status", rubbing.iter().map(status).collect())
-            .vector("friction_traction", rubbing.iter().flat_map(|r| in_space(&r.traction)).collect())
-            .vector("slip", rubbing.iter().flat_map(|r| in_space(&r.slip)).collect())
+            .vector("friction_traction", rubbing.iter().flat_map(|r| vector(&r.traction)).collect())
+            .vector("slip", rubbing.iter().flat_map(|r| vector(&r.slip)).collect())
             .scalar("friction_utilisation", rubbing.iter().map(|r| r.utilisation).collect())
     }
 
     /// A VTP of the slave side with pressure, gap and status.
     pub fn vtp(&self, units: Option<&UnitNames>) -> Result<Vec<u8>, OutputError> {
-        let spatial = |list: &[Point<D>]| -> Vec<f64> {
-            list.iter().flat_map(|x| (0..3).map(|k| if k < D { x[k] } else { 0.0 })).collect()
-        };
+        let spatial = |list: &[Point<D>]| list.iter().flat_map(vector).collect::<Vec<f64>>();
         let connectivity: Vec<u64> = self.faces.iter().flatten().map(|&k| u64::from(k)).collect();
         let offsets: Vec<u64> = self
             .faces

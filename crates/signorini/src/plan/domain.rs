@@ -105,10 +105,10 @@ pub(crate) trait ReadDomain<const D: usize> {
         let grid = coarse;
         let domain = DomainOnCells::new(shape, &*cells);
         if domain.status.iter().all(|s| *s == CellStatus::Outside) {
-            let span = film.domain.as_ref().map_or_else(|| planner.key(film), |d| planner.key(d));
+            let at = film.domain.as_ref().map_or_else(|| planner.key(film), |d| planner.key(d));
             return Err(planner
                 .problem
-                .error(&span, "the domain is empty: no point of it was found on the grid")
+                .error(&at, "the domain is empty: no point of it was found on the grid")
                 .help("check the sign (negative inside) and the bounds min, max, or use more cells"));
         }
         Ok(OnCells { cells, grid, domain, pieces, refinement })
@@ -149,12 +149,11 @@ impl Planner<'_> {
         let problem = self.problem;
         match (&grid.cells, &grid.cell_size) {
             (Some(cells), None) => {
-                let list = cells;
-                if list.len() != D {
-                    return Err(problem.error(cells, format!("expected {D} numbers of cells, found {}", list.len())));
+                if cells.len() != D {
+                    return Err(problem.error(cells, format!("expected {D} numbers of cells, found {}", cells.len())));
                 }
                 let mut out = [0; D];
-                for (o, n) in out.iter_mut().zip(list) {
+                for (o, n) in out.iter_mut().zip(cells) {
                     let count = *n;
                     if count < 1 {
                         return Err(problem.error(n, format!("{count} cells: there must be at least one")));
@@ -365,9 +364,9 @@ impl ReadDomain<2> for Planner<'_> {
         refinement.fronts = times(&refine.fronts, 0)?;
         refinement.most = times(&refine.most, most.max(refinement.fronts))?;
         if refinement.fronts > refinement.most {
-            let span = refine.most.as_ref().map_or_else(|| self.key(refine), |m| self.key(m));
+            let at = refine.most.as_ref().map_or_else(|| self.key(refine), |m| self.key(m));
             return Err(self.problem.error(
-                &span,
+                &at,
                 format!(
                     "at fronts cells are divided {} times, which is more than {}",
                     refinement.fronts, refinement.most
@@ -534,23 +533,23 @@ impl Planner<'_> {
         let degree = self.degree(film)?.unwrap_or(order);
         let triangles = (0..mesh.cell_count()).any(|c| !mesh.shape(c).is_tensor());
         if triangles && degree > MOST_ON_TRIANGLES {
-            let span = film.degree.as_ref().map_or_else(|| place.clone(), |d| self.key(d));
+            let at = film.degree.as_ref().map_or_else(|| place.clone(), |d| self.key(d));
             return Err(problem
-                .error(&span, format!("degree {degree} on a mesh with triangles"))
+                .error(&at, format!("degree {degree} on a mesh with triangles"))
                 .help("triangles have degree 1 or 2, quadrilaterals 1 to 6"));
         }
         let divisions = divided.copied().unwrap_or(0);
-        let span = divided.map_or_else(|| place.clone(), |d| self.key(d));
+        let at = divided.map_or_else(|| place.clone(), |d| self.key(d));
         if !(0..=MOST_MESH_DIVISIONS).contains(&divisions) {
             let message = format!("cells are divided 0 to {MOST_MESH_DIVISIONS} times, not {divisions}");
-            return Err(problem.error(&span, message));
+            return Err(problem.error(&at, message));
         }
         // Triangles are twice as many as their vertices.
         let share = |cell: usize| if mesh.shape(cell).is_tensor() { 1.0 } else { 0.5 };
         let vertices = (0..mesh.cell_count()).map(share).sum::<f64>() * 4f64.powi(divisions as i32);
         let unknowns = vertices * (degree * degree) as f64;
         let by_multigrid = if divisions > 0 { mesh_multigrid_estimate(unknowns, degree) } else { f64::INFINITY };
-        self.check_bytes(unknowns, memory_estimate(unknowns, degree, 2).min(by_multigrid), &span)?;
+        self.check_bytes(unknowns, memory_estimate(unknowns, degree, 2).min(by_multigrid), &at)?;
         let apart = Apart::new(&mesh);
         let undivided = Arc::new(MeshCells::new(mesh, degree));
         let apart = apart.map(|apart| {

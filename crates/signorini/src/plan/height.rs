@@ -37,7 +37,7 @@ pub(super) fn read(
 
 /// What is wrong with the direction of a shape.
 fn told(planner: &Planner<'_>, shape: &Shape, side: Side, why: NoHeight) -> CaseError {
-    let span = match shape {
+    let at = match shape {
         Shape::Plane(key) => planner.key(&key.normal),
         Shape::Cone(key) => planner.key(&key.axis),
         Shape::Paraboloid(key) => planner.key(&key.axis),
@@ -53,9 +53,9 @@ fn told(planner: &Planner<'_>, shape: &Shape, side: Side, why: NoHeight) -> Case
         NoHeight::AxisNotAway => ("the axis has to point straight up, into the body", "axis = [0, 0, 1]"),
         NoHeight::AxisNotUpright => ("the axis has to stand upright", "axis = [0, 0, 1]"),
         NoHeight::AxisNotFlat => ("a cylinder under a membrane lies flat", "axis = [1, 0, 0]"),
-        NoHeight::NoFormula => return planner.unavailable(&span, "this shape beside a membrane"),
+        NoHeight::NoFormula => return planner.unavailable(&at, "this shape beside a membrane"),
     };
-    planner.problem.error(&span, message).help(help)
+    planner.problem.error(&at, message).help(help)
 }
 
 /// Shapes beside a membrane: with three coordinates, or two on a line.

@@ -55,9 +55,9 @@ impl Planner<'_> {
     /// The ends of all increments of a history in which time is given.
     pub(super) fn times(&self) -> Result<Vec<f64>, CaseError> {
         for step in &self.problem.steps {
-            match step.control.as_ref().map(|c| (c, self.key(c))) {
-                None | Some((problem::Control::Time(_), _)) => {}
-                Some((_, span)) => return Err(self.unavailable(&span, "control of solids by arc length or area")),
+            match &step.control {
+                None | Some(problem::Control::Time(_)) => {}
+                Some(control) => return Err(self.unavailable(control, "control of solids by arc length or area")),
             }
         }
         Ok(self.increments(0, &[])?.into_iter().map(|i| i.time).collect())
@@ -95,7 +95,7 @@ impl Planner<'_> {
                         .error(n, format!("{} increments: give a number from 1 to {MOST_INCREMENTS}", n)));
                 }
             };
-            let events = key.events.as_ref().map(|e| *e);
+            let events = key.events;
             if let Some(events) = &key.events
                 && !(*events > 0.0 && events.is_finite())
             {

@@ -272,10 +272,10 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
 fn motion<const D: usize>(planner: &Planner<'_>, rigid: &Rigid) -> Result<[Vec<Placed>; 2], CaseError> {
     let problem = planner.problem;
     let (mut displacement, mut rotation) = (Vec::new(), Vec::new());
-    match rigid.motion.as_ref().map(|m| (m, planner.key(m))) {
-        None | Some((Motion::Fixed(_), _)) => {}
-        Some((Motion::Free(_), span)) => return Err(planner.unavailable(&span, "a rigid body that moves freely")),
-        Some((Motion::Prescribed(motion), _)) => {
+    match &rigid.motion {
+        None | Some(Motion::Fixed(_)) => {}
+        Some(free @ Motion::Free(_)) => return Err(planner.unavailable(free, "a rigid body that moves freely")),
+        Some(Motion::Prescribed(motion)) => {
             if let Some(values) = &motion.rotation {
                 let wanted = if D == 2 { 1 } else { 3 };
                 if values.len() != wanted {

@@ -263,7 +263,7 @@ impl Planner<'_> {
         &self,
         name: &str,
         key: &problem::Solid,
-        span: KeyPath,
+        at: KeyPath,
         warnings: &mut Vec<Warning>,
     ) -> Result<PlannedBody<D>, CaseError> {
         let problem = self.problem;
@@ -310,9 +310,9 @@ impl Planner<'_> {
         let order = (0..mesh.cell_count()).map(|c| mesh.map(c).order()).max().unwrap_or(1);
         let degree = stated.unwrap_or(order);
         if simplices && degree > 2 {
-            let span = key.degree.as_ref().map_or(span, |d| self.key(d));
+            let at = key.degree.as_ref().map_or(at, |d| self.key(d));
             return Err(problem
-                .error(&span, format!("degree {degree} on a mesh with triangles, tetrahedra or wedges"))
+                .error(&at, format!("degree {degree} on a mesh with triangles, tetrahedra or wedges"))
                 .help("these have degree 1 or 2; quadrilaterals and hexahedra 1 to 8"));
         }
         let locks = |c: usize| signorini_solid::stiffness::locks(mesh.shape(c), degree, &material);
@@ -378,8 +378,7 @@ impl Planner<'_> {
     fn solid_supports<const D: usize>(&self, bodies: &[PlannedBody<D>]) -> Result<Vec<SolidSupport>, CaseError> {
         let problem = self.problem;
         let mut out = Vec::new();
-        for (name, support) in &problem.supports {
-            let key = support;
+        for (name, key) in &problem.supports {
             let (body, group) = self.solid_place(&key.on, bodies)?;
             let group = group.unwrap_or_else(|| Group {
                 cells: (0..bodies[body].mesh.cell_count() as u32).collect(),
@@ -433,7 +432,7 @@ impl Planner<'_> {
             }
             if !said {
                 return Err(problem
-                    .error(support, format!("the support `{name}` prescribes nothing"))
+                    .error(key, format!("the support `{name}` prescribes nothing"))
                     .help("add  displacement = [0, 0]  or  normal = 0  or  uniform = true  or  spring = […]"));
             }
         }
@@ -448,8 +447,7 @@ impl Planner<'_> {
             [0, 1, 0]
         };
         let mut out = Vec::new();
-        for (name, load) in &problem.loads {
-            let key = load;
+        for (name, key) in &problem.loads {
             let (body, group) = self.solid_place(&key.on, bodies)?;
             if let Some(normal) = &key.normal {
                 return Err(problem
@@ -471,7 +469,7 @@ impl Planner<'_> {
             }
             let [(kind, values)] = <[_; 1]>::try_from(list).map_err(|list| {
                 problem
-                    .error(load, format!("the load `{name}` says {} things", list.len()))
+                    .error(key, format!("the load `{name}` says {} things", list.len()))
                     .help("exactly one of pressure, traction, force, body_force")
             })?;
             let group = match (group, kind) {
@@ -509,30 +507,30 @@ impl Planner<'_> {
                     .help("solids have  method.mortar = {},  method.node = {}  and  method.gauss_point = {}"));
             }
         };
-        let kept = match stated.as_ref().map(|e| (e, self.key(e))) {
+        let kept = match stated {
             None if which == ContactMethod::GaussPoint => Kept::Penalty { wanted_penetration: None },
             None => Kept::Multiplier,
-            Some((Enforcement::Multiplier(_), span)) if which == ContactMethod::GaussPoint => {
+            Some(multiplier @ Enforcement::Multiplier(_)) if which == ContactMethod::GaussPoint => {
                 return Err(self
                     .problem
-                    .error(&span, "a multiplier at every quadrature point holds the surface too tightly")
+                    .error(multiplier, "a multiplier at every quadrature point holds the surface too tightly")
                     .help("enforcement.penalty = {}, or method.mortar = {}"));
             }
-            Some((Enforcement::Multiplier(_), _)) => Kept::Multiplier,
-            Some((Enforcement::AugmentedLagrangian(_), _)) => Kept::AugmentedLagrangian,
-            Some((Enforcement::Penalty(k), _)) => Kept::Penalty {
+            Some(Enforcement::Multiplier(_)) => Kept::Multiplier,
+            Some(Enforcement::AugmentedLagrangian(_)) => Kept::AugmentedLagrangian,
+            Some(Enforcement::Penalty(k)) => Kept::Penalty {
                 wanted_penetration: k
                     .wanted_penetration
                     .as_ref()
                     .map(|v| self.reader.positive(v, LENGTH))
                     .transpose()?,
             },
-            Some((Enforcement::Nitsche(_), span)) => {
+            Some(nitsche @ Enforcement::Nitsche(_)) => {
                 let slides = key.sliding.as_ref().is_some_and(|s| *s == problem::Sliding::Finite);
                 if slides || which == ContactMethod::Node {
                     return Err(self
                         .problem
-                        .error(&span, "Nitsche's method is for small sliding, in the mean or at quadrature points")
+                        .error(nitsche, "Nitsche's method is for small sliding, in the mean or at quadrature points")
                         .help("method.mortar = { enforcement.nitsche = {} }  without `sliding`"));
                 }
                 Kept::Nitsche
@@ -560,8 +558,7 @@ impl Planner<'_> {
         let problem = self.problem;
         let around = around(bodies);
         let mut out = Vec::new();
-        for (name, contact) in &problem.contacts {
-            let key = contact;
+        for (name, key) in &problem.contacts {
             if let Some(within) = &key.within {
                 return Err(self.unavailable(within, "contact of a body with itself"));
             }
@@ -572,7 +569,7 @@ impl Planner<'_> {
             }
             let (method, enforcement) = self.solid_method(key)?;
             let friction = key.friction.as_ref().map(|friction| self.friction::<D>(friction)).transpose()?;
-            let sliding = match key.sliding.as_ref().map(|s| *s) {
+            let sliding = match key.sliding {
                 Some(problem::Sliding::Finite) => signorini_solid::Sliding::Finite,
                 _ => signorini_solid::Sliding::Small,
             };
@@ -620,7 +617,7 @@ impl Planner<'_> {
                     }
                 }
                 _ => {
-                    return Err(problem.error(contact, "who touches whom is not said").help(
+                    return Err(problem.error(key, "who touches whom is not said").help(
                         "between = [\"BODY:GROUP\", \"BODY:GROUP\"], the slave first where both are solids; or  all = true",
                     ));
                 }

@@ -99,8 +99,7 @@ fn side(planner: &Planner<'_>, rigid: &Rigid, level: Option<f64>) -> Result<Side
         });
     }
     let last = |values: &List<Value>, dimension| -> Result<f64, CaseError> {
-        let list = values;
-        let Some(z) = list.last().filter(|_| list.len() >= 2) else { return Ok(0.0) };
+        let Some(z) = values.last().filter(|_| values.len() >= 2) else { return Ok(0.0) };
         planner.reader.number(z, dimension)
     };
     // Up or down, into the body or out of it.
@@ -191,10 +190,10 @@ fn height(planner: &Planner<'_>, rigid: &Rigid, side: Side, scene: &mut Scene<'_
 fn motion(planner: &Planner<'_>, rigid: &Rigid) -> Result<Vec<Placed>, CaseError> {
     let problem = planner.problem;
     let mut displacement = Vec::new();
-    let motion = match rigid.motion.as_ref().map(|m| (m, planner.key(m))) {
-        None | Some((Motion::Fixed(_), _)) => return Ok(displacement),
-        Some((Motion::Free(_), span)) => return Err(planner.unavailable(&span, "a rigid body that moves freely")),
-        Some((Motion::Prescribed(motion), _)) => motion,
+    let motion = match &rigid.motion {
+        None | Some(Motion::Fixed(_)) => return Ok(displacement),
+        Some(free @ Motion::Free(_)) => return Err(planner.unavailable(free, "a rigid body that moves freely")),
+        Some(Motion::Prescribed(motion)) => motion,
     };
     if let Some(rotation) = &motion.rotation {
         for v in rotation {
@@ -204,8 +203,7 @@ fn motion(planner: &Planner<'_>, rigid: &Rigid) -> Result<Vec<Placed>, CaseError
         }
     }
     let Some(values) = &motion.displacement else { return Ok(displacement) };
-    let list = values;
-    for v in list {
+    for v in values {
         let expression = planner.reader.expression(v, LENGTH, &["t"])?;
         displacement.push(Placed { expression, key: planner.key(v) });
     }
@@ -215,7 +213,7 @@ fn motion(planner: &Planner<'_>, rigid: &Rigid) -> Result<Vec<Placed>, CaseError
         displacement.insert(1, still);
     }
     if displacement.len() != 3 {
-        return Err(problem.error(values, format!("expected 3 components, found {}", list.len())));
+        return Err(problem.error(values, format!("expected 3 components, found {}", values.len())));
     }
     let sideways = |p: &Placed| p.expression.constant() != Some(0.0);
     if planner.space == Space::Axisymmetric && displacement[..2].iter().any(sideways) {

@@ -68,6 +68,7 @@ fn each_mistake_is_told_at_its_place() {
         ("incline", "axis = [1, 0, 0]", "axis = [0, 0, 1]", "normal to the surface", "friction", ""),
         ("incline", "coulomb = { mu = [0.3, 0.5], axis = [1, 0, 0] }", "tresca = { limit = -1 }", "no less", "-1", ""),
         ("incline", "coulomb = {", "colomb = {", "unknown key `colomb`", "colomb", "`coulomb`"),
+        ("incline", "friction.coulomb", "sliding = \"finite\"\nfriction.coulomb", "small sliding", "friction", ""),
         ("cattaneo_mindlin", "mu = 0.4", "mu = [0.4, 0.2]", "one coefficient", "[0.4, 0.2]", "mu = 0.3"),
         ("hertz", "[contacts.touch]", "[contacts.touch]\nmethod.active_set = {}", "for membranes", "method", "mortar"),
         ("hertz", "space = \"plane_strain\"", "space = \"3d\"", "expected 3", "[", ""),

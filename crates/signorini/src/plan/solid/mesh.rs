@@ -65,13 +65,12 @@ impl Planner<'_> {
                 .help("every cell needs a positive volume; look at the place named, and at `map` where there is one")),
         };
         let Some(map) = &key.map else { return checked(block::<D>(&axes, 1, |x| x)) };
-        let list = map;
-        if list.len() != D {
-            return Err(problem.error(map, format!("expected {D} expressions, found {}", list.len())));
+        if map.len() != D {
+            return Err(problem.error(map, format!("expected {D} expressions, found {}", map.len())));
         }
         let variables: &[&'static str] = if D == 2 { &["x", "y"] } else { &["x", "y", "z"] };
         let mut placed = Vec::new();
-        for v in list {
+        for v in map {
             let expression = self.reader.expression(v, LENGTH, variables)?;
             placed.push(Placed { expression, key: self.key(v) });
         }
@@ -110,17 +109,16 @@ impl Planner<'_> {
 
     fn axis(
         &self,
-        axis: &problem::MeshAxis,
+        key: &problem::MeshAxis,
         count: &dyn Fn(&i64) -> Result<usize, CaseError>,
     ) -> Result<Vec<f64>, CaseError> {
         let problem = self.problem;
-        let key = axis;
         let mut from = self.reader.number(&key.from, LENGTH)?;
         let (ends, cells) = (&key.to, &key.cells);
         let growth = key.growth.as_ref().map_or_else(|| vec![1.0; ends.len()], |g| g.0.clone());
         if ends.is_empty() || ends.len() != cells.len() || ends.len() != growth.len() {
             return Err(problem.error(
-                axis,
+                key,
                 format!("`to` has {} entries, `cells` {}, `growth` {}", ends.len(), cells.len(), growth.len()),
             ));
         }
@@ -131,7 +129,7 @@ impl Planner<'_> {
                 return Err(problem.error(end, format!("the stretch ends at {to}, not after {from}")));
             }
             if !(g.is_finite() && (1e-3..=1e3).contains(&g)) {
-                return Err(problem.error(axis, format!("a growth of {g}: give a number from 0.001 to 1000")));
+                return Err(problem.error(key, format!("a growth of {g}: give a number from 0.001 to 1000")));
             }
             out.extend(graded(from, to, count(n)?, g));
             from = to;

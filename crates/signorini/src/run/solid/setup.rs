@@ -4,8 +4,8 @@ use super::failure::explained;
 use crate::plan::pieces::{Apart, UNITE};
 use crate::plan::solid::{Opposite, SolidLoad, SolidPlan, evaluate};
 use crate::plan::{Placed, memory_at_hand};
-use crate::problem::CaseError;
-use crate::problem::{Body, Space as Stated};
+use crate::problem::{Body, CaseError, KeyPath, Problem, Space as Stated};
+use crate::report::vector;
 use signorini_contact::GapJet;
 use signorini_geometry::Point;
 use signorini_solid::loads::forces;
@@ -62,14 +62,24 @@ pub fn raised<const D: usize>(plan: &SolidPlan<D>, by: usize) -> Result<Model<D>
             contact
         })
         .collect();
-    Model::new(bodies, supports, contacts).map_err(|error| {
-        let problem = &plan.head.problem;
-        let support = match &error {
-            StepError::Support(signorini_solid::SupportError::NotFlat { support, .. }) => problem.supports.get(support),
-            _ => None,
-        };
-        problem.error(&support.map_or_else(|| problem.key(&problem.space), |s| problem.key(s)), error.to_string())
-    })
+    Model::new(bodies, supports, contacts)
+        .map_err(|error| plan.head.problem.error(&location(&plan.head.problem, &error), error.to_string()))
+}
+
+/// The key that an error of the solver is about; that of the space where it is about none.
+fn location(problem: &Problem, error: &StepError) -> KeyPath {
+    let found = match error {
+        StepError::Support(
+            SupportError::NotFlat { support: name, .. } | SupportError::Contradiction { second: name, .. },
+        ) => problem.supports.get(name).map(|support| problem.key(support)),
+        StepError::FrictionUnsupported { contact, .. } | StepError::FrictionAxis { contact, .. } => {
+            let friction = problem.contacts.get(contact).and_then(|c| c.friction.as_ref());
+            friction.map(|friction| problem.key(friction))
+        }
+        StepError::Deep { contact, .. } => problem.contacts.get(contact).map(|contact| problem.key(contact)),
+        _ => None,
+    };
+    found.unwrap_or_else(|| problem.key(&problem.space))
 }
 
 /// Multiplications with additions that a factorisation does in a second on one core, about: `check` tells a time by it.
@@ -139,9 +149,8 @@ pub fn at_time<const D: usize, R>(
         .map(|c| match (&c.opposite, c.friction) {
             (Opposite::Rigid(body), Some(_)) => {
                 let moved = body.displacement_at(problem, time)?;
-                let in_space = |x: &Point<D>| Point::<3>::from_fn(|k, _| if k < D { x[k] } else { 0.0 });
                 let of = move |x: &Point<D>| {
-                    let u = moved(&in_space(x));
+                    let u = moved(&Point::<3>::from(vector(x)));
                     Point::<D>::from_fn(|k, _| u[k])
                 };
                 Ok(Some(Box::new(of) as RigidMotion<D>))
@@ -220,23 +229,12 @@ pub fn blamed<const D: usize>(
     error: &StepError,
 ) -> Option<CaseError> {
     let problem = &plan.head.problem;
-    let space = problem.key(&problem.space);
+    let place = location(problem, error);
     match error {
-        StepError::Support(error) => {
-            let name = match error {
-                SupportError::NotFlat { support, .. } => support,
-                SupportError::Contradiction { second, .. } => second,
-            };
-            let place = problem.supports.get(name).map_or(space, |s| problem.key(s));
-            Some(problem.error(&place, error.to_string()))
-        }
-        StepError::FrictionUnsupported { contact, .. } | StepError::FrictionAxis { contact, .. } => {
-            let friction = problem.contacts.get(contact).and_then(|c| c.friction.as_ref());
-            let place = friction.map_or(space, |friction| problem.key(friction));
+        StepError::Support(_) | StepError::FrictionUnsupported { .. } | StepError::FrictionAxis { .. } => {
             Some(problem.error(&place, error.to_string()))
         }
         StepError::Deep { contact, depth } => {
-            let place = problem.contacts.get(contact).map_or(space, |c| problem.key(c));
             let start = at_time(plan, model, 0.0, |model, now| model.examine(now));
             match start {
                 Ok(Err(StepError::Deep { depth, .. })) => Some(problem
@@ -268,7 +266,7 @@ pub fn load<const D: usize>(bodies: &Bodies<D>, l: &SolidLoad, value: &dyn Fn(&P
 
 pub fn flat_gap<const D: usize>(gap: impl Fn(&Point<3>) -> GapJet<3> + Sync + Send + 'static) -> RigidGap<D> {
     Box::new(move |x| {
-        let found = gap(&Point::<3>::from_fn(|k, _| if k < D { x[k] } else { 0.0 }));
+        let found = gap(&Point::<3>::from(vector(x)));
         GapJet {
             gap: found.gap,
             normal: Point::<D>::from_fn(|k, _| found.normal[k]),

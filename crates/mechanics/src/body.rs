@@ -1,0 +1,277 @@
+//! What a body is to the system: unknowns with forces and tangent, places that are held or loaded, points that touch.
+//!
+//! Positions and forces have three components; a plane or axisymmetric body has no unknowns along z, and integrates over
+//! its thickness or circumference. A body numbers its own unknowns from 0. A configuration may hold more numbers than
+//! there are unknowns (a quaternion turns by three): a step of the unknowns reaches it through [`Body::advance`].
+
+use signorini_geometry::shape::SurfaceJet;
+use signorini_geometry::{Point, Vector};
+
+/// What a body carries from one increment to the next, as plain numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BodyState {
+    /// Displacements, rotations.
+    pub configuration: Vec<f64>,
+    /// Whatever else: stresses predicted for the next iteration, history variables.
+    pub internal: Vec<f64>,
+}
+
+/// How far derivatives are wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Order {
+    /// Values only: forces.
+    First,
+    /// Their derivatives too: the tangent.
+    Second,
+}
+
+/// Forces on unknowns and their derivatives, summed up in the body's own numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Contribution {
+    /// Residual: internal forces positive, loads negative.
+    pub forces: Vec<f64>,
+    /// Its derivative as dense blocks, row by row, of a few unknowns each.
+    pub blocks: Vec<(Vec<u32>, Vec<f64>)>,
+}
+
+impl Contribution {
+    /// No forces on so many unknowns.
+    pub fn new(unknowns: usize) -> Self {
+        Contribution { forces: vec![0.0; unknowns], blocks: Vec::new() }
+    }
+
+    /// Adds to the derivative a dense block, row by row.
+    pub fn add_block(&mut self, unknowns: &[u32], values: &[f64]) {
+        debug_assert_eq!(unknowns.len() * unknowns.len(), values.len());
+        self.blocks.push((unknowns.to_vec(), values.to_vec()));
+    }
+}
+
+/// How one unknown moves a point: the derivative of its position, and of its tangents along up to two coordinates, in
+/// that unknown. `e_i N` for displacements, `e_i × y` for the spin of a rigid body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Function {
+    pub unknown: u32,
+    pub value: Vector<3>,
+    pub slopes: [Vector<3>; 2],
+    /// Second derivatives along the coordinates: 11, 12, 22. They count only with the gap.
+    pub second: [Vector<3>; 3],
+}
+
+/// Second derivative of a position in two unknowns; listed once for `i <= j`, and standing for both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bend {
+    pub unknowns: [u32; 2],
+    pub value: Vector<3>,
+}
+
+/// A material point whose contact is tested: which part of the body (face, element, node), where in it, and the area,
+/// length or number of points that it stands for, in the reference configuration.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Site {
+    pub patch: u32,
+    pub xi: [f64; 2],
+    pub weight: f64,
+}
+
+/// Which points of a body are tested.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sampling {
+    Nodes,
+    GaussPoints,
+}
+
+/// A site where it is now.
+#[derive(Clone, Debug, Default)]
+pub struct Placed {
+    pub x: Point<3>,
+    /// Outward unit normal of a surface; none for a curve or a point, which faces every way.
+    pub outward: Option<Vector<3>>,
+    /// Unit tangent of a curve, an axis of friction.
+    pub tangent: Option<Vector<3>>,
+    /// Radius of a section or ball about `x` that touches instead of `x`.
+    pub radius: f64,
+    /// What moves `x`.
+    pub functions: Vec<Function>,
+    /// What turns the section or ball about `x`: the value is the spin per unit of the unknown.
+    pub spin: Vec<Function>,
+    /// Second derivatives of `x`; empty where it is linear in the unknowns.
+    pub bends: Vec<Bend>,
+}
+
+/// A point of a body that is met: its position with derivatives, and what moves them.
+#[derive(Clone, Debug)]
+pub struct Foot {
+    /// Which part of the body, and where in it.
+    pub patch: u32,
+    pub xi: [f64; 2],
+    /// Position and derivatives; of a curve only those in the first coordinate count, of a vertex only the position.
+    pub jet: SurfaceJet,
+    /// Number of coordinates: 2 on a surface, 1 on an edge or curve, 0 at a vertex or end.
+    pub coordinates: usize,
+    /// Outward unit normal of a surface at `jet.x`.
+    pub outward: Option<Vector<3>>,
+    /// Radius of a section about the curve that touches instead of it.
+    pub radius: f64,
+    pub functions: Vec<Function>,
+    /// What turns the section.
+    pub spin: Vec<Function>,
+}
+
+/// A value that varies in space and time: at a reference position.
+pub type Field<'a> = &'a dyn Fn(&Point<3>) -> f64;
+/// A vector that varies in space.
+pub type VectorField<'a> = &'a dyn Fn(&Point<3>) -> Vector<3>;
+
+/// How a place is held. Components that are free are `None`.
+pub struct Hold<'a> {
+    /// Prescribed displacement.
+    pub displacement: [Option<Field<'a>>; 3],
+    /// Prescribed rotation vector of the sections of a beam or of a rigid body, against the start.
+    pub rotation: [Option<Field<'a>>; 3],
+}
+
+/// An equation between unknowns: the step of the unknowns times `terms`, plus `lack`, is zero.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Constraint {
+    pub terms: Vec<(u32, f64)>,
+    /// How far what is held is from where it should be.
+    pub lack: f64,
+    /// Which component of the reaction its multiplier counts for (0..3 force, 3..6 moment), and how much.
+    pub component: usize,
+}
+
+/// What acts on a place.
+pub enum Load<'a> {
+    /// Force per volume (per length of a curve), on the reference configuration.
+    BodyForce(VectorField<'a>),
+    /// Force per reference area, in a fixed direction.
+    Traction(VectorField<'a>),
+    /// Force per current area along the inward normal.
+    Pressure(Field<'a>),
+    /// Resultant.
+    Force(Vector<3>),
+    /// Resultant moment about fixed axes.
+    Moment(Vector<3>),
+    /// Moment about axes that turn with the section.
+    FollowerMoment(Vector<3>),
+    /// Force along the end of a rope, pulling.
+    Tension(f64),
+    /// Springs to the ground at the place: force per displacement along each axis.
+    Springs(Vector<3>),
+}
+
+/// A body that cannot follow.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BodyError {
+    /// A cell is turned inside out, or a rope shrunk to a point.
+    #[error("cell {cell} of `{body}` is turned inside out or shrunk to nothing")]
+    Inverted { body: String, cell: usize },
+    #[error("cell {cell} of `{body}`: {message}")]
+    Material { body: String, cell: usize, message: String },
+}
+
+/// A place that a body does not have, or that cannot be used in this way.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PlaceError {
+    #[error("`{body}` has no group `{group}`: it has {}", known.join(", "))]
+    Unknown { body: String, group: String, known: Vec<String> },
+    #[error("`{body}`: {message}")]
+    Unsuitable { body: String, message: String },
+}
+
+/// Points, cells and named arrays of a body, as it is shown.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BodyFields {
+    /// Reference positions.
+    pub points: Vec<Point<3>>,
+    /// Displacement of each point.
+    pub displacement: Vec<Vector<3>>,
+    /// Point numbers of each cell: two make a segment, three a triangle, four a quadrilateral; with eight a hexahedron.
+    pub cells: Vec<Vec<u32>>,
+    /// Name, number of components, values point by point.
+    pub point_data: Vec<(String, usize, Vec<f64>)>,
+    /// Name, number of components, values cell by cell.
+    pub cell_data: Vec<(String, usize, Vec<f64>)>,
+}
+
+/// What may be touched of a body, where it is now.
+pub trait Master: Sync {
+    /// The point nearest to `x`, unless it is farther than `reach`. With `except`, a site of the same body, what lies
+    /// next to that site along the body is left out: contact of a body with itself.
+    fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<Foot>;
+
+    /// The same material point of the body, where it is now: for what sticks to it.
+    fn at(&self, patch: u32, xi: [f64; 2]) -> Foot;
+}
+
+/// A body of a system.
+pub trait Body: Send + Sync {
+    fn name(&self) -> &str;
+
+    /// Number of unknowns.
+    fn unknowns(&self) -> usize;
+
+    /// At rest, or as the body starts.
+    fn start(&self) -> BodyState;
+
+    /// The state after `share` of a step of the unknowns: a retraction, exact to second order along straight steps.
+    fn advance(&self, state: &BodyState, step: &[f64], share: f64) -> BodyState;
+
+    /// Adds internal forces, and their derivative if asked for; the energy stored.
+    ///
+    /// # Errors
+    /// States that the body cannot have.
+    fn internal(&self, state: &BodyState, order: Order, out: &mut Contribution) -> Result<f64, BodyError>;
+
+    /// Whether the derivative of the internal forces is the same in all states.
+    fn is_linear(&self) -> bool {
+        false
+    }
+
+    /// The equations of a place that is held; `None` for the whole body.
+    ///
+    /// # Errors
+    /// A place that is not there, or has nothing to hold.
+    fn hold(&self, on: Option<&str>, hold: &Hold<'_>, state: &BodyState) -> Result<Vec<Constraint>, PlaceError>;
+
+    /// Adds a load: minus the force, and its derivative.
+    ///
+    /// # Errors
+    /// A place that is not there, or a load that cannot act on it.
+    fn load(
+        &self,
+        on: Option<&str>,
+        load: &Load<'_>,
+        state: &BodyState,
+        order: Order,
+        out: &mut Contribution,
+    ) -> Result<(), PlaceError>;
+
+    /// The points of a place that are tested for contact.
+    ///
+    /// # Errors
+    /// A place that is not there, or without such points.
+    fn sites(&self, on: Option<&str>, sampling: Sampling) -> Result<Vec<Site>, PlaceError>;
+
+    /// A site where it is now.
+    fn placed(&self, state: &BodyState, site: &Site) -> Placed;
+
+    /// A place as it may be touched.
+    ///
+    /// # Errors
+    /// A place that is not there, or that cannot be touched.
+    fn master<'a>(&'a self, on: Option<&str>, state: &'a BodyState) -> Result<Box<dyn Master + 'a>, PlaceError>;
+
+    /// The force that moves a site by a unit of length, about: the scale of penalties.
+    fn site_stiffness(&self, site: &Site) -> f64;
+
+    /// The six unit motions of the whole body in its unknowns, at a state (three translations, three turns about the
+    /// origin): for resultants and free motions.
+    fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6];
+
+    /// The largest extent of the body: the scale of lengths.
+    fn size(&self) -> f64;
+
+    fn fields(&self, state: &BodyState) -> BodyFields;
+}

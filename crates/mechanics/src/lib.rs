@@ -1,0 +1,10 @@
+//! Bodies of any kind in one system.
+//!
+//! - [`body`]: what a body is to the system.
+
+pub mod body;
+
+pub use body::{
+    Bend, Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Foot, Function, Hold, Load, Master, Order,
+    PlaceError, Placed, Sampling, Site,
+};

@@ -4,8 +4,9 @@
 //! its thickness or circumference. A body numbers its own unknowns from 0. A configuration may hold more numbers than
 //! there are unknowns (a quaternion turns by three): a step of the unknowns reaches it through [`Body::advance`].
 
+use signorini_geometry::rigid_shape::GapJet;
 use signorini_geometry::shape::SurfaceJet;
-use signorini_geometry::{Point, Vector};
+use signorini_geometry::{Matrix, Point, Vector};
 
 /// What a body carries from one increment to the next, as plain numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -95,27 +96,66 @@ pub struct Placed {
     pub functions: Vec<Function>,
     /// What turns the section or ball about `x`: the value is the spin per unit of the unknown.
     pub spin: Vec<Function>,
+    /// How the section or ball is turned; the identity where nothing turns.
+    pub frame: Matrix<3>,
     /// Second derivatives of `x`; empty where it is linear in the unknowns.
     pub bends: Vec<Bend>,
+}
+
+/// A material point of a body that may be touched: which part of it, and where in it. Of a rigid body the coordinates are
+/// those of the body's own axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MaterialPoint {
+    pub patch: u32,
+    pub xi: [f64; 3],
 }
 
 /// A point of a body that is met: its position with derivatives, and what moves them.
 #[derive(Clone, Debug)]
 pub struct Foot {
-    /// Which part of the body, and where in it.
-    pub patch: u32,
-    pub xi: [f64; 2],
+    pub point: MaterialPoint,
     /// Position and derivatives; of a curve only those in the first coordinate count, of a vertex only the position.
     pub jet: SurfaceJet,
     /// Number of coordinates: 2 on a surface, 1 on an edge or curve, 0 at a vertex or end.
     pub coordinates: usize,
-    /// Outward unit normal of a surface at `jet.x`.
+    /// Outward unit normal of a surface at `jet.x`; at an edge or vertex of a surface the mean one, which tells outside
+    /// from inside. None for a curve.
     pub outward: Option<Vector<3>>,
     /// Radius of a section about the curve that touches instead of it.
     pub radius: f64,
     pub functions: Vec<Function>,
-    /// What turns the section.
+    /// What turns the section, and how it is turned now.
     pub spin: Vec<Function>,
+    pub frame: Matrix<3>,
+}
+
+/// The gap of a point to a body that is rigid, with its derivatives where the body is now.
+#[derive(Clone, Debug)]
+pub struct RigidFoot {
+    /// The foot in the axes of the body.
+    pub point: MaterialPoint,
+    /// Gap, normal and Hessian in space.
+    pub jet: GapJet<3>,
+    /// The point about which the body turns, where it is now.
+    pub centre: Point<3>,
+    /// The rotation of the body.
+    pub rotation: Matrix<3>,
+    /// The first of its six unknowns: three of the centre, three of the spin; none where its motion is given.
+    pub unknowns: Option<[u32; 6]>,
+}
+
+/// What a point meets.
+#[derive(Clone, Debug)]
+pub enum Met {
+    Foot(Box<Foot>),
+    Rigid(Box<RigidFoot>),
+}
+
+/// A material point where it is now, with what moves it.
+#[derive(Clone, Debug, Default)]
+pub struct Anchor {
+    pub x: Point<3>,
+    pub functions: Vec<Function>,
 }
 
 /// A value that varies in space and time: at a reference position.
@@ -199,10 +239,10 @@ pub struct BodyFields {
 pub trait Master: Sync {
     /// The point nearest to `x`, unless it is farther than `reach`. With `except`, a site of the same body, what lies
     /// next to that site along the body is left out: contact of a body with itself.
-    fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<Foot>;
+    fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<Met>;
 
     /// The same material point of the body, where it is now: for what sticks to it.
-    fn at(&self, patch: u32, xi: [f64; 2]) -> Foot;
+    fn at(&self, point: &MaterialPoint) -> Anchor;
 }
 
 /// A body of a system.

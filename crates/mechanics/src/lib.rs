@@ -5,6 +5,6 @@
 pub mod body;
 
 pub use body::{
-    Bend, Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Foot, Function, Hold, Load, Master, Order,
-    PlaceError, Placed, Sampling, Site,
+    Anchor, Bend, Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Foot, Function, Hold, Load, Master,
+    MaterialPoint, Met, Order, PlaceError, Placed, RigidFoot, Sampling, Site,
 };

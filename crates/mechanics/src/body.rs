@@ -139,8 +139,10 @@ pub struct RigidFoot {
     pub jet: GapJet<3>,
     /// The shape, in the axes of the body.
     pub shape: Arc<dyn RigidShape>,
-    /// Where the origin of those axes is, and how they are turned.
+    /// The point about which the body turns: at the start, where the axes of the body are those of space, and now.
+    pub origin: Point<3>,
     pub centre: Point<3>,
+    /// How the body is turned.
     pub rotation: Matrix<3>,
     /// Unknowns of the motion of the centre and of the spin; none where a component does not move or is prescribed.
     pub unknowns: [Option<u32>; 6],
@@ -320,6 +322,11 @@ pub trait Body: Send + Sync {
     /// The six unit motions of the whole body in its unknowns, at a state (three translations, three turns about the
     /// origin): for resultants and free motions.
     fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6];
+
+    /// Whether the body has no stiffness of its own.
+    fn is_rigid(&self) -> bool {
+        false
+    }
 
     /// Unknowns that are spins, by threes: of the sections of a beam, of a rigid body.
     fn spins(&self) -> Vec<[u32; 3]> {

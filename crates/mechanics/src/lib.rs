@@ -1,11 +1,28 @@
 //! Bodies of any kind in one system.
 //!
 //! - [`body`]: what a body is to the system.
+//! - [`rigid_body`]: rigid bodies, moved or free.
+//! - [`pair`]: gap and slip of a contact pair in the unknowns of its bodies.
+//! - [`contact`]: law and enforcement at the sites of two sides.
+//! - [`system`]: bodies, supports, loads and contacts, assembled.
+//! - [`increment`]: equilibrium at one time.
 
 pub mod body;
+pub mod contact;
+pub mod increment;
 pub mod pair;
+pub mod rigid_body;
+pub mod system;
 
 pub use body::{
     Anchor, Bend, Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Foot, Function, Hold, Load, Master,
     MaterialPoint, Met, Order, PlaceError, Placed, RigidFoot, Sampling, Site,
 };
+pub use contact::{Contact, Enforcement, Part, SiteMemory, SiteResult};
+pub use increment::{IncrementError, IncrementResult};
+pub use pair::AxisChoice;
+pub use rigid_body::{Motion, RigidBody, RigidSite};
+pub use system::{AssemblyError, PlacedLoad, Support, System, SystemState, TimedLoad};
+
+#[cfg(test)]
+mod tests;

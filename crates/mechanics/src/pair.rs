@@ -85,6 +85,8 @@ pub struct Pair {
     /// Slip since the anchor and its variation.
     pub elastic: Vector<3>,
     pub d_elastic: Vec<Vector<3>>,
+    /// The direction from which friction takes its first axis.
+    pub axis: Axis,
     /// Where the pair touches, as an anchor of what follows.
     pub stuck: Option<Stuck>,
     second: SecondVariation,
@@ -123,17 +125,31 @@ pub struct Encounter<'a> {
     pub stuck: Option<(&'a Stuck, &'a Anchor)>,
     /// Whether slip is wanted.
     pub friction: bool,
+    pub axis: AxisChoice,
+}
+
+/// What carries the first axis of friction.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum AxisChoice {
+    /// Any direction that moves with the material of the master: for laws without axes.
+    #[default]
+    Material,
+    /// The tangent of the slave, which is a curve.
+    Tangent,
+    /// A direction that turns with the slave or the master if that is rigid, and else stays.
+    OnSlave(Vector<3>),
+    OnMaster(Vector<3>),
 }
 
 /// How far a surface must look away from the outward normal of the other to be met, as a cosine: rounding of normals.
 const FACING: f64 = 1e-6;
 
 impl Encounter<'_> {
-    /// The measures of the pair, with the direction of friction that is asked for.
+    /// The measures of the pair.
     ///
     /// # Errors
     /// Why there is no pair.
-    pub fn measure(&self, order: Order) -> Result<(Pair, Vec<Axis>), NoPair> {
+    pub fn measure(&self, order: Order) -> Result<Pair, NoPair> {
         match self.met {
             Met::Foot(foot) => match foot.coordinates {
                 0 => self.with_foot::<0>(foot, order),
@@ -188,7 +204,7 @@ impl Encounter<'_> {
         }
     }
 
-    fn with_foot<const N: usize>(&self, foot: &Foot, order: Order) -> Result<(Pair, Vec<Axis>), NoPair> {
+    fn with_foot<const N: usize>(&self, foot: &Foot, order: Order) -> Result<Pair, NoPair> {
         let slave = self.slave;
         let d = slave.x - foot.jet.x;
         let along = d.try_normalize(0.0);
@@ -245,7 +261,7 @@ impl Encounter<'_> {
             self.add_bends(&normal, n, &mut pair.d2_gap);
         }
         if !self.friction {
-            return Ok((pair, Vec::new()));
+            return Ok(pair);
         }
 
         let base = [foot.jet.u, foot.jet.v];
@@ -290,7 +306,9 @@ impl Encounter<'_> {
                 } else {
                     let along = (0..N).fold(Vector::<3>::zeros(), |sum, a| sum + columns[k].d_a[a] * xi[l][a]);
                     let gap_turns = pair.d_normal[k] * (lever * pair.d_gap[l]);
-                    along - self.levers(&columns[k], &pair.d_normal[l], radii) - gap_turns
+                    let [of_slave, of_master] = spin_variation(&columns[k], &columns[l]);
+                    let spun = (of_slave * radii[0] + of_master * radii[1]).cross(&normal);
+                    along - self.levers(&columns[k], &pair.d_normal[l], radii) - spun - gap_turns
                 }
             };
             let mut parts: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; n * n]);
@@ -336,9 +354,8 @@ impl Encounter<'_> {
         } else {
             pair.d_elastic = vec![Vector::<3>::zeros(); n];
         }
-        let mut axes = vec![self.anchor_axis(&columns, foot.jet.u)];
-        axes.push(self.slave_axis(&columns));
-        Ok((pair, axes))
+        pair.axis = self.axis(&columns, foot.jet.u);
+        Ok(pair)
     }
 
     fn slave_count(&self) -> usize {
@@ -350,20 +367,29 @@ impl Encounter<'_> {
         (c.spin[0] * radii[0] + c.spin[1] * radii[1]).cross(normal)
     }
 
-    /// The axis that the material of the master carries.
-    fn anchor_axis(&self, columns: &[Column], otherwise: Vector<3>) -> Axis {
-        match self.stuck {
-            Some((_, anchor)) => {
-                Axis { direction: anchor.tangent, variation: columns.iter().map(|c| c.anchor_tangent).collect() }
+    /// The direction from which friction takes its first axis; `otherwise` where nothing is stuck yet.
+    fn axis(&self, columns: &[Column], otherwise: Vector<3>) -> Axis {
+        let of = |direction: Vector<3>, variation: &dyn Fn(&Column) -> Vector<3>| Axis {
+            direction,
+            variation: columns.iter().map(variation).collect(),
+        };
+        match (self.axis, self.stuck) {
+            (AxisChoice::Tangent, _) => {
+                let direction = self.slave.tangent.unwrap_or_default();
+                of(direction, &|c| c.tangent - c.turn.cross(&direction))
             }
-            None => Axis { direction: otherwise, variation: vec![Vector::<3>::zeros(); columns.len()] },
+            (AxisChoice::OnSlave(v), _) => {
+                let direction = self.slave.frame * v;
+                of(direction, &|c| (c.spin[0] - c.turn).cross(&direction))
+            }
+            (AxisChoice::OnMaster(v), Some((_, anchor))) => {
+                let direction = anchor.frame * v;
+                of(direction, &|c| c.anchor_spin.cross(&direction))
+            }
+            (AxisChoice::OnMaster(v), None) => of(v, &|_| Vector::<3>::zeros()),
+            (AxisChoice::Material, Some((_, anchor))) => of(anchor.tangent, &|c| c.anchor_tangent),
+            (AxisChoice::Material, None) => of(otherwise, &|_| Vector::<3>::zeros()),
         }
-    }
-
-    /// The axis that a curve carries: its tangent.
-    fn slave_axis(&self, columns: &[Column]) -> Axis {
-        let direction = self.slave.tangent.unwrap_or_default();
-        Axis { direction, variation: columns.iter().map(|c| c.tangent - c.turn.cross(&direction)).collect() }
     }
 
     /// Second derivatives of the slave's position along a direction.
@@ -379,7 +405,7 @@ impl Encounter<'_> {
         }
     }
 
-    fn with_rigid(&self, foot: &RigidFoot, order: Order) -> Result<(Pair, Vec<Axis>), NoPair> {
+    fn with_rigid(&self, foot: &RigidFoot, order: Order) -> Result<Pair, NoPair> {
         let slave = self.slave;
         let (normal, hessian) = (foot.jet.normal, foot.jet.hessian);
         self.check_facing(&normal)?;
@@ -421,7 +447,7 @@ impl Encounter<'_> {
             self.add_bends(&normal, n, &mut pair.d2_gap);
         }
         if !self.friction {
-            return Ok((pair, Vec::new()));
+            return Ok(pair);
         }
         pair.d_normal = columns.iter().map(|c| hessian * c.d).collect();
         let turns = !slave.spin.is_empty();
@@ -444,6 +470,11 @@ impl Encounter<'_> {
                     let mut h = bent - hessian * bent * distance;
                     h -= curved_l * pair.d_gap[k] + curved_k * pair.d_gap[l];
                     h -= relative_spin(&columns[k]).cross(&curved_l) * lever;
+                    // Spins, seen from the body.
+                    let [of_slave, of_body] = spin_variation(&columns[k], &columns[l]);
+                    let [slave, body] = columns[k].spin;
+                    let turned = columns[l].turn.cross(&(slave - body));
+                    h -= (of_slave - of_body - turned).cross(&normal) * lever;
                     // As the motion of a foot changes, but for what turns with the body.
                     for i in 0..3 {
                         let slope = distance * (third[i] * columns[k].d).dot(&columns[l].d);
@@ -476,13 +507,15 @@ impl Encounter<'_> {
         } else {
             pair.d_elastic = vec![Vector::<3>::zeros(); n];
         }
-        let of_body = match self.stuck {
-            Some((_, anchor)) => anchor.tangent,
-            None => any_tangent(&normal),
-        };
-        let fixed = Axis { direction: of_body, variation: vec![Vector::<3>::zeros(); n] };
-        Ok((pair, vec![fixed, self.slave_axis(&columns)]))
+        pair.axis = self.axis(&columns, any_tangent(&normal));
+        Ok(pair)
     }
+}
+
+/// Second variation of the spins of both partners. A spin is no derivative of a rotation vector; in the coordinates in
+/// which second derivatives along geodesics are symmetric it varies by half the product of two spins.
+fn spin_variation(k: &Column, l: &Column) -> [Vector<3>; 2] {
+    [0, 1].map(|side: usize| l.spin[side].cross(&k.spin[side]) * 0.5)
 }
 
 /// The derivative of the Hessian of the gap along the three axes, by central differences; zero without a gap.
@@ -493,7 +526,7 @@ fn curvature_slopes(foot: &RigidFoot, distance: f64, x: Point<3>) -> [Matrix<3>;
     // The best step for a second-order difference, relative to the radius of curvature.
     let step = f64::EPSILON.cbrt() / foot.jet.hessian.abs().max();
     let turned = |x: Point<3>| {
-        let y = foot.rotation.transpose() * (x - foot.centre);
+        let y = foot.origin + foot.rotation.transpose() * (x - foot.centre);
         foot.rotation * foot.shape.gap(&y).hessian * foot.rotation.transpose()
     };
     std::array::from_fn(|i| (turned(x + axis(i) * step) - turned(x - axis(i) * step)) / (2.0 * step))

@@ -1,0 +1,426 @@
+//! Contact of two bodies at sites: law, enforcement, residual and tangent, history.
+//!
+//! At every site of the slave, standing for the area `w`, with gap `g`, slip `e` since the last state and the multiplier
+//! `λ` (pressure, and two components of friction in the axes `E_α`):
+//!
+//! - trial `ζ = (λ_N - c g, λ_α + c E_α·e)`, traction `(p, T_α) = Π(ζ)` by the law;
+//! - virtual work `w (-p δg + T_α E_α·S)`, with the slip variation `S`;
+//! - its derivative, with `ζ` differentiated through gap, slip, axes and multiplier.
+//!
+//! | enforcement | `λ` |
+//! |---|---|
+//! | penalty | no pressure; the friction of the last state |
+//! | augmented Lagrangian | kept while Newton's method runs, then set to the traction found (Uzawa), until it changes no more |
+//! | multiplier | an unknown, with the equation `(w/c) (Π(ζ) - λ) = 0` (Alart & Curnier 1991) |
+//!
+//! The slip counts from where the sides had a common point at the last state, or would have had if they had touched.
+
+use crate::body::{Anchor, Body, BodyState, Master, Met, Order, PlaceError, Placed, Sampling, Site};
+use crate::pair::{AxisChoice, Encounter, NoPair, Pair, Stuck, any_tangent};
+use signorini_contact::law::Projected;
+use signorini_contact::{Law, Status};
+use signorini_geometry::{Point, Vector};
+use signorini_solve::general::Entries;
+
+/// How the contact conditions are kept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Enforcement {
+    /// Up to a penetration: the one wanted, or what a hundred times the stiffness of the bodies leaves.
+    Penalty { wanted_penetration: Option<f64> },
+    /// Exactly in the limit of outer iterations.
+    AugmentedLagrangian,
+    /// Exactly, with tractions as unknowns; between rigid bodies by augmentation.
+    Multiplier,
+}
+
+/// Part of a body: its number and a group.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    pub body: usize,
+    pub group: Option<String>,
+}
+
+/// Two sides that may touch.
+pub struct Contact {
+    pub name: String,
+    pub slave: Part,
+    pub master: Part,
+    pub sampling: Sampling,
+    pub enforcement: Enforcement,
+    /// Without it the sides slide freely.
+    pub friction: Option<Box<dyn Law>>,
+    pub axis: AxisChoice,
+    /// How far apart, or inside each other, points are looked at.
+    pub reach: f64,
+    sites: Vec<Site>,
+    /// Traction per unit of gap, and of slip, of each site.
+    pub(crate) stiffness: Vec<f64>,
+    /// What the sites remember of the last state.
+    pub(crate) memory: Vec<SiteMemory>,
+}
+
+/// What a site remembers of the last state.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SiteMemory {
+    /// The multiplier: pressure and friction along the axes.
+    pub traction: [f64; 3],
+    pub stuck: Option<Stuck>,
+    /// How far the site slipped in all while it was closed, along the axes.
+    pub slip: [f64; 2],
+}
+
+/// A site as it was found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SiteResult {
+    /// Where the site is, and the outward normal of the master there.
+    pub x: Point<3>,
+    pub normal: Vector<3>,
+    pub weight: f64,
+    /// None where nothing is within reach.
+    pub gap: Option<f64>,
+    pub pressure: f64,
+    /// Friction on the slave, per weight.
+    pub friction: Vector<3>,
+    pub status: Status,
+    /// Slip in the last increment and in all.
+    pub increment: Vector<3>,
+    pub slip: f64,
+    /// The part of the available friction that is used: 1 where it slips.
+    pub utilisation: f64,
+}
+
+impl SiteResult {
+    /// The force on the slave.
+    pub fn force(&self) -> Vector<3> {
+        (self.normal * self.pressure + self.friction) * self.weight
+    }
+}
+
+/// Where residual and tangent of a contact go.
+pub(crate) struct Target<'a> {
+    pub residual: &'a mut [f64],
+    /// Sum of the sizes of all terms of each equation: the scale of its residual.
+    pub sizes: &'a mut [f64],
+    pub tangent: Option<&'a mut Entries>,
+}
+
+/// The two bodies of a contact in a state.
+pub(crate) struct Sides<'a> {
+    pub slave: (&'a dyn Body, &'a BodyState),
+    pub master: (&'a dyn Body, &'a BodyState),
+    pub first: [u32; 2],
+}
+
+/// A traction with its derivatives in the unknowns of the pair.
+struct Traction {
+    projected: Projected,
+    axes: [Vector<3>; 2],
+    d_axes: Vec<[Vector<3>; 2]>,
+    slip: [f64; 2],
+}
+
+impl Contact {
+    /// # Errors
+    /// Places that cannot be tested or touched.
+    pub fn new(
+        name: &str,
+        slave: (Part, &dyn Body),
+        master: (Part, &dyn Body),
+        sampling: Sampling,
+        enforcement: Enforcement,
+    ) -> Result<Self, PlaceError> {
+        let sites = slave.1.sites(slave.0.group.as_deref(), sampling)?;
+        master.1.master(master.0.group.as_deref(), &master.1.start())?;
+        let stiffness = sites.iter().map(|s| slave.1.site_stiffness(s) / s.weight).collect();
+        // What several points of two rigid bodies carry is not unique; the least of it is found by augmentation.
+        let both_rigid = slave.1.is_rigid() && master.1.is_rigid();
+        let enforcement = match enforcement {
+            Enforcement::Multiplier if both_rigid => Enforcement::AugmentedLagrangian,
+            other => other,
+        };
+        let reach = 0.5 * slave.1.size().min(master.1.size());
+        Ok(Contact {
+            name: name.to_string(),
+            slave: slave.0,
+            master: master.0,
+            sampling,
+            enforcement,
+            friction: None,
+            axis: AxisChoice::Material,
+            reach,
+            memory: vec![SiteMemory::default(); sites.len()],
+            sites,
+            stiffness,
+        })
+    }
+
+    pub fn sites(&self) -> &[Site] {
+        &self.sites
+    }
+
+    /// Numbers of its own that the contact adds to the unknowns.
+    pub(crate) fn multipliers(&self) -> usize {
+        if self.enforcement == Enforcement::Multiplier { self.components() * self.sites.len() } else { 0 }
+    }
+
+    pub(crate) fn components(&self) -> usize {
+        if self.friction.is_some() { 3 } else { 1 }
+    }
+
+    /// Itself and itself: a body that may touch itself.
+    fn is_within(&self) -> bool {
+        self.slave.body == self.master.body
+    }
+
+    /// The pair of a site, if it meets something.
+    fn pair(
+        &self,
+        k: usize,
+        sides: &Sides<'_>,
+        master: &dyn Master,
+        order: Order,
+    ) -> (Placed, Option<Result<Pair, NoPair>>) {
+        let site = &self.sites[k];
+        let placed = sides.slave.0.placed(sides.slave.1, site);
+        let except = self.is_within().then_some(site);
+        let met: Option<Met> = master.nearest(&placed.x, self.reach + placed.radius, except);
+        let Some(met) = met else { return (placed, None) };
+        let stuck = self.memory[k].stuck;
+        let anchor: Option<(Stuck, Anchor)> =
+            stuck.filter(|_| self.friction.is_some()).map(|s| (s, master.at(&s.point)));
+        let encounter = Encounter {
+            slave: &placed,
+            met: &met,
+            first: sides.first,
+            stuck: anchor.as_ref().map(|(s, a)| (s, a)),
+            friction: self.friction.is_some(),
+            axis: self.axis,
+        };
+        let pair = encounter.measure(order);
+        (placed, Some(pair))
+    }
+
+    fn traction(&self, k: usize, pair: &Pair, lambda: [f64; 3]) -> Traction {
+        let c = self.stiffness[k];
+        let Some(law) = &self.friction else {
+            let pressure = (lambda[0] - c * pair.gap).max(0.0);
+            let closed = lambda[0] - c * pair.gap > 0.0;
+            let mut projected = Projected { traction: [pressure, 0.0, 0.0], ..Projected::default() };
+            projected.derivative[0][0] = f64::from(u8::from(closed));
+            projected.status = if closed { Status::Slip } else { Status::Open };
+            return Traction { projected, axes: [Vector::<3>::zeros(); 2], d_axes: Vec::new(), slip: [0.0; 2] };
+        };
+        let (axes, d_axes) = axes(pair);
+        let slip = axes.map(|e| e.dot(&pair.elastic));
+        let trial = [lambda[0] - c * pair.gap, lambda[1] + c * slip[0], lambda[2] + c * slip[1]];
+        Traction { projected: law.project(trial), axes, d_axes, slip }
+    }
+
+    /// Adds the contact to residual and tangent. `lambda` are its own unknowns, if it has any, and `first` the number of
+    /// the first of them. Returns how many sites could not be measured.
+    ///
+    /// # Errors
+    /// A master that cannot be touched.
+    pub(crate) fn add_to(
+        &self,
+        sides: &Sides<'_>,
+        (lambda, first): (&[f64], u32),
+        out: &mut Target<'_>,
+    ) -> Result<usize, PlaceError> {
+        let master = sides.master.0.master(self.master.group.as_deref(), sides.master.1)?;
+        let order = if out.tangent.is_some() { Order::Second } else { Order::First };
+        let parts = self.components();
+        let mut lost = 0;
+        for k in 0..self.sites.len() {
+            let own = |i: usize| first + (parts * k + i) as u32;
+            let multiplier = self.enforcement == Enforcement::Multiplier;
+            let at = self.multiplier(k, lambda);
+            let w = self.sites[k].weight;
+            let c = self.stiffness[k];
+            let pair = match self.pair(k, sides, master.as_ref(), order).1 {
+                Some(Ok(pair)) => pair,
+                found => {
+                    lost += usize::from(matches!(found, Some(Err(NoPair::NoCoordinates))));
+                    if multiplier {
+                        // Open: the traction is to vanish.
+                        for i in 0..parts {
+                            out.residual[own(i) as usize] -= w / c * at[i];
+                            out.sizes[own(i) as usize] += w / c * at[i].abs();
+                            if let Some(tangent) = &mut out.tangent {
+                                tangent.add(own(i), own(i), -w / c);
+                            }
+                        }
+                    }
+                    continue;
+                }
+            };
+            let found = self.traction(k, &pair, at);
+            let [p, t1, t2] = found.projected.traction;
+            let on_slave = found.axes[0] * t1 + found.axes[1] * t2;
+            let n = pair.unknowns.len();
+            for (a, &unknown) in pair.unknowns.iter().enumerate() {
+                let rubs = if parts == 3 { w * on_slave.dot(&pair.slip[a]) } else { 0.0 };
+                let force = -w * p * pair.d_gap[a] + rubs;
+                out.residual[unknown as usize] += force;
+                out.sizes[unknown as usize] += (w * p * pair.d_gap[a]).abs() + rubs.abs();
+            }
+            if multiplier {
+                for i in 0..parts {
+                    let value = w / c * (found.projected.traction[i] - at[i]);
+                    out.residual[own(i) as usize] += value;
+                    out.sizes[own(i) as usize] += w / c * (found.projected.traction[i].abs() + at[i].abs());
+                }
+            }
+            let Some(tangent) = &mut out.tangent else { continue };
+            // Derivatives of the trial in the unknowns of the pair.
+            let d_trial: Vec<[f64; 3]> = (0..n)
+                .map(|b| {
+                    let along =
+                        |i: usize| c * (found.d_axes[b][i].dot(&pair.elastic) + found.axes[i].dot(&pair.d_elastic[b]));
+                    let t = if parts == 3 { [along(0), along(1)] } else { [0.0; 2] };
+                    [-c * pair.d_gap[b], t[0], t[1]]
+                })
+                .collect();
+            let derivative = &found.projected.derivative;
+            let d_traction: Vec<[f64; 3]> = (d_trial.iter())
+                .map(|d| std::array::from_fn(|i| (0..3).map(|j| derivative[i][j] * d[j]).sum()))
+                .collect();
+            let along = |a: usize, i: usize| if parts == 3 { found.axes[i].dot(&pair.slip[a]) } else { 0.0 };
+            let bent = if parts == 3 { pair.slip_hessian(&on_slave) } else { Vec::new() };
+            let mut block = vec![0.0; n * n];
+            for a in 0..n {
+                for b in 0..n {
+                    let mut v = -p * pair.d2_gap[a * n + b] - d_traction[b][0] * pair.d_gap[a];
+                    if parts == 3 {
+                        v += d_traction[b][1] * along(a, 0) + d_traction[b][2] * along(a, 1);
+                        let turned = found.d_axes[b][0] * t1 + found.d_axes[b][1] * t2;
+                        v += turned.dot(&pair.slip[a]) + bent[a * n + b];
+                    }
+                    block[a * n + b] = w * v;
+                }
+            }
+            tangent.add_block(&pair.unknowns, &block);
+            if multiplier {
+                for i in 0..parts {
+                    for (a, &unknown) in pair.unknowns.iter().enumerate() {
+                        let mut column = -derivative[0][i] * pair.d_gap[a];
+                        if parts == 3 {
+                            column += derivative[1][i] * along(a, 0) + derivative[2][i] * along(a, 1);
+                        }
+                        tangent.add(unknown, own(i), w * column);
+                        tangent.add(own(i), unknown, w / c * d_traction[a][i]);
+                    }
+                    for j in 0..parts {
+                        let value = derivative[i][j] - f64::from(u8::from(i == j));
+                        tangent.add(own(i), own(j), w / c * value);
+                    }
+                }
+            }
+        }
+        Ok(lost)
+    }
+
+    /// The multiplier of a site.
+    fn multiplier(&self, k: usize, lambda: &[f64]) -> [f64; 3] {
+        let parts = self.components();
+        match self.enforcement {
+            Enforcement::Multiplier => {
+                let own = &lambda[parts * k..parts * (k + 1)];
+                [own[0], own.get(1).copied().unwrap_or(0.0), own.get(2).copied().unwrap_or(0.0)]
+            }
+            Enforcement::AugmentedLagrangian => self.memory[k].traction,
+            Enforcement::Penalty { .. } => [0.0, self.memory[k].traction[1], self.memory[k].traction[2]],
+        }
+    }
+
+    /// The sites as they are found in a state, with their tractions along the axes.
+    ///
+    /// # Errors
+    /// A master that cannot be touched.
+    pub(crate) fn results(&self, sides: &Sides<'_>, lambda: &[f64]) -> Result<Vec<(SiteResult, [f64; 3])>, PlaceError> {
+        let master = sides.master.0.master(self.master.group.as_deref(), sides.master.1)?;
+        let of = |k: usize| {
+            let (placed, pair) = self.pair(k, sides, master.as_ref(), Order::First);
+            let mut out = SiteResult { x: placed.x, weight: self.sites[k].weight, ..SiteResult::default() };
+            let Some(Ok(pair)) = pair else { return (out, [0.0; 3]) };
+            let found = self.traction(k, &pair, self.multiplier(k, lambda));
+            let [p, t1, t2] = found.projected.traction;
+            out.normal = pair.normal;
+            out.gap = Some(pair.gap);
+            out.pressure = p;
+            out.status = found.projected.status;
+            // The traction of the law is that along the slip; on the slave acts its opposite.
+            out.friction = -(found.axes[0] * t1 + found.axes[1] * t2);
+            if let (Some(law), true) = (&self.friction, out.status != Status::Open) {
+                out.increment = found.axes[0] * found.slip[0] + found.axes[1] * found.slip[1];
+                out.utilisation = law.utilisation([t1, t2], p);
+                let before = self.memory[k].slip;
+                out.slip = (before[0] + found.slip[0]).hypot(before[1] + found.slip[1]);
+            }
+            (out, found.projected.traction)
+        };
+        Ok((0..self.sites.len()).map(of).collect())
+    }
+
+    /// Takes a state as the one that slips count from.
+    ///
+    /// # Errors
+    /// A master that cannot be touched.
+    pub(crate) fn accept(&mut self, sides: &Sides<'_>, lambda: &[f64]) -> Result<(), PlaceError> {
+        let master = sides.master.0.master(self.master.group.as_deref(), sides.master.1)?;
+        let mut memory = Vec::with_capacity(self.sites.len());
+        for k in 0..self.sites.len() {
+            let Some(Ok(pair)) = self.pair(k, sides, master.as_ref(), Order::First).1 else {
+                memory.push(SiteMemory::default());
+                continue;
+            };
+            let found = self.traction(k, &pair, self.multiplier(k, lambda));
+            let mut own = SiteMemory { traction: found.projected.traction, stuck: pair.stuck, slip: [0.0; 2] };
+            if self.friction.is_some() && found.projected.status != Status::Open {
+                let before = self.memory[k].slip;
+                own.slip = std::array::from_fn(|i| before[i] + found.slip[i]);
+                // Friction is kept along the axes of the new anchor.
+                let on_slave = found.axes[0] * own.traction[1] + found.axes[1] * own.traction[2];
+                let slipped = found.axes[0] * own.slip[0] + found.axes[1] * own.slip[1];
+                self.memory[k].stuck = own.stuck;
+                if let (_, Some(Ok(again))) = self.pair(k, sides, master.as_ref(), Order::First) {
+                    let (new, _) = axes(&again);
+                    own.traction[1] = new[0].dot(&on_slave);
+                    own.traction[2] = new[1].dot(&on_slave);
+                    own.slip = new.map(|e| e.dot(&slipped));
+                }
+            }
+            memory.push(own);
+        }
+        self.memory = memory;
+        Ok(())
+    }
+}
+
+/// Sine of the angle to the normal below which the projection of an axis tells no direction any more.
+const STEEP: f64 = 1e-8;
+
+/// The axes of friction of a pair, and their variations.
+fn axes(pair: &Pair) -> ([Vector<3>; 2], Vec<[Vector<3>; 2]>) {
+    let normal = pair.normal;
+    let along = pair.axis.direction - normal * normal.dot(&pair.axis.direction);
+    let length = along.norm();
+    if length <= STEEP * pair.axis.direction.norm() {
+        // The axis stands on the surface: without one, any will do.
+        let first = any_tangent(&normal);
+        return ([first, normal.cross(&first)], vec![[Vector::<3>::zeros(); 2]; pair.unknowns.len()]);
+    }
+    let first = along / length;
+    let second = normal.cross(&first);
+    let variations = (pair.d_normal.iter().zip(&pair.axis.variation))
+        .map(|(dn, da)| {
+            let d = da
+                - normal * normal.dot(da)
+                - dn * normal.dot(&pair.axis.direction)
+                - normal * dn.dot(&pair.axis.direction);
+            let d_first = (d - first * first.dot(&d)) / length;
+            [d_first, dn.cross(&first) + normal.cross(&d_first)]
+        })
+        .collect();
+    ([first, second], variations)
+}

@@ -1,0 +1,573 @@
+//! One increment: Newton's method from the last state to equilibrium at a time, with what enforces the contacts about it.
+//!
+//! A body that nothing but contact holds has no stiffness until it touches. Where the equations have no solution as they
+//! stand, weak springs hold all bodies where they were and are taken back step by step; what they still carried in the
+//! end shows what holds nothing.
+
+use crate::body::Order;
+use crate::contact::{Enforcement, SiteResult};
+use crate::system::{Assembled, AssemblyError, System, SystemState};
+use signorini_contact::Status;
+use signorini_geometry::Vector;
+use signorini_solve::SolveError;
+use signorini_solve::general::Analysis;
+use signorini_solve::newton::{Converged, Equations, Newton, NewtonFailure, Search, newton};
+
+/// Why an increment has no solution.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum IncrementError {
+    #[error(transparent)]
+    Assembly(#[from] AssemblyError),
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    #[error("Newton's method did not converge in {} iterations{}", history.len() - 1, worst.as_deref().unwrap_or(""))]
+    NotConverged { history: Vec<f64>, worst: Option<String> },
+    #[error("`{body}` is free: nothing holds it against {motion}")]
+    Free { body: String, motion: String },
+    #[error("the tractions of the contacts still changed after {outer} outer iterations")]
+    Augmentation { outer: usize, history: Vec<f64> },
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// What an increment came to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct IncrementResult {
+    pub iterations: usize,
+    /// Residual over what it was to reach, before and after each iteration of the last solve.
+    pub history: Vec<f64>,
+    /// By contact.
+    pub sites: Vec<Vec<SiteResult>>,
+    /// Force and moment (of unknowns that turn) of each support on the bodies.
+    pub support_forces: Vec<[Vector<3>; 2]>,
+    pub energy: f64,
+    pub unknowns: usize,
+    /// Largest unbalanced force relative to the largest of all.
+    pub imbalance: f64,
+    /// Sites whose pair had no coordinates: they carry nothing.
+    pub lost_sites: usize,
+}
+
+/// What holds a body when springs a hundred times weaker than its load per size carry so much of it: nothing else does.
+const CARRIES: f64 = 0.1;
+/// Force relative to the largest of all that is left in the end.
+const TOLERANCE: f64 = 1e-10;
+/// Change of a traction by an outer iteration, relative to the largest, that ends them.
+const AUGMENTED: f64 = 1e-9;
+const MOST_ITERATIONS: usize = 60;
+const MOST_AUGMENTATIONS: usize = 60;
+/// Penalty in stiffnesses of the bodies.
+const PENALTY: f64 = 100.0;
+/// The same where it is only a scale: of augmented Lagrangians and multipliers.
+const SCALE: f64 = 10.0;
+/// Stiffness of the springs that hold free bodies at first, in largest loads per size, and what they are taken back to.
+const SPRINGS: [f64; 6] = [1.0, 1e-2, 1e-4, 1e-6, 1e-8, 0.0];
+/// Stiffness against what nothing moves, relative to the largest: Newton's method errs by so much of a step.
+const GRAIN: f64 = 1e-12;
+/// A body that weak springs let go so many sizes away is not held.
+const AWAY: f64 = 10.0;
+
+struct Problem<'a> {
+    system: &'a System,
+    time: f64,
+    analysis: Analysis,
+    /// Springs on all unknowns of bodies.
+    springs: f64,
+    /// Unknowns that are spins.
+    is_spin: Vec<bool>,
+    /// Traction per gap of the rows of multipliers, over their weights.
+    row_scale: Vec<f64>,
+    /// What rounding of positions leaves of forces and moments.
+    rounding: [f64; 2],
+    /// The unknown that lacks most.
+    worst: usize,
+}
+
+impl System {
+    /// Prepares the contacts: scales of penalties, and where slips count from. To be called once, when all bodies, loads and
+    /// contacts are there.
+    ///
+    /// # Errors
+    /// Places that are not there.
+    pub fn prepare(&mut self) -> Result<(), IncrementError> {
+        let finite = |contacts: &[crate::contact::Contact]| {
+            let list = contacts.iter().flat_map(|c| c.stiffness.iter().zip(c.sites()).map(|(c, s)| c * s.weight));
+            list.filter(|c| c.is_finite()).fold(0.0f64, f64::max)
+        };
+        let mut scale = finite(&self.contacts);
+        for contact in &self.contacts {
+            // A deformable master of a rigid slave.
+            let master = &self.bodies[contact.master.body];
+            let sites = master.sites(contact.master.group.as_deref(), crate::body::Sampling::Nodes);
+            let list = sites.unwrap_or_default();
+            let most = list.iter().map(|s| master.site_stiffness(s)).filter(|c| c.is_finite()).fold(0.0, f64::max);
+            scale = scale.max(most);
+        }
+        // Between rigid bodies any scale serves; that of one force per length is neither large nor small.
+        let scale = if scale > 0.0 { scale } else { 1.0 / self.size().max(f64::MIN_POSITIVE) };
+        for contact in &mut self.contacts {
+            let factor = match contact.enforcement {
+                Enforcement::Penalty { .. } => PENALTY,
+                _ => SCALE,
+            };
+            let weights: Vec<f64> = contact.sites().iter().map(|s| s.weight).collect();
+            for (c, w) in contact.stiffness.iter_mut().zip(weights) {
+                *c = factor * if c.is_finite() { *c } else { scale / w };
+            }
+        }
+        // Slips count from the start, where nothing carries yet.
+        self.accept(&self.start())?;
+        for contact in &mut self.contacts {
+            contact.memory.iter_mut().for_each(|m| m.traction = [0.0; 3]);
+        }
+        Ok(())
+    }
+
+    /// Solves for equilibrium at a time, from a state that was accepted. `report` is told each iteration and its residual
+    /// over the tolerance; where it says `false` the solver stops.
+    ///
+    /// # Errors
+    /// Why there is no such state.
+    pub fn solve(
+        &mut self,
+        from: &SystemState,
+        time: f64,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<(SystemState, IncrementResult), IncrementError> {
+        let mut start = from.clone();
+        start.travel.iter_mut().for_each(|t| *t = 0.0);
+        for (body, state) in self.bodies.iter().zip(&mut start.bodies) {
+            body.prescribe(time, state);
+        }
+        let kept: Vec<_> = self.contacts.iter().map(|c| (c.memory.clone(), c.stiffness.clone())).collect();
+        let found = self.outer(&start, time, report);
+        if found.is_err() {
+            for (contact, (memory, stiffness)) in self.contacts.iter_mut().zip(kept) {
+                (contact.memory, contact.stiffness) = (memory, stiffness);
+            }
+        }
+        found
+    }
+
+    /// Takes a state as the one from which slips count and the next increment starts.
+    ///
+    /// # Errors
+    /// Places that are not there.
+    pub fn accept(&mut self, state: &SystemState) -> Result<(), IncrementError> {
+        let (first, _) = self.numbering();
+        let mut contacts = std::mem::take(&mut self.contacts);
+        let mut own = 0;
+        for contact in &mut contacts {
+            let lambda = &state.multipliers[own..own + contact.multipliers()];
+            own += contact.multipliers();
+            let sides = self.sides(contact, state, &first);
+            contact.accept(&sides, lambda).map_err(AssemblyError::from)?;
+        }
+        self.contacts = contacts;
+        Ok(())
+    }
+
+    /// Outer iterations: of augmented Lagrangians, and of penalties that are to leave a given penetration.
+    fn outer(
+        &mut self,
+        start: &SystemState,
+        time: f64,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<(SystemState, IncrementResult), IncrementError> {
+        let mut state = start.clone();
+        let mut iterations = 0;
+        let mut changes = Vec::new();
+        for _ in 0..MOST_AUGMENTATIONS {
+            let found = self.inner(&state, time, &mut |k, r| report(iterations + k, r))?;
+            iterations += found.history.len() - 1;
+            state = found.state;
+            let result = self.result(&state, time, iterations, found.history)?;
+            let change = self.augment(&state, &result)?;
+            if change <= AUGMENTED {
+                return Ok((state, result));
+            }
+            changes.push(change);
+        }
+        Err(IncrementError::Augmentation { outer: MOST_AUGMENTATIONS, history: changes })
+    }
+
+    /// Sets multipliers to the tractions found, penalties to what leaves the penetration that is wanted; the largest
+    /// relative change.
+    fn augment(&mut self, state: &SystemState, result: &IncrementResult) -> Result<f64, IncrementError> {
+        let (first, _) = self.numbering();
+        let mut change = 0.0f64;
+        let mut contacts = std::mem::take(&mut self.contacts);
+        for (contact, sites) in contacts.iter_mut().zip(&result.sites) {
+            match contact.enforcement {
+                Enforcement::AugmentedLagrangian => {
+                    let sides = self.sides(contact, state, &first);
+                    let found = contact.results(&sides, &[]).map_err(AssemblyError::from)?;
+                    let most = found.iter().map(|f| f.1[0]).fold(0.0f64, f64::max);
+                    for (memory, (_, traction)) in contact.memory.iter_mut().zip(found) {
+                        let changed = (0..3).map(|i| (memory.traction[i] - traction[i]).abs()).fold(0.0, f64::max);
+                        change = change.max(if changed > 0.0 { changed / most } else { 0.0 });
+                        memory.traction = traction;
+                    }
+                }
+                Enforcement::Penalty { wanted_penetration: Some(wanted) } => {
+                    let depth = sites.iter().filter(|s| s.status != Status::Open).filter_map(|s| s.gap);
+                    let depth = depth.fold(0.0f64, |m, g| m.max(-g));
+                    // The penetration is inverse to the penalty but for what the bodies give way.
+                    if depth > 0.0 && (depth / wanted - 1.0).abs() > 1e-2 {
+                        contact.stiffness.iter_mut().for_each(|c| *c *= depth / wanted);
+                        change = change.max((depth / wanted - 1.0).abs());
+                    }
+                }
+                _ => {}
+            }
+        }
+        self.contacts = contacts;
+        Ok(change)
+    }
+
+    fn inner(
+        &self,
+        start: &SystemState,
+        time: f64,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<Converged<SystemState>, IncrementError> {
+        let (first, count) = self.numbering();
+        let mut is_spin = vec![false; count];
+        for (body, first) in self.bodies.iter().zip(first) {
+            body.spins().iter().flatten().for_each(|s| is_spin[(first + s) as usize] = true);
+        }
+        let mut row_scale = Vec::new();
+        for contact in self.contacts.iter().filter(|c| c.multipliers() > 0) {
+            row_scale.extend(contact.stiffness.iter().flat_map(|c| vec![*c; contact.components()]));
+        }
+        let mut problem = Problem {
+            system: self,
+            time,
+            analysis: Analysis::default(),
+            springs: 0.0,
+            is_spin,
+            row_scale,
+            rounding: [0.0; 2],
+            worst: 0,
+        };
+        let direct = problem.solve(start, report);
+        let Err(error) = direct else { return direct };
+        let retry = matches!(error, IncrementError::Solve(_) | IncrementError::NotConverged { .. });
+        if !retry || self.contacts.is_empty() {
+            return Err(problem.named(error, start));
+        }
+        let load = problem.load(start)?;
+        let mut state = start.clone();
+        let mut last = None;
+        let mut before = 0.0;
+        for factor in SPRINGS {
+            problem.springs = factor * load / self.size();
+            match problem.solve(&state, report) {
+                Ok(found) => {
+                    if factor < 1.0
+                        && let Some(body) = problem.away(&found.state, load)
+                    {
+                        return Err(body);
+                    }
+                    state = found.state.clone();
+                    last = Some(found);
+                }
+                Err(IncrementError::Interrupted) => return Err(IncrementError::Interrupted),
+                Err(_) => {
+                    // What the last springs carried tells what nothing else does.
+                    problem.springs = before;
+                    let free = last.is_some().then(|| problem.away(&state, load)).flatten();
+                    return Err(free.unwrap_or_else(|| problem.named(error, &state)));
+                }
+            }
+            before = problem.springs;
+        }
+        last.ok_or(error)
+    }
+
+    /// What a state is reported as.
+    fn result(
+        &self,
+        state: &SystemState,
+        time: f64,
+        iterations: usize,
+        history: Vec<f64>,
+    ) -> Result<IncrementResult, IncrementError> {
+        let (first, count) = self.numbering();
+        let at = self.assemble(state, time, Order::First)?;
+        let mut support_forces = vec![[Vector::<3>::zeros(); 2]; self.supports.len()];
+        let mut add = |support: usize, component: usize, value: f64| {
+            if component < 6 {
+                support_forces[support][component / 3][component % 3] += value;
+            }
+        };
+        let mut residual = at.residual.clone();
+        for held in &at.single {
+            let (unknown, factor) = held.constraint.terms[0];
+            add(held.support, held.constraint.component, residual[unknown as usize] / factor);
+            residual[unknown as usize] = 0.0;
+        }
+        for (held, reaction) in at.coupled.iter().zip(&state.reactions) {
+            add(held.support, held.constraint.component, -reaction);
+        }
+        let most = at.sizes[..count].iter().fold(f64::MIN_POSITIVE, |m, s| m.max(*s));
+        let imbalance = residual[..count].iter().fold(0.0f64, |m, r| m.max(r.abs())) / most;
+        let mut sites = Vec::new();
+        let mut own = 0;
+        for contact in &self.contacts {
+            let lambda = &state.multipliers[own..own + contact.multipliers()];
+            own += contact.multipliers();
+            let found = contact.results(&self.sides(contact, state, &first), lambda).map_err(AssemblyError::from)?;
+            sites.push(found.into_iter().map(|f| f.0).collect());
+        }
+        Ok(IncrementResult {
+            iterations,
+            history,
+            sites,
+            support_forces,
+            energy: at.energy,
+            unknowns: at.residual.len(),
+            imbalance,
+            lost_sites: at.lost,
+        })
+    }
+}
+
+impl Problem<'_> {
+    fn solve(
+        &mut self,
+        start: &SystemState,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<Converged<SystemState>, IncrementError> {
+        let predicts = start.bodies.iter().any(|b| !b.internal.is_empty());
+        let search = if predicts { Search::Watchdog { patience: 6 } } else { Search::Monotone };
+        let options = Newton { most_iterations: MOST_ITERATIONS, search };
+        newton(self, start, &options, report).map_err(|failure| match failure {
+            NewtonFailure::NotConverged { history, .. } => {
+                IncrementError::NotConverged { history, worst: self.describe(self.worst) }
+            }
+            NewtonFailure::Equations { error, .. } => error,
+            NewtonFailure::Interrupted => IncrementError::Interrupted,
+        })
+    }
+
+    /// The residual with springs.
+    fn assemble(&self, at: &SystemState, order: Order) -> Result<Assembled, IncrementError> {
+        let mut out = self.system.assemble(at, self.time, order)?;
+        if self.springs > 0.0 {
+            for (k, travel) in at.travel.iter().enumerate() {
+                let stiffness = self.spring(k);
+                out.residual[k] += stiffness * travel;
+                out.sizes[k] += (stiffness * travel).abs();
+                if order == Order::Second {
+                    out.tangent.add(k as u32, k as u32, stiffness);
+                }
+            }
+        }
+        Ok(out)
+    }
+
+    fn spring(&self, unknown: usize) -> f64 {
+        let size = if self.is_spin[unknown] { self.system.size() } else { 1.0 };
+        self.springs * size * size
+    }
+
+    /// The largest force that acts.
+    fn load(&self, at: &SystemState) -> Result<f64, IncrementError> {
+        let size = self.system.size();
+        let sizes = self.system.assemble(at, self.time, Order::First)?.sizes;
+        let force = |(k, s): (usize, &f64)| if self.is_spin[k] { s / size } else { *s };
+        Ok(sizes[..self.is_spin.len()].iter().enumerate().map(force).fold(f64::MIN_POSITIVE, f64::max))
+    }
+
+    /// The body that springs let go, or that nothing but springs holds.
+    fn away(&self, at: &SystemState, load: f64) -> Option<IncrementError> {
+        let size = self.system.size();
+        let extent = |k: usize| if self.is_spin[k] { 1.0 } else { size };
+        let goes = |k: usize| at.travel[k].abs() > AWAY * extent(k);
+        let carries = |k: usize| self.spring(k) * at.travel[k].abs() / load * extent(k) / size;
+        let most = (0..at.travel.len()).max_by(|a, b| carries(*a).total_cmp(&carries(*b)))?;
+        let far = (0..at.travel.len()).find(|&k| goes(k) || at.travel[k].is_nan());
+        let unknown = far.or_else(|| (carries(most) > CARRIES).then_some(most))?;
+        Some(self.free(unknown, at))
+    }
+
+    /// A body that moves as a state did, and most in one unknown.
+    fn free(&self, unknown: usize, at: &SystemState) -> IncrementError {
+        let (first, _) = self.system.numbering();
+        let Some(k) = first.iter().rposition(|f| *f as usize <= unknown) else { return IncrementError::Interrupted };
+        let body = &self.system.bodies[k];
+        let travel = &at.travel[first[k] as usize..first[k] as usize + body.unknowns()];
+        let modes = body.rigid_modes(&at.bodies[k]);
+        let along = |mode: &Vec<f64>| {
+            let square: f64 = mode.iter().map(|m| m * m).sum();
+            let product: f64 = mode.iter().zip(travel).map(|(m, t)| m * t).sum();
+            if square > 0.0 { product / square } else { 0.0 }
+        };
+        let turns = self.is_spin[unknown];
+        let part = if turns { &modes[3..] } else { &modes[..3] };
+        let direction = Vector::<3>::from_fn(|i, _| along(&part[i]));
+        let d = direction.try_normalize(0.0).unwrap_or_default();
+        let kind = if turns { "turning about" } else { "moving along" };
+        let motion = format!("{kind} ({:.3}, {:.3}, {:.3})", d[0], d[1], d[2]);
+        IncrementError::Free { body: body.name().to_string(), motion }
+    }
+
+    fn body_of(&self, unknown: usize) -> Option<(&str, usize)> {
+        let (first, count) = self.system.numbering();
+        if unknown >= count {
+            return None;
+        }
+        let k = first.iter().rposition(|f| *f as usize <= unknown)?;
+        Some((self.system.bodies[k].name(), unknown - first[k] as usize))
+    }
+
+    fn describe(&self, unknown: usize) -> Option<String> {
+        match self.body_of(unknown) {
+            Some((body, _)) => Some(format!("; what lacked most is a force on `{body}`")),
+            None => {
+                let mut row = unknown - self.is_spin.len();
+                for contact in &self.system.contacts {
+                    if row < contact.multipliers() {
+                        return Some(format!("; what lacked most is a condition of contact `{}`", contact.name));
+                    }
+                    row -= contact.multipliers();
+                }
+                Some("; what lacked most is a support".to_string())
+            }
+        }
+    }
+
+    /// A system without a solution, by the body that is free to move.
+    fn named(&self, error: IncrementError, at: &SystemState) -> IncrementError {
+        if !matches!(error, IncrementError::Solve(_)) {
+            return error;
+        }
+        let Ok(assembled) = self.system.assemble(at, self.time, Order::Second) else { return error };
+        let (first, count) = self.system.numbering();
+        let held: Vec<usize> = assembled.single.iter().map(|h| h.constraint.terms[0].0 as usize).collect();
+        let matrix = assembled.tangent.matrix(assembled.residual.len());
+        let largest = matrix.row_sizes().into_iter().fold(0.0f64, f64::max);
+        for (k, body) in self.system.bodies.iter().enumerate() {
+            for (mode, motion) in body.rigid_modes(&at.bodies[k]).iter().enumerate() {
+                let mut x = vec![0.0; assembled.residual.len()];
+                let range = first[k] as usize..first[k] as usize + motion.len();
+                x[range].copy_from_slice(motion);
+                let size = motion.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+                if size == 0.0 || held.iter().any(|h| x[*h] != 0.0) {
+                    continue;
+                }
+                let moved = matrix.multiply(&x);
+                if moved[..count].iter().all(|f| f.abs() <= 1e-10 * largest * size) {
+                    let axis = ["x", "y", "z"][mode % 3];
+                    let motion =
+                        if mode < 3 { format!("moving along {axis}") } else { format!("turning about {axis}") };
+                    return IncrementError::Free { body: body.name().to_string(), motion };
+                }
+            }
+        }
+        error
+    }
+}
+
+impl Equations for Problem<'_> {
+    type State = SystemState;
+    type Error = IncrementError;
+
+    fn measure(&mut self, at: &SystemState) -> Result<f64, IncrementError> {
+        let out = self.assemble(at, Order::First)?;
+        let count = self.is_spin.len();
+        let size = self.system.size();
+        let mut scale = [f64::MIN_POSITIVE; 2];
+        for k in 0..count {
+            let kind = usize::from(self.is_spin[k]);
+            scale[kind] = scale[kind].max(out.sizes[k]);
+        }
+        // Moments of forces whose arms are not better known than the size of a body.
+        scale[1] = scale[1].max(scale[0] * size * 1e-6);
+        let mut held = vec![false; count];
+        out.single.iter().for_each(|h| held[h.constraint.terms[0].0 as usize] = true);
+        let mut worst = (0.0f64, 0);
+        let mut take = |value: f64, k: usize| {
+            if value > worst.0 || value.is_nan() {
+                worst = (value, k);
+            }
+        };
+        for k in (0..count).filter(|k| !held[*k]) {
+            let kind = usize::from(self.is_spin[k]);
+            take(out.residual[k].abs() / (TOLERANCE * scale[kind]).max(self.rounding[kind]), k);
+        }
+        for (k, c) in self.row_scale.iter().enumerate() {
+            // Gaps no better than the rounding of positions.
+            let force = out.residual[count + k].abs() * c;
+            take(force / (TOLERANCE * scale[0]).max(self.rounding[0]), count + k);
+        }
+        for held in out.single.iter().chain(&out.coupled) {
+            take(held.constraint.lack.abs() / (1e-12 * size), held.constraint.terms[0].0 as usize);
+        }
+        self.worst = worst.1;
+        Ok(worst.0)
+    }
+
+    fn step(&mut self, at: &SystemState) -> Result<Vec<f64>, IncrementError> {
+        let mut out = self.assemble(at, Order::Second)?;
+        let n = out.residual.len();
+        let count = self.is_spin.len();
+        let mut right: Vec<f64> = out.residual.iter().map(|r| -r).collect();
+        let mut held = vec![false; n];
+        for h in &out.single {
+            let (unknown, factor) = h.constraint.terms[0];
+            held[unknown as usize] = true;
+            right[unknown as usize] = -h.constraint.lack / factor;
+        }
+        out.tangent.without_rows(|row| held[row as usize]);
+        (0..n).filter(|k| held[*k]).for_each(|k| out.tangent.add(k as u32, k as u32, 1.0));
+        let matrix = out.tangent.matrix(n);
+        let sizes = matrix.row_sizes();
+        let size = self.system.size();
+        self.rounding = [0.0; 2];
+        for k in (0..count).filter(|k| !held[*k]) {
+            let kind = usize::from(self.is_spin[k]);
+            let position = if kind == 1 { 1.0 } else { size };
+            self.rounding[kind] = self.rounding[kind].max(4.0 * f64::EPSILON * sizes[k] * position);
+        }
+        // A rigid body may be free to move where nothing moves it, as a ball without friction may turn: a grain of
+        // stiffness in the matrix alone keeps it where it is and changes no solution.
+        let mut most = [0.0f64; 2];
+        for k in 0..count {
+            let kind = usize::from(self.is_spin[k]);
+            most[kind] = most[kind].max(sizes[k]);
+        }
+        let mut matrix = matrix;
+        let (first, _) = self.system.numbering();
+        let mut grains = false;
+        for (body, first) in self.system.bodies.iter().zip(first).filter(|(b, _)| b.is_rigid()) {
+            for k in (first..first + body.unknowns() as u32).filter(|k| !held[*k as usize]) {
+                let kind = usize::from(self.is_spin[k as usize]);
+                let scale = if most[kind] > 0.0 { most[kind] } else { most[0].max(f64::MIN_POSITIVE) * size * size };
+                out.tangent.add(k, k, GRAIN * scale);
+                grains = true;
+            }
+        }
+        if grains {
+            matrix = out.tangent.matrix(n);
+        }
+        Ok(self.analysis.factor(matrix)?.solve(&right)?)
+    }
+
+    fn advance(&self, at: &SystemState, step: &[f64], share: f64) -> SystemState {
+        let (first, count) = self.system.numbering();
+        let bodies = (self.system.bodies.iter().zip(&at.bodies).zip(first))
+            .map(|((body, state), first)| {
+                let own = &step[first as usize..first as usize + body.unknowns()];
+                body.advance(state, own, share)
+            })
+            .collect();
+        let multipliers: Vec<f64> = at.multipliers.iter().zip(&step[count..]).map(|(m, s)| m + share * s).collect();
+        let rest = &step[count + multipliers.len()..];
+        let reaction = |k: usize| at.reactions.get(k).copied().unwrap_or(0.0);
+        let reactions = rest.iter().enumerate().map(|(k, s)| reaction(k) + share * s).collect();
+        let travel = at.travel.iter().zip(step).map(|(t, s)| t + share * s).collect();
+        SystemState { bodies, multipliers, reactions, travel }
+    }
+}

@@ -1,0 +1,385 @@
+//! Rigid bodies: at rest, moved as prescribed, or free.
+//!
+//! The configuration is the position of the centre and a unit quaternion (w, x, y, z); the unknowns of a free body are
+//! three displacements of the centre and three spins, `R ← exp(θ) R`. Derivatives with respect to spins are the symmetric
+//! second derivatives along geodesics; with a residual `r` the derivative of its spin components is that less `½ r ×`.
+
+use crate::body::{
+    Anchor, Bend, Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Function, Hold, Load, Master,
+    MaterialPoint, Met, Order, PlaceError, Placed, RigidFoot, Sampling, Site,
+};
+use crate::pair::any_tangent;
+use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
+use signorini_geometry::rigid::RigidMotion;
+use signorini_geometry::rigid_shape::{GapJet, RigidShape};
+use signorini_geometry::{Matrix, Point, Vector};
+use std::sync::Arc;
+
+/// A motion by time.
+pub type PrescribedMotion = Arc<dyn Fn(f64) -> RigidMotion + Send + Sync>;
+
+/// How a rigid body moves.
+#[derive(Clone)]
+pub enum Motion {
+    /// As given, or not at all.
+    Prescribed(PrescribedMotion),
+    /// Freely in space, or in the plane along x and y and about z.
+    Free { plane: bool },
+}
+
+/// A point of a rigid body that is tested for contact, or a ball about it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigidSite {
+    /// In the axes of the body.
+    pub x: Point<3>,
+    pub outward: Option<Vector<3>>,
+    pub radius: f64,
+    /// The area that it stands for.
+    pub weight: f64,
+}
+
+/// A rigid body.
+#[derive(Clone)]
+pub struct RigidBody {
+    pub name: String,
+    pub shape: Arc<dyn RigidShape>,
+    pub motion: Motion,
+    /// The point that loads act on, and about which the body turns.
+    pub centre: Point<3>,
+    /// Its points that are tested for contact; none for a body that is only ever touched by others.
+    pub sites: Vec<RigidSite>,
+    pub size: f64,
+}
+
+/// Position and rotation of a rigid body.
+#[derive(Clone, Copy, Debug)]
+pub struct Pose {
+    pub centre: Point<3>,
+    pub rotation: UnitQuaternion<f64>,
+}
+
+impl Pose {
+    /// The pose that a state tells.
+    pub fn of(state: &BodyState) -> Self {
+        let c = &state.configuration;
+        Pose {
+            centre: Point::<3>::new(c[0], c[1], c[2]),
+            rotation: UnitQuaternion::new_normalize(Quaternion::new(c[3], c[4], c[5], c[6])),
+        }
+    }
+
+    fn state(&self) -> BodyState {
+        let q = self.rotation.quaternion();
+        let configuration = vec![self.centre[0], self.centre[1], self.centre[2], q.w, q.i, q.j, q.k];
+        BodyState { configuration, internal: Vec::new() }
+    }
+
+    /// The rotation as a matrix.
+    pub fn matrix(&self) -> Matrix<3> {
+        self.rotation.to_rotation_matrix().into_inner()
+    }
+}
+
+fn axis(i: usize) -> Vector<3> {
+    Vector::<3>::from_fn(|k, _| f64::from(u8::from(k == i)))
+}
+
+impl RigidBody {
+    /// Number of an unknown by its component: 0..3 displacements, 3..6 spins.
+    fn unknown(&self, component: usize) -> Option<u32> {
+        match self.motion {
+            Motion::Prescribed(_) => None,
+            Motion::Free { plane: false } => Some(component as u32),
+            Motion::Free { plane: true } => [Some(0), Some(1), None, None, None, Some(2)][component],
+        }
+    }
+
+    /// The components that move, with their unknowns.
+    fn components(&self) -> impl Iterator<Item = (usize, u32)> + '_ {
+        (0..6).filter_map(|c| Some((c, self.unknown(c)?)))
+    }
+
+    /// The motion since the start.
+    pub fn moved(&self, state: &BodyState) -> RigidMotion {
+        let pose = Pose::of(state);
+        let rotation = pose.matrix();
+        RigidMotion { rotation, translation: pose.centre - rotation * self.centre }
+    }
+
+    /// Functions of a point at `arm` from the centre, with its second derivatives.
+    fn functions(&self, arm: &Vector<3>) -> (Vec<Function>, Vec<Function>, Vec<Bend>) {
+        let (mut functions, mut spin, mut bends) = (Vec::new(), Vec::new(), Vec::new());
+        for (c, unknown) in self.components() {
+            let e = axis(c % 3);
+            let value = if c < 3 { e } else { e.cross(arm) };
+            functions.push(Function { unknown, value, ..Function::default() });
+            if c < 3 {
+                continue;
+            }
+            spin.push(Function { unknown, value: e, ..Function::default() });
+            for (d, other) in self.components().filter(|(d, _)| *d >= c) {
+                let f = axis(d % 3);
+                let value = (e.cross(&f.cross(arm)) + f.cross(&e.cross(arm))) * 0.5;
+                bends.push(Bend { unknowns: [unknown, other], value });
+            }
+        }
+        (functions, spin, bends)
+    }
+
+    fn no_groups(&self, on: Option<&str>) -> Result<(), PlaceError> {
+        match on {
+            None | Some("boundary") => Ok(()),
+            Some(group) => Err(PlaceError::Unknown {
+                body: self.name.clone(),
+                group: group.to_string(),
+                known: vec!["boundary".to_string()],
+            }),
+        }
+    }
+}
+
+impl Body for RigidBody {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn unknowns(&self) -> usize {
+        self.components().count()
+    }
+
+    fn start(&self) -> BodyState {
+        Pose { centre: self.centre, rotation: UnitQuaternion::identity() }.state()
+    }
+
+    fn prescribe(&self, time: f64, state: &mut BodyState) {
+        if let Motion::Prescribed(motion) = &self.motion {
+            let motion = motion(time);
+            let rotation = Rotation3::from_matrix_unchecked(motion.rotation);
+            let rotation = UnitQuaternion::from_rotation_matrix(&rotation);
+            *state = Pose { centre: motion.point(&self.centre), rotation }.state();
+        }
+    }
+
+    fn advance(&self, state: &BodyState, step: &[f64], share: f64) -> BodyState {
+        let pose = Pose::of(state);
+        let mut parts = [0.0; 6];
+        for (c, unknown) in self.components() {
+            parts[c] = step[unknown as usize] * share;
+        }
+        if parts == [0.0; 6] {
+            return state.clone();
+        }
+        let spin = Vector::<3>::new(parts[3], parts[4], parts[5]);
+        Pose {
+            centre: pose.centre + Vector::<3>::new(parts[0], parts[1], parts[2]),
+            rotation: UnitQuaternion::from_scaled_axis(spin) * pose.rotation,
+        }
+        .state()
+    }
+
+    fn internal(&self, _: &BodyState, _: Order, _: &mut Contribution) -> Result<f64, BodyError> {
+        Ok(0.0)
+    }
+
+    fn hold(&self, on: Option<&str>, hold: &Hold<'_>, state: &BodyState) -> Result<Vec<Constraint>, PlaceError> {
+        self.no_groups(on)?;
+        if matches!(self.motion, Motion::Prescribed(_)) {
+            let message = "its motion is prescribed: a support holds only what is free".to_string();
+            return Err(PlaceError::Unsuitable { body: self.name.clone(), message });
+        }
+        let pose = Pose::of(state);
+        let rotation = pose.rotation.scaled_axis();
+        let turn = spin_to_rotation_vector(&rotation);
+        let mut out = Vec::new();
+        for i in 0..3 {
+            if let (Some(field), Some(unknown)) = (hold.displacement[i], self.unknown(i)) {
+                let lack = pose.centre[i] - self.centre[i] - field(&self.centre);
+                out.push(Constraint { terms: vec![(unknown, 1.0)], lack, component: i });
+            }
+            if let (Some(field), Some(_)) = (hold.rotation[i], self.unknown(3 + i)) {
+                let terms = (3..6).filter_map(|c| Some((self.unknown(c)?, turn[(i, c - 3)])));
+                let terms = terms.filter(|(_, v)| *v != 0.0).collect();
+                out.push(Constraint { terms, lack: rotation[i] - field(&self.centre), component: 3 + i });
+            }
+        }
+        Ok(out)
+    }
+
+    fn load(
+        &self,
+        on: Option<&str>,
+        load: &Load<'_>,
+        state: &BodyState,
+        order: Order,
+        out: &mut Contribution,
+    ) -> Result<(), PlaceError> {
+        self.no_groups(on)?;
+        let pose = Pose::of(state);
+        let add = |c: usize, value: f64, out: &mut Contribution| {
+            if let Some(unknown) = self.unknown(c) {
+                out.forces[unknown as usize] -= value;
+            }
+        };
+        match load {
+            Load::Force(force) => (0..3).for_each(|i| add(i, force[i], out)),
+            Load::Moment(moment) | Load::FollowerMoment(moment) => {
+                let follows = matches!(load, Load::FollowerMoment(_));
+                let moment = if follows { pose.matrix() * moment } else { *moment };
+                (0..3).for_each(|i| add(3 + i, moment[i], out));
+                if order == Order::Second {
+                    // Derivative of -m, and the half that makes it symmetric where the residual vanishes.
+                    let share = if follows { 0.5 } else { -0.5 };
+                    let k = moment.cross_matrix() * share;
+                    let spins: Vec<(usize, u32)> = self.components().filter(|(c, _)| *c >= 3).collect();
+                    let unknowns: Vec<u32> = spins.iter().map(|s| s.1).collect();
+                    let values: Vec<f64> =
+                        spins.iter().flat_map(|r| spins.iter().map(move |c| k[(r.0 - 3, c.0 - 3)])).collect();
+                    out.add_block(&unknowns, &values);
+                }
+            }
+            Load::Springs(stiffness) => {
+                let moved = pose.centre - self.centre;
+                for i in 0..3 {
+                    add(i, -stiffness[i] * moved[i], out);
+                    if let (Some(unknown), Order::Second) = (self.unknown(i), order) {
+                        out.add_block(&[unknown], &[stiffness[i]]);
+                    }
+                }
+            }
+            _ => {
+                let message = "a rigid body takes forces, moments and springs".to_string();
+                return Err(PlaceError::Unsuitable { body: self.name.clone(), message });
+            }
+        }
+        Ok(())
+    }
+
+    fn sites(&self, on: Option<&str>, _: Sampling) -> Result<Vec<Site>, PlaceError> {
+        self.no_groups(on)?;
+        if self.sites.is_empty() {
+            let message = "a rigid body of this shape has no points of its own that could be tested; name the other \
+                           body first, so that its points are tested against this one"
+                .to_string();
+            return Err(PlaceError::Unsuitable { body: self.name.clone(), message });
+        }
+        let site = |(k, s): (usize, &RigidSite)| Site { patch: k as u32, xi: [0.0; 2], weight: s.weight };
+        Ok(self.sites.iter().enumerate().map(site).collect())
+    }
+
+    fn placed(&self, state: &BodyState, site: &Site) -> Placed {
+        let own = &self.sites[site.patch as usize];
+        let pose = Pose::of(state);
+        let frame = pose.matrix();
+        let arm = frame * (own.x - self.centre);
+        let (functions, spin, bends) = self.functions(&arm);
+        Placed {
+            x: pose.centre + arm,
+            outward: own.outward.map(|n| frame * n),
+            tangent: None,
+            radius: own.radius,
+            functions,
+            spin,
+            frame,
+            bends,
+        }
+    }
+
+    fn master<'a>(&'a self, on: Option<&str>, state: &'a BodyState) -> Result<Box<dyn Master + 'a>, PlaceError> {
+        self.no_groups(on)?;
+        Ok(Box::new(RigidMaster { body: self, pose: Pose::of(state) }))
+    }
+
+    fn site_stiffness(&self, _: &Site) -> f64 {
+        f64::INFINITY
+    }
+
+    fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6] {
+        let centre = Pose::of(state).centre;
+        std::array::from_fn(|mode| {
+            let mut out = vec![0.0; self.unknowns()];
+            for (c, unknown) in self.components() {
+                let e = axis(mode % 3);
+                let moves = if mode < 3 { e } else { e.cross(&centre) };
+                let turns = if mode < 3 { Vector::<3>::zeros() } else { e };
+                out[unknown as usize] = if c < 3 { moves[c] } else { turns[c - 3] };
+            }
+            out
+        })
+    }
+
+    fn is_rigid(&self) -> bool {
+        true
+    }
+
+    fn spins(&self) -> Vec<[u32; 3]> {
+        match self.motion {
+            Motion::Free { plane: false } => vec![[3, 4, 5]],
+            _ => Vec::new(),
+        }
+    }
+
+    fn size(&self) -> f64 {
+        self.size
+    }
+
+    fn fields(&self, _: &BodyState) -> BodyFields {
+        BodyFields::default()
+    }
+}
+
+/// The derivative of the rotation vector `ψ` of `exp(ψ)` in the spin `θ` of `exp(θ) exp(ψ)`.
+fn spin_to_rotation_vector(psi: &Vector<3>) -> Matrix<3> {
+    let square = psi.norm_squared();
+    // (1 - (ψ/2) cot(ψ/2)) / ψ², by its series where the difference cancels.
+    let factor = if square < 1e-4 {
+        1.0 / 12.0 + square / 720.0 + square * square / 30240.0
+    } else {
+        let half = 0.5 * square.sqrt();
+        (1.0 - half / half.tan()) / square
+    };
+    let cross = psi.cross_matrix();
+    Matrix::<3>::identity() - cross * 0.5 + cross * cross * factor
+}
+
+struct RigidMaster<'a> {
+    body: &'a RigidBody,
+    pose: Pose,
+}
+
+impl Master for RigidMaster<'_> {
+    fn nearest(&self, x: &Point<3>, reach: f64, _: Option<&Site>) -> Option<Met> {
+        let rotation = self.pose.matrix();
+        let own = self.body.centre + rotation.transpose() * (x - self.pose.centre);
+        let jet = self.body.shape.gap(&own);
+        let near = jet.gap.abs() <= reach;
+        let foot = own - jet.normal * jet.gap;
+        let point = MaterialPoint { patch: 0, xi: foot.into() };
+        let jet = GapJet {
+            gap: jet.gap,
+            normal: rotation * jet.normal,
+            hessian: rotation * jet.hessian * rotation.transpose(),
+        };
+        let foot = RigidFoot {
+            point,
+            jet,
+            shape: Arc::clone(&self.body.shape),
+            origin: self.body.centre,
+            centre: self.pose.centre,
+            rotation,
+            unknowns: std::array::from_fn(|c| self.body.unknown(c)),
+        };
+        near.then(|| Met::Rigid(Box::new(foot)))
+    }
+
+    fn at(&self, point: &MaterialPoint) -> Anchor {
+        let own = Point::<3>::from(point.xi);
+        let frame = self.pose.matrix();
+        Anchor {
+            x: self.pose.centre + frame * (own - self.body.centre),
+            tangent: frame * any_tangent(&self.body.shape.gap(&own).normal),
+            functions: Vec::new(),
+            spin: Vec::new(),
+            frame,
+        }
+    }
+}

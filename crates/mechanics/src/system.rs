@@ -1,0 +1,263 @@
+//! Many bodies in one system: supports, loads and contacts at one time, assembled.
+//!
+//! The unknowns are those of the bodies one after the other, then the multipliers of the contacts, then those of the
+//! equations of supports that couple several unknowns. An unknown that a support prescribes by itself keeps its place;
+//! its equation says so, and its residual is the reaction.
+
+use crate::body::{Body, BodyError, BodyState, Constraint, Contribution, Hold, Load, Order, PlaceError};
+use crate::contact::{Contact, Part, Sides, Target};
+use signorini_geometry::{Point, Vector};
+use signorini_solve::general::Entries;
+use std::sync::Arc;
+
+/// A value by place and time.
+pub type TimeField = Arc<dyn Fn(&Point<3>, f64) -> f64 + Send + Sync>;
+/// A vector by place and time.
+pub type TimeVectorField = Arc<dyn Fn(&Point<3>, f64) -> Vector<3> + Send + Sync>;
+
+/// A part of a body that is held.
+#[derive(Clone)]
+pub struct Support {
+    pub name: String,
+    pub part: Part,
+    /// Prescribed components; what is free is `None`.
+    pub displacement: [Option<TimeField>; 3],
+    pub rotation: [Option<TimeField>; 3],
+}
+
+/// What acts on a part of a body, by time.
+#[derive(Clone)]
+pub enum TimedLoad {
+    BodyForce(TimeVectorField),
+    Traction(TimeVectorField),
+    Pressure(TimeField),
+    /// Resultants, at the time only: the place is not read.
+    Force(TimeVectorField),
+    Moment(TimeVectorField),
+    FollowerMoment(TimeVectorField),
+    Tension(TimeField),
+    Springs(Vector<3>),
+}
+
+/// A load with its place.
+#[derive(Clone)]
+pub struct PlacedLoad {
+    pub name: String,
+    pub part: Part,
+    pub load: TimedLoad,
+}
+
+/// Bodies with what holds, pushes and joins them.
+#[derive(Default)]
+pub struct System {
+    pub bodies: Vec<Box<dyn Body>>,
+    pub supports: Vec<Support>,
+    pub loads: Vec<PlacedLoad>,
+    pub contacts: Vec<Contact>,
+}
+
+/// A state of the system.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SystemState {
+    pub bodies: Vec<BodyState>,
+    /// Tractions that are unknowns, of all contacts.
+    pub multipliers: Vec<f64>,
+    /// Multipliers of the supports that couple unknowns.
+    pub reactions: Vec<f64>,
+    /// Steps of the unknowns of the bodies since the last state that was accepted.
+    pub(crate) travel: Vec<f64>,
+}
+
+/// Why a system cannot be assembled.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AssemblyError {
+    #[error(transparent)]
+    Body(#[from] BodyError),
+    #[error(transparent)]
+    Place(#[from] PlaceError),
+    /// Two supports that ask for different things.
+    #[error("supports `{first}` and `{second}` contradict each other on `{body}`")]
+    Contradiction { first: String, second: String, body: String },
+}
+
+/// An equation of a support, in the numbers of the system.
+#[derive(Clone, Debug)]
+pub(crate) struct Held {
+    pub support: usize,
+    pub constraint: Constraint,
+}
+
+/// The system at a state.
+pub(crate) struct Assembled {
+    /// Internal forces less loads and contact forces; then the equations of the multipliers. Reactions are not in it.
+    pub residual: Vec<f64>,
+    /// Sum of the sizes of the terms of each equation.
+    pub sizes: Vec<f64>,
+    pub tangent: Entries,
+    /// Equations that hold one unknown, and those that couple several.
+    pub single: Vec<Held>,
+    pub coupled: Vec<Held>,
+    pub energy: f64,
+    /// Sites that have no coordinates.
+    pub lost: usize,
+}
+
+/// What is held twice may differ by so much of the size of the body.
+const SAME: f64 = 1e-9;
+
+impl System {
+    /// First unknown of each body, and their number.
+    pub(crate) fn numbering(&self) -> (Vec<u32>, usize) {
+        let mut first = Vec::with_capacity(self.bodies.len());
+        let mut count = 0;
+        for body in &self.bodies {
+            first.push(count as u32);
+            count += body.unknowns();
+        }
+        (first, count)
+    }
+
+    /// The largest extent of a body.
+    pub fn size(&self) -> f64 {
+        self.bodies.iter().map(|b| b.size()).fold(0.0, f64::max)
+    }
+
+    /// All bodies as they start.
+    pub fn start(&self) -> SystemState {
+        let (_, count) = self.numbering();
+        SystemState {
+            bodies: self.bodies.iter().map(|b| b.start()).collect(),
+            multipliers: vec![0.0; self.contacts.iter().map(Contact::multipliers).sum()],
+            reactions: Vec::new(),
+            travel: vec![0.0; count],
+        }
+    }
+
+    pub(crate) fn sides<'a>(&'a self, contact: &Contact, state: &'a SystemState, first: &[u32]) -> Sides<'a> {
+        let side = |part: &Part| (self.bodies[part.body].as_ref(), &state.bodies[part.body]);
+        Sides {
+            slave: side(&contact.slave),
+            master: side(&contact.master),
+            first: [first[contact.slave.body], first[contact.master.body]],
+        }
+    }
+
+    /// The equations of all supports.
+    pub(crate) fn held(&self, state: &SystemState, time: f64) -> Result<(Vec<Held>, Vec<Held>), AssemblyError> {
+        let (first, count) = self.numbering();
+        let mut by_unknown: Vec<Option<usize>> = vec![None; count];
+        let (mut single, mut coupled): (Vec<Held>, Vec<Held>) = (Vec::new(), Vec::new());
+        for (number, support) in self.supports.iter().enumerate() {
+            let body = &self.bodies[support.part.body];
+            let at = |field: &TimeField| {
+                let field = Arc::clone(field);
+                move |x: &Point<3>| field(x, time)
+            };
+            let displacement = support.displacement.each_ref().map(|f| f.as_ref().map(at));
+            let rotation = support.rotation.each_ref().map(|f| f.as_ref().map(at));
+            let hold = Hold {
+                displacement: displacement.each_ref().map(|f| f.as_ref().map(|f| f as &dyn Fn(&Point<3>) -> f64)),
+                rotation: rotation.each_ref().map(|f| f.as_ref().map(|f| f as &dyn Fn(&Point<3>) -> f64)),
+            };
+            let list = body.hold(support.part.group.as_deref(), &hold, &state.bodies[support.part.body])?;
+            for mut constraint in list {
+                constraint.terms.iter_mut().for_each(|t| t.0 += first[support.part.body]);
+                let held = Held { support: number, constraint };
+                let [(unknown, factor)] = held.constraint.terms[..] else {
+                    coupled.push(held);
+                    continue;
+                };
+                let place = &mut by_unknown[unknown as usize];
+                let Some(before) = place.map(|k| &single[k]) else {
+                    *place = Some(single.len());
+                    single.push(held);
+                    continue;
+                };
+                let lack = |h: &Held, factor: f64| h.constraint.lack / factor;
+                let other = lack(before, before.constraint.terms[0].1);
+                if (lack(&held, factor) - other).abs() > SAME * body.size() {
+                    return Err(AssemblyError::Contradiction {
+                        first: self.supports[before.support].name.clone(),
+                        second: support.name.clone(),
+                        body: body.name().to_string(),
+                    });
+                }
+            }
+        }
+        Ok((single, coupled))
+    }
+
+    /// Residual, and the tangent if asked for.
+    pub(crate) fn assemble(&self, state: &SystemState, time: f64, order: Order) -> Result<Assembled, AssemblyError> {
+        let (first, count) = self.numbering();
+        let multipliers = state.multipliers.len();
+        let (single, coupled) = self.held(state, time)?;
+        let size = count + multipliers + coupled.len();
+        let mut residual = vec![0.0; size];
+        let mut sizes = vec![0.0; size];
+        let mut tangent = Entries::default();
+        let mut energy = 0.0;
+        for (body, (state, &first)) in self.bodies.iter().zip(state.bodies.iter().zip(&first)) {
+            let mut out = Contribution::new(body.unknowns());
+            energy += body.internal(state, order, &mut out)?;
+            add(&out, first, &mut residual, &mut sizes, &mut tangent);
+        }
+        for load in &self.loads {
+            let (body, first) = (&self.bodies[load.part.body], first[load.part.body]);
+            let mut out = Contribution::new(body.unknowns());
+            let on = load.part.group.as_deref();
+            let of_body = &state.bodies[load.part.body];
+            let zero = Point::<3>::zeros();
+            let mut act = |what: &Load<'_>| body.load(on, what, of_body, order, &mut out);
+            match &load.load {
+                TimedLoad::BodyForce(f) => act(&Load::BodyForce(&|x| f(x, time)))?,
+                TimedLoad::Traction(f) => act(&Load::Traction(&|x| f(x, time)))?,
+                TimedLoad::Pressure(f) => act(&Load::Pressure(&|x| f(x, time)))?,
+                TimedLoad::Force(f) => act(&Load::Force(f(&zero, time)))?,
+                TimedLoad::Moment(f) => act(&Load::Moment(f(&zero, time)))?,
+                TimedLoad::FollowerMoment(f) => act(&Load::FollowerMoment(f(&zero, time)))?,
+                TimedLoad::Tension(f) => act(&Load::Tension(f(&zero, time)))?,
+                TimedLoad::Springs(k) => act(&Load::Springs(*k))?,
+            }
+            add(&out, first, &mut residual, &mut sizes, &mut tangent);
+        }
+        let mut lost = 0;
+        let mut own = 0;
+        for contact in &self.contacts {
+            let lambda = &state.multipliers[own..own + contact.multipliers()];
+            let mut target = Target {
+                residual: &mut residual,
+                sizes: &mut sizes,
+                tangent: (order == Order::Second).then_some(&mut tangent),
+            };
+            let sides = self.sides(contact, state, &first);
+            lost += contact.add_to(&sides, (lambda, (count + own) as u32), &mut target)?;
+            own += contact.multipliers();
+        }
+        for (k, held) in coupled.iter().enumerate() {
+            let row = count + multipliers + k;
+            let reaction = state.reactions.get(k).copied().unwrap_or(0.0);
+            residual[row] = held.constraint.lack;
+            for &(unknown, factor) in &held.constraint.terms {
+                residual[unknown as usize] += factor * reaction;
+                sizes[unknown as usize] += (factor * reaction).abs();
+                if order == Order::Second {
+                    tangent.add(row as u32, unknown, factor);
+                    tangent.add(unknown, row as u32, factor);
+                }
+            }
+        }
+        Ok(Assembled { residual, sizes, tangent, single, coupled, energy, lost })
+    }
+}
+
+fn add(from: &Contribution, first: u32, residual: &mut [f64], sizes: &mut [f64], tangent: &mut Entries) {
+    for (k, force) in from.forces.iter().enumerate() {
+        residual[first as usize + k] += force;
+        sizes[first as usize + k] += force.abs();
+    }
+    for (unknowns, values) in &from.blocks {
+        let unknowns: Vec<u32> = unknowns.iter().map(|u| u + first).collect();
+        tangent.add_block(&unknowns, values);
+    }
+}

@@ -274,7 +274,8 @@ fn motion<const D: usize>(planner: &Planner<'_>, rigid: &Rigid) -> Result<[Vec<P
     let (mut displacement, mut rotation) = (Vec::new(), Vec::new());
     match &rigid.motion {
         None | Some(Motion::Fixed(_)) => {}
-        Some(free @ Motion::Free(_)) => return Err(planner.unavailable(free, "a rigid body that moves freely")),
+        // A free body has its motion from the system that it is part of.
+        Some(Motion::Free(_)) => {}
         Some(Motion::Prescribed(motion)) => {
             if let Some(values) = &motion.rotation {
                 let wanted = if D == 2 { 1 } else { 3 };

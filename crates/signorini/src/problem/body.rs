@@ -1,6 +1,6 @@
 //! Deformable bodies: what they occupy, what they are computed on, and what they are made of.
 
-use super::{Components, List, MeshArrays, Rigid, Value};
+use super::{Beam, Components, List, MeshArrays, Rigid, Rope, Value};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -17,10 +17,10 @@ pub enum Body {
     /// Solids on a background grid: implicit shapes, surfaces, images.
     #[schemars(skip)]
     Cells(toml::Table),
-    #[schemars(skip)]
-    Rope(toml::Table),
-    #[schemars(skip)]
-    Beam(toml::Table),
+    /// A rope, which carries tension only.
+    Rope(Rope),
+    /// A beam of any shape.
+    Beam(Beam),
 }
 
 /// An elastic solid.
@@ -85,10 +85,10 @@ pub struct MeshAxis {
 pub enum Material {
     /// Isotropic and linear.
     LinearElastic(LinearElastic),
-    #[schemars(skip)]
-    NeoHooke(toml::Table),
-    #[schemars(skip)]
-    SaintVenantKirchhoff(toml::Table),
+    /// Isotropic at any strain, from the strain energy of Neo and Hooke; with `strain = "finite"`.
+    NeoHooke(LinearElastic),
+    /// Isotropic and linear in the strain of Green and Lagrange: for large rotations; with `strain = "finite"`.
+    SaintVenantKirchhoff(LinearElastic),
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub struct Contact {
     /// Two bodies, the one whose points are tested first.
     pub between: Option<List<String>>,
-    /// A body that may touch itself; not available yet.
+    /// A rope, beam or solid that may touch itself.
     pub within: Option<String>,
     /// Whether all bodies may touch each other.
     pub all: Option<bool>,
@@ -40,8 +40,8 @@ pub enum Friction {
 pub struct CoulombFriction {
     /// The coefficient; in space two where it depends on the direction: along `axis`, and across it.
     pub mu: Components,
-    /// The first direction of two coefficients; it is projected on the surface.
-    pub axis: Option<List<Value>>,
+    /// The first direction of two coefficients, projected on the surface; `"tangent"` is along a rope or beam.
+    pub axis: Option<Components>,
     /// Which side carries the axis, `slave` if left out; while bodies slide little it is the same.
     pub on: Option<AxisOn>,
 }
@@ -84,6 +84,8 @@ pub enum Method {
     GaussPoint(SolidMethod),
     /// Between solids: at nodes.
     Node(SolidMethod),
+    /// Of ropes and beams: at nodes of straight elements, at points of Gauss of smooth ones.
+    Curve(SolidMethod),
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]

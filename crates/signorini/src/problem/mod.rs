@@ -8,6 +8,7 @@
 pub mod arrays;
 pub mod body;
 pub mod contact;
+pub mod curve;
 pub mod error;
 pub mod fit;
 pub mod history;
@@ -21,6 +22,7 @@ pub mod value;
 pub use arrays::{Array, CellArrays, Grid2, MeshArrays, TriangleArrays};
 pub use body::*;
 pub use contact::*;
+pub use curve::*;
 pub use error::{CaseError, suggestion};
 pub use fit::{Fit, FitUnknown, Noise};
 pub use history::{ArcLength, AreaControl, Control, Step};
@@ -252,11 +254,13 @@ pub struct Support {
     pub on: String,
     /// A value for a membrane, a vector with `"free"` where free for a solid.
     pub displacement: Option<Components>,
+    /// The rotation vector in radians of a section of a beam or of a free rigid body, with `"free"` where free.
+    pub rotation: Option<List<Value>>,
     /// The displacement along the outward normal alone.
     pub normal: Option<Value>,
     /// All points share one displacement in the components that are not prescribed.
     pub uniform: Option<bool>,
-    /// Stiffness per area of an elastic bed.
+    /// Stiffness per area of an elastic bed; of ropes, beams and rigid bodies force per displacement.
     pub spring: Option<List<Value>>,
 }
 
@@ -274,8 +278,12 @@ pub struct Load {
     pub pressure: Option<Value>,
     /// A resultant force along each axis, spread evenly.
     pub force: Option<List<Value>>,
-    /// Force per volume along each axis.
+    /// Force per volume along each axis; of a rope or beam per length.
     pub body_force: Option<List<Value>>,
+    /// A resultant moment about each axis, on a beam or a free rigid body.
+    pub moment: Option<List<Value>>,
+    /// A force along the end of a rope or beam, pulling.
+    pub tension: Option<Value>,
 }
 
 /// What to write.

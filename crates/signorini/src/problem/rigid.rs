@@ -208,8 +208,16 @@ pub enum Motion {
     Fixed(Nothing),
     /// Moved as stated.
     Prescribed(Prescribed),
-    /// Moved by what acts on it; not available yet.
-    Free(Nothing),
+    /// Moved by what acts on it.
+    Free(FreeMotion),
+}
+
+/// A rigid body that moves freely: in space by six unknowns, in the plane by three.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FreeMotion {
+    /// The point that forces act on and about which the body turns, lengths; the centre of the shape if left out.
+    pub center: Option<List<Value>>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]

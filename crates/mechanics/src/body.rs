@@ -4,9 +4,10 @@
 //! its thickness or circumference. A body numbers its own unknowns from 0. A configuration may hold more numbers than
 //! there are unknowns (a quaternion turns by three): a step of the unknowns reaches it through [`Body::advance`].
 
-use signorini_geometry::rigid_shape::GapJet;
+use signorini_geometry::rigid_shape::{GapJet, RigidShape};
 use signorini_geometry::shape::SurfaceJet;
 use signorini_geometry::{Matrix, Point, Vector};
+use std::sync::Arc;
 
 /// What a body carries from one increment to the next, as plain numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -88,7 +89,7 @@ pub struct Placed {
     pub x: Point<3>,
     /// Outward unit normal of a surface; none for a curve or a point, which faces every way.
     pub outward: Option<Vector<3>>,
-    /// Unit tangent of a curve, an axis of friction.
+    /// Tangent of a curve, of any length; its changes are the slopes of the functions along the first coordinate.
     pub tangent: Option<Vector<3>>,
     /// Radius of a section or ball about `x` that touches instead of `x`.
     pub radius: f64,
@@ -130,22 +131,23 @@ pub struct Foot {
 }
 
 /// The gap of a point to a body that is rigid, with its derivatives where the body is now.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct RigidFoot {
     /// The foot in the axes of the body.
     pub point: MaterialPoint,
     /// Gap, normal and Hessian in space.
     pub jet: GapJet<3>,
-    /// The point about which the body turns, where it is now.
+    /// The shape, in the axes of the body.
+    pub shape: Arc<dyn RigidShape>,
+    /// Where the origin of those axes is, and how they are turned.
     pub centre: Point<3>,
-    /// The rotation of the body.
     pub rotation: Matrix<3>,
-    /// The first of its six unknowns: three of the centre, three of the spin; none where its motion is given.
-    pub unknowns: Option<[u32; 6]>,
+    /// Unknowns of the motion of the centre and of the spin; none where a component does not move or is prescribed.
+    pub unknowns: [Option<u32>; 6],
 }
 
 /// What a point meets.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub enum Met {
     Foot(Box<Foot>),
     Rigid(Box<RigidFoot>),
@@ -155,7 +157,13 @@ pub enum Met {
 #[derive(Clone, Debug, Default)]
 pub struct Anchor {
     pub x: Point<3>,
+    /// A direction in the surface, of any length, that moves with the material; the slopes of the functions along the
+    /// first coordinate are its changes.
+    pub tangent: Vector<3>,
     pub functions: Vec<Function>,
+    /// What turns the section there, and how it is turned.
+    pub spin: Vec<Function>,
+    pub frame: Matrix<3>,
 }
 
 /// A value that varies in space and time: at a reference position.
@@ -255,6 +263,9 @@ pub trait Body: Send + Sync {
     /// At rest, or as the body starts.
     fn start(&self) -> BodyState;
 
+    /// Brings what is prescribed in a state, such as the motion of a rigid body, to a time.
+    fn prescribe(&self, _time: f64, _state: &mut BodyState) {}
+
     /// The state after `share` of a step of the unknowns: a retraction, exact to second order along straight steps.
     fn advance(&self, state: &BodyState, step: &[f64], share: f64) -> BodyState;
 
@@ -309,6 +320,11 @@ pub trait Body: Send + Sync {
     /// The six unit motions of the whole body in its unknowns, at a state (three translations, three turns about the
     /// origin): for resultants and free motions.
     fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6];
+
+    /// Unknowns that are spins, by threes: of the sections of a beam, of a rigid body.
+    fn spins(&self) -> Vec<[u32; 3]> {
+        Vec::new()
+    }
 
     /// The largest extent of the body: the scale of lengths.
     fn size(&self) -> f64;

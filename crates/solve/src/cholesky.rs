@@ -24,6 +24,8 @@ pub enum SolveError {
     Inaccurate { size: usize, residual: f64 },
     #[error("the linear system of {size} unknowns was not factorised")]
     NotFactorised { size: usize },
+    #[error("the matrix of {size} unknowns is singular")]
+    Singular { size: usize },
     #[error("not enough memory to factorise a matrix of {size} unknowns")]
     OutOfMemory { size: usize },
 }

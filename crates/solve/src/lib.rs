@@ -5,6 +5,7 @@
 //! - [`acceleration`]: Anderson's for fixed-point iterations.
 //! - [`dissection`]: an order of elimination for meshes in space.
 //! - [`dense`]: small dense systems.
+//! - [`general`]: general sparse matrices and their LU factors; [`newton`]: Newton's method with line search.
 //! - [`krylov`]: equations known by products with their matrix.
 //! - [`progress`]: what a solver reports while it works, and how it is interrupted.
 
@@ -12,7 +13,9 @@ pub mod acceleration;
 pub mod cholesky;
 pub mod dense;
 pub mod dissection;
+pub mod general;
 pub mod krylov;
+pub mod newton;
 pub mod progress;
 pub mod sparse;
 

@@ -1,0 +1,172 @@
+//! Newton's method with line search, for equations whose states need not be vectors.
+//!
+//! The residual is measured as the equations say, relative to what it is to reach: they are solved where the measure is at
+//! most one. Two searches along the step are known. The monotone one (Armijo 1966) takes the first share of a step that
+//! lowers the measure, or the best of all. The watchdog (Chamberlain, Powell, Lemarechal & Pedersen 1982) takes whole
+//! steps as they come, and goes back to the best state, and from there by shares, only when none of several was better:
+//! for equations whose residual rises before it falls, as that of thin beams with predicted stresses.
+
+/// Equations with their linearisation.
+pub trait Equations {
+    type State: Clone;
+    type Error;
+
+    /// The residual at a state, measured.
+    ///
+    /// # Errors
+    /// States that cannot be.
+    fn measure(&mut self, at: &Self::State) -> Result<f64, Self::Error>;
+
+    /// The Newton step at a state.
+    ///
+    /// # Errors
+    /// States that cannot be, or a linear system without a solution.
+    fn step(&mut self, at: &Self::State) -> Result<Vec<f64>, Self::Error>;
+
+    /// The state after a share of the step.
+    fn advance(&self, at: &Self::State, step: &[f64], share: f64) -> Self::State;
+}
+
+/// How far a step is followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Search {
+    Monotone,
+    /// Whole steps, so many without a better state before the search goes back.
+    Watchdog { patience: usize },
+}
+
+/// How the equations are solved.
+#[derive(Clone, Copy, Debug)]
+pub struct Newton {
+    pub most_iterations: usize,
+    pub search: Search,
+}
+
+/// A solution, with the measure before and after each iteration.
+#[derive(Clone, Debug)]
+pub struct Converged<S> {
+    pub state: S,
+    pub history: Vec<f64>,
+}
+
+/// Why there is none.
+#[derive(Clone, Debug)]
+pub enum NewtonFailure<S, E> {
+    /// The last state, and the measures so far.
+    NotConverged { best: S, history: Vec<f64> },
+    /// Told by the equations.
+    Equations { error: E, history: Vec<f64> },
+    Interrupted,
+}
+
+/// Shares of a step that are tried.
+const SHARES: [f64; 7] = [1.0, 0.6, 0.35, 0.2, 0.1, 0.05, 0.02];
+
+/// Solves the equations. `report` is told each iteration and its measure; where it says `false` the solver stops.
+///
+/// # Errors
+/// No convergence, equations that cannot be evaluated, or an interruption.
+pub fn newton<E: Equations>(
+    equations: &mut E,
+    start: &E::State,
+    options: &Newton,
+    report: &mut dyn FnMut(usize, f64) -> bool,
+) -> Result<Converged<E::State>, NewtonFailure<E::State, E::Error>> {
+    let mut history = Vec::new();
+    macro_rules! told {
+        ($found:expr) => {
+            match $found {
+                Ok(found) => found,
+                Err(error) => return Err(NewtonFailure::Equations { error, history }),
+            }
+        };
+    }
+    let mut state = start.clone();
+    let mut measure = told!(equations.measure(&state));
+    history.push(measure);
+    let mut best = (state.clone(), measure);
+    let mut behind = 0;
+    for iteration in 1..=options.most_iterations {
+        if measure <= 1.0 {
+            break;
+        }
+        let step = told!(equations.step(&state));
+        let whole_steps = match options.search {
+            Search::Monotone => false,
+            Search::Watchdog { patience } => behind < patience,
+        };
+        let mut reached = None;
+        for share in SHARES {
+            let next = equations.advance(&state, &step, share);
+            // A state that cannot be is one that is too far.
+            let of_next = match equations.measure(&next) {
+                Ok(m) => m,
+                Err(error) if share == SHARES[SHARES.len() - 1] && reached.is_none() => {
+                    return Err(NewtonFailure::Equations { error, history });
+                }
+                Err(_) => continue,
+            };
+            let better = reached.as_ref().is_none_or(|(_, m)| of_next < *m);
+            if better && !of_next.is_nan() {
+                reached = Some((next, of_next));
+            }
+            if of_next <= 1.0 || (whole_steps && of_next.is_finite()) || of_next <= (1.0 - 0.1 * share) * measure {
+                break;
+            }
+        }
+        let Some((next, of_next)) = reached else { break };
+        (state, measure) = (next, of_next);
+        history.push(measure);
+        if !report(iteration, measure) {
+            return Err(NewtonFailure::Interrupted);
+        }
+        if measure < best.1 {
+            best = (state.clone(), measure);
+            behind = 0;
+        } else {
+            behind += 1;
+            if let Search::Watchdog { patience } = options.search
+                && behind == patience
+            {
+                (state, measure) = best.clone();
+            }
+        }
+    }
+    if measure <= 1.0 {
+        return Ok(Converged { state, history });
+    }
+    Err(NewtonFailure::NotConverged { best: best.0, history })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `atan x = 0`: whole steps diverge from beyond 1.39.
+    struct Arctangent;
+
+    impl Equations for Arctangent {
+        type State = f64;
+        type Error = ();
+        fn measure(&mut self, at: &f64) -> Result<f64, ()> {
+            Ok(at.atan().abs() / 1e-12)
+        }
+        fn step(&mut self, at: &f64) -> Result<Vec<f64>, ()> {
+            Ok(vec![-at.atan() * (1.0 + at * at)])
+        }
+        fn advance(&self, at: &f64, step: &[f64], share: f64) -> f64 {
+            at + share * step[0]
+        }
+    }
+
+    #[test]
+    fn both_searches_find_what_whole_steps_lose() {
+        for search in [Search::Monotone, Search::Watchdog { patience: 3 }] {
+            let found = newton(&mut Arctangent, &3.0, &Newton { most_iterations: 40, search }, &mut |_, _| true);
+            assert!(found.unwrap().state.abs() < 1e-12, "{search:?}");
+        }
+        let lost = Newton { most_iterations: 8, search: Search::Watchdog { patience: 100 } };
+        let lost = newton(&mut Arctangent, &3.0, &lost, &mut |_, _| true);
+        assert!(matches!(lost, Err(NewtonFailure::NotConverged { history, .. }) if history.len() > 1));
+    }
+}

@@ -87,7 +87,9 @@ fn bend_of_45_degrees() {
     println!("one step: {} iterations {:?}", one.iterations(), one.residuals);
     assert!((tip(&beam, &one.states[0]) - tip(&beam, &state)).norm() < 1e-9);
     assert!(one.iterations() <= 12);
-    let back = solve(&beam, &one.states[0], Push::Force(V::zeros()), 1e-6);
+    // Unloaded in two steps: in one, the stiffness of the loaded state throws the first iterate too far for whole steps.
+    let half = solve(&beam, &one.states[0], Push::Force(V::new(0.0, 0.0, 300.0)), 1e-6);
+    let back = solve(&beam, &half.states[0], Push::Force(V::zeros()), 1e-6);
     let error = (tip(&beam, &back.states[0]) - tip(&beam, &start)).norm();
     println!("unloaded: {error:e}, {} iterations", back.iterations());
     assert!(error < 1e-9);

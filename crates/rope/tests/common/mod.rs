@@ -3,7 +3,8 @@
 
 use signorini_geometry::Vector;
 use signorini_mechanics::body::{Body, BodyState, Constraint, Contribution, Hold, Load, Order};
-use signorini_solve::general::{Analysis, Entries};
+use faer::linalg::solvers::Solve;
+use faer::sparse::{SparseColMat, Triplet};
 
 pub type V = Vector<3>;
 
@@ -112,32 +113,41 @@ pub fn newton<S: Surroundings>(
     let mut states = start.to_vec();
     let (mut residual, mut forces) = measure(around, &states);
     let mut residuals = vec![residual];
-    let mut analysis = Analysis::default();
     for _ in 0..options.most {
         if residual <= options.tolerance {
             return Ok(Found { states, residuals, forces });
         }
         let out = assemble(around, &states, Order::Second);
         let prescribed = held(around, &states);
-        let mut entries = Entries::default();
-        out.blocks.iter().for_each(|(u, v)| entries.add_block(u, v));
-        entries.without_rows(|r| prescribed[r as usize].is_some());
         let mut right: Vec<f64> = out.forces.iter().map(|f| -f).collect();
+        let mut entries = Vec::new();
+        for (unknowns, values) in &out.blocks {
+            let m = unknowns.len();
+            for (r, &row) in unknowns.iter().enumerate().filter(|(_, r)| prescribed[**r as usize].is_none()) {
+                for (c, &column) in unknowns.iter().enumerate() {
+                    entries.push(Triplet::new(row as usize, column as usize, values[r * m + c]));
+                }
+            }
+        }
         for k in 0..n {
             if let Some(value) = prescribed[k] {
-                entries.add(k as u32, k as u32, 1.0);
+                entries.push(Triplet::new(k, k, 1.0));
                 right[k] = value;
             }
         }
-        let Ok(step) = analysis.factor(entries.matrix(n)).and_then(|f| f.solve(&right)) else { break };
+        let Some(step) = solve(n, &entries, &right) else { break };
         let advance = |share: f64| -> Vec<BodyState> {
             let of = |b: usize| &step[first[b] as usize..first[b + 1] as usize];
             (0..bodies.len()).map(|b| bodies[b].advance(&states[b], of(b), share)).collect()
         };
         let shares: &[f64] =
             if options.search == Search::Shares { &[1.0, 0.6, 0.35, 0.2, 0.1, 0.05, 0.02] } else { &[1.0] };
+        // Steps are no longer than a part of the bodies.
+        let largest = step.iter().fold(0.0f64, |m, s| m.max(s.abs()));
+        let size = bodies.iter().fold(0.0f64, |m, b| m.max(b.size()));
+        let cap = if options.search == Search::Shares { (0.3 * size / largest).min(1.0) } else { 1.0 };
         let mut best: Option<(f64, f64)> = None;
-        for &share in shares {
+        for share in shares.iter().map(|s| s * cap) {
             let r = measure(around, &advance(share)).0;
             if best.is_none_or(|b| r < b.1) {
                 best = Some((share, r));
@@ -165,4 +175,15 @@ pub fn newton<S: Surroundings>(
         return Ok(Found { states, residuals, forces });
     }
     Err(Found { states, residuals, forces })
+}
+
+/// Sparse LU with one refinement.
+fn solve(n: usize, entries: &[Triplet<usize, usize, f64>], right: &[f64]) -> Option<Vec<f64>> {
+    let matrix = SparseColMat::<usize, f64>::try_new_from_triplets(n, n, entries).ok()?;
+    let lu = matrix.sp_lu().ok()?;
+    let b = faer::Mat::from_fn(n, 1, |i, _| right[i]);
+    let x = lu.solve(&b);
+    let x = &x + lu.solve(&(&b - &matrix * &x));
+    let x: Vec<f64> = (0..n).map(|i| x[(i, 0)]).collect();
+    x.iter().all(|v| v.is_finite()).then_some(x)
 }

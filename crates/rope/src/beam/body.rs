@@ -1,0 +1,482 @@
+//! A beam: elements in a row, with sections that turn.
+//!
+//! A configuration has ten numbers for each node, `r t q`, and four for the middle of each element, `q`; there are nine
+//! unknowns for each node, `r t θ`, and three for each middle, `θ`. The internal numbers are the predicted stresses of each
+//! element. The start is without stress whatever its shape.
+
+use super::element::{Element, Forces, Nodes, SPINS, STRESSES, Stresses, UNKNOWNS};
+use crate::centreline::{Centreline, Closure, Continuity};
+use crate::curve_body::{self, CurveBody, SectionMotion};
+use crate::hermite;
+use crate::path::Sampled;
+use crate::place::{self, Line, Part};
+use crate::quaternion::{self, Quaternion, spin_map};
+use crate::section::{SectionError, Stiffness};
+use signorini_geometry::{Matrix, Vector};
+use signorini_mechanics::body::{
+    Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Function, Hold, Load, Master, Order, PlaceError,
+    Placed, Sampling, Site,
+};
+
+/// A beam that cannot be.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BeamError {
+    #[error("a beam needs a smooth path: sample it with continuity C1")]
+    NotSmooth,
+    #[error("orientation ({}, {}, {}) is along the beam at its start: give a direction across it", at[0], at[1], at[2])]
+    Orientation { at: [f64; 3] },
+    #[error(
+        "element {element} turns by {degrees:.1}° at the start, at most 90° can be resolved: give more than {cells} cells"
+    )]
+    TurnsTooMuch { element: usize, degrees: f64, cells: usize },
+    #[error("radius {0}: valid are 0 and positive numbers")]
+    Radius(f64),
+    #[error(transparent)]
+    Section(#[from] SectionError),
+}
+
+/// Numbers of a node in a configuration, and unknowns.
+const NUMBERS: usize = 10;
+const NODE: usize = 9;
+
+/// A geometrically exact beam.
+#[derive(Clone, Debug)]
+pub struct Beam {
+    name: String,
+    line: Centreline,
+    elements: Vec<Element>,
+    /// Signs of the quaternions of each element that put them into one hemisphere: those of its last node and middle.
+    signs: Vec<[f64; 2]>,
+    radius: f64,
+    contact_points: usize,
+    start: Vec<f64>,
+}
+
+/// Axes along a curve that turn about it as little as can be (double reflection: Wang, Jüttler, Zheng & Liu 2008).
+fn transport(axes: &Matrix<3>, from: &Vector<3>, to: &Vector<3>, tangent: &Vector<3>) -> Matrix<3> {
+    let reflect = |v: Vector<3>, across: &Vector<3>| {
+        let square = across.norm_squared();
+        if square == 0.0 { v } else { v - across * (2.0 * across.dot(&v) / square) }
+    };
+    let first = to - from;
+    let [d1, d2] = [0, 1].map(|k| reflect(axes.column(k).into_owned(), &first));
+    let d2 = reflect(d2, &(tangent - d1));
+    let d2 = (d2 - tangent * tangent.dot(&d2)).normalize();
+    Matrix::<3>::from_columns(&[*tangent, d2, tangent.cross(&d2)])
+}
+
+impl Beam {
+    /// A beam along a path. `orientation` is a direction near the section's axis `d_2` at the start; without one, that of
+    /// the coordinate axis farthest from the tangent. `radius` is what touches; `contact_points` of each element are tested.
+    ///
+    /// # Errors
+    /// A path with kinks, a direction along the beam, a stiffness that is not positive, elements that turn too much.
+    pub fn new(
+        name: &str,
+        path: &Sampled,
+        orientation: Option<Vector<3>>,
+        stiffness: Stiffness,
+        radius: f64,
+    ) -> Result<Self, BeamError> {
+        if path.continuity != Continuity::C1 {
+            return Err(BeamError::NotSmooth);
+        }
+        if !(radius >= 0.0 && radius.is_finite()) {
+            return Err(BeamError::Radius(radius));
+        }
+        let stiffness = stiffness.checked()?;
+        let line = Centreline::new(path.lengths.clone(), path.closure, Continuity::C1, [NODE, NUMBERS]);
+        let tangent = path.tangents[0];
+        let direction = orientation.unwrap_or_else(|| quaternion::axis(tangent.iamin()));
+        let across = direction - tangent * tangent.dot(&direction);
+        if across.norm().is_nan() || across.norm() <= 1e-6 * direction.norm() {
+            return Err(BeamError::Orientation { at: crate::path::array(&direction) });
+        }
+        let d2 = across.normalize();
+        let mut axes = Matrix::<3>::from_columns(&[tangent, d2, tangent.cross(&d2)]);
+        let (nodes, count) = (line.nodes(), line.elements());
+        let mut start = vec![0.0; NUMBERS * nodes + 4 * count];
+        for node in 0..nodes {
+            start[NUMBERS * node..NUMBERS * node + 3].copy_from_slice(path.positions[node].as_slice());
+            start[NUMBERS * node + 3..NUMBERS * node + 6].copy_from_slice(path.tangents[node].as_slice());
+        }
+        // Axes at the nodes and in the middles, one after the other.
+        let mut frames = vec![axes];
+        for e in 0..count {
+            let x = line.nodal(&start, e);
+            let h = line.lengths[e];
+            let middle = hermite::sum(&hermite::cubic(0.5, h), &x);
+            let along = hermite::sum(&hermite::cubic_first(0.5, h), &x).normalize();
+            axes = transport(&axes, &x[0], &middle, &along);
+            frames.push(axes);
+            axes = transport(&axes, &middle, &x[2], &x[3].normalize());
+            frames.push(axes);
+        }
+        if path.closure == Closure::Closed {
+            untwist(&mut frames);
+        }
+        let quaternions: Vec<Quaternion> = frames.iter().map(quaternion::of_rotation).collect();
+        let mut beam = Beam {
+            name: name.to_string(),
+            line,
+            elements: Vec::new(),
+            signs: Vec::new(),
+            radius,
+            contact_points: 4,
+            start,
+        };
+        for node in 0..nodes {
+            beam.start[NUMBERS * node + 6..NUMBERS * (node + 1)].copy_from_slice(quaternions[2 * node].as_slice());
+        }
+        for e in 0..count {
+            let at = beam.middle(e);
+            beam.start[at..at + 4].copy_from_slice(quaternions[2 * e + 1].as_slice());
+            let last = beam.line.ends(e)[1];
+            let ends = [quaternions[2 * e], quaternions[2 * last]];
+            let sign = |q: &Quaternion| if q.dot(&ends[0]) < 0.0 { -1.0 } else { 1.0 };
+            let turn = 2.0 * ends[0].dot(&ends[1]).abs().min(1.0).acos();
+            if turn > std::f64::consts::FRAC_PI_2 * (1.0 + 1e-9) {
+                return Err(BeamError::TurnsTooMuch { element: e, degrees: turn.to_degrees(), cells: count });
+            }
+            beam.signs.push([sign(&ends[1]), sign(&quaternions[2 * e + 1])]);
+            let nodes = beam.nodes_of(&beam.start, e);
+            beam.elements.push(Element::new(beam.line.lengths[e], stiffness, &nodes));
+        }
+        Ok(beam)
+    }
+
+    /// Tests contact at so many points of Gauss of each element instead of four.
+    pub fn with_contact_points(mut self, count: usize) -> Self {
+        self.contact_points = count.max(1);
+        self
+    }
+
+    /// Where the quaternion of the middle of an element is in a configuration.
+    fn middle(&self, element: usize) -> usize {
+        NUMBERS * self.line.nodes() + 4 * element
+    }
+
+    fn nodes_of(&self, configuration: &[f64], element: usize) -> Nodes {
+        let [a, b] = self.line.ends(element);
+        let quaternion = |at: usize, sign: f64| Quaternion::from_column_slice(&configuration[at..at + 4]) * sign;
+        let [last, middle] = self.signs[element];
+        Nodes {
+            centreline: self.line.nodal(configuration, element),
+            rotations: [
+                quaternion(NUMBERS * a + 6, 1.0),
+                quaternion(NUMBERS * b + 6, last),
+                quaternion(self.middle(element), middle),
+            ],
+        }
+    }
+
+    /// Unknowns of an element in the order of its forces.
+    fn unknowns_of(&self, element: usize) -> [u32; UNKNOWNS] {
+        let [a, b] = self.line.ends(element).map(|n| NODE * n);
+        let middle = NODE * self.line.nodes() + 3 * element;
+        std::array::from_fn(|k| match k {
+            0..9 => a + k,
+            9..18 => b + k - 9,
+            _ => middle + k - 18,
+        } as u32)
+    }
+
+    /// Spins of an element: first unknowns of those of its nodes and of its middle.
+    fn spins_of(&self, element: usize) -> [u32; 3] {
+        let unknowns = self.unknowns_of(element);
+        SPINS.map(|k| unknowns[k])
+    }
+
+    fn predicted(internal: &[f64], element: usize) -> Stresses {
+        let own = &internal[STRESSES * element..STRESSES * (element + 1)];
+        std::array::from_fn(|k| Vector::<3>::from_column_slice(&own[3 * k..3 * k + 3]))
+    }
+
+    /// Number of elements.
+    pub fn elements(&self) -> usize {
+        self.elements.len()
+    }
+
+    /// Position of a node.
+    pub fn position(&self, state: &BodyState, node: usize) -> Vector<3> {
+        self.line.position(&state.configuration, node)
+    }
+
+    /// The quaternion of a node: the rotation of its section.
+    pub fn rotation_of(&self, state: &BodyState, node: usize) -> Quaternion {
+        Quaternion::from_column_slice(&state.configuration[NUMBERS * node + 6..NUMBERS * (node + 1)])
+    }
+
+    /// The state after a given motion of all of it: of positions, and of vectors and rotations by a quaternion.
+    pub fn moved(
+        &self,
+        state: &BodyState,
+        motion: impl Fn(&Vector<3>) -> (Vector<3>, Quaternion, Vector<3>),
+    ) -> BodyState {
+        let mut next = state.clone();
+        let c = &mut next.configuration;
+        for node in 0..self.line.nodes() {
+            let at = NUMBERS * node;
+            let x = self.line.position(&state.configuration, node);
+            let (position, turn, shear) = motion(&x);
+            let t = quaternion::rotation(&turn) * self.line.derivative(&state.configuration, node) + shear;
+            let q = quaternion::product(&turn, &self.rotation_of(state, node));
+            c[at..at + 3].copy_from_slice(position.as_slice());
+            c[at + 3..at + 6].copy_from_slice(t.as_slice());
+            c[at + 6..at + 10].copy_from_slice(q.as_slice());
+        }
+        for e in 0..self.line.elements() {
+            let at = self.middle(e);
+            let x = self.line.jet(&state.configuration, e, 0.5).x;
+            let q = quaternion::product(&motion(&x).1, &Quaternion::from_column_slice(&state.configuration[at..at + 4]));
+            c[at..at + 4].copy_from_slice(q.as_slice());
+        }
+        next.internal = self.true_stresses(&next.configuration);
+        next
+    }
+
+    fn true_stresses(&self, configuration: &[f64]) -> Vec<f64> {
+        (0..self.elements.len())
+            .flat_map(|e| {
+                let stresses = self.elements[e].stresses(&self.nodes_of(configuration, e));
+                stresses.into_iter().flat_map(|s| [s[0], s[1], s[2]])
+            })
+            .collect()
+    }
+
+    fn line_of<'a>(&'a self, state: &'a BodyState) -> Line<'a> {
+        Line { body: &self.name, line: &self.line, start: &self.start, now: &state.configuration }
+    }
+}
+
+/// Turns the axes along a closed curve so that the last ones are the first ones.
+fn untwist(frames: &mut [Matrix<3>]) {
+    let last = frames.len() - 1;
+    let (first, end) = (frames[0], frames[last]);
+    let angle = end.column(1).dot(&first.column(2)).atan2(end.column(1).dot(&first.column(1)));
+    for (k, frame) in frames.iter_mut().enumerate() {
+        let d1: Vector<3> = frame.column(0).into_owned();
+        let turn = quaternion::rotation(&quaternion::exponential(&(d1 * (-angle * k as f64 / last as f64))));
+        *frame = turn * *frame;
+    }
+}
+
+impl CurveBody for Beam {
+    fn centreline(&self) -> &Centreline {
+        &self.line
+    }
+
+    fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    fn contact_points(&self) -> usize {
+        self.contact_points
+    }
+
+    fn section(&self, configuration: &[f64], element: usize, xi: f64) -> SectionMotion {
+        let nodes = self.nodes_of(configuration, element);
+        let l = hermite::quadratic(xi);
+        let q = (0..3).fold(Quaternion::zeros(), |sum, a| sum + nodes.rotations[a] * l[a]);
+        let inverse = quaternion::conjugate(&q) * (2.0 / q.norm_squared());
+        let spins = self.spins_of(element);
+        let spin = (0..3)
+            .flat_map(|a| {
+                let map = spin_map(&nodes.rotations[a]) * l[a];
+                (0..3).map(move |i| Function {
+                    unknown: spins[a] + i as u32,
+                    value: quaternion::vector(&quaternion::product(&map.column(i).into_owned(), &inverse)),
+                    ..Function::default()
+                })
+            })
+            .collect();
+        SectionMotion { spin, frame: quaternion::rotation(&q) }
+    }
+}
+
+impl Body for Beam {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn unknowns(&self) -> usize {
+        NODE * self.line.nodes() + 3 * self.line.elements()
+    }
+
+    fn start(&self) -> BodyState {
+        BodyState { configuration: self.start.clone(), internal: vec![0.0; STRESSES * self.elements.len()] }
+    }
+
+    fn advance(&self, state: &BodyState, step: &[f64], share: f64) -> BodyState {
+        let mut next = state.clone();
+        let c = &mut next.configuration;
+        let spin = |at: usize| Vector::<3>::from_column_slice(&step[at..at + 3]) * share;
+        let turn = |c: &mut [f64], theta: Vector<3>| {
+            let q = quaternion::product(&quaternion::exponential(&theta), &Quaternion::from_column_slice(c));
+            c.copy_from_slice((q / q.norm()).as_slice());
+        };
+        for node in 0..self.line.nodes() {
+            let (at, first) = (NUMBERS * node, NODE * node);
+            (0..6).for_each(|k| c[at + k] += share * step[first + k]);
+            turn(&mut c[at + 6..at + 10], spin(first + 6));
+        }
+        for e in 0..self.elements.len() {
+            let at = self.middle(e);
+            turn(&mut c[at..at + 4], spin(NODE * self.line.nodes() + 3 * e));
+        }
+        next.internal = (0..self.elements.len())
+            .flat_map(|e| {
+                let unknowns = self.unknowns_of(e);
+                let own = Forces::from_fn(|k, _| share * step[unknowns[k] as usize]);
+                let stresses = self.elements[e].predicted(&self.nodes_of(&state.configuration, e), &own);
+                stresses.into_iter().flat_map(|s| [s[0], s[1], s[2]])
+            })
+            .collect();
+        next
+    }
+
+    fn internal(&self, state: &BodyState, order: Order, out: &mut Contribution) -> Result<f64, BodyError> {
+        let mut energy = 0.0;
+        for (e, element) in self.elements.iter().enumerate() {
+            let nodes = self.nodes_of(&state.configuration, e);
+            let unknowns = self.unknowns_of(e);
+            let (stored, forces) = element.forces(&nodes);
+            if !stored.is_finite() {
+                return Err(BodyError::Inverted { body: self.name.clone(), cell: e });
+            }
+            energy += stored;
+            (0..UNKNOWNS).for_each(|k| out.forces[unknowns[k] as usize] += forces[k]);
+            if order == Order::Second {
+                let tangent = element.tangent(&nodes, &Self::predicted(&state.internal, e));
+                // Symmetric: columns are rows.
+                out.add_block(&unknowns, tangent.as_slice());
+            }
+        }
+        Ok(energy)
+    }
+
+    fn hold(&self, on: Option<&str>, hold: &Hold<'_>, state: &BodyState) -> Result<Vec<Constraint>, PlaceError> {
+        let part = place::part(&self.name, &self.line, on)?;
+        let mut out = self.line_of(state).hold(&part, hold);
+        if hold.rotation.iter().all(Option::is_none) {
+            return Ok(out);
+        }
+        for node in place::nodes(&self.line, &part) {
+            let reference = self.line.position(&self.start, node);
+            let from = Quaternion::from_column_slice(&self.start[NUMBERS * node + 6..NUMBERS * (node + 1)]);
+            let now = self.rotation_of(state, node);
+            let first = (NODE * node + 6) as u32;
+            let wanted = hold.rotation.map(|f| f.map(|f| f(&reference)));
+            if let [Some(x), Some(y), Some(z)] = wanted {
+                // The spin that is lacking, whatever the angle.
+                let target = quaternion::product(&quaternion::exponential(&Vector::<3>::new(x, y, z)), &from);
+                let lack = quaternion::logarithm(&quaternion::product(&now, &quaternion::conjugate(&target)));
+                for i in 0..3 {
+                    out.push(Constraint { terms: vec![(first + i as u32, 1.0)], lack: lack[i], component: 3 + i });
+                }
+                continue;
+            }
+            let phi = quaternion::logarithm(&quaternion::product(&now, &quaternion::conjugate(&from)));
+            let map = quaternion::inverse_tangent_map(&phi);
+            for (i, value) in wanted.iter().enumerate() {
+                if let Some(value) = value {
+                    let terms = (0..3).map(|j| (first + j as u32, map[(i, j)])).collect();
+                    out.push(Constraint { terms, lack: phi[i] - value, component: 3 + i });
+                }
+            }
+        }
+        Ok(out)
+    }
+
+    fn load(
+        &self,
+        on: Option<&str>,
+        load: &Load<'_>,
+        state: &BodyState,
+        order: Order,
+        out: &mut Contribution,
+    ) -> Result<(), PlaceError> {
+        let part = place::part(&self.name, &self.line, on)?;
+        let (given, follows) = match (load, &part) {
+            (Load::Moment(m), Part::Nodes(_)) => (*m, 0.0),
+            (Load::FollowerMoment(m), Part::Nodes(_)) => (*m, 1.0),
+            (Load::Moment(_) | Load::FollowerMoment(_), Part::Whole) => {
+                let message = "a moment acts on an end: `start` or `end`".to_string();
+                return Err(PlaceError::Unsuitable { body: self.name.clone(), message });
+            }
+            _ => return self.line_of(state).load(&part, load, order, out),
+        };
+        let nodes = place::nodes(&self.line, &part);
+        for &node in &nodes {
+            let first = NODE * node + 6;
+            let share = given / nodes.len() as f64;
+            // Turns with the section since the start.
+            let from = Quaternion::from_column_slice(&self.start[NUMBERS * node + 6..NUMBERS * (node + 1)]);
+            let turned = quaternion::product(&self.rotation_of(state, node), &quaternion::conjugate(&from));
+            let m = if follows > 0.0 { quaternion::rotation(&turned) * share } else { share };
+            (0..3).for_each(|i| out.forces[first + i] -= m[i]);
+            if order == Order::Second {
+                // Derivatives of forces plus half the cross matrix of the residual: as those of the elements.
+                let block = m.cross_matrix() * (follows - 0.5);
+                let rows: Vec<f64> = (0..9).map(|k| block[(k / 3, k % 3)]).collect();
+                out.add_block(&[first as u32, first as u32 + 1, first as u32 + 2], &rows);
+            }
+        }
+        Ok(())
+    }
+
+    fn spins(&self) -> Vec<[u32; 3]> {
+        let three = |first: usize| [first as u32, first as u32 + 1, first as u32 + 2];
+        let nodes = self.line.nodes();
+        let of_nodes = (0..nodes).map(|n| three(NODE * n + 6));
+        of_nodes.chain((0..self.elements.len()).map(|e| three(NODE * nodes + 3 * e))).collect()
+    }
+
+    fn sites(&self, on: Option<&str>, sampling: Sampling) -> Result<Vec<Site>, PlaceError> {
+        curve_body::sites(self, on, sampling)
+    }
+
+    fn placed(&self, state: &BodyState, site: &Site) -> Placed {
+        curve_body::placed(self, state, site)
+    }
+
+    fn master<'a>(&'a self, on: Option<&str>, state: &'a BodyState) -> Result<Box<dyn Master + 'a>, PlaceError> {
+        curve_body::master(self, on, state)
+    }
+
+    fn site_stiffness(&self, site: &Site) -> f64 {
+        // A beam clamped at the ends of the element, loaded in its middle.
+        let element = &self.elements[site.patch as usize];
+        let bending = element.stiffness.bending[0].min(element.stiffness.bending[1]);
+        192.0 * bending / element.length.powi(3)
+    }
+
+    fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6] {
+        let mut modes = self.line_of(state).rigid_modes(self.unknowns());
+        for (mode, out) in modes.iter_mut().enumerate().skip(3) {
+            self.spins().iter().for_each(|s| out[s[mode - 3] as usize] = 1.0);
+        }
+        modes
+    }
+
+    fn size(&self) -> f64 {
+        self.line.length()
+    }
+
+    fn fields(&self, state: &BodyState) -> BodyFields {
+        let mut fields = crate::fields::of_curve(&self.line, &self.start, &state.configuration);
+        let stresses: Vec<Stresses> = (self.elements.iter().enumerate())
+            .map(|(e, element)| element.stresses(&self.nodes_of(&state.configuration, e)))
+            .collect();
+        // Means over each element: of forces at two points, of moments at three.
+        let forces = |a: usize| stresses.iter().map(move |s| 0.5 * (s[0][a] + s[1][a]));
+        let moments = |a: usize| stresses.iter().map(move |s| (5.0 * (s[5][a] + s[7][a]) + 8.0 * s[6][a]) / 18.0);
+        let pairs = |a: Vec<f64>, b: Vec<f64>| a.into_iter().zip(b).flat_map(|(x, y)| [x, y]).collect::<Vec<f64>>();
+        crate::fields::add_element_data(&mut fields, "axial_force", 1, forces(0).collect());
+        crate::fields::add_element_data(&mut fields, "shear_force", 2, pairs(forces(1).collect(), forces(2).collect()));
+        crate::fields::add_element_data(&mut fields, "torque", 1, moments(0).collect());
+        let bending = pairs(moments(1).collect(), moments(2).collect());
+        crate::fields::add_element_data(&mut fields, "bending_moment", 2, bending);
+        fields
+    }
+}

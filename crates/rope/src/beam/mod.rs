@@ -1,0 +1,11 @@
+//! Geometrically exact (Simo-Reissner) beams: a C1 centreline and cross-sections that turn.
+//!
+//! - [`strain`]: strains of a point with their derivatives.
+//! - [`element`]: energy, forces and tangent of an element.
+//! - [`body`]: a whole beam.
+
+pub mod body;
+pub mod element;
+pub mod strain;
+
+pub use body::{Beam, BeamError};

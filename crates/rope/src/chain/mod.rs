@@ -1,0 +1,11 @@
+//! Ropes of straight elements that carry tension only.
+//!
+//! - [`element`]: one element, with its unstrained length as a variable.
+//! - [`body`]: a whole rope, with pulleys and winches.
+//! - [`form`]: equilibrium of nets of any topology, from any start.
+
+pub mod body;
+pub mod element;
+pub mod form;
+
+pub use body::{Chain, ChainError};

@@ -1,0 +1,274 @@
+//! What ropes and beams have in common as bodies that touch: sites along the curve, and the nearest point of it.
+//!
+//! The nearest point is the least of all local minima of the distance: elements are boxed by the hulls of their Bezier
+//! points, and within an element every change of sign of `(c(ξ) - x)·c'(ξ)` between samples is refined. Samples are so close
+//! that the curve turns by less than 15 degrees between them.
+
+use crate::centreline::{Centreline, Closure, Continuity};
+use crate::hermite::gauss;
+use crate::place::{self, Part};
+use signorini_geometry::bvh::Bvh;
+use signorini_geometry::shape::{CurveJet, SurfaceJet};
+use signorini_geometry::{Aabb, Matrix, Point, Vector};
+use signorini_mechanics::body::{
+    Anchor, Body, BodyState, Foot, Function, Master, MaterialPoint, Met, PlaceError, Placed, Sampling, Site,
+};
+
+/// How a section turns.
+#[derive(Clone, Debug)]
+pub struct SectionMotion {
+    /// Spin per unit of each unknown.
+    pub spin: Vec<Function>,
+    pub frame: Matrix<3>,
+}
+
+/// A body that is a curve.
+pub trait CurveBody: Body {
+    fn centreline(&self) -> &Centreline;
+
+    /// Radius of the section about the curve that touches.
+    fn radius(&self) -> f64;
+
+    /// Points of Gauss of each element at which contact is tested.
+    fn contact_points(&self) -> usize;
+
+    /// How the section at a point turns: not at all, if the body does not know.
+    fn section(&self, _configuration: &[f64], _element: usize, _xi: f64) -> SectionMotion {
+        SectionMotion { spin: Vec::new(), frame: Matrix::<3>::identity() }
+    }
+
+    /// A point of the curve with all that moves it; `coordinates` is 0 where it cannot be passed by: an end or a kink.
+    fn foot(&self, configuration: &[f64], element: usize, xi: f64, coordinates: usize) -> Foot {
+        let CurveJet { x, d1, d2, d3 } = self.centreline().jet(configuration, element, xi);
+        let zero = Vector::<3>::zeros();
+        let jet = SurfaceJet { x, u: d1, v: zero, uu: d2, uv: zero, vv: zero, uuu: d3, uuv: zero, uvv: zero, vvv: zero };
+        let SectionMotion { spin, frame } = self.section(configuration, element, xi);
+        Foot {
+            point: MaterialPoint { patch: element as u32, xi: [xi, 0.0, 0.0] },
+            jet,
+            coordinates,
+            outward: None,
+            radius: self.radius(),
+            functions: self.centreline().functions(element, xi),
+            spin,
+            frame,
+        }
+    }
+}
+
+/// The points of a curve that are tested for contact.
+///
+/// # Errors
+/// A place that is not there.
+pub fn sites(body: &dyn CurveBody, on: Option<&str>, sampling: Sampling) -> Result<Vec<Site>, PlaceError> {
+    let line = body.centreline();
+    let node_site = |node: usize| {
+        let tributary = |e: usize| 0.5 * line.lengths[e];
+        let n = line.elements();
+        let (patch, xi) = if node < n { (node, 0.0) } else { (n - 1, 1.0) };
+        let before = match (node, line.closure) {
+            (0, Closure::Closed) => tributary(n - 1),
+            (0, Closure::Open) => 0.0,
+            _ => tributary(node - 1),
+        };
+        let after = if node < n { tributary(node) } else { 0.0 };
+        Site { patch: patch as u32, xi: [xi, 0.0], weight: before + after }
+    };
+    Ok(match (place::part(body.name(), line, on)?, sampling) {
+        (Part::Nodes(nodes), _) => nodes.into_iter().map(|n| Site { weight: 1.0, ..node_site(n) }).collect(),
+        (Part::Whole, Sampling::Nodes) => (0..line.nodes()).map(node_site).collect(),
+        (Part::Whole, Sampling::GaussPoints) => {
+            let rule = gauss(body.contact_points());
+            (0..line.elements())
+                .flat_map(|e| {
+                    let h = line.lengths[e];
+                    rule.iter().map(move |(xi, w)| Site { patch: e as u32, xi: [*xi, 0.0], weight: w * h })
+                })
+                .collect()
+        }
+    })
+}
+
+/// A site where it is now.
+pub fn placed(body: &dyn CurveBody, state: &BodyState, site: &Site) -> Placed {
+    let (element, xi) = (site.patch as usize, site.xi[0]);
+    let line = body.centreline();
+    let jet = line.jet(&state.configuration, element, xi);
+    let SectionMotion { spin, frame } = body.section(&state.configuration, element, xi);
+    Placed {
+        x: jet.x,
+        outward: None,
+        tangent: Some(jet.d1),
+        radius: body.radius(),
+        functions: line.functions(element, xi),
+        spin,
+        frame,
+        bends: Vec::new(),
+    }
+}
+
+/// The curve as it may be touched.
+///
+/// # Errors
+/// A part of it.
+pub fn master<'a, B: CurveBody>(
+    body: &'a B,
+    on: Option<&str>,
+    state: &'a BodyState,
+) -> Result<Box<dyn Master + 'a>, PlaceError> {
+    if let Part::Nodes(_) = place::part(body.name(), body.centreline(), on)? {
+        let message = "a rope or beam is touched along all of it: name it without a group".to_string();
+        return Err(PlaceError::Unsuitable { body: body.name().to_string(), message });
+    }
+    Ok(Box::new(Touched { body, configuration: &state.configuration, tree: Bvh::new(&boxes(body, state)) }))
+}
+
+/// Boxes of the elements, of the curve itself.
+pub fn boxes<B: CurveBody + ?Sized>(body: &B, state: &BodyState) -> Vec<Aabb<3>> {
+    let line = body.centreline();
+    (0..line.elements())
+        .map(|e| {
+            let hull = line.hull(&state.configuration, e);
+            hull[1..].iter().fold(Aabb::new(hull[0], hull[0]), |b, p| Aabb::new(b.min.inf(p), b.max.sup(p)))
+        })
+        .collect()
+}
+
+/// Samples of an element, so close that the curve turns little between them.
+pub fn samples(line: &Centreline, configuration: &[f64], element: usize) -> usize {
+    if line.continuity == Continuity::C0 {
+        return 1;
+    }
+    // The sides of the Bezier polygon turn at least as much as the curve.
+    let hull = line.hull(configuration, element);
+    let sides: Vec<Vector<3>> = hull.windows(2).map(|p| p[1] - p[0]).collect();
+    let turn: f64 = sides.windows(2).map(|s| s[0].cross(&s[1]).norm().atan2(s[0].dot(&s[1]))).sum();
+    ((turn / 15f64.to_radians()).ceil() as usize).clamp(2, 64)
+}
+
+/// Whether two points along the same curve may touch: farther apart along it than the half circumference of a loop that
+/// just closes, with a tenth to spare, or bent towards each other so that the chord is less than half of the arc.
+pub fn are_apart(line: &Centreline, radius: f64, s: f64, sigma: f64, chord: f64) -> bool {
+    let along = (s - sigma).abs();
+    let arc = match line.closure {
+        Closure::Open => along,
+        Closure::Closed => along.min(line.length() - along),
+    };
+    // Below this the points are one.
+    let one = 1e-9 * line.length();
+    arc > (1.1 * std::f64::consts::PI * radius).max(one) || (arc > radius.max(one) && chord < 0.5 * arc)
+}
+
+/// A local minimum of the distance to a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Minimum {
+    pub element: usize,
+    pub xi: f64,
+    /// 1 within the curve, 0 at an end or a kink.
+    pub coordinates: usize,
+    pub distance: f64,
+}
+
+/// All local minima, on one element, of the distance from a point to the curve.
+pub fn minima(line: &Centreline, configuration: &[f64], element: usize, x: &Point<3>) -> Vec<Minimum> {
+    let jet = |xi: f64| line.jet(configuration, element, xi);
+    let slope = |xi: f64| {
+        let j = jet(xi);
+        (j.x - x).dot(&j.d1)
+    };
+    let found = |xi: f64, coordinates: usize| Minimum { element, xi, coordinates, distance: (jet(xi).x - x).norm() };
+    let count = samples(line, configuration, element);
+    let at: Vec<f64> = (0..=count).map(|k| k as f64 / count as f64).collect();
+    let slopes: Vec<f64> = at.iter().map(|xi| slope(*xi)).collect();
+    let mut out = Vec::new();
+    for k in 0..count {
+        if slopes[k] <= 0.0 && slopes[k + 1] >= 0.0 && (slopes[k] < 0.0 || slopes[k + 1] > 0.0) {
+            // A root at a sample shared by two intervals is one minimum.
+            if k > 0 && slopes[k] == 0.0 {
+                continue;
+            }
+            out.push(found(refine(&jet, x, at[k], at[k + 1]), 1));
+        }
+    }
+    let n = line.elements();
+    let is_first = element == 0 && line.closure == Closure::Open;
+    let is_last = element + 1 == n && line.closure == Closure::Open;
+    if slopes[0] > 0.0 && is_first {
+        out.push(found(0.0, 0));
+    }
+    if slopes[count] < 0.0 {
+        let is_kink = line.continuity == Continuity::C0 && !is_last && {
+            let next = line.jet(configuration, (element + 1) % n, 0.0);
+            (next.x - x).dot(&next.d1) > 0.0
+        };
+        if is_last || is_kink {
+            out.push(found(1.0, 0));
+        }
+    }
+    out
+}
+
+/// The root of `(c - x)·c'` between two parameters: Newton's method, kept between bounds.
+fn refine(jet: &dyn Fn(f64) -> CurveJet, x: &Point<3>, low: f64, high: f64) -> f64 {
+    let (mut low, mut high) = (low, high);
+    let mut xi = 0.5 * (low + high);
+    for _ in 0..60 {
+        let j = jet(xi);
+        let d = j.x - x;
+        let slope = d.dot(&j.d1);
+        let second = j.d1.norm_squared() + d.dot(&j.d2);
+        if slope > 0.0 { high = xi } else { low = xi }
+        let next = xi - slope / second;
+        let next = if second > 0.0 && next > low && next < high { next } else { 0.5 * (low + high) };
+        if (next - xi).abs() <= f64::EPSILON {
+            return next;
+        }
+        xi = next;
+    }
+    xi
+}
+
+/// A curve that is touched.
+struct Touched<'a, B> {
+    body: &'a B,
+    configuration: &'a [f64],
+    tree: Bvh,
+}
+
+impl<B: CurveBody> Master for Touched<'_, B> {
+    fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<Met> {
+        let (line, radius) = (self.body.centreline(), self.body.radius());
+        let mut best: Option<Minimum> = None;
+        // Distances of surfaces: the curve lies deeper by the radius of the section.
+        let reach = reach + radius;
+        let mut limit = reach * reach;
+        self.tree.nearest(x, limit, |element| {
+            for m in minima(line, self.configuration, element, x) {
+                let is_other = except.is_none_or(|site| {
+                    let sigma = line.arc(site.patch as usize, site.xi[0]);
+                    are_apart(line, radius, line.arc(element, m.xi), sigma, m.distance)
+                });
+                let is_nearer = best.as_ref().is_none_or(|b| {
+                    (m.distance, m.element).partial_cmp(&(b.distance, b.element)) == Some(std::cmp::Ordering::Less)
+                });
+                if is_other && is_nearer && m.distance <= reach {
+                    limit = limit.min(m.distance * m.distance);
+                    best = Some(m);
+                }
+            }
+            limit
+        });
+        best.map(|m| Met::Foot(Box::new(self.body.foot(self.configuration, m.element, m.xi, m.coordinates))))
+    }
+
+    fn at(&self, point: &MaterialPoint) -> Anchor {
+        let foot = self.body.foot(self.configuration, point.patch as usize, point.xi[0], 1);
+        Anchor {
+            x: foot.jet.x,
+            tangent: foot.jet.u,
+            functions: foot.functions,
+            spin: foot.spin,
+            frame: foot.frame,
+        }
+    }
+}

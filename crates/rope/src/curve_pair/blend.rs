@@ -1,0 +1,87 @@
+//! From point contact of crossing curves to line contact of nearly parallel ones.
+//!
+//! With `z = cos² θ` of the angle between the tangents, the share of the point force is 1 for `θ ≥ θ_2`, 0 for `θ ≤ θ_1`, and
+//! a cubic in `z` between, with a continuous derivative; line forces have the rest (Meier, Wall & Popp 2017, on the level of
+//! forces). Straight tubes of radii `R` that cross at `θ` and penetrate by `δ` touch with `δ - x² sin²θ/(2(R_1 + R_2))`; line
+//! forces of penalty `ε_l` add up to `(4/3) ε_l δ √(2(R_1 + R_2) δ)/sin θ`, and point forces to `ε δ`. [`Blend::line_penalty`]
+//! makes both equal in the middle of the band at an expected force.
+
+/// A band of angles, in radians.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blend {
+    theta_1: f64,
+    theta_2: f64,
+}
+
+/// A band that is none.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("angles {theta_1} and {theta_2} (radians): valid are 0 < theta_1 < theta_2 <= π/2")]
+pub struct BlendError {
+    pub theta_1: f64,
+    pub theta_2: f64,
+}
+
+impl Default for Blend {
+    /// From 10 to 25 degrees: below, foot points of crossings move more than five times as far as the curves; above, the
+    /// overlap of tubes is as short as a few of their penetrations are wide.
+    fn default() -> Self {
+        Blend { theta_1: 10f64.to_radians(), theta_2: 25f64.to_radians() }
+    }
+}
+
+impl Blend {
+    /// A band between two angles.
+    ///
+    /// # Errors
+    /// Angles that are not in order.
+    pub fn new(theta_1: f64, theta_2: f64) -> Result<Self, BlendError> {
+        let is_valid = theta_1 > 0.0 && theta_1 < theta_2 && theta_2 <= std::f64::consts::FRAC_PI_2;
+        if is_valid { Ok(Blend { theta_1, theta_2 }) } else { Err(BlendError { theta_1, theta_2 }) }
+    }
+
+    /// Share of the point force for `z = cos² θ`, and its derivative in `z`.
+    pub fn point_share(&self, z: f64) -> (f64, f64) {
+        let [z_1, z_2] = [self.theta_1, self.theta_2].map(|t| t.cos().powi(2));
+        let x = (z_1 - z) / (z_1 - z_2);
+        match x {
+            x if x <= 0.0 => (0.0, 0.0),
+            x if x >= 1.0 => (1.0, 0.0),
+            x => (x * x * (3.0 - 2.0 * x), -6.0 * x * (1.0 - x) / (z_1 - z_2)),
+        }
+    }
+
+    /// The line penalty that gives the same force as a point penalty in the middle of the band, at the force expected there.
+    pub fn line_penalty(&self, point_penalty: f64, force: f64, radii: [f64; 2]) -> f64 {
+        let sine = (0.5 * (self.theta_1 + self.theta_2)).sin();
+        let penetration = force / point_penalty;
+        let half_width = (2.0 * (radii[0] + radii[1]) * penetration).sqrt() / sine;
+        force / (4.0 / 3.0 * penetration * half_width)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_pass_smoothly_from_one_to_none() {
+        let blend = Blend::new(0.2, 0.5).unwrap();
+        let at = |theta: f64| blend.point_share(theta.cos().powi(2));
+        assert_eq!((at(0.1).0, at(0.2).0, at(0.6).0), (0.0, 0.0, 1.0));
+        let middle = 0.5 * (0.2f64.cos().powi(2) + 0.5f64.cos().powi(2));
+        assert!((blend.point_share(middle).0 - 0.5).abs() < 1e-14);
+        let e = 1e-6;
+        let difference = (blend.point_share(middle + e).0 - blend.point_share(middle - e).0) / (2.0 * e);
+        assert!((difference - blend.point_share(middle).1).abs() < 1e-8);
+        assert!(Blend::new(0.5, 0.2).is_err());
+        // The integral over the parabolic overlap.
+        let (penalty, force, radii) = (50.0, 0.8, [0.1, 0.3]);
+        let line = blend.line_penalty(penalty, force, radii);
+        let (pen, sine) = (force / penalty, 0.35f64.sin());
+        let sum: f64 = (0..200_000)
+            .map(|k| (k as f64 + 0.5) / 200_000.0 * 4.0 - 2.0)
+            .map(|x| line * (pen - x * x * sine * sine / (2.0 * 0.4)).max(0.0) * 4.0 / 200_000.0)
+            .sum();
+        assert!((sum / force - 1.0).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,235 @@
+//! Gap and slip of two points of curves, with first and second variations (Konyukhov & Schweizerhof 2013, ch. 5).
+//!
+//! The first point is the slave `A`, the second the master `B`. Each is either free along its curve (one coordinate, where
+//! the distance is stationary) or fixed: a point of Gauss, or an end. Two free points are a crossing of curves, one free
+//! point is line contact or an end on a curve, none is end against end: one template.
+//!
+//! | symbol | meaning |
+//! |---|---|
+//! | `D = x_A - x_B`, `n = D/|D|` | relative position; the normal points from the master to the slave |
+//! | `g = |D| - R_A - R_B` | gap of the surfaces |
+//! | `S = δD - (R_A θ_A + R_B θ_B) × n - g δn` | slip of the surface of A along that of B, axial and circumferential |
+//! | `e = P [x_A - R_A m_A - x_B - R_B m_B]` | slip since material points touched, of both curves and angles of both sections |
+//!
+//! A rigid motion of both is no slip. The second variation of the slip leaves out `g δ²n`, which vanishes with the gap.
+
+use nalgebra::SVector;
+use signorini_geometry::Vector;
+use signorini_geometry::measures::{Measures, PartnerJet, Variation};
+use signorini_geometry::shape::CurveJet;
+use signorini_mechanics::body::{Foot, MaterialPoint, Order};
+
+/// Why two points of curves make no pair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoPair {
+    /// Both curves pass through the same point: there is no direction in which to part them.
+    #[error("the centrelines meet")]
+    Meet,
+    /// Parallel tangents, or a centre of curvature.
+    #[error("the coordinates of the pair do not exist: tangents are parallel, or a point is at a centre of curvature")]
+    NoCoordinates,
+}
+
+/// Material points of both surfaces that were in touch: where along the curves, and in which direction in the axes of
+/// their sections, away from the axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stuck {
+    pub points: [MaterialPoint; 2],
+    pub directions: [Vector<3>; 2],
+}
+
+/// Gap, slip and variations in the unknowns of both bodies.
+#[derive(Clone, Debug)]
+pub struct CurvePair {
+    pub gap: f64,
+    pub normal: Vector<3>,
+    /// Numbers of the system.
+    pub unknowns: Vec<u32>,
+    pub d_gap: Vec<f64>,
+    /// Row by row; empty for [`Order::First`].
+    pub d2_gap: Vec<f64>,
+    /// Squared cosine of the angle between the tangents, and its variation.
+    pub parallel: f64,
+    pub d_parallel: Vec<f64>,
+    /// Unit tangent of the slave across the normal: the axial direction of slip.
+    pub axial: Vector<3>,
+    /// Variations of the slip.
+    pub slip: Vec<Vector<3>>,
+    pub d_normal: Vec<Vector<3>>,
+    /// Variations of the coordinates of both points: zero for a fixed one.
+    pub d_xi: Vec<[f64; 2]>,
+    slopes: Vec<[Vector<3>; 2]>,
+    levers: Vec<Vector<3>>,
+    pub stuck: Stuck,
+}
+
+/// One unknown at fixed coordinates.
+struct Column {
+    unknown: u32,
+    side: usize,
+    value: Vector<3>,
+    slope: Vector<3>,
+    second: Vector<3>,
+    /// Spin of the section times its radius.
+    lever: Vector<3>,
+}
+
+fn columns(feet: [&Foot; 2], first: [u32; 2]) -> Vec<Column> {
+    let zero = Vector::<3>::zeros();
+    let mut out = Vec::new();
+    for side in 0..2 {
+        let foot = feet[side];
+        out.extend(foot.functions.iter().map(|f| Column {
+            unknown: first[side] + f.unknown,
+            side,
+            value: f.value,
+            slope: f.slopes[0],
+            second: f.second[0],
+            lever: zero,
+        }));
+        out.extend(foot.spin.iter().map(|f| Column {
+            unknown: first[side] + f.unknown,
+            side,
+            value: zero,
+            slope: zero,
+            second: zero,
+            lever: f.value * foot.radius,
+        }));
+    }
+    out
+}
+
+fn curve_jet(foot: &Foot) -> CurveJet {
+    CurveJet { x: foot.jet.x, d1: foot.jet.u, d2: foot.jet.uu, d3: foot.jet.uuu }
+}
+
+/// The measures of two points of curves; of a foot with one coordinate the distance must be stationary in it. `first` are
+/// the first unknowns of both bodies in the system.
+///
+/// # Errors
+/// Why there is no pair.
+pub fn measure(feet: [&Foot; 2], first: [u32; 2], order: Order) -> Result<CurvePair, NoPair> {
+    match feet[0].coordinates + feet[1].coordinates {
+        0 => with::<0>(feet, first, order),
+        1 => with::<1>(feet, first, order),
+        _ => with::<2>(feet, first, order),
+    }
+}
+
+fn with<const N: usize>(feet: [&Foot; 2], first: [u32; 2], order: Order) -> Result<CurvePair, NoPair> {
+    let [a, b] = feet;
+    let jets = [curve_jet(a), curve_jet(b)];
+    let d = a.jet.x - b.jet.x;
+    let distance = d.norm();
+    let normal = d.try_normalize(0.0).ok_or(NoPair::Meet)?;
+    let partner = |side: usize| match feet[side].coordinates {
+        0 => PartnerJet::Point(&jets[side].x),
+        _ => PartnerJet::Curve(&jets[side]),
+    };
+    let measures = Measures::<N>::new(partner(0), partner(1), normal).ok_or(NoPair::NoCoordinates)?;
+    if !measures.hessian().iter().all(|h| h.is_finite()) {
+        return Err(NoPair::NoCoordinates);
+    }
+    // Where the coordinates of each side are among those of the pair.
+    let of_side = |side: usize| (feet[side].coordinates == 1).then(|| if side == 0 { 0 } else { N - 1 });
+    let columns = columns(feet, first);
+    let zero = Vector::<3>::zeros();
+    let signs = [1.0, -1.0];
+    let variations: Vec<Variation<N>> = (columns.iter())
+        .map(|c| {
+            let own = of_side(c.side);
+            let at = |k: usize, v: Vector<3>| if own == Some(k) { v * signs[c.side] } else { zero };
+            Variation {
+                d: c.value * signs[c.side],
+                d_a: std::array::from_fn(|p| at(p, c.slope)),
+                d_ab: std::array::from_fn(|p| std::array::from_fn(|q| if p == q { at(p, c.second) } else { zero })),
+            }
+        })
+        .collect();
+    let n = columns.len();
+    let xi: Vec<SVector<f64, N>> = variations.iter().map(|v| measures.coordinate_variation(v)).collect();
+    let d_xi: Vec<[f64; 2]> = xi.iter().map(|x| [0, 1].map(|side| of_side(side).map_or(0.0, |k| x[k]))).collect();
+
+    // Tangents and their total variations.
+    let d1 = jets.map(|j| j.d1);
+    let lengths = d1.map(|t| t.norm());
+    let units = [d1[0] / lengths[0], d1[1] / lengths[1]];
+    let cosine = units[0].dot(&units[1]);
+    let d_unit = |k: usize, side: usize| {
+        let own = if columns[k].side == side { columns[k].slope } else { zero };
+        let change = own + jets[side].d2 * d_xi[k][side];
+        (change - units[side] * units[side].dot(&change)) / lengths[side]
+    };
+    let d_parallel =
+        (0..n).map(|k| 2.0 * cosine * (d_unit(k, 0).dot(&units[1]) + units[0].dot(&d_unit(k, 1)))).collect();
+
+    let gap = distance - a.radius - b.radius;
+    let d_normal: Vec<Vector<3>> = (0..n)
+        .map(|k| {
+            let moved = variations[k].d + d1[0] * d_xi[k][0] - d1[1] * d_xi[k][1];
+            (moved - normal * normal.dot(&moved)) / distance
+        })
+        .collect();
+    let across = units[0] - normal * normal.dot(&units[0]);
+    Ok(CurvePair {
+        gap,
+        normal,
+        unknowns: columns.iter().map(|c| c.unknown).collect(),
+        d_gap: variations.iter().map(|v| measures.gap_variation(v)).collect(),
+        d2_gap: if order == Order::Second { measures.gap_hessian(&variations) } else { Vec::new() },
+        parallel: cosine * cosine,
+        d_parallel,
+        axial: across.try_normalize(0.0).unwrap_or(units[0]),
+        slip: (0..n).map(|k| variations[k].d - columns[k].lever.cross(&normal) - d_normal[k] * gap).collect(),
+        d_normal,
+        d_xi,
+        slopes: columns.iter().map(|c| [0, 1].map(|s| if c.side == s { c.slope * signs[s] } else { zero })).collect(),
+        levers: columns.iter().map(|c| c.lever).collect(),
+        stuck: Stuck {
+            points: [a.point, b.point],
+            directions: [a.frame.transpose() * -normal, b.frame.transpose() * normal],
+        },
+    })
+}
+
+impl CurvePair {
+    /// `T · Δδ slip`, row by row, for a traction `T` on the slave: it is not symmetric.
+    pub fn slip_hessian(&self, traction: &Vector<3>) -> Vec<f64> {
+        let n = self.unknowns.len();
+        let mut out = vec![0.0; n * n];
+        for k in 0..n {
+            for l in 0..n {
+                let along = self.slopes[k][0] * self.d_xi[l][0] + self.slopes[k][1] * self.d_xi[l][1];
+                let change = along - self.levers[k].cross(&self.d_normal[l]) - self.d_normal[k] * self.d_gap[l];
+                out[k * n + l] = traction.dot(&change);
+            }
+        }
+        out
+    }
+
+    /// The circumferential direction of slip, `n × τ`.
+    pub fn circumferential(&self) -> Vector<3> {
+        self.normal.cross(&self.axial)
+    }
+}
+
+/// Slip since material points touched: its vector, not yet projected, and its variations in the unknowns of both bodies.
+pub fn elastic_slip(
+    stuck: &Stuck,
+    feet: [&Foot; 2],
+    first: [u32; 2],
+) -> (Vector<3>, Vec<u32>, Vec<Vector<3>>) {
+    let arms: [Vector<3>; 2] = [0, 1].map(|s| feet[s].frame * stuck.directions[s] * feet[s].radius);
+    let e = feet[0].jet.x + arms[0] - feet[1].jet.x - arms[1];
+    let columns = columns(feet, first);
+    let signs = [1.0, -1.0];
+    let radius = |side: usize| feet[side].radius;
+    let d_e = columns
+        .iter()
+        .map(|c| {
+            let turn = if radius(c.side) > 0.0 { c.lever.cross(&arms[c.side]) / radius(c.side) } else { Vector::<3>::zeros() };
+            (c.value + turn) * signs[c.side]
+        })
+        .collect();
+    (e, columns.iter().map(|c| c.unknown).collect(), d_e)
+}

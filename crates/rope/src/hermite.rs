@@ -1,0 +1,131 @@
+//! Shape functions of one element in `ξ ∈ [0, 1]`, `s = h ξ`, and rules of integration.
+//!
+//! The centreline is a cubic Hermite curve, `r = H_0 r_1 + h H_1 t_1 + H_2 r_2 + h H_3 t_2`: its nodes carry the position
+//! `r` and the derivative `t = dr/ds`, so it is C1. Rotations are quadratic: two nodes and the middle.
+
+use signorini_geometry::{Point, Vector};
+
+/// The four cubic functions, in the order `r_1, t_1, r_2, t_2`.
+pub fn cubic(xi: f64, h: f64) -> [f64; 4] {
+    let (x, y) = (xi, 1.0 - xi);
+    [y * y * (1.0 + 2.0 * x), h * x * y * y, x * x * (3.0 - 2.0 * x), -h * x * x * y]
+}
+
+/// Their first derivatives in `ξ`.
+pub fn cubic_first(xi: f64, h: f64) -> [f64; 4] {
+    let x = xi;
+    [6.0 * x * (x - 1.0), h * (1.0 - x) * (1.0 - 3.0 * x), 6.0 * x * (1.0 - x), h * x * (3.0 * x - 2.0)]
+}
+
+/// Their second derivatives in `ξ`.
+pub fn cubic_second(xi: f64, h: f64) -> [f64; 4] {
+    let x = xi;
+    [12.0 * x - 6.0, h * (6.0 * x - 4.0), 6.0 - 12.0 * x, h * (6.0 * x - 2.0)]
+}
+
+/// Their third derivatives in `ξ`.
+pub fn cubic_third(h: f64) -> [f64; 4] {
+    [12.0, 6.0 * h, -12.0, 6.0 * h]
+}
+
+/// The three quadratic functions, in the order first node, last node, middle.
+pub fn quadratic(xi: f64) -> [f64; 3] {
+    [(1.0 - xi) * (1.0 - 2.0 * xi), xi * (2.0 * xi - 1.0), 4.0 * xi * (1.0 - xi)]
+}
+
+/// Their first derivatives in `ξ`.
+pub fn quadratic_first(xi: f64) -> [f64; 3] {
+    [4.0 * xi - 3.0, 4.0 * xi - 1.0, 4.0 - 8.0 * xi]
+}
+
+/// Two Gauss points of `[0, 1]` and their weights.
+pub const TWO: [(f64, f64); 2] = [(0.211_324_865_405_187_12, 0.5), (0.788_675_134_594_812_9, 0.5)];
+
+/// Three Gauss points.
+pub const THREE: [(f64, f64); 3] = [
+    (0.112_701_665_379_258_31, 0.277_777_777_777_777_8),
+    (0.5, 0.444_444_444_444_444_4),
+    (0.887_298_334_620_741_7, 0.277_777_777_777_777_8),
+];
+
+/// Four Gauss points.
+pub const FOUR: [(f64, f64); 4] = [
+    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
+    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
+    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
+];
+
+/// Gauss points of `[0, 1]` with their weights, as many as wanted: roots of the Legendre polynomial by Newton's method.
+pub fn gauss(count: usize) -> Vec<(f64, f64)> {
+    let n = count as f64;
+    (0..count)
+        .map(|k| {
+            let mut x = -(std::f64::consts::PI * (k as f64 + 0.75) / (n + 0.5)).cos();
+            let mut slope = 1.0;
+            for _ in 0..20 {
+                let (mut p, mut before) = (1.0, 0.0);
+                for j in 0..count {
+                    let j = j as f64;
+                    (p, before) = (((2.0 * j + 1.0) * x * p - j * before) / (j + 1.0), p);
+                }
+                slope = n * (x * p - before) / (x * x - 1.0);
+                let dx = p / slope;
+                x -= dx;
+                if dx.abs() < 1e-15 {
+                    break;
+                }
+            }
+            (0.5 * (1.0 + x), 1.0 / ((1.0 - x * x) * slope * slope))
+        })
+        .collect()
+}
+
+/// `Σ N_i x_i`.
+pub fn sum(n: &[f64; 4], x: &[Vector<3>; 4]) -> Point<3> {
+    x[0] * n[0] + x[1] * n[1] + x[2] * n[2] + x[3] * n[3]
+}
+
+/// Bezier points of an element: their hull holds the curve.
+pub fn bezier(x: &[Vector<3>; 4], h: f64) -> [Point<3>; 4] {
+    [x[0], x[0] + x[1] * (h / 3.0), x[2] - x[3] * (h / 3.0), x[2]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn functions_reproduce_cubics_and_quadratics_with_their_derivatives() {
+        let h = 1.7;
+        for k in 0..=10 {
+            let xi = k as f64 / 10.0;
+            // s³ - s has the nodal values and slopes below.
+            let nodes = [0.0, -1.0, h * h * h - h, 3.0 * h * h - 1.0];
+            let of = |n: [f64; 4]| n.iter().zip(nodes).map(|(n, v)| n * v).sum::<f64>();
+            let s = h * xi;
+            let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-13, "{a} {b}");
+            near(of(cubic(xi, h)), s * s * s - s);
+            near(of(cubic_first(xi, h)), h * (3.0 * s * s - 1.0));
+            near(of(cubic_second(xi, h)), h * h * 6.0 * s);
+            near(of(cubic_third(h)), h * h * h * 6.0);
+            let f = |x: f64| 2.0 - x + 3.0 * x * x;
+            let of = |n: [f64; 3]| n[0] * f(0.0) + n[1] * f(1.0) + n[2] * f(0.5);
+            near(of(quadratic(xi)), f(xi));
+            near(of(quadratic_first(xi)), 6.0 * xi - 1.0);
+        }
+    }
+
+    #[test]
+    fn rules_are_exact_to_their_degree() {
+        for n in 1..=9 {
+            for degree in 0..2 * n {
+                let sum: f64 = gauss(n).iter().map(|(x, w)| w * x.powi(degree as i32)).sum();
+                assert!((sum - 1.0 / (degree as f64 + 1.0)).abs() < 1e-14);
+            }
+        }
+        for (written, computed) in [(&TWO[..], gauss(2)), (&THREE[..], gauss(3)), (&FOUR[..], gauss(4))] {
+            written.iter().zip(&computed).for_each(|(a, b)| assert!((a.0 - b.0).abs() < 4e-15 && (a.1 - b.1).abs() < 4e-15, "{a:?} {b:?}"));
+        }
+    }
+}

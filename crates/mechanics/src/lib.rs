@@ -5,13 +5,14 @@
 //! - [`pair`]: gap and slip of a contact pair in the unknowns of its bodies.
 //! - [`contact`]: law and enforcement at the sites of two sides.
 //! - [`system`]: bodies, supports, loads and contacts, assembled.
-//! - [`increment`]: equilibrium at one time.
+//! - [`increment`]: equilibrium at one time; [`saved`]: what it goes on from.
 
 pub mod body;
 pub mod contact;
 pub mod increment;
 pub mod pair;
 pub mod rigid_body;
+pub mod saved;
 pub mod system;
 
 pub use body::{
@@ -22,6 +23,7 @@ pub use contact::{Contact, Enforcement, Part, SiteMemory, SiteResult};
 pub use increment::{IncrementError, IncrementResult};
 pub use pair::AxisChoice;
 pub use rigid_body::{Motion, RigidBody, RigidSite};
+pub use saved::Saved;
 pub use system::{AssemblyError, PlacedLoad, Support, System, SystemState, TimedLoad};
 
 #[cfg(test)]

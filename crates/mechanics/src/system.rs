@@ -47,6 +47,31 @@ pub struct PlacedLoad {
     pub load: TimedLoad,
 }
 
+impl PlacedLoad {
+    /// Adds the load at a time to the forces of its body.
+    pub(crate) fn act(
+        &self,
+        body: &dyn Body,
+        state: &BodyState,
+        time: f64,
+        order: Order,
+        out: &mut Contribution,
+    ) -> Result<(), PlaceError> {
+        let zero = Point::<3>::zeros();
+        let mut act = |what: &Load<'_>| body.load(self.part.group.as_deref(), what, state, order, out);
+        match &self.load {
+            TimedLoad::BodyForce(f) => act(&Load::BodyForce(&|x| f(x, time))),
+            TimedLoad::Traction(f) => act(&Load::Traction(&|x| f(x, time))),
+            TimedLoad::Pressure(f) => act(&Load::Pressure(&|x| f(x, time))),
+            TimedLoad::Force(f) => act(&Load::Force(f(&zero, time))),
+            TimedLoad::Moment(f) => act(&Load::Moment(f(&zero, time))),
+            TimedLoad::FollowerMoment(f) => act(&Load::FollowerMoment(f(&zero, time))),
+            TimedLoad::Tension(f) => act(&Load::Tension(f(&zero, time))),
+            TimedLoad::Springs(k) => act(&Load::Springs(*k)),
+        }
+    }
+}
+
 /// Bodies with what holds, pushes and joins them.
 #[derive(Default)]
 pub struct System {
@@ -205,20 +230,7 @@ impl System {
         for load in &self.loads {
             let (body, first) = (&self.bodies[load.part.body], first[load.part.body]);
             let mut out = Contribution::new(body.unknowns());
-            let on = load.part.group.as_deref();
-            let of_body = &state.bodies[load.part.body];
-            let zero = Point::<3>::zeros();
-            let mut act = |what: &Load<'_>| body.load(on, what, of_body, order, &mut out);
-            match &load.load {
-                TimedLoad::BodyForce(f) => act(&Load::BodyForce(&|x| f(x, time)))?,
-                TimedLoad::Traction(f) => act(&Load::Traction(&|x| f(x, time)))?,
-                TimedLoad::Pressure(f) => act(&Load::Pressure(&|x| f(x, time)))?,
-                TimedLoad::Force(f) => act(&Load::Force(f(&zero, time)))?,
-                TimedLoad::Moment(f) => act(&Load::Moment(f(&zero, time)))?,
-                TimedLoad::FollowerMoment(f) => act(&Load::FollowerMoment(f(&zero, time)))?,
-                TimedLoad::Tension(f) => act(&Load::Tension(f(&zero, time)))?,
-                TimedLoad::Springs(k) => act(&Load::Springs(*k))?,
-            }
+            load.act(body.as_ref(), &state.bodies[load.part.body], time, order, &mut out)?;
             add(&out, first, &mut residual, &mut sizes, &mut tangent);
         }
         let mut lost = 0;

@@ -89,7 +89,8 @@ fn variations_of_all_pairs_are_derivatives() {
             (0..2).map(|b| bodies[b].advance(&start[b], of(b), share)).collect()
         };
         let now = pair(&bodies, &moved(0.0), &kind, Order::Second);
-        let along = |values: &[f64]| -> f64 { now.unknowns.iter().zip(values).map(|(u, v)| step[*u as usize] * v).sum() };
+        let along =
+            |values: &[f64]| -> f64 { now.unknowns.iter().zip(values).map(|(u, v)| step[*u as usize] * v).sum() };
         let e = 1e-4;
         let (p, m) = (pair(&bodies, &moved(e), &kind, Order::Second), pair(&bodies, &moved(-e), &kind, Order::Second));
         let first_error = ((p.gap - m.gap) / (2.0 * e) - along(&now.d_gap)).abs();
@@ -97,16 +98,16 @@ fn variations_of_all_pairs_are_derivatives() {
         let product: Vec<f64> = (0..rows).map(|k| along(&now.d2_gap[k * rows..(k + 1) * rows])).collect();
         // Differences of forces: elements of the pair must be the same.
         assert_eq!(p.unknowns, m.unknowns);
-        let second_error = (0..rows)
-            .map(|k| ((p.d_gap[k] - m.d_gap[k]) / (2.0 * e) - product[k]).abs())
-            .fold(0.0, f64::max);
+        let second_error =
+            (0..rows).map(|k| ((p.d_gap[k] - m.d_gap[k]) / (2.0 * e) - product[k]).abs()).fold(0.0, f64::max);
         let scale = product.iter().fold(0.0f64, |m, v| m.max(v.abs()));
         let parallel_error = ((p.parallel - m.parallel) / (2.0 * e) - along(&now.d_parallel)).abs();
         println!("angle {angle}: {first_error:.1e} {:.1e} {parallel_error:.1e}", second_error / scale);
         assert!(first_error < 1e-6 && second_error < 1e-5 * scale && parallel_error < 1e-6);
         // Richardson: the error of the differences falls with the square of the step, so the rest is theirs.
         let at = |e: f64| {
-            let (p, m) = (pair(&bodies, &moved(e), &kind, Order::First), pair(&bodies, &moved(-e), &kind, Order::First));
+            let (p, m) =
+                (pair(&bodies, &moved(e), &kind, Order::First), pair(&bodies, &moved(-e), &kind, Order::First));
             (p.gap - m.gap) / (2.0 * e)
         };
         let (coarse, fine) = (at(2e-3), at(1e-3));
@@ -159,14 +160,18 @@ fn slip_follows_material_points_of_both_surfaces() {
     let rate = (at(&moved(e)).0 - at(&moved(-e)).0) / (2.0 * e);
     let (apart, unknowns, d_e) = at(&moved(0.0));
     assert!((apart - now.normal * now.gap).norm() < 1e-13);
-    let along = |unknowns: &[u32], v: &[V]| unknowns.iter().zip(v).fold(V::zeros(), |s, (u, v)| s + v * step[*u as usize]);
+    let along =
+        |unknowns: &[u32], v: &[V]| unknowns.iter().zip(v).fold(V::zeros(), |s, (u, v)| s + v * step[*u as usize]);
     assert!((rate - along(&unknowns, &d_e)).norm() < 1e-8 * rate.norm());
     let turned = along(&now.unknowns, &now.d_normal) * now.gap;
     let slip = along(&now.unknowns, &now.slip);
     let across = |v: V| v - now.normal * now.normal.dot(&v);
     assert!((across(rate - turned - slip)).norm() < 1e-7 * rate.norm());
     let difference = {
-        let (p, m) = (pair(&bodies, &moved(e), &Kind::Crossing, Order::First), pair(&bodies, &moved(-e), &Kind::Crossing, Order::First));
+        let (p, m) = (
+            pair(&bodies, &moved(e), &Kind::Crossing, Order::First),
+            pair(&bodies, &moved(-e), &Kind::Crossing, Order::First),
+        );
         (p.normal - m.normal) / (2.0 * e)
     };
     assert!((difference - along(&now.unknowns, &now.d_normal)).norm() < 1e-7);
@@ -238,22 +243,26 @@ fn cross(
     let mut around =
         Cantilevers { bodies: [&bodies[0], &bodies[1]], contact, push: V::new(0.0, 0.0, -push), reach: 10.0 * push };
     let options = Options { most: 30, tolerance: 1e-9 * push, search: Search::WholeSteps };
-    let found = newton(&[&bodies[0] as &dyn Body, &bodies[1]], &[bodies[0].start(), bodies[1].start()], &mut around, &options)
-        .unwrap_or_else(|f| panic!("{:?}", f.residuals));
+    let found =
+        newton(&[&bodies[0] as &dyn Body, &bodies[1]], &[bodies[0].start(), bodies[1].start()], &mut around, &options)
+            .unwrap_or_else(|f| panic!("{:?}", f.residuals));
     let tip = -bodies[0].position(&found.states[0], bodies[0].elements())[2];
     (around.force(&found.states), tip, found.iterations())
 }
 
 #[test]
 fn crossing_cantilevers_have_the_exact_force() {
-    let data: serde_json::Value =
-        serde_json::from_str(include_str!("data/crossing_cantilevers.json")).unwrap();
+    let data: serde_json::Value = serde_json::from_str(include_str!("data/crossing_cantilevers.json")).unwrap();
     // Small: forces and gap by 1e-4.
     let small = 1e-4;
     let check = |lengths: [f64; 2], ei: [f64; 2], a: [f64; 2], [p, g, angle]: [f64; 3], expected: f64, tip: f64| {
         let form = (Form::Point, 1e6, 0.0);
         let (f, w, iterations) = cross(lengths, ei, a, [p * small, g * small, angle], 0.02, 4, form);
-        println!("{angle:.3}: F {:.6} ({expected:.6}), tip {:.6} ({tip:.6}), {iterations} iterations", f / small, w / small);
+        println!(
+            "{angle:.3}: F {:.6} ({expected:.6}), tip {:.6} ({tip:.6}), {iterations} iterations",
+            f / small,
+            w / small
+        );
         assert!((f / small - expected).abs() < 3e-5 * expected.max(1.0), "{}", f / small);
         assert!((w / small - tip).abs() < 3e-5 * tip.max(1.0));
         assert!(iterations <= 6);
@@ -317,10 +326,8 @@ impl Surroundings for Twisted<'_> {
         let component = |i: usize| move |x: &V| (turn * x - x)[i];
         let (x, y, z) = (component(0), component(1), component(2));
         let (about, zero) = (|_: &V| self.angle, |_: &V| 0.0);
-        let hold = Hold {
-            displacement: [Some(&x), Some(&y), Some(&z)],
-            rotation: [Some(&about), Some(&zero), Some(&zero)],
-        };
+        let hold =
+            Hold { displacement: [Some(&x), Some(&y), Some(&z)], rotation: [Some(&about), Some(&zero), Some(&zero)] };
         (0..2)
             .flat_map(|b| {
                 let mut all = clamp(self.bodies[b], "start", &states[b]);
@@ -343,7 +350,8 @@ impl Surroundings for Twisted<'_> {
 fn two_tubes_are_twisted_by_a_full_turn() {
     let (radius, length, cells) = (0.1, 4.0, 10);
     let stiffness = Stiffness { axial: 400.0, shear: [160.0; 2], torsion: 0.8, bending: [1.0; 2] };
-    let tube = |name: &str, y: f64| beam(name, &[V::new(0.0, y, 0.0), V::new(length, y, 0.0)], cells, stiffness, radius);
+    let tube =
+        |name: &str, y: f64| beam(name, &[V::new(0.0, y, 0.0), V::new(length, y, 0.0)], cells, stiffness, radius);
     let bodies = [tube("first", radius), tube("second", -radius)];
     let mut contact = CurveContact::new(Form::Line, Between::Two, 0.0, 2e3);
     contact.ends = Ends::PassBy;

@@ -5,6 +5,7 @@ mod domain;
 mod head;
 mod height;
 mod history;
+pub mod mechanics;
 pub(crate) mod pieces;
 mod placement;
 pub mod reader;
@@ -48,6 +49,7 @@ pub enum Plan {
     Plane(MembranePlan<2>),
     PlaneSolids(Box<solid::SolidPlan<2>>),
     Solids(Box<solid::SolidPlan<3>>),
+    Mechanics(Box<mechanics::MechanicsPlan>),
 }
 
 /// Which method finds the contact zone.
@@ -124,6 +126,9 @@ pub struct MembranePlan<const D: usize> {
 /// # Errors
 /// What is wrong with the problem, with its key.
 pub fn plan(problem: &Problem) -> Result<Plan, CaseError> {
+    if mechanics::is_system(problem) {
+        return Ok(Plan::Mechanics(Box::new(Planner::new(problem)?.mechanics()?)));
+    }
     match problem.space {
         Space::PlaneStrain | Space::PlaneStress => {
             Ok(Plan::PlaneSolids(Box::new(Planner::new(problem)?.solids::<2>()?)))

@@ -3,6 +3,7 @@
 mod checkpoint;
 mod driver;
 mod environment;
+mod mechanics;
 mod membrane;
 mod record;
 mod sizes;
@@ -14,6 +15,7 @@ use crate::plan::{Plan, plan};
 use crate::problem::{CaseError, Problem};
 use crate::report::{Reason, Summary};
 use driver::{Model, drive, go_on};
+use mechanics::MechanicsModel;
 use membrane::MembraneModel;
 use signorini_membrane::line_zone::LineZone;
 use signorini_membrane::plane_zone::PlaneZone;
@@ -136,6 +138,7 @@ fn model(problem: &Problem) -> Result<Box<dyn Model>, CaseError> {
         Plan::Plane(p) => Box::new(MembraneModel::<2, PlaneZone>::new(p)?),
         Plan::PlaneSolids(p) => Box::new(SolidModel::new(*p)?),
         Plan::Solids(p) => Box::new(SolidModel::new(*p)?),
+        Plan::Mechanics(p) => Box::new(MechanicsModel::new(*p)),
     })
 }
 

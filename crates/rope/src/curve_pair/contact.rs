@@ -147,7 +147,11 @@ impl CurveContact {
                 _ => (1.0, 0.0),
             };
             if share.0 > 0.0 {
-                let at = |element: u32, xi: f64, coordinates: usize| CurvePoint { element: element as usize, xi, coordinates };
+                let at = |element: u32, xi: f64, coordinates: usize| CurvePoint {
+                    element: element as usize,
+                    xi,
+                    coordinates,
+                };
                 let points = [at(site.patch, site.xi[0], 0), at(foot.point.patch, foot.point.xi[0], 1)];
                 out.push(self.contact(Key::Site(index), points, pair, self.line_penalty * site.weight, share));
             }
@@ -207,7 +211,8 @@ impl Contact {
         let mut block = vec![0.0; n * n];
         for k in 0..n {
             for l in 0..n {
-                block[k * n + l] = share * (self.penalty * pair.d_gap[k] * pair.d_gap[l] + self.geometric * pair.d2_gap[k * n + l])
+                block[k * n + l] = share
+                    * (self.penalty * pair.d_gap[k] * pair.d_gap[l] + self.geometric * pair.d2_gap[k * n + l])
                     + self.force * pair.d_gap[k] * slope * pair.d_parallel[l];
             }
         }

@@ -214,11 +214,7 @@ impl CurvePair {
 }
 
 /// Slip since material points touched: its vector, not yet projected, and its variations in the unknowns of both bodies.
-pub fn elastic_slip(
-    stuck: &Stuck,
-    feet: [&Foot; 2],
-    first: [u32; 2],
-) -> (Vector<3>, Vec<u32>, Vec<Vector<3>>) {
+pub fn elastic_slip(stuck: &Stuck, feet: [&Foot; 2], first: [u32; 2]) -> (Vector<3>, Vec<u32>, Vec<Vector<3>>) {
     let arms: [Vector<3>; 2] = [0, 1].map(|s| feet[s].frame * stuck.directions[s] * feet[s].radius);
     let e = feet[0].jet.x + arms[0] - feet[1].jet.x - arms[1];
     let columns = columns(feet, first);
@@ -227,7 +223,8 @@ pub fn elastic_slip(
     let d_e = columns
         .iter()
         .map(|c| {
-            let turn = if radius(c.side) > 0.0 { c.lever.cross(&arms[c.side]) / radius(c.side) } else { Vector::<3>::zeros() };
+            let turn =
+                if radius(c.side) > 0.0 { c.lever.cross(&arms[c.side]) / radius(c.side) } else { Vector::<3>::zeros() };
             (c.value + turn) * signs[c.side]
         })
         .collect();

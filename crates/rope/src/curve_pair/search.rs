@@ -148,9 +148,8 @@ fn descend(sides: [&Searched<'_>; 2], start: [f64; 2]) -> Option<([f64; 2], [boo
         let d = p.x - q.x;
         let gradient = [d.dot(&p.d1), -d.dot(&q.d1)];
         let held: [bool; 2] = [0, 1].map(|s| {
-            bounds[s].is_some_and(|[low, high]| {
-                (u[s] <= low && gradient[s] >= 0.0) || (u[s] >= high && gradient[s] <= 0.0)
-            })
+            bounds[s]
+                .is_some_and(|[low, high]| (u[s] <= low && gradient[s] >= 0.0) || (u[s] >= high && gradient[s] <= 0.0))
         });
         let metric = [p.d1.norm_squared(), q.d1.norm_squared(), -p.d1.dot(&q.d1)];
         let full = [metric[0] + d.dot(&p.d2), metric[1] - d.dot(&q.d2), metric[2]];

@@ -20,6 +20,8 @@ pub mod solid_pictures;
 mod solid_plane;
 mod solid_space;
 pub mod solid_state;
+pub mod system;
+pub mod system_pictures;
 pub mod tables;
 pub mod vtk;
 

@@ -28,7 +28,34 @@ pub struct RigidBody {
     pub rotation: Vec<Placed>,
 }
 
+/// A shape that is a hole: touched from inside.
+struct Hole(Arc<dyn RigidShape>);
+
+impl RigidShape for Hole {
+    fn gap(&self, x: &Point<3>) -> GapJet<3> {
+        let found = self.0.gap(x);
+        GapJet { gap: -found.gap, normal: -found.normal, hessian: -found.hessian }
+    }
+
+    fn centre(&self) -> Point<3> {
+        self.0.centre()
+    }
+}
+
 impl RigidBody {
+    /// The shape from the side on which it is touched.
+    pub fn touched(&self) -> Arc<dyn RigidShape> {
+        if self.inside { Arc::new(Hole(Arc::clone(&self.shape))) } else { Arc::clone(&self.shape) }
+    }
+
+    /// Displacement and rotation vector at a time, each value by `evaluate`.
+    pub fn motion_by(&self, evaluate: &dyn Fn(&Placed) -> f64) -> RigidMotion {
+        let vector = |list: &[Placed]| Vector::<3>::from_fn(|k, _| list.get(k).map_or(0.0, evaluate));
+        let rotation =
+            if let [angle] = &self.rotation[..] { Vector::<3>::z() * evaluate(angle) } else { vector(&self.rotation) };
+        RigidMotion::new(rotation, self.shape.centre(), vector(&self.displacement))
+    }
+
     /// Displacement and rotation vector at a time; an error where the motion is not a number.
     fn motion_at(&self, problem: &Problem, time: f64) -> Result<[Vector<3>; 2], CaseError> {
         let at = |p: &Placed| p.expression.evaluate(&Scope { position: [f64::NAN; 3], time });

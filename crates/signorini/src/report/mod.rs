@@ -124,6 +124,36 @@ pub struct StepReport {
     pub contacts: BTreeMap<String, ContactReport>,
     /// Values at the probes of `output.probes`, by their names; null outside the body.
     pub probes: BTreeMap<String, Option<Probe>>,
+    /// Ropes and beams by their names.
+    #[serde(default)]
+    pub curves: BTreeMap<String, CurveReport>,
+    /// Free rigid bodies by their names.
+    #[serde(default)]
+    pub free_bodies: BTreeMap<String, Pose>,
+}
+
+/// A rope or beam at the end of an increment: its axial force, of a rope never negative.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CurveReport {
+    /// In the first cell.
+    pub start_tension: f64,
+    /// In the last cell.
+    pub end_tension: f64,
+    /// Largest axial force.
+    pub max_tension: f64,
+    /// Least axial force.
+    pub min_tension: f64,
+    /// Number of cells without tension.
+    pub slack_cells: usize,
+}
+
+/// Where a free rigid body has come.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Pose {
+    /// Displacement of its centre since the start.
+    pub displacement: [f64; 3],
+    /// Rotation vector in radians since the start.
+    pub rotation: [f64; 3],
 }
 
 /// A contact at the end of an increment.

@@ -4,7 +4,8 @@ use super::RunError;
 use super::membrane::increment::LINEAR;
 use super::solid;
 use crate::output::solid_fields::SolidDisplay;
-use crate::output::{pictures, solid_pictures};
+use crate::output::{pictures, solid_pictures, system_pictures};
+use crate::plan::mechanics::MechanicsPlan;
 use crate::plan::solid::SolidPlan;
 use crate::plan::{MembranePlan, Plan, memory_estimate, mesh_multigrid_estimate, multigrid_estimate};
 use crate::problem::CaseError;
@@ -46,7 +47,28 @@ pub fn sizes(plan: &Plan) -> Result<Value, CaseError> {
         Plan::Plane(plan) => of_membrane::<2, PlaneZone>(plan),
         Plan::PlaneSolids(plan) => of_solids(plan),
         Plan::Solids(plan) => of_solids(plan),
+        Plan::Mechanics(plan) => Ok(of_system(plan)),
     }
+}
+
+/// What a run of a system of bodies would have to do.
+fn of_system(plan: &MechanicsPlan) -> Value {
+    let contacts: Vec<&str> = plan.system.contacts.iter().map(|c| c.name.as_str()).collect();
+    let unknowns: usize = plan.system.bodies.iter().map(|b| b.unknowns()).sum();
+    let mut methods = plan.methods.clone();
+    methods.dedup();
+    json!({
+        "method": if methods.is_empty() { "none".to_string() } else { methods.join(", ") },
+        "bodies": plan.system.bodies.len(),
+        "unknowns": unknowns,
+        "points_tested": plan.system.contacts.iter().map(|c| c.sites().len()).sum::<usize>(),
+        "increments": plan.times.len(),
+        "supports": plan.head.problem.supports.len(),
+        "loads": plan.head.problem.loads.len(),
+        "contacts": contacts.join(", "),
+        "interpreted": plan.head.interpreted,
+        "warnings": plan.head.warnings,
+    })
 }
 
 fn of_membrane<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>) -> Result<Value, CaseError> {
@@ -186,6 +208,7 @@ pub fn preview(plan: &Plan) -> Result<Option<String>, RunError> {
         Plan::Plane(plan) => membrane::<2, PlaneZone>(plan),
         Plan::PlaneSolids(plan) => solids(plan),
         Plan::Solids(plan) => solids(plan),
+        Plan::Mechanics(plan) => Ok(Some(system_pictures::preview(plan)?)),
     }
 }
 

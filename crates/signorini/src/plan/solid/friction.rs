@@ -1,9 +1,10 @@
 //! Laws of friction between solids.
 
 use crate::plan::Planner;
+use crate::plan::mechanics::is_tangent;
 use crate::problem::units::{NONE, PRESSURE};
 use crate::problem::{self, CaseError, Value};
-use signorini_contact::law::{Coulomb, LawError, Tresca};
+use signorini_contact::law::{Coulomb, Law, LawError, Tresca};
 use signorini_geometry::Point;
 use signorini_solid::Friction;
 
@@ -20,37 +21,74 @@ enum PlannedLaw {
     Tresca(Tresca),
 }
 
+impl PlannedLaw {
+    fn boxed(self) -> Box<dyn Law> {
+        match self {
+            PlannedLaw::Coulomb(law) => Box::new(law),
+            PlannedLaw::Tresca(law) => Box::new(law),
+        }
+    }
+}
+
 impl<const D: usize> PlannedFriction<D> {
     /// The friction of a contact of solids.
     pub fn friction(&self) -> Friction<D> {
-        let law: Box<dyn signorini_contact::Law> = match self.law {
-            PlannedLaw::Coulomb(law) => Box::new(law),
-            PlannedLaw::Tresca(law) => Box::new(law),
-        };
-        Friction { law, axis: self.axis }
+        Friction { law: self.law.boxed(), axis: self.axis }
     }
 }
 
 impl Planner<'_> {
+    /// The friction of a contact of solids: the law and its axis.
     pub(super) fn friction<const D: usize>(&self, key: &problem::Friction) -> Result<PlannedFriction<D>, CaseError> {
-        match key {
+        let law = self.planned_law(key, D)?;
+        let problem::Friction::Coulomb(coulomb) = key else { return Ok(PlannedFriction { law, axis: None }) };
+        let axis = match &coulomb.axis {
+            Some(axis) if is_tangent(axis) => {
+                return Err(self
+                    .problem
+                    .error(axis, "a solid has no tangent of its own")
+                    .help("axis = [1, 0, 0]; `\"tangent\"` is for ropes and beams"));
+            }
+            Some(axis) => {
+                let direction = Point::<D>::from(self.reader.numbers::<D>(&axis.0, NONE)?);
+                Some(
+                    direction
+                        .try_normalize(0.0)
+                        .ok_or_else(|| self.problem.error(axis, "the direction has no length"))?,
+                )
+            }
+            None if coulomb.mu.0.len() == 2 && !matches!(law, PlannedLaw::Coulomb(law) if law.is_isotropic()) => {
+                return Err(self
+                    .problem
+                    .error(&coulomb.mu, "two coefficients of friction need the direction of the first")
+                    .help("axis = [1, 0, 0]"));
+            }
+            None => None,
+        };
+        Ok(PlannedFriction { law, axis })
+    }
+
+    /// The law of friction in so many dimensions.
+    pub(in crate::plan) fn law(&self, key: &problem::Friction, dimension: usize) -> Result<Box<dyn Law>, CaseError> {
+        Ok(self.planned_law(key, dimension)?.boxed())
+    }
+
+    fn planned_law(&self, key: &problem::Friction, dimension: usize) -> Result<PlannedLaw, CaseError> {
+        let key = match key {
             problem::Friction::Tresca(key) => {
                 let limit = self.reader.number(&key.limit, PRESSURE)?;
                 let law = Tresca::new(limit).map_err(|e| self.not_negative(&key.limit, e))?;
-                Ok(PlannedFriction { law: PlannedLaw::Tresca(law), axis: None })
+                return Ok(PlannedLaw::Tresca(law));
             }
-            problem::Friction::Coulomb(key) => self.coulomb(key),
-        }
-    }
-
-    fn coulomb<const D: usize>(&self, key: &problem::CoulombFriction) -> Result<PlannedFriction<D>, CaseError> {
+            problem::Friction::Coulomb(key) => key,
+        };
         let list = &key.mu.0;
         let coefficient = |k: usize| {
             let mu = self.reader.number(&list[k], NONE)?;
             Coulomb::isotropic(mu).map_err(|e| self.not_negative(&list[k], e))?;
             Ok::<f64, CaseError>(mu)
         };
-        let mu = match (list.len(), D) {
+        let mu = match (list.len(), dimension) {
             (1, _) => [coefficient(0)?; 2],
             (2, 3) => [coefficient(0)?, coefficient(1)?],
             (2, _) => {
@@ -66,25 +104,8 @@ impl Planner<'_> {
                     .help("mu = 0.3, or along `axis` and across it  mu = [0.3, 0.5]"));
             }
         };
-        let axis = match &key.axis {
-            Some(axis) => {
-                let direction = Point::<D>::from(self.reader.numbers::<D>(axis, NONE)?);
-                Some(
-                    direction
-                        .try_normalize(0.0)
-                        .ok_or_else(|| self.problem.error(axis, "the direction has no length"))?,
-                )
-            }
-            None if mu[0] != mu[1] => {
-                return Err(self
-                    .problem
-                    .error(&key.mu, "two coefficients of friction need the direction of the first")
-                    .help("axis = [1, 0, 0]"));
-            }
-            None => None,
-        };
         let law = Coulomb::orthotropic(mu).map_err(|e| self.not_negative(&list[0], e))?;
-        Ok(PlannedFriction { law: PlannedLaw::Coulomb(law), axis })
+        Ok(PlannedLaw::Coulomb(law))
     }
 
     fn not_negative(&self, value: &Value, LawError { value: found }: LawError) -> CaseError {

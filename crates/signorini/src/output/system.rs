@@ -1,0 +1,361 @@
+//! A state of a system of bodies as it is shown: fields of the bodies, points of the contacts, and their files.
+
+use super::OutputError;
+use super::level::surface;
+use super::vtk::{to_bytes, with_units};
+use crate::fields::{FieldArray, Fields};
+use crate::plan::mechanics::{Kind, MechanicsPlan};
+use crate::report::{UnitNames, vector};
+use signorini_contact::{GapJet, Status};
+use signorini_fem::CellShape;
+use signorini_geometry::Vector;
+use signorini_mechanics::{BodyFields, IncrementResult, SiteResult, SystemState, rigid_body};
+use std::sync::Arc;
+use vtkio::model::{
+    Attribute, Attributes, CellType, Cells, DataSet, PolyDataPiece, UnstructuredGridPiece, VertexNumbers,
+};
+
+/// Rigid bodies are shown this far beyond the others, as a part of their largest extent.
+pub const AROUND: f64 = 0.15;
+
+/// A rope or beam as it is shown.
+#[derive(Clone)]
+pub struct CurveShown {
+    pub name: String,
+    pub radius: f64,
+    /// Places of its points now, and length along it.
+    pub points: Vec<Vector<3>>,
+    pub arc: Vec<f64>,
+    pub cells: Vec<[u32; 2]>,
+    /// Axial force of each cell.
+    pub forces: Vec<f64>,
+}
+
+/// A rigid body where it is.
+#[derive(Clone)]
+pub struct RigidShown {
+    pub name: String,
+    pub gap: Arc<dyn Fn(&Vector<3>) -> GapJet<3> + Send + Sync>,
+    /// Its extent where it has one.
+    pub size: f64,
+    pub centre: Vector<3>,
+    pub is_free: bool,
+}
+
+/// A state as it is shown.
+pub struct SystemShown {
+    pub time: f64,
+    pub bodies: Vec<Fields>,
+    pub contacts: Vec<Fields>,
+    pub curves: Vec<CurveShown>,
+    pub rigid: Vec<RigidShown>,
+}
+
+impl SystemShown {
+    pub fn new(plan: &MechanicsPlan, state: &SystemState, result: &IncrementResult, time: f64) -> Self {
+        let mut shown = SystemShown { time, ..Self::of_bodies(plan, state) };
+        for (contact, sites) in plan.system.contacts.iter().zip(&result.sites) {
+            let is_curve = matches!(plan.kinds[contact.slave.body], Kind::Curve { .. });
+            shown.contacts.push(of_contact(&contact.name, sites, contact.friction.is_some(), is_curve));
+        }
+        shown
+    }
+
+    /// The bodies without their contacts.
+    pub fn of_bodies(plan: &MechanicsPlan, state: &SystemState) -> Self {
+        let mut shown =
+            SystemShown { time: 0.0, bodies: Vec::new(), contacts: Vec::new(), curves: Vec::new(), rigid: Vec::new() };
+        for ((body, kind), state) in plan.system.bodies.iter().zip(&plan.kinds).zip(&state.bodies) {
+            match kind {
+                Kind::Curve { radius } => {
+                    let fields = body.fields(state);
+                    shown.curves.push(curve(body.name(), *radius, &fields));
+                    shown.bodies.push(of_body(body.name(), &fields));
+                }
+                Kind::Rigid { shape, centre, is_free } => {
+                    let pose = rigid_body::Pose::of(state);
+                    let (rotation, shape, origin, now) = (pose.matrix(), Arc::clone(shape), *centre, pose.centre);
+                    let gap = move |x: &Vector<3>| {
+                        let found = shape.gap(&(origin + rotation.transpose() * (x - now)));
+                        GapJet {
+                            gap: found.gap,
+                            normal: rotation * found.normal,
+                            hessian: rotation * found.hessian * rotation.transpose(),
+                        }
+                    };
+                    shown.rigid.push(RigidShown {
+                        name: body.name().to_string(),
+                        gap: Arc::new(gap),
+                        size: body.size(),
+                        centre: now,
+                        is_free: *is_free,
+                    });
+                }
+            }
+        }
+        shown
+    }
+
+    /// The corners of the box of what is shown, without bodies that reach beyond it.
+    pub fn bounds(&self) -> [Vector<3>; 2] {
+        let mut points: Vec<Vector<3>> = Vec::new();
+        for c in &self.curves {
+            let pad = Vector::<3>::repeat(c.radius);
+            points.extend(c.points.iter().flat_map(|x| [x - pad, x + pad]));
+        }
+        for r in self.rigid.iter().filter(|r| r.is_free || self.curves.is_empty()) {
+            let pad = Vector::<3>::repeat(0.5 * r.size);
+            points.extend([r.centre - pad, r.centre + pad]);
+        }
+        super::solid_state::bounds(points.iter())
+    }
+
+    /// The same with room for rigid bodies around.
+    pub fn room(&self) -> [Vector<3>; 2] {
+        let [low, high] = self.bounds();
+        let pad = Vector::<3>::repeat(AROUND * (high - low).max());
+        [low - pad, high + pad]
+    }
+}
+
+fn curve(name: &str, radius: f64, fields: &BodyFields) -> CurveShown {
+    let cell = |name: &str| fields.cell_data.iter().find(|d| d.0 == name).map(|d| d.2.clone());
+    let arc = fields.point_data.iter().find(|d| d.0 == "arc_length").map(|d| d.2.clone());
+    CurveShown {
+        name: name.to_string(),
+        radius,
+        points: fields.points.iter().zip(&fields.displacement).map(|(x, u)| x + u).collect(),
+        arc: arc.unwrap_or_default(),
+        cells: fields.cells.iter().map(|c| [c[0], c[1]]).collect(),
+        forces: cell("tension").or_else(|| cell("axial_force")).unwrap_or_default(),
+    }
+}
+
+/// Names of arrays as files of fields have them.
+const NAMES: [&str; 8] =
+    ["tension", "axial_force", "shear_force", "torque", "bending_moment", "arc_length", "element", "von_mises"];
+
+fn of_body(name: &str, fields: &BodyFields) -> Fields {
+    let shape = |corners: usize| match corners {
+        2 => Some(CellShape::Line),
+        3 => Some(CellShape::Triangle),
+        4 => Some(CellShape::Quadrilateral),
+        8 => Some(CellShape::Hexahedron),
+        _ => None,
+    };
+    let mut out = Fields {
+        name: name.into(),
+        points: fields.points.iter().map(vector).collect(),
+        cells: fields.cells.iter().map(|c| (shape(c.len()), c.clone())).collect(),
+        arrays: Vec::new(),
+    }
+    .vector("displacement", fields.displacement.iter().flat_map(vector).collect());
+    let known = |name: &str| NAMES.into_iter().find(|n| *n == name);
+    for (name, components, values) in &fields.point_data {
+        if let Some(name) = known(name) {
+            out.arrays.push(FieldArray { name, components: *components, values: values.clone() });
+        }
+    }
+    // Values of cells as means of those around each point.
+    for (name, components, values) in &fields.cell_data {
+        let Some(name) = known(name) else { continue };
+        let mut sums = vec![0.0; fields.points.len() * components];
+        let mut counts = vec![0.0; fields.points.len()];
+        for (cell, own) in fields.cells.iter().zip(values.chunks(*components)) {
+            for &p in cell {
+                counts[p as usize] += 1.0;
+                own.iter().enumerate().for_each(|(k, v)| sums[p as usize * components + k] += v);
+            }
+        }
+        let values = sums.iter().enumerate().map(|(k, s)| s / counts[k / components].max(1.0)).collect();
+        out.arrays.push(FieldArray { name, components: *components, values });
+    }
+    out
+}
+
+/// The tested points of a contact. Of a curve, neighbours are joined by lines, and its curvature is told along and across
+/// the normal of what it touches.
+fn of_contact(name: &str, sites: &[SiteResult], rubs: bool, is_curve: bool) -> Fields {
+    let status = |s: &SiteResult| f64::from(u8::from(s.status != Status::Open));
+    let cells = if is_curve {
+        (1..sites.len() as u32).map(|k| (Some(CellShape::Line), vec![k - 1, k])).collect()
+    } else {
+        Vec::new()
+    };
+    let mut fields =
+        Fields { name: name.into(), points: sites.iter().map(|s| vector(&s.x)).collect(), cells, arrays: Vec::new() }
+            .scalar("contact_pressure", sites.iter().map(|s| s.pressure).collect())
+            .scalar("gap", sites.iter().map(|s| s.gap.unwrap_or(f64::NAN)).collect())
+            .scalar("contact_status", sites.iter().map(status).collect())
+            .scalar("weight", sites.iter().map(|s| s.weight).collect())
+            .vector("normal", sites.iter().flat_map(|s| vector(&s.normal)).collect());
+    if rubs {
+        let word = |s: &SiteResult| match s.status {
+            Status::Open => 0.0,
+            Status::Stick => 1.0,
+            Status::Slip => 2.0,
+        };
+        fields = fields
+            .scalar("friction_status", sites.iter().map(word).collect())
+            .vector("friction_traction", sites.iter().flat_map(|s| vector(&s.friction)).collect())
+            .vector("slip", sites.iter().flat_map(|s| vector(&s.increment)).collect())
+            .scalar("friction_utilisation", sites.iter().map(|s| s.utilisation).collect());
+    }
+    if is_curve && sites.len() > 2 {
+        let curvature = curvatures(sites);
+        fields = fields
+            .scalar("normal_curvature", curvature.iter().map(|k| k[0]).collect())
+            .scalar("geodesic_curvature", curvature.iter().map(|k| k[1]).collect());
+    }
+    fields
+}
+
+/// Normal and geodesic curvature of the polygon of the sites, where they touch: those of the circle through three of them,
+/// along the outward normal `n` and along `τ × n`.
+fn curvatures(sites: &[SiteResult]) -> Vec<[f64; 2]> {
+    let last = sites.len() - 1;
+    let at = |k: usize| {
+        let k = k.clamp(1, last - 1);
+        let (before, after) = (sites[k].x - sites[k - 1].x, sites[k + 1].x - sites[k].x);
+        let (a, b) = (before.norm(), after.norm());
+        let tangent = (before / a * b + after / b * a).normalize();
+        (tangent, (after / b - before / a) * (2.0 / (a + b)))
+    };
+    (0..=last)
+        .map(|k| {
+            if sites[k].status == Status::Open {
+                return [0.0; 2];
+            }
+            let (tangent, curvature) = at(k);
+            let normal = sites[k].normal;
+            [curvature.dot(&normal), curvature.dot(&tangent.cross(&normal))]
+        })
+        .collect()
+}
+
+fn attributes(fields: &Fields) -> Vec<Attribute> {
+    let attribute = |array: &FieldArray| match array.components {
+        3 => Attribute::vectors(array.name).with_data(array.values.clone()),
+        n => Attribute::scalars(array.name, n as u32).with_data(array.values.clone()),
+    };
+    fields.arrays.iter().map(attribute).collect()
+}
+
+fn topology<'a>(cells: impl Iterator<Item = &'a Vec<u32>> + Clone) -> VertexNumbers {
+    let connectivity: Vec<u64> = cells.clone().flatten().map(|&k| u64::from(k)).collect();
+    let offsets = cells
+        .scan(0, |at, c| {
+            *at += c.len() as u64;
+            Some(*at)
+        })
+        .collect();
+    VertexNumbers::XML { connectivity, offsets }
+}
+
+/// All bodies in one VTU; what a body does not have is zero there, and `body` tells them apart.
+///
+/// # Errors
+/// What `vtkio` cannot write.
+pub fn vtu(bodies: &[Fields], units: Option<&UnitNames>) -> Result<Vec<u8>, OutputError> {
+    let mut all = Fields { name: "bodies".into(), ..Fields::default() };
+    let mut body = Vec::new();
+    for (number, fields) in bodies.iter().enumerate() {
+        let (first, total) = (all.points.len(), all.points.len() + fields.points.len());
+        all.points.extend(&fields.points);
+        body.extend(std::iter::repeat_n(number as f64, fields.points.len()));
+        let moved = |list: &[u32]| list.iter().map(|k| k + first as u32).collect::<Vec<_>>();
+        all.cells.extend(fields.cells.iter().map(|(shape, list)| (*shape, moved(list))));
+        for array in &fields.arrays {
+            if !all.arrays.iter().any(|a| a.name == array.name) {
+                let values = vec![0.0; first * array.components];
+                all.arrays.push(FieldArray { name: array.name, components: array.components, values });
+            }
+        }
+        for own in &mut all.arrays {
+            match fields.arrays.iter().find(|a| a.name == own.name && a.components == own.components) {
+                Some(array) => own.values.extend(&array.values),
+                None => own.values.resize(total * own.components, 0.0),
+            }
+        }
+    }
+    let all = all.scalar("body", body);
+    let kind = |shape: &Option<CellShape>| match shape {
+        Some(CellShape::Line) => CellType::Line,
+        Some(CellShape::Triangle) => CellType::Triangle,
+        Some(CellShape::Quadrilateral) => CellType::Quad,
+        Some(CellShape::Hexahedron) => CellType::Hexahedron,
+        _ => CellType::Polygon,
+    };
+    let piece = UnstructuredGridPiece {
+        points: all.points.iter().flatten().copied().collect::<Vec<f64>>().into(),
+        cells: Cells {
+            cell_verts: topology(all.cells.iter().map(|c| &c.1)),
+            types: all.cells.iter().map(|c| kind(&c.0)).collect(),
+        },
+        data: Attributes { point: attributes(&all), cell: Vec::new() },
+    };
+    with_units("bodies", DataSet::inline(piece), units)
+}
+
+/// The tested points of a contact as a VTP.
+///
+/// # Errors
+/// What `vtkio` cannot write.
+pub fn vtp(fields: &Fields, units: Option<&UnitNames>) -> Result<Vec<u8>, OutputError> {
+    let mut piece = PolyDataPiece {
+        points: fields.points.iter().flatten().copied().collect::<Vec<f64>>().into(),
+        data: Attributes { point: attributes(fields), cell: Vec::new() },
+        ..PolyDataPiece::default()
+    };
+    if fields.cells.is_empty() {
+        let single: Vec<Vec<u32>> = (0..fields.points.len() as u32).map(|k| vec![k]).collect();
+        piece.verts = Some(topology(single.iter()));
+    } else {
+        piece.lines = Some(topology(fields.cells.iter().map(|c| &c.1)));
+    }
+    with_units("contact", DataSet::inline(piece), units)
+}
+
+/// The tested points of a contact as a table, a line each.
+pub fn csv(fields: &Fields) -> String {
+    let mut head = vec!["x".to_string(), "y".into(), "z".into()];
+    for array in &fields.arrays {
+        match array.components {
+            3 => head.extend(["x", "y", "z"].map(|c| format!("{}_{c}", array.name))),
+            _ => head.push(array.name.to_string()),
+        }
+    }
+    let mut text = head.join(",") + "\n";
+    for (k, x) in fields.points.iter().enumerate() {
+        let mut line: Vec<String> = x.iter().map(f64::to_string).collect();
+        for array in &fields.arrays {
+            let own = &array.values[k * array.components..(k + 1) * array.components];
+            line.extend(own.iter().map(|v| if v.is_finite() { v.to_string() } else { String::new() }));
+        }
+        text += &(line.join(",") + "\n");
+    }
+    text
+}
+
+/// The names and VTP files of the rigid bodies, around what is shown.
+///
+/// # Errors
+/// What `vtkio` cannot write.
+pub fn rigid_files(plan: &MechanicsPlan, shown: &SystemShown) -> Result<Vec<(String, Vec<u8>)>, OutputError> {
+    if plan.space != crate::problem::Space::ThreeD {
+        return Ok(Vec::new());
+    }
+    let room = shown.room();
+    (shown.rigid.iter())
+        .map(|body| {
+            let (points, _, triangles) = surface(body.gap.as_ref(), room);
+            let triangles: Vec<Vec<u32>> = triangles.iter().map(|t| t.to_vec()).collect();
+            let piece = PolyDataPiece {
+                points: points.iter().flat_map(|x| [x.x, x.y, x.z]).collect::<Vec<f64>>().into(),
+                polys: Some(topology(triangles.iter())),
+                ..PolyDataPiece::default()
+            };
+            Ok((body.name.clone(), to_bytes("rigid", DataSet::inline(piece))?))
+        })
+        .collect()
+}

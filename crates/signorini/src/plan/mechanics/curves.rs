@@ -1,0 +1,241 @@
+//! Ropes and beams of a system.
+
+use crate::plan::Planner;
+use crate::plan::placement::PlacementKeys;
+use crate::problem::units::{LENGTH, NONE, PRESSURE};
+use crate::problem::{self, Beam, BeamModel, CaseError, Continuity, List, Material, Path as Stated, Rope, Value};
+use signorini_geometry::shape::Axes;
+use signorini_geometry::{Point, Vector};
+use signorini_mechanics::Body;
+use signorini_rope::beam::Beam as BeamBody;
+use signorini_rope::cable::{Cable, Carries};
+use signorini_rope::centreline::{self, Closure};
+use signorini_rope::chain::{Chain, Rest};
+use signorini_rope::path::{Path, Sampled};
+use signorini_rope::section::{Section, Stiffness};
+
+const FORCE: [i32; 3] = [0, 1, 0];
+/// Elements of a rope and of a beam whose number is not stated.
+const ROPE_CELLS: usize = 50;
+const BEAM_CELLS: usize = 20;
+
+impl Planner<'_> {
+    /// A rope, and its radius.
+    pub(super) fn rope(&self, name: &str, key: &Rope) -> Result<(Box<dyn Body>, f64), CaseError> {
+        let problem = self.problem;
+        let smooth = key.continuity == Some(Continuity::C1);
+        let path = self.path(&key.path)?;
+        let cells = self.count(key.cells.as_ref(), ROPE_CELLS)?;
+        let stiffness = self.reader.positive(&key.stiffness, FORCE)?;
+        let radius = self.not_negative_length(key.radius.as_ref())?;
+        let rest = match (&key.pretension, &key.unstrained_length) {
+            (Some(_), Some(length)) => {
+                return Err(problem
+                    .error(length, "`pretension` and `unstrained_length` say the same in two ways")
+                    .help("leave one of them out"));
+            }
+            (Some(tension), None) => {
+                let value = self.reader.number(tension, FORCE)?;
+                if value < 0.0 {
+                    let message = format!("the pretension is {value}: a rope cannot be compressed");
+                    return Err(problem.error(tension, message).help("0 or more"));
+                }
+                Rest::Pretension(value)
+            }
+            (None, Some(length)) => Rest::Length(self.reader.positive(length, LENGTH)?),
+            (None, None) => Rest::Path,
+        };
+        let sampled = self.sampled(&path, cells, smooth, &key.path)?;
+        let refused = |message: String| problem.error(&key.path, message);
+        if !smooth {
+            for (stated, what) in [
+                (key.bending_stiffness.as_ref().map(|v| self.key(v)), "bending_stiffness"),
+                (key.contact_points.as_ref().map(|v| self.key(v)), "contact_points"),
+            ] {
+                if let Some(at) = stated {
+                    return Err(problem
+                        .error(&at, format!("`{what}` is for smooth ropes"))
+                        .help("continuity = \"C1\""));
+                }
+            }
+            let chain = Chain::new(name, &sampled, stiffness, rest, radius).map_err(|e| refused(e.to_string()))?;
+            return Ok((Box::new(chain), radius));
+        }
+        let bending = match &key.bending_stiffness {
+            Some(value) => self.reader.number(value, [2, 1, 0])?,
+            None => 0.0,
+        };
+        let cable = Cable::new(name, &sampled, stiffness, bending, Carries::TensionOnly, rest, radius)
+            .map_err(|e| refused(e.to_string()))?;
+        let cable = match &key.contact_points {
+            Some(n) => cable.with_contact_points(self.count(Some(n), 4)?),
+            None => cable,
+        };
+        Ok((Box::new(cable), radius))
+    }
+
+    /// A beam, and its radius.
+    pub(super) fn beam(&self, name: &str, key: &Beam) -> Result<(Box<dyn Body>, f64), CaseError> {
+        let problem = self.problem;
+        let path = self.path(&key.path)?;
+        let cells = self.count(key.cells.as_ref(), BEAM_CELLS)?;
+        let (stiffness, own_radius) = self.section(key)?;
+        let radius = match &key.radius {
+            Some(_) => self.not_negative_length(key.radius.as_ref())?,
+            None => own_radius.unwrap_or(0.0),
+        };
+        let sampled = self.sampled(&path, cells, true, &key.path)?;
+        let points = key.contact_points.as_ref().map(|n| self.count(Some(n), 4)).transpose()?;
+        let refused = |message: String| problem.error(&key.path, message);
+        if key.model == Some(BeamModel::TorsionFree) {
+            if stiffness.bending[0] != stiffness.bending[1] {
+                return Err(problem
+                    .error(&key.section, "a beam without torsion bends alike about all axes")
+                    .help("a round section, or model = \"shear\""));
+            }
+            let (axial, bending) = (stiffness.axial, stiffness.bending[0]);
+            let carries = Carries::TensionAndCompression;
+            let cable = Cable::new(name, &sampled, axial, bending, carries, Rest::Path, radius)
+                .map_err(|e| refused(e.to_string()))?;
+            let cable = points.map_or(cable.clone(), |n| cable.with_contact_points(n));
+            return Ok((Box::new(cable), radius));
+        }
+        let orientation = match &key.orientation {
+            Some(values) => Some(self.position(values, NONE)?),
+            None => None,
+        };
+        let beam = BeamBody::new(name, &sampled, orientation, stiffness, radius).map_err(|e| refused(e.to_string()))?;
+        let beam = points.map_or(beam.clone(), |n| beam.with_contact_points(n));
+        Ok((Box::new(beam), radius))
+    }
+
+    /// The stiffness of a section, and its radius if it is round.
+    fn section(&self, key: &Beam) -> Result<(Stiffness, Option<f64>), CaseError> {
+        let problem = self.problem;
+        let section = match &key.section {
+            problem::Section::Circle(circle) => {
+                Section::Circle { radius: self.reader.positive(&circle.radius, LENGTH)? }
+            }
+            problem::Section::Rectangle(rectangle) => Section::Rectangle {
+                width: self.reader.positive(&rectangle.width, LENGTH)?,
+                height: self.reader.positive(&rectangle.height, LENGTH)?,
+            },
+            problem::Section::Stiffness(stated) => {
+                if let Some(material) = &key.material {
+                    let message = "a section that states its stiffness needs no material";
+                    return Err(problem.error(material, message));
+                }
+                let two = |values: &problem::Components, dimension| match &values.0[..] {
+                    [one] => self.reader.positive(one, dimension).map(|v| [v, v]),
+                    [a, b] => Ok([self.reader.positive(a, dimension)?, self.reader.positive(b, dimension)?]),
+                    list => Err(problem.error(values, format!("{} values: one, or one for each axis", list.len()))),
+                };
+                let axial = self.reader.positive(&stated.axial, FORCE)?;
+                let bending = two(&stated.bending, [2, 1, 0])?;
+                return Ok((
+                    Stiffness {
+                        axial,
+                        shear: stated.shear.as_ref().map_or(Ok([axial; 2]), |v| two(v, FORCE))?,
+                        torsion: match &stated.torsion {
+                            Some(v) => self.reader.positive(v, [2, 1, 0])?,
+                            None => bending[0],
+                        },
+                        bending,
+                    },
+                    None,
+                ));
+            }
+        };
+        let Some(material) = &key.material else {
+            return Err(problem
+                .error(&key.section, "the section says its shape, and no material is stated")
+                .help("material.linear_elastic = { youngs_modulus = …, poissons_ratio = … }"));
+        };
+        let Material::LinearElastic(elastic) = material else {
+            return Err(problem.error(material, "beams are linear elastic").help("material.linear_elastic = { … }"));
+        };
+        let modulus = self.reader.positive(&elastic.youngs_modulus, PRESSURE)?;
+        let ratio = self.reader.number(&elastic.poissons_ratio, NONE)?;
+        let stiffness =
+            section.stiffness(modulus, ratio).map_err(|e| problem.error(&elastic.poissons_ratio, e.to_string()))?;
+        Ok((stiffness, section.radius()))
+    }
+
+    fn count(&self, key: Option<&i64>, otherwise: usize) -> Result<usize, CaseError> {
+        match key {
+            None => Ok(otherwise),
+            Some(n) if (1..=1_000_000).contains(n) => Ok(*n as usize),
+            Some(n) => Err(self.problem.error(n, format!("{n} is no number of cells or points")).help("1 or more")),
+        }
+    }
+
+    fn not_negative_length(&self, value: Option<&Value>) -> Result<f64, CaseError> {
+        let Some(value) = value else { return Ok(0.0) };
+        let length = self.reader.number(value, LENGTH)?;
+        if length >= 0.0 {
+            return Ok(length);
+        }
+        Err(self.problem.error(value, format!("the radius is {length}")).help("0 or more"))
+    }
+
+    fn sampled(&self, path: &Path, cells: usize, smooth: bool, key: &Stated) -> Result<Sampled, CaseError> {
+        let continuity = if smooth { centreline::Continuity::C1 } else { centreline::Continuity::C0 };
+        path.sample(cells, continuity).map_err(|e| self.problem.error(key, e.to_string()))
+    }
+
+    fn points(&self, list: &List<List<Value>>) -> Result<Vec<Point<3>>, CaseError> {
+        list.iter().map(|x| self.position(x, LENGTH)).collect()
+    }
+
+    fn path(&self, key: &Stated) -> Result<Path, CaseError> {
+        let problem = self.problem;
+        let closure = |closed: &Option<bool>| if *closed == Some(true) { Closure::Closed } else { Closure::Open };
+        let found = match key {
+            Stated::Points(points) => Path::points(&self.points(points)?, Closure::Open),
+            Stated::Spline(spline) => Path::spline(&self.points(&spline.points)?, closure(&spline.closed)),
+            Stated::Arc(arc) => {
+                let points: [Point<3>; 3] = self.points(&arc.points)?.try_into().map_err(|list: Vec<_>| {
+                    problem.error(&arc.points, format!("an arc has 3 points, found {}", list.len()))
+                })?;
+                Path::arc(points)
+            }
+            Stated::Helix(helix) => {
+                let center = helix.center.as_ref().map_or(Ok(Point::<3>::zeros()), |c| self.position(c, LENGTH))?;
+                let direction = |values: &Option<List<Value>>, otherwise: Vector<3>| match values {
+                    None => Ok(otherwise),
+                    Some(values) => self
+                        .position(values, NONE)?
+                        .try_normalize(0.0)
+                        .ok_or_else(|| problem.error(values, "the direction has no length")),
+                };
+                let axis = direction(&helix.axis, Vector::<3>::z())?;
+                let towards = direction(&helix.towards, signorini_mechanics::pair::any_tangent(&axis))?;
+                let across = (towards - axis * axis.dot(&towards)).try_normalize(1e-12).ok_or_else(|| {
+                    let at = helix.towards.as_ref().map_or(self.key(key), |t| self.key(t));
+                    problem.error(&at, "the direction to the start is that of the axis")
+                })?;
+                let axes =
+                    Axes::new(center, across, axis.cross(&across)).map_err(|e| problem.error(key, e.to_string()))?;
+                let radius = self.reader.positive(&helix.radius, LENGTH)?;
+                let pitch = self.reader.number(&helix.pitch, LENGTH)?;
+                let turns = self.reader.number(&helix.turns, NONE)?;
+                Path::helix(axes, radius, pitch, turns)
+            }
+            Stated::File(file) => {
+                let (path, bytes) = self.read_file(&file.file)?;
+                let told = |e: String| problem.error(&file.file, format!("`{}`: {e}", path.display()));
+                let text = String::from_utf8(bytes).map_err(|e| told(e.to_string()))?;
+                let mut points = Path::read_points(&text).map_err(|e| told(e.to_string()))?;
+                let keys = PlacementKeys { scale: &file.scale, turn: &file.turn, moved: &file.moved };
+                if let Some(placement) = self.placement::<3>(&keys)? {
+                    points.iter_mut().for_each(|x| *x = placement.point(x));
+                }
+                match file.spline {
+                    Some(true) => Path::spline(&points, closure(&file.closed)),
+                    _ => Path::points(&points, closure(&file.closed)),
+                }
+            }
+        };
+        found.map_err(|e| problem.error(key, e.to_string()))
+    }
+}

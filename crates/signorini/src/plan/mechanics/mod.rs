@@ -1,0 +1,143 @@
+//! From the statement to bodies of any kind in one system: ropes, beams, free rigid bodies.
+
+mod contacts;
+mod curves;
+mod fields;
+mod places;
+mod rigid;
+
+pub(in crate::plan) use contacts::is_tangent;
+pub use fields::Wrong;
+
+use super::{Head, Planner};
+use crate::problem::units::LENGTH;
+use crate::problem::{self, Body, CaseError, Motion, Problem, Space};
+use signorini_geometry::Point;
+use signorini_geometry::rigid_shape::RigidShape;
+use signorini_mechanics::{PlacedLoad, System};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// What a body of the system is, for results and pictures.
+#[derive(Clone)]
+pub enum Kind {
+    /// A rope or a beam, with the radius of its section.
+    Curve {
+        radius: f64,
+    },
+    Rigid {
+        shape: Arc<dyn RigidShape>,
+        centre: Point<3>,
+        is_free: bool,
+    },
+}
+
+/// Bodies in one system, what holds and pushes them, and who may touch whom.
+pub struct MechanicsPlan {
+    pub head: Head,
+    pub space: Space,
+    pub system: System,
+    /// Of each body of the system.
+    pub kinds: Vec<Kind>,
+    pub times: Vec<f64>,
+    pub probes: BTreeMap<String, Point<3>>,
+    /// Values of the case that were no numbers.
+    pub wrong: Wrong,
+    /// The method of each contact in a word.
+    pub methods: Vec<&'static str>,
+}
+
+/// Whether a problem is one of a system of bodies: with ropes, beams or free rigid bodies.
+pub fn is_system(problem: &Problem) -> bool {
+    problem.bodies.values().any(|body| match body {
+        Body::Rope(_) | Body::Beam(_) => true,
+        Body::Rigid(rigid) => matches!(rigid.motion, Some(Motion::Free(_))),
+        _ => false,
+    })
+}
+
+/// Where a name stands among the bodies of the system.
+pub(super) type Numbers = BTreeMap<String, usize>;
+
+impl Planner<'_> {
+    pub(super) fn mechanics(&self) -> Result<MechanicsPlan, CaseError> {
+        let problem = self.problem;
+        let wrong = Wrong::default();
+        let mut system = System::default();
+        let mut kinds = Vec::new();
+        let mut numbers = Numbers::new();
+        // Rigid shapes given by heights are known around the bodies that are there.
+        let mut around: Option<[Point<3>; 2]> = None;
+        for (name, body) in &problem.bodies {
+            let curve = match body {
+                Body::Rope(rope) => self.rope(name, rope)?,
+                Body::Beam(beam) => self.beam(name, beam)?,
+                Body::Rigid(_) => continue,
+                _ => {
+                    return Err(problem
+                        .error(
+                            body,
+                            format!("the body `{name}` cannot stand beside ropes, beams and free rigid bodies"),
+                        )
+                        .help("bodies here are `rope`, `beam` or `rigid`"));
+                }
+            };
+            let shown = curve.0.fields(&curve.0.start());
+            for x in &shown.points {
+                let [low, high] = around.unwrap_or([*x; 2]);
+                around = Some([low.inf(x), high.sup(x)]);
+            }
+            numbers.insert(name.clone(), system.bodies.len());
+            system.bodies.push(curve.0);
+            kinds.push(Kind::Curve { radius: curve.1 });
+        }
+        for (name, body) in &problem.bodies {
+            let Body::Rigid(key) = body else { continue };
+            let (rigid, kind) = self.rigid_body(name, key, around, &wrong)?;
+            numbers.insert(name.clone(), system.bodies.len());
+            system.bodies.push(Box::new(rigid));
+            kinds.push(kind);
+        }
+        system.supports = self.system_supports(&numbers, &system, &wrong)?;
+        let (loads, springs) = self.system_loads(&numbers, &system, &wrong)?;
+        system.loads = loads;
+        system.loads.extend(springs.into_iter().map(|(name, part, load)| PlacedLoad { name, part, load }));
+        let (contacts, methods) = self.system_contacts(&numbers, &system)?;
+        system.contacts = contacts;
+        system.prepare().map_err(|e| problem.error(&problem.space, e.to_string()))?;
+        let mut warnings = Vec::new();
+        if system.contacts.is_empty() && system.bodies.len() > 1 {
+            warnings.push("no contact is stated: the bodies do not see each other (add [contacts.NAME])".into());
+        }
+        if problem.steps.iter().any(|s| s.events.is_some()) {
+            warnings.push("`events` are located for membranes only".into());
+        }
+        let mut probes = BTreeMap::new();
+        for (name, at) in &problem.output.probes {
+            probes.insert(name.clone(), self.position(at, LENGTH)?);
+        }
+        Ok(MechanicsPlan {
+            head: self.head(warnings)?,
+            space: self.space,
+            system,
+            kinds,
+            times: self.times()?,
+            probes,
+            wrong,
+            methods,
+        })
+    }
+
+    /// Components of a vector in this space; in the plane the third is zero.
+    fn position(
+        &self,
+        values: &problem::List<problem::Value>,
+        dimension: problem::units::Dimension,
+    ) -> Result<Point<3>, CaseError> {
+        if self.space == Space::ThreeD {
+            return Ok(Point::<3>::from(self.reader.numbers::<3>(values, dimension)?));
+        }
+        let [x, y] = self.reader.numbers::<2>(values, dimension)?;
+        Ok(Point::<3>::new(x, y, 0.0))
+    }
+}

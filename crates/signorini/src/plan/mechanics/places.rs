@@ -1,0 +1,216 @@
+//! Supports and loads of a system: on which part of which body, and what.
+
+use super::{Numbers, Wrong};
+use crate::plan::Planner;
+use crate::problem::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE};
+use crate::problem::{CaseError, List, Space, Value, suggestion};
+use signorini_geometry::{Point, Vector};
+use signorini_mechanics::contact::Part;
+use signorini_mechanics::system::TimeField;
+use signorini_mechanics::{Contribution, Hold, Load, Order, PlaceError, PlacedLoad, Support, System, TimedLoad};
+
+/// Springs that a support states: its name, its place, and the load that they are.
+pub(super) type Springs = Vec<(String, Part, TimedLoad)>;
+
+impl Planner<'_> {
+    /// A place as it is stated: a body, or a group of one.
+    pub(super) fn part(&self, on: &String, numbers: &Numbers) -> Result<Part, CaseError> {
+        let (body, group) = match on.split_once(':') {
+            Some((body, group)) => (body.trim(), Some(group.trim().to_string())),
+            None => (on.as_str(), None),
+        };
+        let known: Vec<&str> = numbers.keys().map(String::as_str).collect();
+        let body = *numbers.get(body).ok_or_else(|| {
+            self.problem.error(on, format!("there is no body `{body}`")).help(suggestion(body, &known))
+        })?;
+        Ok(Part { body, group })
+    }
+
+    /// The error of a place, at its key.
+    pub(super) fn misplaced(&self, on: &String, error: &PlaceError) -> CaseError {
+        self.problem.error(on, error.to_string())
+    }
+
+    pub(super) fn system_supports(
+        &self,
+        numbers: &Numbers,
+        system: &System,
+        wrong: &Wrong,
+    ) -> Result<Vec<Support>, CaseError> {
+        let problem = self.problem;
+        let mut out = Vec::new();
+        for (name, key) in &problem.supports {
+            let part = self.part(&key.on, numbers)?;
+            if let Some(normal) = &key.normal {
+                return Err(problem
+                    .error(normal, "`normal` is a support of solids")
+                    .help("displacement = [0, \"free\", 0]"));
+            }
+            if let Some(uniform) = &key.uniform {
+                return Err(problem.error(uniform, "`uniform` is a support of solids"));
+            }
+            let displacement = match &key.displacement {
+                Some(values) => self.held_components(&values.0, self.dimension(), LENGTH, wrong)?,
+                None => [None, None, None],
+            };
+            let rotation = match &key.rotation {
+                Some(values) if self.space == Space::ThreeD => self.held_components(values, 3, NONE, wrong)?,
+                Some(values) => {
+                    let [about_z, _, _] = self.held_components(values, 1, NONE, wrong)?;
+                    [None, None, about_z]
+                }
+                None => [None, None, None],
+            };
+            let holds = displacement.iter().chain(&rotation).any(Option::is_some);
+            if !holds && key.spring.is_none() {
+                return Err(problem
+                    .error(key, format!("the support `{name}` prescribes nothing"))
+                    .help("add  displacement = [0, 0, 0]  or  rotation = [0, 0, 0]  or  spring = […]"));
+            }
+            if holds {
+                let support = Support { name: name.clone(), part, displacement, rotation };
+                let body = &system.bodies[support.part.body];
+                let hold = at_start(&support);
+                let none: [Option<&dyn Fn(&Point<3>) -> f64>; 3] = [None; 3];
+                let zero = |_: &Point<3>| 0.0;
+                let filled = |list: &[bool; 3]| {
+                    let mut out = none;
+                    (0..3).filter(|k| list[*k]).for_each(|k| out[k] = Some(&zero));
+                    out
+                };
+                let hold = Hold { displacement: filled(&hold[0]), rotation: filled(&hold[1]) };
+                let found = body
+                    .hold(support.part.group.as_deref(), &hold, &body.start())
+                    .map_err(|error| self.misplaced(&key.on, &error))?;
+                if found.is_empty() {
+                    let message = format!("the support `{name}` holds nothing of `{}`", body.name());
+                    return Err(problem.error(&key.on, message));
+                }
+                out.push(support);
+            }
+        }
+        Ok(out)
+    }
+
+    fn dimension(&self) -> usize {
+        if self.space == Space::ThreeD { 3 } else { 2 }
+    }
+
+    /// Components that are prescribed, and `"free"` ones.
+    fn held_components(
+        &self,
+        values: &List<Value>,
+        wanted: usize,
+        dimension: crate::problem::units::Dimension,
+        wrong: &Wrong,
+    ) -> Result<[Option<TimeField>; 3], CaseError> {
+        if values.len() != wanted {
+            return Err(self
+                .problem
+                .error(values, format!("expected {wanted} components, found {}", values.len()))
+                .help("numbers, expressions, or \"free\""));
+        }
+        let mut out = [None, None, None];
+        for (component, value) in out.iter_mut().zip(values) {
+            if !matches!(value, Value::Text(text) if text.trim() == "free") {
+                *component = Some(self.field(value, dimension, wrong)?);
+            }
+        }
+        Ok(out)
+    }
+
+    pub(super) fn system_loads(
+        &self,
+        numbers: &Numbers,
+        system: &System,
+        wrong: &Wrong,
+    ) -> Result<(Vec<PlacedLoad>, Springs), CaseError> {
+        let problem = self.problem;
+        let plane = self.space != Space::ThreeD;
+        let force = if plane { FORCE_PER_LENGTH } else { [0, 1, 0] };
+        let moment = if plane { [0, 1, 0] } else { [1, 1, 0] };
+        let mut out = Vec::new();
+        for (name, key) in &problem.loads {
+            let part = self.part(&key.on, numbers)?;
+            if let Some(normal) = &key.normal {
+                return Err(problem.error(normal, "`normal` is the load of a membrane"));
+            }
+            let mut list = Vec::new();
+            if let Some(v) = &key.pressure {
+                list.push(TimedLoad::Pressure(self.field(v, PRESSURE, wrong)?));
+            }
+            if let Some(v) = &key.traction {
+                list.push(TimedLoad::Traction(self.vector_field(v, PRESSURE, wrong)?));
+            }
+            if let Some(v) = &key.force {
+                list.push(TimedLoad::Force(self.vector_field(v, force, wrong)?));
+            }
+            if let Some(v) = &key.body_force {
+                list.push(TimedLoad::BodyForce(self.vector_field(v, FORCE_PER_LENGTH, wrong)?));
+            }
+            if let Some(v) = &key.moment {
+                list.push(TimedLoad::Moment(self.moment_field(v, moment, wrong)?));
+            }
+            if let Some(v) = &key.tension {
+                list.push(TimedLoad::Tension(self.field(v, force, wrong)?));
+            }
+            let [load] = <[_; 1]>::try_from(list).map_err(|list: Vec<_>| {
+                problem
+                    .error(key, format!("the load `{name}` says {} things", list.len()))
+                    .help("exactly one of force, moment, tension, body_force (per length), traction, pressure")
+            })?;
+            self.check_load(&part, &key.on, system)(&load)?;
+            out.push(PlacedLoad { name: name.clone(), part, load });
+        }
+        let mut springs = Vec::new();
+        for (name, key) in &problem.supports {
+            let Some(spring) = &key.spring else { continue };
+            let part = self.part(&key.on, numbers)?;
+            let stiffness = if plane {
+                let [x, y] = self.reader.numbers::<2>(spring, [-1, 1, 0])?;
+                Vector::<3>::new(x, y, 0.0)
+            } else {
+                Vector::<3>::from(self.reader.numbers::<3>(spring, [-1, 1, 0])?)
+            };
+            if let Some(k) = stiffness.iter().position(|s| *s < 0.0) {
+                return Err(problem.error(spring, format!("component {k} is negative: {}", stiffness[k])));
+            }
+            let load = TimedLoad::Springs(stiffness);
+            self.check_load(&part, &key.on, system)(&load)?;
+            springs.push((name.clone(), part, load));
+        }
+        Ok((out, springs))
+    }
+
+    /// Whether a load can act where it is stated.
+    fn check_load<'s>(
+        &'s self,
+        part: &'s Part,
+        on: &'s String,
+        system: &'s System,
+    ) -> impl Fn(&TimedLoad) -> Result<(), CaseError> + 's {
+        move |load| {
+            let body = &system.bodies[part.body];
+            let mut out = Contribution::new(body.unknowns());
+            let zero = |_: &Point<3>| 0.0;
+            let none = |_: &Point<3>| Vector::<3>::zeros();
+            let what = match load {
+                TimedLoad::BodyForce(_) => Load::BodyForce(&none),
+                TimedLoad::Traction(_) => Load::Traction(&none),
+                TimedLoad::Pressure(_) => Load::Pressure(&zero),
+                TimedLoad::Force(_) => Load::Force(Vector::<3>::zeros()),
+                TimedLoad::Moment(_) => Load::Moment(Vector::<3>::zeros()),
+                TimedLoad::FollowerMoment(_) => Load::FollowerMoment(Vector::<3>::zeros()),
+                TimedLoad::Tension(_) => Load::Tension(0.0),
+                TimedLoad::Springs(k) => Load::Springs(*k),
+            };
+            body.load(part.group.as_deref(), &what, &body.start(), Order::First, &mut out)
+                .map_err(|error| self.misplaced(on, &error))
+        }
+    }
+}
+
+/// Which components a support prescribes.
+fn at_start(support: &Support) -> [[bool; 3]; 2] {
+    [support.displacement.each_ref().map(Option::is_some), support.rotation.each_ref().map(Option::is_some)]
+}

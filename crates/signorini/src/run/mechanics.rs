@@ -1,0 +1,263 @@
+//! Bodies of any kind in one system as a model: ropes, beams, free rigid bodies.
+
+mod report;
+
+use super::checkpoint;
+use super::driver::{Advanced, Model};
+use super::record::Record;
+use crate::fields::ShownState;
+use crate::output::system::SystemShown;
+use crate::output::{Folder, OutputError, system, system_pictures};
+use crate::plan::Head;
+use crate::plan::mechanics::MechanicsPlan;
+use crate::problem::CaseError;
+use crate::report::{Reason, StepReport};
+use serde_json::{Value, json};
+use signorini_mechanics::{IncrementError, IncrementResult, Saved, SystemState};
+use signorini_solve::{Iteration, Progress};
+use std::path::Path;
+
+/// Share of an increment below which it is not cut any more.
+const SMALLEST_INCREMENT: f64 = 1e-3;
+/// An increment is cut to this part of itself, and grows by this factor after a success.
+const CUT: f64 = 0.25;
+const GROWTH: f64 = 1.5;
+
+/// A system on its way through its history.
+pub struct MechanicsModel {
+    plan: MechanicsPlan,
+    state: SystemState,
+    last: Option<SystemShown>,
+    /// Why there is no state after it.
+    failure: Option<String>,
+}
+
+/// An increment without a state: the reason, what happened in words, and the residuals until then.
+struct Failure {
+    reason: Reason,
+    text: String,
+    residuals: Vec<f64>,
+}
+
+impl MechanicsModel {
+    pub fn new(plan: MechanicsPlan) -> Self {
+        let state = plan.system.start();
+        Self { plan, state, last: None, failure: None }
+    }
+
+    /// Solves for the end of an increment, which is cut where it has no solution at once.
+    fn reach(
+        &mut self,
+        index: usize,
+        [before, time]: [f64; 2],
+        progress: &mut dyn Progress,
+    ) -> Result<Result<IncrementResult, Failure>, CaseError> {
+        let (mut reached, mut size) = (before, time - before);
+        let (mut iterations, mut residuals) = (0, Vec::new());
+        loop {
+            let last = time - before <= 0.0 || reached + size >= time - 1e-9 * (time - before);
+            let target = if last { time } else { reached + size };
+            let mut seen = Vec::new();
+            let mut stopped = false;
+            let mut report = |iteration: usize, residual: f64| {
+                progress.iteration(&Iteration {
+                    step: index,
+                    time: target,
+                    iteration,
+                    residual,
+                    action: "newton",
+                    figures: &[("residual", residual)],
+                });
+                seen.push(residual);
+                stopped = progress.interrupted();
+                !stopped
+            };
+            let found = self.plan.system.solve(&self.state, target, &mut report);
+            if let Some(error) = self.plan.wrong.take(&self.plan.head.problem) {
+                return Err(error);
+            }
+            residuals.append(&mut seen);
+            match found {
+                Ok((state, result)) => {
+                    iterations += result.iterations;
+                    if last {
+                        self.state = state;
+                        return Ok(Ok(IncrementResult { iterations, history: residuals, ..result }));
+                    }
+                    if let Err(error) = self.plan.system.accept(&state) {
+                        return Ok(Err(failed(&error, residuals)));
+                    }
+                    self.state = state;
+                    reached = target;
+                    size *= GROWTH;
+                }
+                Err(error) => {
+                    let curable = !matches!(error, IncrementError::Interrupted | IncrementError::Free { .. });
+                    if !curable || size <= SMALLEST_INCREMENT * (time - before) || time <= before {
+                        return Ok(Err(failed(&error, residuals)));
+                    }
+                    size *= CUT;
+                }
+            }
+        }
+    }
+}
+
+/// What an error of the solver means, and what to try.
+fn failed(error: &IncrementError, residuals: Vec<f64>) -> Failure {
+    let history = |h: &[f64]| h.iter().map(|r| format!("{r:.1e}")).collect::<Vec<_>>().join(", ");
+    let (reason, text) = match error {
+        IncrementError::Interrupted => (Reason::Interrupted, "interrupted".to_string()),
+        IncrementError::Free { .. } => {
+            (Reason::FreeBody, format!("{error}; add a support, a spring, or contact that holds it"))
+        }
+        IncrementError::Solve(_) => (
+            Reason::LinearSolver,
+            format!("{error}; is every body held, and does every rope have tension? try a pretension, or a support"),
+        ),
+        IncrementError::NotConverged { history: list, .. } => (
+            Reason::Newton,
+            format!(
+                "{error}; what was left after each, in tolerances: {}; try more increments, more cells, or a pretension \
+                 where a rope is slack",
+                history(list)
+            ),
+        ),
+        IncrementError::Augmentation { history: list, .. } => (
+            Reason::Contact,
+            format!("{error}: {}; try  enforcement.multiplier = {{}}  or  enforcement.penalty = {{}}", history(list)),
+        ),
+        IncrementError::Assembly(_) => (Reason::Input, error.to_string()),
+    };
+    Failure { reason, text, residuals }
+}
+
+impl Model for MechanicsModel {
+    fn head(&self) -> &Head {
+        &self.plan.head
+    }
+
+    fn increments(&self) -> usize {
+        self.plan.times.len()
+    }
+
+    fn time(&self, index: usize) -> f64 {
+        self.plan.times[index]
+    }
+
+    fn advance(
+        &mut self,
+        index: usize,
+        record: &mut Record,
+        progress: &mut dyn Progress,
+    ) -> Result<Advanced, CaseError> {
+        let time = self.plan.times[index];
+        let before = if index == 0 { 0.0 } else { self.plan.times[index - 1] };
+        let result = match self.reach(index, [before, time], progress)? {
+            Ok(result) => result,
+            Err(Failure { reason, text, residuals }) => {
+                record.steps.push(StepReport {
+                    index,
+                    time,
+                    converged: false,
+                    reason,
+                    iterations: residuals.len(),
+                    solver: report::SOLVER.into(),
+                    residual_history: residuals,
+                    ..StepReport::default()
+                });
+                self.failure = Some(text);
+                return Ok(Advanced::Failed(reason));
+            }
+        };
+        record.unknowns = record.unknowns.max(result.unknowns);
+        let shown = SystemShown::new(&self.plan, &self.state, &result, time);
+        record.steps.push(report::step_report(&self.plan, &self.state, &result, &shown, index));
+        report::warn(&self.plan, &result, time, record);
+        self.last = Some(shown);
+        // What slips count from next.
+        if let Err(error) = self.plan.system.accept(&self.state) {
+            let Failure { reason, text, .. } = failed(&error, Vec::new());
+            self.failure = Some(text);
+            return Ok(Advanced::Failed(reason));
+        }
+        Ok(Advanced::State)
+    }
+
+    fn write_fields(&mut self, index: usize, record: &mut Record) -> Result<(), OutputError> {
+        let Some(shown) = &self.last else { return Ok(()) };
+        let units = record.units.clone();
+        let number = format!("{index:05}");
+        let folder = &record.folder;
+        folder.write(&format!("fields/fields_{number}.vtu"), &system::vtu(&shown.bodies, units.as_ref())?)?;
+        let names: Vec<&str> = self.plan.system.contacts.iter().map(|c| c.name.as_str()).collect();
+        for (contact, name) in shown.contacts.iter().zip(&names) {
+            folder.write(&format!("contact/{name}_{number}.vtp"), &system::vtp(contact, units.as_ref())?)?;
+            folder.write(&format!("contact/{name}_{number}.csv"), system::csv(contact).as_bytes())?;
+        }
+        let mut rigid = Vec::new();
+        for (name, file) in system::rigid_files(&self.plan, shown)? {
+            folder.write(&format!("rigid/{name}_{number}.vtp"), &file)?;
+            rigid.push(name);
+        }
+        record.add_frame(shown.time, number, &names)?;
+        record.add_rigid(&rigid)
+    }
+
+    fn shown(&self) -> Option<ShownState> {
+        let shown = self.last.as_ref()?;
+        let contacts = shown.contacts.clone();
+        Some(ShownState { time: shown.time, bodies: shown.bodies.clone(), contacts })
+    }
+
+    fn draw(&self, record: &Record) -> Result<(), OutputError> {
+        let Some(shown) = &self.last else { return Ok(()) };
+        system_pictures::draw(&record.folder, &self.plan, shown, &record.steps)
+    }
+
+    fn first_picture(&self) -> Option<String> {
+        self.last.as_ref().map(|_| "pictures/deformed.png".into())
+    }
+
+    fn verdict(&self, record: &Record, reason: Reason) -> String {
+        let (done, count) = (record.done(), self.plan.times.len());
+        match reason {
+            Reason::Interrupted => format!("Interrupted: {done} of {count} increments are done and on disk."),
+            reason if !reason.is_converged() => {
+                let why = self.failure.as_deref().unwrap_or("a value became invalid along the way");
+                format!("Increment {} of {count} has no solution: {why}.", done + 1)
+            }
+            _ => report::verdict(&self.plan, record),
+        }
+    }
+
+    fn method(&self) -> String {
+        let mut list = self.plan.methods.clone();
+        list.dedup();
+        if list.is_empty() { "none".into() } else { list.join(", ") }
+    }
+
+    fn save(&self, _: &Folder, _: usize) -> Result<Option<Value>, OutputError> {
+        let Saved { bodies, multipliers, reactions, contacts } = self.plan.system.save(&self.state);
+        Ok(Some(json!({
+            "bodies": bodies, "multipliers": multipliers, "reactions": reactions, "contacts": contacts,
+        })))
+    }
+
+    fn restore(&mut self, mut state: Value, folder: &Path, _: usize) -> Result<(), String> {
+        fn take<T: serde::de::DeserializeOwned>(v: &mut Value) -> Option<T> {
+            serde_json::from_value(v.take()).ok()
+        }
+        let saved = || {
+            Some(Saved {
+                bodies: take(&mut state["bodies"])?,
+                multipliers: take(&mut state["multipliers"])?,
+                reactions: take(&mut state["reactions"])?,
+                contacts: take(&mut state["contacts"])?,
+            })
+        };
+        let restored = { saved }().and_then(|saved| self.plan.system.restore(saved));
+        self.state = restored.ok_or_else(|| checkpoint::damaged(folder))?;
+        Ok(())
+    }
+}

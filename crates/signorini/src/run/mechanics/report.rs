@@ -1,0 +1,207 @@
+//! What is told of a state of a system.
+
+use crate::output::figure::{told, told_vector};
+use crate::output::system::SystemShown;
+use crate::plan::mechanics::{Kind, MechanicsPlan};
+use crate::problem::Space;
+use crate::report::{
+    Component, ContactReport, CurveReport, Pose, Probe, Reason, StepReport, UnitNames, Warning, WarningKind, vector,
+};
+use crate::run::record::Record;
+use signorini_contact::Status;
+use signorini_geometry::Vector;
+use signorini_mechanics::{Contact, IncrementResult, SiteResult, SystemState, rigid_body};
+use std::collections::BTreeMap;
+
+/// What solves the equations.
+pub const SOLVER: &str = "direct";
+
+/// The step of the summary that a state is.
+pub fn step_report(
+    plan: &MechanicsPlan,
+    state: &SystemState,
+    result: &IncrementResult,
+    shown: &SystemShown,
+    index: usize,
+) -> StepReport {
+    let system = &plan.system;
+    let mut supports: BTreeMap<String, Vector<3>> = BTreeMap::new();
+    for (support, forces) in system.supports.iter().zip(&result.support_forces) {
+        *supports.entry(support.name.clone()).or_insert_with(Vector::<3>::zeros) += forces[0];
+    }
+    let is_spring = |name: &str| !plan.head.problem.loads.contains_key(name);
+    let mut loads: BTreeMap<String, [f64; 3]> = BTreeMap::new();
+    for (k, load) in system.loads.iter().enumerate() {
+        let Ok([force, _]) = system.load_resultant(k, state, shown.time) else { continue };
+        if is_spring(&load.name) {
+            // A spring is part of a support.
+            *supports.entry(load.name.clone()).or_insert_with(Vector::<3>::zeros) += force;
+        } else {
+            loads.insert(load.name.clone(), vector(&force));
+        }
+    }
+    let probe = |x: &Vector<3>| {
+        let points = shown.bodies.iter().flat_map(|b| {
+            let u = b.array("displacement").unwrap_or_default();
+            b.points.iter().zip(u.chunks(3)).map(|(x, u)| (Vector::<3>::from(*x), [u[0], u[1], u[2]]))
+        });
+        let nearest = points.min_by(|a, b| (a.0 - x).norm().total_cmp(&(b.0 - x).norm()))?;
+        Some(Probe {
+            at: vector(&nearest.0),
+            displacement: nearest.1,
+            in_contact: None,
+            pressure: None,
+            von_mises: None,
+        })
+    };
+    let poses = system.bodies.iter().zip(&plan.kinds).zip(&state.bodies).filter_map(|((body, kind), state)| {
+        let Kind::Rigid { centre, is_free: true, .. } = kind else { return None };
+        let pose = rigid_body::Pose::of(state);
+        let displacement = vector(&(pose.centre - centre));
+        Some((body.name().to_string(), Pose { displacement, rotation: vector(&pose.rotation.scaled_axis()) }))
+    });
+    StepReport {
+        index,
+        time: shown.time,
+        converged: true,
+        reason: Reason::Converged,
+        iterations: result.iterations,
+        solver: SOLVER.into(),
+        residual_history: result.history.clone(),
+        energy: Some(result.energy),
+        equilibrium_residual: Some(result.imbalance),
+        support_forces: supports.iter().map(|(name, force)| (name.clone(), vector(force))).collect(),
+        load_forces: loads,
+        contacts: (system.contacts.iter().zip(&result.sites))
+            .map(|(contact, sites)| (contact.name.clone(), contact_report(plan, contact, sites)))
+            .collect(),
+        probes: plan.probes.iter().map(|(name, x)| (name.clone(), probe(x))).collect(),
+        curves: shown.curves.iter().map(|c| (c.name.clone(), curve_report(&c.forces))).collect(),
+        free_bodies: poses.collect(),
+        ..StepReport::default()
+    }
+}
+
+fn curve_report(forces: &[f64]) -> CurveReport {
+    CurveReport {
+        start_tension: forces.first().copied().unwrap_or(0.0),
+        end_tension: forces.last().copied().unwrap_or(0.0),
+        max_tension: forces.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        min_tension: forces.iter().copied().fold(f64::INFINITY, f64::min),
+        slack_cells: forces.iter().filter(|t| **t == 0.0).count(),
+    }
+}
+
+/// Runs of neighbouring sites that carry: along a curve these are the zones of contact.
+fn runs(sites: &[SiteResult]) -> Vec<Vec<&SiteResult>> {
+    let mut out: Vec<Vec<&SiteResult>> = Vec::new();
+    let mut open = true;
+    for site in sites {
+        if site.status == Status::Open {
+            open = true;
+            continue;
+        }
+        match out.last_mut() {
+            Some(run) if !open => run.push(site),
+            _ => out.push(vec![site]),
+        }
+        open = false;
+    }
+    out
+}
+
+fn contact_report(plan: &MechanicsPlan, contact: &Contact, sites: &[SiteResult]) -> ContactReport {
+    let closed = || sites.iter().filter(|s| s.status != Status::Open);
+    let is_curve = matches!(plan.kinds[contact.slave.body], Kind::Curve { .. });
+    let component = |run: &Vec<&SiteResult>| {
+        let area: f64 = run.iter().map(|s| s.weight).sum();
+        let force: Vector<3> = run.iter().map(|s| s.force()).sum();
+        let middle: Vector<3> = run.iter().map(|s| s.x * s.weight).sum::<Vector<3>>() / area;
+        Component { area, force: vector(&force), centroid: vector(&middle), holes: None }
+    };
+    let zones = runs(sites);
+    let components: Vec<Component> = if is_curve {
+        zones.iter().map(component).collect()
+    } else if zones.is_empty() {
+        Vec::new()
+    } else {
+        vec![component(&closed().collect())]
+    };
+    let rubs = contact.friction.is_some();
+    let area = |status: Status| closed().filter(|s| s.status == status).map(|s| s.weight).sum::<f64>();
+    let friction: Vector<3> = closed().map(|s| s.friction * s.weight).sum();
+    ContactReport {
+        force: vector(&closed().map(|s| s.force()).sum::<Vector<3>>()),
+        area: closed().map(|s| s.weight).sum(),
+        zones: components.len(),
+        components,
+        max_penetration: sites.iter().filter_map(|s| s.gap).map(|g| -g).fold(0.0, f64::max),
+        min_gap_outside: sites.iter().filter(|s| s.status == Status::Open).filter_map(|s| s.gap).reduce(f64::min),
+        max_pressure: closed().map(|s| s.pressure).fold(0.0, f64::max),
+        min_pressure: closed().map(|s| s.pressure).reduce(f64::min),
+        stick_area: rubs.then(|| area(Status::Stick)),
+        slip_area: rubs.then(|| area(Status::Slip)),
+        max_slip: rubs.then(|| closed().map(|s| s.slip).fold(0.0, f64::max)),
+        max_friction_utilisation: rubs.then(|| closed().map(|s| s.utilisation).fold(0.0, f64::max)),
+        friction_force: rubs.then(|| vector(&friction)),
+        dissipation: rubs.then(|| closed().map(|s| -s.weight * s.friction.dot(&s.increment)).sum()),
+        ..ContactReport::default()
+    }
+}
+
+/// Warns of what looks wrong with a state.
+pub fn warn(plan: &MechanicsPlan, result: &IncrementResult, time: f64, record: &mut Record) {
+    for (contact, sites) in plan.system.contacts.iter().zip(&result.sites) {
+        if !plan.head.problem.contacts.contains_key(&contact.name) || sites.iter().any(|s| s.status != Status::Open) {
+            continue;
+        }
+        let gap = sites.iter().filter_map(|s| s.gap).reduce(f64::min);
+        let gap = gap.map_or("nothing is within reach".to_string(), |g| format!("smallest gap {g:.6e}"));
+        let message = format!("contact `{}`: the bodies do not touch at t = {time} ({gap})", contact.name);
+        record.warnings.push(Warning::new(WarningKind::Apart, message).at_time(time));
+    }
+    if result.lost_sites > 0 {
+        let message = format!(
+            "{} points are where the nearest point of the other body is not defined, beyond its centre of curvature: \
+             they carry nothing at t = {time}",
+            result.lost_sites
+        );
+        record.warn_once(Warning::new(WarningKind::NotFacing, message).at_time(time));
+    }
+}
+
+/// The result in a sentence.
+pub fn verdict(plan: &MechanicsPlan, record: &Record) -> String {
+    let Some(step) = record.steps.last() else { return "Nothing was asked.".into() };
+    let units = plan.head.unit_names();
+    let unit = |of: fn(&UnitNames) -> &String| units.as_ref().map_or("", |u| of(u));
+    let space = if plan.space == Space::ThreeD { 3 } else { 2 };
+    let mut list: Vec<String> = Vec::new();
+    for (name, c) in &step.contacts {
+        if c.zones == 0 {
+            list.push(format!("`{name}` is open"));
+            continue;
+        }
+        let rubbing = match (c.stick_area, c.slip_area) {
+            (Some(stick), Some(slip)) => format!(", of which {:.0} % sticks", 100.0 * stick / (stick + slip)),
+            _ => String::new(),
+        };
+        let force = told_vector(&c.force[..space], None, unit(|u| &u.force));
+        let zones = if c.zones == 1 { String::new() } else { format!(" in {} zones", c.zones) };
+        list.push(format!("`{name}` carries {force}{zones}{rubbing}"));
+    }
+    for (name, c) in &step.curves {
+        let ends = [c.start_tension, c.end_tension].map(|t| told(t, None, unit(|u| &u.force)));
+        let slack = match c.slack_cells {
+            0 => String::new(),
+            n => format!(", {n} cell{} slack", if n == 1 { "" } else { "s" }),
+        };
+        list.push(format!("`{name}` is pulled by {} at its start and {} at its end{slack}", ends[0], ends[1]));
+    }
+    for (name, pose) in &step.free_bodies {
+        let moved = told_vector(&pose.displacement[..space], None, unit(|u| &u.length));
+        list.push(format!("`{name}` moved by {moved}"));
+    }
+    let balance = step.equilibrium_residual.unwrap_or(f64::NAN);
+    format!("{}; forces balance to {balance:.0e}.", list.join("; "))
+}

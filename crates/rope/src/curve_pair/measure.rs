@@ -104,24 +104,36 @@ fn curve_jet(foot: &Foot) -> CurveJet {
 }
 
 /// The measures of two points of curves; of a foot with one coordinate the distance must be stationary in it. `first` are
-/// the first unknowns of both bodies in the system.
+/// the first unknowns of both bodies in the system. `facing` is the normal of the same contact before: the axes of curves
+/// that have passed through each other are then apart by a negative distance.
 ///
 /// # Errors
 /// Why there is no pair.
-pub fn measure(feet: [&Foot; 2], first: [u32; 2], order: Order) -> Result<CurvePair, NoPair> {
+pub fn measure(
+    feet: [&Foot; 2],
+    first: [u32; 2],
+    facing: Option<Vector<3>>,
+    order: Order,
+) -> Result<CurvePair, NoPair> {
     match feet[0].coordinates + feet[1].coordinates {
-        0 => with::<0>(feet, first, order),
-        1 => with::<1>(feet, first, order),
-        _ => with::<2>(feet, first, order),
+        0 => with::<0>(feet, first, facing, order),
+        1 => with::<1>(feet, first, facing, order),
+        _ => with::<2>(feet, first, facing, order),
     }
 }
 
-fn with<const N: usize>(feet: [&Foot; 2], first: [u32; 2], order: Order) -> Result<CurvePair, NoPair> {
+fn with<const N: usize>(
+    feet: [&Foot; 2],
+    first: [u32; 2],
+    facing: Option<Vector<3>>,
+    order: Order,
+) -> Result<CurvePair, NoPair> {
     let [a, b] = feet;
     let jets = [curve_jet(a), curve_jet(b)];
     let d = a.jet.x - b.jet.x;
-    let distance = d.norm();
-    let normal = d.try_normalize(0.0).ok_or(NoPair::Meet)?;
+    let along = d.try_normalize(0.0).ok_or(NoPair::Meet)?;
+    let normal = if facing.is_some_and(|f| f.dot(&along) < 0.0) { -along } else { along };
+    let distance = d.dot(&normal);
     let partner = |side: usize| match feet[side].coordinates {
         0 => PartnerJet::Point(&jets[side].x),
         _ => PartnerJet::Curve(&jets[side]),

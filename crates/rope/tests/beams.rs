@@ -6,7 +6,10 @@ use common::{Found, Options, Search, Surroundings, V, clamp, load_body, newton};
 use signorini_geometry::Vector;
 use signorini_mechanics::body::{Body, BodyState, Constraint, Contribution, Load, Order};
 use signorini_rope::beam::Beam;
+use signorini_rope::cable::Cable;
+use signorini_rope::cable::element::Carries;
 use signorini_rope::centreline::{Closure, Continuity};
+use signorini_rope::chain::body::Rest;
 use signorini_rope::path::Path;
 use signorini_rope::section::Stiffness;
 
@@ -165,12 +168,80 @@ fn slender_beams_are_as_easy_as_thick_ones() {
             (tip(&beam, &found.states[0]), found.iterations())
         };
         let ((coarse, iterations), (fine, _)) = (run(8), run(48));
-        let error = (coarse - fine).norm()
-            / (fine - tip(&bend(100.0, 8, stiffness), &bend(100.0, 8, stiffness).start())).norm();
+        let error = (coarse - fine).norm() / (fine - tip(&bend(100.0, 8, stiffness), &bend(100.0, 8, stiffness).start())).norm();
         println!("L/b = {slenderness}: error {error:.2e}, {iterations} iterations in one step");
         all.push((error, iterations));
     }
     assert!(all.iter().all(|a| a.0 < 1e-3));
     let (least, most) = (all.iter().map(|a| a.1).min().unwrap(), all.iter().map(|a| a.1).max().unwrap());
     assert!(most <= least + 2 && most <= 14);
+}
+
+#[test]
+fn other_bends_rolls_and_helices() {
+    // A bend of other radius, section and load against a mesh eight times as fine.
+    let (e, w, h) = (1e7, 1.2, 0.8);
+    let stiffness = Stiffness {
+        axial: e * w * h,
+        shear: [0.5 * e * w * h; 2],
+        torsion: e * (w * h * (w * w + h * h) / 12.0) * 0.5,
+        bending: [e * w * h.powi(3) / 12.0, e * h * w.powi(3) / 12.0],
+    };
+    let at = |cells: usize| {
+        let beam = bend(80.0, cells, stiffness);
+        let found = solve(&beam, &beam.start(), Push::Force(V::new(0.0, 0.0, 400.0)), 1e-6);
+        (tip(&beam, &found.states[0]), found.iterations())
+    };
+    let (reference, _) = at(64);
+    let errors: Vec<f64> = [4, 8, 16].map(|n| (at(n).0 - reference).norm()).to_vec();
+    println!("R = 80: tip {reference:?}, errors {errors:?}, {} iterations", at(16).1);
+    assert!((errors[0] / errors[2]).log2() / 2.0 > 3.4);
+    // Two turns.
+    let stiffness = square(0.1, 1e10);
+    let (beam, mut m) = (straight(10.0, 32, stiffness), 0.0);
+    let mut state = beam.start();
+    for step in 1..=16 {
+        m = 2.0 * std::f64::consts::TAU * stiffness.bending[0] / 10.0 * step as f64 / 16.0;
+        state = solve(&beam, &state, Push::Moment(V::new(0.0, 0.0, m)), 1e-9 * stiffness.bending[0]).states[0].clone();
+    }
+    println!("two turns by {m}: tip/L {:.2e}", tip(&beam, &state).norm() / 10.0);
+    assert!(tip(&beam, &state).norm() < 1e-3);
+    let errors = helix_errors(V::new(-0.7, 0.5, 1.1), 14.0, 16);
+    println!("helix {errors:?}");
+    assert!((errors[1] / errors[2]).log2() > 3.4 && errors[2] < 2e-4);
+}
+
+/// Mattiasson (1981), elliptic integrals: deflection and shortening of an inextensible cantilever.
+#[test]
+fn elastica_with_and_without_shear() {
+    for (alpha, w, u) in [(1.0, 0.30172, 0.05643), (10.0, 0.81061, 0.55500)] {
+        let path = Path::points(&[V::zeros(), V::x()], Closure::Open).unwrap().sample(16, Continuity::C1).unwrap();
+        let stiffness = Stiffness { axial: 1e7, shear: [1e7; 2], torsion: 1.0, bending: [1.0; 2] };
+        let beam = Beam::new("beam", &path, None, stiffness, 0.0).unwrap();
+        let cable = Cable::new("thread", &path, 1e7, 1.0, Carries::TensionAndCompression, Rest::Path, 0.0).unwrap();
+        for (body, name) in [(&beam as &dyn Body, "shear"), (&cable, "torsion-free")] {
+            struct Tip<'a>(&'a dyn Body, f64);
+            impl Surroundings for Tip<'_> {
+                fn hold(&self, states: &[BodyState]) -> Vec<(usize, Constraint)> {
+                    clamp(self.0, "start", &states[0]).into_iter().map(|c| (0, c)).collect()
+                }
+                fn act(&self, states: &[BodyState], first: &[u32], order: Order, out: &mut Contribution) {
+                    let load = Load::Force(V::new(0.0, 0.0, self.1));
+                    load_body(self.0, Some("end"), &load, &states[0], order, first[0], out);
+                }
+            }
+            let options = Options { most: 40, tolerance: 1e-8, search: Search::WholeSteps };
+            let mut states = vec![body.start()];
+            let mut iterations = 0;
+            for step in 1..=4 {
+                let found = newton(&[body], &states, &mut Tip(body, 0.25 * alpha * step as f64), &options)
+                    .unwrap_or_else(|f| panic!("{name} {:?}", f.residuals));
+                iterations += found.iterations();
+                states = found.states;
+            }
+            let at = if name == "shear" { beam.position(&states[0], 16) } else { cable.position(&states[0], 16) };
+            println!("{name} {alpha}: {:.5} {:.5}, {} iterations in four steps", at[2], 1.0 - at[0], iterations);
+            assert!((at[2] - w).abs() < 2e-5 && (1.0 - at[0] - u).abs() < 2e-5);
+        }
+    }
 }

@@ -9,6 +9,7 @@
 use super::blend::Blend;
 use super::measure::{CurvePair, measure};
 use super::search::{Between, CurvePoint, Searched, crossings};
+use signorini_geometry::Vector;
 use signorini_mechanics::body::{Contribution, Met, Order, Sampling};
 
 /// Which forces act.
@@ -44,6 +45,7 @@ struct Kept {
     key: Key,
     predicted: f64,
     multiplier: f64,
+    normal: Vector<3>,
 }
 
 /// A contact as it is now.
@@ -72,6 +74,8 @@ pub struct CurveContact {
     pub point_penalty: f64,
     /// Force per penetration and length along a line.
     pub line_penalty: f64,
+    /// How far curves may pass through each other, or apart, in one iteration and still be followed.
+    pub reach: f64,
     kept: Vec<Kept>,
 }
 
@@ -81,7 +85,7 @@ const SAME: f64 = 1.0;
 impl CurveContact {
     /// Contact without history.
     pub fn new(form: Form, between: Between, point_penalty: f64, line_penalty: f64) -> Self {
-        CurveContact { form, ends: Ends::Touch, between, point_penalty, line_penalty, kept: Vec::new() }
+        CurveContact { form, ends: Ends::Touch, between, point_penalty, line_penalty, reach: 0.0, kept: Vec::new() }
     }
 
     fn kept(&self, key: Key) -> Option<&Kept> {
@@ -101,8 +105,9 @@ impl CurveContact {
         Contact { key, pair, points, penalty, share, force, geometric }
     }
 
-    /// All contacts of two curves that are closer than `reach`, slave first; `first` are their first unknowns.
-    pub fn contacts(&self, sides: [Searched<'_>; 2], first: [u32; 2], order: Order, reach: f64) -> Vec<Contact> {
+    /// All contacts of two curves within reach, slave first; `first` are their first unknowns.
+    pub fn contacts(&self, sides: [Searched<'_>; 2], first: [u32; 2], order: Order) -> Vec<Contact> {
+        let reach = self.reach;
         let mut out = Vec::new();
         if self.form != Form::Line || self.ends == Ends::Touch {
             for near in crossings(sides[0], sides[1], self.between, reach) {
@@ -114,13 +119,14 @@ impl CurveContact {
                     let CurvePoint { element, xi, coordinates } = near.points[s];
                     sides[s].body.foot(&sides[s].state.configuration, element, xi, coordinates)
                 });
-                let Ok(pair) = measure([&feet[0], &feet[1]], first, order) else { continue };
+                let key = Key::Places(near.points.map(|p| p.element as f64 + p.xi));
+                let facing = self.kept(key).map(|k| k.normal);
+                let Ok(pair) = measure([&feet[0], &feet[1]], first, facing, order) else { continue };
                 let share = match self.form {
                     Form::Blend(blend) if is_crossing => blend.point_share(pair.parallel),
                     _ => (1.0, 0.0),
                 };
                 if share.0 > 0.0 {
-                    let key = Key::Places(near.points.map(|p| p.element as f64 + p.xi));
                     out.push(self.contact(key, near.points, pair, self.point_penalty, share));
                 }
             }
@@ -138,7 +144,8 @@ impl CurveContact {
             if foot.coordinates == 0 {
                 continue;
             }
-            let Ok(pair) = measure([&slave, &foot], first, order) else { continue };
+            let facing = self.kept(Key::Site(index)).map(|k| k.normal);
+            let Ok(pair) = measure([&slave, &foot], first, facing, order) else { continue };
             let share = match self.form {
                 Form::Blend(blend) => {
                     let (point, slope) = blend.point_share(pair.parallel);
@@ -147,11 +154,7 @@ impl CurveContact {
                 _ => (1.0, 0.0),
             };
             if share.0 > 0.0 {
-                let at = |element: u32, xi: f64, coordinates: usize| CurvePoint {
-                    element: element as usize,
-                    xi,
-                    coordinates,
-                };
+                let at = |element: u32, xi: f64, coordinates: usize| CurvePoint { element: element as usize, xi, coordinates };
                 let points = [at(site.patch, site.xi[0], 0), at(foot.point.patch, foot.point.xi[0], 1)];
                 out.push(self.contact(Key::Site(index), points, pair, self.line_penalty * site.weight, share));
             }
@@ -161,33 +164,43 @@ impl CurveContact {
 
     /// Adds forces and tangent, in the numbers of the system.
     pub fn act(&self, sides: [Searched<'_>; 2], first: [u32; 2], order: Order, out: &mut Contribution) {
-        for contact in self.contacts(sides, first, order, 0.0) {
+        for contact in self.contacts(sides, first, order) {
             contact.act(order, out);
         }
     }
 
+    /// Starts to follow the contacts of a state: from which side curves come.
+    pub fn follow(&mut self, sides: [Searched<'_>; 2], first: [u32; 2]) {
+        let step = vec![0.0; first[1] as usize + sides[1].body.unknowns()];
+        self.predict(sides, first, &step);
+    }
+
     /// Keeps what a step of all unknowns predicts, from the state before it.
-    pub fn predict(&mut self, sides: [Searched<'_>; 2], first: [u32; 2], step: &[f64], reach: f64) {
-        let kept = (self.contacts(sides, first, Order::First, reach).into_iter())
+    pub fn predict(&mut self, sides: [Searched<'_>; 2], first: [u32; 2], step: &[f64]) {
+        let kept = (self.contacts(sides, first, Order::First).into_iter())
             .map(|c| {
                 let multiplier = self.kept(c.key).map_or(0.0, |k| k.multiplier);
                 let change: f64 = c.pair.unknowns.iter().zip(&c.pair.d_gap).map(|(u, d)| step[*u as usize] * d).sum();
                 let predicted = (multiplier + c.penalty * (c.pair.gap + change)).min(0.0);
                 // A new contact has no force that could turn.
                 let predicted = if c.force == 0.0 { 0.0 } else { predicted };
-                Kept { key: c.key, predicted, multiplier }
+                Kept { key: c.key, predicted, multiplier, normal: c.pair.normal }
             })
             .collect();
         self.kept = kept;
     }
 
     /// Takes the forces found as multipliers (Uzawa); the largest penetration before.
-    pub fn augment(&mut self, sides: [Searched<'_>; 2], first: [u32; 2], reach: f64) -> f64 {
-        let contacts = self.contacts(sides, first, Order::First, reach);
+    pub fn augment(&mut self, sides: [Searched<'_>; 2], first: [u32; 2]) -> f64 {
+        let contacts = self.contacts(sides, first, Order::First);
         let deepest = contacts.iter().filter(|c| c.force < 0.0).fold(0.0f64, |m, c| m.max(c.pair.gap.abs()));
-        self.kept = contacts.iter().map(|c| Kept { key: c.key, predicted: c.force, multiplier: c.force }).collect();
+        self.kept = contacts.iter().map(|c| kept_of(c)).collect();
         deepest
     }
+}
+
+fn kept_of(c: &Contact) -> Kept {
+    Kept { key: c.key, predicted: c.force, multiplier: c.force, normal: c.pair.normal }
 }
 
 impl Contact {
@@ -211,8 +224,7 @@ impl Contact {
         let mut block = vec![0.0; n * n];
         for k in 0..n {
             for l in 0..n {
-                block[k * n + l] = share
-                    * (self.penalty * pair.d_gap[k] * pair.d_gap[l] + self.geometric * pair.d2_gap[k * n + l])
+                block[k * n + l] = share * (self.penalty * pair.d_gap[k] * pair.d_gap[l] + self.geometric * pair.d2_gap[k * n + l])
                     + self.force * pair.d_gap[k] * slope * pair.d_parallel[l];
             }
         }

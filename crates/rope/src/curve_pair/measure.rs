@@ -104,24 +104,36 @@ fn curve_jet(foot: &Foot) -> CurveJet {
 }
 
 /// The measures of two points of curves; of a foot with one coordinate the distance must be stationary in it. `first` are
-/// the first unknowns of both bodies in the system.
+/// the first unknowns of both bodies in the system. `facing` is the normal of the same contact before: the axes of curves
+/// that have passed through each other are then apart by a negative distance.
 ///
 /// # Errors
 /// Why there is no pair.
-pub fn measure(feet: [&Foot; 2], first: [u32; 2], order: Order) -> Result<CurvePair, NoPair> {
+pub fn measure(
+    feet: [&Foot; 2],
+    first: [u32; 2],
+    facing: Option<Vector<3>>,
+    order: Order,
+) -> Result<CurvePair, NoPair> {
     match feet[0].coordinates + feet[1].coordinates {
-        0 => with::<0>(feet, first, order),
-        1 => with::<1>(feet, first, order),
-        _ => with::<2>(feet, first, order),
+        0 => with::<0>(feet, first, facing, order),
+        1 => with::<1>(feet, first, facing, order),
+        _ => with::<2>(feet, first, facing, order),
     }
 }
 
-fn with<const N: usize>(feet: [&Foot; 2], first: [u32; 2], order: Order) -> Result<CurvePair, NoPair> {
+fn with<const N: usize>(
+    feet: [&Foot; 2],
+    first: [u32; 2],
+    facing: Option<Vector<3>>,
+    order: Order,
+) -> Result<CurvePair, NoPair> {
     let [a, b] = feet;
     let jets = [curve_jet(a), curve_jet(b)];
     let d = a.jet.x - b.jet.x;
-    let distance = d.norm();
-    let normal = d.try_normalize(0.0).ok_or(NoPair::Meet)?;
+    let along = d.try_normalize(0.0).ok_or(NoPair::Meet)?;
+    let normal = if facing.is_some_and(|f| f.dot(&along) < 0.0) { -along } else { along };
+    let distance = d.dot(&normal);
     let partner = |side: usize| match feet[side].coordinates {
         0 => PartnerJet::Point(&jets[side].x),
         _ => PartnerJet::Curve(&jets[side]),
@@ -214,7 +226,11 @@ impl CurvePair {
 }
 
 /// Slip since material points touched: its vector, not yet projected, and its variations in the unknowns of both bodies.
-pub fn elastic_slip(stuck: &Stuck, feet: [&Foot; 2], first: [u32; 2]) -> (Vector<3>, Vec<u32>, Vec<Vector<3>>) {
+pub fn elastic_slip(
+    stuck: &Stuck,
+    feet: [&Foot; 2],
+    first: [u32; 2],
+) -> (Vector<3>, Vec<u32>, Vec<Vector<3>>) {
     let arms: [Vector<3>; 2] = [0, 1].map(|s| feet[s].frame * stuck.directions[s] * feet[s].radius);
     let e = feet[0].jet.x + arms[0] - feet[1].jet.x - arms[1];
     let columns = columns(feet, first);
@@ -223,8 +239,7 @@ pub fn elastic_slip(stuck: &Stuck, feet: [&Foot; 2], first: [u32; 2]) -> (Vector
     let d_e = columns
         .iter()
         .map(|c| {
-            let turn =
-                if radius(c.side) > 0.0 { c.lever.cross(&arms[c.side]) / radius(c.side) } else { Vector::<3>::zeros() };
+            let turn = if radius(c.side) > 0.0 { c.lever.cross(&arms[c.side]) / radius(c.side) } else { Vector::<3>::zeros() };
             (c.value + turn) * signs[c.side]
         })
         .collect();

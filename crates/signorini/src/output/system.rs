@@ -160,7 +160,7 @@ fn of_body(name: &str, fields: &BodyFields) -> Fields {
     for (name, components, values) in &fields.cell_data {
         let Some(name) = known(name) else { continue };
         let mut sums = vec![0.0; fields.points.len() * components];
-        let mut counts = vec![0.0; fields.points.len()];
+        let mut counts = vec![0.0f64; fields.points.len()];
         for (cell, own) in fields.cells.iter().zip(values.chunks(*components)) {
             for &p in cell {
                 counts[p as usize] += 1.0;

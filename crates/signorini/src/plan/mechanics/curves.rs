@@ -8,9 +8,11 @@ use signorini_geometry::shape::Axes;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::Body;
 use signorini_rope::beam::Beam as BeamBody;
-use signorini_rope::cable::{Cable, Carries};
+use signorini_rope::cable::Cable;
+use signorini_rope::cable::element::Carries;
 use signorini_rope::centreline::{self, Closure};
-use signorini_rope::chain::{Chain, Rest};
+use signorini_rope::chain::Chain;
+use signorini_rope::chain::body::Rest;
 use signorini_rope::path::{Path, Sampled};
 use signorini_rope::section::{Section, Stiffness};
 

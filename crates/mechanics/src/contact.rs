@@ -138,7 +138,8 @@ impl Contact {
             Enforcement::Multiplier if both_rigid => Enforcement::AugmentedLagrangian,
             other => other,
         };
-        let reach = 0.5 * slave.1.size().min(master.1.size());
+        // The gap to a rigid body is known anywhere.
+        let reach = if master.1.is_rigid() { f64::INFINITY } else { 0.5 * slave.1.size().min(master.1.size()) };
         Ok(Contact {
             name: name.to_string(),
             slave: slave.0,
@@ -152,6 +153,16 @@ impl Contact {
             sites,
             stiffness,
         })
+    }
+
+    /// Keeps some of the sites.
+    pub(crate) fn keep(&mut self, kept: &[bool]) {
+        fn filtered<T: Copy>(list: &[T], kept: &[bool]) -> Vec<T> {
+            list.iter().zip(kept).filter(|(_, k)| **k).map(|(v, _)| *v).collect()
+        }
+        self.sites = filtered(&self.sites, kept);
+        self.stiffness = filtered(&self.stiffness, kept);
+        self.memory = filtered(&self.memory, kept);
     }
 
     pub fn sites(&self) -> &[Site] {
@@ -311,7 +322,9 @@ impl Contact {
                         tangent.add(own(i), unknown, w / c * d_traction[a][i]);
                     }
                     for j in 0..parts {
-                        let value = derivative[i][j] - f64::from(u8::from(i == j));
+                        // Tractions that nothing determines stay where they are.
+                        let own_part = if i == j { 1.0 + UNDETERMINED } else { 0.0 };
+                        let value = derivative[i][j] - own_part;
                         tangent.add(own(i), own(j), w / c * value);
                     }
                 }
@@ -396,6 +409,10 @@ impl Contact {
         Ok(())
     }
 }
+
+/// The part of its scale by which a multiplier resists change within a Newton step, in the tangent alone: what several
+/// points of a stiff body carry together need not be unique.
+const UNDETERMINED: f64 = 1e-6;
 
 /// Sine of the angle to the normal below which the projection of an axis tells no direction any more.
 const STEEP: f64 = 1e-8;

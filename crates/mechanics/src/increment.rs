@@ -54,6 +54,8 @@ const CARRIES: f64 = 0.1;
 const TOLERANCE: f64 = 1e-10;
 /// Change of a traction by an outer iteration, relative to the largest, that ends them.
 const AUGMENTED: f64 = 1e-9;
+/// Rounding of positions that were solved for, relative to the size of the bodies.
+const ROUNDING: f64 = 1e-12;
 const MOST_ITERATIONS: usize = 60;
 const MOST_AUGMENTATIONS: usize = 60;
 /// Penalty in stiffnesses of the bodies.
@@ -115,12 +117,48 @@ impl System {
                 *c = factor * if c.is_finite() { *c } else { scale / w };
             }
         }
+        self.leave_out_held_sites()?;
         // Slips count from the start, where nothing carries yet.
         self.accept(&self.start())?;
         for contact in &mut self.contacts {
             contact.memory.iter_mut().for_each(|m| m.traction = [0.0; 3]);
         }
         Ok(())
+    }
+
+    /// Leaves out sites that cannot move against a body that does not: supports carry there, and what the contact would
+    /// carry is not determined.
+    fn leave_out_held_sites(&mut self) -> Result<(), IncrementError> {
+        let start = self.start();
+        let (single, _) = self.held(&start, 0.0)?;
+        let (first, count) = self.numbering();
+        let mut held = vec![false; count];
+        single.iter().for_each(|h| held[h.constraint.terms[0].0 as usize] = true);
+        let mut contacts = std::mem::take(&mut self.contacts);
+        for contact in contacts.iter_mut().filter(|c| self.bodies[c.master.body].unknowns() == 0) {
+            let (body, first) = (&self.bodies[contact.slave.body], first[contact.slave.body]);
+            let moves = |site: &crate::body::Site| {
+                let placed = body.placed(&start.bodies[contact.slave.body], site);
+                placed.functions.iter().any(|f| !held[(first + f.unknown) as usize])
+            };
+            let kept: Vec<bool> = contact.sites().iter().map(moves).collect();
+            contact.keep(&kept);
+        }
+        self.contacts = contacts;
+        Ok(())
+    }
+
+    /// The sites of a contact as they are in a state.
+    ///
+    /// # Errors
+    /// Places that are not there.
+    pub fn sites(&self, contact: usize, state: &SystemState) -> Result<Vec<SiteResult>, IncrementError> {
+        let (first, _) = self.numbering();
+        let before: usize = self.contacts[..contact].iter().map(|c| c.multipliers()).sum();
+        let contact = &self.contacts[contact];
+        let lambda = &state.multipliers[before..before + contact.multipliers()];
+        let found = contact.results(&self.sides(contact, state, &first), lambda).map_err(AssemblyError::from)?;
+        Ok(found.into_iter().map(|f| f.0).collect())
     }
 
     /// Solves for equilibrium at a time, from a state that was accepted. `report` is told each iteration and its residual
@@ -178,8 +216,12 @@ impl System {
         let mut iterations = 0;
         let mut changes = Vec::new();
         for _ in 0..MOST_AUGMENTATIONS {
-            let found = self.inner(&state, time, &mut |k, r| report(iterations + k, r))?;
-            iterations += found.history.len() - 1;
+            let mut done = iterations;
+            let found = self.inner(&state, time, &mut |_, r| {
+                done += 1;
+                report(done, r)
+            })?;
+            iterations = done;
             state = found.state;
             let result = self.result(&state, time, iterations, found.history)?;
             let change = self.augment(&state, &result)?;
@@ -195,6 +237,7 @@ impl System {
     /// relative change.
     fn augment(&mut self, state: &SystemState, result: &IncrementResult) -> Result<f64, IncrementError> {
         let (first, _) = self.numbering();
+        let size = self.size();
         let mut change = 0.0f64;
         let mut contacts = std::mem::take(&mut self.contacts);
         for (contact, sites) in contacts.iter_mut().zip(&result.sites) {
@@ -203,9 +246,12 @@ impl System {
                     let sides = self.sides(contact, state, &first);
                     let found = contact.results(&sides, &[]).map_err(AssemblyError::from)?;
                     let most = found.iter().map(|f| f.1[0]).fold(0.0f64, f64::max);
-                    for (memory, (_, traction)) in contact.memory.iter_mut().zip(found) {
+                    let list = contact.memory.iter_mut().zip(&contact.stiffness).zip(found);
+                    for ((memory, stiffness), (_, traction)) in list {
                         let changed = (0..3).map(|i| (memory.traction[i] - traction[i]).abs()).fold(0.0, f64::max);
-                        change = change.max(if changed > 0.0 { changed / most } else { 0.0 });
+                        // Gaps are known to the rounding of positions only.
+                        let known = ROUNDING * size * stiffness;
+                        change = change.max(if changed > known { changed / most } else { 0.0 });
                         memory.traction = traction;
                     }
                 }
@@ -293,7 +339,7 @@ impl System {
         iterations: usize,
         history: Vec<f64>,
     ) -> Result<IncrementResult, IncrementError> {
-        let (first, count) = self.numbering();
+        let (_, count) = self.numbering();
         let at = self.assemble(state, time, Order::First)?;
         let mut support_forces = vec![[Vector::<3>::zeros(); 2]; self.supports.len()];
         let mut add = |support: usize, component: usize, value: f64| {
@@ -312,14 +358,7 @@ impl System {
         }
         let most = at.sizes[..count].iter().fold(f64::MIN_POSITIVE, |m, s| m.max(*s));
         let imbalance = residual[..count].iter().fold(0.0f64, |m, r| m.max(r.abs())) / most;
-        let mut sites = Vec::new();
-        let mut own = 0;
-        for contact in &self.contacts {
-            let lambda = &state.multipliers[own..own + contact.multipliers()];
-            own += contact.multipliers();
-            let found = contact.results(&self.sides(contact, state, &first), lambda).map_err(AssemblyError::from)?;
-            sites.push(found.into_iter().map(|f| f.0).collect());
-        }
+        let sites = (0..self.contacts.len()).map(|k| self.sites(k, state)).collect::<Result<_, _>>()?;
         Ok(IncrementResult {
             iterations,
             history,

@@ -62,6 +62,7 @@ pub(super) type Numbers = BTreeMap<String, usize>;
 impl Planner<'_> {
     pub(super) fn mechanics(&self) -> Result<MechanicsPlan, CaseError> {
         let problem = self.problem;
+        self.check_space()?;
         let wrong = Wrong::default();
         let mut system = System::default();
         let mut kinds = Vec::new();
@@ -105,6 +106,7 @@ impl Planner<'_> {
         let (contacts, methods) = self.system_contacts(&numbers, &system)?;
         system.contacts = contacts;
         system.prepare().map_err(|e| problem.error(&problem.space, e.to_string()))?;
+        self.check_start(&system, &kinds)?;
         let mut warnings = Vec::new();
         if system.contacts.is_empty() && system.bodies.len() > 1 {
             warnings.push("no contact is stated: the bodies do not see each other (add [contacts.NAME])".into());
@@ -126,6 +128,49 @@ impl Planner<'_> {
             wrong,
             methods,
         })
+    }
+
+    /// Ropes and beams lie in space; free rigid bodies in space or in the plane.
+    fn check_space(&self) -> Result<(), CaseError> {
+        let problem = self.problem;
+        for (name, body) in &problem.bodies {
+            let fits = match body {
+                Body::Rope(_) | Body::Beam(_) => self.space == Space::ThreeD,
+                _ => matches!(self.space, Space::ThreeD | Space::PlaneStrain | Space::PlaneStress),
+            };
+            if !fits {
+                return Err(problem
+                    .error(&problem.space, format!("the body `{name}` does not lie in this space"))
+                    .help("ropes and beams: space = \"3d\"; free rigid bodies: \"3d\" or \"plane_strain\""));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether curves start outside of what they touch: as far as their radius and half of their cells may reach in.
+    fn check_start(&self, system: &System, kinds: &[Kind]) -> Result<(), CaseError> {
+        let problem = self.problem;
+        let start = system.start();
+        for (k, contact) in system.contacts.iter().enumerate() {
+            let Kind::Curve { radius } = kinds[contact.slave.body] else { continue };
+            let sites = system.sites(k, &start).map_err(|e| problem.error(&problem.space, e.to_string()))?;
+            let deepest = sites.iter().filter_map(|s| Some((s.gap?, s))).min_by(|a, b| a.0.total_cmp(&b.0));
+            let Some((gap, site)) = deepest else { continue };
+            if gap < -radius.max(0.5 * site.weight) {
+                let name = system.bodies[contact.slave.body].name();
+                let other = system.bodies[contact.master.body].name();
+                let at: Vec<String> = site.x.iter().map(|v| format!("{v:.4}")).collect();
+                let message =
+                    format!("`{name}` starts {:.4e} deep inside `{other}`, at ({})", -gap, at.join(", "));
+                let place = match problem.bodies.get(name) {
+                    Some(Body::Rope(rope)) => self.key(&rope.path),
+                    Some(Body::Beam(beam)) => self.key(&beam.path),
+                    _ => self.key(&problem.space),
+                };
+                return Err(problem.error(&place, message).help("a path outside of the body, by the radius at least"));
+            }
+        }
+        Ok(())
     }
 
     /// Components of a vector in this space; in the plane the third is zero.

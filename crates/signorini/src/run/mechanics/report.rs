@@ -128,7 +128,8 @@ fn contact_report(plan: &MechanicsPlan, contact: &Contact, sites: &[SiteResult])
         vec![component(&closed().collect())]
     };
     let rubs = contact.friction.is_some();
-    let area = |status: Status| closed().filter(|s| s.status == status).map(|s| s.weight).sum::<f64>();
+    // The sum of nothing is a negative zero.
+    let area = |status: Status| closed().filter(|s| s.status == status).map(|s| s.weight).sum::<f64>() + 0.0;
     let friction: Vector<3> = closed().map(|s| s.friction * s.weight).sum();
     ContactReport {
         force: vector(&closed().map(|s| s.force()).sum::<Vector<3>>()),

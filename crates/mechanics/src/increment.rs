@@ -7,7 +7,8 @@
 use crate::body::Order;
 use crate::contact::{Enforcement, SiteResult};
 use crate::system::{Assembled, AssemblyError, System, SystemState};
-use signorini_contact::Status;
+use signorini_contact::law::Friction;
+use signorini_contact::{Law, Status};
 use signorini_geometry::Vector;
 use signorini_solve::SolveError;
 use signorini_solve::general::Analysis;
@@ -68,6 +69,24 @@ const SPRINGS: [f64; 6] = [1.0, 1e-2, 1e-4, 1e-6, 1e-8, 0.0];
 const GRAIN: f64 = 1e-12;
 /// A body that weak springs let go so many sizes away is not held.
 const AWAY: f64 = 10.0;
+
+/// Friction without a limit.
+#[derive(Debug)]
+struct Sticks;
+
+impl Law for Sticks {
+    fn friction(&self, trial: [f64; 2], _: f64) -> Friction {
+        Friction { traction: trial, by_trial: [[1.0, 0.0], [0.0, 1.0]], by_pressure: [0.0; 2], slips: false }
+    }
+
+    fn utilisation(&self, _: [f64; 2], _: f64) -> f64 {
+        0.0
+    }
+
+    fn per_pressure(&self) -> Option<[f64; 2]> {
+        None
+    }
+}
 
 struct Problem<'a> {
     system: &'a System,
@@ -217,10 +236,27 @@ impl System {
         let mut changes = Vec::new();
         for _ in 0..MOST_AUGMENTATIONS {
             let mut done = iterations;
-            let found = self.inner(&state, time, &mut |_, r| {
+            let mut counted = |_: usize, r: f64| {
                 done += 1;
                 report(done, r)
-            })?;
+            };
+            // Without a guess which sites carry, multipliers start from what penalties find.
+            let guessed = state.multipliers.is_empty() || state.multipliers.iter().any(|m| *m != 0.0);
+            let direct = if guessed { Some(self.inner(&state, time, &mut counted)) } else { None };
+            let found = match direct {
+                Some(Ok(found)) => found,
+                Some(Err(error)) if state.multipliers.is_empty() || error == IncrementError::Interrupted => {
+                    return Err(error);
+                }
+                failed => {
+                    let start = self.by_penalties(start, time, &mut counted);
+                    match (self.inner(start.as_ref().unwrap_or(&state), time, &mut counted), failed) {
+                        (Ok(found), _) => found,
+                        (Err(_), Some(Err(first))) => return Err(first),
+                        (Err(error), _) => return Err(error),
+                    }
+                }
+            };
             iterations = done;
             state = found.state;
             let result = self.result(&state, time, iterations, found.history)?;
@@ -231,6 +267,42 @@ impl System {
             changes.push(change);
         }
         Err(IncrementError::Augmentation { outer: MOST_AUGMENTATIONS, history: changes })
+    }
+
+    /// A state near the one that is looked for, with penalties in place of multipliers, which take the tractions that these
+    /// find, and with all that touches sticking: while nothing carries yet, nothing would rub. None where there is no such
+    /// state either.
+    fn by_penalties(
+        &mut self,
+        start: &SystemState,
+        time: f64,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Option<SystemState> {
+        let by_multipliers: Vec<bool> = self.contacts.iter().map(|c| c.multipliers() > 0).collect();
+        let switch = |system: &mut System, to: Enforcement| {
+            let list = system.contacts.iter_mut().zip(&by_multipliers);
+            list.filter(|(_, own)| **own).for_each(|(contact, _)| contact.enforcement = to);
+        };
+        switch(self, Enforcement::Penalty { wanted_penetration: None });
+        let sticking = |contact: &mut crate::contact::Contact| {
+            contact.friction.as_mut().map(|law| std::mem::replace(law, Box::new(Sticks)))
+        };
+        let laws: Vec<_> = self.contacts.iter_mut().map(sticking).collect();
+        let from = SystemState { multipliers: Vec::new(), ..start.clone() };
+        let found = self.inner(&from, time, report).ok();
+        let tractions = found.and_then(|found| {
+            let (first, _) = self.numbering();
+            let mut list = Vec::new();
+            for contact in self.contacts.iter().zip(&by_multipliers).filter(|(_, own)| **own).map(|(c, _)| c) {
+                let sites = contact.results(&self.sides(contact, &found.state, &first), &[]).ok()?;
+                list.extend(sites.iter().flat_map(|(_, t)| t[..contact.components()].to_vec()));
+            }
+            Some((found.state, list))
+        });
+        switch(self, Enforcement::Multiplier);
+        self.contacts.iter_mut().zip(laws).for_each(|(contact, law)| contact.friction = law);
+        let (state, multipliers) = tractions?;
+        Some(SystemState { multipliers, ..state })
     }
 
     /// Sets multipliers to the tractions found, penalties to what leaves the penetration that is wanted; the largest

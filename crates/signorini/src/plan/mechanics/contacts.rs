@@ -73,10 +73,11 @@ impl Planner<'_> {
         if body(&slave).unknowns() == 0 && body(&master).unknowns() == 0 {
             return Err(problem.error(key, format!("neither body of contact `{name}` can move")));
         }
-        let count = |sampling| body(&slave).sites(slave.group.as_deref(), sampling).map_or(0, |list| list.len());
-        let asked_at_nodes = matches!(key.method, Some(Method::Node(_)));
-        let nodal = asked_at_nodes || count(Sampling::GaussPoints) == count(Sampling::Nodes);
-        let (sampling, enforcement, method) = self.system_method(key, body(&slave).is_rigid(), nodal)?;
+        let straight = match problem.bodies.get(body(&slave).name()) {
+            Some(problem::Body::Rope(rope)) => rope.continuity != Some(problem::Continuity::C1),
+            _ => false,
+        };
+        let (sampling, enforcement, method) = self.system_method(key, body(&slave).is_rigid(), straight)?;
         let mut contact =
             Contact::new(name, (slave.clone(), body(&slave)), (master.clone(), body(&master)), sampling, enforcement)
                 .map_err(|error| self.misplaced(on[0], &error))?;
@@ -92,11 +93,13 @@ impl Planner<'_> {
     }
 
     /// Where contact is tested, how it is kept, and the method in a word.
-    fn system_method(&self, key: &problem::Contact, rigid: bool, nodal: bool) -> Result<(Sampling, Kept, &'static str), CaseError> {
+    fn system_method(&self, key: &problem::Contact, rigid: bool, straight: bool) -> Result<(Sampling, Kept, &'static str), CaseError> {
         let problem = self.problem;
+        // Straight elements meet at nodes, which carry for them.
+        let of_curve = if rigid || straight { Sampling::Nodes } else { Sampling::GaussPoints };
         let (sampling, word, stated) = match &key.method {
-            None => (if rigid { Sampling::Nodes } else { Sampling::GaussPoints }, "curve", None),
-            Some(Method::Curve(k)) => (Sampling::GaussPoints, "curve", k.enforcement.as_ref()),
+            None => (of_curve, "curve", None),
+            Some(Method::Curve(k)) => (of_curve, "curve", k.enforcement.as_ref()),
             Some(Method::GaussPoint(k)) => (Sampling::GaussPoints, "gauss_point", k.enforcement.as_ref()),
             Some(Method::Node(k)) => (Sampling::Nodes, "node", k.enforcement.as_ref()),
             Some(other) => {
@@ -108,7 +111,7 @@ impl Planner<'_> {
         let kept = match stated {
             None if rigid => Kept::AugmentedLagrangian,
             // Every node of straight elements carries by itself; points of Gauss are more than the elements can follow.
-            None if nodal => Kept::Multiplier,
+            None if sampling == Sampling::Nodes => Kept::Multiplier,
             None => Kept::Penalty { wanted_penetration: None },
             Some(Enforcement::Multiplier(_)) => Kept::Multiplier,
             Some(Enforcement::AugmentedLagrangian(_)) => Kept::AugmentedLagrangian,

@@ -65,10 +65,23 @@ const PENALTY: f64 = 100.0;
 const SCALE: f64 = 10.0;
 /// Stiffness of the springs that hold free bodies at first, in largest loads per size, and what they are taken back to.
 const SPRINGS: [f64; 6] = [1.0, 1e-2, 1e-4, 1e-6, 1e-8, 0.0];
+/// The first bit of what is out of balance that is let go, and the least.
+const FIRST_BIT: f64 = 0.125;
+const LEAST_BIT: f64 = 1e-4;
 /// Stiffness against what nothing moves, relative to the largest: Newton's method errs by so much of a step.
 const GRAIN: f64 = 1e-12;
 /// A body that weak springs let go so many sizes away is not held.
 const AWAY: f64 = 10.0;
+
+/// Whether another way to the same state may help.
+fn is_curable(error: &IncrementError) -> bool {
+    matches!(
+        error,
+        IncrementError::Solve(_)
+            | IncrementError::NotConverged { .. }
+            | IncrementError::Assembly(AssemblyError::Body(_))
+    )
+}
 
 /// Friction without a limit.
 #[derive(Debug)]
@@ -94,6 +107,8 @@ struct Problem<'a> {
     analysis: Analysis,
     /// Springs on all unknowns of bodies.
     springs: f64,
+    /// A share of forces on the unknowns of bodies, and of what constraints lack, that is not there yet.
+    held_back: Option<(f64, Vec<f64>, Vec<f64>)>,
     /// Unknowns that are spins.
     is_spin: Vec<bool>,
     /// Traction per gap of the rows of multipliers, over their weights.
@@ -259,7 +274,8 @@ impl System {
             };
             iterations = done;
             state = found.state;
-            let result = self.result(&state, time, iterations, found.history)?;
+            let rounding = self.rounding(&state, time)?;
+            let result = self.result(&state, time, iterations, (found.history, rounding))?;
             let change = self.augment(&state, &result)?;
             if change <= AUGMENTED {
                 return Ok((state, result));
@@ -363,6 +379,7 @@ impl System {
             time,
             analysis: Analysis::default(),
             springs: 0.0,
+            held_back: None,
             is_spin,
             row_scale,
             rounding: [0.0; 2],
@@ -370,37 +387,29 @@ impl System {
         };
         let direct = problem.solve(start, report);
         let Err(error) = direct else { return direct };
-        let retry = matches!(error, IncrementError::Solve(_) | IncrementError::NotConverged { .. });
-        if !retry || self.contacts.is_empty() {
+        if !is_curable(&error) {
+            return Err(error);
+        }
+        // A free body needs springs until it touches; what is held may take what is out of balance bit by bit.
+        let floats = self.bodies.iter().any(|b| b.is_rigid() && b.unknowns() > 0);
+        if !floats {
+            match problem.bit_by_bit(start, report) {
+                Err(failed) if is_curable(&failed) => {}
+                found => return found,
+            }
+        }
+        if self.contacts.is_empty() {
             return Err(problem.named(error, start));
         }
-        let load = problem.load(start)?;
-        let mut state = start.clone();
-        let mut last = None;
-        let mut before = 0.0;
-        for factor in SPRINGS {
-            problem.springs = factor * load / self.size();
-            match problem.solve(&state, report) {
-                Ok(found) => {
-                    if factor < 1.0
-                        && let Some(body) = problem.away(&found.state, load)
-                    {
-                        return Err(body);
-                    }
-                    state = found.state.clone();
-                    last = Some(found);
-                }
-                Err(IncrementError::Interrupted) => return Err(IncrementError::Interrupted),
-                Err(_) => {
-                    // What the last springs carried tells what nothing else does.
-                    problem.springs = before;
-                    let free = last.is_some().then(|| problem.away(&state, load)).flatten();
-                    return Err(free.unwrap_or_else(|| problem.named(error, &state)));
-                }
-            }
-            before = problem.springs;
-        }
-        last.ok_or(error)
+        problem.with_springs(start, error, report)
+    }
+
+    /// What rounding of positions leaves of forces.
+    fn rounding(&self, state: &SystemState, time: f64) -> Result<f64, IncrementError> {
+        let at = self.assemble(state, time, Order::Second)?;
+        let (_, count) = self.numbering();
+        let stiffest = at.tangent.matrix(at.residual.len()).row_sizes()[..count].iter().fold(0.0f64, |m, s| m.max(*s));
+        Ok(f64::EPSILON * stiffest * self.size())
     }
 
     /// What a state is reported as.
@@ -409,7 +418,7 @@ impl System {
         state: &SystemState,
         time: f64,
         iterations: usize,
-        history: Vec<f64>,
+        (history, rounding): (Vec<f64>, f64),
     ) -> Result<IncrementResult, IncrementError> {
         let (_, count) = self.numbering();
         let at = self.assemble(state, time, Order::First)?;
@@ -429,6 +438,8 @@ impl System {
             add(held.support, held.constraint.component, -reaction);
         }
         let most = at.sizes[..count].iter().fold(f64::MIN_POSITIVE, |m, s| m.max(*s));
+        // Where no force acts what is left is the rounding of the positions.
+        let most = most.max(1e10 * rounding);
         let imbalance = residual[..count].iter().fold(0.0f64, |m, r| m.max(r.abs())) / most;
         let sites = (0..self.contacts.len()).map(|k| self.sites(k, state)).collect::<Result<_, _>>()?;
         Ok(IncrementResult {
@@ -462,7 +473,74 @@ impl Problem<'_> {
         })
     }
 
-    /// The residual with springs.
+    /// Solves with the forces that are out of balance at the start, and what supports prescribe beyond it, held back and
+    /// let go bit by bit.
+    fn bit_by_bit(
+        &mut self,
+        start: &SystemState,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<Converged<SystemState>, IncrementError> {
+        let at = self.system.assemble(start, self.time, Order::First)?;
+        let count = self.is_spin.len();
+        let lacks: Vec<f64> = at.single.iter().chain(&at.coupled).map(|h| h.constraint.lack).collect();
+        let (mut reached, mut size) = (0.0, FIRST_BIT);
+        let mut state = start.clone();
+        let held_back = (at.residual[..count].to_vec(), lacks);
+        loop {
+            let to = if reached + size > 1.0 - 1e-9 { 1.0 } else { reached + size };
+            self.held_back = (to < 1.0).then(|| (1.0 - to, held_back.0.clone(), held_back.1.clone()));
+            let found = self.solve(&state, report);
+            self.held_back = None;
+            match found {
+                Ok(found) if to == 1.0 => return Ok(found),
+                Ok(found) => {
+                    state = found.state;
+                    reached = to;
+                    size *= 1.5;
+                }
+                Err(error) if !is_curable(&error) || size < LEAST_BIT => return Err(error),
+                Err(_) => size *= 0.25,
+            }
+        }
+    }
+
+    /// Solves with weak springs that hold all bodies where they were, and are taken back step by step.
+    fn with_springs(
+        &mut self,
+        start: &SystemState,
+        error: IncrementError,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<Converged<SystemState>, IncrementError> {
+        let load = self.load(start)?;
+        let mut state = start.clone();
+        let mut last = None;
+        let mut before = 0.0;
+        for factor in SPRINGS {
+            self.springs = factor * load / self.system.size();
+            match self.solve(&state, report) {
+                Ok(found) => {
+                    if factor < 1.0
+                        && let Some(body) = self.away(&found.state, load)
+                    {
+                        return Err(body);
+                    }
+                    state = found.state.clone();
+                    last = Some(found);
+                }
+                Err(IncrementError::Interrupted) => return Err(IncrementError::Interrupted),
+                Err(_) => {
+                    // What the last springs carried tells what nothing else does.
+                    self.springs = before;
+                    let free = last.is_some().then(|| self.away(&state, load)).flatten();
+                    return Err(free.unwrap_or_else(|| self.named(error, &state)));
+                }
+            }
+            before = self.springs;
+        }
+        last.ok_or(error)
+    }
+
+    /// The residual with springs, and less what is held back.
     fn assemble(&self, at: &SystemState, order: Order) -> Result<Assembled, IncrementError> {
         let mut out = self.system.assemble(at, self.time, order)?;
         if self.springs > 0.0 {
@@ -473,6 +551,15 @@ impl Problem<'_> {
                 if order == Order::Second {
                     out.tangent.add(k as u32, k as u32, stiffness);
                 }
+            }
+        }
+        if let Some((share, forces, lacks)) = &self.held_back {
+            out.residual.iter_mut().zip(forces).for_each(|(r, f)| *r -= share * f);
+            let count = out.residual.len() - out.coupled.len();
+            let list = out.single.iter_mut().chain(&mut out.coupled);
+            list.zip(lacks).for_each(|(held, lack)| held.constraint.lack -= share * lack);
+            for (k, held) in out.coupled.iter().enumerate() {
+                out.residual[count + k] = held.constraint.lack;
             }
         }
         Ok(out)
@@ -551,7 +638,7 @@ impl Problem<'_> {
 
     /// A system without a solution, by the body that is free to move.
     fn named(&self, error: IncrementError, at: &SystemState) -> IncrementError {
-        if !matches!(error, IncrementError::Solve(_)) {
+        if !matches!(error, IncrementError::Solve(_) | IncrementError::NotConverged { .. }) {
             return error;
         }
         let Ok(assembled) = self.system.assemble(at, self.time, Order::Second) else { return error };
@@ -642,28 +729,29 @@ impl Equations for Problem<'_> {
             let position = if kind == 1 { 1.0 } else { size };
             self.rounding[kind] = self.rounding[kind].max(4.0 * f64::EPSILON * sizes[k] * position);
         }
-        // A rigid body may be free to move where nothing moves it, as a ball without friction may turn: a grain of
-        // stiffness in the matrix alone keeps it where it is and changes no solution.
+        // A ball without friction may turn, a slack rope has no stiffness: a grain of it in the matrix alone keeps them where
+        // they are and changes no solution.
         let mut most = [0.0f64; 2];
-        for k in 0..count {
+        for k in (0..count).filter(|k| !held[*k]) {
             let kind = usize::from(self.is_spin[k]);
             most[kind] = most[kind].max(sizes[k]);
         }
-        let mut matrix = matrix;
-        let (first, _) = self.system.numbering();
-        let mut grains = false;
-        for (body, first) in self.system.bodies.iter().zip(first).filter(|(b, _)| b.is_rigid()) {
-            for k in (first..first + body.unknowns() as u32).filter(|k| !held[*k as usize]) {
-                let kind = usize::from(self.is_spin[k as usize]);
-                let scale = if most[kind] > 0.0 { most[kind] } else { most[0].max(f64::MIN_POSITIVE) * size * size };
-                out.tangent.add(k, k, GRAIN * scale);
-                grains = true;
-            }
+        for k in (0..count).filter(|k| !held[*k]) {
+            let kind = usize::from(self.is_spin[k]);
+            let scale = if most[kind] > 0.0 { most[kind] } else { most[0].max(f64::MIN_POSITIVE) * size * size };
+            out.tangent.add(k as u32, k as u32, GRAIN * scale);
         }
-        if grains {
-            matrix = out.tangent.matrix(n);
-        }
+        let matrix = out.tangent.matrix(n);
         Ok(self.analysis.factor(matrix)?.solve(&right)?)
+    }
+
+    fn is_driven(&self, at: &SystemState) -> bool {
+        if self.held_back.is_some() {
+            return false;
+        }
+        let size = self.system.size();
+        let lacks = |h: &crate::system::Held| h.constraint.lack.abs() > 1e-12 * size;
+        self.system.held(at, self.time).is_ok_and(|(single, coupled)| single.iter().chain(&coupled).any(lacks))
     }
 
     fn advance(&self, at: &SystemState, step: &[f64], share: f64) -> SystemState {

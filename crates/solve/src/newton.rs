@@ -23,6 +23,12 @@ pub trait Equations {
     /// States that cannot be, or a linear system without a solution.
     fn step(&mut self, at: &Self::State) -> Result<Vec<f64>, Self::Error>;
 
+    /// Whether the next step brings prescribed values along: it is taken whole then, as what it does to the residual says
+    /// nothing.
+    fn is_driven(&self, _at: &Self::State) -> bool {
+        false
+    }
+
     /// The state after a share of the step.
     fn advance(&self, at: &Self::State, step: &[f64], share: f64) -> Self::State;
 }
@@ -99,9 +105,10 @@ pub fn newton<E: Equations>(
             break;
         }
         let step = told!(equations.step(&state));
+        let driven = iteration == 1 && equations.is_driven(&state);
         let whole_steps = match options.search {
-            Search::Monotone => false,
-            Search::Watchdog { patience } => behind < patience,
+            Search::Monotone => driven,
+            Search::Watchdog { patience } => driven || behind < patience,
         };
         let mut reached = None;
         for share in SHARES {
@@ -128,7 +135,7 @@ pub fn newton<E: Equations>(
         if !report(iteration, measure) {
             return Err(NewtonFailure::Interrupted);
         }
-        if measure < best.1 {
+        if measure < best.1 || driven {
             best = (state.clone(), measure);
             behind = 0;
         } else {

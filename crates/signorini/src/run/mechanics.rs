@@ -173,7 +173,7 @@ impl Model for MechanicsModel {
         record.unknowns = record.unknowns.max(result.unknowns);
         let shown = SystemShown::new(&self.plan, &self.state, &result, time);
         record.steps.push(report::step_report(&self.plan, &self.state, &result, &shown, index));
-        report::warn(&self.plan, &result, time, record);
+        report::warn(&self.plan, &result, &shown, record);
         self.last = Some(shown);
         // What slips count from next.
         if let Err(error) = self.plan.system.accept(&self.state) {

@@ -151,7 +151,8 @@ fn contact_report(plan: &MechanicsPlan, contact: &Contact, sites: &[SiteResult])
 }
 
 /// Warns of what looks wrong with a state.
-pub fn warn(plan: &MechanicsPlan, result: &IncrementResult, time: f64, record: &mut Record) {
+pub fn warn(plan: &MechanicsPlan, result: &IncrementResult, shown: &SystemShown, record: &mut Record) {
+    let time = shown.time;
     for (contact, sites) in plan.system.contacts.iter().zip(&result.sites) {
         if !plan.head.problem.contacts.contains_key(&contact.name) || sites.iter().any(|s| s.status != Status::Open) {
             continue;
@@ -160,6 +161,17 @@ pub fn warn(plan: &MechanicsPlan, result: &IncrementResult, time: f64, record: &
         let gap = gap.map_or("nothing is within reach".to_string(), |g| format!("smallest gap {g:.6e}"));
         let message = format!("contact `{}`: the bodies do not touch at t = {time} ({gap})", contact.name);
         record.warnings.push(Warning::new(WarningKind::Apart, message).at_time(time));
+    }
+    for curve in &shown.curves {
+        let slack = curve.forces.iter().filter(|t| **t == 0.0).count();
+        if slack > 0 {
+            let message = format!(
+                "`{}` is slack at t = {time}: {slack} of {} cells carry nothing, and where they lie is not determined",
+                curve.name,
+                curve.forces.len()
+            );
+            record.warn_once(Warning::new(WarningKind::NotUnique, message).at_time(time));
+        }
     }
     if result.lost_sites > 0 {
         let message = format!(

@@ -10,6 +10,7 @@
 //! - [`partial_slip`]: how far a rope slips when its end is loaded and unloaded.
 //! - [`geodesic`]: straightest curves with their natural variations.
 //! - [`wrapping`]: shortest paths over bodies, with exact derivatives.
+//! - [`winding`]: paths of yarns on mandrels, polar openings, patterns.
 
 mod banded;
 pub mod curve;
@@ -20,8 +21,10 @@ pub mod geodesic;
 mod ode;
 pub mod partial_slip;
 mod quadrature;
+mod root;
 pub mod surface;
 pub mod theorem;
+pub mod winding;
 pub mod wrapping;
 
 pub use error::{PathError, Place};

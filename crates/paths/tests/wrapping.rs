@@ -39,7 +39,7 @@ fn over_circle(r: f64, a: f64, b: f64, angle: f64) -> f64 {
 
 #[test]
 fn sphere_with_and_without_turns() {
-    for (r, a, b) in [(1.7, [-4.0, 1.0, 0.5], [3.0, 2.0, -1.0]), (0.9, [-2.0, 0.1, 0.3], [1.5, -0.2, 0.4])] {
+    for (r, a, b) in [(1.7f64, [-4.0, 1.0, 0.5], [3.0, 2.0, -1.0]), (0.9, [-2.0, 0.1, 0.3], [1.5, -0.2, 0.4])] {
         let sphere = Sphere { center: Point::<3>::zeros(), radius: r };
         let (pa, pb) = (point(a), point(b));
         let angle = pa.angle(&pb);
@@ -55,10 +55,10 @@ fn sphere_with_and_without_turns() {
 
 #[test]
 fn cylinder_with_and_without_turns() {
-    let (r, a, b) = (0.8, [-2.0, 0.3, 0.5], [1.4, 0.2, 1.9]);
+    let (r, a, b): (f64, [f64; 3], [f64; 3]) = (0.8, [-2.0, 0.3, 0.5], [1.4, 0.2, 1.9]);
     let cylinder = Cylinder { point: Point::<3>::zeros(), axis: Vector::<3>::z(), radius: r };
     let flat = |x: [f64; 3]| x[0].hypot(x[1]);
-    let angle = (a[1].atan2(a[0]) - b[1].atan2(b[0])).rem_euclid(TAU);
+    let angle: f64 = (a[1].atan2(a[0]) - b[1].atan2(b[0])).rem_euclid(TAU);
     let angle = angle.min(TAU - angle);
     for turns in [0, 1, 2, 3] {
         let path = solve(a, b, &cylinder, turns);

@@ -6,7 +6,7 @@ use signorini_geometry::{Jet, Point, Vector};
 use signorini_paths::friction::Friction;
 use signorini_paths::wrapping::{Anchor, Body, EventKind, Minimal, Route, Station, WrappedPath, Wrapping};
 use signorini_paths::{PathError, Place};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 fn point(x: [f64; 3]) -> Point<3> {
     Point::<3>::from(x)
@@ -111,7 +111,7 @@ fn touchdown_on_an_ellipsoid() {
 
 #[test]
 fn touchdown_on_a_torus() {
-    sweep(&torus(), |t| [-5.5, 1.0, 2.6 - 2.2 * t], [3.0, 5.0, -0.6]);
+    sweep(&torus(), |t| [-5.5, 8.0 - 7.0 * t, 0.4], [3.0, 5.0, -0.6]);
 }
 
 /// Three bodies that stand and are turned anyhow.
@@ -119,11 +119,11 @@ fn three(bodies: &[RigidMotion; 3]) -> Result<WrappedPath, PathError> {
     let shapes: [&dyn RigidShape; 3] = [&ellipsoid(), &torus(), &Sphere { center: Point::<3>::zeros(), radius: 1.2 }];
     let bodies: Vec<Body<'_>> = shapes.iter().zip(bodies).map(|(shape, m)| Body { shape: *shape, motion: *m }).collect();
     let mut stations = around(3);
-    stations.insert(2, Station::Via(Anchor::on(1, point([3.0, 2.0, 1.2]))));
+    stations.insert(2, Station::Via(Anchor::on(1, point([3.0, 2.4, 0.9]))));
     Wrapping::new(Route {
         start: Anchor::fixed(point([-4.0, 0.4, -0.8])),
         stations,
-        end: Anchor::on(2, point([1.0, -2.0, 2.0])),
+        end: Anchor::on(2, point([1.5, 0.3, -1.0])),
     })
     .solve(&bodies)
 }
@@ -133,11 +133,11 @@ fn derivatives_by_the_motion_of_every_body() {
     let place = |x: [f64; 3], turn: [f64; 3]| RigidMotion::new(Vector::<3>::from(turn), Point::<3>::zeros(), Vector::<3>::from(x));
     let places = [
         place([0.0, 0.0, -0.5], [0.1, 0.2, -0.3]),
-        place([6.0, -1.0, -0.5], [0.3, -0.2, 0.1]),
+        place([7.0, -1.0, 0.6], [0.1, -0.2, 0.1]),
         place([13.0, 1.0, 1.0], [0.0, 0.5, 0.2]),
     ];
     let path = three(&places).unwrap();
-    assert!(path.contacts.len() >= 2, "{:?}", path.contacts);
+    assert!(path.contacts.len() == 3, "{:?}", path.contacts);
     let about = point([0.5, -0.3, 0.8]);
     let h = 1e-5;
     for body in 0..3 {
@@ -171,7 +171,7 @@ fn derivatives_by_ends_and_via_points() {
         stations.extend(around(1));
         Wrapping::new(route(points[0], points[2], stations)).solve(&[Body::fixed(&shape)]).unwrap()
     };
-    let points = [[-4.0, 0.5, 0.3], [0.5, 0.8, 1.6], [3.6, -1.2, -0.4]];
+    let points = [[-4.0, 0.5, -0.3], [0.3, 0.8, 1.05], [3.6, -1.2, -0.4]];
     let path = length(points);
     assert!(path.contacts.len() == 2, "{:?}", path.contacts);
     let [first, last] = path.end_gradients();
@@ -199,7 +199,7 @@ fn ends_on_the_body() {
     let exact = (b.norm_squared() - 2.25).sqrt() + 1.5 * (angle - (1.5 / b.norm()).acos());
     assert!((path.length - exact).abs() < 1e-11, "{} {exact}", path.length);
     let path = solve([-1.5, 0.0, 0.0], [0.9, 1.2, 0.0], &sphere, 0);
-    assert!((path.length - 1.5 * (PI - 0.9f64.acos().min((0.6f64).acos()))).abs() < 1e-11, "{}", path.length);
+    assert!((path.length - 1.5 * (-0.6f64).acos()).abs() < 1e-11, "{}", path.length);
 }
 
 /// Between the ends of a waist the path runs straight.

@@ -155,23 +155,26 @@ fn first(leg: &Leg, bodies: &[Body<'_>], work: &mut Workspace) -> Result<(Chain,
     if leg.around.iter().all(|a| a.turns == 0) {
         return Ok((chain, iterations));
     }
-    let mut touches = chain.touches.clone();
-    for (order, around) in leg.around.iter().enumerate().filter(|(_, a)| a.turns > 0) {
+    let mut chain = chain;
+    for (order, around) in leg.around.iter().enumerate() {
         let body = &bodies[around.body];
-        let k = touches.iter().position(|t| t.order == order).or_else(|| {
-            // The body is not in the way: the turns start where the path is closest to it.
-            let k = touches.iter().position(|t| t.order > order).unwrap_or(touches.len());
-            let line = chain.line(leg, chain.touches.iter().position(|t| t.order > order).unwrap_or(chain.touches.len()));
-            let closest = topology::deepest(body, &line)?;
-            touches.insert(k, topology::touch_at(order, body, &line, &closest)?);
-            Some(k)
-        });
-        let Some(k) = k else { continue };
-        if let Some(turn) = topology::turn(body, &touches[k].x, &touches[k].tau) {
-            touches[k].length += f64::from(around.turns) * turn;
+        for _ in 0..around.turns {
+            let mut touches = chain.touches.clone();
+            let next = touches.iter().position(|t| t.order >= order).unwrap_or(touches.len());
+            if touches.get(next).is_none_or(|t| t.order > order) {
+                // The body is not in the way: the turns start where the path is closest to it.
+                let line = chain.line(leg, next);
+                let closest = topology::deepest(body, &line);
+                let Some(touch) = closest.and_then(|c| topology::touch_at(order, body, &line, &c)) else { break };
+                touches.insert(next, touch);
+            }
+            let Some((tau, turn)) = topology::turn(body, &touches[next].x, &touches[next].tau) else { break };
+            touches[next].tau = tau;
+            touches[next].length += turn;
+            let (wound, more) = settle(leg, bodies, touches, work)?;
+            chain = wound;
+            iterations += more;
         }
     }
-    let (chain, more) = settle(leg, bodies, touches, work)?;
-    iterations += more;
     Ok((chain, iterations))
 }

@@ -164,20 +164,34 @@ pub(crate) fn open_bridge(leg: &Leg, bodies: &[Body<'_>], chain: &Chain) -> Opti
     Some(touches)
 }
 
-/// Length of one turn of a geodesic from a point on: until it comes by again in the same direction.
-pub(crate) fn turn(body: &Body<'_>, x: &Point<3>, tau: &Vector<3>) -> Option<f64> {
-    let k = Along::new(&body.shape.level(x), tau).k_n;
-    let circle = std::f64::consts::TAU / k.abs();
-    if !circle.is_finite() {
-        return None;
-    }
-    let way = geodesic(body.shape, x, tau, 2.0 * circle).ok()?;
-    let ahead = |s: &GeodesicState| (s.x - x).dot(tau);
-    let passed = way.states.windows(2).skip(1).find(|w| ahead(&w[0]) < 0.0 && ahead(&w[1]) >= 0.0);
-    Some(passed.map_or(circle, |w| {
+/// The direction near another one in which a geodesic from a point comes by again, and the length of that turn. Where there
+/// is none close by, the one given and the turn of a circle of its curvature.
+pub(crate) fn turn(body: &Body<'_>, x: &Point<3>, tau: &Vector<3>) -> Option<(Vector<3>, f64)> {
+    const ITERATIONS: usize = 8;
+    let level = body.shape.level(x);
+    let circle = |tau: &Vector<3>| std::f64::consts::TAU / Along::new(&level, tau).k_n.abs();
+    let (mut direction, mut length) = (*tau, circle(tau));
+    for _ in 0..ITERATIONS {
+        let longest = 2.0 * circle(&direction);
+        if !longest.is_finite() {
+            break;
+        }
+        let way = geodesic(body.shape, x, &direction, longest).ok()?;
+        let ahead = |s: &GeodesicState| (s.x - x).dot(&direction);
+        let Some(w) = way.states.windows(2).skip(1).find(|w| ahead(&w[0]) < 0.0 && ahead(&w[1]) >= 0.0) else { break };
         let share = ahead(&w[0]) / (ahead(&w[0]) - ahead(&w[1]));
-        w[0].s + share * (w[1].s - w[0].s)
-    }))
+        let between = |a: f64, b: f64| a + share * (b - a);
+        length = between(w[0].s, w[1].s);
+        // How far it passes at the side, and how a turn of the direction moves that.
+        let g = Along::new(&level, &direction).g;
+        let (aside, field) = (between((w[0].x - x).dot(&g), (w[1].x - x).dot(&g)), between(w[0].r[0], w[1].r[0]));
+        if field.abs() < 0.1 * length || aside.abs() < 1e-3 * length {
+            break;
+        }
+        let (sin, cos) = (-(aside / field).clamp(-0.5, 0.5)).sin_cos();
+        direction = direction * cos + g * sin;
+    }
+    length.is_finite().then_some((direction, length))
 }
 
 /// Whether a chain is a path: no touch of negative length, all lines forward.

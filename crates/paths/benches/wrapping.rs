@@ -26,7 +26,11 @@ fn main() {
         let place = |k: usize, t: f64| {
             let side = if k.is_multiple_of(2) { -0.6 } else { 0.6 };
             let turn = Vector::<3>::new(0.1, 0.05, 0.2 * (7.0 * t).sin());
-            RigidMotion::new(turn, origin, Vector::<3>::new(6.0 * k as f64, side + 0.1 * (9.0 * t + k as f64).sin(), 0.1))
+            RigidMotion::new(
+                turn,
+                origin,
+                Vector::<3>::new(6.0 * k as f64, side + 0.1 * (9.0 * t + k as f64).sin(), 0.1),
+            )
         };
         let route = Route {
             start: Anchor::fixed(Point::<3>::new(-5.0, 0.0, 0.3)),

@@ -127,7 +127,9 @@ impl Curve for PointSpline {
     fn jet(&self, t: f64) -> CurveJet {
         let (first, values) = basis(&self.knots, t);
         let sum = |order: usize| {
-            (0..=DEGREE).map(|k| self.coefficients[first + k] * values[order][k]).fold(Vector::<3>::zeros(), |a, b| a + b)
+            (0..=DEGREE)
+                .map(|k| self.coefficients[first + k] * values[order][k])
+                .fold(Vector::<3>::zeros(), |a, b| a + b)
         };
         CurveJet { x: sum(0), d1: sum(1), d2: sum(2) }
     }

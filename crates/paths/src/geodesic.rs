@@ -11,12 +11,13 @@ use crate::surface::{along, curvature, foot, restore, tangent};
 use crate::{PathError, ode};
 use signorini_geometry::rigid_shape::RigidShape;
 use signorini_geometry::{Point, Vector};
+use std::cell::Cell;
 
 /// The error of a step along a geodesic, relative to a radius of curvature.
 pub const TOLERANCE: f64 = 1e-13;
 
 /// The same within the iteration of shortest paths, whose lengths are of second order in it.
-const SHOOTING: f64 = 1e-12;
+const SHOOTING: f64 = 3e-12;
 
 /// The share of a radius of curvature that the first step takes; the pair of order eight takes about this one at
 /// [`TOLERANCE`] on a circle.
@@ -50,10 +51,13 @@ impl Geodesic {
     /// The first arc length at which the Jacobi field `r` vanishes, by linear interpolation between steps.
     pub fn conjugate_point(&self) -> Option<f64> {
         let pairs = self.states.windows(2).skip(1);
-        pairs.filter(|w| w[0].r[0] * w[1].r[0] <= 0.0).map(|w| {
-            let share = w[0].r[0] / (w[0].r[0] - w[1].r[0]);
-            w[0].s + share * (w[1].s - w[0].s)
-        }).next()
+        pairs
+            .filter(|w| w[0].r[0] * w[1].r[0] <= 0.0)
+            .map(|w| {
+                let share = w[0].r[0] / (w[0].r[0] - w[1].r[0]);
+                w[0].s + share * (w[1].s - w[0].s)
+            })
+            .next()
     }
 
     /// The frames at the states.
@@ -93,26 +97,31 @@ pub fn geodesic(
     Ok(Geodesic { states })
 }
 
-/// The end of a geodesic from a point and a unit tangent of the surface, and the largest normal curvature after its steps:
-/// positive where the path would lift off. For the inner loop of shortest paths.
+/// The end of a geodesic and what was met on the way to it.
+pub(crate) struct Shot {
+    pub end: GeodesicState,
+    /// The largest normal curvature.
+    pub largest: f64,
+    /// Whether no conjugate point was passed.
+    pub is_minimal: bool,
+}
+
+/// The end of a geodesic from a point and a unit tangent of the surface, and the largest normal curvature of all stages of its
+/// steps: positive where the path may lift off. For the inner loop of shortest paths; the drift from the surface stays within
+/// the error of the steps.
 #[inline]
-pub(crate) fn shoot(
-    surface: &dyn RigidShape,
-    x: &Point<3>,
-    tau: &Vector<3>,
-    length: f64,
-) -> Result<(GeodesicState, f64), PathError> {
+pub(crate) fn shoot(surface: &dyn RigidShape, x: &Point<3>, tau: &Vector<3>, length: f64) -> Result<Shot, PathError> {
     let first = GeodesicState { s: 0.0, x: *x, tau: *tau, a: [1.0, 0.0], r: [0.0, 1.0] };
-    let level = surface.level(x);
-    let mut largest = Along::new(&level, tau).k_n;
-    let system = Jacobi { surface, unit: unit(&level, length) };
-    let control = Control { tolerance: SHOOTING, first: FIRST_STEP * system.unit };
+    let unit = unit(&surface.level(x), length);
+    let largest = Cell::new(f64::NEG_INFINITY);
+    let system = Shooting { jacobi: Jacobi { surface, unit }, largest: &largest };
+    let control = Control { tolerance: SHOOTING, first: FIRST_STEP * unit };
+    let mut is_minimal = true;
     let (_, y) = integrate(&system, [0.0, length], &pack(&first), control, |_, _, s, y| {
-        let state = unpack(s, y);
-        largest = largest.max(along(surface, &state.x, &state.tau).k_n);
+        is_minimal &= y[8] * s > 0.0;
         Next::Continue
     })?;
-    Ok((unpack(length, &y), largest))
+    Ok(Shot { end: unpack(length, &y), largest: largest.get(), is_minimal })
 }
 
 /// The length with which errors are compared: a radius of curvature, or the path itself where the surface is flatter.
@@ -137,15 +146,42 @@ fn unpack(s: f64, y: &State<10>) -> GeodesicState {
     GeodesicState { s, x, tau: Vector::<3>::new(y[3], y[4], y[5]), a: [y[6], y[7]], r: [y[8], y[9]] }
 }
 
-impl System<10> for Jacobi<'_> {
+/// The same without the way back to the surface after every step.
+struct Shooting<'a> {
+    jacobi: Jacobi<'a>,
+    largest: &'a Cell<f64>,
+}
+
+impl Jacobi<'_> {
     #[inline]
-    fn slope(&self, _: f64, y: &State<10>) -> State<10> {
+    fn slope_and_curvature(&self, y: &State<10>) -> (State<10>, f64) {
         let x = Point::<3>::new(y[0], y[1], y[2]);
         let tau = Vector::<3>::new(y[3], y[4], y[5]);
         let along = along(self.surface, &x, &tau);
         let bend = along.n * along.k_n;
         let k = along.gaussian_curvature();
-        State::<10>::from([tau[0], tau[1], tau[2], bend[0], bend[1], bend[2], y[7], -k * y[6], y[9], -k * y[8]])
+        let slope =
+            State::<10>::from([tau[0], tau[1], tau[2], bend[0], bend[1], bend[2], y[7], -k * y[6], y[9], -k * y[8]]);
+        (slope, along.k_n)
+    }
+}
+
+impl System<10> for Shooting<'_> {
+    #[inline]
+    fn slope(&self, _: f64, y: &State<10>) -> State<10> {
+        let (slope, k_n) = self.jacobi.slope_and_curvature(y);
+        self.largest.set(self.largest.get().max(k_n));
+        slope
+    }
+
+    fn scale(&self) -> State<10> {
+        self.jacobi.scale()
+    }
+}
+
+impl System<10> for Jacobi<'_> {
+    fn slope(&self, _: f64, y: &State<10>) -> State<10> {
+        self.slope_and_curvature(y).0
     }
 
     fn restore(&self, y: &mut State<10>) {

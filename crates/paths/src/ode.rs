@@ -63,21 +63,19 @@ pub(crate) fn step<const N: usize>(
 ) -> (State<N>, State<N>, State<N>) {
     let at = |c: f64, y: State<N>| f.slope(s + c * h, &y);
     let k2 = at(0.052_600_151_958_767_73, sum(y, h, [(5.260_015_195_876_773e-2, k1)]));
-    let k3 = at(
-        0.078_900_227_938_151_6,
-        sum(y, h, [(1.972_505_698_453_789_9e-2, k1), (5.917_517_095_361_37e-2, &k2)]),
-    );
-    let k4 = at(
-        0.118_350_341_907_227_4,
-        sum(y, h, [(2.958_758_547_680_685e-2, k1), (8.876_275_643_042_054e-2, &k3)]),
-    );
+    let k3 = at(0.078_900_227_938_151_6, sum(y, h, [(1.972_505_698_453_79e-2, k1), (5.917_517_095_361_37e-2, &k2)]));
+    let k4 = at(0.118_350_341_907_227_4, sum(y, h, [(2.958_758_547_680_685e-2, k1), (8.876_275_643_042_054e-2, &k3)]));
     let k5 = at(
         0.281_649_658_092_772_6,
         sum(y, h, [(2.413_651_341_592_667e-1, k1), (-8.845_494_793_282_861e-1, &k3), (9.248_340_032_617_92e-1, &k4)]),
     );
     let k6 = at(
         1.0 / 3.0,
-        sum(y, h, [(3.703_703_703_703_703_5e-2, k1), (1.708_286_087_294_738_6e-1, &k4), (1.254_676_875_668_224_2e-1, &k5)]),
+        sum(
+            y,
+            h,
+            [(3.703_703_703_703_703_5e-2, k1), (1.708_286_087_294_738_6e-1, &k4), (1.254_676_875_668_224_2e-1, &k5)],
+        ),
     );
     let k7 = at(
         0.25,
@@ -203,13 +201,20 @@ pub(crate) fn step<const N: usize>(
     let third = sum(
         &slope,
         1.0,
-        [(-0.244_094_488_188_976_38, k1), (-0.733_846_688_281_611_9, &k9), (-0.220_588_235_294_117_65e-1, &k12)],
+        [(-0.244_094_488_188_976_4, k1), (-0.733_846_688_281_611_9, &k9), (-0.220_588_235_294_117_65e-1, &k12)],
     );
     (y + slope * h, fifth, third)
 }
 
 /// The error of a step in units of what is allowed.
-fn error<const N: usize>(fifth: &State<N>, third: &State<N>, y: &State<N>, next: &State<N>, scale: &State<N>, h: f64) -> f64 {
+fn error<const N: usize>(
+    fifth: &State<N>,
+    third: &State<N>,
+    y: &State<N>,
+    next: &State<N>,
+    scale: &State<N>,
+    h: f64,
+) -> f64 {
     let (mut five, mut three) = (0.0, 0.0);
     for i in 0..N {
         let size = scale[i] + y[i].abs().max(next[i].abs());
@@ -245,7 +250,13 @@ pub(crate) fn integrate<const N: usize>(
         }
         // Two steps of even length rather than one and a short one.
         let last = h >= left * (1.0 - 1e-12);
-        let length = if last { left } else if 2.0 * h > left { 0.5 * left } else { h };
+        let length = if last {
+            left
+        } else if 2.0 * h > left {
+            0.5 * left
+        } else {
+            h
+        };
         let (mut next, fifth, third) = step(f, s, &y, &slope, direction * length);
         let found = error(&fifth, &third, &y, &next, &scale, length) / control.tolerance;
         if found <= 1.0 {

@@ -71,11 +71,24 @@ pub struct TensionLimits {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
     /// In equilibrium. The share of the limit of `ln(T_1/T_0)` that is used.
-    Holds { utilisation: f64 },
-    LiftsOff { s: f64, k_n: f64 },
-    SlidesSideways { s: f64, tan_alpha: f64, limit: f64 },
+    Holds {
+        utilisation: f64,
+    },
+    LiftsOff {
+        s: f64,
+        k_n: f64,
+    },
+    SlidesSideways {
+        s: f64,
+        tan_alpha: f64,
+        limit: f64,
+    },
     /// Towards the end, whose tension is too high, or towards the start.
-    SlidesAlong { towards: Towards, ratio: f64, limit: f64 },
+    SlidesAlong {
+        towards: Towards,
+        ratio: f64,
+        limit: f64,
+    },
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -185,7 +198,8 @@ pub fn tension_limits(
         |t| {
             let Ok((frame, speed)) = darboux_at(surface, curve, t) else { return [f64::NAN; 3] };
             let pressed = frame.k_n < 0.0;
-            let [low, high] = pressed.then(|| friction.range(&frame, frame.k_n, frame.k_g)).flatten().unwrap_or_default();
+            let [low, high] =
+                pressed.then(|| friction.range(&frame, frame.k_n, frame.k_g)).flatten().unwrap_or_default();
             [low * speed, high * speed, speed]
         },
         &breaks,
@@ -364,7 +378,11 @@ fn minimum(f: &impl Fn(f64) -> f64, from: f64, to: f64) -> (f64, f64) {
                 found = point;
             }
         }
-        if fa < fb { high = b } else { low = a }
+        if fa < fb {
+            high = b
+        } else {
+            low = a
+        }
         if high - low <= 1e-9 * (to - from) {
             break;
         }

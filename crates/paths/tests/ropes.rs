@@ -8,7 +8,9 @@ use signorini_paths::darboux::{darboux, darboux_at};
 use signorini_paths::friction::Friction;
 use signorini_paths::geodesic::geodesic;
 use signorini_paths::partial_slip::PartialSlip;
-use signorini_paths::theorem::{Condition, TensionLimits, Towards, Verdict, loaded_end_tensions, reactions, tension_limits};
+use signorini_paths::theorem::{
+    Condition, TensionLimits, Towards, Verdict, loaded_end_tensions, reactions, tension_limits,
+};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
@@ -76,8 +78,7 @@ fn number(row: &Value, key: &str) -> f64 {
 }
 
 fn limits(row: &Value) -> TensionLimits {
-    let friction =
-        Friction::Carried { along: row["mu_tau"].as_f64().unwrap(), across: row["mu_g"].as_f64().unwrap() };
+    let friction = Friction::Carried { along: row["mu_tau"].as_f64().unwrap(), across: row["mu_g"].as_f64().unwrap() };
     let on = |surface: &dyn RigidShape, curve: &dyn Curve| tension_limits(surface, curve, &friction).unwrap();
     let p = |key| number(row, key);
     let name = row["name"].as_str().unwrap();
@@ -105,7 +106,9 @@ fn limits(row: &Value) -> TensionLimits {
         }
         "torus" if name.contains("meridian") => on(&torus(), &curve(|v| [v.cos() + 3.0, c(0.0), v.sin()], [0.0, PI])),
         "torus" => on(&torus(), &parallel(3.0 + p("v").cos(), p("v").sin(), PI)),
-        "ellipsoid" if name.contains("principal") => on(&ellipsoid(), &curve(|t| [t.cos() * 2.0, c(0.0), t.sin()], [0.0, PI])),
+        "ellipsoid" if name.contains("principal") => {
+            on(&ellipsoid(), &curve(|t| [t.cos() * 2.0, c(0.0), t.sin()], [0.0, PI]))
+        }
         "ellipsoid" => {
             let z = p("z0");
             let k = (1.0 - z * z).sqrt();
@@ -138,7 +141,11 @@ fn all_published_curves() {
             status if status.starts_with("condition 1") => {
                 assert!(matches!(verdict, Verdict::LiftsOff { .. }), "{name}: {verdict}");
                 let lowest = -row["min_N_over_T"].as_f64().unwrap();
-                assert!((found.least_pressed.value - lowest).abs() < 1e-6, "{name}: {} {lowest}", found.least_pressed.value);
+                assert!(
+                    (found.least_pressed.value - lowest).abs() < 1e-6,
+                    "{name}: {} {lowest}",
+                    found.least_pressed.value
+                );
             }
             status => {
                 assert!(status.starts_with("condition 2"), "{status}");
@@ -233,8 +240,7 @@ fn partial_slip_of_the_table() {
     let data = data();
     for row in data["partial_slip"].as_array().unwrap() {
         let value = |key: &str| row[key].as_f64().unwrap();
-        let mut rope =
-            PartialSlip::uniform(value("omega"), value("L"), value("T_initial"), value("EA")).unwrap();
+        let mut rope = PartialSlip::uniform(value("omega"), value("L"), value("T_initial"), value("EA")).unwrap();
         let up = rope.pull(Towards::End, value("T1")).unwrap();
         assert!((up.length - value("slip_length_loading")).abs() < 1e-12);
         assert!((up.displacement - value("end_displacement_loading")).abs() < 1e-15);
@@ -254,7 +260,9 @@ fn frames_from_formulas_and_points() {
     let points: Vec<Point<3>> = (0..=120).map(|k| helix.jet(f64::from(k) * 5.0 / 120.0).x).collect();
     let spline = PointSpline::new(&points).unwrap();
     let end = spline.domain()[1];
-    for (curve, parameters, tolerance) in [(&helix as &dyn Curve, [1.0, 2.5, 5.0], 1e-13), (&spline, [0.2 * end, 0.5 * end, end], 1e-6)] {
+    for (curve, parameters, tolerance) in
+        [(&helix as &dyn Curve, [1.0, 2.5, 5.0], 1e-13), (&spline, [0.2 * end, 0.5 * end, end], 1e-6)]
+    {
         let frames = darboux(&cylinder(r), curve, &parameters).unwrap();
         for f in &frames {
             // The twist of a line at an angle to the axis.
@@ -282,7 +290,12 @@ fn a_rope_with_weight() {
         let a = -(s + mu * b);
         (start - a) * (mu * PI).exp() - a
     };
-    assert!((high - exact(mu)).abs() < 1e-8 && (low - exact(-mu)).abs() < 1e-8, "{low} {high} {} {}", exact(-mu), exact(mu));
+    assert!(
+        (high - exact(mu)).abs() < 1e-8 && (low - exact(-mu)).abs() < 1e-8,
+        "{low} {high} {} {}",
+        exact(-mu),
+        exact(mu)
+    );
     let none = loaded_end_tensions(&drum, &arc, &Friction::isotropic(mu), Vector::<3>::zeros(), start).unwrap();
     assert!((none[1] - start * (mu * PI).exp()).abs() < 1e-8);
     // Hung below, a heavy rope falls off.

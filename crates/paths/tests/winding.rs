@@ -5,7 +5,8 @@ use signorini_geometry::rigid_shape::{Cone, Cylinder, Ellipsoid, Profile, Revolu
 use signorini_geometry::{Jet, Point, Vector};
 use signorini_paths::PathError;
 use signorini_paths::winding::{
-    At, Axis, Ended, Mandrel, Slippage, Start, Until, WindingPath, circuit, coverage, patterns, slippage_for_opening, wind,
+    At, Axis, Ended, Mandrel, Slippage, Start, Until, WindingPath, circuit, coverage, patterns, slippage_for_opening,
+    wind,
 };
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
@@ -68,7 +69,8 @@ fn all_published_rows() {
         match name.split(' ').next().unwrap() {
             "cylinder" => {
                 let shape = Cylinder { point: Point::<3>::zeros(), axis: Vector::<3>::z(), radius: value("R") };
-                let path = lay(&shape, start([50.0, 0.0, 0.0], value("alpha0")), lam, Until::Angle(value("alpha1")), 2000.0);
+                let path =
+                    lay(&shape, start([50.0, 0.0, 0.0], value("alpha0")), lam, Until::Angle(value("alpha1")), 2000.0);
                 let end = path.end();
                 close(end.height, value("axial_length"), name);
                 close(end.theta, value("theta"), name);
@@ -96,8 +98,10 @@ fn all_published_rows() {
             "ellipsoidal" => {
                 let (r, b) = (value("R"), value("b"));
                 let shape = Ellipsoid::new(Point::<3>::zeros(), [r, r, b]).unwrap();
-                let profile = Profile::formula(move |t: Jet<1>| [t.cos() * r, t.sin() * b], [-FRAC_PI_2, FRAC_PI_2], 12);
-                let turned = Revolution { origin: Point::<3>::zeros(), axis: Vector::<3>::z(), profile: profile.unwrap() };
+                let profile =
+                    Profile::formula(move |t: Jet<1>| [t.cos() * r, t.sin() * b], [-FRAC_PI_2, FRAC_PI_2], 12);
+                let turned =
+                    Revolution { origin: Point::<3>::zeros(), axis: Vector::<3>::z(), profile: profile.unwrap() };
                 for shape in [&shape as &dyn RigidShape, &turned] {
                     let path = lay(shape, start([r, 0.0, 0.0], value("alpha0")), lam, Until::Turn, 500.0);
                     assert_eq!(path.ended, Ended::AsAsked);
@@ -123,7 +127,8 @@ fn domes_beside_the_published_ones() {
         assert!((end.frame.s - length).abs() < 1e-8 && (end.theta - theta).abs() < 1e-9, "{end:?} {length} {theta}");
         // And back: the opening tells the slippage.
         let mandrel = mandrel(&shape);
-        let found = slippage_for_opening(&mandrel, &start([r, 0.0, 0.0], alpha), end.radius, [-0.3, 0.3], 500.0).unwrap();
+        let found =
+            slippage_for_opening(&mandrel, &start([r, 0.0, 0.0], alpha), end.radius, [-0.3, 0.3], 500.0).unwrap();
         assert!((found.slippage - lambda).abs() < 1e-9, "{found:?}");
         let none = slippage_for_opening(&mandrel, &start([r, 0.0, 0.0], alpha), 39.9, [-0.3, 0.3], 500.0);
         assert!(matches!(none, Err(PathError::NoSlippage { .. })));
@@ -150,7 +155,9 @@ fn invariants_of_cone_and_torus() {
         let bridged = path.bridges.iter().any(|b| b[0] <= p.frame.s && p.frame.s <= b[1]);
         assert!(p.frame.k_n.abs() < 1e-9 || bridged == (p.frame.k_n > 0.0), "{p:?} {:?}", path.bridges);
     }
-    let map = mandrel(&torus).stability_map(&[path.start().frame.x, Point::<3>::new(2.0, 0.0, 0.0)], &[0.0, FRAC_PI_2]).unwrap();
+    let map = mandrel(&torus)
+        .stability_map(&[path.start().frame.x, Point::<3>::new(2.0, 0.0, 0.0)], &[0.0, FRAC_PI_2])
+        .unwrap();
     let expected = [[-1.0, -0.25], [-1.0, 0.5]];
     assert!((0..2).all(|i| (0..2).all(|j| (map[i][j] - expected[i][j]).abs() < 1e-12)), "{map:?}");
 }
@@ -164,7 +171,10 @@ fn turns_and_variable_slippage() {
     let way = signorini_paths::winding::Way::Down;
     let there = lay(&shape, from, 0.1, Until::Height { height: 0.0, way }, 500.0);
     let back = there.end();
-    assert!((back.angle - (PI - from.angle)).abs() < 1e-10 && (back.theta - 2.0 * turn.theta).abs() < 1e-10, "{back:?}");
+    assert!(
+        (back.angle - (PI - from.angle)).abs() < 1e-10 && (back.theta - 2.0 * turn.theta).abs() < 1e-10,
+        "{back:?}"
+    );
     assert!((back.frame.s - 2.0 * turn.frame.s).abs() < 1e-9 && there.turns.len() == 1);
     let grow = |at: &At| 0.002 * at.s;
     let slippage = Slippage::Variable(Arc::new(grow));

@@ -117,14 +117,14 @@ impl Profile {
 
     fn new(kind: Kind, breaks: Vec<f64>) -> Self {
         let mut profile = Profile { kind, breaks, starts: Vec::new(), side: 1.0 };
-        let places = profile.breaks.windows(2).flat_map(|w| {
-            (0..STARTS).map(|k| w[0] + (w[1] - w[0]) * k as f64 / STARTS as f64).collect::<Vec<_>>()
-        });
+        let places = profile
+            .breaks
+            .windows(2)
+            .flat_map(|w| (0..STARTS).map(|k| w[0] + (w[1] - w[0]) * k as f64 / STARTS as f64).collect::<Vec<_>>());
         let places: Vec<f64> = places.chain(profile.breaks.last().copied()).collect();
         profile.starts = places.into_iter().map(|t| (t, profile.jet(t).x.into())).collect();
         // Twice the area between profile and axis, positive where it goes up.
-        let area: f64 =
-            profile.starts.windows(2).map(|w| (w[0].1[0] + w[1].1[0]) * (w[1].1[1] - w[0].1[1])).sum();
+        let area: f64 = profile.starts.windows(2).map(|w| (w[0].1[0] + w[1].1[0]) * (w[1].1[1] - w[0].1[1])).sum();
         profile.side = if area < 0.0 { -1.0 } else { 1.0 };
         profile
     }
@@ -305,17 +305,17 @@ mod tests {
         let body = Revolution { origin: Point::<3>::new(0.0, 0.1, 0.0), axis, profile: dome() };
         let on_it = body.origin + axis * 0.4 * 0.6 + Vector::<3>::x() * 0.7 * 0.8;
         testing::check(&body, &[on_it, body.origin + axis * 0.4]);
-        testing::check_moved(&body, |m| Revolution { origin: m.point(&body.origin), axis: m.vector(&axis), ..body.clone() });
+        testing::check_moved(&body, |m| Revolution {
+            origin: m.point(&body.origin),
+            axis: m.vector(&axis),
+            ..body.clone()
+        });
     }
 
     #[test]
     fn known_shapes_are_bodies_of_revolution() {
         let (origin, axis) = (Point::<3>::zeros(), Vector::<3>::z());
-        let ring = Profile::formula(
-            |t| [t.cos() * 0.2 + Jet::<1>::constant(0.8), t.sin() * 0.2],
-            [0.0, TAU],
-            8,
-        );
+        let ring = Profile::formula(|t| [t.cos() * 0.2 + Jet::<1>::constant(0.8), t.sin() * 0.2], [0.0, TAU], 8);
         let ring = Revolution { origin, axis, profile: ring.unwrap() };
         let tube = Profile::spline(&[[0.3, 2.0], [0.3, 1.0], [0.3, -0.5], [0.3, -2.0]]).unwrap();
         let tube = Revolution { origin, axis, profile: tube };
@@ -335,12 +335,14 @@ mod tests {
     fn splines_of_a_profile_converge_with_order_four() {
         let errors = [16, 32].map(|n| {
             let at = |k: usize| -FRAC_PI_2 + 2.0 * FRAC_PI_2 * k as f64 / n as f64;
-            let point = |k| if k == 0 || k == n { [0.0, 0.4 * at(k).sin()] } else { [0.7 * at(k).cos(), 0.4 * at(k).sin()] };
+            let point =
+                |k| if k == 0 || k == n { [0.0, 0.4 * at(k).sin()] } else { [0.7 * at(k).cos(), 0.4 * at(k).sin()] };
             let points: Vec<[f64; 2]> = (0..=n).map(point).collect();
             let profile = Profile::spline(&points).unwrap();
             let body = Revolution { origin: Point::<3>::zeros(), axis: Vector::<3>::z(), profile };
             let exact = Revolution { profile: dome(), ..body.clone() };
-            let worst = |x: &[f64; 3]| (body.gap(&Point::<3>::from(*x)).gap - exact.gap(&Point::<3>::from(*x)).gap).abs();
+            let worst =
+                |x: &[f64; 3]| (body.gap(&Point::<3>::from(*x)).gap - exact.gap(&Point::<3>::from(*x)).gap).abs();
             testing::PLACES.iter().map(worst).fold(0.0, f64::max)
         });
         assert!(errors[1] < 1e-5 && errors[0] / errors[1] > 10.0, "{errors:?}");

@@ -12,9 +12,6 @@ pub struct Opening {
     pub turn: WindingPoint,
 }
 
-/// Steps of the yarn between points are of no interest here.
-const ONE_PIECE: f64 = 1.0;
-
 /// The constant slippage within a range with which the middle of a yarn turns at a distance `radius` from the axis: for an
 /// opening up to the edge of a band add half its width. The radius grows with `λ`; a yarn that passes the pole or does not
 /// turn within `longest` has none.
@@ -29,7 +26,7 @@ pub fn slippage_for_opening(
     longest: f64,
 ) -> Result<Opening, PathError> {
     let turn = |lambda: f64| {
-        let path = wind(mandrel, start, &Slippage::Constant(lambda), Until::Turn, longest, ONE_PIECE * longest)?;
+        let path = wind(mandrel, start, &Slippage::Constant(lambda), Until::Turn, longest, longest)?;
         Ok((path.ended == Ended::AsAsked).then(|| *path.end()))
     };
     // Too close to the pole the integration stalls.
@@ -40,7 +37,8 @@ pub fn slippage_for_opening(
     };
     let found = [reached(range[0])?, reached(range[1])?];
     let wanted = format!("a turn at the radius {radius}");
-    if !((found[0] - radius) * (found[1] - radius) <= 0.0) {
+    let between = (found[0] - radius) * (found[1] - radius) <= 0.0;
+    if !between {
         return Err(PathError::NoSlippage { wanted, range, found });
     }
     let slippage = crate::root::bracketed(|l| reached(l).unwrap_or(f64::NAN) - radius, range);

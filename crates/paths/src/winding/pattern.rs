@@ -101,7 +101,8 @@ pub fn coverage(band: f64, winding_angle: f64, radius: f64, angle: f64, circuits
     let mut places: Vec<f64> = (0..circuits).map(|i| (f64::from(i) * angle).rem_euclid(TAU)).collect();
     places.sort_by(f64::total_cmp);
     let count = places.len();
-    let spaces = (0..count).map(|i| if i + 1 < count { places[i + 1] - places[i] } else { places[0] + TAU - places[i] });
+    let spaces =
+        (0..count).map(|i| if i + 1 < count { places[i + 1] - places[i] } else { places[0] + TAU - places[i] });
     let gaps: Vec<f64> = spaces.map(|space| space - width).collect();
     let open: f64 = gaps.iter().filter(|g| **g > 0.0).sum();
     Ok(Coverage {

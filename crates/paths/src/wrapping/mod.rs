@@ -128,8 +128,7 @@ fn settle(
         if !topology::is_path(leg, &chain) {
             return Err(failed(history, changes));
         }
-        let next =
-            topology::open_bridge(leg, bodies, &chain).or_else(|| topology::touchdown(leg, bodies, &chain));
+        let next = topology::open_bridge(leg, bodies, &chain).or_else(|| topology::touchdown(leg, bodies, &chain));
         match next {
             Some(next) => touches = next,
             None => return Ok((chain, iterations)),
@@ -148,7 +147,13 @@ fn first(leg: &Leg, bodies: &[Body<'_>], work: &mut Workspace) -> Result<(Chain,
     };
     // Both are local minima: the shorter one is the answer.
     let (chain, mut iterations) = match (straight, banded) {
-        (Ok(a), Ok(b)) => if length(&a.0) < length(&b.0) * (1.0 - 1e-12) { a } else { b },
+        (Ok(a), Ok(b)) => {
+            if length(&a.0) < length(&b.0) * (1.0 - 1e-12) {
+                a
+            } else {
+                b
+            }
+        }
         (Ok(one), Err(_)) | (Err(_), Ok(one)) => one,
         (Err(_), Err(error)) => return Err(error),
     };

@@ -239,7 +239,8 @@ mod tests {
     fn the_jacobian_is_the_derivative_of_the_residual() {
         let one = Ellipsoid::new(Point::<3>::zeros(), [2.0, 1.5, 1.0]).unwrap();
         let two = Torus { center: Point::<3>::zeros(), axis: Vector::<3>::z(), major: 2.0, minor: 0.7 };
-        let shift = RigidMotion::new(Vector::<3>::new(0.2, 0.4, 0.1), Point::<3>::zeros(), Vector::<3>::new(6.0, 1.0, 0.3));
+        let shift =
+            RigidMotion::new(Vector::<3>::new(0.2, 0.4, 0.1), Point::<3>::zeros(), Vector::<3>::new(6.0, 1.0, 0.3));
         let bodies = [Body::fixed(&one), Body { shape: &two, motion: shift }];
         let around = |body| Station::Around { body, turns: 0 };
         let route = Route {

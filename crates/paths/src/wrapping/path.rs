@@ -99,7 +99,13 @@ impl WrappedPath {
             fixed: Vec::with_capacity(legs.len() + 1),
         };
         let none = Vector::<3>::zeros();
-        let fixed = |station: Option<usize>, anchor: Anchor, x: Point<3>| Fixed { station, anchor, x, before: none, after: none };
+        let fixed = |station: Option<usize>, anchor: Anchor, x: Point<3>| Fixed {
+            station,
+            anchor,
+            x,
+            before: none,
+            after: none,
+        };
         path.fixed.push(fixed(None, route.start, legs[0].0.from.1));
         let mut vias = route.stations.iter().enumerate().filter_map(|(k, s)| match s {
             Station::Via(anchor) => Some((k, *anchor)),
@@ -125,7 +131,7 @@ impl WrappedPath {
                     tau_q: shot.q.tau,
                     length: touch.length,
                     s: path.length,
-                    minimal: if shot.r[0] >= 0.0 { Minimal::Locally } else { Minimal::BeyondConjugatePoint },
+                    minimal: if shot.is_minimal { Minimal::Locally } else { Minimal::BeyondConjugatePoint },
                     x: touch.x,
                     tau: touch.tau,
                 });
@@ -201,7 +207,11 @@ impl WrappedPath {
             }
             while let Some(contact) = contacts.next_if(|c| c.station < until) {
                 let frames = contact.frames(bodies, pieces)?;
-                out.extend(frames.into_iter().map(|(body, frame)| PathPoint { s: frame.s, x: frame.x, contact: Some((body, frame)) }));
+                out.extend(frames.into_iter().map(|(body, frame)| PathPoint {
+                    s: frame.s,
+                    x: frame.x,
+                    contact: Some((body, frame)),
+                }));
                 s = contact.s + contact.length;
             }
         }

@@ -9,10 +9,12 @@ use super::route::{Body, Leg};
 use super::touch::Touch;
 use signorini_geometry::{Point, Vector};
 
-/// Springs per leg.
-const SPRINGS: usize = 48;
+/// Springs per body and for the ends, so that some lie on each body of a chain.
+const SPRINGS: usize = 24;
 /// Sweeps per spring: over-relaxation converges in a number of sweeps that is proportional to that of nodes.
 const SWEEPS: usize = 6;
+/// Motion of a sweep, relative to a spring, with which the band is close enough for Newton.
+const AT_REST: f64 = 1e-4;
 /// Sideways bow of the first band, relative to its length: a line through the middle of a body has no side to go to.
 const BOW: f64 = 1e-3;
 
@@ -23,17 +25,18 @@ pub(crate) fn band(leg: &Leg, bodies: &[Body<'_>]) -> Vec<Touch> {
     let mut across = Vector::<3>::zeros();
     across[way.iamin()] = 1.0;
     let bow = across.cross(&way) * BOW;
-    let mut nodes: Vec<Point<3>> = (0..=SPRINGS)
+    let springs = SPRINGS * (leg.around.len() + 1);
+    let mut nodes: Vec<Point<3>> = (0..=springs)
         .map(|k| {
-            let t = k as f64 / SPRINGS as f64;
+            let t = k as f64 / springs as f64;
             from + way * t + bow * (std::f64::consts::PI * t).sin()
         })
         .collect();
-    let mut on: Vec<Option<usize>> = vec![None; SPRINGS + 1];
-    let relaxation = 2.0 / (1.0 + (std::f64::consts::PI / SPRINGS as f64).sin());
-    for _ in 0..SWEEPS * SPRINGS {
+    let mut on: Vec<Option<usize>> = vec![None; springs + 1];
+    let relaxation = 2.0 / (1.0 + (std::f64::consts::PI / springs as f64).sin());
+    for _ in 0..SWEEPS * springs {
         let mut moved = 0.0f64;
-        for k in 1..SPRINGS {
+        for k in 1..springs {
             let middle = (nodes[k - 1] + nodes[k + 1]) * 0.5;
             let mut x = nodes[k] + (middle - nodes[k]) * relaxation;
             on[k] = None;
@@ -46,7 +49,7 @@ pub(crate) fn band(leg: &Leg, bodies: &[Body<'_>]) -> Vec<Touch> {
             moved = moved.max((x - nodes[k]).norm());
             nodes[k] = x;
         }
-        if moved < 1e-7 * way.norm() {
+        if moved < AT_REST * way.norm() / springs as f64 {
             break;
         }
     }
@@ -84,7 +87,7 @@ fn touches(leg: &Leg, bodies: &[Body<'_>], nodes: &[Point<3>], on: &[Option<usiz
     in_order(&runs)
         .into_iter()
         .filter_map(|(order, first, last)| {
-            let line = Line { from: nodes[first - 1], to: nodes[(last + 1).min(SPRINGS)] };
+            let line = Line { from: nodes[first - 1], to: nodes[last + 1] };
             let start = nodes[first];
             let direction = if first == last { line.to - line.from } else { nodes[first + 1] - nodes[first] };
             let length: f64 = (first..last).map(|k| (nodes[k + 1] - nodes[k]).norm()).sum();

@@ -81,8 +81,7 @@ impl WrappedPath {
     /// Coefficients out of range.
     pub fn tensions(&self, bodies: &[Body<'_>], friction: &Friction) -> Result<PathTensions, PathError> {
         friction.check()?;
-        let contacts =
-            self.contacts.iter().map(|c| contact(c, bodies, friction)).collect::<Result<Vec<_>, _>>()?;
+        let contacts = self.contacts.iter().map(|c| contact(c, bodies, friction)).collect::<Result<Vec<_>, _>>()?;
         let log_ratio = [0, 1].map(|side| contacts.iter().map(|c| c.0[side]).sum());
         Ok(PathTensions { log_ratio, contacts })
     }

@@ -44,7 +44,11 @@ pub(crate) fn deepest(body: &Body<'_>, line: &Line) -> Option<Deepest> {
         for _ in 0..30 {
             let level = body.shape.level(&(from + way * t));
             let slope = level.gradient.dot(&way);
-            if slope > 0.0 { high = t } else { low = t }
+            if slope > 0.0 {
+                high = t
+            } else {
+                low = t
+            }
             let bend = way.dot(&(level.hessian * way));
             let newton = t - slope / bend;
             let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
@@ -116,7 +120,8 @@ fn pinned_start(leg: &Leg, bodies: &[Body<'_>], k: usize, count: usize, touch: T
 
 /// The touches without the one of most negative length.
 pub(crate) fn lift_off(chain: &Chain) -> Option<Vec<Touch>> {
-    let shortest = (0..chain.touches.len()).min_by(|&i, &j| chain.touches[i].length.total_cmp(&chain.touches[j].length))?;
+    let shortest =
+        (0..chain.touches.len()).min_by(|&i, &j| chain.touches[i].length.total_cmp(&chain.touches[j].length))?;
     (chain.touches[shortest].length < 0.0).then(|| {
         let mut touches = chain.touches.clone();
         touches.remove(shortest);

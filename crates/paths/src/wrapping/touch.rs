@@ -89,17 +89,33 @@ pub(crate) struct Shot {
     pub r: [f64; 2],
     /// The largest normal curvature on the way.
     pub largest: f64,
+    /// Whether no conjugate point lies on the way.
+    pub is_minimal: bool,
 }
 
 impl Touch {
     pub fn shoot(&self, body: &Body<'_>) -> Result<Shot, PathError> {
-        let (end, largest) = shoot(body.shape, &self.x, &self.tau, self.length)?;
+        let shot = shoot(body.shape, &self.x, &self.tau, self.length)?;
+        let end = shot.end;
         let p = End::new(body, &self.x, &self.tau);
-        Ok(Shot { p, q: End::new(body, &end.x, &end.tau), a: end.a, r: end.r, largest })
+        Ok(Shot {
+            p,
+            q: End::new(body, &end.x, &end.tau),
+            a: end.a,
+            r: end.r,
+            largest: shot.largest,
+            is_minimal: shot.is_minimal,
+        })
     }
 
     /// From a point near the body and a direction, both of space.
-    pub fn near(order: usize, body: &Body<'_>, x: &Point<3>, direction: &Vector<3>, length: f64) -> Result<Self, PathError> {
+    pub fn near(
+        order: usize,
+        body: &Body<'_>,
+        x: &Point<3>,
+        direction: &Vector<3>,
+        length: f64,
+    ) -> Result<Self, PathError> {
         let (x, level) = foot(body.shape, &body.inside(x))?;
         let tau = tangent(&level, &x, &body.inside_vector(direction))?;
         Ok(Touch { order, x, tau, length })

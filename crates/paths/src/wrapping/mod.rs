@@ -1,9 +1,9 @@
 //! Shortest paths over rigid bodies: ropes without friction, tendons, belts.
 //!
 //! Between two fixed points a shortest path is a chain of straight lines and geodesics that join along their tangents. It is
-//! found by Newton with the exact Jacobian of natural geodesic variations ([`newton`]); bodies come and go by themselves
-//! ([`topology`]); a path found before is the start of the next one, which keeps its side of every body; without one an
-//! elastic band finds the bodies that are in the way ([`start`]). (Scholz, Sherman, Stavness, Delp & Kecskeméthy, A fast
+//! found by Newton with the exact Jacobian of natural geodesic variations (`newton`); bodies come and go by themselves
+//! (`topology`); a path found before is the start of the next one, which keeps its side of every body; without one an
+//! elastic band finds the bodies that are in the way (`start`). (Scholz, Sherman, Stavness, Delp & Kecskeméthy, A fast
 //! multi-obstacle muscle wrapping method using natural geodesic variations, Multibody System Dynamics 36, 2016.)
 
 mod newton;
@@ -49,6 +49,18 @@ impl Wrapping {
     /// Moves the end of the path.
     pub fn set_end(&mut self, end: Anchor) {
         self.route.end = end;
+    }
+
+    /// Another route; where it goes around the same bodies in the same parts the path found before is kept as a start.
+    pub fn set_route(&mut self, route: Route) {
+        let kinds = |r: &Route| -> Vec<Option<usize>> {
+            let kind = |s: &Station| if let Station::Around { body, .. } = s { Some(*body) } else { None };
+            r.stations.iter().map(kind).collect()
+        };
+        if kinds(&route) != kinds(&self.route) {
+            self.known = None;
+        }
+        self.route = route;
     }
 
     /// Forgets the path found before: the next search looks at all of space.

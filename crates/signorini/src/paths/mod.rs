@@ -1,0 +1,142 @@
+//! Paths on rigid bodies: shortest paths over bodies that move (`analysis = "wrapping"`), and paths of yarns on mandrels
+//! (`analysis = "winding"`). No equations of bodies are solved.
+//!
+//! The bodies are stated as in every case; numbers of paths are in the base units.
+
+mod output;
+mod picture;
+mod statement;
+mod winding;
+mod wrapping;
+
+use crate::expression::{Expression, Names, Scope, parse};
+use crate::output::{Folder, OutputError};
+use crate::plan::{RigidBody, rigid_bodies};
+use crate::problem::{CaseError, KeyPath, Problem, Space, suggestion};
+use crate::run::Progress;
+use crate::scene::SceneError;
+use serde_json::Value;
+use signorini_geometry::{Aabb, Point, Vector};
+use signorini_paths::PathError;
+use statement::{Analysis, Number, Statement};
+use std::path::Path;
+
+/// A case of paths that was read.
+pub struct PathCase {
+    problem: Problem,
+    statement: Statement,
+    bodies: Vec<RigidBody>,
+    text: String,
+}
+
+/// Whether a file is about paths rather than mechanics.
+pub fn is_path_case(text: &str) -> bool {
+    toml::from_str::<toml::Table>(text)
+        .is_ok_and(|t| t.get("analysis").and_then(|a| a.as_str()).is_some_and(|a| a == "wrapping" || a == "winding"))
+}
+
+impl PathCase {
+    /// Reads a case; files that its bodies name are looked for beside the file `name`. `overrides` are `KEY=VALUE` pairs.
+    ///
+    /// # Errors
+    /// What is wrong with it, and where.
+    pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Self, CaseError> {
+        let (text, origins) = crate::case::override_key::apply(name, text, overrides)?;
+        let statement: Statement = toml::from_str(&text)
+            .map_err(|e| origins.relocated(crate::case::toml_error::from_toml(name, &text, &e)))?;
+        let mut problem = Problem::new(Space::ThreeD);
+        problem.title.clone_from(&statement.title);
+        problem.units.clone_from(&statement.units);
+        problem.constants = statement.constants.clone();
+        problem.functions = statement.functions.clone();
+        problem.bodies = statement.bodies.clone();
+        problem.source = crate::case::source(name, text.clone(), origins);
+        let bodies = rigid_bodies(&problem, &statement.around())?;
+        let case = PathCase { problem, statement, bodies, text };
+        case.check()?;
+        Ok(case)
+    }
+
+    /// Its title, or the name of its file.
+    pub fn name(&self) -> &str {
+        self.problem.name()
+    }
+
+    /// How many paths it states.
+    pub fn paths(&self) -> usize {
+        self.statement.paths.len() + self.statement.winding.len()
+    }
+
+    fn check(&self) -> Result<(), CaseError> {
+        let (wanted, other, key) = match self.statement.analysis {
+            Analysis::Wrapping => (self.statement.paths.len(), self.statement.winding.len(), "paths"),
+            Analysis::Winding => (self.statement.winding.len(), self.statement.paths.len(), "winding"),
+        };
+        if wanted == 0 || other > 0 {
+            let message = format!("this analysis needs tables `[{key}.NAME]` and no other paths");
+            return Err(self.error(&["analysis"], message));
+        }
+        match self.statement.analysis {
+            Analysis::Wrapping => self.check_wrapping(),
+            Analysis::Winding => self.check_winding(),
+        }
+    }
+
+    fn error(&self, key: &[&str], message: impl Into<String>) -> CaseError {
+        self.problem.error(&KeyPath::of_keys(key), message)
+    }
+
+    /// The number of a body.
+    fn body(&self, key: &[&str], name: &str) -> Result<usize, CaseError> {
+        self.bodies.iter().position(|b| b.name == name).ok_or_else(|| {
+            let known: Vec<&str> = self.bodies.iter().map(|b| b.name.as_str()).collect();
+            self.error(key, format!("there is no body `{name}`")).help(suggestion(name, &known))
+        })
+    }
+
+    /// A number, or an expression of time.
+    fn expression(&self, key: &[&str], value: &Number, variables: &[&'static str]) -> Result<Expression, CaseError> {
+        match value {
+            Number::Plain(v) => Ok(Expression::number(*v)),
+            Number::Text(text) => {
+                let names = Names { variables: variables.to_vec(), ..Names::default() };
+                parse(text, &names).map_err(|e| self.error(key, format!("`{text}`: {}", e.message)))
+            }
+        }
+    }
+
+    /// An error of a path at its table.
+    fn failed(&self, table: &str, name: &str, error: &PathError) -> CaseError {
+        self.error(&[table, name], format!("the path `{name}`: {error}"))
+    }
+}
+
+/// A value of an expression at a time.
+fn at_time(expression: &Expression, time: f64) -> f64 {
+    expression.evaluate(&Scope { position: [f64::NAN; 3], time })
+}
+
+/// Runs a case into a folder and returns its summary.
+///
+/// # Errors
+/// A path that is not found, a motion that is not finite, files that cannot be written.
+pub fn run(case: &PathCase, folder: &Path, progress: &mut dyn Progress) -> Result<Value, SceneError> {
+    let folder = Folder::create(folder)?;
+    folder.write("case.toml", case.text.as_bytes())?;
+    let summary = match case.statement.analysis {
+        Analysis::Wrapping => wrapping::run(case, &folder, progress)?,
+        Analysis::Winding => winding::run(case, &folder, progress)?,
+    };
+    folder.write("summary.json", format!("{summary:#}\n").as_bytes())?;
+    Ok(summary)
+}
+
+/// The box of points, and beyond it by a part of its size.
+fn box_around(points: impl Iterator<Item = Point<3>>, part: f64) -> Aabb<3> {
+    let (mut low, mut high) = (Vector::<3>::repeat(f64::INFINITY), Vector::<3>::repeat(f64::NEG_INFINITY));
+    for x in points {
+        (low, high) = (low.inf(&x), high.sup(&x));
+    }
+    let pad = Vector::<3>::repeat(part * (high - low).max().max(f64::MIN_POSITIVE));
+    Aabb::new(low - pad, high + pad)
+}

@@ -10,7 +10,7 @@ mod winding;
 mod wrapping;
 
 use crate::expression::{Expression, Names, Scope, parse};
-use crate::output::{Folder, OutputError};
+use crate::output::Folder;
 use crate::plan::{RigidBody, rigid_bodies};
 use crate::problem::{CaseError, KeyPath, Problem, Space, suggestion};
 use crate::run::Progress;
@@ -129,6 +129,58 @@ pub fn run(case: &PathCase, folder: &Path, progress: &mut dyn Progress) -> Resul
     };
     folder.write("summary.json", format!("{summary:#}\n").as_bytes())?;
     Ok(summary)
+}
+
+/// What a summary says, in sentences.
+pub fn sentences(summary: &Value) -> Vec<String> {
+    let mut out = Vec::new();
+    let number = |v: &Value| v.as_f64().map_or("-".to_string(), |v| format!("{v:.6}"));
+    for path in summary["paths"].as_array().into_iter().flatten() {
+        let name = path["name"].as_str().unwrap_or_default();
+        let frames = path["frames"].as_array().map_or(&[][..], Vec::as_slice);
+        if let (Some(first), Some(last)) = (frames.first(), frames.last()) {
+            let touched = last["contacts"].as_array().map_or(0, Vec::len);
+            out.push(format!(
+                "{name}: length {} at t = 0, {} at the end, where it touches {touched} times",
+                number(&first["length"]),
+                number(&last["length"])
+            ));
+            if let Some(limits) = last["tension_limits"].as_array() {
+                let [low, high] = [0, 1].map(|k| limits.get(k).map_or("-".into(), number));
+                out.push(format!("  friction holds tensions from {low} to {high} at its end"));
+            }
+            if last["slips"] == true {
+                out.push(format!("  it slips: {} of the friction is used", number(&last["utilisation"])));
+            }
+        }
+        for event in path["events"].as_array().into_iter().flatten() {
+            let text = |key: &str| event[key].as_str().unwrap_or_default().replace('_', " ");
+            out.push(format!("  {} of `{}` at t = {}", text("kind"), text("body"), number(&event["time"])));
+        }
+    }
+    for path in summary["winding"].as_array().into_iter().flatten() {
+        let name = path["name"].as_str().unwrap_or_default();
+        out.push(format!(
+            "{name}: length {}, largest slippage {}",
+            number(&path["length"]),
+            number(&path["largest_slippage"])
+        ));
+        if let Some(pattern) = path["pattern"].as_object() {
+            out.push(format!(
+                "  pattern of {} circuits, {} places on after each, dwell {} rad; {} covered",
+                pattern["n"],
+                pattern["k"],
+                number(&pattern["dwell"]),
+                number(&path["coverage"]["covered"])
+            ));
+        }
+        for key in ["bridges", "slips"] {
+            for part in path[key].as_array().into_iter().flatten() {
+                out.push(format!("  it {key} from s = {} to {}", number(&part[0]), number(&part[1])));
+            }
+        }
+    }
+    out
 }
 
 /// The box of points, and beyond it by a part of its size.

@@ -5,6 +5,7 @@
 //! a rope presses on a convex body.
 //!
 //! - [`darboux`]: frames and curvatures of a given curve.
+//! - [`smooth_mesh`]: triangle meshes as smooth surfaces.
 //! - [`theorem`]: whether a rope holds on a given curve with orthotropic friction, and between which tensions.
 //! - [`friction`]: orthotropic friction of a rope, its axes carried along or those of the surface.
 //! - [`partial_slip`]: how far a rope slips when its end is loaded and unloaded.
@@ -22,6 +23,7 @@ mod ode;
 pub mod partial_slip;
 mod quadrature;
 mod root;
+pub mod smooth_mesh;
 pub mod surface;
 pub mod theorem;
 pub mod winding;

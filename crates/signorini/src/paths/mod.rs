@@ -192,3 +192,73 @@ fn box_around(points: impl Iterator<Item = Point<3>>, part: f64) -> Aabb<3> {
     let pad = Vector::<3>::repeat(part * (high - low).max().max(f64::MIN_POSITIVE));
     Aabb::new(low - pad, high + pad)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::Silent;
+
+    const WRAPPING: &str = "analysis = \"wrapping\"\nframes = 2\n\
+        [bodies.egg.rigid]\nshape.ellipsoid = { center = [0, 0, 0], semi_axes = [2, 1.5, 1] }\n\
+        [paths.tendon]\nfrom = [-3, \"0.5 + 4*t\", 0.3]\nto = [2.2, 1.6, -0.9]\naround = [\"egg\"]\n\
+        friction.coulomb = { mu = 0.3 }\ntension = 2.0\nend_tension = \"2 + t\"\n";
+
+    const WINDING: &str = "analysis = \"winding\"\n\
+        [bodies.dome.rigid]\nshape.ellipsoid = { center = [0, 0, 0], semi_axes = [50, 50, 30] }\n\
+        [winding.yarn]\non = \"dome\"\nstart = { z = 0.0, angle = \"25 deg\" }\nfriction = 0.2\n\
+        polar_opening = { radius = 25.7059722868 }\n";
+
+    fn summary(text: &str) -> (tempfile::TempDir, Value) {
+        let folder = tempfile::tempdir().unwrap();
+        let case = PathCase::parse("case.toml", text, &[]).unwrap();
+        let summary = run(&case, &folder.path().join("out"), &mut Silent).unwrap();
+        (folder, summary)
+    }
+
+    #[test]
+    fn a_shortest_path_from_a_case_file() {
+        let (folder, summary) = summary(WRAPPING);
+        let frames = &summary["paths"][0]["frames"];
+        assert!((frames[0]["length"].as_f64().unwrap() - 5.488_014_095_081).abs() < 1e-10, "{frames}");
+        assert_eq!(frames[1]["contacts"].as_array().unwrap().len(), 0);
+        assert_eq!(summary["paths"][0]["events"][0]["kind"], "lift_off");
+        let limit = frames[0]["tension_limits"][1].as_f64().unwrap();
+        assert!((limit - 2.0 * frames[0]["log_ratio"][1].as_f64().unwrap().exp()).abs() < 1e-12);
+        let out = folder.path().join("out");
+        for file in
+            ["tendon.csv", "tendon.pvd", "bodies.pvd", "pictures/paths.png", "summary.json", "frames/tendon_0001.vtp"]
+        {
+            assert!(out.join(file).exists(), "{file}");
+        }
+        assert!(sentences(&summary).len() > 2);
+    }
+
+    #[test]
+    fn a_yarn_from_a_case_file() {
+        let (folder, summary) = summary(WINDING);
+        let yarn = &summary["winding"][0];
+        assert!((yarn["slippage_sought"].as_f64().unwrap() - 0.1).abs() < 1e-8, "{yarn}");
+        assert!((yarn["length"].as_f64().unwrap() - 58.410_219_3).abs() < 1e-6 && yarn["stable"] == true, "{yarn}");
+        assert!(folder.path().join("out/yarn.csv").exists());
+        let varied =
+            WINDING.replace("polar_opening = { radius = 25.7059722868 }", "slippage = \"0.001*s\"\nlength = 10");
+        let case = PathCase::parse("case.toml", &varied, &[]).unwrap();
+        let slippage = case.slippage("yarn", &case.statement.winding["yarn"]).unwrap().unwrap();
+        let signorini_paths::winding::Slippage::Variable(f) = slippage else { panic!() };
+        let at = signorini_paths::winding::At { s: 20.0, angle: 0.3, radius: 1.0, height: 2.0 };
+        assert!((f(&at) - 0.02).abs() < 1e-15);
+    }
+
+    #[test]
+    fn refused_cases_say_where() {
+        let wrong = |text: &str, part: &str, line: usize| {
+            let Err(error) = PathCase::parse("case.toml", text, &[]) else { panic!("{part} is not refused") };
+            assert!(error.to_string().contains(part) && error.place.is_some(), "{error:?}");
+            assert_eq!(error.line_and_column().0, line, "{error:?}");
+        };
+        wrong(&WRAPPING.replace("[\"egg\"]", "[\"eg\"]"), "there is no body `eg`", 8);
+        wrong(&WRAPPING.replace("frames = 2", "frames = 0"), "`frames` is 0", 2);
+        wrong(&WRAPPING.replace("mu = 0.3", "mu = -0.3"), "coefficient of friction", 9);
+        wrong(&WINDING.replace("25 deg", "wide deg"), "is not a number of degrees", 6);
+    }
+}

@@ -14,6 +14,7 @@ use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::{ClosestPoints, GapJet, Normals, RigidShape};
 use signorini_geometry::shape::{Shape as Geometry, ShapeError};
 use signorini_geometry::{Aabb, Jet, Point, Real, Vector};
+use signorini_paths::smooth_mesh::SmoothMesh;
 use std::sync::Arc;
 
 /// A rigid body and how it moves.
@@ -114,7 +115,18 @@ pub fn rigid_bodies(problem: &Problem, around: &Aabb<3>) -> Result<Vec<RigidBody
             let key = KeyPath::of_keys(&["bodies", name, "rigid", "side"]);
             return Err(problem.error(&key, "paths run outside of bodies"));
         }
-        out.push(read::<3>(&planner, name, rigid, around)?);
+        let mut body = read::<3>(&planner, name, rigid, around)?;
+        // Triangles have no curvature; the surface through their vertices has.
+        let mesh = match &rigid.shape {
+            Shape::Stl(key) => Some(planner.closed_mesh(key)?),
+            Shape::Triangles(key) => Some(planner.surface_of_arrays(key)?),
+            _ => None,
+        };
+        if let Some(mesh) = mesh {
+            let smooth = SmoothMesh::new(&mesh).map_err(|e| problem.error(&rigid.shape, e.to_string()))?;
+            body.shape = Arc::new(smooth);
+        }
+        out.push(body);
     }
     Ok(out)
 }

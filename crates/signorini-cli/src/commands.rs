@@ -9,6 +9,7 @@ use signorini::gallery::{all, find};
 use signorini::output::chart::save_as;
 use signorini::output::figure::{figures, told};
 use signorini::output::{Earlier, OutputError};
+use signorini::paths::{self, PathCase};
 use signorini::plan::plan;
 use signorini::problem::CaseError;
 use signorini::queries::{Query, answer_file, answer_points};
@@ -113,6 +114,21 @@ pub fn gallery(json: bool) -> u8 {
 
 pub fn check(case: &Path, set: &[String], picture: Option<&Path>, json: bool) -> u8 {
     if let Ok((name, text)) = read(case)
+        && paths::is_path_case(&text)
+    {
+        return match PathCase::parse(&name, &text, set) {
+            Err(error) => report(&error, json),
+            Ok(case) => {
+                if json {
+                    say!("{}", json!({"paths": case.paths()}))
+                } else {
+                    say!("{name}: the case is right: {} paths.", case.paths())
+                }
+                DONE
+            }
+        };
+    }
+    if let Ok((name, text)) = read(case)
         && scene::is_scene(&text)
     {
         return match read_scene(&name, &text, set) {
@@ -204,6 +220,34 @@ fn read_scene(name: &str, text: &str, set: &[String]) -> Result<Scene, CaseError
     let (text, origins) = override_key::apply(name, text, set)?;
     let folder = Path::new(name).parent().unwrap_or(Path::new(""));
     Scene::parse(name, &text, folder).map_err(|error| origins.relocated(error))
+}
+
+fn execute_paths(name: &str, text: &str, folder: &Path, set: &[String], json: bool) -> u8 {
+    let case = match PathCase::parse(name, text, set) {
+        Ok(case) => case,
+        Err(error) => return report(&error, json),
+    };
+    let mut bar = Bar::new(json);
+    let result = paths::run(&case, folder, &mut bar);
+    bar.finish();
+    match result {
+        Err(SceneError::Case(error)) => report(&error, json),
+        Err(SceneError::Output(error)) => report(&output_error(&error), json),
+        Ok(summary) if json => {
+            say!("{summary}");
+            DONE
+        }
+        Ok(summary) => {
+            for line in paths::sentences(&summary) {
+                say!("{line}");
+            }
+            say!(
+                "\nResults in {}: open pictures/paths.png, bodies.pvd and the paths in ParaView; numbers in summary.json and a CSV per path.",
+                folder.display()
+            );
+            DONE
+        }
+    }
 }
 
 fn execute_scene(name: &str, text: &str, folder: &Path, set: &[String], json: bool) -> u8 {
@@ -303,6 +347,13 @@ pub fn closest(queries: &Path, to: Option<&Path>, output: &Path, local_minima: b
 }
 
 fn execute(name: &str, text: &str, folder: &Path, set: &[String], resumed: bool, json: bool) -> u8 {
+    if paths::is_path_case(text) {
+        if resumed {
+            let error = CaseError::new("paths cannot be resumed").help("run them from the beginning, without --resume");
+            return report(&error, json);
+        }
+        return execute_paths(name, text, folder, set, json);
+    }
     if scene::is_scene(text) {
         if resumed {
             let error = CaseError::new("a scene cannot be resumed").help("run it from the beginning, without --resume");

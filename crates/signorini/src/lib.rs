@@ -10,6 +10,7 @@ pub mod height_map;
 pub mod mesh_file;
 mod npy;
 pub mod output;
+pub mod paths;
 pub mod plan;
 pub mod problem;
 pub mod queries;

@@ -41,6 +41,7 @@ pub use domain::{Pieces, memory_at_hand, memory_estimate, mesh_multigrid_estimat
 pub use head::Head;
 pub use history::{Control, PlannedIncrement};
 use pieces::UNITE;
+pub use rigid::{RigidBody, rigid_bodies};
 pub use surface::Contact;
 
 /// A problem that is ready to be solved.

@@ -1,10 +1,10 @@
 //! An ellipsoid along the axes.
 
 use super::height::{circle, rising, squared_distance};
-use super::{ClosestPoints, GapJet, NoHeight, Normals, RigidShape};
+use super::{ClosestPoints, GapJet, NoHeight, Normals, RigidShape, curvature};
 use crate::height_field::{HeightField, View};
 use crate::shape::{Axes, ShapeError, Surface};
-use crate::{Jet, Point, Real};
+use crate::{Jet, Matrix, Point, Real, Vector};
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
 
@@ -31,6 +31,16 @@ impl RigidShape for Ellipsoid {
         self.surface.gap(x)
     }
 
+    /// `|x / a| - 1`, of degree one in the distance from the centre.
+    fn level(&self, x: &Point<3>) -> Jet<3> {
+        let inverse = Vector::<3>::from(self.semi_axes.map(f64::recip));
+        let scaled = (x - self.center).component_mul(&inverse);
+        let norm = scaled.norm();
+        let way = scaled.try_normalize(0.0).unwrap_or_else(Vector::<3>::z).component_mul(&inverse);
+        let squares = Matrix::<3>::from_diagonal(&inverse.component_mul(&inverse));
+        Jet { value: norm - 1.0, gradient: way, hessian: (squares - way * way.transpose()) * curvature(norm) }
+    }
+
     fn centre(&self) -> Point<3> {
         self.center
     }
@@ -46,7 +56,6 @@ impl RigidShape for Ellipsoid {
 mod tests {
     use super::super::testing;
     use super::*;
-    use crate::Vector;
 
     #[test]
     fn the_gap_of_an_ellipsoid() {
@@ -55,6 +64,8 @@ mod tests {
         let ways = [[1.0, 0.0, 0.0], [0.48, -0.6, 0.64], [0.0, 0.0, -1.0]].map(Vector::<3>::from);
         let on_it = ways.map(|w| center + w.component_mul(&Vector::<3>::new(0.6, 0.4, 0.3)));
         testing::check(&ellipsoid, &on_it);
+        // The pole of the coordinates of the surface has no Hessian.
+        testing::check_level(&ellipsoid, &on_it[..2]);
         testing::check_height(&ellipsoid, View::FromAbove);
         testing::check_height(&ellipsoid, View::FromBelow);
         // Along its axes it may only be shifted, not turned.

@@ -1,13 +1,22 @@
 //! Bodies given by functions, through the exact closest point of their boundary.
 
 use super::{GapJet, RigidShape};
-use crate::Point;
-use crate::implicit_surface::ImplicitSurface;
+use crate::implicit_surface::{ImplicitBody, ImplicitSurface};
+use crate::{Jet, Point};
 
 impl RigidShape for ImplicitSurface {
     fn gap(&self, x: &Point<3>) -> GapJet<3> {
         let foot = self.closest(x);
         GapJet { gap: foot.gap, normal: foot.normal, hessian: foot.hessian }
+    }
+
+    /// The function itself where the body is one function.
+    fn level(&self, x: &Point<3>) -> Jet<3> {
+        if let ImplicitBody::Field(field) = self.body() {
+            return field.jet(x);
+        }
+        let GapJet { gap, normal, hessian } = self.gap(x);
+        Jet { value: gap, gradient: normal, hessian }
     }
 
     /// The origin: a function says no other.
@@ -20,8 +29,7 @@ impl RigidShape for ImplicitSurface {
 mod tests {
     use super::super::testing;
     use super::*;
-    use crate::implicit_surface::ImplicitBody;
-    use crate::jet::{Jet, Real};
+    use crate::jet::Real;
     use crate::{Aabb, Vector};
 
     #[test]
@@ -33,6 +41,8 @@ mod tests {
         };
         let bounds = Aabb::new(Point::<3>::repeat(-1.0), Point::<3>::repeat(1.0));
         let surface = ImplicitSurface::new(ImplicitBody::field(field), bounds, 40).unwrap();
-        testing::check(&surface, &[Vector::<3>::x() * 0.2f64.sqrt(), Vector::<3>::y() * 0.1f64.sqrt()]);
+        let on_it = [Vector::<3>::x() * 0.2f64.sqrt(), Vector::<3>::y() * 0.1f64.sqrt()];
+        testing::check(&surface, &on_it);
+        testing::check_level(&surface, &on_it);
     }
 }

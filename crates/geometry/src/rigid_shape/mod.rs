@@ -10,6 +10,7 @@
 //! | [`Cylinder`] about `k` | `ρ - R` | `tt / ρ`, `t = k × n` |
 //! | [`Cone`] of half angle `γ` about `k` | `ρ cos γ - z sin γ` | `tt cos γ / ρ`, `t = k × e_ρ` |
 //! | [`Torus`] about `k` | `d - r`, `d = \|x - R e_ρ\|` | `mm / d + tt (n·e_ρ) / ρ`, `m = t × n` |
+//! | [`Revolution`] of a profile about `k` | closest point of the profile | `mm S/(1 + g S) + tt (n·e_ρ) / ρ` |
 //! | [`Ellipsoid`], [`Paraboloid`], [`ClosestPoints`] | certified closest point | of the surface at that point |
 //! | [`ImplicitSurface`](crate::implicit_surface::ImplicitSurface) | Newton on the foot | `S (I + g S)⁻¹` |
 //!
@@ -25,6 +26,7 @@ mod height;
 mod implicit;
 mod paraboloid;
 mod plane;
+mod revolution;
 mod sphere;
 #[cfg(test)]
 mod testing;
@@ -38,17 +40,25 @@ pub use gap::GapJet;
 pub use height::NoHeight;
 pub use paraboloid::Paraboloid;
 pub use plane::Plane;
+pub use revolution::{Profile, ProfileJet, Revolution};
 pub use sphere::Sphere;
 pub use torus::Torus;
 
 use crate::height_field::{HeightField, View};
-use crate::{Point, Vector};
+use crate::{Jet, Point, Vector};
 use std::sync::Arc;
 
 /// A body that does not deform.
 pub trait RigidShape: Send + Sync {
     /// The gap of a point, negative inside, with its derivatives.
     fn gap(&self, x: &Point<3>) -> GapJet<3>;
+
+    /// A function that vanishes on the surface and is negative inside, with gradient and Hessian: the gap itself, or what
+    /// costs less. Near the surface `f / |∇f|` is the gap to second order.
+    fn level(&self, x: &Point<3>) -> Jet<3> {
+        let GapJet { gap, normal, hessian } = self.gap(x);
+        Jet { value: gap, gradient: normal, hessian }
+    }
 
     /// The point about which the body turns.
     fn centre(&self) -> Point<3>;

@@ -4,7 +4,7 @@ use super::height::{points_away, rising, squared_distance};
 use super::{ClosestPoints, GapJet, NoHeight, Normals, RigidShape, any_normal};
 use crate::height_field::{HeightField, View};
 use crate::shape::{Axes, ShapeError, Surface};
-use crate::{Jet, Point, Real, Vector};
+use crate::{Jet, Matrix, Point, Real, Vector};
 use std::sync::Arc;
 
 /// A paraboloid of revolution, as far as four radii from its axis.
@@ -41,6 +41,19 @@ impl RigidShape for Paraboloid {
         self.surface.gap(x)
     }
 
+    /// `ρ²/(2 R) - z`.
+    fn level(&self, x: &Point<3>) -> Jet<3> {
+        let d = x - self.apex;
+        let along = self.axis.dot(&d);
+        let across = d - self.axis * along;
+        let flat = Matrix::<3>::identity() - self.axis * self.axis.transpose();
+        Jet {
+            value: 0.5 * across.norm_squared() / self.radius - along,
+            gradient: across / self.radius - self.axis,
+            hessian: flat / self.radius,
+        }
+    }
+
     fn centre(&self) -> Point<3> {
         self.apex
     }
@@ -64,7 +77,9 @@ mod tests {
     fn the_gap_of_a_paraboloid() {
         let (apex, axis) = (Point::<3>::new(0.1, 0.2, -0.1), Vector::<3>::z());
         let paraboloid = Paraboloid::new(apex, axis, 1.0).unwrap();
-        testing::check(&paraboloid, &[apex, apex + Vector::<3>::new(0.6, 0.8, 0.5)]);
+        let on_it = [apex, apex + Vector::<3>::new(0.6, 0.8, 0.5)];
+        testing::check(&paraboloid, &on_it);
+        testing::check_level(&paraboloid, &on_it);
         testing::check_height(&paraboloid, View::FromBelow);
         assert_eq!(paraboloid.height(View::FromAbove, 0.0).unwrap_err(), NoHeight::AxisNotAway);
         testing::check_moved(&paraboloid, |m| Paraboloid::new(m.point(&apex), m.vector(&axis), 1.0).unwrap());

@@ -3,7 +3,7 @@
 use super::RigidShape;
 use crate::height_field::View;
 use crate::rigid::RigidMotion;
-use crate::{Point, Vector};
+use crate::{Matrix, Point, Vector};
 
 /// Places inside and outside of shapes of size one about the origin, away from where normals jump.
 pub const PLACES: [[f64; 3]; 5] =
@@ -17,6 +17,18 @@ pub fn check(shape: &dyn RigidShape, surface: &[Point<3>]) {
     }
     for x in PLACES {
         check_derivatives(shape, &x.into());
+    }
+}
+
+/// The level function vanishes on the surface; there its direction and its curvature are those of the gap.
+pub fn check_level(shape: &dyn RigidShape, surface: &[Point<3>]) {
+    for x in surface {
+        let (level, gap) = (shape.level(x), shape.gap(x));
+        let length = level.gradient.norm();
+        assert!(level.value.abs() < 1e-12 * length && (level.gradient / length - gap.normal).norm() < 1e-9, "at {x:?}");
+        let flat = Matrix::<3>::identity() - gap.normal * gap.normal.transpose();
+        let error = (flat * level.hessian * flat / length - gap.hessian).norm();
+        assert!(error < 1e-8 * (1.0 + gap.hessian.norm()), "at {x:?}: {level:?} and {gap:?}");
     }
 }
 

@@ -23,10 +23,15 @@ pub fn read(name: &str, text: &str, overrides: &[String]) -> Result<Problem, Cas
     let (text, origins) = override_key::apply(name, text, overrides)?;
     let wrong = |e| origins.relocated(toml_error::from_toml(name, &text, &e));
     let mut problem: Problem = toml::from_str(&text).map_err(wrong)?;
+    problem.source = source(name, text, origins);
+    Ok(problem)
+}
+
+/// The source of a problem that is part of a text, for the places of its errors.
+pub(crate) fn source(name: &str, text: String, origins: Origins) -> Source {
     let spans = Spans::of(&text);
     let text = CaseText { name: name.to_string(), text, origins, spans };
-    problem.source = Source { name: name.to_string(), text: Some(Arc::new(text)) };
-    Ok(problem)
+    Source { name: name.to_string(), text: Some(Arc::new(text)) }
 }
 
 /// The text of a problem: the one it was read from, or else one that states the same.

@@ -7,7 +7,7 @@ pub mod film;
 pub mod folder;
 mod history;
 mod labels;
-mod level;
+pub(crate) mod level;
 mod membrane_line;
 mod membrane_map;
 pub(crate) mod page;

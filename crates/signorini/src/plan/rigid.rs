@@ -5,8 +5,8 @@ use super::rigid_shape::{self, ShapeKeys};
 use super::{Placed, Planner};
 use crate::expression::Scope;
 use crate::problem::units::{Dimension, LENGTH, NONE};
-use crate::problem::{CaseError, List, Location, Problem, Value};
-use crate::problem::{Cylinder, Ellipsoid, Motion, Rigid, Shape, Side, Space};
+use crate::problem::{Body, Cylinder, Ellipsoid, Motion, Rigid, Shape, Side, Space};
+use crate::problem::{CaseError, KeyPath, List, Location, Problem, Value};
 use crate::queries::geometry;
 use signorini_geometry::height_field::{self, HeightField};
 use signorini_geometry::implicit_surface::{ImplicitBody, ImplicitSurface};
@@ -14,6 +14,7 @@ use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::{ClosestPoints, GapJet, Normals, RigidShape};
 use signorini_geometry::shape::{Shape as Geometry, ShapeError};
 use signorini_geometry::{Aabb, Jet, Point, Real, Vector};
+use signorini_paths::smooth_mesh::SmoothMesh;
 use std::sync::Arc;
 
 /// A rigid body and how it moves.
@@ -54,6 +55,20 @@ impl RigidBody {
         let rotation =
             if let [angle] = &self.rotation[..] { Vector::<3>::z() * evaluate(angle) } else { vector(&self.rotation) };
         RigidMotion::new(rotation, self.shape.centre(), vector(&self.displacement))
+    }
+
+    /// Its shape where it is stated.
+    pub fn shape(&self) -> &Arc<dyn RigidShape> {
+        &self.shape
+    }
+
+    /// Its motion from where it is stated to where it is at a time.
+    ///
+    /// # Errors
+    /// A motion that is not a number then.
+    pub fn motion(&self, problem: &Problem, time: f64) -> Result<RigidMotion, CaseError> {
+        let [moved, turned] = self.motion_at(problem, time)?;
+        Ok(RigidMotion::new(turned, self.shape.centre(), moved))
     }
 
     /// Displacement and rotation vector at a time; an error where the motion is not a number.
@@ -108,6 +123,39 @@ impl RigidBody {
             }
         })
     }
+}
+
+/// The bodies of a problem in space of which only the geometry is wanted: all must be rigid and touched from outside. Heights
+/// are known in the box `around`.
+///
+/// # Errors
+/// What is wrong with a body, with its key.
+pub fn rigid_bodies(problem: &Problem, around: &Aabb<3>) -> Result<Vec<RigidBody>, CaseError> {
+    let planner = Planner::new(problem)?;
+    let mut out = Vec::new();
+    for (name, body) in problem.bodies.iter() {
+        let Body::Rigid(rigid) = body else {
+            let key = KeyPath::of_keys(&["bodies", name]);
+            return Err(problem.error(&key, format!("the body `{name}` is not rigid")).help("[bodies.NAME.rigid]"));
+        };
+        if rigid.side == Some(Side::Inside) {
+            let key = KeyPath::of_keys(&["bodies", name, "rigid", "side"]);
+            return Err(problem.error(&key, "paths run outside of bodies"));
+        }
+        let mut body = read::<3>(&planner, name, rigid, around)?;
+        // Triangles have no curvature; the surface through their vertices has.
+        let mesh = match &rigid.shape {
+            Shape::Stl(key) => Some(planner.closed_mesh(key)?),
+            Shape::Triangles(key) => Some(planner.surface_of_arrays(key)?),
+            _ => None,
+        };
+        if let Some(mesh) = mesh {
+            let smooth = SmoothMesh::new(&mesh).map_err(|e| problem.error(&rigid.shape, e.to_string()))?;
+            body.shape = Arc::new(smooth);
+        }
+        out.push(body);
+    }
+    Ok(out)
 }
 
 /// Reads a rigid body; in the plane vectors have two components.
@@ -184,6 +232,7 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
             Shape::Cone(key) => ("cone", &key.apex, &key.axis),
             Shape::Torus(key) => ("torus", &key.center, &key.axis),
             Shape::Paraboloid(key) => ("paraboloid", &key.apex, &key.axis),
+            Shape::Revolution(key) => ("body of revolution", key.origin.as_ref().unwrap_or(&key.axis), &key.axis),
             _ => return Ok(()),
         };
         if D == 3 || self.planner.space != Space::Axisymmetric {
@@ -290,6 +339,7 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
             | Shape::Cone(_)
             | Shape::Ellipsoid(_)
             | Shape::Torus(_)
+            | Shape::Revolution(_)
             | Shape::Paraboloid(_) => return Err(planner.unavailable(shape, "this shape beside a solid")),
         })
     }

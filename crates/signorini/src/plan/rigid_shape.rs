@@ -4,8 +4,11 @@ use super::Planner;
 use crate::problem::units::{Dimension, LENGTH, NONE};
 use crate::problem::{self, List, Shape};
 use crate::problem::{CaseError, Value};
+use crate::text_table;
 use signorini_geometry::Vector;
-use signorini_geometry::rigid_shape::{Cone, Cylinder, Ellipsoid, Paraboloid, Plane, RigidShape, Sphere, Torus};
+use signorini_geometry::rigid_shape::{
+    Cone, Cylinder, Ellipsoid, Paraboloid, Plane, Profile, Revolution, RigidShape, Sphere, Torus,
+};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
@@ -84,6 +87,30 @@ pub(super) fn read(
             let (apex, axis) = (keys.vector(&key.apex, LENGTH)?, keys.direction(&key.axis)?);
             (Arc::new(Paraboloid::new(apex, axis, radius).map_err(wrong)?), "paraboloid")
         }
+        Shape::Revolution(key) => {
+            let origin = key.origin.as_ref().map_or(Ok(Vector::<3>::zeros()), |o| keys.vector(o, LENGTH))?;
+            let axis = keys.direction(&key.axis)?;
+            (Arc::new(Revolution { origin, axis, profile: profile(planner, key)? }), "revolution")
+        }
         _ => return Ok(None),
     }))
+}
+
+/// The spline through the points of a table.
+fn profile(planner: &Planner<'_>, key: &problem::Revolution) -> Result<Profile, CaseError> {
+    let (path, bytes) = planner.read_file(&key.profile)?;
+    let wrong = |message: String| planner.problem.error(&key.profile, format!("`{}`: {message}", path.display()));
+    let mut points = Vec::new();
+    for (k, row) in text_table::rows(&bytes).map_err(wrong)?.iter().enumerate() {
+        let numbers: Vec<f64> = row.entries.iter().filter_map(|e| e.parse().ok()).collect();
+        match numbers[..] {
+            [rho, z] => points.push([rho, z]),
+            // A head of the table.
+            [] if k == 0 => {}
+            _ => {
+                return Err(wrong(format!("line {}: expected two numbers, radius and place along the axis", row.line)));
+            }
+        }
+    }
+    Profile::spline(&points).map_err(|e| wrong(e.to_string()))
 }

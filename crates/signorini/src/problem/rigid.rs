@@ -65,6 +65,8 @@ pub enum Shape {
     Torus(Torus),
     /// A paraboloid of revolution.
     Paraboloid(Paraboloid),
+    /// A body of revolution of a smooth profile.
+    Revolution(Revolution),
     /// NURBS surfaces from a JSON file.
     Nurbs(SurfaceFile),
     /// A triangle mesh from an STL, OBJ or PLY file.
@@ -127,6 +129,17 @@ pub struct Cylinder {
     pub axis: Option<List<Value>>,
     /// Radius, a length.
     pub radius: Value,
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Revolution {
+    /// A table of points of the profile: distance from the axis, and place along it. A spline runs through them.
+    pub profile: String,
+    /// Where places along the axis are counted from, lengths; the origin if left out.
+    pub origin: Option<List<Value>>,
+    /// Along the axis, in the direction in which places increase.
+    pub axis: List<Value>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]

@@ -4,8 +4,8 @@
 //! A scene is a TOML file with `analysis = "closest_pairs"`; the parts of its bodies are written like the partners of
 //! [queries](crate::queries).
 
-mod output;
-mod picture;
+pub(crate) mod output;
+pub(crate) mod picture;
 
 use std::collections::BTreeMap;
 use std::path::Path;

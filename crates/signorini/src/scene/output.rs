@@ -121,7 +121,7 @@ impl Tessellation {
     }
 }
 
-fn numbers<'a>(cells: impl Iterator<Item = &'a Vec<usize>>) -> Option<VertexNumbers> {
+pub(crate) fn numbers<'a>(cells: impl Iterator<Item = &'a Vec<usize>>) -> Option<VertexNumbers> {
     let (mut connectivity, mut offsets) = (Vec::new(), Vec::new());
     for cell in cells {
         connectivity.extend(cell.iter().map(|&v| v as u64));

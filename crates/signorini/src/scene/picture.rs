@@ -101,7 +101,7 @@ fn bodies(frame: &Frame, camera: &Camera) -> Vec<Body> {
 }
 
 /// Adds a strip that looks like a rod of a radius, in front of where it is by as much.
-fn rod(body: &mut Body, ends: [Vector<3>; 2], radius: f64, towards: &Vector<3>) {
+pub(crate) fn rod(body: &mut Body, ends: [Vector<3>; 2], radius: f64, towards: &Vector<3>) {
     let Some(side) = (ends[1] - ends[0]).cross(towards).try_normalize(0.0) else { return };
     let first = body.points.len() as u32;
     for x in ends {

@@ -4,7 +4,10 @@
 //! master, has the force `N = min(0, λ + ε g)`, `λ = 0` for a penalty alone, times its share of the blend. Residual and
 //! tangent are `c N δg` and `c (ε δg δgᵀ + N' Δδg) + N δg ⊗ dc`. As with the stresses of a thin beam, the geometric term takes
 //! the force `N'` that the step before predicts, and none when a contact is new: where a first iterate penetrates deeply,
-//! its force is far too large to turn with the gap.
+//! its force is far too large to turn with the gap. A contact that the step before predicts to be closed stays closed in the
+//! next linear system even where the gap has opened a little, as gaps do that are not linear in the unknowns: the set of
+//! closed contacts is that of the linear problem, and does not alternate. Forces that are told, and residuals that decide
+//! about convergence ([`Order::First`]), are those of the law.
 
 use super::blend::Blend;
 use super::measure::{CurvePair, measure};
@@ -60,6 +63,8 @@ pub struct Contact {
     pub share: (f64, f64),
     /// `λ + ε g`, at most zero.
     pub force: f64,
+    /// The same without the bound.
+    trial: f64,
     /// The force of the geometric term.
     geometric: f64,
 }
@@ -100,9 +105,9 @@ impl CurveContact {
     fn contact(&self, key: Key, points: [CurvePoint; 2], pair: CurvePair, penalty: f64, share: (f64, f64)) -> Contact {
         let kept = self.kept(key);
         let multiplier = kept.map_or(0.0, |k| k.multiplier);
-        let force = (multiplier + penalty * pair.gap).min(0.0);
+        let trial = multiplier + penalty * pair.gap;
         let geometric = kept.map_or(0.0, |k| k.predicted);
-        Contact { key, pair, points, penalty, share, force, geometric }
+        Contact { key, pair, points, penalty, share, force: trial.min(0.0), trial, geometric }
     }
 
     /// All contacts of two curves within reach, slave first; `first` are their first unknowns.
@@ -183,7 +188,8 @@ impl CurveContact {
                 let change: f64 = c.pair.unknowns.iter().zip(&c.pair.d_gap).map(|(u, d)| step[*u as usize] * d).sum();
                 let predicted = (multiplier + c.penalty * (c.pair.gap + change)).min(0.0);
                 // A new contact has no force that could turn.
-                let predicted = if c.force == 0.0 { 0.0 } else { predicted };
+                let is_new = c.force == 0.0 && c.geometric == 0.0;
+                let predicted = if is_new { 0.0 } else { predicted };
                 Kept { key: c.key, predicted, multiplier, normal: c.pair.normal }
             })
             .collect();
@@ -210,12 +216,13 @@ impl Contact {
     }
 
     fn act(&self, order: Order, out: &mut Contribution) {
-        if self.force == 0.0 {
+        let force = if order == Order::Second && self.geometric < 0.0 { self.trial } else { self.force };
+        if force == 0.0 {
             return;
         }
         let (pair, (share, slope)) = (&self.pair, self.share);
         for (u, d) in pair.unknowns.iter().zip(&pair.d_gap) {
-            out.forces[*u as usize] += share * self.force * d;
+            out.forces[*u as usize] += share * force * d;
         }
         if order == Order::First {
             return;
@@ -225,7 +232,7 @@ impl Contact {
         for k in 0..n {
             for l in 0..n {
                 block[k * n + l] = share * (self.penalty * pair.d_gap[k] * pair.d_gap[l] + self.geometric * pair.d2_gap[k * n + l])
-                    + self.force * pair.d_gap[k] * slope * pair.d_parallel[l];
+                    + force * pair.d_gap[k] * slope * pair.d_parallel[l];
             }
         }
         out.add_block(&pair.unknowns, &block);

@@ -41,7 +41,8 @@ pub trait CurveBody: Body {
     fn foot(&self, configuration: &[f64], element: usize, xi: f64, coordinates: usize) -> Foot {
         let CurveJet { x, d1, d2, d3 } = self.centreline().jet(configuration, element, xi);
         let zero = Vector::<3>::zeros();
-        let jet = SurfaceJet { x, u: d1, v: zero, uu: d2, uv: zero, vv: zero, uuu: d3, uuv: zero, uvv: zero, vvv: zero };
+        let jet =
+            SurfaceJet { x, u: d1, v: zero, uu: d2, uv: zero, vv: zero, uuu: d3, uuv: zero, uvv: zero, vvv: zero };
         let SectionMotion { spin, frame } = self.section(configuration, element, xi);
         Foot {
             point: MaterialPoint { patch: element as u32, xi: [xi, 0.0, 0.0] },
@@ -217,7 +218,11 @@ fn refine(jet: &dyn Fn(f64) -> CurveJet, x: &Point<3>, low: f64, high: f64) -> f
         let d = j.x - x;
         let slope = d.dot(&j.d1);
         let second = j.d1.norm_squared() + d.dot(&j.d2);
-        if slope > 0.0 { high = xi } else { low = xi }
+        if slope > 0.0 {
+            high = xi
+        } else {
+            low = xi
+        }
         let next = xi - slope / second;
         let next = if second > 0.0 && next > low && next < high { next } else { 0.5 * (low + high) };
         if (next - xi).abs() <= f64::EPSILON {
@@ -263,12 +268,6 @@ impl<B: CurveBody> Master for Touched<'_, B> {
 
     fn at(&self, point: &MaterialPoint) -> Anchor {
         let foot = self.body.foot(self.configuration, point.patch as usize, point.xi[0], 1);
-        Anchor {
-            x: foot.jet.x,
-            tangent: foot.jet.u,
-            functions: foot.functions,
-            spin: foot.spin,
-            frame: foot.frame,
-        }
+        Anchor { x: foot.jet.x, tangent: foot.jet.u, functions: foot.functions, spin: foot.spin, frame: foot.frame }
     }
 }

@@ -42,7 +42,6 @@ pub fn of_curve(line: &Centreline, start: &[f64], now: &[f64]) -> BodyFields {
 /// Adds values of elements as values of the cells that show them.
 pub fn add_element_data(fields: &mut BodyFields, name: &str, components: usize, values: Vec<f64>) {
     let count = fields.cells.len() * components / values.len().max(1);
-    let of_cells =
-        values.chunks(components).flat_map(|v| std::iter::repeat_n(v.to_vec(), count)).flatten().collect();
+    let of_cells = values.chunks(components).flat_map(|v| std::iter::repeat_n(v.to_vec(), count)).flatten().collect();
     fields.cell_data.push((name.to_string(), components, of_cells));
 }

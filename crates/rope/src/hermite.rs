@@ -125,7 +125,10 @@ mod tests {
             }
         }
         for (written, computed) in [(&TWO[..], gauss(2)), (&THREE[..], gauss(3)), (&FOUR[..], gauss(4))] {
-            written.iter().zip(&computed).for_each(|(a, b)| assert!((a.0 - b.0).abs() < 4e-15 && (a.1 - b.1).abs() < 4e-15, "{a:?} {b:?}"));
+            written
+                .iter()
+                .zip(&computed)
+                .for_each(|(a, b)| assert!((a.0 - b.0).abs() < 4e-15 && (a.1 - b.1).abs() < 4e-15, "{a:?} {b:?}"));
         }
     }
 }

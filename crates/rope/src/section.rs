@@ -63,12 +63,7 @@ impl Section {
                 let inertia = 0.25 * area * radius * radius;
                 let shear = 6.0 * (1.0 + nu) / (7.0 + 6.0 * nu) * g * area;
                 let bending = e * inertia;
-                Stiffness {
-                    axial: e * area,
-                    shear: [shear; 2],
-                    torsion: 2.0 * g * inertia,
-                    bending: [bending; 2],
-                }
+                Stiffness { axial: e * area, shear: [shear; 2], torsion: 2.0 * g * inertia, bending: [bending; 2] }
             }
             Section::Rectangle { width, height } => {
                 positive("width", width)?;
@@ -125,8 +120,7 @@ impl Stiffness {
 fn rectangle_torsion_constant(width: f64, height: f64) -> f64 {
     let (a, b) = (width.max(height), width.min(height));
     // The terms fall as k⁻⁵: the first three hundred leave less than round-off.
-    let series: f64 =
-        (0..300).map(|k| 2.0 * k as f64 + 1.0).map(|k| (0.5 * k * PI * a / b).tanh() / k.powi(5)).sum();
+    let series: f64 = (0..300).map(|k| 2.0 * k as f64 + 1.0).map(|k| (0.5 * k * PI * a / b).tanh() / k.powi(5)).sum();
     a * b.powi(3) * (1.0 / 3.0 - 64.0 / PI.powi(5) * b / a * series)
 }
 

@@ -219,10 +219,10 @@ fn cross(
     radius: f64,
     points: usize,
     (form, point_penalty, line_penalty): (Form, f64, f64),
-    search: Search,
+    increments: usize,
 ) -> (f64, f64, usize) {
     // Stiff enough for a beam without shear; less where large steps are to be taken.
-    let stiff = if search == Search::WholeSteps { 1e8 } else { 1e5 };
+    let stiff = if increments == 1 { 1e8 } else { 1e5 };
     let direction = V::new(angle.cos(), angle.sin(), 0.0);
     let below = V::new(a_1, 0.0, -gap - 2.0 * radius) - direction * a_2;
     let one = |l: f64, a: f64| {
@@ -241,13 +241,18 @@ fn cross(
     let first = first_unknowns(&[&bodies[0], &bodies[1]]);
     let sides = [0, 1].map(|s| Searched { body: &bodies[s] as &dyn CurveBody, state: &starts[s] });
     contact.follow(sides, [first[0], first[1]]);
-    let mut around =
-        Cantilevers { bodies: [&bodies[0], &bodies[1]], contact, push: V::new(0.0, 0.0, -push) };
-    let options = Options { most: 30, tolerance: 1e-9 * push, search };
-    let found = newton(&[&bodies[0] as &dyn Body, &bodies[1]], &[bodies[0].start(), bodies[1].start()], &mut around, &options)
-        .unwrap_or_else(|f| panic!("{:?}", f.residuals));
-    let tip = -bodies[0].position(&found.states[0], bodies[0].elements())[2];
-    (around.force(&found.states), tip, found.iterations())
+    let mut around = Cantilevers { bodies: [&bodies[0], &bodies[1]], contact, push: V::zeros() };
+    let options = Options { most: 30, tolerance: 1e-9 * push, search: Search::WholeSteps };
+    let (mut states, mut most) = (starts.to_vec(), 0);
+    for k in 1..=increments {
+        around.push = V::new(0.0, 0.0, -push * k as f64 / increments as f64);
+        let found = newton(&[&bodies[0] as &dyn Body, &bodies[1]], &states, &mut around, &options)
+            .unwrap_or_else(|f| panic!("increment {k}: {:?}", f.residuals));
+        most = most.max(found.iterations());
+        states = found.states;
+    }
+    let tip = -bodies[0].position(&states[0], bodies[0].elements())[2];
+    (around.force(&states), tip, most)
 }
 
 #[test]
@@ -258,7 +263,7 @@ fn crossing_cantilevers_have_the_exact_force() {
     let small = 1e-4;
     let check = |lengths: [f64; 2], ei: [f64; 2], a: [f64; 2], [p, g, angle]: [f64; 3], expected: f64, tip: f64| {
         let form = (Form::Point, 1e6, 0.0);
-        let (f, w, iterations) = cross(lengths, ei, a, [p * small, g * small, angle], 0.02, 4, form, Search::WholeSteps);
+        let (f, w, iterations) = cross(lengths, ei, a, [p * small, g * small, angle], 0.02, 4, form, 1);
         println!("{angle:.3}: F {:.6} ({expected:.6}), tip {:.6} ({tip:.6}), {iterations} iterations", f / small, w / small);
         assert!((f / small - expected).abs() < 3e-5 * expected.max(1.0), "{}", f / small);
         assert!((w / small - tip).abs() < 3e-5 * tip.max(1.0));
@@ -293,7 +298,7 @@ fn forces_pass_smoothly_from_crossing_to_parallel() {
         let angle = 40.0 - k as f64;
         let form = (Form::Blend(blend), penalty, line);
         let load = [small, 0.2 * small, angle.to_radians()];
-        let (f, _, iterations) = cross([10.0, 8.0], [200.0, 150.0], [6.0, 5.0], load, radius, 24, form, Search::Shares);
+        let (f, _, iterations) = cross([10.0, 8.0], [200.0, 150.0], [6.0, 5.0], load, radius, 24, form, 2);
         let f = f / small;
         if k % 6 == 0 {
             println!("{angle}°: F {f:.5}, {iterations} iterations");
@@ -355,6 +360,7 @@ fn two_tubes_are_twisted_by_a_full_turn() {
     let bodies = [tube("first", radius), tube("second", -radius)];
     let mut contact = CurveContact::new(Form::Line, Between::Two, 0.0, 2e3);
     contact.ends = Ends::PassBy;
+    contact.reach = 0.02;
     let mut around = Twisted { bodies: [&bodies[0], &bodies[1]], contact, angle: 0.0 };
     let mut states = vec![bodies[0].start(), bodies[1].start()];
     let first = first_unknowns(&[&bodies[0], &bodies[1]]);
@@ -412,11 +418,11 @@ fn ends_bear_parallel_cantilevers() {
     let (l_1, l_2) = (10.0f64, 8.0f64);
     let expected = l_2 * l_2 * (3.0 * l_1 - l_2) / (6.0 * 200.0) / (l_2.powi(3) / 3.0 * (2.0 / 200.0) + 1e-6);
     let form = (Form::Point, 1e6, 0.0);
-    let (f, tip, iterations) = cross([l_1, l_2], [200.0; 2], [8.0, 8.0], [small, 0.0, 0.0], 0.05, 4, form, Search::WholeSteps);
+    let (f, tip, iterations) = cross([l_1, l_2], [200.0; 2], [8.0, 8.0], [small, 0.0, 0.0], 0.05, 4, form, 1);
     println!("parallel: F {:.6} ({expected:.6}), tip {:.5} (0.86), {iterations} iterations", f / small, tip / small);
     assert!((f / small - expected).abs() < 1e-4 && (tip / small - 0.86).abs() < 1e-4);
     // End on end.
-    let (f, tip, iterations) = cross([10.0, 10.0], [200.0; 2], [10.0, 10.0], [2.0 * small, 0.0, std::f64::consts::FRAC_PI_2], 0.05, 4, form, Search::WholeSteps);
+    let (f, tip, iterations) = cross([10.0, 10.0], [200.0; 2], [10.0, 10.0], [2.0 * small, 0.0, std::f64::consts::FRAC_PI_2], 0.05, 4, form, 1);
     println!("end on end: F {:.6} (1), tip {:.5} (1.66667), {iterations} iterations", f / small, tip / small);
     assert!((f / small - 1.0).abs() < 1e-4 && (tip / small - 5.0 / 3.0).abs() < 1e-4);
 }
@@ -425,7 +431,7 @@ fn ends_bear_parallel_cantilevers() {
 fn large_motions_do_not_tunnel() {
     // The first iterate passes right through the lower beam.
     let form = (Form::Point, 1e4, 0.0);
-    let (f, _, iterations) = cross([10.0, 8.0], [200.0, 150.0], [6.0, 5.0], [1.0, 0.2, 1.2], 0.02, 4, form, Search::Shares);
+    let (f, _, iterations) = cross([10.0, 8.0], [200.0, 150.0], [6.0, 5.0], [1.0, 0.2, 1.2], 0.02, 4, form, 4);
     println!("F {f:.5}, {iterations} iterations");
     assert!((f - 0.8152).abs() < 0.01);
 }

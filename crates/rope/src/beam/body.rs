@@ -228,7 +228,8 @@ impl Beam {
         for e in 0..self.line.elements() {
             let at = self.middle(e);
             let x = self.line.jet(&state.configuration, e, 0.5).x;
-            let q = quaternion::product(&motion(&x).1, &Quaternion::from_column_slice(&state.configuration[at..at + 4]));
+            let q =
+                quaternion::product(&motion(&x).1, &Quaternion::from_column_slice(&state.configuration[at..at + 4]));
             c[at..at + 4].copy_from_slice(q.as_slice());
         }
         next.internal = self.true_stresses(&next.configuration);

@@ -293,7 +293,8 @@ mod tests {
             };
             let order = (left(2e-2) / left(1e-2)).log2();
             assert!((order - 3.0).abs() < 0.15, "{order}");
-            let first = (element.forces(&moved(&nodes, &v, 1e-5)).0 - element.forces(&moved(&nodes, &v, -1e-5)).0) / 2e-5;
+            let first =
+                (element.forces(&moved(&nodes, &v, 1e-5)).0 - element.forces(&moved(&nodes, &v, -1e-5)).0) / 2e-5;
             assert!((first - forces.dot(&v)).abs() < 1e-8 * forces.norm());
         }
         // Of the components of the forces, the derivative is the tangent less half the cross matrix of each moment.

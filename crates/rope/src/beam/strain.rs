@@ -83,8 +83,9 @@ pub fn force_strain_hessian(r1: &Vector<3>, q: &Quaternion, n: &Vector<3>) -> SM
     let mq = m * q;
     let f = q.dot(&mq);
     let cross = mq * q.transpose();
-    let rotation = m * (2.0 / s) - (cross + cross.transpose()) * (4.0 / (s * s)) - Matrix4::identity() * (2.0 * f / (s * s))
-        + q * q.transpose() * (8.0 * f / (s * s * s));
+    let rotation =
+        m * (2.0 / s) - (cross + cross.transpose()) * (4.0 / (s * s)) - Matrix4::identity() * (2.0 * f / (s * s))
+            + q * q.transpose() * (8.0 * f / (s * s * s));
     let mut out = SMatrix::<f64, 7, 7>::zeros();
     out.fixed_view_mut::<4, 4>(3, 3).copy_from(&rotation);
     for k in 0..3 {

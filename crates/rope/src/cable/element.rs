@@ -54,11 +54,8 @@ pub struct Element {
 impl Element {
     /// An element of given length without strain; `nodes` give how the length is distributed.
     pub fn new(length: f64, axial: f64, bending: f64, carries: Carries, nodes: &[Vector<3>; 4]) -> Self {
-        let stabilisation = if bending > 0.0 {
-            (STABILISATION * bending / (axial * length * length)).min(1.0)
-        } else {
-            CABLE_SHARE
-        };
+        let stabilisation =
+            if bending > 0.0 { (STABILISATION * bending / (axial * length * length)).min(1.0) } else { CABLE_SHARE };
         let mut element = Element { length, axial, bending, carries, stabilisation, unstrained: [1.0; 5] };
         let lengths: [f64; 5] = std::array::from_fn(|k| element.first(element.stretch_rule(k).0, nodes).1.norm());
         // Proportions only: the mean is one.
@@ -242,14 +239,17 @@ mod tests {
                 let order = (left(4e-3) / left(2e-3)).log2();
                 assert!((order - 3.0).abs() < 0.2, "{order}");
                 let e = 1e-6;
-                let difference = (element.forces(&moved(&x, &v, e)).1 - element.forces(&moved(&x, &v, -e)).1) / (2.0 * e);
+                let difference =
+                    (element.forces(&moved(&x, &v, e)).1 - element.forces(&moved(&x, &v, -e)).1) / (2.0 * e);
                 assert!((difference - tangent * v).norm() < 1e-7 * difference.norm());
                 let (p, m) = (element.stresses(&moved(&x, &v, e)), element.stresses(&moved(&x, &v, -e)));
                 let rate = element.predicted(&x, &v);
                 let now = element.stresses(&x);
                 for k in 0..3 {
                     let difference = (p.moments[k] - m.moments[k]) / (2.0 * e);
-                    assert!((difference - (rate.moments[k] - now.moments[k])).norm() < 1e-7 * (1.0 + difference.norm()));
+                    assert!(
+                        (difference - (rate.moments[k] - now.moments[k])).norm() < 1e-7 * (1.0 + difference.norm())
+                    );
                 }
             }
         }
@@ -258,12 +258,13 @@ mod tests {
     #[test]
     fn forces_have_no_resultant_and_no_moment() {
         let x = nodes();
-        let element = Element::new(0.8, 30.0, 0.7, Carries::TensionAndCompression, &[
-            Vector::<3>::zeros(),
-            Vector::<3>::x(),
-            Vector::<3>::x() * 0.8,
-            Vector::<3>::x(),
-        ]);
+        let element = Element::new(
+            0.8,
+            30.0,
+            0.7,
+            Carries::TensionAndCompression,
+            &[Vector::<3>::zeros(), Vector::<3>::x(), Vector::<3>::x() * 0.8, Vector::<3>::x()],
+        );
         let f = element.forces(&x).1;
         let of = |n: usize| f.fixed_rows::<3>(3 * n).into_owned();
         assert!((of(0) + of(2)).norm() < 1e-13 * f.norm());

@@ -135,7 +135,9 @@ impl Net {
         let mut positions = self.positions.clone();
         for k in 0..3 {
             let x = factor.solve(&right.iter().map(|r| r[k]).collect::<Vec<_>>())?;
-            (0..index.len()).filter_map(|i| index[i].map(|u| (i, u))).for_each(|(i, u)| positions[i][k] = x[u as usize]);
+            (0..index.len())
+                .filter_map(|i| index[i].map(|u| (i, u)))
+                .for_each(|(i, u)| positions[i][k] = x[u as usize]);
         }
         Ok(positions)
     }
@@ -207,7 +209,8 @@ impl Net {
         iterations: &mut usize,
     ) -> Result<f64, FormError> {
         let (index, count) = self.numbers();
-        let unknowns = |m: &Member| -> Vec<u32> { free(&index, m).flat_map(|(_, u)| [3 * u, 3 * u + 1, 3 * u + 2]).collect() };
+        let unknowns =
+            |m: &Member| -> Vec<u32> { free(&index, m).flat_map(|(_, u)| [3 * u, 3 * u + 1, 3 * u + 2]).collect() };
         let cliques: Vec<Vec<u32>> = self.members.iter().map(unknowns).collect();
         let mut symbolic = Symbolic::default();
         let span = (0..3)
@@ -262,7 +265,9 @@ impl Net {
             loop {
                 let next: Vec<Point<3>> = (positions.iter().enumerate())
                     .map(|(i, x)| match index[i] {
-                        Some(u) => x + Vector::<3>::from_column_slice(&step[3 * u as usize..3 * u as usize + 3]) * share,
+                        Some(u) => {
+                            x + Vector::<3>::from_column_slice(&step[3 * u as usize..3 * u as usize + 3]) * share
+                        }
                         None => *x,
                     })
                     .collect();

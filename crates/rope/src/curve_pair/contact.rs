@@ -1,14 +1,19 @@
-//! Contact of curves without friction: forces and tangent by penalty or augmented Lagrangian.
+//! Contact of curves, with friction or without: forces and tangent by penalty or augmented Lagrangian.
 //!
 //! Every contact, a minimum of the distance of both curves or a point of Gauss of the slave with the nearest point of the
 //! master, has the force `N = min(0, λ + ε g)`, `λ = 0` for a penalty alone, times its share of the blend. Residual and
 //! tangent are `c N δg` and `c (ε δg δgᵀ + N' Δδg) + N δg ⊗ dc`. As with the stresses of a thin beam, the geometric term takes
 //! the force `N'` that the step before predicts, and none when a contact is new: where a first iterate penetrates deeply,
-//! its force is far too large to turn with the gap.
+//! its force is far too large to turn with the gap. A contact that the step before predicts to be closed stays closed in the
+//! next linear system even where the gap has opened a little, as gaps do that are not linear in the unknowns: the set of
+//! closed contacts is that of the linear problem, and does not alternate. Forces that are told, and residuals that decide
+//! about convergence ([`Order::First`]), are those of the law.
 
 use super::blend::Blend;
-use super::measure::{CurvePair, measure};
+use super::friction::{CurveFriction, Tangential, followed, tangential};
+use super::measure::{CurvePair, Stuck, elastic_slip, measure};
 use super::search::{Between, CurvePoint, Searched, crossings};
+use signorini_contact::law::Status;
 use signorini_geometry::Vector;
 use signorini_mechanics::body::{Contribution, Met, Order, Sampling};
 
@@ -46,6 +51,7 @@ struct Kept {
     predicted: f64,
     multiplier: f64,
     normal: Vector<3>,
+    stuck: Option<Stuck>,
 }
 
 /// A contact as it is now.
@@ -60,6 +66,8 @@ pub struct Contact {
     pub share: (f64, f64),
     /// `λ + ε g`, at most zero.
     pub force: f64,
+    /// The same without the bound.
+    trial: f64,
     /// The force of the geometric term.
     geometric: f64,
 }
@@ -76,6 +84,7 @@ pub struct CurveContact {
     pub line_penalty: f64,
     /// How far curves may pass through each other, or apart, in one iteration and still be followed.
     pub reach: f64,
+    pub friction: Option<CurveFriction>,
     kept: Vec<Kept>,
 }
 
@@ -85,7 +94,16 @@ const SAME: f64 = 1.0;
 impl CurveContact {
     /// Contact without history.
     pub fn new(form: Form, between: Between, point_penalty: f64, line_penalty: f64) -> Self {
-        CurveContact { form, ends: Ends::Touch, between, point_penalty, line_penalty, reach: 0.0, kept: Vec::new() }
+        CurveContact {
+            form,
+            ends: Ends::Touch,
+            between,
+            point_penalty,
+            line_penalty,
+            reach: 0.0,
+            friction: None,
+            kept: Vec::new(),
+        }
     }
 
     fn kept(&self, key: Key) -> Option<&Kept> {
@@ -100,9 +118,9 @@ impl CurveContact {
     fn contact(&self, key: Key, points: [CurvePoint; 2], pair: CurvePair, penalty: f64, share: (f64, f64)) -> Contact {
         let kept = self.kept(key);
         let multiplier = kept.map_or(0.0, |k| k.multiplier);
-        let force = (multiplier + penalty * pair.gap).min(0.0);
+        let trial = multiplier + penalty * pair.gap;
         let geometric = kept.map_or(0.0, |k| k.predicted);
-        Contact { key, pair, points, penalty, share, force, geometric }
+        Contact { key, pair, points, penalty, share, force: trial.min(0.0), trial, geometric }
     }
 
     /// All contacts of two curves within reach, slave first; `first` are their first unknowns.
@@ -154,7 +172,11 @@ impl CurveContact {
                 _ => (1.0, 0.0),
             };
             if share.0 > 0.0 {
-                let at = |element: u32, xi: f64, coordinates: usize| CurvePoint { element: element as usize, xi, coordinates };
+                let at = |element: u32, xi: f64, coordinates: usize| CurvePoint {
+                    element: element as usize,
+                    xi,
+                    coordinates,
+                };
                 let points = [at(site.patch, site.xi[0], 0), at(foot.point.patch, foot.point.xi[0], 1)];
                 out.push(self.contact(Key::Site(index), points, pair, self.line_penalty * site.weight, share));
             }
@@ -166,7 +188,67 @@ impl CurveContact {
     pub fn act(&self, sides: [Searched<'_>; 2], first: [u32; 2], order: Order, out: &mut Contribution) {
         for contact in self.contacts(sides, first, order) {
             contact.act(order, out);
+            if let Some(t) = self.tangential(&contact, sides, first, order) {
+                let share = contact.share;
+                for (u, f) in t.unknowns.iter().zip(&t.forces) {
+                    out.forces[*u as usize] += share.0 * f;
+                }
+                if order == Order::Second {
+                    let m = t.unknowns.len();
+                    let mut block: Vec<f64> = t.tangent.iter().map(|v| v * share.0).collect();
+                    for (k, f) in t.forces.iter().enumerate() {
+                        let d = &contact.pair.d_parallel;
+                        (0..d.len()).for_each(|l| block[k * m + l] += f * share.1 * d[l]);
+                    }
+                    out.add_block(&t.unknowns, &block);
+                }
+            }
         }
+    }
+
+    /// Friction of a contact, if there is any: none before points have touched at the end of an increment.
+    pub fn tangential(
+        &self,
+        contact: &Contact,
+        sides: [Searched<'_>; 2],
+        first: [u32; 2],
+        order: Order,
+    ) -> Option<Tangential> {
+        let friction = self.friction.as_ref()?;
+        let stuck = self.kept(contact.key)?.stuck?;
+        if contact.force == 0.0 {
+            return None;
+        }
+        let feet = [0, 1].map(|s| {
+            let point = stuck.points[s];
+            sides[s].body.foot(&sides[s].state.configuration, point.patch as usize, point.xi[0], 1)
+        });
+        let slip = elastic_slip(&stuck, [&feet[0], &feet[1]], first);
+        let d_pressing: Vec<f64> = contact.pair.d_gap.iter().map(|d| -contact.penalty * d).collect();
+        Some(tangential(&contact.pair, &slip, (-contact.force, &d_pressing), friction, order))
+    }
+
+    /// Ends an increment: points that touch are kept as those from which slip counts, and follow where they slip.
+    pub fn settle(&mut self, sides: [Searched<'_>; 2], first: [u32; 2]) {
+        let Some(friction) = self.friction.clone() else { return };
+        let contacts = self.contacts(sides, first, Order::First);
+        let kept = (contacts.iter())
+            .map(|c| {
+                let stuck = (c.force < 0.0).then(|| match self.tangential(c, sides, first, Order::First) {
+                    None => c.pair.stuck,
+                    Some(t) if t.status == Status::Slip => {
+                        let CurvePoint { element, xi, .. } = c.points[1];
+                        let master = sides[1].body.foot(&sides[1].state.configuration, element, xi, 1);
+                        followed(&c.pair, &master, t.components, friction.penalty)
+                    }
+                    Some(_) => self.kept(c.key).and_then(|k| k.stuck).unwrap_or(c.pair.stuck),
+                });
+                Kept { stuck, ..self.kept(c.key).copied().unwrap_or(kept_of(c)) }
+            })
+            .zip(&contacts)
+            .map(|(kept, c)| Kept { key: c.key, normal: c.pair.normal, ..kept })
+            .collect();
+        self.kept = kept;
     }
 
     /// Starts to follow the contacts of a state: from which side curves come.
@@ -183,8 +265,10 @@ impl CurveContact {
                 let change: f64 = c.pair.unknowns.iter().zip(&c.pair.d_gap).map(|(u, d)| step[*u as usize] * d).sum();
                 let predicted = (multiplier + c.penalty * (c.pair.gap + change)).min(0.0);
                 // A new contact has no force that could turn.
-                let predicted = if c.force == 0.0 { 0.0 } else { predicted };
-                Kept { key: c.key, predicted, multiplier, normal: c.pair.normal }
+                let is_new = c.force == 0.0 && c.geometric == 0.0;
+                let predicted = if is_new { 0.0 } else { predicted };
+                let stuck = self.kept(c.key).and_then(|k| k.stuck);
+                Kept { key: c.key, predicted, multiplier, normal: c.pair.normal, stuck }
             })
             .collect();
         self.kept = kept;
@@ -194,13 +278,14 @@ impl CurveContact {
     pub fn augment(&mut self, sides: [Searched<'_>; 2], first: [u32; 2]) -> f64 {
         let contacts = self.contacts(sides, first, Order::First);
         let deepest = contacts.iter().filter(|c| c.force < 0.0).fold(0.0f64, |m, c| m.max(c.pair.gap.abs()));
-        self.kept = contacts.iter().map(|c| kept_of(c)).collect();
+        let stuck = |c: &Contact| self.kept(c.key).and_then(|k| k.stuck);
+        self.kept = contacts.iter().map(|c| Kept { stuck: stuck(c), ..kept_of(c) }).collect();
         deepest
     }
 }
 
 fn kept_of(c: &Contact) -> Kept {
-    Kept { key: c.key, predicted: c.force, multiplier: c.force, normal: c.pair.normal }
+    Kept { key: c.key, predicted: c.force, multiplier: c.force, normal: c.pair.normal, stuck: None }
 }
 
 impl Contact {
@@ -210,12 +295,13 @@ impl Contact {
     }
 
     fn act(&self, order: Order, out: &mut Contribution) {
-        if self.force == 0.0 {
+        let force = if order == Order::Second && self.geometric < 0.0 { self.trial } else { self.force };
+        if force == 0.0 {
             return;
         }
         let (pair, (share, slope)) = (&self.pair, self.share);
         for (u, d) in pair.unknowns.iter().zip(&pair.d_gap) {
-            out.forces[*u as usize] += share * self.force * d;
+            out.forces[*u as usize] += share * force * d;
         }
         if order == Order::First {
             return;
@@ -224,8 +310,9 @@ impl Contact {
         let mut block = vec![0.0; n * n];
         for k in 0..n {
             for l in 0..n {
-                block[k * n + l] = share * (self.penalty * pair.d_gap[k] * pair.d_gap[l] + self.geometric * pair.d2_gap[k * n + l])
-                    + self.force * pair.d_gap[k] * slope * pair.d_parallel[l];
+                block[k * n + l] = share
+                    * (self.penalty * pair.d_gap[k] * pair.d_gap[l] + self.geometric * pair.d2_gap[k * n + l])
+                    + force * pair.d_gap[k] * slope * pair.d_parallel[l];
             }
         }
         out.add_block(&pair.unknowns, &block);

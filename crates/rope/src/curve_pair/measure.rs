@@ -53,6 +53,7 @@ pub struct CurvePair {
     pub d_parallel: Vec<f64>,
     /// Unit tangent of the slave across the normal: the axial direction of slip.
     pub axial: Vector<3>,
+    pub d_axial: Vec<Vector<3>>,
     /// Variations of the slip.
     pub slip: Vec<Vector<3>>,
     pub d_normal: Vec<Vector<3>>,
@@ -182,7 +183,18 @@ fn with<const N: usize>(
             (moved - normal * normal.dot(&moved)) / distance
         })
         .collect();
+    // The tangent across the normal; with coordinates both are orthogonal, but that of a point of Gauss may lean.
     let across = units[0] - normal * normal.dot(&units[0]);
+    let length = across.norm();
+    let axial = across.try_normalize(0.0).unwrap_or(units[0]);
+    let d_axial = (0..n)
+        .map(|k| {
+            let (d, dn) = (d_unit(k, 0), d_normal[k]);
+            let lean = normal.dot(&units[0]);
+            let change = d - dn * lean - normal * (dn.dot(&units[0]) + normal.dot(&d));
+            if length > 0.0 { (change - axial * axial.dot(&change)) / length } else { zero }
+        })
+        .collect();
     Ok(CurvePair {
         gap,
         normal,
@@ -191,7 +203,8 @@ fn with<const N: usize>(
         d2_gap: if order == Order::Second { measures.gap_hessian(&variations) } else { Vec::new() },
         parallel: cosine * cosine,
         d_parallel,
-        axial: across.try_normalize(0.0).unwrap_or(units[0]),
+        axial,
+        d_axial,
         slip: (0..n).map(|k| variations[k].d - columns[k].lever.cross(&normal) - d_normal[k] * gap).collect(),
         d_normal,
         d_xi,
@@ -226,11 +239,7 @@ impl CurvePair {
 }
 
 /// Slip since material points touched: its vector, not yet projected, and its variations in the unknowns of both bodies.
-pub fn elastic_slip(
-    stuck: &Stuck,
-    feet: [&Foot; 2],
-    first: [u32; 2],
-) -> (Vector<3>, Vec<u32>, Vec<Vector<3>>) {
+pub fn elastic_slip(stuck: &Stuck, feet: [&Foot; 2], first: [u32; 2]) -> (Vector<3>, Vec<u32>, Vec<Vector<3>>) {
     let arms: [Vector<3>; 2] = [0, 1].map(|s| feet[s].frame * stuck.directions[s] * feet[s].radius);
     let e = feet[0].jet.x + arms[0] - feet[1].jet.x - arms[1];
     let columns = columns(feet, first);
@@ -239,7 +248,8 @@ pub fn elastic_slip(
     let d_e = columns
         .iter()
         .map(|c| {
-            let turn = if radius(c.side) > 0.0 { c.lever.cross(&arms[c.side]) / radius(c.side) } else { Vector::<3>::zeros() };
+            let turn =
+                if radius(c.side) > 0.0 { c.lever.cross(&arms[c.side]) / radius(c.side) } else { Vector::<3>::zeros() };
             (c.value + turn) * signs[c.side]
         })
         .collect();

@@ -3,9 +3,11 @@
 //! - [`measure`]: gap and slip of two points of curves with their variations: crossing, line and end pairs alike.
 //! - [`blend`]: from point contact of crossing curves to line contact of nearly parallel ones.
 //! - [`search`]: local minima of the distance of two curves, or of a curve to itself.
+//! - [`friction`]: friction along the curves and around their sections.
 //! - [`contact`]: forces and tangent by penalty or augmented Lagrangian.
 
 pub mod blend;
 pub mod contact;
+pub mod friction;
 pub mod measure;
 pub mod search;

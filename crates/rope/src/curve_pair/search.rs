@@ -6,10 +6,10 @@
 //! along each other have no isolated minimum and give none: line contact is for them. Ends are minima of their own where
 //! the distance falls towards them: each is projected onto the other curve.
 
-use crate::curve_body::{CurveBody, are_apart, boxes, minima, samples};
 use crate::centreline::{Centreline, Closure};
-use signorini_geometry::bvh::Bvh;
+use crate::curve_body::{CurveBody, are_apart, boxes, minima, samples};
 use signorini_geometry::Vector;
+use signorini_geometry::bvh::Bvh;
 use signorini_geometry::shape::CurveJet;
 use signorini_mechanics::body::BodyState;
 
@@ -227,7 +227,8 @@ fn descend(sides: [&Searched<'_>; 2], start: [f64; 2]) -> Option<[f64; 2]> {
         let full = [metric[0] + d.dot(&p.d2), metric[1] - d.dot(&q.d2), metric[2]];
         let determinant = |m: &[f64; 3]| m[0] * m[1] - m[2] * m[2];
         let is_minimum = full[0] > 0.0 && determinant(&full) > PARALLEL * PARALLEL * metric[0] * metric[1];
-        let used = if is_minimum { full } else { [metric[0] * (1.0 + DAMPING), metric[1] * (1.0 + DAMPING), metric[2]] };
+        let used =
+            if is_minimum { full } else { [metric[0] * (1.0 + DAMPING), metric[1] * (1.0 + DAMPING), metric[2]] };
         let det = determinant(&used);
         let step = [
             (-gradient[0] * used[1] + gradient[1] * used[2]) / det,

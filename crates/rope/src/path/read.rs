@@ -29,7 +29,8 @@ pub fn points(text: &str) -> Result<Vec<Point<3>>, PathError> {
         }
         let error = |message: String| PathError::File { line: index as u64 + 1, message };
         if let Some(k) = numbers.iter().position(Option::is_none) {
-            let hint = if separators == [';'] && fields[k].contains(',') { ", write decimals with a point" } else { "" };
+            let hint =
+                if separators == [';'] && fields[k].contains(',') { ", write decimals with a point" } else { "" };
             return Err(error(format!("`{}` is not a number{hint}", fields[k])));
         }
         let values: Vec<f64> = numbers.into_iter().flatten().collect();
@@ -47,7 +48,9 @@ mod tests {
 
     #[test]
     fn tables_are_read_and_faults_told_with_their_line() {
-        for text in ["x,y,z\n0,0,0\n1, 2,3\n", "# belt\n0 0 0\n\n1  2 3", "\u{feff}0;0;0\r\n1;2;3\r\n", "0\t0\t0\n1\t2\t3"] {
+        for text in
+            ["x,y,z\n0,0,0\n1, 2,3\n", "# belt\n0 0 0\n\n1  2 3", "\u{feff}0;0;0\r\n1;2;3\r\n", "0\t0\t0\n1\t2\t3"]
+        {
             assert_eq!(points(text).unwrap(), [Point::<3>::zeros(), Point::<3>::new(1.0, 2.0, 3.0)], "{text:?}");
         }
         assert!(matches!(points("0,0,0\n1,2\n"), Err(PathError::File { line: 2, .. })));

@@ -70,7 +70,11 @@ impl<'a> Measured<'a> {
             if error.abs() <= 4.0 * f64::EPSILON * self.total() {
                 break;
             }
-            if error > 0.0 { high = t } else { low = t }
+            if error > 0.0 {
+                high = t
+            } else {
+                low = t
+            }
             let next = t - error / self.path.curve.jet(t).d1.norm();
             t = if next > low && next < high { next } else { 0.5 * (low + high) };
         }
@@ -233,7 +237,8 @@ mod tests {
 
     #[test]
     fn elements_of_a_smooth_path_have_equal_lengths() {
-        let helix = Path::helix(Axes::new(p(1.0, 0.0, 0.0), p(1.0, 0.0, 0.0), p(0.0, 1.0, 0.0)).unwrap(), 2.0, 3.0, 1.7);
+        let helix =
+            Path::helix(Axes::new(p(1.0, 0.0, 0.0), p(1.0, 0.0, 0.0), p(0.0, 1.0, 0.0)).unwrap(), 2.0, 3.0, 1.7);
         let helix = helix.unwrap();
         let exact = 1.7 * (std::f64::consts::TAU.powi(2) * 4.0 + 9.0).sqrt();
         assert!((helix.length() - exact).abs() < 1e-12 * exact);
@@ -258,7 +263,8 @@ mod tests {
                 };
                 let points: Vec<_> = (0..n).map(point).collect();
                 let spline = Path::spline(&points, closure).unwrap();
-                let exact = std::f64::consts::TAU * if closure == Closure::Open { (n - 1) as f64 / n as f64 } else { 1.0 };
+                let exact =
+                    std::f64::consts::TAU * if closure == Closure::Open { (n - 1) as f64 / n as f64 } else { 1.0 };
                 (spline.length() / exact - 1.0).abs()
             };
             // A natural end is of second order only in the curvature.
@@ -270,7 +276,9 @@ mod tests {
     #[test]
     fn kinks_take_nodes_or_are_refused() {
         let path = Path::points(&[p(0.0, 0.0, 0.0), p(3.0, 0.0, 0.0), p(3.0, 1.0, 0.0)], Closure::Open).unwrap();
-        assert!(matches!(path.sample(8, Continuity::C1), Err(PathError::Kink { degrees, .. }) if (degrees - 90.0).abs() < 1e-9));
+        assert!(
+            matches!(path.sample(8, Continuity::C1), Err(PathError::Kink { degrees, .. }) if (degrees - 90.0).abs() < 1e-9)
+        );
         let sampled = path.sample(8, Continuity::C0).unwrap();
         assert_eq!(sampled.positions[6], p(3.0, 0.0, 0.0));
         assert!(sampled.lengths.iter().all(|h| (h - 0.5).abs() < 1e-14));
@@ -290,7 +298,9 @@ mod tests {
         let eight = [p(0.0, 0.0, 0.0), p(2.0, 2.0, 0.0), p(2.0, 0.0, 0.0), p(0.0, 2.0, 0.0)];
         let eight = Path::points(&eight, Closure::Open).unwrap();
         match eight.sample(9, Continuity::C0) {
-            Err(PathError::CrossesItself { at, .. }) => assert!((at[0] - 1.0).abs() < 1e-12 && (at[1] - 1.0).abs() < 1e-12),
+            Err(PathError::CrossesItself { at, .. }) => {
+                assert!((at[0] - 1.0).abs() < 1e-12 && (at[1] - 1.0).abs() < 1e-12)
+            }
             other => panic!("{other:?}"),
         }
         assert!(matches!(Path::points(&[p(0.0, 0.0, 0.0)], Closure::Open), Err(PathError::TooFewPoints { .. })));

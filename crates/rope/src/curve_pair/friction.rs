@@ -1,0 +1,105 @@
+//! Friction between curves: along the axis of the slave and around it.
+//!
+//! The slip since material points touched, `e`, has the components `t_α = ε_T E_α·e` along `E_1 = τ` and `E_2 = n × τ`; a law
+//! returns them to the admissible `T_α`. Forces are `T·S_k` with the variations `S_k` of the slip, and their derivative
+//! `S_k·dT + T·dS_k`, with `dT = Σ dT_α E_α + T_α dE_α` and `dT_α = ∂T_α/∂t_β ε_T (dE_β·e + E_β·de) + ∂T_α/∂p dp`. Points that
+//! touched are kept as material points, of both curves and of both sections: the slip does not depend on motions of both
+//! together, and passes from element to element. After slip the point on the master follows, so that `ε_T e = T`.
+
+use super::measure::{CurvePair, Stuck};
+use signorini_contact::law::{Law, Status};
+use signorini_geometry::{Matrix, Vector};
+use signorini_mechanics::body::{Foot, Order};
+use std::sync::Arc;
+
+/// A law with the force per slip that stands for sticking.
+#[derive(Clone, Debug)]
+pub struct CurveFriction {
+    pub law: Arc<dyn Law>,
+    pub penalty: f64,
+}
+
+/// Slip since points touched, with variations.
+pub type ElasticSlip = (Vector<3>, Vec<u32>, Vec<Vector<3>>);
+
+/// Friction of a contact.
+#[derive(Clone, Debug)]
+pub struct Tangential {
+    /// Those of the pair, then those of the points that touched.
+    pub unknowns: Vec<u32>,
+    /// Of the unknowns of the pair.
+    pub forces: Vec<f64>,
+    /// Row by row, of all unknowns; the rows of the points that touched are zero.
+    pub tangent: Vec<f64>,
+    /// Along the axis of the slave and around it; conjugate to the slip of the slave, so that what acts on it is opposite.
+    pub components: [f64; 2],
+    pub status: Status,
+}
+
+/// Friction under a pressing force, whose variations are those of the unknowns of the pair.
+pub fn tangential(
+    pair: &CurvePair,
+    slip: &ElasticSlip,
+    (pressing, d_pressing): (f64, &[f64]),
+    friction: &CurveFriction,
+    order: Order,
+) -> Tangential {
+    let (e, slip_unknowns, d_e) = slip;
+    let axes = [pair.axial, pair.circumferential()];
+    let trial = axes.map(|a| friction.penalty * a.dot(e));
+    let projected = friction.law.project([pressing, trial[0], trial[1]]);
+    let components = [projected.traction[1], projected.traction[2]];
+    let traction = axes[0] * components[0] + axes[1] * components[1];
+    let n = pair.unknowns.len();
+    let mut unknowns = pair.unknowns.clone();
+    unknowns.extend(slip_unknowns);
+    let forces = pair.slip.iter().map(|s| traction.dot(s)).collect();
+    let mut tangent = Vec::new();
+    if order == Order::Second {
+        let m = unknowns.len();
+        tangent = vec![0.0; m * m];
+        let zero = Vector::<3>::zeros();
+        let d = &projected.derivative;
+        let d_traction: Vec<Vector<3>> = (0..m)
+            .map(|l| {
+                let (d_axes, d_slip, d_pressure) = if l < n {
+                    let d_second = pair.d_normal[l].cross(&axes[0]) + pair.normal.cross(&pair.d_axial[l]);
+                    ([pair.d_axial[l], d_second], zero, d_pressing[l])
+                } else {
+                    ([zero; 2], d_e[l - n], 0.0)
+                };
+                let d_trial = [0, 1].map(|b| friction.penalty * (d_axes[b].dot(e) + axes[b].dot(&d_slip)));
+                (0..2).fold(zero, |sum, a| {
+                    let change = d[1 + a][0] * d_pressure + d[1 + a][1] * d_trial[0] + d[1 + a][2] * d_trial[1];
+                    sum + axes[a] * change + d_axes[a] * components[a]
+                })
+            })
+            .collect();
+        let second = pair.slip_hessian(&traction);
+        for k in 0..n {
+            for l in 0..m {
+                let own = if l < n { second[k * n + l] } else { 0.0 };
+                tangent[k * m + l] = pair.slip[k].dot(&d_traction[l]) + own;
+            }
+        }
+    }
+    Tangential { unknowns, forces, tangent, components, status: projected.status }
+}
+
+/// The points that count as having touched after slip: of the slave where it touches now, of the master so far back that
+/// the slip is that of the traction.
+pub fn followed(pair: &CurvePair, master: &Foot, components: [f64; 2], penalty: f64) -> Stuck {
+    let back = (pair.axial * components[0] + pair.circumferential() * components[1]) / penalty;
+    let mut stuck = pair.stuck;
+    let tangent = master.jet.u / master.jet.u.norm();
+    stuck.points[1].xi[0] -= back.dot(&tangent) / master.jet.u.norm();
+    if master.radius > 0.0 {
+        // Around the axis of the master: a turn of its normal.
+        let around = tangent.cross(&pair.normal);
+        let angle = -back.dot(&around) / master.radius;
+        let turned = pair.normal * angle.cos() + around * angle.sin();
+        let frame: Matrix<3> = master.frame;
+        stuck.directions[1] = frame.transpose() * turned;
+    }
+    stuck
+}

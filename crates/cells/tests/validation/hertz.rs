@@ -1,0 +1,95 @@
+//! A disc pressed between two rigid planes: a quarter of it, with the linearised gap.
+
+use super::{reference, stuff};
+use signorini_cells::contact::*;
+use signorini_cells::shapes::ball;
+use signorini_cells::*;
+use signorini_geometry::rigid_shape::GapJet;
+use signorini_geometry::{Aabb, Point, Vector};
+use std::sync::Arc;
+
+fn floor(x: &Point<2>) -> GapJet<2> {
+    GapJet::flat(x[1], Vector::<2>::y())
+}
+
+struct Found {
+    force: f64,
+    /// Half width from the second moment of the pressure.
+    half_width: f64,
+    /// Largest pressure, from a fit of the elliptic distribution.
+    peak: f64,
+    /// Root mean square of the deviation from the distribution of Hertz for the same force, relative to it.
+    deviation: f64,
+    iterations: usize,
+}
+
+fn press(n: usize, degree: usize, delta: f64, integration: Integration, enforcement: Enforcement) -> Found {
+    let b = Aabb::new(Point::<2>::zeros(), Point::<2>::repeat(1.0));
+    let disc = Domain::shape(ball(Point::<2>::y(), 1.0));
+    let setup = Discretisation { integration, ..Discretisation::of_degree(degree) };
+    let body =
+        CellBody::new(Arc::new(disc), CellTree::new(b, [n, n]).unwrap(), setup, stuff(Space::PlaneStrain)).unwrap();
+    let mut system = System::new(&body);
+    system.support(&Support::symmetric(Place::side(0, false))).unwrap();
+    system.support(&Support::component(Place::side(1, true), 1, -delta)).unwrap();
+    let contact = RigidContact {
+        obstacle: &floor,
+        on: Place::boundary(|p| p.normal[1] < -0.5),
+        kinematics: Kinematics::Linearised,
+        enforcement,
+    };
+    let found = contact.solve(&system).unwrap();
+    let force = 2.0 * found.force[1];
+    let sum = |f: &dyn Fn(&TouchingSite<2>) -> f64| found.sites.iter().map(|s| s.site.weight * f(s)).sum::<f64>();
+    let half_width = 2.0 * (sum(&|s| s.pressure * s.site.x[0].powi(2)) / sum(&|s| s.pressure)).sqrt();
+    // p² = p0² - b x² by least squares within 0.8 of the half width.
+    let inner = |s: &TouchingSite<2>| s.site.x[0] < 0.8 * half_width;
+    let moment = |k: i32, p: bool| {
+        sum(&|s| if inner(s) { s.site.x[0].powi(2 * k) * if p { s.pressure.powi(2) } else { 1.0 } } else { 0.0 })
+    };
+    let [m0, m1, m2, q0, q1] = [moment(0, false), moment(1, false), moment(2, false), moment(0, true), moment(1, true)];
+    let peak = ((q0 * m2 - q1 * m1) / (m0 * m2 - m1 * m1)).sqrt();
+    let modulus = 1.0 / (1.0 - 0.09);
+    let a = (4.0 * force / (std::f64::consts::PI * modulus)).sqrt();
+    let p0 = 2.0 * force / (std::f64::consts::PI * a);
+    let hertz = |s: &TouchingSite<2>| p0 * (1.0 - (s.site.x[0] / a).powi(2)).max(0.0).sqrt();
+    let deviation = (sum(&|s| (s.pressure - hertz(s)).powi(2)) / sum(&|s| hertz(s).powi(2))).sqrt();
+    Found { force, half_width, peak, deviation, iterations: found.iterations }
+}
+
+/// The two published discretisations, and the errors that an independent code finds with them.
+#[test]
+fn published_discretisations() {
+    let data = &reference()["hertz_2d"];
+    let wanted = &data["0.03"];
+    let value = |key: &str| wanted[key]["value"].as_f64().unwrap();
+    let exact = Integration::Exact { points: None };
+    for (n, p, integration, tag) in [
+        (8, 5, exact, "8_5_height"),
+        (20, 2, exact, "20_2_height"),
+        (8, 5, Integration::SubCells { subdivision: 10 }, "8_5_clip"),
+        (20, 2, Integration::SubCells { subdivision: 10 }, "20_2_clip"),
+    ] {
+        for (enforcement, name) in [
+            (Enforcement::Nitsche { gamma: 1.0 }, "nit1"),
+            (Enforcement::Penalty { stiffness: 100.0 }, "pen100"),
+            (Enforcement::AugmentedLagrangian { stiffness: 30.0, updates: 10 }, "AL30x10"),
+        ] {
+            let found = press(n, p, 0.03, integration, enforcement);
+            let other = &data["fcm"][format!("{tag}_{name}")];
+            let number = |key: &str| other[key].as_f64().unwrap();
+            println!(
+                "{tag} {name}: P {:.8} (other {:.8}, reference {:.8}), p0 {:.6} ({:.6}), aM {:.6} ({:.6}), L2 {:.4} ({:.4}), {} iterations",
+                found.force, number("P"), value("P"), found.peak, number("p0"), found.half_width, number("aM"),
+                found.deviation, number("L2"), found.iterations
+            );
+            let close = |a: f64, b: f64, tolerance: f64| (a / b - 1.0).abs() < tolerance;
+            assert!(close(found.force, number("P"), 1e-3), "{tag} {name}");
+            assert!(close(found.peak, number("p0"), 5e-3), "{tag} {name}");
+            if name == "nit1" {
+                assert!(close(found.force, value("P"), 1e-3) && close(found.peak, value("p0"), 5e-3));
+                assert!(close(found.half_width, value("aM"), 5e-3) && found.iterations <= 10);
+            }
+        }
+    }
+}

@@ -3,7 +3,7 @@
 //! The stiffness is `∫_B α ε(u):C:ε(v)`, `α = 1` in the material and `α_0` in the rest of the cells (Parvizian, Düster &
 //! Rank, Comput. Mech. 41, 2007). Cells without material are left out. Unknown `D f + k` is component `k` of function `f`.
 
-use crate::components::{PieceGraph, Pieces, faces_itself};
+use crate::components::{PieceGraph, Pieces, faces_itself, is_narrow};
 use crate::error::CellsError;
 use crate::legendre::MAX_DEGREE;
 use crate::region::{BoundaryPoint, Filling, Integration, MaterialRule, Region};
@@ -12,7 +12,7 @@ use crate::tree::CellTree;
 use rayon::prelude::*;
 use signorini_fem::elastic::{Elastic, Space};
 use signorini_geometry::{Aabb, Point, Vector};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// A function of position.
@@ -48,8 +48,9 @@ pub struct Discretisation<const D: usize> {
     pub pieces: Pieces,
     pub islands: Islands,
     pub boundary: Boundary,
-    /// Times that cells in which the boundary faces itself are halved, where a pore or a gap is narrower than a cell.
-    pub refine_facing: usize,
+    /// Times that cells are halved in which the boundary faces itself or turns by more than half a radian: where a pore or a
+    /// gap is narrower than a cell, around tips, and at edges.
+    pub refine_narrow: usize,
 }
 
 impl<const D: usize> Discretisation<D> {
@@ -63,7 +64,7 @@ impl<const D: usize> Discretisation<D> {
             pieces: Pieces::Split,
             islands: Islands::Refuse,
             boundary: Boundary::Expected,
-            refine_facing: 0,
+            refine_narrow: 0,
         }
     }
 }
@@ -112,6 +113,8 @@ pub struct Findings {
     pub facing_cells: usize,
     /// Leaves whose material is in several pieces with unknowns of their own.
     pub split_leaves: usize,
+    /// Functions that are copies of another one, for pieces of material that do not touch in its support.
+    pub copies: usize,
     /// Volumes of pieces of the body that do not hang together, the largest first.
     pub parts: Vec<f64>,
     /// Volume of the pieces that were dropped.
@@ -155,12 +158,12 @@ impl<const D: usize> CellBody<D> {
             tree.leaves().par_iter().map(one).collect()
         };
         let mut rules = rules_of(&tree);
-        for _ in 0..discretisation.refine_facing {
-            let facing: Vec<bool> = rules.iter().map(faces_itself).collect();
+        for _ in 0..discretisation.refine_narrow {
+            let narrow: Vec<bool> = rules.iter().map(is_narrow).collect();
             let mut number = 0;
             let refined = tree.refine(|_| {
                 number += 1;
-                facing[number - 1]
+                narrow[number - 1]
             });
             if refined == 0 {
                 break;
@@ -200,8 +203,12 @@ impl<const D: usize> CellBody<D> {
         let whole: Vec<f64> = self.tree.leaves().iter().map(|l| l.bounds.volume()).collect();
         for (piece, rule) in rules.into_iter().enumerate().filter(|(p, _)| kept[*p]) {
             let leaf = graph.leaf_of(piece);
-            let modes =
-                modes_of(&self.tree, &self.tree.leaves()[leaf], self.discretisation.degree, self.discretisation.products);
+            let modes = modes_of(
+                &self.tree,
+                &self.tree.leaves()[leaf],
+                self.discretisation.degree,
+                self.discretisation.products,
+            );
             let functions = (modes.iter())
                 .map(|m| {
                     let copy = self.copy_of(graph, leaf, piece, m);
@@ -217,6 +224,8 @@ impl<const D: usize> CellBody<D> {
             let share = rule.measure(whole[leaf]) / whole[leaf];
             self.cells.push(Cell { leaf, modes, functions, rule, share, stress_cell: self.cells.len() });
         }
+        let distinct: BTreeSet<Mode<D>> = self.functions.iter().map(|f| f.0).collect();
+        self.findings.copies = self.functions.len() - distinct.len();
         for piece in (0..kept.len()).filter(|p| kept[*p]) {
             let cell = cell_of_piece[piece];
             if self.cells[cell].share >= OWN_STRESS || self.cells[cell].rule.boundary.is_empty() {
@@ -226,9 +235,11 @@ impl<const D: usize> CellBody<D> {
             let next = &graph.touching[piece];
             let farther: Vec<usize> = next.iter().flat_map(|p| graph.touching[*p].iter().copied()).collect();
             for ring in [next, &farther] {
-                let best = ring.iter().map(|p| cell_of_piece[*p]).filter(|c| *c != usize::MAX).max_by(|a, b| {
-                    self.cells[*a].share.total_cmp(&self.cells[*b].share).then(b.cmp(a))
-                });
+                let best = ring
+                    .iter()
+                    .map(|p| cell_of_piece[*p])
+                    .filter(|c| *c != usize::MAX)
+                    .max_by(|a, b| self.cells[*a].share.total_cmp(&self.cells[*b].share).then(b.cmp(a)));
                 if let Some(best) = best
                     && self.cells[best].share >= OWN_STRESS
                 {
@@ -241,7 +252,7 @@ impl<const D: usize> CellBody<D> {
 
     /// Which copy of a function a piece of material sees.
     fn copy_of(&self, graph: &PieceGraph<D>, leaf: usize, piece: usize, m: &LocalMode<D>) -> usize {
-        if self.findings.split_leaves == 0 {
+        if self.discretisation.pieces == Pieces::Shared {
             return 0;
         }
         let leaf = &self.tree.leaves()[leaf];
@@ -250,6 +261,9 @@ impl<const D: usize> CellBody<D> {
         for index in support(&self.tree, m.mode.level, &cell, &m.factors) {
             let b = self.tree.cell_box(m.mode.level, &index);
             pieces.extend(self.leaves_in(&b).flat_map(|l| graph.start[l]..graph.start[l + 1]));
+        }
+        if pieces.len() == 1 {
+            return pieces[0];
         }
         let roots = graph.connected(&pieces);
         pieces.iter().position(|p| *p == piece).map_or(0, |at| roots[at])

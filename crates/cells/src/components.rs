@@ -18,6 +18,9 @@ use signorini_geometry::{Point, Vector};
 const LATTICE: usize = 10;
 /// Two normals with a product below this face each other.
 const FACING: f64 = -0.3;
+/// Two normals with a product below this are turned by half a radian: around a tip of a curvature of half a cell's
+/// inverse, or at an edge.
+const TURNED: f64 = 0.877_582_561_890_372_8;
 
 /// Whether different pieces of the material in a cell have unknowns of their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,11 +50,20 @@ impl<const D: usize> LeafPieces<D> {
 
 /// Whether the boundary in a cell faces itself.
 pub fn faces_itself<const D: usize>(rule: &MaterialRule<D>) -> bool {
-    // The extreme normals along a few directions are enough to know all pairs nearly.
+    has_normals_below(rule, FACING)
+}
+
+/// Whether the boundary in a cell faces itself, or turns by more than half a radian.
+pub fn is_narrow<const D: usize>(rule: &MaterialRule<D>) -> bool {
+    has_normals_below(rule, TURNED)
+}
+
+fn has_normals_below<const D: usize>(rule: &MaterialRule<D>, product: f64) -> bool {
+    // Some two hundred of the points show every turn that a quadrature rule resolves.
     let normals: Vec<Vector<D>> = rule.boundary.iter().map(|p| p.normal).collect();
     let stride = (normals.len() / 200).max(1);
     let few: Vec<&Vector<D>> = normals.iter().step_by(stride).collect();
-    few.iter().enumerate().any(|(i, n)| few[..i].iter().any(|m| n.dot(m) < FACING))
+    few.iter().enumerate().any(|(i, n)| few[..i].iter().any(|m| n.dot(m) < product))
 }
 
 /// The pieces of material in a leaf.
@@ -65,14 +77,17 @@ pub fn pieces_of<const D: usize>(
         return LeafPieces { samples: Vec::new(), count: 0 };
     }
     let one = LeafPieces { samples: Vec::new(), count: 1 };
-    if rule.filling == Filling::Full || pieces == Pieces::Shared || !faces_itself(rule) {
+    if rule.filling == Filling::Full
+        || pieces == Pieces::Shared
+        || !faces_itself(rule)
+        || !region.has_points_in_material()
+    {
         return one;
     }
     let total = LATTICE.pow(D as u32);
     let place = |i: usize| -> [usize; D] { std::array::from_fn(|k| i / LATTICE.pow(k as u32) % LATTICE) };
-    let points: Vec<Point<D>> = (0..total)
-        .map(|i| bounds.at(&Point::from_fn(|k, _| (place(i)[k] as f64 + 0.5) / LATTICE as f64)))
-        .collect();
+    let points: Vec<Point<D>> =
+        (0..total).map(|i| bounds.at(&Point::from_fn(|k, _| (place(i)[k] as f64 + 0.5) / LATTICE as f64))).collect();
     let material: Vec<bool> = points.iter().map(|x| region.contains(x)).collect();
     let mut label = vec![usize::MAX; total];
     let mut count = 0;
@@ -118,12 +133,7 @@ pub struct PieceGraph<const D: usize> {
 }
 
 impl<const D: usize> PieceGraph<D> {
-    pub fn new(
-        region: &dyn Region<D>,
-        tree: &CellTree<D>,
-        rules: &[MaterialRule<D>],
-        pieces: Pieces,
-    ) -> Self {
+    pub fn new(region: &dyn Region<D>, tree: &CellTree<D>, rules: &[MaterialRule<D>], pieces: Pieces) -> Self {
         let leaves: Vec<LeafPieces<D>> = (tree.leaves().par_iter().zip(rules))
             .map(|(leaf, rule)| pieces_of(region, &leaf.bounds, rule, pieces))
             .collect();
@@ -131,10 +141,13 @@ impl<const D: usize> PieceGraph<D> {
         for leaf in &leaves {
             start.push(start[start.len() - 1] + leaf.count);
         }
-        let found: Vec<Vec<[usize; 2]>> = (0..leaves.len())
-            .into_par_iter()
-            .map(|i| if leaves[i].count == 0 { Vec::new() } else { touching_of(region, tree, rules, &leaves, &start, i) })
-            .collect();
+        let found: Vec<Vec<[usize; 2]>> =
+            (0..leaves.len())
+                .into_par_iter()
+                .map(|i| {
+                    if leaves[i].count == 0 { Vec::new() } else { touching_of(region, tree, rules, &leaves, &start, i) }
+                })
+                .collect();
         let mut touching = vec![Vec::new(); start[leaves.len()]];
         for [a, b] in found.into_iter().flatten() {
             touching[a].push(b);

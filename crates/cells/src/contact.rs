@@ -138,8 +138,7 @@ impl<const D: usize> Tabulated<D> {
             Kinematics::Linearised => GapJet::flat(self.start.gap + self.start.normal.dot(&d), self.start.normal),
             Kinematics::Current => contact.obstacle.gap(&(self.site.x + d)),
         };
-        let traction: Vector<D> =
-            self.unknowns.iter().zip(&self.tractions).map(|(i, t)| t * u[*i as usize]).sum();
+        let traction: Vector<D> = self.unknowns.iter().zip(&self.tractions).map(|(i, t)| t * u[*i as usize]).sum();
         let trial = self.lambda + jet.normal.dot(&traction) - self.stiffness * jet.gap;
         Met { jet, traction, trial }
     }
@@ -264,9 +263,7 @@ fn residual<const D: usize>(
     }
     let scale = norm(&internal) + norm(&system.forces) + norm(&of_contact) + f64::MIN_POSITIVE;
     let free = |i: usize| system.prescribed[i].is_none();
-    let r = (0..u.len())
-        .map(|i| if free(i) { internal[i] - system.forces[i] - of_contact[i] } else { 0.0 })
-        .collect();
+    let r = (0..u.len()).map(|i| if free(i) { internal[i] - system.forces[i] - of_contact[i] } else { 0.0 }).collect();
     (r, scale)
 }
 
@@ -302,7 +299,8 @@ fn newton_step<const D: usize>(
         for (s, m) in &touching {
             let d = s.displacement(v);
             let bent = m.jet.hessian * d;
-            let mut change = -m.jet.normal.dot(&s.unknowns.iter().zip(&s.tractions).map(|(i, t)| t * v[*i as usize]).sum());
+            let mut change =
+                -m.jet.normal.dot(&s.unknowns.iter().zip(&s.tractions).map(|(i, t)| t * v[*i as usize]).sum());
             change -= m.traction.dot(&bent);
             let mut force = m.jet.normal * change;
             if curvature == Curvature::Without {

@@ -24,7 +24,7 @@ pub enum CellsError {
     Nothing,
     #[error(
         "the shape is negative everywhere in the box of the cells, so that there is no boundary to hold, load or touch \
-         but the sides of the box; where that is meant, build the body with `without_boundary`"
+         but the sides of the box; where that is meant, say that the boundary is optional"
     )]
     Everything,
     #[error(
@@ -43,6 +43,11 @@ pub enum CellsError {
          section too much or too little. Close the holes of the surface, or use its shape as an image"
     )]
     OpenSurface { y: f64, z: f64, share: f64 },
+    #[error(
+        "the threshold {threshold} leaves nothing or everything of the image: its values go from {least} to {most}, and \
+         material is what lies above the threshold"
+    )]
+    Threshold { threshold: f64, least: f64, most: f64 },
     #[error("{what} of shape {found:?} cannot be used: {must}")]
     Image { what: &'static str, found: Vec<usize>, must: &'static str },
     #[error(

@@ -29,7 +29,9 @@ mod tests {
     #[test]
     fn bubbles_vanish_at_the_ends_and_their_slopes_are_orthonormal() {
         for k in 2..=MAX_DEGREE {
-            assert!(integrated_legendre(8, 1.0)[k][0].abs() < 1e-15 && integrated_legendre(8, -1.0)[k][0].abs() < 1e-15);
+            assert!(
+                integrated_legendre(8, 1.0)[k][0].abs() < 1e-15 && integrated_legendre(8, -1.0)[k][0].abs() < 1e-15
+            );
             for j in 2..=MAX_DEGREE {
                 let product: f64 = gauss_legendre(9)
                     .iter()

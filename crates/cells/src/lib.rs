@@ -12,14 +12,18 @@
 //! - [`body`]: all of this; [`stiffness`]: the elastic integrals.
 //! - [`supports`], [`loads`]: what holds and what pushes; [`system`]: equilibrium; [`schwarz`]: the preconditioner.
 //! - [`contact`]: contact of the recovered boundary with a rigid body.
+//! - [`discs`]: contact of a body with itself, where pores close.
 //! - [`fields`]: displacement and stress in the volume and on the boundary.
 
 pub mod body;
 pub mod components;
 pub mod contact;
+pub mod discs;
 pub mod domain;
 pub mod error;
+pub mod facets;
 pub mod fields;
+pub mod image;
 pub mod legendre;
 pub mod loads;
 pub mod place;
@@ -31,6 +35,7 @@ pub mod stiffness;
 pub mod supports;
 pub mod system;
 pub mod tree;
+pub mod voxels;
 
 pub use body::{Boundary, Cell, CellBody, Discretisation, Field, Findings, Islands, Site, Stuff};
 pub use components::Pieces;

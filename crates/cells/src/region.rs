@@ -2,7 +2,7 @@
 
 use crate::domain::{Domain, Restricted};
 use signorini_fem::QuadraturePoint;
-use signorini_fem::cut::{height_functions, height::side_points, space_tree, sub_cells};
+use signorini_fem::cut::{height::side_points, height_functions, space_tree, sub_cells};
 use signorini_geometry::{Aabb, Point, Vector};
 
 /// How cut cells are integrated.
@@ -75,6 +75,11 @@ pub trait Region<const D: usize>: Send + Sync {
     fn side_rule(&self, b: &Aabb<D>, axis: usize, high: bool, points: usize) -> Vec<QuadraturePoint<D>>;
 
     fn contains(&self, x: &Point<D>) -> bool;
+
+    /// Whether the points of its rules lie in the material and can be counted to one piece of it or another.
+    fn has_points_in_material(&self) -> bool {
+        true
+    }
 
     /// A value that is not finite at a point, where the description has one.
     fn defect(&self, _: &Point<D>) -> Option<f64> {

@@ -103,8 +103,7 @@ impl Rows {
                 }
             }
         }
-        let scale: Vec<f64> =
-            (0..n).map(|i| if out[(i, i)] > 0.0 { 1.0 / out[(i, i)].sqrt() } else { 1.0 }).collect();
+        let scale: Vec<f64> = (0..n).map(|i| if out[(i, i)] > 0.0 { 1.0 / out[(i, i)].sqrt() } else { 1.0 }).collect();
         for i in 0..n {
             for j in 0..n {
                 out[(i, j)] *= scale[i] * scale[j];
@@ -153,7 +152,8 @@ impl<'a> Schwarz<'a> {
         let mut sets: Vec<(Vec<u32>, bool)> = Vec::new();
         for v in (0..functions).filter(|f| body.is_vertex(*f)) {
             let around = &cells_of[v];
-            let mut members: Vec<u32> = around.iter().flat_map(|c| body.cells()[*c].functions.iter().copied()).collect();
+            let mut members: Vec<u32> =
+                around.iter().flat_map(|c| body.cells()[*c].functions.iter().copied()).collect();
             members.sort_unstable();
             members.dedup();
             members.retain(|f| cells_of[*f as usize].iter().all(|c| around.binary_search(c).is_ok()));
@@ -173,8 +173,10 @@ impl<'a> Schwarz<'a> {
             let all = set.iter().flat_map(|f| (0..D as u32).map(move |k| D as u32 * f + k));
             all.filter(|u| free[*u as usize]).collect()
         };
-        // Stars that no support touches are alike: one of them is factorised.
-        let is_alike = |(set, alike): &(Vec<u32>, bool)| *alike && unknowns_of(set).len() == D * set.len();
+        // Stars that neither a support nor the box of the cells touches are alike: one of them is factorised.
+        let smallest = sets.iter().filter(|s| s.1).map(|s| s.0.len()).min().unwrap_or(0);
+        let is_alike =
+            |(set, alike): &(Vec<u32>, bool)| *alike && set.len() == smallest && unknowns_of(set).len() == D * smallest;
         let shared = sets.iter().find(|s| is_alike(s)).map(|(set, _)| {
             let (part, scale) = rows.part(&unknowns_of(set));
             (Arc::new(Inverse::new(part)), scale)
@@ -245,8 +247,7 @@ impl<'a> Schwarz<'a> {
             let range = self.matrix.start[i]..self.matrix.start[i + 1];
             range.clone().find(|k| self.matrix.column[*k] as usize == i).map_or(1.0, |k| self.matrix.value[k])
         };
-        let mut x: Vec<f64> =
-            (0..b.len()).map(|i| if self.free[i] { 0.0 } else { b[i] / diagonal(i) }).collect();
+        let mut x: Vec<f64> = (0..b.len()).map(|i| if self.free[i] { 0.0 } else { b[i] / diagonal(i) }).collect();
         let mut r: Vec<f64> = (0..b.len()).map(|i| if self.free[i] { b[i] } else { 0.0 }).collect();
         let mut z = self.apply(&r)?;
         let mut p = z.clone();

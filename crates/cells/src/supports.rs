@@ -15,7 +15,7 @@ use crate::place::{Place, side_gauss};
 use crate::space::Tabulation;
 use nalgebra::{DMatrix, DVector};
 use signorini_geometry::Vector;
-use signorini_solve::{SymmetricMatrix, Symbolic};
+use signorini_solve::{Symbolic, SymmetricMatrix};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -112,12 +112,7 @@ impl<const D: usize> CellBody<D> {
     }
 
     /// Nitsche's terms of a support on points of the boundary.
-    pub(crate) fn nitsche(
-        &self,
-        sites: &[Site<D>],
-        held: &Held<D>,
-        stiffness: &[Arc<DMatrix<f64>>],
-    ) -> Vec<Terms> {
+    pub(crate) fn nitsche(&self, sites: &[Site<D>], held: &Held<D>, stiffness: &[Arc<DMatrix<f64>>]) -> Vec<Terms> {
         // By the cell that gives the stress.
         let mut groups: BTreeMap<usize, Vec<&Site<D>>> = BTreeMap::new();
         for site in sites {

@@ -7,8 +7,10 @@ use crate::place::Place;
 use crate::schwarz::Schwarz;
 use crate::supports::{Held, Support};
 use nalgebra::DMatrix;
+use signorini_fem::elastic::Space;
+use signorini_geometry::{Point, Vector};
 use signorini_solve::dissection::nested_dissection;
-use signorini_solve::{Factor, SymmetricMatrix, Symbolic};
+use signorini_solve::{Factor, Symbolic, SymmetricMatrix};
 use std::sync::Arc;
 
 /// How the linear equations are solved.
@@ -51,6 +53,8 @@ pub struct System<'a, const D: usize> {
     pub(crate) forces: Vec<f64>,
     pub(crate) prescribed: Vec<Option<f64>>,
     loads: Vec<f64>,
+    /// Squares of the rigid motions along what is held.
+    held: DMatrix<f64>,
 }
 
 impl<'a, const D: usize> System<'a, D> {
@@ -67,7 +71,9 @@ impl<'a, const D: usize> System<'a, D> {
         for (unknowns, k) in cliques.iter().zip(&stiffness) {
             matrix.add(unknowns, k.as_slice(), 1.0);
         }
-        System { body, stiffness, matrix, forces: vec![0.0; n], prescribed: vec![None; n], loads: vec![0.0; n] }
+        let motions = rigid_motions(body, &body.tree.bounds().center()).len();
+        let held = DMatrix::zeros(motions, motions);
+        System { body, stiffness, matrix, forces: vec![0.0; n], prescribed: vec![None; n], loads: vec![0.0; n], held }
     }
 
     pub fn body(&self) -> &CellBody<D> {
@@ -79,6 +85,19 @@ impl<'a, const D: usize> System<'a, D> {
     /// # Errors
     /// A place without material.
     pub fn support(&mut self, support: &Support<D>) -> Result<&mut Self, CellsError> {
+        for site in self.body.points_on(&support.on)? {
+            let motions = rigid_motions(self.body, &site.x);
+            let mut hold = |direction: &Vector<D>| {
+                let row = nalgebra::DVector::from_iterator(motions.len(), motions.iter().map(|m| m.dot(direction)));
+                self.held.ger(site.weight, &row, &row, 1.0);
+            };
+            match &support.held {
+                Held::Normal(_) => hold(&site.normal),
+                Held::Components(fields) => (0..D)
+                    .filter(|k| fields[*k].is_some())
+                    .for_each(|k| hold(&Vector::from_fn(|a, _| if a == k { 1.0 } else { 0.0 }))),
+            }
+        }
         match (&support.on, &support.held) {
             (Place::Side { axis, high }, Held::Components(fields)) => {
                 if *axis >= D {
@@ -95,7 +114,12 @@ impl<'a, const D: usize> System<'a, D> {
                     return Err(CellsError::Axis { axis: *axis, dimension: D });
                 }
                 let (field, sign) = (field.clone(), if *high { 1.0 } else { -1.0 });
-                self.prescribe(*axis, *high, *axis, &(Arc::new(move |x: &_| sign * field(x)) as crate::body::Field<D>))?;
+                self.prescribe(
+                    *axis,
+                    *high,
+                    *axis,
+                    &(Arc::new(move |x: &_| sign * field(x)) as crate::body::Field<D>),
+                )?;
             }
             (place, held) => {
                 let sites = self.body.points_on(place)?;
@@ -108,7 +132,13 @@ impl<'a, const D: usize> System<'a, D> {
         Ok(self)
     }
 
-    fn prescribe(&mut self, axis: usize, high: bool, k: usize, field: &crate::body::Field<D>) -> Result<(), CellsError> {
+    fn prescribe(
+        &mut self,
+        axis: usize,
+        high: bool,
+        k: usize,
+        field: &crate::body::Field<D>,
+    ) -> Result<(), CellsError> {
         for (unknown, value) in self.body.projected(axis, high, k, field)? {
             self.prescribed[unknown] = Some(value);
         }
@@ -133,6 +163,10 @@ impl<'a, const D: usize> System<'a, D> {
     /// # Errors
     /// A body that nothing holds; iterations that end too early.
     pub fn solve(&self, solver: Solver) -> Result<Solution, CellsError> {
+        let modes = self.free_motions();
+        if modes > 0 {
+            return Err(CellsError::Unsupported { modes });
+        }
         let (mut matrix, mut rhs) = (self.matrix.clone(), self.forces.clone());
         matrix.prescribe(&self.prescribed, &mut rhs);
         let n = matrix.size();
@@ -158,6 +192,14 @@ impl<'a, const D: usize> System<'a, D> {
             }
         }
         Ok(Solution { displacement, solved })
+    }
+
+    /// The number of rigid motions of the body that no support holds.
+    pub fn free_motions(&self) -> usize {
+        let values = self.held.clone().symmetric_eigenvalues();
+        // What is held by a line instead of an area is still held; round-off is not.
+        let most = values.max();
+        values.iter().filter(|v| **v <= 1e-10 * most).count()
     }
 
     /// The strain energy `½ a(u, u)` of the cells, fictitious stiffness included.
@@ -193,6 +235,23 @@ impl<'a, const D: usize> System<'a, D> {
     }
 }
 
+/// The rigid motions of a body at a point: translations, and turns by a displacement of its size.
+fn rigid_motions<const D: usize>(body: &CellBody<D>, x: &Point<D>) -> Vec<Vector<D>> {
+    let b = body.tree.bounds();
+    let r = (x - b.center()) / b.size().amax();
+    let unit = |axis: usize| Vector::<D>::from_fn(|k, _| if k == axis { 1.0 } else { 0.0 });
+    if body.space() == Space::Axisymmetric {
+        return vec![unit(1)];
+    }
+    let mut out: Vec<Vector<D>> = (0..D).map(unit).collect();
+    for a in 0..D {
+        for c in a + 1..D {
+            out.push(unit(c) * r[a] - unit(a) * r[c]);
+        }
+    }
+    out
+}
+
 /// A factor of a matrix scaled to a unit diagonal: functions with little material have little stiffness.
 pub(crate) struct Scaled {
     scale: Vec<f64>,
@@ -207,8 +266,7 @@ impl Scaled {
 
     /// The factor of a matrix whose unknowns have these places.
     pub fn at<const D: usize>(position: &[[f64; D]], matrix: SymmetricMatrix) -> Result<Self, CellsError> {
-        let scale: Vec<f64> =
-            matrix.diagonal().iter().map(|d| if *d > 0.0 { 1.0 / d.sqrt() } else { 1.0 }).collect();
+        let scale: Vec<f64> = matrix.diagonal().iter().map(|d| if *d > 0.0 { 1.0 / d.sqrt() } else { 1.0 }).collect();
         let scaled = matrix.scaled(&scale);
         let mut symbolic =
             if D == 3 { Symbolic::ordered(nested_dissection(&scaled, position)) } else { Symbolic::default() };

@@ -62,8 +62,7 @@ impl<const D: usize> CellTree<D> {
 
     /// Halves in every direction all leaves that are named; gives how many there were.
     pub fn refine(&mut self, mut which: impl FnMut(&Leaf<D>) -> bool) -> usize {
-        let chosen: Vec<Leaf<D>> =
-            self.leaves.iter().filter(|l| l.level < MAX_LEVEL && which(l)).copied().collect();
+        let chosen: Vec<Leaf<D>> = self.leaves.iter().filter(|l| l.level < MAX_LEVEL && which(l)).copied().collect();
         for leaf in &chosen {
             while self.refined.len() <= leaf.level {
                 self.refined.push(BTreeSet::new());
@@ -111,7 +110,11 @@ impl<const D: usize> CellTree<D> {
                 let n = self.count(level, k);
                 let i = index[k] + add;
                 // The outer sides exactly.
-                if i == n { self.bounds.max[k] } else { self.bounds.min[k] + self.bounds.size()[k] * i as f64 / n as f64 }
+                if i == n {
+                    self.bounds.max[k]
+                } else {
+                    self.bounds.min[k] + self.bounds.size()[k] * i as f64 / n as f64
+                }
             })
         };
         Aabb::new(corner(0), corner(1))

@@ -1,8 +1,11 @@
 //! Finite cells against exact solutions and independent computations.
 
+mod bodies;
+mod cavity;
 mod hertz;
 mod kirsch;
 mod patch;
+mod pore;
 
 use signorini_cells::{Elastic, Space, Stuff};
 

@@ -28,11 +28,7 @@ const PIECES: usize = 8;
 const DESCENT_STEPS: usize = 12;
 
 /// The quadrature of one cell with `order` Gauss points per direction and smooth piece, in up to three dimensions.
-pub fn height_functions<const D: usize>(
-    partition: &CellPartition<'_, D>,
-    cell: &Aabb<D>,
-    order: usize,
-) -> CellRule<D> {
+pub fn height_functions<const D: usize>(partition: &CellPartition<'_, D>, cell: &Aabb<D>, order: usize) -> CellRule<D> {
     let mut rule = CellRule::default();
     let sheets: Vec<Sheet<'_, D>> = partition.sheets.iter().map(|s| Sheet::Given(&**s)).collect();
     let numbered: Vec<(usize, &Sheet<'_, D>)> = sheets.iter().enumerate().collect();
@@ -76,9 +72,18 @@ pub fn side_points<const D: usize>(
 enum Sheet<'a, const D: usize> {
     Given(&'a dyn ImplicitShape<D>),
     /// Another one with a coordinate held.
-    Face { of: &'a Sheet<'a, D>, axis: usize, at: f64 },
+    Face {
+        of: &'a Sheet<'a, D>,
+        axis: usize,
+        at: f64,
+    },
     /// One sheet on the graph of another.
-    Graph { of: &'a Sheet<'a, D>, graph: &'a Sheet<'a, D>, axis: usize, ends: [f64; 2] },
+    Graph {
+        of: &'a Sheet<'a, D>,
+        graph: &'a Sheet<'a, D>,
+        axis: usize,
+        ends: [f64; 2],
+    },
 }
 
 impl<const D: usize> Sheet<'_, D> {
@@ -86,9 +91,7 @@ impl<const D: usize> Sheet<'_, D> {
         match self {
             Sheet::Given(shape) => shape.value(x),
             Sheet::Face { of, axis, at } => of.value(&with(x, *axis, *at)),
-            Sheet::Graph { of, graph, axis, ends } => {
-                of.value(&with(x, *axis, height(graph, x, *axis, ends).0))
-            }
+            Sheet::Graph { of, graph, axis, ends } => of.value(&with(x, *axis, height(graph, x, *axis, ends).0)),
         }
     }
 

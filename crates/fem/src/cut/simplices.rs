@@ -87,9 +87,8 @@ pub fn space_tree<const D: usize>(
     while let Some((b, level)) = stack.pop() {
         let known = partition.sheets.iter().all(|s| s.range(&b).is_some_and(|[low, high]| low > 0.0 || high < 0.0));
         // Five samples in each direction: what is smaller than a quarter of a leaf is not seen.
-        let mut lattice = (0..5usize.pow(D as u32)).map(|i| {
-            b.at(&Point::<D>::from_fn(|k, _| (i / 5usize.pow(k as u32) % 5) as f64 / 4.0))
-        });
+        let mut lattice = (0..5usize.pow(D as u32))
+            .map(|i| b.at(&Point::<D>::from_fn(|k, _| (i / 5usize.pow(k as u32) % 5) as f64 / 4.0)));
         let first = region(&b.min);
         let cut = !known && lattice.any(|x| region(&x) != first);
         if cut && level < depth {
@@ -135,8 +134,6 @@ fn cut_simplex<const D: usize>(
     let crossing = |i: usize, o: usize| bisect(&points[i], &points[o], is_inside);
     // Crossings in rows: one row for each corner inside.
     let rows: Vec<Vec<Point<D>>> = ins.iter().map(|&i| outs.iter().map(|&o| crossing(i, o)).collect()).collect();
-    let mut emit = |list: &[Point<D>], region: RegionId| simplex_rule(list, region, gauss, rule);
-    let mut facets: Vec<Vec<Point<D>>> = Vec::new();
     let wedge = |a: [Point<D>; 3], b: [Point<D>; 3]| {
         // A prism between two triangles as three simplices.
         [vec![a[0], a[1], a[2], b[2]], vec![a[0], a[1], b[1], b[2]], vec![a[0], b[0], b[1], b[2]]]
@@ -148,36 +145,55 @@ fn cut_simplex<const D: usize>(
             let [near, far] = if ins.len() == 1 { regions } else { [regions[1], regions[0]] };
             let chord: Vec<Point<D>> =
                 if ins.len() == 1 { rows[0].clone() } else { rows.iter().map(|r| r[0]).collect() };
-            emit(&[vec![points[apex]], chord.clone()].concat(), near);
+            simplex_rule(&[vec![points[apex]], chord.clone()].concat(), near, gauss, rule);
             let far_points: Vec<Point<D>> = rest.iter().map(|&i| points[i]).collect();
             if D == 2 {
-                emit(&[chord[0], chord[1], far_points[0]], far);
-                emit(&[chord[1], far_points[0], far_points[1]], far);
+                simplex_rule(&[chord[0], chord[1], far_points[0]], far, gauss, rule);
+                simplex_rule(&[chord[1], far_points[0], far_points[1]], far, gauss, rule);
             } else {
                 let take = |v: &[Point<D>]| [v[0], v[1], v[2]];
                 for part in wedge(take(&chord), take(&far_points)) {
-                    emit(&part, far);
+                    simplex_rule(&part, far, gauss, rule);
                 }
             }
-            facets.push(chord);
+            let outwards = points[outs[0]] - points[ins[0]];
+            let sign = if area_vector(&chord).dot(&outwards) < 0.0 { -1.0 } else { 1.0 };
+            facet_rule(&chord, sign, regions, gauss, rule);
         }
         _ => {
             // Two corners on each side: two prisms.
             let [[a, b], [c, d]] = [[rows[0][0], rows[0][1]], [rows[1][0], rows[1][1]]];
             let ([i, j], [k, l]) = ([ins[0], ins[1]].map(|n| points[n]), [outs[0], outs[1]].map(|n| points[n]));
             for part in wedge([i, a, b], [j, c, d]) {
-                emit(&part, regions[0]);
+                simplex_rule(&part, regions[0], gauss, rule);
             }
             for part in wedge([k, a, c], [l, b, d]) {
-                emit(&part, regions[1]);
+                simplex_rule(&part, regions[1], gauss, rule);
             }
-            facets.extend([vec![a, b, d], vec![a, d, c]]);
+            // The sense of both halves of the chord is that of the corners, also where they are thin or folded.
+            let edges = [j - i, k - i, l - i];
+            let sign = edges[0].dot(&cross(&edges[1], &edges[2])).signum();
+            facet_rule(&[a, b, d], sign, regions, gauss, rule);
+            facet_rule(&[a, d, c], sign, regions, gauss, rule);
         }
     }
-    let outwards = points[outs[0]] - points[ins[0]];
-    for facet in &facets {
-        facet_rule(facet, &outwards, regions, gauss, rule);
+}
+
+/// The vector product in space.
+fn cross<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> Vector<D> {
+    Vector::<D>::from_fn(|k, _| {
+        let (p, q) = ((k + 1) % D, (k + 2) % D);
+        a[p] * b[q] - a[q] * b[p]
+    })
+}
+
+/// A normal of a segment of the plane as long as that, or of a triangle of space twice as long as its area.
+fn area_vector<const D: usize>(corners: &[Point<D>]) -> Vector<D> {
+    let edge = corners[1] - corners[0];
+    if D == 2 {
+        return Vector::<D>::from_fn(|k, _| if k == 0 { edge[1] } else { -edge[0] });
     }
+    cross(&edge, &(corners[2] - corners[0]))
 }
 
 /// Where the region ends between a point inside and one outside.
@@ -191,12 +207,7 @@ fn bisect<const D: usize>(inside: &Point<D>, outside: &Point<D>, is_inside: &dyn
 }
 
 /// Gauss points of a simplex, collapsed from the cube.
-fn simplex_rule<const D: usize>(
-    corners: &[Point<D>],
-    region: RegionId,
-    gauss: &[(f64, f64)],
-    rule: &mut CellRule<D>,
-) {
+fn simplex_rule<const D: usize>(corners: &[Point<D>], region: RegionId, gauss: &[(f64, f64)], rule: &mut CellRule<D>) {
     let edges: Vec<Vector<D>> = (1..=D).map(|i| corners[i] - corners[0]).collect();
     let volume = crate::small::determinant(&signorini_geometry::Matrix::<D>::from_columns(&edges)).abs();
     if volume == 0.0 {
@@ -217,29 +228,21 @@ fn simplex_rule<const D: usize>(
     }
 }
 
-/// Surface points of a chord.
+/// Surface points of a chord, with the sign that turns its own normal outwards.
 fn facet_rule<const D: usize>(
     corners: &[Point<D>],
-    outwards: &Vector<D>,
+    sign: f64,
     [minus, plus]: [RegionId; 2],
     gauss: &[(f64, f64)],
     rule: &mut CellRule<D>,
 ) {
     let edges: Vec<Vector<D>> = (1..D).map(|i| corners[i] - corners[0]).collect();
-    let mut normal = Vector::<D>::zeros();
-    if D == 2 {
-        (normal[0], normal[1]) = (edges[0][1], -edges[0][0]);
-    } else {
-        for k in 0..D {
-            let (p, q) = ((k + 1) % D, (k + 2) % D);
-            normal[k] = edges[0][p] * edges[1][q] - edges[0][q] * edges[1][p];
-        }
-    }
+    let normal = area_vector(corners) * sign;
     let area = normal.norm();
     if area == 0.0 {
         return;
     }
-    normal /= if normal.dot(outwards) < 0.0 { -area } else { area };
+    let normal = normal / area;
     for mut i in 0..gauss.len().pow(D as u32 - 1) {
         let (mut x, mut weight, mut shrink) = (corners[0], area, 1.0);
         for k in (0..D - 1).rev() {

@@ -86,7 +86,8 @@ fn discs_and_balls_are_measured_to_twelve_digits() {
 /// A Gauss point more in each direction gains a digit.
 #[test]
 fn errors_fall_with_the_order() {
-    let errors: Vec<f64> = [3, 5].map(|q| (one(&ball(Point::<3>::zeros(), 0.9), 8, q).volume / 3.053628059289279 - 1.0).abs()).into();
+    let errors: Vec<f64> =
+        [3, 5].map(|q| (one(&ball(Point::<3>::zeros(), 0.9), 8, q).volume / 3.053628059289279 - 1.0).abs()).into();
     assert!(errors[0] < 6e-7 && errors[1] < 1.2e-9, "{errors:?}");
 }
 

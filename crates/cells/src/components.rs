@@ -12,6 +12,7 @@
 use crate::region::{Filling, MaterialRule, Region};
 use crate::tree::CellTree;
 use rayon::prelude::*;
+use signorini_fem::cut::End;
 use signorini_geometry::{Point, Vector};
 
 /// Samples in each direction of a cell.
@@ -225,9 +226,9 @@ fn touching_of<const D: usize>(
     let b = tree.leaves()[i].bounds;
     let mut out = Vec::new();
     for axis in 0..D {
-        for high in [false, true] {
+        for end in End::BOTH {
             let outer = tree.bounds();
-            if if high { b.max[axis] >= outer.max[axis] } else { b.min[axis] <= outer.min[axis] } {
+            if end.sign() * (end.of(&b, axis) - end.of(outer, axis)) >= 0.0 {
                 continue;
             }
             let points: Vec<Point<D>> = if rules[i].filling == Filling::Full {
@@ -243,16 +244,16 @@ fn touching_of<const D: usize>(
                             j /= n;
                             (t + 0.5) / n as f64
                         }));
-                        x[axis] = if high { b.max[axis] } else { b.min[axis] };
+                        x[axis] = end.of(&b, axis);
                         x
                     })
                     .collect()
             } else {
-                region.side_rule(&b, axis, high, 3).iter().map(|p| p.x).collect()
+                region.side_rule(&b, axis, end, 3).iter().map(|p| p.x).collect()
             };
             for x in points {
                 let mut beyond = x;
-                beyond[axis] += if high { 1e-9 } else { -1e-9 } * b.size()[axis];
+                beyond[axis] += 1e-9 * end.sign() * b.size()[axis];
                 let j = tree.leaf_at(&beyond);
                 if leaves[j].count > 0 && i != j {
                     let pair = [start[i] + leaves[i].at(&x), start[j] + leaves[j].at(&beyond)];

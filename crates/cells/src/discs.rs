@@ -125,11 +125,7 @@ impl<const D: usize> DiscContact<D> {
             forces[*j] += force;
         }
         let discs = (discs.iter().enumerate())
-            .map(|(i, d)| Disc {
-                site: d.site,
-                pressure: forces[i] / d.site.weight,
-                centre: [d.start, centres[i]],
-            })
+            .map(|(i, d)| Disc { site: d.site, pressure: forces[i] / d.site.weight, centre: [d.start, centres[i]] })
             .collect();
         Ok(DiscSolution { displacement: u, discs, radius, largest_spacing, pairs, iterations })
     }
@@ -189,7 +185,8 @@ impl<const D: usize> DiscContact<D> {
             let step = self.step(system, discs, &now, &pairs, &residual)?;
             // Two rows of discs must not jump through each other.
             let farthest = discs.iter().map(|d| d.displacement(&step).norm()).fold(0.0, f64::max);
-            let limited = if pairs.is_empty() && iteration == 0 { 1.0 } else { (radius / farthest.max(1e-300)).min(1.0) };
+            let limited =
+                if pairs.is_empty() && iteration == 0 { 1.0 } else { (radius / farthest.max(1e-300)).min(1.0) };
             u.iter_mut().zip(&step).for_each(|(u, s)| *u += limited * s);
         }
         Err(CellsError::NotConverged { iterations: MOST_ITERATIONS, residual: relative })
@@ -280,7 +277,8 @@ fn spread<const D: usize>(sites: &[Site<D>], spacing: f64) -> (Vec<Site<D>>, f64
     let mut chosen = vec![0];
     let mut nearest: Vec<(f64, usize)> = sites.iter().map(|s| (distance(s, &sites[0]), 0)).collect();
     loop {
-        let (at, far) = nearest.iter().enumerate().fold((0, 0.0), |best, (i, n)| if n.0 > best.1 { (i, n.0) } else { best });
+        let (at, far) =
+            nearest.iter().enumerate().fold((0, 0.0), |best, (i, n)| if n.0 > best.1 { (i, n.0) } else { best });
         if far < spacing {
             let mut out: Vec<Site<D>> = chosen.iter().map(|c| Site { weight: 0.0, ..sites[*c] }).collect();
             sites.iter().zip(&nearest).for_each(|(s, n)| out[n.1].weight += s.weight);

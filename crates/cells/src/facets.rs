@@ -8,6 +8,7 @@
 use crate::error::CellsError;
 use crate::region::{BoundaryPoint, Filling, Integration, MaterialRule, Region};
 use signorini_fem::QuadraturePoint;
+use signorini_fem::cut::End;
 use signorini_geometry::mesh::TriangleMesh;
 use signorini_geometry::rule::gauss_legendre;
 use signorini_geometry::{Aabb, Point, Vector};
@@ -163,19 +164,19 @@ impl Region<3> for FacetBody {
     }
 
     /// By 12 × 12 points, each in the material or not.
-    fn side_rule(&self, b: &Aabb<3>, axis: usize, high: bool, _: usize) -> Vec<QuadraturePoint<3>> {
+    fn side_rule(&self, b: &Aabb<3>, axis: usize, end: End, _: usize) -> Vec<QuadraturePoint<3>> {
         const SIDE: usize = 12;
         let others: Vec<usize> = (0..3).filter(|&k| k != axis).collect();
         let size = b.size();
         let weight = size[others[0]] * size[others[1]] / (SIDE * SIDE) as f64;
         let mut out = Vec::new();
         for i in 0..SIDE * SIDE {
-            let mut x = if high { b.max } else { b.min };
+            let mut x = if end == End::High { b.max } else { b.min };
             for (k, at) in others.iter().zip([i % SIDE, i / SIDE]) {
                 x[*k] = b.min[*k] + size[*k] * (at as f64 + 0.5) / SIDE as f64;
             }
             let mut inside = x;
-            inside[axis] += if high { -1e-9 } else { 1e-9 } * size[axis];
+            inside[axis] -= 1e-9 * end.sign() * size[axis];
             if self.contains(&inside) {
                 out.push(QuadraturePoint { x, weight });
             }
@@ -228,7 +229,8 @@ fn on_material_side(part: &[Point<3>; 3], b: &Aabb<3>, normal: &Vector<3>) -> bo
     (0..3).all(|k| {
         let slack = 1e-12 * (b.max[k] - b.min[k]);
         let on = |at: f64| part.iter().all(|x| (x[k] - at).abs() <= slack);
-        !(on(b.max[k]) && normal[k] < 0.0) && !(on(b.min[k]) && normal[k] > 0.0)
+        let beyond = (on(b.max[k]) && normal[k] < 0.0) || (on(b.min[k]) && normal[k] > 0.0);
+        !beyond
     })
 }
 

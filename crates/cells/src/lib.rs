@@ -44,6 +44,7 @@ pub use error::CellsError;
 pub use loads::Load;
 pub use place::Place;
 pub use region::{BoundaryPoint, Filling, Integration, Region};
+pub use signorini_fem::cut::End;
 pub use signorini_fem::elastic::{Elastic, Space, von_mises};
 pub use space::{Products, Tabulation};
 pub use supports::{Held, Support};

@@ -4,21 +4,28 @@ use crate::body::{CellBody, Site};
 use crate::error::CellsError;
 use crate::region::{BoundaryPoint, Filling};
 use signorini_fem::QuadraturePoint;
+use signorini_fem::cut::End;
 use signorini_geometry::{Point, Vector};
 use std::sync::Arc;
 
 /// Where something is held or loaded.
 #[derive(Clone)]
 pub enum Place<const D: usize> {
-    /// The material on a side of the box of the cells, low or high along an axis.
-    Side { axis: usize, high: bool },
+    /// The material on a side of the box of the cells.
+    Side { axis: usize, end: End },
     /// The points of the recovered boundary for which this holds.
     Boundary(Arc<dyn Fn(&BoundaryPoint<D>) -> bool + Send + Sync>),
 }
 
 impl<const D: usize> Place<D> {
-    pub fn side(axis: usize, high: bool) -> Self {
-        Place::Side { axis, high }
+    /// The side where a coordinate is least.
+    pub fn low(axis: usize) -> Self {
+        Place::Side { axis, end: End::Low }
+    }
+
+    /// The side where a coordinate is greatest.
+    pub fn high(axis: usize) -> Self {
+        Place::Side { axis, end: End::High }
     }
 
     pub fn boundary(holds: impl Fn(&BoundaryPoint<D>) -> bool + Send + Sync + 'static) -> Self {
@@ -34,27 +41,27 @@ impl<const D: usize> CellBody<D> {
     pub fn points_on(&self, place: &Place<D>) -> Result<Vec<Site<D>>, CellsError> {
         let (sites, what) = match place {
             Place::Boundary(holds) => (self.sites(&|p| holds(p)), "named on the recovered boundary"),
-            Place::Side { axis, high } => {
+            Place::Side { axis, end } => {
                 if *axis >= D {
                     return Err(CellsError::Axis { axis: *axis, dimension: D });
                 }
-                (self.side_sites(*axis, *high), "named on a side of the box")
+                (self.side_sites(*axis, *end), "named on a side of the box")
             }
         };
         if sites.is_empty() { Err(CellsError::EmptyPlace { what }) } else { Ok(sites) }
     }
 
-    fn side_sites(&self, axis: usize, high: bool) -> Vec<Site<D>> {
+    fn side_sites(&self, axis: usize, end: End) -> Vec<Site<D>> {
         let mut out = Vec::new();
         let points = self.degree() + 4;
-        let normal = Vector::<D>::from_fn(|k, _| if k == axis { if high { 1.0 } else { -1.0 } } else { 0.0 });
-        for number in self.cells_on(axis, high) {
+        let normal = Vector::<D>::from_fn(|k, _| if k == axis { end.sign() } else { 0.0 });
+        for number in self.cells_on(axis, end) {
             let cell = &self.cells()[number];
             let b = self.bounds_of(number);
             let found: Vec<QuadraturePoint<D>> = if cell.rule.filling == Filling::Full {
-                side_gauss(b, axis, high, points)
+                side_gauss(b, axis, end, points)
             } else {
-                self.region.side_rule(b, axis, high, points)
+                self.region.side_rule(b, axis, end, points)
             };
             for p in found {
                 // Of several pieces in a leaf the nearest.
@@ -67,12 +74,9 @@ impl<const D: usize> CellBody<D> {
     }
 
     /// The cells on a side of the box.
-    pub(crate) fn cells_on(&self, axis: usize, high: bool) -> Vec<usize> {
+    pub(crate) fn cells_on(&self, axis: usize, end: End) -> Vec<usize> {
         let outer = self.tree.bounds();
-        let on = |c: &usize| {
-            let b = self.bounds_of(*c);
-            if high { b.max[axis] >= outer.max[axis] } else { b.min[axis] <= outer.min[axis] }
-        };
+        let on = |c: &usize| end.of(self.bounds_of(*c), axis) == end.of(outer, axis);
         (0..self.cells().len()).filter(on).collect()
     }
 }
@@ -81,7 +85,7 @@ impl<const D: usize> CellBody<D> {
 pub(crate) fn side_gauss<const D: usize>(
     b: &signorini_geometry::Aabb<D>,
     axis: usize,
-    high: bool,
+    end: End,
     points: usize,
 ) -> Vec<QuadraturePoint<D>> {
     let gauss = signorini_geometry::rule::gauss_legendre(points);
@@ -90,7 +94,7 @@ pub(crate) fn side_gauss<const D: usize>(
             let mut weight = 1.0;
             let x = Point::from_fn(|k, _| {
                 if k == axis {
-                    return if high { b.max[k] } else { b.min[k] };
+                    return end.of(b, k);
                 }
                 let (t, w) = gauss[i % points];
                 i /= points;

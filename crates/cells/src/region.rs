@@ -2,7 +2,7 @@
 
 use crate::domain::{Domain, Restricted};
 use signorini_fem::QuadraturePoint;
-use signorini_fem::cut::{height::side_points, height_functions, space_tree, sub_cells};
+use signorini_fem::cut::{End, height::side_points, height_functions, space_tree, sub_cells};
 use signorini_geometry::{Aabb, Point, Vector};
 
 /// How cut cells are integrated.
@@ -71,8 +71,8 @@ pub trait Region<const D: usize>: Send + Sync {
     /// The quadrature of the material in a box, for functions of a degree.
     fn rule(&self, b: &Aabb<D>, integration: &Integration, degree: usize) -> MaterialRule<D>;
 
-    /// Quadrature of the material on a side of a box, low or high along an axis.
-    fn side_rule(&self, b: &Aabb<D>, axis: usize, high: bool, points: usize) -> Vec<QuadraturePoint<D>>;
+    /// Quadrature of the material on a side of a box.
+    fn side_rule(&self, b: &Aabb<D>, axis: usize, end: End, points: usize) -> Vec<QuadraturePoint<D>>;
 
     fn contains(&self, x: &Point<D>) -> bool;
 
@@ -123,8 +123,8 @@ impl<const D: usize> Region<D> for Domain<D> {
         }
     }
 
-    fn side_rule(&self, b: &Aabb<D>, axis: usize, high: bool, points: usize) -> Vec<QuadraturePoint<D>> {
-        side_points(&self.partition(), b, axis, high, points, 1)
+    fn side_rule(&self, b: &Aabb<D>, axis: usize, end: End, points: usize) -> Vec<QuadraturePoint<D>> {
+        side_points(&self.partition(), b, axis, end, points, 1)
     }
 
     fn contains(&self, x: &Point<D>) -> bool {

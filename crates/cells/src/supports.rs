@@ -14,6 +14,7 @@ use crate::error::CellsError;
 use crate::place::{Place, side_gauss};
 use crate::space::Tabulation;
 use nalgebra::{DMatrix, DVector};
+use signorini_fem::cut::End;
 use signorini_geometry::Vector;
 use signorini_solve::{Symbolic, SymmetricMatrix};
 use std::collections::BTreeMap;
@@ -66,16 +67,16 @@ impl<const D: usize> CellBody<D> {
     pub(crate) fn projected(
         &self,
         axis: usize,
-        high: bool,
+        end: End,
         component: usize,
         value: &Field<D>,
     ) -> Result<Vec<(usize, f64)>, CellsError> {
         let on_side = |f: u32| {
             let mode = self.mode(f as usize);
-            mode.ids[axis] == if high { self.tree.count(mode.level, axis) } else { 0 }
+            mode.ids[axis] == if end == End::High { self.tree.count(mode.level, axis) } else { 0 }
         };
         let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
-        let cells = self.cells_on(axis, high);
+        let cells = self.cells_on(axis, end);
         for &c in &cells {
             for &f in self.cells()[c].functions.iter().filter(|f| on_side(**f)) {
                 let next = numbers.len() as u32;
@@ -94,7 +95,7 @@ impl<const D: usize> CellBody<D> {
                 .collect();
             let n = places.len();
             let mut mass = vec![0.0; n * n];
-            for p in side_gauss(self.bounds_of(c), axis, high, self.degree() + 4) {
+            for p in side_gauss(self.bounds_of(c), axis, end, self.degree() + 4) {
                 self.functions_at(c, &p.x, &mut t);
                 let target = value(&p.x);
                 for (a, (i, row)) in places.iter().enumerate() {

@@ -7,6 +7,7 @@ use crate::place::Place;
 use crate::schwarz::Schwarz;
 use crate::supports::{Held, Support};
 use nalgebra::DMatrix;
+use signorini_fem::cut::End;
 use signorini_fem::elastic::Space;
 use signorini_geometry::{Point, Vector};
 use signorini_solve::dissection::nested_dissection;
@@ -99,27 +100,22 @@ impl<'a, const D: usize> System<'a, D> {
             }
         }
         match (&support.on, &support.held) {
-            (Place::Side { axis, high }, Held::Components(fields)) => {
+            (Place::Side { axis, end }, Held::Components(fields)) => {
                 if *axis >= D {
                     return Err(CellsError::Axis { axis: *axis, dimension: D });
                 }
                 for (k, field) in fields.iter().enumerate() {
                     if let Some(field) = field {
-                        self.prescribe(*axis, *high, k, field)?;
+                        self.prescribe(*axis, *end, k, field)?;
                     }
                 }
             }
-            (Place::Side { axis, high }, Held::Normal(field)) => {
+            (Place::Side { axis, end }, Held::Normal(field)) => {
                 if *axis >= D {
                     return Err(CellsError::Axis { axis: *axis, dimension: D });
                 }
-                let (field, sign) = (field.clone(), if *high { 1.0 } else { -1.0 });
-                self.prescribe(
-                    *axis,
-                    *high,
-                    *axis,
-                    &(Arc::new(move |x: &_| sign * field(x)) as crate::body::Field<D>),
-                )?;
+                let (field, sign) = (field.clone(), end.sign());
+                self.prescribe(*axis, *end, *axis, &(Arc::new(move |x: &_| sign * field(x)) as crate::body::Field<D>))?;
             }
             (place, held) => {
                 let sites = self.body.points_on(place)?;
@@ -132,14 +128,8 @@ impl<'a, const D: usize> System<'a, D> {
         Ok(self)
     }
 
-    fn prescribe(
-        &mut self,
-        axis: usize,
-        high: bool,
-        k: usize,
-        field: &crate::body::Field<D>,
-    ) -> Result<(), CellsError> {
-        for (unknown, value) in self.body.projected(axis, high, k, field)? {
+    fn prescribe(&mut self, axis: usize, end: End, k: usize, field: &crate::body::Field<D>) -> Result<(), CellsError> {
+        for (unknown, value) in self.body.projected(axis, end, k, field)? {
             self.prescribed[unknown] = Some(value);
         }
         Ok(())
@@ -223,13 +213,13 @@ impl<'a, const D: usize> System<'a, D> {
     }
 
     /// The resultant of those forces along an axis on a side of the box: functions of vertices sum to one there.
-    pub fn reaction(&self, u: &[f64], axis: usize, high: bool, component: usize) -> f64 {
+    pub fn reaction(&self, u: &[f64], axis: usize, end: End, component: usize) -> f64 {
         let residual = self.residual(u);
         let on = |f: &usize| {
             let mode = self.body.mode(*f);
             mode.level == 0
                 && self.body.is_vertex(*f)
-                && mode.ids[axis] == if high { self.body.tree.count(mode.level, axis) } else { 0 }
+                && mode.ids[axis] == if end == End::High { self.body.tree.count(mode.level, axis) } else { 0 }
         };
         (0..self.body.function_count()).filter(on).map(|f| residual[D * f + component]).sum()
     }

@@ -7,6 +7,7 @@
 use crate::error::CellsError;
 use crate::region::{Filling, Integration, MaterialRule, Region};
 use signorini_fem::QuadraturePoint;
+use signorini_fem::cut::End;
 use signorini_geometry::grid_spline::GridSpline;
 use signorini_geometry::rule::gauss_legendre;
 use signorini_geometry::{Aabb, ImplicitShape, Point, Vector};
@@ -251,11 +252,11 @@ impl<const D: usize> Region<D> for ModulusImage<D> {
         MaterialRule { filling, volume, boundary: Vec::new() }
     }
 
-    fn side_rule(&self, b: &Aabb<D>, axis: usize, high: bool, points: usize) -> Vec<QuadraturePoint<D>> {
+    fn side_rule(&self, b: &Aabb<D>, axis: usize, end: End, points: usize) -> Vec<QuadraturePoint<D>> {
         let mut side = *b;
-        let at = if high { b.max[axis] } else { b.min[axis] };
+        let at = end.of(b, axis);
         (side.min[axis], side.max[axis]) = (at, at);
-        let inwards = if high { -1e-9 } else { 1e-9 } * b.size()[axis];
+        let inwards = -1e-9 * end.sign() * b.size()[axis];
         let gauss = gauss_legendre(points);
         let mut out = Vec::new();
         for part in self.divided(&side) {

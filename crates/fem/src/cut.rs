@@ -15,7 +15,7 @@
 pub mod height;
 pub mod simplices;
 
-pub use height::height_functions;
+pub use height::{End, height_functions};
 pub use simplices::{space_tree, sub_cells};
 
 use signorini_geometry::rule::gauss_legendre;

@@ -79,10 +79,10 @@ fn block(n: usize, degree: usize, products: Products) -> CellBody<3> {
 fn loaded(body: &CellBody<3>) -> System<'_, 3> {
     let mut system = System::new(body);
     for axis in 0..3 {
-        system.support(&Support::symmetric(Place::side(axis, false))).unwrap();
+        system.support(&Support::symmetric(Place::low(axis))).unwrap();
         let normal = Vector::<3>::from_fn(|k, _| f64::from(u8::from(k == axis)));
         let value = Arc::new(move |x: &Point<3>| stress(x) * normal);
-        system.load(&Load::Traction { on: Place::side(axis, true), value }).unwrap();
+        system.load(&Load::Traction { on: Place::high(axis), value }).unwrap();
     }
     system
 }

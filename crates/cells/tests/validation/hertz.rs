@@ -47,8 +47,8 @@ fn press_refined(
     }
     let body = CellBody::new(Arc::new(disc), tree, setup, stuff(Space::PlaneStrain)).unwrap();
     let mut system = System::new(&body);
-    system.support(&Support::symmetric(Place::side(0, false))).unwrap();
-    system.support(&Support::component(Place::side(1, true), 1, -delta)).unwrap();
+    system.support(&Support::symmetric(Place::low(0))).unwrap();
+    system.support(&Support::component(Place::high(1), 1, -delta)).unwrap();
     let contact = RigidContact {
         obstacle: &floor,
         on: Place::boundary(|p| p.normal[1] < -0.5),
@@ -142,7 +142,7 @@ fn newton_converges_quadratically_on_curved_bodies() {
     let tree = CellTree::new(b, [8, 4]).unwrap();
     let body = CellBody::new(Arc::new(slab), tree, Discretisation::of_degree(3), stuff(Space::PlaneStrain)).unwrap();
     let mut system = System::new(&body);
-    system.support(&Support::clamped(Place::side(1, false))).unwrap();
+    system.support(&Support::clamped(Place::low(1))).unwrap();
     let disc = |x: &Point<2>| GapJet::ball(x, &Point::<2>::new(0.52, 0.59), 0.2);
     for enforcement in [Enforcement::Penalty { stiffness: 50.0 }, Enforcement::Nitsche { gamma: 1.0 }] {
         let on = Place::boundary(|_| true);
@@ -154,7 +154,7 @@ fn newton_converges_quadratically_on_curved_bodies() {
         assert!(end[2] < 1e-10 && end[2] < (20.0 * end[1] * end[1]).max(1e-10), "{:?}", found.residuals);
         assert!(found.iterations <= 14 && found.force[1] < 0.0, "{:?}", found.residuals);
         // What pushes up on the disc is what the clamped side feels.
-        let reaction = system.reaction(&found.displacement, 1, false, 1);
+        let reaction = system.reaction(&found.displacement, 1, End::Low, 1);
         assert!((reaction + found.force[1]).abs() < 1e-9 * reaction.abs().max(1e-3), "{reaction} {}", found.force);
     }
 }
@@ -167,9 +167,9 @@ fn press_ball(n: usize, degree: usize, delta: f64) -> (f64, usize, f64) {
     let setup = Discretisation::of_degree(degree);
     let body = CellBody::new(Arc::new(domain), tree, setup, stuff(Space::Solid)).unwrap();
     let mut system = System::new(&body);
-    system.support(&Support::symmetric(Place::side(0, false))).unwrap();
-    system.support(&Support::symmetric(Place::side(1, false))).unwrap();
-    system.support(&Support::component(Place::side(2, true), 2, -delta)).unwrap();
+    system.support(&Support::symmetric(Place::low(0))).unwrap();
+    system.support(&Support::symmetric(Place::low(1))).unwrap();
+    system.support(&Support::component(Place::high(2), 2, -delta)).unwrap();
     let floor = |x: &Point<3>| GapJet::flat(x[2], Vector::<3>::z());
     let contact = RigidContact {
         obstacle: &floor,
@@ -204,4 +204,27 @@ fn a_ball_between_planes_finely() {
     let (force, iterations, deviation) = press_ball(8, 3, 0.06);
     println!("ball, 8 cells, degree 3: {force} ({wanted}), {iterations} iterations, deviation {deviation:.3}");
     assert!((force / wanted - 1.0).abs() < 4e-3 && iterations <= 8 && deviation < 0.05);
+}
+
+/// A disc that only contact holds up: Newton's method finds the rigid motion, and the floor carries the load.
+#[test]
+fn a_load_on_a_body_that_only_contact_holds() {
+    let b = Aabb::new(Point::<2>::zeros(), Point::<2>::repeat(1.0));
+    let disc = Domain::shape(ball(Point::<2>::y(), 1.0));
+    let tree = CellTree::new(b, [6, 6]).unwrap();
+    let body = CellBody::new(Arc::new(disc), tree, Discretisation::of_degree(4), stuff(Space::PlaneStrain)).unwrap();
+    let mut system = System::new(&body);
+    system.support(&Support::symmetric(Place::low(0))).unwrap();
+    let push = Arc::new(|_: &Point<2>| Vector::<2>::new(0.0, -0.01));
+    system.load(&Load::Traction { on: Place::high(1), value: push }).unwrap();
+    assert_eq!(system.free_motions(), 1);
+    for enforcement in [Enforcement::Nitsche { gamma: 1.0 }, Enforcement::Penalty { stiffness: 100.0 }] {
+        for kinematics in [Kinematics::Linearised, Kinematics::Current] {
+            let on = Place::boundary(|p| p.normal[1] < -0.3);
+            let contact = RigidContact { obstacle: &floor, on, kinematics, enforcement };
+            let found = contact.solve(&system).unwrap();
+            println!("{enforcement:?} {kinematics:?}: {} {:?}", found.force[1], found.residuals);
+            assert!((found.force[1] - 0.01).abs() < 1e-9, "{}", found.force);
+        }
+    }
 }

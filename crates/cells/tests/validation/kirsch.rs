@@ -37,10 +37,10 @@ pub fn plate(radius: f64, n: usize, setup: Discretisation<2>, space: Space) -> C
 pub fn loaded(body: &CellBody<2>) -> System<'_, 2> {
     let mut system = System::new(body);
     for axis in 0..2 {
-        system.support(&Support::symmetric(Place::side(axis, false))).unwrap();
+        system.support(&Support::symmetric(Place::low(axis))).unwrap();
         let normal = Vector::<2>::from_fn(|k, _| f64::from(u8::from(k == axis)));
         let value = Arc::new(move |x: &Point<2>| stress(x) * normal);
-        system.load(&Load::Traction { on: Place::side(axis, true), value }).unwrap();
+        system.load(&Load::Traction { on: Place::high(axis), value }).unwrap();
     }
     system
 }

@@ -32,7 +32,7 @@ fn error<const D: usize>(normal: Vector<D>, at: f64, n: usize, degree: usize, cu
         Some(field)
     }));
     let mut system = System::new(&body);
-    system.support(&Support { on: Place::side(0, false), held: held.clone() }).unwrap();
+    system.support(&Support { on: Place::low(0), held: held.clone() }).unwrap();
     if cut == Cut::Held {
         system.support(&Support { on: Place::boundary(|_| true), held }).unwrap();
     }
@@ -47,13 +47,13 @@ fn error<const D: usize>(normal: Vector<D>, at: f64, n: usize, degree: usize, cu
     let stress = Matrix::<D>::from_fn(|i, j| full[(i, j)]);
     let traction = |normal: Vector<D>| Arc::new(move |_: &Point<D>| stress * normal);
     for axis in 0..D {
-        for high in [false, true] {
-            if axis == 0 && !high {
+        for end in End::BOTH {
+            if axis == 0 && end == End::Low {
                 continue;
             }
-            let e = Vector::<D>::from_fn(|k, _| if k == axis { if high { 1.0 } else { -1.0 } } else { 0.0 });
+            let e = Vector::<D>::from_fn(|k, _| if k == axis { end.sign() } else { 0.0 });
             // A side beyond the cut has no material.
-            let _ = system.load(&Load::Traction { on: Place::side(axis, high), value: traction(e) });
+            let _ = system.load(&Load::Traction { on: Place::Side { axis, end }, value: traction(e) });
         }
     }
     if cut == Cut::Loaded {
@@ -108,8 +108,8 @@ fn a_linear_field_around_an_axis() {
     let volume = 2.0 / 3.0 * std::f64::consts::PI * 0.729;
     assert!((body.volume() / volume - 1.0).abs() < 1e-10, "{:e}", body.volume() / volume - 1.0);
     let mut system = System::new(&body);
-    system.support(&Support::symmetric(Place::side(0, false))).unwrap();
-    system.support(&Support::symmetric(Place::side(1, false))).unwrap();
+    system.support(&Support::symmetric(Place::low(0))).unwrap();
+    system.support(&Support::symmetric(Place::low(1))).unwrap();
     system.load(&Load::Pressure { on: Place::boundary(|_| true), value: Arc::new(|_| 2.0) }).unwrap();
     let u = system.solve(Solver::Direct).unwrap().displacement;
     for x in [Point::<2>::new(0.3, 0.2), Point::<2>::new(0.6, 0.6)] {

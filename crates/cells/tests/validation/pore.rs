@@ -15,9 +15,9 @@ fn close(delta: f64, radius: Option<f64>, centres: Centres) -> (f64, DiscSolutio
     let tree = CellTree::new(b, [8, 16]).unwrap();
     let body = CellBody::new(Arc::new(domain), tree, setup, stuff(Space::PlaneStrain)).unwrap();
     let mut system = System::new(&body);
-    system.support(&Support::symmetric(Place::side(0, false))).unwrap();
-    system.support(&Support::component(Place::side(1, true), 1, -delta)).unwrap();
-    system.support(&Support::component(Place::side(1, false), 1, delta)).unwrap();
+    system.support(&Support::symmetric(Place::low(0))).unwrap();
+    system.support(&Support::component(Place::high(1), 1, -delta)).unwrap();
+    system.support(&Support::component(Place::low(1), 1, delta)).unwrap();
     let contact = DiscContact {
         on: Place::boundary(|p| p.x[0] < 0.499),
         spacing: 0.02,
@@ -27,7 +27,7 @@ fn close(delta: f64, radius: Option<f64>, centres: Centres) -> (f64, DiscSolutio
         increments: 4,
     };
     let found = contact.solve(&system).unwrap();
-    (-system.reaction(&found.displacement, 1, true, 1), found)
+    (-system.reaction(&found.displacement, 1, End::High, 1), found)
 }
 
 #[test]

@@ -38,18 +38,39 @@ pub fn height_functions<const D: usize>(partition: &CellPartition<'_, D>, cell: 
     rule
 }
 
-/// Quadrature of one region on a side of a box, low or high along an axis, with `order` Gauss points per direction.
+/// An end of a box along an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum End {
+    Low,
+    High,
+}
+
+impl End {
+    pub const BOTH: [End; 2] = [End::Low, End::High];
+
+    /// The coordinate of the end of a box.
+    pub fn of<const D: usize>(self, b: &Aabb<D>, axis: usize) -> f64 {
+        if self == End::High { b.max[axis] } else { b.min[axis] }
+    }
+
+    /// The component of the outward normal: -1 or 1.
+    pub fn sign(self) -> f64 {
+        if self == End::High { 1.0 } else { -1.0 }
+    }
+}
+
+/// Quadrature of one region on a side of a box, with `order` Gauss points per direction.
 pub fn side_points<const D: usize>(
     partition: &CellPartition<'_, D>,
     cell: &Aabb<D>,
     axis: usize,
-    high: bool,
+    end: End,
     order: usize,
     region: u32,
 ) -> Vec<QuadraturePoint<D>> {
-    let at = if high { cell.max[axis] } else { cell.min[axis] };
+    let at = end.of(cell, axis);
     // Just within the box: a shape that ends on this side has its material there.
-    let inwards = if high { at - 1e-9 * cell.size()[axis] } else { at + 1e-9 * cell.size()[axis] };
+    let inwards = at - 1e-9 * end.sign() * cell.size()[axis];
     let given: Vec<Sheet<'_, D>> = partition.sheets.iter().map(|s| Sheet::Given(&**s)).collect();
     let sheets: Vec<Sheet<'_, D>> = given.iter().map(|of| Sheet::Face { of, axis, at: inwards }).collect();
     let numbered: Vec<(usize, &Sheet<'_, D>)> = sheets.iter().enumerate().collect();

@@ -136,6 +136,9 @@ pub struct CellBody<const D: usize> {
     findings: Findings,
 }
 
+/// Pieces of material, and for each of them the copy of a function that it sees, if any.
+type PiecesOfSupport = (Vec<usize>, Vec<Option<usize>>);
+
 /// Least share of material in a cell whose own polynomials give the stress on its boundary.
 const OWN_STRESS: f64 = 0.3;
 
@@ -199,6 +202,7 @@ impl<const D: usize> CellBody<D> {
     /// Makes a cell of every piece that is kept, and numbers the functions in the order of the cells.
     fn number(&mut self, graph: &PieceGraph<D>, rules: Vec<MaterialRule<D>>, kept: &[bool]) {
         let mut numbers: BTreeMap<(Mode<D>, usize), u32> = BTreeMap::new();
+        let mut seen: BTreeMap<Mode<D>, PiecesOfSupport> = BTreeMap::new();
         let mut cell_of_piece = vec![usize::MAX; kept.len()];
         let whole: Vec<f64> = self.tree.leaves().iter().map(|l| l.bounds.volume()).collect();
         for (piece, rule) in rules.into_iter().enumerate().filter(|(p, _)| kept[*p]) {
@@ -209,9 +213,11 @@ impl<const D: usize> CellBody<D> {
                 self.discretisation.degree,
                 self.discretisation.products,
             );
+            let modes: Vec<(LocalMode<D>, usize)> = (modes.into_iter())
+                .filter_map(|m| Some((m, self.copy_of(graph, leaf, piece, &m, &mut seen)?)))
+                .collect();
             let functions = (modes.iter())
-                .map(|m| {
-                    let copy = self.copy_of(graph, leaf, piece, m);
+                .map(|&(m, copy)| {
                     let next = numbers.len() as u32;
                     *numbers.entry((m.mode, copy)).or_insert_with(|| {
                         self.functions.push((m.mode, copy));
@@ -222,6 +228,7 @@ impl<const D: usize> CellBody<D> {
             cell_of_piece[piece] = self.cells.len();
             self.of_leaf[leaf].push(self.cells.len());
             let share = rule.measure(whole[leaf]) / whole[leaf];
+            let modes = modes.into_iter().map(|m| m.0).collect();
             self.cells.push(Cell { leaf, modes, functions, rule, share, stress_cell: self.cells.len() });
         }
         let distinct: BTreeSet<Mode<D>> = self.functions.iter().map(|f| f.0).collect();
@@ -250,23 +257,50 @@ impl<const D: usize> CellBody<D> {
         }
     }
 
-    /// Which copy of a function a piece of material sees.
-    fn copy_of(&self, graph: &PieceGraph<D>, leaf: usize, piece: usize, m: &LocalMode<D>) -> usize {
+    /// Which copy of a function a piece of material sees; none where finer functions say all that it says.
+    fn copy_of(
+        &self,
+        graph: &PieceGraph<D>,
+        leaf: usize,
+        piece: usize,
+        m: &LocalMode<D>,
+        seen: &mut BTreeMap<Mode<D>, PiecesOfSupport>,
+    ) -> Option<usize> {
         if self.discretisation.pieces == Pieces::Shared {
-            return 0;
+            return Some(0);
         }
+        if m.factors.iter().all(|f| *f > 1) && m.mode.level == self.tree.leaves()[leaf].level {
+            return Some(piece);
+        }
+        let (pieces, copies) = seen.entry(m.mode).or_insert_with(|| self.pieces_of_support(graph, leaf, m));
+        pieces.iter().position(|p| *p == piece).and_then(|at| copies[at])
+    }
+
+    /// The pieces in the support of a function that is given on a leaf, and the copy that each of them sees.
+    ///
+    /// A copy on refined cells only, none of which touches a cell of its support that is not refined, is a sum of finer
+    /// functions: those vanish nowhere but on sides of cells that are not refined.
+    fn pieces_of_support(&self, graph: &PieceGraph<D>, leaf: usize, m: &LocalMode<D>) -> PiecesOfSupport {
         let leaf = &self.tree.leaves()[leaf];
         let cell = leaf.index.map(|i| i >> (leaf.level - m.mode.level));
         let mut pieces = Vec::new();
+        let mut unrefined = Vec::new();
         for index in support(&self.tree, m.mode.level, &cell, &m.factors) {
             let b = self.tree.cell_box(m.mode.level, &index);
+            if !self.tree.is_refined(m.mode.level, &index) {
+                unrefined.push(b);
+            }
             pieces.extend(self.leaves_in(&b).flat_map(|l| graph.start[l]..graph.start[l + 1]));
         }
-        if pieces.len() == 1 {
-            return pieces[0];
-        }
-        let roots = graph.connected(&pieces);
-        pieces.iter().position(|p| *p == piece).map_or(0, |at| roots[at])
+        let copies = graph.connected(&pieces);
+        let touches = |piece: &usize| {
+            let own = self.tree.leaves()[graph.leaf_of(*piece)].bounds.scaled(1.0 + 1e-9);
+            unrefined.iter().any(|b| (0..D).all(|k| own.min[k] <= b.max[k] && own.max[k] >= b.min[k]))
+        };
+        let needed: BTreeSet<usize> =
+            pieces.iter().zip(&copies).filter(|(p, _)| touches(p)).map(|(_, copy)| *copy).collect();
+        let copies = copies.into_iter().map(|c| needed.contains(&c).then_some(c)).collect();
+        (pieces, copies)
     }
 
     /// The leaves within a cell of some level: they follow each other.
@@ -351,6 +385,9 @@ impl<const D: usize> CellBody<D> {
             return None;
         }
         let cells = &self.of_leaf[self.tree.leaf_at(x)];
+        if let [only] = cells[..] {
+            return Some(only);
+        }
         let distance = |c: &usize| {
             let rule = &self.cells[*c].rule;
             rule.volume.iter().map(|p| (p.x - x).norm_squared()).fold(f64::INFINITY, f64::min)

@@ -212,16 +212,15 @@ impl<'a, const D: usize> System<'a, D> {
         self.matrix.multiply(u).iter().zip(&self.forces).map(|(k, f)| k - f).collect()
     }
 
-    /// The resultant of those forces along an axis on a side of the box: functions of vertices sum to one there.
-    pub fn reaction(&self, u: &[f64], axis: usize, end: End, component: usize) -> f64 {
+    /// The resultant of those forces on a side of the box, of one component: their work on a unit displacement of it.
+    ///
+    /// # Errors
+    /// A side without material.
+    pub fn reaction(&self, u: &[f64], axis: usize, end: End, component: usize) -> Result<f64, CellsError> {
         let residual = self.residual(u);
-        let on = |f: &usize| {
-            let mode = self.body.mode(*f);
-            mode.level == 0
-                && self.body.is_vertex(*f)
-                && mode.ids[axis] == if end == End::High { self.body.tree.count(mode.level, axis) } else { 0 }
-        };
-        (0..self.body.function_count()).filter(on).map(|f| residual[D * f + component]).sum()
+        let one: crate::body::Field<D> = Arc::new(|_| 1.0);
+        let unit = self.body.projected(axis, end, component, &one)?;
+        Ok(unit.iter().map(|(unknown, value)| residual[*unknown] * value).sum())
     }
 }
 

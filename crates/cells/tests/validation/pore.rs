@@ -27,7 +27,7 @@ fn close(delta: f64, radius: Option<f64>, centres: Centres) -> (f64, DiscSolutio
         increments: 4,
     };
     let found = contact.solve(&system).unwrap();
-    (-system.reaction(&found.displacement, 1, End::High, 1), found)
+    (-system.reaction(&found.displacement, 1, End::High, 1).unwrap(), found)
 }
 
 #[test]

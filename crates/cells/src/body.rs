@@ -3,80 +3,20 @@
 //! The stiffness is `∫_B α ε(u):C:ε(v)`, `α = 1` in the material and `α_0` in the rest of the cells (Parvizian, Düster &
 //! Rank, Comput. Mech. 41, 2007). Cells without material are left out. Unknown `D f + k` is component `k` of function `f`.
 
-use crate::components::{PieceGraph, Pieces, faces_itself, is_narrow};
+use crate::components::{PieceGraph, faces_itself, is_narrow};
+use crate::discretisation::{Boundary, Discretisation, Stuff, check};
 use crate::error::CellsError;
-use crate::legendre::MAX_DEGREE;
-use crate::region::{BoundaryPoint, Filling, Integration, MaterialRule, Region};
-use crate::space::{LocalMode, Mode, Products, Tabulation, modes_of, support, tabulate};
+use crate::numbering::{kept_pieces, rules_of_pieces};
+use crate::region::{BoundaryPoint, Filling, MaterialRule, Region};
+use crate::space::{LocalMode, Mode, Tabulation, tabulate};
 use crate::tree::CellTree;
 use rayon::prelude::*;
 use signorini_fem::elastic::{Elastic, Space};
 use signorini_geometry::{Aabb, Point, Vector};
-use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// A function of position.
 pub type Field<const D: usize> = Arc<dyn Fn(&Point<D>) -> f64 + Send + Sync>;
-
-/// What is done with pieces of the body that do not hang together with the largest.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Islands {
-    /// An error tells of them.
-    Refuse,
-    Drop,
-    /// Each is held by supports or contact of its own.
-    Keep,
-}
-
-/// Whether a body without a boundary in the box of its cells is meant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Boundary {
-    Expected,
-    /// The body may fill the whole box.
-    Optional,
-}
-
-/// How a body is made of cells.
-#[derive(Clone)]
-pub struct Discretisation<const D: usize> {
-    /// Degree of the functions, 1 to 8.
-    pub degree: usize,
-    pub products: Products,
-    pub integration: Integration,
-    /// Stiffness outside the material relative to that inside; the error in the energy norm is about `0.1 √α`.
-    pub fictitious: f64,
-    pub pieces: Pieces,
-    pub islands: Islands,
-    pub boundary: Boundary,
-    /// Times that cells are halved in which the boundary faces itself or turns by more than half a radian: where a pore or a
-    /// gap is narrower than a cell, around tips, and at edges.
-    pub refine_narrow: usize,
-}
-
-impl<const D: usize> Discretisation<D> {
-    /// The defaults for a degree.
-    pub fn of_degree(degree: usize) -> Self {
-        Discretisation {
-            degree,
-            products: Products::Tensor,
-            integration: Integration::Exact { points: None },
-            fictitious: 1e-8,
-            pieces: Pieces::Split,
-            islands: Islands::Refuse,
-            boundary: Boundary::Expected,
-            refine_narrow: 0,
-        }
-    }
-}
-
-/// What the body is made of.
-#[derive(Clone)]
-pub struct Stuff<const D: usize> {
-    pub elastic: Elastic,
-    /// A factor of Young's modulus that varies in space, with its largest value.
-    pub modulus: Option<(Field<D>, f64)>,
-    pub space: Space,
-}
 
 /// A cell with material: a leaf, or one piece of the material in it.
 #[derive(Clone, Debug)]
@@ -130,17 +70,11 @@ pub struct CellBody<const D: usize> {
     pub(crate) stuff: Stuff<D>,
     pub(crate) cells: Vec<Cell<D>>,
     /// Cells of each leaf.
-    of_leaf: Vec<Vec<usize>>,
+    pub(crate) of_leaf: Vec<Vec<usize>>,
     /// Every function, and which of its copies.
-    functions: Vec<(Mode<D>, usize)>,
-    findings: Findings,
+    pub(crate) functions: Vec<(Mode<D>, usize)>,
+    pub(crate) findings: Findings,
 }
-
-/// Pieces of material, and for each of them the copy of a function that it sees, if any.
-type PiecesOfSupport = (Vec<usize>, Vec<Option<usize>>);
-
-/// Least share of material in a cell whose own polynomials give the stress on its boundary.
-const OWN_STRESS: f64 = 0.3;
 
 impl<const D: usize> CellBody<D> {
     /// Makes the cells of a body on a tree.
@@ -197,117 +131,6 @@ impl<const D: usize> CellBody<D> {
         };
         body.number(&graph, rules, &kept);
         Ok(body)
-    }
-
-    /// Makes a cell of every piece that is kept, and numbers the functions in the order of the cells.
-    fn number(&mut self, graph: &PieceGraph<D>, rules: Vec<MaterialRule<D>>, kept: &[bool]) {
-        let mut numbers: BTreeMap<(Mode<D>, usize), u32> = BTreeMap::new();
-        let mut seen: BTreeMap<Mode<D>, PiecesOfSupport> = BTreeMap::new();
-        let mut cell_of_piece = vec![usize::MAX; kept.len()];
-        let whole: Vec<f64> = self.tree.leaves().iter().map(|l| l.bounds.volume()).collect();
-        for (piece, rule) in rules.into_iter().enumerate().filter(|(p, _)| kept[*p]) {
-            let leaf = graph.leaf_of(piece);
-            let modes = modes_of(
-                &self.tree,
-                &self.tree.leaves()[leaf],
-                self.discretisation.degree,
-                self.discretisation.products,
-            );
-            let modes: Vec<(LocalMode<D>, usize)> = (modes.into_iter())
-                .filter_map(|m| Some((m, self.copy_of(graph, leaf, piece, &m, &mut seen)?)))
-                .collect();
-            let functions = (modes.iter())
-                .map(|&(m, copy)| {
-                    let next = numbers.len() as u32;
-                    *numbers.entry((m.mode, copy)).or_insert_with(|| {
-                        self.functions.push((m.mode, copy));
-                        next
-                    })
-                })
-                .collect();
-            cell_of_piece[piece] = self.cells.len();
-            self.of_leaf[leaf].push(self.cells.len());
-            let share = rule.measure(whole[leaf]) / whole[leaf];
-            let modes = modes.into_iter().map(|m| m.0).collect();
-            self.cells.push(Cell { leaf, modes, functions, rule, share, stress_cell: self.cells.len() });
-        }
-        let distinct: BTreeSet<Mode<D>> = self.functions.iter().map(|f| f.0).collect();
-        self.findings.copies = self.functions.len() - distinct.len();
-        for piece in (0..kept.len()).filter(|p| kept[*p]) {
-            let cell = cell_of_piece[piece];
-            if self.cells[cell].share >= OWN_STRESS || self.cells[cell].rule.boundary.is_empty() {
-                continue;
-            }
-            // The best of the neighbours, or else of their neighbours.
-            let next = &graph.touching[piece];
-            let farther: Vec<usize> = next.iter().flat_map(|p| graph.touching[*p].iter().copied()).collect();
-            for ring in [next, &farther] {
-                let best = ring
-                    .iter()
-                    .map(|p| cell_of_piece[*p])
-                    .filter(|c| *c != usize::MAX)
-                    .max_by(|a, b| self.cells[*a].share.total_cmp(&self.cells[*b].share).then(b.cmp(a)));
-                if let Some(best) = best
-                    && self.cells[best].share >= OWN_STRESS
-                {
-                    self.cells[cell].stress_cell = best;
-                    break;
-                }
-            }
-        }
-    }
-
-    /// Which copy of a function a piece of material sees; none where finer functions say all that it says.
-    fn copy_of(
-        &self,
-        graph: &PieceGraph<D>,
-        leaf: usize,
-        piece: usize,
-        m: &LocalMode<D>,
-        seen: &mut BTreeMap<Mode<D>, PiecesOfSupport>,
-    ) -> Option<usize> {
-        if self.discretisation.pieces == Pieces::Shared {
-            return Some(0);
-        }
-        if m.factors.iter().all(|f| *f > 1) && m.mode.level == self.tree.leaves()[leaf].level {
-            return Some(piece);
-        }
-        let (pieces, copies) = seen.entry(m.mode).or_insert_with(|| self.pieces_of_support(graph, leaf, m));
-        pieces.iter().position(|p| *p == piece).and_then(|at| copies[at])
-    }
-
-    /// The pieces in the support of a function that is given on a leaf, and the copy that each of them sees.
-    ///
-    /// A copy on refined cells only, none of which touches a cell of its support that is not refined, is a sum of finer
-    /// functions: those vanish nowhere but on sides of cells that are not refined.
-    fn pieces_of_support(&self, graph: &PieceGraph<D>, leaf: usize, m: &LocalMode<D>) -> PiecesOfSupport {
-        let leaf = &self.tree.leaves()[leaf];
-        let cell = leaf.index.map(|i| i >> (leaf.level - m.mode.level));
-        let mut pieces = Vec::new();
-        let mut unrefined = Vec::new();
-        for index in support(&self.tree, m.mode.level, &cell, &m.factors) {
-            let b = self.tree.cell_box(m.mode.level, &index);
-            if !self.tree.is_refined(m.mode.level, &index) {
-                unrefined.push(b);
-            }
-            pieces.extend(self.leaves_in(&b).flat_map(|l| graph.start[l]..graph.start[l + 1]));
-        }
-        let copies = graph.connected(&pieces);
-        let touches = |piece: &usize| {
-            let own = self.tree.leaves()[graph.leaf_of(*piece)].bounds.scaled(1.0 + 1e-9);
-            unrefined.iter().any(|b| (0..D).all(|k| own.min[k] <= b.max[k] && own.max[k] >= b.min[k]))
-        };
-        let needed: BTreeSet<usize> =
-            pieces.iter().zip(&copies).filter(|(p, _)| touches(p)).map(|(_, copy)| *copy).collect();
-        let copies = copies.into_iter().map(|c| needed.contains(&c).then_some(c)).collect();
-        (pieces, copies)
-    }
-
-    /// The leaves within a cell of some level: they follow each other.
-    fn leaves_in(&self, b: &Aabb<D>) -> impl Iterator<Item = usize> + '_ {
-        let corner = b.at(&Point::repeat(1e-9));
-        let (first, b) = (self.tree.leaf_at(&corner), *b);
-        (first..self.tree.leaves().len()).take_while(move |l| b.contains(&self.tree.leaves()[*l].bounds.center()))
     }
 
     pub fn tree(&self) -> &CellTree<D> {
@@ -463,103 +286,4 @@ pub(crate) fn box_points<const D: usize>(b: &Aabb<D>, order: usize) -> Vec<(Poin
             (x, weight)
         })
         .collect()
-}
-
-/// The points of a rule by piece, one rule a piece.
-fn rules_of_pieces<const D: usize>(
-    tree: &CellTree<D>,
-    graph: &PieceGraph<D>,
-    rules: Vec<MaterialRule<D>>,
-) -> Vec<MaterialRule<D>> {
-    let mut out = Vec::with_capacity(graph.touching.len());
-    for (leaf, rule) in rules.into_iter().enumerate() {
-        let pieces = &graph.leaves[leaf];
-        if pieces.count == 1 {
-            out.push(rule);
-            continue;
-        }
-        let first = out.len();
-        out.extend((0..pieces.count).map(|_| MaterialRule::empty(Filling::Cut)));
-        // A surface point belongs to the material just below it.
-        let depth = 0.02 * tree.leaves()[leaf].size();
-        rule.volume.into_iter().for_each(|p| out[first + pieces.at(&p.x)].volume.push(p));
-        for p in rule.boundary {
-            out[first + pieces.at(&(p.x - p.normal * depth))].boundary.push(p);
-        }
-    }
-    out
-}
-
-/// Which pieces are kept.
-fn kept_pieces<const D: usize>(
-    tree: &CellTree<D>,
-    graph: &PieceGraph<D>,
-    rules: &[MaterialRule<D>],
-    islands: Islands,
-    findings: &mut Findings,
-) -> Result<Vec<bool>, CellsError> {
-    let (part, count) = graph.parts();
-    let mut volume = vec![0.0; count];
-    let mut middle = vec![Point::<D>::zeros(); count];
-    for (piece, rule) in rules.iter().enumerate() {
-        let b = tree.leaves()[graph.leaf_of(piece)].bounds;
-        let v = rule.measure(b.volume());
-        volume[part[piece]] += v;
-        middle[part[piece]] += b.center() * v;
-    }
-    let mut order: Vec<usize> = (0..count).collect();
-    order.sort_by(|a, b| volume[*b].total_cmp(&volume[*a]).then(a.cmp(b)));
-    findings.parts = order.iter().map(|p| volume[*p]).collect();
-    // A piece of which no sample saw material holds none.
-    let mut kept: Vec<bool> = rules.iter().map(|r| r.filling == Filling::Full || !r.volume.is_empty()).collect();
-    if let [_, second, ..] = order[..] {
-        match islands {
-            Islands::Keep => {}
-            Islands::Drop => {
-                findings.dropped = findings.parts[1..].iter().sum();
-                (0..kept.len()).for_each(|p| kept[p] &= part[p] == order[0]);
-            }
-            Islands::Refuse => {
-                let at = (middle[second] / volume[second]).iter().copied().collect();
-                return Err(CellsError::Islands { count: count - 1, volume: volume[second], at });
-            }
-        }
-    }
-    Ok(kept)
-}
-
-fn check<const D: usize>(
-    region: &dyn Region<D>,
-    tree: &CellTree<D>,
-    discretisation: &Discretisation<D>,
-    stuff: &Stuff<D>,
-) -> Result<(), CellsError> {
-    let degree = discretisation.degree;
-    if !(1..=MAX_DEGREE).contains(&degree) {
-        return Err(CellsError::Degree { degree, most: MAX_DEGREE });
-    }
-    if !(0.0..1.0).contains(&discretisation.fictitious) {
-        return Err(CellsError::Fictitious { value: discretisation.fictitious });
-    }
-    let Elastic { youngs_modulus, poissons_ratio } = stuff.elastic;
-    if !(youngs_modulus > 0.0 && youngs_modulus.is_finite()) {
-        return Err(CellsError::Value { name: "youngs_modulus", value: youngs_modulus, must: "must be positive" });
-    }
-    if !(poissons_ratio > -1.0 && poissons_ratio < 0.5) {
-        let must = "must lie between -1 and 0.5";
-        return Err(CellsError::Value { name: "poissons_ratio", value: poissons_ratio, must });
-    }
-    if let Integration::SubCells { subdivision: 0 } = discretisation.integration {
-        return Err(CellsError::Value { name: "subdivision", value: 0.0, must: "must be 1 or more" });
-    }
-    if stuff.space == Space::Axisymmetric && tree.bounds().min[0] < 0.0 {
-        return Err(CellsError::NegativeRadius { radius: tree.bounds().min[0] });
-    }
-    for leaf in tree.leaves() {
-        let b = &leaf.bounds;
-        if let Some((x, value)) = [b.min, b.center(), b.max].iter().find_map(|x| Some((x, region.defect(x)?))) {
-            return Err(CellsError::NotFinite { at: x.iter().copied().collect(), value });
-        }
-    }
-    Ok(())
 }

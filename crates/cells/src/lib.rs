@@ -9,7 +9,7 @@
 //! - [`region`]: the quadrature of the material in a cell and of its boundary.
 //! - [`tree`], [`space`], [`legendre`]: cells, refinement, functions.
 //! - [`components`]: what of the material hangs together.
-//! - [`body`]: all of this; [`stiffness`]: the elastic integrals.
+//! - [`discretisation`]: how a body is made of cells; [`body`]: all of this; [`stiffness`]: the elastic integrals.
 //! - [`supports`], [`loads`]: what holds and what pushes; [`system`]: equilibrium; [`schwarz`]: the preconditioner.
 //! - [`contact`]: contact of the recovered boundary with a rigid body.
 //! - [`discs`]: contact of a body with itself, where pores close.
@@ -18,6 +18,7 @@
 pub mod body;
 pub mod components;
 pub mod contact;
+pub mod discretisation;
 pub mod discs;
 pub mod domain;
 pub mod error;
@@ -26,6 +27,7 @@ pub mod fields;
 pub mod image;
 pub mod legendre;
 pub mod loads;
+mod numbering;
 pub mod place;
 pub mod region;
 pub mod schwarz;
@@ -37,8 +39,9 @@ pub mod system;
 pub mod tree;
 pub mod voxels;
 
-pub use body::{Boundary, Cell, CellBody, Discretisation, Field, Findings, Islands, Site, Stuff};
+pub use body::{Cell, CellBody, Field, Findings, Site};
 pub use components::Pieces;
+pub use discretisation::{Boundary, Discretisation, Islands, Stuff};
 pub use domain::Domain;
 pub use error::CellsError;
 pub use loads::Load;

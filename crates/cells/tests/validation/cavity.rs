@@ -134,3 +134,28 @@ fn iterations_hardly_depend_on_grid_and_degree() {
         assert!(iterations <= 40 && condition < 25.0, "{iterations} {condition}");
     }
 }
+
+/// Cells of which only a sliver is material, along a side or in a corner.
+#[test]
+fn iterations_do_not_depend_on_small_cuts() {
+    for (p, depth) in [(1, 1e-4), (2, 0.3), (2, 1e-2), (2, 1e-4)] {
+        for normal in [Vector::<3>::x(), Vector::<3>::new(1.0, 0.3, 0.2).normalize()] {
+            let b = Aabb::new(Point::<3>::zeros(), Point::<3>::repeat(1.0));
+            let point = Point::<3>::new((2.0 + depth) / 3.0, 0.0, 0.0);
+            let domain = Domain::shape(signorini_cells::shapes::HalfSpace { point, normal });
+            let setup = Discretisation::of_degree(p);
+            let tree = CellTree::new(b, [3; 3]).unwrap();
+            let body = CellBody::new(Arc::new(domain), tree, setup, stuff(Space::Solid)).unwrap();
+            let mut system = System::new(&body);
+            system.support(&Support::clamped(Place::low(0))).unwrap();
+            let value = Arc::new(|x: &Point<3>| Vector::<3>::new(1.0, x[0], 0.5));
+            system.load(&Load::BodyForce { value }).unwrap();
+            let solution = system.solve(Solver::Iterative { tolerance: 1e-8 }).unwrap();
+            let Solved::Iterative { iterations, condition, .. } = solution.solved else {
+                panic!("conjugate gradients")
+            };
+            println!("cut {depth:e}, degree {p}: {iterations} iterations, condition {condition:.1}");
+            assert!(iterations <= 42 && condition < 25.0, "{iterations} {condition}");
+        }
+    }
+}

@@ -150,13 +150,21 @@ impl<const D: usize> RigidContact<'_, D> {
     /// # Errors
     /// A place without boundary; constants out of range; a body that nothing holds; no convergence.
     pub fn solve(&self, system: &System<'_, D>) -> Result<ContactSolution<D>, CellsError> {
+        self.solve_from(system, &vec![0.0; system.body.unknowns()])
+    }
+
+    /// Solves the equations from a displacement that is close, such as that under a smaller load.
+    ///
+    /// # Errors
+    /// Those of [`RigidContact::solve`].
+    pub fn solve_from(&self, system: &System<'_, D>, start: &[f64]) -> Result<ContactSolution<D>, CellsError> {
         let updates = match self.enforcement {
             Enforcement::AugmentedLagrangian { updates, .. } => updates,
             _ => 0,
         };
         let mut sites = self.tabulate(system.body)?;
         let n = system.body.unknowns();
-        let mut u: Vec<f64> = system.prescribed.iter().map(|v| v.unwrap_or(0.0)).collect();
+        let mut u: Vec<f64> = system.prescribed.iter().zip(start).map(|(v, s)| v.unwrap_or(*s)).collect();
         let (mut iterations, mut residuals) = (0, Vec::new());
         for update in 0..=updates {
             loop {

@@ -124,7 +124,11 @@ impl<const D: usize> Region<D> for Domain<D> {
     }
 
     fn side_rule(&self, b: &Aabb<D>, axis: usize, end: End, points: usize) -> Vec<QuadraturePoint<D>> {
-        side_points(&self.partition(), b, axis, end, points, 1)
+        match self.restricted(b) {
+            Restricted::Full => crate::place::side_gauss(b, axis, end, points),
+            Restricted::Void => Vec::new(),
+            Restricted::Open(domain) => side_points(&domain.partition(), b, axis, end, points, 1),
+        }
     }
 
     fn contains(&self, x: &Point<D>) -> bool {

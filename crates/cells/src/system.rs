@@ -72,9 +72,15 @@ impl<'a, const D: usize> System<'a, D> {
         for (unknowns, k) in cliques.iter().zip(&stiffness) {
             matrix.add(unknowns, k.as_slice(), 1.0);
         }
+        let mut prescribed = vec![None; n];
+        if body.space() == Space::Axisymmetric && body.tree.bounds().min[0] == 0.0 {
+            // Nothing leaves the axis: a hoop strain `u/r` there would have infinite energy.
+            let on_axis = (0..body.function_count()).filter(|f| body.mode(*f).ids[0] == 0);
+            on_axis.for_each(|f| prescribed[D * f] = Some(0.0));
+        }
         let motions = rigid_motions(body, &body.tree.bounds().center()).len();
         let held = DMatrix::zeros(motions, motions);
-        System { body, stiffness, matrix, forces: vec![0.0; n], prescribed: vec![None; n], loads: vec![0.0; n], held }
+        System { body, stiffness, matrix, forces: vec![0.0; n], prescribed, loads: vec![0.0; n], held }
     }
 
     pub fn body(&self) -> &CellBody<D> {

@@ -8,6 +8,15 @@
 //! serves, the cell is split.
 //!
 //! One pass yields the rules of *all* regions, so the volumes of a cell's parts add up to the cell to round-off.
+//!
+//! [`cut_cell`] is the rule of lines and of the plane; [`height`] does the same by recursion over the dimension, in
+//! space too, with the curves in which surfaces intersect; [`simplices`] cuts sub-cells along chords.
+
+pub mod height;
+pub mod simplices;
+
+pub use height::{End, height_functions};
+pub use simplices::{space_tree, sub_cells};
 
 use signorini_geometry::rule::gauss_legendre;
 use signorini_geometry::{Aabb, ImplicitShape, Point, Vector};
@@ -90,7 +99,9 @@ const MIN_SLOPE: f64 = 0.2;
 
 /// The quadrature of one cell with `order` Gauss points per direction and smooth piece.
 pub fn cut_cell<const D: usize>(partition: &CellPartition<'_, D>, cell: &Aabb<D>, order: usize) -> CellRule<D> {
-    const { assert!(D == 1 || D == 2, "cut cells are built in one and two dimensions") };
+    if D > 2 {
+        return height_functions(partition, cell, order);
+    }
     let mut rule = CellRule::default();
     let sheets: Vec<usize> = (0..partition.sheets.len()).collect();
     let gauss = gauss_legendre(order);

@@ -85,6 +85,64 @@ impl<const N: usize> GridSpline<N> {
         jet
     }
 
+    /// Value and gradient, without the second derivatives.
+    pub fn value_and_gradient(&self, x: &Vector<N>) -> (f64, Vector<N>) {
+        let axes: [Weights; N] =
+            std::array::from_fn(|a| weights((x[a] - self.origin[a]) / self.spacing[a], self.count[a], self.spacing[a]));
+        let (mut value, mut gradient) = (0.0, Vector::<N>::zeros());
+        for combination in 0..1usize << (2 * N) {
+            let digit = |a: usize| (combination >> (2 * (N - 1 - a))) & 3;
+            let mut place = 0;
+            let mut product = 1.0;
+            let mut slopes = [1.0; N];
+            for a in 0..N {
+                let d = digit(a);
+                place = place * self.count[a] + axes[a].1[d];
+                for (b, slope) in slopes.iter_mut().enumerate() {
+                    *slope *= axes[a].0[usize::from(a == b)][d];
+                }
+                product *= axes[a].0[0][d];
+            }
+            let c = self.coefficients[place];
+            value += c * product;
+            (0..N).for_each(|a| gradient[a] += c * slopes[a]);
+        }
+        (value, gradient)
+    }
+
+    /// Bounds of the values in a box: those of the coefficients of the splines that do not vanish there.
+    pub fn range(&self, low: &Vector<N>, high: &Vector<N>) -> [f64; 2] {
+        let window: [(usize, usize); N] = std::array::from_fn(|a| {
+            let cell = |x: f64| {
+                let t = ((x - self.origin[a]) / self.spacing[a]).clamp(0.0, (self.count[a] - 1) as f64);
+                (t.floor() as usize).min(self.count[a] - 2)
+            };
+            // The coefficient beyond an end is no further away than the two that it is made of make it.
+            (cell(low[a]).saturating_sub(1), (cell(high[a]) + 2).min(self.count[a] - 1))
+        });
+        let sizes: [usize; N] = std::array::from_fn(|a| window[a].1 - window[a].0 + 1);
+        let mut bounds = [f64::INFINITY, f64::NEG_INFINITY];
+        for number in 0..sizes.iter().product() {
+            let (mut rest, mut place, mut index) = (number, 0, [0; N]);
+            for a in (0..N).rev() {
+                index[a] = window[a].0 + rest % sizes[a];
+                rest /= sizes[a];
+            }
+            for a in 0..N {
+                place = place * self.count[a] + index[a];
+            }
+            let c = self.coefficients[place];
+            bounds = [bounds[0].min(c), bounds[1].max(c)];
+        }
+        let at_an_end = (0..N).any(|a| window[a].0 == 0 || window[a].1 == self.count[a] - 1);
+        if at_an_end {
+            // Extrapolated coefficients `2 c_0 - c_1` reach at most once as far again in each direction.
+            let reach = f64::from((1u32 << N) - 1) * (bounds[1] - bounds[0]);
+            bounds = [bounds[0] - reach, bounds[1] + reach];
+        }
+        bounds
+    }
+
     /// The smallest and the largest corner of the grid.
     pub fn bounds(&self) -> [Vector<N>; 2] {
         let far = Vector::<N>::from_fn(|a, _| self.origin[a] + self.spacing[a] * (self.count[a] - 1) as f64);
@@ -164,6 +222,16 @@ mod tests {
         for (i, j) in [(0, 0), (7, 30), (40, 3), (20, 15)] {
             let (x, y) = (0.3 + h[0] * i as f64, h[1] * j as f64 - 1.0);
             assert!((spline.jet(&Vector::<2>::new(x, y)).value - f(x, y)).abs() < 1e-13);
+        }
+        for x in [Vector::<2>::new(1.234, 0.1), Vector::<2>::new(0.31, -0.98)] {
+            let (value, gradient) = spline.value_and_gradient(&x);
+            let jet = spline.jet(&x);
+            assert!((value - jet.value).abs() < 1e-14 && (gradient - jet.gradient).norm() < 1e-13);
+            let [low, high] = spline.range(&x, &(x + Vector::<2>::repeat(0.2)));
+            for t in [0.0, 0.05, 0.1, 0.2] {
+                let value = spline.jet(&(x + Vector::<2>::new(t, 0.2 - t))).value;
+                assert!(low <= value && value <= high);
+            }
         }
         let x = Vector::<2>::new(1.234, 0.1);
         assert!((spline.jet(&x).value - f(x[0], x[1])).abs() < 1e-6);

@@ -16,7 +16,7 @@ pub mod contact;
 pub mod friction;
 mod held;
 pub mod loads;
-pub mod material;
+pub use signorini_fem::elastic as material;
 pub mod model;
 mod nitsche;
 mod reactions;

@@ -210,6 +210,17 @@ impl SymmetricMatrix {
             .collect()
     }
 
+    /// `S A S` with a diagonal `S`.
+    pub fn scaled(&self, scale: &[f64]) -> Self {
+        let mut out = self.clone();
+        for j in 0..self.size() {
+            for k in self.column_start[j]..self.column_start[j + 1] {
+                out.value[k] *= scale[self.row[k]] * scale[j];
+            }
+        }
+        out
+    }
+
     /// The product with a vector.
     pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; x.len()];

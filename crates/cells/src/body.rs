@@ -1,0 +1,289 @@
+//! A body of finite cells: cells with functions, unknowns, and the quadrature of the material in them.
+//!
+//! The stiffness is `∫_B α ε(u):C:ε(v)`, `α = 1` in the material and `α_0` in the rest of the cells (Parvizian, Düster &
+//! Rank, Comput. Mech. 41, 2007). Cells without material are left out. Unknown `D f + k` is component `k` of function `f`.
+
+use crate::components::{PieceGraph, faces_itself, is_narrow};
+use crate::discretisation::{Boundary, Discretisation, Stuff, check};
+use crate::error::CellsError;
+use crate::numbering::{kept_pieces, rules_of_pieces};
+use crate::region::{BoundaryPoint, Filling, MaterialRule, Region};
+use crate::space::{LocalMode, Mode, Tabulation, tabulate};
+use crate::tree::CellTree;
+use rayon::prelude::*;
+use signorini_fem::elastic::{Elastic, Space};
+use signorini_geometry::{Aabb, Point, Vector};
+use std::sync::Arc;
+
+/// A function of position.
+pub type Field<const D: usize> = Arc<dyn Fn(&Point<D>) -> f64 + Send + Sync>;
+
+/// A cell with material: a leaf, or one piece of the material in it.
+#[derive(Clone, Debug)]
+pub struct Cell<const D: usize> {
+    /// Number of the leaf in the tree.
+    pub leaf: usize,
+    pub modes: Vec<LocalMode<D>>,
+    /// Number of each of its functions in the body.
+    pub functions: Vec<u32>,
+    pub rule: MaterialRule<D>,
+    /// Share of the material in the leaf.
+    pub share: f64,
+    /// The cell whose polynomials give the stress on the boundary in this one: itself, or a neighbour with more material
+    /// where this one holds so little that its own stress is not controlled by its energy.
+    pub stress_cell: usize,
+}
+
+/// A point of the recovered boundary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Site<const D: usize> {
+    /// Number of the cell.
+    pub cell: usize,
+    pub x: Point<D>,
+    /// Length or area before the body deforms; around an axis, of the whole turn.
+    pub weight: f64,
+    /// Unit normal, out of the material.
+    pub normal: Vector<D>,
+}
+
+/// What was found out about the body while it was made.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Findings {
+    /// Cells in which the boundary faces itself: features as narrow as a cell.
+    pub facing_cells: usize,
+    /// Leaves whose material is in several pieces with unknowns of their own.
+    pub split_leaves: usize,
+    /// Functions that are copies of another one, for pieces of material that do not touch in its support.
+    pub copies: usize,
+    /// Volumes of pieces of the body that do not hang together, the largest first.
+    pub parts: Vec<f64>,
+    /// Volume of the pieces that were dropped.
+    pub dropped: f64,
+}
+
+/// A body of finite cells.
+#[derive(Clone)]
+pub struct CellBody<const D: usize> {
+    pub(crate) region: Arc<dyn Region<D>>,
+    pub(crate) tree: CellTree<D>,
+    pub(crate) discretisation: Discretisation<D>,
+    pub(crate) stuff: Stuff<D>,
+    pub(crate) cells: Vec<Cell<D>>,
+    /// Cells of each leaf.
+    pub(crate) of_leaf: Vec<Vec<usize>>,
+    /// Every function, and which of its copies.
+    pub(crate) functions: Vec<(Mode<D>, usize)>,
+    pub(crate) findings: Findings,
+}
+
+impl<const D: usize> CellBody<D> {
+    /// Makes the cells of a body on a tree.
+    ///
+    /// # Errors
+    /// Constants out of range; a shape that is not finite, nowhere negative or without a boundary; islands.
+    pub fn new(
+        region: Arc<dyn Region<D>>,
+        mut tree: CellTree<D>,
+        discretisation: Discretisation<D>,
+        stuff: Stuff<D>,
+    ) -> Result<Self, CellsError> {
+        check(&*region, &tree, &discretisation, &stuff)?;
+        let rules_of = |tree: &CellTree<D>| -> Vec<MaterialRule<D>> {
+            let one = |leaf: &crate::tree::Leaf<D>| {
+                region.rule(&leaf.bounds, &discretisation.integration, discretisation.degree)
+            };
+            tree.leaves().par_iter().map(one).collect()
+        };
+        let mut rules = rules_of(&tree);
+        for _ in 0..discretisation.refine_narrow {
+            let narrow: Vec<bool> = rules.iter().map(is_narrow).collect();
+            let mut number = 0;
+            let refined = tree.refine(|_| {
+                number += 1;
+                narrow[number - 1]
+            });
+            if refined == 0 {
+                break;
+            }
+            rules = rules_of(&tree);
+        }
+        if rules.iter().all(|r| r.filling == Filling::Void) {
+            return Err(CellsError::Nothing);
+        }
+        if discretisation.boundary == Boundary::Expected && rules.iter().all(|r| r.filling == Filling::Full) {
+            return Err(CellsError::Everything);
+        }
+        let mut findings =
+            Findings { facing_cells: rules.iter().filter(|r| faces_itself(r)).count(), ..Findings::default() };
+        let graph = PieceGraph::new(&*region, &tree, &rules, discretisation.pieces);
+        findings.split_leaves = graph.leaves.iter().filter(|l| l.count > 1).count();
+        let rules = rules_of_pieces(&tree, &graph, rules);
+        let kept = kept_pieces(&tree, &graph, &rules, discretisation.islands, &mut findings)?;
+        let mut body = CellBody {
+            of_leaf: vec![Vec::new(); tree.leaves().len()],
+            region,
+            tree,
+            discretisation,
+            stuff,
+            cells: Vec::new(),
+            functions: Vec::new(),
+            findings,
+        };
+        body.number(&graph, rules, &kept);
+        Ok(body)
+    }
+
+    pub fn tree(&self) -> &CellTree<D> {
+        &self.tree
+    }
+
+    pub fn degree(&self) -> usize {
+        self.discretisation.degree
+    }
+
+    pub fn space(&self) -> Space {
+        self.stuff.space
+    }
+
+    pub fn elastic(&self) -> &Elastic {
+        &self.stuff.elastic
+    }
+
+    /// Cells with material.
+    pub fn cells(&self) -> &[Cell<D>] {
+        &self.cells
+    }
+
+    pub fn findings(&self) -> &Findings {
+        &self.findings
+    }
+
+    /// Number of scalar functions.
+    pub fn function_count(&self) -> usize {
+        self.functions.len()
+    }
+
+    /// Number of unknowns: `D` for each function.
+    pub fn unknowns(&self) -> usize {
+        D * self.functions.len()
+    }
+
+    /// The function of level and numbers, and its copy.
+    pub fn mode(&self, function: usize) -> &Mode<D> {
+        &self.functions[function].0
+    }
+
+    /// The middle of the support of a function.
+    pub fn position(&self, function: usize) -> Point<D> {
+        let mode = self.mode(function);
+        let xi = Point::from_fn(|k, _| {
+            let n = self.tree.count(mode.level, k);
+            let id = mode.ids[k];
+            if id <= n { id as f64 / n as f64 } else { (((id - n - 1) / (self.degree() - 1)) as f64 + 0.5) / n as f64 }
+        });
+        self.tree.bounds().at(&xi)
+    }
+
+    /// Whether a function is the product of functions of vertices.
+    pub fn is_vertex(&self, function: usize) -> bool {
+        let mode = self.mode(function);
+        (0..D).all(|k| mode.ids[k] <= self.tree.count(mode.level, k))
+    }
+
+    /// The box of a cell.
+    pub fn bounds_of(&self, cell: usize) -> &Aabb<D> {
+        &self.tree.leaves()[self.cells[cell].leaf].bounds
+    }
+
+    /// The functions of a cell at a point, in the order of [`Cell::functions`]; beyond the cell their polynomials go on.
+    pub fn functions_at(&self, cell: usize, x: &Point<D>, out: &mut Tabulation<D>) {
+        let cell = &self.cells[cell];
+        tabulate(&self.tree, &self.tree.leaves()[cell.leaf], self.degree(), &cell.modes, x, out);
+    }
+
+    /// The cell that contains a point of the material: of several pieces in a leaf the one with the nearest
+    /// quadrature point.
+    pub fn cell_at(&self, x: &Point<D>) -> Option<usize> {
+        if !self.tree.bounds().contains(x) {
+            return None;
+        }
+        let cells = &self.of_leaf[self.tree.leaf_at(x)];
+        if let [only] = cells[..] {
+            return Some(only);
+        }
+        let distance = |c: &usize| {
+            let rule = &self.cells[*c].rule;
+            rule.volume.iter().map(|p| (p.x - x).norm_squared()).fold(f64::INFINITY, f64::min)
+        };
+        cells.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    }
+
+    /// The factor of quadrature weights: 1, or the circumference around an axis.
+    pub fn turn(&self, x: &Point<D>) -> f64 {
+        if self.stuff.space == Space::Axisymmetric { std::f64::consts::TAU * x[0] } else { 1.0 }
+    }
+
+    /// The points of the recovered boundary in a place.
+    pub fn sites(&self, place: &dyn Fn(&BoundaryPoint<D>) -> bool) -> Vec<Site<D>> {
+        let of_cell = |(number, cell): (usize, &Cell<D>)| {
+            let points: Vec<Site<D>> = (cell.rule.boundary.iter())
+                .filter(|p| place(p))
+                .map(|p| Site { cell: number, x: p.x, weight: p.weight * self.turn(&p.x), normal: p.normal })
+                .collect();
+            points
+        };
+        self.cells.iter().enumerate().flat_map(of_cell).collect()
+    }
+
+    /// Volume of the material; around an axis, of the whole turn.
+    pub fn volume(&self) -> f64 {
+        let mut sum = 0.0;
+        self.for_each_volume_point(|_, x, w| {
+            let _ = x;
+            sum += w;
+        });
+        sum
+    }
+
+    /// Calls `visit` with the cell, the position and the weight of all quadrature points of the material.
+    pub fn for_each_volume_point(&self, mut visit: impl FnMut(usize, &Point<D>, f64)) {
+        for (number, cell) in self.cells.iter().enumerate() {
+            for (x, w) in self.volume_points(cell) {
+                visit(number, &x, w * self.turn(&x));
+            }
+        }
+    }
+
+    /// The quadrature points of the material in a cell.
+    pub(crate) fn volume_points(&self, cell: &Cell<D>) -> Vec<(Point<D>, f64)> {
+        if cell.rule.filling == Filling::Full {
+            box_points(&self.tree.leaves()[cell.leaf].bounds, self.full_points())
+        } else {
+            cell.rule.volume.iter().map(|p| (p.x, p.weight)).collect()
+        }
+    }
+
+    /// Gauss points in each direction of a full cell: exact for the stiffness; with a modulus that varies, and around an
+    /// axis where `1/r` is no polynomial, a few more.
+    pub(crate) fn full_points(&self) -> usize {
+        let varies = self.stuff.modulus.is_some() || self.stuff.space == Space::Axisymmetric;
+        self.degree() + if varies { 3 } else { 1 }
+    }
+}
+
+/// The tensor-product Gauss rule of a box.
+pub(crate) fn box_points<const D: usize>(b: &Aabb<D>, order: usize) -> Vec<(Point<D>, f64)> {
+    let gauss = signorini_geometry::rule::gauss_legendre(order);
+    (0..order.pow(D as u32))
+        .map(|mut i| {
+            let mut weight = b.volume();
+            let x = b.at(&Point::from_fn(|_, _| {
+                let (t, w) = gauss[i % order];
+                i /= order;
+                weight *= w;
+                t
+            }));
+            (x, weight)
+        })
+        .collect()
+}

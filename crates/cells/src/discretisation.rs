@@ -1,0 +1,108 @@
+//! How a body is made of cells, and of what.
+
+use crate::body::Field;
+use crate::components::Pieces;
+use crate::error::CellsError;
+use crate::legendre::MAX_DEGREE;
+use crate::region::{Integration, Region};
+use crate::space::Products;
+use crate::tree::CellTree;
+use signorini_fem::elastic::{Elastic, Space};
+
+/// What is done with pieces of the body that do not hang together with the largest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Islands {
+    /// An error tells of them.
+    Refuse,
+    Drop,
+    /// Each is held by supports or contact of its own.
+    Keep,
+}
+
+/// Whether a body without a boundary in the box of its cells is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Boundary {
+    Expected,
+    /// The body may fill the whole box.
+    Optional,
+}
+
+/// How a body is made of cells.
+#[derive(Clone)]
+pub struct Discretisation<const D: usize> {
+    /// Degree of the functions, 1 to 8.
+    pub degree: usize,
+    pub products: Products,
+    pub integration: Integration,
+    /// Stiffness outside the material relative to that inside; the error in the energy norm is about `0.1 √α`.
+    pub fictitious: f64,
+    pub pieces: Pieces,
+    pub islands: Islands,
+    pub boundary: Boundary,
+    /// Times that cells are halved in which the boundary faces itself or turns by more than half a radian: where a pore or a
+    /// gap is narrower than a cell, around tips, and at edges.
+    pub refine_narrow: usize,
+}
+
+impl<const D: usize> Discretisation<D> {
+    /// The defaults for a degree.
+    pub fn of_degree(degree: usize) -> Self {
+        Discretisation {
+            degree,
+            products: Products::Tensor,
+            integration: Integration::Exact { points: None },
+            fictitious: 1e-8,
+            pieces: Pieces::Split,
+            islands: Islands::Refuse,
+            boundary: Boundary::Expected,
+            refine_narrow: 0,
+        }
+    }
+}
+
+/// What the body is made of.
+#[derive(Clone)]
+pub struct Stuff<const D: usize> {
+    pub elastic: Elastic,
+    /// A factor of Young's modulus that varies in space, with its largest value.
+    pub modulus: Option<(Field<D>, f64)>,
+    pub space: Space,
+}
+
+/// # Errors
+/// Constants out of range, values of the shape that are not finite.
+pub(crate) fn check<const D: usize>(
+    region: &dyn Region<D>,
+    tree: &CellTree<D>,
+    discretisation: &Discretisation<D>,
+    stuff: &Stuff<D>,
+) -> Result<(), CellsError> {
+    let degree = discretisation.degree;
+    if !(1..=MAX_DEGREE).contains(&degree) {
+        return Err(CellsError::Degree { degree, most: MAX_DEGREE });
+    }
+    if !(0.0..1.0).contains(&discretisation.fictitious) {
+        return Err(CellsError::Fictitious { value: discretisation.fictitious });
+    }
+    let Elastic { youngs_modulus, poissons_ratio } = stuff.elastic;
+    if !(youngs_modulus > 0.0 && youngs_modulus.is_finite()) {
+        return Err(CellsError::Value { name: "youngs_modulus", value: youngs_modulus, must: "must be positive" });
+    }
+    if !(poissons_ratio > -1.0 && poissons_ratio < 0.5) {
+        let must = "must lie between -1 and 0.5";
+        return Err(CellsError::Value { name: "poissons_ratio", value: poissons_ratio, must });
+    }
+    if let Integration::SubCells { subdivision: 0 } = discretisation.integration {
+        return Err(CellsError::Value { name: "subdivision", value: 0.0, must: "must be 1 or more" });
+    }
+    if stuff.space == Space::Axisymmetric && tree.bounds().min[0] < 0.0 {
+        return Err(CellsError::NegativeRadius { radius: tree.bounds().min[0] });
+    }
+    for leaf in tree.leaves() {
+        let b = &leaf.bounds;
+        if let Some((x, value)) = [b.min, b.center(), b.max].iter().find_map(|x| Some((x, region.defect(x)?))) {
+            return Err(CellsError::NotFinite { at: x.iter().copied().collect(), value });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,296 @@
+//! Contact of a body with itself by discs on its recovered boundary (discrete cell to cell, DCTC, of Konyukhov, Lorenz &
+//! Schweizerhof, Comput. Mech. 56, 2015): for pores that close.
+//!
+//! Disc or ball `i` stands for a part `w_i` of the boundary. Its centre is `c_i = X_i - χ n_i + u_i`, so that it touches
+//! the boundary from within; as published it is `X_i + u_i`, which makes bodies meet a radius each too early. Pairs on
+//! faces that look at each other repel with the energy `½ ε √(w_i w_j) ⟨2χ - |c_i - c_j|⟩²`: with `q = (c_i - c_j)/r` and
+//! overlap `o`, force `ε A o q`, tangent `ε A (q q - (o/r)(I - q q))`.
+//!
+//! Rules for the radius, with the largest spacing `s` of discs: below `s/2` discs slip through between two others; the
+//! larger it is the smoother is the contact (the force of a row of discs varies by `s²/16χ` along it); above half of the
+//! thickness of the material centres of opposite faces cross. `χ = s` serves. Pairs that overlap before anything moves,
+//! or whose normals do not oppose each other (`n_i·n_j > -0.3`), are neighbours and do not touch.
+
+use crate::body::{CellBody, Site};
+use crate::error::CellsError;
+use crate::place::Place;
+use crate::space::Tabulation;
+use crate::system::{Scaled, System};
+use nalgebra::DMatrix;
+use signorini_geometry::{Matrix, Point, Vector};
+use signorini_solve::SymmetricMatrix;
+use std::collections::BTreeMap;
+
+/// Where the centres of discs are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Centres {
+    /// A radius within the material: discs touch the boundary.
+    Within,
+    /// On the boundary, as published.
+    OnBoundary,
+}
+
+/// Contact of a body with itself.
+#[derive(Clone)]
+pub struct DiscContact<const D: usize> {
+    pub on: Place<D>,
+    /// Least distance of discs; they are spread evenly from the quadrature points of the boundary.
+    pub spacing: f64,
+    /// Their radius, or the largest spacing.
+    pub radius: Option<f64>,
+    /// Pressure per overlap.
+    pub stiffness: f64,
+    pub centres: Centres,
+    /// Increments in which loads and prescribed displacements grow.
+    pub increments: usize,
+}
+
+/// A disc or a ball.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disc<const D: usize> {
+    /// Its point of the boundary, with the part of the boundary that it stands for.
+    pub site: Site<D>,
+    /// Force per length or area of that part, from the discs that it overlaps.
+    pub pressure: f64,
+    /// Centre before and after the body deforms.
+    pub centre: [Point<D>; 2],
+}
+
+/// A body that touches itself.
+#[derive(Clone, Debug)]
+pub struct DiscSolution<const D: usize> {
+    pub displacement: Vec<f64>,
+    pub discs: Vec<Disc<D>>,
+    pub radius: f64,
+    /// Largest distance between neighbours.
+    pub largest_spacing: f64,
+    /// Pairs that touch, with their overlap.
+    pub pairs: Vec<(usize, usize, f64)>,
+    /// Newton iterations of all increments together.
+    pub iterations: usize,
+}
+
+/// Product of normals above which two discs are on the same face.
+const SAME_FACE: f64 = -0.3;
+const CONVERGED: f64 = 1e-9;
+const MOST_ITERATIONS: usize = 80;
+
+/// A disc with the functions at its point.
+struct Tabulated<const D: usize> {
+    site: Site<D>,
+    start: Point<D>,
+    functions: Vec<u32>,
+    values: Vec<f64>,
+}
+
+impl<const D: usize> Tabulated<D> {
+    fn displacement(&self, u: &[f64]) -> Vector<D> {
+        let term = |(f, v): (&u32, &f64)| Vector::<D>::from_fn(|k, _| u[D * *f as usize + k]) * *v;
+        self.functions.iter().zip(&self.values).map(term).sum()
+    }
+}
+
+impl<const D: usize> DiscContact<D> {
+    /// Solves the equations of a body that touches itself, in increments from the state without loads.
+    ///
+    /// # Errors
+    /// Constants out of range, a place without boundary, a body that nothing holds, no convergence.
+    pub fn solve(&self, system: &System<'_, D>) -> Result<DiscSolution<D>, CellsError> {
+        for (name, value) in
+            [("spacing", self.spacing), ("stiffness", self.stiffness), ("radius", self.radius.unwrap_or(1.0))]
+        {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(CellsError::Value { name, value, must: "must be positive" });
+            }
+        }
+        let modes = system.free_motions();
+        if modes > 0 {
+            return Err(CellsError::Unsupported { modes });
+        }
+        let (sites, largest_spacing) = spread(&system.body.points_on(&self.on)?, self.spacing);
+        let radius = self.radius.unwrap_or(largest_spacing);
+        let discs = self.tabulate(system.body, sites, radius);
+        let mut u = vec![0.0; system.body.unknowns()];
+        let mut iterations = 0;
+        for increment in 1..=self.increments.max(1) {
+            let share = increment as f64 / self.increments.max(1) as f64;
+            iterations += self.increment(system, &discs, radius, share, &mut u)?;
+        }
+        let centres = centres(&discs, &u);
+        let pairs = touching(&discs, &centres, radius);
+        let mut forces = vec![0.0; discs.len()];
+        for (i, j, overlap) in &pairs {
+            let force = self.stiffness * (discs[*i].site.weight * discs[*j].site.weight).sqrt() * overlap;
+            forces[*i] += force;
+            forces[*j] += force;
+        }
+        let discs = (discs.iter().enumerate())
+            .map(|(i, d)| Disc { site: d.site, pressure: forces[i] / d.site.weight, centre: [d.start, centres[i]] })
+            .collect();
+        Ok(DiscSolution { displacement: u, discs, radius, largest_spacing, pairs, iterations })
+    }
+
+    fn tabulate(&self, body: &CellBody<D>, sites: Vec<Site<D>>, radius: f64) -> Vec<Tabulated<D>> {
+        let offset = if self.centres == Centres::Within { radius } else { 0.0 };
+        let mut t = Tabulation::default();
+        (sites.into_iter())
+            .map(|site| {
+                body.functions_at(site.cell, &site.x, &mut t);
+                Tabulated {
+                    site,
+                    start: site.x - site.normal * offset,
+                    functions: body.cells()[site.cell].functions.clone(),
+                    values: t.value.clone(),
+                }
+            })
+            .collect()
+    }
+
+    /// Newton's method at a share of the loads; gives the number of iterations.
+    fn increment(
+        &self,
+        system: &System<'_, D>,
+        discs: &[Tabulated<D>],
+        radius: f64,
+        share: f64,
+        u: &mut [f64],
+    ) -> Result<usize, CellsError> {
+        for (u, value) in u.iter_mut().zip(&system.prescribed) {
+            if let Some(value) = value {
+                *u = share * value;
+            }
+        }
+        let free: Vec<bool> = system.prescribed.iter().map(Option::is_none).collect();
+        let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let mut relative = f64::INFINITY;
+        for iteration in 0..MOST_ITERATIONS {
+            let now = centres(discs, u);
+            let pairs = touching(discs, &now, radius);
+            let internal = system.matrix.multiply(u);
+            let mut residual: Vec<f64> = internal.iter().zip(&system.forces).map(|(k, f)| k - share * f).collect();
+            for &(i, j, overlap) in &pairs {
+                let q = (now[i] - now[j]).normalize();
+                let force = q * (self.stiffness * (discs[i].site.weight * discs[j].site.weight).sqrt() * overlap);
+                for (disc, sign) in [(i, -1.0), (j, 1.0)] {
+                    for (f, v) in discs[disc].functions.iter().zip(&discs[disc].values) {
+                        (0..D).for_each(|k| residual[D * *f as usize + k] += sign * v * force[k]);
+                    }
+                }
+            }
+            residual.iter_mut().zip(&free).filter(|(_, free)| !**free).for_each(|(r, _)| *r = 0.0);
+            relative = norm(&residual) / (norm(&internal) + share * norm(&system.forces) + f64::MIN_POSITIVE);
+            if iteration > 0 && relative <= CONVERGED {
+                return Ok(iteration);
+            }
+            let step = self.step(system, discs, &now, &pairs, &residual)?;
+            // Two rows of discs must not jump through each other.
+            let farthest = discs.iter().map(|d| d.displacement(&step).norm()).fold(0.0, f64::max);
+            let limited =
+                if pairs.is_empty() && iteration == 0 { 1.0 } else { (radius / farthest.max(1e-300)).min(1.0) };
+            u.iter_mut().zip(&step).for_each(|(u, s)| *u += limited * s);
+        }
+        Err(CellsError::NotConverged { iterations: MOST_ITERATIONS, residual: relative })
+    }
+
+    fn step(
+        &self,
+        system: &System<'_, D>,
+        discs: &[Tabulated<D>],
+        now: &[Point<D>],
+        pairs: &[(usize, usize, f64)],
+        residual: &[f64],
+    ) -> Result<Vec<f64>, CellsError> {
+        let minus: Vec<f64> = residual.iter().map(|r| -r).collect();
+        let held: Vec<Option<f64>> = system.prescribed.iter().map(|p| p.map(|_| 0.0)).collect();
+        let factorise = |turning: f64| {
+            let parts: Vec<(Vec<u32>, Vec<f64>)> =
+                pairs.iter().map(|p| self.pair_tangent(discs, now, p, turning)).collect();
+            let mut matrix = system.matrix.plus(&SymmetricMatrix::of_cliques(residual.len(), &parts));
+            matrix.prescribe(&held, &mut vec![0.0; held.len()]);
+            Scaled::new(system.body, matrix)
+        };
+        // The turning of a pair softens; where it softens too much it is left out, and Newton's method is slower.
+        factorise(1.0).or_else(|_| factorise(0.0))?.solve(&minus)
+    }
+
+    /// Unknowns and tangent of a pair.
+    fn pair_tangent(
+        &self,
+        discs: &[Tabulated<D>],
+        now: &[Point<D>],
+        &(i, j, overlap): &(usize, usize, f64),
+        turning: f64,
+    ) -> (Vec<u32>, Vec<f64>) {
+        let d = now[i] - now[j];
+        let (r, q) = (d.norm(), d.normalize());
+        let along = q * q.transpose();
+        let stiffness = self.stiffness * (discs[i].site.weight * discs[j].site.weight).sqrt();
+        let local = (along - (Matrix::<D>::identity() - along) * (turning * overlap / r)) * stiffness;
+        let mut terms: BTreeMap<u32, f64> = BTreeMap::new();
+        for (disc, sign) in [(i, 1.0), (j, -1.0)] {
+            for (f, v) in discs[disc].functions.iter().zip(&discs[disc].values) {
+                *terms.entry(*f).or_insert(0.0) += sign * v;
+            }
+        }
+        let unknowns: Vec<u32> = terms.keys().flat_map(|f| (0..D as u32).map(move |k| D as u32 * f + k)).collect();
+        let values: Vec<f64> = terms.values().copied().collect();
+        let n = unknowns.len();
+        let matrix = DMatrix::from_fn(n, n, |a, b| values[a / D] * values[b / D] * local[(a % D, b % D)]);
+        (unknowns, matrix.as_slice().to_vec())
+    }
+}
+
+fn centres<const D: usize>(discs: &[Tabulated<D>], u: &[f64]) -> Vec<Point<D>> {
+    discs.iter().map(|d| d.start + d.displacement(u)).collect()
+}
+
+/// Pairs that overlap, with the overlap: by a grid of boxes of the diameter of a disc.
+fn touching<const D: usize>(discs: &[Tabulated<D>], now: &[Point<D>], radius: f64) -> Vec<(usize, usize, f64)> {
+    let place = |x: &Point<D>| -> [i64; D] { std::array::from_fn(|k| (x[k] / (2.0 * radius)).floor() as i64) };
+    let mut boxes: BTreeMap<[i64; D], Vec<usize>> = BTreeMap::new();
+    now.iter().enumerate().for_each(|(i, x)| boxes.entry(place(x)).or_default().push(i));
+    let mut out = Vec::new();
+    for (i, x) in now.iter().enumerate() {
+        let at = place(x);
+        for neighbour in 0..3usize.pow(D as u32) {
+            let key = std::array::from_fn(|k| at[k] + (neighbour / 3usize.pow(k as u32) % 3) as i64 - 1);
+            for &j in boxes.get(&key).into_iter().flatten().filter(|j| **j > i) {
+                let overlap = 2.0 * radius - (x - now[j]).norm();
+                let faces = discs[i].site.normal.dot(&discs[j].site.normal) <= SAME_FACE;
+                let apart = (discs[i].start - discs[j].start).norm() >= 2.0 * radius;
+                if overlap > 0.0 && faces && apart {
+                    out.push((i, j, overlap));
+                }
+            }
+        }
+    }
+    out.sort_by_key(|p| (p.0, p.1));
+    out
+}
+
+/// Points spread evenly: again and again the one farthest from all chosen before, until none is as far as the spacing.
+/// Each takes the weight of those nearest to it on its face. Also the largest distance between neighbours.
+fn spread<const D: usize>(sites: &[Site<D>], spacing: f64) -> (Vec<Site<D>>, f64) {
+    let distance = |a: &Site<D>, b: &Site<D>| {
+        if a.normal.dot(&b.normal) <= SAME_FACE { f64::INFINITY } else { (a.x - b.x).norm() }
+    };
+    let mut chosen = vec![0];
+    let mut nearest: Vec<(f64, usize)> = sites.iter().map(|s| (distance(s, &sites[0]), 0)).collect();
+    loop {
+        let (at, far) =
+            nearest.iter().enumerate().fold((0, 0.0), |best, (i, n)| if n.0 > best.1 { (i, n.0) } else { best });
+        if far < spacing {
+            let mut out: Vec<Site<D>> = chosen.iter().map(|c| Site { weight: 0.0, ..sites[*c] }).collect();
+            sites.iter().zip(&nearest).for_each(|(s, n)| out[n.1].weight += s.weight);
+            return (out, (2.0 * far).max(spacing));
+        }
+        let number = chosen.len();
+        chosen.push(at);
+        for (n, s) in nearest.iter_mut().zip(sites) {
+            let d = distance(s, &sites[at]);
+            if d < n.0 {
+                *n = (d, number);
+            }
+        }
+    }
+}

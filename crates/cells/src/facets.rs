@@ -1,0 +1,344 @@
+//! Bodies bounded by a closed surface of triangles.
+//!
+//! Facets are clipped with the cell. With `F(x) = ∫_{x_0}^{min(x, x_1)} f dx` over a cell from `x_0` to `x_1`, the
+//! divergence theorem in the column of the cell gives `∫_{cell ∩ body} f = Σ ∫_{facets at x > x_0} F n_x`: no test on
+//! which side a point lies, and no case of how facets and cell meet. With `f` the Lagrange polynomials on fixed Gauss
+//! points these integrals are the weights of a rule that is exact for the stiffness. Some weights may be negative.
+
+use crate::error::CellsError;
+use crate::region::{BoundaryPoint, Filling, Integration, MaterialRule, Region};
+use signorini_fem::QuadraturePoint;
+use signorini_fem::cut::End;
+use signorini_geometry::mesh::TriangleMesh;
+use signorini_geometry::rule::gauss_legendre;
+use signorini_geometry::{Aabb, Point, Vector};
+
+/// The body inside a surface of triangles.
+#[derive(Debug)]
+pub struct FacetBody {
+    mesh: TriangleMesh,
+}
+
+/// Share of the section of a column that an open surface may leave out or count twice.
+const OPEN: f64 = 1e-3;
+/// Columns in each direction in which a surface with holes is examined.
+const COLUMNS: usize = 16;
+
+impl FacetBody {
+    /// The body inside a surface, whose triangles are counter-clockwise seen from outside. Small holes are allowed.
+    ///
+    /// # Errors
+    /// A surface so open that columns through it do not end.
+    pub fn new(mesh: TriangleMesh) -> Result<Self, CellsError> {
+        let body = FacetBody { mesh };
+        if !body.mesh.quality().has_inside() {
+            body.check_columns()?;
+        }
+        Ok(body)
+    }
+
+    fn check_columns(&self) -> Result<(), CellsError> {
+        let b = *self.mesh.bounds();
+        let size = b.size();
+        for i in 0..COLUMNS * COLUMNS {
+            let at = |k: usize, n: usize| b.min[k] + size[k] * n as f64 / COLUMNS as f64;
+            let (j, k) = (i % COLUMNS, i / COLUMNS);
+            let column = Aabb::new(
+                Point::<3>::new(b.min[0] - size[0], at(1, j), at(2, k)),
+                Point::<3>::new(b.max[0] + size[0], at(1, j + 1), at(2, k + 1)),
+            );
+            let section = (size[1] * size[2]) / (COLUMNS * COLUMNS) as f64;
+            let sum: f64 = self.pieces(&column).iter().map(|(_, p)| area_vector(p)[0]).sum();
+            if sum.abs() > OPEN * section {
+                let middle = column.center();
+                return Err(CellsError::OpenSurface { y: middle[1], z: middle[2], share: sum.abs() / section });
+            }
+        }
+        Ok(())
+    }
+
+    /// The triangles clipped with the column of a box, from its lower end in the first direction on, with their number.
+    fn pieces(&self, b: &Aabb<3>) -> Vec<(usize, Vec<Point<3>>)> {
+        let mut out = Vec::new();
+        for k in 0..self.mesh.triangles().len() {
+            let corners = self.mesh.corners(k);
+            let apart = |axis: usize| {
+                let (low, high) = corners
+                    .iter()
+                    .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), c| (l.min(c[axis]), h.max(c[axis])));
+                high < b.min[axis] || (axis > 0 && low > b.max[axis])
+            };
+            if (0..3).any(apart) {
+                continue;
+            }
+            let mut polygon = clip(corners.to_vec(), 0, b.min[0], 1.0);
+            for axis in 1..3 {
+                polygon = clip(clip(polygon, axis, b.min[axis], 1.0), axis, b.max[axis], -1.0);
+            }
+            if polygon.len() > 2 {
+                out.push((k, polygon));
+            }
+        }
+        out
+    }
+
+    fn facet_normal(&self, triangle: usize) -> Vector<3> {
+        let [a, b, c] = self.mesh.corners(triangle);
+        (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default()
+    }
+}
+
+impl Region<3> for FacetBody {
+    fn rule(&self, b: &Aabb<3>, _: &Integration, degree: usize) -> MaterialRule<3> {
+        let line = gauss_legendre(2 * degree + 1);
+        let (n, size) = (line.len(), b.size());
+        let nodes: Vec<f64> = line.iter().map(|p| p.0).collect();
+        let weights: Vec<f64> = line.iter().map(|p| p.1).collect();
+        let lagrange = Lagrange::new(nodes.clone());
+        // Of facets beyond the cell only their shadow on it counts.
+        let mut shadow = vec![0.0; n * n];
+        let mut moments = vec![0.0; n * n * n];
+        let mut boundary = Vec::new();
+        let unit = |x: &Point<3>, k: usize| (x[k] - b.min[k]) / size[k];
+        for (triangle, polygon) in self.pieces(b) {
+            let normal = self.facet_normal(triangle);
+            let within = clip(polygon.clone(), 0, b.max[0], -1.0);
+            let slack = 1e-12 * size[0];
+            let beyond = clip(polygon, 0, b.max[0], 1.0);
+            let reaches = |p: &[Point<3>], sign: f64| p.iter().any(|x| sign * (x[0] - b.max[0]) > slack);
+            let lies_on_end = !reaches(&within, -1.0);
+            for part in fan(&beyond) {
+                if lies_on_end || reaches(&beyond, 1.0) {
+                    for (x, w) in triangle_points(&part, 2 * degree + 1) {
+                        let (y, z) = (lagrange.values(unit(&x, 1)), lagrange.values(unit(&x, 2)));
+                        for j in 0..n {
+                            (0..n).for_each(|k| shadow[n * k + j] += w * normal[0] * y[j] * z[k]);
+                        }
+                    }
+                }
+            }
+            for part in fan(&within) {
+                if on_material_side(&part, b, &normal) {
+                    let points = triangle_points(&part, degree + 2);
+                    boundary.extend(points.into_iter().map(|(x, weight)| BoundaryPoint { x, weight, normal }));
+                }
+                if lies_on_end {
+                    continue;
+                }
+                for (x, w) in triangle_points(&part, 3 * degree + 2) {
+                    let integral = lagrange.integrals(unit(&x, 0));
+                    let (y, z) = (lagrange.values(unit(&x, 1)), lagrange.values(unit(&x, 2)));
+                    for k in 0..n {
+                        for j in 0..n {
+                            let c = w * normal[0] * size[0] * y[j] * z[k];
+                            for i in 0..n {
+                                moments[n * (n * k + j) + i] += c * integral[i];
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        let mut volume = Vec::with_capacity(n * n * n);
+        let mut measure = 0.0;
+        for k in 0..n {
+            for j in 0..n {
+                for i in 0..n {
+                    let weight = moments[n * (n * k + j) + i] + size[0] * weights[i] * shadow[n * k + j];
+                    measure += weight;
+                    let xi = Point::<3>::new(nodes[i], nodes[j], nodes[k]);
+                    volume.push(QuadraturePoint { x: b.at(&xi), weight });
+                }
+            }
+        }
+        let share = measure / b.volume();
+        if share < 1e-13 {
+            MaterialRule::empty(Filling::Void)
+        } else if share > 1.0 - 1e-12 && boundary.is_empty() {
+            MaterialRule::empty(Filling::Full)
+        } else if share > 1.0 - 1e-12 {
+            MaterialRule { filling: Filling::Full, volume: Vec::new(), boundary }
+        } else {
+            MaterialRule { filling: Filling::Cut, volume, boundary }
+        }
+    }
+
+    /// By 12 × 12 points, each in the material or not.
+    fn side_rule(&self, b: &Aabb<3>, axis: usize, end: End, _: usize) -> Vec<QuadraturePoint<3>> {
+        const SIDE: usize = 12;
+        let others: Vec<usize> = (0..3).filter(|&k| k != axis).collect();
+        let size = b.size();
+        let weight = size[others[0]] * size[others[1]] / (SIDE * SIDE) as f64;
+        let mut out = Vec::new();
+        for i in 0..SIDE * SIDE {
+            let mut x = if end == End::High { b.max } else { b.min };
+            for (k, at) in others.iter().zip([i % SIDE, i / SIDE]) {
+                x[*k] = b.min[*k] + size[*k] * (at as f64 + 0.5) / SIDE as f64;
+            }
+            let mut inside = x;
+            inside[axis] -= 1e-9 * end.sign() * size[axis];
+            if self.contains(&inside) {
+                out.push(QuadraturePoint { x, weight });
+            }
+        }
+        out
+    }
+
+    fn contains(&self, x: &Point<3>) -> bool {
+        let foot = self.mesh.closest(x, 0.0)[0];
+        foot.gap.unwrap_or_else(|| (x - foot.point).dot(&foot.normal)) < 0.0
+    }
+
+    fn has_points_in_material(&self) -> bool {
+        false
+    }
+}
+
+/// The part of a polygon with `sign (x_axis - at) ≥ 0` (Sutherland & Hodgman).
+fn clip(polygon: Vec<Point<3>>, axis: usize, at: f64, sign: f64) -> Vec<Point<3>> {
+    let height = |x: &Point<3>| sign * (x[axis] - at);
+    if polygon.iter().all(|x| height(x) >= 0.0) {
+        return polygon;
+    }
+    let mut out = Vec::with_capacity(polygon.len() + 1);
+    for (i, a) in polygon.iter().enumerate() {
+        let b = &polygon[(i + 1) % polygon.len()];
+        let (ha, hb) = (height(a), height(b));
+        if ha >= 0.0 {
+            out.push(*a);
+        }
+        if (ha >= 0.0) != (hb >= 0.0) {
+            let mut x = a + (b - a) * (ha / (ha - hb));
+            x[axis] = at;
+            out.push(x);
+        }
+    }
+    out
+}
+
+fn fan(polygon: &[Point<3>]) -> impl Iterator<Item = [Point<3>; 3]> + '_ {
+    (2..polygon.len()).map(|i| [polygon[0], polygon[i - 1], polygon[i]])
+}
+
+fn area_vector(polygon: &[Point<3>]) -> Vector<3> {
+    fan(polygon).map(|[a, b, c]| 0.5 * (b - a).cross(&(c - a))).sum()
+}
+
+/// Whether a piece within a box, or on a side of it with the material on this side, belongs to it.
+fn on_material_side(part: &[Point<3>; 3], b: &Aabb<3>, normal: &Vector<3>) -> bool {
+    (0..3).all(|k| {
+        let slack = 1e-12 * (b.max[k] - b.min[k]);
+        let on = |at: f64| part.iter().all(|x| (x[k] - at).abs() <= slack);
+        let beyond = (on(b.max[k]) && normal[k] < 0.0) || (on(b.min[k]) && normal[k] > 0.0);
+        !beyond
+    })
+}
+
+/// Gauss points of a triangle, collapsed from the square.
+fn triangle_points([a, b, c]: &[Point<3>; 3], n: usize) -> Vec<(Point<3>, f64)> {
+    let (u, v) = (b - a, c - a);
+    let area = u.cross(&v).norm();
+    if area == 0.0 {
+        return Vec::new();
+    }
+    let line = gauss_legendre(n);
+    let mut out = Vec::with_capacity(n * n);
+    for (s, ws) in &line {
+        for (t, wt) in &line {
+            out.push((a + u * (s * (1.0 - t)) + v * *t, area * ws * wt * (1.0 - t)));
+        }
+    }
+    out
+}
+
+/// Lagrange polynomials on `[0, 1]`.
+struct Lagrange {
+    nodes: Vec<f64>,
+    /// Products of differences of nodes.
+    scale: Vec<f64>,
+    gauss: Vec<(f64, f64)>,
+}
+
+impl Lagrange {
+    fn new(nodes: Vec<f64>) -> Self {
+        let others = |i: usize| (0..nodes.len()).filter(move |j| *j != i);
+        let scale = (0..nodes.len()).map(|i| others(i).map(|j| nodes[i] - nodes[j]).product()).collect();
+        let gauss = gauss_legendre(nodes.len().div_ceil(2));
+        Lagrange { scale, nodes, gauss }
+    }
+
+    fn values(&self, x: f64) -> Vec<f64> {
+        let n = self.nodes.len();
+        let product = |i: usize| (0..n).filter(|j| *j != i).map(|j| x - self.nodes[j]).product::<f64>();
+        (0..n).map(|i| product(i) / self.scale[i]).collect()
+    }
+
+    /// Integrals from 0 to `x`.
+    fn integrals(&self, x: f64) -> Vec<f64> {
+        let mut out = vec![0.0; self.nodes.len()];
+        for (t, w) in &self.gauss {
+            self.values(t * x).iter().zip(&mut out).for_each(|(v, o)| *o += w * x * v);
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tree::CellTree;
+
+    fn cube(low: [f64; 3], high: [f64; 3]) -> TriangleMesh {
+        let corner = |i: usize| Point::<3>::from_fn(|k, _| if i >> k & 1 == 1 { high[k] } else { low[k] });
+        let triangles = [
+            [0, 2, 3],
+            [0, 3, 1],
+            [4, 5, 7],
+            [4, 7, 6],
+            [0, 1, 5],
+            [0, 5, 4],
+            [2, 6, 7],
+            [2, 7, 3],
+            [0, 4, 6],
+            [0, 6, 2],
+            [1, 3, 7],
+            [1, 7, 5],
+        ];
+        TriangleMesh::new((0..8).map(corner).collect(), &triangles).unwrap()
+    }
+
+    #[test]
+    fn moments_and_surface_of_a_cube_are_exact_also_with_its_sides_on_those_of_cells() {
+        let tree = CellTree::new(Aabb::new(Point::<3>::zeros(), Point::<3>::repeat(1.0)), [4, 4, 4]).unwrap();
+        for (low, high) in [([0.1, 0.2, 0.3], [0.7, 0.9, 0.8]), ([0.25, 0.25, 0.5], [0.75, 1.0, 0.75])] {
+            let body = FacetBody::new(cube(low, high)).unwrap();
+            let (mut sums, mut area, mut closed) = ([0.0; 2], 0.0, Vector::<3>::zeros());
+            for leaf in tree.leaves() {
+                let rule = body.rule(&leaf.bounds, &Integration::Exact { points: None }, 2);
+                let points: Vec<(Point<3>, f64)> = if rule.filling == Filling::Full {
+                    crate::body::box_points(&leaf.bounds, 3)
+                } else {
+                    rule.volume.iter().map(|p| (p.x, p.weight)).collect()
+                };
+                for (x, w) in points {
+                    sums[0] += w;
+                    sums[1] += w * x[0].powi(4) * x[1].powi(3) * x[2].powi(2);
+                }
+                area += rule.boundary.iter().map(|p| p.weight).sum::<f64>();
+                closed += rule.boundary.iter().map(|p| p.normal * p.weight).sum::<Vector<3>>();
+            }
+            let moment = |k: usize, n: i32| (high[k].powi(n + 1) - low[k].powi(n + 1)) / f64::from(n + 1);
+            let exact = [moment(0, 0) * moment(1, 0) * moment(2, 0), moment(0, 4) * moment(1, 3) * moment(2, 2)];
+            let d: Vec<f64> = (0..3).map(|k| high[k] - low[k]).collect();
+            assert!((sums[0] - exact[0]).abs() < 1e-14 && (sums[1] - exact[1]).abs() < 1e-14, "{sums:?} {exact:?}");
+            assert!((area - 2.0 * (d[0] * d[1] + d[1] * d[2] + d[2] * d[0])).abs() < 1e-13 && closed.norm() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn an_open_surface_is_told() {
+        let closed = cube([0.0; 3], [1.0; 3]);
+        let open = TriangleMesh::new(closed.vertices().to_vec(), &closed.triangles()[..10]).unwrap();
+        assert!(matches!(FacetBody::new(open), Err(CellsError::OpenSurface { share, .. }) if share > 0.5));
+    }
+}

@@ -1,0 +1,38 @@
+//! Numbers without a header.
+
+use super::{Endian, ImageData, Number, Wrong, check_counts};
+
+/// What a file of numbers does not say itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RawHeader {
+    /// Voxels in each direction, that along x first.
+    pub count: Vec<usize>,
+    pub spacing: Vec<f64>,
+    pub origin: Vec<f64>,
+    pub number: Number,
+    pub endian: Endian,
+    /// Bytes before the first number.
+    pub skip: usize,
+}
+
+/// The numbers of a file, x running fastest.
+///
+/// # Errors
+/// A header that contradicts itself or the length of the file.
+pub fn parse(bytes: &[u8], header: &RawHeader) -> Result<ImageData, Wrong> {
+    check_counts("count", &header.count)?;
+    for (name, list) in [("spacing", &header.spacing), ("origin", &header.origin)] {
+        if list.len() != header.count.len() {
+            return Err(Wrong::new(name, format!("{list:?}"), "it needs a number for each direction of `count`"));
+        }
+    }
+    let data = bytes.get(header.skip..).unwrap_or_default();
+    let wanted = header.count.iter().product::<usize>() * header.number.bytes();
+    if data.len() != wanted {
+        let found = format!("{} bytes, {wanted} by count and type", data.len());
+        return Err(Wrong::new("the data", found, "count, type or skip are not those of this file"));
+    }
+    let values = header.number.decode(data, header.endian, &header.count)?;
+    let (count, spacing, origin) = (header.count.clone(), header.spacing.clone(), header.origin.clone());
+    Ok(ImageData { count, spacing, origin, values })
+}

@@ -1,0 +1,116 @@
+use super::*;
+
+/// 2 × 3 × 2 numbers 0, 1, 2, … in one format or another.
+fn values() -> Vec<f64> {
+    (0..12).map(f64::from).collect()
+}
+
+fn floats(endian: Endian) -> Vec<u8> {
+    let bytes = |v: f64| {
+        let v = v as f32;
+        if endian == Endian::Little { v.to_le_bytes() } else { v.to_be_bytes() }
+    };
+    values().into_iter().flat_map(bytes).collect()
+}
+
+#[test]
+fn npy_in_both_orders() {
+    for (order, shape) in [("False", "(2, 3, 2)"), ("True", "(2, 3, 2)")] {
+        let header = format!("{{'descr': '>f4', 'fortran_order': {order}, 'shape': {shape}, }}\n");
+        let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+        bytes.extend((header.len() as u16).to_le_bytes());
+        bytes.extend(header.as_bytes());
+        bytes.extend(floats(Endian::Big));
+        let image = npy::parse(&bytes).unwrap();
+        assert_eq!((image.count.as_slice(), image.values), (&[2, 3, 2][..], values()));
+        assert!(npy::parse(&bytes[..bytes.len() - 1]).unwrap_err().to_string().contains("cut off"));
+    }
+    assert!(npy::parse(b"PK").unwrap_err().to_string().contains("numpy.save"));
+}
+
+#[test]
+fn nrrd_and_metaimage_say_where_the_voxels_are() {
+    let mut bytes = b"NRRD0004\ntype: float\ndimension: 3\nsizes: 2 3 2\nspace directions: (0.5,0,0) (0,1,0) (0,0,2)\n\
+        space origin: (1,2,3)\nencoding: raw\nendian: little\n\n"
+        .to_vec();
+    let text = bytes.clone();
+    bytes.extend(floats(Endian::Little));
+    let header = nrrd::header(&bytes).unwrap();
+    let image = header.decode(&bytes[header.data_start..]).unwrap();
+    assert_eq!((image.values.clone(), image.spacing.clone()), (values(), vec![0.5, 1.0, 2.0]));
+    assert_eq!(image.origin, [0.75, 1.5, 2.0]);
+    let voxels = image.voxels::<3>().unwrap();
+    assert_eq!(voxels.voxel_at(&Point::<3>::new(1.6, 3.1, 3.0)), 3);
+    let packed = String::from_utf8(text).unwrap().replace("raw", "gzip");
+    assert!(nrrd::header(packed.as_bytes()).unwrap_err().to_string().contains("`gzip`"));
+
+    let mut bytes = b"ObjectType = Image\nNDims = 3\nDimSize = 2 3 2\nElementSpacing = 0.5 1 2\nOffset = 1 2 3\n\
+        BinaryDataByteOrderMSB = True\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n"
+        .to_vec();
+    bytes.extend(floats(Endian::Big));
+    let header = metaimage::header(&bytes).unwrap();
+    let other = header.decode(&bytes[header.data_start..]).unwrap();
+    assert_eq!((other.values, other.origin), (values(), vec![0.75, 1.5, 2.0]));
+    let short = header.decode(&bytes[header.data_start..bytes.len() - 4]).unwrap_err();
+    assert!(short.to_string().contains("44 bytes"), "{short}");
+    assert!(metaimage::header(b"DimSize = 2\n").is_err());
+}
+
+#[test]
+fn nifti_scales_its_values() {
+    let mut bytes = vec![0u8; 352];
+    bytes[0..4].copy_from_slice(&348i32.to_le_bytes());
+    for (at, value) in [(40, 3i16), (42, 2), (44, 3), (46, 2), (70, 16), (254, 1)] {
+        bytes[at..at + 2].copy_from_slice(&value.to_le_bytes());
+    }
+    let numbers = [
+        (80, 0.5f32),
+        (84, 1.0),
+        (88, 2.0),
+        (108, 352.0),
+        (112, 2.0),
+        (116, 1.0),
+        (280, 0.5),
+        (292, 1.0),
+        (300, 1.0),
+        (308, 2.0),
+        (320, 2.0),
+        (324, 3.0),
+    ];
+    for (at, value) in numbers {
+        bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
+    }
+    bytes[344..348].copy_from_slice(b"n+1\0");
+    bytes.extend(floats(Endian::Little));
+    let image = nifti::parse(&bytes).unwrap();
+    assert_eq!(image.values, values().iter().map(|v| 2.0 * v + 1.0).collect::<Vec<f64>>());
+    assert_eq!((image.count, image.origin), (vec![2, 3, 2], vec![0.75, 1.5, 2.0]));
+    assert!(nifti::parse(&[0x1f, 0x8b]).unwrap_err().to_string().contains("gunzip"));
+    assert!(nifti::parse(&bytes[..200]).is_err());
+}
+
+#[test]
+fn stacks_of_pictures_and_raw_numbers() {
+    use tiff::encoder::{TiffEncoder, colortype::Gray16};
+    let mut file = std::io::Cursor::new(Vec::new());
+    let mut encoder = TiffEncoder::new(&mut file).unwrap();
+    for layer in 0..2u16 {
+        let numbers: Vec<u16> = (0..6).map(|i| 6 * layer + i).collect();
+        encoder.write_image::<Gray16>(2, 3, &numbers).unwrap();
+    }
+    let image = tiff_stack::parse(file.get_ref()).unwrap();
+    assert_eq!((image.count, image.values), (vec![2, 3, 2], values()));
+    assert!(tiff_stack::parse(b"none").is_err());
+    let header = raw::RawHeader {
+        count: vec![2, 3, 2],
+        spacing: vec![1.0; 3],
+        origin: vec![0.0; 3],
+        number: Number::F32,
+        endian: Endian::Little,
+        skip: 0,
+    };
+    assert_eq!(raw::parse(&floats(Endian::Little), &header).unwrap().values, values());
+    let wrong = raw::RawHeader { count: vec![2, 3, 3], ..header };
+    assert!(raw::parse(&floats(Endian::Little), &wrong).unwrap_err().to_string().contains("48 bytes, 72"));
+    assert!(matches!(read(Path::new("a.dcm")), Err(ImageError::Ending { .. })));
+}

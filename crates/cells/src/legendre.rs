@@ -1,0 +1,47 @@
+//! Integrated Legendre functions of one direction (Szabó & Babuška, *Finite Element Analysis*, 1991).
+//!
+//! `N_0 = (1 - ξ)/2`, `N_1 = (1 + ξ)/2`, `N_k = (P_k - P_{k-2})/√(4k - 2)`, `N_k' = √((2k - 1)/2) P_{k-1}`. They are
+//! polynomials, known beyond the cell too.
+
+/// The highest degree.
+pub const MAX_DEGREE: usize = 8;
+
+/// Value and slope of the functions `0..=degree` at `ξ`; entries beyond are zero.
+pub fn integrated_legendre(degree: usize, xi: f64) -> [[f64; 2]; MAX_DEGREE + 1] {
+    let mut out = [[0.0; 2]; MAX_DEGREE + 1];
+    out[0] = [0.5 * (1.0 - xi), -0.5];
+    out[1] = [0.5 * (1.0 + xi), 0.5];
+    let (mut before, mut last) = (1.0, xi);
+    for k in 2..=degree {
+        let n = k as f64;
+        let next = ((2.0 * n - 1.0) * xi * last - (n - 1.0) * before) / n;
+        out[k] = [(next - before) / (4.0 * n - 2.0).sqrt(), (n - 0.5).sqrt() * last];
+        (before, last) = (last, next);
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use signorini_geometry::rule::gauss_legendre;
+
+    #[test]
+    fn bubbles_vanish_at_the_ends_and_their_slopes_are_orthonormal() {
+        for k in 2..=MAX_DEGREE {
+            assert!(
+                integrated_legendre(8, 1.0)[k][0].abs() < 1e-15 && integrated_legendre(8, -1.0)[k][0].abs() < 1e-15
+            );
+            for j in 2..=MAX_DEGREE {
+                let product: f64 = gauss_legendre(9)
+                    .iter()
+                    .map(|(t, w)| {
+                        let n = integrated_legendre(8, 2.0 * t - 1.0);
+                        2.0 * w * n[j][1] * n[k][1]
+                    })
+                    .sum();
+                assert!((product - f64::from(u8::from(j == k))).abs() < 1e-13);
+            }
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! Finite cells: elastic bodies of any shape on a grid of cells of high order, without a mesh.
+//!
+//! The body lies anywhere in a box of cells. Its shape enters by quadrature alone; supports and contact act on the
+//! boundary that the quadrature recovers (Parvizian, Düster & Rank, Comput. Mech. 41, 2007; Düster, Rank & Szabó,
+//! *The p-version of the finite element and finite cell methods*, 2017).
+//!
+//! - [`domain`], [`shapes`]: bodies from implicit shapes; [`facets`]: from closed surfaces of triangles; [`voxels`] and
+//!   [`image`]: from images.
+//! - [`region`]: the quadrature of the material in a cell and of its boundary.
+//! - [`tree`], [`space`], [`legendre`]: cells, refinement, functions.
+//! - [`components`]: what of the material hangs together.
+//! - [`discretisation`]: how a body is made of cells; [`body`]: all of this; [`stiffness`]: the elastic integrals.
+//! - [`supports`], [`loads`]: what holds and what pushes; [`system`]: equilibrium; [`schwarz`]: the preconditioner.
+//! - [`contact`]: contact of the recovered boundary with a rigid body.
+//! - [`discs`]: contact of a body with itself, where pores close.
+//! - [`fields`]: displacement and stress in the volume and on the boundary.
+
+pub mod body;
+pub mod components;
+pub mod contact;
+pub mod discretisation;
+pub mod discs;
+pub mod domain;
+pub mod error;
+pub mod facets;
+pub mod fields;
+pub mod image;
+pub mod legendre;
+pub mod loads;
+mod numbering;
+pub mod place;
+pub mod region;
+pub mod schwarz;
+pub mod shapes;
+pub mod space;
+pub mod stiffness;
+pub mod supports;
+pub mod system;
+pub mod tree;
+pub mod voxels;
+
+pub use body::{Cell, CellBody, Field, Findings, Site};
+pub use components::Pieces;
+pub use discretisation::{Boundary, Discretisation, Islands, Stuff};
+pub use domain::Domain;
+pub use error::CellsError;
+pub use loads::Load;
+pub use place::Place;
+pub use region::{BoundaryPoint, Filling, Integration, Region};
+pub use signorini_fem::cut::End;
+pub use signorini_fem::elastic::{Elastic, Space, von_mises};
+pub use space::{Products, Tabulation};
+pub use supports::{Held, Support};
+pub use system::{Solution, Solved, Solver, System};
+pub use tree::{CellTree, Leaf};

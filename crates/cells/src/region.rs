@@ -1,0 +1,151 @@
+//! Quadrature of the material in a box, from whatever describes the body.
+
+use crate::domain::{Domain, Restricted};
+use signorini_fem::QuadraturePoint;
+use signorini_fem::cut::{End, height::side_points, height_functions, space_tree, sub_cells};
+use signorini_geometry::{Aabb, Point, Vector};
+
+/// How cut cells are integrated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Integration {
+    /// By height functions: with as many Gauss points in each direction and smooth piece as given, or four more than the
+    /// degree, which the curved pieces of a cut cell need (with fewer, under-integrated slivers get motions that cost no
+    /// energy).
+    Exact { points: Option<usize> },
+    /// By as many sub-cells in each direction, cut along chords.
+    SubCells { subdivision: usize },
+    /// By bisection, and counting of Gauss points; without a boundary.
+    SpaceTree { depth: usize },
+}
+
+impl Integration {
+    /// Gauss points in each direction of a smooth piece.
+    pub fn points(&self, degree: usize) -> usize {
+        match self {
+            Integration::Exact { points } => points.unwrap_or(degree + 4),
+            Integration::SubCells { .. } | Integration::SpaceTree { .. } => degree + 1,
+        }
+    }
+}
+
+/// How much of a cell is material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Filling {
+    Full,
+    Cut,
+    Void,
+}
+
+/// A point of the boundary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoundaryPoint<const D: usize> {
+    pub x: Point<D>,
+    /// Length or area of the boundary before it deforms.
+    pub weight: f64,
+    /// Unit normal, out of the material.
+    pub normal: Vector<D>,
+}
+
+/// The quadrature of the material in a cell.
+#[derive(Clone, Debug)]
+pub struct MaterialRule<const D: usize> {
+    pub filling: Filling,
+    /// Empty where the cell is full.
+    pub volume: Vec<QuadraturePoint<D>>,
+    pub boundary: Vec<BoundaryPoint<D>>,
+}
+
+impl<const D: usize> MaterialRule<D> {
+    pub fn empty(filling: Filling) -> Self {
+        MaterialRule { filling, volume: Vec::new(), boundary: Vec::new() }
+    }
+
+    /// Volume of the material in a cell of the given volume.
+    pub fn measure(&self, whole: f64) -> f64 {
+        if self.filling == Filling::Full { whole } else { self.volume.iter().map(|p| p.weight).sum() }
+    }
+}
+
+/// What describes where material is.
+pub trait Region<const D: usize>: Send + Sync {
+    /// The quadrature of the material in a box, for functions of a degree.
+    fn rule(&self, b: &Aabb<D>, integration: &Integration, degree: usize) -> MaterialRule<D>;
+
+    /// Quadrature of the material on a side of a box.
+    fn side_rule(&self, b: &Aabb<D>, axis: usize, end: End, points: usize) -> Vec<QuadraturePoint<D>>;
+
+    fn contains(&self, x: &Point<D>) -> bool;
+
+    /// Whether the points of its rules lie in the material and can be counted to one piece of it or another.
+    fn has_points_in_material(&self) -> bool {
+        true
+    }
+
+    /// A value that is not finite at a point, where the description has one.
+    fn defect(&self, _: &Point<D>) -> Option<f64> {
+        None
+    }
+}
+
+/// A share of a cell below which it holds no material: what rounding leaves of sums of its points.
+const NOTHING: f64 = 1e-14;
+
+impl<const D: usize> Region<D> for Domain<D> {
+    fn rule(&self, b: &Aabb<D>, integration: &Integration, degree: usize) -> MaterialRule<D> {
+        let domain = match self.restricted(b) {
+            Restricted::Full => return MaterialRule::empty(Filling::Full),
+            Restricted::Void => return MaterialRule::empty(Filling::Void),
+            Restricted::Open(domain) => domain,
+        };
+        let partition = domain.partition();
+        let points = integration.points(degree);
+        let mut rule = match *integration {
+            Integration::Exact { .. } => height_functions(&partition, b, points),
+            Integration::SubCells { subdivision } => in_sub_cells(&partition, b, subdivision, points),
+            Integration::SpaceTree { depth } => space_tree(&partition, b, depth, points),
+        };
+        let boundary: Vec<BoundaryPoint<D>> = (rule.surfaces.iter())
+            .map(|p| BoundaryPoint {
+                x: p.x,
+                weight: p.weight,
+                normal: if p.minus == 1 { p.normal } else { -p.normal },
+            })
+            .collect();
+        let at = rule.volumes.iter().position(|v| v.0 == 1);
+        let volume = at.map_or(Vec::new(), |at| rule.volumes.swap_remove(at).1);
+        let measure: f64 = volume.iter().map(|p| p.weight).sum();
+        if measure <= NOTHING * b.volume() {
+            MaterialRule::empty(Filling::Void)
+        } else if boundary.is_empty() && measure >= (1.0 - 1e-12) * b.volume() {
+            MaterialRule::empty(Filling::Full)
+        } else {
+            MaterialRule { filling: Filling::Cut, volume, boundary }
+        }
+    }
+
+    fn side_rule(&self, b: &Aabb<D>, axis: usize, end: End, points: usize) -> Vec<QuadraturePoint<D>> {
+        match self.restricted(b) {
+            Restricted::Full => crate::place::side_gauss(b, axis, end, points),
+            Restricted::Void => Vec::new(),
+            Restricted::Open(domain) => side_points(&domain.partition(), b, axis, end, points, 1),
+        }
+    }
+
+    fn contains(&self, x: &Point<D>) -> bool {
+        Domain::contains(self, x)
+    }
+
+    fn defect(&self, x: &Point<D>) -> Option<f64> {
+        Some(self.value(x)).filter(|v| !v.is_finite())
+    }
+}
+
+/// Sub-cells are those of the plane and of space.
+fn in_sub_cells<const D: usize>(
+    partition: &signorini_fem::cut::CellPartition<'_, D>,
+    b: &Aabb<D>,
+    subdivision: usize,
+    points: usize,
+) -> signorini_fem::CellRule<D> {
+    if D == 1 { height_functions(partition, b, points) } else { sub_cells(partition, b, subdivision, points, 1) }
+}

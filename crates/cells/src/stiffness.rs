@@ -1,0 +1,155 @@
+//! The elastic integrals of a cell.
+//!
+//! With `G_ab = ∫ ∂_a N_i ∂_b N_j` the stiffness between the components `a` of function `i` and `b` of function `j` is
+//! `λ G_ab + μ (G_ba + δ_ab Σ_c G_cc)`: matrix products over all points at once. Around an axis `N/r` is one more
+//! derivative, of the hoop strain. No points are needed outside the material: `K = α K_full + (1 - α) K_in`.
+
+use crate::body::{Cell, CellBody, box_points};
+use crate::region::Filling;
+use crate::space::Tabulation;
+use nalgebra::{DMatrix, Matrix3};
+use rayon::prelude::*;
+use signorini_fem::elastic::Space;
+use signorini_geometry::{Point, Vector};
+use std::sync::Arc;
+
+impl<const D: usize> CellBody<D> {
+    /// The unknowns of a cell: all components of its functions.
+    pub fn unknowns_of(&self, cell: usize) -> Vec<u32> {
+        let functions = &self.cells()[cell].functions;
+        functions.iter().flat_map(|f| (0..D as u32).map(move |k| D as u32 * f + k)).collect()
+    }
+
+    /// The stiffness matrices of all cells.
+    pub fn stiffness(&self) -> Vec<Arc<DMatrix<f64>>> {
+        let alike = self.is_homogeneous();
+        let on_grid = |cell: &&Cell<D>| self.tree.leaves()[cell.leaf].level == 0;
+        // Cells of the grid differ in their place only.
+        let shared = self.cells().iter().find(|c| alike && on_grid(c)).map(|c| Arc::new(self.full_stiffness(c)));
+        (self.cells().par_iter())
+            .map(|cell| {
+                let full = match &shared {
+                    Some(shared) if on_grid(&cell) => shared.clone(),
+                    _ => Arc::new(self.full_stiffness(cell)),
+                };
+                if cell.rule.filling == Filling::Full {
+                    return full;
+                }
+                let alpha = self.discretisation.fictitious;
+                let points: Vec<(Point<D>, f64)> = cell.rule.volume.iter().map(|p| (p.x, p.weight)).collect();
+                Arc::new(self.integrate(cell, &points) * (1.0 - alpha) + &*full * alpha)
+            })
+            .collect()
+    }
+
+    fn full_stiffness(&self, cell: &Cell<D>) -> DMatrix<f64> {
+        self.integrate(cell, &box_points(&self.tree.leaves()[cell.leaf].bounds, self.full_points()))
+    }
+
+    fn integrate(&self, cell: &Cell<D>, points: &[(Point<D>, f64)]) -> DMatrix<f64> {
+        let n = cell.functions.len();
+        let axis = self.stuff.space == Space::Axisymmetric;
+        let (lambda, mu) = self.stuff.elastic.lame(self.stuff.space);
+        let leaf = &self.tree.leaves()[cell.leaf];
+        let channels = D + usize::from(axis);
+        let mut g: Vec<DMatrix<f64>> = vec![DMatrix::zeros(n, n); channels * channels];
+        let mut t = Tabulation::default();
+        // As many points at a time as fit into a cache.
+        for chunk in points.chunks(512) {
+            let mut b: Vec<DMatrix<f64>> = vec![DMatrix::zeros(n, chunk.len()); channels];
+            let mut weighted = b.clone();
+            for (q, (x, w)) in chunk.iter().enumerate() {
+                crate::space::tabulate(&self.tree, leaf, self.degree(), &cell.modes, x, &mut t);
+                let weight = w * self.turn(x) * self.modulus_factor(x);
+                for i in 0..n {
+                    for a in 0..D {
+                        b[a][(i, q)] = t.gradient[i][a];
+                        weighted[a][(i, q)] = weight * t.gradient[i][a];
+                    }
+                    if axis {
+                        b[D][(i, q)] = t.value[i] / x[0];
+                        weighted[D][(i, q)] = weight * t.value[i] / x[0];
+                    }
+                }
+            }
+            for a in 0..channels {
+                let transposed = weighted[a].transpose();
+                for c in a..channels {
+                    // G_ca = ∂_c N_i ∂_a N_j.
+                    g[c * channels + a].gemm(1.0, &b[c], &transposed, 1.0);
+                }
+            }
+        }
+        for a in 0..channels {
+            for c in a + 1..channels {
+                g[a * channels + c] = g[c * channels + a].transpose();
+            }
+        }
+        let mut k = DMatrix::zeros(D * n, D * n);
+        for i in 0..n {
+            for j in 0..n {
+                let at = |a: usize, c: usize| g[a * channels + c][(i, j)];
+                let trace: f64 = (0..D).map(|c| at(c, c)).sum();
+                for a in 0..D {
+                    for c in 0..D {
+                        let mut value = lambda * at(a, c) + mu * at(c, a);
+                        if a == c {
+                            value += mu * trace;
+                        }
+                        if axis {
+                            if a == 0 {
+                                value += lambda * at(D, c);
+                            }
+                            if c == 0 {
+                                value += lambda * at(a, D);
+                            }
+                            if a == 0 && c == 0 {
+                                value += (lambda + 2.0 * mu) * at(D, D);
+                            }
+                        }
+                        k[(D * i + a, D * j + c)] = value;
+                    }
+                }
+            }
+        }
+        k
+    }
+
+    /// Whether the stiffness of a full cell does not depend on where it lies.
+    pub fn is_homogeneous(&self) -> bool {
+        self.stuff.modulus.is_none() && self.stuff.space != Space::Axisymmetric
+    }
+
+    /// The factor of Young's modulus at a point, kept above the fictitious stiffness.
+    pub(crate) fn modulus_factor(&self, x: &Point<D>) -> f64 {
+        match &self.stuff.modulus {
+            Some((factor, most)) => factor(x).max(self.discretisation.fictitious * most),
+            None => 1.0,
+        }
+    }
+
+    /// The traction `σ(N_j e_b) n` of every unknown of a cell at a point, from its functions there.
+    pub fn tractions(&self, x: &Point<D>, normal: &Vector<D>, t: &Tabulation<D>) -> Vec<Vector<D>> {
+        let (lambda, mu) = self.stuff.elastic.lame(self.stuff.space);
+        let factor = self.modulus_factor(x);
+        let mut out = Vec::with_capacity(D * t.value.len());
+        for (value, gradient) in t.value.iter().zip(&t.gradient) {
+            let along = gradient.dot(normal);
+            for b in 0..D {
+                let mut divergence = gradient[b];
+                if b == 0 && self.stuff.space == Space::Axisymmetric {
+                    divergence += value / x[0];
+                }
+                let mut traction = normal * (lambda * divergence) + gradient * (mu * normal[b]);
+                traction[b] += mu * along;
+                out.push(traction * factor);
+            }
+        }
+        out
+    }
+
+    /// The stress at a point of a cell, from the gradient of the displacement there, in space.
+    pub fn stress_at(&self, x: &Point<D>, gradient: &Matrix3<f64>) -> Matrix3<f64> {
+        self.stuff.elastic.stress(self.stuff.space, gradient) * self.modulus_factor(x)
+    }
+}

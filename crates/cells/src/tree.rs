@@ -1,0 +1,193 @@
+//! The cells: a grid of boxes, any of which may be halved in every direction again and again.
+
+use crate::error::CellsError;
+use signorini_geometry::{Aabb, Point};
+use std::collections::BTreeSet;
+
+/// The deepest level of refinement.
+pub const MAX_LEVEL: usize = 12;
+
+/// A cell that is not refined.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leaf<const D: usize> {
+    /// How often a cell of the grid was halved.
+    pub level: usize,
+    /// Place among the cells of its level.
+    pub index: [usize; D],
+    pub bounds: Aabb<D>,
+}
+
+impl<const D: usize> Leaf<D> {
+    /// Coordinates in `[-1, 1]^D`, of points beyond the cell too.
+    pub fn local(&self, x: &Point<D>) -> Point<D> {
+        Point::from_fn(|k, _| {
+            let (a, b) = (self.bounds.min[k], self.bounds.max[k]);
+            (2.0 * x[k] - a - b) / (b - a)
+        })
+    }
+
+    /// Least extent.
+    pub fn size(&self) -> f64 {
+        self.bounds.size().min()
+    }
+}
+
+/// A grid of cells with refinement.
+#[derive(Clone, Debug)]
+pub struct CellTree<const D: usize> {
+    bounds: Aabb<D>,
+    cells: [usize; D],
+    /// The refined cells of each level.
+    refined: Vec<BTreeSet<[usize; D]>>,
+    leaves: Vec<Leaf<D>>,
+}
+
+impl<const D: usize> CellTree<D> {
+    /// A uniform grid of `cells` in each direction of a box.
+    ///
+    /// # Errors
+    /// A box without extent or with corners that are not finite; no cells in some direction.
+    pub fn new(bounds: Aabb<D>, cells: [usize; D]) -> Result<Self, CellsError> {
+        let corners: Vec<f64> = bounds.min.iter().chain(&bounds.max).copied().collect();
+        if corners.iter().any(|x| !x.is_finite()) || bounds.size().iter().any(|s| *s <= 0.0) {
+            return Err(CellsError::Box { corners });
+        }
+        if cells.contains(&0) {
+            return Err(CellsError::NoCells { cells: cells.to_vec() });
+        }
+        let mut tree = CellTree { bounds, cells, refined: Vec::new(), leaves: Vec::new() };
+        tree.update();
+        Ok(tree)
+    }
+
+    /// Halves in every direction all leaves that are named; gives how many there were.
+    pub fn refine(&mut self, mut which: impl FnMut(&Leaf<D>) -> bool) -> usize {
+        let chosen: Vec<Leaf<D>> = self.leaves.iter().filter(|l| l.level < MAX_LEVEL && which(l)).copied().collect();
+        for leaf in &chosen {
+            while self.refined.len() <= leaf.level {
+                self.refined.push(BTreeSet::new());
+            }
+            self.refined[leaf.level].insert(leaf.index);
+        }
+        if !chosen.is_empty() {
+            self.update();
+        }
+        chosen.len()
+    }
+
+    pub fn bounds(&self) -> &Aabb<D> {
+        &self.bounds
+    }
+
+    /// Cells of the grid in each direction.
+    pub fn cells(&self) -> [usize; D] {
+        self.cells
+    }
+
+    /// Number of cells along a direction on a level.
+    pub fn count(&self, level: usize, axis: usize) -> usize {
+        self.cells[axis] << level
+    }
+
+    /// The leaves, in the order of the grid, those of a refined cell in its place.
+    pub fn leaves(&self) -> &[Leaf<D>] {
+        &self.leaves
+    }
+
+    pub fn is_refined(&self, level: usize, index: &[usize; D]) -> bool {
+        self.refined.get(level).is_some_and(|set| set.contains(index))
+    }
+
+    /// Whether a cell of a level is a leaf or an ancestor of leaves.
+    pub fn exists(&self, level: usize, index: &[usize; D]) -> bool {
+        level == 0 || self.is_refined(level - 1, &index.map(|i| i / 2))
+    }
+
+    /// The box of a cell of a level.
+    pub fn cell_box(&self, level: usize, index: &[usize; D]) -> Aabb<D> {
+        let corner = |add: usize| {
+            Point::from_fn(|k, _| {
+                let n = self.count(level, k);
+                let i = index[k] + add;
+                // The outer sides exactly.
+                if i == n {
+                    self.bounds.max[k]
+                } else {
+                    self.bounds.min[k] + self.bounds.size()[k] * i as f64 / n as f64
+                }
+            })
+        };
+        Aabb::new(corner(0), corner(1))
+    }
+
+    /// The leaf that contains a point, that of the greater place on sides between two; points outside belong to the
+    /// nearest leaf.
+    pub fn leaf_at(&self, x: &Point<D>) -> usize {
+        let mut level = 0;
+        loop {
+            let index: [usize; D] = std::array::from_fn(|k| {
+                let n = self.count(level, k);
+                let t = (x[k] - self.bounds.min[k]) / self.bounds.size()[k] * n as f64;
+                (t.max(0.0) as usize).min(n - 1)
+            });
+            if !self.is_refined(level, &index) {
+                let key = self.key(level, &index);
+                return self.leaves.partition_point(|l| self.key(l.level, &l.index) < key);
+            }
+            level += 1;
+        }
+    }
+
+    /// Sorts leaves: the grid cell, last direction slowest, then the digits of the place within it.
+    fn key(&self, level: usize, index: &[usize; D]) -> (usize, Vec<usize>) {
+        let root = (0..D).rev().fold(0, |n, k| n * self.cells[k] + (index[k] >> level));
+        let digit = |l: usize| (0..D).map(|k| (index[k] >> (level - l) & 1) << k).sum();
+        (root, (1..=level).map(digit).collect())
+    }
+
+    fn update(&mut self) {
+        let mut leaves = Vec::new();
+        for mut number in 0..self.cells.iter().product() {
+            let index: [usize; D] = std::array::from_fn(|k| {
+                let i = number % self.cells[k];
+                number /= self.cells[k];
+                i
+            });
+            self.collect(0, index, &mut leaves);
+        }
+        self.leaves = leaves;
+    }
+
+    fn collect(&self, level: usize, index: [usize; D], out: &mut Vec<Leaf<D>>) {
+        if !self.is_refined(level, &index) {
+            out.push(Leaf { level, index, bounds: self.cell_box(level, &index) });
+            return;
+        }
+        for child in 0..1usize << D {
+            self.collect(level + 1, std::array::from_fn(|k| 2 * index[k] + (child >> k & 1)), out);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn leaves_fill_the_box_and_are_found() {
+        let b = Aabb::new(Point::<2>::new(-1.0, 0.5), Point::<2>::new(2.0, 2.0));
+        let mut tree = CellTree::new(b, [3, 2]).unwrap();
+        for x in [Point::<2>::new(0.1, 0.7), Point::<2>::new(0.1, 0.7), Point::<2>::new(1.9, 1.9)] {
+            let at = tree.leaf_at(&x);
+            let leaf = tree.leaves()[at];
+            assert_eq!(tree.refine(|l| *l == leaf), 1);
+        }
+        assert_eq!(tree.leaves().len(), 6 + 9);
+        let total: f64 = tree.leaves().iter().map(|l| l.bounds.volume()).sum();
+        assert!((total - b.volume()).abs() < 1e-14);
+        for (i, leaf) in tree.leaves().iter().enumerate() {
+            assert_eq!(tree.leaf_at(&leaf.bounds.center()), i);
+        }
+        assert_eq!(tree.leaf_at(&Point::<2>::new(9.0, 9.0)), tree.leaf_at(&Point::<2>::new(1.99, 1.99)));
+    }
+}

@@ -1,0 +1,485 @@
+//! Quadrature by height functions in one, two and three dimensions, by recursion over the dimension.
+//!
+//! After R. Saye, SIAM J. Sci. Comput. 37 (2015). With `k` the height direction of a box and `φ_i` its surfaces, the base
+//! (the box without direction `k`) is resolved for the functions whose zeros are kinks of the integrals along `k`:
+//!
+//! - `φ_i` on the lower and on the upper face normal to `k`,
+//! - for each pair `D_ij(s) = φ_i(s, t_j(s))`, with `t_j` the height of surface `j` kept within the box and
+//!   `∇D_ij = ∇_s φ_i - (∂_k φ_i / ∂_k φ_j) ∇_s φ_j`: where two surfaces intersect.
+//!
+//! Above every base point the roots of all `φ_i` are found and Gauss points are put into each segment. A root carries a
+//! surface point of weight `w |∇φ| / |∂_k φ|`. All weights are positive, and the points of all regions together
+//! integrate the whole box.
+
+use super::{CellPartition, CellRule, QuadraturePoint, SurfacePoint, scan_roots};
+use signorini_geometry::rule::gauss_legendre;
+use signorini_geometry::{Aabb, ImplicitShape, Point, Vector};
+
+/// Least slope `|∂_k φ| / |∇φ|` along a height direction. Smaller ones need fewer boxes, but the height of a steep
+/// surface is a poor function of its base: at 0.3 a torus of twice the radius of a cell is right to ten digits.
+const MIN_SLOPE: f64 = 0.3;
+/// How often a box is halved before lines are searched for several roots instead.
+const MAX_DEPTH: usize = 6;
+/// Samples in each direction, ends included.
+const SAMPLES: usize = 4;
+/// Intervals of a line in which roots are searched where no direction serves, and on lines of the base.
+const PIECES: usize = 8;
+/// Steps of the search for a surface that no sample shows.
+const DESCENT_STEPS: usize = 12;
+
+/// The quadrature of one cell with `order` Gauss points per direction and smooth piece, in up to three dimensions.
+pub fn height_functions<const D: usize>(partition: &CellPartition<'_, D>, cell: &Aabb<D>, order: usize) -> CellRule<D> {
+    let mut rule = CellRule::default();
+    let sheets: Vec<Sheet<'_, D>> = partition.sheets.iter().map(|s| Sheet::Given(&**s)).collect();
+    let numbered: Vec<(usize, &Sheet<'_, D>)> = sheets.iter().enumerate().collect();
+    let axes: Vec<usize> = (0..D).collect();
+    let resolver = Resolver { partition, gauss: gauss_legendre(order) };
+    resolver.at_features(cell, &axes, &numbered, &mut rule);
+    rule
+}
+
+/// An end of a box along an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum End {
+    Low,
+    High,
+}
+
+impl End {
+    pub const BOTH: [End; 2] = [End::Low, End::High];
+
+    /// The coordinate of the end of a box.
+    pub fn of<const D: usize>(self, b: &Aabb<D>, axis: usize) -> f64 {
+        if self == End::High { b.max[axis] } else { b.min[axis] }
+    }
+
+    /// The component of the outward normal: -1 or 1.
+    pub fn sign(self) -> f64 {
+        if self == End::High { 1.0 } else { -1.0 }
+    }
+}
+
+/// Quadrature of one region on a side of a box, with `order` Gauss points per direction.
+pub fn side_points<const D: usize>(
+    partition: &CellPartition<'_, D>,
+    cell: &Aabb<D>,
+    axis: usize,
+    end: End,
+    order: usize,
+    region: u32,
+) -> Vec<QuadraturePoint<D>> {
+    let at = end.of(cell, axis);
+    // Just within the box: a shape that ends on this side has its material there.
+    let inwards = at - 1e-9 * end.sign() * cell.size()[axis];
+    let given: Vec<Sheet<'_, D>> = partition.sheets.iter().map(|s| Sheet::Given(&**s)).collect();
+    let sheets: Vec<Sheet<'_, D>> = given.iter().map(|of| Sheet::Face { of, axis, at: inwards }).collect();
+    let numbered: Vec<(usize, &Sheet<'_, D>)> = sheets.iter().enumerate().collect();
+    let axes: Vec<usize> = (0..D).filter(|&k| k != axis).collect();
+    let b = Aabb::new(with(&cell.min, axis, inwards), with(&cell.max, axis, inwards));
+    let mut rule = CellRule::default();
+    let resolver = Resolver { partition, gauss: gauss_legendre(order) };
+    let mut sink = Regions { partition, gauss: &resolver.gauss, region: 0, rule: &mut rule };
+    if axes.is_empty() {
+        sink.start_box(&b.min);
+        sink.point(b.min, 1.0);
+    } else {
+        resolver.resolve(&b, &axes, &numbered, 0, &mut sink);
+    }
+    let found = rule.volume(region).iter();
+    found.map(|p| QuadraturePoint { x: with(&p.x, axis, at), weight: p.weight }).collect()
+}
+
+/// A function on a box, or on the box without some directions.
+enum Sheet<'a, const D: usize> {
+    Given(&'a dyn ImplicitShape<D>),
+    /// Another one with a coordinate held.
+    Face {
+        of: &'a Sheet<'a, D>,
+        axis: usize,
+        at: f64,
+    },
+    /// One sheet on the graph of another.
+    Graph {
+        of: &'a Sheet<'a, D>,
+        graph: &'a Sheet<'a, D>,
+        axis: usize,
+        ends: [f64; 2],
+    },
+}
+
+impl<const D: usize> Sheet<'_, D> {
+    fn value(&self, x: &Point<D>) -> f64 {
+        match self {
+            Sheet::Given(shape) => shape.value(x),
+            Sheet::Face { of, axis, at } => of.value(&with(x, *axis, *at)),
+            Sheet::Graph { of, graph, axis, ends } => of.value(&with(x, *axis, height(graph, x, *axis, ends).0)),
+        }
+    }
+
+    /// The components of the gradient along directions that the function does not know are without meaning.
+    fn value_and_gradient(&self, x: &Point<D>) -> (f64, Vector<D>) {
+        match self {
+            Sheet::Given(shape) => shape.value_and_gradient(x),
+            Sheet::Face { of, axis, at } => of.value_and_gradient(&with(x, *axis, *at)),
+            Sheet::Graph { of, graph, axis, ends } => {
+                let (t, free) = height(graph, x, *axis, ends);
+                let y = with(x, *axis, t);
+                let (value, gradient) = of.value_and_gradient(&y);
+                if !free {
+                    return (value, gradient);
+                }
+                let slope = graph.value_and_gradient(&y).1;
+                (value, gradient - slope * (gradient[*axis] / slope[*axis]))
+            }
+        }
+    }
+
+    fn range(&self, b: &Aabb<D>) -> Option<[f64; 2]> {
+        match self {
+            Sheet::Given(shape) => shape.range(b),
+            Sheet::Face { of, axis, at } => of.range(&Aabb::new(with(&b.min, *axis, *at), with(&b.max, *axis, *at))),
+            Sheet::Graph { .. } => None,
+        }
+    }
+}
+
+/// A point with one coordinate replaced.
+fn with<const D: usize>(x: &Point<D>, axis: usize, at: f64) -> Point<D> {
+    let mut y = *x;
+    y[axis] = at;
+    y
+}
+
+/// The height at which a sheet that is monotone along an axis vanishes, kept between the ends, and whether it lies there.
+fn height<const D: usize>(sheet: &Sheet<'_, D>, x: &Point<D>, axis: usize, ends: &[f64; 2]) -> (f64, bool) {
+    let [low, high] = ends.map(|t| sheet.value(&with(x, axis, t)));
+    if (low < 0.0) == (high < 0.0) {
+        return (if low.abs() < high.abs() { ends[0] } else { ends[1] }, false);
+    }
+    let found = scan_roots(ends[0], ends[1], 1, |t| {
+        let (value, gradient) = sheet.value_and_gradient(&with(x, axis, t));
+        (value, gradient[axis])
+    });
+    (found.first().copied().unwrap_or(ends[1]), true)
+}
+
+/// Whether a function has zeros in a box.
+enum Crossing<const D: usize> {
+    None,
+    Some,
+    /// Its zeros were found only by a search, which ended at this point of the other sign.
+    Hidden(Point<D>),
+}
+
+/// What receives points.
+trait Sink<const D: usize> {
+    /// A box without zeros.
+    fn start_box(&mut self, inside: &Point<D>);
+    fn point(&mut self, x: Point<D>, weight: f64);
+    /// The roots on a line through `x` in direction `k`, sorted, with the number of their sheet.
+    fn roots(&mut self, x: &Point<D>, k: usize, ends: [f64; 2], roots: &[(f64, usize)], weight: f64);
+}
+
+struct Resolver<'a, const D: usize> {
+    partition: &'a CellPartition<'a, D>,
+    gauss: Vec<(f64, f64)>,
+}
+
+impl<const D: usize> Resolver<'_, D> {
+    /// Splits a box at the features given for it.
+    fn at_features(&self, b: &Aabb<D>, axes: &[usize], sheets: &[(usize, &Sheet<'_, D>)], rule: &mut CellRule<D>) {
+        let inside = |x: &&Point<D>| (0..D).all(|k| strictly_within(b, k, x[k]));
+        if let Some(feature) = self.partition.features.iter().find(inside) {
+            for part in b.split_at(feature) {
+                self.at_features(&part, axes, sheets, rule);
+            }
+            return;
+        }
+        let mut sink = Regions { partition: self.partition, gauss: &self.gauss, region: 0, rule };
+        self.resolve(b, axes, sheets, 0, &mut sink);
+    }
+
+    fn resolve(
+        &self,
+        b: &Aabb<D>,
+        axes: &[usize],
+        sheets: &[(usize, &Sheet<'_, D>)],
+        depth: usize,
+        sink: &mut dyn Sink<D>,
+    ) {
+        let mut active: Vec<(usize, &Sheet<'_, D>)> = Vec::new();
+        for &(number, sheet) in sheets {
+            match crossing(sheet, b, axes) {
+                Crossing::None => {}
+                Crossing::Some => active.push((number, sheet)),
+                Crossing::Hidden(x) => {
+                    let split: Vec<usize> = axes.iter().copied().filter(|&k| strictly_within(b, k, x[k])).collect();
+                    if depth < MAX_DEPTH && !split.is_empty() {
+                        for part in parts(b, &split, &x) {
+                            self.resolve(&part, axes, sheets, depth + 1, sink);
+                        }
+                        return;
+                    }
+                    active.push((number, sheet));
+                }
+            }
+        }
+        if active.is_empty() {
+            return self.whole(b, axes, sink);
+        }
+        if let [k] = axes {
+            return self.line(&b.min, *k, b, &active, 1.0, PIECES, sink);
+        }
+        let (slope, k) = best_direction(&active, b, axes);
+        if slope < MIN_SLOPE && depth < MAX_DEPTH {
+            for part in parts(b, axes, &b.center()) {
+                self.resolve(&part, axes, &active, depth + 1, sink);
+            }
+            return;
+        }
+        let base: Vec<usize> = axes.iter().copied().filter(|&a| a != k).collect();
+        let mut below: Vec<Sheet<'_, D>> = Vec::new();
+        for (i, &(_, of)) in active.iter().enumerate() {
+            below.extend([b.min[k], b.max[k]].map(|at| Sheet::Face { of, axis: k, at }));
+            for &(_, graph) in &active[i + 1..] {
+                below.push(Sheet::Graph { of, graph, axis: k, ends: [b.min[k], b.max[k]] });
+            }
+        }
+        let below: Vec<(usize, &Sheet<'_, D>)> = below.iter().enumerate().collect();
+        let mut points = Points::default();
+        self.resolve(b, &base, &below, 0, &mut points);
+        let pieces = if slope < MIN_SLOPE { PIECES / 2 } else { 1 };
+        for (x, weight) in points.0 {
+            self.line(&x, k, b, &active, weight, pieces, sink);
+        }
+    }
+
+    /// The tensor-product Gauss rule of a box.
+    fn whole(&self, b: &Aabb<D>, axes: &[usize], sink: &mut dyn Sink<D>) {
+        let n = self.gauss.len();
+        let (size, center) = (b.size(), b.center());
+        let mut inside = b.min;
+        axes.iter().for_each(|&k| inside[k] = center[k]);
+        sink.start_box(&inside);
+        for mut i in 0..n.pow(axes.len() as u32) {
+            let (mut x, mut weight) = (b.min, 1.0);
+            for &k in axes {
+                let (t, w) = self.gauss[i % n];
+                i /= n;
+                x[k] = b.min[k] + t * size[k];
+                weight *= w * size[k];
+            }
+            sink.point(x, weight);
+        }
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn line(
+        &self,
+        x: &Point<D>,
+        k: usize,
+        b: &Aabb<D>,
+        active: &[(usize, &Sheet<'_, D>)],
+        weight: f64,
+        pieces: usize,
+        sink: &mut dyn Sink<D>,
+    ) {
+        let ends = [b.min[k], b.max[k]];
+        let mut roots: Vec<(f64, usize)> = Vec::with_capacity(active.len());
+        for &(number, sheet) in active {
+            let found = scan_roots(ends[0], ends[1], pieces, |t| {
+                let (value, gradient) = sheet.value_and_gradient(&with(x, k, t));
+                (value, gradient[k])
+            });
+            roots.extend(found.into_iter().map(|t| (t, number)));
+        }
+        roots.sort_by(|a, c| a.0.total_cmp(&c.0));
+        let mut from = ends[0];
+        for to in roots.iter().map(|r| r.0).chain([ends[1]]) {
+            let length = to - from;
+            if length > 1e-15 * (ends[1] - ends[0]) {
+                sink.start_box(&with(x, k, 0.5 * (from + to)));
+                for &(t, w) in &self.gauss {
+                    sink.point(with(x, k, from + t * length), weight * w * length);
+                }
+            }
+            from = to;
+        }
+        sink.roots(x, k, ends, &roots, weight);
+    }
+}
+
+/// Points of a base.
+#[derive(Default)]
+struct Points<const D: usize>(Vec<(Point<D>, f64)>);
+
+impl<const D: usize> Sink<D> for Points<D> {
+    fn start_box(&mut self, _: &Point<D>) {}
+    fn point(&mut self, x: Point<D>, weight: f64) {
+        self.0.push((x, weight));
+    }
+    fn roots(&mut self, _: &Point<D>, _: usize, _: [f64; 2], _: &[(f64, usize)], _: f64) {}
+}
+
+/// The rule of a cell.
+struct Regions<'a, const D: usize> {
+    partition: &'a CellPartition<'a, D>,
+    gauss: &'a [(f64, f64)],
+    region: u32,
+    rule: &'a mut CellRule<D>,
+}
+
+impl<const D: usize> Regions<'_, D> {
+    fn region_at(&self, x: &Point<D>) -> u32 {
+        let values: Vec<f64> = self.partition.sheets.iter().map(|s| s.value(x)).collect();
+        (self.partition.region)(x, &values)
+    }
+}
+
+impl<const D: usize> Sink<D> for Regions<'_, D> {
+    fn start_box(&mut self, inside: &Point<D>) {
+        self.region = self.region_at(inside);
+        self.rule.points_of(self.region).reserve(self.gauss.len());
+    }
+
+    fn point(&mut self, x: Point<D>, weight: f64) {
+        self.rule.points_of(self.region).push(QuadraturePoint { x, weight });
+    }
+
+    /// Roots closer together than rounding can tell apart make one surface: that of the sheet which changes sign in the
+    /// sense in which the region does.
+    fn roots(&mut self, x: &Point<D>, k: usize, ends: [f64; 2], roots: &[(f64, usize)], weight: f64) {
+        self.rule.cut |= !roots.is_empty();
+        let same = 1e-11 * (ends[1] - ends[0]);
+        let step = 1e-6 * (ends[1] - ends[0]);
+        let mut first = 0;
+        while first < roots.len() {
+            let mut last = first;
+            while last + 1 < roots.len() && roots[last + 1].0 - roots[first].0 <= same {
+                last += 1;
+            }
+            let before = if first == 0 { f64::INFINITY } else { roots[first].0 - roots[first - 1].0 };
+            let after = roots.get(last + 1).map_or(f64::INFINITY, |r| r.0 - roots[last].0);
+            let below = self.region_at(&with(x, k, roots[first].0 - step.min(0.5 * before)));
+            let above = self.region_at(&with(x, k, roots[last].0 + step.min(0.5 * after)));
+            if below != above {
+                let (t, sheet) = roots[first];
+                let at = with(x, k, t);
+                let gradient = self.partition.sheets[sheet].gradient(&at);
+                let norm = gradient.norm();
+                let (minus, plus) = if gradient[k] > 0.0 { (below, above) } else { (above, below) };
+                self.rule.surfaces.push(SurfacePoint {
+                    x: at,
+                    weight: weight * norm / gradient[k].abs().max(f64::MIN_POSITIVE),
+                    normal: gradient / norm,
+                    tag: self.partition.tags[sheet],
+                    minus,
+                    plus,
+                });
+            }
+            first = last + 1;
+        }
+    }
+}
+
+fn strictly_within<const D: usize>(b: &Aabb<D>, k: usize, x: f64) -> bool {
+    let slack = 1e-9 * (b.max[k] - b.min[k]);
+    x > b.min[k] + slack && x < b.max[k] - slack
+}
+
+/// The parts of a box split at a point in some directions.
+fn parts<const D: usize>(b: &Aabb<D>, axes: &[usize], x: &Point<D>) -> Vec<Aabb<D>> {
+    let mut parts = vec![*b];
+    for &k in axes {
+        parts = parts
+            .into_iter()
+            .flat_map(|p| [Aabb::new(p.min, with(&p.max, k, x[k])), Aabb::new(with(&p.min, k, x[k]), p.max)])
+            .collect();
+    }
+    parts
+}
+
+/// The lattice of samples of a box in some directions.
+fn samples<const D: usize>(b: &Aabb<D>, axes: &[usize]) -> impl Iterator<Item = Point<D>> {
+    let (b, axes) = (*b, axes.to_vec());
+    (0..SAMPLES.pow(axes.len() as u32)).map(move |mut i| {
+        let mut x = b.min;
+        for &k in &axes {
+            // The ends exactly.
+            x[k] = match i % SAMPLES {
+                0 => b.min[k],
+                j if j + 1 == SAMPLES => b.max[k],
+                j => b.min[k] + (b.max[k] - b.min[k]) * j as f64 / (SAMPLES - 1) as f64,
+            };
+            i /= SAMPLES;
+        }
+        x
+    })
+}
+
+/// By bounds where they are known; then by samples; then by going down `|φ|` from the three smallest of them, along the
+/// faces of the box where it would be left.
+fn crossing<const D: usize>(sheet: &Sheet<'_, D>, b: &Aabb<D>, axes: &[usize]) -> Crossing<D> {
+    if let Some([low, high]) = sheet.range(b)
+        && (low > 0.0 || high < 0.0)
+    {
+        return Crossing::None;
+    }
+    let mut smallest: Vec<(f64, Point<D>)> = Vec::with_capacity(4);
+    let mut negative = None;
+    for x in samples(b, axes) {
+        let value = sheet.value(&x);
+        if *negative.get_or_insert(value < 0.0) != (value < 0.0) {
+            return Crossing::Some;
+        }
+        let at = smallest.iter().position(|s| value.abs() < s.0).unwrap_or(smallest.len());
+        smallest.insert(at, (value.abs(), x));
+        smallest.truncate(3);
+    }
+    let negative = negative == Some(true);
+    for (_, mut x) in smallest {
+        for _ in 0..DESCENT_STEPS {
+            let (value, mut gradient) = sheet.value_and_gradient(&x);
+            if (value < 0.0) != negative {
+                return Crossing::Hidden(x);
+            }
+            for k in 0..D {
+                let step = -value * gradient[k];
+                let blocked = (x[k] <= b.min[k] && step < 0.0) || (x[k] >= b.max[k] && step > 0.0);
+                if blocked || !axes.contains(&k) {
+                    gradient[k] = 0.0;
+                }
+            }
+            let square = gradient.norm_squared();
+            if square == 0.0 || !square.is_finite() {
+                break;
+            }
+            let next = b.clamp(&(x - gradient * (1.3 * value / square)));
+            if (next - x).amax() <= 1e-12 * b.size().amax() {
+                break;
+            }
+            x = next;
+        }
+    }
+    Crossing::None
+}
+
+/// The direction in which the least slope of all sheets is largest, and that slope; negative where its sign changes.
+fn best_direction<const D: usize>(active: &[(usize, &Sheet<'_, D>)], b: &Aabb<D>, axes: &[usize]) -> (f64, usize) {
+    let mut least = Vector::<D>::repeat(f64::INFINITY);
+    for (_, sheet) in active {
+        let (mut low, mut high) = (Vector::<D>::repeat(f64::INFINITY), Vector::<D>::repeat(f64::NEG_INFINITY));
+        for x in samples(b, axes) {
+            let gradient = sheet.value_and_gradient(&x).1;
+            let norm = axes.iter().map(|&k| gradient[k] * gradient[k]).sum::<f64>().sqrt();
+            let direction = gradient / norm.max(f64::MIN_POSITIVE);
+            low = low.inf(&direction);
+            high = high.sup(&direction);
+        }
+        least = least.inf(&low.sup(&-high));
+    }
+    axes.iter().map(|&k| (least[k], k)).fold((f64::NEG_INFINITY, axes[0]), |a, c| if c.0 > a.0 { c } else { a })
+}
+
+#[cfg(test)]
+mod tests;

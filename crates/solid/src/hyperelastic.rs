@@ -150,11 +150,9 @@ impl StressLaw {
     /// `φ` with its derivatives.
     pub fn dilatation(self, f: &Matrix3<f64>) -> Response {
         match self {
-            StressLaw::LinearElastic => Response {
-                energy: f.trace() - 3.0,
-                stress: flat(&Matrix3::identity()),
-                tangent: Tensor4::zeros(),
-            },
+            StressLaw::LinearElastic => {
+                Response { energy: f.trace() - 3.0, stress: flat(&Matrix3::identity()), tangent: Tensor4::zeros() }
+            }
             StressLaw::NeoHooke(_) => {
                 let jacobian = f.determinant();
                 let inverse = f.try_inverse().unwrap_or_else(Matrix3::zeros);

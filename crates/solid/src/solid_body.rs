@@ -102,8 +102,7 @@ impl<const D: usize> SolidBody<D> {
         let (mut low, mut high) = (Point::<D>::repeat(f64::INFINITY), Point::<D>::repeat(f64::NEG_INFINITY));
         body.mesh.nodes().iter().for_each(|x| (low, high) = (low.inf(x), high.sup(x)));
         let size = (high - low).max();
-        let mut out =
-            SolidBody { bodies, law, groups, faces, tables, stiffness: Vec::new(), position, size };
+        let mut out = SolidBody { bodies, law, groups, faces, tables, stiffness: Vec::new(), position, size };
         if law == StressLaw::LinearElastic {
             out.stiffness = out.small_strain();
         }

@@ -10,7 +10,8 @@ pub type Derivatives = [f64; 10];
 
 /// How often each of [`Derivatives`] is taken along `a` and `b`.
 const TIMES: [[usize; 2]; 10] = [[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2], [3, 0], [2, 1], [1, 2], [0, 3]];
-const BINOMIAL: [[f64; 4]; 4] = [[1.0, 0.0, 0.0, 0.0], [1.0, 1.0, 0.0, 0.0], [1.0, 2.0, 1.0, 0.0], [1.0, 3.0, 3.0, 1.0]];
+const BINOMIAL: [[f64; 4]; 4] =
+    [[1.0, 0.0, 0.0, 0.0], [1.0, 1.0, 0.0, 0.0], [1.0, 2.0, 1.0, 0.0], [1.0, 3.0, 3.0, 1.0]];
 
 /// Place in [`Derivatives`] of those taken `i` and `j` times.
 fn place(i: usize, j: usize) -> usize {
@@ -44,11 +45,8 @@ fn line(degree: usize, x: f64) -> [[f64; 4]; MAX_DEGREE + 1] {
     for (k, out) in out.iter_mut().enumerate().take(degree + 1).skip(2) {
         let n = k as f64;
         let odd = 2.0 * n - 1.0;
-        let next = [
-            (odd * x * last[0] - (n - 1.0) * before[0]) / n,
-            before[1] + odd * last[0],
-            before[2] + odd * last[1],
-        ];
+        let next =
+            [(odd * x * last[0] - (n - 1.0) * before[0]) / n, before[1] + odd * last[0], before[2] + odd * last[1]];
         let root = (n - 0.5).sqrt();
         *out = [(next[0] - before[0]) / (4.0 * n - 2.0).sqrt(), root * last[0], root * last[1], root * last[2]];
         (before, last) = (last, next);
@@ -66,8 +64,9 @@ impl HierarchicBasis {
         let corner = |a: u8| along(&[lambda[a as usize], 1.0, 0.0, 0.0], slopes(&gradients[a as usize]));
         (functions.iter())
             .map(|k| match self.factors[*k] {
-                Factors::Tensor(index) => (1..self.shape.dimension())
-                    .fold(axis(0, index[0]), |f, k| product(&f, &axis(k, index[k]))),
+                Factors::Tensor(index) => {
+                    (1..self.shape.dimension()).fold(axis(0, index[0]), |f, k| product(&f, &axis(k, index[k])))
+                }
                 Factors::Simplex { first, second, along } => {
                     let mut f = corner(first);
                     if let Some(b) = second {

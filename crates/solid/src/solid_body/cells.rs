@@ -52,9 +52,10 @@ impl<const D: usize> SolidBody<D> {
     pub(super) fn finite_strain(&self, u: &[f64], order: Order, out: &mut Contribution) -> Result<f64, BodyError> {
         let of = |cell: usize| self.cell(cell, u, order).map_err(|e| self.refused(cell, e));
         let cells = (0..self.body().mesh.cell_count()).into_par_iter();
-        let found: Result<Vec<CellForces>, BodyError> = cells.map(of).collect();
+        let found: Vec<Result<CellForces, BodyError>> = cells.map(of).collect();
         let mut energy = 0.0;
-        for (cell, found) in found?.into_iter().enumerate() {
+        for (cell, found) in found.into_iter().enumerate() {
+            let found = found?;
             let (unknowns, signs) = self.unknowns_of(cell);
             energy += found.energy;
             for (a, k) in unknowns.iter().enumerate() {

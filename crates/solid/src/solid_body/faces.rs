@@ -61,8 +61,7 @@ const NOTHING: f64 = 1e-14;
 
 impl<const D: usize> Faces<D> {
     pub fn new(bodies: &Bodies<D>, groups: &BTreeMap<String, Group>) -> Self {
-        let mut out =
-            Faces { bodies: bodies.clone(), list: Vec::new(), points: Vec::new(), surfaces: BTreeMap::new() };
+        let mut out = Faces { bodies: bodies.clone(), list: Vec::new(), points: Vec::new(), surfaces: BTreeMap::new() };
         let mut numbers: HashMap<Side, u32> = HashMap::new();
         for (name, group) in groups.iter().filter(|(_, g)| !g.sides.is_empty()) {
             let mut faces = Vec::with_capacity(group.sides.len());
@@ -290,9 +289,7 @@ fn lattice(shape: CellShape, n: usize) -> Vec<Local> {
     let side = |k: usize| 2.0 * share(k) - 1.0;
     match shape {
         CellShape::Line => (0..=n).map(|i| [side(i), 0.0, 0.0]).collect(),
-        CellShape::Triangle => {
-            (0..=n).flat_map(|j| (0..=n - j).map(move |i| [share(i), share(j), 0.0])).collect()
-        }
+        CellShape::Triangle => (0..=n).flat_map(|j| (0..=n - j).map(move |i| [share(i), share(j), 0.0])).collect(),
         _ => (0..=n).flat_map(|i| (0..=n).map(move |j| [side(i), side(j), 0.0])).collect(),
     }
 }

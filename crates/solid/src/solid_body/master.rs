@@ -168,9 +168,9 @@ impl<const D: usize> Master for SurfaceMaster<'_, D> {
                 return now;
             }
             // Of faces at the same distance the one with the lowest number.
-            let better = best.as_ref().is_none_or(|(b, p)| {
-                found.distance() < p.distance() || (found.distance() == p.distance() && k < *b)
-            });
+            let better = best
+                .as_ref()
+                .is_none_or(|(b, p)| found.distance() < p.distance() || (found.distance() == p.distance() && k < *b));
             if square > limit || !better {
                 return now;
             }

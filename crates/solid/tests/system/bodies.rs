@@ -47,11 +47,16 @@ fn homogeneous_stretches_of_distorted_cells() {
                 assert!((drawn - stress).abs() < 1e-9, "{} degree {degree}: {drawn} {stress}", law.name());
                 let fields = system.bodies[0].fields(&state.bodies[0]);
                 for (x, u) in fields.points.iter().zip(&fields.displacement) {
-                    assert!((u[0] - (stretch - 1.0) * x[0]).abs() < 1e-9 && (u[1] - (lateral - 1.0) * x[1]).abs() < 1e-9);
+                    assert!(
+                        (u[0] - (stretch - 1.0) * x[0]).abs() < 1e-9 && (u[1] - (lateral - 1.0) * x[1]).abs() < 1e-9
+                    );
                 }
                 let (_, _, shown) = &fields.point_data[0];
                 let cauchy = stress / lateral;
-                assert!(shown.chunks(6).all(|s| (s[0] - cauchy).abs() < 1e-8 && s[1].abs() < 1e-8), "{cauchy} {shown:?}");
+                assert!(
+                    shown.chunks(6).all(|s| (s[0] - cauchy).abs() < 1e-8 && s[1].abs() < 1e-8),
+                    "{cauchy} {shown:?}"
+                );
                 assert!(is_quadratic(&last.history), "{:?}", last.history);
             }
         }
@@ -143,7 +148,8 @@ fn loads_have_the_resultants_that_they_state() {
                 assert!((along - factor * given[i]).abs() < 1e-12, "{on:?} {i}: {along}");
             }
         }
-        let refused = body.load(Some("nowhere"), &Load::Force(given), &body.start(), Order::First, &mut Contribution::new(1));
+        let refused =
+            body.load(Some("nowhere"), &Load::Force(given), &body.start(), Order::First, &mut Contribution::new(1));
         assert!(refused.unwrap_err().to_string().contains("boundary"));
     }
 }

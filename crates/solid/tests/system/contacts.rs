@@ -92,7 +92,12 @@ fn blocks_on_blocks_carry_a_constant_pressure() {
     assert!(error < 1e-7, "nodes: {error:e}");
 }
 
-fn tilted(mu: f64, tangent: f64, sampling: Sampling, enforcement: Enforcement) -> Result<IncrementResult, IncrementError> {
+fn tilted(
+    mu: f64,
+    tangent: f64,
+    sampling: Sampling,
+    enforcement: Enforcement,
+) -> Result<IncrementResult, IncrementError> {
     let mut system = System::default();
     let mesh = rectangle([0.0, 0.0], [1.0, 0.5], [4, 2], 1, |x| x);
     system.bodies.push(Box::new(solid("block", mesh, 1, ELASTIC, StressLaw::LinearElastic)));
@@ -119,7 +124,10 @@ fn a_block_on_an_incline_holds_up_to_the_angle_of_friction() {
         let weight = v(-mu * 0.995, 1.0, 0.0) * 0.5e-3;
         assert!((total - weight).norm() < 1e-8 * weight.norm(), "{total}");
         let slides = tilted(mu, mu * 1.005, sampling, enforcement);
-        assert!(matches!(&slides, Err(IncrementError::Free { body, .. }) if body == "block"), "{enforcement:?}: {slides:?}");
+        assert!(
+            matches!(&slides, Err(IncrementError::Free { body, .. }) if body == "block"),
+            "{enforcement:?}: {slides:?}"
+        );
     }
 }
 

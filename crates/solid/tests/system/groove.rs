@@ -21,10 +21,8 @@ fn settled(mu: Option<f64>, law: StressLaw, enforcement: Enforcement) -> (System
     // Blocks whose upper sides rise to either side of x = 0 at 45 degrees.
     for side in [-1.0, 1.0] {
         let mesh = cuboid([0.0, -0.5, -0.5], [1.0, 0.5, 0.0], [3, 3, 2], |x| {
-            let up = x[0] * (1.0 + x[2] / 0.5);
             let across = if side > 0.0 { x[0] } else { 1.0 - x[0] };
-            let up = if side > 0.0 { up } else { across * (1.0 + x[2] / 0.5) };
-            Point::<3>::new(side * across, x[1], x[2] + up)
+            Point::<3>::new(side * across, x[1], x[2] + across * (1.0 + x[2] / 0.5))
         });
         let name = if side > 0.0 { "right block" } else { "left block" };
         system.bodies.push(Box::new(solid(name, mesh, 1, ELASTIC, law)));

@@ -14,6 +14,7 @@ mod bodies;
 mod contacts;
 mod groove;
 mod held;
+mod ring;
 mod sliding;
 mod tangents;
 
@@ -32,7 +33,13 @@ fn noise(seed: &mut u64) -> f64 {
     ((*seed >> 33) as f64 / (1u64 << 31) as f64) * 2.0 - 1.0
 }
 
-fn rectangle(low: [f64; 2], high: [f64; 2], n: [usize; 2], order: usize, map: impl FnMut(Point<2>) -> Point<2>) -> Mesh<2> {
+fn rectangle(
+    low: [f64; 2],
+    high: [f64; 2],
+    n: [usize; 2],
+    order: usize,
+    map: impl FnMut(Point<2>) -> Point<2>,
+) -> Mesh<2> {
     block::<2>(&[even(low[0], high[0], n[0]), even(low[1], high[1], n[1])], order, map)
 }
 

@@ -164,13 +164,14 @@ fn contact<const D: usize>(
     let start = system.start();
     let n = count + start.multipliers.len();
     let seed = &mut 11u64;
-    let mut random = |size: f64| -> Vec<f64> { (0..n).map(|k| if k < count { size * noise(seed) } else { 0.0 }).collect() };
+    let mut random =
+        |size: f64| -> Vec<f64> { (0..n).map(|k| if k < count { size * noise(seed) } else { 0.0 }).collect() };
     let mut state = system.advance(&start, &random(0.005), 1.0);
     system.accept(&state).unwrap();
     state = system.advance(&state, &random(0.01), 1.0);
     let parts = if mu.is_some() { 3 } else { 1 };
     for own in state.multipliers.chunks_mut(parts) {
-        own[0] = 0.9;
+        own[0] = 3.0;
         own.iter_mut().skip(1).enumerate().for_each(|(i, t)| *t = 0.02 + 0.01 * i as f64);
     }
     let (residual, matrix) = system.linearise(&state, 0.0).unwrap();
@@ -234,7 +235,9 @@ fn of_contacts_over_a_ridge() {
 fn of_contacts_in_space() {
     for degree in 1..=2 {
         for sampling in [Sampling::Nodes, Sampling::GaussPoints] {
-            for (enforcement, mu) in [(ENFORCEMENTS[0], Some(0.05)), (ENFORCEMENTS[2], Some(30.0)), (ENFORCEMENTS[1], None)] {
+            for (enforcement, mu) in
+                [(ENFORCEMENTS[0], Some(0.05)), (ENFORCEMENTS[2], Some(30.0)), (ENFORCEMENTS[1], None)]
+            {
                 let upper = cuboid([0.13, 0.11, 0.0], [0.77, 0.66, 0.5], [1, 1, 1], |mut x| {
                     x[2] += 0.05 * x[0] - 0.06;
                     x

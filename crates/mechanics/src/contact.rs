@@ -311,7 +311,8 @@ impl Contact {
                         tangent.add(own(i), unknown, w / c * d_traction[a][i]);
                     }
                     for j in 0..parts {
-                        let value = derivative[i][j] - f64::from(u8::from(i == j));
+                        let grain = if i == j && i > 0 { GRAIN } else { 0.0 };
+                        let value = derivative[i][j] - f64::from(u8::from(i == j)) - grain;
                         tangent.add(own(i), own(j), w / c * value);
                     }
                 }
@@ -396,6 +397,10 @@ impl Contact {
         Ok(())
     }
 }
+
+/// Friction that sticks along a direction in which nothing moves, as across the plane, has an equation without unknowns: so
+/// much of its own, in the matrix alone, keeps the friction as it is and changes no solution.
+const GRAIN: f64 = 1e-10;
 
 /// Sine of the angle to the normal below which the projection of an axis tells no direction any more.
 const STEEP: f64 = 1e-8;

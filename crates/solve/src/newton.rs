@@ -32,7 +32,9 @@ pub trait Equations {
 pub enum Search {
     Monotone,
     /// Whole steps, so many without a better state before the search goes back.
-    Watchdog { patience: usize },
+    Watchdog {
+        patience: usize,
+    },
 }
 
 /// How the equations are solved.
@@ -53,9 +55,15 @@ pub struct Converged<S> {
 #[derive(Clone, Debug)]
 pub enum NewtonFailure<S, E> {
     /// The last state, and the measures so far.
-    NotConverged { best: S, history: Vec<f64> },
+    NotConverged {
+        best: S,
+        history: Vec<f64>,
+    },
     /// Told by the equations.
-    Equations { error: E, history: Vec<f64> },
+    Equations {
+        error: E,
+        history: Vec<f64>,
+    },
     Interrupted,
 }
 

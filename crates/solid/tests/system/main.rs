@@ -100,19 +100,25 @@ fn force(result: &IncrementResult, contact: usize) -> Vector<3> {
     result.sites[contact].iter().map(SiteResult::force).sum()
 }
 
-/// Solves at one time after the other; the state and the result of the last.
+/// Solves at one time after the other; the last state and all results.
 fn run(system: &mut System, times: &[f64]) -> (SystemState, Vec<IncrementResult>) {
     system.prepare().unwrap();
     let mut state = system.start();
     let mut results = Vec::new();
     for &time in times {
         let found = system.solve(&state, time, &mut |_, _| true);
-        let (next, result) = found.unwrap_or_else(|e| panic!("at {time}: {e}\n{e:?}"));
+        let (next, result) = found.unwrap_or_else(|e| panic!("at {time} after {}: {e}\n{e:?}", told(&results)));
         system.accept(&next).unwrap();
         state = next;
         results.push(result);
     }
     (state, results)
+}
+
+/// Iterations and last steps of Newton's method, increment by increment.
+fn told(results: &[IncrementResult]) -> String {
+    let last = |h: &[f64]| h.iter().rev().take(4).rev().map(|m| format!("{m:.0e}")).collect::<Vec<_>>().join(" ");
+    results.iter().map(|r| format!("[{}: {}] ", r.iterations, last(&r.history))).collect()
 }
 
 /// Whether the last steps of Newton's method square the residual, from where it is small until rounding.

@@ -4,6 +4,11 @@ use super::*;
 use signorini_geometry::rigid_shape::Cylinder;
 use signorini_solid::Volumetric;
 
+type How = (Sampling, Enforcement);
+const PENALTY: How = (Sampling::GaussPoints, Enforcement::Penalty { wanted_penetration: None });
+const MULTIPLIER: How = (Sampling::Nodes, Enforcement::Multiplier);
+const AUGMENTED: How = (Sampling::GaussPoints, Enforcement::AugmentedLagrangian);
+
 const NEO_HOOKE: StressLaw = StressLaw::NeoHooke(Volumetric::Quadratic);
 
 /// A rigid cylinder pressed into a block and slid along it. Force on the cylinder after each increment.
@@ -43,20 +48,12 @@ const KNOWN: [[f64; 2]; 9] = [
 
 fn compare(cells: [usize; 2], degree: usize, how: (Sampling, Enforcement), tolerance: f64) {
     let (forces, results) = ironing(cells, degree, how, 5);
-    for ((force, result), known) in forces.iter().zip(&results).zip(KNOWN) {
-        println!(
-            "{how:?} {} its {:?}: {:.5} {:.5} against {:.5} {:.5}",
-            result.iterations,
-            result.history.iter().map(|h| format!("{h:.1e}")).collect::<Vec<_>>(),
-            force[0],
-            force[1],
-            known[0],
-            known[1]
-        );
+    for (force, known) in forces.iter().zip(KNOWN) {
+        println!("{how:?}: {:.5} {:.5} against {:.5} {:.5}", force[0], force[1], known[0], known[1]);
     }
+    println!("{}", told(&results));
     for ((force, result), known) in forces.iter().zip(&results).zip(KNOWN).skip(3) {
         assert!((force[1] - known[1]).abs() < tolerance * known[1], "{force} {known:?}");
-        assert!((result.support_forces[0][0] - force).norm() < 1e-8 * force.norm() || result.imbalance < 1e-9);
         let sum = result.support_forces[0][0] - force;
         assert!(sum.norm() < 1e-8 * force.norm(), "{sum}");
     }
@@ -65,14 +62,24 @@ fn compare(cells: [usize; 2], degree: usize, how: (Sampling, Enforcement), toler
 }
 
 #[test]
-fn a_cylinder_irons_a_block() {
-    compare([16, 4], 2, (Sampling::GaussPoints, Enforcement::Penalty { wanted_penetration: None }), 0.03);
+fn a_cylinder_irons_a_block_with_a_penalty() {
+    compare([16, 4], 2, PENALTY, 0.03);
 }
 
 #[test]
-fn a_cylinder_irons_a_block_exactly() {
-    compare([16, 4], 2, (Sampling::Nodes, Enforcement::Multiplier), 0.03);
-    compare([16, 4], 2, (Sampling::GaussPoints, Enforcement::AugmentedLagrangian), 0.03);
+fn a_cylinder_irons_a_block_with_multipliers() {
+    compare([16, 4], 2, MULTIPLIER, 0.03);
+}
+
+#[test]
+fn a_cylinder_irons_a_block_by_augmentation() {
+    compare([16, 4], 2, AUGMENTED, 0.03);
+}
+
+#[test]
+#[ignore = "longer than a test should be: the mesh of the reference"]
+fn a_cylinder_irons_a_finer_block() {
+    compare([32, 6], 2, MULTIPLIER, 0.01);
 }
 
 /// An elastic shoe, round below and ten times as stiff, pressed on a slab and slid along it.
@@ -102,33 +109,40 @@ fn shoe(degree: usize, (sampling, enforcement): (Sampling, Enforcement), mu: Opt
     run(&mut system, &times).1
 }
 
-#[test]
-fn a_shoe_slides_over_a_slab() {
-    let kinds = [
-        (1, (Sampling::GaussPoints, Enforcement::Penalty { wanted_penetration: None })),
-        (2, (Sampling::GaussPoints, Enforcement::Penalty { wanted_penetration: None })),
-        (1, (Sampling::Nodes, Enforcement::Multiplier)),
-        (2, (Sampling::GaussPoints, Enforcement::AugmentedLagrangian)),
-    ];
-    for (degree, how) in kinds {
-        for mu in [None, Some(0.3)] {
-            let results = shoe(degree, how, mu);
-            for result in &results {
-                println!(
-                    "degree {degree} {how:?} {mu:?}: {} its {:?} force {:?}",
-                    result.iterations,
-                    result.history.iter().map(|h| format!("{h:.1e}")).collect::<Vec<_>>(),
-                    force(result, 0)
-                );
-            }
-            let last = results.last().unwrap();
-            let total = force(last, 0);
-            let [base, top] = [last.support_forces[0][0], last.support_forces[1][0]];
-            assert!((base + top).norm() < 1e-8 * top.norm() && (total + top).norm() < 1e-8 * top.norm());
-            match mu {
-                None => assert!(total[0].abs() < 0.02 * total[1], "{total}"),
-                Some(mu) => assert!((total[0] / total[1] + mu).abs() < 0.03, "{total}"),
-            }
-        }
+fn slides(degree: usize, how: (Sampling, Enforcement), mu: Option<f64>) {
+    let results = shoe(degree, how, mu);
+    println!("degree {degree} {how:?} {mu:?}: {}", told(&results));
+    let last = results.last().unwrap();
+    let total = force(last, 0);
+    println!("force {total:?}");
+    let [base, top] = [last.support_forces[0][0], last.support_forces[1][0]];
+    assert!((base + top).norm() < 1e-8 * top.norm() && (total + top).norm() < 1e-8 * top.norm());
+    match mu {
+        None => assert!(total[0].abs() < 0.02 * total[1], "{total}"),
+        Some(mu) => assert!((total[0] / total[1] + mu).abs() < 0.03, "{total}"),
     }
+}
+
+#[test]
+fn a_linear_shoe_slides_with_a_penalty() {
+    slides(1, PENALTY, None);
+    slides(1, PENALTY, Some(0.3));
+}
+
+#[test]
+fn a_quadratic_shoe_slides_with_a_penalty() {
+    slides(2, PENALTY, None);
+    slides(2, PENALTY, Some(0.3));
+}
+
+#[test]
+fn a_linear_shoe_slides_with_multipliers() {
+    slides(1, MULTIPLIER, None);
+    slides(1, MULTIPLIER, Some(0.3));
+}
+
+#[test]
+fn a_quadratic_shoe_slides_by_augmentation() {
+    slides(2, AUGMENTED, None);
+    slides(2, AUGMENTED, Some(0.3));
 }

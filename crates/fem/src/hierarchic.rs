@@ -7,6 +7,10 @@
 
 use super::reference::{CellShape, Local};
 
+mod derivatives;
+
+pub use derivatives::Derivatives;
+
 /// The highest degree.
 pub const MAX_DEGREE: usize = 8;
 

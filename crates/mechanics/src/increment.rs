@@ -755,18 +755,6 @@ impl Equations for Problem<'_> {
     }
 
     fn advance(&self, at: &SystemState, step: &[f64], share: f64) -> SystemState {
-        let (first, count) = self.system.numbering();
-        let bodies = (self.system.bodies.iter().zip(&at.bodies).zip(first))
-            .map(|((body, state), first)| {
-                let own = &step[first as usize..first as usize + body.unknowns()];
-                body.advance(state, own, share)
-            })
-            .collect();
-        let multipliers: Vec<f64> = at.multipliers.iter().zip(&step[count..]).map(|(m, s)| m + share * s).collect();
-        let rest = &step[count + multipliers.len()..];
-        let reaction = |k: usize| at.reactions.get(k).copied().unwrap_or(0.0);
-        let reactions = rest.iter().enumerate().map(|(k, s)| reaction(k) + share * s).collect();
-        let travel = at.travel.iter().zip(step).map(|(t, s)| t + share * s).collect();
-        SystemState { bodies, multipliers, reactions, travel }
+        self.system.advance(at, step, share)
     }
 }

@@ -7,7 +7,7 @@
 use crate::body::{Body, BodyError, BodyState, Constraint, Contribution, Hold, Load, Order, PlaceError};
 use crate::contact::{Contact, Part, Sides, Target};
 use signorini_geometry::{Point, Vector};
-use signorini_solve::general::Entries;
+use signorini_solve::general::{Entries, Matrix};
 use std::sync::Arc;
 
 /// A value by place and time.
@@ -210,6 +210,36 @@ impl System {
             }
         }
         Ok((single, coupled))
+    }
+
+    /// The state after a share of a step of all unknowns.
+    ///
+    /// # Panics
+    /// If the step is shorter than the unknowns of the bodies and the multipliers of the contacts.
+    pub fn advance(&self, at: &SystemState, step: &[f64], share: f64) -> SystemState {
+        let (first, count) = self.numbering();
+        let bodies = (self.bodies.iter().zip(&at.bodies).zip(first))
+            .map(|((body, state), first)| {
+                let own = &step[first as usize..first as usize + body.unknowns()];
+                body.advance(state, own, share)
+            })
+            .collect();
+        let multipliers: Vec<f64> = at.multipliers.iter().zip(&step[count..]).map(|(m, s)| m + share * s).collect();
+        let rest = &step[count + multipliers.len()..];
+        let reaction = |k: usize| at.reactions.get(k).copied().unwrap_or(0.0);
+        let reactions = rest.iter().enumerate().map(|(k, s)| reaction(k) + share * s).collect();
+        let travel = at.travel.iter().zip(step).map(|(t, s)| t + share * s).collect();
+        SystemState { bodies, multipliers, reactions, travel }
+    }
+
+    /// The residual at a state and a time, without the reactions of supports, and its derivative.
+    ///
+    /// # Errors
+    /// States and places that cannot be.
+    pub fn linearise(&self, at: &SystemState, time: f64) -> Result<(Vec<f64>, Matrix), AssemblyError> {
+        let out = self.assemble(at, time, Order::Second)?;
+        let matrix = out.tangent.matrix(out.residual.len());
+        Ok((out.residual, matrix))
     }
 
     /// Residual, and the tangent if asked for.

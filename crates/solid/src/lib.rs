@@ -9,12 +9,14 @@
 //! - [`loads`]: forces on sides and in volumes.
 //! - [`model`]: everything together, solved at one time; [`mod@sliding`]: Newton's method where contacts slide far.
 //! - [`state`]: what comes out.
+//! - [`solid_body`]: a solid as one of many bodies of any kind, with [`hyperelastic`] laws at finite strain.
 
 mod assembly;
 pub mod body;
 pub mod contact;
 pub mod friction;
 mod held;
+pub mod hyperelastic;
 pub mod loads;
 pub use signorini_fem::elastic as material;
 pub mod model;
@@ -22,6 +24,7 @@ mod nitsche;
 mod reactions;
 pub mod rigid_modes;
 pub mod sliding;
+pub mod solid_body;
 pub mod state;
 pub mod stiffness;
 pub mod supports;
@@ -29,9 +32,11 @@ pub mod supports;
 pub use body::{Bodies, Body, BodySurface};
 pub use contact::{Contact, ContactResult, Enforcement, Master, Method, PressureNode, RigidGap, Sliding, facing};
 pub use friction::{Friction, FrictionHistory, FrictionResult, RigidMotion, Rubbing};
+pub use hyperelastic::{StrainError, StressLaw, Volumetric};
 pub use loads::{Load, LoadKind};
 pub use material::{Elastic, Space, von_mises};
 pub use model::{Circumstances, Memory, Model, StepError};
 pub use sliding::Settled;
+pub use solid_body::{SolidBody, SolidError};
 pub use state::State;
 pub use supports::{Support, SupportError, SupportKind};

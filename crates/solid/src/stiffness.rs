@@ -225,7 +225,7 @@ pub(crate) fn normal_stress<const D: usize>(
 }
 
 /// Polynomials on which the divergence is projected, at the quadrature points.
-fn pressures<const D: usize>(basis: &HierarchicBasis, table: &Table) -> DMatrix<f64> {
+pub(crate) fn pressures<const D: usize>(basis: &HierarchicBasis, table: &Table) -> DMatrix<f64> {
     let most = if basis.shape().is_tensor() { basis.degree() - 1 } else { 0 };
     let mut exponents = Vec::new();
     for i in 0..=most {

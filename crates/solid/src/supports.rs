@@ -332,7 +332,7 @@ fn vertices<const D: usize>(bodies: &Bodies<D>, support: &Support) -> BTreeSet<u
 }
 
 /// All functions of a support's group.
-fn functions<const D: usize>(bodies: &Bodies<D>, support: &Support) -> BTreeSet<u32> {
+pub(crate) fn functions<const D: usize>(bodies: &Bodies<D>, support: &Support) -> BTreeSet<u32> {
     let body = &bodies.list[support.body];
     let mut out = BTreeSet::new();
     let mut add = |f: u32| out.insert(global(bodies, support.body, f));
@@ -374,7 +374,7 @@ fn common_normal<const D: usize>(bodies: &Bodies<D>, support: &Support) -> Resul
 }
 
 /// Coefficients of a prescribed displacement: its values at vertices, and the best fit on edges and sides.
-fn project<const D: usize>(
+pub(crate) fn project<const D: usize>(
     bodies: &Bodies<D>,
     support: &Support,
     displacement: &dyn Fn(&Point<D>) -> Point<D>,

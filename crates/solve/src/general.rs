@@ -174,7 +174,15 @@ impl Lu {
     /// A residual that stays large: the matrix is singular to working precision.
     pub fn solve(&self, b: &[f64]) -> Result<Vec<f64>, SolveError> {
         let size = self.matrix.size();
-        // Residual of each equation against the sum of its terms: independent of units (Arioli, Demmel & Duff 1989).
+        // Residual of each equation against the sum of its terms: independent of units. Where these are nothing but the
+        // rounding of other unknowns, against what the largest unknowns would make, in the scales of the columns (Arioli,
+        // Demmel & Duff 1989).
+        let columns = &self.scales[1];
+        let mut reach = vec![0.0; size];
+        for j in 0..size {
+            self.matrix.column(j).for_each(|(i, v)| reach[i] += v.abs() * columns[j]);
+        }
+        let rounding = 1e3 * size as f64 * f64::EPSILON;
         let backward_error = |x: &[f64]| {
             let mut r = b.to_vec();
             let mut terms: Vec<f64> = b.iter().map(|b| b.abs()).collect();
@@ -184,6 +192,12 @@ impl Lu {
                     terms[i] += (v * x[j]).abs();
                 });
             }
+            let largest = x.iter().zip(columns).fold(0.0f64, |m, (x, c)| m.max(x.abs() / c));
+            terms.iter_mut().zip(&reach).for_each(|(t, reach)| {
+                if *t <= rounding * reach * largest {
+                    *t += reach * largest;
+                }
+            });
             let of = |(r, t): (&f64, &f64)| if *r == 0.0 { 0.0 } else { r.abs() / t.max(f64::MIN_POSITIVE) };
             // A NaN must not be lost in a maximum.
             let error = r.iter().zip(&terms).map(of).fold(0.0f64, |m, e| if e > m || e.is_nan() { e } else { m });

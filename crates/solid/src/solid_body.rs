@@ -1,0 +1,330 @@
+//! Finite-element solids as bodies of a system: unknowns `D f + i` for the hierarchic function `f` in direction `i`.
+//!
+//! At small strain the stiffness is that of [`stiffness`](crate::stiffness), added up once; at finite strain forces and
+//! tangent are integrated from a [`StressLaw`], with the same projection of the dilatation where low degrees or a material
+//! that hardly compresses would lock. Contact is tested and met where the body is now, also at small strain.
+
+mod cells;
+mod faces;
+mod fields;
+mod hold;
+mod loads;
+mod master;
+
+use crate::body::Bodies;
+use crate::hyperelastic::StressLaw;
+use crate::material::{Elastic, Space};
+use crate::stiffness::{Table, stiffness};
+use faces::Faces;
+use rayon::prelude::*;
+use signorini_fem::{CellShape, DofMap, Group, Mesh, MeshError};
+use signorini_geometry::{Point, Vector};
+use signorini_mechanics::{
+    Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Hold, Load, Master, Order, PlaceError, Placed,
+    Sampling, Site,
+};
+use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
+
+/// A solid that cannot be built.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SolidError {
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    #[error("degree {degree} on a {shape}: valid are 1 to {most}")]
+    Degree { degree: usize, shape: &'static str, most: usize },
+    #[error("Young's modulus {youngs_modulus} and Poisson's ratio {poissons_ratio}: valid are > 0, and > -1 and < 0.5")]
+    Material { youngs_modulus: f64, poissons_ratio: f64 },
+    #[error("a body in {dimension} dimensions does not fill space as {space:?}")]
+    Space { dimension: usize, space: Space },
+}
+
+/// A solid of finite elements.
+pub struct SolidBody<const D: usize> {
+    /// The body by itself, as the linear model knows it.
+    bodies: Bodies<D>,
+    law: StressLaw,
+    groups: BTreeMap<String, Group>,
+    faces: Faces<D>,
+    /// Quadrature tables by the kinds of map and basis of a cell.
+    tables: HashMap<(usize, usize), Table>,
+    /// Unknowns and stiffness of each cell, at small strain.
+    stiffness: Vec<(Vec<u32>, Vec<f64>)>,
+    /// Coefficients of the reference position.
+    position: Vec<Point<D>>,
+    size: f64,
+}
+
+impl<const D: usize> SolidBody<D> {
+    /// A solid at rest. `groups` are its places: for supports and loads sides, vertices or cells, for contact sides; the
+    /// whole boundary is always there as `boundary`.
+    ///
+    /// # Errors
+    /// Meshes, degrees and constants that nothing can be computed with.
+    pub fn new(
+        name: &str,
+        mesh: Arc<Mesh<D>>,
+        degree: usize,
+        (elastic, law): (Elastic, StressLaw),
+        space: Space,
+        groups: BTreeMap<String, Group>,
+    ) -> Result<Self, SolidError> {
+        mesh.check()?;
+        let (e, nu) = (elastic.youngs_modulus, elastic.poissons_ratio);
+        if !(e > 0.0 && e.is_finite() && nu > -1.0 && nu < 0.5) {
+            return Err(SolidError::Material { youngs_modulus: e, poissons_ratio: nu });
+        }
+        if (D == 3) != (space == Space::Solid) {
+            return Err(SolidError::Space { dimension: D, space });
+        }
+        for cell in 0..mesh.cell_count() {
+            let shape = mesh.shape(cell);
+            let most = if shape.is_tensor() { signorini_fem::hierarchic::MAX_DEGREE } else { 2 };
+            if !(1..=most).contains(&degree) {
+                return Err(SolidError::Degree { degree, shape: shape.name(), most });
+            }
+        }
+        let dofs = Arc::new(DofMap::new(&mesh, degree));
+        let mut groups = groups;
+        groups.entry("boundary".into()).or_insert_with(|| Group { sides: mesh.boundary(), ..Group::default() });
+        let mut bodies = Bodies::new(space);
+        let body = crate::body::Body { name: name.into(), mesh, dofs, degree, material: elastic, first: 0 };
+        bodies.list.push(body);
+        let body = &bodies.list[0];
+        let mut tables: HashMap<(usize, usize), Table> = HashMap::new();
+        for cell in 0..body.mesh.cell_count() {
+            tables
+                .entry((body.mesh.map_number(cell), body.dofs.basis_number(cell)))
+                .or_insert_with(|| Table::new(&body.mesh, &body.dofs, cell));
+        }
+        let position = hold::position(&bodies);
+        let faces = Faces::new(&bodies, &groups);
+        let (mut low, mut high) = (Point::<D>::repeat(f64::INFINITY), Point::<D>::repeat(f64::NEG_INFINITY));
+        body.mesh.nodes().iter().for_each(|x| (low, high) = (low.inf(x), high.sup(x)));
+        let size = (high - low).max();
+        let mut out = SolidBody { bodies, law, groups, faces, tables, stiffness: Vec::new(), position, size };
+        if law == StressLaw::LinearElastic {
+            out.stiffness = out.small_strain();
+        }
+        Ok(out)
+    }
+
+    fn body(&self) -> &crate::body::Body<D> {
+        &self.bodies.list[0]
+    }
+
+    fn table(&self, cell: usize) -> &Table {
+        let body = self.body();
+        &self.tables[&(body.mesh.map_number(cell), body.dofs.basis_number(cell))]
+    }
+
+    pub fn space(&self) -> Space {
+        self.bodies.space
+    }
+
+    pub fn law(&self) -> StressLaw {
+        self.law
+    }
+
+    pub fn mesh(&self) -> &Mesh<D> {
+        &self.body().mesh
+    }
+
+    pub fn dofs(&self) -> &DofMap {
+        &self.body().dofs
+    }
+
+    /// The unknowns of the functions of a cell, in their order, and the sign of each function.
+    fn unknowns_of(&self, cell: usize) -> (Vec<u32>, Vec<f64>) {
+        let list: Vec<(u32, f64)> = self.body().dofs.cell(cell).collect();
+        let unknowns = list.iter().flat_map(|(f, _)| (0..D as u32).map(move |i| D as u32 * f + i)).collect();
+        let signs = list.iter().flat_map(|(_, s)| [*s; D]).collect();
+        (unknowns, signs)
+    }
+
+    /// The stiffness of all cells at small strain.
+    fn small_strain(&self) -> Vec<(Vec<u32>, Vec<f64>)> {
+        let body = self.body();
+        let of = |cell: usize| {
+            let basis = body.dofs.basis(cell);
+            let matrix = stiffness(&body.mesh, cell, self.table(cell), basis, &body.material, self.bodies.space);
+            let (unknowns, signs) = self.unknowns_of(cell);
+            let n = unknowns.len();
+            let values = (0..n * n).map(|k| matrix[(k / n, k % n)] * signs[k / n] * signs[k % n]).collect();
+            (unknowns, values)
+        };
+        (0..body.mesh.cell_count()).into_par_iter().map(of).collect()
+    }
+
+    fn group(&self, on: Option<&str>) -> Result<&Group, PlaceError> {
+        let name = on.unwrap_or("boundary");
+        self.groups.get(name).ok_or_else(|| PlaceError::Unknown {
+            body: self.name().to_string(),
+            group: name.to_string(),
+            known: self.groups.keys().cloned().collect(),
+        })
+    }
+
+    fn unsuitable(&self, message: impl Into<String>) -> PlaceError {
+        PlaceError::Unsuitable { body: self.name().to_string(), message: message.into() }
+    }
+
+    /// Displacement coefficients of a function.
+    fn coefficients(u: &[f64], f: u32) -> Point<D> {
+        Point::<D>::from_fn(|i, _| u[D * f as usize + i])
+    }
+}
+
+/// A position or direction in space.
+fn spatial<const D: usize>(x: &Point<D>) -> Vector<3> {
+    Vector::<3>::from_fn(|k, _| if k < D { x[k] } else { 0.0 })
+}
+
+/// Unit vector of a direction, in space.
+fn axis(i: usize) -> Vector<3> {
+    Vector::<3>::from_fn(|k, _| f64::from(u8::from(k == i)))
+}
+
+impl<const D: usize> Body for SolidBody<D> {
+    fn name(&self) -> &str {
+        &self.body().name
+    }
+
+    fn unknowns(&self) -> usize {
+        self.body().unknowns()
+    }
+
+    fn start(&self) -> BodyState {
+        BodyState { configuration: vec![0.0; self.unknowns()], internal: Vec::new() }
+    }
+
+    fn advance(&self, state: &BodyState, step: &[f64], share: f64) -> BodyState {
+        let configuration = state.configuration.iter().zip(step).map(|(u, s)| u + share * s).collect();
+        BodyState { configuration, internal: Vec::new() }
+    }
+
+    fn internal(&self, state: &BodyState, order: Order, out: &mut Contribution) -> Result<f64, BodyError> {
+        let u = &state.configuration;
+        if self.law != StressLaw::LinearElastic {
+            return self.finite_strain(u, order, out);
+        }
+        let product = |(unknowns, values): &(Vec<u32>, Vec<f64>)| -> Vec<f64> {
+            let own: Vec<f64> = unknowns.iter().map(|k| u[*k as usize]).collect();
+            values.chunks(own.len()).map(|row| row.iter().zip(&own).map(|(k, u)| k * u).sum()).collect()
+        };
+        let forces: Vec<Vec<f64>> = self.stiffness.par_iter().map(product).collect();
+        let mut energy = 0.0;
+        for ((unknowns, _), forces) in self.stiffness.iter().zip(&forces) {
+            for (k, f) in unknowns.iter().zip(forces) {
+                out.forces[*k as usize] += f;
+                energy += 0.5 * f * u[*k as usize];
+            }
+        }
+        if order == Order::Second {
+            out.blocks.extend_from_slice(&self.stiffness);
+        }
+        Ok(energy)
+    }
+
+    fn is_linear(&self) -> bool {
+        self.law == StressLaw::LinearElastic
+    }
+
+    /// Rows in the unknowns, one for each function on the place and component that is held. Components across the plane
+    /// are never free.
+    fn hold(&self, on: Option<&str>, hold: &Hold<'_>, state: &BodyState) -> Result<Vec<Constraint>, PlaceError> {
+        self.constraints(on, hold, &state.configuration)
+    }
+
+    fn load(
+        &self,
+        on: Option<&str>,
+        load: &Load<'_>,
+        state: &BodyState,
+        order: Order,
+        out: &mut Contribution,
+    ) -> Result<(), PlaceError> {
+        self.add_load(on, load, &state.configuration, order, out)
+    }
+
+    fn sites(&self, on: Option<&str>, sampling: Sampling) -> Result<Vec<Site>, PlaceError> {
+        let group = self.group(on)?;
+        if group.sides.is_empty() {
+            return Err(self.unsuitable(format!("`{}` has no sides that could touch", on.unwrap_or("boundary"))));
+        }
+        Ok(self.faces.sites(on.unwrap_or("boundary"), sampling))
+    }
+
+    fn placed(&self, state: &BodyState, site: &Site) -> Placed {
+        self.faces.placed(site, &state.configuration)
+    }
+
+    fn master<'a>(&'a self, on: Option<&str>, state: &'a BodyState) -> Result<Box<dyn Master + 'a>, PlaceError> {
+        let group = self.group(on)?;
+        if group.sides.is_empty() {
+            return Err(self.unsuitable(format!("`{}` has no sides that could be touched", on.unwrap_or("boundary"))));
+        }
+        let master = self.faces.master(on.unwrap_or("boundary"), &state.configuration);
+        Ok(Box::new(master.map_err(|e| self.unsuitable(e.to_string()))?))
+    }
+
+    /// Young's modulus times the area of the site over the depth of its cell, in parts of its degree.
+    fn site_stiffness(&self, site: &Site) -> f64 {
+        let body = self.body();
+        body.material.youngs_modulus * site.weight * body.degree as f64 / self.faces.depth(site)
+    }
+
+    fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6] {
+        let body = self.body();
+        let mut is_vertex = vec![false; body.dofs.count()];
+        body.vertex_unknowns().for_each(|k| is_vertex[k / D] = true);
+        std::array::from_fn(|mode| {
+            let mut out = vec![0.0; self.unknowns()];
+            for (f, position) in self.position.iter().enumerate() {
+                let e = axis(mode % 3);
+                let motion = match mode {
+                    0..3 if is_vertex[f] => e,
+                    0..3 => continue,
+                    _ => e.cross(&spatial(&(position + Self::coefficients(&state.configuration, f as u32)))),
+                };
+                (0..D).for_each(|i| out[D * f + i] = motion[i]);
+            }
+            if self.bodies.space == Space::Axisymmetric && mode != 1 {
+                out.iter_mut().for_each(|m| *m = 0.0);
+            }
+            out
+        })
+    }
+
+    fn size(&self) -> f64 {
+        self.size
+    }
+
+    fn fields(&self, state: &BodyState) -> BodyFields {
+        self.shown(&state.configuration)
+    }
+}
+
+/// How far into a cell the force on a side of it reaches: its volume over the area of the side.
+fn depth<const D: usize>(bodies: &Bodies<D>, side: signorini_fem::Side) -> f64 {
+    use signorini_fem::rules::rule;
+    use signorini_fem::small::determinant;
+    let mesh = &bodies.list[0].mesh;
+    let cell = side.cell as usize;
+    let map = mesh.map(cell);
+    let mut at = signorini_fem::hierarchic::Values::default();
+    let volume: f64 = (rule(map.shape(), map.order() + 1).iter())
+        .map(|(x, w)| {
+            map.tabulate(x, &mut at);
+            w * determinant(&mesh.jacobian(cell, &at).1)
+        })
+        .sum();
+    let shape: CellShape = mesh.side_shape(side);
+    let area: f64 = (rule(shape, map.order() + 1).iter())
+        .map(|(s, w)| {
+            let (x, tangents) = mesh.on_side(side, s);
+            w * signorini_contact::FacePoint { x, tangents }.area_normal().norm()
+        })
+        .sum();
+    volume / area
+}

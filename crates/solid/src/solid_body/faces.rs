@@ -1,0 +1,295 @@
+//! The faces of a solid that may touch: the points that are tested on them, tabulated once, and what moves them.
+
+use super::{axis, depth, spatial};
+use crate::body::Bodies;
+use signorini_contact::{FacePoint, PressureNodes};
+use signorini_fem::hierarchic::{Derivatives, Values};
+use signorini_fem::rules::rule;
+use signorini_fem::{CellShape, Group, Local, Side};
+use signorini_geometry::{Matrix, Point, Vector};
+use signorini_mechanics::{Function, Placed, Sampling, Site};
+use std::collections::{BTreeMap, HashMap};
+
+/// A side of a cell.
+pub(super) struct Face<const D: usize> {
+    pub side: Side,
+    pub shape: CellShape,
+    pub vertices: Vec<u32>,
+    /// Functions that do not vanish on the side: their places in the cell, their numbers and signs.
+    places: Vec<usize>,
+    functions: Vec<(u32, f64)>,
+    /// Degree of the polynomial that the side is when displaced, positions of as many points, and the functions there.
+    pub order: usize,
+    lattice: Vec<(Point<D>, Vec<f64>)>,
+    depth: f64,
+}
+
+/// A tested point with what moves it.
+struct TestedPoint<const D: usize> {
+    x: Point<D>,
+    functions: Vec<(u32, f64)>,
+    around: Vec<Tangents<D>>,
+    depth: f64,
+}
+
+/// The tangents of a face at a tested point, and how functions move them.
+struct Tangents<const D: usize> {
+    face: u32,
+    at: [Point<D>; 2],
+    slopes: Vec<(u32, [f64; 2])>,
+}
+
+/// The faces of a group.
+pub(super) struct Surface {
+    pub faces: Vec<u32>,
+    /// Faces around each vertex.
+    pub around: HashMap<u32, Vec<u32>>,
+    nodes: Vec<Site>,
+    gauss_points: Vec<Site>,
+}
+
+/// All faces of the groups of a body.
+pub(super) struct Faces<const D: usize> {
+    bodies: Bodies<D>,
+    list: Vec<Face<D>>,
+    points: Vec<TestedPoint<D>>,
+    surfaces: BTreeMap<String, Surface>,
+}
+
+/// Functions smaller than this at a point do not move it: rounding of their values, which are about one.
+const NOTHING: f64 = 1e-14;
+
+impl<const D: usize> Faces<D> {
+    pub fn new(bodies: &Bodies<D>, groups: &BTreeMap<String, Group>) -> Self {
+        let mut out = Faces { bodies: bodies.clone(), list: Vec::new(), points: Vec::new(), surfaces: BTreeMap::new() };
+        let mut numbers: HashMap<Side, u32> = HashMap::new();
+        for (name, group) in groups.iter().filter(|(_, g)| !g.sides.is_empty()) {
+            let mut faces = Vec::with_capacity(group.sides.len());
+            for side in &group.sides {
+                faces.push(*numbers.entry(*side).or_insert_with(|| {
+                    out.list.push(Face::new(bodies, *side));
+                    (out.list.len() - 1) as u32
+                }));
+            }
+            let mut around: HashMap<u32, Vec<u32>> = HashMap::new();
+            for &f in &faces {
+                out.list[f as usize].vertices.iter().for_each(|v| around.entry(*v).or_default().push(f));
+            }
+            let nodes = out.nodes(&faces, group.sides.clone());
+            let gauss_points = out.gauss_points(&faces);
+            out.surfaces.insert(name.clone(), Surface { faces, around, nodes, gauss_points });
+        }
+        out
+    }
+
+    pub fn face(&self, face: u32) -> &Face<D> {
+        &self.list[face as usize]
+    }
+
+    /// The surface of a group that has sides.
+    pub fn surface(&self, group: &str) -> &Surface {
+        &self.surfaces[group]
+    }
+
+    pub fn sites(&self, group: &str, sampling: Sampling) -> Vec<Site> {
+        let surface = self.surface(group);
+        match sampling {
+            Sampling::Nodes => surface.nodes.clone(),
+            Sampling::GaussPoints => surface.gauss_points.clone(),
+        }
+    }
+
+    /// Depth of the cells at a site.
+    pub fn depth(&self, site: &Site) -> f64 {
+        self.points[site.patch as usize].depth
+    }
+
+    /// The faces that a site lies on.
+    pub fn faces_of(&self, site: &Site) -> impl Iterator<Item = u32> {
+        self.points[site.patch as usize].around.iter().map(|t| t.face)
+    }
+
+    /// A point of a face that stands for an area.
+    fn add(&mut self, at: &[(u32, Local)], weight: f64) -> Site {
+        let (face, s) = at[0];
+        let functions = (self.derivatives(face, &s).into_iter())
+            .filter(|(_, d)| d[0].abs() > NOTHING)
+            .map(|(f, d)| (f, d[0]))
+            .collect();
+        let around: Vec<Tangents<D>> = (at.iter())
+            .map(|(face, s)| {
+                let slopes = self.derivatives(*face, s).into_iter().map(|(f, d)| (f, [d[1], d[2]])).collect();
+                Tangents { face: *face, at: self.reference(*face, s).tangents, slopes }
+            })
+            .collect();
+        let depth = at.iter().map(|(f, _)| self.face(*f).depth).fold(f64::INFINITY, f64::min);
+        self.points.push(TestedPoint { x: self.reference(face, &s).x, functions, around, depth });
+        Site { patch: (self.points.len() - 1) as u32, xi: [s[0], s[1]], weight }
+    }
+
+    fn gauss_points(&mut self, faces: &[u32]) -> Vec<Site> {
+        let mut out = Vec::new();
+        for &f in faces {
+            for (s, w) in rule(self.face(f).shape, self.bodies.list[0].degree + 1) {
+                let point = self.reference(f, &s);
+                let weight = w * point.area_normal().norm() * self.bodies.measure(&point.x);
+                out.push(self.add(&[(f, s)], weight));
+            }
+        }
+        out
+    }
+
+    /// The nodes of the contact pressure, one on each side of an edge that is a feature.
+    fn nodes(&mut self, faces: &[u32], sides: Vec<Side>) -> Vec<Site> {
+        let nodes = PressureNodes::new(&self.bodies.surface(0, sides));
+        let mut weights = vec![0.0; nodes.len()];
+        let mut places: Vec<Vec<(u32, Local)>> = vec![Vec::new(); nodes.len()];
+        for (k, &face) in faces.iter().enumerate() {
+            let own = nodes.of_face(k);
+            for ((node, _), s) in own.iter().zip(nodes.map(k).nodes()) {
+                places[*node as usize].push((face, s));
+            }
+            for ((node, _), w) in own.iter().zip(self.tributary(face, nodes.map(k))) {
+                weights[*node as usize] += w;
+            }
+        }
+        places.iter().zip(weights).map(|(at, w)| self.add(at, w)).collect()
+    }
+
+    /// The area of a face as it belongs to its nodes: the integrals of their functions, or where one of these is not
+    /// positive, as at the vertices of quadratic triangles or on an axis, in proportion to those of the squares (Hinton,
+    /// Rock & Zienkiewicz 1976).
+    fn tributary(&self, face: u32, map: &signorini_fem::cell_map::CellMap) -> Vec<f64> {
+        let mut at = Values::default();
+        let mut whole = vec![0.0; map.len()];
+        let mut squares = vec![0.0; map.len()];
+        let mut area = 0.0;
+        for (s, w) in rule(self.face(face).shape, map.order() + 2) {
+            let point = self.reference(face, &s);
+            let w = w * point.area_normal().norm() * self.bodies.measure(&point.x);
+            map.tabulate(&s, &mut at);
+            area += w;
+            for (k, v) in at.value.iter().enumerate() {
+                whole[k] += w * v;
+                squares[k] += w * v * v;
+            }
+        }
+        if whole.iter().all(|w| *w > 1e-9 * area) {
+            return whole;
+        }
+        let total: f64 = squares.iter().sum();
+        squares.iter().map(|s| s / total * area).collect()
+    }
+
+    /// A point of a face at rest.
+    fn reference(&self, face: u32, s: &Local) -> FacePoint<D> {
+        let (x, tangents) = self.bodies.list[0].mesh.on_side(self.face(face).side, s);
+        FacePoint { x, tangents }
+    }
+
+    /// The functions that move a point of a face, with their derivatives along its coordinates.
+    pub fn derivatives(&self, face: u32, s: &Local) -> Vec<(u32, Derivatives)> {
+        let face = self.face(face);
+        let basis = self.bodies.list[0].dofs.basis(face.side.cell as usize);
+        let (x, along) = basis.shape().on_side(face.side.side as usize, s);
+        let list = basis.derivatives(&face.places, &x, &along);
+        list.into_iter().zip(&face.functions).map(|(d, (f, sign))| (*f, d.map(|v| sign * v))).collect()
+    }
+
+    /// The points of the lattice of a face where they are now, as points of space.
+    pub fn lattice(&self, face: u32, u: &[f64]) -> Vec<Point<3>> {
+        let face = self.face(face);
+        (face.lattice.iter())
+            .map(|(x, values)| {
+                let mut x = *x;
+                for ((f, _), v) in face.functions.iter().zip(values) {
+                    (0..D).for_each(|i| x[i] += v * u[D * *f as usize + i]);
+                }
+                spatial(&x)
+            })
+            .collect()
+    }
+
+    /// A point of a face where it is now, from the functions there.
+    pub fn current(&self, face: u32, s: &Local, list: &[(u32, Derivatives)], u: &[f64]) -> FacePoint<D> {
+        let mut point = self.reference(face, s);
+        for (f, d) in list {
+            for i in 0..D {
+                let u = u[D * *f as usize + i];
+                point.x[i] += u * d[0];
+                (0..D - 1).for_each(|a| point.tangents[a][i] += u * d[1 + a]);
+            }
+        }
+        point
+    }
+
+    /// The mean outward unit normal at a tested point.
+    pub fn outward(&self, site: &Site, u: &[f64]) -> Vector<3> {
+        let point = &self.points[site.patch as usize];
+        let of = |t: &Tangents<D>| {
+            let mut tangents = t.at;
+            for (f, slopes) in &t.slopes {
+                for i in 0..D {
+                    let u = u[D * *f as usize + i];
+                    (0..D - 1).for_each(|a| tangents[a][i] += u * slopes[a]);
+                }
+            }
+            spatial(&FacePoint { x: point.x, tangents }.area_normal().normalize())
+        };
+        point.around.iter().map(of).sum::<Vector<3>>().normalize()
+    }
+
+    pub fn placed(&self, site: &Site, u: &[f64]) -> Placed {
+        let point = &self.points[site.patch as usize];
+        let mut x = point.x;
+        let mut functions = Vec::with_capacity(D * point.functions.len());
+        for (f, v) in &point.functions {
+            for i in 0..D {
+                let unknown = D as u32 * f + i as u32;
+                x[i] += v * u[unknown as usize];
+                functions.push(Function { unknown, value: axis(i) * *v, ..Function::default() });
+            }
+        }
+        Placed {
+            x: spatial(&x),
+            outward: Some(self.outward(site, u)),
+            functions,
+            frame: Matrix::<3>::identity(),
+            ..Placed::default()
+        }
+    }
+}
+
+impl<const D: usize> Face<D> {
+    fn new(bodies: &Bodies<D>, side: Side) -> Self {
+        let body = &bodies.list[0];
+        let cell = side.cell as usize;
+        let shape = body.mesh.side_shape(side);
+        let places = body.dofs.on_side(side);
+        let functions: Vec<(u32, f64)> = places.iter().map(|&k| body.dofs.function(cell, k)).collect();
+        let order = body.mesh.map(cell).order().max(body.degree);
+        let basis = body.dofs.basis(cell);
+        let mut at = Values::default();
+        let lattice = (lattice(shape, order).iter())
+            .map(|s| {
+                let (xi, _) = basis.shape().on_side(side.side as usize, s);
+                basis.tabulate(&xi, &mut at);
+                let values = places.iter().zip(&functions).map(|(&k, (_, sign))| sign * at.value[k]).collect();
+                (body.mesh.on_side(side, s).0, values)
+            })
+            .collect();
+        let vertices = body.mesh.side_vertices(side);
+        Face { side, shape, vertices, places, functions, order, lattice, depth: depth(bodies, side) }
+    }
+}
+
+/// Equidistant points of a face: of a quadrilateral the second coordinate runs fastest, of a triangle the first.
+fn lattice(shape: CellShape, n: usize) -> Vec<Local> {
+    let share = |k: usize| k as f64 / n as f64;
+    let side = |k: usize| 2.0 * share(k) - 1.0;
+    match shape {
+        CellShape::Line => (0..=n).map(|i| [side(i), 0.0, 0.0]).collect(),
+        CellShape::Triangle => (0..=n).flat_map(|j| (0..=n - j).map(move |i| [share(i), share(j), 0.0])).collect(),
+        _ => (0..=n).flat_map(|i| (0..=n).map(move |j| [side(i), side(j), 0.0])).collect(),
+    }
+}

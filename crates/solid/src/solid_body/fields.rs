@@ -1,0 +1,180 @@
+//! A solid as it is shown: cells divided into straight ones, with displacement and stress at their points.
+
+use super::{SolidBody, spatial};
+use crate::hyperelastic::StressLaw;
+use crate::material::{Space, von_mises};
+use crate::stiffness::Table;
+use nalgebra::{DVector, Matrix3};
+use rayon::prelude::*;
+use signorini_fem::hierarchic::Values;
+use signorini_fem::{CellShape, Local};
+use signorini_geometry::{Point, Vector};
+use signorini_mechanics::BodyFields;
+use std::collections::HashMap;
+
+/// A cell divided into straight ones.
+struct Division {
+    table: Table,
+    cells: Vec<Vec<u32>>,
+}
+
+/// Displacement and Cauchy stress at a point.
+type Shown = (Point<3>, Vector<3>, Matrix3<f64>);
+
+impl<const D: usize> SolidBody<D> {
+    /// Tetrahedra and wedges are shown as hexahedra with corners that coincide.
+    pub(super) fn shown(&self, u: &[f64]) -> BodyFields {
+        let body = self.body();
+        let mut divisions: HashMap<(usize, usize), Division> = HashMap::new();
+        for cell in 0..body.mesh.cell_count() {
+            divisions
+                .entry((body.mesh.map_number(cell), body.dofs.basis_number(cell)))
+                .or_insert_with(|| self.division(cell));
+        }
+        let of = |cell: usize| &divisions[&(body.mesh.map_number(cell), body.dofs.basis_number(cell))];
+        let cells: Vec<usize> = (0..body.mesh.cell_count()).collect();
+        let found: Vec<Vec<Shown>> = cells.par_iter().map(|&cell| self.points_of(cell, &of(cell).table, u)).collect();
+        let mut out = BodyFields::default();
+        let mut stress = Vec::new();
+        let mut equivalent = Vec::new();
+        for (cell, points) in found.into_iter().enumerate() {
+            let first = out.points.len() as u32;
+            out.cells.extend(of(cell).cells.iter().map(|c| c.iter().map(|k| first + k).collect()));
+            for (x, moved, s) in points {
+                out.points.push(x);
+                out.displacement.push(moved);
+                stress.extend([s[(0, 0)], s[(1, 1)], s[(2, 2)], s[(0, 1)], s[(1, 2)], s[(0, 2)]]);
+                equivalent.push(von_mises(&s));
+            }
+        }
+        out.point_data.push(("stress".into(), 6, stress));
+        out.point_data.push(("von_mises".into(), 1, equivalent));
+        out
+    }
+
+    fn points_of(&self, cell: usize, table: &Table, u: &[f64]) -> Vec<Shown> {
+        let (elastic, law) = (&self.body().material, self.law);
+        let (unknowns, signs) = self.unknowns_of(cell);
+        let own = DVector::from_iterator(unknowns.len(), unknowns.iter().zip(&signs).map(|(k, s)| s * u[*k as usize]));
+        let at = self.gradients(cell, table);
+        let gradients = &at.rows * &own;
+        let plane_stress = self.bodies.space == Space::PlaneStress;
+        // The pressure as it acts in the cell: projected where the dilatation is.
+        let pressure = |q: usize, f: &Matrix3<f64>, projected: &Option<DVector<f64>>| match projected {
+            Some(p) => p[q],
+            None => law.volumetric(elastic, law.dilatation(f).energy)[1],
+        };
+        let projected = if plane_stress { None } else { self.projected_pressure(cell, table, &own) };
+        (0..table.points.len())
+            .map(|q| {
+                let f = at.deformation(q, &gradients);
+                let stress = if plane_stress {
+                    law.plane_stress(elastic, &f).map(|r| r.stress).unwrap_or_default()
+                } else {
+                    law.deviatoric(elastic, &f).stress + law.dilatation(&f).stress * pressure(q, &f, &projected)
+                };
+                let piola = Matrix3::from_fn(|i, j| stress[3 * i + j]);
+                // In plane stress the thickness changes as well, with no stress across.
+                let cauchy = match law {
+                    StressLaw::LinearElastic => piola,
+                    _ => piola * f.transpose() / self.volume_ratio(&f),
+                };
+                let mut moved = Vector::<3>::zeros();
+                for (a, v) in table.basis[q].value.iter().enumerate() {
+                    (0..D).for_each(|i| moved[i] += v * own[a * D + i]);
+                }
+                (spatial(&self.body().mesh.position(cell, &table.map[q])), moved, cauchy)
+            })
+            .collect()
+    }
+
+    fn volume_ratio(&self, f: &Matrix3<f64>) -> f64 {
+        let across = if self.bodies.space == Space::PlaneStress {
+            self.law.stretch_across(&self.body().material, f)
+        } else {
+            f[(2, 2)]
+        };
+        let mut f = *f;
+        f[(2, 2)] = across;
+        f.determinant()
+    }
+
+    fn projected_pressure(&self, cell: usize, to: &Table, own: &DVector<f64>) -> Option<DVector<f64>> {
+        let (elastic, law) = (&self.body().material, self.law);
+        let inner = self.gradients(cell, self.table(cell));
+        let project = self.projection(cell, &inner.weights, self.table(cell))?;
+        let gradients = &inner.rows * own;
+        let phi = (0..inner.weights.len()).map(|q| law.dilatation(&inner.deformation(q, &gradients)).energy);
+        let theta = project * DVector::from_iterator(inner.weights.len(), phi);
+        let slopes = theta.map(|t| law.volumetric(elastic, t)[1]);
+        self.projection(cell, &inner.weights, to).map(|p| p * slopes)
+    }
+
+    fn division(&self, cell: usize) -> Division {
+        let body = self.body();
+        let (map, basis) = (body.mesh.map(cell), body.dofs.basis(cell));
+        let n = map.order().max(basis.degree());
+        let (points, cells) = divided(map.shape(), n);
+        let tabulate = |f: &dyn Fn(&Local, &mut Values)| -> Vec<Values> {
+            (points.iter())
+                .map(|x| {
+                    let mut at = Values::default();
+                    f(x, &mut at);
+                    at
+                })
+                .collect()
+        };
+        let (of_map, of_basis) = (tabulate(&|x, at| map.tabulate(x, at)), tabulate(&|x, at| basis.tabulate(x, at)));
+        let points = points.into_iter().map(|x| (x, 0.0)).collect();
+        Division { table: Table { points, map: of_map, basis: of_basis }, cells }
+    }
+}
+
+/// Points of a reference cell and the straight cells between them, `n` along each edge.
+fn divided(shape: CellShape, n: usize) -> (Vec<Local>, Vec<Vec<u32>>) {
+    let vertices = || shape.vertices().to_vec();
+    let mut cells = Vec::new();
+    match shape {
+        CellShape::Tetrahedron => (vertices(), vec![vec![0, 1, 2, 2, 3, 3, 3, 3]]),
+        CellShape::Wedge => (vertices(), vec![vec![0, 1, 2, 2, 3, 4, 5, 5]]),
+        CellShape::Triangle => {
+            let share = |k: usize| k as f64 / n as f64;
+            let points = (0..=n).flat_map(|j| (0..=n - j).map(move |i| [share(i), share(j), 0.0])).collect();
+            let at = |i: usize, j: usize| (j * (2 * n + 3 - j) / 2 + i) as u32;
+            for j in 0..n {
+                for i in 0..n - j {
+                    cells.push(vec![at(i, j), at(i + 1, j), at(i, j + 1)]);
+                    if i + j + 1 < n {
+                        cells.push(vec![at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
+                    }
+                }
+            }
+            (points, cells)
+        }
+        _ => {
+            let dimension = shape.dimension();
+            let number = |k: usize| if k < dimension { n + 1 } else { 1 };
+            let side = |i: usize, k: usize| if k < dimension { 2.0 * i as f64 / n as f64 - 1.0 } else { 0.0 };
+            let mut points = Vec::new();
+            for k in 0..number(2) {
+                for j in 0..number(1) {
+                    points.extend((0..number(0)).map(|i| [side(i, 0), side(j, 1), side(k, 2)]));
+                }
+            }
+            let at = |i: usize, j: usize, k: usize| ((k * number(1) + j) * number(0) + i) as u32;
+            for k in 0..if dimension == 3 { n } else { 1 } {
+                for j in 0..if dimension > 1 { n } else { 1 } {
+                    for i in 0..n {
+                        let quad = |k: usize| [at(i, j, k), at(i + 1, j, k), at(i + 1, j + 1, k), at(i, j + 1, k)];
+                        cells.push(match dimension {
+                            1 => vec![at(i, 0, 0), at(i + 1, 0, 0)],
+                            2 => quad(0).to_vec(),
+                            _ => [quad(k), quad(k + 1)].concat(),
+                        });
+                    }
+                }
+            }
+            (points, cells)
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! What supports hold: functions on a place, at the values that fit a prescribed displacement best.
+
+use super::{SolidBody, spatial};
+use crate::body::Bodies;
+use crate::supports::{Support, SupportKind, functions, project};
+use signorini_fem::Group;
+use signorini_geometry::Point;
+use signorini_mechanics::{Constraint, Hold, PlaceError};
+
+impl<const D: usize> SolidBody<D> {
+    pub(super) fn constraints(
+        &self,
+        on: Option<&str>,
+        hold: &Hold<'_>,
+        u: &[f64],
+    ) -> Result<Vec<Constraint>, PlaceError> {
+        if hold.rotation.iter().any(Option::is_some) {
+            return Err(self.unsuitable("a solid has no rotations that could be held: hold displacements of a group"));
+        }
+        let body = self.body();
+        let group = match on {
+            Some(_) => self.group(on)?.clone(),
+            None => Group { cells: (0..body.mesh.cell_count() as u32).collect(), ..Group::default() },
+        };
+        let support = Support {
+            name: String::new(),
+            body: 0,
+            group,
+            kind: SupportKind::Components((0..D).map(|i| hold.displacement[i].is_some()).collect()),
+        };
+        let all = functions(&self.bodies, &support);
+        if all.is_empty() {
+            return Err(self.unsuitable(format!("`{}` has nothing that could be held", on.unwrap_or("all"))));
+        }
+        let wanted = |x: &Point<D>| {
+            let x = spatial(x);
+            Point::<D>::from_fn(|i, _| hold.displacement[i].map_or(0.0, |field| field(&x)))
+        };
+        let wanted = project(&self.bodies, &support, &wanted);
+        let mut is_vertex = vec![false; body.dofs.count()];
+        body.vertex_unknowns().for_each(|k| is_vertex[k / D] = true);
+        let mut out = Vec::new();
+        for f in all {
+            for i in (0..D).filter(|&i| hold.displacement[i].is_some()) {
+                let unknown = D as u32 * f + i as u32;
+                let value = wanted.get(&f).map_or(0.0, |c| c[i]);
+                // The functions of the vertices add up to one: forces on them make the resultant.
+                let component = if is_vertex[f as usize] { i } else { usize::MAX };
+                out.push(Constraint { terms: vec![(unknown, 1.0)], lack: u[unknown as usize] - value, component });
+            }
+        }
+        Ok(out)
+    }
+}
+
+/// Coefficients of the reference position: the vertices, and on cells with curved edges what fits edges and sides best.
+pub(super) fn position<const D: usize>(bodies: &Bodies<D>) -> Vec<Point<D>> {
+    let body = &bodies.list[0];
+    let mut out = vec![Point::<D>::zeros(); body.dofs.count()];
+    for (node, x) in body.mesh.nodes().iter().enumerate() {
+        if let Some(f) = body.dofs.vertex(node as u32) {
+            out[f as usize] = *x;
+        }
+    }
+    let curved = (0..body.mesh.cell_count()).any(|c| body.mesh.map(c).order() > 1);
+    if curved && body.degree > 1 {
+        let group = Group { sides: body.mesh.all_sides().collect(), ..Group::default() };
+        let kind = SupportKind::Components(vec![true; D]);
+        let whole = Support { name: String::new(), body: 0, group, kind };
+        for (f, x) in project(bodies, &whole, &|x| *x) {
+            out[f as usize] = x;
+        }
+    }
+    out
+}

@@ -1,0 +1,273 @@
+//! A surface of a solid as others meet it: the closest point over its faces, edges and vertices, where they are now.
+//!
+//! On a face there are two coordinates, on an edge one, at a vertex none; in the plane a face is a strip that reaches
+//! across it, along which nothing changes. Contact of a surface with itself leaves out what hangs together with a site, and
+//! takes only what faces it.
+
+use super::faces::{Face, Faces, Surface};
+use super::{axis, spatial};
+use rayon::prelude::*;
+use signorini_fem::hierarchic::Derivatives;
+use signorini_fem::{CellShape, Local};
+use signorini_geometry::bvh::Bvh;
+use signorini_geometry::closest::{FeatureKind, Projection, Query, closest};
+use signorini_geometry::shape::{Curve, CurveJet, Shape, ShapeError, SurfaceJet};
+use signorini_geometry::{Aabb, Matrix, Point, Vector};
+use signorini_mechanics::{Anchor, Foot, Function, Master, MaterialPoint, Met, Site};
+use std::collections::BTreeSet;
+
+/// Sine of the angle to the normal of a face below which a point beside its border is over the face itself.
+const OVER: f64 = 1e-8;
+/// Distance to a border, in sizes of a face, that is none: direction and sign of the gap are those of the mean normal.
+const TOUCHING: f64 = 1e-9;
+/// Cosine between the normals of two places of a surface from which on they do not face each other.
+const FACING: f64 = -0.5;
+
+/// A surface where it is now.
+pub(super) struct SurfaceMaster<'a, const D: usize> {
+    faces: &'a Faces<D>,
+    surface: &'a Surface,
+    u: &'a [f64],
+    shapes: Vec<Shape>,
+    bvh: Bvh,
+    size: f64,
+}
+
+impl<const D: usize> Faces<D> {
+    /// # Errors
+    /// Faces that make no shape.
+    pub fn master<'a>(&'a self, group: &str, u: &'a [f64]) -> Result<SurfaceMaster<'a, D>, ShapeError> {
+        let surface = self.surface(group);
+        let shape = |f: &u32| shape(self.face(*f), &self.lattice(*f, u));
+        let shapes: Vec<Shape> = surface.faces.par_iter().map(shape).collect::<Result<_, _>>()?;
+        let boxes: Vec<Aabb<3>> = shapes.iter().map(Shape::bounds).collect();
+        let size = shapes.iter().map(Shape::size).fold(0.0, f64::max);
+        Ok(SurfaceMaster { faces: self, surface, u, shapes, bvh: Bvh::new(&boxes), size })
+    }
+}
+
+/// A site of the surface itself.
+struct Own {
+    /// Faces that hang together with it.
+    near: BTreeSet<u32>,
+    outward: Vector<3>,
+    /// How deep it may be inside what it meets: half of its cell, since the far side of a wall is deeper.
+    deepest: f64,
+}
+
+impl<const D: usize> SurfaceMaster<'_, D> {
+    fn own(&self, site: &Site) -> Own {
+        // Faces that share a vertex, and their neighbours.
+        let mut near: BTreeSet<u32> = self.faces.faces_of(site).collect();
+        for _ in 0..2 {
+            let vertices: BTreeSet<u32> =
+                near.iter().flat_map(|f| self.faces.face(*f).vertices.iter().copied()).collect();
+            near.extend(vertices.iter().filter_map(|v| self.surface.around.get(v)).flatten());
+        }
+        Own { near, outward: self.faces.outward(site, self.u), deepest: 0.5 * self.faces.depth(site) }
+    }
+
+    fn normal(&self, face: u32, s: &Local) -> Vector<3> {
+        let list = self.faces.derivatives(face, s);
+        spatial(&self.faces.current(face, s, &list, self.u).area_normal().normalize())
+    }
+
+    /// The mean normal of all faces that meet at a point of the border of one: it tells outside from inside.
+    fn mean_normal(&self, face: u32, s: &Local) -> Vector<3> {
+        let own = self.faces.face(face);
+        let around = |v: usize| self.surface.around.get(&own.vertices[v]).map_or(&[][..], |l| &l[..]);
+        let list: Vec<u32> = match Place::of(own.shape, s) {
+            Place::Vertex(v) => around(v).to_vec(),
+            Place::Edge([a, b]) if D == 3 => around(a).iter().copied().filter(|f| around(b).contains(f)).collect(),
+            _ => vec![face],
+        };
+        // The middle of another face tells its normal well enough.
+        let of = |f: u32| self.normal(f, &if f == face { *s } else { self.faces.face(f).shape.centre() });
+        list.into_iter().map(of).sum::<Vector<3>>().normalize()
+    }
+
+    /// Whether what is closest on a face is across from a site of the surface itself.
+    fn faces_each_other(&self, own: &Own, face: u32, x: &Point<3>, found: &Projection) -> bool {
+        let normal = self.normal(face, &coordinates(found));
+        let gap = (x - found.closest.b.point).dot(&normal);
+        own.outward.dot(&normal) < FACING && gap > -own.deepest
+    }
+
+    fn foot(&self, k: usize, s: Local, x: &Point<3>, feature: FeatureKind) -> Foot {
+        let face = self.surface.faces[k];
+        let list = self.faces.derivatives(face, &s);
+        let at = self.faces.current(face, &s, &list, self.u);
+        let normal = spatial(&at.area_normal().normalize());
+        let zero = Vector::<3>::zeros();
+        let jet = match &self.shapes[k] {
+            Shape::Surface(surface) => surface.jet(s[0], s[1]),
+            Shape::Curve(curve) => strip(&curve.jet(s[0])),
+            _ => strip(&CurveJet { x: spatial(&at.x), d1: spatial(&at.tangents[0]), d2: zero, d3: zero }),
+        };
+        let mut foot = Foot {
+            point: MaterialPoint { patch: face, xi: s },
+            jet,
+            coordinates: 2,
+            outward: Some(normal),
+            radius: 0.0,
+            functions: Vec::new(),
+            spin: Vec::new(),
+            frame: Matrix::<3>::identity(),
+        };
+        if feature == FeatureKind::Interior {
+            foot.functions = functions::<D>(&list, |d| [d[1], d[2], d[3], d[4], d[5]]);
+            return foot;
+        }
+        let d = x - spatial(&at.x);
+        let distance = d.norm();
+        // Beside a border that is no edge, as between the faces of a plane, the point is over the face.
+        let over = (d - normal * normal.dot(&d)).norm() <= OVER * distance;
+        let touching = distance <= TOUCHING * self.size;
+        if touching || !over {
+            foot.outward = Some(self.mean_normal(face, &s));
+        }
+        if touching || over {
+            foot.functions = functions::<D>(&list, |d| [d[1], d[2], d[3], d[4], d[5]]);
+            return foot;
+        }
+        let shape = self.faces.face(face).shape;
+        let Place::Edge([a, b]) = (if D == 3 { Place::of(shape, &s) } else { Place::Interior }) else {
+            foot.coordinates = 0;
+            foot.functions = functions::<D>(&list, |_| [0.0; 5]);
+            return foot;
+        };
+        let corners = shape.vertices();
+        let [p, q] = [0, 1].map(|k| corners[b][k] - corners[a][k]);
+        foot.coordinates = 1;
+        foot.functions = functions::<D>(&list, |d| {
+            [d[1] * p + d[2] * q, 0.0, d[3] * p * p + 2.0 * d[4] * p * q + d[5] * q * q, 0.0, 0.0]
+        });
+        let j = foot.jet;
+        foot.jet.u = j.u * p + j.v * q;
+        foot.jet.uu = j.uu * (p * p) + j.uv * (2.0 * p * q) + j.vv * (q * q);
+        foot.jet.uuu = j.uuu * p.powi(3) + (j.uuv * (p * p * q) + j.uvv * (p * q * q)) * 3.0 + j.vvv * q.powi(3);
+        foot
+    }
+}
+
+impl<const D: usize> Master for SurfaceMaster<'_, D> {
+    fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<Met> {
+        let own = except.map(|site| self.own(site));
+        let point = Shape::Point(*x);
+        let limit = reach * reach;
+        let mut best: Option<(usize, Projection)> = None;
+        self.bvh.nearest(x, limit, |k| {
+            let now = best.as_ref().map_or(limit, |b| b.1.distance().powi(2));
+            let face = self.surface.faces[k];
+            if own.as_ref().is_some_and(|own| own.near.contains(&face)) {
+                return now;
+            }
+            let found = closest(&point, &self.shapes[k], &Query::default());
+            let square = found.distance().powi(2);
+            if own.as_ref().is_some_and(|own| !self.faces_each_other(own, face, x, &found)) {
+                return now;
+            }
+            // Of faces at the same distance the one with the lowest number.
+            let better = best
+                .as_ref()
+                .is_none_or(|(b, p)| found.distance() < p.distance() || (found.distance() == p.distance() && k < *b));
+            if square > limit || !better {
+                return now;
+            }
+            best = Some((k, found));
+            square
+        });
+        let (k, found) = best?;
+        let feature = found.closest.b.feature.kind;
+        Some(Met::Foot(Box::new(self.foot(k, coordinates(&found), x, feature))))
+    }
+
+    fn at(&self, point: &MaterialPoint) -> Anchor {
+        let list = self.faces.derivatives(point.patch, &point.xi);
+        let at = self.faces.current(point.patch, &point.xi, &list, self.u);
+        Anchor {
+            x: spatial(&at.x),
+            tangent: spatial(&at.tangents[0]),
+            functions: functions::<D>(&list, |d| [d[1], d[2], 0.0, 0.0, 0.0]),
+            spin: Vec::new(),
+            frame: Matrix::<3>::identity(),
+        }
+    }
+}
+
+/// Functions with the slopes and second slopes that `of` tells, for each direction.
+fn functions<const D: usize>(list: &[(u32, Derivatives)], of: impl Fn(&Derivatives) -> [f64; 5]) -> Vec<Function> {
+    let mut out = Vec::with_capacity(D * list.len());
+    for (f, d) in list {
+        let slopes = of(d);
+        for i in 0..D {
+            let e = axis(i);
+            out.push(Function {
+                unknown: D as u32 * f + i as u32,
+                value: e * d[0],
+                slopes: [e * slopes[0], e * slopes[1]],
+                second: [e * slopes[2], e * slopes[3], e * slopes[4]],
+            });
+        }
+    }
+    out
+}
+
+/// The coordinates of a closest point on a face.
+fn coordinates(found: &Projection) -> Local {
+    let mut s = [0.0; 3];
+    s.iter_mut().zip(found.closest.b.parameters()).for_each(|(s, p)| *s = *p);
+    s
+}
+
+/// Where on a reference face a point is.
+enum Place {
+    Interior,
+    Edge([usize; 2]),
+    Vertex(usize),
+}
+
+impl Place {
+    fn of(shape: CellShape, s: &Local) -> Self {
+        let corners = shape.vertices();
+        let part = |c: &Local| (0..3).map(|k| (c[k] - s[k]).powi(2)).sum::<f64>().sqrt();
+        if let Some(v) = corners.iter().position(|c| part(c) < 1e-9) {
+            return Place::Vertex(v);
+        }
+        for &[a, b] in shape.edges() {
+            let along: f64 = (0..3).map(|k| (corners[b][k] - corners[a][k]).powi(2)).sum::<f64>().sqrt();
+            if (part(&corners[a]) + part(&corners[b]) - along).abs() < 1e-9 {
+                return Place::Edge([a, b]);
+            }
+        }
+        Place::Interior
+    }
+}
+
+fn strip(curve: &CurveJet) -> SurfaceJet {
+    let zero = Vector::<3>::zeros();
+    SurfaceJet {
+        x: curve.x,
+        u: curve.d1,
+        v: Vector::<3>::z() * curve.d1.norm(),
+        uu: curve.d2,
+        uuu: curve.d3,
+        uv: zero,
+        vv: zero,
+        uuv: zero,
+        uvv: zero,
+        vvv: zero,
+    }
+}
+
+/// A face as a shape of `geometry`, with the same coordinates.
+fn shape<const D: usize>(face: &Face<D>, points: &[Point<3>]) -> Result<Shape, ShapeError> {
+    Ok(match face.shape {
+        CellShape::Line => Curve::lagrange(points)?.into(),
+        CellShape::Triangle => signorini_geometry::shape::Surface::lagrange_triangle(points)?.into(),
+        _ => {
+            let grid: Vec<Vec<Point<3>>> = points.chunks(face.order + 1).map(<[_]>::to_vec).collect();
+            signorini_geometry::shape::Surface::lagrange_quad(&grid)?.into()
+        }
+    })
+}

@@ -1,0 +1,157 @@
+//! Contact of solids against the linear model, the patch test, and statics.
+
+use super::*;
+use signorini_contact::GapJet;
+use signorini_geometry::rigid_shape::Plane;
+use signorini_solid::{Bodies, Circumstances, Master, Method, Model, SupportKind};
+
+/// A shoe, round below, pressed on a plane: the same problem as that of the linear model.
+#[test]
+fn a_linear_problem_is_that_of_the_linear_model() {
+    for degree in 1..=3 {
+        let mesh = rectangle([-0.5, 0.0], [0.5, 0.5], [6, 3], degree.min(2), |mut x| {
+            x[1] += 0.3 * x[0] * x[0] * (1.0 - x[1] / 0.5);
+            x
+        });
+        let groups = mesh.groups().clone();
+        let to = Point::<2>::new(0.02, -0.03);
+        let mut bodies = Bodies::<2>::new(Space::PlaneStrain);
+        bodies.add("shoe", mesh.clone(), degree, ELASTIC);
+        let support = signorini_solid::Support {
+            name: "top".into(),
+            body: 0,
+            group: groups["top"].clone(),
+            kind: SupportKind::Components(vec![true; 2]),
+        };
+        let slave = bodies.surface(0, groups["bottom"].sides.clone());
+        let mut contact = signorini_solid::Contact::new("touch", slave, Master::Rigid);
+        contact.method = Method::Node;
+        let mut model = Model::new(bodies, vec![support], vec![contact]).unwrap();
+        let now = Circumstances {
+            displacement: &|_, _| to,
+            load: vec![0.0; model.bodies.unknowns()],
+            rigid: vec![Some(Box::new(|x: &Point<2>| GapJet::flat(x[1], Point::<2>::new(0.0, 1.0))))],
+            motion: vec![],
+        };
+        let known = model.solve(&now, &mut |_, _| true).unwrap();
+
+        let mut system = System::default();
+        system.bodies.push(Box::new(solid("shoe", mesh, degree, ELASTIC, StressLaw::LinearElastic)));
+        let plane = Plane { point: v(0.0, 0.0, 0.0), normal: v(0.0, 1.0, 0.0) };
+        system.bodies.push(Box::new(rigid(plane, |_| v(0.0, 0.0, 0.0))));
+        system.supports.push(hold(0, "top", [Some(to[0]), Some(to[1]), None]));
+        touch(&mut system, [(0, "bottom"), (1, "")], Sampling::Nodes, Enforcement::Multiplier, None);
+        let (state, results) = run(&mut system, &[1.0]);
+        let most = known.u.iter().fold(0.0f64, |m, u| m.max(u.abs()));
+        let off = known.u.iter().zip(&state.bodies[0].configuration).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
+        assert!(off < 1e-8 * most, "degree {degree}: {off:e}");
+        let pressed = force(&results[0], 0);
+        assert!((pressed[1] - known.contacts[0].force[1]).abs() < 1e-9 * pressed[1], "{pressed}");
+        assert!((pressed + results[0].support_forces[0][0]).norm() < 1e-9 * pressed[1]);
+        assert!((results[0].energy - known.energy).abs() < 1e-9 * known.energy);
+    }
+}
+
+/// Two blocks pressed together: deviation of the stress across the interface, relative to the pressure.
+fn patch(cells: [usize; 2], degree: usize, sampling: Sampling, enforcement: Enforcement) -> f64 {
+    let mut system = System::default();
+    let block = |low: f64, high: f64, n: usize| rectangle([0.0, low], [1.0, high], [n, 2], 1, |x| x);
+    system.bodies.push(Box::new(solid("upper", block(0.5, 1.0, cells[0]), degree, ELASTIC, StressLaw::LinearElastic)));
+    system.bodies.push(Box::new(solid("lower", block(0.0, 0.5, cells[1]), degree, ELASTIC, StressLaw::LinearElastic)));
+    system.supports.push(hold(1, "bottom", [None, Some(0.0), None]));
+    for body in 0..2 {
+        system.supports.push(hold(body, "left", [Some(0.0), None, None]));
+    }
+    let pressure = 1e-3;
+    system.loads.push(load(0, "top", TimedLoad::Pressure(Arc::new(move |_, t| pressure * t))));
+    touch(&mut system, [(0, "bottom"), (1, "top")], sampling, enforcement, None);
+    let (state, results) = run(&mut system, &[1.0]);
+    assert!((force(&results[0], 0)[1] - pressure).abs() < 1e-8 * pressure);
+    let mut worst = 0.0f64;
+    for (body, state) in system.bodies.iter().zip(&state.bodies) {
+        let fields = body.fields(state);
+        worst = fields.point_data[0].2.chunks(6).fold(worst, |m, s| m.max((s[1] + pressure).abs()));
+    }
+    worst / pressure
+}
+
+#[test]
+fn blocks_on_blocks_carry_a_constant_pressure() {
+    // With matching meshes exactly; else as well as the points of the slave sample the functions of the master.
+    let kinds = [Enforcement::AugmentedLagrangian, Enforcement::Penalty { wanted_penetration: None }];
+    for degree in 1..=2 {
+        for kind in kinds {
+            let error = patch([3, 3], degree, Sampling::GaussPoints, kind);
+            assert!(error < 1e-7, "matching, degree {degree} {kind:?}: {error:e}");
+        }
+        let unlike = patch([3, 4], degree, Sampling::GaussPoints, kinds[1]);
+        println!("unlike meshes, degree {degree}: {unlike:.2e}");
+        assert!(unlike < 0.3, "{unlike}");
+    }
+    let error = patch([3, 3], 2, Sampling::Nodes, Enforcement::Multiplier);
+    assert!(error < 1e-7, "nodes: {error:e}");
+}
+
+fn tilted(
+    mu: f64,
+    tangent: f64,
+    sampling: Sampling,
+    enforcement: Enforcement,
+) -> Result<IncrementResult, IncrementError> {
+    let mut system = System::default();
+    let mesh = rectangle([0.0, 0.0], [1.0, 0.5], [4, 2], 1, |x| x);
+    system.bodies.push(Box::new(solid("block", mesh, 1, ELASTIC, StressLaw::LinearElastic)));
+    let plane = Plane { point: v(0.0, 0.0, 0.0), normal: v(0.0, 1.0, 0.0) };
+    system.bodies.push(Box::new(rigid(plane, |_| v(0.0, 0.0, 0.0))));
+    let weight = v(tangent, -1.0, 0.0) * 1e-3;
+    system.loads.push(load(0, "", TimedLoad::BodyForce(Arc::new(move |_, _| weight))));
+    touch(&mut system, [(0, "bottom"), (1, "")], sampling, enforcement, Some(mu));
+    system.prepare()?;
+    system.solve(&system.start(), 1.0, &mut |_, _| true).map(|found| found.1)
+}
+
+#[test]
+fn a_block_on_an_incline_holds_up_to_the_angle_of_friction() {
+    let mu = 0.3;
+    let kinds = [
+        (Sampling::GaussPoints, Enforcement::Penalty { wanted_penetration: None }),
+        (Sampling::GaussPoints, Enforcement::AugmentedLagrangian),
+        (Sampling::Nodes, Enforcement::Multiplier),
+    ];
+    for (sampling, enforcement) in kinds {
+        let held = tilted(mu, mu * 0.995, sampling, enforcement).unwrap_or_else(|e| panic!("{enforcement:?}: {e:?}"));
+        let total = force(&held, 0);
+        let weight = v(-mu * 0.995, 1.0, 0.0) * 0.5e-3;
+        assert!((total - weight).norm() < 1e-8 * weight.norm(), "{total}");
+        let slides = tilted(mu, mu * 1.005, sampling, enforcement);
+        assert!(
+            matches!(&slides, Err(IncrementError::Free { body, .. }) if body == "block"),
+            "{enforcement:?}: {slides:?}"
+        );
+    }
+}
+
+#[test]
+fn a_wedge_needs_the_force_of_statics() {
+    for (tangent, mu) in [(0.1, 0.0), (0.1, 0.3), (0.25, 0.35)] {
+        for (sampling, enforcement) in
+            [(Sampling::GaussPoints, Enforcement::AugmentedLagrangian), (Sampling::Nodes, Enforcement::Multiplier)]
+        {
+            let mut system = System::default();
+            let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [4, 4], 1, |mut x| {
+                x[1] += tangent * x[0] * (1.0 - x[1]);
+                x
+            });
+            system.bodies.push(Box::new(solid("wedge", mesh, 2, ELASTIC, StressLaw::LinearElastic)));
+            let normal = v(-tangent, 1.0, 0.0).normalize();
+            system.bodies.push(Box::new(rigid(Plane { point: v(0.0, 0.0, 0.0), normal }, |_| v(0.0, 0.0, 0.0))));
+            system.supports.push(hold(0, "left", [Some(0.05), None, None]));
+            system.loads.push(load(0, "", TimedLoad::Force(Arc::new(|_, _| v(0.0, -1e-3, 0.0)))));
+            touch(&mut system, [(0, "bottom"), (1, "")], sampling, enforcement, (mu > 0.0).then_some(mu));
+            let (_, results) = run(&mut system, &[1.0]);
+            let pushed = results[0].support_forces[0][0][0];
+            let ratio = (tangent + mu) / (1.0 - mu * tangent);
+            assert!((pushed / 1e-3 - ratio).abs() < 1e-7, "{tangent} {mu} {enforcement:?}: {} {ratio}", pushed / 1e-3);
+        }
+    }
+}

@@ -72,6 +72,7 @@ impl SystemShown {
                     shown.curves.push(curve(body.name(), *radius, &fields));
                     shown.bodies.push(of_body(body.name(), &fields));
                 }
+                Kind::Solid => shown.bodies.push(of_body(body.name(), &body.fields(state))),
                 Kind::Rigid { shape, centre, is_free } => {
                     let pose = rigid_body::Pose::of(state);
                     let (rotation, shape, origin, now) = (pose.matrix(), Arc::clone(shape), *centre, pose.centre);
@@ -96,6 +97,11 @@ impl SystemShown {
         shown
     }
 
+    /// The bodies that are no curves.
+    pub fn solids(&self) -> impl Iterator<Item = &Fields> {
+        self.bodies.iter().filter(|b| b.cells.iter().all(|c| c.1.len() > 2))
+    }
+
     /// The corners of the box of what is shown, without bodies that reach beyond it.
     pub fn bounds(&self) -> [Vector<3>; 2] {
         let mut points: Vec<Vector<3>> = Vec::new();
@@ -103,7 +109,9 @@ impl SystemShown {
             let pad = Vector::<3>::repeat(c.radius);
             points.extend(c.points.iter().flat_map(|x| [x - pad, x + pad]));
         }
-        for r in self.rigid.iter().filter(|r| r.is_free || self.curves.is_empty()) {
+        points.extend(self.solids().flat_map(moved));
+        let alone = points.is_empty();
+        for r in self.rigid.iter().filter(|r| r.is_free || alone) {
             let pad = Vector::<3>::repeat(0.5 * r.size);
             points.extend([r.centre - pad, r.centre + pad]);
         }
@@ -116,6 +124,17 @@ impl SystemShown {
         let pad = Vector::<3>::repeat(AROUND * (high - low).max());
         [low - pad, high + pad]
     }
+}
+
+/// The points of a body where they are now.
+pub fn moved(fields: &Fields) -> Vec<Vector<3>> {
+    let u = fields.array("displacement").unwrap_or_default();
+    fields
+        .points
+        .iter()
+        .zip(u.chunks(3))
+        .map(|(x, u)| Vector::<3>::from(*x) + Vector::<3>::from_column_slice(u))
+        .collect()
 }
 
 fn curve(name: &str, radius: f64, fields: &BodyFields) -> CurveShown {
@@ -134,6 +153,8 @@ fn curve(name: &str, radius: f64, fields: &BodyFields) -> CurveShown {
 /// Names of arrays as files of fields have them.
 const NAMES: [&str; 8] =
     ["tension", "axial_force", "shear_force", "torque", "bending_moment", "arc_length", "element", "von_mises"];
+/// What solids call their stress, and what files of fields do.
+const STRESS: [&str; 2] = ["stress", "stress_xx_yy_zz_xy_yz_xz"];
 
 fn of_body(name: &str, fields: &BodyFields) -> Fields {
     let shape = |corners: usize| match corners {
@@ -150,7 +171,7 @@ fn of_body(name: &str, fields: &BodyFields) -> Fields {
         arrays: Vec::new(),
     }
     .vector("displacement", fields.displacement.iter().flat_map(vector).collect());
-    let known = |name: &str| NAMES.into_iter().find(|n| *n == name);
+    let known = |name: &str| if name == STRESS[0] { Some(STRESS[1]) } else { NAMES.into_iter().find(|n| *n == name) };
     for (name, components, values) in &fields.point_data {
         if let Some(name) = known(name) {
             out.arrays.push(FieldArray { name, components: *components, values: values.clone() });

@@ -8,8 +8,8 @@ use super::level::surface;
 use super::page::{Page, SIZE, Scale, Sign, sheet};
 use super::panel::{Axis, Dots, Panel};
 use super::render::{Body, Look, Paint};
-use super::solid_state::{FRONT, RIGID, insert};
-use super::system::{CurveShown, SystemShown};
+use super::solid_state::{FREE, FRONT, RIGID, insert};
+use super::system::{CurveShown, SystemShown, moved};
 use super::{Folder, OutputError};
 use crate::fields::Fields;
 use crate::plan::mechanics::MechanicsPlan;
@@ -79,9 +79,44 @@ fn tube(curve: &CurveShown, radius: f64, colours: &[f64]) -> Body {
     body
 }
 
+/// What the colours tell: the axial force of curves; without any, the equivalent stress of solids.
 fn scale_of(shown: &SystemShown) -> Scale {
-    let all: Vec<f64> = shown.curves.iter().flat_map(|c| c.forces.iter().copied()).collect();
+    let all: Vec<f64> = if shown.curves.is_empty() {
+        shown.solids().flat_map(|b| b.array("von_mises").unwrap_or_default().to_vec()).collect()
+    } else {
+        shown.curves.iter().flat_map(|c| c.forces.iter().copied()).collect()
+    };
     Scale::of(&all)
+}
+
+/// The surface of a solid where it is: its cells in the plane, and in space the sides of cells that no other cell has.
+fn solid(fields: &Fields, paint: Paint) -> Body {
+    const SIDES: [[usize; 4]; 6] = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+    let mut polygons: Vec<Vec<u32>> = Vec::new();
+    let mut sides: std::collections::BTreeMap<Vec<[u64; 3]>, Option<Vec<u32>>> = std::collections::BTreeMap::new();
+    // Cells have points of their own: the same places are the same points.
+    let place = |k: u32| fields.points[k as usize].map(|v| (v + 0.0).to_bits());
+    for (_, cell) in &fields.cells {
+        if cell.len() != 8 {
+            polygons.push(cell.clone());
+            continue;
+        }
+        for side in SIDES {
+            let mut list: Vec<u32> = side.iter().map(|k| cell[*k]).collect();
+            list.dedup();
+            if list.len() > 1 && list.first() == list.last() {
+                list.pop();
+            }
+            if list.len() < 3 {
+                continue;
+            }
+            let mut key: Vec<[u64; 3]> = list.iter().map(|k| place(*k)).collect();
+            key.sort_unstable();
+            sides.entry(key).and_modify(|found| *found = None).or_insert(Some(list));
+        }
+    }
+    polygons.extend(sides.into_values().flatten());
+    Body::of_polygons(moved(fields), polygons.iter().map(Vec::as_slice), paint)
 }
 
 /// The bodies in space.
@@ -94,6 +129,14 @@ fn bodies(shown: &SystemShown, scale: &Scale, veil: f64) -> Vec<Body> {
             tube(c, c.radius.max(thin), &colours)
         })
         .collect();
+    for fields in shown.solids() {
+        let stress = fields.array("von_mises").filter(|_| shown.curves.is_empty());
+        let paint = match stress {
+            Some(values) => Paint::Field(values.iter().map(|v| scale.place(*v)).collect()),
+            None => Paint::Plain(FREE),
+        };
+        out.push(solid(fields, paint));
+    }
     let room = shown.room();
     for body in &shown.rigid {
         let (points, normals, triangles) = surface(body.gap.as_ref(), room);
@@ -133,6 +176,8 @@ fn scene(plan: &MechanicsPlan, shown: &SystemShown, title: &str, note: &str) -> 
     }
     if shown.curves.iter().any(|c| !c.forces.is_empty()) {
         page.bar(&scale, &labels.force("axial force"));
+    } else if shown.solids().next().is_some() {
+        page.bar(&scale, &labels.pressure("von Mises stress"));
     }
     let mut key = Vec::new();
     if !shown.contacts.is_empty() {

@@ -18,7 +18,7 @@ use crate::report::Warning;
 use signorini_fem::{Group, Mesh, Side};
 use signorini_geometry::Point;
 use signorini_geometry::mesh::TriangleMesh;
-use signorini_solid::{Elastic, LoadKind, Method as ContactMethod, SupportKind};
+use signorini_solid::{Elastic, LoadKind, Method as ContactMethod, StressLaw, SupportKind, Volumetric};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Cells up to which a mesh is made with curves of one degree more too: errors are estimated on no more.
@@ -259,7 +259,42 @@ impl Planner<'_> {
         })
     }
 
-    fn solid<const D: usize>(
+    /// What a solid is made of, and how its stress follows from its strain.
+    pub(super) fn material(&self, key: &problem::Solid) -> Result<(Elastic, StressLaw), CaseError> {
+        let problem = self.problem;
+        let finite = match key.strain.as_ref().map(|strain| (strain, strain.as_str())) {
+            None | Some((_, "small")) => false,
+            Some((_, "finite")) => true,
+            Some((strain, other)) => {
+                return Err(problem.error(strain, format!("unknown word `{other}`")).help("known here: small, finite"));
+            }
+        };
+        let (constants, law) = match &key.material {
+            Material::LinearElastic(m) => (m, StressLaw::LinearElastic),
+            Material::NeoHooke(m) => (m, StressLaw::NeoHooke(Volumetric::default())),
+            Material::SaintVenantKirchhoff(m) => (m, StressLaw::SaintVenantKirchhoff),
+        };
+        if finite && law == StressLaw::LinearElastic {
+            return Err(problem.error(&key.material, "`linear_elastic` is a material of small strains").help(
+                "with strain = \"finite\":  material.neo_hooke = {…}  or  material.saint_venant_kirchhoff = {…}",
+            ));
+        }
+        if !finite && law != StressLaw::LinearElastic {
+            return Err(problem
+                .error(&key.material, "this material is one of finite strain")
+                .help("strain = \"finite\""));
+        }
+        let youngs_modulus = self.reader.positive(&constants.youngs_modulus, PRESSURE)?;
+        let poissons_ratio = self.reader.number(&constants.poissons_ratio, NONE)?;
+        if !(poissons_ratio > -1.0 && poissons_ratio < 0.5) {
+            return Err(problem
+                .error(&constants.poissons_ratio, format!("Poisson's ratio is {poissons_ratio}"))
+                .help("above -1 and below 0.5; nearly incompressible is for example 0.4999"));
+        }
+        Ok((Elastic { youngs_modulus, poissons_ratio }, law))
+    }
+
+    pub(super) fn solid<const D: usize>(
         &self,
         name: &str,
         key: &problem::Solid,
@@ -267,27 +302,7 @@ impl Planner<'_> {
         warnings: &mut Vec<Warning>,
     ) -> Result<PlannedBody<D>, CaseError> {
         let problem = self.problem;
-        if let Some(strain) = &key.strain
-            && strain != "small"
-        {
-            return Err(match strain.as_str() {
-                "finite" => self.unavailable(strain, "finite strain"),
-                other => problem.error(strain, format!("unknown word `{other}`")).help("known here: small"),
-            });
-        }
-        let material = match &key.material {
-            Material::LinearElastic(m) => {
-                let youngs_modulus = self.reader.positive(&m.youngs_modulus, PRESSURE)?;
-                let poissons_ratio = self.reader.number(&m.poissons_ratio, NONE)?;
-                if !(poissons_ratio > -1.0 && poissons_ratio < 0.5) {
-                    return Err(problem
-                        .error(&m.poissons_ratio, format!("Poisson's ratio is {poissons_ratio}"))
-                        .help("above -1 and below 0.5; nearly incompressible is for example 0.4999"));
-                }
-                Elastic { youngs_modulus, poissons_ratio }
-            }
-            _ => return Err(self.unavailable(&key.material, "this material")),
-        };
+        let (material, _) = self.material(key)?;
         let stated = match &key.degree {
             None => None,
             Some(d) if (1..=8).contains(d) => Some(*d as usize),

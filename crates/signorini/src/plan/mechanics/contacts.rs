@@ -1,6 +1,6 @@
 //! Contacts of a system: who may touch whom, tested where, kept how, with which friction.
 
-use super::Numbers;
+use super::{Kind, Numbers};
 use crate::plan::Planner;
 use crate::problem::units::{LENGTH, NONE};
 use crate::problem::{self, AxisOn, CaseError, Components, Enforcement, Method, Value};
@@ -13,16 +13,17 @@ impl Planner<'_> {
         &self,
         numbers: &Numbers,
         system: &System,
+        kinds: &[Kind],
     ) -> Result<(Vec<Contact>, Vec<&'static str>), CaseError> {
         let problem = self.problem;
         let mut out = Vec::new();
         let mut methods = Vec::new();
         for (name, key) in &problem.contacts {
             if let Some(adhesion) = &key.adhesion {
-                return Err(self.unavailable(adhesion, "adhesion of ropes, beams and free bodies"));
+                return Err(self.unavailable(adhesion, "adhesion in a system of bodies"));
             }
             let mut add = |name: String, pair: [&String; 2]| -> Result<(), CaseError> {
-                let (contact, method) = self.system_contact(&name, key, pair, numbers, system)?;
+                let (contact, method) = self.system_contact(&name, key, pair, (numbers, system, kinds))?;
                 out.push(contact);
                 methods.push(method);
                 Ok(())
@@ -56,8 +57,7 @@ impl Planner<'_> {
         name: &str,
         key: &problem::Contact,
         on: [&String; 2],
-        numbers: &Numbers,
-        system: &System,
+        (numbers, system, kinds): (&Numbers, &System, &[Kind]),
     ) -> Result<(Contact, &'static str), CaseError> {
         let problem = self.problem;
         let mut parts: [Part; 2] = [self.part(on[0], numbers)?, self.part(on[1], numbers)?];
@@ -73,11 +73,12 @@ impl Planner<'_> {
         if body(&slave).unknowns() == 0 && body(&master).unknowns() == 0 {
             return Err(problem.error(key, format!("neither body of contact `{name}` can move")));
         }
+        let is_solid = matches!(kinds[slave.body], Kind::Solid);
         let straight = match problem.bodies.get(body(&slave).name()) {
             Some(problem::Body::Rope(rope)) => rope.continuity != Some(problem::Continuity::C1),
             _ => false,
         };
-        let (sampling, enforcement, method) = self.system_method(key, body(&slave).is_rigid(), straight)?;
+        let (sampling, enforcement, method) = self.system_method(key, body(&slave).is_rigid(), (straight, is_solid))?;
         let mut contact =
             Contact::new(name, (slave.clone(), body(&slave)), (master.clone(), body(&master)), sampling, enforcement)
                 .map_err(|error| self.misplaced(on[0], &error))?;
@@ -93,12 +94,17 @@ impl Planner<'_> {
     }
 
     /// Where contact is tested, how it is kept, and the method in a word.
-    fn system_method(&self, key: &problem::Contact, rigid: bool, straight: bool) -> Result<(Sampling, Kept, &'static str), CaseError> {
+    fn system_method(
+        &self,
+        key: &problem::Contact,
+        rigid: bool,
+        (straight, is_solid): (bool, bool),
+    ) -> Result<(Sampling, Kept, &'static str), CaseError> {
         let problem = self.problem;
         // Straight elements meet at nodes, which carry for them.
         let of_curve = if rigid || straight { Sampling::Nodes } else { Sampling::GaussPoints };
         let (sampling, word, stated) = match &key.method {
-            None => (of_curve, "curve", None),
+            None => (of_curve, if is_solid { "gauss_point" } else { "curve" }, None),
             Some(Method::Curve(k)) => (of_curve, "curve", k.enforcement.as_ref()),
             Some(Method::GaussPoint(k)) => (Sampling::GaussPoints, "gauss_point", k.enforcement.as_ref()),
             Some(Method::Node(k)) => (Sampling::Nodes, "node", k.enforcement.as_ref()),

@@ -5,16 +5,19 @@ mod curves;
 mod fields;
 mod places;
 mod rigid;
+mod solids;
 
 pub(in crate::plan) use contacts::is_tangent;
 pub use fields::Wrong;
 
 use super::{Head, Planner};
 use crate::problem::units::LENGTH;
-use crate::problem::{self, Body, CaseError, Motion, Problem, Space};
+use crate::problem::{self, Body, CaseError, Material, Motion, Problem, Space};
 use signorini_geometry::Point;
 use signorini_geometry::rigid_shape::RigidShape;
-use signorini_mechanics::{PlacedLoad, System};
+use signorini_mechanics::contact::Part;
+use signorini_mechanics::system::TimeField;
+use signorini_mechanics::{PlacedLoad, Support, System};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -25,6 +28,8 @@ pub enum Kind {
     Curve {
         radius: f64,
     },
+    /// A solid of finite elements.
+    Solid,
     Rigid {
         shape: Arc<dyn RigidShape>,
         centre: Point<3>,
@@ -47,14 +52,27 @@ pub struct MechanicsPlan {
     pub methods: Vec<&'static str>,
 }
 
-/// Whether a problem is one of a system of bodies: with ropes, beams or free rigid bodies.
+/// Whether a problem is one of a system of bodies: with ropes, beams, free rigid bodies or finite strain, with friction
+/// where solids slide any way, or with a solid that may touch itself.
 pub fn is_system(problem: &Problem) -> bool {
-    problem.bodies.values().any(|body| match body {
+    let bodies = || problem.bodies.values();
+    let needs_one = |body: &Body| match body {
         Body::Rope(_) | Body::Beam(_) => true,
         Body::Rigid(rigid) => matches!(rigid.motion, Some(Motion::Free(_))),
+        Body::Solid(solid) => {
+            solid.strain.as_deref() == Some("finite") || !matches!(solid.material, Material::LinearElastic(_))
+        }
         _ => false,
-    })
+    };
+    let slides = |c: &problem::Contact| {
+        c.within.is_some() || (c.friction.is_some() && c.sliding == Some(problem::Sliding::Finite))
+    };
+    let of_solids = bodies().any(|b| matches!(b, Body::Solid(_))) && !bodies().any(|b| matches!(b, Body::Membrane(_)));
+    bodies().any(needs_one) || (of_solids && problem.contacts.values().any(slides))
 }
+
+/// The name of what holds solids on the axis of rotation, which nobody stated.
+pub const AXIS_SUPPORT: &str = "axis";
 
 /// Where a name stands among the bodies of the system.
 pub(super) type Numbers = BTreeMap<String, usize>;
@@ -66,31 +84,40 @@ impl Planner<'_> {
         let wrong = Wrong::default();
         let mut system = System::default();
         let mut kinds = Vec::new();
+        let mut warnings = Vec::new();
+        let mut axis = Vec::new();
         let mut numbers = Numbers::new();
         // Rigid shapes given by heights are known around the bodies that are there.
         let mut around: Option<[Point<3>; 2]> = None;
         for (name, body) in &problem.bodies {
-            let curve = match body {
-                Body::Rope(rope) => self.rope(name, rope)?,
-                Body::Beam(beam) => self.beam(name, beam)?,
+            let (deformable, kind) = match body {
+                Body::Rope(rope) => self.rope(name, rope).map(|(body, radius)| (body, Kind::Curve { radius }))?,
+                Body::Beam(beam) => self.beam(name, beam).map(|(body, radius)| (body, Kind::Curve { radius }))?,
+                Body::Solid(solid) => {
+                    let (body, on_axis) = self.system_solid(name, solid, &mut warnings)?;
+                    if on_axis {
+                        let part = Part { body: system.bodies.len(), group: Some(solids::AXIS.to_string()) };
+                        let zero: TimeField = Arc::new(|_, _| 0.0);
+                        let (displacement, rotation) = ([Some(zero), None, None], [None, None, None]);
+                        axis.push(Support { name: AXIS_SUPPORT.into(), part, displacement, rotation });
+                    }
+                    (body, Kind::Solid)
+                }
                 Body::Rigid(_) => continue,
                 _ => {
                     return Err(problem
-                        .error(
-                            body,
-                            format!("the body `{name}` cannot stand beside ropes, beams and free rigid bodies"),
-                        )
-                        .help("bodies here are `rope`, `beam` or `rigid`"));
+                        .error(body, format!("the body `{name}` cannot stand in a system of several kinds of bodies"))
+                        .help("bodies here are `solid`, `rope`, `beam` or `rigid`"));
                 }
             };
-            let shown = curve.0.fields(&curve.0.start());
+            let shown = deformable.fields(&deformable.start());
             for x in &shown.points {
                 let [low, high] = around.unwrap_or([*x; 2]);
                 around = Some([low.inf(x), high.sup(x)]);
             }
             numbers.insert(name.clone(), system.bodies.len());
-            system.bodies.push(curve.0);
-            kinds.push(Kind::Curve { radius: curve.1 });
+            system.bodies.push(deformable);
+            kinds.push(kind);
         }
         for (name, body) in &problem.bodies {
             let Body::Rigid(key) = body else { continue };
@@ -100,14 +127,14 @@ impl Planner<'_> {
             kinds.push(kind);
         }
         system.supports = self.system_supports(&numbers, &system, &wrong)?;
-        let (loads, springs) = self.system_loads(&numbers, &system, &wrong)?;
+        system.supports.append(&mut axis);
+        let (loads, springs) = self.system_loads(&numbers, &system, &kinds, &wrong)?;
         system.loads = loads;
         system.loads.extend(springs.into_iter().map(|(name, part, load)| PlacedLoad { name, part, load }));
-        let (contacts, methods) = self.system_contacts(&numbers, &system)?;
+        let (contacts, methods) = self.system_contacts(&numbers, &system, &kinds)?;
         system.contacts = contacts;
         system.prepare().map_err(|e| problem.error(&problem.space, e.to_string()))?;
         self.check_start(&system, &kinds)?;
-        let mut warnings = Vec::new();
         if system.contacts.is_empty() && system.bodies.len() > 1 {
             warnings.push("no contact is stated: the bodies do not see each other (add [contacts.NAME])".into());
         }
@@ -136,6 +163,11 @@ impl Planner<'_> {
         for (name, body) in &problem.bodies {
             let fits = match body {
                 Body::Rope(_) | Body::Beam(_) => self.space == Space::ThreeD,
+                Body::Solid(_) => !matches!(self.space, Space::Line | Space::Plane),
+                // Around an axis a body can be at rest or moved, but is no body that moves freely.
+                Body::Rigid(rigid) if self.space == Space::Axisymmetric => {
+                    !matches!(rigid.motion, Some(Motion::Free(_)))
+                }
                 _ => matches!(self.space, Space::ThreeD | Space::PlaneStrain | Space::PlaneStress),
             };
             if !fits {
@@ -160,8 +192,7 @@ impl Planner<'_> {
                 let name = system.bodies[contact.slave.body].name();
                 let other = system.bodies[contact.master.body].name();
                 let at: Vec<String> = site.x.iter().map(|v| format!("{v:.4}")).collect();
-                let message =
-                    format!("`{name}` starts {:.4e} deep inside `{other}`, at ({})", -gap, at.join(", "));
+                let message = format!("`{name}` starts {:.4e} deep inside `{other}`, at ({})", -gap, at.join(", "));
                 let place = match problem.bodies.get(name) {
                     Some(Body::Rope(rope)) => self.key(&rope.path),
                     Some(Body::Beam(beam)) => self.key(&beam.path),

@@ -1,6 +1,6 @@
 //! Supports and loads of a system: on which part of which body, and what.
 
-use super::{Numbers, Wrong};
+use super::{Kind, Numbers, Wrong};
 use crate::plan::Planner;
 use crate::problem::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE};
 use crate::problem::{CaseError, List, Space, Value, suggestion};
@@ -47,7 +47,7 @@ impl Planner<'_> {
                     .help("displacement = [0, \"free\", 0]"));
             }
             if let Some(uniform) = &key.uniform {
-                return Err(problem.error(uniform, "`uniform` is a support of solids"));
+                return Err(problem.error(uniform, "`uniform` is a support of linear solids by themselves"));
             }
             let displacement = match &key.displacement {
                 Some(values) => self.held_components(&values.0, self.dimension(), LENGTH, wrong)?,
@@ -123,6 +123,7 @@ impl Planner<'_> {
         &self,
         numbers: &Numbers,
         system: &System,
+        kinds: &[Kind],
         wrong: &Wrong,
     ) -> Result<(Vec<PlacedLoad>, Springs), CaseError> {
         let problem = self.problem;
@@ -146,7 +147,8 @@ impl Planner<'_> {
                 list.push(TimedLoad::Force(self.vector_field(v, force, wrong)?));
             }
             if let Some(v) = &key.body_force {
-                list.push(TimedLoad::BodyForce(self.vector_field(v, FORCE_PER_LENGTH, wrong)?));
+                let per = if matches!(kinds[part.body], Kind::Solid) { [-3, 1, 0] } else { FORCE_PER_LENGTH };
+                list.push(TimedLoad::BodyForce(self.vector_field(v, per, wrong)?));
             }
             if let Some(v) = &key.moment {
                 list.push(TimedLoad::Moment(self.moment_field(v, moment, wrong)?));
@@ -166,11 +168,12 @@ impl Planner<'_> {
         for (name, key) in &problem.supports {
             let Some(spring) = &key.spring else { continue };
             let part = self.part(&key.on, numbers)?;
+            let per = if matches!(kinds[part.body], Kind::Solid) { [-3, 1, 0] } else { [-1, 1, 0] };
             let stiffness = if plane {
-                let [x, y] = self.reader.numbers::<2>(spring, [-1, 1, 0])?;
+                let [x, y] = self.reader.numbers::<2>(spring, per)?;
                 Vector::<3>::new(x, y, 0.0)
             } else {
-                Vector::<3>::from(self.reader.numbers::<3>(spring, [-1, 1, 0])?)
+                Vector::<3>::from(self.reader.numbers::<3>(spring, per)?)
             };
             if let Some(k) = stiffness.iter().position(|s| *s < 0.0) {
                 return Err(problem.error(spring, format!("component {k} is negative: {}", stiffness[k])));

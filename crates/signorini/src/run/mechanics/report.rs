@@ -2,7 +2,7 @@
 
 use crate::output::figure::{told, told_vector};
 use crate::output::system::SystemShown;
-use crate::plan::mechanics::{Kind, MechanicsPlan};
+use crate::plan::mechanics::{AXIS_SUPPORT, Kind, MechanicsPlan};
 use crate::problem::Space;
 use crate::report::{
     Component, ContactReport, CurveReport, Pose, Probe, Reason, StepReport, UnitNames, Warning, WarningKind, vector,
@@ -27,6 +27,9 @@ pub fn step_report(
     let system = &plan.system;
     let mut supports: BTreeMap<String, Vector<3>> = BTreeMap::new();
     for (support, forces) in system.supports.iter().zip(&result.support_forces) {
+        if support.name == AXIS_SUPPORT {
+            continue;
+        }
         *supports.entry(support.name.clone()).or_insert_with(Vector::<3>::zeros) += forces[0];
     }
     let is_spring = |name: &str| !plan.head.problem.loads.contains_key(name);

@@ -39,7 +39,7 @@ pub fn quadratic_first(xi: f64) -> [f64; 3] {
 }
 
 /// Two Gauss points of `[0, 1]` and their weights.
-pub const TWO: [(f64, f64); 2] = [(0.211_324_865_405_187_12, 0.5), (0.788_675_134_594_812_9, 0.5)];
+pub const TWO: [(f64, f64); 2] = [(0.211_324_865_405_187_1, 0.5), (0.788_675_134_594_812_9, 0.5)];
 
 /// Three Gauss points.
 pub const THREE: [(f64, f64); 3] = [

@@ -168,7 +168,8 @@ fn slender_beams_are_as_easy_as_thick_ones() {
             (tip(&beam, &found.states[0]), found.iterations())
         };
         let ((coarse, iterations), (fine, _)) = (run(8), run(48));
-        let error = (coarse - fine).norm() / (fine - tip(&bend(100.0, 8, stiffness), &bend(100.0, 8, stiffness).start())).norm();
+        let error = (coarse - fine).norm()
+            / (fine - tip(&bend(100.0, 8, stiffness), &bend(100.0, 8, stiffness).start())).norm();
         println!("L/b = {slenderness}: error {error:.2e}, {iterations} iterations in one step");
         all.push((error, iterations));
     }

@@ -3,17 +3,23 @@
 mod common;
 
 use common::{Options, Search, Surroundings, V, clamp, first_unknowns, load_body, newton};
+use signorini_contact::law::{Coulomb, Status};
 use signorini_mechanics::body::{Body, BodyState, Constraint, Contribution, Hold, Load, Order};
 use signorini_rope::beam::Beam;
+use signorini_rope::cable::Cable;
+use signorini_rope::cable::element::Carries;
 use signorini_rope::centreline::{Closure, Continuity};
+use signorini_rope::chain::body::Rest;
 use signorini_rope::curve_body::CurveBody;
 use signorini_rope::curve_pair::blend::Blend;
 use signorini_rope::curve_pair::contact::{CurveContact, Ends, Form};
+use signorini_rope::curve_pair::friction::CurveFriction;
 use signorini_rope::curve_pair::measure::{CurvePair, elastic_slip, measure};
 use signorini_rope::curve_pair::search::{Between, Searched, crossings};
 use signorini_rope::path::Path;
 use signorini_rope::quaternion;
 use signorini_rope::section::Stiffness;
+use std::sync::Arc;
 
 fn beam(name: &str, points: &[V], cells: usize, stiffness: Stiffness, radius: f64) -> Beam {
     let path = match points.len() {
@@ -89,7 +95,8 @@ fn variations_of_all_pairs_are_derivatives() {
             (0..2).map(|b| bodies[b].advance(&start[b], of(b), share)).collect()
         };
         let now = pair(&bodies, &moved(0.0), &kind, Order::Second);
-        let along = |values: &[f64]| -> f64 { now.unknowns.iter().zip(values).map(|(u, v)| step[*u as usize] * v).sum() };
+        let along =
+            |values: &[f64]| -> f64 { now.unknowns.iter().zip(values).map(|(u, v)| step[*u as usize] * v).sum() };
         let e = 1e-4;
         let (p, m) = (pair(&bodies, &moved(e), &kind, Order::Second), pair(&bodies, &moved(-e), &kind, Order::Second));
         let first_error = ((p.gap - m.gap) / (2.0 * e) - along(&now.d_gap)).abs();
@@ -97,16 +104,16 @@ fn variations_of_all_pairs_are_derivatives() {
         let product: Vec<f64> = (0..rows).map(|k| along(&now.d2_gap[k * rows..(k + 1) * rows])).collect();
         // Differences of forces: elements of the pair must be the same.
         assert_eq!(p.unknowns, m.unknowns);
-        let second_error = (0..rows)
-            .map(|k| ((p.d_gap[k] - m.d_gap[k]) / (2.0 * e) - product[k]).abs())
-            .fold(0.0, f64::max);
+        let second_error =
+            (0..rows).map(|k| ((p.d_gap[k] - m.d_gap[k]) / (2.0 * e) - product[k]).abs()).fold(0.0, f64::max);
         let scale = product.iter().fold(0.0f64, |m, v| m.max(v.abs()));
         let parallel_error = ((p.parallel - m.parallel) / (2.0 * e) - along(&now.d_parallel)).abs();
         println!("angle {angle}: {first_error:.1e} {:.1e} {parallel_error:.1e}", second_error / scale);
         assert!(first_error < 1e-6 && second_error < 1e-5 * scale && parallel_error < 1e-6);
         // Richardson: the error of the differences falls with the square of the step, so the rest is theirs.
         let at = |e: f64| {
-            let (p, m) = (pair(&bodies, &moved(e), &kind, Order::First), pair(&bodies, &moved(-e), &kind, Order::First));
+            let (p, m) =
+                (pair(&bodies, &moved(e), &kind, Order::First), pair(&bodies, &moved(-e), &kind, Order::First));
             (p.gap - m.gap) / (2.0 * e)
         };
         let (coarse, fine) = (at(2e-3), at(1e-3));
@@ -159,14 +166,18 @@ fn slip_follows_material_points_of_both_surfaces() {
     let rate = (at(&moved(e)).0 - at(&moved(-e)).0) / (2.0 * e);
     let (apart, unknowns, d_e) = at(&moved(0.0));
     assert!((apart - now.normal * now.gap).norm() < 1e-13);
-    let along = |unknowns: &[u32], v: &[V]| unknowns.iter().zip(v).fold(V::zeros(), |s, (u, v)| s + v * step[*u as usize]);
+    let along =
+        |unknowns: &[u32], v: &[V]| unknowns.iter().zip(v).fold(V::zeros(), |s, (u, v)| s + v * step[*u as usize]);
     assert!((rate - along(&unknowns, &d_e)).norm() < 1e-8 * rate.norm());
     let turned = along(&now.unknowns, &now.d_normal) * now.gap;
     let slip = along(&now.unknowns, &now.slip);
     let across = |v: V| v - now.normal * now.normal.dot(&v);
     assert!((across(rate - turned - slip)).norm() < 1e-7 * rate.norm());
     let difference = {
-        let (p, m) = (pair(&bodies, &moved(e), &Kind::Crossing, Order::First), pair(&bodies, &moved(-e), &Kind::Crossing, Order::First));
+        let (p, m) = (
+            pair(&bodies, &moved(e), &Kind::Crossing, Order::First),
+            pair(&bodies, &moved(-e), &Kind::Crossing, Order::First),
+        );
         (p.normal - m.normal) / (2.0 * e)
     };
     assert!((difference - along(&now.unknowns, &now.d_normal)).norm() < 1e-7);
@@ -257,14 +268,17 @@ fn cross(
 
 #[test]
 fn crossing_cantilevers_have_the_exact_force() {
-    let data: serde_json::Value =
-        serde_json::from_str(include_str!("data/crossing_cantilevers.json")).unwrap();
+    let data: serde_json::Value = serde_json::from_str(include_str!("data/crossing_cantilevers.json")).unwrap();
     // Small: forces and gap by 1e-4.
     let small = 1e-4;
     let check = |lengths: [f64; 2], ei: [f64; 2], a: [f64; 2], [p, g, angle]: [f64; 3], expected: f64, tip: f64| {
         let form = (Form::Point, 1e6, 0.0);
         let (f, w, iterations) = cross(lengths, ei, a, [p * small, g * small, angle], 0.02, 4, form, 1);
-        println!("{angle:.3}: F {:.6} ({expected:.6}), tip {:.6} ({tip:.6}), {iterations} iterations", f / small, w / small);
+        println!(
+            "{angle:.3}: F {:.6} ({expected:.6}), tip {:.6} ({tip:.6}), {iterations} iterations",
+            f / small,
+            w / small
+        );
         assert!((f / small - expected).abs() < 3e-5 * expected.max(1.0), "{}", f / small);
         assert!((w / small - tip).abs() < 3e-5 * tip.max(1.0));
         assert!(iterations <= 6);
@@ -292,23 +306,25 @@ fn forces_pass_smoothly_from_crossing_to_parallel() {
     // Small enough for the linear solution, large enough that tubes overlap over several points of Gauss.
     let (penalty, radius, small) = (130.0, 0.2, 0.2);
     let line = blend.line_penalty(penalty, 0.8 * small, [radius; 2]);
-    let mut before: Option<f64> = None;
-    let mut jump = 0.0f64;
-    for k in 0..=36 {
-        let angle = 40.0 - k as f64;
-        let form = (Form::Blend(blend), penalty, line);
+    let at = |angle: f64, form: Form, increments: usize| {
         let load = [small, 0.2 * small, angle.to_radians()];
-        let (f, _, iterations) = cross([10.0, 8.0], [200.0, 150.0], [6.0, 5.0], load, radius, 24, form, 2);
-        let f = f / small;
-        if k % 6 == 0 {
-            println!("{angle}°: F {f:.5}, {iterations} iterations");
-        }
-        assert!(iterations <= 15);
-        jump = jump.max(before.map_or(0.0, |b| (f - b).abs()));
-        before = Some(f);
+        let form = (form, penalty, line);
+        let (f, _, iterations) = cross([10.0, 8.0], [200.0, 150.0], [6.0, 5.0], load, radius, 12, form, increments);
+        (f / small, iterations)
+    };
+    let mut before: Option<(f64, f64)> = None;
+    for angle in [40.0, 32.0, 26.0, 22.0, 18.0, 14.0, 10.0f64] {
+        let (f, iterations) = at(angle, Form::Blend(blend), 4);
+        println!("{angle}°: F {f:.5}, at most {iterations} iterations");
+        assert!(before.is_none_or(|(last, force)| (f - force).abs() < 3e-3 * (last - angle)));
+        before = Some((angle, f));
     }
-    println!("largest jump {jump:.2e} per degree");
-    assert!(jump < 5e-3);
+    // Below the band lines bear alone. Nearly parallel curves touch where their slopes agree, far from where they cross: the
+    // force is that of points there, but for the softness of both penalties, 1/130 against 0.64 of the beams.
+    let (f, iterations) = at(7.0, Form::Blend(blend), 8);
+    let (of_points, _) = at(7.0, Form::Point, 8);
+    println!("7°: F {f:.5}, as points {of_points:.5}, at most {iterations} iterations");
+    assert!((f / of_points - 1.0).abs() < 2.5e-2);
 }
 
 /// Two parallel tubes that touch, turned about their common axis at one end.
@@ -330,10 +346,8 @@ impl Surroundings for Twisted<'_> {
         let component = |i: usize| move |x: &V| (turn * x - x)[i];
         let (x, y, z) = (component(0), component(1), component(2));
         let (about, zero) = (|_: &V| self.angle, |_: &V| 0.0);
-        let hold = Hold {
-            displacement: [Some(&x), Some(&y), Some(&z)],
-            rotation: [Some(&about), Some(&zero), Some(&zero)],
-        };
+        let hold =
+            Hold { displacement: [Some(&x), Some(&y), Some(&z)], rotation: [Some(&about), Some(&zero), Some(&zero)] };
         (0..2)
             .flat_map(|b| {
                 let mut all = clamp(self.bodies[b], "start", &states[b]);
@@ -356,7 +370,8 @@ impl Surroundings for Twisted<'_> {
 fn two_tubes_are_twisted_by_a_full_turn() {
     let (radius, length, cells) = (0.1, 4.0, 10);
     let stiffness = Stiffness { axial: 400.0, shear: [160.0; 2], torsion: 0.8, bending: [1.0; 2] };
-    let tube = |name: &str, y: f64| beam(name, &[V::new(0.0, y, 0.0), V::new(length, y, 0.0)], cells, stiffness, radius);
+    let tube =
+        |name: &str, y: f64| beam(name, &[V::new(0.0, y, 0.0), V::new(length, y, 0.0)], cells, stiffness, radius);
     let bodies = [tube("first", radius), tube("second", -radius)];
     let mut contact = CurveContact::new(Form::Line, Between::Two, 0.0, 2e3);
     contact.ends = Ends::PassBy;
@@ -422,7 +437,16 @@ fn ends_bear_parallel_cantilevers() {
     println!("parallel: F {:.6} ({expected:.6}), tip {:.5} (0.86), {iterations} iterations", f / small, tip / small);
     assert!((f / small - expected).abs() < 1e-4 && (tip / small - 0.86).abs() < 1e-4);
     // End on end.
-    let (f, tip, iterations) = cross([10.0, 10.0], [200.0; 2], [10.0, 10.0], [2.0 * small, 0.0, std::f64::consts::FRAC_PI_2], 0.05, 4, form, 1);
+    let (f, tip, iterations) = cross(
+        [10.0, 10.0],
+        [200.0; 2],
+        [10.0, 10.0],
+        [2.0 * small, 0.0, std::f64::consts::FRAC_PI_2],
+        0.05,
+        4,
+        form,
+        1,
+    );
     println!("end on end: F {:.6} (1), tip {:.5} (1.66667), {iterations} iterations", f / small, tip / small);
     assert!((f / small - 1.0).abs() < 1e-4 && (tip / small - 5.0 / 3.0).abs() < 1e-4);
 }
@@ -480,5 +504,117 @@ fn parallel_curves_never_fail() {
         let pressing: f64 = found.iter().map(|c| c.pressing()).sum();
         assert!(pressing.is_finite() && pressing > 0.0, "{angle} {pressing}");
         assert!(found.iter().all(|c| c.pair.d2_gap.iter().all(|v| v.is_finite())));
+    }
+}
+
+/// Curves without sections that turn, a little apart or pressed on each other, with points that touched before.
+fn rubbing(mu: [f64; 2], shift: f64) -> ([Cable; 2], Vec<BodyState>, CurveContact) {
+    let cable = |name: &str, points: &[V], cells: usize| {
+        let path = Path::spline(points, Closure::Open).unwrap().sample(cells, Continuity::C1).unwrap();
+        Cable::new(name, &path, 50.0, 1.0, Carries::TensionAndCompression, Rest::Path, 0.1).unwrap()
+    };
+    let bodies = [
+        cable("a", &[V::new(-1.0, 0.02, 0.0), V::new(0.0, 0.0, -0.05), V::new(1.2, 0.1, 0.02)], 2),
+        cable("b", &[V::new(0.1, -1.0, -0.3), V::new(0.0, 0.0, -0.25), V::new(-0.1, 1.1, -0.33)], 3),
+    ];
+    let mut states = vec![bodies[0].start(), bodies[1].start()];
+    let first = first_unknowns(&[&bodies[0], &bodies[1]]);
+    let step: Vec<f64> = (0..first[2]).map(|k| (0.7 + 1.9 * k as f64).sin()).collect();
+    let mut contact = CurveContact::new(Form::Point, Between::Two, 1e3, 0.0);
+    contact.friction = Some(CurveFriction { law: Arc::new(Coulomb::orthotropic(mu).unwrap()), penalty: 400.0 });
+    contact.reach = 0.2;
+    // Pressed together until the gap is next to nothing: terms with gap and turn of the normal are left out of the tangent.
+    let sides = |s: &[BodyState]| -> f64 {
+        let of = [0, 1].map(|k| Searched { body: &bodies[k] as &dyn CurveBody, state: &s[k] });
+        contact.contacts(of, [first[0], first[1]], Order::First)[0].pair.gap
+    };
+    let lift = |s: &BodyState, z: f64| {
+        let mut s = s.clone();
+        s.configuration.chunks_mut(6).for_each(|c| c[2] += z);
+        s
+    };
+    for _ in 0..6 {
+        let gap = sides(&states);
+        states[0] = lift(&states[0], -(gap + 1e-7));
+    }
+    let of = [0, 1].map(|k| Searched { body: &bodies[k] as &dyn CurveBody, state: &states[k] });
+    contact.settle(of, [first[0], first[1]]);
+    let of = |b: usize| &step[first[b] as usize..first[b + 1] as usize];
+    states = (0..2).map(|b| bodies[b].advance(&states[b], of(b), shift)).collect();
+    let gap = {
+        let of = [0, 1].map(|k| Searched { body: &bodies[k] as &dyn CurveBody, state: &states[k] });
+        contact.contacts(of, [first[0], first[1]], Order::First)[0].pair.gap
+    };
+    states[0] = lift(&states[0], -(gap + 1e-5));
+    (bodies, states, contact)
+}
+
+#[test]
+fn friction_has_its_derivative_in_stick_and_in_slip() {
+    for (mu, slips) in [([5e3, 5e3], false), ([0.2, 0.2], true), ([0.15, 0.3], true)] {
+        let (bodies, states, contact) = rubbing(mu, 1e-3);
+        let first = first_unknowns(&[&bodies[0], &bodies[1]]);
+        let n = first[2] as usize;
+        let step: Vec<f64> = (0..n).map(|k| (0.2 + 1.1 * k as f64).cos()).collect();
+        let moved = |share: f64| -> Vec<BodyState> {
+            let of = |b: usize| &step[first[b] as usize..first[b + 1] as usize];
+            (0..2).map(|b| bodies[b].advance(&states[b], of(b), share)).collect()
+        };
+        let act = |states: &[BodyState], order: Order| {
+            let sides = [0, 1].map(|k| Searched { body: &bodies[k] as &dyn CurveBody, state: &states[k] });
+            let contacts = contact.contacts(sides, [first[0], first[1]], Order::Second);
+            let found = contact.tangential(&contacts[0], sides, [first[0], first[1]], order).unwrap();
+            assert_eq!(found.status == Status::Slip, slips);
+            found
+        };
+        let now = act(&states, Order::Second);
+        let m = now.unknowns.len();
+        let e = 1e-7;
+        let (p, q) = (act(&moved(e), Order::First).forces, act(&moved(-e), Order::First).forces);
+        let mut worst = 0.0f64;
+        let mut scale = 0.0f64;
+        for k in 0..p.len() {
+            let product: f64 = (0..m).map(|l| now.tangent[k * m + l] * step[now.unknowns[l] as usize]).sum();
+            worst = worst.max(((p[k] - q[k]) / (2.0 * e) - product).abs());
+            scale = scale.max(product.abs());
+        }
+        println!("mu {mu:?}: {:.1e}, traction {:?}", worst / scale, now.components);
+        assert!(worst < 1e-4 * scale);
+    }
+}
+
+#[test]
+fn slip_is_limited_and_the_points_that_touched_follow() {
+    let (bodies, states, mut contact) = rubbing([0.3, 0.3], 0.0);
+    let first = first_unknowns(&[&bodies[0], &bodies[1]]);
+    let ordered = [first[0], first[1]];
+    let moved = |x: f64| {
+        let mut s = states.clone();
+        s[0].configuration.chunks_mut(6).for_each(|c| c[0] += x);
+        s
+    };
+    let at = |contact: &CurveContact, s: &[BodyState]| {
+        let sides = [0, 1].map(|k| Searched { body: &bodies[k] as &dyn CurveBody, state: &s[k] });
+        let contacts = contact.contacts(sides, ordered, Order::First);
+        let t = contact.tangential(&contacts[0], sides, ordered, Order::First).unwrap();
+        (t.components, t.status, -contacts[0].force)
+    };
+    // Stick: by the penalty; then slip: by the pressing force, as far as one goes.
+    let limit = 0.3 * at(&contact, &states).2;
+    let small = 0.5 * limit / 400.0;
+    let (t, status, _) = at(&contact, &moved(small));
+    assert!(status == Status::Stick && (t[0].hypot(t[1]) / (400.0 * small) - 1.0).abs() < 1e-2, "{t:?} {small}");
+    for k in 1..=5 {
+        let s = moved(20.0 * small * k as f64);
+        let (t, status, pressing) = at(&contact, &s);
+        if pressing == 0.0 {
+            break;
+        }
+        assert!(status == Status::Slip && (t[0].hypot(t[1]) - 0.3 * pressing).abs() < 1e-9 * pressing);
+        let sides = [0, 1].map(|k| Searched { body: &bodies[k] as &dyn CurveBody, state: &s[k] });
+        contact.settle(sides, ordered);
+        // The same state again: nothing has slipped since, and the traction is where it was.
+        let (again, _, _) = at(&contact, &s);
+        assert!((again[0] - t[0]).abs() < 1e-3 * t[0].abs(), "{again:?} {t:?}");
     }
 }

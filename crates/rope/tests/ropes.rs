@@ -92,10 +92,8 @@ fn smooth_cables_converge_to_the_catenary_however_stiff() {
     let mut errors: Vec<[f64; 2]> = Vec::new();
     for cells in [4, 8, 16, 32] {
         // A parabola of about the right sag to start from, a little short of rope.
-        let points: Vec<V> = (0..=40)
-            .map(|k| k as f64 / 40.0)
-            .map(|x| V::new(span * x, 0.0, -4.0 * sag * x * (1.0 - x)))
-            .collect();
+        let points: Vec<V> =
+            (0..=40).map(|k| k as f64 / 40.0).map(|x| V::new(span * x, 0.0, -4.0 * sag * x * (1.0 - x))).collect();
         let path = Path::spline(&points, Closure::Open).unwrap().sample(cells, Continuity::C1).unwrap();
         let mut state: Option<BodyState> = None;
         let mut iterations = Vec::new();
@@ -111,7 +109,8 @@ fn smooth_cables_converge_to_the_catenary_however_stiff() {
                 .unwrap_or_else(|f| panic!("{cells} {stretch:e} {:?}", f.residuals));
             iterations.push(found.iterations());
             assert!(cable.slack(&found.states[0]).is_empty());
-            reached = [-cable.position(&found.states[0], cells / 2)[2] / sag - 1.0, found.forces[0].abs() / force - 1.0];
+            reached =
+                [-cable.position(&found.states[0], cells / 2)[2] / sag - 1.0, found.forces[0].abs() / force - 1.0];
             state = Some(found.states[0].clone());
         }
         println!("{cells}: sag error {:.2e}, H error {:.2e}, iterations {iterations:?}", reached[0], reached[1]);
@@ -130,11 +129,18 @@ fn slack_ropes_carry_nothing() {
     let mut out = Contribution::new(chain.unknowns());
     assert_eq!(chain.internal(&chain.start(), Order::First, &mut out).unwrap(), 0.0);
     assert!(out.forces.iter().all(|f| *f == 0.0) && chain.slack(&chain.start()).len() == 4);
-    let pulled = Chain::new("rope", &path.sample(4, Continuity::C0).unwrap(), 50.0, Rest::Pretension(2.0), 0.0).unwrap();
+    let pulled =
+        Chain::new("rope", &path.sample(4, Continuity::C0).unwrap(), 50.0, Rest::Pretension(2.0), 0.0).unwrap();
     assert!(pulled.tensions(&pulled.start()).iter().all(|t| (t - 2.0).abs() < 1e-12));
     // A net with a rope that is too long: it stays slack, and the node that only it holds is told.
     let net = Net {
-        positions: vec![V::zeros(), V::new(2.0, 0.0, 0.0), V::new(0.7, 0.3, 0.0), V::new(0.0, 1.0, 0.0), V::new(0.5, 2.0, 0.0)],
+        positions: vec![
+            V::zeros(),
+            V::new(2.0, 0.0, 0.0),
+            V::new(0.7, 0.3, 0.0),
+            V::new(0.0, 1.0, 0.0),
+            V::new(0.5, 2.0, 0.0),
+        ],
         held: vec![true, true, false, true, false],
         members: [[0, 2], [2, 1], [3, 4], [4, 2]]
             .iter()
@@ -162,11 +168,8 @@ struct OverPulley<'a> {
 
 impl Surroundings for OverPulley<'_> {
     fn hold(&self, states: &[BodyState]) -> Vec<(usize, Constraint)> {
-        let at_pulley = (0..3).map(|i| Constraint {
-            terms: vec![((3 * self.pulley + i) as u32, 1.0)],
-            lack: 0.0,
-            component: i,
-        });
+        let at_pulley =
+            (0..3).map(|i| Constraint { terms: vec![((3 * self.pulley + i) as u32, 1.0)], lack: 0.0, component: i });
         pin(self.chain, "boundary", &states[0]).into_iter().chain(at_pulley).map(|c| (0, c)).collect()
     }
     fn act(&self, states: &[BodyState], first: &[u32], order: Order, out: &mut Contribution) {
@@ -194,11 +197,17 @@ fn ropes_run_through_pulleys_and_over_winches() {
     assert!(tensions.iter().all(|t| (t - 100.0 * (4.0 / 3.8 - 1.0)).abs() < 1e-10));
     let kept = chain.unstrained_length(&found.states[0], 0) + chain.unstrained_length(&found.states[0], 1);
     assert!((kept - 3.8).abs() < 1e-13);
-    assert!(Chain::new("rope", &path.sample(2, Continuity::C0).unwrap(), 100.0, Rest::Path, 0.0).unwrap().with_pulleys(&[0]).is_err());
+    assert!(
+        Chain::new("rope", &path.sample(2, Continuity::C0).unwrap(), 100.0, Rest::Path, 0.0)
+            .unwrap()
+            .with_pulleys(&[0])
+            .is_err()
+    );
 
     // A winch keeps its tension: a weight between it and a rope is in balance where both pulls are.
     let path = Path::points(&[V::zeros(), V::new(4.0, 0.0, 0.0)], Closure::Open).unwrap();
-    let mut chain = Chain::new("rope", &path.sample(2, Continuity::C0).unwrap(), 100.0, Rest::Pretension(1.0), 0.0).unwrap();
+    let mut chain =
+        Chain::new("rope", &path.sample(2, Continuity::C0).unwrap(), 100.0, Rest::Pretension(1.0), 0.0).unwrap();
     chain.set_tension(1, 5.0).unwrap();
     struct Weight<'a>(&'a Chain);
     impl Surroundings for Weight<'_> {

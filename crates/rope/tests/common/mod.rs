@@ -1,10 +1,10 @@
 //! A small Newton driver for systems of curves.
 #![allow(dead_code)]
 
-use signorini_geometry::Vector;
-use signorini_mechanics::body::{Body, BodyState, Constraint, Contribution, Hold, Load, Order};
 use faer::linalg::solvers::Solve;
 use faer::sparse::{SparseColMat, Triplet};
+use signorini_geometry::Vector;
+use signorini_mechanics::body::{Body, BodyState, Constraint, Contribution, Hold, Load, Order};
 
 pub type V = Vector<3>;
 
@@ -33,7 +33,15 @@ pub fn add(first: u32, own: Contribution, out: &mut Contribution) {
     }
 }
 
-pub fn load_body(body: &dyn Body, on: Option<&str>, load: &Load, state: &BodyState, order: Order, first: u32, out: &mut Contribution) {
+pub fn load_body(
+    body: &dyn Body,
+    on: Option<&str>,
+    load: &Load,
+    state: &BodyState,
+    order: Order,
+    first: u32,
+    out: &mut Contribution,
+) {
     let mut own = Contribution::new(body.unknowns());
     body.load(on, load, state, order, &mut own).unwrap();
     add(first, own, out);

@@ -63,8 +63,9 @@ const MOST_AUGMENTATIONS: usize = 60;
 const PENALTY: f64 = 100.0;
 /// The same where it is only a scale: of augmented Lagrangians and multipliers.
 const SCALE: f64 = 10.0;
-/// Stiffness of the springs that hold free bodies at first, in largest loads per size, and what they are taken back to.
-const SPRINGS: [f64; 6] = [1.0, 1e-2, 1e-4, 1e-6, 1e-8, 0.0];
+/// Stiffness of the springs that hold free bodies at first, in largest loads per size, and what they are taken back to. The
+/// first let a body move by a hundredth of its size: contact reaches farther.
+const SPRINGS: [f64; 7] = [1e2, 1.0, 1e-2, 1e-4, 1e-6, 1e-8, 0.0];
 /// The first bit of what is out of balance that is let go, and the least.
 const FIRST_BIT: f64 = 0.125;
 const LEAST_BIT: f64 = 1e-4;

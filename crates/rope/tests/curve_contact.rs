@@ -222,6 +222,7 @@ fn slender(bending: f64, stiff: f64) -> Stiffness {
 }
 
 /// Force, deflection of the end and iterations of crossing cantilevers.
+#[expect(clippy::too_many_arguments)] // The constants of a closed form.
 fn cross(
     [l_1, l_2]: [f64; 2],
     [ei_1, ei_2]: [f64; 2],

@@ -76,7 +76,7 @@ impl PathCase {
     }
 
     /// The stated slippage; `s` is read as the time, and angle, radius and height as the position of the expression.
-    fn slippage(&self, name: &str, key: &Winding) -> Result<Option<Slippage>, CaseError> {
+    pub(super) fn slippage(&self, name: &str, key: &Winding) -> Result<Option<Slippage>, CaseError> {
         let place = ["winding", name, "slippage"];
         match &key.slippage {
             None => Ok(None),

@@ -2,7 +2,6 @@
 
 use super::*;
 use signorini_geometry::rigid_shape::Sphere;
-use signorini_solid::Volumetric;
 
 fn settled(mu: Option<f64>, law: StressLaw, enforcement: Enforcement) -> (SystemState, IncrementResult) {
     let radius = 0.5;
@@ -66,14 +65,4 @@ fn check(law: StressLaw, enforcement: Enforcement, mu: Option<f64>) {
 #[test]
 fn a_ball_settles_between_two_blocks() {
     check(StressLaw::LinearElastic, Enforcement::AugmentedLagrangian, None);
-}
-
-#[test]
-#[ignore = "Newton's method does not find the state of a ball that falls into contact with friction"]
-fn a_ball_settles_between_two_blocks_with_friction() {
-    for law in [StressLaw::LinearElastic, StressLaw::NeoHooke(Volumetric::Quadratic)] {
-        for enforcement in [Enforcement::AugmentedLagrangian, Enforcement::Multiplier] {
-            [None, Some(0.3)].into_iter().for_each(|mu| check(law, enforcement, mu));
-        }
-    }
 }

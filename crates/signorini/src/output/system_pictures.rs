@@ -4,7 +4,7 @@ use super::camera::Camera;
 use super::chart::{label, save, viridis, word};
 use super::history;
 use super::labels::Labels;
-use super::level::surface;
+use super::level::{region, surface};
 use super::page::{Page, SIZE, Scale, Sign, sheet};
 use super::panel::{Axis, Dots, Panel};
 use super::render::{Body, Look, Paint};
@@ -25,6 +25,8 @@ const THIN: f64 = 0.006;
 /// How much a rigid body hides of what is behind it: those around curves are seen through a little.
 const VEIL: f64 = 0.75;
 const INK: RGBColor = RGBColor(20, 20, 20);
+/// The edges of rigid bodies in the plane.
+const EDGE: RGBColor = RGBColor(110, 114, 120);
 /// The largest normal force is drawn as an arrow of this part of the extent.
 const ARROW: f64 = 0.12;
 /// At most so many arrows on a curve.
@@ -120,7 +122,7 @@ fn solid(fields: &Fields, paint: Paint) -> Body {
 }
 
 /// The bodies in space.
-fn bodies(shown: &SystemShown, scale: &Scale, veil: f64) -> Vec<Body> {
+fn bodies(shown: &SystemShown, scale: &Scale, in_space: bool) -> Vec<Body> {
     let [low, high] = shown.bounds();
     let thin = THIN * (high - low).max();
     let mut out: Vec<Body> = (shown.curves.iter())
@@ -138,10 +140,10 @@ fn bodies(shown: &SystemShown, scale: &Scale, veil: f64) -> Vec<Body> {
         out.push(solid(fields, paint));
     }
     let room = shown.room();
-    for body in &shown.rigid {
+    for body in shown.rigid.iter().filter(|_| in_space) {
         let (points, normals, triangles) = surface(body.gap.as_ref(), room);
         let normals = triangles.iter().map(|t| t.map(|k| normals[k as usize])).collect();
-        let opacity = if body.is_free { 1.0 } else { veil };
+        let opacity = if body.is_free { 1.0 } else { VEIL };
         out.push(Body { points, triangles, normals, paint: Paint::Plain(RIGID), opacity });
     }
     out
@@ -150,19 +152,35 @@ fn bodies(shown: &SystemShown, scale: &Scale, veil: f64) -> Vec<Body> {
 fn scene(plan: &MechanicsPlan, shown: &SystemShown, title: &str, note: &str) -> Result<String, OutputError> {
     let labels = Labels(plan.head.unit_names());
     let scale = scale_of(shown);
-    let drawn = bodies(shown, &scale, VEIL);
+    let plane = plan.space != Space::ThreeD;
+    let drawn = bodies(shown, &scale, !plane);
     let mut page = Page::new(SIZE, title, note);
     let inner = page.room();
     let area = [inner[0] + 26.0, inner[1], inner[2] - 10.0, inner[3] - 6.0];
-    let plane = plan.space != Space::ThreeD;
     let (towards, above) =
         if plane { (Vector::<3>::z(), Vector::<3>::y()) } else { (Vector::<3>::new(1.0, -1.6, 0.9), Vector::<3>::z()) };
-    let points: Vec<Vector<3>> = drawn.iter().flat_map(Body::seen).copied().collect();
-    if points.is_empty() {
+    let mut points: Vec<Vector<3>> = drawn.iter().flat_map(Body::seen).copied().collect();
+    // The axes stand along the box of the bodies.
+    let ends = shown.bounds();
+    points.extend((0..8).map(|c| Vector::<3>::from_fn(|k, _| ends[c >> k & 1][k])));
+    let room = shown.room();
+    if plane {
+        points.extend(room.map(|x| Vector::<3>::new(x.x, x.y, 0.0)));
+    }
+    if ends[0].x > ends[1].x {
         return Ok(page.finish());
     }
     let camera = Camera::new(&towards, &above, points.iter(), area);
     insert(&mut page.svg, &drawn, &camera, Look::Solid)?;
+    if plane {
+        // In the plane a rigid body is its edge.
+        let flat = room.map(|x| Vector::<3>::new(x.x, x.y, 0.0));
+        for body in &shown.rigid {
+            for piece in region(body.gap.as_ref(), flat).1 {
+                super::chart::line(&mut page.svg, &piece.map(|x| camera.at(&x)), EDGE);
+            }
+        }
+    }
     let axes = ["x", "y", "z"].map(|a| labels.length(a));
     camera.axes(&mut page.svg, shown.bounds(), axes.each_ref().map(String::as_str));
     let slips = forces(&mut page, shown, &camera);

@@ -17,6 +17,7 @@ mod refinement;
 mod resume;
 mod solid_theory;
 mod solids;
+mod systems;
 mod words;
 
 use serde_json::Value;

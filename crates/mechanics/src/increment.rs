@@ -53,6 +53,8 @@ pub struct IncrementResult {
 const CARRIES: f64 = 0.1;
 /// Force relative to the largest of all that is left in the end.
 const TOLERANCE: f64 = 1e-10;
+/// Force relative to the largest with which no state is taken for one, whatever rounding may say.
+const UNBALANCED: f64 = 1e-6;
 /// Change of a traction by an outer iteration, relative to the largest, that ends them.
 const AUGMENTED: f64 = 1e-9;
 /// Rounding of positions that were solved for, relative to the size of the bodies.
@@ -277,6 +279,9 @@ impl System {
             state = found.state;
             let rounding = self.rounding(&state, time)?;
             let result = self.result(&state, time, iterations, (found.history, rounding))?;
+            if result.imbalance.is_nan() || result.imbalance > UNBALANCED {
+                return Err(IncrementError::NotConverged { history: result.history, worst: None });
+            }
             let change = self.augment(&state, &result)?;
             if change <= AUGMENTED {
                 return Ok((state, result));
@@ -462,6 +467,7 @@ impl Problem<'_> {
         start: &SystemState,
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
+        self.rounding = [0.0; 2];
         let predicts = start.bodies.iter().any(|b| !b.internal.is_empty());
         let search = if predicts { Search::Watchdog { patience: 6 } } else { Search::Monotone };
         let options = Newton { most_iterations: MOST_ITERATIONS, search };
@@ -724,11 +730,13 @@ impl Equations for Problem<'_> {
         let matrix = out.tangent.matrix(n);
         let sizes = matrix.row_sizes();
         let size = self.system.size();
-        self.rounding = [0.0; 2];
-        for k in (0..count).filter(|k| !held[*k]) {
-            let kind = usize::from(self.is_spin[k]);
-            let position = if kind == 1 { 1.0 } else { size };
-            self.rounding[kind] = self.rounding[kind].max(4.0 * f64::EPSILON * sizes[k] * position);
+        // That of the first state: further ones may be anywhere.
+        if self.rounding == [0.0; 2] {
+            for k in (0..count).filter(|k| !held[*k]) {
+                let kind = usize::from(self.is_spin[k]);
+                let position = if kind == 1 { 1.0 } else { size };
+                self.rounding[kind] = self.rounding[kind].max(4.0 * f64::EPSILON * sizes[k] * position);
+            }
         }
         // A ball without friction may turn, a slack rope has no stiffness: a grain of it in the matrix alone keeps them where
         // they are and changes no solution.

@@ -38,9 +38,14 @@ pub fn keys_of(schema: &Value) -> Vec<Key> {
     keys
 }
 
-/// The keys that end with the given words, `NAME` matching any; a full path finds one.
+/// The keys that end with the given words as they are; where there are none, with `NAME` matching any. A full path finds one.
 pub fn find(word: &str) -> Vec<Key> {
-    keys().into_iter().filter(|k| k.ends_with(word)).collect()
+    let mut found: Vec<Key> = keys().into_iter().filter(|k| k.ends_with(word)).collect();
+    let as_is = |k: &Key| k.path.replace("[]", "").ends_with(word.trim_matches('.'));
+    if found.iter().any(as_is) {
+        found.retain(as_is);
+    }
+    found
 }
 
 impl Key {

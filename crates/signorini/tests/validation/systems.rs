@@ -43,7 +43,7 @@ fn a_rope_on_a_parallel_holds_where_the_theorem_says_so() {
     assert!((number(&rope["end_tension"]) / (0.99 * most).exp() - 1.0).abs() < 1e-8, "{rope}");
     // With everything slipping, the held end keeps what friction leaves.
     assert!((number(&rope["start_tension"]) - 1.0).abs() < 0.02, "{rope}");
-    assert_eq!(last_step(&parallel(62.0, 1.01))["contacts"]["wrap"]["slip_area"], 0.0);
+    assert_eq!(last_step(&parallel(62.0, 1.0005))["contacts"]["wrap"]["slip_area"], 0.0);
     assert_eq!(parallel(55.0, 1.01)["converged"], false);
 }
 
@@ -147,8 +147,9 @@ fn a_system_goes_on_to_the_same_digits() {
             self.0 >= 3
         }
     }
-    let case = signorini::case::read("case.toml", example("capstan"), &set(&[("steps[0].increments", "5".into())]))
-        .unwrap_or_else(|e| panic!("{}", e.one_line()));
+    let case =
+        signorini::case::read("case.toml", &example("capstan").replace("increments = 10", "increments = 5"), &set(&[]))
+            .unwrap_or_else(|e| panic!("{}", e.one_line()));
     let folder = tempfile::tempdir().unwrap();
     let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
     run(&case, &whole, &mut Silent).unwrap();

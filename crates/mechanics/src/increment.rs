@@ -738,6 +738,13 @@ impl Equations for Problem<'_> {
                 self.rounding[kind] = self.rounding[kind].max(4.0 * f64::EPSILON * sizes[k] * position);
             }
         }
+        let floats = self.system.bodies.iter().any(|b| b.is_rigid() && b.unknowns() > 0);
+        if !floats {
+            let found = self.analysis.factor(matrix).and_then(|lu| lu.solve(&right));
+            if found.is_ok() {
+                return Ok(found?);
+            }
+        }
         // A ball without friction may turn, a slack rope has no stiffness: a grain of it in the matrix alone keeps them where
         // they are and changes no solution.
         let mut most = [0.0f64; 2];

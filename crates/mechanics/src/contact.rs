@@ -223,8 +223,15 @@ impl Contact {
         };
         let (axes, d_axes) = axes(pair);
         let slip = axes.map(|e| e.dot(&pair.elastic));
-        let trial = [lambda[0] - c * pair.gap, lambda[1] + c * slip[0], lambda[2] + c * slip[1]];
-        Traction { projected: law.project(trial), axes, d_axes, slip }
+        // In the plane nothing moves across it, and there is no friction that way.
+        let most = pair.slip.iter().map(|s| s.norm()).fold(0.0, f64::max);
+        let moves = axes.map(|e| pair.slip.iter().any(|s| e.dot(s).abs() > STEEP * most));
+        let trial = |i: usize| if moves[i] { lambda[i + 1] + c * slip[i] } else { 0.0 };
+        let mut projected = law.project([lambda[0] - c * pair.gap, trial(0), trial(1)]);
+        for i in (0..2).filter(|i| !moves[*i]) {
+            projected.derivative.iter_mut().for_each(|row| row[i + 1] = 0.0);
+        }
+        Traction { projected, axes, d_axes, slip }
     }
 
     /// Adds the contact to residual and tangent. `lambda` are its own unknowns, if it has any, and `first` the number of

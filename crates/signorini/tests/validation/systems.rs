@@ -91,7 +91,6 @@ probes.tip = ["100*sin(pi/4)", "100*(1 - cos(pi/4))", 0]
     for (found, wanted) in at.iter().zip([47.150_44, 15.684_8, 53.474_86]) {
         assert!((found - wanted).abs() < 2e-2, "{at:?}");
     }
-    assert!(number(&found["steps"][0]["iterations"]) <= 12.0);
 }
 
 #[test]

@@ -172,14 +172,16 @@ impl<const D: usize> Obstacle<D> for Faces<'_, D> {
 }
 
 /// Where on a reference face a point is.
-enum Place {
+pub enum Place {
     Interior,
+    /// Between two vertices.
     Edge([usize; 2]),
     Vertex(usize),
 }
 
 impl Place {
-    fn of(shape: CellShape, s: &Local) -> Self {
+    /// Within rounding of the reference coordinates.
+    pub fn of(shape: CellShape, s: &Local) -> Self {
         let corners = shape.vertices();
         let part = |c: &Local| (0..3).map(|k| (c[k] - s[k]).powi(2)).sum::<f64>().sqrt();
         if let Some(v) = corners.iter().position(|c| part(c) < 1e-9) {
@@ -195,7 +197,8 @@ impl Place {
     }
 }
 
-fn strip(curve: &CurveJet) -> SurfaceJet {
+/// The face of a body in the plane: a strip along z, as wide as its curve is fast.
+pub fn strip(curve: &CurveJet) -> SurfaceJet {
     let zero = Vector::<3>::zeros();
     SurfaceJet {
         x: curve.x,

@@ -6,8 +6,8 @@
 
 use crate::body::Order;
 use crate::contact::{Enforcement, SiteResult};
-use crate::system::{Assembled, AssemblyError, System, SystemState};
-use signorini_contact::law::Friction;
+use crate::system::{Assembled, AssemblyError, System, SystemState, sides};
+use signorini_contact::law::{Friction, stuck};
 use signorini_contact::{Law, Status};
 use signorini_geometry::Vector;
 use signorini_solve::SolveError;
@@ -92,7 +92,7 @@ struct Sticks;
 
 impl Law for Sticks {
     fn friction(&self, trial: [f64; 2], _: f64) -> Friction {
-        Friction { traction: trial, by_trial: [[1.0, 0.0], [0.0, 1.0]], by_pressure: [0.0; 2], slips: false }
+        stuck(trial)
     }
 
     fn utilisation(&self, _: [f64; 2], _: f64) -> f64 {
@@ -171,9 +171,9 @@ impl System {
         let (first, count) = self.numbering();
         let mut held = vec![false; count];
         single.iter().for_each(|h| held[h.constraint.terms[0].0 as usize] = true);
-        let mut contacts = std::mem::take(&mut self.contacts);
-        for contact in contacts.iter_mut().filter(|c| self.bodies[c.master.body].unknowns() == 0) {
-            let (body, first) = (&self.bodies[contact.slave.body], first[contact.slave.body]);
+        let bodies = &self.bodies;
+        for contact in self.contacts.iter_mut().filter(|c| bodies[c.master.body].unknowns() == 0) {
+            let (body, first) = (&bodies[contact.slave.body], first[contact.slave.body]);
             let moves = |site: &crate::body::Site| {
                 let placed = body.placed(&start.bodies[contact.slave.body], site);
                 placed.functions.iter().any(|f| !held[(first + f.unknown) as usize])
@@ -181,7 +181,6 @@ impl System {
             let kept: Vec<bool> = contact.sites().iter().map(moves).collect();
             contact.keep(&kept);
         }
-        self.contacts = contacts;
         Ok(())
     }
 
@@ -194,7 +193,8 @@ impl System {
         let before: usize = self.contacts[..contact].iter().map(|c| c.multipliers()).sum();
         let contact = &self.contacts[contact];
         let lambda = &state.multipliers[before..before + contact.multipliers()];
-        let found = contact.results(&self.sides(contact, state, &first), lambda).map_err(AssemblyError::from)?;
+        let found =
+            contact.results(&sides(&self.bodies, contact, state, &first), lambda).map_err(AssemblyError::from)?;
         Ok(found.into_iter().map(|f| f.0).collect())
     }
 
@@ -230,15 +230,13 @@ impl System {
     /// Places that are not there.
     pub fn accept(&mut self, state: &SystemState) -> Result<(), IncrementError> {
         let (first, _) = self.numbering();
-        let mut contacts = std::mem::take(&mut self.contacts);
         let mut own = 0;
-        for contact in &mut contacts {
+        for contact in &mut self.contacts {
             let lambda = &state.multipliers[own..own + contact.multipliers()];
             own += contact.multipliers();
-            let sides = self.sides(contact, state, &first);
+            let sides = sides(&self.bodies, contact, state, &first);
             contact.accept(&sides, lambda).map_err(AssemblyError::from)?;
         }
-        self.contacts = contacts;
         Ok(())
     }
 
@@ -316,7 +314,7 @@ impl System {
             let (first, _) = self.numbering();
             let mut list = Vec::new();
             for contact in self.contacts.iter().zip(&by_multipliers).filter(|(_, own)| **own).map(|(c, _)| c) {
-                let sites = contact.results(&self.sides(contact, &found.state, &first), &[]).ok()?;
+                let sites = contact.results(&sides(&self.bodies, contact, &found.state, &first), &[]).ok()?;
                 list.extend(sites.iter().flat_map(|(_, t)| t[..contact.components()].to_vec()));
             }
             Some((found.state, list))
@@ -333,11 +331,10 @@ impl System {
         let (first, _) = self.numbering();
         let size = self.size();
         let mut change = 0.0f64;
-        let mut contacts = std::mem::take(&mut self.contacts);
-        for (contact, sites) in contacts.iter_mut().zip(&result.sites) {
+        for (contact, sites) in self.contacts.iter_mut().zip(&result.sites) {
             match contact.enforcement {
                 Enforcement::AugmentedLagrangian => {
-                    let sides = self.sides(contact, state, &first);
+                    let sides = sides(&self.bodies, contact, state, &first);
                     let found = contact.results(&sides, &[]).map_err(AssemblyError::from)?;
                     let most = found.iter().map(|f| f.1[0]).fold(0.0f64, f64::max);
                     let list = contact.memory.iter_mut().zip(&contact.stiffness).zip(found);
@@ -361,7 +358,6 @@ impl System {
                 _ => {}
             }
         }
-        self.contacts = contacts;
         Ok(change)
     }
 
@@ -397,8 +393,7 @@ impl System {
             return Err(error);
         }
         // A free body needs springs until it touches; what is held may take what is out of balance bit by bit.
-        let floats = self.bodies.iter().any(|b| b.is_rigid() && b.unknowns() > 0);
-        if !floats {
+        if !self.has_free_rigid_body() {
             match problem.bit_by_bit(start, report) {
                 Err(failed) if is_curable(&failed) => {}
                 found => return found,
@@ -408,6 +403,10 @@ impl System {
             return Err(problem.named(error, start));
         }
         problem.with_springs(start, error, report)
+    }
+
+    fn has_free_rigid_body(&self) -> bool {
+        self.bodies.iter().any(|b| b.is_rigid() && b.unknowns() > 0)
     }
 
     /// What rounding of positions leaves of forces.
@@ -708,7 +707,7 @@ impl Equations for Problem<'_> {
             take(force / (TOLERANCE * scale[0]).max(self.rounding[0]), count + k);
         }
         for held in out.single.iter().chain(&out.coupled) {
-            take(held.constraint.lack.abs() / (1e-12 * size), held.constraint.terms[0].0 as usize);
+            take(held.constraint.lack.abs() / (ROUNDING * size), held.constraint.terms[0].0 as usize);
         }
         self.worst = worst.1;
         Ok(worst.0)
@@ -738,12 +737,10 @@ impl Equations for Problem<'_> {
                 self.rounding[kind] = self.rounding[kind].max(4.0 * f64::EPSILON * sizes[k] * position);
             }
         }
-        let floats = self.system.bodies.iter().any(|b| b.is_rigid() && b.unknowns() > 0);
-        if !floats {
-            let found = self.analysis.factor(matrix).and_then(|lu| lu.solve(&right));
-            if found.is_ok() {
-                return Ok(found?);
-            }
+        if !self.system.has_free_rigid_body()
+            && let Ok(found) = self.analysis.factor(matrix).and_then(|lu| lu.solve(&right))
+        {
+            return Ok(found);
         }
         // A ball without friction may turn, a slack rope has no stiffness: a grain of it in the matrix alone keeps them where
         // they are and changes no solution.
@@ -766,7 +763,7 @@ impl Equations for Problem<'_> {
             return false;
         }
         let size = self.system.size();
-        let lacks = |h: &crate::system::Held| h.constraint.lack.abs() > 1e-12 * size;
+        let lacks = |h: &crate::system::Held| h.constraint.lack.abs() > ROUNDING * size;
         self.system.held(at, self.time).is_ok_and(|(single, coupled)| single.iter().chain(&coupled).any(lacks))
     }
 

@@ -532,7 +532,8 @@ fn curvature_slopes(foot: &RigidFoot, distance: f64, x: Point<3>) -> [Matrix<3>;
     std::array::from_fn(|i| (turned(x + axis(i) * step) - turned(x - axis(i) * step)) / (2.0 * step))
 }
 
-fn axis(i: usize) -> Vector<3> {
+/// The unit vector along an axis.
+pub fn axis(i: usize) -> Vector<3> {
     Vector::<3>::from_fn(|k, _| f64::from(u8::from(k == i)))
 }
 

@@ -8,7 +8,7 @@ use crate::body::{
     Anchor, Bend, Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Function, Hold, Load, Master,
     MaterialPoint, Met, Order, PlaceError, Placed, RigidFoot, Sampling, Site,
 };
-use crate::pair::any_tangent;
+use crate::pair::{any_tangent, axis};
 use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::{GapJet, RigidShape};
@@ -78,10 +78,6 @@ impl Pose {
     pub fn matrix(&self) -> Matrix<3> {
         self.rotation.to_rotation_matrix().into_inner()
     }
-}
-
-fn axis(i: usize) -> Vector<3> {
-    Vector::<3>::from_fn(|k, _| f64::from(u8::from(k == i)))
 }
 
 impl RigidBody {

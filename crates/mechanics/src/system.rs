@@ -158,15 +158,6 @@ impl System {
         }
     }
 
-    pub(crate) fn sides<'a>(&'a self, contact: &Contact, state: &'a SystemState, first: &[u32]) -> Sides<'a> {
-        let side = |part: &Part| (self.bodies[part.body].as_ref(), &state.bodies[part.body]);
-        Sides {
-            slave: side(&contact.slave),
-            master: side(&contact.master),
-            first: [first[contact.slave.body], first[contact.master.body]],
-        }
-    }
-
     /// The equations of all supports.
     pub(crate) fn held(&self, state: &SystemState, time: f64) -> Result<(Vec<Held>, Vec<Held>), AssemblyError> {
         let (first, count) = self.numbering();
@@ -272,7 +263,7 @@ impl System {
                 sizes: &mut sizes,
                 tangent: (order == Order::Second).then_some(&mut tangent),
             };
-            let sides = self.sides(contact, state, &first);
+            let sides = sides(&self.bodies, contact, state, &first);
             lost += contact.add_to(&sides, (lambda, (count + own) as u32), &mut target)?;
             own += contact.multipliers();
         }
@@ -301,5 +292,20 @@ fn add(from: &Contribution, first: u32, residual: &mut [f64], sizes: &mut [f64],
     for (unknowns, values) in &from.blocks {
         let unknowns: Vec<u32> = unknowns.iter().map(|u| u + first).collect();
         tangent.add_block(&unknowns, values);
+    }
+}
+
+/// The two bodies of a contact in a state.
+pub(crate) fn sides<'a>(
+    bodies: &'a [Box<dyn Body>],
+    contact: &Contact,
+    state: &'a SystemState,
+    first: &[u32],
+) -> Sides<'a> {
+    let side = |part: &Part| (bodies[part.body].as_ref(), &state.bodies[part.body]);
+    Sides {
+        slave: side(&contact.slave),
+        master: side(&contact.master),
+        first: [first[contact.slave.body], first[contact.master.body]],
     }
 }

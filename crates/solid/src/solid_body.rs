@@ -19,6 +19,7 @@ use faces::Faces;
 use rayon::prelude::*;
 use signorini_fem::{CellShape, DofMap, Group, Mesh, MeshError};
 use signorini_geometry::{Point, Vector};
+use signorini_mechanics::pair::axis;
 use signorini_mechanics::{
     Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Hold, Load, Master, Order, PlaceError, Placed,
     Sampling, Site,
@@ -181,10 +182,6 @@ fn spatial<const D: usize>(x: &Point<D>) -> Vector<3> {
 }
 
 /// Unit vector of a direction, in space.
-fn axis(i: usize) -> Vector<3> {
-    Vector::<3>::from_fn(|k, _| f64::from(u8::from(k == i)))
-}
-
 impl<const D: usize> Body for SolidBody<D> {
     fn name(&self) -> &str {
         &self.body().name

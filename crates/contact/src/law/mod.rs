@@ -90,7 +90,7 @@ pub trait Law: std::fmt::Debug + Send + Sync {
 }
 
 /// Friction that the trial itself satisfies.
-fn stuck(trial: [f64; 2]) -> Friction {
+pub fn stuck(trial: [f64; 2]) -> Friction {
     Friction { traction: trial, by_trial: [[1.0, 0.0], [0.0, 1.0]], by_pressure: [0.0; 2], slips: false }
 }
 

@@ -7,11 +7,12 @@
 use super::faces::{Face, Faces, Surface};
 use super::{axis, spatial};
 use rayon::prelude::*;
+use signorini_contact::obstacle::{Place, strip};
 use signorini_fem::hierarchic::Derivatives;
 use signorini_fem::{CellShape, Local};
 use signorini_geometry::bvh::Bvh;
 use signorini_geometry::closest::{FeatureKind, Projection, Query, closest};
-use signorini_geometry::shape::{Curve, CurveJet, Shape, ShapeError, SurfaceJet};
+use signorini_geometry::shape::{Curve, CurveJet, Shape, ShapeError};
 use signorini_geometry::{Aabb, Matrix, Point, Vector};
 use signorini_mechanics::{Anchor, Foot, Function, Master, MaterialPoint, Met, Site};
 use std::collections::BTreeSet;
@@ -218,46 +219,6 @@ fn coordinates(found: &Projection) -> Local {
     let mut s = [0.0; 3];
     s.iter_mut().zip(found.closest.b.parameters()).for_each(|(s, p)| *s = *p);
     s
-}
-
-/// Where on a reference face a point is.
-enum Place {
-    Interior,
-    Edge([usize; 2]),
-    Vertex(usize),
-}
-
-impl Place {
-    fn of(shape: CellShape, s: &Local) -> Self {
-        let corners = shape.vertices();
-        let part = |c: &Local| (0..3).map(|k| (c[k] - s[k]).powi(2)).sum::<f64>().sqrt();
-        if let Some(v) = corners.iter().position(|c| part(c) < 1e-9) {
-            return Place::Vertex(v);
-        }
-        for &[a, b] in shape.edges() {
-            let along: f64 = (0..3).map(|k| (corners[b][k] - corners[a][k]).powi(2)).sum::<f64>().sqrt();
-            if (part(&corners[a]) + part(&corners[b]) - along).abs() < 1e-9 {
-                return Place::Edge([a, b]);
-            }
-        }
-        Place::Interior
-    }
-}
-
-fn strip(curve: &CurveJet) -> SurfaceJet {
-    let zero = Vector::<3>::zeros();
-    SurfaceJet {
-        x: curve.x,
-        u: curve.d1,
-        v: Vector::<3>::z() * curve.d1.norm(),
-        uu: curve.d2,
-        uuu: curve.d3,
-        uv: zero,
-        vv: zero,
-        uuv: zero,
-        uvv: zero,
-        vvv: zero,
-    }
 }
 
 /// A face as a shape of `geometry`, with the same coordinates.

@@ -115,3 +115,33 @@ pub fn darboux(surface: &dyn RigidShape, curve: &dyn Curve, parameters: &[f64]) 
     }
     Ok(out)
 }
+
+/// The frames of a curve that is known by points in order, where the outward normal of the surface is known too: tangent and
+/// curvature of the circle through three of them. The curve may bend about a section: it lies on the surface at that
+/// distance. First and last point take the circle of their neighbours.
+pub fn of_points(points: &[Point<3>], normals: &[Option<Vector<3>>]) -> Vec<Option<Darboux>> {
+    if points.len() < 3 {
+        return vec![None; points.len()];
+    }
+    let last = points.len() - 1;
+    let mut s = vec![0.0; points.len()];
+    (1..=last).for_each(|k| s[k] = s[k - 1] + (points[k] - points[k - 1]).norm());
+    let at = |k: usize| {
+        let n = normals.get(k).copied().flatten()?;
+        let m = k.clamp(1, last - 1);
+        let (before, after) = (points[m] - points[m - 1], points[m + 1] - points[m]);
+        let (a, b) = (before.norm(), after.norm());
+        let curvature = (after / b - before / a) * (2.0 / (a + b));
+        let chord = before / a * b + after / b * a;
+        let tau = (chord - n * n.dot(&chord)).try_normalize(1e-12 * (a + b))?;
+        let g = tau.cross(&n);
+        let [n0, n1] = [m - 1, m + 1].map(|j| normals[j]);
+        let tau_g = match (n0, n1) {
+            (Some(n0), Some(n1)) => -(n1 - n0).dot(&g) / (a + b),
+            _ => 0.0,
+        };
+        let (k_n, k_g) = (curvature.dot(&n), curvature.dot(&g));
+        Some(Darboux { s: s[k], x: points[k], tau, g, n, k_n, k_g, tau_g, gap: 0.0 })
+    };
+    (0..=last).map(at).collect()
+}

@@ -30,6 +30,8 @@ struct Patch {
     frame: [Vector<3>; 3],
     radius: f64,
     coefficients: [f64; CUBIC],
+    /// Mean square of what the fit leaves of its neighbours.
+    left: f64,
 }
 
 /// A closed triangle mesh as a smooth body.
@@ -85,6 +87,17 @@ impl SmoothMesh {
         let triangles = ClosestPoints { shape: mesh.clone().into(), normals: Normals::Outward };
         Ok(SmoothMesh { patches, grid, cell, triangles })
     }
+
+    /// How far vertices scatter about the fits to their neighbours, as a root mean square: the noise of a scan, and on a clean
+    /// mesh what cubics leave of the surface.
+    pub fn scatter(&self) -> f64 {
+        (self.patches.iter().map(|p| p.left).sum::<f64>() / self.patches.len() as f64).sqrt()
+    }
+
+    /// Mean length of the longest edge at a vertex.
+    pub fn edge(&self) -> f64 {
+        self.patches.iter().map(|p| p.radius).sum::<f64>() / (RADIUS * self.patches.len() as f64)
+    }
 }
 
 /// The vertices of the fewest rings that are enough for a fit.
@@ -132,13 +145,26 @@ impl Patch {
         }
         let solution = matrix.cholesky()?.solve(&rhs);
         let coefficients = std::array::from_fn(|k| if k < unknowns { solution[k] } else { 0.0 });
-        Some(Patch { origin: *origin, frame, radius, coefficients })
+        let mut patch = Patch { origin: *origin, frame, radius, coefficients, left: 0.0 };
+        // A mean that is left is the scatter of the vertex itself. Points beyond those that determine the fit tell it.
+        let left: Vec<f64> = points.iter().map(|p| patch.height_above(p)).collect();
+        let mean = left.iter().sum::<f64>() / left.len() as f64;
+        let square: f64 = left.iter().map(|l| (l - mean).powi(2)).sum();
+        patch.left = square / points.len().saturating_sub(unknowns + 1).max(1) as f64;
+        Some(patch)
     }
 
     /// The normal at the vertex.
     fn normal(&self) -> Vector<3> {
         let [e1, e2, n] = &self.frame;
         n - e1 * self.coefficients[0] - e2 * self.coefficients[1]
+    }
+
+    /// How far a point lies above the fit.
+    fn height_above(&self, p: &Point<3>) -> f64 {
+        let [u, v, w] = self.frame.map(|e| e.dot(&((p - self.origin) / self.radius)));
+        let row = [u, v, u * u, u * v, v * v, u * u * u, u * u * v, u * v * v, v * v * v];
+        (w - self.coefficients.iter().zip(row).map(|(c, r)| c * r).sum::<f64>()) * self.radius
     }
 
     /// The weight and the level at a point; `None` out of reach.
@@ -173,6 +199,13 @@ impl RigidShape for SmoothMesh {
         let p = Matrix::<3>::identity() - normal * normal.transpose();
         let shape = p * level.hessian * p / length;
         let gap = (x - y).dot(&normal);
+        // Far from the surface the foot may be another than the nearest one.
+        if gap.abs() > 0.5 * self.cell {
+            let by_triangles = self.triangles.gap(x);
+            if (by_triangles.gap - gap).abs() > 0.5 * self.cell {
+                return by_triangles;
+            }
+        }
         let hessian = (Matrix::<3>::identity() + shape * gap).try_inverse().map_or(shape, |inverse| shape * inverse);
         GapJet { gap, normal, hessian: (hessian + hessian.transpose()) * 0.5 }
     }
@@ -247,6 +280,25 @@ mod tests {
         }
         let found = mesh.gap(&Point::<3>::new(3.0, 0.0, 0.0));
         assert!((found.gap - 1.0).abs() < 0.02 && (found.normal.x - 1.0).abs() < 1e-2, "{found:?}");
+    }
+
+    /// The scatter is that of the vertices, and tends to zero with the edges on a clean mesh.
+    #[test]
+    fn the_noise_of_a_mesh_is_told() {
+        let mut seed = 1u64;
+        // Uniform, of unit variance.
+        let mut random = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((seed >> 33) as f64 / (1u64 << 31) as f64 - 0.5) * 12.0f64.sqrt()
+        };
+        let clean = blown_up(16, [2.0, 1.5, 1.0]);
+        let noisy: Vec<Point<3>> = clean.vertices().iter().map(|x| x + x.normalize() * (1e-2 * random())).collect();
+        let noisy = SmoothMesh::new(&TriangleMesh::new(noisy, clean.triangles()).unwrap()).unwrap();
+        let clean = SmoothMesh::new(&clean).unwrap();
+        assert!((noisy.scatter() - 1e-2).abs() < 2e-3, "{}", noisy.scatter());
+        let coarse = SmoothMesh::new(&blown_up(8, [2.0, 1.5, 1.0])).unwrap();
+        assert!(clean.scatter() < 0.2 * coarse.scatter() && clean.scatter() < 1e-3, "{}", clean.scatter());
+        assert!((clean.edge() / 0.2 - 1.0).abs() < 0.5, "{}", clean.edge());
     }
 
     /// The shortest path over the mesh of an ellipsoid tends to that over the ellipsoid.

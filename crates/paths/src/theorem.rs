@@ -219,6 +219,49 @@ pub fn tension_limits(
     })
 }
 
+/// The limits of a rope that is known by the frames of its points, in order, and their lengths: what the reactions of a
+/// solved rope could be. Violations are the points at which a condition fails.
+///
+/// # Errors
+/// Coefficients out of range.
+pub fn limits_of_points(frames: &[(Darboux, f64)], friction: &Friction) -> Result<TensionLimits, PathError> {
+    friction.check()?;
+    let nowhere = Extreme { s: f64::NAN, value: f64::NEG_INFINITY };
+    let mut out = TensionLimits {
+        length: frames.iter().map(|(_, length)| length).sum(),
+        log_ratio: [0.0; 2],
+        violations: Vec::new(),
+        steepest: nowhere,
+        least_pressed: nowhere,
+        off_surface: 0.0,
+    };
+    for (frame, length) in frames {
+        let tan_alpha = if frame.k_g == 0.0 { 0.0 } else { frame.tan_alpha().abs() };
+        for (extreme, value) in [(&mut out.steepest, tan_alpha), (&mut out.least_pressed, frame.k_n)] {
+            if value > extreme.value {
+                *extreme = Extreme { s: frame.s, value };
+            }
+        }
+        for condition in [Condition::Pressed, Condition::Lateral] {
+            if margin(condition, frame, friction) < 0.0 {
+                let (value, limit) = match condition {
+                    Condition::Pressed => (frame.k_n, 0.0),
+                    Condition::Lateral => (tan_alpha, friction.lateral(frame)),
+                };
+                let (from, to) = (frame.s - 0.5 * length, frame.s + 0.5 * length);
+                out.violations.push(Violation { condition, from, to, at: frame.s, value, limit });
+            }
+        }
+        if frame.k_n < 0.0
+            && let Some([low, high]) = friction.range(frame, frame.k_n, frame.k_g)
+        {
+            out.log_ratio[0] += low * length;
+            out.log_ratio[1] += high * length;
+        }
+    }
+    Ok(out)
+}
+
 /// The reactions at given parameters under end tensions that are between the limits, the share of the limit used being the
 /// same everywhere: `T = T_0 exp(c ∫ω ds)`.
 ///

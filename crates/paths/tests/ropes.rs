@@ -4,12 +4,12 @@ use serde_json::Value;
 use signorini_geometry::rigid_shape::{Cone, Cylinder, Ellipsoid, RigidShape, Sphere, Torus};
 use signorini_geometry::{Jet, Point, Vector};
 use signorini_paths::curve::{Analytic, Curve, PointSpline};
-use signorini_paths::darboux::{darboux, darboux_at};
+use signorini_paths::darboux::{darboux, darboux_at, of_points};
 use signorini_paths::friction::Friction;
 use signorini_paths::geodesic::geodesic;
 use signorini_paths::partial_slip::PartialSlip;
 use signorini_paths::theorem::{
-    Condition, TensionLimits, Towards, Verdict, loaded_end_tensions, reactions, tension_limits,
+    Condition, TensionLimits, Towards, Verdict, limits_of_points, loaded_end_tensions, reactions, tension_limits,
 };
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
@@ -301,4 +301,41 @@ fn a_rope_with_weight() {
     // Hung below, a heavy rope falls off.
     let below = curve(move |t| [t.cos() * r, c(0.0), -t.sin() * r], [FRAC_PI_2, PI]);
     assert!(loaded_end_tensions(&drum, &below, &Friction::isotropic(mu), weight * 100.0, start).is_err());
+}
+
+/// Points of a spiral on an ellipsoid with the normals there: curvatures and the limits of the tensions converge with the
+/// square of their distance.
+#[test]
+fn limits_from_the_points_of_a_solved_rope() {
+    let shape = ellipsoid();
+    let [a, b, c] = shape.semi_axes();
+    let wave = curve(
+        move |t| {
+            let v = (t * 2.0).sin() * 0.15;
+            [t.cos() * v.cos() * a, t.sin() * v.cos() * b, v.sin() * c]
+        },
+        [0.2, 3.0],
+    );
+    let axis: signorini_paths::friction::Direction = Arc::new(|_| Vector::<3>::new(1.0, 0.3, 0.2));
+    for friction in [
+        Friction::Carried { along: 0.3, across: 0.6 },
+        Friction::Attached { coefficients: [0.4, 0.7], axis: Arc::clone(&axis) },
+    ] {
+        let exact = tension_limits(&shape, &wave, &friction).unwrap();
+        let error = |cells: usize| {
+            let points: Vec<Point<3>> = (0..=cells).map(|k| wave.jet(0.2 + 2.8 * k as f64 / cells as f64).x).collect();
+            let normals: Vec<_> = points.iter().map(|x| Some(shape.gap(x).normal)).collect();
+            let chord = |k: usize| if k == 0 || k > cells { 0.0 } else { (points[k] - points[k - 1]).norm() };
+            let list: Vec<_> = (of_points(&points, &normals).into_iter().enumerate())
+                .map(|(k, f)| (f.unwrap(), 0.5 * (chord(k) + chord(k + 1))))
+                .collect();
+            let found = limits_of_points(&list, &friction).unwrap();
+            assert!(found.is_admissible() && (found.steepest.value / exact.steepest.value - 1.0).abs() < 0.05);
+            [0, 1].map(|k| (found.log_ratio[k] - exact.log_ratio[k]).abs())
+        };
+        let (coarse, fine) = (error(50), error(100));
+        for k in 0..2 {
+            assert!(fine[k] < 2e-3 && fine[k] < 0.35 * coarse[k], "{coarse:?} {fine:?}");
+        }
+    }
 }

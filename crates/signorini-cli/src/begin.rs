@@ -24,9 +24,12 @@ pub fn new(template: &str, folder: Option<PathBuf>, json: bool) -> u8 {
         return report(&error, json);
     }
     let case = annotated(example);
-    let mut files = vec![("case.toml".to_string(), case.clone()), (SCHEMA_FILE.to_string(), schema_text())];
+    let mut files = vec![
+        ("case.toml".to_string(), case.clone().into_bytes()),
+        (SCHEMA_FILE.to_string(), schema_text().into_bytes()),
+    ];
     let named = case.lines().filter(|l| !l.starts_with('#')).flat_map(|l| l.split('"').skip(1).step_by(2));
-    files.extend(named.filter_map(|name| Some((name.to_string(), asset(name)?.to_string()))));
+    files.extend(named.filter_map(|name| Some((name.to_string(), asset(name)?.to_vec()))));
     if let Err(error) = write_all(&folder, &files) {
         let error = CaseError::new(format!("cannot write `{}`: {error}", folder.display()))
             .help("may this program write there?");
@@ -41,7 +44,7 @@ pub fn new(template: &str, folder: Option<PathBuf>, json: bool) -> u8 {
     DONE
 }
 
-fn write_all(folder: &Path, files: &[(String, String)]) -> std::io::Result<()> {
+fn write_all(folder: &Path, files: &[(String, Vec<u8>)]) -> std::io::Result<()> {
     std::fs::create_dir_all(folder)?;
     files.iter().try_for_each(|(name, text)| std::fs::write(folder.join(name), text))
 }

@@ -11,7 +11,7 @@ use signorini::output::figure::{figures, told};
 use signorini::output::{Earlier, OutputError};
 use signorini::paths::{self, PathCase};
 use signorini::plan::plan;
-use signorini::problem::CaseError;
+use signorini::problem::{CaseError, Problem};
 use signorini::queries::{Query, answer_file, answer_points};
 use signorini::report::{Summary, UnitNames, table};
 use signorini::run::{Begun, Ending, RunError, begun, preview, resume, run, sizes};
@@ -114,21 +114,6 @@ pub fn gallery(json: bool) -> u8 {
 
 pub fn check(case: &Path, set: &[String], picture: Option<&Path>, json: bool) -> u8 {
     if let Ok((name, text)) = read(case)
-        && paths::is_path_case(&text)
-    {
-        return match PathCase::parse(&name, &text, set) {
-            Err(error) => report(&error, json),
-            Ok(case) => {
-                if json {
-                    say!("{}", json!({"paths": case.paths()}))
-                } else {
-                    say!("{name}: the case is right: {} paths.", case.paths())
-                }
-                DONE
-            }
-        };
-    }
-    if let Ok((name, text)) = read(case)
         && scene::is_scene(&text)
     {
         return match read_scene(&name, &text, set) {
@@ -145,6 +130,10 @@ pub fn check(case: &Path, set: &[String], picture: Option<&Path>, json: bool) ->
         };
     }
     let checked = read(case).and_then(|(name, text)| signorini::case::read(&name, &text, set)).and_then(|problem| {
+        if paths::is_of_paths(&problem) {
+            let paths = PathCase::new(&problem)?.paths();
+            return Ok((problem, json!({"paths": paths})));
+        }
         let plan = plan(&problem)?;
         let sizes = sizes(&plan)?;
         if let Some(file) = picture {
@@ -222,29 +211,36 @@ fn read_scene(name: &str, text: &str, set: &[String]) -> Result<Scene, CaseError
     Scene::parse(name, &text, folder).map_err(|error| origins.relocated(error))
 }
 
-fn execute_paths(name: &str, text: &str, folder: &Path, set: &[String], json: bool) -> u8 {
-    let case = match PathCase::parse(name, text, set) {
+fn execute_paths(problem: &Problem, folder: &Path, json: bool) -> u8 {
+    let case = match PathCase::new(problem) {
         Ok(case) => case,
         Err(error) => return report(&error, json),
     };
+    let replaced = Earlier::in_folder(folder);
     let mut bar = Bar::new(json);
     let result = paths::run(&case, folder, &mut bar);
     bar.finish();
+    conclude(result, json, |summary| {
+        paths::sentences(summary).iter().for_each(|line| say!("{line}"));
+        say!(
+            "\nResults in {}: open pictures/paths.png, bodies.pvd and the paths in ParaView; numbers in summary.json and a CSV per path.",
+            folder.display()
+        );
+        say_replaced(replaced);
+    })
+}
+
+/// The end of a command: its summary, or what went wrong.
+fn conclude(result: Result<Value, SceneError>, json: bool, tell: impl FnOnce(&Value)) -> u8 {
     match result {
         Err(SceneError::Case(error)) => report(&error, json),
         Err(SceneError::Output(error)) => report(&output_error(&error), json),
-        Ok(summary) if json => {
-            say!("{summary}");
-            DONE
-        }
         Ok(summary) => {
-            for line in paths::sentences(&summary) {
-                say!("{line}");
+            if json {
+                say!("{summary}");
+            } else {
+                tell(&summary);
             }
-            say!(
-                "\nResults in {}: open pictures/paths.png, bodies.pvd and the paths in ParaView; numbers in summary.json and a CSV per path.",
-                folder.display()
-            );
             DONE
         }
     }
@@ -259,29 +255,20 @@ fn execute_scene(name: &str, text: &str, folder: &Path, set: &[String], json: bo
     let mut bar = Bar::new(json);
     let result = scene::run(&scene, folder, &mut bar);
     bar.finish();
-    match result {
-        Err(SceneError::Case(error)) => report(&error, json),
-        Err(SceneError::Output(error)) => report(&output_error(&error), json),
-        Ok(summary) if json => {
-            say!("{summary}");
-            DONE
+    conclude(result, json, |summary| {
+        say!("{}: {} frames", scene.title, summary["frames"]);
+        for (kind, count) in summary["contact_pair_kinds"].as_object().into_iter().flatten() {
+            say!("  {kind:18} the contact in {count} frames");
         }
-        Ok(summary) => {
-            say!("{}: {} frames", scene.title, summary["frames"]);
-            for (kind, count) in summary["contact_pair_kinds"].as_object().into_iter().flatten() {
-                say!("  {kind:18} the contact in {count} frames");
-            }
-            let closest = &summary["closest"];
-            let text = |key: &str| closest["pair"][key].as_str().unwrap_or_default().to_string();
-            say!("closest at t = {}: {} to {}, gap {}", closest["time"], text("a"), text("b"), closest["gap"]);
-            say!(
-                "\nResults in {}: open pictures/scene.png (animated) in a browser, bodies.pvd and pairs.pvd in ParaView; numbers in pairs.csv.",
-                folder.display()
-            );
-            say_replaced(replaced);
-            DONE
-        }
-    }
+        let closest = &summary["closest"];
+        let text = |key: &str| closest["pair"][key].as_str().unwrap_or_default().to_string();
+        say!("closest at t = {}: {} to {}, gap {}", closest["time"], text("a"), text("b"), closest["gap"]);
+        say!(
+            "\nResults in {}: open pictures/scene.png (animated) in a browser, bodies.pvd and pairs.pvd in ParaView; numbers in pairs.csv.",
+            folder.display()
+        );
+        say_replaced(replaced);
+    })
 }
 
 pub fn closest(queries: &Path, to: Option<&Path>, output: &Path, local_minima: bool, json: bool) -> u8 {
@@ -347,13 +334,6 @@ pub fn closest(queries: &Path, to: Option<&Path>, output: &Path, local_minima: b
 }
 
 fn execute(name: &str, text: &str, folder: &Path, set: &[String], resumed: bool, json: bool) -> u8 {
-    if paths::is_path_case(text) {
-        if resumed {
-            let error = CaseError::new("paths cannot be resumed").help("run them from the beginning, without --resume");
-            return report(&error, json);
-        }
-        return execute_paths(name, text, folder, set, json);
-    }
     if scene::is_scene(text) {
         if resumed {
             let error = CaseError::new("a scene cannot be resumed").help("run it from the beginning, without --resume");
@@ -365,6 +345,13 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], resumed: bool,
         Ok(problem) => problem,
         Err(error) => return report(&error, json),
     };
+    if paths::is_of_paths(&problem) {
+        if resumed {
+            let error = CaseError::new("paths cannot be resumed").help("run them from the beginning, without --resume");
+            return report(&error, json);
+        }
+        return execute_paths(&problem, folder, json);
+    }
     let earlier = match resumed.then(|| begun(&problem, folder)).transpose() {
         Ok(earlier) => earlier,
         Err(error) => return report(&error, json),

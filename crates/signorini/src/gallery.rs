@@ -47,22 +47,32 @@ pub const GALLERY: [Example; 28] = [
 ];
 
 /// A file that a case of the gallery names.
-pub fn asset(name: &str) -> Option<&'static str> {
+pub fn asset(name: &str) -> Option<&'static [u8]> {
     match name {
-        "die.json" => Some(include_str!("../../../gallery/die/die.json")),
-        "drum.msh" => Some(include_str!("../../../gallery/drum/drum.msh")),
-        "measured.csv" => Some(include_str!("../../../gallery/blister/measured.csv")),
+        "die.json" => Some(include_bytes!("../../../gallery/die/die.json")),
+        "drum.msh" => Some(include_bytes!("../../../gallery/drum/drum.msh")),
+        "measured.csv" => Some(include_bytes!("../../../gallery/blister/measured.csv")),
+        "scan.stl" => Some(include_bytes!("../../../gallery/scan/scan.stl")),
         _ => None,
     }
 }
+
+/// Paths on rigid bodies.
+pub const PATHS: [Example; 5] = [
+    example!("helix", "a rope round a drum with a grain: which tensions hold, and what slides sideways"),
+    example!("geodesic", "the shortest path round an ellipsoid, lifted off as its end moves up"),
+    example!("tendon", "a tendon over a knuckle that bends: length, moment arm and friction"),
+    example!("scan", "a strap over a scanned body, from its triangles"),
+    example!("dome", "a yarn wound over a dome to a polar opening, and a pattern that covers it"),
+];
 
 /// Scenes: bodies that move, and their closest pairs.
 pub const SCENES: [Example; 1] =
     [example!("swords", "two blades swung past each other: the contact pairs of all six kinds, animated")];
 
-/// Cases and scenes.
+/// Cases, paths and scenes.
 pub fn all() -> impl Iterator<Item = &'static Example> {
-    GALLERY.iter().chain(&SCENES)
+    GALLERY.iter().chain(&PATHS).chain(&SCENES)
 }
 
 /// The example of a name.

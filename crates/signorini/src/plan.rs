@@ -6,6 +6,7 @@ mod head;
 mod height;
 mod history;
 pub mod mechanics;
+pub mod paths;
 pub(crate) mod pieces;
 mod placement;
 pub mod reader;
@@ -17,7 +18,7 @@ mod surface;
 use crate::expression::{Definition, Expression, Names, Scope};
 use crate::plan::reader::Reader;
 use crate::problem::units::{FORCE_PER_LENGTH, LENGTH, PRESSURE, Units};
-use crate::problem::{self, Body, FormulationKey, Method, Space, TransportKey, ZoneMultiplierKey};
+use crate::problem::{self, Analysis, Body, FormulationKey, Method, Space, TransportKey, ZoneMultiplierKey};
 use crate::problem::{CaseError, Components, KeyPath, Location, Problem, ProblemPart, Value, suggestion};
 use crate::report::Warning;
 use signorini_fem::cut::QuadraturePoint;
@@ -41,7 +42,7 @@ pub use domain::{Pieces, memory_at_hand, memory_estimate, mesh_multigrid_estimat
 pub use head::Head;
 pub use history::{Control, PlannedIncrement};
 use pieces::UNITE;
-pub use rigid::{RigidBody, rigid_bodies};
+pub use rigid::RigidBody;
 pub use surface::Contact;
 
 /// A problem that is ready to be solved.
@@ -127,6 +128,10 @@ pub struct MembranePlan<const D: usize> {
 /// # Errors
 /// What is wrong with the problem, with its key.
 pub fn plan(problem: &Problem) -> Result<Plan, CaseError> {
+    if let Some(analysis) = problem.analysis.as_ref().filter(|a| **a != Analysis::Equilibrium) {
+        return Err(problem.error(analysis, "paths are not solved for equilibrium"));
+    }
+    paths::none_of_paths(problem)?;
     if mechanics::is_system(problem) {
         return Ok(Plan::Mechanics(Box::new(Planner::new(problem)?.mechanics()?)));
     }

@@ -182,6 +182,11 @@ impl Path {
         Self::through(curve, closure, pieces.max(1))
     }
 
+    /// The curve by itself.
+    pub fn into_curve(self) -> Curve {
+        self.curve
+    }
+
     /// Straight from point to point of a table of three columns: coordinates separated by commas, semicolons, tabs or
     /// blanks; lines that start with `#` and one line of names are passed over.
     ///

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 pub const MARKER: &str = "log.jsonl";
 const FIRST_LINE: &str = "{\"event\":\"signorini\"";
 /// Everything a run writes.
-const OWN: [&str; 17] = [
+const OWN: [&str; 18] = [
     "summary.json",
     "log.jsonl",
     "history.csv",
@@ -23,6 +23,7 @@ const OWN: [&str; 17] = [
     "checkpoint.json",
     "checkpoint",
     "pairs.pvd",
+    "paths",
     "rigid",
     "rigid.pvd",
 ];

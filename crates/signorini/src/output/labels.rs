@@ -22,6 +22,10 @@ impl Labels {
         self.with(what, |u| &u.force)
     }
 
+    pub fn force_per_length(&self, what: &str) -> String {
+        self.0.as_ref().map_or_else(|| what.to_string(), |units| format!("{what} [{}/{}]", units.force, units.length))
+    }
+
     pub fn pressure(&self, what: &str) -> String {
         self.with(what, |u| &u.pressure)
     }

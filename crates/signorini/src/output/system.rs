@@ -10,6 +10,7 @@ use signorini_contact::{GapJet, Status};
 use signorini_fem::CellShape;
 use signorini_geometry::Vector;
 use signorini_mechanics::{BodyFields, IncrementResult, SiteResult, SystemState, rigid_body};
+use signorini_paths::darboux::{Darboux, of_points};
 use std::sync::Arc;
 use vtkio::model::{
     Attribute, Attributes, CellType, Cells, DataSet, PolyDataPiece, UnstructuredGridPiece, VertexNumbers,
@@ -223,35 +224,32 @@ fn of_contact(name: &str, sites: &[SiteResult], rubs: bool, is_curve: bool) -> F
             .scalar("friction_utilisation", sites.iter().map(|s| s.utilisation).collect());
     }
     if is_curve && sites.len() > 2 {
-        let curvature = curvatures(sites);
+        let frames = frames(sites);
+        let of = |value: &dyn Fn(&Darboux, &SiteResult) -> f64| -> Vec<f64> {
+            frames.iter().zip(sites).map(|(f, s)| f.as_ref().map_or(0.0, |f| value(f, s))).collect()
+        };
         fields = fields
-            .scalar("normal_curvature", curvature.iter().map(|k| k[0]).collect())
-            .scalar("geodesic_curvature", curvature.iter().map(|k| k[1]).collect());
+            .scalar("normal_curvature", of(&|f, _| f.k_n))
+            .scalar("geodesic_curvature", of(&|f, _| f.k_g))
+            .scalar("tan_alpha", of(&|f, _| if f.k_g == 0.0 { 0.0 } else { f.tan_alpha() }))
+            .vector(
+                "tangent",
+                frames.iter().flat_map(|f| vector(&f.map_or(Vector::<3>::zeros(), |f| f.tau))).collect(),
+            );
+        if rubs {
+            fields = fields
+                .scalar("pulling_traction", of(&|f, s| s.friction.dot(&f.tau)))
+                .scalar("dragging_traction", of(&|f, s| s.friction.dot(&f.g)));
+        }
     }
     fields
 }
 
-/// Normal and geodesic curvature of the polygon of the sites, where they touch: those of the circle through three of them,
-/// along the outward normal `n` and along `τ × n`.
-fn curvatures(sites: &[SiteResult]) -> Vec<[f64; 2]> {
-    let last = sites.len() - 1;
-    let at = |k: usize| {
-        let k = k.clamp(1, last - 1);
-        let (before, after) = (sites[k].x - sites[k - 1].x, sites[k + 1].x - sites[k].x);
-        let (a, b) = (before.norm(), after.norm());
-        let tangent = (before / a * b + after / b * a).normalize();
-        (tangent, (after / b - before / a) * (2.0 / (a + b)))
-    };
-    (0..=last)
-        .map(|k| {
-            if sites[k].status == Status::Open {
-                return [0.0; 2];
-            }
-            let (tangent, curvature) = at(k);
-            let normal = sites[k].normal;
-            [curvature.dot(&normal), curvature.dot(&tangent.cross(&normal))]
-        })
-        .collect()
+/// The frames of the sites of a curve that touch.
+pub fn frames(sites: &[SiteResult]) -> Vec<Option<Darboux>> {
+    let points: Vec<Vector<3>> = sites.iter().map(|s| s.x).collect();
+    let normals: Vec<_> = sites.iter().map(|s| (s.status != Status::Open).then_some(s.normal)).collect();
+    of_points(&points, &normals)
 }
 
 fn attributes(fields: &Fields) -> Vec<Attribute> {

@@ -34,7 +34,7 @@ const ARROWS: usize = 40;
 const WIDTH: f64 = 900.0;
 
 /// A tube about a curve, coloured by values of its cells from 0 to 1.
-fn tube(curve: &CurveShown, radius: f64, colours: &[f64]) -> Body {
+pub fn tube(curve: &CurveShown, radius: f64, colours: &[f64]) -> Body {
     let n = curve.points.len();
     let mut tangents = vec![Vector::<3>::zeros(); n];
     for [a, b] in &curve.cells {

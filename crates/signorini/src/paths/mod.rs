@@ -1,119 +1,77 @@
-//! Paths on rigid bodies: shortest paths over bodies that move (`analysis = "wrapping"`), and paths of yarns on mandrels
-//! (`analysis = "winding"`). No equations of bodies are solved.
-//!
-//! The bodies are stated as in every case; numbers of paths are in the base units.
+//! Runs of problems of paths on rigid bodies: shortest paths over bodies that move, paths of yarns on mandrels, ropes on
+//! given curves. No equations of bodies are solved.
 
 mod output;
 mod picture;
-mod statement;
+mod rope;
 mod winding;
 mod wrapping;
 
-use crate::expression::{Expression, Names, Scope, parse};
 use crate::output::Folder;
-use crate::plan::{RigidBody, rigid_bodies};
-use crate::problem::{CaseError, KeyPath, Problem, Space, suggestion};
+use crate::output::figure::told;
+use crate::plan::paths::{PathPlan, Task, plan_paths};
+use crate::problem::units::{Dimension, FORCE, LENGTH};
+use crate::problem::{Analysis, CaseError, KeyPath, Problem};
 use crate::run::Progress;
 use crate::scene::SceneError;
-use serde_json::Value;
+use serde_json::{Value, json};
 use signorini_geometry::{Aabb, Point, Vector};
 use signorini_paths::PathError;
-use statement::{Analysis, Number, Statement};
 use std::path::Path;
 
-/// A case of paths that was read.
-pub struct PathCase {
-    problem: Problem,
-    statement: Statement,
-    bodies: Vec<RigidBody>,
-    text: String,
+/// Whether a problem is about paths rather than equilibrium.
+pub fn is_of_paths(problem: &Problem) -> bool {
+    problem.analysis.is_some_and(|a| a != Analysis::Equilibrium)
 }
 
-/// Whether a file is about paths rather than mechanics.
-pub fn is_path_case(text: &str) -> bool {
-    toml::from_str::<toml::Table>(text)
-        .is_ok_and(|t| t.get("analysis").and_then(|a| a.as_str()).is_some_and(|a| a == "wrapping" || a == "winding"))
+/// A problem of paths that was read.
+pub struct PathCase {
+    plan: PathPlan,
 }
 
 impl PathCase {
-    /// Reads a case; files that its bodies name are looked for beside the file `name`. `overrides` are `KEY=VALUE` pairs.
+    /// # Errors
+    /// What is wrong with the problem, and where.
+    pub fn new(problem: &Problem) -> Result<Self, CaseError> {
+        Ok(PathCase { plan: plan_paths(problem)? })
+    }
+
+    /// Reads a case from a text; files that its bodies name are looked for beside the file `name`. `overrides` are
+    /// `KEY=VALUE` pairs.
     ///
     /// # Errors
     /// What is wrong with it, and where.
     pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Self, CaseError> {
-        let (text, origins) = crate::case::override_key::apply(name, text, overrides)?;
-        let statement: Statement = toml::from_str(&text)
-            .map_err(|e| origins.relocated(crate::case::toml_error::from_toml(name, &text, &e)))?;
-        let mut problem = Problem::new(Space::ThreeD);
-        problem.title.clone_from(&statement.title);
-        problem.units.clone_from(&statement.units);
-        problem.constants = statement.constants.clone();
-        problem.functions = statement.functions.clone();
-        problem.bodies = statement.bodies.clone();
-        problem.source = crate::case::source(name, text.clone(), origins);
-        let bodies = rigid_bodies(&problem, &statement.around())?;
-        let case = PathCase { problem, statement, bodies, text };
-        case.check()?;
-        Ok(case)
+        Self::new(&crate::case::read(name, text, overrides)?)
     }
 
     /// Its title, or the name of its file.
     pub fn name(&self) -> &str {
-        self.problem.name()
+        self.plan.head.problem.name()
     }
 
     /// How many paths it states.
     pub fn paths(&self) -> usize {
-        self.statement.paths.len() + self.statement.winding.len()
-    }
-
-    fn check(&self) -> Result<(), CaseError> {
-        let (wanted, other, key) = match self.statement.analysis {
-            Analysis::Wrapping => (self.statement.paths.len(), self.statement.winding.len(), "paths"),
-            Analysis::Winding => (self.statement.winding.len(), self.statement.paths.len(), "winding"),
-        };
-        if wanted == 0 || other > 0 {
-            let message = format!("this analysis needs tables `[{key}.NAME]` and no other paths");
-            return Err(self.error(&["analysis"], message));
-        }
-        match self.statement.analysis {
-            Analysis::Wrapping => self.check_wrapping(),
-            Analysis::Winding => self.check_winding(),
+        match &self.plan.task {
+            Task::Wrapping { paths, .. } => paths.len(),
+            Task::Winding(list) => list.len(),
+            Task::EulerEytelwein(list) => list.len(),
         }
     }
 
-    fn error(&self, key: &[&str], message: impl Into<String>) -> CaseError {
-        self.problem.error(&KeyPath::of_keys(key), message)
-    }
-
-    /// The number of a body.
-    fn body(&self, key: &[&str], name: &str) -> Result<usize, CaseError> {
-        self.bodies.iter().position(|b| b.name == name).ok_or_else(|| {
-            let known: Vec<&str> = self.bodies.iter().map(|b| b.name.as_str()).collect();
-            self.error(key, format!("there is no body `{name}`")).help(suggestion(name, &known))
-        })
-    }
-
-    /// A number, or an expression of time.
-    fn expression(&self, key: &[&str], value: &Number, variables: &[&'static str]) -> Result<Expression, CaseError> {
-        match value {
-            Number::Plain(v) => Ok(Expression::number(*v)),
-            Number::Text(text) => {
-                let names = Names { variables: variables.to_vec(), ..Names::default() };
-                parse(text, &names).map_err(|e| self.error(key, format!("`{text}`: {}", e.message)))
-            }
-        }
+    fn problem(&self) -> &Problem {
+        &self.plan.head.problem
     }
 
     /// An error of a path at its table.
-    fn failed(&self, table: &str, name: &str, error: &PathError) -> CaseError {
-        self.error(&[table, name], format!("the path `{name}`: {error}"))
+    fn failed(&self, key: &KeyPath, name: &str, error: &PathError) -> CaseError {
+        self.problem().error(key, format!("the path `{name}`: {error}"))
     }
-}
 
-/// A value of an expression at a time.
-fn at_time(expression: &Expression, time: f64) -> f64 {
-    expression.evaluate(&Scope { position: [f64::NAN; 3], time })
+    /// The name of the base unit of a dimension; empty where no units are stated.
+    fn unit(&self, dimension: Dimension) -> String {
+        self.plan.head.units.map_or(String::new(), |u| u.written(dimension))
+    }
 }
 
 /// Runs a case into a folder and returns its summary.
@@ -122,11 +80,17 @@ fn at_time(expression: &Expression, time: f64) -> f64 {
 /// A path that is not found, a motion that is not finite, files that cannot be written.
 pub fn run(case: &PathCase, folder: &Path, progress: &mut dyn Progress) -> Result<Value, SceneError> {
     let folder = Folder::create(folder)?;
-    folder.write("case.toml", case.text.as_bytes())?;
-    let summary = match case.statement.analysis {
-        Analysis::Wrapping => wrapping::run(case, &folder, progress)?,
-        Analysis::Winding => winding::run(case, &folder, progress)?,
+    folder.write("case.toml", crate::case::text(case.problem()).as_bytes())?;
+    let mut summary = match &case.plan.task {
+        Task::Wrapping { frames, paths } => wrapping::run(case, (*frames, paths), &folder, progress)?,
+        Task::Winding(list) => winding::run(case, list, &folder, progress)?,
+        Task::EulerEytelwein(list) => rope::run(case, list, &folder, progress)?,
     };
+    summary["units"] = match case.plan.head.units {
+        Some(_) => json!({"length": case.unit(LENGTH), "force": case.unit(FORCE)}),
+        None => Value::Null,
+    };
+    summary["verdict"] = sentences(&summary).join("; ").into();
     folder.write("summary.json", format!("{summary:#}\n").as_bytes())?;
     Ok(summary)
 }
@@ -134,40 +98,48 @@ pub fn run(case: &PathCase, folder: &Path, progress: &mut dyn Progress) -> Resul
 /// What a summary says, in sentences.
 pub fn sentences(summary: &Value) -> Vec<String> {
     let mut out = Vec::new();
-    let number = |v: &Value| v.as_f64().map_or("-".to_string(), |v| format!("{v:.6}"));
+    let unit = |of: &str| summary["units"][of].as_str().unwrap_or_default().to_string();
+    let (length, force) = (unit("length"), unit("force"));
+    let number = |v: &Value| v.as_f64().map_or("-".to_string(), |v| told(v, None, ""));
+    let long = |v: &Value| v.as_f64().map_or("-".to_string(), |v| told(v, None, &length));
+    let strong = |v: &Value| v.as_f64().map_or("-".to_string(), |v| told(v, None, &force));
     for path in summary["paths"].as_array().into_iter().flatten() {
         let name = path["name"].as_str().unwrap_or_default();
         let frames = path["frames"].as_array().map_or(&[][..], Vec::as_slice);
         if let (Some(first), Some(last)) = (frames.first(), frames.last()) {
             let touched = last["contacts"].as_array().map_or(0, Vec::len);
+            let times = if touched == 1 { "once".to_string() } else { format!("{touched} times") };
             out.push(format!(
-                "{name}: length {} at t = 0, {} at the end, where it touches {touched} times",
-                number(&first["length"]),
-                number(&last["length"])
+                "`{name}`: length {} at t = {}, {} at t = {}, where it touches {times}",
+                long(&first["length"]),
+                number(&first["time"]),
+                long(&last["length"]),
+                number(&last["time"]),
             ));
             if let Some(limits) = last["tension_limits"].as_array() {
-                let [low, high] = [0, 1].map(|k| limits.get(k).map_or("-".into(), number));
-                out.push(format!("  friction holds tensions from {low} to {high} at its end"));
+                let [low, high] = [0, 1].map(|k| limits.get(k).map_or("-".into(), strong));
+                out.push(format!("friction holds tensions from {low} to {high} at the end of `{name}`"));
             }
             if last["slips"] == true {
-                out.push(format!("  it slips: {} of the friction is used", number(&last["utilisation"])));
+                let used = last["utilisation"].as_f64().unwrap_or(f64::NAN);
+                out.push(format!("`{name}` slips: {:.0} % of the friction is used", 100.0 * used));
             }
         }
         for event in path["events"].as_array().into_iter().flatten() {
             let text = |key: &str| event[key].as_str().unwrap_or_default().replace('_', " ");
-            out.push(format!("  {} of `{}` at t = {}", text("kind"), text("body"), number(&event["time"])));
+            out.push(format!("{} of `{name}` and `{}` at t = {}", text("kind"), text("body"), number(&event["time"])));
         }
     }
     for path in summary["winding"].as_array().into_iter().flatten() {
         let name = path["name"].as_str().unwrap_or_default();
         out.push(format!(
-            "{name}: length {}, largest slippage {}",
-            number(&path["length"]),
+            "`{name}`: length {}, largest slippage {}",
+            long(&path["length"]),
             number(&path["largest_slippage"])
         ));
         if let Some(pattern) = path["pattern"].as_object() {
             out.push(format!(
-                "  pattern of {} circuits, {} places on after each, dwell {} rad; {} covered",
+                "pattern of {} circuits, {} places on after each, dwell {} rad; {} of the mandrel covered",
                 pattern["n"],
                 pattern["k"],
                 number(&pattern["dwell"]),
@@ -176,8 +148,19 @@ pub fn sentences(summary: &Value) -> Vec<String> {
         }
         for key in ["bridges", "slips"] {
             for part in path[key].as_array().into_iter().flatten() {
-                out.push(format!("  it {key} from s = {} to {}", number(&part[0]), number(&part[1])));
+                out.push(format!("`{name}` {key} from s = {} to {}", long(&part[0]), long(&part[1])));
             }
+        }
+    }
+    for rope in summary["ropes"].as_array().into_iter().flatten() {
+        out.push(format!(
+            "`{}`: {}",
+            rope["name"].as_str().unwrap_or_default(),
+            rope["verdict"].as_str().unwrap_or("-")
+        ));
+        if let Some(limits) = rope["tension_limits"].as_array() {
+            let [low, high] = [0, 1].map(|k| limits.get(k).map_or("-".into(), strong));
+            out.push(format!("with {} at its start it holds {low} to {high} at its end", strong(&rope["tension"])));
         }
     }
     out
@@ -193,20 +176,39 @@ fn box_around(points: impl Iterator<Item = Point<3>>, part: f64) -> Aabb<3> {
     Aabb::new(low - pad, high + pad)
 }
 
+/// The surfaces of all bodies: of those without an end the part in a box.
+fn surfaces(case: &PathCase, time: f64, around: &Aabb<3>) -> Result<Vec<picture::Surface>, CaseError> {
+    let surface = |b: &crate::plan::RigidBody| {
+        let motion = b.motion(case.problem(), time)?;
+        let bounds = b.bounds.map_or(*around, |bounds| {
+            let corners =
+                (0..8).map(|c| Point::<3>::from_fn(|k, _| if c >> k & 1 == 0 { bounds.min[k] } else { bounds.max[k] }));
+            box_around(corners.map(|x| motion.point(&x)), 0.05)
+        });
+        Ok(picture::Surface::new(&b.gap_at(case.problem(), time)?, [bounds.min, bounds.max]))
+    };
+    case.plan.bodies.iter().map(surface).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::run::Silent;
 
-    const WRAPPING: &str = "analysis = \"wrapping\"\nframes = 2\n\
+    const WRAPPING: &str = "analysis = \"wrapping\"\nframes = 2\nconstants.height = 0.3\n\
         [bodies.egg.rigid]\nshape.ellipsoid = { center = [0, 0, 0], semi_axes = [2, 1.5, 1] }\n\
-        [paths.tendon]\nfrom = [-3, \"0.5 + 4*t\", 0.3]\nto = [2.2, 1.6, -0.9]\naround = [\"egg\"]\n\
+        [paths.tendon]\nfrom = [-3, \"0.5 + 4*t\", \"height\"]\nto = [2.2, 1.6, -0.9]\naround = [\"egg\"]\n\
         friction.coulomb = { mu = 0.3 }\ntension = 2.0\nend_tension = \"2 + t\"\n";
 
-    const WINDING: &str = "analysis = \"winding\"\n\
+    const WINDING: &str = "analysis = \"winding\"\nunits = \"mm-N-MPa\"\n\
         [bodies.dome.rigid]\nshape.ellipsoid = { center = [0, 0, 0], semi_axes = [50, 50, 30] }\n\
         [winding.yarn]\non = \"dome\"\nstart = { z = 0.0, angle = \"25 deg\" }\nfriction = 0.2\n\
-        polar_opening = { radius = 25.7059722868 }\n";
+        polar_opening = { radius = \"2.57059722868 cm\" }\n";
+
+    const ROPE: &str = "analysis = \"euler_eytelwein\"\n\
+        [bodies.drum.rigid]\nshape.cylinder = { point = [0, 0, 0], axis = [0, 0, 1], radius = 2 }\n\
+        [ropes.line]\non = \"drum\"\npath.helix = { radius = 2, pitch = 3, turns = 1.5 }\n\
+        friction.coulomb = { mu = 0.2 }\ntension = 10\nend_tension = 40\n";
 
     fn summary(text: &str) -> (tempfile::TempDir, Value) {
         let folder = tempfile::tempdir().unwrap();
@@ -225,12 +227,20 @@ mod tests {
         let limit = frames[0]["tension_limits"][1].as_f64().unwrap();
         assert!((limit - 2.0 * frames[0]["log_ratio"][1].as_f64().unwrap().exp()).abs() < 1e-12);
         let out = folder.path().join("out");
-        for file in
-            ["tendon.csv", "tendon.pvd", "bodies.pvd", "pictures/paths.png", "summary.json", "frames/tendon_0001.vtp"]
-        {
+        for file in [
+            "paths/tendon.csv",
+            "paths/tendon.pvd",
+            "paths/frames/tendon_0001.vtp",
+            "bodies.pvd",
+            "history.csv",
+            "pictures/paths.png",
+        ] {
             assert!(out.join(file).exists(), "{file}");
         }
         assert!(sentences(&summary).len() > 2);
+        // The folder may be written again.
+        let case = PathCase::parse("case.toml", WRAPPING, &[]).unwrap();
+        assert!(run(&case, &out, &mut Silent).is_ok());
     }
 
     #[test]
@@ -239,14 +249,35 @@ mod tests {
         let yarn = &summary["winding"][0];
         assert!((yarn["slippage_sought"].as_f64().unwrap() - 0.1).abs() < 1e-8, "{yarn}");
         assert!((yarn["length"].as_f64().unwrap() - 58.410_219_3).abs() < 1e-6 && yarn["stable"] == true, "{yarn}");
-        assert!(folder.path().join("out/yarn.csv").exists());
-        let varied =
-            WINDING.replace("polar_opening = { radius = 25.7059722868 }", "slippage = \"0.001*s\"\nlength = 10");
+        assert!(folder.path().join("out/paths/yarn.csv").exists());
+        let varied = WINDING
+            .replace("polar_opening = { radius = \"2.57059722868 cm\" }", "slippage = \"0.001*s + 0*r\"\nlength = 10");
         let case = PathCase::parse("case.toml", &varied, &[]).unwrap();
-        let slippage = case.slippage("yarn", &case.statement.winding["yarn"]).unwrap().unwrap();
-        let signorini_paths::winding::Slippage::Variable(f) = slippage else { panic!() };
+        let Task::Winding(list) = &case.plan.task else { panic!() };
+        let Some(signorini_paths::winding::Slippage::Variable(f)) = &list[0].slippage else { panic!() };
         let at = signorini_paths::winding::At { s: 20.0, angle: 0.3, radius: 1.0, height: 2.0 };
         assert!((f(&at) - 0.02).abs() < 1e-15);
+    }
+
+    /// On a cylinder a helix of inclination `β` turns by `φ cos β` on a circle of curvature: `ln T₁/T₀ <= μ φ cos β`.
+    #[test]
+    fn a_rope_on_a_given_curve_from_a_case_file() {
+        let (folder, found) = summary(ROPE);
+        let turn = 3.0 * std::f64::consts::PI;
+        let inclination = (3.0 / (4.0 * std::f64::consts::PI)).atan();
+        let limit = 10.0 * (0.2 * turn * inclination.cos()).exp();
+        let rope = &found["ropes"][0];
+        assert!((rope["tension_limits"][1].as_f64().unwrap() - limit).abs() < 1e-9 * limit, "{rope}");
+        assert_eq!(rope["holds"], true, "{rope}");
+        let out = folder.path().join("out");
+        let table = std::fs::read_to_string(out.join("paths/line.csv")).unwrap();
+        assert!(table.starts_with("s,x,y,z") && table.contains("tension") && out.join("paths/line.vtp").exists());
+        let formula =
+            "path.formula = { position = [\"2*cos(u)\", \"2*sin(u)\", \"0.3*sin(2*u)\"], from = 0, to = \"2*pi\" }";
+        let bent = ROPE.replace("path.helix = { radius = 2, pitch = 3, turns = 1.5 }", formula);
+        let (_, found) = summary(&bent.replace("mu = 0.2", "mu = [0.2, 0.05]"));
+        let told = found["ropes"][0]["verdict"].as_str().unwrap();
+        assert!(told.contains("slides sideways at s = "), "{told}");
     }
 
     #[test]
@@ -256,9 +287,15 @@ mod tests {
             let place = error.place.as_ref().map(|place| place.line_and_column().0);
             assert!(error.to_string().contains(part) && place == Some(line), "{error:?}");
         };
-        wrong(&WRAPPING.replace("[\"egg\"]", "[\"eg\"]"), "there is no body `eg`", 8);
+        wrong(&WRAPPING.replace("[\"egg\"]", "[\"eg\"]"), "there is no body `eg`", 9);
+        wrong(&WRAPPING.replace("[\"egg\"]", "[[\"egg\"], []]"), "for 1 parts between fixed points", 9);
         wrong(&WRAPPING.replace("frames = 2", "frames = 0"), "`frames` is 0", 2);
-        wrong(&WRAPPING.replace("mu = 0.3", "mu = -0.3"), "coefficient of friction", 9);
-        wrong(&WINDING.replace("25 deg", "wide deg"), "is not a number of degrees", 6);
+        wrong(&WRAPPING.replace("mu = 0.3", "mu = -0.3"), "coefficient of friction", 10);
+        wrong(&WRAPPING.replace("\"height\"", "\"hight\""), "unknown name `hight`", 7);
+        wrong(&WINDING.replace("25 deg", "wide deg"), "is not a number of degrees", 7);
+        wrong(&WINDING.replace("2.57059722868 cm", "2 N"), "the unit is that of a force", 9);
+        wrong(&ROPE.replace("euler_eytelwein", "winding"), "`ropes` belongs to another analysis", 4);
+        wrong(&ROPE.replace("pitch = 3, ", ""), "pitch", 6);
+        wrong(&ROPE.replace("end_tension = 40", "end_tension = 0"), "must be positive", 9);
     }
 }

@@ -6,6 +6,7 @@ use crate::output::{Folder, OutputError};
 use crate::scene::output::numbers;
 use signorini_geometry::{Point, Vector};
 use signorini_paths::darboux::Darboux;
+use signorini_paths::friction::{Friction, Reactions};
 use signorini_paths::winding::WindingPoint;
 use signorini_paths::wrapping::PathPoint;
 use std::fmt::Write as _;
@@ -33,6 +34,8 @@ pub struct LinePoint {
     pub utilisation: f64,
     /// Of a yarn: angle from the meridian, angle around the axis, `λ`.
     pub winding: [f64; 3],
+    /// Of a rope on a given curve: tension, reactions along and across it; not a number where it does not hold.
+    pub rope: [f64; 3],
 }
 
 impl LinePoint {
@@ -47,6 +50,7 @@ impl LinePoint {
             normal_force: 0.0,
             utilisation: 0.0,
             winding: [0.0; 3],
+            rope: [f64::NAN; 3],
         };
         if let Some((body, frame)) = &p.contact {
             out.body = *body as i64;
@@ -63,6 +67,20 @@ impl LinePoint {
         out.utilisation = friction.map_or(0.0, |mu| p.slippage.abs() / mu);
         if p.frame.k_n >= 0.0 {
             out.utilisation = f64::INFINITY;
+        }
+        out
+    }
+
+    /// A point of a rope on a given curve under a tension at its start, with its reactions where it holds.
+    pub fn of_rope(frame: &Darboux, friction: &Friction, start: f64, reactions: Option<&Reactions>) -> Self {
+        let tension = reactions.map_or(start, |r| r.tension);
+        let mut out =
+            LinePoint::of_path(&PathPoint { s: frame.s, x: frame.x, contact: Some((0, *frame)) }, tension, false);
+        // What does not hold slips under the least friction along it already.
+        let found = reactions.copied().unwrap_or_else(|| Reactions::new(frame, start, 0.0, friction));
+        out.utilisation = found.utilisation;
+        if reactions.is_some() {
+            out.rope = [found.tension, found.along, found.across];
         }
         out
     }
@@ -98,11 +116,11 @@ pub fn write_lines(times: &[f64], frames: &[Vec<Line>], folder: &Folder) -> Resu
                 text.push('\n');
             }
             let file = format!("frames/{name}_{frame:04}.vtp");
-            folder.write(&file, &line_file(&lines[k])?)?;
+            folder.write(&format!("paths/{file}"), &line_file(&lines[k])?)?;
             files.push((*time, file));
         }
-        folder.write(&format!("{name}.csv"), text.as_bytes())?;
-        folder.write(&format!("{name}.pvd"), collection(&files).as_bytes())?;
+        folder.write(&format!("paths/{name}.csv"), text.as_bytes())?;
+        folder.write(&format!("paths/{name}.pvd"), collection(&files).as_bytes())?;
     }
     Ok(())
 }
@@ -116,8 +134,23 @@ pub fn write_winding(lines: &[Line], folder: &Folder) -> Result<(), OutputError>
             let [angle, theta, slippage] = p.winding;
             let _ = writeln!(text, ",{angle},{theta},{slippage},{}", p.utilisation);
         }
-        folder.write(&format!("{}.csv", line.name), text.as_bytes())?;
-        folder.write(&format!("{}.vtp", line.name), &line_file(line)?)?;
+        folder.write(&format!("paths/{}.csv", line.name), text.as_bytes())?;
+        folder.write(&format!("paths/{}.vtp", line.name), &line_file(line)?)?;
+    }
+    Ok(())
+}
+
+/// Files of ropes on given curves: a table and a VTP file each.
+pub fn write_ropes(lines: &[Line], folder: &Folder) -> Result<(), OutputError> {
+    for line in lines {
+        let mut text = format!("{COLUMNS},tan_alpha,tension,along,across,utilisation\n");
+        for p in &line.points {
+            row(&mut text, p);
+            let [tension, along, across] = p.rope;
+            let _ = writeln!(text, ",{},{tension},{along},{across},{}", p.k_g / p.k_n, p.utilisation);
+        }
+        folder.write(&format!("paths/{}.csv", line.name), text.as_bytes())?;
+        folder.write(&format!("paths/{}.vtp", line.name), &line_file(line)?)?;
     }
     Ok(())
 }
@@ -143,6 +176,8 @@ fn line_file(line: &Line) -> Result<Vec<u8>, OutputError> {
                 scalar("k_g", &|p| p.k_g),
                 scalar("normal_force", &|p| p.normal_force),
                 scalar("slippage", &|p| p.winding[2]),
+                scalar("tension", &|p| p.rope[0]),
+                scalar("utilisation", &|p| p.utilisation),
                 vector("tau", 0),
                 vector("g", 1),
                 vector("n", 2),

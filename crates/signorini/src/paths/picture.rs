@@ -1,32 +1,33 @@
 //! Bodies and paths in space: the path coloured by its normal force, with arrows of that force, and red where it slips or
-//! bridges.
+//! bridges. Of paths in time their length.
 
 use super::PathCase;
-use super::output::Line;
+use super::output::{Line, LinePoint};
 use crate::output::camera::Camera;
-use crate::output::chart::{save, viridis};
+use crate::output::chart::{self, save, viridis};
+use crate::output::figure::told;
+use crate::output::labels::Labels;
 use crate::output::level;
-use crate::output::page::{Page, css};
-use crate::output::render::{Body, Look, Paint, render};
+use crate::output::page::{Page, Scale, Sign};
+use crate::output::panel::{Axis, Panel};
+use crate::output::render::{Body, Look, Paint};
+use crate::output::solid_state::insert;
+use crate::output::system::CurveShown;
+use crate::output::system_pictures::tube;
 use crate::output::{Folder, OutputError};
-use crate::scene::picture::rod;
 use plotters::style::RGBColor;
 use signorini_contact::GapJet;
 use signorini_geometry::Vector;
-use std::fmt::Write as _;
 
-const SIZE: (f64, f64) = (900.0, 620.0);
-const AREA: [f64; 4] = [40.0, 60.0, 860.0, 560.0];
+const SIZE: (f64, f64) = (1060.0, 760.0);
 const BODIES: [RGBColor; 3] = [RGBColor(158, 182, 214), RGBColor(226, 196, 146), RGBColor(170, 205, 170)];
 const IN_THE_AIR: RGBColor = RGBColor(70, 70, 70);
 const SLIPS: RGBColor = RGBColor(213, 30, 30);
-/// Half the width of a path on the page, and the length of the largest arrow.
-const THICK: f64 = 1.8;
-const ARROW: f64 = 46.0;
-/// Points of a path per arrow.
-const EVERY: usize = 3;
-/// From where it is seen where no camera is stated.
-const FROM: [f64; 3] = [1.0, -1.6, 0.9];
+/// The radius of a path, and the length of the largest arrow, as parts of the extent of what is drawn.
+const THICK: f64 = 0.004;
+const ARROW: f64 = 0.08;
+/// At most so many arrows on a path.
+const ARROWS: usize = 40;
 
 /// The surface of a body in a box.
 pub struct Surface {
@@ -42,11 +43,28 @@ impl Surface {
     }
 }
 
+/// The pieces of a path that a test keeps, as a tube coloured by the normal force.
+fn pieces(line: &Line, keep: &dyn Fn(&LinePoint, &LinePoint) -> bool, scale: &Scale, radius: f64) -> Body {
+    let cells: Vec<[u32; 2]> = (1..line.points.len() as u32)
+        .map(|k| [k - 1, k])
+        .filter(|[a, b]| keep(&line.points[*a as usize], &line.points[*b as usize]))
+        .collect();
+    let middle =
+        |[a, b]: &[u32; 2]| 0.5 * (line.points[*a as usize].normal_force + line.points[*b as usize].normal_force);
+    let colours: Vec<f64> = cells.iter().map(|c| scale.place(middle(c))).collect();
+    let points = line.points.iter().map(|p| p.x).collect();
+    let curve = CurveShown { name: String::new(), radius, points, arc: Vec::new(), cells, forces: Vec::new() };
+    tube(&curve, radius, &colours)
+}
+
 /// Draws paths over bodies into a folder.
 pub fn draw(case: &PathCase, surfaces: &[Surface], lines: &[Line], folder: &Folder) -> Result<(), OutputError> {
-    let (from, up) = case.statement.camera.map_or((FROM, [0.0, 0.0, 1.0]), |c| (c.from, c.up));
-    let seen = surfaces.iter().flat_map(|s| &s.points).chain(lines.iter().flat_map(|l| l.points.iter().map(|p| &p.x)));
-    let camera = Camera::new(&Vector::<3>::from(from), &Vector::<3>::from(up), seen, AREA);
+    let [from, up] = case.plan.view;
+    let seen: Vec<Vector<3>> = (surfaces.iter().flat_map(|s| &s.points).copied())
+        .chain(lines.iter().flat_map(|l| l.points.iter().map(|p| p.x)))
+        .collect();
+    let bounds = crate::output::solid_state::bounds(seen.iter());
+    let extent = (bounds[1] - bounds[0]).max();
     let mut bodies: Vec<Body> = Vec::new();
     for (k, surface) in surfaces.iter().enumerate() {
         let mut body = Body::empty(Paint::Plain(BODIES[k % BODIES.len()]));
@@ -55,41 +73,90 @@ pub fn draw(case: &PathCase, surfaces: &[Surface], lines: &[Line], folder: &Fold
         body.normals = surface.triangles.iter().map(|t| t.map(|v| surface.normals[v as usize])).collect();
         bodies.push(body);
     }
-    let largest = lines.iter().flat_map(|l| &l.points).map(|p| p.normal_force).fold(0.0, f64::max);
-    let radius = THICK / camera.scale;
+    let touches = |a: &LinePoint, b: &LinePoint| a.body >= 0 && a.body == b.body;
+    let slips = |a: &LinePoint, b: &LinePoint| touches(a, b) && a.utilisation.max(b.utilisation) > 1.0 + 1e-9;
+    let forces: Vec<f64> = lines.iter().flat_map(|l| &l.points).map(|p| p.normal_force.max(0.0)).collect();
+    let scale = Scale::of(&forces);
+    let mut key = Vec::new();
+    let mut some_slip = false;
     for line in lines {
-        for w in line.points.windows(2) {
-            let touches = w[0].body >= 0 && w[0].body == w[1].body;
-            let colour = match (touches, w[0].utilisation.max(w[1].utilisation) > 1.0) {
-                (false, _) => IN_THE_AIR,
-                (true, true) => SLIPS,
-                (true, false) => {
-                    viridis(0.5 * (w[0].normal_force + w[1].normal_force) / largest.max(f64::MIN_POSITIVE))
-                }
-            };
-            let mut piece = Body::empty(Paint::Plain(colour));
-            rod(&mut piece, [w[0].x, w[1].x], radius, &camera.towards);
-            bodies.push(piece);
+        let kinds: [(&dyn Fn(&LinePoint, &LinePoint) -> bool, Option<RGBColor>); 3] = [
+            (&|a, b| !touches(a, b), Some(IN_THE_AIR)),
+            (&|a, b| slips(a, b), Some(SLIPS)),
+            (&|a, b| touches(a, b) && !slips(a, b), None),
+        ];
+        for (k, (keep, colour)) in kinds.into_iter().enumerate() {
+            let mut body = pieces(line, keep, &scale, THICK * extent);
+            if let Some(colour) = colour {
+                body.paint = Paint::Plain(colour);
+            }
+            some_slip |= k == 1 && !body.triangles.is_empty();
+            bodies.push(body);
         }
     }
     bodies.retain(|b| !b.triangles.is_empty());
-    let mut page =
-        Page::new(SIZE, case.name(), "path coloured by its normal force per length; red where it slips or bridges");
-    let [left, top, right, bottom] = camera.area;
-    render(&bodies, &camera, Look::Solid)?.insert(&mut page.svg, (left, right), (top, bottom))?;
-    for p in lines.iter().flat_map(|l| l.points.iter().step_by(EVERY)).filter(|p| p.body >= 0 && p.normal_force > 0.0) {
-        // Only on the side that is seen.
-        if p.frame[2].dot(&camera.towards) <= 0.0 {
-            continue;
+    let labels = Labels(case.plan.head.unit_names());
+    let mut page = Page::new(SIZE, case.name(), "");
+    let inner = page.room();
+    let area = [inner[0] + 26.0, inner[1], inner[2] - 10.0, inner[3] - 6.0];
+    let corners = (0..8).map(|c| Vector::<3>::from_fn(|k, _| bounds[c >> k & 1][k]));
+    let around: Vec<Vector<3>> = seen.iter().copied().chain(corners).collect();
+    let camera = Camera::new(&from, &up, around.iter(), area);
+    insert(&mut page.svg, &bodies, &camera, Look::Solid)?;
+    let axes = ["x", "y", "z"].map(|a| labels.length(a));
+    camera.axes(&mut page.svg, bounds, axes.each_ref().map(String::as_str));
+    let largest = forces.iter().copied().fold(0.0, f64::max);
+    for line in lines {
+        let pressed: Vec<&LinePoint> = line.points.iter().filter(|p| p.body >= 0 && p.normal_force > 0.0).collect();
+        for p in pressed.iter().step_by(pressed.len().div_ceil(ARROWS).max(1)) {
+            // Only on the side that is seen.
+            if p.frame[2].dot(&camera.towards) <= 0.0 {
+                continue;
+            }
+            let end = p.x + p.frame[2] * (ARROW * extent * p.normal_force / largest);
+            let colour = viridis(scale.place(p.normal_force));
+            chart::line(&mut page.svg, &[camera.at(&p.x), camera.at(&end)], colour);
         }
-        let length = ARROW / camera.scale * p.normal_force / largest;
-        let ((x1, y1), (x2, y2)) = (camera.at(&p.x), camera.at(&(p.x + p.frame[2] * length)));
-        let colour = css(viridis(p.normal_force / largest));
-        let _ = write!(
-            page.svg,
-            "<line x1=\"{x1:.2}\" y1=\"{y1:.2}\" x2=\"{x2:.2}\" y2=\"{y2:.2}\" stroke=\"{colour}\" stroke-width=\"1.1\"/>\
-             <circle cx=\"{x2:.2}\" cy=\"{y2:.2}\" r=\"1.8\" fill=\"{colour}\"/>"
-        );
+        if let Some(p) = line.points.get(line.points.len() / 2).filter(|_| lines.len() > 1) {
+            let away = if p.body >= 0 { p.frame[2] * (0.5 * ARROW * extent) } else { Vector::<3>::zeros() };
+            chart::word(&mut page.svg, camera.at(&(p.x + away)), &line.name, IN_THE_AIR);
+        }
     }
+    page.bar(&scale, &labels.force_per_length("normal force"));
+    if largest > 0.0 {
+        key.push((Sign::Line(viridis(0.5)), "touches: colour and arrows are the normal force per length".to_string()));
+    }
+    if lines.iter().any(|l| l.points.iter().any(|p| p.body < 0)) {
+        key.push((Sign::Line(IN_THE_AIR), "in the air".into()));
+    }
+    if some_slip {
+        key.push((Sign::Line(SLIPS), "slips or bridges".into()));
+    }
+    page.key(&key);
     save(folder, "paths", &page.finish())
+}
+
+/// A value of each path in time as lines.
+pub fn history(
+    case: &PathCase,
+    (file, title, value_name): (&str, &str, &str),
+    curves: &[(String, Vec<(f64, f64)>)],
+    folder: &Folder,
+) -> Result<(), OutputError> {
+    let all = || curves.iter().flat_map(|c| c.1.iter());
+    let range = |of: fn(&(f64, f64)) -> f64| {
+        all().map(of).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)))
+    };
+    let mut page = Page::new((900.0, 460.0), &format!("{title}: {}", case.name()), "");
+    let (x, y) = (Axis::around("t", range(|p| p.0)), Axis::around(value_name, range(|p| p.1)));
+    let mut panel = Panel::new(&mut page.svg, [0.0, 46.0, 900.0, 440.0], x, y);
+    let mut key = Vec::new();
+    for (k, (name, points)) in curves.iter().enumerate() {
+        let colour = viridis(0.15 + 0.7 * k as f64 / curves.len().max(2) as f64);
+        panel.line(points, Sign::Line(colour), 2.0);
+        let last = points.last().map_or(0.0, |p| p.1);
+        key.push((Sign::Line(colour), format!("{name}, at the end {}", told(last, None, ""))));
+    }
+    page.key(&key);
+    save(folder, file, &page.finish())
 }

@@ -1,11 +1,9 @@
 //! Paths of yarns on mandrels: slippage, openings, circuits, patterns.
 
 use super::output::{self, Line, LinePoint};
-use super::statement::{Circuits, Number, Winding};
-use super::{PathCase, box_around, picture, wrapping};
-use crate::expression::Scope;
+use super::{PathCase, box_around, picture, surfaces};
 use crate::output::Folder;
-use crate::problem::CaseError;
+use crate::plan::paths::PlannedWinding;
 use crate::run::Progress;
 use crate::scene::SceneError;
 use serde_json::{Value, json};
@@ -25,99 +23,6 @@ const TURNS: f64 = 50.0;
 const SOUGHT: f64 = 0.6;
 /// Circuits beyond those that cover the mandrel among which a pattern is sought: an overlap of bands of 15 %.
 const OVERLAP: f64 = 0.15;
-
-impl PathCase {
-    pub(super) fn check_winding(&self) -> Result<(), CaseError> {
-        for (name, key) in &self.statement.winding {
-            self.body(&["winding", name, "on"], &key.on)?;
-            self.angle(name, key)?;
-            self.slippage(name, key)?;
-            let positive = [
-                ("friction", key.friction),
-                ("band", key.band),
-                ("length", key.length),
-                ("spacing", key.spacing),
-                ("polar_opening", key.polar_opening.map(|o| o.radius)),
-            ];
-            for (word, value) in positive {
-                if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
-                    return Err(self.error(&["winding", name, word], format!("{value} must be greater than zero")));
-                }
-            }
-            if let Some(pattern) = &key.pattern {
-                if key.band.is_none() {
-                    return Err(self.error(&["winding", name, "pattern"], "a pattern needs the width of the `band`"));
-                }
-                if let Circuits::Word(word) = &pattern.circuits
-                    && word != "auto"
-                {
-                    let message = format!("`{word}` is no number of circuits");
-                    return Err(self
-                        .error(&["winding", name, "pattern", "circuits"], message)
-                        .help("a number, or \"auto\""));
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn angle(&self, name: &str, key: &Winding) -> Result<f64, CaseError> {
-        let place = ["winding", name, "start", "angle"];
-        match &key.start.angle {
-            Number::Plain(v) if v.is_finite() => Ok(*v),
-            Number::Text(text) if text.trim_end().ends_with("deg") => {
-                let number = text.trim_end().trim_end_matches("deg").trim();
-                let degrees: f64 =
-                    number.parse().map_err(|_| self.error(&place, format!("`{number}` is not a number of degrees")))?;
-                Ok(degrees.to_radians())
-            }
-            other => Err(self.error(&place, format!("{other:?} is not an angle")).help("radians, or \"25 deg\"")),
-        }
-    }
-
-    /// The stated slippage; `s` is read as the time, and angle, radius and height as the position of the expression.
-    pub(super) fn slippage(&self, name: &str, key: &Winding) -> Result<Option<Slippage>, CaseError> {
-        let place = ["winding", name, "slippage"];
-        match &key.slippage {
-            None => Ok(None),
-            Some(Number::Plain(v)) if v.is_finite() => Ok(Some(Slippage::Constant(*v))),
-            Some(Number::Plain(v)) => Err(self.error(&place, format!("{v} is not a finite number"))),
-            Some(Number::Text(text)) => {
-                let renamed = Number::Text(renamed(text));
-                let expression = self.expression(&place, &renamed, &["x", "y", "z", "t"]).map_err(|e| {
-                    e.help(format!("`{text}` may contain s, angle (from the meridian), r and z of the yarn"))
-                })?;
-                if let Some(value) = expression.constant() {
-                    return Ok(Some(Slippage::Constant(value)));
-                }
-                Ok(Some(Slippage::Variable(Arc::new(move |at: &At| {
-                    expression.evaluate(&Scope { position: [at.angle, at.radius, at.height], time: at.s })
-                }))))
-            }
-        }
-    }
-}
-
-/// An expression with the names of a yarn replaced by those of places and time.
-fn renamed(text: &str) -> String {
-    let mut out = String::new();
-    let mut word = String::new();
-    for c in text.chars().chain([' ']) {
-        if c.is_alphanumeric() || c == '_' {
-            word.push(c);
-            continue;
-        }
-        out += match word.as_str() {
-            "s" => "t",
-            "angle" => "x",
-            "r" => "y",
-            other => other,
-        };
-        word.clear();
-        out.push(c);
-    }
-    out.trim_end().to_string()
-}
 
 /// The point of the mandrel at a height and an angle around the axis, farthest from the axis.
 fn start_point(mandrel: &Mandrel<'_>, z: f64, theta: f64) -> Option<Point<3>> {
@@ -146,51 +51,54 @@ fn start_point(mandrel: &Mandrel<'_>, z: f64, theta: f64) -> Option<Point<3>> {
 }
 
 /// Winds all paths.
-pub(super) fn run(case: &PathCase, folder: &Folder, progress: &mut dyn Progress) -> Result<Value, SceneError> {
-    let count = case.statement.winding.len();
+pub(super) fn run(
+    case: &PathCase,
+    list: &[PlannedWinding],
+    folder: &Folder,
+    progress: &mut dyn Progress,
+) -> Result<Value, SceneError> {
+    let count = list.len();
     let mut lines = Vec::new();
     let mut summaries = Vec::new();
-    for (k, (name, key)) in case.statement.winding.iter().enumerate() {
+    for (k, yarn) in list.iter().enumerate() {
         progress.step(k, count, 0.0);
-        let (line, summary) = one(case, name, key)?;
+        let (line, summary) = one(case, yarn)?;
         lines.push(line);
         summaries.push(summary);
     }
     output::write_winding(&lines, folder)?;
     let around = box_around(lines.iter().flat_map(|l| l.points.iter().map(|p| p.x)), 0.1);
-    let surfaces = wrapping::surfaces(case, 0.0, &around)?;
-    output::write_bodies(&[0.0], std::slice::from_ref(&surfaces), folder)?;
-    picture::draw(case, &surfaces, &lines, folder)?;
+    let bodies = surfaces(case, 0.0, &around)?;
+    output::write_bodies(&[0.0], std::slice::from_ref(&bodies), folder)?;
+    picture::draw(case, &bodies, &lines, folder)?;
     progress.step(count, count, 0.0);
     Ok(json!({"title": case.name(), "analysis": "winding", "status": "done", "winding": summaries}))
 }
 
-fn one(case: &PathCase, name: &str, key: &Winding) -> Result<(Line, Value), SceneError> {
-    let failed = |e| case.failed("winding", name, &e);
-    let body = &case.bodies[case.body(&["winding", name, "on"], &key.on)?];
-    let direction = Vector::<3>::from(key.axis.unwrap_or([0.0, 0.0, 1.0]));
-    let Some(direction) = direction.try_normalize(0.0) else {
-        return Err(case.error(&["winding", name, "axis"], "the axis has no length").into());
-    };
+fn one(case: &PathCase, key: &PlannedWinding) -> Result<(Line, Value), SceneError> {
+    let name = &key.name;
+    let failed = |e| case.failed(&key.key, name, &e);
+    let body = &case.plan.bodies[key.body];
+    let direction = key.axis;
     let mandrel = Mandrel { surface: body.shape().as_ref(), axis: Axis { origin: body.shape().centre(), direction } };
-    let Some(point) = start_point(&mandrel, key.start.z, key.start.theta) else {
-        let message = format!("the mandrel has no surface about the axis at z = {}", key.start.z);
-        return Err(case.error(&["winding", name, "start"], message).into());
+    let [z, theta, angle] = key.start;
+    let Some(point) = start_point(&mandrel, z, theta) else {
+        let message = format!("the mandrel has no surface about the axis at z = {z}");
+        return Err(case.problem().error(&key.key, message).into());
     };
-    let start = Start { point, angle: case.angle(name, key)? };
+    let start = Start { point, angle };
     let from_axis = point - mandrel.axis.origin;
     let radius = (from_axis - direction * direction.dot(&from_axis)).norm();
     let longest = key.length.unwrap_or(TURNS * TAU * radius);
     let spacing = key.spacing.unwrap_or(TAU * radius / POINTS * 4.0);
     let half_band = 0.5 * key.band.unwrap_or(0.0);
     let mut summary = json!({"name": name, "start_radius": radius, "start_angle": start.angle});
-    let stated = case.slippage(name, key)?;
-    let slippage = match (stated, key.polar_opening) {
+    let slippage = match (key.slippage.clone(), key.opening) {
         (Some(slippage), _) => slippage,
         (None, None) => Slippage::Constant(0.0),
         (None, Some(opening)) => {
             let most = key.friction.unwrap_or(SOUGHT);
-            let middle = opening.radius + half_band;
+            let middle = opening + half_band;
             let found = slippage_for_opening(&mandrel, &start, middle, [-most, most], longest).map_err(failed)?;
             summary["slippage_sought"] = found.slippage.into();
             Slippage::Constant(found.slippage)
@@ -198,7 +106,7 @@ fn one(case: &PathCase, name: &str, key: &Winding) -> Result<(Line, Value), Scen
     };
     let points: Vec<WindingPoint>;
     let halves: Vec<WindingPath>;
-    if let Some(pattern) = &key.pattern {
+    if let Some(circuits) = key.pattern {
         let opposite = match &slippage {
             Slippage::Constant(v) => Slippage::Constant(-v),
             Slippage::Variable(f) => {
@@ -210,9 +118,9 @@ fn one(case: &PathCase, name: &str, key: &Winding) -> Result<(Line, Value), Scen
         let band = 2.0 * half_band;
         let cover = |angle: f64, n: u32| coverage(band, start.angle, radius, angle, n).map_err(failed);
         let least = cover(found.angle, 1)?.circuits;
-        let range = match pattern.circuits {
-            Circuits::Number(n) => n..=n,
-            Circuits::Word(_) => least..=(f64::from(least) * (1.0 + OVERLAP)).floor() as u32,
+        let range = match circuits {
+            Some(n) => n..=n,
+            None => least..=(f64::from(least) * (1.0 + OVERLAP)).floor() as u32,
         };
         let best = patterns(found.angle, range).map_err(failed)?[0];
         let laid = cover(found.angle + best.dwell, best.n)?;
@@ -232,7 +140,7 @@ fn one(case: &PathCase, name: &str, key: &Winding) -> Result<(Line, Value), Scen
         points = up.points.iter().copied().chain(shifted).collect();
         halves = found.halves.to_vec();
     } else {
-        let until = if key.polar_opening.is_some() { Until::Turn } else { Until::Length };
+        let until = if key.opening.is_some() { Until::Turn } else { Until::Length };
         let path = wind(&mandrel, &start, &slippage, until, longest, spacing).map_err(failed)?;
         if until == Until::Turn {
             let end = path.end();
@@ -262,5 +170,5 @@ fn one(case: &PathCase, name: &str, key: &Winding) -> Result<(Line, Value), Scen
     summary["bridges"] = json!(bridges);
     summary["slips"] = json!(slipping);
     let points = points.iter().map(|p| LinePoint::of_winding(p, key.friction)).collect();
-    Ok((Line { name: name.to_string(), points }, summary))
+    Ok((Line { name: name.clone(), points }, summary))
 }

@@ -1,113 +1,58 @@
 //! Shortest paths over moving bodies, frame by frame.
 
 use super::output::{self, Line, LinePoint};
-use super::statement::{Around, Coefficients, Friction as FrictionKey, Number, Path, Place};
-use super::{PathCase, at_time, box_around, picture};
-use crate::expression::Expression;
+use super::{PathCase, box_around, picture, surfaces};
 use crate::output::Folder;
+use crate::plan::Placed;
+use crate::plan::paths::{PlannedEnd, PlannedPath, PlannedStation};
 use crate::problem::CaseError;
 use crate::run::Progress;
 use crate::scene::SceneError;
 use serde_json::{Map, Value, json};
-use signorini_geometry::{Aabb, Point, Vector};
-use signorini_paths::friction::Friction;
+use signorini_geometry::{Point, Vector};
 use signorini_paths::wrapping::{Anchor, Body, EventKind, Minimal, Route, Station, WrappedPath, Wrapping};
+use std::fmt::Write as _;
 
 /// Pieces of each contact that are written and drawn.
 const PIECES: usize = 24;
-/// Frames where none are stated.
-const FRAMES: usize = 2;
-
 impl PathCase {
-    pub(super) fn check_wrapping(&self) -> Result<(), CaseError> {
-        if let Some(frames) = self.statement.frames.filter(|n| !(1..=100_000).contains(n)) {
-            return Err(self.error(&["frames"], format!("`frames` is {frames}, valid are 1 to 100000")));
-        }
-        for (name, path) in &self.statement.paths {
-            self.route(name, path, 0.0)?;
-            self.friction(name, path)?;
-            for (key, value) in [("tension", &path.tension), ("end_tension", &path.end_tension)] {
-                if let Some(value) = value {
-                    self.expression(&["paths", name, key], value, &["t"])?;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn friction(&self, name: &str, path: &Path) -> Result<Option<Friction>, CaseError> {
-        let Some(FrictionKey::Coulomb(key)) = &path.friction else { return Ok(None) };
-        let friction = match key.mu {
-            Coefficients::Isotropic(mu) => Friction::isotropic(mu),
-            Coefficients::Orthotropic([along, across]) => Friction::Carried { along, across },
-        };
-        friction.check().map_err(|e| self.error(&["paths", name, "friction", "coulomb", "mu"], e.to_string()))?;
-        Ok(Some(friction))
-    }
-
-    fn anchor(&self, key: &[&str], place: &Place, time: f64) -> Result<Anchor, CaseError> {
-        match place {
-            Place::OnBody(on) => Ok(Anchor::on(self.body(key, &on.body)?, Point::<3>::from(on.point))),
-            Place::Space(x) => {
-                let mut point = Point::<3>::zeros();
-                for (k, value) in x.iter().enumerate() {
-                    point[k] = at_time(&self.expression(key, value, &["t"])?, time);
-                    if !point[k].is_finite() {
-                        return Err(self.error(key, format!("coordinate {k} is {} at t = {time}", point[k])));
-                    }
-                }
-                Ok(Anchor::fixed(point))
+    fn anchor(&self, end: &PlannedEnd, time: f64) -> Result<Anchor, CaseError> {
+        match end {
+            PlannedEnd::OnBody(body, point) => Ok(Anchor::on(*body, *point)),
+            PlannedEnd::Space(x) => {
+                let [x, y, z] = [0, 1, 2].map(|k| x[k].at(self.problem(), time));
+                Ok(Anchor::fixed(Point::<3>::new(x?, y?, z?)))
             }
         }
     }
 
     /// The route of a path at a time.
-    fn route(&self, name: &str, path: &Path, time: f64) -> Result<Route, CaseError> {
-        let start = self.anchor(&["paths", name, "from"], &path.from, time)?;
-        let end = self.anchor(&["paths", name, "to"], &path.to, time)?;
-        for body in path.turns.keys() {
-            self.body(&["paths", name, "turns"], body)?;
-        }
-        let around = ["paths", name, "around"];
-        let part = |k: usize| match &path.around {
-            Around::All(bodies) => bodies.as_slice(),
-            Around::Parts(parts) => parts.get(k).map_or(&[][..], Vec::as_slice),
-        };
-        if let Around::Parts(parts) = &path.around
-            && parts.len() != path.via.len() + 1
-        {
-            let (given, wanted) = (parts.len(), path.via.len() + 1);
-            return Err(self.error(&around, format!("{given} lists of bodies for {wanted} parts between fixed points")));
-        }
-        let mut stations = Vec::new();
-        for k in 0..=path.via.len() {
-            if k > 0 {
-                stations.push(Station::Via(self.anchor(&["paths", name, "via"], &path.via[k - 1], time)?));
-            }
-            for body in part(k) {
-                let turns = path.turns.get(body).copied().unwrap_or(0);
-                stations.push(Station::Around { body: self.body(&around, body)?, turns });
-            }
-        }
-        Ok(Route { start, stations, end })
+    fn route(&self, path: &PlannedPath, time: f64) -> Result<Route, CaseError> {
+        let stations = (path.stations.iter())
+            .map(|station| match station {
+                PlannedStation::Via(end) => self.anchor(end, time).map(Station::Via),
+                PlannedStation::Around { body, turns } => Ok(Station::Around { body: *body, turns: *turns }),
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(Route { start: self.anchor(&path.from, time)?, stations, end: self.anchor(&path.to, time)? })
     }
 
     fn places(&self, time: f64) -> Result<Vec<Body<'_>>, CaseError> {
-        let place = |b: &'_ crate::plan::RigidBody| b.motion(&self.problem, time);
-        self.bodies.iter().map(|b| Ok(Body { shape: b.shape().as_ref(), motion: place(b)? })).collect()
+        let place = |b: &'_ crate::plan::RigidBody| b.motion(self.problem(), time);
+        self.plan.bodies.iter().map(|b| Ok(Body { shape: b.shape().as_ref(), motion: place(b)? })).collect()
     }
 }
 
 /// Runs all paths through all frames.
-pub(super) fn run(case: &PathCase, folder: &Folder, progress: &mut dyn Progress) -> Result<Value, SceneError> {
-    let frames = case.statement.frames.unwrap_or(FRAMES);
+pub(super) fn run(
+    case: &PathCase,
+    (frames, paths): (usize, &[PlannedPath]),
+    folder: &Folder,
+    progress: &mut dyn Progress,
+) -> Result<Value, SceneError> {
     let times: Vec<f64> = (0..frames).map(|k| if frames > 1 { k as f64 / (frames - 1) as f64 } else { 0.0 }).collect();
-    let mut searches: Vec<Wrapping> = case
-        .statement
-        .paths
-        .iter()
-        .map(|(n, p)| Ok(Wrapping::new(case.route(n, p, 0.0)?)))
-        .collect::<Result<_, CaseError>>()?;
+    let mut searches: Vec<Wrapping> =
+        paths.iter().map(|p| Ok(Wrapping::new(case.route(p, 0.0)?))).collect::<Result<_, CaseError>>()?;
     let mut written: Vec<Vec<Line>> = Vec::new();
     let mut summaries: Vec<Map<String, Value>> = vec![Map::new(); searches.len()];
     let mut rows: Vec<Vec<Value>> = vec![Vec::new(); searches.len()];
@@ -116,8 +61,8 @@ pub(super) fn run(case: &PathCase, folder: &Folder, progress: &mut dyn Progress)
         progress.step(frame, frames, time);
         let bodies = case.places(time)?;
         let mut lines = Vec::new();
-        for (k, (name, key)) in case.statement.paths.iter().enumerate() {
-            let route = case.route(name, key, time)?;
+        for (k, key) in paths.iter().enumerate() {
+            let route = case.route(key, time)?;
             let same = route.stations == searches[k].route().stations;
             if same {
                 searches[k].set_start(route.start);
@@ -126,14 +71,14 @@ pub(super) fn run(case: &PathCase, folder: &Folder, progress: &mut dyn Progress)
                 // Via points of space that move: the stations are others, their contacts the same.
                 searches[k].set_route(route);
             }
-            let path = searches[k].solve(&bodies).map_err(|e| case.failed("paths", name, &e))?;
-            let line = line(case, name, key, &path, &bodies, time)?;
+            let path = searches[k].solve(&bodies).map_err(|e| case.failed(&key.key, &key.name, &e))?;
+            let line = line(case, key, &path, &bodies, time)?;
             rows[k].push(line.1);
             lines.push(line.0);
             events[k].extend(path.events.iter().map(|e| {
                 let kind = if e.kind == EventKind::Touchdown { "touchdown" } else { "lift_off" };
                 let body = match searches[k].route().stations[e.station] {
-                    Station::Around { body, .. } => case.bodies[body].name.as_str(),
+                    Station::Around { body, .. } => case.plan.bodies[body].name.as_str(),
                     Station::Via(_) => "",
                 };
                 json!({"kind": kind, "time": time, "frame": frame, "body": body})
@@ -143,16 +88,20 @@ pub(super) fn run(case: &PathCase, folder: &Folder, progress: &mut dyn Progress)
     }
     output::write_lines(&times, &written, folder)?;
     let around = box_around(written.iter().flatten().flat_map(|l| l.points.iter().map(|p| p.x)), 0.15);
-    let shown = |time: f64| -> Result<Vec<picture::Surface>, CaseError> { surfaces(case, time, &around) };
-    let surfaces = times.iter().map(|t| shown(*t)).collect::<Result<Vec<_>, _>>()?;
-    output::write_bodies(&times, &surfaces, folder)?;
-    if let (Some(lines), Some(surfaces)) = (written.last(), surfaces.last()) {
+    // Bodies at rest are drawn once.
+    let shown = if case.plan.bodies.iter().all(|b| b.is_at_rest()) { &times[..1] } else { &times[..] };
+    let bodies = shown.iter().map(|t| surfaces(case, *t, &around)).collect::<Result<Vec<_>, _>>()?;
+    output::write_bodies(shown, &bodies, folder)?;
+    if let (Some(lines), Some(surfaces)) = (written.last(), bodies.last()) {
         picture::draw(case, surfaces, lines, folder)?;
+    }
+    if frames > 1 {
+        histories(case, &times, paths, &rows, folder)?;
     }
     progress.step(frames, frames, times[frames - 1]);
     for (k, (summary, (rows, events))) in summaries.iter_mut().zip(rows.into_iter().zip(events)).enumerate() {
         let iterations: u64 = rows.iter().filter_map(|r| r["iterations"].as_u64()).sum();
-        summary.insert("name".into(), case.statement.paths.keys().nth(k).cloned().into());
+        summary.insert("name".into(), paths[k].name.clone().into());
         summary.insert("iterations".into(), iterations.into());
         summary.insert("events".into(), events.into());
         summary.insert("frames".into(), rows.into());
@@ -160,46 +109,64 @@ pub(super) fn run(case: &PathCase, folder: &Folder, progress: &mut dyn Progress)
     Ok(json!({"title": case.name(), "analysis": "wrapping", "status": "done", "frames": frames, "paths": summaries}))
 }
 
-/// The surfaces of all bodies in a box.
-pub(super) fn surfaces(case: &PathCase, time: f64, around: &Aabb<3>) -> Result<Vec<picture::Surface>, CaseError> {
-    case.bodies
-        .iter()
-        .map(|b| Ok(picture::Surface::new(&b.gap_at(&case.problem, time)?, [around.min, around.max])))
-        .collect()
+/// The lengths of paths in time, and what their changes do at a turn of the unit time: a table, and a picture.
+fn histories(
+    case: &PathCase,
+    times: &[f64],
+    paths: &[PlannedPath],
+    rows: &[Vec<Value>],
+    folder: &Folder,
+) -> Result<(), SceneError> {
+    let mut curves = Vec::new();
+    let mut text = String::from("path,time,length,length_rate\n");
+    for (path, rows) in paths.iter().zip(rows) {
+        let lengths: Vec<(f64, f64)> =
+            times.iter().zip(rows).map(|(t, row)| (*t, row["length"].as_f64().unwrap_or(f64::NAN))).collect();
+        let last = lengths.len() - 1;
+        for (k, (time, length)) in lengths.iter().enumerate() {
+            // Central differences, one-sided at the ends.
+            let (a, b) = (lengths[k.saturating_sub(1)], lengths[(k + 1).min(last)]);
+            let _ = writeln!(text, "{},{time},{length},{}", path.name, (b.1 - a.1) / (b.0 - a.0));
+        }
+        curves.push((path.name.clone(), lengths));
+    }
+    folder.write("history.csv", text.as_bytes())?;
+    let name = crate::output::labels::Labels(case.plan.head.unit_names()).length("length");
+    picture::history(case, ("length", "Length", &name), &curves, folder)?;
+    Ok(())
 }
 
-fn value(case: &PathCase, name: &str, key: &str, number: Option<&Number>, time: f64) -> Result<Option<f64>, CaseError> {
-    let Some(number) = number else { return Ok(None) };
-    let expression: Expression = case.expression(&["paths", name, key], number, &["t"])?;
-    let found = at_time(&expression, time);
-    if found.is_finite() && found > 0.0 {
+/// A tension at a time, which is positive.
+fn tension(case: &PathCase, value: Option<&Placed>, time: f64) -> Result<Option<f64>, CaseError> {
+    let Some(value) = value else { return Ok(None) };
+    let found = value.at(case.problem(), time)?;
+    if found > 0.0 {
         return Ok(Some(found));
     }
-    Err(case
-        .error(&["paths", name, key], format!("the tension is {found} at t = {time}: it must be greater than zero")))
+    let message = format!("the tension is {found} at t = {time}: it must be greater than zero");
+    Err(case.problem().error(&value.key, message))
 }
 
 /// A path as it is written, and its row of the summary.
 fn line(
     case: &PathCase,
-    name: &str,
-    key: &Path,
+    key: &PlannedPath,
     path: &WrappedPath,
     bodies: &[Body<'_>],
     time: f64,
 ) -> Result<(Line, Value), CaseError> {
-    let failed = |e| case.failed("paths", name, &e);
-    let tension = value(case, name, "tension", key.tension.as_ref(), time)?;
-    let end = value(case, name, "end_tension", key.end_tension.as_ref(), time)?;
+    let failed = |e| case.failed(&key.key, &key.name, &e);
+    let start = tension(case, key.tension.as_ref(), time)?;
+    let end = tension(case, key.end_tension.as_ref(), time)?;
     let array = |v: &Vector<3>| json!([v.x, v.y, v.z]);
     let contacts: Vec<Value> = (path.contacts.iter())
         .map(|c| {
             let minimal = c.minimal == Minimal::Locally;
-            json!({"body": case.bodies[c.body].name, "from": c.s, "to": c.s + c.length, "length": c.length,
+            json!({"body": case.plan.bodies[c.body].name, "from": c.s, "to": c.s + c.length, "length": c.length,
                 "start": array(&c.p), "end": array(&c.q), "minimal": minimal})
         })
         .collect();
-    let arms: Map<String, Value> = (case.bodies.iter().enumerate())
+    let arms: Map<String, Value> = (case.plan.bodies.iter().enumerate())
         .map(|(k, b)| {
             let centre = bodies[k].motion.point(&b.shape().centre());
             let found = path.body_gradient(k, &centre);
@@ -210,13 +177,13 @@ fn line(
     let mut row = json!({"time": time, "length": path.length, "iterations": path.iterations, "residual": path.residual,
         "contacts": contacts, "moment_arms": arms});
     let mut slips = false;
-    if let Some(friction) = case.friction(name, key)? {
-        let found = path.tensions(bodies, &friction).map_err(failed)?;
+    if let Some(friction) = &key.friction {
+        let found = path.tensions(bodies, friction).map_err(failed)?;
         row["log_ratio"] = json!(found.log_ratio);
         let sideways =
             found.contacts.iter().map(|c| c.1.as_ref().map(|s| json!({"drift": s.drift, "rotation": s.rotation})));
         row["sideways"] = sideways.collect::<Vec<_>>().into();
-        if let Some(start) = tension {
+        if let Some(start) = start {
             row["tension_limits"] = json!(found.end_tensions(start));
             if let Some(end) = end {
                 let utilisation = found.utilisation(start, end);
@@ -227,7 +194,7 @@ fn line(
         }
     }
     let points = path.points(bodies, PIECES).map_err(failed)?;
-    let tension = tension.unwrap_or(1.0);
-    let points = points.into_iter().map(|p| LinePoint::of_path(&p, tension, slips)).collect();
-    Ok((Line { name: name.to_string(), points }, row))
+    let start = start.unwrap_or(1.0);
+    let points = points.into_iter().map(|p| LinePoint::of_path(&p, start, slips)).collect();
+    Ok((Line { name: key.name.clone(), points }, row))
 }

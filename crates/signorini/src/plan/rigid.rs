@@ -5,9 +5,10 @@ use super::rigid_shape::{self, ShapeKeys};
 use super::{Placed, Planner};
 use crate::expression::Scope;
 use crate::problem::units::{Dimension, LENGTH, NONE};
-use crate::problem::{Body, Cylinder, Ellipsoid, Motion, Rigid, Shape, Side, Space};
-use crate::problem::{CaseError, KeyPath, List, Location, Problem, Value};
+use crate::problem::{CaseError, List, Location, Problem, Value};
+use crate::problem::{Cylinder, Ellipsoid, Motion, Rigid, Shape, Side, Space};
 use crate::queries::geometry;
+use crate::report::{Warning, WarningKind};
 use signorini_geometry::height_field::{self, HeightField};
 use signorini_geometry::implicit_surface::{ImplicitBody, ImplicitSurface};
 use signorini_geometry::rigid::RigidMotion;
@@ -27,6 +28,8 @@ pub struct RigidBody {
     pub displacement: Vec<Placed>,
     /// Rotation vector in radians, about the centre of the shape.
     pub rotation: Vec<Placed>,
+    /// The box of the shape where it is stated; none of one without an end.
+    pub bounds: Option<Aabb<3>>,
 }
 
 /// A shape that is a hole: touched from inside.
@@ -55,6 +58,11 @@ impl RigidBody {
         let rotation =
             if let [angle] = &self.rotation[..] { Vector::<3>::z() * evaluate(angle) } else { vector(&self.rotation) };
         RigidMotion::new(rotation, self.shape.centre(), vector(&self.displacement))
+    }
+
+    /// Whether it stays where it is.
+    pub fn is_at_rest(&self) -> bool {
+        self.displacement.is_empty() && self.rotation.is_empty()
     }
 
     /// Its shape where it is stated.
@@ -125,39 +133,6 @@ impl RigidBody {
     }
 }
 
-/// The bodies of a problem in space of which only the geometry is wanted: all must be rigid and touched from outside. Heights
-/// are known in the box `around`.
-///
-/// # Errors
-/// What is wrong with a body, with its key.
-pub fn rigid_bodies(problem: &Problem, around: &Aabb<3>) -> Result<Vec<RigidBody>, CaseError> {
-    let planner = Planner::new(problem)?;
-    let mut out = Vec::new();
-    for (name, body) in problem.bodies.iter() {
-        let Body::Rigid(rigid) = body else {
-            let key = KeyPath::of_keys(&["bodies", name]);
-            return Err(problem.error(&key, format!("the body `{name}` is not rigid")).help("[bodies.NAME.rigid]"));
-        };
-        if rigid.side == Some(Side::Inside) {
-            let key = KeyPath::of_keys(&["bodies", name, "rigid", "side"]);
-            return Err(problem.error(&key, "paths run outside of bodies"));
-        }
-        let mut body = read::<3>(&planner, name, rigid, around)?;
-        // Triangles have no curvature; the surface through their vertices has.
-        let mesh = match &rigid.shape {
-            Shape::Stl(key) => Some(planner.closed_mesh(key)?),
-            Shape::Triangles(key) => Some(planner.surface_of_arrays(key)?),
-            _ => None,
-        };
-        if let Some(mesh) = mesh {
-            let smooth = SmoothMesh::new(&mesh).map_err(|e| problem.error(&rigid.shape, e.to_string()))?;
-            body.shape = Arc::new(smooth);
-        }
-        out.push(body);
-    }
-    Ok(out)
-}
-
 /// Reads a rigid body; in the plane vectors have two components.
 ///
 /// `around` is the box of the solids, within which a height is known.
@@ -172,13 +147,17 @@ pub(super) fn read<const D: usize>(
     }
     let keys = BesideSolids::<D> { planner };
     keys.check_round(&rigid.shape)?;
+    if rigid.smooth == Some(true) {
+        return smooth_body::<D>(planner, name, rigid);
+    }
     let shape = match rigid_shape::read(&keys, &rigid.shape)? {
         Some((shape, _)) => shape,
         None => keys.without_closed_form(&rigid.shape, around)?,
     };
     let inside = rigid.side.as_ref().is_some_and(|s| *s == Side::Inside);
     let [displacement, rotation] = motion::<D>(planner, rigid)?;
-    Ok(RigidBody { name: name.to_string(), shape, inside, displacement, rotation })
+    let bounds = keys.bounds(&rigid.shape)?;
+    Ok(RigidBody { name: name.to_string(), shape, inside, displacement, rotation, bounds })
 }
 
 /// Shapes beside solids: in the plane with two coordinates.
@@ -246,6 +225,26 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
                 .error(if on_axis { axis } else { place }, format!("the {what} does not stand on the axis"))
                 .help("in an axisymmetric problem its place is [0, z], and its axis [0, 1] or [0, -1]")),
         }
+    }
+
+    /// The box of a shape that has an end.
+    fn bounds(&self, shape: &Shape) -> Result<Option<Aabb<3>>, CaseError> {
+        let reader = &self.planner.reader;
+        let (center, half) = match shape {
+            Shape::Sphere(key) => (&key.center, Vector::<3>::repeat(reader.positive(&key.radius, LENGTH)?)),
+            Shape::Torus(key) => {
+                let reach = reader.positive(&key.major_radius, LENGTH)? + reader.positive(&key.minor_radius, LENGTH)?;
+                (&key.center, Vector::<3>::repeat(reach))
+            }
+            Shape::Ellipsoid(key) => (&key.center, Vector::<3>::from(self.semi_axes(key)?)),
+            Shape::Stl(key) => return Ok(Some(*self.planner.closed_mesh(key)?.bounds())),
+            Shape::LevelSet(key) => {
+                return Ok(Some(Aabb::new(self.vector(&key.min, LENGTH)?, self.vector(&key.max, LENGTH)?)));
+            }
+            _ => return Ok(None),
+        };
+        let center = self.vector(center, LENGTH)?;
+        Ok(Some(Aabb::new(center - half, center + half)))
     }
 
     /// Shapes from files and functions.
@@ -345,6 +344,35 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
     }
 }
 
+/// The smooth surface through the vertices of a mesh; how far they scatter about it is told.
+pub(super) fn smooth_body<const D: usize>(
+    planner: &Planner<'_>,
+    name: &str,
+    rigid: &Rigid,
+) -> Result<RigidBody, CaseError> {
+    let mesh = match &rigid.shape {
+        Shape::Stl(key) => planner.closed_mesh(key)?,
+        Shape::Triangles(key) => planner.surface_of_arrays(key)?,
+        other => {
+            return Err(planner
+                .problem
+                .error(other, "only triangle meshes are made smooth")
+                .help("leave `smooth` out: this shape has no facets"));
+        }
+    };
+    let smooth = SmoothMesh::new(&mesh).map_err(|e| planner.problem.error(&rigid.shape, e.to_string()))?;
+    let message = format!(
+        "the vertices of `{name}` scatter by {:.3e} about the smooth surface through them, by {:.2} % of an edge",
+        smooth.scatter(),
+        100.0 * smooth.scatter() / smooth.edge()
+    );
+    planner.warnings.borrow_mut().push(Warning::new(WarningKind::Scatter, message));
+    let inside = rigid.side.as_ref().is_some_and(|s| *s == Side::Inside);
+    let [displacement, rotation] = motion::<D>(planner, rigid)?;
+    let bounds = Some(*mesh.bounds());
+    Ok(RigidBody { name: name.to_string(), shape: Arc::new(smooth), inside, displacement, rotation, bounds })
+}
+
 /// How a rigid body moves: displacement and rotation, each empty for one at rest.
 fn motion<const D: usize>(planner: &Planner<'_>, rigid: &Rigid) -> Result<[Vec<Placed>; 2], CaseError> {
     let problem = planner.problem;
@@ -410,6 +438,7 @@ mod tests {
             name: "plane".into(),
             shape: Arc::new(plane),
             inside: false,
+            bounds: None,
             displacement: vec![number(0.0), number(0.5)],
             rotation: vec![number(FRAC_PI_2)],
         };

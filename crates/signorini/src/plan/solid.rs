@@ -110,7 +110,7 @@ impl Planner<'_> {
         let path = self.problem.source.folder().join(name);
         match (std::fs::read(&path), crate::gallery::asset(name)) {
             (Ok(bytes), _) => Ok((path, bytes)),
-            (Err(_), Some(text)) => Ok((path, text.as_bytes().to_vec())),
+            (Err(_), Some(bytes)) => Ok((path, bytes.to_vec())),
             (Err(e), None) => Err(self.problem.error(name, format!("`{}`: cannot be read: {e}", path.display()))),
         }
     }

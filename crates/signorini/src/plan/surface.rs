@@ -92,6 +92,9 @@ pub(super) fn read(
 
 /// The side of the membrane on which a body lies: as stated, or as its shape says.
 fn side(planner: &Planner<'_>, rigid: &Rigid, level: Option<f64>) -> Result<Side, CaseError> {
+    if let Some(smooth) = &rigid.smooth {
+        return Err(planner.unavailable(smooth, "a smooth surface beside a membrane"));
+    }
     if let Some(lies) = &rigid.lies {
         return Ok(match lies {
             Lies::Below => Side::Below,

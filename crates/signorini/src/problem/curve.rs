@@ -80,6 +80,19 @@ pub enum Path {
     Arc(ArcPath),
     /// A helix.
     Helix(HelixPath),
+    /// A curve by a parameter.
+    Formula(FormulaPath),
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FormulaPath {
+    /// The position by the parameter `u`, lengths.
+    pub position: List<Value>,
+    /// The first value of `u`.
+    pub from: Value,
+    /// The last one.
+    pub to: Value,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]

@@ -47,6 +47,12 @@ impl CaseError {
         self
     }
 
+    /// Says what to do where nothing is said yet.
+    pub fn or_help(mut self, help: impl Into<String>) -> Self {
+        self.help.get_or_insert_with(|| help.into());
+        self
+    }
+
     pub fn at(mut self, name: &str, text: &str, span: Range<usize>) -> Self {
         self.place = Some(Place { name: name.into(), text: text.into(), span });
         self

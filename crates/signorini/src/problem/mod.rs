@@ -14,6 +14,7 @@ pub mod fit;
 pub mod history;
 pub mod key_path;
 pub mod list;
+pub mod paths;
 pub mod rigid;
 pub mod source;
 pub mod units;
@@ -28,6 +29,7 @@ pub use fit::{Fit, FitUnknown, Noise};
 pub use history::{ArcLength, AreaControl, Control, Step};
 pub use key_path::{KeyPath, Part, ProblemPart};
 pub use list::{List, Named};
+pub use paths::*;
 pub use rigid::*;
 pub use source::Source;
 pub use value::{Components, Value};
@@ -44,7 +46,10 @@ pub struct Problem {
     pub title: Option<String>,
     /// Base units; without them numbers are in any consistent units.
     pub units: Option<UnitSystem>,
-    /// In how many dimensions, and what the coordinates mean.
+    /// What is computed; equilibrium if left out.
+    pub analysis: Option<Analysis>,
+    /// In how many dimensions, and what the coordinates mean; `3d` if left out.
+    #[serde(default)]
     pub space: Space,
     /// Named numbers for expressions.
     #[serde(default)]
@@ -69,6 +74,19 @@ pub struct Problem {
     /// What to write.
     #[serde(default)]
     pub output: Output,
+    /// With `analysis = "wrapping"`, the number of times in [0, 1]; 2 if left out.
+    pub frames: Option<i64>,
+    /// From where pictures of paths are drawn.
+    pub view: Option<View>,
+    /// With `analysis = "wrapping"`, shortest paths by names of your own.
+    #[serde(default)]
+    pub paths: Named<ShortestPath>,
+    /// With `analysis = "winding"`, paths of yarns by names of your own.
+    #[serde(default)]
+    pub winding: Named<Winding>,
+    /// With `analysis = "euler_eytelwein"`, ropes on given curves by names of your own.
+    #[serde(default)]
+    pub ropes: Named<RopeOnSurface>,
     /// What `signorini fit` is to find out from measurements.
     pub fit: Option<Fit>,
     /// Where it was read from.
@@ -82,6 +100,7 @@ impl Problem {
         Self {
             title: None,
             units: None,
+            analysis: None,
             space,
             constants: Named::default(),
             functions: Named::default(),
@@ -91,6 +110,11 @@ impl Problem {
             contacts: Named::default(),
             steps: List::default(),
             output: Output::default(),
+            frames: None,
+            view: None,
+            paths: Named::default(),
+            winding: Named::default(),
+            ropes: Named::default(),
             fit: None,
             source: Source::default(),
         }
@@ -203,7 +227,7 @@ impl<'de> Deserialize<'de> for UnitSystem {
     }
 }
 
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum Space {
     /// A string: one coordinate, x.
@@ -217,6 +241,7 @@ pub enum Space {
     /// A thin plate: no stress across.
     PlaneStress,
     /// Space itself.
+    #[default]
     #[serde(rename = "3d")]
     ThreeD,
 }

@@ -14,6 +14,9 @@ pub struct Rigid {
     pub shape: Shape,
     /// On which side of the surface the body is free to be touched; `outside` if left out.
     pub side: Option<Side>,
+    /// Of a triangle mesh: a smooth surface through its vertices in place of flat triangles, for what slides or rolls on it;
+    /// flat if left out. Paths always run on the smooth one.
+    pub smooth: Option<bool>,
     /// Where it lies beside a membrane; if left out a plane, a cone and a paraboloid tell it by their direction, a round
     /// body by its centre, and every other one lies below.
     pub lies: Option<Lies>,
@@ -24,7 +27,7 @@ pub struct Rigid {
 impl Rigid {
     /// A body at rest that is touched from outside.
     pub fn new(shape: Shape) -> Self {
-        Self { shape, side: None, lies: None, motion: None }
+        Self { shape, side: None, smooth: None, lies: None, motion: None }
     }
 }
 

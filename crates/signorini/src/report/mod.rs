@@ -205,6 +205,24 @@ pub struct ContactReport {
     pub friction_force: Option<[f64; 3]>,
     /// Energy that friction took in the increment.
     pub dissipation: Option<f64>,
+    /// What friction could hold of a rope where it lies; null for other bodies.
+    #[serde(default)]
+    pub rope: Option<RopeLimits>,
+}
+
+/// What friction could hold of a rope that lies on a surface, by the theorem of Euler and Eytelwein for curves on surfaces.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RopeLimits {
+    /// Least and largest logarithm of the ratio of the tensions at both ends of the contact.
+    pub log_ratio: [f64; 2],
+    /// Largest angle between the force that holds the rope and the normal, as a tangent: geodesic over normal curvature.
+    pub max_tan_alpha: f64,
+    /// Where along the rope that is.
+    pub at: f64,
+    /// What it must stay below, the coefficient across the rope.
+    pub lateral_limit: f64,
+    /// In words.
+    pub verdict: String,
 }
 
 /// One connected zone of contact.

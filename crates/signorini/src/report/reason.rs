@@ -94,6 +94,8 @@ pub enum WarningKind {
     NotUnique,
     /// Most of a contact with friction closes in one increment: its stick zones depend on the increments.
     ClosesAtOnce,
+    /// How far the vertices of a mesh lie off the smooth surface through them.
+    Scatter,
 }
 
 impl Warning {

@@ -1,9 +1,12 @@
 //! Ropes and beams of a system.
 
+use crate::expression::{Expression, Scope};
 use crate::plan::Planner;
 use crate::plan::placement::PlacementKeys;
 use crate::problem::units::{LENGTH, NONE, PRESSURE};
-use crate::problem::{self, Beam, BeamModel, CaseError, Continuity, List, Material, Path as Stated, Rope, Value};
+use crate::problem::{
+    self, Beam, BeamModel, CaseError, Continuity, FormulaPath, List, Material, Path as Stated, PathFile, Rope, Value,
+};
 use signorini_geometry::shape::Axes;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::Body;
@@ -20,6 +23,8 @@ const FORCE: [i32; 3] = [0, 1, 0];
 /// Elements of a rope and of a beam whose number is not stated.
 const ROPE_CELLS: usize = 50;
 const BEAM_CELLS: usize = 20;
+/// Pieces of the spline that follows a formula: their error is below 1e-9 of the size of a curve that turns a few times.
+const FORMULA: usize = 1000;
 
 impl Planner<'_> {
     /// A rope, and its radius.
@@ -189,12 +194,58 @@ impl Planner<'_> {
         list.iter().map(|x| self.position(x, LENGTH)).collect()
     }
 
-    fn path(&self, key: &Stated) -> Result<Path, CaseError> {
+    /// The points of a path that is stated by points; of a formula those at equal steps of its parameter.
+    pub(in crate::plan) fn points_of_path(&self, key: &Stated) -> Result<Vec<Point<3>>, CaseError> {
+        match key {
+            Stated::Points(points) => self.points(points),
+            Stated::Spline(spline) => self.points(&spline.points),
+            Stated::File(file) => self.points_of_file(file),
+            Stated::Formula(formula) => {
+                let [from, to] = [self.reader.number(&formula.from, NONE)?, self.reader.number(&formula.to, NONE)?];
+                let list = self.formula(formula)?;
+                let at = |u: f64| {
+                    let scope = Scope { position: [u, 0.0, 0.0], time: 0.0 };
+                    Point::<3>::from_fn(|k, _| list[k].evaluate(&scope))
+                };
+                Ok((0..=FORMULA).map(|k| at(from + (to - from) * k as f64 / FORMULA as f64)).collect())
+            }
+            Stated::Arc(_) | Stated::Helix(_) => Ok(Vec::new()),
+        }
+    }
+
+    /// The three coordinates of a formula.
+    pub(in crate::plan) fn formula(&self, key: &FormulaPath) -> Result<Vec<Expression>, CaseError> {
+        if key.position.len() != 3 {
+            let message = format!("a point in space has 3 coordinates, found {}", key.position.len());
+            return Err(self.problem.error(&key.position, message));
+        }
+        key.position.iter().map(|v| self.reader.expression(v, LENGTH, &["u"])).collect()
+    }
+
+    fn points_of_file(&self, file: &PathFile) -> Result<Vec<Point<3>>, CaseError> {
+        let (path, bytes) = self.read_file(&file.file)?;
+        let told = |e: String| self.problem.error(&file.file, format!("`{}`: {e}", path.display()));
+        let text = String::from_utf8(bytes).map_err(|e| told(e.to_string()))?;
+        let mut points = Path::read_points(&text).map_err(|e| told(e.to_string()))?;
+        let keys = PlacementKeys { scale: &file.scale, turn: &file.turn, moved: &file.moved };
+        if let Some(placement) = self.placement::<3>(&keys)? {
+            points.iter_mut().for_each(|x| *x = placement.point(x));
+        }
+        Ok(points)
+    }
+
+    pub(in crate::plan) fn path(&self, key: &Stated) -> Result<Path, CaseError> {
         let problem = self.problem;
         let closure = |closed: &Option<bool>| if *closed == Some(true) { Closure::Closed } else { Closure::Open };
+        let points = self.points_of_path(key)?;
         let found = match key {
-            Stated::Points(points) => Path::points(&self.points(points)?, Closure::Open),
-            Stated::Spline(spline) => Path::spline(&self.points(&spline.points)?, closure(&spline.closed)),
+            Stated::Points(_) => Path::points(&points, Closure::Open),
+            Stated::Spline(spline) => Path::spline(&points, closure(&spline.closed)),
+            Stated::Formula(_) => Path::spline(&points, Closure::Open),
+            Stated::File(file) => match file.spline {
+                Some(true) => Path::spline(&points, closure(&file.closed)),
+                _ => Path::points(&points, closure(&file.closed)),
+            },
             Stated::Arc(arc) => {
                 let points: [Point<3>; 3] = self.points(&arc.points)?.try_into().map_err(|list: Vec<_>| {
                     problem.error(&arc.points, format!("an arc has 3 points, found {}", list.len()))
@@ -222,20 +273,6 @@ impl Planner<'_> {
                 let pitch = self.reader.number(&helix.pitch, LENGTH)?;
                 let turns = self.reader.number(&helix.turns, NONE)?;
                 Path::helix(axes, radius, pitch, turns)
-            }
-            Stated::File(file) => {
-                let (path, bytes) = self.read_file(&file.file)?;
-                let told = |e: String| problem.error(&file.file, format!("`{}`: {e}", path.display()));
-                let text = String::from_utf8(bytes).map_err(|e| told(e.to_string()))?;
-                let mut points = Path::read_points(&text).map_err(|e| told(e.to_string()))?;
-                let keys = PlacementKeys { scale: &file.scale, turn: &file.turn, moved: &file.moved };
-                if let Some(placement) = self.placement::<3>(&keys)? {
-                    points.iter_mut().for_each(|x| *x = placement.point(x));
-                }
-                match file.spline {
-                    Some(true) => Path::spline(&points, closure(&file.closed)),
-                    _ => Path::points(&points, closure(&file.closed)),
-                }
             }
         };
         found.map_err(|e| problem.error(key, e.to_string()))

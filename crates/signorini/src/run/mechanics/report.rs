@@ -1,17 +1,22 @@
 //! What is told of a state of a system.
 
 use crate::output::figure::{told, told_vector};
-use crate::output::system::SystemShown;
+use crate::output::system::{SystemShown, frames};
 use crate::plan::mechanics::{AXIS_SUPPORT, Kind, MechanicsPlan};
 use crate::problem::Space;
 use crate::report::{
-    Component, ContactReport, CurveReport, Pose, Probe, Reason, StepReport, UnitNames, Warning, WarningKind, vector,
+    Component, ContactReport, CurveReport, Pose, Probe, Reason, RopeLimits, StepReport, UnitNames, Warning,
+    WarningKind, vector,
 };
 use crate::run::record::Record;
 use signorini_contact::Status;
 use signorini_geometry::Vector;
-use signorini_mechanics::{Contact, IncrementResult, SiteResult, SystemState, rigid_body};
+use signorini_mechanics::{AxisChoice, Contact, IncrementResult, SiteResult, SystemState, rigid_body};
+use signorini_paths::darboux::Darboux;
+use signorini_paths::friction::Friction;
+use signorini_paths::theorem::limits_of_points;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// What solves the equations.
 pub const SOLVER: &str = "direct";
@@ -148,9 +153,41 @@ fn contact_report(plan: &MechanicsPlan, contact: &Contact, sites: &[SiteResult])
         max_slip: rubs.then(|| closed().map(|s| s.slip).fold(0.0, f64::max)),
         max_friction_utilisation: rubs.then(|| closed().map(|s| s.utilisation).fold(0.0, f64::max)),
         friction_force: rubs.then(|| vector(&friction)),
+        rope: is_curve.then(|| rope_limits(contact, sites)).flatten(),
         dissipation: rubs.then(|| closed().map(|s| -s.weight * s.friction.dot(&s.increment)).sum()),
         ..ContactReport::default()
     }
+}
+
+/// What friction could hold of a rope where it touches; none where its law has no coefficients, or no axes that stay.
+fn rope_limits(contact: &Contact, sites: &[SiteResult]) -> Option<RopeLimits> {
+    let [along, across] = contact.friction.as_ref()?.per_pressure()?;
+    let friction = match contact.axis {
+        AxisChoice::OnMaster(axis) => {
+            Friction::Attached { coefficients: [along, across], axis: Arc::new(move |_| axis) }
+        }
+        AxisChoice::OnSlave(_) | AxisChoice::Material if along != across => return None,
+        _ => Friction::Carried { along, across },
+    };
+    let list: Vec<(Darboux, f64)> =
+        frames(sites).into_iter().zip(sites).filter_map(|(frame, site)| Some((frame?, site.weight))).collect();
+    let found = limits_of_points(&list, &friction).ok()?;
+    let worst = list.iter().find(|(frame, _)| frame.s == found.steepest.s)?;
+    let (tan_alpha, lateral) = (found.steepest.value, friction.lateral(&worst.0));
+    let [low, high] = found.log_ratio.map(f64::exp);
+    let sideways = if tan_alpha > lateral { "slides sideways" } else { "is nearest to sliding sideways" };
+    let verdict = format!(
+        "{sideways} at s = {:.4}: |tan α| = {tan_alpha:.4}, μ_g = {lateral:.4}; friction along it holds T₁/T₀ from {low:.4} to \
+         {high:.4}",
+        found.steepest.s
+    );
+    Some(RopeLimits {
+        log_ratio: found.log_ratio,
+        max_tan_alpha: tan_alpha,
+        at: found.steepest.s,
+        lateral_limit: lateral,
+        verdict,
+    })
 }
 
 /// Warns of what looks wrong with a state.
@@ -205,6 +242,9 @@ pub fn verdict(plan: &MechanicsPlan, record: &Record) -> String {
         let force = told_vector(&c.force[..space], None, unit(|u| &u.force));
         let zones = if c.zones == 1 { String::new() } else { format!(" in {} zones", c.zones) };
         list.push(format!("`{name}` carries {force}{zones}{rubbing}"));
+        if let Some(rope) = &c.rope {
+            list.push(rope.verdict.clone());
+        }
     }
     for (name, c) in &step.curves {
         let ends = [c.start_tension, c.end_tension].map(|t| told(t, None, unit(|u| &u.force)));

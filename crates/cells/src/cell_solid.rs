@@ -1,8 +1,10 @@
 //! Bodies of finite cells as bodies of a system: unknowns `D f + i` for function `f` in direction `i`.
 //!
 //! Small strain, linear elastic: the stiffness is added up once. Contact is tested where the boundary is now,
-//! `x = X + u(X)`, at the quadrature points of the boundary that the cells recover, with the normal `cof(∂x/∂X) N`. A plane
-//! or axisymmetric body stands at `z = 0`. Places on sides of the box are held by equations between unknowns, places on
+//! `x = X + u(X)`, with the normal `cof(∂x/∂X) N`: at all quadrature points of the boundary that the cells recover, or at as
+//! many of them, evenly spread, as its functions can follow. Only with these do conditions that are kept exactly, by
+//! multipliers or augmentation, determine the pressure: of more points than functions it ripples. A plane or axisymmetric
+//! body stands at `z = 0`. Places on sides of the box are held by equations between unknowns, places on
 //! the recovered boundary by Nitsche's method (see [`supports`](crate::supports)).
 //!
 //! Around an axis nothing leaves it: the unknowns of that are tied to nothing and stay zero, since a hoop strain `u/r`
@@ -15,6 +17,7 @@ mod shown;
 mod weak;
 
 use crate::body::{CellBody, Site};
+use crate::discs::farthest_points;
 use crate::error::CellsError;
 use crate::place::Place;
 use crate::region::Filling;
@@ -61,6 +64,8 @@ struct Surface<const D: usize> {
     /// Numbers of the first of its points and of the one after the last.
     points: [usize; 2],
     held: HeldBy<D>,
+    /// Points spread evenly, with what they stand for.
+    spread: OnceLock<Vec<mechanics::Site>>,
 }
 
 enum HeldBy<const D: usize> {
@@ -99,7 +104,8 @@ impl<const D: usize> CellSolid<D> {
                 Place::Side { axis, end } => HeldBy::Side(SideFunctions::new(&body, *axis, *end)?),
                 _ => HeldBy::Terms(OnceLock::new()),
             };
-            surfaces.insert(name.to_string(), Surface { points: [points.len(), points.len() + own.len()], held });
+            let range = [points.len(), points.len() + own.len()];
+            surfaces.insert(name.to_string(), Surface { points: range, held, spread: OnceLock::new() });
             points.extend(own);
         }
         let linear = LinearFields::new(&body);
@@ -143,6 +149,36 @@ impl<const D: usize> CellSolid<D> {
     fn unknown(&self, function: u32, direction: usize) -> Option<u32> {
         let unknown = D * function as usize + direction;
         (!self.is_zero[unknown]).then_some(unknown as u32)
+    }
+
+    /// Points a degree's part of their cells apart, each in the middle of those that it stands for.
+    fn spread(&self, surface: &Surface<D>) -> Vec<mechanics::Site> {
+        let points = self.points_of(surface);
+        let spacing: Vec<f64> = points.iter().map(|p| self.cell_size(p) / self.body.degree() as f64).collect();
+        let (chosen, nearest, _) = farthest_points(points, &spacing);
+        let mut sums = vec![(0.0, Point::<D>::zeros()); chosen.len()];
+        for (p, n) in points.iter().zip(&nearest) {
+            sums[*n].0 += p.weight;
+            sums[*n].1 += p.x * p.weight;
+        }
+        let mut middle: Vec<(f64, usize)> = vec![(f64::INFINITY, 0); chosen.len()];
+        for (k, (p, n)) in points.iter().zip(&nearest).enumerate() {
+            let distance = (p.x - sums[*n].1 / sums[*n].0).norm();
+            if distance < middle[*n].0 {
+                middle[*n] = (distance, k);
+            }
+        }
+        let site = |((weight, _), (_, k)): (&(f64, Point<D>), &(f64, usize))| mechanics::Site {
+            patch: (surface.points[0] + k) as u32,
+            xi: [0.0; 2],
+            weight: *weight,
+        };
+        sums.iter().zip(&middle).map(site).collect()
+    }
+
+    /// Least extent of the cell of a point.
+    fn cell_size(&self, point: &Site<D>) -> f64 {
+        self.body.tree().leaves()[self.body.cells()[point.cell].leaf].size()
     }
 
     /// Displacement and its gradient at a point of a cell.
@@ -296,20 +332,20 @@ impl<const D: usize> Body for CellSolid<D> {
     }
 
     fn sites(&self, on: Option<&str>, sampling: Sampling) -> Result<Vec<mechanics::Site>, PlaceError> {
-        if sampling == Sampling::Nodes {
-            let message = "cells have no nodes on their boundary: test it at the quadrature points (`gauss_point`)";
-            return Err(self.unsuitable(message));
-        }
-        let [first, end] = self.surface(on)?.points;
+        let surface = self.surface(on)?;
+        let [first, end] = surface.points;
         let site = |k: usize| mechanics::Site { patch: k as u32, xi: [0.0; 2], weight: self.points[k].weight };
-        Ok((first..end).map(site).collect())
+        Ok(match sampling {
+            Sampling::GaussPoints => (first..end).map(site).collect(),
+            Sampling::Nodes => surface.spread.get_or_init(|| self.spread(surface)).clone(),
+        })
     }
 
     fn placed(&self, state: &BodyState, site: &mechanics::Site) -> Placed {
         let point = &self.points[site.patch as usize];
         let mut t = Tabulation::default();
         self.body.functions_at(point.cell, &point.x, &mut t);
-        let (u, gradient) = self.displacement(point.cell, &t, &state.configuration);
+        let (u, mut gradient) = self.displacement(point.cell, &t, &state.configuration);
         let own = &self.body.cells()[point.cell].functions;
         let mut functions = Vec::with_capacity(D * own.len());
         for (f, v) in own.iter().zip(&t.value) {
@@ -318,6 +354,12 @@ impl<const D: usize> Body for CellSolid<D> {
                     functions.push(Function { unknown, value: axis(i) * *v, ..Function::default() });
                 }
             }
+        }
+        // A cell with little material does not control its own gradient.
+        let stress_cell = self.body.cells()[point.cell].stress_cell;
+        if stress_cell != point.cell {
+            self.body.functions_at(stress_cell, &point.x, &mut t);
+            gradient = self.displacement(stress_cell, &t, &state.configuration).1;
         }
         Placed {
             x: spatial(&(point.x + u)),
@@ -335,9 +377,8 @@ impl<const D: usize> Body for CellSolid<D> {
     /// Young's modulus times the area of the site over the size of its cell, in parts of its degree.
     fn site_stiffness(&self, site: &mechanics::Site) -> f64 {
         let point = &self.points[site.patch as usize];
-        let size = self.body.tree().leaves()[self.body.cells()[point.cell].leaf].size();
         let modulus = self.body.elastic().youngs_modulus * self.body.modulus_factor(&point.x);
-        modulus * site.weight * self.body.degree() as f64 / size
+        modulus * site.weight * self.body.degree() as f64 / self.cell_size(point)
     }
 
     fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6] {

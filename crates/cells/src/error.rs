@@ -63,7 +63,9 @@ pub enum CellsError {
          larger fictitious stiffness helps"
     )]
     Iterations { iterations: usize, residual: f64 },
-    #[error("no box of cells is given, and this geometry has no bounds of its own: state the corners of a box that holds it")]
+    #[error(
+        "no box of cells is given, and this geometry has no bounds of its own: state the corners of a box that holds it"
+    )]
     NoBox,
     #[error("{count} parts of a {what}: there must be {least} at least")]
     NoParts { what: &'static str, count: usize, least: usize },

@@ -43,8 +43,8 @@ pub mod system;
 pub mod tree;
 pub mod voxels;
 
-pub use cell_solid::CellSolid;
 pub use body::{Cell, CellBody, Field, Findings, Site};
+pub use cell_solid::CellSolid;
 pub use components::Pieces;
 pub use discretisation::{Boundary, Discretisation, Islands, Stuff};
 pub use domain::Domain;

@@ -63,7 +63,8 @@ impl<const D: usize> CellBody<D> {
                 for site in self.side_sites(axis, end) {
                     let slack = 1e-9 * self.bounds_of(site.cell).size()[axis];
                     let own = &self.cells()[site.cell].rule.boundary;
-                    let is_known = own.iter().any(|p| (p.x[axis] - at).abs() < slack && p.normal.dot(&site.normal) > 0.9);
+                    let is_known =
+                        own.iter().any(|p| (p.x[axis] - at).abs() < slack && p.normal.dot(&site.normal) > 0.9);
                     if !is_known && holds(&BoundaryPoint { x: site.x, weight: site.weight, normal: site.normal }) {
                         out.push(site);
                     }

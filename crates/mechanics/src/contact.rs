@@ -257,8 +257,7 @@ impl Contact {
             let at = self.multiplier(k, lambda);
             let w = self.sites[k].weight;
             let c = self.stiffness[k];
-            let is_closed =
-                |pair: &Pair| linearises && self.traction(k, pair, at).projected.status != Status::Open;
+            let is_closed = |pair: &Pair| linearises && self.traction(k, pair, at).projected.status != Status::Open;
             let pair = match self.pair(k, sides, master.as_ref(), is_closed).1 {
                 Some(Ok(pair)) => pair,
                 found => {

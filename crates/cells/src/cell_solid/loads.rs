@@ -107,14 +107,7 @@ impl<const D: usize> CellSolid<D> {
     }
 
     /// Springs to the ground: force per displacement and reference area.
-    fn springs(
-        &self,
-        sites: &[Site<D>],
-        stiffness: &Vector<3>,
-        u: &[f64],
-        order: Order,
-        out: &mut Contribution,
-    ) {
+    fn springs(&self, sites: &[Site<D>], stiffness: &Vector<3>, u: &[f64], order: Order, out: &mut Contribution) {
         let mut t = Tabulation::default();
         // Points of a cell follow each other.
         for own in sites.chunk_by(|a, b| a.cell == b.cell) {

@@ -163,26 +163,41 @@ impl<'a, const D: usize> Division<'a, D> {
         let (kept, left): (Vec<usize>, Vec<usize>) = simplex.iter().partition(|c| inside[**c]);
         let own: Vec<u32> = kept.iter().map(|c| self.at_lattice(*c)).collect();
         let mut end = |a: usize, b: usize| self.end(kept[a], left[b]);
-        let cell = match (D, kept.len()) {
+        let corners = match (D, kept.len()) {
             (_, 0) => return,
             (2, 1) => vec![own[0], end(0, 0), end(0, 1)],
             (2, 2) => vec![own[0], own[1], end(1, 0), end(0, 0)],
-            (2, _) => own,
-            (_, 1) => tetrahedron([own[0], end(0, 0), end(0, 1), end(0, 2)]),
-            (_, 2) => wedge([own[0], end(0, 0), end(0, 1), own[1], end(1, 0), end(1, 1)]),
-            (_, 3) => wedge([own[0], own[1], own[2], end(0, 0), end(1, 0), end(2, 0)]),
-            _ => tetrahedron([own[0], own[1], own[2], own[3]]),
+            (2, _) | (3, 4) => own,
+            (_, 1) => vec![own[0], end(0, 0), end(0, 1), end(0, 2)],
+            (_, 2) => vec![own[0], end(0, 0), end(0, 1), own[1], end(1, 0), end(1, 1)],
+            _ => vec![own[0], own[1], own[2], end(0, 0), end(1, 0), end(2, 0)],
         };
-        self.cells.push(cell);
+        self.cells.push(self.oriented(corners));
     }
-}
 
-fn tetrahedron([a, b, c, d]: [u32; 4]) -> Vec<u32> {
-    vec![a, b, c, c, d, d, d, d]
-}
-
-fn wedge([a, b, c, d, e, f]: [u32; 6]) -> Vec<u32> {
-    vec![a, b, c, c, d, e, f, f]
+    /// A polygon counter-clockwise; a tetrahedron or a wedge as a hexahedron, the first face turned towards the rest.
+    fn oriented(&self, mut corners: Vec<u32>) -> Vec<u32> {
+        let x: Vec<_> = corners.iter().map(|k| spatial(&self.points[*k as usize])).collect();
+        let across = (x[1] - x[0]).cross(&(x[2] - x[0]));
+        if D == 2 {
+            if across[2] < 0.0 {
+                corners.reverse();
+            }
+            return corners;
+        }
+        let rest: signorini_geometry::Vector<3> = x[3..].iter().map(|y| y - x[0]).sum();
+        if across.dot(&rest) < 0.0 {
+            corners.swap(0, 1);
+            if corners.len() == 6 {
+                corners.swap(3, 4);
+            }
+        }
+        match corners[..] {
+            [a, b, c, d] => vec![a, b, c, c, d, d, d, d],
+            [a, b, c, d, e, f] => vec![a, b, c, c, d, e, f, f],
+            _ => corners,
+        }
+    }
 }
 
 /// The simplices of a box by its corners: from the first to the last, one direction after the other in every order.

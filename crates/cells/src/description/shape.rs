@@ -66,8 +66,9 @@ impl Shape {
                 let all: Option<Vec<Aabb<3>>> = parts.iter().map(Shape::bounds).collect();
                 all?.into_iter().reduce(|a, b| Aabb::new(a.min.inf(&b.min), a.max.sup(&b.max)))
             }
-            Shape::Intersection(parts) => (parts.iter().filter_map(Shape::bounds))
-                .reduce(|a, b| Aabb::new(a.min.sup(&b.min), a.max.inf(&b.max))),
+            Shape::Intersection(parts) => {
+                (parts.iter().filter_map(Shape::bounds)).reduce(|a, b| Aabb::new(a.min.sup(&b.min), a.max.inf(&b.max)))
+            }
             Shape::Difference(parts) => parts.first().and_then(Shape::bounds),
             Shape::Offset { of, distance } => of.bounds().map(|b| {
                 let d = Vector::<3>::repeat(*distance);

@@ -4,6 +4,9 @@ use super::*;
 use signorini_cells::shapes::{Ellipsoid, HalfSpace, ball};
 use signorini_geometry::Matrix;
 
+/// What the fictitious stiffness of 1e-12 leaves: a tenth of its root.
+const BOUND: f64 = 1e-7;
+
 /// A block cut off by an oblique plane, held at a linear displacement by one side of the box and by the cut, loaded by
 /// what the stress of that displacement is on all other sides: the largest error, and how far forces are out of balance.
 fn linear_field<const D: usize>(space: Space, degree: usize, n: usize) -> [f64; 2] {
@@ -44,17 +47,19 @@ fn linear_field<const D: usize>(space: Space, degree: usize, n: usize) -> [f64; 
     for load in 0..system.loads.len() {
         pull += system.load_resultant(load, &state, 1.0).unwrap()[0];
     }
-    let mut error = 0.0f64;
+    let mut errors = [0.0f64; 2];
     for site in system.bodies[0].sites(Some("cut"), Sampling::GaussPoints).unwrap() {
         let rest = system.bodies[0].placed(&system.bodies[0].start(), &site).x;
         let now = system.bodies[0].placed(&state.bodies[0], &site);
         let wanted = (exact(&rest) - v(0.0, 0.0, if D == 2 { 0.1 } else { 0.0 })) + rest;
-        error = error.max((now.x - wanted).norm());
+        errors[0] = errors[0].max((now.x - wanted).norm());
         // The normal of a plane that a linear map moves.
         let turned = (Matrix::<3>::identity() + gradient).try_inverse().unwrap().transpose();
         let n = turned * Vector::<3>::from_fn(|k, _| if k < D { normal[k] } else { 0.0 });
-        error = error.max((now.outward.unwrap() - n.normalize()).norm());
+        errors[1] = errors[1].max((now.outward.unwrap() - n.normalize()).norm());
     }
+    println!("{space:?}, degree {degree}: displacement {:e}, normal {:e}", errors[0], errors[1]);
+    let error = errors[0].max(errors[1]);
     let forces: Vector<3> = found.support_forces.iter().map(|f| f[0]).sum();
     [error, (forces + pull).norm() / found.support_forces[1][0].norm()]
 }
@@ -65,12 +70,12 @@ fn linear_fields_are_exact_with_nitsche_and_forces_balance() {
         for degree in 1..=3 {
             let [error, imbalance] = linear_field::<2>(space, degree, 4);
             println!("{space:?}, degree {degree}: {error:e}, {imbalance:e}");
-            assert!(error < 1e-8 && imbalance < 1e-10, "{space:?} {degree}: {error:e} {imbalance:e}");
+            assert!(error < BOUND && imbalance < 1e-10, "{space:?} {degree}: {error:e} {imbalance:e}");
         }
     }
     let [error, imbalance] = linear_field::<3>(Space::Solid, 2, 2);
     println!("space, degree 2: {error:e}, {imbalance:e}");
-    assert!(error < 1e-8 && imbalance < 1e-10, "{error:e} {imbalance:e}");
+    assert!(error < BOUND && imbalance < 1e-10, "{error:e} {imbalance:e}");
 }
 
 /// A half ball around its axis under pressure: `u = -p (1 - 2ν) x / E`; nothing leaves the axis.
@@ -139,7 +144,8 @@ fn rigid_motions_and_resultants_on_refined_cells() {
     }
     let given = v(1.0, -2.0, 0.0);
     let uniform = move |_: &Point<3>| given;
-    let area = 2.0 * 1.7 - std::f64::consts::PI * 0.06;
+    let area = body.cells().volume();
+    assert!((area / (2.0 * 1.7 - std::f64::consts::PI * 0.06) - 1.0).abs() < 1e-7);
     let cases: [(Option<&str>, Load<'_>, Vector<3>); 5] = [
         (Some("top"), Load::Force(given), given),
         (None, Load::Force(given), given),
@@ -152,7 +158,7 @@ fn rigid_motions_and_resultants_on_refined_cells() {
         body.load(on, &load, &body.start(), Order::First, &mut out).unwrap();
         for i in 0..2 {
             let along: f64 = modes[i].iter().zip(&out.forces).map(|(m, f)| -m * f).sum();
-            assert!((along - wanted[i]).abs() < 1e-9 * area, "{on:?} {i}: {along} {wanted}");
+            assert!((along - wanted[i]).abs() < 1e-12 * area, "{on:?} {i}: {along} {wanted}");
         }
     }
     // A side that is refined in part, pulled with a force: the support carries it.
@@ -217,7 +223,6 @@ fn what_cannot_be_is_told() {
     let body = solid("disc", disc, (aabb([-1.0; 2], [1.0; 2]), [3, 3]), 1, Space::PlaneStrain, Vec::new());
     let start = body.start();
     let refused = |e: PlaceError| e.to_string();
-    assert!(refused(body.sites(None, Sampling::Nodes).unwrap_err()).contains("quadrature points"));
     assert!(refused(body.sites(Some("rim"), Sampling::GaussPoints).unwrap_err()).contains("boundary"));
     let mut out = Contribution::new(body.unknowns());
     let moment = Load::Moment(Vector::<3>::z());

@@ -56,7 +56,9 @@ fn every_shape_has_its_volume_in_every_space() {
             assert!((around.volume / solid - 1.0).abs() < 1e-4, "{} {solid}", around.volume);
         }
     }
-    for (shape, volume) in [(expression(0.8), 4.0 / 3.0 * PI * 0.512), (offset(ellipsoid(0.9), -0.1), 4.0 / 3.0 * PI * 0.512)] {
+    for (shape, volume) in
+        [(expression(0.8), 4.0 / 3.0 * PI * 0.512), (offset(ellipsoid(0.9), -0.1), 4.0 / 3.0 * PI * 0.512)]
+    {
         let body = build(&described(Geometry::Shape(shape), Space::Solid, 3)).unwrap();
         assert!((body.volume / volume - 1.0).abs() < 1e-4, "{} {volume}", body.volume);
         assert_eq!(body.body.sites(None, Sampling::GaussPoints).unwrap().is_empty(), false);
@@ -109,7 +111,7 @@ fn triangles_images_and_moduli() {
     }
     d.places.insert("left".into(), PlacePart::Side { axis: 0, end: End::Low });
     let built = build(&d).unwrap();
-    assert_eq!((built.volume, built.cells), (2.0, 2));
+    assert!((built.volume - 2.0).abs() < 1e-12 && built.cells == 2);
     let mut system = System {
         supports: vec![
             support(0, "bottom", [None, constant(0.0), None]),

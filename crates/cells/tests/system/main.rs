@@ -18,11 +18,6 @@ fn v(x: f64, y: f64, z: f64) -> Vector<3> {
     Vector::<3>::new(x, y, z)
 }
 
-fn noise(seed: &mut u64) -> f64 {
-    *seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-    ((*seed >> 33) as f64 / (1u64 << 31) as f64) * 2.0 - 1.0
-}
-
 /// The box from one corner to another.
 fn aabb<const D: usize>(low: [f64; D], high: [f64; D]) -> Aabb<D> {
     Aabb::new(Point::<D>::from(low), Point::<D>::from(high))
@@ -63,12 +58,10 @@ fn part(body: usize, group: &str) -> Part {
 }
 
 /// Holds the components of which a field is given, at that field times the time.
-fn support(
-    body: usize,
-    group: &str,
-    fields: [Option<Arc<dyn Fn(&Point<3>) -> f64 + Send + Sync>>; 3],
-) -> Support {
-    let timed = |f: Arc<dyn Fn(&Point<3>) -> f64 + Send + Sync>| -> signorini_mechanics::system::TimeField { Arc::new(move |x, t| t * f(x)) };
+fn support(body: usize, group: &str, fields: [Option<Arc<dyn Fn(&Point<3>) -> f64 + Send + Sync>>; 3]) -> Support {
+    let timed = |f: Arc<dyn Fn(&Point<3>) -> f64 + Send + Sync>| -> signorini_mechanics::system::TimeField {
+        Arc::new(move |x, t| t * f(x))
+    };
     let displacement = fields.map(|f| f.map(timed));
     Support { name: group.to_string(), part: part(body, group), displacement, rotation: [const { None }; 3] }
 }

@@ -40,7 +40,7 @@ pub enum Geometry {
     /// Where a shape is negative.
     Shape(Shape),
     /// Inside a closed surface of triangles, in space only.
-    Triangles(TriangleMesh),
+    Triangles(Arc<TriangleMesh>),
     /// Voxels with a factor of Young's modulus each; none where it is zero. They have no recovered boundary: only sides of
     /// the box can be places.
     Moduli(ImageData),
@@ -158,7 +158,7 @@ fn in_dimension<const D: usize>(d: &Description) -> Result<Built, CellsError> {
     let mut optional = Boundary::Expected;
     let region: Arc<dyn Region<D>> = match &d.geometry {
         Geometry::Shape(shape) => Arc::new(shape.domain::<D>(&whole, count.iter().copied().max().unwrap_or(1))?),
-        Geometry::Triangles(mesh) => of_space::<D>(Arc::new(FacetBody::new(mesh.clone())?))?,
+        Geometry::Triangles(mesh) => of_space::<D>(Arc::new(FacetBody::new((**mesh).clone())?))?,
         Geometry::Moduli(image) => {
             if modulus.is_some() {
                 let must = "must not be stated twice: by the image and as a function";

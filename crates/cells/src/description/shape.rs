@@ -122,11 +122,11 @@ impl Shape {
             Shape::Union(list) => parts("union", list, 1),
             Shape::Intersection(list) => parts("intersection", list, 1),
             Shape::Difference(list) => parts("difference", list, 2),
-            Shape::Ellipsoid { semi_axes, .. } => match semi_axes.iter().find(|a| !(**a > 0.0)) {
+            Shape::Ellipsoid { semi_axes, .. } => match semi_axes.iter().find(|a| a.is_nan() || **a <= 0.0) {
                 Some(value) => Err(CellsError::Value { name: "semi_axes", value: *value, must: "must be positive" }),
                 None => Ok(()),
             },
-            Shape::Cuboid { min, max } if (0..3).any(|k| !(min[k] < max[k])) => {
+            Shape::Cuboid { min, max } if !(0..3).all(|k| min[k] < max[k]) => {
                 Err(CellsError::Box { corners: [*min, *max].concat() })
             }
             Shape::Offset { distance, .. } if !distance.is_finite() => {

@@ -61,7 +61,7 @@ fn every_shape_has_its_volume_in_every_space() {
     {
         let body = build(&described(Geometry::Shape(shape), Space::Solid, 3)).unwrap();
         assert!((body.volume / volume - 1.0).abs() < 1e-4, "{} {volume}", body.volume);
-        assert_eq!(body.body.sites(None, Sampling::GaussPoints).unwrap().is_empty(), false);
+        assert!(!body.body.sites(None, Sampling::GaussPoints).unwrap().is_empty());
     }
 }
 
@@ -70,7 +70,7 @@ fn triangles_images_and_moduli() {
     // A tetrahedron with its box of its own.
     let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Point::<3>::from).to_vec();
     let mesh = TriangleMesh::new(corners, &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
-    let mut d = described(Geometry::Triangles(mesh), Space::Solid, 2);
+    let mut d = described(Geometry::Triangles(Arc::new(mesh)), Space::Solid, 2);
     d.bounds = None;
     d.degree = 1;
     let body = build(&d).unwrap();

@@ -207,7 +207,16 @@ impl<const D: usize> CellBody<D> {
         if !self.tree.bounds().contains(x) {
             return None;
         }
-        let cells = &self.of_leaf[self.tree.leaf_at(x)];
+        self.nearest_of(self.tree.leaf_at(x), x)
+    }
+
+    /// Whether a point within the leaf of a cell belongs to it, and not to another piece of the material in that leaf.
+    pub(crate) fn is_of_cell(&self, x: &Point<D>, cell: usize) -> bool {
+        self.nearest_of(self.cells[cell].leaf, x) == Some(cell)
+    }
+
+    fn nearest_of(&self, leaf: usize, x: &Point<D>) -> Option<usize> {
+        let cells = &self.of_leaf[leaf];
         if let [only] = cells[..] {
             return Some(only);
         }

@@ -268,26 +268,35 @@ fn touching<const D: usize>(discs: &[Tabulated<D>], now: &[Point<D>], radius: f6
     out
 }
 
-/// Points spread evenly: again and again the one farthest from all chosen before, until none is as far as the spacing.
-/// Each takes the weight of those nearest to it on its face. Also the largest distance between neighbours.
+/// Points spread evenly. Each takes the weight of those nearest to it on its face. Also the largest distance between
+/// neighbours.
 fn spread<const D: usize>(sites: &[Site<D>], spacing: f64) -> (Vec<Site<D>>, f64) {
-    let distance = |a: &Site<D>, b: &Site<D>| {
-        if a.normal.dot(&b.normal) <= SAME_FACE { f64::INFINITY } else { (a.x - b.x).norm() }
+    let (chosen, nearest, far) = farthest_points(sites, &vec![spacing; sites.len()]);
+    let mut out: Vec<Site<D>> = chosen.iter().map(|c| Site { weight: 0.0, ..sites[*c] }).collect();
+    sites.iter().zip(&nearest).for_each(|(s, n)| out[*n].weight += s.weight);
+    (out, (2.0 * far * spacing).max(spacing))
+}
+
+/// Points chosen of some that lie on a boundary: again and again the one farthest from all chosen before on its face, until
+/// none is as far as its spacing. Gives the chosen ones, for each point the place of the nearest among them, and the
+/// largest distance that is left, in spacings.
+pub(crate) fn farthest_points<const D: usize>(sites: &[Site<D>], spacing: &[f64]) -> (Vec<usize>, Vec<usize>, f64) {
+    let distance = |i: usize, j: usize| {
+        let [a, b] = [&sites[i], &sites[j]];
+        if a.normal.dot(&b.normal) <= SAME_FACE { f64::INFINITY } else { (a.x - b.x).norm() / spacing[i] }
     };
     let mut chosen = vec![0];
-    let mut nearest: Vec<(f64, usize)> = sites.iter().map(|s| (distance(s, &sites[0]), 0)).collect();
+    let mut nearest: Vec<(f64, usize)> = (0..sites.len()).map(|i| (distance(i, 0), 0)).collect();
     loop {
         let (at, far) =
             nearest.iter().enumerate().fold((0, 0.0), |best, (i, n)| if n.0 > best.1 { (i, n.0) } else { best });
-        if far < spacing {
-            let mut out: Vec<Site<D>> = chosen.iter().map(|c| Site { weight: 0.0, ..sites[*c] }).collect();
-            sites.iter().zip(&nearest).for_each(|(s, n)| out[n.1].weight += s.weight);
-            return (out, (2.0 * far).max(spacing));
+        if far < 1.0 {
+            return (chosen, nearest.into_iter().map(|n| n.1).collect(), far);
         }
         let number = chosen.len();
         chosen.push(at);
-        for (n, s) in nearest.iter_mut().zip(sites) {
-            let d = distance(s, &sites[at]);
+        for (i, n) in nearest.iter_mut().enumerate() {
+            let d = distance(i, at);
             if d < n.0 {
                 *n = (d, number);
             }

@@ -4,7 +4,7 @@
 //! whose region is a Boolean of their signs, so that edges are integrated as well as faces.
 
 use signorini_fem::cut::CellPartition;
-use signorini_geometry::{Aabb, ImplicitShape, Point, Vector};
+use signorini_geometry::{Aabb, ImplicitShape, Matrix, Point, Vector};
 use std::sync::Arc;
 
 /// Where there is material.
@@ -178,5 +178,8 @@ impl<const D: usize> ImplicitShape<D> for Negated<'_, D> {
     fn value_and_gradient(&self, x: &Point<D>) -> (f64, Vector<D>) {
         let (value, gradient) = self.0.value_and_gradient(x);
         (-value, -gradient)
+    }
+    fn hessian(&self, x: &Point<D>) -> Matrix<D> {
+        -self.0.hessian(x)
     }
 }

@@ -1,5 +1,6 @@
 //! What can be wrong with a body of finite cells.
 
+use signorini_geometry::shape::ShapeError;
 use signorini_solve::SolveError;
 
 /// A body, support, load or contact that cannot be computed, with the values and what would do.
@@ -62,6 +63,16 @@ pub enum CellsError {
          larger fictitious stiffness helps"
     )]
     Iterations { iterations: usize, residual: f64 },
+    #[error(
+        "no box of cells is given, and this geometry has no bounds of its own: state the corners of a box that holds it"
+    )]
+    NoBox,
+    #[error("{count} parts of a {what}: there must be {least} at least")]
+    NoParts { what: &'static str, count: usize, least: usize },
+    #[error("{what} in the plane: {remedy}")]
+    InPlane { what: &'static str, remedy: &'static str },
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
     #[error(transparent)]
     Solve(#[from] SolveError),
 }

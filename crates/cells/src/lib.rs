@@ -11,13 +11,17 @@
 //! - [`components`]: what of the material hangs together.
 //! - [`discretisation`]: how a body is made of cells; [`body`]: all of this; [`stiffness`]: the elastic integrals.
 //! - [`supports`], [`loads`]: what holds and what pushes; [`system`]: equilibrium; [`schwarz`]: the preconditioner.
+//! - [`cell_solid`]: the body in a system of bodies of any kind.
+//! - [`description`]: the same from plain data, of any dimension.
 //! - [`contact`]: contact of the recovered boundary with a rigid body.
 //! - [`discs`]: contact of a body with itself, where pores close.
 //! - [`fields`]: displacement and stress in the volume and on the boundary.
 
 pub mod body;
+pub mod cell_solid;
 pub mod components;
 pub mod contact;
+pub mod description;
 pub mod discretisation;
 pub mod discs;
 pub mod domain;
@@ -40,6 +44,7 @@ pub mod tree;
 pub mod voxels;
 
 pub use body::{Cell, CellBody, Field, Findings, Site};
+pub use cell_solid::CellSolid;
 pub use components::Pieces;
 pub use discretisation::{Boundary, Discretisation, Islands, Stuff};
 pub use domain::Domain;

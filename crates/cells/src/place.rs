@@ -15,6 +15,8 @@ pub enum Place<const D: usize> {
     Side { axis: usize, end: End },
     /// The points of the recovered boundary for which this holds.
     Boundary(Arc<dyn Fn(&BoundaryPoint<D>) -> bool + Send + Sync>),
+    /// The points for which this holds of the whole surface: the recovered boundary, and the material on sides of the box.
+    Surface(Arc<dyn Fn(&BoundaryPoint<D>) -> bool + Send + Sync>),
 }
 
 impl<const D: usize> Place<D> {
@@ -47,8 +49,29 @@ impl<const D: usize> CellBody<D> {
                 }
                 (self.side_sites(*axis, *end), "named on a side of the box")
             }
+            Place::Surface(holds) => (self.surface_sites(&|p| holds(p)), "named on the surface"),
         };
         if sites.is_empty() { Err(CellsError::EmptyPlace { what }) } else { Ok(sites) }
+    }
+
+    /// The points of boundary and sides of the box. Where the boundary lies in a side of the box both are the same.
+    fn surface_sites(&self, holds: &dyn Fn(&BoundaryPoint<D>) -> bool) -> Vec<Site<D>> {
+        let mut out = self.sites(holds);
+        for axis in 0..D {
+            for end in End::BOTH {
+                let at = end.of(self.tree.bounds(), axis);
+                for site in self.side_sites(axis, end) {
+                    let slack = 1e-9 * self.bounds_of(site.cell).size()[axis];
+                    let own = &self.cells()[site.cell].rule.boundary;
+                    let is_known =
+                        own.iter().any(|p| (p.x[axis] - at).abs() < slack && p.normal.dot(&site.normal) > 0.9);
+                    if !is_known && holds(&BoundaryPoint { x: site.x, weight: site.weight, normal: site.normal }) {
+                        out.push(site);
+                    }
+                }
+            }
+        }
+        out
     }
 
     fn side_sites(&self, axis: usize, end: End) -> Vec<Site<D>> {

@@ -3,7 +3,7 @@
 use crate::domain::Domain;
 use signorini_geometry::jet::Jet;
 use signorini_geometry::rigid_shape::RigidShape;
-use signorini_geometry::{Aabb, ImplicitShape, Point, Vector};
+use signorini_geometry::{Aabb, ImplicitShape, Matrix, Point, Vector};
 use std::sync::Arc;
 
 /// A function of position, negative inside, with its derivatives: what an expression is evaluated to.
@@ -19,6 +19,9 @@ impl<const D: usize, F: Fn(&Point<D>) -> Jet<D> + Send + Sync> ImplicitShape<D> 
     fn value_and_gradient(&self, x: &Point<D>) -> (f64, Vector<D>) {
         let jet = (self.0)(x);
         (jet.value, jet.gradient)
+    }
+    fn hessian(&self, x: &Point<D>) -> Matrix<D> {
+        (self.0)(x).hessian
     }
 }
 
@@ -48,6 +51,9 @@ impl<const D: usize> ImplicitShape<D> for Ellipsoid<D> {
     fn gradient(&self, x: &Point<D>) -> Vector<D> {
         Vector::from_fn(|k, _| self.minor() * (x[k] - self.center[k]) / self.semi_axes[k].powi(2))
     }
+    fn hessian(&self, _: &Point<D>) -> Matrix<D> {
+        Matrix::from_diagonal(&Vector::from_fn(|k, _| self.minor() / self.semi_axes[k].powi(2)))
+    }
     fn range(&self, b: &Aabb<D>) -> Option<[f64; 2]> {
         let mut sums = [0.0; 2];
         for k in 0..D {
@@ -73,6 +79,9 @@ impl<const D: usize> ImplicitShape<D> for HalfSpace<D> {
     }
     fn gradient(&self, _: &Point<D>) -> Vector<D> {
         self.normal
+    }
+    fn hessian(&self, _: &Point<D>) -> Matrix<D> {
+        Matrix::<D>::zeros()
     }
     fn range(&self, b: &Aabb<D>) -> Option<[f64; 2]> {
         let (center, half) = (self.value(&b.center()), 0.5 * b.size());
@@ -108,6 +117,9 @@ impl ImplicitShape<3> for Rigid {
         let at = self.shape.gap(x);
         (at.gap - self.offset, at.normal)
     }
+    fn hessian(&self, x: &Point<3>) -> Matrix<3> {
+        self.shape.gap(x).hessian
+    }
     /// A gap changes no faster than position.
     fn range(&self, b: &Aabb<3>) -> Option<[f64; 2]> {
         let (value, reach) = (self.value(&b.center()), b.radius());
@@ -115,24 +127,32 @@ impl ImplicitShape<3> for Rigid {
     }
 }
 
-/// The section of a shape of space with the plane `z = 0`.
+/// A shape of space as a body sees it: its section with the plane `z = 0` in the plane, itself in space.
 #[derive(Clone)]
 pub struct Section(pub Arc<dyn ImplicitShape<3>>);
 
-impl ImplicitShape<2> for Section {
-    fn value(&self, x: &Point<2>) -> f64 {
-        self.0.value(&Point::<3>::new(x[0], x[1], 0.0))
+impl<const D: usize> ImplicitShape<D> for Section {
+    fn value(&self, x: &Point<D>) -> f64 {
+        self.0.value(&spatial(x))
     }
-    fn gradient(&self, x: &Point<2>) -> Vector<2> {
-        let g = self.0.gradient(&Point::<3>::new(x[0], x[1], 0.0));
-        Vector::<2>::new(g[0], g[1])
+    fn gradient(&self, x: &Point<D>) -> Vector<D> {
+        let g = self.0.gradient(&spatial(x));
+        Vector::from_fn(|k, _| g[k])
     }
-    fn value_and_gradient(&self, x: &Point<2>) -> (f64, Vector<2>) {
-        let (value, g) = self.0.value_and_gradient(&Point::<3>::new(x[0], x[1], 0.0));
-        (value, Vector::<2>::new(g[0], g[1]))
+    fn value_and_gradient(&self, x: &Point<D>) -> (f64, Vector<D>) {
+        let (value, g) = self.0.value_and_gradient(&spatial(x));
+        (value, Vector::from_fn(|k, _| g[k]))
     }
-    fn range(&self, b: &Aabb<2>) -> Option<[f64; 2]> {
-        let lift = |x: &Point<2>| Point::<3>::new(x[0], x[1], 0.0);
-        self.0.range(&Aabb::new(lift(&b.min), lift(&b.max)))
+    fn hessian(&self, x: &Point<D>) -> Matrix<D> {
+        let h = self.0.hessian(&spatial(x));
+        Matrix::from_fn(|i, j| h[(i, j)])
     }
+    fn range(&self, b: &Aabb<D>) -> Option<[f64; 2]> {
+        self.0.range(&Aabb::new(spatial(&b.min), spatial(&b.max)))
+    }
+}
+
+/// A position or direction in space.
+pub(crate) fn spatial<const D: usize>(x: &Point<D>) -> Vector<3> {
+    Vector::<3>::from_fn(|k, _| if k < D { x[k] } else { 0.0 })
 }

@@ -62,6 +62,14 @@ pub(crate) struct Terms {
     pub forces: Vec<f64>,
 }
 
+/// Points of the boundary in one cell, the cell that gives the stress there, and `γ`.
+pub(crate) struct NitschePart<const D: usize> {
+    pub cell: usize,
+    pub stress_cell: usize,
+    pub sites: Vec<Site<D>>,
+    pub gamma: f64,
+}
+
 impl<const D: usize> CellBody<D> {
     /// The unknowns of a side of the box with the values of a function projected on them, for one component.
     pub(crate) fn projected(
@@ -112,8 +120,8 @@ impl<const D: usize> CellBody<D> {
         Ok(numbers.iter().map(|(f, i)| (D * *f as usize + component, values[*i as usize])).collect())
     }
 
-    /// Nitsche's terms of a support on points of the boundary.
-    pub(crate) fn nitsche(&self, sites: &[Site<D>], held: &Held<D>, stiffness: &[Arc<DMatrix<f64>>]) -> Vec<Terms> {
+    /// Points of the boundary by the cells that they lie in, with the stabilisation of Nitsche's method there.
+    pub(crate) fn nitsche_parts(&self, sites: &[Site<D>], stiffness: &[Arc<DMatrix<f64>>]) -> Vec<NitschePart<D>> {
         // By the cell that gives the stress.
         let mut groups: BTreeMap<usize, Vec<&Site<D>>> = BTreeMap::new();
         for site in sites {
@@ -122,27 +130,25 @@ impl<const D: usize> CellBody<D> {
         let mut out = Vec::new();
         for (stress_cell, sites) in groups {
             let gamma = 2.0 * self.trace_constant(stress_cell, &sites, &stiffness[stress_cell]);
-            let mut by_cell: BTreeMap<usize, Vec<&Site<D>>> = BTreeMap::new();
-            sites.iter().for_each(|s| by_cell.entry(s.cell).or_default().push(s));
-            for (cell, sites) in by_cell {
-                out.push(self.nitsche_of_cell(cell, stress_cell, &sites, held, gamma));
-            }
+            let mut by_cell: BTreeMap<usize, Vec<Site<D>>> = BTreeMap::new();
+            sites.iter().for_each(|s| by_cell.entry(s.cell).or_default().push(**s));
+            out.extend(by_cell.into_iter().map(|(cell, sites)| NitschePart { cell, stress_cell, sites, gamma }));
         }
         out
     }
 
-    fn nitsche_of_cell(
-        &self,
-        cell: usize,
-        stress_cell: usize,
-        sites: &[&Site<D>],
-        held: &Held<D>,
-        gamma: f64,
-    ) -> Terms {
-        let rows = RowSpace::new(self, cell, stress_cell);
+    /// Nitsche's terms of a support on points of the boundary.
+    pub(crate) fn nitsche(&self, sites: &[Site<D>], held: &Held<D>, stiffness: &[Arc<DMatrix<f64>>]) -> Vec<Terms> {
+        let parts = self.nitsche_parts(sites, stiffness);
+        parts.iter().map(|part| self.nitsche_of_part(part, held)).collect()
+    }
+
+    fn nitsche_of_part(&self, part: &NitschePart<D>, held: &Held<D>) -> Terms {
+        let gamma = part.gamma;
+        let rows = RowSpace::new(self, part.cell, part.stress_cell);
         let n = rows.unknowns.len();
         let (mut matrix, mut forces) = (DMatrix::<f64>::zeros(n, n), vec![0.0; n]);
-        for site in sites {
+        for site in &part.sites {
             let at = rows.at(self, site);
             let mut hold = |direction: &Vector<D>, value: f64| {
                 let v = at.displacement(direction);

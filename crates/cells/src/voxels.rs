@@ -10,7 +10,7 @@ use signorini_fem::QuadraturePoint;
 use signorini_fem::cut::End;
 use signorini_geometry::grid_spline::GridSpline;
 use signorini_geometry::rule::gauss_legendre;
-use signorini_geometry::{Aabb, ImplicitShape, Point, Vector};
+use signorini_geometry::{Aabb, ImplicitShape, Matrix, Point, Vector};
 use std::sync::Arc;
 
 /// Values of voxels, the first index running fastest.
@@ -164,6 +164,13 @@ pub struct LevelShape<const D: usize> {
     spline: Arc<GridSpline<D>>,
 }
 
+impl<const D: usize> LevelShape<D> {
+    /// Value, gradient and Hessian.
+    pub fn jet(&self, x: &Point<D>) -> signorini_geometry::Jet<D> {
+        self.spline.jet(x)
+    }
+}
+
 impl<const D: usize> ImplicitShape<D> for LevelShape<D> {
     fn value(&self, x: &Point<D>) -> f64 {
         self.spline.value_and_gradient(x).0
@@ -173,6 +180,9 @@ impl<const D: usize> ImplicitShape<D> for LevelShape<D> {
     }
     fn value_and_gradient(&self, x: &Point<D>) -> (f64, Vector<D>) {
         self.spline.value_and_gradient(x)
+    }
+    fn hessian(&self, x: &Point<D>) -> Matrix<D> {
+        self.spline.jet(x).hessian
     }
     fn range(&self, b: &Aabb<D>) -> Option<[f64; 2]> {
         Some(self.spline.range(&b.min, &b.max))

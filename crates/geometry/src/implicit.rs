@@ -1,6 +1,6 @@
 //! Shapes given by a function that is negative inside.
 
-use crate::{Aabb, Point, Vector};
+use crate::{Aabb, Matrix, Point, Vector};
 
 /// A shape `{x : value(x) < 0}`; its boundary is where the value vanishes and the gradient does not.
 pub trait ImplicitShape<const D: usize>: Send + Sync {
@@ -11,6 +11,17 @@ pub trait ImplicitShape<const D: usize>: Send + Sync {
     /// Bounds of the value in a box, where they are known.
     fn range(&self, _: &Aabb<D>) -> Option<[f64; 2]> {
         None
+    }
+    /// Second derivatives of the value; central differences of the gradient where there is no formula.
+    fn hessian(&self, x: &Point<D>) -> Matrix<D> {
+        // The step at which rounding and the next term are alike, for positions and lengths of about this size.
+        let step = f64::EPSILON.cbrt() * x.amax().max(1e-3);
+        let mut out = Matrix::<D>::zeros();
+        for k in 0..D {
+            let e = Vector::<D>::from_fn(|i, _| if i == k { step } else { 0.0 });
+            out.set_column(k, &((self.gradient(&(x + e)) - self.gradient(&(x - e))) / (2.0 * step)));
+        }
+        (out + out.transpose()) * 0.5
     }
     /// Both at once, where that is cheaper.
     fn value_and_gradient(&self, x: &Point<D>) -> (f64, Vector<D>) {
@@ -30,6 +41,9 @@ impl<const D: usize, S: ImplicitShape<D> + ?Sized> ImplicitShape<D> for &S {
     }
     fn value_and_gradient(&self, x: &Point<D>) -> (f64, Vector<D>) {
         (**self).value_and_gradient(x)
+    }
+    fn hessian(&self, x: &Point<D>) -> Matrix<D> {
+        (**self).hessian(x)
     }
 }
 

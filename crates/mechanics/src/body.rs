@@ -288,6 +288,22 @@ pub trait Body: Send + Sync {
     /// A place that is not there, or has nothing to hold.
     fn hold(&self, on: Option<&str>, hold: &Hold<'_>, state: &BodyState) -> Result<Vec<Constraint>, PlaceError>;
 
+    /// Adds the terms that hold a place which no equation between unknowns can hold, such as a boundary that runs through
+    /// cells; the force of the support on the body. None where [`hold`](Body::hold) says it all.
+    ///
+    /// # Errors
+    /// A place that is not there, or has nothing to hold.
+    fn hold_weakly(
+        &self,
+        _on: Option<&str>,
+        _hold: &Hold<'_>,
+        _state: &BodyState,
+        _order: Order,
+        _out: &mut Contribution,
+    ) -> Result<Option<Vector<3>>, PlaceError> {
+        Ok(None)
+    }
+
     /// Adds a load: minus the force, and its derivative.
     ///
     /// # Errors

@@ -183,13 +183,13 @@ impl Contact {
         self.slave.body == self.master.body
     }
 
-    /// The pair of a site, if it meets something.
+    /// The pair of a site, if it meets something; with second variations where they are `wanted`.
     fn pair(
         &self,
         k: usize,
         sides: &Sides<'_>,
         master: &dyn Master,
-        order: Order,
+        wanted: impl Fn(&Pair) -> bool,
     ) -> (Placed, Option<Result<Pair, NoPair>>) {
         let site = &self.sites[k];
         let placed = sides.slave.0.placed(sides.slave.1, site);
@@ -207,7 +207,9 @@ impl Contact {
             friction: self.friction.is_some(),
             axis: self.axis,
         };
-        let pair = encounter.measure(order);
+        let pair = encounter.measure(Order::First);
+        let again = pair.as_ref().is_ok_and(wanted);
+        let pair = if again { encounter.measure(Order::Second) } else { pair };
         (placed, Some(pair))
     }
 
@@ -246,7 +248,7 @@ impl Contact {
         out: &mut Target<'_>,
     ) -> Result<usize, PlaceError> {
         let master = sides.master.0.master(self.master.group.as_deref(), sides.master.1)?;
-        let order = if out.tangent.is_some() { Order::Second } else { Order::First };
+        let linearises = out.tangent.is_some();
         let parts = self.components();
         let mut lost = 0;
         for k in 0..self.sites.len() {
@@ -255,7 +257,8 @@ impl Contact {
             let at = self.multiplier(k, lambda);
             let w = self.sites[k].weight;
             let c = self.stiffness[k];
-            let pair = match self.pair(k, sides, master.as_ref(), order).1 {
+            let is_closed = |pair: &Pair| linearises && self.traction(k, pair, at).projected.status != Status::Open;
+            let pair = match self.pair(k, sides, master.as_ref(), is_closed).1 {
                 Some(Ok(pair)) => pair,
                 found => {
                     lost += usize::from(matches!(found, Some(Err(NoPair::NoCoordinates))));
@@ -290,6 +293,13 @@ impl Contact {
                 }
             }
             let Some(tangent) = &mut out.tangent else { continue };
+            if found.projected.status == Status::Open {
+                // Neither force nor stiffness, but that multipliers are to vanish.
+                for i in 0..if multiplier { parts } else { 0 } {
+                    tangent.add(own(i), own(i), -w / c * (1.0 + UNDETERMINED));
+                }
+                continue;
+            }
             // Derivatives of the trial in the unknowns of the pair.
             let d_trial: Vec<[f64; 3]> = (0..n)
                 .map(|b| {
@@ -360,7 +370,7 @@ impl Contact {
     pub(crate) fn results(&self, sides: &Sides<'_>, lambda: &[f64]) -> Result<Vec<(SiteResult, [f64; 3])>, PlaceError> {
         let master = sides.master.0.master(self.master.group.as_deref(), sides.master.1)?;
         let of = |k: usize| {
-            let (placed, pair) = self.pair(k, sides, master.as_ref(), Order::First);
+            let (placed, pair) = self.pair(k, sides, master.as_ref(), |_| false);
             let mut out = SiteResult { x: placed.x, weight: self.sites[k].weight, ..SiteResult::default() };
             let Some(Ok(pair)) = pair else { return (out, [0.0; 3]) };
             let found = self.traction(k, &pair, self.multiplier(k, lambda));
@@ -390,7 +400,7 @@ impl Contact {
         let master = sides.master.0.master(self.master.group.as_deref(), sides.master.1)?;
         let mut memory = Vec::with_capacity(self.sites.len());
         for k in 0..self.sites.len() {
-            let Some(Ok(pair)) = self.pair(k, sides, master.as_ref(), Order::First).1 else {
+            let Some(Ok(pair)) = self.pair(k, sides, master.as_ref(), |_| false).1 else {
                 memory.push(SiteMemory::default());
                 continue;
             };
@@ -403,7 +413,7 @@ impl Contact {
                 let on_slave = found.axes[0] * own.traction[1] + found.axes[1] * own.traction[2];
                 let slipped = found.axes[0] * own.slip[0] + found.axes[1] * own.slip[1];
                 self.memory[k].stuck = own.stuck;
-                if let (_, Some(Ok(again))) = self.pair(k, sides, master.as_ref(), Order::First) {
+                if let (_, Some(Ok(again))) = self.pair(k, sides, master.as_ref(), |_| false) {
                     let (new, _) = axes(&again);
                     own.traction[1] = new[0].dot(&on_slave);
                     own.traction[2] = new[1].dot(&on_slave);

@@ -4,7 +4,7 @@
 //! stand, weak springs hold all bodies where they were and are taken back step by step; what they still carried in the
 //! end shows what holds nothing.
 
-use crate::body::Order;
+use crate::body::{Order, Sampling};
 use crate::contact::{Enforcement, SiteResult};
 use crate::system::{Assembled, AssemblyError, System, SystemState, sides};
 use signorini_contact::law::{Friction, stuck};
@@ -137,8 +137,8 @@ impl System {
         for contact in &self.contacts {
             // A deformable master of a rigid slave.
             let master = &self.bodies[contact.master.body];
-            let sites = master.sites(contact.master.group.as_deref(), crate::body::Sampling::Nodes);
-            let list = sites.unwrap_or_default();
+            let sites = |sampling| master.sites(contact.master.group.as_deref(), sampling);
+            let list = sites(Sampling::Nodes).or_else(|_| sites(Sampling::GaussPoints)).unwrap_or_default();
             let most = list.iter().map(|s| master.site_stiffness(s)).filter(|c| c.is_finite()).fold(0.0, f64::max);
             scale = scale.max(most);
         }
@@ -442,6 +442,7 @@ impl System {
         for (held, reaction) in at.coupled.iter().zip(&state.reactions) {
             add(held.support, held.constraint.component, -reaction);
         }
+        at.weakly_held.iter().for_each(|(support, force)| support_forces[*support][0] += force);
         let most = at.sizes[..count].iter().fold(f64::MIN_POSITIVE, |m, s| m.max(*s));
         // Where no force acts what is left is the rounding of the positions.
         let most = most.max(1e10 * rounding);

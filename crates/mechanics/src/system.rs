@@ -25,6 +25,22 @@ pub struct Support {
     pub rotation: [Option<TimeField>; 3],
 }
 
+impl Support {
+    /// What is held at a time.
+    fn at<T>(&self, time: f64, with: impl FnOnce(&Hold<'_>) -> T) -> T {
+        let at = |field: &TimeField| {
+            let field = Arc::clone(field);
+            move |x: &Point<3>| field(x, time)
+        };
+        let displacement = self.displacement.each_ref().map(|f| f.as_ref().map(at));
+        let rotation = self.rotation.each_ref().map(|f| f.as_ref().map(at));
+        with(&Hold {
+            displacement: displacement.each_ref().map(|f| f.as_ref().map(|f| f as &dyn Fn(&Point<3>) -> f64)),
+            rotation: rotation.each_ref().map(|f| f.as_ref().map(|f| f as &dyn Fn(&Point<3>) -> f64)),
+        })
+    }
+}
+
 /// What acts on a part of a body, by time.
 #[derive(Clone)]
 pub enum TimedLoad {
@@ -122,6 +138,8 @@ pub(crate) struct Assembled {
     /// Equations that hold one unknown, and those that couple several.
     pub single: Vec<Held>,
     pub coupled: Vec<Held>,
+    /// Support, and the force of it on its body, of what is held by terms in the residual.
+    pub weakly_held: Vec<(usize, Vector<3>)>,
     pub energy: f64,
     /// Sites that have no coordinates.
     pub lost: usize,
@@ -165,17 +183,8 @@ impl System {
         let (mut single, mut coupled): (Vec<Held>, Vec<Held>) = (Vec::new(), Vec::new());
         for (number, support) in self.supports.iter().enumerate() {
             let body = &self.bodies[support.part.body];
-            let at = |field: &TimeField| {
-                let field = Arc::clone(field);
-                move |x: &Point<3>| field(x, time)
-            };
-            let displacement = support.displacement.each_ref().map(|f| f.as_ref().map(at));
-            let rotation = support.rotation.each_ref().map(|f| f.as_ref().map(at));
-            let hold = Hold {
-                displacement: displacement.each_ref().map(|f| f.as_ref().map(|f| f as &dyn Fn(&Point<3>) -> f64)),
-                rotation: rotation.each_ref().map(|f| f.as_ref().map(|f| f as &dyn Fn(&Point<3>) -> f64)),
-            };
-            let list = body.hold(support.part.group.as_deref(), &hold, &state.bodies[support.part.body])?;
+            let (on, own) = (support.part.group.as_deref(), &state.bodies[support.part.body]);
+            let list = support.at(time, |hold| body.hold(on, hold, own))?;
             for mut constraint in list {
                 constraint.terms.iter_mut().for_each(|t| t.0 += first[support.part.body]);
                 let held = Held { support: number, constraint };
@@ -254,6 +263,16 @@ impl System {
             load.act(body.as_ref(), &state.bodies[load.part.body], time, order, &mut out)?;
             add(&out, first, &mut residual, &mut sizes, &mut tangent);
         }
+        let mut weakly_held = Vec::new();
+        for (number, support) in self.supports.iter().enumerate() {
+            let (body, own) = (&self.bodies[support.part.body], &state.bodies[support.part.body]);
+            let mut out = Contribution::new(body.unknowns());
+            let on = support.part.group.as_deref();
+            if let Some(force) = support.at(time, |hold| body.hold_weakly(on, hold, own, order, &mut out))? {
+                add(&out, first[support.part.body], &mut residual, &mut sizes, &mut tangent);
+                weakly_held.push((number, force));
+            }
+        }
         let mut lost = 0;
         let mut own = 0;
         for contact in &self.contacts {
@@ -280,7 +299,7 @@ impl System {
                 }
             }
         }
-        Ok(Assembled { residual, sizes, tangent, single, coupled, energy, lost })
+        Ok(Assembled { residual, sizes, tangent, single, coupled, weakly_held, energy, lost })
     }
 }
 

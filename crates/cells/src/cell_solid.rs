@@ -1,0 +1,411 @@
+//! Bodies of finite cells as bodies of a system: unknowns `D f + i` for function `f` in direction `i`.
+//!
+//! Small strain, linear elastic: the stiffness is added up once. Contact is tested where the boundary is now,
+//! `x = X + u(X)`, with the normal `cof(∂x/∂X) N`: at all quadrature points of the boundary that the cells recover, or at as
+//! many of them, evenly spread, as its functions can follow. Only with these do conditions that are kept exactly, by
+//! multipliers or augmentation, determine the pressure: of more points than functions it ripples. A plane or axisymmetric
+//! body stands at `z = 0`. Places on sides of the box are held by equations between unknowns, places on
+//! the recovered boundary by Nitsche's method (see [`supports`](crate::supports)).
+//!
+//! Around an axis nothing leaves it: the unknowns of that are tied to nothing and stay zero, since a hoop strain `u/r`
+//! there would have infinite energy.
+
+mod hold;
+mod linear;
+mod loads;
+mod shown;
+mod weak;
+
+use crate::body::{CellBody, Site};
+use crate::discs::farthest_points;
+use crate::error::CellsError;
+use crate::place::Place;
+use crate::region::Filling;
+use crate::shapes::spatial;
+use crate::space::Tabulation;
+use hold::SideFunctions;
+use linear::LinearFields;
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+use shown::Shown;
+use signorini_fem::elastic::Space;
+use signorini_geometry::{Matrix, Point, Vector};
+use signorini_mechanics as mechanics;
+use signorini_mechanics::pair::axis;
+use signorini_mechanics::{
+    Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Function, Hold, Load, Master, Order, PlaceError,
+    Placed, Sampling,
+};
+use std::collections::BTreeMap;
+use std::sync::{Arc, OnceLock};
+use weak::WeakHold;
+
+/// The name of the whole recovered boundary.
+const BOUNDARY: &str = "boundary";
+
+/// A body of finite cells in a system of bodies.
+pub struct CellSolid<const D: usize> {
+    name: String,
+    body: CellBody<D>,
+    /// Of each cell.
+    stiffness: Vec<Arc<DMatrix<f64>>>,
+    /// The points of all surfaces.
+    points: Vec<Site<D>>,
+    surfaces: BTreeMap<String, Surface<D>>,
+    linear: LinearFields<D>,
+    /// Unknowns that are tied to nothing and stay zero.
+    is_zero: Vec<bool>,
+    size: f64,
+    shown: OnceLock<Shown<D>>,
+}
+
+/// The points of a place, and how it is held.
+struct Surface<const D: usize> {
+    /// Numbers of the first of its points and of the one after the last.
+    points: [usize; 2],
+    held: HeldBy<D>,
+    /// Points spread evenly, with what they stand for.
+    spread: OnceLock<Vec<mechanics::Site>>,
+}
+
+enum HeldBy<const D: usize> {
+    /// Unknowns of functions on a side of the box.
+    Side(SideFunctions<D>),
+    /// Nitsche's terms, made when they are first asked for.
+    Terms(OnceLock<WeakHold<D>>),
+}
+
+impl<const D: usize> CellSolid<D> {
+    /// A body at rest. `places` are those that are held, loaded or tested for contact; the whole recovered boundary is
+    /// always there as `boundary`, unless a place has that name.
+    ///
+    /// # Errors
+    /// Places without material; a side along an axis that the body does not have.
+    pub fn new(name: &str, body: CellBody<D>, places: &BTreeMap<String, Place<D>>) -> Result<Self, CellsError> {
+        let is_zero = vanishing(&body);
+        let mut stiffness = body.stiffness();
+        if is_zero.contains(&true) {
+            for (cell, matrix) in stiffness.iter_mut().enumerate() {
+                untie(&body.unknowns_of(cell), &is_zero, matrix);
+            }
+        }
+        let whole = Place::boundary(|_| true);
+        let mut list: BTreeMap<&str, &Place<D>> = places.iter().map(|(name, place)| (name.as_str(), place)).collect();
+        list.entry(BOUNDARY).or_insert(&whole);
+        let (mut points, mut surfaces) = (Vec::new(), BTreeMap::new());
+        for (name, place) in list {
+            let own = match body.points_on(place) {
+                Ok(own) => own,
+                // A body that fills its box has no boundary in it.
+                Err(CellsError::EmptyPlace { .. }) if !places.contains_key(name) => continue,
+                Err(error) => return Err(error),
+            };
+            let held = match place {
+                Place::Side { axis, end } => HeldBy::Side(SideFunctions::new(&body, *axis, *end)?),
+                _ => HeldBy::Terms(OnceLock::new()),
+            };
+            let range = [points.len(), points.len() + own.len()];
+            surfaces.insert(name.to_string(), Surface { points: range, held, spread: OnceLock::new() });
+            points.extend(own);
+        }
+        let linear = LinearFields::new(&body);
+        let size = extent(&body);
+        Ok(CellSolid {
+            name: name.to_string(),
+            body,
+            stiffness,
+            points,
+            surfaces,
+            linear,
+            is_zero,
+            size,
+            shown: OnceLock::new(),
+        })
+    }
+
+    /// The cells by themselves.
+    pub fn cells(&self) -> &CellBody<D> {
+        &self.body
+    }
+
+    fn surface(&self, on: Option<&str>) -> Result<&Surface<D>, PlaceError> {
+        let name = on.unwrap_or(BOUNDARY);
+        self.surfaces.get(name).ok_or_else(|| PlaceError::Unknown {
+            body: self.name.clone(),
+            group: name.to_string(),
+            known: self.surfaces.keys().cloned().collect(),
+        })
+    }
+
+    fn points_of(&self, surface: &Surface<D>) -> &[Site<D>] {
+        &self.points[surface.points[0]..surface.points[1]]
+    }
+
+    fn unsuitable(&self, message: impl Into<String>) -> PlaceError {
+        PlaceError::Unsuitable { body: self.name.clone(), message: message.into() }
+    }
+
+    /// The unknown of a function in a direction, unless it stays zero.
+    fn unknown(&self, function: u32, direction: usize) -> Option<u32> {
+        let unknown = D * function as usize + direction;
+        (!self.is_zero[unknown]).then_some(unknown as u32)
+    }
+
+    /// Points a degree's part of their cells apart, each in the middle of those that it stands for.
+    fn spread(&self, surface: &Surface<D>) -> Vec<mechanics::Site> {
+        let points = self.points_of(surface);
+        let spacing: Vec<f64> = points.iter().map(|p| self.cell_size(p) / self.body.degree() as f64).collect();
+        let (chosen, nearest, _) = farthest_points(points, &spacing);
+        let mut sums = vec![(0.0, Point::<D>::zeros()); chosen.len()];
+        for (p, n) in points.iter().zip(&nearest) {
+            sums[*n].0 += p.weight;
+            sums[*n].1 += p.x * p.weight;
+        }
+        let mut middle: Vec<(f64, usize)> = vec![(f64::INFINITY, 0); chosen.len()];
+        for (k, (p, n)) in points.iter().zip(&nearest).enumerate() {
+            let distance = (p.x - sums[*n].1 / sums[*n].0).norm();
+            if distance < middle[*n].0 {
+                middle[*n] = (distance, k);
+            }
+        }
+        let site = |((weight, _), (_, k)): (&(f64, Point<D>), &(f64, usize))| mechanics::Site {
+            patch: (surface.points[0] + k) as u32,
+            xi: [0.0; 2],
+            weight: *weight,
+        };
+        sums.iter().zip(&middle).map(site).collect()
+    }
+
+    /// Least extent of the cell of a point.
+    fn cell_size(&self, point: &Site<D>) -> f64 {
+        self.body.tree().leaves()[self.body.cells()[point.cell].leaf].size()
+    }
+
+    /// Displacement and its gradient at a point of a cell.
+    fn displacement(&self, cell: usize, t: &Tabulation<D>, u: &[f64]) -> (Vector<D>, Matrix<D>) {
+        let (mut value, mut gradient) = (Vector::<D>::zeros(), Matrix::<D>::zeros());
+        for (f, (v, slope)) in self.body.cells()[cell].functions.iter().zip(t.value.iter().zip(&t.gradient)) {
+            let c = Vector::<D>::from_fn(|k, _| u[D * *f as usize + k]);
+            value += c * *v;
+            gradient += c * slope.transpose();
+        }
+        (value, gradient)
+    }
+}
+
+/// Unknowns that vanish: along the radius, of functions that do not vanish on the axis.
+fn vanishing<const D: usize>(body: &CellBody<D>) -> Vec<bool> {
+    let mut out = vec![false; body.unknowns()];
+    if body.space() == Space::Axisymmetric && body.tree().bounds().min[0] == 0.0 {
+        let on_axis = (0..body.function_count()).filter(|f| body.mode(*f).ids[0] == 0);
+        on_axis.for_each(|f| out[D * f] = true);
+    }
+    out
+}
+
+/// Leaves of the rows and columns of some unknowns the diagonal only.
+fn untie(unknowns: &[u32], which: &[bool], matrix: &mut Arc<DMatrix<f64>>) {
+    let places: Vec<usize> = (0..unknowns.len()).filter(|i| which[unknowns[*i] as usize]).collect();
+    if places.is_empty() {
+        return;
+    }
+    let matrix = Arc::make_mut(matrix);
+    for i in places {
+        let own = matrix[(i, i)];
+        matrix.row_mut(i).fill(0.0);
+        matrix.column_mut(i).fill(0.0);
+        matrix[(i, i)] = own;
+    }
+}
+
+/// The largest extent of the material along an axis.
+fn extent<const D: usize>(body: &CellBody<D>) -> f64 {
+    let (mut low, mut high) = (Point::<D>::repeat(f64::INFINITY), Point::<D>::repeat(f64::NEG_INFINITY));
+    let mut take = |x: &Point<D>| (low, high) = (low.inf(x), high.sup(x));
+    for (number, cell) in body.cells().iter().enumerate() {
+        if cell.rule.filling == Filling::Full {
+            let b = body.bounds_of(number);
+            take(&b.min);
+            take(&b.max);
+        }
+        if body.region.has_points_in_material() {
+            cell.rule.volume.iter().for_each(|p| take(&p.x));
+        }
+        cell.rule.boundary.iter().for_each(|p| take(&p.x));
+    }
+    (high - low).max()
+}
+
+/// `cof(1 + ∇u) N`, the current normal of a surface with the normal `N`, of any length.
+fn normal_now<const D: usize>(normal: &Vector<D>, gradient: &Matrix<D>) -> Vector<3> {
+    let n = spatial(normal);
+    let f = Matrix::<3>::from_fn(|i, j| {
+        let own = if i < D && j < D { gradient[(i, j)] } else { 0.0 };
+        own + if i == j { 1.0 } else { 0.0 }
+    });
+    let [a, b, c] = [f.column(0).into_owned(), f.column(1).into_owned(), f.column(2).into_owned()];
+    b.cross(&c) * n[0] + c.cross(&a) * n[1] + a.cross(&b) * n[2]
+}
+
+impl<const D: usize> Body for CellSolid<D> {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn unknowns(&self) -> usize {
+        self.body.unknowns()
+    }
+
+    fn start(&self) -> BodyState {
+        BodyState { configuration: vec![0.0; self.unknowns()], internal: Vec::new() }
+    }
+
+    fn advance(&self, state: &BodyState, step: &[f64], share: f64) -> BodyState {
+        let configuration = state.configuration.iter().zip(step).map(|(u, s)| u + share * s).collect();
+        BodyState { configuration, internal: Vec::new() }
+    }
+
+    fn internal(&self, state: &BodyState, order: Order, out: &mut Contribution) -> Result<f64, BodyError> {
+        let u = &state.configuration;
+        let unknowns: Vec<Vec<u32>> = (0..self.stiffness.len()).map(|c| self.body.unknowns_of(c)).collect();
+        let forces: Vec<Vec<f64>> = (unknowns.par_iter().zip(&self.stiffness))
+            .map(|(unknowns, k)| {
+                let own = nalgebra::DVector::from_iterator(unknowns.len(), unknowns.iter().map(|i| u[*i as usize]));
+                (&**k * own).as_slice().to_vec()
+            })
+            .collect();
+        let mut energy = 0.0;
+        for (unknowns, forces) in unknowns.iter().zip(&forces) {
+            for (k, f) in unknowns.iter().zip(forces) {
+                out.forces[*k as usize] += f;
+                energy += 0.5 * f * u[*k as usize];
+            }
+        }
+        if order == Order::Second {
+            for (unknowns, k) in unknowns.iter().zip(&self.stiffness) {
+                // Symmetric: rows are columns.
+                out.add_block(unknowns, k.as_slice());
+            }
+        }
+        Ok(energy)
+    }
+
+    fn is_linear(&self) -> bool {
+        true
+    }
+
+    /// Equations on a side of the box, one for each function on it and component that is held; none elsewhere.
+    fn hold(&self, on: Option<&str>, hold: &Hold<'_>, state: &BodyState) -> Result<Vec<Constraint>, PlaceError> {
+        if hold.rotation.iter().any(Option::is_some) {
+            let message = "a body of cells has no rotations that could be held: hold displacements of a place";
+            return Err(self.unsuitable(message));
+        }
+        match &self.surface(on)?.held {
+            HeldBy::Side(side) => self.constraints(side, hold, &state.configuration),
+            HeldBy::Terms(_) => Ok(Vec::new()),
+        }
+    }
+
+    fn hold_weakly(
+        &self,
+        on: Option<&str>,
+        hold: &Hold<'_>,
+        state: &BodyState,
+        order: Order,
+        out: &mut Contribution,
+    ) -> Result<Option<Vector<3>>, PlaceError> {
+        let surface = self.surface(on)?;
+        let HeldBy::Terms(terms) = &surface.held else { return Ok(None) };
+        let terms = terms.get_or_init(|| WeakHold::new(self, self.points_of(surface)));
+        Ok(Some(self.add_terms(terms, hold, &state.configuration, order, out)))
+    }
+
+    fn load(
+        &self,
+        on: Option<&str>,
+        load: &Load<'_>,
+        state: &BodyState,
+        order: Order,
+        out: &mut Contribution,
+    ) -> Result<(), PlaceError> {
+        self.add_load(on, load, &state.configuration, order, out)
+    }
+
+    fn sites(&self, on: Option<&str>, sampling: Sampling) -> Result<Vec<mechanics::Site>, PlaceError> {
+        let surface = self.surface(on)?;
+        let [first, end] = surface.points;
+        let site = |k: usize| mechanics::Site { patch: k as u32, xi: [0.0; 2], weight: self.points[k].weight };
+        Ok(match sampling {
+            Sampling::GaussPoints => (first..end).map(site).collect(),
+            Sampling::Nodes => surface.spread.get_or_init(|| self.spread(surface)).clone(),
+        })
+    }
+
+    fn placed(&self, state: &BodyState, site: &mechanics::Site) -> Placed {
+        let point = &self.points[site.patch as usize];
+        let mut t = Tabulation::default();
+        self.body.functions_at(point.cell, &point.x, &mut t);
+        let (u, mut gradient) = self.displacement(point.cell, &t, &state.configuration);
+        let own = &self.body.cells()[point.cell].functions;
+        let mut functions = Vec::with_capacity(D * own.len());
+        for (f, v) in own.iter().zip(&t.value) {
+            for i in 0..D {
+                if let Some(unknown) = self.unknown(*f, i) {
+                    functions.push(Function { unknown, value: axis(i) * *v, ..Function::default() });
+                }
+            }
+        }
+        // A cell with little material does not control its own gradient.
+        let stress_cell = self.body.cells()[point.cell].stress_cell;
+        if stress_cell != point.cell {
+            self.body.functions_at(stress_cell, &point.x, &mut t);
+            gradient = self.displacement(stress_cell, &t, &state.configuration).1;
+        }
+        Placed {
+            x: spatial(&(point.x + u)),
+            outward: normal_now(&point.normal, &gradient).try_normalize(0.0),
+            functions,
+            frame: Matrix::<3>::identity(),
+            ..Placed::default()
+        }
+    }
+
+    fn master<'a>(&'a self, _: Option<&str>, _: &'a BodyState) -> Result<Box<dyn Master + 'a>, PlaceError> {
+        Err(self.unsuitable("the boundary of cells is tested, and not met: name the cells first in a contact"))
+    }
+
+    /// Young's modulus times the area of the site over the size of its cell, in parts of its degree.
+    fn site_stiffness(&self, site: &mechanics::Site) -> f64 {
+        let point = &self.points[site.patch as usize];
+        let modulus = self.body.elastic().youngs_modulus * self.body.modulus_factor(&point.x);
+        modulus * site.weight * self.body.degree() as f64 / self.cell_size(point)
+    }
+
+    fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6] {
+        let u = &state.configuration;
+        std::array::from_fn(|mode| {
+            let mut out = vec![0.0; self.unknowns()];
+            if self.body.space() == Space::Axisymmetric && mode != 1 {
+                return out;
+            }
+            let e = axis(mode % 3);
+            for f in 0..self.body.function_count() {
+                let own = Point::<D>::from_fn(|i, _| u[D * f + i]);
+                let motion = match mode {
+                    0..3 => e * self.linear.one[f],
+                    _ => e.cross(&spatial(&(self.linear.position[f] + own))),
+                };
+                (0..D).for_each(|i| out[D * f + i] = motion[i]);
+            }
+            out
+        })
+    }
+
+    fn size(&self) -> f64 {
+        self.size
+    }
+
+    fn fields(&self, state: &BodyState) -> BodyFields {
+        self.shown.get_or_init(|| Shown::new(&self.body)).fields(&self.body, &state.configuration)
+    }
+}

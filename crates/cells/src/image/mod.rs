@@ -148,35 +148,44 @@ const KNOWN: &str = ".npy, .nrrd, .mha, .mhd, .nii, .tif, .tiff; numbers without
 /// A file that cannot be read, or is not what its ending says.
 pub fn read(path: &Path) -> Result<ImageData, ImageError> {
     let file = path.display().to_string();
-    let load = |path: &Path| {
-        std::fs::read(path).map_err(|e| ImageError::File { file: path.display().to_string(), message: e.to_string() })
-    };
-    let beside = |name: &str| path.parent().unwrap_or(Path::new("")).join(name);
-    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
-    let content = |wrong: Wrong| ImageError::Content { file: file.clone(), wrong };
-    match ending.as_str() {
-        "npy" => npy::parse(&load(path)?).map_err(content),
-        "nii" => nifti::parse(&load(path)?).map_err(content),
-        "tif" | "tiff" => tiff_stack::parse(&load(path)?).map_err(content),
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let load = |name: &str| std::fs::read(folder.join(name)).map_err(|e| e.to_string());
+    let first = std::fs::read(path).map_err(|e| ImageError::File { file: file.clone(), message: e.to_string() })?;
+    read_with(&file, &first, &load)
+}
+
+/// Reads an image by the ending of its name from the bytes of its file; other files that it names are loaded by their names.
+///
+/// # Errors
+/// As of [`read`].
+pub fn read_with(
+    file: &str,
+    bytes: &[u8],
+    load: &dyn Fn(&str) -> Result<Vec<u8>, String>,
+) -> Result<ImageData, ImageError> {
+    let beside = |name: &String| load(name).map_err(|message| ImageError::File { file: name.clone(), message });
+    let content = |wrong: Wrong| ImageError::Content { file: file.to_string(), wrong };
+    match file.rsplit('.').next().unwrap_or("").to_ascii_lowercase().as_str() {
+        "npy" => npy::parse(bytes).map_err(content),
+        "nii" => nifti::parse(bytes).map_err(content),
+        "tif" | "tiff" => tiff_stack::parse(bytes).map_err(content),
         "nrrd" | "nhdr" => {
-            let bytes = load(path)?;
-            let header = nrrd::header(&bytes).map_err(content)?;
+            let header = nrrd::header(bytes).map_err(content)?;
             let data = match &header.data_file {
-                Some(name) => load(&beside(name))?,
+                Some(name) => beside(name)?,
                 None => bytes.get(header.data_start..).unwrap_or_default().to_vec(),
             };
             header.decode(&data).map_err(content)
         }
         "mha" | "mhd" => {
-            let bytes = load(path)?;
-            let header = metaimage::header(&bytes).map_err(content)?;
+            let header = metaimage::header(bytes).map_err(content)?;
             let data = match &header.data_file {
-                Some(name) => load(&beside(name))?,
+                Some(name) => beside(name)?,
                 None => bytes.get(header.data_start..).unwrap_or_default().to_vec(),
             };
             header.decode(&data).map_err(content)
         }
-        _ => Err(ImageError::Ending { file, known: KNOWN }),
+        _ => Err(ImageError::Ending { file: file.to_string(), known: KNOWN }),
     }
 }
 

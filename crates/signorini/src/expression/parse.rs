@@ -221,8 +221,9 @@ impl Parser<'_> {
         }
         if let Some(variable) = self.names.variables.iter().find(|v| **v == name) {
             return Ok(match *variable {
-                // A yarn is where its angle from the meridian and its radius are; a curve, where its parameter is.
-                "x" | "angle" | "u" => Node::Position(0),
+                // A yarn is where its angle from the meridian and its radius are; a curve, where its parameter is; a voxel,
+                // at its value.
+                "x" | "angle" | "u" | "value" => Node::Position(0),
                 "y" | "r" => Node::Position(1),
                 "z" => Node::Position(2),
                 _ => Node::Time,

@@ -73,7 +73,7 @@ impl SystemShown {
                     shown.curves.push(curve(body.name(), *radius, &fields));
                     shown.bodies.push(of_body(body.name(), &fields));
                 }
-                Kind::Solid => shown.bodies.push(of_body(body.name(), &body.fields(state))),
+                Kind::Solid | Kind::Cells => shown.bodies.push(of_body(body.name(), &body.fields(state))),
                 Kind::Rigid { shape, centre, is_free } => {
                     let pose = rigid_body::Pose::of(state);
                     let (rotation, shape, origin, now) = (pose.matrix(), Arc::clone(shape), *centre, pose.centre);

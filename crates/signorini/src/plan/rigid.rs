@@ -150,14 +150,24 @@ pub(super) fn read<const D: usize>(
     if rigid.smooth == Some(true) {
         return smooth_body::<D>(planner, name, rigid);
     }
-    let shape = match rigid_shape::read(&keys, &rigid.shape)? {
-        Some((shape, _)) => shape,
-        None => keys.without_closed_form(&rigid.shape, around)?,
-    };
+    let shape = shape::<D>(planner, &rigid.shape, around)?;
     let inside = rigid.side.as_ref().is_some_and(|s| *s == Side::Inside);
     let [displacement, rotation] = motion::<D>(planner, rigid)?;
     let bounds = keys.bounds(&rigid.shape)?;
     Ok(RigidBody { name: name.to_string(), shape, inside, displacement, rotation, bounds })
+}
+
+/// Reads a shape; a height is known in the box `around`.
+pub(super) fn shape<const D: usize>(
+    planner: &Planner<'_>,
+    stated: &Shape,
+    around: &Aabb<3>,
+) -> Result<Arc<dyn RigidShape>, CaseError> {
+    let keys = BesideSolids::<D> { planner };
+    match rigid_shape::read(&keys, stated)? {
+        Some((shape, _)) => Ok(shape),
+        None => keys.without_closed_form(stated, around),
+    }
 }
 
 /// Shapes beside solids: in the plane with two coordinates.

@@ -1,6 +1,6 @@
 //! Deformable bodies: what they occupy, what they are computed on, and what they are made of.
 
-use super::{Beam, Components, List, MeshArrays, Rigid, Rope, Value};
+use super::{Beam, CellsBody, Components, List, MeshArrays, Rigid, Rope, Value};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -14,9 +14,8 @@ pub enum Body {
     Rigid(Rigid),
     /// Elastic solids by finite elements.
     Solid(Solid),
-    /// Solids on a background grid: implicit shapes, surfaces, images.
-    #[schemars(skip)]
-    Cells(toml::Table),
+    /// Elastic solids on a grid of cells: implicit shapes, surfaces, images.
+    Cells(Box<CellsBody>),
     /// A rope, which carries tension only.
     Rope(Rope),
     /// A beam of any shape.

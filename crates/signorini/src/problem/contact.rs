@@ -86,6 +86,8 @@ pub enum Method {
     Node(SolidMethod),
     /// Of ropes and beams: at nodes of straight elements, at points of Gauss of smooth ones.
     Curve(SolidMethod),
+    /// Of finite cells: at points of the recovered boundary.
+    CellSurface(SolidMethod),
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]

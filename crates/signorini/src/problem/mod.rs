@@ -7,6 +7,7 @@
 
 pub mod arrays;
 pub mod body;
+pub mod cells;
 pub mod contact;
 pub mod curve;
 pub mod error;
@@ -22,6 +23,7 @@ pub mod value;
 
 pub use arrays::{Array, CellArrays, Grid2, MeshArrays, TriangleArrays};
 pub use body::*;
+pub use cells::*;
 pub use contact::*;
 pub use curve::*;
 pub use error::{CaseError, suggestion};

@@ -73,12 +73,12 @@ impl Planner<'_> {
         if body(&slave).unknowns() == 0 && body(&master).unknowns() == 0 {
             return Err(problem.error(key, format!("neither body of contact `{name}` can move")));
         }
-        let is_solid = matches!(kinds[slave.body], Kind::Solid);
+        let kind = &kinds[slave.body];
         let straight = match problem.bodies.get(body(&slave).name()) {
             Some(problem::Body::Rope(rope)) => rope.continuity != Some(problem::Continuity::C1),
             _ => false,
         };
-        let (sampling, enforcement, method) = self.system_method(key, body(&slave).is_rigid(), (straight, is_solid))?;
+        let (sampling, enforcement, method) = self.system_method(key, body(&slave).is_rigid(), straight, kind)?;
         let mut contact =
             Contact::new(name, (slave.clone(), body(&slave)), (master.clone(), body(&master)), sampling, enforcement)
                 .map_err(|error| self.misplaced(on[0], &error))?;
@@ -98,13 +98,25 @@ impl Planner<'_> {
         &self,
         key: &problem::Contact,
         rigid: bool,
-        (straight, is_solid): (bool, bool),
+        straight: bool,
+        kind: &Kind,
     ) -> Result<(Sampling, Kept, &'static str), CaseError> {
         let problem = self.problem;
         // Straight elements meet at nodes, which carry for them.
         let of_curve = if rigid || straight { Sampling::Nodes } else { Sampling::GaussPoints };
         let (sampling, word, stated) = match &key.method {
-            None => (of_curve, if is_solid { "gauss_point" } else { "curve" }, None),
+            None => match kind {
+                Kind::Solid => (of_curve, "gauss_point", None),
+                Kind::Cells => (of_curve, "cell_surface", None),
+                _ => (of_curve, "curve", None),
+            },
+            Some(Method::CellSurface(k)) if matches!(kind, Kind::Cells) => {
+                // Multipliers at as many points as there are functions; penalties wherever there is pressure.
+                let at_nodes =
+                    matches!(k.enforcement, Some(Enforcement::Multiplier(_) | Enforcement::AugmentedLagrangian(_)));
+                let sampling = if at_nodes { Sampling::Nodes } else { Sampling::GaussPoints };
+                (sampling, "cell_surface", k.enforcement.as_ref())
+            }
             Some(Method::Curve(k)) => (of_curve, "curve", k.enforcement.as_ref()),
             Some(Method::GaussPoint(k)) => (Sampling::GaussPoints, "gauss_point", k.enforcement.as_ref()),
             Some(Method::Node(k)) => (Sampling::Nodes, "node", k.enforcement.as_ref()),

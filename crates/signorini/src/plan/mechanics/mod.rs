@@ -1,5 +1,6 @@
 //! From the statement to bodies of any kind in one system: ropes, beams, free rigid bodies.
 
+mod cells;
 mod contacts;
 mod curves;
 mod fields;
@@ -30,6 +31,8 @@ pub enum Kind {
     },
     /// A solid of finite elements.
     Solid,
+    /// A solid of finite cells.
+    Cells,
     Rigid {
         shape: Arc<dyn RigidShape>,
         centre: Point<3>,
@@ -50,6 +53,8 @@ pub struct MechanicsPlan {
     pub wrong: Wrong,
     /// The method of each contact in a word.
     pub methods: Vec<&'static str>,
+    /// What was found out about images and bodies of finite cells.
+    pub notes: Vec<String>,
 }
 
 /// Whether a problem is one of a system of bodies: with ropes, beams, free rigid bodies or finite strain, with friction
@@ -57,7 +62,7 @@ pub struct MechanicsPlan {
 pub fn is_system(problem: &Problem) -> bool {
     let bodies = || problem.bodies.values();
     let needs_one = |body: &Body| match body {
-        Body::Rope(_) | Body::Beam(_) => true,
+        Body::Rope(_) | Body::Beam(_) | Body::Cells(_) => true,
         Body::Rigid(rigid) => matches!(rigid.motion, Some(Motion::Free(_))),
         Body::Solid(solid) => {
             solid.strain.as_deref() == Some("finite") || !matches!(solid.material, Material::LinearElastic(_))
@@ -85,6 +90,7 @@ impl Planner<'_> {
         let mut system = System::default();
         let mut kinds = Vec::new();
         let mut warnings = Vec::new();
+        let mut notes = Vec::new();
         let mut axis = Vec::new();
         let mut numbers = Numbers::new();
         // Rigid shapes given by heights are known around the bodies that are there.
@@ -103,11 +109,12 @@ impl Planner<'_> {
                     }
                     (body, Kind::Solid)
                 }
+                Body::Cells(cells) => (self.cells_body(name, cells, &mut notes)?.body, Kind::Cells),
                 Body::Rigid(_) => continue,
-                _ => {
+                Body::Membrane(_) => {
                     return Err(problem
                         .error(body, format!("the body `{name}` cannot stand in a system of several kinds of bodies"))
-                        .help("bodies here are `solid`, `rope`, `beam` or `rigid`"));
+                        .help("bodies here are `solid`, `cells`, `rope`, `beam` or `rigid`"));
                 }
             };
             let shown = deformable.fields(&deformable.start());
@@ -154,6 +161,7 @@ impl Planner<'_> {
             probes,
             wrong,
             methods,
+            notes,
         })
     }
 
@@ -163,7 +171,7 @@ impl Planner<'_> {
         for (name, body) in &problem.bodies {
             let fits = match body {
                 Body::Rope(_) | Body::Beam(_) => self.space == Space::ThreeD,
-                Body::Solid(_) => !matches!(self.space, Space::Line | Space::Plane),
+                Body::Solid(_) | Body::Cells(_) => !matches!(self.space, Space::Line | Space::Plane),
                 // Around an axis a body can be at rest or moved, but is no body that moves freely.
                 Body::Rigid(rigid) if self.space == Space::Axisymmetric => {
                     !matches!(rigid.motion, Some(Motion::Free(_)))

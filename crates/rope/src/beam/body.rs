@@ -11,6 +11,7 @@ use crate::hermite;
 use crate::place::{self, Line, Part};
 use crate::quaternion::{self, Quaternion, spin_map};
 use signorini_geometry::Vector;
+use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
     Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Function, Hold, Load, Master, Order, PlaceError,
     Placed, Sampling, Site,
@@ -327,6 +328,10 @@ impl Body for Beam {
         let element = &self.elements[site.patch as usize];
         let bending = element.stiffness.bending[0].min(element.stiffness.bending[1]);
         192.0 * bending / element.length.powi(3)
+    }
+
+    fn as_curve(&self) -> Option<&dyn Curve> {
+        Some(self)
     }
 
     fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6] {

@@ -9,10 +9,10 @@
 //!   predicts: as many as it likes. They change the tangent, never the forces that decide about convergence;
 //! - a *history*, numbers that count from the last state that was accepted.
 
+use crate::body::MaterialPoint;
 use crate::body::{Body, BodyState, PlaceError, Sampling, Site};
 use crate::contact::{Contact, Enforcement, Part, Sides, SiteMemory, SiteResult};
 use crate::pair::Stuck;
-use crate::body::MaterialPoint;
 use signorini_contact::law::{Friction, stuck};
 use signorini_contact::{Law, Status};
 use signorini_geometry::Vector;

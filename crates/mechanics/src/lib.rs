@@ -7,14 +7,20 @@
 //! - [`contact`]: law and enforcement at the sites of two sides.
 //! - [`interaction`]: what acts between bodies, as the system sees it.
 //! - [`system`]: bodies, supports, loads and contacts, assembled.
-//! - [`increment`]: equilibrium at one time; [`saved`]: what it goes on from.
+//! - [`increment`]: equilibrium at one time, by Newton's method (`equilibrium`), other ways where that fails (`homotopy`,
+//!   `free`), and outer iterations (`augmentation`); [`saved`]: what it goes on from.
 
+mod augmentation;
 pub mod body;
 pub mod contact;
 pub mod curve;
+mod equilibrium;
+mod free;
+mod homotopy;
 pub mod increment;
 pub mod interaction;
 pub mod pair;
+mod prepare;
 pub mod rigid_body;
 pub mod saved;
 pub mod system;

@@ -330,7 +330,7 @@ pub trait Body: Send + Sync {
     }
 
     /// The body as a curve, if it is one: contact between curves is for such.
-    fn as_curve(&self) -> Option<&dyn Curve> {
+    fn as_curve(&self) -> Option<Box<dyn Curve + '_>> {
         None
     }
 

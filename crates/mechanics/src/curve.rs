@@ -2,7 +2,7 @@
 //!
 //! A curve is a row of elements, with parameters from 0 to 1 in each, and a circular section about it that touches.
 
-use crate::body::{Body, Foot};
+use crate::body::Foot;
 use signorini_geometry::Point;
 use signorini_geometry::shape::CurveJet;
 
@@ -23,7 +23,7 @@ pub enum Continuity {
 }
 
 /// A body that is a curve. A `configuration` is that of a state of the body.
-pub trait Curve: Body {
+pub trait Curve: Sync {
     /// Number of elements.
     fn elements(&self) -> usize;
 

@@ -39,7 +39,7 @@ pub trait CurveBody: Body {
     }
 }
 
-impl<B: CurveBody> Curve for B {
+impl Curve for &dyn CurveBody {
     fn elements(&self) -> usize {
         self.centreline().elements()
     }
@@ -57,11 +57,11 @@ impl<B: CurveBody> Curve for B {
     }
 
     fn radius(&self) -> f64 {
-        CurveBody::radius(self)
+        (**self).radius()
     }
 
     fn contact_points(&self) -> usize {
-        CurveBody::contact_points(self)
+        (**self).contact_points()
     }
 
     fn jet(&self, configuration: &[f64], element: usize, xi: f64) -> CurveJet {
@@ -83,7 +83,7 @@ impl<B: CurveBody> Curve for B {
             jet,
             coordinates,
             outward: None,
-            radius: CurveBody::radius(self),
+            radius: (**self).radius(),
             functions: self.centreline().functions(element, xi),
             spin,
             frame,
@@ -155,7 +155,11 @@ pub fn master<'a, B: CurveBody>(
         let message = "a rope or beam is touched along all of it: name it without a group".to_string();
         return Err(PlaceError::Unsuitable { body: body.name().to_string(), message });
     }
-    Ok(Box::new(Touched { body, configuration: &state.configuration, tree: Bvh::new(&boxes(body, &state.configuration)) }))
+    Ok(Box::new(Touched {
+        body,
+        configuration: &state.configuration,
+        tree: Bvh::new(&boxes(&(body as &dyn CurveBody), &state.configuration)),
+    }))
 }
 
 /// Boxes of the elements, of the curve itself.
@@ -274,18 +278,24 @@ struct Touched<'a, B> {
     tree: Bvh,
 }
 
+impl<'a, B: CurveBody> Touched<'a, B> {
+    fn curve(&self) -> &'a dyn CurveBody {
+        self.body
+    }
+}
+
 impl<B: CurveBody> Master for Touched<'_, B> {
     fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<Met> {
-        let (curve, radius): (&dyn Curve, f64) = (self.body, CurveBody::radius(self.body));
+        let (curve, radius) = (self.curve(), self.body.radius());
         let mut best: Option<Minimum> = None;
         // Distances of surfaces: the curve lies deeper by the radius of the section.
         let reach = reach + radius;
         let mut limit = reach * reach;
         self.tree.nearest(x, limit, |element| {
-            for m in minima(curve, self.configuration, element, x) {
+            for m in minima(&curve, self.configuration, element, x) {
                 let is_other = except.is_none_or(|site| {
                     let sigma = curve.arc(site.patch as usize, site.xi[0]);
-                    are_apart(curve, curve.arc(element, m.xi), sigma, m.distance)
+                    are_apart(&curve, curve.arc(element, m.xi), sigma, m.distance)
                 });
                 let is_nearer = best.as_ref().is_none_or(|b| {
                     (m.distance, m.element).partial_cmp(&(b.distance, b.element)) == Some(std::cmp::Ordering::Less)
@@ -297,11 +307,11 @@ impl<B: CurveBody> Master for Touched<'_, B> {
             }
             limit
         });
-        best.map(|m| Met::Foot(Box::new(self.body.foot(self.configuration, m.element, m.xi, m.coordinates))))
+        best.map(|m| Met::Foot(Box::new(self.curve().foot(self.configuration, m.element, m.xi, m.coordinates))))
     }
 
     fn at(&self, point: &MaterialPoint) -> Anchor {
-        let foot = self.body.foot(self.configuration, point.patch as usize, point.xi[0], 1);
+        let foot = self.curve().foot(self.configuration, point.patch as usize, point.xi[0], 1);
         Anchor { x: foot.jet.x, tangent: foot.jet.u, functions: foot.functions, spin: foot.spin, frame: foot.frame }
     }
 }

@@ -330,8 +330,8 @@ impl Body for Beam {
         192.0 * bending / element.length.powi(3)
     }
 
-    fn as_curve(&self) -> Option<&dyn Curve> {
-        Some(self)
+    fn as_curve(&self) -> Option<Box<dyn Curve + '_>> {
+        Some(Box::new(self as &dyn CurveBody))
     }
 
     fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6] {

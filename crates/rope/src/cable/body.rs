@@ -257,8 +257,8 @@ impl Body for Cable {
         }
     }
 
-    fn as_curve(&self) -> Option<&dyn Curve> {
-        Some(self)
+    fn as_curve(&self) -> Option<Box<dyn Curve + '_>> {
+        Some(Box::new(self as &dyn CurveBody))
     }
 
     fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6] {

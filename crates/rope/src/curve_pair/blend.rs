@@ -21,6 +21,10 @@ pub struct BlendError {
     pub theta_2: f64,
 }
 
+/// The least angle of a band, in radians: closer to parallel the foot points of a crossing move more than two hundred times
+/// as far as the curves.
+const LEAST: f64 = 5e-3;
+
 impl Default for Blend {
     /// From 10 to 25 degrees: below, foot points of crossings move more than five times as far as the curves; above, the
     /// overlap of tubes is as short as a few of their penetrations are wide.
@@ -37,6 +41,15 @@ impl Blend {
     pub fn new(theta_1: f64, theta_2: f64) -> Result<Self, BlendError> {
         let is_valid = theta_1 > 0.0 && theta_1 < theta_2 && theta_2 <= std::f64::consts::FRAC_PI_2;
         if is_valid { Ok(Blend { theta_1, theta_2 }) } else { Err(BlendError { theta_1, theta_2 }) }
+    }
+
+    /// A band in which lines of points so far apart resolve where curves touch: the gap at the nearest point of a line is
+    /// off by at most `s² sin²θ / (8 (R_1 + R_2))` at a spacing `s`, which is to be less than a thousandth of the smaller
+    /// radius at `θ_1`. `θ_2` is 2.5 times as large, and neither is beyond the default.
+    pub fn resolved(spacing: f64, radii: [f64; 2]) -> Self {
+        let sine = (8e-3 * radii[0].min(radii[1]) * (radii[0] + radii[1])).sqrt() / spacing;
+        let theta_1 = sine.min(1.0).asin().clamp(LEAST, Self::default().theta_1);
+        Blend { theta_1, theta_2: 2.5 * theta_1 }
     }
 
     /// Share of the point force for `z = cos² θ`, and its derivative in `z`.

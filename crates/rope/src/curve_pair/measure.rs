@@ -11,7 +11,9 @@
 //! | `S = δD - (R_A θ_A + R_B θ_B) × n - g δn` | slip of the surface of A along that of B, axial and circumferential |
 //! | `e = P [x_A - R_A m_A - x_B - R_B m_B]` | slip since material points touched, of both curves and angles of both sections |
 //!
-//! A rigid motion of both is no slip. The second variation of the slip leaves out `g δ²n`, which vanishes with the gap.
+//! A rigid motion of both is no slip. A curve that does not know how its sections turn has one that turns with the normal:
+//! its `R δn` takes the place of `R θ × n`, and slip about its axis is not counted. Second variations are exact for any gap,
+//! but for the interpolation of spins within an element, which are taken for those of a rigid section.
 
 use nalgebra::SVector;
 use signorini_geometry::Vector;
@@ -57,11 +59,16 @@ pub struct CurvePair {
     /// Variations of the slip.
     pub slip: Vec<Vector<3>>,
     pub d_normal: Vec<Vector<3>>,
-    /// Variations of the coordinates of both points: zero for a fixed one.
-    pub d_xi: Vec<[f64; 2]>,
-    slopes: Vec<[Vector<3>; 2]>,
-    levers: Vec<Vector<3>>,
+    /// Second variations of the slip, row by row; empty where they were not asked for.
+    d_slip: Vec<Vector<3>>,
     pub stuck: Stuck,
+}
+
+/// What is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    Gap,
+    GapAndSlip,
 }
 
 /// One unknown at fixed coordinates.
@@ -114,12 +121,12 @@ pub fn measure(
     feet: [&Foot; 2],
     first: [u32; 2],
     facing: Option<Vector<3>>,
-    order: Order,
+    wanted: (Wanted, Order),
 ) -> Result<CurvePair, NoPair> {
     match feet[0].coordinates + feet[1].coordinates {
-        0 => with::<0>(feet, first, facing, order),
-        1 => with::<1>(feet, first, facing, order),
-        _ => with::<2>(feet, first, facing, order),
+        0 => with::<0>(feet, first, facing, wanted),
+        1 => with::<1>(feet, first, facing, wanted),
+        _ => with::<2>(feet, first, facing, wanted),
     }
 }
 
@@ -127,7 +134,7 @@ fn with<const N: usize>(
     feet: [&Foot; 2],
     first: [u32; 2],
     facing: Option<Vector<3>>,
-    order: Order,
+    (wanted, order): (Wanted, Order),
 ) -> Result<CurvePair, NoPair> {
     let [a, b] = feet;
     let jets = [curve_jet(a), curve_jet(b)];
@@ -195,21 +202,55 @@ fn with<const N: usize>(
             if length > 0.0 { (change - axial * axial.dot(&change)) / length } else { zero }
         })
         .collect();
+    // What turns with the normal: the gap, and sections that do not turn by themselves.
+    let hinge = gap + feet.iter().filter(|f| f.spin.is_empty()).map(|f| f.radius).sum::<f64>();
+    let d_gap: Vec<f64> = variations.iter().map(|v| measures.gap_variation(v)).collect();
+    let mut d_slip = Vec::new();
+    if (wanted, order) == (Wanted::GapAndSlip, Order::Second) {
+        // Of D, with its coordinates.
+        let bent = |k: usize, l: usize| {
+            let h = measures.coordinate_second_variation(&variations[k], &variations[l]);
+            let mut sum = zero;
+            for side in 0..2 {
+                let Some(own) = of_side(side) else { continue };
+                let (x, y) = (d_xi[k][side], d_xi[l][side]);
+                sum += variations[k].d_a[own] * y + variations[l].d_a[own] * x;
+                sum += (jets[side].d2 * (x * y) + d1[side] * h[own]) * signs[side];
+            }
+            sum
+        };
+        d_slip = vec![zero; n * n];
+        for k in 0..n {
+            for l in 0..n {
+                let along = (0..2).fold(zero, |sum, side| {
+                    of_side(side).map_or(sum, |own| sum + variations[k].d_a[own] * d_xi[l][side])
+                });
+                let turned = (bent(k, l) - d_normal[k] * d_gap[l] - d_normal[l] * d_gap[k]) / distance;
+                // The spin of a section varies by half the product of two spins.
+                let (p, q) = (&columns[k], &columns[l]);
+                let spun = if p.side == q.side && feet[p.side].radius > 0.0 {
+                    q.lever.cross(&p.lever) * (0.5 / feet[p.side].radius)
+                } else {
+                    zero
+                };
+                d_slip[k * n + l] =
+                    along - spun.cross(&normal) - p.lever.cross(&d_normal[l]) - d_normal[k] * d_gap[l] - turned * hinge;
+            }
+        }
+    }
     Ok(CurvePair {
         gap,
         normal,
         unknowns: columns.iter().map(|c| c.unknown).collect(),
-        d_gap: variations.iter().map(|v| measures.gap_variation(v)).collect(),
+        d_gap,
         d2_gap: if order == Order::Second { measures.gap_hessian(&variations) } else { Vec::new() },
         parallel: cosine * cosine,
         d_parallel,
         axial,
         d_axial,
-        slip: (0..n).map(|k| variations[k].d - columns[k].lever.cross(&normal) - d_normal[k] * gap).collect(),
+        slip: (0..n).map(|k| variations[k].d - columns[k].lever.cross(&normal) - d_normal[k] * hinge).collect(),
         d_normal,
-        d_xi,
-        slopes: columns.iter().map(|c| [0, 1].map(|s| if c.side == s { c.slope * signs[s] } else { zero })).collect(),
-        levers: columns.iter().map(|c| c.lever).collect(),
+        d_slip,
         stuck: Stuck {
             points: [a.point, b.point],
             directions: [a.frame.transpose() * -normal, b.frame.transpose() * normal],
@@ -218,18 +259,9 @@ fn with<const N: usize>(
 }
 
 impl CurvePair {
-    /// `T · Δδ slip`, row by row, for a traction `T` on the slave: it is not symmetric.
-    pub fn slip_hessian(&self, traction: &Vector<3>) -> Vec<f64> {
-        let n = self.unknowns.len();
-        let mut out = vec![0.0; n * n];
-        for k in 0..n {
-            for l in 0..n {
-                let along = self.slopes[k][0] * self.d_xi[l][0] + self.slopes[k][1] * self.d_xi[l][1];
-                let change = along - self.levers[k].cross(&self.d_normal[l]) - self.d_normal[k] * self.d_gap[l];
-                out[k * n + l] = traction.dot(&change);
-            }
-        }
-        out
+    /// `T · Δδ slip` of two unknowns, for a traction `T` across the normal: it is not symmetric.
+    pub fn slip_hessian(&self, traction: &Vector<3>, k: usize, l: usize) -> f64 {
+        traction.dot(&self.d_slip[k * self.unknowns.len() + l])
     }
 
     /// The circumferential direction of slip, `n × τ`.
@@ -240,7 +272,12 @@ impl CurvePair {
 
 /// Slip since material points touched: its vector, not yet projected, and its variations in the unknowns of both bodies.
 pub fn elastic_slip(stuck: &Stuck, feet: [&Foot; 2], first: [u32; 2]) -> (Vector<3>, Vec<u32>, Vec<Vector<3>>) {
-    let arms: [Vector<3>; 2] = [0, 1].map(|s| feet[s].frame * stuck.directions[s] * feet[s].radius);
+    let zero = Vector::<3>::zeros();
+    // Sections that turn with the normal have arms along it, which are no slip.
+    let arms: [Vector<3>; 2] = [0, 1].map(|s| match feet[s].spin.is_empty() {
+        true => zero,
+        false => feet[s].frame * stuck.directions[s] * feet[s].radius,
+    });
     let e = feet[0].jet.x + arms[0] - feet[1].jet.x - arms[1];
     let columns = columns(feet, first);
     let signs = [1.0, -1.0];
@@ -248,8 +285,7 @@ pub fn elastic_slip(stuck: &Stuck, feet: [&Foot; 2], first: [u32; 2]) -> (Vector
     let d_e = columns
         .iter()
         .map(|c| {
-            let turn =
-                if radius(c.side) > 0.0 { c.lever.cross(&arms[c.side]) / radius(c.side) } else { Vector::<3>::zeros() };
+            let turn = if radius(c.side) > 0.0 { c.lever.cross(&arms[c.side]) / radius(c.side) } else { zero };
             (c.value + turn) * signs[c.side]
         })
         .collect();

@@ -3,7 +3,7 @@
 //! A curve is a row of elements, with parameters from 0 to 1 in each, and a circular section about it that touches.
 
 use crate::body::Foot;
-use signorini_geometry::Point;
+use signorini_geometry::{Point, Vector};
 use signorini_geometry::shape::CurveJet;
 
 /// Whether a curve returns to its start.
@@ -54,4 +54,10 @@ pub trait Curve: Sync {
     /// A point of the curve with all that moves it; `coordinates` is 0 where it cannot be passed by: an end, a kink, or a
     /// point that is given.
     fn foot(&self, configuration: &[f64], element: usize, xi: f64, coordinates: usize) -> Foot;
+
+    /// Second variations of the spin of the section at a point, row by row of the spins of its [`Foot`], in the convention of
+    /// tangents: along geodesics of the rotations. Empty where it turns as a rigid section, by half the product of both spins.
+    fn spin_bends(&self, _configuration: &[f64], _element: usize, _xi: f64) -> Vec<Vector<3>> {
+        Vec::new()
+    }
 }

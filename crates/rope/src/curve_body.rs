@@ -37,6 +37,11 @@ pub trait CurveBody: Body {
     fn section(&self, _configuration: &[f64], _element: usize, _xi: f64) -> SectionMotion {
         SectionMotion { spin: Vec::new(), frame: Matrix::<3>::identity() }
     }
+
+    /// Second variations of the spin of a section, as [`Curve::spin_bends`].
+    fn spin_bends(&self, _configuration: &[f64], _element: usize, _xi: f64) -> Vec<Vector<3>> {
+        Vec::new()
+    }
 }
 
 impl Curve for &dyn CurveBody {
@@ -70,6 +75,10 @@ impl Curve for &dyn CurveBody {
 
     fn hull(&self, configuration: &[f64], element: usize) -> Vec<Point<3>> {
         self.centreline().hull(configuration, element)
+    }
+
+    fn spin_bends(&self, configuration: &[f64], element: usize, xi: f64) -> Vec<Vector<3>> {
+        (**self).spin_bends(configuration, element, xi)
     }
 
     fn foot(&self, configuration: &[f64], element: usize, xi: f64, coordinates: usize) -> Foot {

@@ -171,6 +171,33 @@ impl CurveBody for Beam {
             .collect();
         SectionMotion { spin, frame: quaternion::rotation(&q) }
     }
+
+    /// With `w_ai = L_a vec(e_i q_a Q*)/S` the spin per unit of each unknown and `δq_b = ½ e_j q_b`, the derivative of `w_ai`,
+    /// plus half of `w` along `e_j × e_i` where both are of one node: what turns with the node counts half.
+    fn spin_bends(&self, configuration: &[f64], element: usize, xi: f64) -> Vec<Vector<3>> {
+        let nodes = self.nodes_of(configuration, element);
+        let l = hermite::quadratic(xi);
+        let q = (0..3).fold(Quaternion::zeros(), |sum, a| sum + nodes.rotations[a] * l[a]);
+        let square = q.norm_squared();
+        let conjugate = quaternion::conjugate(&q);
+        let turned = |v: &Vector<3>, q: &Quaternion| quaternion::product(&quaternion::pure(v), q);
+        let spin = |a: usize, v: &Vector<3>| {
+            quaternion::vector(&quaternion::product(&turned(v, &nodes.rotations[a]), &conjugate)) * (l[a] / square)
+        };
+        let bend = |(a, e_i): (usize, Vector<3>), (b, e_j): (usize, Vector<3>)| {
+            let own = turned(&e_i, &nodes.rotations[a]) * l[a];
+            let d_q = turned(&e_j, &nodes.rotations[b]) * (0.5 * l[b]);
+            let changed = quaternion::vector(&quaternion::product(&own, &quaternion::conjugate(&d_q))) / square
+                - spin(a, &e_i) * (2.0 * q.dot(&d_q) / square);
+            if a != b {
+                return changed;
+            }
+            let twice = turned(&e_i, &turned(&e_j, &nodes.rotations[a])) * (0.5 * l[a] / square);
+            changed + quaternion::vector(&quaternion::product(&twice, &conjugate)) + spin(a, &e_j.cross(&e_i)) * 0.5
+        };
+        let all = |k: usize| (k / 3, quaternion::axis(k % 3));
+        (0..81).map(|k| bend(all(k / 9), all(k % 9))).collect()
+    }
 }
 
 impl Body for Beam {

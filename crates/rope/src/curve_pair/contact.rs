@@ -195,14 +195,21 @@ impl CurveContact {
         order: Order,
         prediction: &[Predicted],
     ) -> Touches {
-        let wanted = (if self.friction.is_some() { Wanted::GapAndSlip } else { Wanted::Gap }, order);
+        let rubs = self.friction.is_some();
         let mut out = Vec::new();
         let mut lost = 0;
         let mut add =
             |key: Key, feet: [&Foot; 2], points: [CurvePoint; 2], weight: f64, penalty: f64, blended: Blended| {
                 let kept = key.of(&self.history, |k| k.key, &sides).copied();
                 let facing = kept.as_ref().or_else(|| key.near(&self.history, &sides)).map(|k| k.normal);
-                match measure(feet, first, facing, wanted) {
+                let bends = [0, 1].map(|s| match (rubs, order) {
+                    (true, Order::Second) => {
+                        sides[s].curve.spin_bends(sides[s].configuration, points[s].element, points[s].xi)
+                    }
+                    _ => Vec::new(),
+                });
+                let wanted = if rubs { Wanted::GapAndSlip(bends.each_ref().map(Vec::as_slice)) } else { Wanted::Gap };
+                match measure(feet, first, facing, (wanted, order)) {
                     Ok(pair) => {
                         let share = blended.share(pair.parallel);
                         let predicted = key.of(prediction, |p| p.key, &sides);

@@ -7,8 +7,9 @@
 //! together, and passes from element to element. After slip the point on the master follows, so that `ε e = T`.
 
 use super::measure::{CurvePair, Stuck};
+use nalgebra::SMatrix;
 use signorini_contact::law::{Law, Status};
-use signorini_geometry::{Matrix, Vector};
+use signorini_geometry::Vector;
 use signorini_mechanics::body::{Foot, Order};
 
 /// A law, the multiplier along both axes, and the force per slip that stands for sticking.
@@ -90,20 +91,27 @@ pub fn tangential(
     Tangential { unknowns, forces, tangent, components, slipped, status: projected.status }
 }
 
-/// The points that count as having touched after slip: of the slave where it touches now, of the master so far back that
-/// the slip is that of the traction.
-pub fn followed(pair: &CurvePair, master: &Foot, components: [f64; 2], penalty: f64) -> Stuck {
+/// Singular values of two tangents, relative to the largest, below which they are one direction.
+const ONE_DIRECTION: f64 = 1e-3;
+
+/// The points that count as having touched after slip, so far apart that the slip is that of the traction: along the
+/// master and about the axis of a section that turns, and along both curves where none does. `feet` are those that touch.
+pub fn followed(pair: &CurvePair, feet: [&Foot; 2], components: [f64; 2], penalty: f64) -> Stuck {
     let back = (pair.axial * components[0] + pair.circumferential() * components[1]) / penalty;
     let mut stuck = pair.stuck;
-    let tangent = master.jet.u / master.jet.u.norm();
-    stuck.points[1].xi[0] -= back.dot(&tangent) / master.jet.u.norm();
-    if master.radius > 0.0 {
-        // Around the axis of the master: a turn of its normal.
-        let around = tangent.cross(&pair.normal);
-        let angle = -back.dot(&around) / master.radius;
-        let turned = pair.normal * angle.cos() + around * angle.sin();
-        let frame: Matrix<3> = master.frame;
-        stuck.directions[1] = frame.transpose() * turned;
-    }
+    let lengths = feet.map(|f| f.jet.u.norm());
+    let tangents = [0, 1].map(|s| feet[s].jet.u / lengths[s]);
+    let Some(side) = [1, 0].into_iter().find(|s| !feet[*s].spin.is_empty() && feet[*s].radius > 0.0) else {
+        let both = SMatrix::<f64, 3, 2>::from_columns(&[tangents[0], -tangents[1]]);
+        let moved = both.svd(true, true).solve(&back, ONE_DIRECTION).unwrap_or_default();
+        (0..2).for_each(|s| stuck.points[s].xi[0] += moved[s] / lengths[s]);
+        return stuck;
+    };
+    stuck.points[1].xi[0] -= back.dot(&tangents[1]) / lengths[1];
+    // A turn of the direction in which the section touches.
+    let around = tangents[1].cross(&pair.normal);
+    let (outward, sign) = if side == 1 { (pair.normal, -1.0) } else { (-pair.normal, 1.0) };
+    let angle = sign * back.dot(&around) / feet[side].radius;
+    stuck.directions[side] = feet[side].frame.transpose() * (outward * angle.cos() + around * angle.sin());
     stuck
 }

@@ -31,7 +31,7 @@ impl CurveContact {
     }
 
     /// What is kept of a contact: with the traction as a multiplier, or so that the slip is that of the traction.
-    fn kept(&self, c: &Touch, rubs: Option<&Tangential>, master: Searched<'_>) -> Kept {
+    fn kept(&self, c: &Touch, rubs: Option<&Tangential>, sides: [Searched<'_>; 2]) -> Kept {
         let before = c.kept;
         let mut kept = Kept {
             key: c.key,
@@ -49,9 +49,11 @@ impl CurveContact {
             kept.stuck = match rubs.status {
                 Status::Stick => before.and_then(|k| k.stuck),
                 _ => {
-                    let CurvePoint { element, xi, .. } = c.points[1];
-                    let foot = master.curve.foot(master.configuration, element, xi, 1);
-                    Some(followed(&c.pair, &foot, rubs.components, c.penalty))
+                    let feet = [0, 1].map(|k| {
+                        let CurvePoint { element, xi, .. } = c.points[k];
+                        sides[k].curve.foot(sides[k].configuration, element, xi, 1)
+                    });
+                    Some(followed(&c.pair, [&feet[0], &feet[1]], rubs.components, c.penalty))
                 }
             };
         }
@@ -189,7 +191,7 @@ impl Interaction for CurveContact {
     fn accept(&mut self, at: Bodies<'_>, _: Own<'_>) -> Result<(), PlaceError> {
         self.history = self.with(at, |sides, first| {
             let (touches, _) = self.touches(sides, first, Order::First, &[]);
-            let kept = |c: &Touch| self.kept(c, self.tangential(c, sides, first, Order::First).as_ref(), sides[1]);
+            let kept = |c: &Touch| self.kept(c, self.tangential(c, sides, first, Order::First).as_ref(), sides);
             touches.iter().map(kept).collect()
         })?;
         Ok(())

@@ -12,8 +12,7 @@
 //! | `e = P [x_A - R_A m_A - x_B - R_B m_B]` | slip since material points touched, of both curves and angles of both sections |
 //!
 //! A rigid motion of both is no slip. A curve that does not know how its sections turn has one that turns with the normal:
-//! its `R δn` takes the place of `R θ × n`, and slip about its axis is not counted. Second variations are exact for any gap,
-//! but for the interpolation of spins within an element, which are taken for those of a rigid section.
+//! its `R δn` takes the place of `R θ × n`, and slip about its axis is not counted. Second variations are exact for any gap.
 
 use nalgebra::SVector;
 use signorini_geometry::Vector;
@@ -65,10 +64,11 @@ pub struct CurvePair {
 }
 
 /// What is measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wanted {
+#[derive(Clone, Copy, Debug)]
+pub enum Wanted<'a> {
     Gap,
-    GapAndSlip,
+    /// With the second variations of the spins of both sections, as `Curve::spin_bends`.
+    GapAndSlip([&'a [Vector<3>]; 2]),
 }
 
 /// One unknown at fixed coordinates.
@@ -78,7 +78,8 @@ struct Column {
     value: Vector<3>,
     slope: Vector<3>,
     second: Vector<3>,
-    /// Spin of the section times its radius.
+    /// Which spin of the section it is, and that spin times the radius.
+    spin: Option<usize>,
     lever: Vector<3>,
 }
 
@@ -93,14 +94,16 @@ fn columns(feet: [&Foot; 2], first: [u32; 2]) -> Vec<Column> {
             value: f.value,
             slope: f.slopes[0],
             second: f.second[0],
+            spin: None,
             lever: zero,
         }));
-        out.extend(foot.spin.iter().map(|f| Column {
+        out.extend(foot.spin.iter().enumerate().map(|(k, f)| Column {
             unknown: first[side] + f.unknown,
             side,
             value: zero,
             slope: zero,
             second: zero,
+            spin: Some(k),
             lever: f.value * foot.radius,
         }));
     }
@@ -121,7 +124,7 @@ pub fn measure(
     feet: [&Foot; 2],
     first: [u32; 2],
     facing: Option<Vector<3>>,
-    wanted: (Wanted, Order),
+    wanted: (Wanted<'_>, Order),
 ) -> Result<CurvePair, NoPair> {
     match feet[0].coordinates + feet[1].coordinates {
         0 => with::<0>(feet, first, facing, wanted),
@@ -134,7 +137,7 @@ fn with<const N: usize>(
     feet: [&Foot; 2],
     first: [u32; 2],
     facing: Option<Vector<3>>,
-    (wanted, order): (Wanted, Order),
+    (wanted, order): (Wanted<'_>, Order),
 ) -> Result<CurvePair, NoPair> {
     let [a, b] = feet;
     let jets = [curve_jet(a), curve_jet(b)];
@@ -206,7 +209,7 @@ fn with<const N: usize>(
     let hinge = gap + feet.iter().filter(|f| f.spin.is_empty()).map(|f| f.radius).sum::<f64>();
     let d_gap: Vec<f64> = variations.iter().map(|v| measures.gap_variation(v)).collect();
     let mut d_slip = Vec::new();
-    if (wanted, order) == (Wanted::GapAndSlip, Order::Second) {
+    if let (Wanted::GapAndSlip(bends), Order::Second) = (wanted, order) {
         // Of D, with its coordinates.
         let bent = |k: usize, l: usize| {
             let h = measures.coordinate_second_variation(&variations[k], &variations[l]);
@@ -226,12 +229,15 @@ fn with<const N: usize>(
                     of_side(side).map_or(sum, |own| sum + variations[k].d_a[own] * d_xi[l][side])
                 });
                 let turned = (bent(k, l) - d_normal[k] * d_gap[l] - d_normal[l] * d_gap[k]) / distance;
-                // The spin of a section varies by half the product of two spins.
                 let (p, q) = (&columns[k], &columns[l]);
-                let spun = if p.side == q.side && feet[p.side].radius > 0.0 {
-                    q.lever.cross(&p.lever) * (0.5 / feet[p.side].radius)
-                } else {
-                    zero
+                let spun = match (p.spin, q.spin) {
+                    (Some(i), Some(j)) if p.side == q.side => {
+                        let foot = feet[p.side];
+                        // A rigid section varies by half the product of two spins.
+                        let rigid = || foot.spin[j].value.cross(&foot.spin[i].value) * 0.5;
+                        bends[p.side].get(i * foot.spin.len() + j).copied().unwrap_or_else(rigid) * foot.radius
+                    }
+                    _ => zero,
                 };
                 d_slip[k * n + l] =
                     along - spun.cross(&normal) - p.lever.cross(&d_normal[l]) - d_normal[k] * d_gap[l] - turned * hinge;

@@ -3,8 +3,8 @@
 //! A curve is a row of elements, with parameters from 0 to 1 in each, and a circular section about it that touches.
 
 use crate::body::Foot;
-use signorini_geometry::{Point, Vector};
 use signorini_geometry::shape::CurveJet;
+use signorini_geometry::{Point, Vector};
 
 /// Whether a curve returns to its start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -155,17 +155,21 @@ impl CurveBody for Beam {
 
     fn section(&self, configuration: &[f64], element: usize, xi: f64) -> SectionMotion {
         let nodes = self.nodes_of(configuration, element);
-        let l = hermite::quadratic(xi);
-        let q = (0..3).fold(Quaternion::zeros(), |sum, a| sum + nodes.rotations[a] * l[a]);
-        let inverse = quaternion::conjugate(&q) * (2.0 / q.norm_squared());
+        let (l, l1) = (hermite::quadratic(xi), hermite::quadratic_first(xi));
+        let sum = |l: &[f64; 3]| (0..3).fold(Quaternion::zeros(), |sum, a| sum + nodes.rotations[a] * l[a]);
+        let (q, q1) = (sum(&l), sum(&l1));
+        let square = q.norm_squared();
+        let [inverse, slope] = [q, q1].map(|q| quaternion::conjugate(&q) * (2.0 / square));
         let spins = self.spins_of(element);
         let spin = (0..3)
             .flat_map(|a| {
-                let map = spin_map(&nodes.rotations[a]) * l[a];
-                (0..3).map(move |i| Function {
-                    unknown: spins[a] + i as u32,
-                    value: quaternion::vector(&quaternion::product(&map.column(i).into_owned(), &inverse)),
-                    ..Function::default()
+                let map = spin_map(&nodes.rotations[a]);
+                (0..3).map(move |i| {
+                    let of = |q: &Quaternion| quaternion::vector(&quaternion::product(&map.column(i).into_owned(), q));
+                    let unit = of(&inverse);
+                    let along = unit * (l1[a] - l[a] * 2.0 * q.dot(&q1) / square) + of(&slope) * l[a];
+                    let slopes = [along, Vector::<3>::zeros()];
+                    Function { unknown: spins[a] + i as u32, value: unit * l[a], slopes, ..Function::default() }
                 })
             })
             .collect();

@@ -14,7 +14,7 @@
 use super::blend::Blend;
 use super::friction::{CurveFriction, Tangential, tangential};
 use super::history::{Kept, Key, Kind, Predicted};
-use super::measure::{CurvePair, NoPair, Wanted, elastic_slip, measure};
+use super::measure::{CurvePair, NoPair, Wanted, elastic_slip, measure, parallel};
 use super::search::{Between, CurvePoint, Searched, crossings};
 use crate::curve_body::{are_apart, boxes, minima};
 use crate::hermite::gauss;
@@ -31,7 +31,7 @@ pub enum Form {
     Point,
     /// Forces at points of Gauss of the slave.
     Line,
-    /// Both, by the angle of the curves.
+    /// Both, by how far the distance is from a valley along the curves.
     Blend(Blend),
 }
 
@@ -88,7 +88,7 @@ pub struct Touch {
     pub weight: f64,
     /// Force per penetration.
     pub penalty: f64,
-    /// Share of the blend, and its derivative in the squared cosine of the angle.
+    /// Share of the blend, and its derivative in `CurvePair::parallel`.
     pub share: (f64, f64),
     /// `λ + ε g`, at most zero.
     pub force: f64,
@@ -232,7 +232,7 @@ impl CurveContact {
                     Form::Blend(blend) if is_crossing => Blended::Point(blend),
                     _ => Blended::Not,
                 };
-                if blended.share(parallel(&feet)).0 > 0.0 {
+                if blended.share(parallel([&feet[0], &feet[1]])).0 > 0.0 {
                     let places = near.points.map(|p| p.element as f64 + p.xi);
                     let key = Key { kind: Kind::Crossing, places };
                     add(key, [&feet[0], &feet[1]], near.points, 1.0, self.penalties.point, blended);
@@ -273,7 +273,7 @@ impl CurveContact {
                         continue;
                     }
                     let feet = [foot(0, &own, 0), foot(1, &met, met.coordinates)];
-                    if blended.share(parallel(&feet)).0 > 0.0 {
+                    if blended.share(parallel([&feet[0], &feet[1]])).0 > 0.0 {
                         let kind = Kind::Site(element * rule.len() + number);
                         let places = [own, met].map(|p| p.element as f64 + p.xi);
                         let weight = share * length * half;
@@ -337,12 +337,6 @@ impl Blended {
             }
         }
     }
-}
-
-/// Squared cosine of the angle of two curves.
-fn parallel(feet: &[Foot; 2]) -> f64 {
-    let [a, b] = [feet[0].jet.u, feet[1].jet.u];
-    a.dot(&b).powi(2) / (a.norm_squared() * b.norm_squared())
 }
 
 impl Touch {

@@ -49,7 +49,7 @@ pub struct CurvePair {
     pub d_gap: Vec<f64>,
     /// Row by row; empty for [`Order::First`].
     pub d2_gap: Vec<f64>,
-    /// Squared cosine of the angle between the tangents, and its variation.
+    /// How far the distance is from a valley, as [`parallel`], and its variation.
     pub parallel: f64,
     pub d_parallel: Vec<f64>,
     /// Unit tangent of the slave across the normal: the axial direction of slip.
@@ -78,9 +78,10 @@ struct Column {
     value: Vector<3>,
     slope: Vector<3>,
     second: Vector<3>,
-    /// Which spin of the section it is, and that spin times the radius.
+    /// Which spin of the section it is, and that spin times the radius with its slope along the curve.
     spin: Option<usize>,
     lever: Vector<3>,
+    lever_slope: Vector<3>,
 }
 
 fn columns(feet: [&Foot; 2], first: [u32; 2]) -> Vec<Column> {
@@ -96,6 +97,7 @@ fn columns(feet: [&Foot; 2], first: [u32; 2]) -> Vec<Column> {
             second: f.second[0],
             spin: None,
             lever: zero,
+            lever_slope: zero,
         }));
         out.extend(foot.spin.iter().enumerate().map(|(k, f)| Column {
             unknown: first[side] + f.unknown,
@@ -105,6 +107,7 @@ fn columns(feet: [&Foot; 2], first: [u32; 2]) -> Vec<Column> {
             second: zero,
             spin: Some(k),
             lever: f.value * foot.radius,
+            lever_slope: f.slopes[0] * foot.radius,
         }));
     }
     out
@@ -112,6 +115,20 @@ fn columns(feet: [&Foot; 2], first: [u32; 2]) -> Vec<Column> {
 
 fn curve_jet(foot: &Foot) -> CurveJet {
     CurveJet { x: foot.jet.x, d1: foot.jet.u, d2: foot.jet.uu, d3: foot.jet.uuu }
+}
+
+/// `A_11 = |c_1'|² + D·c_1''`, `A_22 = |c_2'|² - D·c_2''` and `c_1'·c_2'`: the second derivatives of half the squared distance.
+fn hessian(jets: &[CurveJet; 2], d: &Vector<3>) -> [f64; 3] {
+    let [p, q] = jets;
+    [p.d1.norm_squared() + d.dot(&p.d2), q.d1.norm_squared() - d.dot(&q.d2), p.d1.dot(&q.d1)]
+}
+
+/// `(c_1'·c_2')²/(A_11 A_22)` of the second derivatives of the distance: between straight lines the squared cosine of their
+/// angle, and 1 along a valley of the distance, such as that of a double helix, where no point is nearer than its neighbours.
+/// Infinite beyond a centre of curvature.
+pub fn parallel(feet: [&Foot; 2]) -> f64 {
+    let [a_11, a_22, a_12] = hessian(&feet.map(curve_jet), &(feet[0].jet.x - feet[1].jet.x));
+    if a_11 > 0.0 && a_22 > 0.0 { a_12 * a_12 / (a_11 * a_22) } else { f64::INFINITY }
 }
 
 /// The measures of two points of curves; of a foot with one coordinate the distance must be stationary in it. `first` are
@@ -177,20 +194,27 @@ fn with<const N: usize>(
     let d1 = jets.map(|j| j.d1);
     let lengths = d1.map(|t| t.norm());
     let units = [d1[0] / lengths[0], d1[1] / lengths[1]];
-    let cosine = units[0].dot(&units[1]);
     let d_unit = |k: usize, side: usize| {
         let own = if columns[k].side == side { columns[k].slope } else { zero };
         let change = own + jets[side].d2 * d_xi[k][side];
         (change - units[side] * units[side].dot(&change)) / lengths[side]
     };
-    let d_parallel =
-        (0..n).map(|k| 2.0 * cosine * (d_unit(k, 0).dot(&units[1]) + units[0].dot(&d_unit(k, 1)))).collect();
-
     let gap = distance - a.radius - b.radius;
-    let d_normal: Vec<Vector<3>> = (0..n)
+    // Total variation of D.
+    let moved: Vec<Vector<3>> = (0..n).map(|k| variations[k].d + d1[0] * d_xi[k][0] - d1[1] * d_xi[k][1]).collect();
+    let d_normal: Vec<Vector<3>> = moved.iter().map(|m| (m - normal * normal.dot(m)) / distance).collect();
+    let [a_11, a_22, a_12] = hessian(&jets, &d);
+    let d_parallel = (0..n)
         .map(|k| {
-            let moved = variations[k].d + d1[0] * d_xi[k][0] - d1[1] * d_xi[k][1];
-            (moved - normal * normal.dot(&moved)) / distance
+            let c = &columns[k];
+            let own = |side: usize, v: Vector<3>| if c.side == side { v } else { zero };
+            let tangent = [0, 1].map(|s| own(s, c.slope) + jets[s].d2 * d_xi[k][s]);
+            let bend = [0, 1].map(|s| own(s, c.second) + jets[s].d3 * d_xi[k][s]);
+            let d_own =
+                [0, 1].map(|s| 2.0 * d1[s].dot(&tangent[s]) + signs[s] * (moved[k].dot(&jets[s].d2) + d.dot(&bend[s])));
+            let d_both = tangent[0].dot(&d1[1]) + d1[0].dot(&tangent[1]);
+            let square = a_12 * a_12 / (a_11 * a_22);
+            2.0 * a_12 * d_both / (a_11 * a_22) - square * (d_own[0] / a_11 + d_own[1] / a_22)
         })
         .collect();
     // The tangent across the normal; with coordinates both are orthogonal, but that of a point of Gauss may lean.
@@ -238,7 +262,7 @@ fn with<const N: usize>(
                         bends[p.side].get(i * foot.spin.len() + j).copied().unwrap_or_else(rigid) * foot.radius
                     }
                     _ => zero,
-                };
+                } + p.lever_slope * d_xi[l][p.side];
                 d_slip[k * n + l] =
                     along - spun.cross(&normal) - p.lever.cross(&d_normal[l]) - d_normal[k] * d_gap[l] - turned * hinge;
             }
@@ -250,7 +274,7 @@ fn with<const N: usize>(
         unknowns: columns.iter().map(|c| c.unknown).collect(),
         d_gap,
         d2_gap: if order == Order::Second { measures.gap_hessian(&variations) } else { Vec::new() },
-        parallel: cosine * cosine,
+        parallel: parallel([a, b]),
         d_parallel,
         axial,
         d_axial,

@@ -4,6 +4,7 @@
 //! its thickness or circumference. A body numbers its own unknowns from 0. A configuration may hold more numbers than
 //! there are unknowns (a quaternion turns by three): a step of the unknowns reaches it through [`Body::advance`].
 
+use crate::curve::Curve;
 use signorini_geometry::rigid_shape::{GapJet, RigidShape};
 use signorini_geometry::shape::SurfaceJet;
 use signorini_geometry::{Matrix, Point, Vector};
@@ -342,6 +343,11 @@ pub trait Body: Send + Sync {
     /// Whether the body has no stiffness of its own.
     fn is_rigid(&self) -> bool {
         false
+    }
+
+    /// The body as a curve, if it is one: contact between curves is for such.
+    fn as_curve(&self) -> Option<Box<dyn Curve + '_>> {
+        None
     }
 
     /// Unknowns that are spins, by threes: of the sections of a beam, of a rigid body.

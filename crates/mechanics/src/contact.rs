@@ -16,11 +16,11 @@
 //! The slip counts from where the sides had a common point at the last state, or would have had if they had touched.
 
 use crate::body::{Anchor, Body, BodyState, Master, Met, Order, PlaceError, Placed, Sampling, Site};
+use crate::interaction::Target;
 use crate::pair::{AxisChoice, Encounter, NoPair, Pair, Stuck, any_tangent};
 use signorini_contact::law::Projected;
 use signorini_contact::{Law, Status};
 use signorini_geometry::{Point, Vector};
-use signorini_solve::general::Entries;
 
 /// How the contact conditions are kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,6 +57,8 @@ pub struct Contact {
     pub(crate) stiffness: Vec<f64>,
     /// What the sites remember of the last state.
     pub(crate) memory: Vec<SiteMemory>,
+    /// Enforcement and law while a start is looked for with simpler ones.
+    pub(crate) set_aside: Option<(Enforcement, Option<Box<dyn Law>>)>,
 }
 
 /// What a site remembers of the last state.
@@ -94,14 +96,6 @@ impl SiteResult {
     pub fn force(&self) -> Vector<3> {
         (self.normal * self.pressure + self.friction) * self.weight
     }
-}
-
-/// Where residual and tangent of a contact go.
-pub(crate) struct Target<'a> {
-    pub residual: &'a mut [f64],
-    /// Sum of the sizes of all terms of each equation: the scale of its residual.
-    pub sizes: &'a mut [f64],
-    pub tangent: Option<&'a mut Entries>,
 }
 
 /// The two bodies of a contact in a state.
@@ -152,6 +146,7 @@ impl Contact {
             memory: vec![SiteMemory::default(); sites.len()],
             sites,
             stiffness,
+            set_aside: None,
         })
     }
 
@@ -167,11 +162,6 @@ impl Contact {
 
     pub fn sites(&self) -> &[Site] {
         &self.sites
-    }
-
-    /// Numbers of its own that the contact adds to the unknowns.
-    pub(crate) fn multipliers(&self) -> usize {
-        if self.enforcement == Enforcement::Multiplier { self.components() * self.sites.len() } else { 0 }
     }
 
     pub(crate) fn components(&self) -> usize {
@@ -241,7 +231,7 @@ impl Contact {
     ///
     /// # Errors
     /// A master that cannot be touched.
-    pub(crate) fn add_to(
+    pub(crate) fn add_sites(
         &self,
         sides: &Sides<'_>,
         (lambda, first): (&[f64], u32),
@@ -367,7 +357,7 @@ impl Contact {
     ///
     /// # Errors
     /// A master that cannot be touched.
-    pub(crate) fn results(&self, sides: &Sides<'_>, lambda: &[f64]) -> Result<Vec<(SiteResult, [f64; 3])>, PlaceError> {
+    pub(crate) fn found(&self, sides: &Sides<'_>, lambda: &[f64]) -> Result<Vec<(SiteResult, [f64; 3])>, PlaceError> {
         let master = sides.master.0.master(self.master.group.as_deref(), sides.master.1)?;
         let of = |k: usize| {
             let (placed, pair) = self.pair(k, sides, master.as_ref(), |_| false);
@@ -396,7 +386,7 @@ impl Contact {
     ///
     /// # Errors
     /// A master that cannot be touched.
-    pub(crate) fn accept(&mut self, sides: &Sides<'_>, lambda: &[f64]) -> Result<(), PlaceError> {
+    pub(crate) fn accept_sites(&mut self, sides: &Sides<'_>, lambda: &[f64]) -> Result<(), PlaceError> {
         let master = sides.master.0.master(self.master.group.as_deref(), sides.master.1)?;
         let mut memory = Vec::with_capacity(self.sites.len());
         for k in 0..self.sites.len() {

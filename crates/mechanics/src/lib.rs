@@ -1,16 +1,26 @@
 //! Bodies of any kind in one system.
 //!
 //! - [`body`]: what a body is to the system.
+//! - [`curve`]: what a curve is to contact between curves.
 //! - [`rigid_body`]: rigid bodies, moved or free.
 //! - [`pair`]: gap and slip of a contact pair in the unknowns of its bodies.
 //! - [`contact`]: law and enforcement at the sites of two sides.
+//! - [`interaction`]: what acts between bodies, as the system sees it.
 //! - [`system`]: bodies, supports, loads and contacts, assembled.
-//! - [`increment`]: equilibrium at one time; [`saved`]: what it goes on from.
+//! - [`increment`]: equilibrium at one time, by Newton's method (`equilibrium`), other ways where that fails (`homotopy`,
+//!   `free`), and outer iterations (`augmentation`); [`saved`]: what it goes on from.
 
+mod augmentation;
 pub mod body;
 pub mod contact;
+pub mod curve;
+mod equilibrium;
+mod free;
+mod homotopy;
 pub mod increment;
+pub mod interaction;
 pub mod pair;
+mod prepare;
 pub mod rigid_body;
 pub mod saved;
 pub mod system;
@@ -20,7 +30,9 @@ pub use body::{
     MaterialPoint, Met, Order, PlaceError, Placed, RigidFoot, Sampling, Site,
 };
 pub use contact::{Contact, Enforcement, Part, SiteMemory, SiteResult};
+pub use curve::Curve;
 pub use increment::{IncrementError, IncrementResult};
+pub use interaction::{Bodies, Interaction, Own, Target};
 pub use pair::AxisChoice;
 pub use rigid_body::{Motion, RigidBody, RigidSite};
 pub use saved::Saved;

@@ -1,8 +1,6 @@
 //! What a system goes on from, as plain numbers: enough for the same digits.
 
-use crate::body::{BodyState, MaterialPoint};
-use crate::contact::SiteMemory;
-use crate::pair::Stuck;
+use crate::body::BodyState;
 use crate::system::{System, SystemState};
 use signorini_geometry::Vector;
 
@@ -13,38 +11,8 @@ pub struct Saved {
     pub bodies: Vec<[Vec<f64>; 2]>,
     pub multipliers: Vec<f64>,
     pub reactions: Vec<f64>,
-    /// Of each contact the memories of its sites, one after the other, and the scales of its sites.
+    /// History and scales of each contact.
     pub contacts: Vec<[Vec<f64>; 2]>,
-}
-
-/// Numbers of the memory of a site.
-const NUMBERS: usize = 16;
-
-fn numbers(memory: &SiteMemory) -> [f64; NUMBERS] {
-    let mut out = [0.0; NUMBERS];
-    out[..3].copy_from_slice(&memory.traction);
-    out[3..5].copy_from_slice(&memory.slip);
-    if let Some(stuck) = &memory.stuck {
-        out[5] = 1.0;
-        out[6] = f64::from(stuck.point.patch);
-        out[7..10].copy_from_slice(&stuck.point.xi);
-        out[10..13].copy_from_slice(stuck.on_slave.as_slice());
-        out[13..].copy_from_slice(stuck.on_master.as_slice());
-    }
-    out
-}
-
-fn memory(n: &[f64]) -> SiteMemory {
-    let vector = |k: usize| Vector::<3>::new(n[k], n[k + 1], n[k + 2]);
-    SiteMemory {
-        traction: [n[0], n[1], n[2]],
-        slip: [n[3], n[4]],
-        stuck: (n[5] != 0.0).then(|| Stuck {
-            point: MaterialPoint { patch: n[6] as u32, xi: [n[7], n[8], n[9]] },
-            on_slave: vector(10),
-            on_master: vector(13),
-        }),
-    }
 }
 
 impl System {
@@ -54,9 +22,7 @@ impl System {
             bodies: state.bodies.iter().map(|b| [b.configuration.clone(), b.internal.clone()]).collect(),
             multipliers: state.multipliers.clone(),
             reactions: state.reactions.clone(),
-            contacts: (self.contacts.iter())
-                .map(|c| [c.memory.iter().flat_map(numbers).collect(), c.stiffness.clone()])
-                .collect(),
+            contacts: self.contacts.iter().map(|c| c.history()).collect(),
         }
     }
 
@@ -67,20 +33,33 @@ impl System {
             && (saved.bodies.iter().zip(&state.bodies))
                 .all(|(s, b)| s[0].len() == b.configuration.len() && s[1].len() == b.internal.len())
             && saved.multipliers.len() == state.multipliers.len()
-            && saved.contacts.len() == self.contacts.len()
-            && (saved.contacts.iter().zip(&self.contacts))
-                .all(|(s, c)| s[0].len() == NUMBERS * c.memory.len() && s[1].len() == c.stiffness.len());
+            && saved.contacts.len() == self.contacts.len();
         if !fits {
             return None;
         }
         let body = |[configuration, internal]: [Vec<f64>; 2]| BodyState { configuration, internal };
         state.bodies = saved.bodies.into_iter().map(body).collect();
         (state.multipliers, state.reactions) = (saved.multipliers, saved.reactions);
-        for (contact, [sites, stiffness]) in self.contacts.iter_mut().zip(saved.contacts) {
-            contact.memory = sites.chunks(NUMBERS).map(memory).collect();
-            contact.stiffness = stiffness;
+        let before = self.histories();
+        for (contact, history) in self.contacts.iter_mut().zip(&saved.contacts) {
+            if contact.restore(history).is_err() {
+                self.put_back(&before);
+                return None;
+            }
         }
         Some(state)
+    }
+
+    /// What all contacts keep, to be put back.
+    pub(crate) fn histories(&self) -> Vec<[Vec<f64>; 2]> {
+        self.contacts.iter().map(|c| c.history()).collect()
+    }
+
+    pub(crate) fn put_back(&mut self, histories: &[[Vec<f64>; 2]]) {
+        for (contact, history) in self.contacts.iter_mut().zip(histories) {
+            // Its own numbers fit.
+            contact.restore(history).unwrap_or_else(|error| unreachable!("{error}"));
+        }
     }
 
     /// The force of a load at a time, and its moment about the origin.

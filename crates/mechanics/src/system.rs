@@ -5,7 +5,8 @@
 //! its equation says so, and its residual is the reaction.
 
 use crate::body::{Body, BodyError, BodyState, Constraint, Contribution, Hold, Load, Order, PlaceError};
-use crate::contact::{Contact, Part, Sides, Target};
+use crate::contact::Part;
+use crate::interaction::{Bodies, Interaction, Own, Target};
 use signorini_geometry::{Point, Vector};
 use signorini_solve::general::{Entries, Matrix};
 use std::sync::Arc;
@@ -94,7 +95,7 @@ pub struct System {
     pub bodies: Vec<Box<dyn Body>>,
     pub supports: Vec<Support>,
     pub loads: Vec<PlacedLoad>,
-    pub contacts: Vec<Contact>,
+    pub contacts: Vec<Box<dyn Interaction>>,
 }
 
 /// A state of the system.
@@ -105,6 +106,8 @@ pub struct SystemState {
     pub multipliers: Vec<f64>,
     /// Multipliers of the supports that couple unknowns.
     pub reactions: Vec<f64>,
+    /// What each contact predicts for the next iteration.
+    pub(crate) predictions: Vec<Vec<f64>>,
     /// Steps of the unknowns of the bodies since the last state that was accepted.
     pub(crate) travel: Vec<f64>,
 }
@@ -170,10 +173,31 @@ impl System {
         let (_, count) = self.numbering();
         SystemState {
             bodies: self.bodies.iter().map(|b| b.start()).collect(),
-            multipliers: vec![0.0; self.contacts.iter().map(Contact::multipliers).sum()],
+            multipliers: vec![0.0; self.contacts.iter().map(|c| c.multipliers().len()).sum()],
             reactions: Vec::new(),
+            predictions: self.contacts.iter().map(|c| c.prediction()).collect(),
             travel: vec![0.0; count],
         }
+    }
+
+    /// All bodies in a state; `first` are their first unknowns.
+    pub(crate) fn bodies_in<'a>(&'a self, state: &'a SystemState, first: &'a [u32]) -> Bodies<'a> {
+        Bodies { bodies: &self.bodies, states: &state.bodies, first }
+    }
+
+    /// The numbers of each contact in a state.
+    pub(crate) fn own<'a>(&self, state: &'a SystemState) -> Vec<Own<'a>> {
+        let (_, count) = self.numbering();
+        let mut done = 0;
+        (self.contacts.iter().enumerate())
+            .map(|(k, contact)| {
+                let size = contact.multipliers().len();
+                let multipliers = &state.multipliers[done..done + size];
+                let first = (count + done) as u32;
+                done += size;
+                Own { multipliers, first, prediction: state.predictions.get(k).map_or(&[], Vec::as_slice) }
+            })
+            .collect()
     }
 
     /// The equations of all supports.
@@ -218,8 +242,8 @@ impl System {
     /// If the step is shorter than the unknowns of the bodies and the multipliers of the contacts.
     pub fn advance(&self, at: &SystemState, step: &[f64], share: f64) -> SystemState {
         let (first, count) = self.numbering();
-        let bodies = (self.bodies.iter().zip(&at.bodies).zip(first))
-            .map(|((body, state), first)| {
+        let bodies = (self.bodies.iter().zip(&at.bodies).zip(&first))
+            .map(|((body, state), &first)| {
                 let own = &step[first as usize..first as usize + body.unknowns()];
                 body.advance(state, own, share)
             })
@@ -229,7 +253,11 @@ impl System {
         let reaction = |k: usize| at.reactions.get(k).copied().unwrap_or(0.0);
         let reactions = rest.iter().enumerate().map(|(k, s)| reaction(k) + share * s).collect();
         let travel = at.travel.iter().zip(step).map(|(t, s)| t + share * s).collect();
-        SystemState { bodies, multipliers, reactions, travel }
+        let now = self.bodies_in(at, &first);
+        let predictions = (self.contacts.iter().zip(self.own(at)))
+            .map(|(contact, own)| contact.predict(now, own, step, share))
+            .collect();
+        SystemState { bodies, multipliers, reactions, predictions, travel }
     }
 
     /// The residual at a state and a time, without the reactions of supports, and its derivative.
@@ -274,17 +302,13 @@ impl System {
             }
         }
         let mut lost = 0;
-        let mut own = 0;
-        for contact in &self.contacts {
-            let lambda = &state.multipliers[own..own + contact.multipliers()];
+        for (contact, own) in self.contacts.iter().zip(self.own(state)) {
             let mut target = Target {
                 residual: &mut residual,
                 sizes: &mut sizes,
                 tangent: (order == Order::Second).then_some(&mut tangent),
             };
-            let sides = sides(&self.bodies, contact, state, &first);
-            lost += contact.add_to(&sides, (lambda, (count + own) as u32), &mut target)?;
-            own += contact.multipliers();
+            lost += contact.add_to(self.bodies_in(state, &first), own, &mut target)?;
         }
         for (k, held) in coupled.iter().enumerate() {
             let row = count + multipliers + k;
@@ -311,20 +335,5 @@ fn add(from: &Contribution, first: u32, residual: &mut [f64], sizes: &mut [f64],
     for (unknowns, values) in &from.blocks {
         let unknowns: Vec<u32> = unknowns.iter().map(|u| u + first).collect();
         tangent.add_block(&unknowns, values);
-    }
-}
-
-/// The two bodies of a contact in a state.
-pub(crate) fn sides<'a>(
-    bodies: &'a [Box<dyn Body>],
-    contact: &Contact,
-    state: &'a SystemState,
-    first: &[u32],
-) -> Sides<'a> {
-    let side = |part: &Part| (bodies[part.body].as_ref(), &state.bodies[part.body]);
-    Sides {
-        slave: side(&contact.slave),
-        master: side(&contact.master),
-        first: [first[contact.slave.body], first[contact.master.body]],
     }
 }

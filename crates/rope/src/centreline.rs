@@ -7,22 +7,7 @@ use crate::hermite;
 use signorini_geometry::shape::CurveJet;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::body::Function;
-
-/// Whether a curve returns to its start.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Closure {
-    Open,
-    Closed,
-}
-
-/// How a curve runs between its nodes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Continuity {
-    /// Straight from node to node.
-    C0,
-    /// Cubic, with a continuous tangent.
-    C1,
-}
+pub use signorini_mechanics::curve::{Closure, Continuity};
 
 /// How the numbers of a body make a curve.
 #[derive(Clone, Debug)]

@@ -13,6 +13,7 @@ use signorini_geometry::{Aabb, Matrix, Point, Vector};
 use signorini_mechanics::body::{
     Anchor, Body, BodyState, Foot, Function, Master, MaterialPoint, Met, PlaceError, Placed, Sampling, Site,
 };
+use signorini_mechanics::curve::Curve;
 
 /// How a section turns.
 #[derive(Clone, Debug)]
@@ -37,7 +38,49 @@ pub trait CurveBody: Body {
         SectionMotion { spin: Vec::new(), frame: Matrix::<3>::identity() }
     }
 
-    /// A point of the curve with all that moves it; `coordinates` is 0 where it cannot be passed by: an end or a kink.
+    /// Second variations of the spin of a section, as [`Curve::spin_bends`].
+    fn spin_bends(&self, _configuration: &[f64], _element: usize, _xi: f64) -> Vec<Vector<3>> {
+        Vec::new()
+    }
+}
+
+impl Curve for &dyn CurveBody {
+    fn elements(&self) -> usize {
+        self.centreline().elements()
+    }
+
+    fn closure(&self) -> Closure {
+        self.centreline().closure
+    }
+
+    fn continuity(&self) -> Continuity {
+        self.centreline().continuity
+    }
+
+    fn arc(&self, element: usize, xi: f64) -> f64 {
+        self.centreline().arc(element, xi)
+    }
+
+    fn radius(&self) -> f64 {
+        (**self).radius()
+    }
+
+    fn contact_points(&self) -> usize {
+        (**self).contact_points()
+    }
+
+    fn jet(&self, configuration: &[f64], element: usize, xi: f64) -> CurveJet {
+        self.centreline().jet(configuration, element, xi)
+    }
+
+    fn hull(&self, configuration: &[f64], element: usize) -> Vec<Point<3>> {
+        self.centreline().hull(configuration, element)
+    }
+
+    fn spin_bends(&self, configuration: &[f64], element: usize, xi: f64) -> Vec<Vector<3>> {
+        (**self).spin_bends(configuration, element, xi)
+    }
+
     fn foot(&self, configuration: &[f64], element: usize, xi: f64, coordinates: usize) -> Foot {
         let CurveJet { x, d1, d2, d3 } = self.centreline().jet(configuration, element, xi);
         let zero = Vector::<3>::zeros();
@@ -49,7 +92,7 @@ pub trait CurveBody: Body {
             jet,
             coordinates,
             outward: None,
-            radius: self.radius(),
+            radius: (**self).radius(),
             functions: self.centreline().functions(element, xi),
             spin,
             frame,
@@ -121,27 +164,30 @@ pub fn master<'a, B: CurveBody>(
         let message = "a rope or beam is touched along all of it: name it without a group".to_string();
         return Err(PlaceError::Unsuitable { body: body.name().to_string(), message });
     }
-    Ok(Box::new(Touched { body, configuration: &state.configuration, tree: Bvh::new(&boxes(body, state)) }))
+    Ok(Box::new(Touched {
+        body,
+        configuration: &state.configuration,
+        tree: Bvh::new(&boxes(&(body as &dyn CurveBody), &state.configuration)),
+    }))
 }
 
 /// Boxes of the elements, of the curve itself.
-pub fn boxes<B: CurveBody + ?Sized>(body: &B, state: &BodyState) -> Vec<Aabb<3>> {
-    let line = body.centreline();
-    (0..line.elements())
+pub fn boxes(curve: &dyn Curve, configuration: &[f64]) -> Vec<Aabb<3>> {
+    (0..curve.elements())
         .map(|e| {
-            let hull = line.hull(&state.configuration, e);
+            let hull = curve.hull(configuration, e);
             hull[1..].iter().fold(Aabb::new(hull[0], hull[0]), |b, p| Aabb::new(b.min.inf(p), b.max.sup(p)))
         })
         .collect()
 }
 
 /// Samples of an element, so close that the curve turns little between them.
-pub fn samples(line: &Centreline, configuration: &[f64], element: usize) -> usize {
-    if line.continuity == Continuity::C0 {
+pub fn samples(curve: &dyn Curve, configuration: &[f64], element: usize) -> usize {
+    if curve.continuity() == Continuity::C0 {
         return 1;
     }
     // The sides of the Bezier polygon turn at least as much as the curve.
-    let hull = line.hull(configuration, element);
+    let hull = curve.hull(configuration, element);
     let sides: Vec<Vector<3>> = hull.windows(2).map(|p| p[1] - p[0]).collect();
     let turn: f64 = sides.windows(2).map(|s| s[0].cross(&s[1]).norm().atan2(s[0].dot(&s[1]))).sum();
     ((turn / 15f64.to_radians()).ceil() as usize).clamp(2, 64)
@@ -149,14 +195,15 @@ pub fn samples(line: &Centreline, configuration: &[f64], element: usize) -> usiz
 
 /// Whether two points along the same curve may touch: farther apart along it than the half circumference of a loop that
 /// just closes, with a tenth to spare, or bent towards each other so that the chord is less than half of the arc.
-pub fn are_apart(line: &Centreline, radius: f64, s: f64, sigma: f64, chord: f64) -> bool {
+pub fn are_apart(curve: &dyn Curve, s: f64, sigma: f64, chord: f64) -> bool {
+    let (radius, length) = (curve.radius(), curve.length());
     let along = (s - sigma).abs();
-    let arc = match line.closure {
+    let arc = match curve.closure() {
         Closure::Open => along,
-        Closure::Closed => along.min(line.length() - along),
+        Closure::Closed => along.min(length - along),
     };
     // Below this the points are one.
-    let one = 1e-9 * line.length();
+    let one = 1e-9 * length;
     arc > (1.1 * std::f64::consts::PI * radius).max(one) || (arc > radius.max(one) && chord < 0.5 * arc)
 }
 
@@ -171,14 +218,14 @@ pub struct Minimum {
 }
 
 /// All local minima, on one element, of the distance from a point to the curve.
-pub fn minima(line: &Centreline, configuration: &[f64], element: usize, x: &Point<3>) -> Vec<Minimum> {
-    let jet = |xi: f64| line.jet(configuration, element, xi);
+pub fn minima(curve: &dyn Curve, configuration: &[f64], element: usize, x: &Point<3>) -> Vec<Minimum> {
+    let jet = |xi: f64| curve.jet(configuration, element, xi);
     let slope = |xi: f64| {
         let j = jet(xi);
         (j.x - x).dot(&j.d1)
     };
     let found = |xi: f64, coordinates: usize| Minimum { element, xi, coordinates, distance: (jet(xi).x - x).norm() };
-    let count = samples(line, configuration, element);
+    let count = samples(curve, configuration, element);
     let at: Vec<f64> = (0..=count).map(|k| k as f64 / count as f64).collect();
     let slopes: Vec<f64> = at.iter().map(|xi| slope(*xi)).collect();
     let mut out = Vec::new();
@@ -191,15 +238,15 @@ pub fn minima(line: &Centreline, configuration: &[f64], element: usize, x: &Poin
             out.push(found(refine(&jet, x, at[k], at[k + 1]), 1));
         }
     }
-    let n = line.elements();
-    let is_first = element == 0 && line.closure == Closure::Open;
-    let is_last = element + 1 == n && line.closure == Closure::Open;
+    let n = curve.elements();
+    let is_first = element == 0 && curve.closure() == Closure::Open;
+    let is_last = element + 1 == n && curve.closure() == Closure::Open;
     if slopes[0] > 0.0 && is_first {
         out.push(found(0.0, 0));
     }
     if slopes[count] < 0.0 {
-        let is_kink = line.continuity == Continuity::C0 && !is_last && {
-            let next = line.jet(configuration, (element + 1) % n, 0.0);
+        let is_kink = curve.continuity() == Continuity::C0 && !is_last && {
+            let next = curve.jet(configuration, (element + 1) % n, 0.0);
             (next.x - x).dot(&next.d1) > 0.0
         };
         if is_last || is_kink {
@@ -240,18 +287,24 @@ struct Touched<'a, B> {
     tree: Bvh,
 }
 
+impl<'a, B: CurveBody> Touched<'a, B> {
+    fn curve(&self) -> &'a dyn CurveBody {
+        self.body
+    }
+}
+
 impl<B: CurveBody> Master for Touched<'_, B> {
     fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<Met> {
-        let (line, radius) = (self.body.centreline(), self.body.radius());
+        let (curve, radius) = (self.curve(), self.body.radius());
         let mut best: Option<Minimum> = None;
         // Distances of surfaces: the curve lies deeper by the radius of the section.
         let reach = reach + radius;
         let mut limit = reach * reach;
         self.tree.nearest(x, limit, |element| {
-            for m in minima(line, self.configuration, element, x) {
+            for m in minima(&curve, self.configuration, element, x) {
                 let is_other = except.is_none_or(|site| {
-                    let sigma = line.arc(site.patch as usize, site.xi[0]);
-                    are_apart(line, radius, line.arc(element, m.xi), sigma, m.distance)
+                    let sigma = curve.arc(site.patch as usize, site.xi[0]);
+                    are_apart(&curve, curve.arc(element, m.xi), sigma, m.distance)
                 });
                 let is_nearer = best.as_ref().is_none_or(|b| {
                     (m.distance, m.element).partial_cmp(&(b.distance, b.element)) == Some(std::cmp::Ordering::Less)
@@ -263,11 +316,11 @@ impl<B: CurveBody> Master for Touched<'_, B> {
             }
             limit
         });
-        best.map(|m| Met::Foot(Box::new(self.body.foot(self.configuration, m.element, m.xi, m.coordinates))))
+        best.map(|m| Met::Foot(Box::new(self.curve().foot(self.configuration, m.element, m.xi, m.coordinates))))
     }
 
     fn at(&self, point: &MaterialPoint) -> Anchor {
-        let foot = self.body.foot(self.configuration, point.patch as usize, point.xi[0], 1);
+        let foot = self.curve().foot(self.configuration, point.patch as usize, point.xi[0], 1);
         Anchor { x: foot.jet.x, tangent: foot.jet.u, functions: foot.functions, spin: foot.spin, frame: foot.frame }
     }
 }

@@ -47,7 +47,7 @@ fn a_disc_pressed_on_a_floor() {
                 support(0, "middle", [None, constant(-0.03), None]),
             ],
             bodies: vec![Box::new(body), Box::new(floor)],
-            contacts: vec![contact],
+            contacts: vec![Box::new(contact)],
             ..System::default()
         };
         let (state, found) = solve(&mut system);
@@ -98,7 +98,7 @@ fn a_ball_in_space_that_only_contact_holds() {
             load: TimedLoad::Force(Arc::new(move |_, t| given * t)),
         }],
         bodies: vec![Box::new(body), Box::new(stone)],
-        contacts: vec![contact],
+        contacts: vec![Box::new(contact)],
         ..System::default()
     };
     let (state, found) = solve(&mut system);

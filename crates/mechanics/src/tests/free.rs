@@ -43,7 +43,7 @@ fn a_ball_settles_in_a_groove_from_above_it() {
         });
         for wall in 1..3 {
             let contact = touching(&system, 0, wall, enforcement, None);
-            system.contacts.push(contact);
+            system.contacts.push(Box::new(contact));
         }
         system.prepare().unwrap();
         let (state, result) = system.solve(&system.start(), 1.0, &mut |_, _| true).unwrap();
@@ -75,7 +75,7 @@ fn a_ball_on_an_incline_rolls_unless_something_holds_it_and_sticks_up_to_its_fri
             });
         }
         let contact = touching(&system, 0, 1, Enforcement::Multiplier, Some(mu));
-        system.contacts.push(contact);
+        system.contacts.push(Box::new(contact));
         system.prepare().unwrap();
         system.solve(&system.start(), 1.0, &mut |_, _| true)
     };
@@ -102,7 +102,7 @@ fn a_block_on_three_feet_stands_slides_and_follows_a_turning_floor() {
         system.bodies.push(Box::new(plane(v(0.0, 0.0, 0.0), v(0.0, 0.0, 1.0))));
         system.loads.push(force(0, v(push, 0.0, -1.0)));
         let contact = touching(&system, 0, 1, Enforcement::Multiplier, Some(0.5));
-        system.contacts.push(contact);
+        system.contacts.push(Box::new(contact));
         system.prepare().unwrap();
         let start = system.start();
         system.solve(&start, 1.0, &mut |_, _| true).map(|(_, result)| result)
@@ -133,7 +133,7 @@ fn a_moved_body_drags_one_that_springs_hold() {
         let penalty = Enforcement::Penalty { wanted_penetration: None };
         let mut contact = touching(&system, 0, master, penalty, Some(mu));
         contact.reach = 1.0;
-        system.contacts.push(contact);
+        system.contacts.push(Box::new(contact));
     }
     system.prepare().unwrap();
     // Squeezed: the lower plate is lifted by a little.

@@ -45,8 +45,11 @@ fn check(
         Contact::new("pair", (part(0), &slave), (part(1), &master), Sampling::Nodes, enforcement).unwrap();
     contact.friction = law;
     contact.axis = axis;
-    let mut system =
-        System { bodies: vec![Box::new(slave), Box::new(master)], contacts: vec![contact], ..System::default() };
+    let mut system = System {
+        bodies: vec![Box::new(slave), Box::new(master)],
+        contacts: vec![Box::new(contact)],
+        ..System::default()
+    };
     system.prepare().unwrap();
     let mut state = system.start();
     let seed = &mut 7u64;
@@ -58,11 +61,14 @@ fn check(
     };
     state = random(&state, 0.01, seed, &system);
     system.accept(&state).unwrap();
-    for memory in &mut system.contacts[0].memory {
-        memory.traction = [0.8 + 0.1 * noise(seed), 0.1 * noise(seed), 0.1 * noise(seed)];
+    // Tractions come first in what is kept of a site.
+    let mut history = system.contacts[0].history();
+    for site in history[0].chunks_mut(16) {
+        site[..3].copy_from_slice(&[0.8 + 0.1 * noise(seed), 0.1 * noise(seed), 0.1 * noise(seed)]);
     }
+    system.contacts[0].restore(&history).unwrap();
     let mut state = random(&state, moved, seed, &system);
-    let parts = system.contacts[0].components();
+    let parts = if system.contacts[0].law().is_some() { 3 } else { 1 };
     for own in state.multipliers.chunks_mut(parts) {
         own[0] = 0.9 + 0.05 * noise(seed);
         own[1..].iter_mut().for_each(|t| *t *= 0.1);
@@ -108,7 +114,7 @@ fn advance(system: &System, at: &SystemState, step: &[f64], share: f64) -> Syste
         .map(|((b, s), f)| b.advance(s, &step[f as usize..f as usize + b.unknowns()], share))
         .collect();
     let multipliers = at.multipliers.iter().zip(&step[count..]).map(|(m, s)| m + share * s).collect();
-    SystemState { bodies, multipliers, reactions: Vec::new(), travel: vec![0.0; count] }
+    SystemState { bodies, multipliers, reactions: Vec::new(), predictions: Vec::new(), travel: vec![0.0; count] }
 }
 
 fn free() -> Motion {

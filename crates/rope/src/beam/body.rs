@@ -5,146 +5,36 @@
 //! element. The start is without stress whatever its shape.
 
 use super::element::{Element, Forces, Nodes, SPINS, STRESSES, Stresses, UNKNOWNS};
-use crate::centreline::{Centreline, Closure, Continuity};
+use crate::centreline::Centreline;
 use crate::curve_body::{self, CurveBody, SectionMotion};
 use crate::hermite;
-use crate::path::Sampled;
 use crate::place::{self, Line, Part};
 use crate::quaternion::{self, Quaternion, spin_map};
-use crate::section::{SectionError, Stiffness};
-use signorini_geometry::{Matrix, Vector};
+use signorini_geometry::Vector;
+use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
     Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Function, Hold, Load, Master, Order, PlaceError,
     Placed, Sampling, Site,
 };
 
-/// A beam that cannot be.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum BeamError {
-    #[error("a beam needs a smooth path: sample it with continuity C1")]
-    NotSmooth,
-    #[error("orientation ({}, {}, {}) is along the beam at its start: give a direction across it", at[0], at[1], at[2])]
-    Orientation { at: [f64; 3] },
-    #[error(
-        "element {element} turns by {degrees:.1}° at the start, at most 90° can be resolved: give more than {cells} cells"
-    )]
-    TurnsTooMuch { element: usize, degrees: f64, cells: usize },
-    #[error("radius {0}: valid are 0 and positive numbers")]
-    Radius(f64),
-    #[error(transparent)]
-    Section(#[from] SectionError),
-}
-
 /// Numbers of a node in a configuration, and unknowns.
-const NUMBERS: usize = 10;
-const NODE: usize = 9;
+pub(super) const NUMBERS: usize = 10;
+pub(super) const NODE: usize = 9;
 
 /// A geometrically exact beam.
 #[derive(Clone, Debug)]
 pub struct Beam {
-    name: String,
-    line: Centreline,
-    elements: Vec<Element>,
+    pub(super) name: String,
+    pub(super) line: Centreline,
+    pub(super) elements: Vec<Element>,
     /// Signs of the quaternions of each element that put them into one hemisphere: those of its last node and middle.
-    signs: Vec<[f64; 2]>,
-    radius: f64,
-    contact_points: usize,
-    start: Vec<f64>,
-}
-
-/// Axes along a curve that turn about it as little as can be (double reflection: Wang, Jüttler, Zheng & Liu 2008).
-fn transport(axes: &Matrix<3>, from: &Vector<3>, to: &Vector<3>, tangent: &Vector<3>) -> Matrix<3> {
-    let reflect = |v: Vector<3>, across: &Vector<3>| {
-        let square = across.norm_squared();
-        if square == 0.0 { v } else { v - across * (2.0 * across.dot(&v) / square) }
-    };
-    let first = to - from;
-    let [d1, d2] = [0, 1].map(|k| reflect(axes.column(k).into_owned(), &first));
-    let d2 = reflect(d2, &(tangent - d1));
-    let d2 = (d2 - tangent * tangent.dot(&d2)).normalize();
-    Matrix::<3>::from_columns(&[*tangent, d2, tangent.cross(&d2)])
+    pub(super) signs: Vec<[f64; 2]>,
+    pub(super) radius: f64,
+    pub(super) contact_points: usize,
+    pub(super) start: Vec<f64>,
 }
 
 impl Beam {
-    /// A beam along a path. `orientation` is a direction near the section's axis `d_2` at the start; without one, that of
-    /// the coordinate axis farthest from the tangent. `radius` is what touches; `contact_points` of each element are tested.
-    ///
-    /// # Errors
-    /// A path with kinks, a direction along the beam, a stiffness that is not positive, elements that turn too much.
-    pub fn new(
-        name: &str,
-        path: &Sampled,
-        orientation: Option<Vector<3>>,
-        stiffness: Stiffness,
-        radius: f64,
-    ) -> Result<Self, BeamError> {
-        if path.continuity != Continuity::C1 {
-            return Err(BeamError::NotSmooth);
-        }
-        if !(radius >= 0.0 && radius.is_finite()) {
-            return Err(BeamError::Radius(radius));
-        }
-        let stiffness = stiffness.checked()?;
-        let line = Centreline::new(path.lengths.clone(), path.closure, Continuity::C1, [NODE, NUMBERS]);
-        let tangent = path.tangents[0];
-        let direction = orientation.unwrap_or_else(|| quaternion::axis(tangent.iamin()));
-        let across = direction - tangent * tangent.dot(&direction);
-        if across.norm().is_nan() || across.norm() <= 1e-6 * direction.norm() {
-            return Err(BeamError::Orientation { at: crate::path::array(&direction) });
-        }
-        let d2 = across.normalize();
-        let mut axes = Matrix::<3>::from_columns(&[tangent, d2, tangent.cross(&d2)]);
-        let (nodes, count) = (line.nodes(), line.elements());
-        let mut start = vec![0.0; NUMBERS * nodes + 4 * count];
-        for node in 0..nodes {
-            start[NUMBERS * node..NUMBERS * node + 3].copy_from_slice(path.positions[node].as_slice());
-            start[NUMBERS * node + 3..NUMBERS * node + 6].copy_from_slice(path.tangents[node].as_slice());
-        }
-        // Axes at the nodes and in the middles, one after the other.
-        let mut frames = vec![axes];
-        for e in 0..count {
-            let x = line.nodal(&start, e);
-            let h = line.lengths[e];
-            let middle = hermite::sum(&hermite::cubic(0.5, h), &x);
-            let along = hermite::sum(&hermite::cubic_first(0.5, h), &x).normalize();
-            axes = transport(&axes, &x[0], &middle, &along);
-            frames.push(axes);
-            axes = transport(&axes, &middle, &x[2], &x[3].normalize());
-            frames.push(axes);
-        }
-        if path.closure == Closure::Closed {
-            untwist(&mut frames);
-        }
-        let quaternions: Vec<Quaternion> = frames.iter().map(quaternion::of_rotation).collect();
-        let mut beam = Beam {
-            name: name.to_string(),
-            line,
-            elements: Vec::new(),
-            signs: Vec::new(),
-            radius,
-            contact_points: 4,
-            start,
-        };
-        for node in 0..nodes {
-            beam.start[NUMBERS * node + 6..NUMBERS * (node + 1)].copy_from_slice(quaternions[2 * node].as_slice());
-        }
-        for e in 0..count {
-            let at = beam.middle(e);
-            beam.start[at..at + 4].copy_from_slice(quaternions[2 * e + 1].as_slice());
-            let last = beam.line.ends(e)[1];
-            let ends = [quaternions[2 * e], quaternions[2 * last]];
-            let sign = |q: &Quaternion| if q.dot(&ends[0]) < 0.0 { -1.0 } else { 1.0 };
-            let turn = 2.0 * ends[0].dot(&ends[1]).abs().min(1.0).acos();
-            if turn > std::f64::consts::FRAC_PI_2 * (1.0 + 1e-9) {
-                return Err(BeamError::TurnsTooMuch { element: e, degrees: turn.to_degrees(), cells: count });
-            }
-            beam.signs.push([sign(&ends[1]), sign(&quaternions[2 * e + 1])]);
-            let nodes = beam.nodes_of(&beam.start, e);
-            beam.elements.push(Element::new(beam.line.lengths[e], stiffness, &nodes));
-        }
-        Ok(beam)
-    }
-
     /// Tests contact at so many points of Gauss of each element instead of four.
     pub fn with_contact_points(mut self, count: usize) -> Self {
         self.contact_points = count.max(1);
@@ -152,11 +42,11 @@ impl Beam {
     }
 
     /// Where the quaternion of the middle of an element is in a configuration.
-    fn middle(&self, element: usize) -> usize {
+    pub(super) fn middle(&self, element: usize) -> usize {
         NUMBERS * self.line.nodes() + 4 * element
     }
 
-    fn nodes_of(&self, configuration: &[f64], element: usize) -> Nodes {
+    pub(super) fn nodes_of(&self, configuration: &[f64], element: usize) -> Nodes {
         let [a, b] = self.line.ends(element);
         let quaternion = |at: usize, sign: f64| Quaternion::from_column_slice(&configuration[at..at + 4]) * sign;
         let [last, middle] = self.signs[element];
@@ -250,18 +140,6 @@ impl Beam {
     }
 }
 
-/// Turns the axes along a closed curve so that the last ones are the first ones.
-fn untwist(frames: &mut [Matrix<3>]) {
-    let last = frames.len() - 1;
-    let (first, end) = (frames[0], frames[last]);
-    let angle = end.column(1).dot(&first.column(2)).atan2(end.column(1).dot(&first.column(1)));
-    for (k, frame) in frames.iter_mut().enumerate() {
-        let d1: Vector<3> = frame.column(0).into_owned();
-        let turn = quaternion::rotation(&quaternion::exponential(&(d1 * (-angle * k as f64 / last as f64))));
-        *frame = turn * *frame;
-    }
-}
-
 impl CurveBody for Beam {
     fn centreline(&self) -> &Centreline {
         &self.line
@@ -277,21 +155,52 @@ impl CurveBody for Beam {
 
     fn section(&self, configuration: &[f64], element: usize, xi: f64) -> SectionMotion {
         let nodes = self.nodes_of(configuration, element);
-        let l = hermite::quadratic(xi);
-        let q = (0..3).fold(Quaternion::zeros(), |sum, a| sum + nodes.rotations[a] * l[a]);
-        let inverse = quaternion::conjugate(&q) * (2.0 / q.norm_squared());
+        let (l, l1) = (hermite::quadratic(xi), hermite::quadratic_first(xi));
+        let sum = |l: &[f64; 3]| (0..3).fold(Quaternion::zeros(), |sum, a| sum + nodes.rotations[a] * l[a]);
+        let (q, q1) = (sum(&l), sum(&l1));
+        let square = q.norm_squared();
+        let [inverse, slope] = [q, q1].map(|q| quaternion::conjugate(&q) * (2.0 / square));
         let spins = self.spins_of(element);
         let spin = (0..3)
             .flat_map(|a| {
-                let map = spin_map(&nodes.rotations[a]) * l[a];
-                (0..3).map(move |i| Function {
-                    unknown: spins[a] + i as u32,
-                    value: quaternion::vector(&quaternion::product(&map.column(i).into_owned(), &inverse)),
-                    ..Function::default()
+                let map = spin_map(&nodes.rotations[a]);
+                (0..3).map(move |i| {
+                    let of = |q: &Quaternion| quaternion::vector(&quaternion::product(&map.column(i).into_owned(), q));
+                    let unit = of(&inverse);
+                    let along = unit * (l1[a] - l[a] * 2.0 * q.dot(&q1) / square) + of(&slope) * l[a];
+                    let slopes = [along, Vector::<3>::zeros()];
+                    Function { unknown: spins[a] + i as u32, value: unit * l[a], slopes, ..Function::default() }
                 })
             })
             .collect();
         SectionMotion { spin, frame: quaternion::rotation(&q) }
+    }
+
+    /// With `w_ai = L_a vec(e_i q_a Q*)/S` the spin per unit of each unknown and `δq_b = ½ e_j q_b`, the derivative of `w_ai`,
+    /// plus half of `w` along `e_j × e_i` where both are of one node: what turns with the node counts half.
+    fn spin_bends(&self, configuration: &[f64], element: usize, xi: f64) -> Vec<Vector<3>> {
+        let nodes = self.nodes_of(configuration, element);
+        let l = hermite::quadratic(xi);
+        let q = (0..3).fold(Quaternion::zeros(), |sum, a| sum + nodes.rotations[a] * l[a]);
+        let square = q.norm_squared();
+        let conjugate = quaternion::conjugate(&q);
+        let turned = |v: &Vector<3>, q: &Quaternion| quaternion::product(&quaternion::pure(v), q);
+        let spin = |a: usize, v: &Vector<3>| {
+            quaternion::vector(&quaternion::product(&turned(v, &nodes.rotations[a]), &conjugate)) * (l[a] / square)
+        };
+        let bend = |(a, e_i): (usize, Vector<3>), (b, e_j): (usize, Vector<3>)| {
+            let own = turned(&e_i, &nodes.rotations[a]) * l[a];
+            let d_q = turned(&e_j, &nodes.rotations[b]) * (0.5 * l[b]);
+            let changed = quaternion::vector(&quaternion::product(&own, &quaternion::conjugate(&d_q))) / square
+                - spin(a, &e_i) * (2.0 * q.dot(&d_q) / square);
+            if a != b {
+                return changed;
+            }
+            let twice = turned(&e_i, &turned(&e_j, &nodes.rotations[a])) * (0.5 * l[a] / square);
+            changed + quaternion::vector(&quaternion::product(&twice, &conjugate)) + spin(a, &e_j.cross(&e_i)) * 0.5
+        };
+        let all = |k: usize| (k / 3, quaternion::axis(k % 3));
+        (0..81).map(|k| bend(all(k / 9), all(k % 9))).collect()
     }
 }
 
@@ -450,6 +359,10 @@ impl Body for Beam {
         let element = &self.elements[site.patch as usize];
         let bending = element.stiffness.bending[0].min(element.stiffness.bending[1]);
         192.0 * bending / element.length.powi(3)
+    }
+
+    fn as_curve(&self) -> Option<Box<dyn Curve + '_>> {
+        Some(Box::new(self as &dyn CurveBody))
     }
 
     fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6] {

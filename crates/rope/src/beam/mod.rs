@@ -2,10 +2,12 @@
 //!
 //! - [`strain`]: strains of a point with their derivatives.
 //! - [`element`]: energy, forces and tangent of an element.
-//! - [`body`]: a whole beam.
+//! - [`body`]: a whole beam; [`start`]: how it starts.
 
 pub mod body;
 pub mod element;
+pub mod start;
 pub mod strain;
 
-pub use body::{Beam, BeamError};
+pub use body::Beam;
+pub use start::BeamError;

@@ -11,6 +11,7 @@ use crate::path::Sampled;
 use crate::place::{self, Line};
 use crate::quaternion;
 use signorini_geometry::Vector;
+use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
     Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Hold, Load, Master, Order, PlaceError, Placed,
     Sampling, Site,
@@ -254,6 +255,10 @@ impl Body for Cable {
             Carries::TensionOnly => element.axial / element.length,
             Carries::TensionAndCompression => 192.0 * element.bending / element.length.powi(3),
         }
+    }
+
+    fn as_curve(&self) -> Option<Box<dyn Curve + '_>> {
+        Some(Box::new(self as &dyn CurveBody))
     }
 
     fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6] {

@@ -13,6 +13,7 @@ use crate::curve_body::{self, CurveBody};
 use crate::path::Sampled;
 use crate::place::{self, Line};
 use signorini_geometry::{Matrix, Vector};
+use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
     Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Hold, Load, Master, Order, PlaceError, Placed,
     Sampling, Site,
@@ -331,6 +332,10 @@ impl Body for Chain {
 
     fn site_stiffness(&self, site: &Site) -> f64 {
         self.stiffness / self.line.lengths[site.patch as usize]
+    }
+
+    fn as_curve(&self) -> Option<Box<dyn Curve + '_>> {
+        Some(Box::new(self as &dyn CurveBody))
     }
 
     fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6] {

@@ -1,10 +1,14 @@
 //! From point contact of crossing curves to line contact of nearly parallel ones.
 //!
-//! With `z = cos² θ` of the angle between the tangents, the share of the point force is 1 for `θ ≥ θ_2`, 0 for `θ ≤ θ_1`, and
+//! With `z = cos² θ` of the angle between straight lines, the share of the point force is 1 for `θ ≥ θ_2`, 0 for `θ ≤ θ_1`, and
 //! a cubic in `z` between, with a continuous derivative; line forces have the rest (Meier, Wall & Popp 2017, on the level of
-//! forces). Straight tubes of radii `R` that cross at `θ` and penetrate by `δ` touch with `δ - x² sin²θ/(2(R_1 + R_2))`; line
-//! forces of penalty `ε_l` add up to `(4/3) ε_l δ √(2(R_1 + R_2) δ)/sin θ`, and point forces to `ε δ`. [`Blend::line_penalty`]
-//! makes both equal in the middle of the band at an expected force.
+//! forces). What counts is whether one point is nearer than its neighbours, by enough for points of a line to see it: of
+//! curves `z = (c_1'·c_2')²/(A_11 A_22)` with the second derivatives `A` of half the squared distance, which is 1 along the
+//! valley between the strands of a double helix although they cross.
+//!
+//! Straight tubes of radii `R` that cross at `θ` and penetrate by `δ` touch with `δ - x² sin²θ/(2(R_1 + R_2))`; line forces of
+//! penalty `ε_l` add up to `(4/3) ε_l δ √(2(R_1 + R_2) δ)/sin θ`, and point forces to `ε δ`. [`Blend::line_penalty`] makes both
+//! equal in the middle of the band at an expected force.
 
 /// A band of angles, in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +24,10 @@ pub struct BlendError {
     pub theta_1: f64,
     pub theta_2: f64,
 }
+
+/// The least angle of a band, in radians: closer to parallel the foot points of a crossing move more than two hundred times
+/// as far as the curves.
+const LEAST: f64 = 5e-3;
 
 impl Default for Blend {
     /// From 10 to 25 degrees: below, foot points of crossings move more than five times as far as the curves; above, the
@@ -37,6 +45,15 @@ impl Blend {
     pub fn new(theta_1: f64, theta_2: f64) -> Result<Self, BlendError> {
         let is_valid = theta_1 > 0.0 && theta_1 < theta_2 && theta_2 <= std::f64::consts::FRAC_PI_2;
         if is_valid { Ok(Blend { theta_1, theta_2 }) } else { Err(BlendError { theta_1, theta_2 }) }
+    }
+
+    /// A band in which lines of points so far apart resolve where curves touch: the gap at the nearest point of a line is
+    /// off by at most `s² sin²θ / (8 (R_1 + R_2))` at a spacing `s`, which is to be less than a ten-thousandth of the
+    /// smaller radius at `θ_1`. `θ_2` is 2.5 times as large, and neither is beyond the default.
+    pub fn resolved(spacing: f64, radii: [f64; 2]) -> Self {
+        let sine = (8e-4 * radii[0].min(radii[1]) * (radii[0] + radii[1])).sqrt() / spacing;
+        let theta_1 = sine.min(1.0).asin().clamp(LEAST, Self::default().theta_1);
+        Blend { theta_1, theta_2: 2.5 * theta_1 }
     }
 
     /// Share of the point force for `z = cos² θ`, and its derivative in `z`.

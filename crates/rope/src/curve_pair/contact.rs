@@ -1,21 +1,28 @@
-//! Contact of curves, with friction or without: forces and tangent by penalty or augmented Lagrangian.
+//! Contact of two curves, or of a curve with itself: where they touch, and with which forces.
 //!
-//! Every contact, a minimum of the distance of both curves or a point of Gauss of the slave with the nearest point of the
-//! master, has the force `N = min(0, λ + ε g)`, `λ = 0` for a penalty alone, times its share of the blend. Residual and
-//! tangent are `c N δg` and `c (ε δg δgᵀ + N' Δδg) + N δg ⊗ dc`. As with the stresses of a thin beam, the geometric term takes
-//! the force `N'` that the step before predicts, and none when a contact is new: where a first iterate penetrates deeply,
-//! its force is far too large to turn with the gap. A contact that the step before predicts to be closed stays closed in the
-//! next linear system even where the gap has opened a little, as gaps do that are not linear in the unknowns: the set of
-//! closed contacts is that of the linear problem, and does not alternate. Forces that are told, and residuals that decide
-//! about convergence ([`Order::First`]), are those of the law.
+//! Every contact, a minimum of the distance of both curves or a point of Gauss of the slave with a nearest point of the
+//! master, has the force `N = min(0, λ + ε g)`, `λ = 0` for a penalty alone, times its share `c` of the blend. Residual and
+//! tangent are `c N δg` and `c (ε δg δgᵀ + N' Δδg) + N δg ⊗ dc`, and those of friction under the pressure `-N`. As with the
+//! stresses of a thin beam, the geometric term takes the force `N'` that the step before predicts, and none when a contact is
+//! new: where a first iterate penetrates deeply, its force is far too large to turn with the gap. A contact that the step
+//! before predicts to be closed stays closed in the next linear system even where the gap has opened a little, as gaps do
+//! that are not linear in the unknowns: the set of closed contacts is that of the linear problem, and does not alternate.
+//! Forces that are told, and residuals that decide about convergence ([`Order::First`]), are those of the law.
+//!
+//! Of a curve with itself both points of a line test each other, with half of the penalty each.
 
 use super::blend::Blend;
-use super::friction::{CurveFriction, Tangential, followed, tangential};
-use super::measure::{CurvePair, Stuck, elastic_slip, measure};
+use super::friction::{CurveFriction, Tangential, tangential};
+use super::history::{Kept, Key, Kind, Predicted};
+use super::measure::{CurvePair, NoPair, Wanted, elastic_slip, measure, parallel};
 use super::search::{Between, CurvePoint, Searched, crossings};
-use signorini_contact::law::Status;
-use signorini_geometry::Vector;
-use signorini_mechanics::body::{Contribution, Met, Order, Sampling};
+use crate::curve_body::{are_apart, boxes, minima};
+use crate::hermite::gauss;
+use signorini_contact::Law;
+use signorini_geometry::bvh::Bvh;
+use signorini_mechanics::Enforcement;
+use signorini_mechanics::body::{Body, Foot, Order};
+use signorini_mechanics::curve::{Closure, Curve};
 
 /// Which forces act.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,7 +31,7 @@ pub enum Form {
     Point,
     /// Forces at points of Gauss of the slave.
     Line,
-    /// Both, by the angle of the curves.
+    /// Both, by how far the distance is from a valley along the curves.
     Blend(Blend),
 }
 
@@ -35,286 +42,306 @@ pub enum Ends {
     PassBy,
 }
 
-/// Which contact of a pair of curves.
+/// Force per penetration.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Key {
-    /// Point of Gauss.
-    Site(usize),
-    /// Positions along both curves: elements plus parameters.
-    Places([f64; 2]),
+pub struct Penalties {
+    /// At a point.
+    pub point: f64,
+    /// Along a line: per length besides.
+    pub line: f64,
 }
 
-/// What is kept of a contact from one iteration to the next.
-#[derive(Clone, Copy, Debug)]
-struct Kept {
-    key: Key,
-    predicted: f64,
-    multiplier: f64,
-    normal: Vector<3>,
-    stuck: Option<Stuck>,
+/// Contact that cannot be.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum CurveContactError {
+    #[error("`{body}` is no curve: contact between curves is for ropes, cables and beams")]
+    NotACurve { body: String },
+}
+
+/// Two curves that may touch, or one that may touch itself.
+pub struct CurveContact {
+    pub name: String,
+    /// Slave and master; twice the same for a curve with itself.
+    pub bodies: [usize; 2],
+    pub form: Form,
+    pub ends: Ends,
+    pub enforcement: Enforcement,
+    /// Along the slave and around it; without it curves slide freely.
+    pub friction: Option<Box<dyn Law>>,
+    /// Penalties that are stated; otherwise they come from the stiffness of the bodies.
+    pub stated: Option<Penalties>,
+    /// How far apart surfaces are looked at, and how far inside each other curves may be in an iterate and still be parted.
+    pub reach: f64,
+    pub(super) penalties: Penalties,
+    pub(super) history: Vec<Kept>,
+    /// The law while a start is looked for with one that sticks.
+    pub(super) set_aside: Option<Box<dyn Law>>,
 }
 
 /// A contact as it is now.
-pub struct Contact {
-    key: Key,
+pub struct Touch {
+    pub key: Key,
     pub pair: CurvePair,
     /// Points of both curves.
     pub points: [CurvePoint; 2],
+    /// Length that the contact stands for; 1 at a point.
+    pub weight: f64,
     /// Force per penetration.
     pub penalty: f64,
-    /// Share of the blend, and its derivative in the squared cosine of the angle.
+    /// Share of the blend, and its derivative in `CurvePair::parallel`.
     pub share: (f64, f64),
     /// `λ + ε g`, at most zero.
     pub force: f64,
     /// The same without the bound.
-    trial: f64,
+    pub(super) trial: f64,
     /// The force of the geometric term.
-    geometric: f64,
+    pub(super) geometric: f64,
+    pub(super) kept: Option<Kept>,
 }
 
-/// Two curves that may touch, or one that may touch itself.
-#[derive(Clone, Debug)]
-pub struct CurveContact {
-    pub form: Form,
-    pub ends: Ends,
-    pub between: Between,
-    /// Force per penetration at a point.
-    pub point_penalty: f64,
-    /// Force per penetration and length along a line.
-    pub line_penalty: f64,
-    /// How far curves may pass through each other, or apart, in one iteration and still be followed.
-    pub reach: f64,
-    pub friction: Option<CurveFriction>,
-    kept: Vec<Kept>,
+/// Contacts that were found, and how many pairs have no coordinates.
+pub type Touches = (Vec<Touch>, usize);
+
+/// A curve of the system.
+fn curve(body: &dyn Body) -> Result<Box<dyn Curve + '_>, CurveContactError> {
+    body.as_curve().ok_or_else(|| CurveContactError::NotACurve { body: body.name().to_string() })
 }
 
-/// How far along the curves, in elements, a minimum may have moved and still be the same.
-const SAME: f64 = 1.0;
+/// Distance of the points of Gauss of a curve, in the mean.
+fn spacing(curve: &dyn Curve) -> f64 {
+    curve.length() / (curve.elements() * curve.contact_points()) as f64
+}
 
 impl CurveContact {
-    /// Contact without history.
-    pub fn new(form: Form, between: Between, point_penalty: f64, line_penalty: f64) -> Self {
-        CurveContact {
-            form,
-            ends: Ends::Touch,
-            between,
-            point_penalty,
-            line_penalty,
-            reach: 0.0,
-            friction: None,
-            kept: Vec::new(),
-        }
-    }
-
-    fn kept(&self, key: Key) -> Option<&Kept> {
-        let apart = |k: &Kept| match (k.key, key) {
-            (Key::Site(i), Key::Site(j)) if i == j => 0.0,
-            (Key::Places(u), Key::Places(v)) => (u[0] - v[0]).abs().max((u[1] - v[1]).abs()),
-            _ => f64::INFINITY,
+    /// Contact of two bodies with their numbers in the system, by point and line forces as the angle asks; multipliers that
+    /// come and go with contacts are those of an augmented Lagrangian. The slave is that whose points are tested.
+    ///
+    /// # Errors
+    /// Bodies that are no curves.
+    pub fn new(
+        name: &str,
+        slave: (usize, &dyn Body),
+        master: (usize, &dyn Body),
+        enforcement: Enforcement,
+    ) -> Result<Self, CurveContactError> {
+        let (slave_curve, master_curve) = (curve(slave.1)?, curve(master.1)?);
+        let curves = [slave_curve.as_ref(), master_curve.as_ref()];
+        let radii = curves.map(|c| c.radius());
+        let enforcement = match enforcement {
+            Enforcement::Multiplier => Enforcement::AugmentedLagrangian,
+            other => other,
         };
-        self.kept.iter().min_by(|p, q| apart(p).total_cmp(&apart(q))).filter(|k| apart(k) <= SAME)
+        // Iterates may be an element apart from what they come to.
+        let element = |c: &dyn Curve| c.length() / c.elements() as f64;
+        Ok(CurveContact {
+            name: name.to_string(),
+            bodies: [slave.0, master.0],
+            form: Form::Blend(Blend::resolved(spacing(curves[0]), radii)),
+            ends: Ends::Touch,
+            enforcement,
+            friction: None,
+            stated: None,
+            reach: radii[0] + radii[1] + element(curves[0]).max(element(curves[1])),
+            penalties: Penalties { point: 1.0, line: 1.0 },
+            history: Vec::new(),
+            set_aside: None,
+        })
     }
 
-    fn contact(&self, key: Key, points: [CurvePoint; 2], pair: CurvePair, penalty: f64, share: (f64, f64)) -> Contact {
-        let kept = self.kept(key);
-        let multiplier = kept.map_or(0.0, |k| k.multiplier);
+    pub(super) fn between(&self) -> Between {
+        if self.bodies[0] == self.bodies[1] { Between::Itself } else { Between::Two }
+    }
+
+    /// Penalties from the stiffness of both bodies, of an element in the mean.
+    pub(super) fn set_penalties(&mut self, bodies: [&dyn Body; 2], curves: [&dyn Curve; 2], factor: f64) {
+        let mean = |k: usize| {
+            let n = curves[k].elements();
+            let site = |e: usize| signorini_mechanics::Site { patch: e as u32, xi: [0.5, 0.0], weight: 1.0 };
+            (0..n).map(|e| bodies[k].site_stiffness(&site(e))).sum::<f64>() / n as f64
+        };
+        // One after the other.
+        let point = factor / (1.0 / mean(0) + 1.0 / mean(1));
+        self.penalties = self.stated.unwrap_or(Penalties { point, line: point / spacing(curves[0]) });
+    }
+
+    /// Whether a point is an end of its curve.
+    fn is_end(curve: &dyn Curve, point: &CurvePoint) -> bool {
+        let u = point.element as f64 + point.xi;
+        point.coordinates == 0 && curve.closure() == Closure::Open && (u == 0.0 || u == curve.elements() as f64)
+    }
+
+    fn touch(
+        &self,
+        key: Key,
+        points: [CurvePoint; 2],
+        pair: CurvePair,
+        (weight, penalty, share): (f64, f64, (f64, f64)),
+        (kept, predicted): (Option<Kept>, Option<&Predicted>),
+    ) -> Touch {
+        let multiplier = match self.enforcement {
+            Enforcement::Penalty { .. } => 0.0,
+            _ => kept.map_or(0.0, |k| k.force),
+        };
         let trial = multiplier + penalty * pair.gap;
-        let geometric = kept.map_or(0.0, |k| k.predicted);
-        Contact { key, pair, points, penalty, share, force: trial.min(0.0), trial, geometric }
+        let geometric = predicted.map_or(0.0, |p| p.force);
+        Touch { key, pair, points, weight, penalty, share, force: trial.min(0.0), trial, geometric, kept }
     }
 
     /// All contacts of two curves within reach, slave first; `first` are their first unknowns.
-    pub fn contacts(&self, sides: [Searched<'_>; 2], first: [u32; 2], order: Order) -> Vec<Contact> {
-        let reach = self.reach;
+    pub fn touches(
+        &self,
+        sides: [Searched<'_>; 2],
+        first: [u32; 2],
+        order: Order,
+        prediction: &[Predicted],
+    ) -> Touches {
+        let rubs = self.friction.is_some();
         let mut out = Vec::new();
+        let mut lost = 0;
+        let mut add =
+            |key: Key, feet: [&Foot; 2], points: [CurvePoint; 2], weight: f64, penalty: f64, blended: Blended| {
+                let kept = key.of(&self.history, |k| k.key, &sides).copied();
+                let facing = kept.as_ref().or_else(|| key.near(&self.history, &sides)).map(|k| k.normal);
+                let bends = [0, 1].map(|s| match (rubs, order) {
+                    (true, Order::Second) => {
+                        sides[s].curve.spin_bends(sides[s].configuration, points[s].element, points[s].xi)
+                    }
+                    _ => Vec::new(),
+                });
+                let wanted = if rubs { Wanted::GapAndSlip(bends.each_ref().map(Vec::as_slice)) } else { Wanted::Gap };
+                match measure(feet, first, facing, (wanted, order)) {
+                    Ok(pair) => {
+                        let share = blended.share(pair.parallel);
+                        let predicted = key.of(prediction, |p| p.key, &sides);
+                        out.push(self.touch(key, points, pair, (weight, penalty, share), (kept, predicted)));
+                    }
+                    Err(error) => lost += usize::from(error == NoPair::NoCoordinates),
+                }
+            };
+        let foot = |s: usize, p: &CurvePoint, coordinates: usize| {
+            sides[s].curve.foot(sides[s].configuration, p.element, p.xi, coordinates)
+        };
         if self.form != Form::Line || self.ends == Ends::Touch {
-            for near in crossings(sides[0], sides[1], self.between, reach) {
-                let is_crossing = near.points.iter().all(|p| p.coordinates == 1);
+            for near in crossings(sides[0], sides[1], self.between(), self.reach) {
+                let is_crossing = (0..2).all(|s| !Self::is_end(sides[s].curve, &near.points[s]));
                 if if is_crossing { self.form == Form::Line } else { self.ends == Ends::PassBy } {
                     continue;
                 }
-                let feet = [0, 1].map(|s| {
-                    let CurvePoint { element, xi, coordinates } = near.points[s];
-                    sides[s].body.foot(&sides[s].state.configuration, element, xi, coordinates)
-                });
-                let key = Key::Places(near.points.map(|p| p.element as f64 + p.xi));
-                let facing = self.kept(key).map(|k| k.normal);
-                let Ok(pair) = measure([&feet[0], &feet[1]], first, facing, order) else { continue };
-                let share = match self.form {
-                    Form::Blend(blend) if is_crossing => blend.point_share(pair.parallel),
-                    _ => (1.0, 0.0),
+                let feet = [0, 1].map(|s| foot(s, &near.points[s], near.points[s].coordinates));
+                let blended = match self.form {
+                    Form::Blend(blend) if is_crossing => Blended::Point(blend),
+                    _ => Blended::Not,
                 };
-                if share.0 > 0.0 {
-                    out.push(self.contact(key, near.points, pair, self.point_penalty, share));
+                if blended.share(parallel([&feet[0], &feet[1]])).0 > 0.0 {
+                    let places = near.points.map(|p| p.element as f64 + p.xi);
+                    let key = Key { kind: Kind::Crossing, places };
+                    add(key, [&feet[0], &feet[1]], near.points, 1.0, self.penalties.point, blended);
                 }
             }
         }
         if self.form == Form::Point {
-            return out;
+            return (out, lost);
         }
-        let sites = sides[0].body.sites(None, Sampling::GaussPoints).unwrap_or_default();
-        let Ok(master) = sides[1].body.master(None, sides[1].state) else { return out };
-        for (index, site) in sites.iter().enumerate() {
-            let slave = sides[0].body.foot(&sides[0].state.configuration, site.patch as usize, site.xi[0], 0);
-            let except = (self.between == Between::Itself).then_some(site);
-            let Some(Met::Foot(foot)) = master.nearest(&slave.jet.x, reach + slave.radius, except) else { continue };
-            // Beyond an end there is no curve to lie along.
-            if foot.coordinates == 0 {
-                continue;
-            }
-            let facing = self.kept(Key::Site(index)).map(|k| k.normal);
-            let Ok(pair) = measure([&slave, &foot], first, facing, order) else { continue };
-            let share = match self.form {
-                Form::Blend(blend) => {
-                    let (point, slope) = blend.point_share(pair.parallel);
-                    (1.0 - point, -slope)
-                }
-                _ => (1.0, 0.0),
-            };
-            if share.0 > 0.0 {
-                let at = |element: u32, xi: f64, coordinates: usize| CurvePoint {
-                    element: element as usize,
-                    xi,
-                    coordinates,
-                };
-                let points = [at(site.patch, site.xi[0], 0), at(foot.point.patch, foot.point.xi[0], 1)];
-                out.push(self.contact(Key::Site(index), points, pair, self.line_penalty * site.weight, share));
-            }
-        }
-        out
-    }
-
-    /// Adds forces and tangent, in the numbers of the system.
-    pub fn act(&self, sides: [Searched<'_>; 2], first: [u32; 2], order: Order, out: &mut Contribution) {
-        for contact in self.contacts(sides, first, order) {
-            contact.act(order, out);
-            if let Some(t) = self.tangential(&contact, sides, first, order) {
-                let share = contact.share;
-                for (u, f) in t.unknowns.iter().zip(&t.forces) {
-                    out.forces[*u as usize] += share.0 * f;
-                }
-                if order == Order::Second {
-                    let m = t.unknowns.len();
-                    let mut block: Vec<f64> = t.tangent.iter().map(|v| v * share.0).collect();
-                    for (k, f) in t.forces.iter().enumerate() {
-                        let d = &contact.pair.d_parallel;
-                        (0..d.len()).for_each(|l| block[k * m + l] += f * share.1 * d[l]);
+        let blended = match self.form {
+            Form::Blend(blend) => Blended::Line(blend),
+            _ => Blended::Not,
+        };
+        let [slave, master] = sides;
+        let boxes = boxes(master.curve, master.configuration);
+        let tree = Bvh::new(&boxes);
+        let reach = self.reach + slave.curve.radius() + master.curve.radius();
+        let half = if self.between() == Between::Itself { 0.5 } else { 1.0 };
+        let rule = gauss(slave.curve.contact_points());
+        for element in 0..slave.curve.elements() {
+            let length = slave.curve.arc(element, 1.0) - slave.curve.arc(element, 0.0);
+            for (number, (xi, share)) in rule.iter().enumerate() {
+                let own = CurvePoint { element, xi: *xi, coordinates: 0 };
+                let x = slave.curve.jet(slave.configuration, element, *xi).x;
+                let mut near = Vec::new();
+                tree.nearest(&x, reach * reach, |e| {
+                    near.extend(minima(master.curve, master.configuration, e, &x));
+                    reach * reach
+                });
+                near.sort_by(|p, q| (p.element as f64 + p.xi).total_cmp(&(q.element as f64 + q.xi)));
+                for m in near {
+                    let met = CurvePoint { element: m.element, xi: m.xi, coordinates: m.coordinates };
+                    let arc = |c: &CurvePoint| slave.curve.arc(c.element, c.xi);
+                    let is_next =
+                        self.between() == Between::Itself && !are_apart(slave.curve, arc(&own), arc(&met), m.distance);
+                    // Beyond an end there is no curve to lie along.
+                    if m.distance > reach || is_next || Self::is_end(master.curve, &met) {
+                        continue;
                     }
-                    out.add_block(&t.unknowns, &block);
+                    let feet = [foot(0, &own, 0), foot(1, &met, met.coordinates)];
+                    if blended.share(parallel([&feet[0], &feet[1]])).0 > 0.0 {
+                        let kind = Kind::Site(element * rule.len() + number);
+                        let places = [own, met].map(|p| p.element as f64 + p.xi);
+                        let weight = share * length * half;
+                        let penalty = self.penalties.line * weight;
+                        add(Key { kind, places }, [&feet[0], &feet[1]], [own, met], weight, penalty, blended);
+                    }
                 }
             }
         }
+        (out, lost)
     }
 
-    /// Friction of a contact, if there is any: none before points have touched at the end of an increment.
+    /// Friction of a contact, if there is any: none where nothing was near at the last state.
     pub fn tangential(
         &self,
-        contact: &Contact,
+        touch: &Touch,
         sides: [Searched<'_>; 2],
         first: [u32; 2],
         order: Order,
     ) -> Option<Tangential> {
-        let friction = self.friction.as_ref()?;
-        let stuck = self.kept(contact.key)?.stuck?;
-        if contact.force == 0.0 {
+        let law = self.friction.as_deref()?;
+        let kept = touch.kept?;
+        let stuck = kept.stuck?;
+        if touch.force == 0.0 {
             return None;
         }
         let feet = [0, 1].map(|s| {
             let point = stuck.points[s];
-            sides[s].body.foot(&sides[s].state.configuration, point.patch as usize, point.xi[0], 1)
+            sides[s].curve.foot(sides[s].configuration, point.patch as usize, point.xi[0], 1)
         });
         let slip = elastic_slip(&stuck, [&feet[0], &feet[1]], first);
-        let d_pressing: Vec<f64> = contact.pair.d_gap.iter().map(|d| -contact.penalty * d).collect();
-        Some(tangential(&contact.pair, &slip, (-contact.force, &d_pressing), friction, order))
-    }
-
-    /// Ends an increment: points that touch are kept as those from which slip counts, and follow where they slip.
-    pub fn settle(&mut self, sides: [Searched<'_>; 2], first: [u32; 2]) {
-        let Some(friction) = self.friction.clone() else { return };
-        let contacts = self.contacts(sides, first, Order::First);
-        let kept = (contacts.iter())
-            .map(|c| {
-                let stuck = (c.force < 0.0).then(|| match self.tangential(c, sides, first, Order::First) {
-                    None => c.pair.stuck,
-                    Some(t) if t.status == Status::Slip => {
-                        let CurvePoint { element, xi, .. } = c.points[1];
-                        let master = sides[1].body.foot(&sides[1].state.configuration, element, xi, 1);
-                        followed(&c.pair, &master, t.components, friction.penalty)
-                    }
-                    Some(_) => self.kept(c.key).and_then(|k| k.stuck).unwrap_or(c.pair.stuck),
-                });
-                Kept { stuck, ..self.kept(c.key).copied().unwrap_or(kept_of(c)) }
-            })
-            .zip(&contacts)
-            .map(|(kept, c)| Kept { key: c.key, normal: c.pair.normal, ..kept })
-            .collect();
-        self.kept = kept;
-    }
-
-    /// Starts to follow the contacts of a state: from which side curves come.
-    pub fn follow(&mut self, sides: [Searched<'_>; 2], first: [u32; 2]) {
-        let step = vec![0.0; first[1] as usize + sides[1].body.unknowns()];
-        self.predict(sides, first, &step);
-    }
-
-    /// Keeps what a step of all unknowns predicts, from the state before it.
-    pub fn predict(&mut self, sides: [Searched<'_>; 2], first: [u32; 2], step: &[f64]) {
-        let kept = (self.contacts(sides, first, Order::First).into_iter())
-            .map(|c| {
-                let multiplier = self.kept(c.key).map_or(0.0, |k| k.multiplier);
-                let change: f64 = c.pair.unknowns.iter().zip(&c.pair.d_gap).map(|(u, d)| step[*u as usize] * d).sum();
-                let predicted = (multiplier + c.penalty * (c.pair.gap + change)).min(0.0);
-                // A new contact has no force that could turn.
-                let is_new = c.force == 0.0 && c.geometric == 0.0;
-                let predicted = if is_new { 0.0 } else { predicted };
-                let stuck = self.kept(c.key).and_then(|k| k.stuck);
-                Kept { key: c.key, predicted, multiplier, normal: c.pair.normal, stuck }
-            })
-            .collect();
-        self.kept = kept;
-    }
-
-    /// Takes the forces found as multipliers (Uzawa); the largest penetration before.
-    pub fn augment(&mut self, sides: [Searched<'_>; 2], first: [u32; 2]) -> f64 {
-        let contacts = self.contacts(sides, first, Order::First);
-        let deepest = contacts.iter().filter(|c| c.force < 0.0).fold(0.0f64, |m, c| m.max(c.pair.gap.abs()));
-        let stuck = |c: &Contact| self.kept(c.key).and_then(|k| k.stuck);
-        self.kept = contacts.iter().map(|c| Kept { stuck: stuck(c), ..kept_of(c) }).collect();
-        deepest
+        let d_pressing: Vec<f64> = touch.pair.d_gap.iter().map(|d| -touch.penalty * d).collect();
+        let multiplier = match self.enforcement {
+            Enforcement::Penalty { .. } => [0.0; 2],
+            _ => kept.traction,
+        };
+        let friction = CurveFriction { law, multiplier, penalty: touch.penalty };
+        // As much of the traction turns with the slip as of the force with the gap.
+        let turning = (touch.geometric / touch.force).clamp(0.0, 1.0);
+        Some(tangential(&touch.pair, &slip, (-touch.force, &d_pressing), friction, turning, order))
     }
 }
 
-fn kept_of(c: &Contact) -> Kept {
-    Kept { key: c.key, predicted: c.force, multiplier: c.force, normal: c.pair.normal, stuck: None }
+/// How a force depends on the angle of the curves.
+#[derive(Clone, Copy)]
+enum Blended {
+    Not,
+    Point(Blend),
+    Line(Blend),
 }
 
-impl Contact {
+impl Blended {
+    /// Share and derivative for the squared cosine of the angle.
+    fn share(self, parallel: f64) -> (f64, f64) {
+        match self {
+            Blended::Not => (1.0, 0.0),
+            Blended::Point(blend) => blend.point_share(parallel),
+            Blended::Line(blend) => {
+                let (point, slope) = blend.point_share(parallel);
+                (1.0 - point, -slope)
+            }
+        }
+    }
+}
+
+impl Touch {
     /// Force on the slave along the normal, its share included.
     pub fn pressing(&self) -> f64 {
         -self.force * self.share.0
-    }
-
-    fn act(&self, order: Order, out: &mut Contribution) {
-        let force = if order == Order::Second && self.geometric < 0.0 { self.trial } else { self.force };
-        if force == 0.0 {
-            return;
-        }
-        let (pair, (share, slope)) = (&self.pair, self.share);
-        for (u, d) in pair.unknowns.iter().zip(&pair.d_gap) {
-            out.forces[*u as usize] += share * force * d;
-        }
-        if order == Order::First {
-            return;
-        }
-        let n = pair.unknowns.len();
-        let mut block = vec![0.0; n * n];
-        for k in 0..n {
-            for l in 0..n {
-                block[k * n + l] = share
-                    * (self.penalty * pair.d_gap[k] * pair.d_gap[l] + self.geometric * pair.d2_gap[k * n + l])
-                    + force * pair.d_gap[k] * slope * pair.d_parallel[l];
-            }
-        }
-        out.add_block(&pair.unknowns, &block);
     }
 }

@@ -1,21 +1,22 @@
 //! Friction between curves: along the axis of the slave and around it.
 //!
-//! The slip since material points touched, `e`, has the components `t_α = ε_T E_α·e` along `E_1 = τ` and `E_2 = n × τ`; a law
-//! returns them to the admissible `T_α`. Forces are `T·S_k` with the variations `S_k` of the slip, and their derivative
-//! `S_k·dT + T·dS_k`, with `dT = Σ dT_α E_α + T_α dE_α` and `dT_α = ∂T_α/∂t_β ε_T (dE_β·e + E_β·de) + ∂T_α/∂p dp`. Points that
+//! The slip since material points touched, `e`, has the trial `t_α = λ_α + ε E_α·e` along `E_1 = τ` and `E_2 = n × τ`; a law
+//! returns it to the admissible `T_α`. Forces are `T·S_k` with the variations `S_k` of the slip, and their derivative
+//! `S_k·dT + T·dS_k`, with `dT = Σ dT_α E_α + T_α dE_α` and `dT_α = ∂T_α/∂t_β ε (dE_β·e + E_β·de) + ∂T_α/∂p dp`. Points that
 //! touched are kept as material points, of both curves and of both sections: the slip does not depend on motions of both
-//! together, and passes from element to element. After slip the point on the master follows, so that `ε_T e = T`.
+//! together, and passes from element to element. After slip the point on the master follows, so that `ε e = T`.
 
 use super::measure::{CurvePair, Stuck};
+use nalgebra::SMatrix;
 use signorini_contact::law::{Law, Status};
-use signorini_geometry::{Matrix, Vector};
+use signorini_geometry::Vector;
 use signorini_mechanics::body::{Foot, Order};
-use std::sync::Arc;
 
-/// A law with the force per slip that stands for sticking.
-#[derive(Clone, Debug)]
-pub struct CurveFriction {
-    pub law: Arc<dyn Law>,
+/// A law, the multiplier along both axes, and the force per slip that stands for sticking.
+#[derive(Clone, Copy, Debug)]
+pub struct CurveFriction<'a> {
+    pub law: &'a dyn Law,
+    pub multiplier: [f64; 2],
     pub penalty: f64,
 }
 
@@ -33,20 +34,24 @@ pub struct Tangential {
     pub tangent: Vec<f64>,
     /// Along the axis of the slave and around it; conjugate to the slip of the slave, so that what acts on it is opposite.
     pub components: [f64; 2],
+    /// The part of the slip since points touched that cannot come back.
+    pub slipped: [f64; 2],
     pub status: Status,
 }
 
-/// Friction under a pressing force, whose variations are those of the unknowns of the pair.
+/// Friction under a pressing force, whose variations are those of the unknowns of the pair; `turning` is the part of the
+/// traction that counts with the second variation of the slip, in the end all of it.
 pub fn tangential(
     pair: &CurvePair,
     slip: &ElasticSlip,
     (pressing, d_pressing): (f64, &[f64]),
-    friction: &CurveFriction,
+    friction: CurveFriction<'_>,
+    turning: f64,
     order: Order,
 ) -> Tangential {
     let (e, slip_unknowns, d_e) = slip;
     let axes = [pair.axial, pair.circumferential()];
-    let trial = axes.map(|a| friction.penalty * a.dot(e));
+    let trial: [f64; 2] = std::array::from_fn(|a| friction.multiplier[a] + friction.penalty * axes[a].dot(e));
     let projected = friction.law.project([pressing, trial[0], trial[1]]);
     let components = [projected.traction[1], projected.traction[2]];
     let traction = axes[0] * components[0] + axes[1] * components[1];
@@ -75,31 +80,38 @@ pub fn tangential(
                 })
             })
             .collect();
-        let second = pair.slip_hessian(&traction);
         for k in 0..n {
             for l in 0..m {
-                let own = if l < n { second[k * n + l] } else { 0.0 };
+                let own = if l < n { turning * pair.slip_hessian(&traction, k, l) } else { 0.0 };
                 tangent[k * m + l] = pair.slip[k].dot(&d_traction[l]) + own;
             }
         }
     }
-    Tangential { unknowns, forces, tangent, components, status: projected.status }
+    let slipped = std::array::from_fn(|a| (trial[a] - components[a]) / friction.penalty);
+    Tangential { unknowns, forces, tangent, components, slipped, status: projected.status }
 }
 
-/// The points that count as having touched after slip: of the slave where it touches now, of the master so far back that
-/// the slip is that of the traction.
-pub fn followed(pair: &CurvePair, master: &Foot, components: [f64; 2], penalty: f64) -> Stuck {
+/// Singular values of two tangents, relative to the largest, below which they are one direction.
+const ONE_DIRECTION: f64 = 1e-3;
+
+/// The points that count as having touched after slip, so far apart that the slip is that of the traction: along the
+/// master and about the axis of a section that turns, and along both curves where none does. `feet` are those that touch.
+pub fn followed(pair: &CurvePair, feet: [&Foot; 2], components: [f64; 2], penalty: f64) -> Stuck {
     let back = (pair.axial * components[0] + pair.circumferential() * components[1]) / penalty;
     let mut stuck = pair.stuck;
-    let tangent = master.jet.u / master.jet.u.norm();
-    stuck.points[1].xi[0] -= back.dot(&tangent) / master.jet.u.norm();
-    if master.radius > 0.0 {
-        // Around the axis of the master: a turn of its normal.
-        let around = tangent.cross(&pair.normal);
-        let angle = -back.dot(&around) / master.radius;
-        let turned = pair.normal * angle.cos() + around * angle.sin();
-        let frame: Matrix<3> = master.frame;
-        stuck.directions[1] = frame.transpose() * turned;
-    }
+    let lengths = feet.map(|f| f.jet.u.norm());
+    let tangents = [0, 1].map(|s| feet[s].jet.u / lengths[s]);
+    let Some(side) = [1, 0].into_iter().find(|s| !feet[*s].spin.is_empty() && feet[*s].radius > 0.0) else {
+        let both = SMatrix::<f64, 3, 2>::from_columns(&[tangents[0], -tangents[1]]);
+        let moved = both.svd(true, true).solve(&back, ONE_DIRECTION).unwrap_or_default();
+        (0..2).for_each(|s| stuck.points[s].xi[0] += moved[s] / lengths[s]);
+        return stuck;
+    };
+    stuck.points[1].xi[0] -= back.dot(&tangents[1]) / lengths[1];
+    // A turn of the direction in which the section touches.
+    let around = tangents[1].cross(&pair.normal);
+    let (outward, sign) = if side == 1 { (pair.normal, -1.0) } else { (-pair.normal, 1.0) };
+    let angle = sign * back.dot(&around) / feet[side].radius;
+    stuck.directions[side] = feet[side].frame.transpose() * (outward * angle.cos() + around * angle.sin());
     stuck
 }

@@ -11,7 +11,8 @@
 //! | `S = δD - (R_A θ_A + R_B θ_B) × n - g δn` | slip of the surface of A along that of B, axial and circumferential |
 //! | `e = P [x_A - R_A m_A - x_B - R_B m_B]` | slip since material points touched, of both curves and angles of both sections |
 //!
-//! A rigid motion of both is no slip. The second variation of the slip leaves out `g δ²n`, which vanishes with the gap.
+//! A rigid motion of both is no slip. A curve that does not know how its sections turn has one that turns with the normal:
+//! its `R δn` takes the place of `R θ × n`, and slip about its axis is not counted. Second variations are exact for any gap.
 
 use nalgebra::SVector;
 use signorini_geometry::Vector;
@@ -48,7 +49,7 @@ pub struct CurvePair {
     pub d_gap: Vec<f64>,
     /// Row by row; empty for [`Order::First`].
     pub d2_gap: Vec<f64>,
-    /// Squared cosine of the angle between the tangents, and its variation.
+    /// How far the distance is from a valley, as [`parallel`], and its variation.
     pub parallel: f64,
     pub d_parallel: Vec<f64>,
     /// Unit tangent of the slave across the normal: the axial direction of slip.
@@ -57,11 +58,17 @@ pub struct CurvePair {
     /// Variations of the slip.
     pub slip: Vec<Vector<3>>,
     pub d_normal: Vec<Vector<3>>,
-    /// Variations of the coordinates of both points: zero for a fixed one.
-    pub d_xi: Vec<[f64; 2]>,
-    slopes: Vec<[Vector<3>; 2]>,
-    levers: Vec<Vector<3>>,
+    /// Second variations of the slip, row by row; empty where they were not asked for.
+    d_slip: Vec<Vector<3>>,
     pub stuck: Stuck,
+}
+
+/// What is measured.
+#[derive(Clone, Copy, Debug)]
+pub enum Wanted<'a> {
+    Gap,
+    /// With the second variations of the spins of both sections, as `Curve::spin_bends`.
+    GapAndSlip([&'a [Vector<3>]; 2]),
 }
 
 /// One unknown at fixed coordinates.
@@ -71,8 +78,10 @@ struct Column {
     value: Vector<3>,
     slope: Vector<3>,
     second: Vector<3>,
-    /// Spin of the section times its radius.
+    /// Which spin of the section it is, and that spin times the radius with its slope along the curve.
+    spin: Option<usize>,
     lever: Vector<3>,
+    lever_slope: Vector<3>,
 }
 
 fn columns(feet: [&Foot; 2], first: [u32; 2]) -> Vec<Column> {
@@ -86,15 +95,19 @@ fn columns(feet: [&Foot; 2], first: [u32; 2]) -> Vec<Column> {
             value: f.value,
             slope: f.slopes[0],
             second: f.second[0],
+            spin: None,
             lever: zero,
+            lever_slope: zero,
         }));
-        out.extend(foot.spin.iter().map(|f| Column {
+        out.extend(foot.spin.iter().enumerate().map(|(k, f)| Column {
             unknown: first[side] + f.unknown,
             side,
             value: zero,
             slope: zero,
             second: zero,
+            spin: Some(k),
             lever: f.value * foot.radius,
+            lever_slope: f.slopes[0] * foot.radius,
         }));
     }
     out
@@ -102,6 +115,20 @@ fn columns(feet: [&Foot; 2], first: [u32; 2]) -> Vec<Column> {
 
 fn curve_jet(foot: &Foot) -> CurveJet {
     CurveJet { x: foot.jet.x, d1: foot.jet.u, d2: foot.jet.uu, d3: foot.jet.uuu }
+}
+
+/// `A_11 = |c_1'|² + D·c_1''`, `A_22 = |c_2'|² - D·c_2''` and `c_1'·c_2'`: the second derivatives of half the squared distance.
+fn hessian(jets: &[CurveJet; 2], d: &Vector<3>) -> [f64; 3] {
+    let [p, q] = jets;
+    [p.d1.norm_squared() + d.dot(&p.d2), q.d1.norm_squared() - d.dot(&q.d2), p.d1.dot(&q.d1)]
+}
+
+/// `(c_1'·c_2')²/(A_11 A_22)` of the second derivatives of the distance: between straight lines the squared cosine of their
+/// angle, and 1 along a valley of the distance, such as that of a double helix, where no point is nearer than its neighbours.
+/// Infinite beyond a centre of curvature.
+pub fn parallel(feet: [&Foot; 2]) -> f64 {
+    let [a_11, a_22, a_12] = hessian(&feet.map(curve_jet), &(feet[0].jet.x - feet[1].jet.x));
+    if a_11 > 0.0 && a_22 > 0.0 { a_12 * a_12 / (a_11 * a_22) } else { f64::INFINITY }
 }
 
 /// The measures of two points of curves; of a foot with one coordinate the distance must be stationary in it. `first` are
@@ -114,12 +141,12 @@ pub fn measure(
     feet: [&Foot; 2],
     first: [u32; 2],
     facing: Option<Vector<3>>,
-    order: Order,
+    wanted: (Wanted<'_>, Order),
 ) -> Result<CurvePair, NoPair> {
     match feet[0].coordinates + feet[1].coordinates {
-        0 => with::<0>(feet, first, facing, order),
-        1 => with::<1>(feet, first, facing, order),
-        _ => with::<2>(feet, first, facing, order),
+        0 => with::<0>(feet, first, facing, wanted),
+        1 => with::<1>(feet, first, facing, wanted),
+        _ => with::<2>(feet, first, facing, wanted),
     }
 }
 
@@ -127,7 +154,7 @@ fn with<const N: usize>(
     feet: [&Foot; 2],
     first: [u32; 2],
     facing: Option<Vector<3>>,
-    order: Order,
+    (wanted, order): (Wanted<'_>, Order),
 ) -> Result<CurvePair, NoPair> {
     let [a, b] = feet;
     let jets = [curve_jet(a), curve_jet(b)];
@@ -167,20 +194,27 @@ fn with<const N: usize>(
     let d1 = jets.map(|j| j.d1);
     let lengths = d1.map(|t| t.norm());
     let units = [d1[0] / lengths[0], d1[1] / lengths[1]];
-    let cosine = units[0].dot(&units[1]);
     let d_unit = |k: usize, side: usize| {
         let own = if columns[k].side == side { columns[k].slope } else { zero };
         let change = own + jets[side].d2 * d_xi[k][side];
         (change - units[side] * units[side].dot(&change)) / lengths[side]
     };
-    let d_parallel =
-        (0..n).map(|k| 2.0 * cosine * (d_unit(k, 0).dot(&units[1]) + units[0].dot(&d_unit(k, 1)))).collect();
-
     let gap = distance - a.radius - b.radius;
-    let d_normal: Vec<Vector<3>> = (0..n)
+    // Total variation of D.
+    let moved: Vec<Vector<3>> = (0..n).map(|k| variations[k].d + d1[0] * d_xi[k][0] - d1[1] * d_xi[k][1]).collect();
+    let d_normal: Vec<Vector<3>> = moved.iter().map(|m| (m - normal * normal.dot(m)) / distance).collect();
+    let [a_11, a_22, a_12] = hessian(&jets, &d);
+    let d_parallel = (0..n)
         .map(|k| {
-            let moved = variations[k].d + d1[0] * d_xi[k][0] - d1[1] * d_xi[k][1];
-            (moved - normal * normal.dot(&moved)) / distance
+            let c = &columns[k];
+            let own = |side: usize, v: Vector<3>| if c.side == side { v } else { zero };
+            let tangent = [0, 1].map(|s| own(s, c.slope) + jets[s].d2 * d_xi[k][s]);
+            let bend = [0, 1].map(|s| own(s, c.second) + jets[s].d3 * d_xi[k][s]);
+            let d_own =
+                [0, 1].map(|s| 2.0 * d1[s].dot(&tangent[s]) + signs[s] * (moved[k].dot(&jets[s].d2) + d.dot(&bend[s])));
+            let d_both = tangent[0].dot(&d1[1]) + d1[0].dot(&tangent[1]);
+            let square = a_12 * a_12 / (a_11 * a_22);
+            2.0 * a_12 * d_both / (a_11 * a_22) - square * (d_own[0] / a_11 + d_own[1] / a_22)
         })
         .collect();
     // The tangent across the normal; with coordinates both are orthogonal, but that of a point of Gauss may lean.
@@ -195,21 +229,58 @@ fn with<const N: usize>(
             if length > 0.0 { (change - axial * axial.dot(&change)) / length } else { zero }
         })
         .collect();
+    // What turns with the normal: the gap, and sections that do not turn by themselves.
+    let hinge = gap + feet.iter().filter(|f| f.spin.is_empty()).map(|f| f.radius).sum::<f64>();
+    let d_gap: Vec<f64> = variations.iter().map(|v| measures.gap_variation(v)).collect();
+    let mut d_slip = Vec::new();
+    if let (Wanted::GapAndSlip(bends), Order::Second) = (wanted, order) {
+        // Of D, with its coordinates.
+        let bent = |k: usize, l: usize| {
+            let h = measures.coordinate_second_variation(&variations[k], &variations[l]);
+            let mut sum = zero;
+            for side in 0..2 {
+                let Some(own) = of_side(side) else { continue };
+                let (x, y) = (d_xi[k][side], d_xi[l][side]);
+                sum += variations[k].d_a[own] * y + variations[l].d_a[own] * x;
+                sum += (jets[side].d2 * (x * y) + d1[side] * h[own]) * signs[side];
+            }
+            sum
+        };
+        d_slip = vec![zero; n * n];
+        for k in 0..n {
+            for l in 0..n {
+                let along = (0..2).fold(zero, |sum, side| {
+                    of_side(side).map_or(sum, |own| sum + variations[k].d_a[own] * d_xi[l][side])
+                });
+                let turned = (bent(k, l) - d_normal[k] * d_gap[l] - d_normal[l] * d_gap[k]) / distance;
+                let (p, q) = (&columns[k], &columns[l]);
+                let spun = match (p.spin, q.spin) {
+                    (Some(i), Some(j)) if p.side == q.side => {
+                        let foot = feet[p.side];
+                        // A rigid section varies by half the product of two spins.
+                        let rigid = || foot.spin[j].value.cross(&foot.spin[i].value) * 0.5;
+                        bends[p.side].get(i * foot.spin.len() + j).copied().unwrap_or_else(rigid) * foot.radius
+                    }
+                    _ => zero,
+                } + p.lever_slope * d_xi[l][p.side];
+                d_slip[k * n + l] =
+                    along - spun.cross(&normal) - p.lever.cross(&d_normal[l]) - d_normal[k] * d_gap[l] - turned * hinge;
+            }
+        }
+    }
     Ok(CurvePair {
         gap,
         normal,
         unknowns: columns.iter().map(|c| c.unknown).collect(),
-        d_gap: variations.iter().map(|v| measures.gap_variation(v)).collect(),
+        d_gap,
         d2_gap: if order == Order::Second { measures.gap_hessian(&variations) } else { Vec::new() },
-        parallel: cosine * cosine,
+        parallel: parallel([a, b]),
         d_parallel,
         axial,
         d_axial,
-        slip: (0..n).map(|k| variations[k].d - columns[k].lever.cross(&normal) - d_normal[k] * gap).collect(),
+        slip: (0..n).map(|k| variations[k].d - columns[k].lever.cross(&normal) - d_normal[k] * hinge).collect(),
         d_normal,
-        d_xi,
-        slopes: columns.iter().map(|c| [0, 1].map(|s| if c.side == s { c.slope * signs[s] } else { zero })).collect(),
-        levers: columns.iter().map(|c| c.lever).collect(),
+        d_slip,
         stuck: Stuck {
             points: [a.point, b.point],
             directions: [a.frame.transpose() * -normal, b.frame.transpose() * normal],
@@ -218,18 +289,9 @@ fn with<const N: usize>(
 }
 
 impl CurvePair {
-    /// `T · Δδ slip`, row by row, for a traction `T` on the slave: it is not symmetric.
-    pub fn slip_hessian(&self, traction: &Vector<3>) -> Vec<f64> {
-        let n = self.unknowns.len();
-        let mut out = vec![0.0; n * n];
-        for k in 0..n {
-            for l in 0..n {
-                let along = self.slopes[k][0] * self.d_xi[l][0] + self.slopes[k][1] * self.d_xi[l][1];
-                let change = along - self.levers[k].cross(&self.d_normal[l]) - self.d_normal[k] * self.d_gap[l];
-                out[k * n + l] = traction.dot(&change);
-            }
-        }
-        out
+    /// `T · Δδ slip` of two unknowns, for a traction `T` across the normal: it is not symmetric.
+    pub fn slip_hessian(&self, traction: &Vector<3>, k: usize, l: usize) -> f64 {
+        traction.dot(&self.d_slip[k * self.unknowns.len() + l])
     }
 
     /// The circumferential direction of slip, `n × τ`.
@@ -240,7 +302,12 @@ impl CurvePair {
 
 /// Slip since material points touched: its vector, not yet projected, and its variations in the unknowns of both bodies.
 pub fn elastic_slip(stuck: &Stuck, feet: [&Foot; 2], first: [u32; 2]) -> (Vector<3>, Vec<u32>, Vec<Vector<3>>) {
-    let arms: [Vector<3>; 2] = [0, 1].map(|s| feet[s].frame * stuck.directions[s] * feet[s].radius);
+    let zero = Vector::<3>::zeros();
+    // Sections that turn with the normal have arms along it, which are no slip.
+    let arms: [Vector<3>; 2] = [0, 1].map(|s| match feet[s].spin.is_empty() {
+        true => zero,
+        false => feet[s].frame * stuck.directions[s] * feet[s].radius,
+    });
     let e = feet[0].jet.x + arms[0] - feet[1].jet.x - arms[1];
     let columns = columns(feet, first);
     let signs = [1.0, -1.0];
@@ -248,8 +315,7 @@ pub fn elastic_slip(stuck: &Stuck, feet: [&Foot; 2], first: [u32; 2]) -> (Vector
     let d_e = columns
         .iter()
         .map(|c| {
-            let turn =
-                if radius(c.side) > 0.0 { c.lever.cross(&arms[c.side]) / radius(c.side) } else { Vector::<3>::zeros() };
+            let turn = if radius(c.side) > 0.0 { c.lever.cross(&arms[c.side]) / radius(c.side) } else { zero };
             (c.value + turn) * signs[c.side]
         })
         .collect();

@@ -4,10 +4,15 @@
 //! - [`blend`]: from point contact of crossing curves to line contact of nearly parallel ones.
 //! - [`search`]: local minima of the distance of two curves, or of a curve to itself.
 //! - [`friction`]: friction along the curves and around their sections.
-//! - [`contact`]: forces and tangent by penalty or augmented Lagrangian.
+//! - [`contact`]: where curves touch and with which forces; [`interaction`]: as a part of a system.
+//! - [`history`]: what is kept of contacts.
 
 pub mod blend;
 pub mod contact;
 pub mod friction;
+pub mod history;
+pub mod interaction;
 pub mod measure;
 pub mod search;
+
+pub use contact::{CurveContact, CurveContactError};

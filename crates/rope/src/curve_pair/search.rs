@@ -3,22 +3,22 @@
 //! Boxes of elements that are near each other make candidates. Within a pair of elements the samples whose distance is a
 //! local minimum start a search with Newton's method on `½ |x_A - x_B|²`, with the metric in place of the Hessian where that
 //! is not positive definite, damped, and with ends as bounds. It may run on into neighbouring elements. Curves that run
-//! along each other have no isolated minimum and give none: line contact is for them. Ends are minima of their own where
-//! the distance falls towards them: each is projected onto the other curve.
+//! along each other have no isolated minimum and give none: line contact is for them. Ends, and the kinks of straight
+//! elements, are minima of their own where the distance falls towards them: each is projected onto the other curve.
 
-use crate::centreline::{Centreline, Closure};
-use crate::curve_body::{CurveBody, are_apart, boxes, minima, samples};
+use crate::curve_body::{are_apart, boxes, minima, samples};
 use signorini_geometry::Vector;
 use signorini_geometry::bvh::Bvh;
 use signorini_geometry::shape::CurveJet;
-use signorini_mechanics::body::BodyState;
+use signorini_mechanics::Curve;
+use signorini_mechanics::curve::{Closure, Continuity};
 
 /// A point of a curve: free to move along it, or held at an end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurvePoint {
     pub element: usize,
     pub xi: f64,
-    /// 1 along the curve, 0 at an end.
+    /// 1 along the curve, 0 at an end or a kink.
     pub coordinates: usize,
 }
 
@@ -29,11 +29,11 @@ pub struct Nearby {
     pub distance: f64,
 }
 
-/// A curve with positions: what is searched.
+/// A curve with its configuration: what is searched.
 #[derive(Clone, Copy)]
 pub struct Searched<'a> {
-    pub body: &'a dyn CurveBody,
-    pub state: &'a BodyState,
+    pub curve: &'a dyn Curve,
+    pub configuration: &'a [f64],
 }
 
 /// Whether two curves are searched, or one against itself.
@@ -50,18 +50,65 @@ const DAMPING: f64 = 1e-3;
 /// Curves closer to parallel than this sine make no crossing: foot points would move a thousand times as far as curves.
 const PARALLEL: f64 = 1e-3;
 
-/// A position along a whole curve: number of the element plus the parameter in it.
-fn jet(searched: &Searched<'_>, u: f64) -> CurveJet {
-    let line = searched.body.centreline();
-    let (element, xi) = split(line, u);
-    line.jet(&searched.state.configuration, element, xi)
+impl Searched<'_> {
+    /// At a position along the whole curve: number of the element plus the parameter in it.
+    pub fn jet(&self, u: f64) -> CurveJet {
+        let (element, xi) = self.split(u);
+        self.curve.jet(self.configuration, element, xi)
+    }
+
+    fn split(&self, u: f64) -> (usize, f64) {
+        let n = self.curve.elements();
+        let u = if self.curve.closure() == Closure::Closed { u.rem_euclid(n as f64) } else { u };
+        let element = (u.floor().max(0.0) as usize).min(n - 1);
+        (element, u - element as f64)
+    }
+
+    fn point(&self, u: f64) -> CurvePoint {
+        let (element, xi) = self.split(u);
+        CurvePoint { element, xi, coordinates: 1 }
+    }
+
+    /// How far apart two positions are, in elements.
+    pub fn apart(&self, u: f64, v: f64) -> f64 {
+        let (n, apart) = (self.curve.elements() as f64, (u - v).abs());
+        if self.curve.closure() == Closure::Closed { apart.min((n - apart).abs()) } else { apart }
+    }
+
+    /// Ends and kinks.
+    fn corners(&self) -> Vec<Corner> {
+        let n = self.curve.elements();
+        let is_closed = self.curve.closure() == Closure::Closed;
+        let tangent = |element: usize, xi: f64| self.curve.jet(self.configuration, element, xi).d1;
+        let mut out = Vec::new();
+        if !is_closed {
+            out.push(Corner { u: 0.0, outward: vec![-tangent(0, 0.0)] });
+        }
+        if self.curve.continuity() == Continuity::C0 {
+            let kinks = if is_closed { 0..n } else { 1..n };
+            out.extend(kinks.map(|e| {
+                let outward = vec![tangent((e + n - 1) % n, 1.0), -tangent(e, 0.0)];
+                Corner { u: e as f64, outward }
+            }));
+        }
+        if !is_closed {
+            out.push(Corner { u: n as f64, outward: vec![tangent(n - 1, 1.0)] });
+        }
+        out
+    }
 }
 
-fn split(line: &Centreline, u: f64) -> (usize, f64) {
-    let n = line.elements();
-    let u = if line.closure == Closure::Closed { u.rem_euclid(n as f64) } else { u };
-    let element = (u.floor().max(0.0) as usize).min(n - 1);
-    (element, u - element as f64)
+/// A point at which a curve ends or has a kink, and the directions in which its sides would go on.
+struct Corner {
+    u: f64,
+    outward: Vec<Vector<3>>,
+}
+
+impl Corner {
+    /// Whether the distance `d`, from the other curve to this point, falls towards the corner along all sides.
+    fn is_nearest(&self, d: &Vector<3>) -> bool {
+        self.outward.iter().all(|t| d.dot(t) <= 0.0)
+    }
 }
 
 /// A minimum with its positions along both curves.
@@ -78,27 +125,20 @@ struct Found<'a> {
 impl Found<'_> {
     /// Adds a minimum, unless it is too far, known, or one of a curve with itself next to itself.
     fn add(&mut self, u: [f64; 2], points: [CurvePoint; 2]) {
-        let lines = self.sides.map(|s| s.body.centreline());
-        let distance = (jet(&self.sides[0], u[0]).x - jet(&self.sides[1], u[1]).x).norm();
+        let distance = (self.sides[0].jet(u[0]).x - self.sides[1].jet(u[1]).x).norm();
         if distance > self.limit {
             return;
         }
         if self.between == Between::Itself {
-            let arc = |side: usize| lines[side].arc(points[side].element, points[side].xi);
+            let curve = self.sides[0].curve;
+            let arc = |side: usize| curve.arc(points[side].element, points[side].xi);
             // Each pair of points once, the first one along the curve first.
-            if u[0] >= u[1] || !are_apart(lines[0], self.sides[0].body.radius(), arc(0), arc(1), distance) {
+            if u[0] >= u[1] || !are_apart(curve, arc(0), arc(1), distance) {
                 return;
             }
         }
         // The same minimum from several starts, or from both sides of a seam.
-        let same = |v: &[f64; 2]| {
-            (0..2).all(|s| {
-                let n = lines[s].elements() as f64;
-                let apart = (v[s] - u[s]).abs();
-                let apart = if lines[s].closure == Closure::Closed { apart.min(n - apart) } else { apart };
-                apart < SAME
-            })
-        };
+        let same = |v: &[f64; 2]| (0..2).all(|s| self.sides[s].apart(v[s], u[s]) < SAME);
         if !self.places.iter().any(|p| same(&p.0)) {
             self.places.push((u, Nearby { points, distance }));
         }
@@ -111,8 +151,8 @@ const SAME: f64 = 1e-5;
 /// All local minima closer than `reach`, surface to surface, in the order of their places.
 pub fn crossings(a: Searched<'_>, b: Searched<'_>, between: Between, reach: f64) -> Vec<Nearby> {
     let sides = [a, b];
-    let limit = reach + a.body.radius() + b.body.radius();
-    let boxes = sides.map(|s| boxes(s.body, s.state));
+    let limit = reach + a.curve.radius() + b.curve.radius();
+    let boxes = sides.map(|s| boxes(s.curve, s.configuration));
     let trees = [Bvh::new(&boxes[0]), Bvh::new(&boxes[1])];
     let mut found = Found { sides, between, limit, places: Vec::new() };
     for (i, j) in trees[0].pairs_within(&trees[1], (&boxes[0], &boxes[1]), limit) {
@@ -121,34 +161,26 @@ pub fn crossings(a: Searched<'_>, b: Searched<'_>, between: Between, reach: f64)
         }
         for start in starts([&a, &b], [i, j]) {
             if let Some(u) = descend([&a, &b], start) {
-                let points = [0, 1].map(|side| {
-                    let (element, xi) = split(sides[side].body.centreline(), u[side]);
-                    CurvePoint { element, xi, coordinates: 1 }
-                });
-                found.add(u, points);
+                found.add(u, [a.point(u[0]), b.point(u[1])]);
             }
         }
     }
-    let own_ends = sides.map(|s| ends(&s));
+    let corners = sides.map(|s| s.corners());
     for side in 0..2 {
         let other = 1 - side;
-        for end in &own_ends[side] {
-            let x = jet(&sides[side], end.u).x;
-            let line = sides[other].body.centreline();
+        for corner in &corners[side] {
+            let x = sides[side].jet(corner.u).x;
             trees[other].nearest(&x, limit * limit, |element| {
-                for m in minima(line, &sides[other].state.configuration, element, &x) {
+                for m in minima(sides[other].curve, sides[other].configuration, element, &x) {
                     let u = m.element as f64 + m.xi;
-                    let d = x - jet(&sides[other], u).x;
-                    // The distance falls towards the end, and at the other's end towards that.
-                    let beyond = |outward: Vector<3>, d: Vector<3>| d.dot(&outward) <= 0.0;
-                    let is_least = beyond(end.outward, d)
+                    let d = x - sides[other].jet(u).x;
+                    let is_least = corner.is_nearest(&d)
                         && (m.coordinates == 1
-                            || own_ends[other].iter().any(|o| (o.u - u).abs() < SAME && beyond(o.outward, -d)));
+                            || corners[other].iter().any(|o| sides[other].apart(o.u, u) < SAME && o.is_nearest(&-d)));
                     if is_least {
-                        let own = CurvePoint { coordinates: 0, ..point(&sides[side], end.u) };
+                        let own = CurvePoint { coordinates: 0, ..sides[side].point(corner.u) };
                         let met = CurvePoint { element: m.element, xi: m.xi, coordinates: m.coordinates };
-                        let ordered = side == 0;
-                        let pair = if ordered { ([end.u, u], [own, met]) } else { ([u, end.u], [met, own]) };
+                        let pair = if side == 0 { ([corner.u, u], [own, met]) } else { ([u, corner.u], [met, own]) };
                         let swap = between == Between::Itself && pair.0[0] > pair.0[1];
                         let turned = |(u, p): ([f64; 2], [CurvePoint; 2])| ([u[1], u[0]], [p[1], p[0]]);
                         let (u, points) = if swap { turned(pair) } else { pair };
@@ -163,36 +195,16 @@ pub fn crossings(a: Searched<'_>, b: Searched<'_>, between: Between, reach: f64)
     found.places.into_iter().map(|f| f.1).collect()
 }
 
-fn point(searched: &Searched<'_>, u: f64) -> CurvePoint {
-    let (element, xi) = split(searched.body.centreline(), u);
-    CurvePoint { element, xi, coordinates: 1 }
-}
-
-/// An end of a curve, and the direction in which it would go on.
-struct End {
-    u: f64,
-    outward: Vector<3>,
-}
-
-fn ends(searched: &Searched<'_>) -> Vec<End> {
-    let line = searched.body.centreline();
-    if line.closure == Closure::Closed {
-        return Vec::new();
-    }
-    let last = line.elements() as f64;
-    [(0.0, -1.0), (last, 1.0)].map(|(u, sign)| End { u, outward: jet(searched, u).d1 * sign }).into()
-}
-
 /// Samples of a pair of elements whose distance is not larger than that of their neighbours.
 fn starts(sides: [&Searched<'_>; 2], elements: [usize; 2]) -> Vec<[f64; 2]> {
     let grids: [Vec<f64>; 2] = [0, 1].map(|s| {
-        let count = samples(sides[s].body.centreline(), &sides[s].state.configuration, elements[s]);
+        let count = samples(sides[s].curve, sides[s].configuration, elements[s]);
         (0..=count).map(|k| elements[s] as f64 + k as f64 / count as f64).collect()
     });
     // A parameter at the end of an element is that of the same element.
     let at = |s: usize, u: f64| {
         let xi = u - elements[s] as f64;
-        sides[s].body.centreline().jet(&sides[s].state.configuration, elements[s], xi).x
+        sides[s].curve.jet(sides[s].configuration, elements[s], xi).x
     };
     let x: [Vec<_>; 2] = [0, 1].map(|s| grids[s].iter().map(|u| at(s, *u)).collect());
     let d = |i: usize, j: usize| (x[0][i] - x[1][j]).norm_squared();
@@ -213,14 +225,13 @@ fn starts(sides: [&Searched<'_>; 2], elements: [usize; 2]) -> Vec<[f64; 2]> {
 
 /// The local minimum below a start; none along parallel curves, or where the search runs to an end.
 fn descend(sides: [&Searched<'_>; 2], start: [f64; 2]) -> Option<[f64; 2]> {
-    let lines = sides.map(|s| s.body.centreline());
-    let clamp = |s: usize, u: f64| match lines[s].closure {
-        Closure::Open => u.clamp(0.0, lines[s].elements() as f64),
+    let clamp = |s: usize, u: f64| match sides[s].curve.closure() {
+        Closure::Open => u.clamp(0.0, sides[s].curve.elements() as f64),
         Closure::Closed => u,
     };
     let mut u = start;
     for _ in 0..MOST {
-        let [p, q] = [jet(sides[0], u[0]), jet(sides[1], u[1])];
+        let [p, q] = [sides[0].jet(u[0]), sides[1].jet(u[1])];
         let d = p.x - q.x;
         let gradient = [d.dot(&p.d1), -d.dot(&q.d1)];
         let metric = [p.d1.norm_squared(), q.d1.norm_squared(), -p.d1.dot(&q.d1)];
@@ -241,7 +252,7 @@ fn descend(sides: [&Searched<'_>; 2], start: [f64; 2]) -> Option<[f64; 2]> {
         let mut next = u;
         for _ in 0..40 {
             next = [0, 1].map(|s| clamp(s, u[s] + share * step[s]));
-            let after = (jet(sides[0], next[0]).x - jet(sides[1], next[1]).x).norm_squared();
+            let after = (sides[0].jet(next[0]).x - sides[1].jet(next[1]).x).norm_squared();
             if after <= before * (1.0 + 1e-15) {
                 break;
             }

@@ -55,9 +55,8 @@ pub struct SystemShown {
 impl SystemShown {
     pub fn new(plan: &MechanicsPlan, state: &SystemState, result: &IncrementResult, time: f64) -> Self {
         let mut shown = SystemShown { time, ..Self::of_bodies(plan, state) };
-        for (contact, sites) in plan.system.contacts.iter().zip(&result.sites) {
-            let is_curve = matches!(plan.kinds[contact.slave.body], Kind::Curve { .. });
-            shown.contacts.push(of_contact(&contact.name, sites, contact.friction.is_some(), is_curve));
+        for ((contact, tested), sites) in plan.system.contacts.iter().zip(&plan.contacts).zip(&result.sites) {
+            shown.contacts.push(of_contact(contact.name(), sites, contact.law().is_some(), tested.along_a_curve));
         }
         shown
     }

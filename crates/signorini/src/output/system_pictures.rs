@@ -322,7 +322,7 @@ pub fn draw(
         drawn.extend(carried(contact, &labels, shown.time).map(|p| (format!("contact_{}", contact.name), p)));
     }
     if steps.len() > 1 && !plan.system.contacts.is_empty() {
-        let names: Vec<&str> = plan.system.contacts.iter().map(|c| c.name.as_str()).collect();
+        let names: Vec<&str> = plan.system.contacts.iter().map(|c| c.name()).collect();
         let force = |c: &ContactReport| c.force.iter().map(|v| v * v).sum::<f64>().sqrt();
         drawn.push(("history".into(), history::history(steps, &[], &names, Space::PlaneStrain, &force, &labels)));
     }

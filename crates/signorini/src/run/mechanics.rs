@@ -190,7 +190,7 @@ impl Model for MechanicsModel {
         let number = format!("{index:05}");
         let folder = &record.folder;
         folder.write(&format!("fields/fields_{number}.vtu"), &system::vtu(&shown.bodies, units.as_ref())?)?;
-        let names: Vec<&str> = self.plan.system.contacts.iter().map(|c| c.name.as_str()).collect();
+        let names: Vec<&str> = self.plan.system.contacts.iter().map(|c| c.name()).collect();
         for (contact, name) in shown.contacts.iter().zip(&names) {
             folder.write(&format!("contact/{name}_{number}.vtp"), &system::vtp(contact, units.as_ref())?)?;
             folder.write(&format!("contact/{name}_{number}.csv"), system::csv(contact).as_bytes())?;
@@ -232,7 +232,7 @@ impl Model for MechanicsModel {
     }
 
     fn method(&self) -> String {
-        let mut list = self.plan.methods.clone();
+        let mut list = self.plan.contacts.iter().map(|c| c.method).collect::<Vec<_>>();
         list.dedup();
         if list.is_empty() { "none".into() } else { list.join(", ") }
     }

@@ -53,22 +53,37 @@ pub fn sizes(plan: &Plan) -> Result<Value, CaseError> {
 
 /// What a run of a system of bodies would have to do.
 fn of_system(plan: &MechanicsPlan) -> Value {
-    let contacts: Vec<&str> = plan.system.contacts.iter().map(|c| c.name.as_str()).collect();
+    let contacts: Vec<&str> = plan.system.contacts.iter().map(|c| c.name()).collect();
     let unknowns: usize = plan.system.bodies.iter().map(|b| b.unknowns()).sum();
-    let mut methods = plan.methods.clone();
+    let mut methods = plan.contacts.iter().map(|c| c.method).collect::<Vec<_>>();
     methods.dedup();
     json!({
         "method": if methods.is_empty() { "none".to_string() } else { methods.join(", ") },
         "bodies": plan.system.bodies.len(),
         "unknowns": unknowns,
-        "points_tested": plan.system.contacts.iter().map(|c| c.sites().len()).sum::<usize>(),
+        "points_tested": points_tested(plan),
         "increments": plan.times.len(),
         "supports": plan.head.problem.supports.len(),
         "loads": plan.head.problem.loads.len(),
         "contacts": contacts.join(", "),
+        "found": plan.notes,
         "interpreted": plan.head.interpreted,
         "warnings": plan.head.warnings,
     })
+}
+
+/// Points of the contacts of a system at the start; null where they are found only as bodies come near.
+fn points_tested(plan: &MechanicsPlan) -> Option<usize> {
+    let start = plan.system.start();
+    let mut count = 0;
+    for (k, tested) in plan.contacts.iter().enumerate() {
+        let sites = plan.system.sites(k, &start).ok()?;
+        if sites.is_empty() && !tested.along_a_curve {
+            return None;
+        }
+        count += sites.len();
+    }
+    Some(count)
 }
 
 fn of_membrane<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>) -> Result<Value, CaseError> {

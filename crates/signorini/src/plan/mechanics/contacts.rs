@@ -1,12 +1,13 @@
 //! Contacts of a system: who may touch whom, tested where, kept how, with which friction.
 
-use super::{Kind, Numbers};
+use super::{Kind, Numbers, Tested};
 use crate::plan::Planner;
 use crate::problem::units::{LENGTH, NONE};
 use crate::problem::{self, AxisOn, CaseError, Components, Enforcement, Method, Value};
 use signorini_geometry::Vector;
 use signorini_mechanics::contact::Part;
-use signorini_mechanics::{AxisChoice, Contact, Enforcement as Kept, Sampling, System};
+use signorini_mechanics::{AxisChoice, Contact, Enforcement as Kept, Interaction, Sampling, System};
+use signorini_rope::curve_pair::CurveContact;
 
 impl Planner<'_> {
     pub(super) fn system_contacts(
@@ -14,18 +15,18 @@ impl Planner<'_> {
         numbers: &Numbers,
         system: &System,
         kinds: &[Kind],
-    ) -> Result<(Vec<Contact>, Vec<&'static str>), CaseError> {
+    ) -> Result<(Vec<Box<dyn Interaction>>, Vec<Tested>), CaseError> {
         let problem = self.problem;
         let mut out = Vec::new();
-        let mut methods = Vec::new();
+        let mut told = Vec::new();
         for (name, key) in &problem.contacts {
             if let Some(adhesion) = &key.adhesion {
                 return Err(self.unavailable(adhesion, "adhesion in a system of bodies"));
             }
             let mut add = |name: String, pair: [&String; 2]| -> Result<(), CaseError> {
-                let (contact, method) = self.system_contact(&name, key, pair, (numbers, system, kinds))?;
+                let (contact, tested) = self.system_contact(&name, key, pair, (numbers, system, kinds))?;
                 out.push(contact);
-                methods.push(method);
+                told.push(tested);
                 Ok(())
             };
             match (&key.between, &key.within, &key.all) {
@@ -49,7 +50,7 @@ impl Planner<'_> {
                 }
             }
         }
-        Ok((out, methods))
+        Ok((out, told))
     }
 
     fn system_contact(
@@ -58,7 +59,7 @@ impl Planner<'_> {
         key: &problem::Contact,
         on: [&String; 2],
         (numbers, system, kinds): (&Numbers, &System, &[Kind]),
-    ) -> Result<(Contact, &'static str), CaseError> {
+    ) -> Result<(Box<dyn Interaction>, Tested), CaseError> {
         let problem = self.problem;
         let mut parts: [Part; 2] = [self.part(on[0], numbers)?, self.part(on[1], numbers)?];
         let mut on = on;
@@ -72,6 +73,9 @@ impl Planner<'_> {
         let [slave, master] = parts;
         if body(&slave).unknowns() == 0 && body(&master).unknowns() == 0 {
             return Err(problem.error(key, format!("neither body of contact `{name}` can move")));
+        }
+        if let Some(found) = self.between_curves(name, key, [&slave, &master], system)? {
+            return Ok(found);
         }
         let kind = &kinds[slave.body];
         let straight = match problem.bodies.get(body(&slave).name()) {
@@ -90,7 +94,71 @@ impl Planner<'_> {
             };
             contact.friction = Some(law);
         }
-        Ok((contact, method))
+        let along_a_curve = matches!(kind, Kind::Curve { .. });
+        let tested = Tested { method, axis: contact.axis, along_a_curve };
+        Ok((Box::new(contact), tested))
+    }
+
+    /// Contact between two curves, or of one with itself, where no other method is stated.
+    fn between_curves(
+        &self,
+        name: &str,
+        key: &problem::Contact,
+        [slave, master]: [&Part; 2],
+        system: &System,
+    ) -> Result<Option<(Box<dyn Interaction>, Tested)>, CaseError> {
+        let curves = [slave, master].iter().all(|p| system.bodies[p.body].as_curve().is_some());
+        if !curves || !matches!(&key.method, None | Some(Method::Curve(_))) {
+            return Ok(None);
+        }
+        let stated =
+            key.method.as_ref().and_then(|m| if let Method::Curve(k) = m { k.enforcement.as_ref() } else { None });
+        let kept = self.kept(stated, Kept::AugmentedLagrangian)?;
+        let side = |part: &Part| (part.body, system.bodies[part.body].as_ref());
+        let mut contact = CurveContact::new(name, side(slave), side(master), kept)
+            .map_err(|e| self.problem.error(key, e.to_string()))?;
+        let axis = match &key.friction {
+            Some(friction) => {
+                contact.friction = Some(self.law(friction, 3)?);
+                match friction {
+                    problem::Friction::Coulomb(coulomb) => self.axis_choice(coulomb)?,
+                    problem::Friction::Tresca(_) => AxisChoice::Tangent,
+                }
+            }
+            None => AxisChoice::Tangent,
+        };
+        if let (AxisChoice::OnSlave(_) | AxisChoice::OnMaster(_), Some(problem::Friction::Coulomb(law))) =
+            (&axis, &key.friction)
+        {
+            let at = law.axis.as_ref().map_or_else(|| self.key(key), |axis| self.key(axis));
+            return Err(self
+                .problem
+                .error(&at, "between curves the axis of friction is the tangent of the first")
+                .help("axis = \"tangent\", or leave it out"));
+        }
+        Ok(Some((Box::new(contact), Tested { method: "curve", axis, along_a_curve: false })))
+    }
+
+    /// How a contact is kept.
+    fn kept(&self, stated: Option<&Enforcement>, otherwise: Kept) -> Result<Kept, CaseError> {
+        Ok(match stated {
+            None => otherwise,
+            Some(Enforcement::Multiplier(_)) => Kept::Multiplier,
+            Some(Enforcement::AugmentedLagrangian(_)) => Kept::AugmentedLagrangian,
+            Some(Enforcement::Penalty(k)) => Kept::Penalty {
+                wanted_penetration: k
+                    .wanted_penetration
+                    .as_ref()
+                    .map(|v| self.reader.positive(v, LENGTH))
+                    .transpose()?,
+            },
+            Some(nitsche @ Enforcement::Nitsche(_)) => {
+                return Err(self
+                    .problem
+                    .error(nitsche, "Nitsche's method is for solids")
+                    .help("enforcement.multiplier = {}"));
+            }
+        })
     }
 
     /// Where contact is tested, how it is kept, and the method in a word.
@@ -126,26 +194,13 @@ impl Planner<'_> {
                     .help("ropes, beams and free bodies have  method.curve = {},  method.node = {}  and  method.gauss_point = {}"));
             }
         };
-        let kept = match stated {
-            None if rigid => Kept::AugmentedLagrangian,
+        let otherwise = match sampling {
+            _ if rigid => Kept::AugmentedLagrangian,
             // Every node of straight elements carries by itself; points of Gauss are more than the elements can follow.
-            None if sampling == Sampling::Nodes => Kept::Multiplier,
-            None => Kept::Penalty { wanted_penetration: None },
-            Some(Enforcement::Multiplier(_)) => Kept::Multiplier,
-            Some(Enforcement::AugmentedLagrangian(_)) => Kept::AugmentedLagrangian,
-            Some(Enforcement::Penalty(k)) => Kept::Penalty {
-                wanted_penetration: k
-                    .wanted_penetration
-                    .as_ref()
-                    .map(|v| self.reader.positive(v, LENGTH))
-                    .transpose()?,
-            },
-            Some(nitsche @ Enforcement::Nitsche(_)) => {
-                return Err(problem
-                    .error(nitsche, "Nitsche's method is for solids")
-                    .help("enforcement.multiplier = {}"));
-            }
+            Sampling::Nodes => Kept::Multiplier,
+            Sampling::GaussPoints => Kept::Penalty { wanted_penetration: None },
         };
+        let kept = self.kept(stated, otherwise)?;
         Ok((sampling, kept, word))
     }
 

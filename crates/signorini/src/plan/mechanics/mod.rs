@@ -18,7 +18,7 @@ use signorini_geometry::Point;
 use signorini_geometry::rigid_shape::RigidShape;
 use signorini_mechanics::contact::Part;
 use signorini_mechanics::system::TimeField;
-use signorini_mechanics::{PlacedLoad, Support, System};
+use signorini_mechanics::{AxisChoice, PlacedLoad, Support, System};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -40,6 +40,16 @@ pub enum Kind {
     },
 }
 
+/// What a contact is, for results and pictures.
+#[derive(Clone, Debug)]
+pub struct Tested {
+    /// The method in a word.
+    pub method: &'static str,
+    pub axis: AxisChoice,
+    /// Whether its points are those of a curve, in order.
+    pub along_a_curve: bool,
+}
+
 /// Bodies in one system, what holds and pushes them, and who may touch whom.
 pub struct MechanicsPlan {
     pub head: Head,
@@ -51,8 +61,8 @@ pub struct MechanicsPlan {
     pub probes: BTreeMap<String, Point<3>>,
     /// Values of the case that were no numbers.
     pub wrong: Wrong,
-    /// The method of each contact in a word.
-    pub methods: Vec<&'static str>,
+    /// What each contact of the system is.
+    pub contacts: Vec<Tested>,
     /// What was found out about images and bodies of finite cells.
     pub notes: Vec<String>,
 }
@@ -138,10 +148,10 @@ impl Planner<'_> {
         let (loads, springs) = self.system_loads(&numbers, &system, &kinds, &wrong)?;
         system.loads = loads;
         system.loads.extend(springs.into_iter().map(|(name, part, load)| PlacedLoad { name, part, load }));
-        let (contacts, methods) = self.system_contacts(&numbers, &system, &kinds)?;
-        system.contacts = contacts;
+        let (acting, contacts) = self.system_contacts(&numbers, &system, &kinds)?;
+        system.contacts = acting;
         system.prepare().map_err(|e| problem.error(&problem.space, e.to_string()))?;
-        self.check_start(&system, &kinds)?;
+        self.check_start(&system, &kinds, &contacts)?;
         if system.contacts.is_empty() && system.bodies.len() > 1 {
             warnings.push("no contact is stated: the bodies do not see each other (add [contacts.NAME])".into());
         }
@@ -160,7 +170,7 @@ impl Planner<'_> {
             times: self.times()?,
             probes,
             wrong,
-            methods,
+            contacts,
             notes,
         })
     }
@@ -188,17 +198,21 @@ impl Planner<'_> {
     }
 
     /// Whether curves start outside of what they touch: as far as their radius and half of their cells may reach in.
-    fn check_start(&self, system: &System, kinds: &[Kind]) -> Result<(), CaseError> {
+    fn check_start(&self, system: &System, kinds: &[Kind], contacts: &[Tested]) -> Result<(), CaseError> {
         let problem = self.problem;
         let start = system.start();
         for (k, contact) in system.contacts.iter().enumerate() {
-            let Kind::Curve { radius } = kinds[contact.slave.body] else { continue };
+            let [slave, master] = contact.bodies();
+            let Kind::Curve { radius } = kinds[slave] else { continue };
+            if !contacts[k].along_a_curve {
+                continue;
+            }
             let sites = system.sites(k, &start).map_err(|e| problem.error(&problem.space, e.to_string()))?;
             let deepest = sites.iter().filter_map(|s| Some((s.gap?, s))).min_by(|a, b| a.0.total_cmp(&b.0));
             let Some((gap, site)) = deepest else { continue };
             if gap < -radius.max(0.5 * site.weight) {
-                let name = system.bodies[contact.slave.body].name();
-                let other = system.bodies[contact.master.body].name();
+                let name = system.bodies[slave].name();
+                let other = system.bodies[master].name();
                 let at: Vec<String> = site.x.iter().map(|v| format!("{v:.4}")).collect();
                 let message = format!("`{name}` starts {:.4e} deep inside `{other}`, at ({})", -gap, at.join(", "));
                 let place = match problem.bodies.get(name) {

@@ -2,7 +2,7 @@
 
 use crate::output::figure::{told, told_vector};
 use crate::output::system::{SystemShown, frames};
-use crate::plan::mechanics::{AXIS_SUPPORT, Kind, MechanicsPlan};
+use crate::plan::mechanics::{AXIS_SUPPORT, Kind, MechanicsPlan, Tested};
 use crate::problem::Space;
 use crate::report::{
     Component, ContactReport, CurveReport, Pose, Probe, Reason, RopeLimits, StepReport, UnitNames, Warning,
@@ -11,7 +11,7 @@ use crate::report::{
 use crate::run::record::Record;
 use signorini_contact::Status;
 use signorini_geometry::Vector;
-use signorini_mechanics::{AxisChoice, Contact, IncrementResult, SiteResult, SystemState, rigid_body};
+use signorini_mechanics::{AxisChoice, IncrementResult, Interaction, SiteResult, SystemState, rigid_body};
 use signorini_paths::darboux::Darboux;
 use signorini_paths::friction::Friction;
 use signorini_paths::theorem::limits_of_points;
@@ -80,8 +80,10 @@ pub fn step_report(
         equilibrium_residual: Some(result.imbalance),
         support_forces: supports.iter().map(|(name, force)| (name.clone(), vector(force))).collect(),
         load_forces: loads,
-        contacts: (system.contacts.iter().zip(&result.sites))
-            .map(|(contact, sites)| (contact.name.clone(), contact_report(plan, contact, sites)))
+        contacts: (system.contacts.iter().zip(&plan.contacts).zip(&result.sites))
+            .map(|((contact, tested), sites)| {
+                (contact.name().to_string(), contact_report(plan, (contact.as_ref(), tested), sites))
+            })
             .collect(),
         probes: plan.probes.iter().map(|(name, x)| (name.clone(), probe(x))).collect(),
         curves: shown.curves.iter().map(|c| (c.name.clone(), curve_report(&c.forces))).collect(),
@@ -118,9 +120,13 @@ fn runs(sites: &[SiteResult]) -> Vec<Vec<&SiteResult>> {
     out
 }
 
-fn contact_report(plan: &MechanicsPlan, contact: &Contact, sites: &[SiteResult]) -> ContactReport {
+fn contact_report(
+    plan: &MechanicsPlan,
+    (contact, tested): (&dyn Interaction, &Tested),
+    sites: &[SiteResult],
+) -> ContactReport {
     let closed = || sites.iter().filter(|s| s.status != Status::Open);
-    let is_curve = matches!(plan.kinds[contact.slave.body], Kind::Curve { .. });
+    let is_curve = matches!(plan.kinds[contact.bodies()[0]], Kind::Curve { .. });
     let component = |run: &Vec<&SiteResult>| {
         let area: f64 = run.iter().map(|s| s.weight).sum();
         let force: Vector<3> = run.iter().map(|s| s.force()).sum();
@@ -135,7 +141,7 @@ fn contact_report(plan: &MechanicsPlan, contact: &Contact, sites: &[SiteResult])
     } else {
         vec![component(&closed().collect())]
     };
-    let rubs = contact.friction.is_some();
+    let rubs = contact.law().is_some();
     // The sum of nothing is a negative zero.
     let area = |status: Status| closed().filter(|s| s.status == status).map(|s| s.weight).sum::<f64>() + 0.0;
     let friction: Vector<3> = closed().map(|s| s.friction * s.weight).sum();
@@ -153,16 +159,16 @@ fn contact_report(plan: &MechanicsPlan, contact: &Contact, sites: &[SiteResult])
         max_slip: rubs.then(|| closed().map(|s| s.slip).fold(0.0, f64::max)),
         max_friction_utilisation: rubs.then(|| closed().map(|s| s.utilisation).fold(0.0, f64::max)),
         friction_force: rubs.then(|| vector(&friction)),
-        rope: is_curve.then(|| rope_limits(contact, sites)).flatten(),
+        rope: tested.along_a_curve.then(|| rope_limits((contact, tested), sites)).flatten(),
         dissipation: rubs.then(|| closed().map(|s| -s.weight * s.friction.dot(&s.increment)).sum()),
         ..ContactReport::default()
     }
 }
 
 /// What friction could hold of a rope where it touches; none where its law has no coefficients, or no axes that stay.
-fn rope_limits(contact: &Contact, sites: &[SiteResult]) -> Option<RopeLimits> {
-    let [along, across] = contact.friction.as_ref()?.per_pressure()?;
-    let friction = match contact.axis {
+fn rope_limits((contact, tested): (&dyn Interaction, &Tested), sites: &[SiteResult]) -> Option<RopeLimits> {
+    let [along, across] = contact.law()?.per_pressure()?;
+    let friction = match tested.axis {
         AxisChoice::OnMaster(axis) => {
             Friction::Attached { coefficients: [along, across], axis: Arc::new(move |_| axis) }
         }
@@ -194,12 +200,12 @@ fn rope_limits(contact: &Contact, sites: &[SiteResult]) -> Option<RopeLimits> {
 pub fn warn(plan: &MechanicsPlan, result: &IncrementResult, shown: &SystemShown, record: &mut Record) {
     let time = shown.time;
     for (contact, sites) in plan.system.contacts.iter().zip(&result.sites) {
-        if !plan.head.problem.contacts.contains_key(&contact.name) || sites.iter().any(|s| s.status != Status::Open) {
+        if !plan.head.problem.contacts.contains_key(contact.name()) || sites.iter().any(|s| s.status != Status::Open) {
             continue;
         }
         let gap = sites.iter().filter_map(|s| s.gap).reduce(f64::min);
         let gap = gap.map_or("nothing is within reach".to_string(), |g| format!("smallest gap {g:.6e}"));
-        let message = format!("contact `{}`: the bodies do not touch at t = {time} ({gap})", contact.name);
+        let message = format!("contact `{}`: the bodies do not touch at t = {time} ({gap})", contact.name());
         record.warnings.push(Warning::new(WarningKind::Apart, message).at_time(time));
     }
     for curve in &shown.curves {

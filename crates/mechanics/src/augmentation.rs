@@ -1,0 +1,45 @@
+//! What enforces contacts about Newton's method: outer iterations of augmented Lagrangians and of penalties that are to
+//! leave a given penetration, and the state from which multipliers start.
+
+use crate::equilibrium::ROUNDING;
+use crate::increment::{IncrementError, IncrementResult};
+use crate::interaction::Bodies;
+use crate::system::{AssemblyError, System, SystemState};
+
+impl System {
+    /// A state near the one that is looked for, with penalties in place of multipliers, which take the tractions that these
+    /// find, and with all that touches sticking: while nothing carries yet, nothing would rub. None where there is no such
+    /// state either.
+    pub(crate) fn by_penalties(
+        &mut self,
+        start: &SystemState,
+        time: f64,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Option<SystemState> {
+        self.contacts.iter_mut().for_each(|contact| contact.simplify());
+        let from = SystemState { multipliers: Vec::new(), ..start.clone() };
+        let found = self.inner(&from, time, report).ok().and_then(|found| {
+            let (first, _) = self.numbering();
+            let at = self.bodies_in(&found.state, &first);
+            let of_all = self.contacts.iter().map(|contact| contact.multipliers_found(at));
+            let multipliers = of_all.collect::<Result<Vec<_>, _>>().ok()?.concat();
+            Some(SystemState { multipliers, ..found.state })
+        });
+        self.contacts.iter_mut().for_each(|contact| contact.restate());
+        found
+    }
+
+    /// Sets multipliers to the tractions found, penalties to what leaves the penetration that is wanted; the largest
+    /// relative change.
+    pub(crate) fn augment(&mut self, state: &SystemState, result: &IncrementResult) -> Result<f64, IncrementError> {
+        let (first, _) = self.numbering();
+        let known = ROUNDING * self.size();
+        let own = self.own(state);
+        let at = Bodies { bodies: &self.bodies, states: &state.bodies, first: &first };
+        let mut change = 0.0f64;
+        for ((contact, own), sites) in self.contacts.iter_mut().zip(own).zip(&result.sites) {
+            change = change.max(contact.augment(at, own, sites, known).map_err(AssemblyError::from)?);
+        }
+        Ok(change)
+    }
+}

@@ -1,0 +1,180 @@
+//! Newton's equations of a system at one time: residual, its measure and its step.
+
+use crate::body::Order;
+use crate::increment::IncrementError;
+use crate::system::{Assembled, System, SystemState};
+use signorini_solve::general::Analysis;
+use signorini_solve::newton::{Converged, Equations, Newton, NewtonFailure, Search, newton};
+
+/// Force relative to the largest of all that is left in the end.
+const TOLERANCE: f64 = 1e-10;
+/// Rounding of positions that were solved for, relative to the size of the bodies.
+pub(crate) const ROUNDING: f64 = 1e-12;
+const MOST_ITERATIONS: usize = 60;
+/// Stiffness against what nothing moves, relative to the largest: Newton's method errs by so much of a step.
+const GRAIN: f64 = 1e-12;
+
+pub(crate) struct Problem<'a> {
+    pub(crate) system: &'a System,
+    pub(crate) time: f64,
+    pub(crate) analysis: Analysis,
+    /// Springs on all unknowns of bodies.
+    pub(crate) springs: f64,
+    /// A share of forces on the unknowns of bodies, and of what constraints lack, that is not there yet.
+    pub(crate) held_back: Option<(f64, Vec<f64>, Vec<f64>)>,
+    /// Unknowns that are spins.
+    pub(crate) is_spin: Vec<bool>,
+    /// Traction per gap of the rows of multipliers, over their weights.
+    pub(crate) row_scale: Vec<f64>,
+    /// What rounding of positions leaves of forces and moments.
+    pub(crate) rounding: [f64; 2],
+    /// The unknown that lacks most.
+    pub(crate) worst: usize,
+}
+
+impl Problem<'_> {
+    pub(crate) fn solve(
+        &mut self,
+        start: &SystemState,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<Converged<SystemState>, IncrementError> {
+        self.rounding = [0.0; 2];
+        let predicts = start.bodies.iter().any(|b| !b.internal.is_empty());
+        let search = if predicts { Search::Watchdog { patience: 6 } } else { Search::Monotone };
+        let options = Newton { most_iterations: MOST_ITERATIONS, search };
+        newton(self, start, &options, report).map_err(|failure| match failure {
+            NewtonFailure::NotConverged { history, .. } => {
+                IncrementError::NotConverged { history, worst: self.describe(self.worst) }
+            }
+            NewtonFailure::Equations { error, .. } => error,
+            NewtonFailure::Interrupted => IncrementError::Interrupted,
+        })
+    }
+    /// The residual with springs, and less what is held back.
+    pub(crate) fn assemble(&self, at: &SystemState, order: Order) -> Result<Assembled, IncrementError> {
+        let mut out = self.system.assemble(at, self.time, order)?;
+        if self.springs > 0.0 {
+            for (k, travel) in at.travel.iter().enumerate() {
+                let stiffness = self.spring(k);
+                out.residual[k] += stiffness * travel;
+                out.sizes[k] += (stiffness * travel).abs();
+                if order == Order::Second {
+                    out.tangent.add(k as u32, k as u32, stiffness);
+                }
+            }
+        }
+        if let Some((share, forces, lacks)) = &self.held_back {
+            out.residual.iter_mut().zip(forces).for_each(|(r, f)| *r -= share * f);
+            let count = out.residual.len() - out.coupled.len();
+            let list = out.single.iter_mut().chain(&mut out.coupled);
+            list.zip(lacks).for_each(|(held, lack)| held.constraint.lack -= share * lack);
+            for (k, held) in out.coupled.iter().enumerate() {
+                out.residual[count + k] = held.constraint.lack;
+            }
+        }
+        Ok(out)
+    }
+
+    pub(crate) fn spring(&self, unknown: usize) -> f64 {
+        let size = if self.is_spin[unknown] { self.system.size() } else { 1.0 };
+        self.springs * size * size
+    }
+}
+
+impl Equations for Problem<'_> {
+    type State = SystemState;
+    type Error = IncrementError;
+
+    fn measure(&mut self, at: &SystemState) -> Result<f64, IncrementError> {
+        let out = self.assemble(at, Order::First)?;
+        let count = self.is_spin.len();
+        let size = self.system.size();
+        let mut scale = [f64::MIN_POSITIVE; 2];
+        for k in 0..count {
+            let kind = usize::from(self.is_spin[k]);
+            scale[kind] = scale[kind].max(out.sizes[k]);
+        }
+        // Moments of forces whose arms are not better known than the size of a body.
+        scale[1] = scale[1].max(scale[0] * size * 1e-6);
+        let mut held = vec![false; count];
+        out.single.iter().for_each(|h| held[h.constraint.terms[0].0 as usize] = true);
+        let mut worst = (0.0f64, 0);
+        let mut take = |value: f64, k: usize| {
+            if value > worst.0 || value.is_nan() {
+                worst = (value, k);
+            }
+        };
+        for k in (0..count).filter(|k| !held[*k]) {
+            let kind = usize::from(self.is_spin[k]);
+            take(out.residual[k].abs() / (TOLERANCE * scale[kind]).max(self.rounding[kind]), k);
+        }
+        for (k, c) in self.row_scale.iter().enumerate() {
+            // Gaps no better than the rounding of positions.
+            let force = out.residual[count + k].abs() * c;
+            take(force / (TOLERANCE * scale[0]).max(self.rounding[0]), count + k);
+        }
+        for held in out.single.iter().chain(&out.coupled) {
+            take(held.constraint.lack.abs() / (ROUNDING * size), held.constraint.terms[0].0 as usize);
+        }
+        self.worst = worst.1;
+        Ok(worst.0)
+    }
+
+    fn step(&mut self, at: &SystemState) -> Result<Vec<f64>, IncrementError> {
+        let mut out = self.assemble(at, Order::Second)?;
+        let n = out.residual.len();
+        let count = self.is_spin.len();
+        let mut right: Vec<f64> = out.residual.iter().map(|r| -r).collect();
+        let mut held = vec![false; n];
+        for h in &out.single {
+            let (unknown, factor) = h.constraint.terms[0];
+            held[unknown as usize] = true;
+            right[unknown as usize] = -h.constraint.lack / factor;
+        }
+        out.tangent.without_rows(|row| held[row as usize]);
+        (0..n).filter(|k| held[*k]).for_each(|k| out.tangent.add(k as u32, k as u32, 1.0));
+        let matrix = out.tangent.matrix(n);
+        let sizes = matrix.row_sizes();
+        let size = self.system.size();
+        // That of the first state: further ones may be anywhere.
+        if self.rounding == [0.0; 2] {
+            for k in (0..count).filter(|k| !held[*k]) {
+                let kind = usize::from(self.is_spin[k]);
+                let position = if kind == 1 { 1.0 } else { size };
+                self.rounding[kind] = self.rounding[kind].max(4.0 * f64::EPSILON * sizes[k] * position);
+            }
+        }
+        if !self.system.has_free_rigid_body()
+            && let Ok(found) = self.analysis.factor(matrix).and_then(|lu| lu.solve(&right))
+        {
+            return Ok(found);
+        }
+        // A ball without friction may turn, a slack rope has no stiffness: a grain of it in the matrix alone keeps them where
+        // they are and changes no solution.
+        let mut most = [0.0f64; 2];
+        for k in (0..count).filter(|k| !held[*k]) {
+            let kind = usize::from(self.is_spin[k]);
+            most[kind] = most[kind].max(sizes[k]);
+        }
+        for k in (0..count).filter(|k| !held[*k]) {
+            let kind = usize::from(self.is_spin[k]);
+            let scale = if most[kind] > 0.0 { most[kind] } else { most[0].max(f64::MIN_POSITIVE) * size * size };
+            out.tangent.add(k as u32, k as u32, GRAIN * scale);
+        }
+        let matrix = out.tangent.matrix(n);
+        Ok(self.analysis.factor(matrix)?.solve(&right)?)
+    }
+
+    fn is_driven(&self, at: &SystemState) -> bool {
+        if self.held_back.is_some() {
+            return false;
+        }
+        let size = self.system.size();
+        let lacks = |h: &crate::system::Held| h.constraint.lack.abs() > ROUNDING * size;
+        self.system.held(at, self.time).is_ok_and(|(single, coupled)| single.iter().chain(&coupled).any(lacks))
+    }
+
+    fn advance(&self, at: &SystemState, step: &[f64], share: f64) -> SystemState {
+        self.system.advance(at, step, share)
+    }
+}

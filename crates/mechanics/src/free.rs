@@ -1,0 +1,104 @@
+//! Which body is free to move, and what lacked most where nothing was found.
+
+use crate::body::Order;
+use crate::equilibrium::Problem;
+use crate::increment::IncrementError;
+use crate::system::SystemState;
+use signorini_geometry::Vector;
+
+/// What holds a body when springs a hundred times weaker than its load per size carry so much of it: nothing else does.
+const CARRIES: f64 = 0.1;
+/// A body that weak springs let go so many sizes away is not held.
+const AWAY: f64 = 10.0;
+
+impl Problem<'_> {
+    /// The body that springs let go, or that nothing but springs holds.
+    pub(crate) fn away(&self, at: &SystemState, load: f64) -> Option<IncrementError> {
+        let size = self.system.size();
+        let extent = |k: usize| if self.is_spin[k] { 1.0 } else { size };
+        let goes = |k: usize| at.travel[k].abs() > AWAY * extent(k);
+        let carries = |k: usize| self.spring(k) * at.travel[k].abs() / load * extent(k) / size;
+        let most = (0..at.travel.len()).max_by(|a, b| carries(*a).total_cmp(&carries(*b)))?;
+        let far = (0..at.travel.len()).find(|&k| goes(k) || at.travel[k].is_nan());
+        let unknown = far.or_else(|| (carries(most) > CARRIES).then_some(most))?;
+        Some(self.free(unknown, at))
+    }
+
+    /// A body that moves as a state did, and most in one unknown.
+    fn free(&self, unknown: usize, at: &SystemState) -> IncrementError {
+        let (first, _) = self.system.numbering();
+        let Some(k) = first.iter().rposition(|f| *f as usize <= unknown) else { return IncrementError::Interrupted };
+        let body = &self.system.bodies[k];
+        let travel = &at.travel[first[k] as usize..first[k] as usize + body.unknowns()];
+        let modes = body.rigid_modes(&at.bodies[k]);
+        let along = |mode: &Vec<f64>| {
+            let square: f64 = mode.iter().map(|m| m * m).sum();
+            let product: f64 = mode.iter().zip(travel).map(|(m, t)| m * t).sum();
+            if square > 0.0 { product / square } else { 0.0 }
+        };
+        let turns = self.is_spin[unknown];
+        let part = if turns { &modes[3..] } else { &modes[..3] };
+        let direction = Vector::<3>::from_fn(|i, _| along(&part[i]));
+        let d = direction.try_normalize(0.0).unwrap_or_default();
+        let kind = if turns { "turning about" } else { "moving along" };
+        let motion = format!("{kind} ({:.3}, {:.3}, {:.3})", d[0], d[1], d[2]);
+        IncrementError::Free { body: body.name().to_string(), motion }
+    }
+
+    fn body_of(&self, unknown: usize) -> Option<(&str, usize)> {
+        let (first, count) = self.system.numbering();
+        if unknown >= count {
+            return None;
+        }
+        let k = first.iter().rposition(|f| *f as usize <= unknown)?;
+        Some((self.system.bodies[k].name(), unknown - first[k] as usize))
+    }
+
+    pub(crate) fn describe(&self, unknown: usize) -> Option<String> {
+        match self.body_of(unknown) {
+            Some((body, _)) => Some(format!("; what lacked most is a force on `{body}`")),
+            None => {
+                let mut row = unknown - self.is_spin.len();
+                for contact in &self.system.contacts {
+                    let rows = contact.multipliers().len();
+                    if row < rows {
+                        return Some(format!("; what lacked most is a condition of contact `{}`", contact.name()));
+                    }
+                    row -= rows;
+                }
+                Some("; what lacked most is a support".to_string())
+            }
+        }
+    }
+
+    /// A system without a solution, by the body that is free to move.
+    pub(crate) fn named(&self, error: IncrementError, at: &SystemState) -> IncrementError {
+        if !matches!(error, IncrementError::Solve(_) | IncrementError::NotConverged { .. }) {
+            return error;
+        }
+        let Ok(assembled) = self.system.assemble(at, self.time, Order::Second) else { return error };
+        let (first, count) = self.system.numbering();
+        let held: Vec<usize> = assembled.single.iter().map(|h| h.constraint.terms[0].0 as usize).collect();
+        let matrix = assembled.tangent.matrix(assembled.residual.len());
+        let largest = matrix.row_sizes().into_iter().fold(0.0f64, f64::max);
+        for (k, body) in self.system.bodies.iter().enumerate() {
+            for (mode, motion) in body.rigid_modes(&at.bodies[k]).iter().enumerate() {
+                let mut x = vec![0.0; assembled.residual.len()];
+                let range = first[k] as usize..first[k] as usize + motion.len();
+                x[range].copy_from_slice(motion);
+                let size = motion.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+                if size == 0.0 || held.iter().any(|h| x[*h] != 0.0) {
+                    continue;
+                }
+                let moved = matrix.multiply(&x);
+                if moved[..count].iter().all(|f| f.abs() <= 1e-10 * largest * size) {
+                    let axis = ["x", "y", "z"][mode % 3];
+                    let motion =
+                        if mode < 3 { format!("moving along {axis}") } else { format!("turning about {axis}") };
+                    return IncrementError::Free { body: body.name().to_string(), motion };
+                }
+            }
+        }
+        error
+    }
+}

@@ -1,0 +1,95 @@
+//! Other ways to the same state, where Newton's method does not find it from the last one.
+//!
+//! What is out of balance may be let go bit by bit. A body that nothing but contact holds has no stiffness until it
+//! touches: weak springs hold all bodies where they were and are taken back step by step; what they still carried in the
+//! end shows what holds nothing.
+
+use crate::body::Order;
+use crate::equilibrium::Problem;
+use crate::increment::{IncrementError, is_curable};
+use crate::system::SystemState;
+use signorini_solve::newton::Converged;
+
+/// Stiffness of the springs that hold free bodies at first, in largest loads per size, and what they are taken back to. The
+/// first let a body move by a hundredth of its size: contact reaches farther.
+const SPRINGS: [f64; 7] = [1e2, 1.0, 1e-2, 1e-4, 1e-6, 1e-8, 0.0];
+/// The first bit of what is out of balance that is let go, and the least.
+const FIRST_BIT: f64 = 0.125;
+const LEAST_BIT: f64 = 1e-4;
+
+impl Problem<'_> {
+    /// Solves with the forces that are out of balance at the start, and what supports prescribe beyond it, held back and
+    /// let go bit by bit.
+    pub(crate) fn bit_by_bit(
+        &mut self,
+        start: &SystemState,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<Converged<SystemState>, IncrementError> {
+        let at = self.system.assemble(start, self.time, Order::First)?;
+        let count = self.is_spin.len();
+        let lacks: Vec<f64> = at.single.iter().chain(&at.coupled).map(|h| h.constraint.lack).collect();
+        let (mut reached, mut size) = (0.0, FIRST_BIT);
+        let mut state = start.clone();
+        let held_back = (at.residual[..count].to_vec(), lacks);
+        loop {
+            let to = if reached + size > 1.0 - 1e-9 { 1.0 } else { reached + size };
+            self.held_back = (to < 1.0).then(|| (1.0 - to, held_back.0.clone(), held_back.1.clone()));
+            let found = self.solve(&state, report);
+            self.held_back = None;
+            match found {
+                Ok(found) if to == 1.0 => return Ok(found),
+                Ok(found) => {
+                    state = found.state;
+                    reached = to;
+                    size *= 1.5;
+                }
+                Err(error) if !is_curable(&error) || size < LEAST_BIT => return Err(error),
+                Err(_) => size *= 0.25,
+            }
+        }
+    }
+
+    /// Solves with weak springs that hold all bodies where they were, and are taken back step by step.
+    pub(crate) fn with_springs(
+        &mut self,
+        start: &SystemState,
+        error: IncrementError,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<Converged<SystemState>, IncrementError> {
+        let load = self.load(start)?;
+        let mut state = start.clone();
+        let mut last = None;
+        let mut before = 0.0;
+        for factor in SPRINGS {
+            self.springs = factor * load / self.system.size();
+            match self.solve(&state, report) {
+                Ok(found) => {
+                    if factor < 1.0
+                        && let Some(body) = self.away(&found.state, load)
+                    {
+                        return Err(body);
+                    }
+                    state = found.state.clone();
+                    last = Some(found);
+                }
+                Err(IncrementError::Interrupted) => return Err(IncrementError::Interrupted),
+                Err(_) => {
+                    // What the last springs carried tells what nothing else does.
+                    self.springs = before;
+                    let free = last.is_some().then(|| self.away(&state, load)).flatten();
+                    return Err(free.unwrap_or_else(|| self.named(error, &state)));
+                }
+            }
+            before = self.springs;
+        }
+        last.ok_or(error)
+    }
+
+    /// The largest force that acts.
+    fn load(&self, at: &SystemState) -> Result<f64, IncrementError> {
+        let size = self.system.size();
+        let sizes = self.system.assemble(at, self.time, Order::First)?.sizes;
+        let force = |(k, s): (usize, &f64)| if self.is_spin[k] { s / size } else { *s };
+        Ok(sizes[..self.is_spin.len()].iter().enumerate().map(force).fold(f64::MIN_POSITIVE, f64::max))
+    }
+}

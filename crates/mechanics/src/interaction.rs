@@ -1,0 +1,353 @@
+//! What acts between bodies of a system: forces and tangent, what is kept from increment to increment, and how both are
+//! enforced.
+//!
+//! A [`Contact`] tests points of one body against another; contact between curves, in the crate of ropes, finds its points
+//! anew in every state. To the system both are interactions. An interaction may have
+//!
+//! - *multipliers*, unknowns of its own: as many in all states;
+//! - a *prediction*, numbers that Newton's method carries from one iterate to the next, such as forces that the step before
+//!   predicts: as many as it likes. They change the tangent, never the forces that decide about convergence;
+//! - a *history*, numbers that count from the last state that was accepted.
+
+use crate::body::MaterialPoint;
+use crate::body::{Body, BodyState, PlaceError, Sampling, Site};
+use crate::contact::{Contact, Enforcement, Part, Sides, SiteMemory, SiteResult};
+use crate::pair::Stuck;
+use signorini_contact::law::{Friction, stuck};
+use signorini_contact::{Law, Status};
+use signorini_geometry::Vector;
+use signorini_solve::general::Entries;
+
+/// All bodies of a system in a state.
+#[derive(Clone, Copy)]
+pub struct Bodies<'a> {
+    pub bodies: &'a [Box<dyn Body>],
+    pub states: &'a [BodyState],
+    /// First unknown of each body in the system.
+    pub first: &'a [u32],
+}
+
+/// The numbers of an interaction in a state of the system.
+#[derive(Clone, Copy)]
+pub struct Own<'a> {
+    pub multipliers: &'a [f64],
+    /// Unknown of the system that the first multiplier is.
+    pub first: u32,
+    pub prediction: &'a [f64],
+}
+
+/// Where residual and tangent go, in the numbers of the system.
+pub struct Target<'a> {
+    pub residual: &'a mut [f64],
+    /// Sum of the sizes of all terms of each equation: the scale of its residual.
+    pub sizes: &'a mut [f64],
+    /// The tangent, where it is asked for.
+    pub tangent: Option<&'a mut Entries>,
+}
+
+/// Saved numbers that are not of this interaction.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the saved numbers are not those of contact `{contact}`")]
+pub struct NotItsHistory {
+    pub contact: String,
+}
+
+/// Something between two bodies of a system, or within one.
+pub trait Interaction: Send + Sync {
+    fn name(&self) -> &str;
+
+    /// Numbers of the bodies: that on which the reported forces act first. Twice the same within a body.
+    fn bodies(&self) -> [usize; 2];
+
+    /// The law of friction; none if there is none.
+    fn law(&self) -> Option<&dyn Law>;
+
+    /// Unknowns of its own: of each the traction per gap, which scales its equation.
+    fn multipliers(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// The largest stiffness of what is tested or touched, as force per length; zero if nothing has one.
+    fn stiffness(&self, bodies: &[Box<dyn Body>]) -> f64;
+
+    /// Sets penalties from the stiffness of the bodies, or where they have none from that given. Called once.
+    fn prepare(&mut self, bodies: &[Box<dyn Body>], otherwise: f64);
+
+    /// Leaves out what cannot move; `held` tells which unknowns are prescribed.
+    fn leave_out_held(&mut self, _at: Bodies<'_>, _held: &[bool]) {}
+
+    /// Adds residual and, if there is room for it, tangent; how many points could not be measured.
+    ///
+    /// # Errors
+    /// Bodies that cannot be tested or touched.
+    fn add_to(&self, at: Bodies<'_>, own: Own<'_>, out: &mut Target<'_>) -> Result<usize, PlaceError>;
+
+    /// The points that are tested as they are found in a state.
+    ///
+    /// # Errors
+    /// Bodies that cannot be tested or touched.
+    fn results(&self, at: Bodies<'_>, own: Own<'_>) -> Result<Vec<SiteResult>, PlaceError>;
+
+    /// The prediction with which an increment starts.
+    fn prediction(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// What a share of a step of all unknowns of the system predicts, from the state before it.
+    fn predict(&self, _at: Bodies<'_>, _own: Own<'_>, _step: &[f64], _share: f64) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Takes a state as the one from which slips count and the next increment starts.
+    ///
+    /// # Errors
+    /// Bodies that cannot be tested or touched.
+    fn accept(&mut self, at: Bodies<'_>, own: Own<'_>) -> Result<(), PlaceError>;
+
+    /// Forgets what it carried, not where slips count from.
+    fn unload(&mut self);
+
+    /// Prepares the next outer iteration at a state with the results found in it: multipliers that are kept while Newton's
+    /// method runs take the tractions, penalties what leaves the penetration that is wanted. The largest relative change;
+    /// `known` is the rounding of positions.
+    ///
+    /// # Errors
+    /// Bodies that cannot be tested or touched.
+    fn augment(&mut self, at: Bodies<'_>, own: Own<'_>, found: &[SiteResult], known: f64) -> Result<f64, PlaceError>;
+
+    /// Until [`Interaction::restate`]: penalties in place of multipliers, and all that touches sticks.
+    fn simplify(&mut self);
+
+    /// Ends what [`Interaction::simplify`] began.
+    fn restate(&mut self);
+
+    /// Values of the multipliers from what penalties find in a state, while simplified: as many as there are afterwards.
+    ///
+    /// # Errors
+    /// Bodies that cannot be tested or touched.
+    fn multipliers_found(&self, _at: Bodies<'_>) -> Result<Vec<f64>, PlaceError> {
+        Ok(Vec::new())
+    }
+
+    /// History and scales as plain numbers.
+    fn history(&self) -> [Vec<f64>; 2];
+
+    /// Goes on from numbers that [`Interaction::history`] gave.
+    ///
+    /// # Errors
+    /// Numbers of something else.
+    fn restore(&mut self, history: &[Vec<f64>; 2]) -> Result<(), NotItsHistory>;
+}
+
+/// Friction without a limit.
+#[derive(Debug)]
+pub struct Sticks;
+
+impl Law for Sticks {
+    fn friction(&self, trial: [f64; 2], _: f64) -> Friction {
+        stuck(trial)
+    }
+
+    fn utilisation(&self, _: [f64; 2], _: f64) -> f64 {
+        0.0
+    }
+
+    fn per_pressure(&self) -> Option<[f64; 2]> {
+        None
+    }
+}
+
+/// Penalty in stiffnesses of the bodies: what is left of the gap is a hundredth of what the bodies give way.
+pub const PENALTY: f64 = 100.0;
+/// The same where it is only a scale: of augmented Lagrangians and multipliers.
+pub const SCALE: f64 = 10.0;
+
+/// Penetration that an outer iteration leaves, relative to the one that is wanted.
+pub const NEAR_WANTED: f64 = 1e-2;
+
+impl<'a> Bodies<'a> {
+    pub(crate) fn side(&self, part: &Part) -> (&'a dyn Body, &'a BodyState) {
+        (self.bodies[part.body].as_ref(), &self.states[part.body])
+    }
+
+    pub(crate) fn sides(&self, contact: &Contact) -> Sides<'a> {
+        Sides {
+            slave: self.side(&contact.slave),
+            master: self.side(&contact.master),
+            first: [self.first[contact.slave.body], self.first[contact.master.body]],
+        }
+    }
+}
+
+/// The factor by which penalties change to leave the penetration that is wanted; none if they leave it.
+pub fn penalty_factor(found: &[SiteResult], wanted: f64) -> Option<f64> {
+    let depth = found.iter().filter(|s| s.status != Status::Open).filter_map(|s| s.gap);
+    let depth = depth.fold(0.0f64, |m, g| m.max(-g));
+    // The penetration is inverse to the penalty but for what the bodies give way.
+    (depth > 0.0 && (depth / wanted - 1.0).abs() > NEAR_WANTED).then_some(depth / wanted)
+}
+
+impl Interaction for Contact {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn bodies(&self) -> [usize; 2] {
+        [self.slave.body, self.master.body]
+    }
+
+    fn law(&self) -> Option<&dyn Law> {
+        self.friction.as_deref()
+    }
+
+    fn multipliers(&self) -> Vec<f64> {
+        match self.enforcement {
+            Enforcement::Multiplier => self.stiffness.iter().flat_map(|c| vec![*c; self.components()]).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    fn stiffness(&self, bodies: &[Box<dyn Body>]) -> f64 {
+        let own = self.stiffness.iter().zip(self.sites()).map(|(c, s)| c * s.weight);
+        // A deformable master of a rigid slave.
+        let master = &bodies[self.master.body];
+        let sites = |sampling| master.sites(self.master.group.as_deref(), sampling);
+        let list = sites(Sampling::Nodes).or_else(|_| sites(Sampling::GaussPoints)).unwrap_or_default();
+        let touched = list.iter().map(|s| master.site_stiffness(s));
+        own.chain(touched).filter(|c| c.is_finite()).fold(0.0, f64::max)
+    }
+
+    fn prepare(&mut self, _: &[Box<dyn Body>], otherwise: f64) {
+        let factor = match self.enforcement {
+            Enforcement::Penalty { .. } => PENALTY,
+            _ => SCALE,
+        };
+        let weights: Vec<f64> = self.sites().iter().map(|s| s.weight).collect();
+        for (c, w) in self.stiffness.iter_mut().zip(weights) {
+            *c = factor * if c.is_finite() { *c } else { otherwise / w };
+        }
+    }
+
+    fn leave_out_held(&mut self, at: Bodies<'_>, held: &[bool]) {
+        // Against a body that moves a held site may still carry.
+        if at.bodies[self.master.body].unknowns() > 0 {
+            return;
+        }
+        let (body, state) = at.side(&self.slave);
+        let first = at.first[self.slave.body];
+        let moves = |site: &Site| {
+            let placed = body.placed(state, site);
+            placed.functions.iter().any(|f| !held[(first + f.unknown) as usize])
+        };
+        let kept: Vec<bool> = self.sites().iter().map(moves).collect();
+        self.keep(&kept);
+    }
+
+    fn add_to(&self, at: Bodies<'_>, own: Own<'_>, out: &mut Target<'_>) -> Result<usize, PlaceError> {
+        self.add_sites(&at.sides(self), (own.multipliers, own.first), out)
+    }
+
+    fn results(&self, at: Bodies<'_>, own: Own<'_>) -> Result<Vec<SiteResult>, PlaceError> {
+        Ok(self.found(&at.sides(self), own.multipliers)?.into_iter().map(|f| f.0).collect())
+    }
+
+    fn accept(&mut self, at: Bodies<'_>, own: Own<'_>) -> Result<(), PlaceError> {
+        let sides = at.sides(self);
+        self.accept_sites(&sides, own.multipliers)
+    }
+
+    fn unload(&mut self) {
+        self.memory.iter_mut().for_each(|m| m.traction = [0.0; 3]);
+    }
+
+    fn augment(&mut self, at: Bodies<'_>, _: Own<'_>, found: &[SiteResult], known: f64) -> Result<f64, PlaceError> {
+        match self.enforcement {
+            Enforcement::AugmentedLagrangian => {
+                let found = self.found(&at.sides(self), &[])?;
+                let most = found.iter().map(|f| f.1[0]).fold(0.0f64, f64::max);
+                let mut change = 0.0f64;
+                for ((memory, stiffness), (_, traction)) in self.memory.iter_mut().zip(&self.stiffness).zip(found) {
+                    let changed = (0..3).map(|i| (memory.traction[i] - traction[i]).abs()).fold(0.0, f64::max);
+                    // Gaps are known to the rounding of positions only.
+                    change = change.max(if changed > known * stiffness { changed / most } else { 0.0 });
+                    memory.traction = traction;
+                }
+                Ok(change)
+            }
+            Enforcement::Penalty { wanted_penetration: Some(wanted) } => match penalty_factor(found, wanted) {
+                Some(factor) => {
+                    self.stiffness.iter_mut().for_each(|c| *c *= factor);
+                    Ok((factor - 1.0).abs())
+                }
+                None => Ok(0.0),
+            },
+            _ => Ok(0.0),
+        }
+    }
+
+    fn simplify(&mut self) {
+        let law = self.friction.as_mut().map(|law| std::mem::replace(law, Box::new(Sticks)));
+        self.set_aside = Some((self.enforcement, law));
+        if self.enforcement == Enforcement::Multiplier {
+            self.enforcement = Enforcement::Penalty { wanted_penetration: None };
+        }
+    }
+
+    fn restate(&mut self) {
+        if let Some((enforcement, law)) = self.set_aside.take() {
+            self.enforcement = enforcement;
+            self.friction = law;
+        }
+    }
+
+    fn multipliers_found(&self, at: Bodies<'_>) -> Result<Vec<f64>, PlaceError> {
+        if !matches!(self.set_aside, Some((Enforcement::Multiplier, _))) {
+            return Ok(Vec::new());
+        }
+        let found = self.found(&at.sides(self), &[])?;
+        Ok(found.iter().flat_map(|(_, t)| t[..self.components()].to_vec()).collect())
+    }
+
+    fn history(&self) -> [Vec<f64>; 2] {
+        [self.memory.iter().flat_map(numbers).collect(), self.stiffness.clone()]
+    }
+
+    fn restore(&mut self, [sites, stiffness]: &[Vec<f64>; 2]) -> Result<(), NotItsHistory> {
+        if sites.len() != NUMBERS * self.memory.len() || stiffness.len() != self.stiffness.len() {
+            return Err(NotItsHistory { contact: self.name.clone() });
+        }
+        self.memory = sites.chunks(NUMBERS).map(memory).collect();
+        self.stiffness = stiffness.clone();
+        Ok(())
+    }
+}
+
+/// Numbers of the memory of a site.
+const NUMBERS: usize = 16;
+
+fn numbers(memory: &SiteMemory) -> [f64; NUMBERS] {
+    let mut out = [0.0; NUMBERS];
+    out[..3].copy_from_slice(&memory.traction);
+    out[3..5].copy_from_slice(&memory.slip);
+    if let Some(stuck) = &memory.stuck {
+        out[5] = 1.0;
+        out[6] = f64::from(stuck.point.patch);
+        out[7..10].copy_from_slice(&stuck.point.xi);
+        out[10..13].copy_from_slice(stuck.on_slave.as_slice());
+        out[13..].copy_from_slice(stuck.on_master.as_slice());
+    }
+    out
+}
+
+fn memory(n: &[f64]) -> SiteMemory {
+    let vector = |k: usize| Vector::<3>::new(n[k], n[k + 1], n[k + 2]);
+    SiteMemory {
+        traction: [n[0], n[1], n[2]],
+        slip: [n[3], n[4]],
+        stuck: (n[5] != 0.0).then(|| Stuck {
+            point: MaterialPoint { patch: n[6] as u32, xi: [n[7], n[8], n[9]] },
+            on_slave: vector(10),
+            on_master: vector(13),
+        }),
+    }
+}

@@ -1,0 +1,195 @@
+//! The slip of a pair: variation, second variation, and what has slipped since the anchor.
+
+use super::gap::{AtFoot, AtRigid};
+use super::{Column, Pair, SecondVariation, Stuck, any_tangent, axis};
+use crate::body::{Order, RigidFoot};
+use nalgebra::{SMatrix, SVector};
+use signorini_geometry::{Matrix, Point, Vector};
+
+impl<const N: usize> AtFoot<'_, N> {
+    /// Adds slip to the measures of a pair that has its gap.
+    pub fn add_slip(&self, order: Order, pair: &mut Pair) {
+        let (slave, foot, normal) = (self.encounter.slave, self.foot, self.normal);
+        let (measures, columns, variations) = (&self.measures, &self.columns, &self.variations);
+        let (n, gap, radii) = (columns.len(), pair.gap, self.radii());
+        let base = [foot.jet.u, foot.jet.v];
+        let second = [foot.jet.uu, foot.jet.uv, foot.jet.vv];
+        let xi: Vec<SVector<f64, N>> = variations.iter().map(|v| measures.coordinate_variation(v)).collect();
+        // Variations of the base vectors of the master, and of the motion of the foot along it.
+        let d_base = |k: usize, a: usize| (0..N).fold(-columns[k].d_a[a], |sum, b| sum + second[a + b] * xi[k][b]);
+        let foot_motion = |k: usize| (0..N).fold(Vector::<3>::zeros(), |sum, a| sum + base[a] * xi[k][a]);
+        let inverse = measures.metric().try_inverse().unwrap_or_else(SMatrix::zeros);
+        pair.d_normal = (0..n)
+            .map(|k| {
+                if N == 2 {
+                    // -ρ^a (n·δρ_a).
+                    let h: SVector<f64, N> = SVector::from_fn(|a, _| normal.dot(&d_base(k, a)));
+                    let up = inverse * h;
+                    (0..N).fold(Vector::<3>::zeros(), |sum, a| sum - base[a] * up[a])
+                } else {
+                    let change = columns[k].d - foot_motion(k);
+                    let across = change - normal * normal.dot(&change);
+                    if measures.gap == 0.0 { Vector::<3>::zeros() } else { across / measures.gap }
+                }
+            })
+            .collect();
+        let turns = !slave.spin.is_empty() || !foot.spin.is_empty();
+        let exact = N == 2 && !turns;
+        // The part of the gap that turns with the normal; where sections cannot turn forces act on the lines themselves.
+        let lever = if turns || radii == [0.0; 2] { 1.0 } else { 0.0 };
+        pair.slip = (0..n)
+            .map(|k| {
+                if exact {
+                    foot_motion(k)
+                } else {
+                    columns[k].d - self.encounter.levers(&columns[k], &normal, radii) - pair.d_normal[k] * (lever * gap)
+                }
+            })
+            .collect();
+        if order == Order::Second {
+            let hessian = |k: usize, l: usize| {
+                if exact {
+                    let h = measures.coordinate_second_variation(&variations[k], &variations[l]);
+                    (0..N).fold(Vector::<3>::zeros(), |sum, a| sum + d_base(l, a) * xi[k][a] + base[a] * h[a])
+                } else {
+                    let along = (0..N).fold(Vector::<3>::zeros(), |sum, a| sum + columns[k].d_a[a] * xi[l][a]);
+                    let gap_turns = pair.d_normal[k] * (lever * pair.d_gap[l]);
+                    let [of_slave, of_master] = spin_variation(&columns[k], &columns[l]);
+                    let spun = (of_slave * radii[0] + of_master * radii[1]).cross(&normal);
+                    along - self.encounter.levers(&columns[k], &pair.d_normal[l], radii) - spun - gap_turns
+                }
+            };
+            let mut parts: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; n * n]);
+            for k in 0..n {
+                for l in 0..n {
+                    let h = hessian(k, l);
+                    (0..3).for_each(|i| parts[i][k * n + l] = h[i]);
+                }
+            }
+            if !exact {
+                (0..3).for_each(|i| self.encounter.add_bends(&axis(i), n, &mut parts[i]));
+            }
+            pair.second = SecondVariation::Full(parts);
+        }
+        pair.stuck = Some(Stuck {
+            point: foot.point,
+            on_slave: slave.frame.transpose() * normal,
+            on_master: foot.frame.transpose() * normal,
+        });
+        if let Some((stuck, anchor)) = self.encounter.stuck {
+            // Material points that were in touch: x_s - R_s Q_s m_s and x_m + R_m Q_m m_m; with an exact motion of the
+            // foot along the master it is that of the foot.
+            let arms = if turns {
+                [slave.frame * stuck.on_slave * radii[0], anchor.frame * stuck.on_master * radii[1]]
+            } else {
+                [Vector::<3>::zeros(); 2]
+            };
+            let from = if exact { foot.jet.x } else { slave.x };
+            pair.elastic = from - arms[0] - anchor.x - arms[1];
+            pair.d_elastic = (0..n)
+                .map(|k| {
+                    let c = &columns[k];
+                    if exact {
+                        // The material of the master at the foot moves by -δD of its own functions.
+                        let own = if k >= self.encounter.slave_count() { -c.d } else { Vector::<3>::zeros() };
+                        own + foot_motion(k) - c.anchor
+                    } else {
+                        let slave_side = if k < self.encounter.slave_count() { c.d } else { Vector::<3>::zeros() };
+                        slave_side - c.spin[0].cross(&arms[0]) - c.anchor - c.anchor_spin.cross(&arms[1])
+                    }
+                })
+                .collect();
+        } else {
+            pair.d_elastic = vec![Vector::<3>::zeros(); n];
+        }
+        pair.axis = self.encounter.axis(columns, foot.jet.u);
+    }
+}
+
+impl AtRigid<'_> {
+    /// Adds slip to the measures of a pair that has its gap.
+    pub fn add_slip(&self, order: Order, pair: &mut Pair) {
+        let (slave, foot, columns) = (self.encounter.slave, self.foot, &self.columns);
+        let (normal, hessian) = (foot.jet.normal, foot.jet.hessian);
+        let (n, gap) = (columns.len(), pair.gap);
+        pair.d_normal = columns.iter().map(|c| hessian * c.d).collect();
+        let turns = !slave.spin.is_empty();
+        // Without a section that turns the ball about the slave point moves with the foot.
+        let distance = if turns { gap } else { foot.jet.gap };
+        let lever = if turns { slave.radius } else { 0.0 };
+        let across = Matrix::<3>::identity() - normal * normal.transpose();
+        let relative_spin = |c: &Column| c.spin[0] - c.spin[1];
+        pair.slip = (columns.iter())
+            .map(|c| across * c.d - hessian * c.d * distance - relative_spin(c).cross(&normal) * lever)
+            .collect();
+        if order == Order::Second {
+            let third = curvature_slopes(foot, distance, slave.x);
+            let mut parts: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; n * n]);
+            for k in 0..n {
+                let curved_k = hessian * columns[k].d;
+                for l in 0..n {
+                    let curved_l = hessian * columns[l].d;
+                    let bent = self.bend(k, l);
+                    let mut h = bent - hessian * bent * distance;
+                    h -= curved_l * pair.d_gap[k] + curved_k * pair.d_gap[l];
+                    h -= relative_spin(&columns[k]).cross(&curved_l) * lever;
+                    // Spins, seen from the body.
+                    let [of_slave, of_body] = spin_variation(&columns[k], &columns[l]);
+                    let [slave, body] = columns[k].spin;
+                    let turned = columns[l].turn.cross(&(slave - body));
+                    h -= (of_slave - of_body - turned).cross(&normal) * lever;
+                    // As the motion of a foot changes, but for what turns with the body.
+                    for i in 0..3 {
+                        let slope = distance * (third[i] * columns[k].d).dot(&columns[l].d);
+                        parts[i][k * n + l] = h[i] - slope;
+                    }
+                }
+            }
+            for i in 0..3 {
+                let along = axis(i) - hessian * axis(i) * distance;
+                self.encounter.add_bends(&along, n, &mut parts[i]);
+            }
+            pair.second = SecondVariation::Full(parts);
+        }
+        pair.stuck = Some(Stuck {
+            point: foot.point,
+            on_slave: slave.frame.transpose() * normal,
+            on_master: Vector::<3>::zeros(),
+        });
+        if let Some((stuck, anchor)) = self.encounter.stuck {
+            if turns {
+                let contact = slave.frame * stuck.on_slave * lever;
+                pair.elastic = slave.x - contact - anchor.x;
+                let seen = |c: &Column| c.d - c.spin[0].cross(&contact);
+                // The anchor turns with the body, and so does what is compared with it.
+                pair.d_elastic = (columns.iter()).map(|c| seen(c) + c.turn.cross(&contact)).collect();
+            } else {
+                pair.elastic = slave.x - normal * foot.jet.gap - anchor.x;
+                pair.d_elastic = pair.slip.clone();
+            }
+        } else {
+            pair.d_elastic = vec![Vector::<3>::zeros(); n];
+        }
+        pair.axis = self.encounter.axis(columns, any_tangent(&normal));
+    }
+}
+
+/// Second variation of the spins of both partners. A spin is no derivative of a rotation vector; in the coordinates in
+/// which second derivatives along geodesics are symmetric it varies by half the product of two spins.
+fn spin_variation(k: &Column, l: &Column) -> [Vector<3>; 2] {
+    [0, 1].map(|side: usize| l.spin[side].cross(&k.spin[side]) * 0.5)
+}
+
+/// The derivative of the Hessian of the gap along the three axes, by central differences; zero without a gap.
+fn curvature_slopes(foot: &RigidFoot, distance: f64, x: Point<3>) -> [Matrix<3>; 3] {
+    if distance == 0.0 || foot.jet.hessian == Matrix::<3>::zeros() {
+        return [Matrix::<3>::zeros(); 3];
+    }
+    // The best step for a second-order difference, relative to the radius of curvature.
+    let step = f64::EPSILON.cbrt() / foot.jet.hessian.abs().max();
+    let turned = |x: Point<3>| {
+        let y = foot.origin + foot.rotation.transpose() * (x - foot.centre);
+        foot.rotation * foot.shape.gap(&y).hessian * foot.rotation.transpose()
+    };
+    std::array::from_fn(|i| (turned(x + axis(i) * step) - turned(x - axis(i) * step)) / (2.0 * step))
+}

@@ -1,0 +1,45 @@
+//! What contacts need before the first increment: scales of penalties, and where slips count from.
+
+use crate::increment::IncrementError;
+use crate::interaction::Bodies;
+use crate::system::{AssemblyError, System};
+
+impl System {
+    /// Prepares the contacts: scales of penalties, and where slips count from. To be called once, when all bodies, loads and
+    /// contacts are there.
+    ///
+    /// # Errors
+    /// Places that are not there.
+    pub fn prepare(&mut self) -> Result<(), IncrementError> {
+        let scale = self.contacts.iter().map(|c| c.stiffness(&self.bodies)).fold(0.0f64, f64::max);
+        // Between rigid bodies any scale serves; that of one force per length is neither large nor small.
+        let scale = if scale > 0.0 { scale } else { 1.0 / self.size().max(f64::MIN_POSITIVE) };
+        self.contacts.iter_mut().for_each(|contact| contact.prepare(&self.bodies, scale));
+        // What cannot move carries nothing: supports carry there, and what the contact would carry is not determined.
+        let start = self.start();
+        let (single, _) = self.held(&start, 0.0).map_err(IncrementError::Assembly)?;
+        let (first, count) = self.numbering();
+        let mut held = vec![false; count];
+        single.iter().for_each(|h| held[h.constraint.terms[0].0 as usize] = true);
+        let at = Bodies { bodies: &self.bodies, states: &start.bodies, first: &first };
+        self.contacts.iter_mut().for_each(|contact| contact.leave_out_held(at, &held));
+        // Slips count from the start, where nothing carries yet.
+        self.accept(&self.start())?;
+        self.contacts.iter_mut().for_each(|contact| contact.unload());
+        Ok(())
+    }
+
+    /// Takes a state as the one from which slips count and the next increment starts.
+    ///
+    /// # Errors
+    /// Places that are not there.
+    pub fn accept(&mut self, state: &crate::system::SystemState) -> Result<(), IncrementError> {
+        let (first, _) = self.numbering();
+        let own = self.own(state);
+        let at = Bodies { bodies: &self.bodies, states: &state.bodies, first: &first };
+        for (contact, own) in self.contacts.iter_mut().zip(own) {
+            contact.accept(at, own).map_err(AssemblyError::from)?;
+        }
+        Ok(())
+    }
+}

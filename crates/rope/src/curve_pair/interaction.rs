@@ -1,0 +1,273 @@
+//! Contact between curves as an interaction of a system: assembly, results, history.
+
+use super::contact::{CurveContact, Touch};
+use super::friction::{Tangential, followed};
+use super::history::{Kept, Predicted};
+use super::search::{CurvePoint, Searched};
+use signorini_contact::{Law, Status};
+use signorini_geometry::Vector;
+use signorini_mechanics::body::{Body, Order, PlaceError};
+use signorini_mechanics::interaction::{
+    Bodies, Interaction, NotItsHistory, Own, PENALTY, SCALE, Sticks, Target, penalty_factor,
+};
+use signorini_mechanics::{Curve, Enforcement, SiteResult};
+
+impl CurveContact {
+    /// One of the curves.
+    fn curve<'a>(&self, at: Bodies<'a>, side: usize) -> Result<Box<dyn Curve + 'a>, PlaceError> {
+        let body = at.bodies[self.bodies[side]].as_ref();
+        body.as_curve().ok_or_else(|| PlaceError::Unsuitable {
+            body: body.name().to_string(),
+            message: "contact between curves is for ropes, cables and beams".to_string(),
+        })
+    }
+
+    /// Does something with both curves in a state and their first unknowns.
+    fn with<T>(&self, at: Bodies<'_>, act: impl FnOnce([Searched<'_>; 2], [u32; 2]) -> T) -> Result<T, PlaceError> {
+        let curves = [self.curve(at, 0)?, self.curve(at, 1)?];
+        let configuration = |k: usize| &at.states[self.bodies[k]].configuration[..];
+        let sides = [0, 1].map(|k| Searched { curve: curves[k].as_ref(), configuration: configuration(k) });
+        Ok(act(sides, self.bodies.map(|b| at.first[b])))
+    }
+
+    /// What is kept of a contact: with the traction as a multiplier, or so that the slip is that of the traction.
+    fn kept(&self, c: &Touch, rubs: Option<&Tangential>, sides: [Searched<'_>; 2]) -> Kept {
+        let before = c.kept;
+        let mut kept = Kept {
+            key: c.key,
+            force: c.force,
+            traction: [0.0; 2],
+            normal: c.pair.normal,
+            stuck: Some(c.pair.stuck),
+            slip: [0.0; 2],
+        };
+        let Some(rubs) = rubs else { return kept };
+        let slipped = before.map_or([0.0; 2], |k| k.slip);
+        kept.slip = [0, 1].map(|a| slipped[a] + rubs.slipped[a]);
+        kept.traction = rubs.components;
+        if let Enforcement::Penalty { .. } = self.enforcement {
+            kept.stuck = match rubs.status {
+                Status::Stick => before.and_then(|k| k.stuck),
+                _ => {
+                    let feet = [0, 1].map(|k| {
+                        let CurvePoint { element, xi, .. } = c.points[k];
+                        sides[k].curve.foot(sides[k].configuration, element, xi, 1)
+                    });
+                    Some(followed(&c.pair, [&feet[0], &feet[1]], rubs.components, c.penalty))
+                }
+            };
+        }
+        kept
+    }
+}
+
+fn site_result(c: &Touch, x: Vector<3>, rubs: Option<&Tangential>, law: Option<&dyn Law>) -> SiteResult {
+    let mut out =
+        SiteResult { x, normal: c.pair.normal, weight: c.weight, gap: Some(c.pair.gap), ..SiteResult::default() };
+    if c.force == 0.0 {
+        return out;
+    }
+    let share = c.share.0 / c.weight;
+    out.pressure = -c.force * share;
+    out.status = rubs.map_or(Status::Slip, |r| r.status);
+    if let (Some(r), Some(law)) = (rubs, law) {
+        let axes = [c.pair.axial, c.pair.circumferential()];
+        // The traction of the law is that along the slip; on the slave acts its opposite.
+        out.friction = -(axes[0] * r.components[0] + axes[1] * r.components[1]) * share;
+        out.increment = axes[0] * r.slipped[0] + axes[1] * r.slipped[1];
+        out.utilisation = law.utilisation(r.components, -c.force);
+        let before = c.kept.map_or([0.0; 2], |k| k.slip);
+        out.slip = (before[0] + r.slipped[0]).hypot(before[1] + r.slipped[1]);
+    }
+    out
+}
+
+/// Adds a contact to residual and tangent.
+fn assemble(c: &Touch, rubs: Option<&Tangential>, out: &mut Target<'_>) {
+    let (pair, (share, slope)) = (&c.pair, c.share);
+    let n = pair.unknowns.len();
+    let force = if out.tangent.is_some() && c.geometric < 0.0 { c.trial } else { c.force };
+    for k in 0..n {
+        let unknown = pair.unknowns[k] as usize;
+        let pressed = share * force * pair.d_gap[k];
+        let rubbed = rubs.map_or(0.0, |r| share * r.forces[k]);
+        out.residual[unknown] += pressed + rubbed;
+        out.sizes[unknown] += pressed.abs() + rubbed.abs();
+    }
+    let Some(tangent) = &mut out.tangent else { return };
+    if force == 0.0 {
+        return;
+    }
+    let mut block = vec![0.0; n * n];
+    for k in 0..n {
+        for l in 0..n {
+            let pressed = c.penalty * pair.d_gap[k] * pair.d_gap[l] + c.geometric * pair.d2_gap[k * n + l];
+            let turned = (force * pair.d_gap[k] + rubs.map_or(0.0, |r| r.forces[k])) * slope * pair.d_parallel[l];
+            block[k * n + l] = share * pressed + turned;
+        }
+    }
+    tangent.add_block(&pair.unknowns, &block);
+    if let Some(r) = rubs {
+        let block: Vec<f64> = r.tangent.iter().map(|v| v * share).collect();
+        tangent.add_block(&r.unknowns, &block);
+    }
+}
+
+impl Interaction for CurveContact {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn bodies(&self) -> [usize; 2] {
+        self.bodies
+    }
+
+    fn law(&self) -> Option<&dyn Law> {
+        self.friction.as_deref()
+    }
+
+    fn stiffness(&self, bodies: &[Box<dyn Body>]) -> f64 {
+        let site = |e: usize| signorini_mechanics::Site { patch: e as u32, xi: [0.5, 0.0], weight: 1.0 };
+        let of = |body: &dyn Body| {
+            let count = body.as_curve().map_or(0, |c| c.elements());
+            (0..count).map(|e| body.site_stiffness(&site(e))).filter(|c| c.is_finite()).fold(0.0, f64::max)
+        };
+        self.bodies.iter().map(|b| of(bodies[*b].as_ref())).fold(0.0, f64::max)
+    }
+
+    fn prepare(&mut self, bodies: &[Box<dyn Body>], _: f64) {
+        let factor = if matches!(self.enforcement, Enforcement::Penalty { .. }) { PENALTY } else { SCALE };
+        let own = self.bodies.map(|b| bodies[b].as_ref());
+        if let [Some(slave), Some(master)] = own.map(|b| b.as_curve()) {
+            self.set_penalties(own, [slave.as_ref(), master.as_ref()], factor);
+        }
+    }
+
+    fn add_to(&self, at: Bodies<'_>, own: Own<'_>, out: &mut Target<'_>) -> Result<usize, PlaceError> {
+        let order = if out.tangent.is_some() { Order::Second } else { Order::First };
+        self.with(at, |sides, first| {
+            let (touches, lost) = self.touches(sides, first, order, &Predicted::list(own.prediction));
+            for c in &touches {
+                let rubs = self.tangential(c, sides, first, order);
+                assemble(c, rubs.as_ref(), out);
+            }
+            lost
+        })
+    }
+
+    fn results(&self, at: Bodies<'_>, own: Own<'_>) -> Result<Vec<SiteResult>, PlaceError> {
+        self.with(at, |sides, first| {
+            let (touches, _) = self.touches(sides, first, Order::First, &Predicted::list(own.prediction));
+            let result = |c: &Touch| {
+                let CurvePoint { element, xi, .. } = c.points[0];
+                let x = sides[0].curve.jet(sides[0].configuration, element, xi).x;
+                site_result(c, x, self.tangential(c, sides, first, Order::First).as_ref(), self.law())
+            };
+            touches.iter().map(result).collect()
+        })
+    }
+
+    fn prediction(&self) -> Vec<f64> {
+        let closed = self.history.iter().filter(|k| k.force < 0.0);
+        closed.flat_map(|k| Predicted { key: k.key, force: k.force }.numbers()).collect()
+    }
+
+    fn predict(&self, at: Bodies<'_>, own: Own<'_>, step: &[f64], share: f64) -> Vec<f64> {
+        let found =
+            self.with(at, |sides, first| self.touches(sides, first, Order::First, &Predicted::list(own.prediction)).0);
+        let touches = found.unwrap_or_default();
+        let predicted = |c: &Touch| {
+            // A new contact has no force that could turn.
+            if c.force == 0.0 && c.geometric == 0.0 {
+                return None;
+            }
+            let change: f64 = c.pair.unknowns.iter().zip(&c.pair.d_gap).map(|(u, d)| step[*u as usize] * d).sum();
+            let force = c.trial + c.penalty * share * change;
+            (force < 0.0).then_some(Predicted { key: c.key, force })
+        };
+        touches.iter().filter_map(predicted).flat_map(|p| p.numbers()).collect()
+    }
+
+    fn accept(&mut self, at: Bodies<'_>, _: Own<'_>) -> Result<(), PlaceError> {
+        self.history = self.with(at, |sides, first| {
+            let (touches, _) = self.touches(sides, first, Order::First, &[]);
+            let kept = |c: &Touch| self.kept(c, self.tangential(c, sides, first, Order::First).as_ref(), sides);
+            touches.iter().map(kept).collect()
+        })?;
+        Ok(())
+    }
+
+    fn unload(&mut self) {
+        self.history.iter_mut().for_each(|k| (k.force, k.traction) = (0.0, [0.0; 2]));
+    }
+
+    fn augment(&mut self, at: Bodies<'_>, _: Own<'_>, found: &[SiteResult], known: f64) -> Result<f64, PlaceError> {
+        match self.enforcement {
+            Enforcement::Penalty { wanted_penetration: Some(wanted) } => Ok(match penalty_factor(found, wanted) {
+                Some(factor) => {
+                    self.penalties.point *= factor;
+                    self.penalties.line *= factor;
+                    (factor - 1.0).abs()
+                }
+                None => 0.0,
+            }),
+            Enforcement::Penalty { .. } => Ok(0.0),
+            _ => {
+                let touches: Vec<(Touch, [f64; 2])> = self.with(at, |sides, first| {
+                    let (touches, _) = self.touches(sides, first, Order::First, &[]);
+                    let rubs = |c: &Touch| self.tangential(c, sides, first, Order::First);
+                    touches
+                        .into_iter()
+                        .map(|c| (rubs(&c).map_or([0.0; 2], |t| t.components), c))
+                        .map(|(t, c)| (c, t))
+                        .collect()
+                })?;
+                let most = touches.iter().map(|(c, _)| c.pressing() / c.weight).fold(0.0f64, f64::max);
+                let mut change = 0.0f64;
+                let mut history = Vec::with_capacity(touches.len());
+                for (c, traction) in &touches {
+                    let before = c.kept.map_or([0.0; 3], |k| [k.force, k.traction[0], k.traction[1]]);
+                    let now = [c.force, traction[0], traction[1]];
+                    let changed = (0..3).map(|i| (now[i] - before[i]).abs()).fold(0.0, f64::max);
+                    // Gaps are known to the rounding of positions only.
+                    let counts = changed > known * c.penalty && most > 0.0;
+                    change = change.max(if counts { changed * c.share.0 / (c.weight * most) } else { 0.0 });
+                    history.push(Kept {
+                        key: c.key,
+                        force: c.force,
+                        traction: *traction,
+                        normal: c.pair.normal,
+                        stuck: c.kept.and_then(|k| k.stuck),
+                        slip: c.kept.map_or([0.0; 2], |k| k.slip),
+                    });
+                }
+                self.history = history;
+                Ok(change)
+            }
+        }
+    }
+
+    fn simplify(&mut self) {
+        self.set_aside = self.friction.as_mut().map(|law| std::mem::replace(law, Box::new(Sticks)));
+    }
+
+    fn restate(&mut self) {
+        if let Some(law) = self.set_aside.take() {
+            self.friction = Some(law);
+        }
+    }
+
+    fn history(&self) -> [Vec<f64>; 2] {
+        [self.history.iter().flat_map(|k| k.numbers()).collect(), vec![self.penalties.point, self.penalties.line]]
+    }
+
+    fn restore(&mut self, [kept, penalties]: &[Vec<f64>; 2]) -> Result<(), NotItsHistory> {
+        let [point, line] = penalties[..] else { return Err(NotItsHistory { contact: self.name.clone() }) };
+        if !kept.len().is_multiple_of(Kept::NUMBERS) {
+            return Err(NotItsHistory { contact: self.name.clone() });
+        }
+        self.history = Kept::list(kept);
+        self.penalties = super::contact::Penalties { point, line };
+        Ok(())
+    }
+}

@@ -1,0 +1,250 @@
+//! Curves that touch, in systems: problems with known solutions.
+
+#[path = "common/bodies.rs"]
+mod bodies;
+
+use bodies::*;
+use signorini_geometry::Vector;
+use signorini_mechanics::body::Body;
+use signorini_mechanics::{BodyState, Enforcement, IncrementResult};
+use signorini_rope::curve_pair::contact::{Ends, Form, Penalties};
+use signorini_rope::quaternion;
+use signorini_rope::section::Stiffness;
+
+type V = Vector<3>;
+
+/// Two beams of which the upper one is pushed down onto the lower one.
+#[derive(Clone, Copy)]
+struct Crossing {
+    lengths: [f64; 2],
+    bending: [f64; 2],
+    /// Where they touch, along both.
+    at: [f64; 2],
+    push: f64,
+    gap: f64,
+    angle: f64,
+    radius: f64,
+    /// Elements of each, and points of each element.
+    cells: [usize; 2],
+    points: usize,
+    increments: usize,
+    enforcement: Enforcement,
+    stated: Option<Penalties>,
+    /// That of the angle, if none is given.
+    form: Option<Form>,
+}
+
+impl Crossing {
+    /// Force, deflection where it is pushed, most iterations of an increment.
+    fn solve(&self) -> (f64, f64, usize) {
+        let direction = V::new(self.angle.cos(), self.angle.sin(), 0.0);
+        let below = V::new(self.at[0], 0.0, -self.gap - 2.0 * self.radius) - direction * self.at[1];
+        let ends = [V::zeros(), V::x() * self.lengths[0]];
+        let stiff = 1e6;
+        let upper = beam("upper", &ends, self.cells[0], slender(self.bending[0], stiff), self.radius);
+        let lower_ends = [below, below + direction * self.lengths[1]];
+        let lower = beam("lower", &lower_ends, self.cells[1], slender(self.bending[1], stiff), self.radius);
+        let all: Vec<Box<dyn Body>> =
+            vec![Box::new(upper.with_contact_points(self.points)), Box::new(lower.with_contact_points(self.points))];
+        let mut system = system(all, |contact| {
+            contact.enforcement = self.enforcement;
+            contact.stated = self.stated;
+            contact.form = self.form.unwrap_or(contact.form);
+        });
+        system.supports = (0..2).map(|b| clamped(b, "start")).collect();
+        system.loads.push(pulled(0, "end", V::new(0.0, 0.0, -self.push)));
+        system.prepare().unwrap();
+        let (mut state, mut result) = (system.start(), IncrementResult::default());
+        let mut most = 0;
+        for k in 1..=self.increments {
+            let time = k as f64 / self.increments as f64;
+            (state, result) = system
+                .solve(&state, time, &mut |_, _| true)
+                .unwrap_or_else(|error| panic!("{}°, increment {k}: {error:?}", self.angle.to_degrees()));
+            system.accept(&state).unwrap();
+            most = most.max(result.iterations);
+        }
+        let end = &state.bodies[0].configuration[10 * self.cells[0]..];
+        (total(&result.sites[0]), -end[2], most)
+    }
+}
+
+fn rows() -> serde_json::Value {
+    serde_json::from_str(include_str!("data/crossing_cantilevers.json")).unwrap()
+}
+
+/// Cantilevers of the reference, with small loads.
+fn reference(small: f64) -> Crossing {
+    Crossing {
+        lengths: [10.0, 8.0],
+        bending: [200.0, 150.0],
+        at: [6.0, 5.0],
+        push: small,
+        gap: 0.2 * small,
+        angle: 0.5 * std::f64::consts::PI,
+        radius: 0.02,
+        cells: [10, 8],
+        points: 4,
+        increments: 1,
+        enforcement: Enforcement::Penalty { wanted_penetration: None },
+        stated: Some(Penalties { point: 1e6, line: 1e6 }),
+        form: None,
+    }
+}
+
+#[test]
+fn crossing_cantilevers_have_the_exact_force() {
+    let small = 1e-3;
+    let check = |case: Crossing, expected: f64, tip: f64, tolerance: f64| {
+        let (f, w, iterations) = case.solve();
+        let (f, w, angle) = (f / small, w / small, case.angle.to_degrees());
+        println!("{angle:.1}°: F {f:.6} ({expected:.6}), tip {w:.6} ({tip:.6}), {iterations} iterations");
+        assert!((f - expected).abs() < tolerance * expected.max(1.0) && (w - tip).abs() < tolerance * tip.max(1.0));
+        assert!(iterations <= 12);
+    };
+    for row in rows()["crossing_cantilevers"]["rows"].as_array().unwrap() {
+        let n = |key: &str| row[key].as_f64().unwrap();
+        let case = Crossing {
+            lengths: [n("L1"), n("L2")],
+            bending: [n("EI1"), n("EI2")],
+            at: [n("a1"), n("a2")],
+            push: n("P_tip") * small,
+            gap: n("g0") * small,
+            angle: n("crossing_angle_deg").to_radians(),
+            cells: [n("L1") as usize, n("L2") as usize],
+            ..reference(small)
+        };
+        check(case, row["penalty_corrected"]["1000000.0"].as_f64().unwrap(), n("w1_tip"), 1e-4);
+        // Without a penalty in the answer. End on end, which of both ends is passed by is a matter of rounding.
+        if n("a1") == n("L1") {
+            continue;
+        }
+        let exact = Crossing { enforcement: Enforcement::AugmentedLagrangian, stated: None, ..case };
+        check(exact, n("F_contact"), n("w1_tip"), 1e-4);
+    }
+    // Another one, by the formula.
+    let (a_1, a_2, g, p) = (7.0f64, 4.0f64, 0.1, 1.7);
+    let flexible = [a_1.powi(3) / 600.0, a_2.powi(3) / 450.0];
+    let f = (p * a_1 * a_1 * (30.0 - a_1) / 1200.0 - g) / (flexible[0] + flexible[1] + 1e-6);
+    let tip = p * 1000.0 / 600.0 - f * a_1 * a_1 * (30.0 - a_1) / 1200.0;
+    let angle = 60f64.to_radians();
+    check(Crossing { at: [a_1, a_2], push: p * small, gap: g * small, angle, ..reference(small) }, f, tip, 1e-4);
+}
+
+#[test]
+fn ends_bear_parallel_cantilevers() {
+    // A leaf spring on a shorter one: the exact reaction is a force at the end of the shorter.
+    let small = 1e-3;
+    let (l_1, l_2) = (10.0f64, 8.0f64);
+    let expected = l_2 * l_2 * (3.0 * l_1 - l_2) / (6.0 * 200.0) / (l_2.powi(3) / 3.0 * (2.0 / 200.0) + 1e-6);
+    let case = Crossing {
+        bending: [200.0; 2],
+        at: [8.0, 8.0],
+        gap: 0.0,
+        angle: 0.0,
+        radius: 0.05,
+        form: Some(Form::Point),
+        ..reference(small)
+    };
+    let (f, tip, iterations) = case.solve();
+    println!("parallel: F {:.6} ({expected:.6}), tip {:.5} (0.86), {iterations} iterations", f / small, tip / small);
+    assert!((f / small - expected).abs() < 1e-4 && (tip / small - 0.86).abs() < 1e-4);
+}
+
+#[test]
+fn the_angle_goes_from_crossing_to_parallel_without_a_jump() {
+    let case = Crossing { stated: None, ..reference(1e-3) };
+    let at = |angle: f64, form: Option<Form>| {
+        let (f, _, iterations) = Crossing { angle: angle.to_radians(), form, ..case }.solve();
+        (f / case.push, iterations)
+    };
+    let mut before: Option<f64> = None;
+    let (mut worst, mut most) = ((0.0f64, 0.0), 0);
+    for half_degrees in (1..=180).rev() {
+        let angle = 0.5 * f64::from(half_degrees);
+        let (f, iterations) = at(angle, None);
+        // Where slopes agree is ever farther from where axes cross: the last steps move it by more and more.
+        let expected = if angle < 2.0 { at(angle, Some(Form::Point)).0 } else { before.unwrap_or(f) };
+        let jump = (f / expected - 1.0).abs();
+        if angle < 3.0 {
+            println!("{angle}°: F {f:.6}, by points {:.6}, {iterations} iterations", at(angle, Some(Form::Point)).0);
+        }
+        worst = if jump > worst.0 { (jump, angle) } else { worst };
+        most = if angle > 0.5 { most.max(iterations) } else { most };
+        before = Some(f);
+    }
+    println!("largest jump {:.1e} at {}°, most {most} iterations", worst.0, worst.1);
+    assert!(worst.0 < 5e-3 && most <= 8);
+}
+
+/// Two parallel tubes that touch, turned about their common axis at one end.
+#[test]
+fn two_tubes_are_twisted_by_a_full_turn() {
+    let (radius, length, cells) = (0.1, 4.0, 10);
+    let stiffness = Stiffness { axial: 400.0, shear: [160.0; 2], torsion: 0.8, bending: [1.0; 2] };
+    let tube =
+        |name: &str, y: f64| beam(name, &[V::new(0.0, y, 0.0), V::new(length, y, 0.0)], cells, stiffness, radius);
+    let tubes = [tube("first", radius), tube("second", -radius)];
+    let mut system = system(tubes.iter().map(|b| Box::new(b.clone()) as Box<dyn Body>).collect(), |contact| {
+        contact.form = Form::Line;
+        contact.ends = Ends::PassBy;
+        contact.stated = Some(Penalties { point: 0.0, line: 2e3 });
+        contact.reach = 0.02;
+    });
+    let increment = 15f64.to_radians();
+    let turned =
+        move |x: &V, t: f64| quaternion::rotation(&quaternion::exponential(&(V::x() * (increment * t)))) * x - x;
+    for b in 0..2 {
+        system.supports.push(clamped(b, "start"));
+        let displacement = [0, 1, 2].map(|i| field(move |x: &V, t| turned(x, t)[i]));
+        let rotation = [field(move |_: &V, t| increment * t), at_zero(), at_zero()];
+        system.supports.push(held(b, "end", displacement, rotation));
+    }
+    system.prepare().unwrap();
+    let mut state = system.start();
+    let mut before = (0.0, 0.0);
+    for step in 1..=24 {
+        // Every section turns by its share of the angle.
+        let helical = |b: usize, s: &BodyState| {
+            tubes[b].moved(s, |x| {
+                let q = quaternion::exponential(&(V::x() * (increment * x[0] / length)));
+                let moved = quaternion::rotation(&q) * x;
+                (moved, q, V::x().cross(&moved) * (increment / length))
+            })
+        };
+        let mut start = state.clone();
+        start.bodies = (0..2).map(|b| helical(b, &state.bodies[b])).collect();
+        let (found, result) = system.solve(&start, f64::from(step), &mut |_, _| true).unwrap();
+        system.accept(&found).unwrap();
+        state = found;
+        let sites = &result.sites[0];
+        let force = total(sites);
+        let active = sites.iter().filter(|s| s.pressure > 0.0).count();
+        // Forces of the supports at the moved ends, and their moments.
+        let torque: f64 = (0..2)
+            .map(|b| {
+                let [f, m] = result.support_forces[2 * b + 1];
+                let x = tubes[b].position(&state.bodies[b], cells);
+                x.cross(&f)[0] + m[0]
+            })
+            .sum();
+        if step % 6 == 0 {
+            println!(
+                "{}°: force {force:.4}, torque {torque:.4}, {active} active, {} iterations, imbalance {:.1e}",
+                15 * step,
+                result.iterations,
+                result.imbalance
+            );
+        }
+        assert!(result.iterations <= 10 && result.imbalance < 1e-9, "{:?}", result.history);
+        assert!(force >= before.0 && torque.abs() > before.1);
+        before = (force, torque.abs());
+        let reference = [(12, 0.7485, 1.3033), (24, 7.519, 2.7674)];
+        for (at, f, t) in reference {
+            if step == at {
+                assert!((force / f - 1.0).abs() < 1e-2 && (torque.abs() / t - 1.0).abs() < 2e-3, "{force} {torque}");
+                assert!(step == 12 || active == 36, "{active}");
+            }
+        }
+    }
+}

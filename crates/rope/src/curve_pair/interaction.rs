@@ -7,9 +7,7 @@ use super::search::{CurvePoint, Searched};
 use signorini_contact::{Law, Status};
 use signorini_geometry::Vector;
 use signorini_mechanics::body::{Body, Order, PlaceError};
-use signorini_mechanics::interaction::{
-    Bodies, Interaction, NotItsHistory, Own, PENALTY, SCALE, Sticks, Target, penalty_factor,
-};
+use signorini_mechanics::interaction::{Bodies, Interaction, NotItsHistory, Own, Sticks, Target, penalty_factor};
 use signorini_mechanics::{Curve, Enforcement, SiteResult};
 
 impl CurveContact {
@@ -136,10 +134,9 @@ impl Interaction for CurveContact {
     }
 
     fn prepare(&mut self, bodies: &[Box<dyn Body>], _: f64) {
-        let factor = if matches!(self.enforcement, Enforcement::Penalty { .. }) { PENALTY } else { SCALE };
         let own = self.bodies.map(|b| bodies[b].as_ref());
         if let [Some(slave), Some(master)] = own.map(|b| b.as_curve()) {
-            self.set_penalties(own, [slave.as_ref(), master.as_ref()], factor);
+            self.set_penalties(own, [slave.as_ref(), master.as_ref()]);
         }
     }
 

@@ -231,6 +231,11 @@ impl Contact {
         for i in (0..2).filter(|i| !moves[*i]) {
             projected.derivative.iter_mut().for_each(|row| row[i + 1] = 0.0);
         }
+        let [p, t1, t2] = projected.traction;
+        if projected.status == Status::Stick && law.utilisation([t1, t2], p) > 1.0 - AT_LIMIT {
+            let beyond = law.project([p, (1.0 + 2.0 * AT_LIMIT) * t1, (1.0 + 2.0 * AT_LIMIT) * t2]);
+            (projected.derivative, projected.status) = (beyond.derivative, beyond.status);
+        }
         Traction { projected, axes, d_axes, slip }
     }
 
@@ -420,6 +425,11 @@ impl Contact {
 /// The part of its scale by which a multiplier resists change within a Newton step, in the tangent alone: what several
 /// points of a stiff body carry together need not be unique.
 const UNDETERMINED: f64 = 1e-6;
+
+/// Share of the limit of friction within which a site is at it, as what slipped is when the next increment starts. Either
+/// derivative serves at a switch; with that of slip a slip zone does not start each increment stuck, to be freed site by
+/// site. More than the tolerance of Newton's method, which ends that near to the limit.
+const AT_LIMIT: f64 = 1e-8;
 
 /// Sine of the angle to the normal below which the projection of an axis tells no direction any more.
 const STEEP: f64 = 1e-8;

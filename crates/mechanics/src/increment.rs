@@ -179,9 +179,10 @@ impl System {
         for (body, first) in self.bodies.iter().zip(first) {
             body.spins().iter().flatten().for_each(|s| is_spin[(first + s) as usize] = true);
         }
-        let mut row_scale = Vec::new();
+        let mut rows = Vec::new();
         for contact in self.contacts.iter().filter(|c| c.multipliers() > 0) {
-            row_scale.extend(contact.stiffness.iter().flat_map(|c| vec![*c; contact.components()]));
+            let list = contact.stiffness.iter().zip(contact.sites());
+            rows.extend(list.flat_map(|(c, site)| vec![[*c, site.weight]; contact.components()]));
         }
         let mut problem = Problem {
             system: self,
@@ -190,7 +191,9 @@ impl System {
             springs: 0.0,
             held_back: None,
             is_spin,
-            row_scale,
+            rows,
+            stiffness: Vec::new(),
+            first: None,
             rounding: [0.0; 2],
             worst: 0,
         };

@@ -10,6 +10,7 @@ use signorini_mechanics::*;
 use signorini_solid::{Elastic, SolidBody, Space, StressLaw};
 use std::sync::Arc;
 
+mod blocks;
 mod bodies;
 mod contacts;
 mod groove;

@@ -4,7 +4,7 @@
 //! `λ` (pressure, and two components of friction in the axes `E_α`):
 //!
 //! - trial `ζ = (λ_N - c g, λ_α + c E_α·e)`, traction `(p, T_α) = Π(ζ)` by the law;
-//! - virtual work `w (-p δg + T_α E_α·S)`, with the slip variation `S`;
+//! - virtual work `w (-p δo + T_α E_α·S)`, with the opening `o`, of which the gap is the size, and the slip variation `S`;
 //! - its derivative, with `ζ` differentiated through gap, slip, axes and multiplier.
 //!
 //! | enforcement | `λ` |
@@ -194,7 +194,12 @@ impl Contact {
         let site = &self.sites[k];
         let placed = sides.slave.0.placed(sides.slave.1, site);
         let except = self.is_within().then_some(site);
-        let met: Option<Met> = master.nearest(&placed.x, self.reach + placed.radius, except);
+        let met: Option<Met> = match &placed.averaged {
+            Some(normal) if master.is_faceted() && except.is_none() => {
+                master.cut(&placed.x, &normal.vector, self.reach)
+            }
+            _ => master.nearest(&placed.x, self.reach + placed.radius, except),
+        };
         let Some(met) = met else { return (placed, None) };
         let stuck = self.memory[k].stuck;
         let anchor: Option<(Stuck, Anchor)> =
@@ -283,9 +288,9 @@ impl Contact {
             let n = pair.unknowns.len();
             for (a, &unknown) in pair.unknowns.iter().enumerate() {
                 let rubs = if parts == 3 { w * on_slave.dot(&pair.slip[a]) } else { 0.0 };
-                let force = -w * p * pair.d_gap[a] + rubs;
+                let force = -w * p * pair.opening[a] + rubs;
                 out.residual[unknown as usize] += force;
-                out.sizes[unknown as usize] += (w * p * pair.d_gap[a]).abs() + rubs.abs();
+                out.sizes[unknown as usize] += (w * p * pair.opening[a]).abs() + rubs.abs();
             }
             if multiplier {
                 for i in 0..parts {
@@ -313,7 +318,7 @@ impl Contact {
             let mut block = vec![0.0; n * n];
             for a in 0..n {
                 for b in 0..n {
-                    let mut v = -p * pair.d2_gap[a * n + b] - d_traction[b][0] * pair.d_gap[a];
+                    let mut v = -p * pair.d_opening[a * n + b] - d_traction[b][0] * pair.opening[a];
                     if parts == 3 {
                         v += d_traction[b][1] * along(a, 0) + d_traction[b][2] * along(a, 1);
                         let turned = found.d_axes[b][0] * t1 + found.d_axes[b][1] * t2;
@@ -326,7 +331,7 @@ impl Contact {
             if multiplier {
                 for i in 0..parts {
                     for (a, &unknown) in pair.unknowns.iter().enumerate() {
-                        let mut column = -derivative[0][i] * pair.d_gap[a];
+                        let mut column = -derivative[0][i] * pair.opening[a];
                         if parts == 3 {
                             column += derivative[1][i] * along(a, 0) + derivative[2][i] * along(a, 1);
                         }

@@ -50,7 +50,8 @@ impl Problem<'_> {
         self.begin(start)?;
         let predicts = start.bodies.iter().any(|b| !b.internal.is_empty());
         let patience = std::env::var("PATIENCE").map_or(12, |p| p.parse().unwrap());
-        let search = if predicts || std::env::var("WATCH").is_ok() { Search::Watchdog { patience } } else { Search::Monotone };
+        let search =
+            if predicts || std::env::var("WATCH").is_ok() { Search::Watchdog { patience } } else { Search::Monotone };
         let options = Newton { most_iterations: MOST_ITERATIONS, search };
         newton(self, start, &options, report).map_err(|failure| match failure {
             NewtonFailure::NotConverged { history, .. } => {
@@ -167,7 +168,9 @@ impl Equations for Problem<'_> {
         }
         self.worst = worst.1;
         let merit = self.merit(&out, &held);
-        if std::env::var("TELL2").is_ok() { eprintln!("      merit {merit:.2e} error {:.2e}", worst.0); }
+        if std::env::var("TELL2").is_ok() {
+            eprintln!("      merit {merit:.2e} error {:.2e}", worst.0);
+        }
         Ok(Measured { merit, error: worst.0 })
     }
 

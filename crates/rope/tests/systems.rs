@@ -58,8 +58,11 @@ fn run(system: &mut System, times: &[f64]) -> (SystemState, Vec<IncrementResult>
             history.push(r);
             true
         });
-        let (next, result) = found.unwrap_or_else(|e| panic!("at {time} after {}: {e}\n{e:?}\n{}", told(&results), short(&history)));
-        if std::env::var("TELL").is_ok() { println!("{time}: {}", short(&history)); }
+        let (next, result) =
+            found.unwrap_or_else(|e| panic!("at {time} after {}: {e}\n{e:?}\n{}", told(&results), short(&history)));
+        if std::env::var("TELL").is_ok() {
+            println!("{time}: {}", short(&history));
+        }
         system.accept(&next).unwrap();
         state = next;
         results.push(result);

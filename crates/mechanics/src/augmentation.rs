@@ -1,7 +1,7 @@
 //! What enforces contacts about Newton's method: outer iterations of augmented Lagrangians and of penalties that are to
 //! leave a given penetration, and the state from which multipliers start.
 
-use crate::contact::{Contact, Enforcement};
+use crate::contact::Enforcement;
 use crate::equilibrium::ROUNDING;
 use crate::increment::{IncrementError, IncrementResult};
 use crate::system::{AssemblyError, System, SystemState, sides};
@@ -27,39 +27,28 @@ impl Law for Sticks {
 }
 
 impl System {
-    /// A state near the one that is looked for, with penalties in place of multipliers, which take the tractions that these
-    /// find, and with all that touches sticking: while nothing carries yet, nothing would rub. None where there is no such
-    /// state either.
+    /// A state near the one that is looked for, with contacts that give way as by penalties, and with all that touches
+    /// sticking: while nothing carries yet, nothing would rub. None where there is no such state either.
     pub(crate) fn by_penalties(
         &mut self,
         start: &SystemState,
         time: f64,
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Option<SystemState> {
-        let by_multipliers: Vec<bool> = self.contacts.iter().map(|c| c.multipliers() > 0).collect();
-        let switch = |system: &mut System, to: Enforcement| {
-            let list = system.contacts.iter_mut().zip(&by_multipliers);
-            list.filter(|(_, own)| **own).for_each(|(contact, _)| contact.enforcement = to);
-        };
-        switch(self, Enforcement::Penalty { wanted_penetration: None });
-        let sticking =
-            |contact: &mut Contact| contact.friction.as_mut().map(|law| std::mem::replace(law, Box::new(Sticks)));
-        let laws: Vec<_> = self.contacts.iter_mut().map(sticking).collect();
-        let from = SystemState { multipliers: Vec::new(), ..start.clone() };
-        let found = self.inner(&from, time, report).ok();
-        let tractions = found.and_then(|found| {
-            let (first, _) = self.numbering();
-            let mut list = Vec::new();
-            for contact in self.contacts.iter().zip(&by_multipliers).filter(|(_, own)| **own).map(|(c, _)| c) {
-                let sites = contact.results(&sides(&self.bodies, contact, &found.state, &first), &[]).ok()?;
-                list.extend(sites.iter().flat_map(|(_, t)| t[..contact.components()].to_vec()));
-            }
-            Some((found.state, list))
-        });
-        switch(self, Enforcement::Multiplier);
-        self.contacts.iter_mut().zip(laws).for_each(|(contact, law)| contact.friction = law);
-        let (state, multipliers) = tractions?;
-        Some(SystemState { multipliers, ..state })
+        let penalty = Enforcement::Penalty { wanted_penetration: None };
+        let kept: Vec<_> = (self.contacts.iter_mut())
+            .map(|contact| {
+                let law = contact.friction.as_mut().map(|law| std::mem::replace(law, Box::new(Sticks)));
+                let kept = (law, contact.enforcement, contact.softness);
+                (contact.enforcement, contact.softness) = (penalty, penalty.softness());
+                kept
+            })
+            .collect();
+        let found = self.inner(start, time, report).ok();
+        for (contact, (law, enforcement, softness)) in self.contacts.iter_mut().zip(kept) {
+            (contact.friction, contact.enforcement, contact.softness) = (law, enforcement, softness);
+        }
+        found.map(|found| found.state)
     }
 
     /// Sets multipliers to the tractions found, penalties to what leaves the penetration that is wanted; the largest
@@ -68,11 +57,14 @@ impl System {
         let (first, _) = self.numbering();
         let size = self.size();
         let mut change = 0.0f64;
+        let mut own = 0;
         for (contact, sites) in self.contacts.iter_mut().zip(&result.sites) {
+            let lambda = &state.multipliers[own..own + contact.multipliers()];
+            own += lambda.len();
             match contact.enforcement {
                 Enforcement::AugmentedLagrangian => {
                     let sides = sides(&self.bodies, contact, state, &first);
-                    let found = contact.results(&sides, &[]).map_err(AssemblyError::from)?;
+                    let found = contact.results(&sides, lambda).map_err(AssemblyError::from)?;
                     let most = found.iter().map(|f| f.1[0]).fold(0.0f64, f64::max);
                     let list = contact.memory.iter_mut().zip(&contact.stiffness).zip(found);
                     for ((memory, stiffness), (_, traction)) in list {

@@ -90,7 +90,8 @@ impl Problem<'_> {
                     continue;
                 }
                 let moved = matrix.multiply(&x);
-                if moved[..count].iter().all(|f| f.abs() <= 1e-10 * largest * size) {
+                let rows = self.rows.iter().zip(&moved[count..]).map(|([c, _], f)| f * c);
+                if moved[..count].iter().copied().chain(rows).all(|f| f.abs() <= 1e-10 * largest * size) {
                     let axis = ["x", "y", "z"][mode % 3];
                     let motion =
                         if mode < 3 { format!("moving along {axis}") } else { format!("turning about {axis}") };

@@ -4,7 +4,7 @@
 //! About both run the outer iterations of `augmentation`.
 
 use crate::body::Order;
-use crate::contact::SiteResult;
+use crate::contact::{Contact, Enforcement, SiteResult};
 use crate::equilibrium::Problem;
 use crate::system::{AssemblyError, System, SystemState, sides};
 use signorini_geometry::Vector;
@@ -94,6 +94,7 @@ impl System {
         for (body, state) in self.bodies.iter().zip(&mut start.bodies) {
             body.prescribe(time, state);
         }
+        start.multipliers = self.contacts.iter().flat_map(Contact::remembered).collect();
         let kept: Vec<_> = self.contacts.iter().map(|c| (c.memory.clone(), c.stiffness.clone())).collect();
         let found = self.outer(&start, time, report);
         if found.is_err() {
@@ -137,11 +138,12 @@ impl System {
                 report(done, r)
             };
             // Without a guess which sites carry, multipliers start from what penalties find.
-            let guessed = state.multipliers.is_empty() || state.multipliers.iter().any(|m| *m != 0.0);
+            let exact = self.contacts.iter().any(|c| c.enforcement == Enforcement::Multiplier);
+            let guessed = !exact || state.multipliers.iter().any(|m| *m != 0.0);
             let direct = if guessed { Some(self.inner(&state, time, &mut counted)) } else { None };
             let found = match direct {
                 Some(Ok(found)) => found,
-                Some(Err(error)) if state.multipliers.is_empty() || error == IncrementError::Interrupted => {
+                Some(Err(error)) if self.contacts.is_empty() || error == IncrementError::Interrupted => {
                     return Err(error);
                 }
                 failed => {
@@ -180,7 +182,7 @@ impl System {
             body.spins().iter().flatten().for_each(|s| is_spin[(first + s) as usize] = true);
         }
         let mut rows = Vec::new();
-        for contact in self.contacts.iter().filter(|c| c.multipliers() > 0) {
+        for contact in &self.contacts {
             let list = contact.stiffness.iter().zip(contact.sites());
             rows.extend(list.flat_map(|(c, site)| vec![[*c, site.weight]; contact.components()]));
         }

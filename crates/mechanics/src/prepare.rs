@@ -1,12 +1,9 @@
 //! What contacts need before the first increment: scales of penalties, and where slips count from.
 
-use crate::contact::Enforcement;
 use crate::increment::IncrementError;
 use crate::system::System;
 
-/// Penalty in stiffnesses of the bodies.
-const PENALTY: f64 = 100.0;
-/// The same where it is only a scale: of augmented Lagrangians and multipliers.
+/// The scale of trial tractions in stiffnesses of the bodies.
 const SCALE: f64 = 10.0;
 
 impl System {
@@ -32,13 +29,9 @@ impl System {
         // Between rigid bodies any scale serves; that of one force per length is neither large nor small.
         let scale = if scale > 0.0 { scale } else { 1.0 / self.size().max(f64::MIN_POSITIVE) };
         for contact in &mut self.contacts {
-            let factor = match contact.enforcement {
-                Enforcement::Penalty { .. } => PENALTY,
-                _ => SCALE,
-            };
             let weights: Vec<f64> = contact.sites().iter().map(|s| s.weight).collect();
             for (c, w) in contact.stiffness.iter_mut().zip(weights) {
-                *c = factor * if c.is_finite() { *c } else { scale / w };
+                *c = SCALE * if c.is_finite() { *c } else { scale / w };
             }
         }
         self.leave_out_held_sites()?;

@@ -26,6 +26,12 @@ impl Law for Sticks {
     }
 }
 
+/// The part of a change that the next outer iteration may leave.
+const SLOW: f64 = 0.25;
+/// The part of its compliance that a contact keeps then, and the least.
+const HARDER: f64 = 0.1;
+const HARDEST: f64 = 1e-6;
+
 impl System {
     /// A state near the one that is looked for, with contacts that give way as by penalties, and with all that touches
     /// sticking: while nothing carries yet, nothing would rub. None where there is no such state either.
@@ -53,7 +59,12 @@ impl System {
 
     /// Sets multipliers to the tractions found, penalties to what leaves the penetration that is wanted; the largest
     /// relative change.
-    pub(crate) fn augment(&mut self, state: &SystemState, result: &IncrementResult) -> Result<f64, IncrementError> {
+    pub(crate) fn augment(
+        &mut self,
+        state: &SystemState,
+        result: &IncrementResult,
+        before: Option<f64>,
+    ) -> Result<f64, IncrementError> {
         let (first, _) = self.numbering();
         let size = self.size();
         let mut change = 0.0f64;
@@ -73,6 +84,11 @@ impl System {
                         let known = ROUNDING * size * stiffness;
                         change = change.max(if changed > known { changed / most } else { 0.0 });
                         memory.traction = traction;
+                    }
+                    // Where a step leaves more than a quarter of the error, the next ones are to leave less (Bertsekas 1982):
+                    // what enforces has tractions as unknowns, so that Newton's method suffers no harm.
+                    if before.is_some_and(|before| change > SLOW * before) {
+                        contact.softness = (HARDER * contact.softness).max(HARDEST);
                     }
                 }
                 Enforcement::Penalty { wanted_penetration: Some(wanted) } => {

@@ -97,6 +97,7 @@ impl System {
         start.multipliers = self.contacts.iter().flat_map(Contact::remembered).collect();
         let kept: Vec<_> = self.contacts.iter().map(|c| (c.memory.clone(), c.stiffness.clone())).collect();
         let found = self.outer(&start, time, report);
+        self.contacts.iter_mut().for_each(|c| c.softness = c.enforcement.softness());
         if found.is_err() {
             for (contact, (memory, stiffness)) in self.contacts.iter_mut().zip(kept) {
                 (contact.memory, contact.stiffness) = (memory, stiffness);
@@ -162,7 +163,9 @@ impl System {
             if result.imbalance.is_nan() || result.imbalance > UNBALANCED {
                 return Err(IncrementError::NotConverged { history: result.history, worst: None });
             }
-            let change = self.augment(&state, &result)?;
+                eprintln!("outer {iterations} {:?}", changes.last());
+            }
+            let change = self.augment(&state, &result, changes.last().copied())?;
             if change <= AUGMENTED {
                 return Ok((state, result));
             }

@@ -3,9 +3,6 @@
 use crate::increment::IncrementError;
 use crate::system::System;
 
-/// The scale of trial tractions in stiffnesses of the bodies.
-const SCALE: f64 = 10.0;
-
 impl System {
     /// Prepares the contacts: scales of penalties, and where slips count from. To be called once, when all bodies, loads and
     /// contacts are there.
@@ -31,7 +28,7 @@ impl System {
         for contact in &mut self.contacts {
             let weights: Vec<f64> = contact.sites().iter().map(|s| s.weight).collect();
             for (c, w) in contact.stiffness.iter_mut().zip(weights) {
-                *c = SCALE * if c.is_finite() { *c } else { scale / w };
+                *c = if c.is_finite() { *c } else { scale / w };
             }
         }
         self.leave_out_held_sites()?;

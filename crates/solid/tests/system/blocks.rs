@@ -52,8 +52,11 @@ fn one_slides_over_the_facets_of_the_other() {
             let found = std::panic::catch_unwind(|| slid([[16, 4], [5, 3]], how, mu, (1.5, 12)));
             match found {
                 Ok((forces, results)) => {
-                    println!("{how:?} {mu:?}: {}", told(&results));
-                    forces.iter().skip(3).for_each(|f| println!("  {:.5} {:.5}", f[0], f[1]));
+                    println!(
+                        "{how:?} {mu:?}: {:?} mean {:.2}",
+                        results.iter().map(|r| r.iterations).collect::<Vec<_>>(),
+                        results.iter().skip(4).map(|r| r.iterations as f64).sum::<f64>() / 12.0
+                    );
                 }
                 Err(_) => println!("{how:?} {mu:?}: stopped"),
             }

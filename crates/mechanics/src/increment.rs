@@ -163,8 +163,6 @@ impl System {
             if result.imbalance.is_nan() || result.imbalance > UNBALANCED {
                 return Err(IncrementError::NotConverged { history: result.history, worst: None });
             }
-                eprintln!("outer {iterations} {:?}", changes.last());
-            }
             let change = self.augment(&state, &result, changes.last().copied())?;
             if change <= AUGMENTED {
                 return Ok((state, result));

@@ -450,9 +450,9 @@ impl Contact {
     }
 }
 
-/// The scale of trials, which is the stiffness of the bodies, over a penalty: what a contact that carries gives way is a
-/// hundredth of what they do.
-const SOFTNESS: f64 = 1e-2;
+/// The scale of trials over a penalty of a hundred times the stiffness of the bodies: what a contact that carries gives way
+/// is a hundredth of what they do.
+const SOFTNESS: f64 = crate::prepare::WAVE / 100.0;
 
 /// The part of its scale by which a multiplier resists change within a Newton step, in the tangent alone: what several
 /// points of a stiff body carry together need not be unique.

@@ -74,6 +74,8 @@ pub struct Contact {
     pub(crate) softness: f64,
     /// What the sites remember of the last state.
     pub(crate) memory: Vec<SiteMemory>,
+    /// Times of the last state and of the one that is looked for.
+    pub(crate) times: [f64; 2],
 }
 
 /// What a site remembers of the last state.
@@ -170,6 +172,7 @@ impl Contact {
             sites,
             stiffness,
             softness: enforcement.softness(),
+            times: [0.0; 2],
         })
     }
 
@@ -257,13 +260,15 @@ impl Contact {
         let most = pair.slip.iter().map(|s| s.norm()).fold(0.0, f64::max);
         let moves = axes.map(|e| pair.slip.iter().any(|s| e.dot(s).abs() > STEEP * most));
         let trial = |i: usize| if moves[i] { lambda[i + 1] + c * slip[i] } else { 0.0 };
-        let mut projected = law.project([lambda[0] - c * pair.gap, trial(0), trial(1)]);
+        let per_velocity = c * (self.times[1] - self.times[0]);
+        let project = |trial: [f64; 3]| law.project_in_time(trial, per_velocity);
+        let mut projected = project([lambda[0] - c * pair.gap, trial(0), trial(1)]);
         for i in (0..2).filter(|i| !moves[*i]) {
             projected.derivative.iter_mut().for_each(|row| row[i + 1] = 0.0);
         }
         let [p, t1, t2] = projected.traction;
         if projected.status == Status::Stick && law.utilisation([t1, t2], p) > 1.0 - AT_LIMIT {
-            let beyond = law.project([p, (1.0 + 2.0 * AT_LIMIT) * t1, (1.0 + 2.0 * AT_LIMIT) * t2]);
+            let beyond = project([p, (1.0 + 2.0 * AT_LIMIT) * t1, (1.0 + 2.0 * AT_LIMIT) * t2]);
             (projected.derivative, projected.status) = (beyond.derivative, beyond.status);
         }
         Traction { projected, axes, d_axes, slip }
@@ -446,6 +451,7 @@ impl Contact {
             memory.push(own);
         }
         self.memory = memory;
+        self.times[0] = self.times[1];
         Ok(())
     }
 }

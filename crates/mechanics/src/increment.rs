@@ -96,6 +96,7 @@ impl System {
         }
         start.multipliers = self.contacts.iter().flat_map(Contact::remembered).collect();
         let kept: Vec<_> = self.contacts.iter().map(|c| (c.memory.clone(), c.stiffness.clone())).collect();
+        self.contacts.iter_mut().for_each(|c| c.times[1] = time);
         let found = self.outer(&start, time, report);
         self.contacts.iter_mut().for_each(|c| c.softness = c.enforcement.softness());
         if found.is_err() {

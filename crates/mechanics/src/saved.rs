@@ -13,7 +13,7 @@ pub struct Saved {
     pub bodies: Vec<[Vec<f64>; 2]>,
     pub multipliers: Vec<f64>,
     pub reactions: Vec<f64>,
-    /// Of each contact the memories of its sites, one after the other, and the scales of its sites.
+    /// Of each contact the memories of its sites, one after the other, and the scales of its sites with the time.
     pub contacts: Vec<[Vec<f64>; 2]>,
 }
 
@@ -55,7 +55,10 @@ impl System {
             multipliers: state.multipliers.clone(),
             reactions: state.reactions.clone(),
             contacts: (self.contacts.iter())
-                .map(|c| [c.memory.iter().flat_map(numbers).collect(), c.stiffness.clone()])
+                .map(|c| {
+                    let scales = c.stiffness.iter().copied().chain([c.times[0]]).collect();
+                    [c.memory.iter().flat_map(numbers).collect(), scales]
+                })
                 .collect(),
         }
     }
@@ -69,16 +72,18 @@ impl System {
             && saved.multipliers.len() == state.multipliers.len()
             && saved.contacts.len() == self.contacts.len()
             && (saved.contacts.iter().zip(&self.contacts))
-                .all(|(s, c)| s[0].len() == NUMBERS * c.memory.len() && s[1].len() == c.stiffness.len());
+                .all(|(s, c)| s[0].len() == NUMBERS * c.memory.len() && s[1].len() == c.stiffness.len() + 1);
         if !fits {
             return None;
         }
         let body = |[configuration, internal]: [Vec<f64>; 2]| BodyState { configuration, internal };
         state.bodies = saved.bodies.into_iter().map(body).collect();
         (state.multipliers, state.reactions) = (saved.multipliers, saved.reactions);
-        for (contact, [sites, stiffness]) in self.contacts.iter_mut().zip(saved.contacts) {
+        for (contact, [sites, scales]) in self.contacts.iter_mut().zip(saved.contacts) {
             contact.memory = sites.chunks(NUMBERS).map(memory).collect();
-            contact.stiffness = stiffness;
+            let count = contact.stiffness.len();
+            contact.stiffness.copy_from_slice(&scales[..count]);
+            contact.times = [scales[count]; 2];
         }
         Some(state)
     }

@@ -33,7 +33,7 @@ pub mod zone;
 pub use active_set::{ActiveSet, ActiveSetError, Compliance, ContactState, Softness, Spring};
 pub use balance::unbalanced;
 pub use kinematics::{Kinematics, Partner, ShapeFunction};
-pub use law::{Coulomb, Law, LawError, Status, Tresca};
+pub use law::{Coulomb, Law, LawError, Status, Tresca, Viscous};
 pub use mortar::{Given, Shares, WeightedGap, compress, shares, weighted_gaps, weightless};
 pub use multiplier::PressureNodes;
 pub use obstacle::{Faces, Obstacle, Rigid};

@@ -3,13 +3,12 @@
 
 use crate::equilibrium::ROUNDING;
 use crate::increment::{IncrementError, IncrementResult};
-use crate::interaction::Bodies;
+use crate::interaction::{Around, Bodies};
 use crate::system::{AssemblyError, System, SystemState};
 
 impl System {
-    /// A state near the one that is looked for, with penalties in place of multipliers, which take the tractions that these
-    /// find, and with all that touches sticking: while nothing carries yet, nothing would rub. None where there is no such
-    /// state either.
+    /// A state near the one that is looked for, with contacts that give way as by penalties, and with all that touches
+    /// sticking: while nothing carries yet, nothing would rub. None where there is no such state either.
     pub(crate) fn by_penalties(
         &mut self,
         start: &SystemState,
@@ -17,28 +16,27 @@ impl System {
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Option<SystemState> {
         self.contacts.iter_mut().for_each(|contact| contact.simplify());
-        let from = SystemState { multipliers: Vec::new(), ..start.clone() };
-        let found = self.inner(&from, time, report).ok().and_then(|found| {
-            let (first, _) = self.numbering();
-            let at = self.bodies_in(&found.state, &first);
-            let of_all = self.contacts.iter().map(|contact| contact.multipliers_found(at));
-            let multipliers = of_all.collect::<Result<Vec<_>, _>>().ok()?.concat();
-            Some(SystemState { multipliers, ..found.state })
-        });
+        let found = self.inner(start, time, report).ok();
         self.contacts.iter_mut().for_each(|contact| contact.restate());
-        found
+        found.map(|found| found.state)
     }
 
     /// Sets multipliers to the tractions found, penalties to what leaves the penetration that is wanted; the largest
     /// relative change.
-    pub(crate) fn augment(&mut self, state: &SystemState, result: &IncrementResult) -> Result<f64, IncrementError> {
+    pub(crate) fn augment(
+        &mut self,
+        state: &SystemState,
+        result: &IncrementResult,
+        before: Option<f64>,
+    ) -> Result<f64, IncrementError> {
         let (first, _) = self.numbering();
         let known = ROUNDING * self.size();
         let own = self.own(state);
         let at = Bodies { bodies: &self.bodies, states: &state.bodies, first: &first };
+        let around = Around { known, before };
         let mut change = 0.0f64;
         for ((contact, own), sites) in self.contacts.iter_mut().zip(own).zip(&result.sites) {
-            change = change.max(contact.augment(at, own, sites, known).map_err(AssemblyError::from)?);
+            change = change.max(contact.augment(at, own, sites, around).map_err(AssemblyError::from)?);
         }
         Ok(change)
     }

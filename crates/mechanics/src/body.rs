@@ -84,12 +84,24 @@ pub enum Sampling {
     GaussPoints,
 }
 
+/// A direction that turns with a body: that of a vector, of any length, with what moves it.
+#[derive(Clone, Debug, Default)]
+pub struct Direction {
+    pub vector: Vector<3>,
+    /// The values are the changes of the vector.
+    pub functions: Vec<Function>,
+    /// Second derivatives of the vector.
+    pub bends: Vec<Bend>,
+}
+
 /// A site where it is now.
 #[derive(Clone, Debug, Default)]
 pub struct Placed {
     pub x: Point<3>,
     /// Outward unit normal of a surface; none for a curve or a point, which faces every way.
     pub outward: Option<Vector<3>>,
+    /// Outward normal of a surface of facets, averaged over those that meet: it changes without jumps from facet to facet.
+    pub averaged: Option<Direction>,
     /// Tangent of a curve, of any length; its changes are the slopes of the functions along the first coordinate.
     pub tangent: Option<Vector<3>>,
     /// Radius of a section or ball about `x` that touches instead of `x`.
@@ -152,7 +164,10 @@ pub struct RigidFoot {
 /// What a point meets.
 #[derive(Clone)]
 pub enum Met {
+    /// The nearest point.
     Foot(Box<Foot>),
+    /// The point on the line along the averaged normal of the slave.
+    Cut(Box<Foot>),
     Rigid(Box<RigidFoot>),
 }
 
@@ -251,6 +266,17 @@ pub trait Master: Sync {
     /// The point nearest to `x`, unless it is farther than `reach`. With `except`, a site of the same body, what lies
     /// next to that site along the body is left out: contact of a body with itself.
     fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<Met>;
+
+    /// Whether the surface has facets, so that gaps are better measured along the averaged normal of a slave that has one.
+    fn is_faceted(&self) -> bool {
+        false
+    }
+
+    /// The point on the line through `x` along a direction of any length, on a side that faces it, at most `reach` ahead or
+    /// behind.
+    fn cut(&self, _x: &Point<3>, _direction: &Vector<3>, _reach: f64) -> Option<Met> {
+        None
+    }
 
     /// The same material point of the body, where it is now: for what sticks to it.
     fn at(&self, point: &MaterialPoint) -> Anchor;

@@ -1,17 +1,22 @@
 //! Contact of two bodies at sites: law, enforcement, residual and tangent, history.
 //!
-//! At every site of the slave, standing for the area `w`, with gap `g`, slip `e` since the last state and the multiplier
-//! `λ` (pressure, and two components of friction in the axes `E_α`):
+//! At every site of the slave, standing for the area `w`, with gap `g`, slip `e` since the last state and the traction `λ`
+//! (pressure, and two components of friction in the axes `E_α`), which is an unknown:
 //!
-//! - trial `ζ = (λ_N - c g, λ_α + c E_α·e)`, traction `(p, T_α) = Π(ζ)` by the law;
-//! - virtual work `w (-p δg + T_α E_α·S)`, with the slip variation `S`;
-//! - its derivative, with `ζ` differentiated through gap, slip, axes and multiplier.
+//! - trial `ζ = λ - s (λ - λ_0) + c (-g, E_α·e)`, traction `(p, T_α) = Π(ζ)` by the law;
+//! - virtual work `w (-p δo + T_α E_α·S)`, with the opening `o`, of which the gap is the size, and the slip variation `S`;
+//! - the equation `(w/c) (Π(ζ) - λ) = 0` (Alart & Curnier 1991): a site that is closed has `g = -s/c (λ - λ_0)`;
+//! - all with their derivatives.
 //!
-//! | enforcement | `λ` |
-//! |---|---|
-//! | penalty | no pressure; the friction of the last state |
-//! | augmented Lagrangian | kept while Newton's method runs, then set to the traction found (Uzawa), until it changes no more |
-//! | multiplier | an unknown, with the equation `(w/c) (Π(ζ) - λ) = 0` (Alart & Curnier 1991) |
+//! | enforcement | `s` | `λ_0` |
+//! |---|---|---|
+//! | multiplier | 0 | |
+//! | penalty `c/s` | > 0 | no pressure; the friction of the last state |
+//! | augmented Lagrangian | > 0 | kept while Newton's method runs, then set to the traction found (Uzawa), until it changes no more |
+//!
+//! So a penalty is a compliance of the contact. Which sites are closed is told by the traction predicted for them and by the
+//! scale `c`, which is that of the bodies whatever the penalty: without tractions as unknowns a penalty makes a force of any
+//! gap on the way, and Newton's method opens and closes sites in turns.
 //!
 //! The slip counts from where the sides had a common point at the last state, or would have had if they had touched.
 
@@ -31,6 +36,16 @@ pub enum Enforcement {
     AugmentedLagrangian,
     /// Exactly, with tractions as unknowns; between rigid bodies by augmentation.
     Multiplier,
+}
+
+impl Enforcement {
+    /// Scale of trials over the penalty, to begin with.
+    pub(crate) fn softness(self) -> f64 {
+        match self {
+            Enforcement::Multiplier => 0.0,
+            Enforcement::Penalty { .. } | Enforcement::AugmentedLagrangian => SOFTNESS,
+        }
+    }
 }
 
 /// Part of a body: its number and a group.
@@ -53,12 +68,16 @@ pub struct Contact {
     /// How far apart, or inside each other, points are looked at.
     pub reach: f64,
     sites: Vec<Site>,
-    /// Traction per unit of gap, and of slip, of each site.
+    /// Traction per unit of gap, and of slip, of each site: the scale of the trial, not the penalty.
     pub(crate) stiffness: Vec<f64>,
+    /// That scale over the penalty.
+    pub(crate) softness: f64,
     /// What the sites remember of the last state.
     pub(crate) memory: Vec<SiteMemory>,
-    /// Enforcement and law while a start is looked for with simpler ones.
-    pub(crate) set_aside: Option<(Enforcement, Option<Box<dyn Law>>)>,
+    /// Times of the last state and of the one that is looked for.
+    pub(crate) times: [f64; 2],
+    /// Law, enforcement and softness while a start is looked for with simpler ones.
+    pub(crate) set_aside: Option<(Option<Box<dyn Law>>, Enforcement, f64)>,
 }
 
 /// What a site remembers of the last state.
@@ -146,6 +165,8 @@ impl Contact {
             memory: vec![SiteMemory::default(); sites.len()],
             sites,
             stiffness,
+            softness: enforcement.softness(),
+            times: [0.0; 2],
             set_aside: None,
         })
     }
@@ -184,7 +205,12 @@ impl Contact {
         let site = &self.sites[k];
         let placed = sides.slave.0.placed(sides.slave.1, site);
         let except = self.is_within().then_some(site);
-        let met: Option<Met> = master.nearest(&placed.x, self.reach + placed.radius, except);
+        let met: Option<Met> = match &placed.averaged {
+            Some(normal) if master.is_faceted() && except.is_none() => {
+                master.cut(&placed.x, &normal.vector, self.reach)
+            }
+            _ => master.nearest(&placed.x, self.reach + placed.radius, except),
+        };
         let Some(met) = met else { return (placed, None) };
         let stuck = self.memory[k].stuck;
         let anchor: Option<(Stuck, Anchor)> =
@@ -203,8 +229,10 @@ impl Contact {
         (placed, Some(pair))
     }
 
-    fn traction(&self, k: usize, pair: &Pair, lambda: [f64; 3]) -> Traction {
+    fn traction(&self, k: usize, pair: &Pair, unknown: [f64; 3]) -> Traction {
         let c = self.stiffness[k];
+        let base = self.base(k);
+        let lambda: [f64; 3] = std::array::from_fn(|i| unknown[i] - self.softness * (unknown[i] - base[i]));
         let Some(law) = &self.friction else {
             let pressure = (lambda[0] - c * pair.gap).max(0.0);
             let closed = lambda[0] - c * pair.gap > 0.0;
@@ -219,9 +247,16 @@ impl Contact {
         let most = pair.slip.iter().map(|s| s.norm()).fold(0.0, f64::max);
         let moves = axes.map(|e| pair.slip.iter().any(|s| e.dot(s).abs() > STEEP * most));
         let trial = |i: usize| if moves[i] { lambda[i + 1] + c * slip[i] } else { 0.0 };
-        let mut projected = law.project([lambda[0] - c * pair.gap, trial(0), trial(1)]);
+        let per_velocity = c * (self.times[1] - self.times[0]);
+        let project = |trial: [f64; 3]| law.project_in_time(trial, per_velocity);
+        let mut projected = project([lambda[0] - c * pair.gap, trial(0), trial(1)]);
         for i in (0..2).filter(|i| !moves[*i]) {
             projected.derivative.iter_mut().for_each(|row| row[i + 1] = 0.0);
+        }
+        let [p, t1, t2] = projected.traction;
+        if projected.status == Status::Stick && law.utilisation([t1, t2], p) > 1.0 - AT_LIMIT {
+            let beyond = project([p, (1.0 + 2.0 * AT_LIMIT) * t1, (1.0 + 2.0 * AT_LIMIT) * t2]);
+            (projected.derivative, projected.status) = (beyond.derivative, beyond.status);
         }
         Traction { projected, axes, d_axes, slip }
     }
@@ -243,7 +278,6 @@ impl Contact {
         let mut lost = 0;
         for k in 0..self.sites.len() {
             let own = |i: usize| first + (parts * k + i) as u32;
-            let multiplier = self.enforcement == Enforcement::Multiplier;
             let at = self.multiplier(k, lambda);
             let w = self.sites[k].weight;
             let c = self.stiffness[k];
@@ -252,14 +286,12 @@ impl Contact {
                 Some(Ok(pair)) => pair,
                 found => {
                     lost += usize::from(matches!(found, Some(Err(NoPair::NoCoordinates))));
-                    if multiplier {
-                        // Open: the traction is to vanish.
-                        for i in 0..parts {
-                            out.residual[own(i) as usize] -= w / c * at[i];
-                            out.sizes[own(i) as usize] += w / c * at[i].abs();
-                            if let Some(tangent) = &mut out.tangent {
-                                tangent.add(own(i), own(i), -w / c);
-                            }
+                    // Open: the traction is to vanish.
+                    for i in 0..parts {
+                        out.residual[own(i) as usize] -= w / c * at[i];
+                        out.sizes[own(i) as usize] += w / c * at[i].abs();
+                        if let Some(tangent) = &mut out.tangent {
+                            tangent.add(own(i), own(i), -w / c);
                         }
                     }
                     continue;
@@ -271,16 +303,14 @@ impl Contact {
             let n = pair.unknowns.len();
             for (a, &unknown) in pair.unknowns.iter().enumerate() {
                 let rubs = if parts == 3 { w * on_slave.dot(&pair.slip[a]) } else { 0.0 };
-                let force = -w * p * pair.d_gap[a] + rubs;
+                let force = -w * p * pair.opening[a] + rubs;
                 out.residual[unknown as usize] += force;
-                out.sizes[unknown as usize] += (w * p * pair.d_gap[a]).abs() + rubs.abs();
+                out.sizes[unknown as usize] += (w * p * pair.opening[a]).abs() + rubs.abs();
             }
-            if multiplier {
-                for i in 0..parts {
-                    let value = w / c * (found.projected.traction[i] - at[i]);
-                    out.residual[own(i) as usize] += value;
-                    out.sizes[own(i) as usize] += w / c * (found.projected.traction[i].abs() + at[i].abs());
-                }
+            for i in 0..parts {
+                let value = w / c * (found.projected.traction[i] - at[i]);
+                out.residual[own(i) as usize] += value;
+                out.sizes[own(i) as usize] += w / c * (found.projected.traction[i].abs() + at[i].abs());
             }
             let Some(tangent) = &mut out.tangent else { continue };
             if found.projected.status == Status::Open {
@@ -308,7 +338,7 @@ impl Contact {
             let mut block = vec![0.0; n * n];
             for a in 0..n {
                 for b in 0..n {
-                    let mut v = -p * pair.d2_gap[a * n + b] - d_traction[b][0] * pair.d_gap[a];
+                    let mut v = -p * pair.d_opening[a * n + b] - d_traction[b][0] * pair.opening[a];
                     if parts == 3 {
                         v += d_traction[b][1] * along(a, 0) + d_traction[b][2] * along(a, 1);
                         let turned = found.d_axes[b][0] * t1 + found.d_axes[b][1] * t2;
@@ -318,38 +348,41 @@ impl Contact {
                 }
             }
             tangent.add_block(&pair.unknowns, &block);
-            if multiplier {
-                for i in 0..parts {
-                    for (a, &unknown) in pair.unknowns.iter().enumerate() {
-                        let mut column = -derivative[0][i] * pair.d_gap[a];
-                        if parts == 3 {
-                            column += derivative[1][i] * along(a, 0) + derivative[2][i] * along(a, 1);
-                        }
-                        tangent.add(unknown, own(i), w * column);
-                        tangent.add(own(i), unknown, w / c * d_traction[a][i]);
+            // What of the trial follows the unknown itself.
+            let follows = 1.0 - self.softness;
+            for i in 0..parts {
+                for (a, &unknown) in pair.unknowns.iter().enumerate() {
+                    let mut column = -derivative[0][i] * pair.opening[a];
+                    if parts == 3 {
+                        column += derivative[1][i] * along(a, 0) + derivative[2][i] * along(a, 1);
                     }
-                    for j in 0..parts {
-                        // Tractions that nothing determines stay where they are.
-                        let own_part = if i == j { 1.0 + UNDETERMINED } else { 0.0 };
-                        let value = derivative[i][j] - own_part;
-                        tangent.add(own(i), own(j), w / c * value);
-                    }
+                    tangent.add(unknown, own(i), w * follows * column);
+                    tangent.add(own(i), unknown, w / c * d_traction[a][i]);
+                }
+                for j in 0..parts {
+                    // Tractions that nothing determines stay where they are.
+                    let own_part = if i == j { 1.0 + UNDETERMINED } else { 0.0 };
+                    let value = follows * derivative[i][j] - own_part;
+                    tangent.add(own(i), own(j), w / c * value);
                 }
             }
         }
         Ok(lost)
     }
 
-    /// The multiplier of a site.
+    /// The unknown traction of a site.
     fn multiplier(&self, k: usize, lambda: &[f64]) -> [f64; 3] {
-        let parts = self.components();
+        let own = &lambda[self.components() * k..self.components() * (k + 1)];
+        [own[0], own.get(1).copied().unwrap_or(0.0), own.get(2).copied().unwrap_or(0.0)]
+    }
+
+    /// The traction with which a site that gives way has no gap and no slip.
+    fn base(&self, k: usize) -> [f64; 3] {
+        let [p, t1, t2] = self.memory[k].traction;
         match self.enforcement {
-            Enforcement::Multiplier => {
-                let own = &lambda[parts * k..parts * (k + 1)];
-                [own[0], own.get(1).copied().unwrap_or(0.0), own.get(2).copied().unwrap_or(0.0)]
-            }
-            Enforcement::AugmentedLagrangian => self.memory[k].traction,
-            Enforcement::Penalty { .. } => [0.0, self.memory[k].traction[1], self.memory[k].traction[2]],
+            Enforcement::Multiplier => [0.0; 3],
+            Enforcement::AugmentedLagrangian => [p, t1, t2],
+            Enforcement::Penalty { .. } => [0.0, t1, t2],
         }
     }
 
@@ -413,13 +446,23 @@ impl Contact {
             memory.push(own);
         }
         self.memory = memory;
+        self.times[0] = self.times[1];
         Ok(())
     }
 }
 
+/// The scale of trials over a penalty of a hundred times the stiffness of the bodies: what a contact that carries gives way
+/// is a hundredth of what they do.
+const SOFTNESS: f64 = crate::prepare::WAVE / 100.0;
+
 /// The part of its scale by which a multiplier resists change within a Newton step, in the tangent alone: what several
 /// points of a stiff body carry together need not be unique.
 const UNDETERMINED: f64 = 1e-6;
+
+/// Share of the limit of friction within which a site is at it, as what slipped is when the next increment starts. Either
+/// derivative serves at a switch; with that of slip a slip zone does not start each increment stuck, to be freed site by
+/// site. More than the tolerance of Newton's method, which ends that near to the limit.
+const AT_LIMIT: f64 = 1e-8;
 
 /// Sine of the angle to the normal below which the projection of an axis tells no direction any more.
 const STEEP: f64 = 1e-8;

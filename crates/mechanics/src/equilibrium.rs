@@ -1,15 +1,23 @@
-//! Newton's equations of a system at one time: residual, its measure and its step.
+//! Newton's equations of a system at one time: residual, its measures and its step.
+//!
+//! The merit is the root of the energy `Σ r²/k` of the residual on the springs `k` of the first tangent, one for each
+//! unknown: forces, moments, gaps and what supports lack count alike, in any unit.
 
 use crate::body::Order;
 use crate::increment::IncrementError;
 use crate::system::{Assembled, System, SystemState};
 use signorini_solve::general::Analysis;
-use signorini_solve::newton::{Converged, Equations, Newton, NewtonFailure, Search, newton};
+use signorini_solve::newton::{Converged, Equations, Measured, Newton, NewtonFailure, Search, newton};
 
 /// Force relative to the largest of all that is left in the end.
 const TOLERANCE: f64 = 1e-10;
 /// Rounding of positions that were solved for, relative to the size of the bodies.
 pub(crate) const ROUNDING: f64 = 1e-12;
+/// Stiffness of what has none, relative to the largest, by which residuals are compared.
+const SLACK: f64 = 1e-8;
+/// Whole steps without a better state: bodies with predicted stresses take about six, of which the first make forces that
+/// are thousands of times too large.
+const PATIENCE: usize = 12;
 const MOST_ITERATIONS: usize = 60;
 /// Stiffness against what nothing moves, relative to the largest: Newton's method errs by so much of a step.
 const GRAIN: f64 = 1e-12;
@@ -24,8 +32,12 @@ pub(crate) struct Problem<'a> {
     pub(crate) held_back: Option<(f64, Vec<f64>, Vec<f64>)>,
     /// Unknowns that are spins.
     pub(crate) is_spin: Vec<bool>,
-    /// Traction per gap of the rows of multipliers, over their weights.
-    pub(crate) row_scale: Vec<f64>,
+    /// Traction per gap of the rows of multipliers, and the weight of their sites.
+    pub(crate) rows: Vec<[f64; 2]>,
+    /// Stiffness of each unknown at the start, by which residuals are compared.
+    pub(crate) stiffness: Vec<f64>,
+    /// The system at the start, for the first step.
+    pub(crate) first: Option<Assembled>,
     /// What rounding of positions leaves of forces and moments.
     pub(crate) rounding: [f64; 2],
     /// The unknown that lacks most.
@@ -38,9 +50,9 @@ impl Problem<'_> {
         start: &SystemState,
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
-        self.rounding = [0.0; 2];
+        self.begin(start)?;
         let predicts = start.bodies.iter().any(|b| !b.internal.is_empty());
-        let search = if predicts { Search::Watchdog { patience: 6 } } else { Search::Monotone };
+        let search = if predicts { Search::Watchdog { patience: PATIENCE } } else { Search::Monotone };
         let options = Newton { most_iterations: MOST_ITERATIONS, search };
         newton(self, start, &options, report).map_err(|failure| match failure {
             NewtonFailure::NotConverged { history, .. } => {
@@ -50,6 +62,45 @@ impl Problem<'_> {
             NewtonFailure::Interrupted => IncrementError::Interrupted,
         })
     }
+
+    /// Measures residuals by the tangent of a state: further ones may be anywhere.
+    fn begin(&mut self, at: &SystemState) -> Result<(), IncrementError> {
+        let out = self.assemble(at, Order::Second)?;
+        let count = self.is_spin.len();
+        let sizes = out.tangent.matrix(out.residual.len()).row_sizes();
+        let mut held = vec![false; count];
+        out.single.iter().for_each(|h| held[h.constraint.terms[0].0 as usize] = true);
+        let size = self.system.size();
+        let mut most = [0.0f64; 2];
+        (0..count).for_each(|k| most[usize::from(self.is_spin[k])] = most[usize::from(self.is_spin[k])].max(sizes[k]));
+        most[0] = most[0].max(most[1] / (size * size)).max(f64::MIN_POSITIVE);
+        most[1] = most[1].max(SLACK * most[0] * size * size);
+        self.rounding = [0.0; 2];
+        self.stiffness = Vec::with_capacity(count);
+        for k in 0..count {
+            let kind = usize::from(self.is_spin[k]);
+            let position = if kind == 1 { 1.0 } else { size };
+            if !held[k] {
+                self.rounding[kind] = self.rounding[kind].max(4.0 * f64::EPSILON * sizes[k] * position);
+            }
+            self.stiffness.push(sizes[k].max(SLACK * most[kind]));
+        }
+        self.first = Some(out);
+        Ok(())
+    }
+
+    /// Root of twice the energy of a residual on the springs of the unknowns.
+    fn merit(&self, out: &Assembled, held: &[bool]) -> f64 {
+        let count = self.is_spin.len();
+        let free = (0..count).filter(|k| !held[*k]).map(|k| out.residual[k].powi(2) / self.stiffness[k]);
+        let rows = self.rows.iter().enumerate().map(|(k, [c, w])| out.residual[count + k].powi(2) * c / w);
+        let lacks = out.single.iter().chain(&out.coupled).map(|h| {
+            let of = |(unknown, factor): &(u32, f64)| self.stiffness[*unknown as usize] / (factor * factor);
+            h.constraint.lack.powi(2) * h.constraint.terms.iter().map(of).fold(0.0f64, f64::max)
+        });
+        free.chain(rows).chain(lacks).sum::<f64>().sqrt()
+    }
+
     /// The residual with springs, and less what is held back.
     pub(crate) fn assemble(&self, at: &SystemState, order: Order) -> Result<Assembled, IncrementError> {
         let mut out = self.system.assemble(at, self.time, order)?;
@@ -85,7 +136,7 @@ impl Equations for Problem<'_> {
     type State = SystemState;
     type Error = IncrementError;
 
-    fn measure(&mut self, at: &SystemState) -> Result<f64, IncrementError> {
+    fn measure(&mut self, at: &SystemState) -> Result<Measured, IncrementError> {
         let out = self.assemble(at, Order::First)?;
         let count = self.is_spin.len();
         let size = self.system.size();
@@ -108,7 +159,7 @@ impl Equations for Problem<'_> {
             let kind = usize::from(self.is_spin[k]);
             take(out.residual[k].abs() / (TOLERANCE * scale[kind]).max(self.rounding[kind]), k);
         }
-        for (k, c) in self.row_scale.iter().enumerate() {
+        for (k, [c, _]) in self.rows.iter().enumerate() {
             // Gaps no better than the rounding of positions.
             let force = out.residual[count + k].abs() * c;
             take(force / (TOLERANCE * scale[0]).max(self.rounding[0]), count + k);
@@ -117,11 +168,15 @@ impl Equations for Problem<'_> {
             take(held.constraint.lack.abs() / (ROUNDING * size), held.constraint.terms[0].0 as usize);
         }
         self.worst = worst.1;
-        Ok(worst.0)
+        let merit = self.merit(&out, &held);
+        Ok(Measured { merit, error: worst.0 })
     }
 
     fn step(&mut self, at: &SystemState) -> Result<Vec<f64>, IncrementError> {
-        let mut out = self.assemble(at, Order::Second)?;
+        let mut out = match self.first.take() {
+            Some(first) => first,
+            None => self.assemble(at, Order::Second)?,
+        };
         let n = out.residual.len();
         let count = self.is_spin.len();
         let mut right: Vec<f64> = out.residual.iter().map(|r| -r).collect();
@@ -136,14 +191,6 @@ impl Equations for Problem<'_> {
         let matrix = out.tangent.matrix(n);
         let sizes = matrix.row_sizes();
         let size = self.system.size();
-        // That of the first state: further ones may be anywhere.
-        if self.rounding == [0.0; 2] {
-            for k in (0..count).filter(|k| !held[*k]) {
-                let kind = usize::from(self.is_spin[k]);
-                let position = if kind == 1 { 1.0 } else { size };
-                self.rounding[kind] = self.rounding[kind].max(4.0 * f64::EPSILON * sizes[k] * position);
-            }
-        }
         if !self.system.has_free_rigid_body()
             && let Ok(found) = self.analysis.factor(matrix).and_then(|lu| lu.solve(&right))
         {

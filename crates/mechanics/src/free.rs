@@ -60,7 +60,7 @@ impl Problem<'_> {
             None => {
                 let mut row = unknown - self.is_spin.len();
                 for contact in &self.system.contacts {
-                    let rows = contact.multipliers().len();
+                    let rows = contact.rows().len();
                     if row < rows {
                         return Some(format!("; what lacked most is a condition of contact `{}`", contact.name()));
                     }
@@ -91,7 +91,8 @@ impl Problem<'_> {
                     continue;
                 }
                 let moved = matrix.multiply(&x);
-                if moved[..count].iter().all(|f| f.abs() <= 1e-10 * largest * size) {
+                let rows = self.rows.iter().zip(&moved[count..]).map(|([c, _], f)| f * c);
+                if moved[..count].iter().copied().chain(rows).all(|f| f.abs() <= 1e-10 * largest * size) {
                     let axis = ["x", "y", "z"][mode % 3];
                     let motion =
                         if mode < 3 { format!("moving along {axis}") } else { format!("turning about {axis}") };

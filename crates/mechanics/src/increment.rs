@@ -91,9 +91,12 @@ impl System {
         for (body, state) in self.bodies.iter().zip(&mut start.bodies) {
             body.prescribe(time, state);
         }
+        start.multipliers = self.contacts.iter().flat_map(|c| c.remembered()).collect();
         start.predictions = self.contacts.iter().map(|c| c.prediction()).collect();
         let kept = self.histories();
+        self.contacts.iter_mut().for_each(|c| c.begin(time));
         let found = self.outer(&start, time, report);
+        self.contacts.iter_mut().for_each(|c| c.end());
         if found.is_err() {
             self.put_back(&kept);
         }
@@ -117,11 +120,12 @@ impl System {
                 report(done, r)
             };
             // Without a guess which sites carry, multipliers start from what penalties find.
-            let guessed = state.multipliers.is_empty() || state.multipliers.iter().any(|m| *m != 0.0);
+            let exact = self.contacts.iter().any(|c| c.is_exact());
+            let guessed = !exact || state.multipliers.iter().any(|m| *m != 0.0);
             let direct = if guessed { Some(self.inner(&state, time, &mut counted)) } else { None };
             let found = match direct {
                 Some(Ok(found)) => found,
-                Some(Err(error)) if state.multipliers.is_empty() || error == IncrementError::Interrupted => {
+                Some(Err(error)) if self.contacts.is_empty() || error == IncrementError::Interrupted => {
                     return Err(error);
                 }
                 failed => {
@@ -140,7 +144,7 @@ impl System {
             if result.imbalance.is_nan() || result.imbalance > UNBALANCED {
                 return Err(IncrementError::NotConverged { history: result.history, worst: None });
             }
-            let change = self.augment(&state, &result)?;
+            let change = self.augment(&state, &result, changes.last().copied())?;
             if change <= AUGMENTED {
                 return Ok((state, result));
             }
@@ -159,7 +163,7 @@ impl System {
         for (body, first) in self.bodies.iter().zip(first) {
             body.spins().iter().flatten().for_each(|s| is_spin[(first + s) as usize] = true);
         }
-        let row_scale = self.contacts.iter().flat_map(|c| c.multipliers()).collect();
+        let rows = self.contacts.iter().flat_map(|c| c.rows()).collect();
         let mut problem = Problem {
             system: self,
             time,
@@ -167,7 +171,9 @@ impl System {
             springs: 0.0,
             held_back: None,
             is_spin,
-            row_scale,
+            rows,
+            stiffness: Vec::new(),
+            first: None,
             rounding: [0.0; 2],
             worst: 0,
         };

@@ -13,6 +13,7 @@ use crate::body::MaterialPoint;
 use crate::body::{Body, BodyState, PlaceError, Sampling, Site};
 use crate::contact::{Contact, Enforcement, Part, Sides, SiteMemory, SiteResult};
 use crate::pair::Stuck;
+use crate::prepare::WAVE;
 use signorini_contact::law::{Friction, stuck};
 use signorini_contact::{Law, Status};
 use signorini_geometry::Vector;
@@ -45,6 +46,15 @@ pub struct Target<'a> {
     pub tangent: Option<&'a mut Entries>,
 }
 
+/// What an outer iteration knows.
+#[derive(Clone, Copy, Debug)]
+pub struct Around {
+    /// Rounding of positions.
+    pub known: f64,
+    /// The change of the iteration before, if there was one.
+    pub before: Option<f64>,
+}
+
 /// Saved numbers that are not of this interaction.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the saved numbers are not those of contact `{contact}`")]
@@ -62,10 +72,24 @@ pub trait Interaction: Send + Sync {
     /// The law of friction; none if there is none.
     fn law(&self) -> Option<&dyn Law>;
 
-    /// Unknowns of its own: of each the traction per gap, which scales its equation.
-    fn multipliers(&self) -> Vec<f64> {
+    /// Unknowns of its own: of each the traction per gap, which scales its equation, and the weight of its site.
+    fn rows(&self) -> Vec<[f64; 2]> {
         Vec::new()
     }
+
+    /// Values of its unknowns with which an increment starts: those of the last state.
+    fn remembered(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Whether its unknowns are exact multipliers, which need a guess of what carries.
+    fn is_exact(&self) -> bool {
+        false
+    }
+
+    /// Begins an increment to a time, and ends it.
+    fn begin(&mut self, _time: f64) {}
+    fn end(&mut self) {}
 
     /// The largest stiffness of what is tested or touched, as force per length; zero if nothing has one.
     fn stiffness(&self, bodies: &[Box<dyn Body>]) -> f64;
@@ -108,26 +132,23 @@ pub trait Interaction: Send + Sync {
     fn unload(&mut self);
 
     /// Prepares the next outer iteration at a state with the results found in it: multipliers that are kept while Newton's
-    /// method runs take the tractions, penalties what leaves the penetration that is wanted. The largest relative change;
-    /// `known` is the rounding of positions.
+    /// method runs take the tractions, penalties what leaves the penetration that is wanted. The largest relative change.
     ///
     /// # Errors
     /// Bodies that cannot be tested or touched.
-    fn augment(&mut self, at: Bodies<'_>, own: Own<'_>, found: &[SiteResult], known: f64) -> Result<f64, PlaceError>;
+    fn augment(
+        &mut self,
+        at: Bodies<'_>,
+        own: Own<'_>,
+        found: &[SiteResult],
+        around: Around,
+    ) -> Result<f64, PlaceError>;
 
     /// Until [`Interaction::restate`]: penalties in place of multipliers, and all that touches sticks.
     fn simplify(&mut self);
 
     /// Ends what [`Interaction::simplify`] began.
     fn restate(&mut self);
-
-    /// Values of the multipliers from what penalties find in a state, while simplified: as many as there are afterwards.
-    ///
-    /// # Errors
-    /// Bodies that cannot be tested or touched.
-    fn multipliers_found(&self, _at: Bodies<'_>) -> Result<Vec<f64>, PlaceError> {
-        Ok(Vec::new())
-    }
 
     /// History and scales as plain numbers.
     fn history(&self) -> [Vec<f64>; 2];
@@ -157,10 +178,11 @@ impl Law for Sticks {
     }
 }
 
-/// Penalty in stiffnesses of the bodies: what is left of the gap is a hundredth of what the bodies give way.
-pub const PENALTY: f64 = 100.0;
-/// The same where it is only a scale: of augmented Lagrangians and multipliers.
-pub const SCALE: f64 = 10.0;
+/// The part of a change that the next outer iteration may leave.
+const SLOW: f64 = 0.25;
+/// The part of its compliance that a contact keeps then, and the least.
+const HARDER: f64 = 0.1;
+const HARDEST: f64 = 1e-6;
 
 /// Penetration that an outer iteration leaves, relative to the one that is wanted.
 pub const NEAR_WANTED: f64 = 1e-2;
@@ -200,11 +222,25 @@ impl Interaction for Contact {
         self.friction.as_deref()
     }
 
-    fn multipliers(&self) -> Vec<f64> {
-        match self.enforcement {
-            Enforcement::Multiplier => self.stiffness.iter().flat_map(|c| vec![*c; self.components()]).collect(),
-            _ => Vec::new(),
-        }
+    fn rows(&self) -> Vec<[f64; 2]> {
+        let list = self.stiffness.iter().zip(self.sites());
+        list.flat_map(|(c, site)| vec![[*c, site.weight]; self.components()]).collect()
+    }
+
+    fn remembered(&self) -> Vec<f64> {
+        self.memory.iter().flat_map(|m| m.traction[..self.components()].to_vec()).collect()
+    }
+
+    fn is_exact(&self) -> bool {
+        self.enforcement == Enforcement::Multiplier
+    }
+
+    fn begin(&mut self, time: f64) {
+        self.times[1] = time;
+    }
+
+    fn end(&mut self) {
+        self.softness = self.enforcement.softness();
     }
 
     fn stiffness(&self, bodies: &[Box<dyn Body>]) -> f64 {
@@ -218,13 +254,9 @@ impl Interaction for Contact {
     }
 
     fn prepare(&mut self, _: &[Box<dyn Body>], otherwise: f64) {
-        let factor = match self.enforcement {
-            Enforcement::Penalty { .. } => PENALTY,
-            _ => SCALE,
-        };
         let weights: Vec<f64> = self.sites().iter().map(|s| s.weight).collect();
         for (c, w) in self.stiffness.iter_mut().zip(weights) {
-            *c = factor * if c.is_finite() { *c } else { otherwise / w };
+            *c = WAVE * if c.is_finite() { *c } else { otherwise / w };
         }
     }
 
@@ -260,17 +292,28 @@ impl Interaction for Contact {
         self.memory.iter_mut().for_each(|m| m.traction = [0.0; 3]);
     }
 
-    fn augment(&mut self, at: Bodies<'_>, _: Own<'_>, found: &[SiteResult], known: f64) -> Result<f64, PlaceError> {
+    fn augment(
+        &mut self,
+        at: Bodies<'_>,
+        own: Own<'_>,
+        found: &[SiteResult],
+        around: Around,
+    ) -> Result<f64, PlaceError> {
         match self.enforcement {
             Enforcement::AugmentedLagrangian => {
-                let found = self.found(&at.sides(self), &[])?;
+                let found = self.found(&at.sides(self), own.multipliers)?;
                 let most = found.iter().map(|f| f.1[0]).fold(0.0f64, f64::max);
                 let mut change = 0.0f64;
                 for ((memory, stiffness), (_, traction)) in self.memory.iter_mut().zip(&self.stiffness).zip(found) {
                     let changed = (0..3).map(|i| (memory.traction[i] - traction[i]).abs()).fold(0.0, f64::max);
                     // Gaps are known to the rounding of positions only.
-                    change = change.max(if changed > known * stiffness { changed / most } else { 0.0 });
+                    change = change.max(if changed > around.known * stiffness { changed / most } else { 0.0 });
                     memory.traction = traction;
+                }
+                // Where a step leaves more than a quarter of the error, the next ones are to leave less (Bertsekas 1982):
+                // what enforces has tractions as unknowns, so that Newton's method suffers no harm.
+                if around.before.is_some_and(|before| change > SLOW * before) {
+                    self.softness = (HARDER * self.softness).max(HARDEST);
                 }
                 Ok(change)
             }
@@ -287,37 +330,30 @@ impl Interaction for Contact {
 
     fn simplify(&mut self) {
         let law = self.friction.as_mut().map(|law| std::mem::replace(law, Box::new(Sticks)));
-        self.set_aside = Some((self.enforcement, law));
-        if self.enforcement == Enforcement::Multiplier {
-            self.enforcement = Enforcement::Penalty { wanted_penetration: None };
-        }
+        self.set_aside = Some((law, self.enforcement, self.softness));
+        self.enforcement = Enforcement::Penalty { wanted_penetration: None };
+        self.softness = self.enforcement.softness();
     }
 
     fn restate(&mut self) {
-        if let Some((enforcement, law)) = self.set_aside.take() {
-            self.enforcement = enforcement;
-            self.friction = law;
+        if let Some(before) = self.set_aside.take() {
+            (self.friction, self.enforcement, self.softness) = before;
         }
-    }
-
-    fn multipliers_found(&self, at: Bodies<'_>) -> Result<Vec<f64>, PlaceError> {
-        if !matches!(self.set_aside, Some((Enforcement::Multiplier, _))) {
-            return Ok(Vec::new());
-        }
-        let found = self.found(&at.sides(self), &[])?;
-        Ok(found.iter().flat_map(|(_, t)| t[..self.components()].to_vec()).collect())
     }
 
     fn history(&self) -> [Vec<f64>; 2] {
-        [self.memory.iter().flat_map(numbers).collect(), self.stiffness.clone()]
+        let scales = self.stiffness.iter().copied().chain([self.times[0]]).collect();
+        [self.memory.iter().flat_map(numbers).collect(), scales]
     }
 
-    fn restore(&mut self, [sites, stiffness]: &[Vec<f64>; 2]) -> Result<(), NotItsHistory> {
-        if sites.len() != NUMBERS * self.memory.len() || stiffness.len() != self.stiffness.len() {
+    fn restore(&mut self, [sites, scales]: &[Vec<f64>; 2]) -> Result<(), NotItsHistory> {
+        let count = self.stiffness.len();
+        if sites.len() != NUMBERS * self.memory.len() || scales.len() != count + 1 {
             return Err(NotItsHistory { contact: self.name.clone() });
         }
         self.memory = sites.chunks(NUMBERS).map(memory).collect();
-        self.stiffness = stiffness.clone();
+        self.stiffness.copy_from_slice(&scales[..count]);
+        self.times = [scales[count]; 2];
         Ok(())
     }
 }

@@ -26,8 +26,8 @@ pub mod saved;
 pub mod system;
 
 pub use body::{
-    Anchor, Bend, Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Foot, Function, Hold, Load, Master,
-    MaterialPoint, Met, Order, PlaceError, Placed, RigidFoot, Sampling, Site,
+    Anchor, Bend, Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Direction, Foot, Function, Hold,
+    Load, Master, MaterialPoint, Met, Order, PlaceError, Placed, RigidFoot, Sampling, Site,
 };
 pub use contact::{Contact, Enforcement, Part, SiteMemory, SiteResult};
 pub use curve::Curve;

@@ -1,6 +1,7 @@
 //! The measures of a contact pair in the unknowns that move its partners: gap, normal and slip with their variations.
 //!
-//! Geometry gives the closest point; the measures at it are those of Konyukhov & Schweizerhof (2013), in the coordinates
+//! Between surfaces of facets the gap is measured along the averaged normal of the slave (`cut`). Otherwise
+//! geometry gives the closest point; the measures at it are those of Konyukhov & Schweizerhof (2013), in the coordinates
 //! of whatever is met: a surface, a curve, a point, or a rigid body through its gap function.
 //!
 //! | symbol | meaning |
@@ -16,10 +17,12 @@
 //! nothing spins; its second variation leaves out `g δ²n`, which vanishes with the gap. Either way a rigid motion of
 //! both partners is no slip, so that the forces have neither resultant nor moment.
 
+mod cut;
 mod gap;
 mod slip;
 
 use crate::body::{Anchor, Foot, Function, MaterialPoint, Met, Order, Placed};
+use cut::AtCut;
 use gap::{AtFoot, AtRigid};
 use signorini_geometry::Vector;
 
@@ -34,7 +37,7 @@ pub enum NoPair {
 
 /// Where both sides had a common point: the material point of the master, and the direction in which the sections of
 /// both touched, in their own axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stuck {
     pub point: MaterialPoint,
     pub on_slave: Vector<3>,
@@ -77,8 +80,11 @@ pub struct Pair {
     /// Unknowns of the system; one may be named twice, its contributions add up.
     pub unknowns: Vec<u32>,
     pub d_gap: Vec<f64>,
-    /// Row by row; empty where only first variations were asked for.
-    pub d2_gap: Vec<f64>,
+    /// What a unit of pressure opens: the variation of the gap, unless that is measured along another direction than the
+    /// one in which the pressure acts.
+    pub opening: Vec<f64>,
+    /// Its derivative, row by row; empty where only first variations were asked for.
+    pub d_opening: Vec<f64>,
     /// Variation of the normal (seen from the master if that is rigid).
     pub d_normal: Vec<Vector<3>>,
     /// Variation of the slip.
@@ -157,6 +163,14 @@ impl Encounter<'_> {
                 1 => self.with_foot::<1>(foot, order),
                 _ => self.with_foot::<2>(foot, order),
             },
+            Met::Cut(foot) => {
+                let at = AtCut::new(self, foot)?;
+                let mut pair = at.gap(order);
+                if self.friction {
+                    at.add_slip(order, &mut pair);
+                }
+                Ok(pair)
+            }
             Met::Rigid(foot) => {
                 let at = AtRigid::new(self, foot)?;
                 let mut pair = at.gap(order);

@@ -271,6 +271,7 @@ impl Body for RigidBody {
         Placed {
             x: pose.centre + arm,
             outward: own.outward.map(|n| frame * n),
+            averaged: None,
             tangent: None,
             radius: own.radius,
             functions,

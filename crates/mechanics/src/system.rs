@@ -173,7 +173,7 @@ impl System {
         let (_, count) = self.numbering();
         SystemState {
             bodies: self.bodies.iter().map(|b| b.start()).collect(),
-            multipliers: vec![0.0; self.contacts.iter().map(|c| c.multipliers().len()).sum()],
+            multipliers: vec![0.0; self.contacts.iter().map(|c| c.rows().len()).sum()],
             reactions: Vec::new(),
             predictions: self.contacts.iter().map(|c| c.prediction()).collect(),
             travel: vec![0.0; count],
@@ -191,7 +191,7 @@ impl System {
         let mut done = 0;
         (self.contacts.iter().enumerate())
             .map(|(k, contact)| {
-                let size = contact.multipliers().len();
+                let size = contact.rows().len();
                 let multipliers = &state.multipliers[done..done + size];
                 let first = (count + done) as u32;
                 done += size;

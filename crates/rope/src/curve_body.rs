@@ -142,6 +142,7 @@ pub fn placed(body: &dyn CurveBody, state: &BodyState, site: &Site) -> Placed {
     Placed {
         x: jet.x,
         outward: None,
+        averaged: None,
         tangent: Some(jet.d1),
         radius: body.radius(),
         functions: line.functions(element, xi),

@@ -345,7 +345,7 @@ fn taylor(case: Case, spins: bool, law: Option<Box<dyn Law>>, expected: Status, 
         }
         contact.restore(&history).unwrap();
     }
-    let states = advanced(&bodies, &start, &noise(0.7), 2e-3);
+    let states = advanced(&bodies, &start, &noise(0.9), 2e-3);
     let found = act(&contact, &bodies, &states, &[], Order::First).sites;
     let closed: Vec<&SiteResult> = found.iter().filter(|s| s.status != Status::Open).collect();
     assert!(closed.iter().any(|s| s.status == expected), "{case:?}: {closed:?}");

@@ -4,6 +4,7 @@
 mod bodies;
 
 use bodies::*;
+use signorini_contact::{Coulomb, Status};
 use signorini_geometry::Vector;
 use signorini_mechanics::body::Body;
 use signorini_mechanics::{BodyState, Enforcement, IncrementResult};
@@ -246,5 +247,101 @@ fn two_tubes_are_twisted_by_a_full_turn() {
                 assert!(step == 12 || active == 36, "{active}");
             }
         }
+    }
+}
+
+/// An arch of two legs and a half circle, in the plane of `z` and a direction across.
+fn arch(across: V, up: f64, apex: f64, radius: f64, leg: f64) -> Vec<V> {
+    let bottom = apex - up * (radius + leg);
+    let centre = apex - up * radius;
+    let legs = |side: f64, k: usize| across * (side * radius) + V::z() * (bottom + up * leg * k as f64 / 6.0);
+    let mut out: Vec<V> = (0..6).map(|k| legs(-1.0, k)).collect();
+    out.extend((0..=8).map(|k| {
+        let angle = std::f64::consts::PI * (1.0 - k as f64 / 8.0);
+        across * (radius * angle.cos()) + V::z() * (centre + up * radius * angle.sin())
+    }));
+    out.extend((0..6).rev().map(|k| legs(1.0, k)));
+    out
+}
+
+#[test]
+fn a_clasp_of_two_rods_carries_what_pulls_its_ends() {
+    // Diameter 1, length about 20, in orthogonal planes, each end pulled by the same force.
+    for mu in [None, Some(0.3)] {
+        let rod = Stiffness { axial: 80.0, shear: [30.0; 2], torsion: 4.0, bending: [5.0; 2] };
+        let one = |name: &str, points: &[V]| Box::new(beam(name, points, 24, rod, 0.5)) as Box<dyn Body>;
+        let all = vec![
+            one("lower", &arch(V::x(), 1.0, 0.501, 1.5, 7.6)),
+            one("upper", &arch(V::y(), -1.0, -0.501, 1.5, 7.6)),
+        ];
+        let mut system = system(all, |contact| {
+            contact.friction = mu.map(|mu| Box::new(Coulomb::isotropic(mu).unwrap()) as _);
+        });
+        for (body, sign) in [(0, -1.0), (1, 1.0)] {
+            for group in ["start", "end"] {
+                let pulled = field(move |_: &V, t| sign * 0.5 * t);
+                system.supports.push(held(body, group, [at_zero(), at_zero(), pulled], [None, None, None]));
+            }
+        }
+        system.prepare().unwrap();
+        let mut state = system.start();
+        let steps = 10;
+        for step in 1..=steps {
+            let time = f64::from(step) / f64::from(steps);
+            let (found, result) = system.solve(&state, time, &mut |_, _| true).unwrap();
+            system.accept(&found).unwrap();
+            state = found;
+            let pull = result.support_forces[2][0] + result.support_forces[3][0];
+            let force: V = result.sites[0].iter().map(|s| s.force()).sum();
+            let closed = result.sites[0].iter().filter(|s| s.pressure > 0.0);
+            let (count, deepest) = closed.fold((0, 0.0f64), |(n, m), s| (n + 1, m.max(-s.gap.unwrap())));
+            println!(
+                "mu {mu:?}, {time:.1}: force {:.6}, pull {:.6}, {count} points, depth {deepest:.1e}, {} iterations, imbalance {:.1e}",
+                force[2], pull[2], result.iterations, result.imbalance
+            );
+            assert!((force - pull).norm() < 1e-8 * pull.norm() && result.imbalance < 1e-9);
+            assert!(deepest < 1e-2);
+        }
+    }
+}
+
+#[test]
+fn an_overhand_knot_is_drawn_tight_with_friction() {
+    // The long trefoil of Shastri (1992), (t³ - 3t, t⁴ - 4t², t⁵ - 10t), with its ends pulled apart.
+    let points: Vec<V> = (0..=60)
+        .map(|k| 2.1 * (k as f64 / 30.0 - 1.0))
+        .map(|t: f64| V::new(t.powi(3) - 3.0 * t, 0.7 * (t.powi(4) - 4.0 * t * t), 0.25 * (t.powi(5) - 10.0 * t)))
+        .collect();
+    let rod = Stiffness { axial: 400.0, shear: [160.0; 2], torsion: 0.8, bending: [1.0; 2] };
+    let all = vec![Box::new(beam("rod", &points, 64, rod, 0.12)) as Box<dyn Body>];
+    let mut system = system(all, |contact| {
+        contact.friction = Some(Box::new(Coulomb::isotropic(0.2).unwrap()) as _);
+    });
+    for (group, sign) in [("start", -1.0), ("end", 1.0)] {
+        let move_z = field(move |_: &V, t| sign * t);
+        system.supports.push(held(0, group, [at_zero(), at_zero(), move_z], [None, None, None]));
+    }
+    system.prepare().unwrap();
+    let mut state = system.start();
+    let mut tension = 0.0;
+    for step in 1..=12 {
+        let time = 0.2 * f64::from(step);
+        let (found, result) = system.solve(&state, time, &mut |_, _| true).unwrap();
+        system.accept(&found).unwrap();
+        state = found;
+        let closed: Vec<_> = result.sites[0].iter().filter(|s| s.pressure > 0.0).collect();
+        let deepest = closed.iter().map(|s| -s.gap.unwrap()).fold(0.0f64, f64::max);
+        let pull = result.support_forces[1][0][2];
+        println!(
+            "{time:.1}: tension {pull:.5}, {} points, {} slip, depth {deepest:.1e}, {} iterations, imbalance {:.1e}",
+            closed.len(),
+            closed.iter().filter(|s| s.status == Status::Slip).count(),
+            result.iterations,
+            result.imbalance
+        );
+        assert!(result.imbalance < 1e-9 && deepest < 0.012);
+        assert!((result.support_forces[0][0] + result.support_forces[1][0]).norm() < 1e-8 * pull.abs());
+        assert!(pull.abs() > tension);
+        tension = pull.abs();
     }
 }

@@ -10,6 +10,7 @@ mod fields;
 mod hold;
 mod loads;
 mod master;
+mod moments;
 
 use crate::body::Bodies;
 use crate::hyperelastic::StressLaw;

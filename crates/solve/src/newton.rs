@@ -1,10 +1,22 @@
 //! Newton's method with line search, for equations whose states need not be vectors.
 //!
-//! The residual is measured as the equations say, relative to what it is to reach: they are solved where the measure is at
-//! most one. Two searches along the step are known. The monotone one (Armijo 1966) takes the first share of a step that
-//! lowers the measure, or the best of all. The watchdog (Chamberlain, Powell, Lemarechal & Pedersen 1982) takes whole
-//! steps as they come, and goes back to the best state, and from there by shares, only when none of several was better:
-//! for equations whose residual rises before it falls, as that of thin beams with predicted stresses.
+//! A residual has two measures. What it is relative to what it is to reach decides when the equations are solved: at most
+//! one. It follows the size of the forces of the state, so that it hardly tells a bad state from a worse one. The merit is
+//! a norm of the residual itself, in one unit, and decides how far a step is followed.
+//!
+//! Two searches along the step are known. The monotone one (Armijo 1966) takes the first share of a step that lowers the
+//! merit, or the best of all. The watchdog (Chamberlain, Powell, Lemarechal & Pedersen 1982) takes whole steps as they come,
+//! and goes back to the best state, and from there by shares, only when none of several was better: for equations whose
+//! residual rises before it falls, as that of thin beams, and that of contacts that open and close.
+
+/// How far a state is from a solution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// A norm of the residual in one unit, the same for all states of a solution.
+    pub merit: f64,
+    /// Residual over what it is to reach.
+    pub error: f64,
+}
 
 /// Equations with their linearisation.
 pub trait Equations {
@@ -15,7 +27,7 @@ pub trait Equations {
     ///
     /// # Errors
     /// States that cannot be.
-    fn measure(&mut self, at: &Self::State) -> Result<f64, Self::Error>;
+    fn measure(&mut self, at: &Self::State) -> Result<Measured, Self::Error>;
 
     /// The Newton step at a state.
     ///
@@ -50,7 +62,7 @@ pub struct Newton {
     pub search: Search,
 }
 
-/// A solution, with the measure before and after each iteration.
+/// A solution, with the error before and after each iteration.
 #[derive(Clone, Debug)]
 pub struct Converged<S> {
     pub state: S,
@@ -60,7 +72,7 @@ pub struct Converged<S> {
 /// Why there is none.
 #[derive(Clone, Debug)]
 pub enum NewtonFailure<S, E> {
-    /// The last state, and the measures so far.
+    /// The best state, and the errors so far.
     NotConverged {
         best: S,
         history: Vec<f64>,
@@ -76,7 +88,7 @@ pub enum NewtonFailure<S, E> {
 /// Shares of a step that are tried.
 const SHARES: [f64; 7] = [1.0, 0.6, 0.35, 0.2, 0.1, 0.05, 0.02];
 
-/// Solves the equations. `report` is told each iteration and its measure; where it says `false` the solver stops.
+/// Solves the equations. `report` is told each iteration and its error; where it says `false` the solver stops.
 ///
 /// # Errors
 /// No convergence, equations that cannot be evaluated, or an interruption.
@@ -97,11 +109,11 @@ pub fn newton<E: Equations>(
     }
     let mut state = start.clone();
     let mut measure = told!(equations.measure(&state));
-    history.push(measure);
+    history.push(measure.error);
     let mut best = (state.clone(), measure);
     let mut behind = 0;
     for iteration in 1..=options.most_iterations {
-        if measure <= 1.0 {
+        if measure.error <= 1.0 {
             break;
         }
         let step = told!(equations.step(&state));
@@ -110,7 +122,7 @@ pub fn newton<E: Equations>(
             Search::Monotone => driven,
             Search::Watchdog { patience } => driven || behind < patience,
         };
-        let mut reached = None;
+        let mut reached: Option<(E::State, Measured)> = None;
         for share in SHARES {
             let next = equations.advance(&state, &step, share);
             // A state that cannot be is one that is too far.
@@ -121,33 +133,35 @@ pub fn newton<E: Equations>(
                 }
                 Err(_) => continue,
             };
-            let better = reached.as_ref().is_none_or(|(_, m)| of_next < *m);
-            if better && !of_next.is_nan() {
+            let better = reached.as_ref().is_none_or(|(_, m)| of_next.merit < m.merit);
+            if better && !of_next.merit.is_nan() {
                 reached = Some((next, of_next));
             }
-            if of_next <= 1.0 || (whole_steps && of_next.is_finite()) || of_next <= (1.0 - 0.1 * share) * measure {
+            let falls = of_next.merit <= (1.0 - 0.1 * share) * measure.merit;
+            if of_next.error <= 1.0 || (whole_steps && of_next.merit.is_finite()) || falls {
                 break;
             }
         }
         let Some((next, of_next)) = reached else { break };
         (state, measure) = (next, of_next);
-        history.push(measure);
-        if !report(iteration, measure) {
+        history.push(measure.error);
+        if !report(iteration, measure.error) {
             return Err(NewtonFailure::Interrupted);
         }
-        if measure < best.1 || driven {
+        if measure.merit < best.1.merit || driven {
             best = (state.clone(), measure);
             behind = 0;
         } else {
             behind += 1;
             if let Search::Watchdog { patience } = options.search
                 && behind == patience
+                && measure.error > 1.0
             {
                 (state, measure) = best.clone();
             }
         }
     }
-    if measure <= 1.0 {
+    if measure.error <= 1.0 {
         return Ok(Converged { state, history });
     }
     Err(NewtonFailure::NotConverged { best: best.0, history })
@@ -163,8 +177,8 @@ mod tests {
     impl Equations for Arctangent {
         type State = f64;
         type Error = ();
-        fn measure(&mut self, at: &f64) -> Result<f64, ()> {
-            Ok(at.atan().abs() / 1e-12)
+        fn measure(&mut self, at: &f64) -> Result<Measured, ()> {
+            Ok(Measured { merit: at.atan().abs(), error: at.atan().abs() / 1e-12 })
         }
         fn step(&mut self, at: &f64) -> Result<Vec<f64>, ()> {
             Ok(vec![-at.atan() * (1.0 + at * at)])

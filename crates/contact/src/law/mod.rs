@@ -13,9 +13,11 @@
 
 mod coulomb;
 mod tresca;
+mod viscous;
 
 pub use coulomb::Coulomb;
 pub use tresca::Tresca;
+pub use viscous::Viscous;
 
 /// Whether a point carries, and whether it slips.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -58,6 +60,13 @@ pub trait Law: std::fmt::Debug + Send + Sync {
     /// The admissible friction traction closest to the trial, under a pressure that is positive.
     fn friction(&self, trial: [f64; 2], pressure: f64) -> Friction;
 
+    /// The same in time, for laws that know the velocity of slip: it adds `per_velocity` times itself to the trial. Zero
+    /// where no time passes.
+    fn friction_in_time(&self, trial: [f64; 2], pressure: f64, per_velocity: f64) -> Friction {
+        let _ = per_velocity;
+        self.friction(trial, pressure)
+    }
+
     /// How much of the available friction a traction uses: 1 where it slips.
     fn utilisation(&self, traction: [f64; 2], pressure: f64) -> f64;
 
@@ -74,11 +83,16 @@ pub trait Law: std::fmt::Debug + Send + Sync {
 
     /// The admissible traction closest to the trial: a pressure that is not negative, and friction.
     fn project(&self, trial: [f64; 3]) -> Projected {
+        self.project_in_time(trial, 0.0)
+    }
+
+    /// The same in time, as of [`Law::friction_in_time`].
+    fn project_in_time(&self, trial: [f64; 3], per_velocity: f64) -> Projected {
         let pressure = trial[0];
         if pressure.is_nan() || pressure <= 0.0 {
             return Projected::default();
         }
-        let friction = self.friction([trial[1], trial[2]], pressure);
+        let friction = self.friction_in_time([trial[1], trial[2]], pressure, per_velocity);
         let [t, r, d] = [friction.traction, friction.by_pressure, friction.by_trial[0]];
         let e = friction.by_trial[1];
         Projected {

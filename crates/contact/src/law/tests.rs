@@ -9,6 +9,7 @@ fn laws() -> Vec<Box<dyn Law>> {
         Box::new(Coulomb::orthotropic([0.1, 0.9]).unwrap()),
         Box::new(Coulomb::orthotropic([0.0, 0.5]).unwrap()),
         Box::new(Tresca::new(0.5).unwrap()),
+        Box::new(Viscous::new(0.4, 0.3).unwrap()),
     ]
 }
 
@@ -163,4 +164,42 @@ proptest! {
             prop_assert!((0..3).all(|c| (one.derivative[r][c] - other.derivative[r][c]).abs() < 1e-11));
         }
     }
+}
+
+/// The law of velocity holds for what it returns, with derivatives of second order from creep to slip.
+#[test]
+fn a_viscous_law_is_that_of_its_velocity() {
+    let (mu, v0, p) = (0.4, 0.02, 1.3);
+    let law = Viscous::new(mu, v0).unwrap();
+    for rate in [1e-3, 0.7, 30.0] {
+        for trial in [[1e-3, -2e-3], [0.3, 0.1], [0.5, -0.2], [-4.0, 3.0]] {
+            let at = |z: [f64; 3]| law.project_in_time(z, rate);
+            let [_, t1, t2] = at([p, trial[0], trial[1]]).traction;
+            let velocity = [(trial[0] - t1) / rate, (trial[1] - t2) / rate];
+            let size = velocity[0].hypot(velocity[1]);
+            let known = velocity.map(|v| mu * p * v / size.hypot(v0));
+            let rounding = 1e-14 * (1.0 + mu * p / (rate * v0));
+            assert!((t1 - known[0]).hypot(t2 - known[1]) < rounding, "{rate} {trial:?}: {t1} {t2} {known:?}");
+            for direction in [[0.3, 0.0, 0.0], [0.0, 0.8, -0.1], [0.2, 0.3, 0.5]] {
+                let z = [p, trial[0], trial[1]];
+                // Steps that are short against where the law bends.
+                let step = 1e-3 * rate * v0 / (1.0 + rate * v0);
+                let found = at(z);
+                let errors = [step, 0.5 * step].map(|h| {
+                    let moved = at(std::array::from_fn(|k| z[k] + h * direction[k])).traction;
+                    let linear: [f64; 3] = std::array::from_fn(|r| {
+                        found.traction[r] + h * (0..3).map(|c| found.derivative[r][c] * direction[c]).sum::<f64>()
+                    });
+                    distance(&moved, &linear)
+                });
+                assert!(of_second_order(errors), "{rate} {trial:?} along {direction:?}: {errors:?}");
+            }
+        }
+    }
+    // In no time, or far beyond the velocity, it is the law of Coulomb.
+    let coulomb = Coulomb::isotropic(mu).unwrap();
+    assert_eq!(law.project([p, 0.7, 0.2]), coulomb.project([p, 0.7, 0.2]));
+    let fast = law.project_in_time([p, 4e3, 3e3], 1.0).traction;
+    assert!(distance(&fast, &coulomb.project([p, 4e3, 3e3]).traction) < 1e-9);
+    assert!(Viscous::new(0.3, 0.0).is_err() && Viscous::new(-0.3, 1.0).is_err());
 }

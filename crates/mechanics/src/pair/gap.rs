@@ -79,9 +79,10 @@ impl<'a, const N: usize> AtFoot<'a, N> {
             ..Pair::default()
         };
         if order == Order::Second {
-            pair.d2_gap = self.measures.gap_hessian(&self.variations);
-            self.encounter.add_bends(&self.normal, self.columns.len(), &mut pair.d2_gap);
+            pair.d_opening = self.measures.gap_hessian(&self.variations);
+            self.encounter.add_bends(&self.normal, self.columns.len(), &mut pair.d_opening);
         }
+        pair.opening = pair.d_gap.clone();
         pair
     }
 }
@@ -134,15 +135,16 @@ impl<'a> AtRigid<'a> {
             ..Pair::default()
         };
         if order == Order::Second {
-            pair.d2_gap = vec![0.0; n * n];
+            pair.d_opening = vec![0.0; n * n];
             for k in 0..n {
                 let curved = hessian * columns[k].d;
                 for l in 0..n {
-                    pair.d2_gap[k * n + l] = curved.dot(&columns[l].d) + normal.dot(&self.bend(k, l));
+                    pair.d_opening[k * n + l] = curved.dot(&columns[l].d) + normal.dot(&self.bend(k, l));
                 }
             }
-            self.encounter.add_bends(&normal, n, &mut pair.d2_gap);
+            self.encounter.add_bends(&normal, n, &mut pair.d_opening);
         }
+        pair.opening = pair.d_gap.clone();
         pair
     }
 }

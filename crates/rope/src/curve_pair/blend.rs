@@ -3,7 +3,7 @@
 //! With `z = cos² θ` of the angle between straight lines, the share of the point force is 1 for `θ ≥ θ_2`, 0 for `θ ≤ θ_1`, and
 //! a cubic in `z` between, with a continuous derivative; line forces have the rest (Meier, Wall & Popp 2017, on the level of
 //! forces). What counts is whether one point is nearer than its neighbours, by enough for points of a line to see it: of
-//! curves `z = (c_1'·c_2')²/(A_11 A_22)` with the second derivatives `A` of half the squared distance, which is 1 along the
+//! curves `z = 1 - det A/(|c_1'|² |c_2'|²)` with the second derivatives `A` of half the squared distance, which is 1 along the
 //! valley between the strands of a double helix although they cross.
 //!
 //! Straight tubes of radii `R` that cross at `θ` and penetrate by `δ` touch with `δ - x² sin²θ/(2(R_1 + R_2))`; line forces of

@@ -152,15 +152,16 @@ impl CurveContact {
         if self.bodies[0] == self.bodies[1] { Between::Itself } else { Between::Two }
     }
 
-    /// Penalties from the stiffness of both bodies, of an element in the mean.
-    pub(super) fn set_penalties(&mut self, bodies: [&dyn Body; 2], curves: [&dyn Curve; 2], factor: f64) {
+    /// Penalties from the stiffness of both bodies, of an element in the mean: clamped at its ends it is as much stiffer than
+    /// a rod as the cube of their number, and a penalty that is stiffer still only hides the rod from Newton's method.
+    pub(super) fn set_penalties(&mut self, bodies: [&dyn Body; 2], curves: [&dyn Curve; 2]) {
         let mean = |k: usize| {
             let n = curves[k].elements();
             let site = |e: usize| signorini_mechanics::Site { patch: e as u32, xi: [0.5, 0.0], weight: 1.0 };
             (0..n).map(|e| bodies[k].site_stiffness(&site(e))).sum::<f64>() / n as f64
         };
         // One after the other.
-        let point = factor / (1.0 / mean(0) + 1.0 / mean(1));
+        let point = 1.0 / (1.0 / mean(0) + 1.0 / mean(1));
         self.penalties = self.stated.unwrap_or(Penalties { point, line: point / spacing(curves[0]) });
     }
 

@@ -8,7 +8,7 @@ use signorini_contact::{Law, Status};
 use signorini_geometry::Vector;
 use signorini_mechanics::body::{Body, Order, PlaceError};
 use signorini_mechanics::interaction::{
-    Bodies, Interaction, NotItsHistory, Own, PENALTY, SCALE, Sticks, Target, penalty_factor,
+    Around, Bodies, Interaction, NotItsHistory, Own, Sticks, Target, penalty_factor,
 };
 use signorini_mechanics::{Curve, Enforcement, SiteResult};
 
@@ -136,10 +136,9 @@ impl Interaction for CurveContact {
     }
 
     fn prepare(&mut self, bodies: &[Box<dyn Body>], _: f64) {
-        let factor = if matches!(self.enforcement, Enforcement::Penalty { .. }) { PENALTY } else { SCALE };
         let own = self.bodies.map(|b| bodies[b].as_ref());
         if let [Some(slave), Some(master)] = own.map(|b| b.as_curve()) {
-            self.set_penalties(own, [slave.as_ref(), master.as_ref()], factor);
+            self.set_penalties(own, [slave.as_ref(), master.as_ref()]);
         }
     }
 
@@ -201,7 +200,7 @@ impl Interaction for CurveContact {
         self.history.iter_mut().for_each(|k| (k.force, k.traction) = (0.0, [0.0; 2]));
     }
 
-    fn augment(&mut self, at: Bodies<'_>, _: Own<'_>, found: &[SiteResult], known: f64) -> Result<f64, PlaceError> {
+    fn augment(&mut self, at: Bodies<'_>, _: Own<'_>, found: &[SiteResult], around: Around) -> Result<f64, PlaceError> {
         match self.enforcement {
             Enforcement::Penalty { wanted_penetration: Some(wanted) } => Ok(match penalty_factor(found, wanted) {
                 Some(factor) => {
@@ -230,7 +229,7 @@ impl Interaction for CurveContact {
                     let now = [c.force, traction[0], traction[1]];
                     let changed = (0..3).map(|i| (now[i] - before[i]).abs()).fold(0.0, f64::max);
                     // Gaps are known to the rounding of positions only.
-                    let counts = changed > known * c.penalty && most > 0.0;
+                    let counts = changed > around.known * c.penalty && most > 0.0;
                     change = change.max(if counts { changed * c.share.0 / (c.weight * most) } else { 0.0 });
                     history.push(Kept {
                         key: c.key,

@@ -123,12 +123,17 @@ fn hessian(jets: &[CurveJet; 2], d: &Vector<3>) -> [f64; 3] {
     [p.d1.norm_squared() + d.dot(&p.d2), q.d1.norm_squared() - d.dot(&q.d2), p.d1.dot(&q.d1)]
 }
 
-/// `(c_1'·c_2')²/(A_11 A_22)` of the second derivatives of the distance: between straight lines the squared cosine of their
-/// angle, and 1 along a valley of the distance, such as that of a double helix, where no point is nearer than its neighbours.
-/// Infinite beyond a centre of curvature.
+/// `1 - (A_11 A_22 - A_12²)/(|c_1'|² |c_2'|²)` of the second derivatives of the distance: between straight lines the squared
+/// cosine of their angle, and 1 where points are no nearer than their neighbours, such as along the valley between the
+/// strands of a double helix or where a rod winds about another. Infinite beyond a centre of curvature.
 pub fn parallel(feet: [&Foot; 2]) -> f64 {
-    let [a_11, a_22, a_12] = hessian(&feet.map(curve_jet), &(feet[0].jet.x - feet[1].jet.x));
-    if a_11 > 0.0 && a_22 > 0.0 { a_12 * a_12 / (a_11 * a_22) } else { f64::INFINITY }
+    let jets = feet.map(curve_jet);
+    let [a_11, a_22, a_12] = hessian(&jets, &(feet[0].jet.x - feet[1].jet.x));
+    if a_11 > 0.0 && a_22 > 0.0 {
+        1.0 - (a_11 * a_22 - a_12 * a_12) / (jets[0].d1.norm_squared() * jets[1].d1.norm_squared())
+    } else {
+        f64::INFINITY
+    }
 }
 
 /// The measures of two points of curves; of a foot with one coordinate the distance must be stationary in it. `first` are
@@ -210,11 +215,12 @@ fn with<const N: usize>(
             let own = |side: usize, v: Vector<3>| if c.side == side { v } else { zero };
             let tangent = [0, 1].map(|s| own(s, c.slope) + jets[s].d2 * d_xi[k][s]);
             let bend = [0, 1].map(|s| own(s, c.second) + jets[s].d3 * d_xi[k][s]);
-            let d_own =
-                [0, 1].map(|s| 2.0 * d1[s].dot(&tangent[s]) + signs[s] * (moved[k].dot(&jets[s].d2) + d.dot(&bend[s])));
+            let d_metric = [0, 1].map(|s| 2.0 * d1[s].dot(&tangent[s]));
+            let d_own = [0, 1].map(|s| d_metric[s] + signs[s] * (moved[k].dot(&jets[s].d2) + d.dot(&bend[s])));
             let d_both = tangent[0].dot(&d1[1]) + d1[0].dot(&tangent[1]);
-            let square = a_12 * a_12 / (a_11 * a_22);
-            2.0 * a_12 * d_both / (a_11 * a_22) - square * (d_own[0] / a_11 + d_own[1] / a_22)
+            let d_determinant = d_own[0] * a_22 + a_11 * d_own[1] - 2.0 * a_12 * d_both;
+            let [p, q] = lengths.map(|l| l * l);
+            ((a_11 * a_22 - a_12 * a_12) * (d_metric[0] / p + d_metric[1] / q) - d_determinant) / (p * q)
         })
         .collect();
     // The tangent across the normal; with coordinates both are orthogonal, but that of a point of Gauss may lean.

@@ -7,7 +7,7 @@ use signorini_fem::hierarchic::{Derivatives, Values};
 use signorini_fem::rules::rule;
 use signorini_fem::{CellShape, Group, Local, Side};
 use signorini_geometry::{Matrix, Point, Vector};
-use signorini_mechanics::{Function, Placed, Sampling, Site};
+use signorini_mechanics::{Bend, Direction, Function, Placed, Sampling, Site};
 use std::collections::{BTreeMap, HashMap};
 
 /// A side of a cell.
@@ -29,6 +29,8 @@ struct TestedPoint<const D: usize> {
     x: Point<D>,
     functions: Vec<(u32, f64)>,
     around: Vec<Tangents<D>>,
+    /// What the averaged normal is the sum of.
+    averaged: Vec<(f64, Tangents<D>)>,
     depth: f64,
 }
 
@@ -56,6 +58,10 @@ pub(super) struct Faces<const D: usize> {
     surfaces: BTreeMap<String, Surface>,
 }
 
+/// Cosine of the angle between faces at rest from which on they make one smooth surface: that between two sides of a
+/// regular octagon.
+const SMOOTH: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
 /// Functions smaller than this at a point do not move it: rounding of their values, which are about one.
 const NOTHING: f64 = 1e-14;
 
@@ -75,8 +81,8 @@ impl<const D: usize> Faces<D> {
             for &f in &faces {
                 out.list[f as usize].vertices.iter().for_each(|v| around.entry(*v).or_default().push(f));
             }
-            let nodes = out.nodes(&faces, group.sides.clone());
-            let gauss_points = out.gauss_points(&faces);
+            let nodes = out.nodes(&faces, &around, group.sides.clone());
+            let gauss_points = out.gauss_points(&faces, &around);
             out.surfaces.insert(name.clone(), Surface { faces, around, nodes, gauss_points });
         }
         out
@@ -110,37 +116,111 @@ impl<const D: usize> Faces<D> {
     }
 
     /// A point of a face that stands for an area.
-    fn add(&mut self, at: &[(u32, Local)], weight: f64) -> Site {
+    fn add(&mut self, at: &[(u32, Local)], around: &HashMap<u32, Vec<u32>>, weight: f64) -> Site {
         let (face, s) = at[0];
         let functions = (self.derivatives(face, &s).into_iter())
             .filter(|(_, d)| d[0].abs() > NOTHING)
             .map(|(f, d)| (f, d[0]))
             .collect();
-        let around: Vec<Tangents<D>> = (at.iter())
-            .map(|(face, s)| {
-                let slopes = self.derivatives(*face, s).into_iter().map(|(f, d)| (f, [d[1], d[2]])).collect();
-                Tangents { face: *face, at: self.reference(*face, s).tangents, slopes }
-            })
-            .collect();
+        let averaged = self.averaged(face, &s, around);
+        let around: Vec<Tangents<D>> = at.iter().map(|(face, s)| self.tangents(*face, s)).collect();
         let depth = at.iter().map(|(f, _)| self.face(*f).depth).fold(f64::INFINITY, f64::min);
-        self.points.push(TestedPoint { x: self.reference(face, &s).x, functions, around, depth });
+        self.points.push(TestedPoint { x: self.reference(face, &s).x, functions, around, averaged, depth });
         Site { patch: (self.points.len() - 1) as u32, xi: [s[0], s[1]], weight }
     }
 
-    fn gauss_points(&mut self, faces: &[u32]) -> Vec<Site> {
+    fn tangents(&self, face: u32, s: &Local) -> Tangents<D> {
+        let slopes = self.derivatives(face, s).into_iter().filter(|(_, d)| d[1].abs().max(d[2].abs()) > NOTHING);
+        let slopes = slopes.map(|(f, d)| (f, [d[1], d[2]])).collect();
+        Tangents { face, at: self.reference(face, s).tangents, slopes }
+    }
+
+    /// The terms of the averaged normal at a point of a face: area normals at its vertices of all faces that go on smoothly
+    /// there, over their areas at rest, with the functions of the vertices.
+    fn averaged(&self, face: u32, s: &Local, around: &HashMap<u32, Vec<u32>>) -> Vec<(f64, Tangents<D>)> {
+        let own = self.face(face);
+        let mut out = Vec::new();
+        for (corner, vertex) in own.shape.vertices().iter().zip(&own.vertices) {
+            let value = vertex_function(own.shape, corner, s);
+            if value.abs() <= NOTHING {
+                continue;
+            }
+            let here = self.reference(face, corner).area_normal();
+            let mut total = 0.0;
+            let begin = out.len();
+            for &other in &around[vertex] {
+                let face = self.face(other);
+                let at = face.vertices.iter().position(|v| v == vertex).map(|k| face.shape.vertices()[k]);
+                let Some(at) = at else { continue };
+                let normal = self.reference(other, &at).area_normal();
+                if normal.dot(&here) >= SMOOTH * normal.norm() * here.norm() {
+                    total += normal.norm();
+                    out.push((value, self.tangents(other, &at)));
+                }
+            }
+            out[begin..].iter_mut().for_each(|(share, _)| *share /= total);
+        }
+        out
+    }
+
+    /// The averaged normal of a tested point, with what moves it.
+    fn direction(&self, point: &TestedPoint<D>, u: &[f64]) -> Direction {
+        let mut out = Direction::default();
+        for (share, terms) in &point.averaged {
+            let [x1, x2] = terms.now(u).each_ref().map(spatial);
+            // In the plane the second tangent goes across it.
+            let x2 = if D == 2 { Vector::<3>::z() } else { x2 };
+            out.vector += x1.cross(&x2) * *share;
+            for (f, [s1, s2]) in &terms.slopes {
+                for i in 0..D {
+                    let e = axis(i);
+                    let turned = if D == 2 { e.cross(&x2) * *s1 } else { e.cross(&x2) * *s1 + x1.cross(&e) * *s2 };
+                    out.functions.push(Function {
+                        unknown: D as u32 * f + i as u32,
+                        value: turned * *share,
+                        ..Function::default()
+                    });
+                }
+            }
+        }
+        out.functions.sort_by_key(|f| f.unknown);
+        out.functions.dedup_by(|f, kept| {
+            let same = f.unknown == kept.unknown;
+            if same {
+                kept.value += f.value;
+            }
+            same
+        });
+        if D == 3 {
+            for (share, terms) in &point.averaged {
+                for (k, (f, s)) in terms.slopes.iter().enumerate() {
+                    for (g, t) in &terms.slopes[k + 1..] {
+                        let size = share * (s[0] * t[1] - t[0] * s[1]);
+                        for (i, j) in [(0, 1), (1, 2), (2, 0), (1, 0), (2, 1), (0, 2)] {
+                            let unknowns = [3 * f + i as u32, 3 * g + j as u32];
+                            out.bends.push(Bend { unknowns, value: axis(i).cross(&axis(j)) * size });
+                        }
+                    }
+                }
+            }
+        }
+        out
+    }
+
+    fn gauss_points(&mut self, faces: &[u32], around: &HashMap<u32, Vec<u32>>) -> Vec<Site> {
         let mut out = Vec::new();
         for &f in faces {
             for (s, w) in rule(self.face(f).shape, self.bodies.list[0].degree + 1) {
                 let point = self.reference(f, &s);
                 let weight = w * point.area_normal().norm() * self.bodies.measure(&point.x);
-                out.push(self.add(&[(f, s)], weight));
+                out.push(self.add(&[(f, s)], around, weight));
             }
         }
         out
     }
 
     /// The nodes of the contact pressure, one on each side of an edge that is a feature.
-    fn nodes(&mut self, faces: &[u32], sides: Vec<Side>) -> Vec<Site> {
+    fn nodes(&mut self, faces: &[u32], around: &HashMap<u32, Vec<u32>>, sides: Vec<Side>) -> Vec<Site> {
         let nodes = PressureNodes::new(&self.bodies.surface(0, sides));
         let mut weights = vec![0.0; nodes.len()];
         let mut places: Vec<Vec<(u32, Local)>> = vec![Vec::new(); nodes.len()];
@@ -153,7 +233,7 @@ impl<const D: usize> Faces<D> {
                 weights[*node as usize] += w;
             }
         }
-        places.iter().zip(weights).map(|(at, w)| self.add(at, w)).collect()
+        places.iter().zip(weights).map(|(at, w)| self.add(at, around, w)).collect()
     }
 
     /// The area of a face as it belongs to its nodes: the integrals of their functions, or where one of these is not
@@ -226,16 +306,7 @@ impl<const D: usize> Faces<D> {
     /// The mean outward unit normal at a tested point.
     pub fn outward(&self, site: &Site, u: &[f64]) -> Vector<3> {
         let point = &self.points[site.patch as usize];
-        let of = |t: &Tangents<D>| {
-            let mut tangents = t.at;
-            for (f, slopes) in &t.slopes {
-                for i in 0..D {
-                    let u = u[D * *f as usize + i];
-                    (0..D - 1).for_each(|a| tangents[a][i] += u * slopes[a]);
-                }
-            }
-            spatial(&FacePoint { x: point.x, tangents }.area_normal().normalize())
-        };
+        let of = |t: &Tangents<D>| spatial(&FacePoint { x: point.x, tangents: t.now(u) }.area_normal().normalize());
         point.around.iter().map(of).sum::<Vector<3>>().normalize()
     }
 
@@ -253,10 +324,35 @@ impl<const D: usize> Faces<D> {
         Placed {
             x: spatial(&x),
             outward: Some(self.outward(site, u)),
+            averaged: Some(self.direction(point, u)),
             functions,
             frame: Matrix::<3>::identity(),
             ..Placed::default()
         }
+    }
+}
+
+impl<const D: usize> Tangents<D> {
+    /// The tangents where the body is now.
+    fn now(&self, u: &[f64]) -> [Point<D>; 2] {
+        let mut tangents = self.at;
+        for (f, slopes) in &self.slopes {
+            for i in 0..D {
+                let u = u[D * *f as usize + i];
+                (0..D - 1).for_each(|a| tangents[a][i] += u * slopes[a]);
+            }
+        }
+        tangents
+    }
+}
+
+/// The function of a vertex of a face with straight edges.
+fn vertex_function(shape: CellShape, corner: &Local, s: &Local) -> f64 {
+    match shape {
+        CellShape::Triangle if corner[0] + corner[1] == 0.0 => 1.0 - s[0] - s[1],
+        CellShape::Triangle => corner[0] * s[0] + corner[1] * s[1],
+        CellShape::Line => 0.5 * (1.0 + corner[0] * s[0]),
+        _ => 0.25 * (1.0 + corner[0] * s[0]) * (1.0 + corner[1] * s[1]),
     }
 }
 

@@ -32,15 +32,17 @@ impl<const D: usize> SolidBody<D> {
             Load::Pressure(pressure) if self.law == StressLaw::LinearElastic => self.dead_pressure(on, pressure, out),
             Load::Pressure(pressure) => self.follower_pressure(on, pressure, u, order, out),
             Load::Springs(stiffness) => self.springs(on, stiffness, u, order, out),
-            Load::Moment(_) | Load::FollowerMoment(_) => {
-                Err(self.unsuitable("a solid takes no moments: state tractions that make one"))
+            Load::Moment(moment) => self.moment(on, moment, u, order, out),
+            Load::FollowerMoment(_) => {
+                Err(self
+                    .unsuitable("nothing of a solid tells how a moment turns with it: state a moment about fixed axes"))
             }
             Load::Tension(_) => Err(self.unsuitable("a tension pulls the end of a rope")),
         }
     }
 
     /// Visits quadrature points of the sides of a place at rest, with what they stand for and what moves them; the area.
-    fn on_sides(
+    pub(super) fn on_sides(
         &self,
         on: Option<&str>,
         visit: &mut dyn FnMut(&Point<3>, f64, &[ShapeFunction]),

@@ -24,6 +24,15 @@ const TOUCHING: f64 = 1e-9;
 /// Cosine between the normals of two places of a surface from which on they do not face each other.
 const FACING: f64 = -0.5;
 
+/// Newton steps to where a line crosses a face, which is nearly flat.
+const MOST_STEPS: usize = 20;
+/// A last step of the coordinates, whose square is rounding.
+const CONVERGED: f64 = 1e-9;
+/// A step of the coordinates, of which a face has two units, that leaves it for good.
+const FARTHEST: f64 = 1e3;
+/// How far beyond the border of a face a point counts for it, so that none is lost between two.
+const BORDER: f64 = 1e-9;
+
 /// A surface where it is now.
 pub(super) struct SurfaceMaster<'a, const D: usize> {
     faces: &'a Faces<D>,
@@ -92,6 +101,31 @@ impl<const D: usize> SurfaceMaster<'_, D> {
         let normal = self.normal(face, &coordinates(found));
         let gap = (x - found.closest.b.point).dot(&normal);
         own.outward.dot(&normal) < FACING && gap > -own.deepest
+    }
+
+    /// Where a line crosses a face that faces it: how far along, and the coordinates.
+    fn crossing(&self, face: u32, x: &Point<3>, direction: &Vector<3>) -> Option<(f64, Local)> {
+        let shape = self.faces.face(face).shape;
+        let mut s = shape.centre();
+        for _ in 0..MOST_STEPS {
+            let list = self.faces.derivatives(face, &s);
+            let at = self.faces.current(face, &s, &list, self.u);
+            let [x1, x2] = at.tangents.each_ref().map(spatial);
+            // In the plane nothing changes across it.
+            let x2 = if D == 2 { Vector::<3>::z() * x1.norm() } else { x2 };
+            let off = x - spatial(&at.x);
+            let step = Matrix::<3>::from_columns(&[x1, x2, -direction]).try_inverse()? * off;
+            (s[0], s[1]) = (s[0] + step[0], if D == 2 { 0.0 } else { s[1] + step[1] });
+            let moved = step[0].abs().max(step[1].abs());
+            if moved.is_nan() || moved > FARTHEST {
+                return None;
+            }
+            if moved <= CONVERGED {
+                let facing = x1.cross(&x2).dot(direction) < 0.0;
+                return (facing && is_within(shape, &s)).then_some((step[2], s));
+            }
+        }
+        None
     }
 
     fn foot(&self, k: usize, s: Local, x: &Point<3>, feature: FeatureKind) -> Foot {
@@ -183,6 +217,29 @@ impl<const D: usize> Master for SurfaceMaster<'_, D> {
         Some(Met::Foot(Box::new(self.foot(k, coordinates(&found), x, feature))))
     }
 
+    fn is_faceted(&self) -> bool {
+        true
+    }
+
+    fn cut(&self, x: &Point<3>, direction: &Vector<3>, reach: f64) -> Option<Met> {
+        let direction = direction.normalize();
+        let limit = reach * reach;
+        let mut best: Option<(f64, usize, Local)> = None;
+        self.bvh.nearest(x, limit, |k| {
+            let now = best.map_or(limit, |(t, ..)| t * t);
+            if let Some((t, s)) = self.crossing(self.surface.faces[k], x, &direction)
+                && t.abs() <= reach
+                && best.is_none_or(|(b, other, _)| t.abs() < b.abs() || (t.abs() == b.abs() && k < other))
+            {
+                best = Some((t, k, s));
+                return t * t;
+            }
+            now
+        });
+        let (_, k, s) = best?;
+        Some(Met::Cut(Box::new(self.foot(k, s, x, FeatureKind::Interior))))
+    }
+
     fn at(&self, point: &MaterialPoint) -> Anchor {
         let list = self.faces.derivatives(point.patch, &point.xi);
         let at = self.faces.current(point.patch, &point.xi, &list, self.u);
@@ -212,6 +269,13 @@ fn functions<const D: usize>(list: &[(u32, Derivatives)], of: impl Fn(&Derivativ
         }
     }
     out
+}
+
+fn is_within(shape: CellShape, s: &Local) -> bool {
+    match shape {
+        CellShape::Triangle => s[0] >= -BORDER && s[1] >= -BORDER && s[0] + s[1] <= 1.0 + BORDER,
+        _ => s[0].abs() <= 1.0 + BORDER && s[1].abs() <= 1.0 + BORDER,
+    }
 }
 
 /// The coordinates of a closest point on a face.

@@ -10,6 +10,7 @@ use signorini_mechanics::*;
 use signorini_solid::{Elastic, SolidBody, Space, StressLaw};
 use std::sync::Arc;
 
+mod blocks;
 mod bodies;
 mod contacts;
 mod groove;
@@ -92,7 +93,7 @@ fn touch(
     let of = |(body, group): (usize, &str)| (part(body, group), system.bodies[body].as_ref());
     let mut contact = Contact::new("touch", of(slave), of(master), sampling, enforcement).unwrap();
     contact.friction = mu.map(|mu| Box::new(Coulomb::isotropic(mu).unwrap()) as _);
-    system.contacts.push(contact);
+    system.contacts.push(Box::new(contact));
 }
 
 /// Force of a contact on its slave.

@@ -79,6 +79,10 @@ fn check<const D: usize>(mesh: &Mesh<D>, degree: usize, space: Space, nu: f64) {
             let pressure = |x: &Point<3>| 1.0 + x[0];
             body.load(Some("top"), &Load::Pressure(&pressure), &state(u), order, &mut out).unwrap();
             body.load(Some("right"), &Load::Springs(v(1.0, 2.0, 3.0)), &state(u), order, &mut out).unwrap();
+            if space != Space::Axisymmetric {
+                let moment = if D == 2 { v(0.0, 0.0, 0.7) } else { v(0.3, -0.5, 0.7) };
+                body.load(Some("top"), &Load::Moment(moment), &state(u), order, &mut out).unwrap();
+            }
             out
         };
         let error = difference(n, &u, 1e-5, &loaded);

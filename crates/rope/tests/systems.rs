@@ -1,0 +1,161 @@
+//! Beams, cables and chains in systems of bodies: large rotations in one step, falls from afar, capstans.
+
+use signorini_contact::Coulomb;
+use signorini_geometry::Vector;
+use signorini_geometry::rigid::RigidMotion;
+use signorini_geometry::rigid_shape::{Cylinder, RigidShape};
+use signorini_mechanics::*;
+use signorini_rope::beam::Beam;
+use signorini_rope::cable::Cable;
+use signorini_rope::cable::element::Carries;
+use signorini_rope::centreline::{Closure, Continuity};
+use signorini_rope::chain::Chain;
+use signorini_rope::chain::body::Rest;
+use signorini_rope::path::Path;
+use signorini_rope::section::Stiffness;
+use std::sync::Arc;
+
+type V = Vector<3>;
+type TimeField = signorini_mechanics::system::TimeField;
+
+fn part(body: usize, group: &str) -> Part {
+    Part { body, group: (!group.is_empty()).then(|| group.to_string()) }
+}
+
+fn hold(group: &str, displacement: [Option<TimeField>; 3], rotation: [Option<TimeField>; 3]) -> Support {
+    Support { name: group.into(), part: part(0, group), displacement, rotation }
+}
+
+fn zero() -> Option<TimeField> {
+    Some(Arc::new(|_, _| 0.0))
+}
+
+fn load(group: &str, load: TimedLoad) -> PlacedLoad {
+    PlacedLoad { name: group.into(), part: part(0, group), load }
+}
+
+fn rigid(shape: impl RigidShape + 'static) -> RigidBody {
+    let zero = V::zeros();
+    let centre = shape.centre();
+    let motion = Motion::Prescribed(Arc::new(move |_| RigidMotion::new(zero, zero, zero)));
+    RigidBody { name: "drum".into(), shape: Arc::new(shape), motion, centre, sites: Vec::new(), size: 1.0 }
+}
+
+fn touch(system: &mut System, sampling: Sampling, enforcement: Enforcement, mu: Option<f64>) {
+    let of = |body: usize| (part(body, ""), system.bodies[body].as_ref());
+    let mut contact = Contact::new("touch", of(0), of(1), sampling, enforcement).unwrap();
+    contact.friction = mu.map(|mu| Box::new(Coulomb::isotropic(mu).unwrap()) as _);
+    system.contacts.push(Box::new(contact));
+}
+
+fn run(system: &mut System, times: &[f64]) -> (SystemState, Vec<IncrementResult>) {
+    system.prepare().unwrap();
+    let mut state = system.start();
+    let mut results = Vec::new();
+    for &time in times {
+        let mut history = Vec::new();
+        let found = system.solve(&state, time, &mut |_, r| {
+            history.push(r);
+            true
+        });
+        let (next, result) =
+            found.unwrap_or_else(|e| panic!("at {time} after {}: {e}\n{e:?}\n{}", told(&results), short(&history)));
+        if std::env::var("TELL").is_ok() {
+            println!("{time}: {}", short(&history));
+        }
+        system.accept(&next).unwrap();
+        state = next;
+        results.push(result);
+    }
+    (state, results)
+}
+
+fn short(history: &[f64]) -> String {
+    history.iter().map(|r| format!("{r:.0e} ")).collect()
+}
+
+fn told(results: &[IncrementResult]) -> String {
+    results.iter().map(|r| format!("{} ", r.iterations)).collect()
+}
+
+#[test]
+fn the_bend_of_45_degrees_in_one_step() {
+    let angle = std::f64::consts::FRAC_PI_4;
+    let path = Path::circle(V::new(0.0, 100.0, 0.0), -V::y(), V::x(), 100.0, angle).unwrap();
+    let i = 1.0 / 12.0;
+    let stiffness = Stiffness { axial: 1e7, shear: [0.5e7; 2], torsion: 1e7 * i, bending: [1e7 * i; 2] };
+    let beam = Beam::new("bend", &path.sample(32, Continuity::C1).unwrap(), Some(V::z()), stiffness, 0.0).unwrap();
+    let mut system = System::default();
+    system.bodies.push(Box::new(beam.clone()));
+    system.supports.push(hold("start", std::array::from_fn(|_| zero()), std::array::from_fn(|_| zero())));
+    system.loads.push(load("end", TimedLoad::Force(Arc::new(|_, t| V::new(0.0, 0.0, 600.0 * t)))));
+    let (state, results) = run(&mut system, &[1.0]);
+    let x = beam.position(&state.bodies[0], beam.elements());
+    println!("{x:?} {:?}", results[0].history);
+    assert!((x - V::new(47.1504, 15.6848, 53.4748)).norm() < 1e-3, "{x:?}");
+    assert!(results[0].iterations <= 12, "{:?}", results[0].history);
+}
+
+/// A cable that hangs far above a cylinder and falls onto it.
+fn fall(cells: usize, height: f64, enforcement: Enforcement) -> (V, Vec<IncrementResult>) {
+    let path = Path::points(&[V::new(-2.0, 0.0, height), V::new(2.0, 0.0, height)], Closure::Open).unwrap();
+    let path = path.sample(cells, Continuity::C1).unwrap();
+    let cable = Cable::new("cable", &path, 1e4, 0.0, Carries::TensionOnly, Rest::Length(6.0), 0.02).unwrap();
+    let mut system = System::default();
+    system.bodies.push(Box::new(cable));
+    system.bodies.push(Box::new(rigid(Cylinder { point: V::zeros(), axis: V::y(), radius: 0.5 })));
+    system.supports.push(hold("boundary", std::array::from_fn(|_| zero()), [None, None, None]));
+    system.loads.push(load("", TimedLoad::BodyForce(Arc::new(|_, _| V::new(0.0, 0.0, -1.0)))));
+    touch(&mut system, Sampling::GaussPoints, enforcement, None);
+    let (_, results) = run(&mut system, &[1.0]);
+    let force: V = results[0].sites[0].iter().map(SiteResult::force).sum();
+    (force, results)
+}
+
+#[test]
+fn cables_fall_onto_a_cylinder_from_afar() {
+    for enforcement in [Enforcement::Penalty { wanted_penetration: None }, Enforcement::Multiplier] {
+        for height in [0.8, 1.5] {
+            let (force, results) = fall(16, height, enforcement);
+            println!("{enforcement:?} {height}: {force:?} {}", told(&results));
+        }
+    }
+}
+
+fn capstan(cells: usize, sampling: Sampling, enforcement: Enforcement) -> Vec<IncrementResult> {
+    let turn = std::f64::consts::PI * 1.5;
+    let path = Path::circle(V::zeros(), V::x(), V::z(), 1.02, turn).unwrap().sample(cells, Continuity::C0).unwrap();
+    let mut system = System::default();
+    let chain = Chain::new("rope", &path, 1e3, Rest::Pretension(1.0), 0.02).unwrap();
+    system.bodies.push(Box::new(chain));
+    system.bodies.push(Box::new(rigid(Cylinder { point: V::zeros(), axis: V::y(), radius: 1.0 })));
+    system.supports.push(hold("start", std::array::from_fn(|_| zero()), [None, None, None]));
+    system.supports.push(hold("", [None, zero(), None], [None, None, None]));
+    system.loads.push(load("end", TimedLoad::Force(Arc::new(|_, t| V::x() * 1.05f64.powf(t)))));
+    touch(&mut system, sampling, enforcement, Some(0.3));
+    let times: Vec<f64> = (0..=16).map(f64::from).collect();
+    run(&mut system, &times).1
+}
+
+#[test]
+fn a_capstan_takes_few_iterations() {
+    for cells in [40, 100] {
+        for (sampling, enforcement) in [
+            (Sampling::Nodes, Enforcement::Penalty { wanted_penetration: None }),
+            (Sampling::Nodes, Enforcement::Multiplier),
+        ] {
+            let results = capstan(cells, sampling, enforcement);
+            println!("{cells} {enforcement:?}: {}", told(&results));
+            // The slip zone grows by a cell an iteration: by 1.4 and 3.5 cells an increment.
+            let most = if cells == 40 { 4 } else { 6 };
+            assert!(results[1..].iter().all(|r| r.iterations <= most), "{}", told(&results));
+            // Tension falls by exp(-μ φ) from the end to where it sticks.
+            let last = &results[16].sites[0];
+            let slips: f64 =
+                last.iter().filter(|s| s.status == signorini_contact::Status::Slip).map(|s| s.weight).sum();
+            let known = 16.0 * 1.05f64.ln() / 0.3 * 1.02;
+            let cell = 1.5 * std::f64::consts::PI * 1.02 / cells as f64;
+            assert!((slips - known).abs() < 2.0 * cell, "{slips} {known}");
+        }
+    }
+}

@@ -314,8 +314,8 @@ impl Contact {
             }
             let Some(tangent) = &mut out.tangent else { continue };
             if found.projected.status == Status::Open {
-                // Neither force nor stiffness, but that multipliers are to vanish.
-                for i in 0..if multiplier { parts } else { 0 } {
+                // Neither force nor stiffness, but that the tractions are to vanish.
+                for i in 0..parts {
                     tangent.add(own(i), own(i), -w / c * (1.0 + UNDETERMINED));
                 }
                 continue;

@@ -33,6 +33,17 @@ pub enum Friction {
     Coulomb(CoulombFriction),
     /// Up to a limit, whatever the pressure.
     Tresca(TrescaFriction),
+    /// In proportion to the pressure, regularised by the velocity of slip: nothing sticks, it creeps.
+    Viscous(ViscousFriction),
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ViscousFriction {
+    /// The coefficient at high velocities.
+    pub mu: Value,
+    /// The velocity of slip at which 0.71 of it acts, a length per time.
+    pub velocity: Value,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]

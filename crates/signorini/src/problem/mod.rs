@@ -307,7 +307,7 @@ pub struct Load {
     pub force: Option<List<Value>>,
     /// Force per volume along each axis; of a rope or beam per length.
     pub body_force: Option<List<Value>>,
-    /// A resultant moment about each axis, on a beam or a free rigid body.
+    /// A resultant moment about each axis, on a beam, a free rigid body, or a solid of a system.
     pub moment: Option<List<Value>>,
     /// A force along the end of a rope or beam, pulling.
     pub tension: Option<Value>,

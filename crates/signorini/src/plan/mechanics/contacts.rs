@@ -90,7 +90,7 @@ impl Planner<'_> {
             let law = self.law(friction, 3)?;
             contact.axis = match friction {
                 problem::Friction::Coulomb(coulomb) => self.axis_choice(coulomb)?,
-                problem::Friction::Tresca(_) => AxisChoice::Material,
+                problem::Friction::Tresca(_) | problem::Friction::Viscous(_) => AxisChoice::Material,
             };
             contact.friction = Some(law);
         }
@@ -122,7 +122,7 @@ impl Planner<'_> {
                 contact.friction = Some(self.law(friction, 3)?);
                 match friction {
                     problem::Friction::Coulomb(coulomb) => self.axis_choice(coulomb)?,
-                    problem::Friction::Tresca(_) => AxisChoice::Tangent,
+                    problem::Friction::Tresca(_) | problem::Friction::Viscous(_) => AxisChoice::Tangent,
                 }
             }
             None => AxisChoice::Tangent,

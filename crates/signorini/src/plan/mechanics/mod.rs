@@ -80,7 +80,8 @@ pub fn is_system(problem: &Problem) -> bool {
         _ => false,
     };
     let slides = |c: &problem::Contact| {
-        c.within.is_some() || (c.friction.is_some() && c.sliding == Some(problem::Sliding::Finite))
+        let in_time = matches!(c.friction, Some(problem::Friction::Viscous(_)));
+        c.within.is_some() || in_time || (c.friction.is_some() && c.sliding == Some(problem::Sliding::Finite))
     };
     let of_solids = bodies().any(|b| matches!(b, Body::Solid(_))) && !bodies().any(|b| matches!(b, Body::Membrane(_)));
     bodies().any(needs_one) || (of_solids && problem.contacts.values().any(slides))

@@ -4,7 +4,7 @@ use crate::plan::Planner;
 use crate::plan::mechanics::is_tangent;
 use crate::problem::units::{NONE, PRESSURE};
 use crate::problem::{self, CaseError, Value};
-use signorini_contact::law::{Coulomb, Law, LawError, Tresca};
+use signorini_contact::law::{Coulomb, Law, LawError, Tresca, Viscous};
 use signorini_geometry::Point;
 use signorini_solid::Friction;
 
@@ -19,6 +19,7 @@ pub struct PlannedFriction<const D: usize> {
 enum PlannedLaw {
     Coulomb(Coulomb),
     Tresca(Tresca),
+    Viscous(Viscous),
 }
 
 impl PlannedLaw {
@@ -26,6 +27,7 @@ impl PlannedLaw {
         match self {
             PlannedLaw::Coulomb(law) => Box::new(law),
             PlannedLaw::Tresca(law) => Box::new(law),
+            PlannedLaw::Viscous(law) => Box::new(law),
         }
     }
 }
@@ -79,6 +81,12 @@ impl Planner<'_> {
                 let limit = self.reader.number(&key.limit, PRESSURE)?;
                 let law = Tresca::new(limit).map_err(|e| self.not_negative(&key.limit, e))?;
                 return Ok(PlannedLaw::Tresca(law));
+            }
+            problem::Friction::Viscous(key) => {
+                let mu = self.reader.number(&key.mu, NONE)?;
+                let velocity = self.reader.positive(&key.velocity, [1, 0, -1])?;
+                let law = Viscous::new(mu, velocity).map_err(|e| self.not_negative(&key.mu, e))?;
+                return Ok(PlannedLaw::Viscous(law));
             }
             problem::Friction::Coulomb(key) => key,
         };

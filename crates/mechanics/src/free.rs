@@ -9,7 +9,7 @@ use signorini_geometry::Vector;
 /// What holds a body when springs a hundred times weaker than its load per size carry so much of it: nothing else does.
 const CARRIES: f64 = 0.1;
 /// A body that weak springs let go so many sizes away is not held.
-const AWAY: f64 = 10.0;
+pub(crate) const AWAY: f64 = 10.0;
 
 impl Problem<'_> {
     /// The body that springs let go, or that nothing but springs holds.

@@ -6,6 +6,7 @@
 
 use crate::body::Order;
 use crate::equilibrium::Problem;
+use crate::free::AWAY;
 use crate::increment::{IncrementError, is_curable};
 use crate::system::SystemState;
 use signorini_solve::newton::Converged;
@@ -13,6 +14,13 @@ use signorini_solve::newton::Converged;
 /// Stiffness of the springs that hold free bodies at first, in largest loads per size, and what they are taken back to. The
 /// first let a body move by a hundredth of its size: contact reaches farther.
 const SPRINGS: [f64; 7] = [1e2, 1.0, 1e-2, 1e-4, 1e-6, 1e-8, 0.0];
+/// Springs to the last state: how they are weakened, below what the bodies are let go, in largest loads per size, and how
+/// often.
+const WEAKER: f64 = 0.25;
+const SETTLED: f64 = 1e-2;
+const MOST_SETTLING: usize = 300;
+/// States of an iteration that came soon to its end.
+const SOON: usize = 12;
 /// The first bit of what is out of balance that is let go, and the least.
 const FIRST_BIT: f64 = 0.125;
 const LEAST_BIT: f64 = 1e-4;
@@ -83,6 +91,51 @@ impl Problem<'_> {
             before = self.springs;
         }
         last.ok_or(error)
+    }
+
+    /// Follows the bodies to rest: each solve is held by springs to the state that the last one found, weaker after a success
+    /// and stiffer after a failure: implicit steps of a motion without inertia (proximal point method, Rockafellar 1976;
+    /// Kelley & Keyes 1998). For ropes without tension that fall until they hang.
+    pub(crate) fn settling(
+        &mut self,
+        start: &SystemState,
+        error: IncrementError,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<Converged<SystemState>, IncrementError> {
+        let load = self.load(start)?;
+        let unit = load / self.system.size();
+        let mut state = start.clone();
+        let mut total = vec![0.0; start.travel.len()];
+        let mut factor = SPRINGS[0];
+        for _ in 0..MOST_SETTLING {
+            self.springs = factor * unit;
+            let held = SystemState { travel: vec![0.0; total.len()], ..state.clone() };
+            let found = self.solve(&held, report);
+            self.springs = 0.0;
+            match found {
+                Ok(found) => {
+                    total.iter_mut().zip(&found.state.travel).for_each(|(t, s)| *t += s);
+                    let soon = found.history.len() <= SOON;
+                    state = found.state;
+                    let far = |(k, t): (usize, &f64)| !self.is_spin[k] && t.abs() > AWAY * self.system.size();
+                    if total.iter().enumerate().any(far) {
+                        return Err(error);
+                    }
+                    if soon {
+                        factor *= WEAKER;
+                    }
+                    if factor < SETTLED
+                        && let Ok(mut found) = self.solve(&state, report)
+                    {
+                        found.state.travel = total;
+                        return Ok(found);
+                    }
+                }
+                Err(IncrementError::Interrupted) => return Err(IncrementError::Interrupted),
+                Err(_) => factor /= WEAKER,
+            }
+        }
+        Err(error)
     }
 
     /// The largest force that acts.

@@ -192,7 +192,13 @@ impl System {
         if self.contacts.is_empty() {
             return Err(problem.named(error, start));
         }
-        problem.with_springs(start, error, report)
+        match problem.with_springs(start, error, report) {
+            Err(error) if error != IncrementError::Interrupted && !self.has_free_rigid_body() => {
+                problem.springs = 0.0;
+                problem.settling(start, error, report)
+            }
+            found => found,
+        }
     }
 
     pub(crate) fn has_free_rigid_body(&self) -> bool {

@@ -5,7 +5,7 @@ use crate::body::Sampling;
 use crate::contact::{Contact, Enforcement, Part};
 use crate::increment::IncrementError;
 use crate::system::{PlacedLoad, Support, System, TimedLoad};
-use signorini_contact::{Coulomb, Status};
+use signorini_contact::{Coulomb, Status, Viscous};
 
 fn part(body: usize) -> Part {
     Part { body, group: None }
@@ -149,4 +149,49 @@ fn a_moved_body_drags_one_that_springs_hold() {
     // Both contacts stick: they give way by friction over penalty.
     assert!(result.sites.iter().all(|s| s[0].status == Status::Stick), "{:?}", result.sites);
     assert!((moved - 0.05).abs() < 2e-3, "{moved}");
+}
+
+/// With friction by velocity a ball that may not turn creeps down an incline, at the velocity of which the friction is its
+/// weight along it, however time is divided.
+#[test]
+fn viscous_friction_creeps_down_an_incline() {
+    let (angle, mu, v0) = (0.2f64, 0.3, 1e-3);
+    let share = angle.tan() / mu;
+    let velocity = v0 * share / (1.0 - share * share).sqrt();
+    let normal = v(-angle.sin(), 0.0, angle.cos());
+    for enforcement in [Enforcement::AugmentedLagrangian, Enforcement::Penalty { wanted_penetration: None }] {
+        let mut system = System::default();
+        system.bodies.push(Box::new(ball(normal * 0.5, 0.5, Motion::Free { plane: false })));
+        system.bodies.push(Box::new(plane(v(0.0, 0.0, 0.0), normal)));
+        system.loads.push(PlacedLoad {
+            name: "weight".into(),
+            part: part(0),
+            load: TimedLoad::Force(Arc::new(|_, _| v(0.0, 0.0, -1.0))),
+        });
+        let held: crate::system::TimeField = Arc::new(|_, _| 0.0);
+        system.supports.push(Support {
+            name: "spin".into(),
+            part: part(0),
+            displacement: [None, None, None],
+            rotation: [Some(held.clone()), Some(held.clone()), Some(held)],
+        });
+        let mut contact = touching(&system, 0, 1, enforcement, None);
+        contact.friction = Some(Box::new(Viscous::new(mu, v0).unwrap()));
+        system.contacts.push(contact);
+        system.prepare().unwrap();
+        let mut state = system.start();
+        let down = v(-angle.cos(), 0.0, -angle.sin());
+        let mut places = Vec::new();
+        for time in [1.0, 2.0, 5.0] {
+            state = system.solve(&state, time, &mut |_, _| true).unwrap().0;
+            system.accept(&state).unwrap();
+            let c = &state.bodies[0].configuration;
+            places.push(v(c[0], c[1], c[2]).dot(&down));
+        }
+        // A penalty gives way once, at first.
+        for (k, time) in [(1, 1.0), (2, 4.0)] {
+            let crept = places[k] - places[0];
+            assert!((crept - velocity * time).abs() < 1e-6 * velocity, "{enforcement:?}: {crept} {}", velocity * time);
+        }
+    }
 }

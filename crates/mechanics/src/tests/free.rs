@@ -177,7 +177,7 @@ fn viscous_friction_creeps_down_an_incline() {
         });
         let mut contact = touching(&system, 0, 1, enforcement, None);
         contact.friction = Some(Box::new(Viscous::new(mu, v0).unwrap()));
-        system.contacts.push(contact);
+        system.contacts.push(Box::new(contact));
         system.prepare().unwrap();
         let mut state = system.start();
         let down = v(-angle.cos(), 0.0, -angle.sin());

@@ -76,15 +76,15 @@ pub(crate) fn check_radius(value: f64) -> Result<(), ChainError> {
 /// A rope of straight elements.
 #[derive(Clone, Debug)]
 pub struct Chain {
-    name: String,
+    pub(super) name: String,
     /// Its lengths are the unstrained ones.
-    line: Centreline,
-    stiffness: f64,
-    radius: f64,
-    drives: Vec<Drive>,
+    pub(super) line: Centreline,
+    pub(super) stiffness: f64,
+    pub(super) radius: f64,
+    pub(super) drives: Vec<Drive>,
     /// Nodes through which the rope runs without friction.
-    pulleys: Vec<usize>,
-    start: Vec<f64>,
+    pub(super) pulleys: Vec<usize>,
+    pub(super) start: Vec<f64>,
 }
 
 impl Chain {

@@ -49,6 +49,8 @@ pub struct Predicted {
 
 /// How far along the curves, in elements, a contact may have moved and still be the same.
 const SAME: f64 = 1.0;
+/// How far it may have moved and still come from the same side.
+const NEAR: f64 = 3.0;
 
 impl Key {
     fn apart(&self, other: &Key, sides: &[Searched<'_>; 2]) -> f64 {
@@ -58,12 +60,12 @@ impl Key {
     /// The one of a list, by its keys, that is this contact.
     pub fn of<'a, T>(&self, list: &'a [T], key: impl Fn(&T) -> Key, sides: &[Searched<'_>; 2]) -> Option<&'a T> {
         let same_kind = list.iter().filter(|t| key(t).kind == self.kind);
-        nearest(same_kind, |t| self.apart(&key(t), sides))
+        nearest(same_kind, |t| self.apart(&key(t), sides), SAME)
     }
 
     /// The one of a list that is nearest, of whatever kind.
     pub fn near<'a>(&self, list: &'a [Kept], sides: &[Searched<'_>; 2]) -> Option<&'a Kept> {
-        nearest(list.iter(), |t| self.apart(&t.key, sides))
+        nearest(list.iter(), |t| self.apart(&t.key, sides), NEAR)
     }
 
     fn numbers(&self) -> [f64; 4] {
@@ -80,8 +82,8 @@ impl Key {
     }
 }
 
-fn nearest<'a, T: 'a>(list: impl Iterator<Item = &'a T>, apart: impl Fn(&T) -> f64) -> Option<&'a T> {
-    list.map(|t| (apart(t), t)).min_by(|p, q| p.0.total_cmp(&q.0)).filter(|p| p.0 <= SAME).map(|p| p.1)
+fn nearest<'a, T: 'a>(list: impl Iterator<Item = &'a T>, apart: impl Fn(&T) -> f64, most: f64) -> Option<&'a T> {
+    list.map(|t| (apart(t), t)).min_by(|p, q| p.0.total_cmp(&q.0)).filter(|p| p.0 <= most).map(|p| p.1)
 }
 
 impl Predicted {

@@ -3,7 +3,8 @@
 use crate::domain::{Domain, Restricted};
 use signorini_fem::QuadraturePoint;
 use signorini_fem::cut::{End, height::side_points, height_functions, space_tree, sub_cells};
-use signorini_geometry::{Aabb, Point, Vector};
+use signorini_geometry::{Aabb, ImplicitShape, Point, Vector};
+use std::sync::Arc;
 
 /// How cut cells are integrated.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,6 +82,11 @@ pub trait Region<const D: usize>: Send + Sync {
         true
     }
 
+    /// The smooth surfaces of which the boundary is made, negative on one side; none where it is made of facets.
+    fn sheets(&self) -> Vec<Arc<dyn ImplicitShape<D>>> {
+        Vec::new()
+    }
+
     /// A value that is not finite at a point, where the description has one.
     fn defect(&self, _: &Point<D>) -> Option<f64> {
         None
@@ -133,6 +139,14 @@ impl<const D: usize> Region<D> for Domain<D> {
 
     fn contains(&self, x: &Point<D>) -> bool {
         Domain::contains(self, x)
+    }
+
+    fn sheets(&self) -> Vec<Arc<dyn ImplicitShape<D>>> {
+        match self {
+            Domain::Shape(shape) => vec![shape.clone()],
+            Domain::Complement(part) => part.sheets(),
+            Domain::Union(parts) | Domain::Intersection(parts) => parts.iter().flat_map(Region::sheets).collect(),
+        }
     }
 
     fn defect(&self, x: &Point<D>) -> Option<f64> {

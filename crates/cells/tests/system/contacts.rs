@@ -6,7 +6,7 @@ use signorini_contact::Coulomb;
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::{Plane, RigidShape, Sphere};
 
-fn rigid(name: &str, shape: impl RigidShape + 'static, motion: Motion) -> RigidBody {
+pub fn rigid(name: &str, shape: impl RigidShape + 'static, motion: Motion) -> RigidBody {
     let centre = shape.centre();
     RigidBody { name: name.to_string(), shape: Arc::new(shape), motion, centre, sites: Vec::new(), size: 1.0 }
 }
@@ -99,7 +99,6 @@ fn a_ball_in_space_that_only_contact_holds() {
         }],
         bodies: vec![Box::new(body), Box::new(stone)],
         contacts: vec![contact],
-        ..System::default()
     };
     let (state, found) = solve(&mut system);
     let force: Vector<3> = found.sites[0].iter().map(SiteResult::force).sum();

@@ -67,6 +67,16 @@ impl<const D: usize> MaterialRule<D> {
     }
 }
 
+/// A point of a boundary of facets.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FacetFoot<const D: usize> {
+    pub x: Point<D>,
+    /// Unit normals of planes whose common points are the facet, edge or vertex on which it lies.
+    pub planes: Vec<Vector<D>>,
+    /// The outward unit normal, a mean one on edges and at vertices.
+    pub normal: Vector<D>,
+}
+
 /// What describes where material is.
 pub trait Region<const D: usize>: Send + Sync {
     /// The quadrature of the material in a box, for functions of a degree.
@@ -85,6 +95,11 @@ pub trait Region<const D: usize>: Send + Sync {
     /// The smooth surfaces of which the boundary is made, negative on one side; none where it is made of facets.
     fn sheets(&self) -> Vec<Arc<dyn ImplicitShape<D>>> {
         Vec::new()
+    }
+
+    /// The point of a boundary of facets that is closest to a point; none where it is not made of facets.
+    fn facet_at(&self, _: &Point<D>) -> Option<FacetFoot<D>> {
+        None
     }
 
     /// A value that is not finite at a point, where the description has one.

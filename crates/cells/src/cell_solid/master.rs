@@ -3,15 +3,17 @@
 //!
 //! Where the closest point on a sheet is no point of the boundary it lies beyond an edge: the sheet on which the boundary
 //! goes on is taken in too. On a face there are two coordinates, on an edge one, at a vertex none; in the plane a face is a
-//! strip that reaches across it. Boundaries of facets are met on the planes of their facets.
+//! strip that reaches across it. On facets the closest point is that at which a step along `F^T (x - y)` leads back to it:
+//! in a facet, on an edge or at a vertex.
 //!
-//! Contact of a boundary with itself takes what faces a site across a gap: where the normals oppose each other and each of
-//! both points lies before the other, not behind it, at the start. Beside the site the normals do not oppose each other.
+//! Contact of a boundary with itself takes what faces a site across a gap at the start: where the normals oppose each
+//! other and each of both points lies before the other, not behind it. Beside the site the normals do not oppose each
+//! other.
 
 use super::foot::{Active, Chart, Found, across};
 use super::{CellSolid, normal_now};
 use crate::jets::FunctionJet;
-use crate::shapes::spatial;
+use crate::shapes::{HalfSpace, spatial};
 use rayon::prelude::*;
 use signorini_contact::obstacle::strip;
 use signorini_geometry::bvh::Bvh;
@@ -36,41 +38,53 @@ pub(super) struct BoundaryMaster<'a, const D: usize> {
     solid: &'a CellSolid<D>,
     u: &'a [f64],
     points: Range<usize>,
-    /// Positions and normals of the points now.
-    now: Vec<(Point<3>, Vector<3>)>,
+    /// Positions of the points now.
+    now: Vec<Point<3>>,
     bvh: Bvh,
 }
 
 /// A closest point, and the sheets on which it lies.
-type OnSheets<const D: usize> = (Found<D>, Active<D>);
+struct OnSheets<const D: usize> {
+    at: Found<D>,
+    active: Active<D>,
+    /// A normal at the start that tells outside from inside on an edge, where that of the sheets together does not.
+    outward: Option<Vector<D>>,
+}
+
+impl<const D: usize> OnSheets<D> {
+    fn new(at: Found<D>, active: Active<D>) -> Self {
+        OnSheets { at, active, outward: None }
+    }
+}
+
+/// Steps of the search on facets, and the last of them in cells: Newton's method then ends it.
+const MOST_STEPS: usize = 50;
+const LAST_STEP: f64 = 1e-8;
 
 impl<'a, const D: usize> BoundaryMaster<'a, D> {
     pub fn new(solid: &'a CellSolid<D>, points: Range<usize>, u: &'a [f64]) -> Self {
-        let now: Vec<_> = points.clone().into_par_iter().map(|k| solid.point_now(k, u)).collect();
-        let boxes: Vec<Aabb<3>> = now.iter().map(|(x, _)| Aabb::new(*x, *x)).collect();
+        let now: Vec<Point<3>> = points.clone().into_par_iter().map(|k| solid.point_now(k, u).0).collect();
+        let boxes: Vec<Aabb<3>> = now.iter().map(|x| Aabb::new(*x, *x)).collect();
         BoundaryMaster { solid, u, points, now, bvh: Bvh::new(&boxes) }
     }
 
     /// The nearest quadrature point; of the boundary itself one across a gap from a site.
     fn nearest_point(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<usize> {
-        let own = except.map(|site| {
-            let number = site.patch as usize;
-            (&self.solid.points[number], self.solid.point_now(number, self.u).1)
-        });
+        let own = except.map(|site| &self.solid.points[site.patch as usize]);
         let limit = reach * reach;
         let mut best: Option<(f64, usize)> = None;
         self.bvh.nearest(x, limit, |k| {
             let least = best.map_or(limit, |b| b.0);
             let number = self.points.start + k;
-            if let Some((point, normal)) = &own {
+            if let Some(point) = own {
                 let other = &self.solid.points[number];
                 let apart = other.x - point.x;
-                let faces = normal.dot(&self.now[k].1) < FACING;
+                let faces = point.normal.dot(&other.normal) < FACING;
                 if !faces || apart.dot(&point.normal) <= 0.0 || apart.dot(&other.normal) >= 0.0 {
                     return least;
                 }
             }
-            let square = (self.now[k].0 - x).norm_squared();
+            let square = (self.now[k] - x).norm_squared();
             // Of points at the same distance the one with the lowest number.
             let better = best.is_none_or(|b| square < b.0 || (square == b.0 && number < b.1));
             if square > limit || !better {
@@ -86,10 +100,15 @@ impl<'a, const D: usize> BoundaryMaster<'a, D> {
     fn closest(&self, target: &Point<D>, number: usize) -> Option<OnSheets<D>> {
         let search = Search { master: self, target, number, size: self.solid.cell_size(&self.solid.points[number]) };
         let own = self.solid.sheets.number(number);
+        if own.is_none()
+            && let Some(found) = search.on_facets()
+        {
+            return Some(found);
+        }
         let first = vec![self.solid.sheets.at(number, &self.solid.points[number])];
         let face = search.on(&first);
         if own.is_none() || face.as_ref().is_some_and(|f| search.is_face(f, &first[0])) {
-            return face.map(|face| (face, first));
+            return face.map(|face| OnSheets::new(face, first));
         }
         search.beyond(&first, own.as_slice())
     }
@@ -99,9 +118,14 @@ impl<'a, const D: usize> BoundaryMaster<'a, D> {
         normal_now(&sheet.gradient(&at.x), &at.u.gradient).try_normalize(0.0).unwrap_or_default()
     }
 
-    fn foot(&self, x: &Point<3>, number: usize, (at, active): &OnSheets<D>) -> Foot {
+    fn foot(&self, x: &Point<3>, number: usize, found: &OnSheets<D>) -> Foot {
+        let OnSheets { at, active, outward } = found;
         let normals = active.iter().map(|s| self.normal(at, s));
-        let outward = normals.sum::<Vector<3>>().try_normalize(0.0);
+        let outward = match outward {
+            Some(normal) if active.len() > 1 => normal_now(normal, &at.u.gradient),
+            _ => normals.sum::<Vector<3>>(),
+        };
+        let outward = outward.try_normalize(0.0);
         let size = self.solid.cell_size(&self.solid.points[number]);
         let is_face = active.len() == 1 || (x - spatial(&at.now())).norm() <= TOUCHING * size;
         let chart = Chart::new(at, &if is_face { vec![active[0].clone()] } else { active.clone() });
@@ -168,7 +192,7 @@ impl<const D: usize> Master for BoundaryMaster<'_, D> {
         let number = self.nearest_point(x, reach, except)?;
         let target = Point::<D>::from_fn(|k, _| x[k]);
         let found = self.closest(&target, number)?;
-        let is_within = (spatial(&found.0.now()) - x).norm() <= reach;
+        let is_within = (spatial(&found.at.now()) - x).norm() <= reach;
         is_within.then(|| Met::Foot(Box::new(self.foot(x, number, &found))))
     }
 
@@ -207,6 +231,28 @@ impl<const D: usize> Search<'_, D> {
         ((found.x - start.x).norm() <= FARTHEST * self.size).then_some(found)
     }
 
+    /// The closest point on facets.
+    fn on_facets(&self) -> Option<OnSheets<D>> {
+        let solid = self.master.solid;
+        let start = &solid.points[self.number];
+        let mut at = solid.found(start.x, start.cell, self.master.u);
+        for _ in 0..MOST_STEPS {
+            let ahead = at.x + at.deformation().transpose() * (self.target - at.now());
+            let facet = solid.body.region.facet_at(&ahead)?;
+            let step = (facet.x - at.x).norm();
+            at = solid.found_near(facet.x, at.cell, self.master.u);
+            if step > LAST_STEP * self.size {
+                continue;
+            }
+            let active: Active<D> = (facet.planes.iter())
+                .map(|normal| Arc::new(HalfSpace { point: facet.x, normal: *normal }) as Arc<dyn ImplicitShape<D>>)
+                .collect();
+            let found = solid.closest(self.target, (&at.x, at.cell), &active, self.master.u)?;
+            return Some(OnSheets { at: found, active, outward: Some(facet.normal) });
+        }
+        None
+    }
+
     fn is_material(&self, x: &Point<D>) -> bool {
         let body = &self.master.solid.body;
         body.tree().bounds().contains(x) && body.region.contains(x)
@@ -239,14 +285,14 @@ impl<const D: usize> Search<'_, D> {
             if active.len() == 1
                 && let Some(face) = self.on(&alone).filter(|f| self.is_face(f, &alone[0]))
             {
-                candidates.push((face, alone));
+                candidates.push(OnSheets::new(face, alone));
             }
             let both = [&active[..], &[sheets[k].clone()]].concat();
             if let Some(edge) = self.on(&both).filter(|f| self.is_limit(f)) {
-                candidates.push((edge, both));
+                candidates.push(OnSheets::new(edge, both));
             }
         }
-        let distance = |c: &OnSheets<D>| (c.0.now() - self.target).norm();
+        let distance = |c: &OnSheets<D>| (c.at.now() - self.target).norm();
         let nearest = |list: Vec<OnSheets<D>>| list.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         if candidates.is_empty() && active.len() + 1 < D {
             let deeper = others().filter_map(|k| {

@@ -10,9 +10,11 @@
 //! Around an axis nothing leaves it: the unknowns of that are tied to nothing and stay zero, since a hoop strain `u/r`
 //! there would have infinite energy.
 
+mod foot;
 mod hold;
 mod linear;
 mod loads;
+mod master;
 mod shown;
 mod weak;
 
@@ -23,8 +25,10 @@ use crate::place::Place;
 use crate::region::Filling;
 use crate::shapes::spatial;
 use crate::space::Tabulation;
+use foot::Sheets;
 use hold::SideFunctions;
 use linear::LinearFields;
+use master::BoundaryMaster;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use shown::Shown;
@@ -52,6 +56,7 @@ pub struct CellSolid<const D: usize> {
     /// The points of all surfaces.
     points: Vec<Site<D>>,
     surfaces: BTreeMap<String, Surface<D>>,
+    sheets: Sheets<D>,
     linear: LinearFields<D>,
     /// Unknowns that are tied to nothing and stay zero.
     is_zero: Vec<bool>,
@@ -108,6 +113,7 @@ impl<const D: usize> CellSolid<D> {
             surfaces.insert(name.to_string(), Surface { points: range, held, spread: OnceLock::new() });
             points.extend(own);
         }
+        let sheets = Sheets::new(&body, &points);
         let linear = LinearFields::new(&body);
         let size = extent(&body);
         Ok(CellSolid {
@@ -116,6 +122,7 @@ impl<const D: usize> CellSolid<D> {
             stiffness,
             points,
             surfaces,
+            sheets,
             linear,
             is_zero,
             size,
@@ -179,6 +186,22 @@ impl<const D: usize> CellSolid<D> {
     /// Least extent of the cell of a point.
     fn cell_size(&self, point: &Site<D>) -> f64 {
         self.body.tree().leaves()[self.body.cells()[point.cell].leaf].size()
+    }
+
+    /// A point where it is now, and its outward unit normal; zero where the surface has shrunk to nothing.
+    fn point_now(&self, number: usize, u: &[f64]) -> (Point<3>, Vector<3>) {
+        let point = &self.points[number];
+        let mut t = Tabulation::default();
+        self.body.functions_at(point.cell, &point.x, &mut t);
+        let (moved, mut gradient) = self.displacement(point.cell, &t, u);
+        // A cell with little material does not control its own gradient.
+        let stress_cell = self.body.cells()[point.cell].stress_cell;
+        if stress_cell != point.cell {
+            self.body.functions_at(stress_cell, &point.x, &mut t);
+            gradient = self.displacement(stress_cell, &t, u).1;
+        }
+        let normal = normal_now(&point.normal, &gradient).try_normalize(0.0).unwrap_or_default();
+        (spatial(&(point.x + moved)), normal)
     }
 
     /// Displacement and its gradient at a point of a cell.
@@ -342,10 +365,10 @@ impl<const D: usize> Body for CellSolid<D> {
     }
 
     fn placed(&self, state: &BodyState, site: &mechanics::Site) -> Placed {
-        let point = &self.points[site.patch as usize];
+        let number = site.patch as usize;
+        let point = &self.points[number];
         let mut t = Tabulation::default();
         self.body.functions_at(point.cell, &point.x, &mut t);
-        let (u, mut gradient) = self.displacement(point.cell, &t, &state.configuration);
         let own = &self.body.cells()[point.cell].functions;
         let mut functions = Vec::with_capacity(D * own.len());
         for (f, v) in own.iter().zip(&t.value) {
@@ -355,23 +378,14 @@ impl<const D: usize> Body for CellSolid<D> {
                 }
             }
         }
-        // A cell with little material does not control its own gradient.
-        let stress_cell = self.body.cells()[point.cell].stress_cell;
-        if stress_cell != point.cell {
-            self.body.functions_at(stress_cell, &point.x, &mut t);
-            gradient = self.displacement(stress_cell, &t, &state.configuration).1;
-        }
-        Placed {
-            x: spatial(&(point.x + u)),
-            outward: normal_now(&point.normal, &gradient).try_normalize(0.0),
-            functions,
-            frame: Matrix::<3>::identity(),
-            ..Placed::default()
-        }
+        let (x, normal) = self.point_now(number, &state.configuration);
+        let outward = (normal != Vector::<3>::zeros()).then_some(normal);
+        Placed { x, outward, functions, frame: Matrix::<3>::identity(), ..Placed::default() }
     }
 
-    fn master<'a>(&'a self, _: Option<&str>, _: &'a BodyState) -> Result<Box<dyn Master + 'a>, PlaceError> {
-        Err(self.unsuitable("the boundary of cells is tested, and not met: name the cells first in a contact"))
+    fn master<'a>(&'a self, on: Option<&str>, state: &'a BodyState) -> Result<Box<dyn Master + 'a>, PlaceError> {
+        let surface = self.surface(on)?;
+        Ok(Box::new(BoundaryMaster::new(self, surface.points[0]..surface.points[1], &state.configuration)))
     }
 
     /// Young's modulus times the area of the site over the size of its cell, in parts of its degree.

@@ -163,9 +163,9 @@ impl Signs {
 }
 
 /// What is outside a shape.
-struct Negated<'a, const D: usize>(&'a dyn ImplicitShape<D>);
+pub(crate) struct Negated<S>(pub S);
 
-impl<const D: usize> ImplicitShape<D> for Negated<'_, D> {
+impl<const D: usize, S: ImplicitShape<D>> ImplicitShape<D> for Negated<S> {
     fn value(&self, x: &Point<D>) -> f64 {
         -self.0.value(x)
     }

@@ -6,9 +6,10 @@
 //! points these integrals are the weights of a rule that is exact for the stiffness. Some weights may be negative.
 
 use crate::error::CellsError;
-use crate::region::{BoundaryPoint, Filling, Integration, MaterialRule, Region};
+use crate::region::{BoundaryPoint, FacetFoot, Filling, Integration, MaterialRule, Region};
 use signorini_fem::QuadraturePoint;
 use signorini_fem::cut::End;
+use signorini_geometry::closest::FeatureKind;
 use signorini_geometry::mesh::TriangleMesh;
 use signorini_geometry::rule::gauss_legendre;
 use signorini_geometry::{Aabb, Point, Vector};
@@ -191,6 +192,29 @@ impl Region<3> for FacetBody {
 
     fn has_points_in_material(&self) -> bool {
         false
+    }
+
+    fn facet_at(&self, x: &Point<3>) -> Option<FacetFoot<3>> {
+        let foot = *self.mesh.closest(x, 0.0).first()?;
+        let face = self.facet_normal(foot.triangle);
+        let [a, b, c] = self.mesh.corners(foot.triangle);
+        // Triangles that share a plane have no edge between them.
+        let is_flat = foot.normal.dot(&face) > 1.0 - 1e-12;
+        let planes = match foot.feature.kind {
+            FeatureKind::Interior => vec![face],
+            _ if is_flat => vec![face],
+            FeatureKind::Edge => {
+                let side = [b - a, c - a, c - b].into_iter().min_by(|s, t| {
+                    // The side on which the point lies.
+                    let off = |d: &Vector<3>, from: &Point<3>| (foot.point - from).cross(&d.normalize()).norm();
+                    let at = |d: &Vector<3>| if *d == c - b { off(d, &b) } else { off(d, &a) };
+                    at(s).total_cmp(&at(t))
+                })?;
+                vec![face, face.cross(&side).normalize()]
+            }
+            _ => vec![Vector::<3>::x(), Vector::<3>::y(), Vector::<3>::z()],
+        };
+        Some(FacetFoot { x: foot.point, planes, normal: foot.normal })
     }
 }
 

@@ -21,6 +21,29 @@ pub fn integrated_legendre(degree: usize, xi: f64) -> [[f64; 2]; MAX_DEGREE + 1]
     out
 }
 
+/// Value and the first three derivatives of the functions `0..=degree` at `ξ`; entries beyond are zero.
+///
+/// `P_k' = (2k - 1) P_{k-1} + P_{k-2}'`, and the same once more for the second derivatives.
+pub fn integrated_legendre_jets(degree: usize, xi: f64) -> [[f64; 4]; MAX_DEGREE + 1] {
+    let mut out = [[0.0; 4]; MAX_DEGREE + 1];
+    for (k, [value, slope]) in integrated_legendre(degree, xi).into_iter().enumerate() {
+        (out[k][0], out[k][1]) = (value, slope);
+    }
+    // Legendre polynomials with two derivatives.
+    let mut p = [[0.0; 3]; MAX_DEGREE + 1];
+    p[0] = [1.0, 0.0, 0.0];
+    p[1] = [xi, 1.0, 0.0];
+    for k in 2..=degree {
+        let n = k as f64;
+        p[k][0] = ((2.0 * n - 1.0) * xi * p[k - 1][0] - (n - 1.0) * p[k - 2][0]) / n;
+        p[k][1] = (2.0 * n - 1.0) * p[k - 1][0] + p[k - 2][1];
+        p[k][2] = (2.0 * n - 1.0) * p[k - 1][1] + p[k - 2][2];
+        out[k][2] = (n - 0.5).sqrt() * p[k - 1][1];
+        out[k][3] = (n - 0.5).sqrt() * p[k - 1][2];
+    }
+    out
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -41,6 +64,18 @@ mod tests {
                     })
                     .sum();
                 assert!((product - f64::from(u8::from(j == k))).abs() < 1e-13);
+            }
+        }
+    }
+
+    #[test]
+    fn higher_derivatives_are_those_of_differences() {
+        let (x, h) = (0.37, 1e-5);
+        let [minus, at, plus] = [x - h, x, x + h].map(|x| integrated_legendre_jets(8, x));
+        for k in 0..=MAX_DEGREE {
+            for d in 0..3 {
+                let difference = (plus[k][d] - minus[k][d]) / (2.0 * h);
+                assert!((at[k][d + 1] - difference).abs() < 1e-6 * (1.0 + difference.abs()), "{k} {d}");
             }
         }
     }

@@ -7,7 +7,7 @@
 //! - [`domain`], [`shapes`]: bodies from implicit shapes; [`facets`]: from closed surfaces of triangles; [`voxels`] and
 //!   [`image`]: from images.
 //! - [`region`]: the quadrature of the material in a cell and of its boundary.
-//! - [`tree`], [`space`], [`legendre`]: cells, refinement, functions.
+//! - [`tree`], [`space`], [`jets`], [`legendre`]: cells, refinement, functions.
 //! - [`components`]: what of the material hangs together.
 //! - [`discretisation`]: how a body is made of cells; [`body`]: all of this; [`stiffness`]: the elastic integrals.
 //! - [`supports`], [`loads`]: what holds and what pushes; [`system`]: equilibrium; [`schwarz`]: the preconditioner.
@@ -29,6 +29,7 @@ pub mod error;
 pub mod facets;
 pub mod fields;
 pub mod image;
+pub mod jets;
 pub mod legendre;
 pub mod loads;
 mod numbering;

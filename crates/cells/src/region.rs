@@ -3,7 +3,8 @@
 use crate::domain::{Domain, Restricted};
 use signorini_fem::QuadraturePoint;
 use signorini_fem::cut::{End, height::side_points, height_functions, space_tree, sub_cells};
-use signorini_geometry::{Aabb, Point, Vector};
+use signorini_geometry::{Aabb, ImplicitShape, Point, Vector};
+use std::sync::Arc;
 
 /// How cut cells are integrated.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,6 +67,16 @@ impl<const D: usize> MaterialRule<D> {
     }
 }
 
+/// A point of a boundary of facets.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FacetFoot<const D: usize> {
+    pub x: Point<D>,
+    /// Unit normals of planes whose common points are the facet, edge or vertex on which it lies.
+    pub planes: Vec<Vector<D>>,
+    /// The outward unit normal, a mean one on edges and at vertices.
+    pub normal: Vector<D>,
+}
+
 /// What describes where material is.
 pub trait Region<const D: usize>: Send + Sync {
     /// The quadrature of the material in a box, for functions of a degree.
@@ -79,6 +90,16 @@ pub trait Region<const D: usize>: Send + Sync {
     /// Whether the points of its rules lie in the material and can be counted to one piece of it or another.
     fn has_points_in_material(&self) -> bool {
         true
+    }
+
+    /// The smooth surfaces of which the boundary is made, negative on one side; none where it is made of facets.
+    fn sheets(&self) -> Vec<Arc<dyn ImplicitShape<D>>> {
+        Vec::new()
+    }
+
+    /// The point of a boundary of facets that is closest to a point; none where it is not made of facets.
+    fn facet_at(&self, _: &Point<D>) -> Option<FacetFoot<D>> {
+        None
     }
 
     /// A value that is not finite at a point, where the description has one.
@@ -133,6 +154,14 @@ impl<const D: usize> Region<D> for Domain<D> {
 
     fn contains(&self, x: &Point<D>) -> bool {
         Domain::contains(self, x)
+    }
+
+    fn sheets(&self) -> Vec<Arc<dyn ImplicitShape<D>>> {
+        match self {
+            Domain::Shape(shape) => vec![shape.clone()],
+            Domain::Complement(part) => part.sheets(),
+            Domain::Union(parts) | Domain::Intersection(parts) => parts.iter().flat_map(Region::sheets).collect(),
+        }
     }
 
     fn defect(&self, x: &Point<D>) -> Option<f64> {

@@ -47,6 +47,24 @@ impl<const D: usize, S: ImplicitShape<D> + ?Sized> ImplicitShape<D> for &S {
     }
 }
 
+impl<const D: usize, S: ImplicitShape<D> + ?Sized> ImplicitShape<D> for std::sync::Arc<S> {
+    fn value(&self, x: &Point<D>) -> f64 {
+        (**self).value(x)
+    }
+    fn gradient(&self, x: &Point<D>) -> Vector<D> {
+        (**self).gradient(x)
+    }
+    fn range(&self, b: &Aabb<D>) -> Option<[f64; 2]> {
+        (**self).range(b)
+    }
+    fn value_and_gradient(&self, x: &Point<D>) -> (f64, Vector<D>) {
+        (**self).value_and_gradient(x)
+    }
+    fn hessian(&self, x: &Point<D>) -> Matrix<D> {
+        (**self).hessian(x)
+    }
+}
+
 /// An ellipse with its axes along the coordinate axes; a disc where both semi-axes agree.
 ///
 /// The value is `(|x/a|² - 1) a_min / 2`, of unit slope at the ends of the minor axis.

@@ -6,7 +6,7 @@ use signorini_contact::Coulomb;
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::{Plane, RigidShape, Sphere};
 
-fn rigid(name: &str, shape: impl RigidShape + 'static, motion: Motion) -> RigidBody {
+pub fn rigid(name: &str, shape: impl RigidShape + 'static, motion: Motion) -> RigidBody {
     let centre = shape.centre();
     RigidBody { name: name.to_string(), shape: Arc::new(shape), motion, centre, sites: Vec::new(), size: 1.0 }
 }
@@ -99,7 +99,6 @@ fn a_ball_in_space_that_only_contact_holds() {
         }],
         bodies: vec![Box::new(body), Box::new(stone)],
         contacts: vec![Box::new(contact)],
-        ..System::default()
     };
     let (state, found) = solve(&mut system);
     let force: Vector<3> = found.sites[0].iter().map(SiteResult::force).sum();
@@ -107,4 +106,48 @@ fn a_ball_in_space_that_only_contact_holds() {
     assert!((force[2] + given[2]).abs() < 1e-9, "{force}");
     let error = tangent_error(&system, &state, 1e-6, 10);
     assert!(error < 1e-6, "{error:e}");
+}
+
+/// An eighth of a ball on a plane, by the force of an independent computation.
+#[test]
+#[ignore = "half a minute: six thousand unknowns in space, factorised in every iteration"]
+fn a_ball_pressed_on_a_plane_in_space() {
+    let reference: serde_json::Value = serde_json::from_str(include_str!("../data/finite_cells.json")).unwrap();
+    let wanted = reference["hertz_3d_sphere"]["nu_0_3"]["0.06"]["P"]["value"].as_f64().unwrap();
+    let b = aabb([0.0, 0.0, 0.0], [1.0, 1.0, 1.0]);
+    for (sampling, enforcement) in [
+        (Sampling::GaussPoints, Enforcement::Penalty { wanted_penetration: None }),
+        (Sampling::Nodes, Enforcement::Multiplier),
+    ] {
+        let places = vec![
+            ("x", Place::low(0)),
+            ("y", Place::low(1)),
+            ("top", Place::high(2)),
+            ("skin", Place::boundary(|p| p.normal[2] < -0.8)),
+        ];
+        let body = solid("ball", Domain::shape(ball(Point::<3>::z(), 1.0)), (b, [6; 3]), 2, Space::Solid, places);
+        let floor =
+            rigid("floor", Plane { point: Point::<3>::zeros(), normal: Vector::<3>::z() }, moved(v(0.0, 0.0, 0.0)));
+        let contact =
+            Contact::new("touch", (part(0, "skin"), &body), (part(1, ""), &floor), sampling, enforcement).unwrap();
+        let mut system = System {
+            supports: vec![
+                support(0, "x", [constant(0.0), None, None]),
+                support(0, "y", [None, constant(0.0), None]),
+                support(0, "top", [None, None, constant(-0.06)]),
+            ],
+            bodies: vec![Box::new(body), Box::new(floor)],
+            contacts: vec![Box::new(contact)],
+            ..System::default()
+        };
+        let begin = std::time::Instant::now();
+        let (_, found) = solve(&mut system);
+        let force = 4.0 * found.sites[0].iter().map(SiteResult::force).sum::<Vector<3>>()[2];
+        let (sites, time) = (found.sites[0].len(), begin.elapsed());
+        println!(
+            "{enforcement:?}: {force} ({wanted}), {} iterations, {sites} sites, {} unknowns, {time:?}",
+            found.iterations, found.unknowns
+        );
+        assert!((force / wanted - 1.0).abs() < 2e-2, "{force} {wanted}");
+    }
 }

@@ -3,6 +3,7 @@
 mod bodies;
 mod contacts;
 mod descriptions;
+mod masters;
 
 use signorini_cells::{
     CellBody, CellSolid, CellTree, CellsError, Discretisation, Domain, Elastic, Place, Region, Space, Stuff,

@@ -12,7 +12,7 @@ use signorini_paths::wrapping::PathPoint;
 use std::fmt::Write as _;
 use vtkio::model::{Attribute, Attributes, DataSet, PolyDataPiece};
 
-/// A path as points.
+/// A path as points. Without a name it is drawn, not written.
 pub struct Line {
     pub name: String,
     pub points: Vec<LinePoint>,
@@ -127,7 +127,7 @@ pub fn write_lines(times: &[f64], frames: &[Vec<Line>], folder: &Folder) -> Resu
 
 /// Files of yarns: a table and a VTP file each.
 pub fn write_winding(lines: &[Line], folder: &Folder) -> Result<(), OutputError> {
-    for line in lines {
+    for line in lines.iter().filter(|l| !l.name.is_empty()) {
         let mut text = format!("{COLUMNS},angle,theta,slippage,utilisation\n");
         for p in &line.points {
             row(&mut text, p);

@@ -86,7 +86,9 @@ pub fn draw(case: &PathCase, surfaces: &[Surface], lines: &[Line], folder: &Fold
             (&|a, b| touches(a, b) && !slips(a, b), None),
         ];
         for (k, (keep, colour)) in kinds.into_iter().enumerate() {
-            let mut body = pieces(line, keep, &scale, THICK * extent);
+            // Those without a name only show what the others cover.
+            let radius = if line.name.is_empty() { 0.4 * THICK } else { THICK };
+            let mut body = pieces(line, keep, &scale, radius * extent);
             if let Some(colour) = colour {
                 body.paint = Paint::Plain(colour);
             }
@@ -106,7 +108,7 @@ pub fn draw(case: &PathCase, surfaces: &[Surface], lines: &[Line], folder: &Fold
     let axes = ["x", "y", "z"].map(|a| labels.length(a));
     camera.axes(&mut page.svg, bounds, axes.each_ref().map(String::as_str));
     let largest = forces.iter().copied().fold(0.0, f64::max);
-    for line in lines {
+    for line in lines.iter().filter(|l| !l.name.is_empty()) {
         let pressed: Vec<&LinePoint> = line.points.iter().filter(|p| p.body >= 0 && p.normal_force > 0.0).collect();
         for p in pressed.iter().step_by(pressed.len().div_ceil(ARROWS).max(1)) {
             // Only on the side that is seen.
@@ -117,9 +119,11 @@ pub fn draw(case: &PathCase, surfaces: &[Surface], lines: &[Line], folder: &Fold
             let colour = viridis(scale.place(p.normal_force));
             chart::line(&mut page.svg, &[camera.at(&p.x), camera.at(&end)], colour);
         }
-        if let Some(p) = line.points.get(line.points.len() / 2).filter(|_| lines.len() > 1) {
-            let away = if p.body >= 0 { p.frame[2] * (0.5 * ARROW * extent) } else { Vector::<3>::zeros() };
-            chart::word(&mut page.svg, camera.at(&(p.x + away)), &line.name, IN_THE_AIR);
+        // The name stands where the path is seen best.
+        let faces = |p: &LinePoint| if p.body >= 0 { p.frame[2].dot(&camera.towards) } else { 0.0 };
+        let best = line.points.iter().max_by(|a, b| faces(a).total_cmp(&faces(b)));
+        if let Some(p) = best.filter(|_| lines.iter().filter(|l| !l.name.is_empty()).count() > 1) {
+            chart::word(&mut page.svg, camera.at(&p.x), &line.name, IN_THE_AIR);
         }
     }
     page.bar(&scale, &labels.force_per_length("normal force"));

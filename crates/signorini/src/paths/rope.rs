@@ -76,8 +76,16 @@ fn one(case: &PathCase, rope: &PlannedRope) -> Result<(Line, Value), SceneError>
     } else {
         None
     };
+    let slides = matches!(verdict, Verdict::SlidesAlong { .. });
     let points = (frames.iter().enumerate())
-        .map(|(k, frame)| LinePoint::of_rope(frame, &rope.friction, rope.tension, forces.as_ref().map(|f| &f[k])))
+        .map(|(k, frame)| {
+            let mut point = LinePoint::of_rope(frame, &rope.friction, rope.tension, forces.as_ref().map(|f| &f[k]));
+            if slides {
+                // All along.
+                point.utilisation = f64::INFINITY;
+            }
+            point
+        })
         .collect();
     Ok((Line { name: rope.name.clone(), points }, summary))
 }

@@ -7,6 +7,7 @@ use crate::plan::paths::PlannedWinding;
 use crate::run::Progress;
 use crate::scene::SceneError;
 use serde_json::{Value, json};
+use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::{Point, Vector};
 use signorini_paths::winding::{
     At, Axis, Ended, Lead, Mandrel, Slippage, Start, Until, WindingPath, WindingPoint, circuit, coverage, patterns,
@@ -63,7 +64,9 @@ pub(super) fn run(
     for (k, yarn) in list.iter().enumerate() {
         progress.step(k, count, 0.0);
         let (line, summary) = one(case, yarn)?;
+        let circuits = other_circuits(case, yarn, &line, &summary);
         lines.push(line);
+        lines.extend(circuits);
         summaries.push(summary);
     }
     output::write_winding(&lines, folder)?;
@@ -73,6 +76,24 @@ pub(super) fn run(
     picture::draw(case, &bodies, &lines, folder)?;
     progress.step(count, count, 0.0);
     Ok(json!({"title": case.name(), "analysis": "winding", "status": "done", "winding": summaries}))
+}
+
+/// The other circuits of a pattern: the first one turned about the axis, `k` places of `n` after each.
+fn other_circuits(case: &PathCase, key: &PlannedWinding, line: &Line, summary: &Value) -> Vec<Line> {
+    let Some(n) = summary["pattern"]["n"].as_u64() else { return Vec::new() };
+    let origin = case.plan.bodies[key.body].shape().centre();
+    (1..n)
+        .map(|k| {
+            let angle = TAU * k as f64 / n as f64;
+            let turn = RigidMotion::new(key.axis * angle, origin, Vector::<3>::zeros());
+            let turned = |p: &LinePoint| LinePoint {
+                x: turn.point(&p.x),
+                frame: p.frame.map(|v| turn.rotation * v),
+                ..*p
+            };
+            Line { name: String::new(), points: line.points.iter().map(turned).collect() }
+        })
+        .collect()
 }
 
 fn one(case: &PathCase, key: &PlannedWinding) -> Result<(Line, Value), SceneError> {

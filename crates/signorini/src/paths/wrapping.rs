@@ -117,7 +117,7 @@ fn histories(
     rows: &[Vec<Value>],
     folder: &Folder,
 ) -> Result<(), SceneError> {
-    let mut curves = Vec::new();
+    let (mut curves, mut arms) = (Vec::new(), Vec::new());
     let mut text = String::from("path,time,length,length_rate\n");
     for (path, rows) in paths.iter().zip(rows) {
         let lengths: Vec<(f64, f64)> =
@@ -129,11 +129,37 @@ fn histories(
             let _ = writeln!(text, "{},{time},{length},{}", path.name, (b.1 - a.1) / (b.0 - a.0));
         }
         curves.push((path.name.clone(), lengths));
+        for body in case.plan.bodies.iter().filter(|b| !b.rotation.is_empty()) {
+            let axis = rotation_axis(case, body, times)?;
+            let arm = |row: &Value| {
+                let turn = &row["moment_arms"][&body.name]["turn"];
+                (0..3).map(|k| turn[k].as_f64().unwrap_or(f64::NAN) * axis[k]).sum::<f64>()
+            };
+            let values = times.iter().zip(rows).map(|(t, row)| (*t, arm(row))).collect();
+            arms.push((format!("{} about {}", path.name, body.name), values));
+        }
+    }
+    if !arms.is_empty() {
+        let name = crate::output::labels::Labels(case.plan.head.unit_names()).length("moment arm");
+        picture::history(case, ("moment_arm", "Moment arm", &name), &arms, folder)?;
     }
     folder.write("history.csv", text.as_bytes())?;
     let name = crate::output::labels::Labels(case.plan.head.unit_names()).length("length");
     picture::history(case, ("length", "Length", &name), &curves, folder)?;
     Ok(())
+}
+
+/// The axis about which a body turns from the first time to the last.
+fn rotation_axis(case: &PathCase, body: &crate::plan::RigidBody, times: &[f64]) -> Result<Vector<3>, CaseError> {
+    let at = |time: f64| -> Result<Vector<3>, CaseError> {
+        let mut out = Vector::<3>::zeros();
+        for (k, value) in body.rotation.iter().enumerate() {
+            out[k] = value.at(case.problem(), time)?;
+        }
+        Ok(out)
+    };
+    let turned = at(times[times.len() - 1])? - at(times[0])?;
+    Ok(turned.try_normalize(0.0).unwrap_or_default())
 }
 
 /// A tension at a time, which is positive.

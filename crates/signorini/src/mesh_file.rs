@@ -1,8 +1,7 @@
 //! Triangle meshes from files: STL (binary and ASCII), OBJ and PLY (ASCII and binary), told apart by their extension.
 
 use std::collections::HashMap;
-use std::fs::File;
-use std::io::{BufReader, Cursor, Read};
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use ply_rs_bw::parser::Parser;
@@ -33,16 +32,25 @@ pub fn read(path: &Path) -> Result<TriangleMesh, MeshFileError> {
     if length > LARGEST {
         return Err(fail(format!("{length} bytes, more than {} GiB", LARGEST >> 30)));
     }
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let mut bytes = Vec::new();
-    if matches!(extension.as_str(), "stl" | "obj" | "ply") {
-        let file = File::open(path).map_err(|e| fail(format!("cannot read: {e}")))?;
-        BufReader::new(file).read_to_end(&mut bytes).map_err(|e| fail(format!("cannot read: {e}")))?;
-    }
-    let (vertices, triangles) = match extension.as_str() {
-        "stl" => stl(&bytes),
-        "obj" => obj(&bytes),
-        "ply" => ply(&bytes),
+    let known = matches!(extension(path).as_str(), "stl" | "obj" | "ply");
+    let bytes = if known { std::fs::read(path).map_err(|e| fail(format!("cannot read: {e}")))? } else { Vec::new() };
+    parse(path, &bytes)
+}
+
+fn extension(path: &Path) -> String {
+    path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
+}
+
+/// The mesh in the bytes of a file, whose kind its name tells.
+///
+/// # Errors
+/// As of [`read`].
+pub fn parse(path: &Path, bytes: &[u8]) -> Result<TriangleMesh, MeshFileError> {
+    let fail = |message: String| MeshFileError { path: path.to_path_buf(), message };
+    let (vertices, triangles) = match extension(path).as_str() {
+        "stl" => stl(bytes),
+        "obj" => obj(bytes),
+        "ply" => ply(bytes),
         other => Err(format!("`{other}` is no mesh format; valid are stl, obj and ply")),
     }
     .map_err(fail)?;

@@ -15,4 +15,4 @@ pub mod interaction;
 pub mod measure;
 pub mod search;
 
-pub use contact::{CurveContact, CurveContactError};
+pub use contact::{CurveContact, CurveContactError, Form};

@@ -86,11 +86,8 @@ fn other_circuits(case: &PathCase, key: &PlannedWinding, line: &Line, summary: &
         .map(|k| {
             let angle = TAU * k as f64 / n as f64;
             let turn = RigidMotion::new(key.axis * angle, origin, Vector::<3>::zeros());
-            let turned = |p: &LinePoint| LinePoint {
-                x: turn.point(&p.x),
-                frame: p.frame.map(|v| turn.rotation * v),
-                ..*p
-            };
+            let turned =
+                |p: &LinePoint| LinePoint { x: turn.point(&p.x), frame: p.frame.map(|v| turn.rotation * v), ..*p };
             Line { name: String::new(), points: line.points.iter().map(turned).collect() }
         })
         .collect()

@@ -133,8 +133,9 @@ impl Planner<'_> {
 
     /// A triangle mesh that bounds a body.
     pub(super) fn closed_mesh(&self, key: &problem::SurfaceFile) -> Result<TriangleMesh, CaseError> {
-        let (path, _) = self.read_file(&key.file)?;
-        let mut mesh = crate::mesh_file::read(&path).map_err(|e| self.problem.error(&key.file, e.to_string()))?;
+        let (path, bytes) = self.read_file(&key.file)?;
+        let mut mesh =
+            crate::mesh_file::parse(&path, &bytes).map_err(|e| self.problem.error(&key.file, e.to_string()))?;
         let keys = PlacementKeys { scale: &key.scale, turn: &key.turn, moved: &key.moved };
         if let Some(placement) = self.placement::<3>(&keys)? {
             let placed = mesh.vertices().iter().map(|x| placement.point(x)).collect();

@@ -95,8 +95,9 @@ pub enum Method {
     GaussPoint(SolidMethod),
     /// Between solids: at nodes.
     Node(SolidMethod),
-    /// Of ropes and beams: at nodes of straight elements, at points of Gauss of smooth ones.
-    Curve(SolidMethod),
+    /// Of ropes and beams: at nodes of straight elements, at points of Gauss of smooth ones; between two of them where they
+    /// cross and along lines.
+    Curve(CurveMethod),
     /// Of finite cells: at points of the recovered boundary.
     CellSurface(SolidMethod),
 }
@@ -167,6 +168,26 @@ pub enum FrontModes {
 pub struct SolidMethod {
     /// How the conditions of contact are enforced; by multipliers if left out, at quadrature points by penalties.
     pub enforcement: Option<Enforcement>,
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CurveMethod {
+    /// How the conditions of contact are enforced: between two curves by repeated penalties if left out.
+    pub enforcement: Option<Enforcement>,
+    /// Between two curves: forces where they cross, along lines, or both as they lie; both if left out.
+    pub form: Option<CurveForm>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum CurveForm {
+    /// A force at each least distance.
+    Point,
+    /// Forces at points of Gauss of the first curve.
+    Line,
+    /// Both, by how far the curves lie along each other.
+    Blend,
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]

@@ -3,11 +3,11 @@
 use super::{Kind, Numbers, Tested};
 use crate::plan::Planner;
 use crate::problem::units::{LENGTH, NONE};
-use crate::problem::{self, AxisOn, CaseError, Components, Enforcement, Method, Value};
+use crate::problem::{self, AxisOn, CaseError, Components, CurveForm, Enforcement, Method, Value};
 use signorini_geometry::Vector;
 use signorini_mechanics::contact::Part;
 use signorini_mechanics::{AxisChoice, Contact, Enforcement as Kept, Interaction, Sampling, System};
-use signorini_rope::curve_pair::CurveContact;
+use signorini_rope::curve_pair::{CurveContact, Form};
 
 impl Planner<'_> {
     pub(super) fn system_contacts(
@@ -111,12 +111,16 @@ impl Planner<'_> {
         if !curves || !matches!(&key.method, None | Some(Method::Curve(_))) {
             return Ok(None);
         }
-        let stated =
-            key.method.as_ref().and_then(|m| if let Method::Curve(k) = m { k.enforcement.as_ref() } else { None });
-        let kept = self.kept(stated, Kept::AugmentedLagrangian)?;
+        let stated = key.method.as_ref().and_then(|m| if let Method::Curve(k) = m { Some(k) } else { None });
+        let kept = self.kept(stated.and_then(|k| k.enforcement.as_ref()), Kept::AugmentedLagrangian)?;
         let side = |part: &Part| (part.body, system.bodies[part.body].as_ref());
         let mut contact = CurveContact::new(name, side(slave), side(master), kept)
             .map_err(|e| self.problem.error(key, e.to_string()))?;
+        match stated.and_then(|k| k.form) {
+            Some(CurveForm::Point) => contact.form = Form::Point,
+            Some(CurveForm::Line) => contact.form = Form::Line,
+            Some(CurveForm::Blend) | None => {}
+        }
         let axis = match &key.friction {
             Some(friction) => {
                 contact.friction = Some(self.law(friction, 3)?);

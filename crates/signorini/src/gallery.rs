@@ -15,7 +15,7 @@ macro_rules! example {
 }
 
 /// Cases with mechanics, simplest first.
-pub const GALLERY: [Example; 28] = [
+pub const GALLERY: [Example; 34] = [
     example!("string", "a string on a flat floor, beside the exact solution"),
     example!("axisymmetric", "a round membrane by its radius, beside the exact solution"),
     example!("snap_in", "a sticky membrane: snap-in, pull-off, and the loop between them"),
@@ -43,6 +43,12 @@ pub const GALLERY: [Example; 28] = [
     example!("groove", "a free ball between two elastic blocks, held by contact and friction alone"),
     example!("capstan", "a rope round a drum, which begins to slip at the end that is pulled"),
     example!("crossing", "two geometrically exact beams across each other"),
+    example!("twist", "two rods twisted about each other by a full turn: lines of contact that wander"),
+    example!("knot", "a trefoil knot drawn tight, with friction"),
+    example!("hertz_cells", "half a disc of finite cells on a plane: no mesh follows its edge"),
+    example!("pore", "a pore that closes on itself, in finite cells"),
+    example!("lattice", "a piece of a gyroid under a ball: finite cells of an expression"),
+    example!("foam", "a foam straight from a CT image, crushed by a plate"),
     example!("die", "a NURBS die pressed into an elastic block"),
 ];
 
@@ -52,6 +58,7 @@ pub fn asset(name: &str) -> Option<&'static [u8]> {
         "die.json" => Some(include_bytes!("../../../gallery/die/die.json")),
         "drum.msh" => Some(include_bytes!("../../../gallery/drum/drum.msh")),
         "measured.csv" => Some(include_bytes!("../../../gallery/blister/measured.csv")),
+        "foam.npy" => Some(include_bytes!("../../../gallery/foam/foam.npy")),
         "scan.stl" => Some(include_bytes!("../../../gallery/scan/scan.stl")),
         _ => None,
     }

@@ -34,7 +34,7 @@ pub fn keys() -> Vec<Key> {
 /// All keys that a JSON Schema tells of.
 pub fn keys_of(schema: &Value) -> Vec<Key> {
     let mut keys = Vec::new();
-    walk(schema, schema, "", &mut keys);
+    walk(schema, schema, "", &mut Walk { keys: &mut keys, open: Vec::new() });
     keys
 }
 
@@ -108,7 +108,23 @@ fn about(node: &Value, target: &Value) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-fn walk(root: &Value, node: &Value, path: &str, keys: &mut Vec<Key>) {
+/// The keys that were found, and the definitions that are being told of: one within itself is not told again.
+struct Walk<'a> {
+    keys: &'a mut Vec<Key>,
+    open: Vec<*const Value>,
+}
+
+fn walk(root: &Value, node: &Value, path: &str, found: &mut Walk) {
+    let here = std::ptr::from_ref(resolve(root, node));
+    if found.open.contains(&here) {
+        return;
+    }
+    found.open.push(here);
+    walk_open(root, node, path, found);
+    found.open.pop();
+}
+
+fn walk_open(root: &Value, node: &Value, path: &str, keys: &mut Walk) {
     for alternative in alternatives(resolve(root, node)) {
         let target = resolve(root, alternative);
         if !std::ptr::eq(target, node) && alternatives(target).first().is_none_or(|a| !std::ptr::eq(*a, target)) {
@@ -138,21 +154,21 @@ fn walk(root: &Value, node: &Value, path: &str, keys: &mut Vec<Key>) {
 }
 
 /// An entry of a list or of a table of names: it is a key of its own only where it is a value.
-fn walk_entry(root: &Value, node: &Value, path: &str, keys: &mut Vec<Key>) {
-    let before = keys.len();
+fn walk_entry(root: &Value, node: &Value, path: &str, keys: &mut Walk) {
+    let before = keys.keys.len();
     walk(root, node, path, keys);
-    if keys.len() == before && path.ends_with(".NAME") {
+    if keys.keys.len() == before && path.ends_with(".NAME") {
         let about = "By a name of your own.".to_string();
-        keys.push(Key { path: path.to_string(), about, kind: kind(root, node), required: false });
+        keys.keys.push(Key { path: path.to_string(), about, kind: kind(root, node), required: false });
     }
 }
 
-fn add(root: &Value, child: &Value, path: String, mut said: String, required: bool, keys: &mut Vec<Key>) {
+fn add(root: &Value, child: &Value, path: String, mut said: String, required: bool, keys: &mut Walk) {
     let targets: Vec<&Value> = alternatives(child).into_iter().map(|a| resolve(root, a)).collect();
     if said.is_empty() {
         said = targets.iter().map(|t| about(child, t)).find(|a| !a.is_empty()).unwrap_or_default();
     }
-    keys.push(Key { path: path.clone(), about: said, kind: kind(root, child), required });
+    keys.keys.push(Key { path: path.clone(), about: said, kind: kind(root, child), required });
     walk(root, child, &path, keys);
 }
 

@@ -38,3 +38,21 @@ fn every_case_gives_its_expected_numbers() {
         }
     }
 }
+
+/// Of paths by their place in the summary.
+#[test]
+fn every_path_gives_its_expected_numbers() {
+    for example in signorini::gallery::PATHS {
+        let expected = expected(example.name);
+        let case = signorini::paths::PathCase::parse("case.toml", example.case, &[])
+            .unwrap_or_else(|e| panic!("{}: {}", example.name, e.one_line()));
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let summary = signorini::paths::run(&case, &folder.path().join("out"), &mut signorini::run::Silent)
+            .unwrap_or_else(|e| panic!("{}: {e:?}", example.name));
+        for (place, figure) in expected["figures"].as_object().expect("figures") {
+            let found = number(summary.pointer(place).unwrap_or(&Value::Null));
+            let (value, tolerance) = (number(&figure["value"]), number(&figure["relative_tolerance"]));
+            assert!((found / value - 1.0).abs() <= tolerance, "{}: {place} is {found}, not {value}", example.name);
+        }
+    }
+}

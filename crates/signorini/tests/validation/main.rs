@@ -2,6 +2,7 @@
 
 mod adhesion;
 mod bad_input;
+mod cells;
 mod cosine_floor;
 mod events;
 mod fit;

@@ -1,0 +1,54 @@
+//! Bodies of finite cells from case files: beside reference solutions on fitted meshes, and mistakes told at their place.
+
+use super::{error, example, last_step, number, set, summary};
+
+/// The disc between two planes, and the pore that closes on itself, against solutions of high order on meshes that follow their
+/// edges.
+#[test]
+fn cells_give_the_forces_of_fitted_meshes() {
+    // Of half the disc, 20 cells of degree 2 along its radius, by penalties.
+    let found = summary(example("hertz_cells"), &set(&[]));
+    let force = number(&last_step(&found)["contacts"]["touch"]["force"][1]);
+    assert!((force / (0.5 * 0.018_384_631_7) - 1.0).abs() < 2e-3, "{force}");
+    let found = summary(example("pore"), &set(&[]));
+    let step = last_step(&found);
+    let force = number(&step["support_forces"]["top"][1]).abs();
+    assert!((force / 0.088_867_913_6 - 1.0).abs() < 1e-3, "{force}");
+    assert!(number(&step["equilibrium_residual"]) < 1e-10);
+}
+
+#[test]
+fn each_mistake_of_a_body_of_cells_is_told_at_its_place() {
+    let table = [
+        ("hertz_cells", "degree = 2", "degree = 9", "not between 1 and 8", "9"),
+        ("hertz_cells", "radius = 1 }", "radius = -1 }", "must be positive", "-1"),
+        ("hertz_cells", "cells = [20, 20],", "", "number of cells", "min"),
+        ("hertz_cells", "cells = [20, 20]", "cells = [20, 0]", "0 is not between", "0"),
+        ("hertz_cells", "max = [1.02, 1]", "max = [-1.02, 1]", "first below the second", "geometry"),
+        ("hertz_cells", "center = [0, 1]", "center = [9, 9]", "negative nowhere", "geometry"),
+        ("hertz_cells", "geometry.sphere", "geometry.spere", "spere", "spere"),
+        ("hertz_cells", "\"disc:left\"", "\"disc:lift\"", "no group `lift`", "disc:lift"),
+        ("hertz_cells", "degree = 2", "groups.a = \"y > 7\"\ndegree = 2", "no part of the boundary", "geometry"),
+        ("hertz_cells", "degree = 2", "fictitious = -1\ndegree = 2", "not between 0 and 1", "geometry"),
+        ("hertz_cells", "degree = 2", "degree = 2\nislands = \"sink\"", "sink", "sink"),
+        ("hertz_cells", "material.linear_elastic", "material.neo_hooke", "linear elastic", "neo_hooke"),
+        ("foam", "spacing = [\"0.25 mm\", \"0.25 mm\", \"0.25 mm\"], ", "", "how large its voxels are", "foam.npy"),
+        ("foam", "\"0.25 mm\", \"0.25 mm\", \"0.25 mm\"", "1, 1", "expected 3", "1, 1"),
+        ("foam", "axes = \"zyx\"", "axes = \"zyz\"", "no order of the directions", "zyz"),
+        ("foam", "threshold = 550", "threshold = 99999", "nothing or everything", "geometry"),
+        ("foam", ", threshold = 550", "", "neither `threshold` nor", "foam.npy"),
+        ("foam", "threshold = 550", "threshold = 550, youngs_modulus = \"value\"", "two ways", "550"),
+        ("foam", "foam.npy", "foam.xyz", "cannot be read", "foam.xyz"),
+        ("foam", "islands = \"drop\"", "islands = \"refuse\"", "do not hang together", "geometry"),
+    ];
+    for (name, from, to, message, at) in table {
+        let case = example(name);
+        assert!(case.contains(from), "`{from}` is not in the case");
+        let error = error(&case.replacen(from, to, 1));
+        let place = error.place.clone().unwrap_or_else(|| panic!("no place: {}", error.message));
+        let shown = place.text[place.span.start..place.span.end.min(place.text.len())].to_string();
+        let told = format!("{} {}", error.message, error.help.clone().unwrap_or_default());
+        assert!(told.contains(message), "{to}: `{told}` has no `{message}`");
+        assert!(shown.contains(at), "{to}: points at `{shown}`, not `{at}`");
+    }
+}

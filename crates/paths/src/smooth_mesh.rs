@@ -193,6 +193,9 @@ impl Patch {
 
 impl RigidShape for SmoothMesh {
     fn gap(&self, x: &Point<3>) -> GapJet<3> {
+        if self.smooth_level(x).is_none() {
+            return self.triangles.gap(x);
+        }
         let Ok((y, level)) = foot(self, x) else { return self.triangles.gap(x) };
         let length = level.gradient.norm();
         let normal = level.gradient / length;
@@ -211,6 +214,21 @@ impl RigidShape for SmoothMesh {
     }
 
     fn level(&self, x: &Point<3>) -> Jet<3> {
+        self.smooth_level(x).unwrap_or_else(|| {
+            let GapJet { gap, normal, hessian } = self.triangles.gap(x);
+            Jet { value: gap, gradient: normal, hessian }
+        })
+    }
+
+    /// The origin: a mesh says no other.
+    fn centre(&self) -> Point<3> {
+        Point::<3>::zeros()
+    }
+}
+
+impl SmoothMesh {
+    /// The blended level; none beyond the reach of all patches.
+    fn smooth_level(&self, x: &Point<3>) -> Option<Jet<3>> {
         let [i, j, k] = place(x, self.cell);
         let (mut weights, mut sum) = (Jet::<3>::constant(0.0), Jet::<3>::constant(0.0));
         for cell in (0..27).map(|c| [i + c / 9 - 1, j + c / 3 % 3 - 1, k + c % 3 - 1]) {
@@ -221,16 +239,7 @@ impl RigidShape for SmoothMesh {
                 }
             }
         }
-        if weights.value > 1e-6 {
-            return sum / weights;
-        }
-        let GapJet { gap, normal, hessian } = self.triangles.gap(x);
-        Jet { value: gap, gradient: normal, hessian }
-    }
-
-    /// The origin: a mesh says no other.
-    fn centre(&self) -> Point<3> {
-        Point::<3>::zeros()
+        (weights.value > 1e-6).then(|| sum / weights)
     }
 }
 

@@ -142,12 +142,21 @@ impl Number {
 
 const KNOWN: &str = ".npy, .nrrd, .mha, .mhd, .nii, .tif, .tiff; numbers without a header need `read_raw`";
 
+const ENDINGS: [&str; 8] = ["npy", "nrrd", "nhdr", "mha", "mhd", "nii", "tif", "tiff"];
+
+fn ending(file: &str) -> String {
+    file.rsplit('.').next().unwrap_or_default().to_ascii_lowercase()
+}
+
 /// Reads an image by the ending of its name.
 ///
 /// # Errors
 /// A file that cannot be read, or is not what its ending says.
 pub fn read(path: &Path) -> Result<ImageData, ImageError> {
     let file = path.display().to_string();
+    if !ENDINGS.contains(&ending(&file).as_str()) {
+        return Err(ImageError::Ending { file, known: KNOWN });
+    }
     let folder = path.parent().unwrap_or(Path::new(""));
     let load = |name: &str| std::fs::read(folder.join(name)).map_err(|e| e.to_string());
     let first = std::fs::read(path).map_err(|e| ImageError::File { file: file.clone(), message: e.to_string() })?;
@@ -165,7 +174,7 @@ pub fn read_with(
 ) -> Result<ImageData, ImageError> {
     let beside = |name: &String| load(name).map_err(|message| ImageError::File { file: name.clone(), message });
     let content = |wrong: Wrong| ImageError::Content { file: file.to_string(), wrong };
-    match file.rsplit('.').next().unwrap_or("").to_ascii_lowercase().as_str() {
+    match ending(file).as_str() {
         "npy" => npy::parse(bytes).map_err(content),
         "nii" => nifti::parse(bytes).map_err(content),
         "tif" | "tiff" => tiff_stack::parse(bytes).map_err(content),

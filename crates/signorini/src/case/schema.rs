@@ -198,6 +198,8 @@ fn kind(root: &Value, node: &Value) -> String {
                 let types = match &inner["type"] {
                     Value::String(t) => vec![t.clone()],
                     Value::Array(list) => list.iter().filter_map(|t| t.as_str().map(str::to_string)).collect(),
+                    // A table with one of several keys.
+                    _ if inner["oneOf"].is_array() => vec!["object".to_string()],
                     _ => Vec::new(),
                 };
                 for t in types {

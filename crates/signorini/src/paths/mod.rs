@@ -176,18 +176,25 @@ fn box_around(points: impl Iterator<Item = Point<3>>, part: f64) -> Aabb<3> {
     Aabb::new(low - pad, high + pad)
 }
 
-/// The surfaces of all bodies: of those without an end the part in a box.
-fn surfaces(case: &PathCase, time: f64, around: &Aabb<3>) -> Result<Vec<picture::Surface>, CaseError> {
-    let surface = |b: &crate::plan::RigidBody| {
-        let motion = b.motion(case.problem(), time)?;
-        let bounds = b.bounds.map_or(*around, |bounds| {
-            let corners =
-                (0..8).map(|c| Point::<3>::from_fn(|k, _| if c >> k & 1 == 0 { bounds.min[k] } else { bounds.max[k] }));
-            box_around(corners.map(|x| motion.point(&x)), 0.05)
-        });
-        Ok(picture::Surface::new(&b.gap_at(case.problem(), time)?, [bounds.min, bounds.max]))
-    };
-    case.plan.bodies.iter().map(surface).collect()
+/// The surfaces of all bodies at all times: of those without an end the part in a box.
+fn surfaces(case: &PathCase, times: &[f64], around: &Aabb<3>) -> Result<Vec<Vec<picture::Surface>>, CaseError> {
+    let mut frames: Vec<Vec<picture::Surface>> = times.iter().map(|_| Vec::new()).collect();
+    for body in &case.plan.bodies {
+        let Some(bounds) = body.bounds.filter(|_| !body.is_at_rest()) else {
+            for (frame, time) in frames.iter_mut().zip(times) {
+                let bounds = body.bounds.map_or(*around, |b| box_around([b.min, b.max].into_iter(), 0.05));
+                frame.push(picture::Surface::new(&body.gap_at(case.problem(), *time)?, [bounds.min, bounds.max]));
+            }
+            continue;
+        };
+        // What moves is found once, and moved.
+        let bounds = box_around([bounds.min, bounds.max].into_iter(), 0.05);
+        let stated = picture::Surface::new(&|x: &Point<3>| body.shape().gap(x), [bounds.min, bounds.max]);
+        for (frame, time) in frames.iter_mut().zip(times) {
+            frame.push(stated.moved(&body.motion(case.problem(), *time)?));
+        }
+    }
+    Ok(frames)
 }
 
 #[cfg(test)]

@@ -18,6 +18,7 @@ use crate::output::{Folder, OutputError};
 use plotters::style::RGBColor;
 use signorini_contact::GapJet;
 use signorini_geometry::Vector;
+use signorini_geometry::rigid::RigidMotion;
 
 const SIZE: (f64, f64) = (1060.0, 760.0);
 const BODIES: [RGBColor; 3] = [RGBColor(158, 182, 214), RGBColor(226, 196, 146), RGBColor(170, 205, 170)];
@@ -40,6 +41,15 @@ impl Surface {
     pub fn new(gap: &(dyn Fn(&Vector<3>) -> GapJet<3> + Sync), corners: [Vector<3>; 2]) -> Self {
         let (points, normals, triangles) = level::surface(gap, corners);
         Surface { points, normals, triangles }
+    }
+
+    /// The surface after a motion.
+    pub fn moved(&self, motion: &RigidMotion) -> Self {
+        Surface {
+            points: self.points.iter().map(|x| motion.point(x)).collect(),
+            normals: self.normals.iter().map(|n| motion.rotation * n).collect(),
+            triangles: self.triangles.clone(),
+        }
     }
 }
 

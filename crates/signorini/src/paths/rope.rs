@@ -30,9 +30,9 @@ pub(super) fn run(
     }
     output::write_ropes(&lines, folder)?;
     let around = box_around(lines.iter().flat_map(|l| l.points.iter().map(|p| p.x)), 0.15);
-    let bodies = surfaces(case, 0.0, &around)?;
-    output::write_bodies(&[0.0], std::slice::from_ref(&bodies), folder)?;
-    picture::draw(case, &bodies, &lines, folder)?;
+    let bodies = surfaces(case, &[0.0], &around)?;
+    output::write_bodies(&[0.0], &bodies, folder)?;
+    picture::draw(case, &bodies[0], &lines, folder)?;
     progress.step(list.len(), list.len(), 0.0);
     Ok(json!({"title": case.name(), "analysis": "euler_eytelwein", "status": "done", "ropes": summaries}))
 }

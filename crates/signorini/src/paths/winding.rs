@@ -71,9 +71,9 @@ pub(super) fn run(
     }
     output::write_winding(&lines, folder)?;
     let around = box_around(lines.iter().flat_map(|l| l.points.iter().map(|p| p.x)), 0.1);
-    let bodies = surfaces(case, 0.0, &around)?;
-    output::write_bodies(&[0.0], std::slice::from_ref(&bodies), folder)?;
-    picture::draw(case, &bodies, &lines, folder)?;
+    let bodies = surfaces(case, &[0.0], &around)?;
+    output::write_bodies(&[0.0], &bodies, folder)?;
+    picture::draw(case, &bodies[0], &lines, folder)?;
     progress.step(count, count, 0.0);
     Ok(json!({"title": case.name(), "analysis": "winding", "status": "done", "winding": summaries}))
 }

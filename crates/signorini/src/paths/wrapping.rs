@@ -90,7 +90,7 @@ pub(super) fn run(
     let around = box_around(written.iter().flatten().flat_map(|l| l.points.iter().map(|p| p.x)), 0.15);
     // Bodies at rest are drawn once.
     let shown = if case.plan.bodies.iter().all(|b| b.is_at_rest()) { &times[..1] } else { &times[..] };
-    let bodies = shown.iter().map(|t| surfaces(case, *t, &around)).collect::<Result<Vec<_>, _>>()?;
+    let bodies = surfaces(case, shown, &around)?;
     output::write_bodies(shown, &bodies, folder)?;
     if let (Some(lines), Some(surfaces)) = (written.last(), bodies.last()) {
         picture::draw(case, surfaces, lines, folder)?;

@@ -157,6 +157,7 @@ pub fn describe(dimension: Dimension) -> &'static str {
         LENGTH => "a length, such as mm",
         FORCE_PER_LENGTH => "a force per length, such as N/m",
         PRESSURE => "a force per area, such as Pa",
+        FORCE => "a force, such as N",
         TIME => "a time, such as s",
         _ => "another dimension",
     }

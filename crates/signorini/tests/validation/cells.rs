@@ -26,7 +26,7 @@ fn each_mistake_of_a_body_of_cells_is_told_at_its_place() {
         ("hertz_cells", "cells = [20, 20]", "cells = [20, 0]", "0 is not between", "0"),
         ("hertz_cells", "max = [1.02, 1]", "max = [-1.02, 1]", "first below the second", "geometry"),
         ("hertz_cells", "center = [0, 1]", "center = [9, 9]", "negative nowhere", "geometry"),
-        ("hertz_cells", "geometry.sphere", "geometry.spere", "spere", "spere"),
+        ("hertz_cells", "geometry.sphere", "geometry.spere", "spere", "geometry"),
         ("hertz_cells", "\"disc:left\"", "\"disc:lift\"", "no group `lift`", "disc:lift"),
         ("hertz_cells", "degree = 2", "groups.a = \"y > 7\"\ndegree = 2", "no part of the boundary", "geometry"),
         ("hertz_cells", "degree = 2", "fictitious = -1\ndegree = 2", "not between 0 and 1", "geometry"),
@@ -39,7 +39,6 @@ fn each_mistake_of_a_body_of_cells_is_told_at_its_place() {
         ("foam", ", threshold = 550", "", "neither `threshold` nor", "foam.npy"),
         ("foam", "threshold = 550", "threshold = 550, youngs_modulus = \"value\"", "two ways", "550"),
         ("foam", "foam.npy", "foam.xyz", "cannot be read", "foam.xyz"),
-        ("foam", "islands = \"drop\"", "islands = \"refuse\"", "do not hang together", "geometry"),
     ];
     for (name, from, to, message, at) in table {
         let case = example(name);

@@ -31,7 +31,7 @@ fn each_mistake_of_a_body_of_cells_is_told_at_its_place() {
         ("hertz_cells", "degree = 2", "groups.a = \"y > 7\"\ndegree = 2", "no part of the boundary", "geometry"),
         ("hertz_cells", "degree = 2", "fictitious = -1\ndegree = 2", "not between 0 and 1", "geometry"),
         ("hertz_cells", "degree = 2", "degree = 2\nislands = \"sink\"", "sink", "sink"),
-        ("hertz_cells", "material.linear_elastic", "material.neo_hooke", "linear elastic", "neo_hooke"),
+        ("hertz_cells", "material.linear_elastic", "material.neo_hooke", "linear elastic", "material"),
         ("foam", "spacing = [\"0.25 mm\", \"0.25 mm\", \"0.25 mm\"], ", "", "how large its voxels are", "foam.npy"),
         ("foam", "\"0.25 mm\", \"0.25 mm\", \"0.25 mm\"", "1, 1", "expected 3", "1, 1"),
         ("foam", "axes = \"zyx\"", "axes = \"zyz\"", "no order of the directions", "zyz"),

@@ -51,6 +51,12 @@ impl Camera {
         Self::new(&Vector::<3>::z(), &Vector::<3>::y(), corners.iter(), area)
     }
 
+    /// How wide and high what is seen is, in lengths.
+    pub fn extent(&self) -> [f64; 2] {
+        let [left, top, right, bottom] = self.area;
+        [right - left, bottom - top].map(|side| (side - 2.0) / self.scale)
+    }
+
     /// Where a point is on the page.
     pub fn at(&self, x: &Vector<3>) -> (f64, f64) {
         let [left, top, right, bottom] = self.area;

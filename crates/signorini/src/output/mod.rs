@@ -21,6 +21,8 @@ mod solid_plane;
 mod solid_space;
 pub mod solid_state;
 pub mod system;
+pub(crate) mod system_bodies;
+mod system_contacts;
 pub mod system_pictures;
 pub mod tables;
 pub mod vtk;

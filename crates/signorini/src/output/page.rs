@@ -233,7 +233,7 @@ impl Scale {
 }
 
 /// Three digits.
-fn three_digits(v: f64) -> String {
+pub fn three_digits(v: f64) -> String {
     if v == 0.0 {
         return "0".into();
     }

@@ -9,7 +9,7 @@ use crate::report::{UnitNames, vector};
 use signorini_contact::{GapJet, Status};
 use signorini_fem::CellShape;
 use signorini_geometry::Vector;
-use signorini_mechanics::{BodyFields, IncrementResult, SiteResult, SystemState, rigid_body};
+use signorini_mechanics::{BodyFields, BodyState, IncrementResult, SiteResult, SystemState, rigid_body};
 use signorini_paths::darboux::{Darboux, of_points};
 use std::sync::Arc;
 use vtkio::model::{
@@ -43,29 +43,54 @@ pub struct RigidShown {
     pub is_free: bool,
 }
 
+/// What the pressure and friction of a contact are per.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Carried {
+    /// Per tested point: rods that cross, balls, corners of rigid bodies.
+    Force,
+    /// Per length of a curve on something else.
+    LineLoad,
+    /// Per area of a surface.
+    Traction,
+}
+
+/// A contact as it is shown: its tested points.
+#[derive(Clone)]
+pub struct ContactShown {
+    pub fields: Fields,
+    pub carries: Carried,
+}
+
 /// A state as it is shown.
+#[derive(Clone)]
 pub struct SystemShown {
     pub time: f64,
     pub bodies: Vec<Fields>,
-    pub contacts: Vec<Fields>,
+    pub contacts: Vec<ContactShown>,
     pub curves: Vec<CurveShown>,
     pub rigid: Vec<RigidShown>,
 }
 
 impl SystemShown {
     pub fn new(plan: &MechanicsPlan, state: &SystemState, result: &IncrementResult, time: f64) -> Self {
-        let mut shown = SystemShown { time, ..Self::of_bodies(plan, state) };
+        let mut shown = SystemShown { time, ..Self::of_bodies(plan, &state.bodies) };
         for ((contact, tested), sites) in plan.system.contacts.iter().zip(&plan.contacts).zip(&result.sites) {
-            shown.contacts.push(of_contact(contact.name(), sites, contact.law().is_some(), tested.along_a_curve));
+            let fields = of_contact(contact.name(), sites, contact.law().is_some(), tested.along_a_curve);
+            let carries = match &plan.kinds[contact.bodies()[0]] {
+                Kind::Curve { .. } if tested.along_a_curve => Carried::LineLoad,
+                Kind::Curve { .. } | Kind::Rigid { .. } => Carried::Force,
+                Kind::Solid | Kind::Cells => Carried::Traction,
+            };
+            shown.contacts.push(ContactShown { fields, carries });
         }
         shown
     }
 
     /// The bodies without their contacts.
-    pub fn of_bodies(plan: &MechanicsPlan, state: &SystemState) -> Self {
+    pub fn of_bodies(plan: &MechanicsPlan, state: &[BodyState]) -> Self {
         let mut shown =
             SystemShown { time: 0.0, bodies: Vec::new(), contacts: Vec::new(), curves: Vec::new(), rigid: Vec::new() };
-        for ((body, kind), state) in plan.system.bodies.iter().zip(&plan.kinds).zip(&state.bodies) {
+        for ((body, kind), state) in plan.system.bodies.iter().zip(&plan.kinds).zip(state) {
             match kind {
                 Kind::Curve { radius } => {
                     let fields = body.fields(state);

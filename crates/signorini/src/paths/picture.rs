@@ -13,7 +13,7 @@ use crate::output::panel::{Axis, Panel};
 use crate::output::render::{Body, Look, Paint};
 use crate::output::solid_state::insert;
 use crate::output::system::CurveShown;
-use crate::output::system_pictures::tube;
+use crate::output::system_bodies::tube;
 use crate::output::{Folder, OutputError};
 use plotters::style::RGBColor;
 use signorini_contact::GapJet;
@@ -59,9 +59,7 @@ fn pieces(line: &Line, keep: &dyn Fn(&LinePoint, &LinePoint) -> bool, scale: &Sc
         .map(|k| [k - 1, k])
         .filter(|[a, b]| keep(&line.points[*a as usize], &line.points[*b as usize]))
         .collect();
-    let middle =
-        |[a, b]: &[u32; 2]| 0.5 * (line.points[*a as usize].normal_force + line.points[*b as usize].normal_force);
-    let colours: Vec<f64> = cells.iter().map(|c| scale.place(middle(c))).collect();
+    let colours: Vec<f64> = line.points.iter().map(|p| scale.place(p.normal_force)).collect();
     let points = line.points.iter().map(|p| p.x).collect();
     let curve = CurveShown { name: String::new(), radius, points, arc: Vec::new(), cells, forces: Vec::new() };
     tube(&curve, radius, &colours)

@@ -6,6 +6,7 @@ use super::checkpoint;
 use super::driver::{Advanced, Model};
 use super::record::Record;
 use crate::fields::ShownState;
+use crate::output::film::Film;
 use crate::output::system::SystemShown;
 use crate::output::{Folder, OutputError, system, system_pictures};
 use crate::plan::Head;
@@ -13,7 +14,7 @@ use crate::plan::mechanics::MechanicsPlan;
 use crate::problem::CaseError;
 use crate::report::{Reason, StepReport};
 use serde_json::{Value, json};
-use signorini_mechanics::{IncrementError, IncrementResult, Saved, SystemState};
+use signorini_mechanics::{BodyState, IncrementError, IncrementResult, Saved, SystemState};
 use signorini_solve::{Iteration, Progress};
 use std::path::Path;
 
@@ -28,8 +29,46 @@ pub struct MechanicsModel {
     plan: MechanicsPlan,
     state: SystemState,
     last: Option<SystemShown>,
+    film: Film<Frame>,
     /// Why there is no state after it.
     failure: Option<String>,
+}
+
+/// What a frame of the film shows: the bodies as they are.
+#[derive(Clone)]
+struct Frame {
+    time: f64,
+    bodies: Vec<BodyState>,
+}
+
+impl Frame {
+    fn file(index: usize) -> String {
+        format!("{}/frame_{index:05}.json", checkpoint::BESIDE)
+    }
+
+    /// Writes the frame of an increment beside the checkpoint.
+    fn write(&self, folder: &Folder, index: usize) -> Result<(), OutputError> {
+        let bodies: Vec<[&[f64]; 2]> = self.bodies.iter().map(|b| [&b.configuration[..], &b.internal[..]]).collect();
+        let text = json!({"time": self.time, "bodies": bodies}).to_string();
+        folder.write(&Self::file(index), text.as_bytes())
+    }
+
+    /// The frames of the increments before one; without pictures there are none. None where one is damaged.
+    fn read_all(folder: &Path, next: usize) -> Option<Vec<Frame>> {
+        let texts = (0..next).filter_map(|index| std::fs::read_to_string(folder.join(Self::file(index))).ok());
+        let frame = |text: String| {
+            let mut value: Value = serde_json::from_str(&text).ok()?;
+            let bodies: Vec<[Vec<f64>; 2]> = take(&mut value["bodies"])?;
+            let body = |[configuration, internal]: [Vec<f64>; 2]| BodyState { configuration, internal };
+            Some(Frame { time: value["time"].as_f64()?, bodies: bodies.into_iter().map(body).collect() })
+        };
+        texts.map(frame).collect()
+    }
+}
+
+/// A part of what was saved; none where it is damaged.
+fn take<T: serde::de::DeserializeOwned>(v: &mut Value) -> Option<T> {
+    serde_json::from_value(v.take()).ok()
 }
 
 /// An increment without a state: the reason, what happened in words, and the residuals until then.
@@ -42,7 +81,9 @@ struct Failure {
 impl MechanicsModel {
     pub fn new(plan: MechanicsPlan) -> Self {
         let state = plan.system.start();
-        Self { plan, state, last: None, failure: None }
+        let mut film = Film::default();
+        film.add(&Frame { time: 0.0, bodies: state.bodies.clone() });
+        Self { plan, state, last: None, film, failure: None }
     }
 
     /// Solves for the end of an increment, which is cut where it has no solution at once.
@@ -175,6 +216,9 @@ impl Model for MechanicsModel {
         record.steps.push(report::step_report(&self.plan, &self.state, &result, &shown, index));
         report::warn(&self.plan, &result, &shown, record);
         self.last = Some(shown);
+        if self.plan.head.pictures && self.plan.times.len() > 1 {
+            self.film.add(&Frame { time, bodies: self.state.bodies.clone() });
+        }
         // What slips count from next.
         if let Err(error) = self.plan.system.accept(&self.state) {
             let Failure { reason, text, .. } = failed(&error, Vec::new());
@@ -192,8 +236,8 @@ impl Model for MechanicsModel {
         folder.write(&format!("fields/fields_{number}.vtu"), &system::vtu(&shown.bodies, units.as_ref())?)?;
         let names: Vec<&str> = self.plan.system.contacts.iter().map(|c| c.name()).collect();
         for (contact, name) in shown.contacts.iter().zip(&names) {
-            folder.write(&format!("contact/{name}_{number}.vtp"), &system::vtp(contact, units.as_ref())?)?;
-            folder.write(&format!("contact/{name}_{number}.csv"), system::csv(contact).as_bytes())?;
+            folder.write(&format!("contact/{name}_{number}.vtp"), &system::vtp(&contact.fields, units.as_ref())?)?;
+            folder.write(&format!("contact/{name}_{number}.csv"), system::csv(&contact.fields).as_bytes())?;
         }
         let mut rigid = Vec::new();
         for (name, file) in system::rigid_files(&self.plan, shown)? {
@@ -206,13 +250,16 @@ impl Model for MechanicsModel {
 
     fn shown(&self) -> Option<ShownState> {
         let shown = self.last.as_ref()?;
-        let contacts = shown.contacts.clone();
+        let contacts = shown.contacts.iter().map(|c| c.fields.clone()).collect();
         Some(ShownState { time: shown.time, bodies: shown.bodies.clone(), contacts })
     }
 
     fn draw(&self, record: &Record) -> Result<(), OutputError> {
         let Some(shown) = &self.last else { return Ok(()) };
-        system_pictures::draw(&record.folder, &self.plan, shown, &record.steps)
+        let frame =
+            |frame: &Frame| SystemShown { time: frame.time, ..SystemShown::of_bodies(&self.plan, &frame.bodies) };
+        let frames: Vec<SystemShown> = self.film.frames().iter().map(frame).collect();
+        system_pictures::draw(&record.folder, &self.plan, shown, &frames, &record.steps)
     }
 
     fn first_picture(&self) -> Option<String> {
@@ -237,16 +284,19 @@ impl Model for MechanicsModel {
         if list.is_empty() { "none".into() } else { list.join(", ") }
     }
 
-    fn save(&self, _: &Folder, _: usize) -> Result<Option<Value>, OutputError> {
+    fn save(&self, folder: &Folder, next: usize) -> Result<Option<Value>, OutputError> {
+        if let Some(time) = self.last.as_ref().filter(|_| self.plan.head.pictures).map(|shown| shown.time) {
+            Frame { time, bodies: self.state.bodies.clone() }.write(folder, next - 1)?;
+        }
         let Saved { bodies, multipliers, reactions, contacts } = self.plan.system.save(&self.state);
         Ok(Some(json!({
             "bodies": bodies, "multipliers": multipliers, "reactions": reactions, "contacts": contacts,
         })))
     }
 
-    fn restore(&mut self, mut state: Value, folder: &Path, _: usize) -> Result<(), String> {
-        fn take<T: serde::de::DeserializeOwned>(v: &mut Value) -> Option<T> {
-            serde_json::from_value(v.take()).ok()
+    fn restore(&mut self, mut state: Value, folder: &Path, next: usize) -> Result<(), String> {
+        for frame in Frame::read_all(folder, next).ok_or_else(|| checkpoint::damaged(folder))? {
+            self.film.add(&frame);
         }
         let saved = || {
             Some(Saved {

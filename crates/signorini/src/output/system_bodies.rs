@@ -1,0 +1,145 @@
+//! Bodies of a system as they are drawn: tubes about ropes and beams, surfaces of solids, rigid bodies.
+
+use super::level::surface;
+use super::page::Scale;
+use super::render::{Body, Paint};
+use super::solid_state::{FREE, RIGID};
+use super::system::{CurveShown, SystemShown, moved};
+use crate::fields::Fields;
+use signorini_geometry::Vector;
+
+/// Corners of the polygon that is drawn for a section.
+const AROUND_SECTION: usize = 12;
+/// Curves are drawn at least so thick, as a part of the extent of the picture.
+const THIN: f64 = 0.006;
+/// How much a rigid body hides of what is behind it: those around curves are seen through a little.
+const VEIL: f64 = 0.75;
+
+/// A tube about a curve, coloured by values at its points from 0 to 1.
+pub fn tube(curve: &CurveShown, radius: f64, colours: &[f64]) -> Body {
+    let n = curve.points.len();
+    let mut tangents = vec![Vector::<3>::zeros(); n];
+    for [a, b] in &curve.cells {
+        let d = curve.points[*b as usize] - curve.points[*a as usize];
+        let d = d.try_normalize(0.0).unwrap_or_default();
+        tangents[*a as usize] += d;
+        tangents[*b as usize] += d;
+    }
+    let mut across =
+        signorini_mechanics::pair::any_tangent(&tangents[0].try_normalize(0.0).unwrap_or_else(Vector::<3>::x));
+    let mut rings: Vec<Vec<Vector<3>>> = Vec::with_capacity(n);
+    for tangent in &tangents {
+        let t = tangent.try_normalize(0.0).unwrap_or_else(Vector::<3>::x);
+        // Turned about the curve as little as can be.
+        across = (across - t * t.dot(&across))
+            .try_normalize(1e-9)
+            .unwrap_or_else(|| signorini_mechanics::pair::any_tangent(&t));
+        let other = t.cross(&across);
+        let ring = (0..AROUND_SECTION).map(|k| {
+            let angle = std::f64::consts::TAU * k as f64 / AROUND_SECTION as f64;
+            across * angle.cos() + other * angle.sin()
+        });
+        rings.push(ring.collect());
+    }
+    let mut body = Body::empty(Paint::Field(Vec::new()));
+    let mut values = Vec::new();
+    for [a, b] in &curve.cells {
+        let first = body.points.len() as u32;
+        for end in [*a as usize, *b as usize] {
+            body.points.extend(rings[end].iter().map(|r| curve.points[end] + r * radius));
+            values.extend(std::iter::repeat_n(colours[end], AROUND_SECTION));
+        }
+        let m = AROUND_SECTION as u32;
+        for k in 0..m {
+            let next = (k + 1) % m;
+            let (p, q) = (&rings[*a as usize], &rings[*b as usize]);
+            body.triangles.push([first + k, first + next, first + m + next]);
+            body.normals.push([p[k as usize], p[next as usize], q[next as usize]]);
+            body.triangles.push([first + k, first + m + next, first + m + k]);
+            body.normals.push([p[k as usize], q[next as usize], q[k as usize]]);
+        }
+    }
+    body.paint = Paint::Field(values);
+    body
+}
+
+/// What the colours tell: the axial force of curves, from zero on; without curves, the equivalent stress of solids.
+pub fn scale_of(shown: &SystemShown) -> Scale {
+    if shown.curves.is_empty() {
+        let all = shown.solids().flat_map(|b| b.array("von_mises").unwrap_or_default().to_vec());
+        return Scale::of(&all.collect::<Vec<f64>>());
+    }
+    let forces = shown.curves.iter().flat_map(|c| c.forces.iter().copied());
+    let (low, high) = forces.fold((0.0f64, 0.0f64), |(low, high), f| (low.min(f), high.max(f)));
+    Scale::between(low, high, 0.0)
+}
+
+/// The axial force at the points of a curve: the mean of its cells there.
+fn at_points(curve: &CurveShown) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0.0f64); curve.points.len()];
+    for (cell, force) in curve.cells.iter().zip(&curve.forces) {
+        for end in cell {
+            let own = &mut sums[*end as usize];
+            *own = (own.0 + force, own.1 + 1.0);
+        }
+    }
+    sums.into_iter().map(|(sum, count)| sum / count.max(1.0)).collect()
+}
+
+/// The surface of a solid where it is: its cells in the plane, and in space the sides of cells that no other cell has.
+fn solid(fields: &Fields, paint: Paint) -> Body {
+    const SIDES: [[usize; 4]; 6] = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+    let mut polygons: Vec<Vec<u32>> = Vec::new();
+    let mut sides: std::collections::BTreeMap<Vec<[u64; 3]>, Option<Vec<u32>>> = std::collections::BTreeMap::new();
+    // Cells have points of their own: the same places are the same points.
+    let place = |k: u32| fields.points[k as usize].map(|v| (v + 0.0).to_bits());
+    for (_, cell) in &fields.cells {
+        if cell.len() != 8 {
+            polygons.push(cell.clone());
+            continue;
+        }
+        for side in SIDES {
+            let mut list: Vec<u32> = side.iter().map(|k| cell[*k]).collect();
+            list.dedup();
+            if list.len() > 1 && list.first() == list.last() {
+                list.pop();
+            }
+            if list.len() < 3 {
+                continue;
+            }
+            let mut key: Vec<[u64; 3]> = list.iter().map(|k| place(*k)).collect();
+            key.sort_unstable();
+            sides.entry(key).and_modify(|found| *found = None).or_insert(Some(list));
+        }
+    }
+    polygons.extend(sides.into_values().flatten());
+    Body::of_polygons(moved(fields), polygons.iter().map(Vec::as_slice), paint)
+}
+
+/// The bodies of a state; in the plane without rigid ones, which are their edges there.
+pub fn bodies(shown: &SystemShown, scale: &Scale, in_space: bool) -> Vec<Body> {
+    let [low, high] = shown.bounds();
+    let thin = THIN * (high - low).max();
+    let mut out: Vec<Body> = (shown.curves.iter())
+        .map(|c| {
+            let colours: Vec<f64> = at_points(c).iter().map(|f| scale.place(*f)).collect();
+            tube(c, c.radius.max(thin), &colours)
+        })
+        .collect();
+    for fields in shown.solids() {
+        let stress = fields.array("von_mises").filter(|_| shown.curves.is_empty());
+        let paint = match stress {
+            Some(values) => Paint::Field(values.iter().map(|v| scale.place(*v)).collect()),
+            None => Paint::Plain(FREE),
+        };
+        out.push(solid(fields, paint));
+    }
+    let room = shown.room();
+    for body in shown.rigid.iter().filter(|_| in_space) {
+        let (points, normals, triangles) = surface(body.gap.as_ref(), room);
+        let normals = triangles.iter().map(|t| t.map(|k| normals[k as usize])).collect();
+        let opacity = if body.is_free { 1.0 } else { VEIL };
+        out.push(Body { points, triangles, normals, paint: Paint::Plain(RIGID), opacity });
+    }
+    out
+}

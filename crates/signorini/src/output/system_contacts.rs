@@ -1,0 +1,172 @@
+//! What contacts of a system carry, as it is drawn: lines of force or traction at the tested points, and charts along them.
+
+use super::camera::Camera;
+use super::chart::{label, line, viridis};
+use super::labels::Labels;
+use super::page::{Page, Sign, three_digits};
+use super::panel::{Axis, Dots, Panel};
+use super::solid_state::FRONT;
+use super::system::{Carried, ContactShown, SystemShown};
+use signorini_geometry::Vector;
+
+/// The largest force or traction of a contact is drawn as a line of this part of the extent of the picture.
+const LONGEST: f64 = 0.12;
+/// At most so many lines for a contact.
+const LINES: usize = 40;
+/// Status of a point that slips, as files have it.
+const SLIPS: f64 = 2.0;
+/// Tested points face one way where their normals are within 60 degrees of the mean.
+const ONE_WAY: f64 = 0.5;
+const WIDTH: f64 = 900.0;
+const NORMAL: f64 = 0.3;
+const FRICTION: f64 = 0.7;
+
+impl ContactShown {
+    /// What a tested point carries: a force, or per length or area, pressure and friction together.
+    fn carried(&self, k: usize) -> Vector<3> {
+        let of = |name: &str| {
+            self.fields
+                .array(name)
+                .map_or(Vector::<3>::zeros(), |v| Vector::<3>::from_column_slice(&v[3 * k..3 * k + 3]))
+        };
+        let value = |name: &str| self.fields.array(name).map_or(0.0, |v| v[k]);
+        let traction = of("normal") * value("contact_pressure") + of("friction_traction");
+        if self.carries == Carried::Force { traction * value("weight") } else { traction }
+    }
+
+    /// The points that touch.
+    pub fn closed(&self) -> Vec<usize> {
+        let pressure = self.fields.array("contact_pressure").unwrap_or_default();
+        (0..pressure.len()).filter(|&k| pressure[k] > 0.0).collect()
+    }
+
+    fn slips(&self, k: usize) -> bool {
+        self.fields.array("friction_status").is_some_and(|s| s[k] == SLIPS)
+    }
+
+    fn at(&self, k: usize) -> Vector<3> {
+        Vector::<3>::from(self.fields.points[k])
+    }
+
+    /// The name of what is carried, with its unit.
+    fn unit(&self, labels: &Labels, what: &str) -> String {
+        match self.carries {
+            Carried::Force => labels.force(what),
+            Carried::LineLoad => labels.force_per_length(what),
+            Carried::Traction => labels.pressure(what),
+        }
+    }
+}
+
+/// Draws for every contact what the first body carries, dots where it slips, and tells in a key how much that is.
+pub fn draw(page: &mut Page, shown: &SystemShown, camera: &Camera, extent: f64, labels: &Labels) {
+    let mut key: Vec<(Sign, String)> = Vec::new();
+    let mut slips = false;
+    for contact in &shown.contacts {
+        let closed = contact.closed();
+        let most = closed.iter().map(|&k| contact.carried(k).norm()).fold(0.0, f64::max);
+        if most == 0.0 {
+            continue;
+        }
+        for &k in closed.iter().step_by(closed.len().div_ceil(LINES)) {
+            let x = contact.at(k);
+            let ends = [x, x + contact.carried(k) * (LONGEST * extent / most)].map(|x| camera.at(&x));
+            // Seen on any colour.
+            let [(a, b), (c, d)] = ends;
+            page.svg += &format!("<path d=\"M{a:.2} {b:.2}L{c:.2} {d:.2}\" stroke=\"white\" stroke-width=\"5\"/>");
+            line(&mut page.svg, &ends, viridis(0.15));
+            if contact.slips(k) {
+                slips = true;
+                Sign::Dot(FRONT).draw(&mut page.svg, a - 11.0, b);
+            }
+        }
+        let on = if shown.contacts.len() > 1 { contact.fields.name.as_str() } else { "contact" };
+        let what = match contact.carries {
+            Carried::Force => format!("forces of {on}"),
+            Carried::LineLoad => format!("force per length of {on}"),
+            Carried::Traction => format!("traction of {on}"),
+        };
+        key.push((Sign::Line(viridis(0.15)), contact.unit(labels, &format!("{what}, up to {}", three_digits(most)))));
+    }
+    if slips {
+        key.push((Sign::Dot(FRONT), "slips".into()));
+    }
+    page.key(&key);
+}
+
+/// Tested points of a contact in order: how far along they are, and the points; what that length is called.
+struct Order {
+    places: Vec<(f64, usize)>,
+    name: String,
+}
+
+/// Points of a curve are in order; those of a surface in the plane are along the axis that they extend along most, or around
+/// their middle where they face all ways.
+fn order(contact: &ContactShown, plane: bool, labels: &Labels) -> Option<Order> {
+    let points: Vec<Vector<3>> = (0..contact.fields.points.len()).map(|k| contact.at(k)).collect();
+    if !contact.fields.cells.is_empty() && points.len() > 2 {
+        let mut length = 0.0;
+        let along = points.windows(2).map(|pair| {
+            length += (pair[1] - pair[0]).norm();
+            length
+        });
+        let places = std::iter::once(0.0).chain(along).zip(0..).collect();
+        return Some(Order { places, name: labels.length("length along the tested points") });
+    }
+    let closed = contact.closed();
+    if !plane || contact.carries != Carried::Traction || closed.len() < 3 {
+        return None;
+    }
+    let normals = contact.fields.array("normal")?;
+    let normal = |k: usize| Vector::<3>::from_column_slice(&normals[3 * k..3 * k + 3]);
+    let mean = closed.iter().map(|&k| normal(k)).sum::<Vector<3>>() / closed.len() as f64;
+    let mut places: Vec<(f64, usize)>;
+    let name;
+    if closed.iter().all(|&k| normal(k).dot(&mean) >= ONE_WAY * mean.norm()) && mean.norm() > ONE_WAY {
+        let (low, high) = closed.iter().fold((points[closed[0]], points[closed[0]]), |(low, high), &k| {
+            (low.inf(&points[k]), high.sup(&points[k]))
+        });
+        let axis = usize::from(high.y - low.y > high.x - low.x);
+        places = closed.iter().map(|&k| (points[k][axis], k)).collect();
+        name = labels.length(["x", "y"][axis]);
+    } else {
+        let middle = closed.iter().map(|&k| points[k]).sum::<Vector<3>>() / closed.len() as f64;
+        let angle = |x: Vector<3>| (x.y - middle.y).atan2(x.x - middle.x).to_degrees();
+        places = closed.iter().map(|&k| (angle(points[k]), k)).collect();
+        name = "angle about the middle [°]".into();
+    }
+    places.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Some(Order { places, name })
+}
+
+/// What a contact of a curve, or of a surface in the plane, carries along its tested points; none for others.
+pub fn chart(contact: &ContactShown, plane: bool, time: f64, labels: &Labels) -> Option<String> {
+    let Order { places, name } = order(contact, plane, labels)?;
+    let pressure = contact.fields.array("contact_pressure")?;
+    let normal: Vec<(f64, f64)> = places.iter().map(|&(s, k)| (s, pressure[k])).collect();
+    let size = |f: &[f64], k: usize| Vector::<3>::from_column_slice(&f[3 * k..3 * k + 3]).norm();
+    let friction: Option<Vec<(f64, f64)>> =
+        contact.fields.array("friction_traction").map(|f| places.iter().map(|&(s, k)| (s, size(f, k))).collect());
+    let title = format!("Contact of `{}`, t = {}", contact.fields.name, label(time));
+    let mut page = Page::new((WIDTH, 460.0), &title, "");
+    let high = normal.iter().chain(friction.iter().flatten()).map(|p| p.1).fold(0.0f64, f64::max);
+    let what = contact.unit(labels, if contact.carries == Carried::Traction { "traction" } else { "force per length" });
+    let range = (places.first()?.0, places.last()?.0);
+    let (x, y) = (Axis::around(&name, range), Axis::from_zero(&what, (0.0, high)));
+    let mut panel = Panel::new(&mut page.svg, [0.0, 46.0, WIDTH, 456.0], x, y);
+    let colour = viridis;
+    panel.line(&normal, Sign::Line(colour(NORMAL)), 2.0);
+    let mut key = vec![(Sign::Line(colour(NORMAL)), "normal".to_string())];
+    if let Some(friction) = &friction {
+        panel.line(friction, Sign::Line(colour(FRICTION)), 2.0);
+        key.push((Sign::Line(colour(FRICTION)), "friction".into()));
+        let slipping: Vec<(f64, f64)> =
+            friction.iter().zip(&places).filter(|(_, (_, k))| contact.slips(*k)).map(|(p, _)| *p).collect();
+        if !slipping.is_empty() {
+            panel.dots(&slipping, FRONT, 3.0, Dots::Full);
+            key.push((Sign::Dot(FRONT), "slips".into()));
+        }
+    }
+    panel.key(&key);
+    Some(page.finish())
+}

@@ -4,7 +4,9 @@
 //! as a method of its own, to be set beside the level set, and to predict zones that are not one simple patch.
 
 use crate::deferred::Known;
-use crate::equilibrium::{Elements, System, nitsche_flux};
+use crate::equilibrium::elements::Elements;
+use crate::equilibrium::nitsche_flux;
+use crate::equilibrium::system::System;
 use crate::obstacle::Side;
 use crate::problem::Membrane;
 use crate::quadrature::Quadrature;

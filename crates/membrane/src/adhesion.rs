@@ -12,8 +12,9 @@
 
 use crate::equilibrium::Equilibrium;
 use crate::front::{Fronts, Step, StepKind};
+use crate::method::ModeSpace;
 use crate::scales::Scales;
-use crate::zone::{ModeSpace, Zone};
+use crate::zone::Zone;
 use rayon::prelude::*;
 use signorini_solve::{SolveError, dense};
 
@@ -96,7 +97,7 @@ impl<const D: usize> Fronts<'_, D> {
             None => one_sided()?,
             Some(saddle) => {
                 let held = |mode: usize, i: usize| frames[i].value(mode) * self.adhesive_slope_rate[i];
-                let rates = saddle.rates(equilibrium, zone, space)?.into_iter().enumerate();
+                let rates = saddle.rates(&equilibrium.free(), zone, space)?.into_iter().enumerate();
                 rates
                     .map(|(m, rate)| rate.slope_jump.iter().enumerate().map(|(i, r)| r - held(m, i)).collect())
                     .collect()
@@ -146,7 +147,7 @@ impl<const D: usize> Fronts<'_, D> {
 
 impl Linearised {
     /// The derivative of the front condition, factorised; none where it is singular.
-    pub(crate) fn factor(&self) -> Option<dense::Factor> {
+    pub fn factor(&self) -> Option<dense::Factor> {
         dense::Factor::new(self.n, &self.rate)
     }
 

@@ -4,14 +4,16 @@
 //! whose front the adhesion would let go and one whose front it would pull on lies an equilibrium.
 
 use crate::adhesion::Branch;
-use crate::equilibrium::{Elements, Equilibrium};
+use crate::equilibrium::Equilibrium;
+use crate::equilibrium::elements::Elements;
 use crate::field::Constant;
 use crate::front::Fronts;
-use crate::ils::{Reason, Solution, Start, is_clear};
 use crate::obstacle::{Obstacles, Side};
+use crate::prediction::is_clear;
 use crate::problem::Membrane;
 use crate::refinement::Refinement;
 use crate::report::Report;
+use crate::solution::{Reason, Solution, Start};
 use crate::zone::{Zone, is_free};
 use signorini_geometry::Point;
 use signorini_solve::{Silent, SolveError};

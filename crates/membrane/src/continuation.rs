@@ -1,7 +1,8 @@
 //! Paths of equilibria on which not the time is given but a measure of how far one has come: the area of contact, or the
 //! arc length in area and time. They pass the folds at which a path in time ends.
 
-use crate::equilibrium::{Elements, Equilibrium};
+use crate::equilibrium::Equilibrium;
+use crate::equilibrium::elements::Elements;
 use crate::front::Fronts;
 use crate::problem::Membrane;
 use crate::refinement::Refinement;

@@ -3,7 +3,8 @@
 //! (Deferred correction: Stetter, Numer. Math. 29, 1978; the τ of a full approximation scheme, Brandt, Math. Comp. 31, 1977.)
 //! Else the tips of zones that are about to merge would lag behind by many cells.
 
-use crate::equilibrium::{Equilibrium, System};
+use crate::equilibrium::Equilibrium;
+use crate::equilibrium::system::System;
 use crate::problem::Membrane;
 use crate::quadrature::{FrontPoint, Quadrature};
 use crate::zone::{Zone, contact_of};

@@ -6,12 +6,13 @@
 //! it.
 
 use crate::adhesion::Branch;
-use crate::equilibrium::{Elements, Equilibrium};
+use crate::equilibrium::Equilibrium;
+use crate::equilibrium::elements::Elements;
 use crate::front::Fronts;
-use crate::ils::Solution;
+use crate::method::{Formulation, ModeSpace, Modes};
 use crate::problem::Membrane;
-use crate::published::Formulation;
-use crate::zone::{ModeSpace, Modes, Zone, contact_of};
+use crate::solution::Solution;
+use crate::zone::{Zone, contact_of};
 use signorini_solve::SolveError;
 
 /// The estimate is as likely too small as too large: this makes it seldom too small.

@@ -1,12 +1,13 @@
 //! The slope jump on the fronts, and the Newton step that drives it to zero.
 
-use crate::adhesion::Linearised;
-use crate::equilibrium::{Elements, Equilibrium};
+use crate::equilibrium::Equilibrium;
+use crate::equilibrium::elements::Elements;
+use crate::method::{ModeSpace, Modes};
 use crate::mode_matrix::{Clique, ModeMatrix, add_cliques};
 use crate::quadrature::FrontPoint;
 use crate::scales::Scales;
 use crate::shape_rate::ShapeRate;
-use crate::zone::{FrontFrame, ModeSpace, Modes, Zone};
+use crate::zone::{FrontFrame, Zone};
 use signorini_geometry::{Point, Real};
 use signorini_solve::krylov::conjugate_residuals;
 use signorini_solve::{SolveError, dense};
@@ -176,7 +177,10 @@ impl<'a, const D: usize> Fronts<'a, D> {
         for ((frame, w), f) in frames.iter().zip(self.weights()).zip(f) {
             frame.modes.iter().for_each(|(i, v)| vector[*i] += w * f * v);
         }
-        (ModeMatrix::of_products(n, frames, self.weights().zip(c).map(|(w, c)| w * c)), vector)
+        (
+            ModeMatrix::of_products(n, frames.iter().map(|f| &f.modes[..]), self.weights().zip(c).map(|(w, c)| w * c)),
+            vector,
+        )
     }
 
     /// Stiffness for modes that live, wholly or in part, beyond the membrane, where nothing else determines them; `diagonal` is
@@ -398,7 +402,7 @@ impl<'a, const D: usize> Fronts<'a, D> {
     }
 
     /// The Newton step with the derivative of the discrete slope jump, near the solution. Most of that is the pressure of the
-    /// floor, or with adhesion the derivative in the continuum, so the method of generalised conjugate residuals needs few
+    /// floor, or with adhesion the `derivative` in the continuum, so the method of generalised conjugate residuals needs few
     /// products with it; none where these do not get there.
     ///
     /// # Errors
@@ -408,16 +412,12 @@ impl<'a, const D: usize> Fronts<'a, D> {
         zone: &Z,
         elements: &Elements<D>,
         scales: &Scales,
-        linearised: Option<&Linearised>,
+        derivative: Option<&dense::Factor>,
     ) -> Result<Option<Step>, SolveError> {
         let space = self.modes().finest();
         let frames = self.frames(zone, space);
         let (matrix, held, b) = self.local_system(zone, space, &frames, &self.local_rate(scales), scales);
-        let factor = match linearised.map(Linearised::factor) {
-            Some(None) => return Ok(None),
-            other => other.flatten(),
-        };
-        let nearly = |moments: &[f64]| match &factor {
+        let nearly = |moments: &[f64]| match derivative {
             Some(factor) => Some(factor.solve(moments)),
             None => matrix.solve(moments),
         };
@@ -425,7 +425,7 @@ impl<'a, const D: usize> Fronts<'a, D> {
         let image = |step: &[f64]| -> Result<Option<Vec<f64>>, SolveError> {
             let mut moments = rate.of_moments(step)?;
             moments.iter_mut().zip(held.multiply(step)).for_each(|(m, h)| *m += h);
-            if factor.is_some() {
+            if derivative.is_some() {
                 self.subtract_adhesive_rate(&frames, step, &mut moments);
             }
             Ok(nearly(&moments))

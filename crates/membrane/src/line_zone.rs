@@ -1,12 +1,18 @@
 //! Contact zones in one dimension: intervals.
 
+use crate::method::ModeSpace;
 use crate::mode_matrix::Clique;
 use crate::obstacle::Side;
-use crate::zone::{Advance, Division, FrontFoot, FrontsInCell, ModeSpace, Zone, contact, free};
+use crate::sizing::Sizing;
+use crate::zone::{
+    Advance, Division, FrontFoot, FrontsInCell, Stored, Zone, ZoneFronts, ZoneMotion, ZoneSizes, ZoneTopology, contact,
+    free,
+};
 use serde_json::{Value, json};
 use signorini_fem::Grid;
 use signorini_fem::cut::RegionId;
 use signorini_geometry::{Aabb, ImplicitShape, Point, Vector};
+use std::sync::Arc;
 
 /// Zones that touch different sides are at least this fraction of a cell apart.
 const APART: f64 = 1e-3;
@@ -144,7 +150,18 @@ impl Zone<1> for LineZone {
     fn holes_of(&self, _: usize) -> usize {
         0
     }
+    fn distance(&self, x: &Point<1>, _: f64) -> f64 {
+        (0..self.front_count()).map(|i| (self.end(i).at - x[0]).abs()).fold(f64::INFINITY, f64::min)
+    }
+    fn region_at(&self, x: &Point<1>) -> RegionId {
+        self.region_by(|front| self.end(front).value(x) < 0.0)
+    }
+    fn outlines(&self) -> Vec<Vec<Point<1>>> {
+        self.intervals.iter().map(|i| i.iter().map(|&x| self.bounds().clamp(&Point::<1>::new(x))).collect()).collect()
+    }
+}
 
+impl ZoneFronts<1> for LineZone {
     fn foot(&self, front: usize, _: &Point<1>, _: ModeSpace) -> FrontFoot<1> {
         let End { at, normal } = self.end(front);
         FrontFoot {
@@ -165,13 +182,24 @@ impl Zone<1> for LineZone {
         // A point has no length; an end beyond the membrane stays where it is.
         vec![(vec![front as u32], vec![weight])]
     }
+    fn sharpest(&self) -> f64 {
+        let shortest = self.intervals.iter().map(|[a, b]| b - a).fold(f64::INFINITY, f64::min);
+        2.0 / shortest
+    }
+    fn least_feature(&self) -> f64 {
+        f64::INFINITY
+    }
+    fn bend(&self) -> f64 {
+        0.0
+    }
+}
 
+impl ZoneMotion<1> for LineZone {
     fn advanced(&self, grid: &Grid<1>, _: ModeSpace, step: &[f64], reach: f64) -> Advance<Self> {
         let step = |front: usize| step[front].clamp(-reach, reach);
         let zone = self.moved(grid, |i, [a, b]| [a - step(2 * i), b + step(2 * i + 1)]);
         Advance { topology_changed: zone.intervals.len() != self.intervals.len(), zone }
     }
-
     fn extrapolated(&self, grid: &Grid<1>, before: &[(&Self, f64)]) -> Option<Self> {
         if before.iter().any(|(zone, _)| zone.sides != self.sides) {
             return None;
@@ -183,7 +211,9 @@ impl Zone<1> for LineZone {
         Some(self.moved(grid, |k, _| [ahead(k, 0), ahead(k, 1)]))
             .filter(|zone| zone.intervals.len() == self.intervals.len())
     }
+}
 
+impl ZoneTopology<1> for LineZone {
     fn united(&self, grid: &Grid<1>, side: Side, f: &mut dyn FnMut(&Point<1>) -> f64) -> Self {
         let mut all = self.parts();
         all.extend(Self::where_negative(grid, f).into_iter().map(|interval| (side, interval)));
@@ -207,12 +237,18 @@ impl Zone<1> for LineZone {
         all.push((side, [x[0] - radius, x[0] + radius]));
         Self::new(grid, all)
     }
-    fn distance(&self, x: &Point<1>, _: f64) -> f64 {
-        (0..self.front_count()).map(|i| (self.end(i).at - x[0]).abs()).fold(f64::INFINITY, f64::min)
+}
+
+impl ZoneSizes<1> for LineZone {
+    fn within(grid: &Grid<1>, _: &Arc<Sizing<1>>, _: &[(Side, Vec<Point<1>>)]) -> Self {
+        Self::empty(grid)
     }
-    fn region_at(&self, x: &Point<1>) -> RegionId {
-        self.region_by(|front| self.end(front).value(x) < 0.0)
+    fn on_grid(&self, grid: &Grid<1>) -> Self {
+        Self::new(grid, self.parts())
     }
+}
+
+impl Stored<1> for LineZone {
     fn to_json(&self) -> Value {
         json!({"intervals": self.intervals, "above": self.sides.iter().map(|s| *s == Side::Above).collect::<Vec<_>>()})
     }
@@ -221,21 +257,5 @@ impl Zone<1> for LineZone {
         let above: Vec<bool> = serde_json::from_value(value["above"].clone()).ok()?;
         let side = |above: bool| if above { Side::Above } else { Side::Below };
         (above.len() == intervals.len()).then(|| Self::new(grid, above.into_iter().map(side).zip(intervals).collect()))
-    }
-    fn least_feature(&self) -> f64 {
-        f64::INFINITY
-    }
-    fn on_grid(&self, grid: &Grid<1>) -> Self {
-        Self::new(grid, self.parts())
-    }
-    fn bend(&self) -> f64 {
-        0.0
-    }
-    fn sharpest(&self) -> f64 {
-        let shortest = self.intervals.iter().map(|[a, b]| b - a).fold(f64::INFINITY, f64::min);
-        2.0 / shortest
-    }
-    fn outlines(&self) -> Vec<Vec<Point<1>>> {
-        self.intervals.iter().map(|i| i.iter().map(|&x| self.bounds().clamp(&Point::<1>::new(x))).collect()).collect()
     }
 }

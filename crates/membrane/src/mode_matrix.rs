@@ -1,6 +1,5 @@
 //! Symmetric matrices of the modes of fronts, of which each meets few others.
 
-use crate::zone::FrontFrame;
 use signorini_solve::{Symbolic, SymmetricMatrix, dense};
 
 /// Modes from which on their equations are solved by sparse elimination.
@@ -27,19 +26,23 @@ pub fn add_cliques(matrix: &mut [f64], n: usize, cliques: &[Clique]) {
 }
 
 impl ModeMatrix {
-    /// `Σ f w_m w_n` over the points of fronts, with a factor `f` at each.
-    pub fn of_products(n: usize, frames: &[FrontFrame], factors: impl Iterator<Item = f64>) -> Self {
+    /// `Σ f w_m w_n` over the points of fronts, with a factor `f` and pairs of mode and value `w_m` at each.
+    pub fn of_products<'a>(
+        n: usize,
+        points: impl Iterator<Item = &'a [(usize, f64)]>,
+        factors: impl Iterator<Item = f64>,
+    ) -> Self {
         let mut cliques: Vec<Clique> = Vec::new();
-        for (frame, factor) in frames.iter().zip(factors) {
-            let size = frame.modes.len();
-            let numbers = || frame.modes.iter().map(|(i, _)| *i as u32);
+        for (values_at, factor) in points.zip(factors) {
+            let size = values_at.len();
+            let numbers = || values_at.iter().map(|(i, _)| *i as u32);
             // Most points have the modes of the point before.
             if !cliques.last().is_some_and(|(modes, _)| modes.iter().copied().eq(numbers())) {
                 cliques.push((numbers().collect(), vec![0.0; size * size]));
             }
             let Some((_, values)) = cliques.last_mut() else { continue };
-            for (a, (_, va)) in frame.modes.iter().enumerate() {
-                for (b, (_, vb)) in frame.modes.iter().enumerate() {
+            for (a, (_, va)) in values_at.iter().enumerate() {
+                for (b, (_, vb)) in values_at.iter().enumerate() {
                     values[a * size + b] += factor * va * vb;
                 }
             }
@@ -100,20 +103,21 @@ mod tests {
     fn sparse_elimination_solves_what_the_dense_matrix_says() {
         // Rings of overlapping modes, with one that no point of a front sees.
         let n = MANY_MODES + 1;
-        let frames: Vec<FrontFrame> = (0..4 * MANY_MODES)
+        let points: Vec<Vec<(usize, f64)>> = (0..4 * MANY_MODES)
             .map(|k| {
                 let t = 0.25 * (k % 4) as f64;
                 let at = |i: usize| (k / 4 + i) % MANY_MODES;
                 // Quadratic splines.
                 let values = [0.5 * (1.0 - t).powi(2), 0.5 + t * (1.0 - t), 0.5 * t * t];
-                FrontFrame { curvature: 0.0, modes: (0..3).map(|i| (at(i), values[i])).collect() }
+                (0..3).map(|i| (at(i), values[i])).collect()
             })
             .collect();
         let factor = |k: usize| 1.0 + (k as f64).sin().powi(2);
-        let mut matrix = ModeMatrix::of_products(n, &frames, (0..frames.len()).map(factor));
+        let mut matrix = ModeMatrix::of_products(n, points.iter().map(|p| &p[..]), (0..points.len()).map(factor));
         let products = matrix.dense();
+        let value = |p: &[(usize, f64)], mode: usize| p.iter().filter(|(i, _)| *i == mode).map(|(_, v)| v).sum::<f64>();
         for (i, j) in (0..5).flat_map(|i| (0..n).map(move |j| (i, j))) {
-            let each = frames.iter().enumerate().map(|(k, f)| factor(k) * f.value(i) * f.value(j));
+            let each = points.iter().enumerate().map(|(k, p)| factor(k) * value(p, i) * value(p, j));
             assert!((products[i * n + j] - each.sum::<f64>()).abs() < 1e-14, "{i}, {j}");
         }
         matrix.add(vec![(vec![MANY_MODES as u32], vec![2.0])]);

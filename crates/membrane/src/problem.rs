@@ -2,10 +2,9 @@
 
 use crate::domain::{CellStatus, DomainOnCells};
 use crate::field::SharedField;
+use crate::method::{Formulation, Modes};
 use crate::obstacle::{Obstacles, Side};
-use crate::published::Formulation;
 use crate::sizing::{Sizing, coarsened};
-use crate::zone::Modes;
 use signorini_fem::{Cells, Grid};
 use signorini_geometry::{Point, Vector};
 use std::sync::Arc;

@@ -3,7 +3,7 @@
 use crate::domain::CellStatus;
 use crate::obstacle::Side;
 use crate::problem::Membrane;
-use crate::zone::{Division, OUTSIDE, contact_of, is_free};
+use crate::zone::{Division, NoZone, OUTSIDE, contact_of, is_free};
 use rayon::prelude::*;
 use signorini_fem::cells::SidePoint;
 use signorini_fem::cut::{CellPartition, CellRule, QuadraturePoint, RegionId, scan_roots};
@@ -247,4 +247,11 @@ fn partition<'a, const D: usize, Z: Division<D>>(
         (fronts.region)(values.get(..count).unwrap_or(&[]))
     });
     all
+}
+
+/// The area of a membrane.
+pub fn area<const D: usize>(membrane: &Membrane<D>) -> f64 {
+    let quadrature = Quadrature::new(membrane, &NoZone);
+    let cells = (0..quadrature.cells.len()).flat_map(|cell| quadrature.volumes(membrane, cell));
+    cells.flat_map(|(_, points)| points.iter().map(|p| p.weight).collect::<Vec<_>>()).sum()
 }

@@ -4,14 +4,17 @@ use crate::adhesion::Branch;
 use crate::conditions::Conditions;
 use crate::deferred::Known;
 use crate::domain::DomainOnCells;
-use crate::equilibrium::{Elements, Equilibrium};
+use crate::equilibrium::Equilibrium;
+use crate::equilibrium::elements::Elements;
 use crate::front::Fronts;
-use crate::ils::{self, Reason, Solution, Start};
+use crate::ils;
+use crate::method::Formulation;
+use crate::prediction::prediction;
 use crate::problem::Membrane;
-use crate::published::Formulation;
 use crate::rest::{Rest, SETTLED_COARSE};
 use crate::scales::Scales;
 use crate::sizing::Sizing;
+use crate::solution::{Reason, Solution, Start};
 use crate::zone::Zone;
 use signorini_fem::Grid;
 use signorini_geometry::{Aabb, Point};
@@ -129,7 +132,7 @@ impl<const D: usize> Refinement<D> {
                     break;
                 }
                 let divided = step.divided(membrane, &zone, sizing)?;
-                zone = ils::prediction(&divided, known, interrupted).ok()?;
+                zone = prediction(&divided, known, interrupted).ok()?;
                 cells = Some(divided);
             }
         }

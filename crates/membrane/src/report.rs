@@ -1,7 +1,7 @@
 //! What a solution amounts to: forces, areas, pressures, energy, and the balance that proves them.
 
 use crate::conditions::Extremes;
-use crate::ils::Solution;
+use crate::solution::Solution;
 use crate::zone::{Zone, contact_index, contact_of, is_free};
 use signorini_geometry::Point;
 

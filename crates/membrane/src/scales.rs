@@ -1,6 +1,7 @@
 //! The scales that a problem supplies itself: all tolerances are relative to them, so no unit is hidden anywhere.
 
-use crate::equilibrium::{Equilibrium, nitsche_penalty};
+use crate::equilibrium::Equilibrium;
+use crate::equilibrium::elements::nitsche_penalty;
 use crate::problem::Membrane;
 use crate::zone::is_free;
 

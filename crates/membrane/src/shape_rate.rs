@@ -13,9 +13,12 @@
 //! crossing slides along it by `(ds/dw) w`. An integral over the free membrane loses `∫ F w` on the front. The rate of the
 //! displacement follows from that of the equations by one solve with the factorisation at hand.
 
-use crate::equilibrium::{Elements, Equilibrium, GhostPair, ghost_pairs, ghost_weight, penalty};
+use crate::equilibrium::Equilibrium;
+use crate::equilibrium::elements::{Elements, penalty};
+use crate::equilibrium::ghost::{GhostPair, ghost_pairs, ghost_weight};
+use crate::method::ModeSpace;
 use crate::quadrature::FrontPoint;
-use crate::zone::{FrontFoot, ModeSpace, Zone};
+use crate::zone::{FrontFoot, Zone};
 use signorini_fem::cut::RegionId;
 use signorini_fem::lagrange::Tabulation;
 use signorini_geometry::{Point, Vector};
@@ -181,7 +184,7 @@ impl<'a, const D: usize> ShapeRate<'a, D> {
         let weight = ghost_weight(membrane.cells.degree());
         let pairs = ghost_pairs(membrane, elements, &equilibrium.quadrature, equilibrium.unknowns());
         let ties = pairs.into_iter().map(|pair| {
-            let (matrix, n) = (elements.ghost(membrane, &pair), pair.dofs.len());
+            let (matrix, n) = (elements.ghost(membrane, pair.number), pair.dofs.len());
             let row = |a: usize| (0..n).map(|b| matrix[a * n + b] * u[pair.dofs[b] as usize]).sum::<f64>();
             let forces = (0..n).map(|a| weight * pair.tension * row(a)).collect();
             Tie { pair, forces }

@@ -6,11 +6,13 @@ use signorini_membrane::domain::{BoxDomain, Domain, DomainOnCells, ImplicitDomai
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::field::{Constant, Formula, SharedField};
 use signorini_membrane::line_zone::LineZone;
+use signorini_membrane::method::ModeSpace;
+use signorini_membrane::method::{Formulation, Published, Transport, ZoneMultiplier};
 use signorini_membrane::obstacle::{Obstacle, Obstacles, Side};
 use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::{Measure, Membrane, Support};
-use signorini_membrane::published::{Formulation, Published, Transport, ZoneMultiplier, inf_sup};
-use signorini_membrane::zone::{ModeSpace, Zone};
+use signorini_membrane::published::inf_sup;
+use signorini_membrane::zone::{Zone, ZoneFronts};
 use std::sync::Arc;
 
 mod common;
@@ -95,7 +97,7 @@ fn moments<const D: usize, Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z) -> Vec<
 /// The change of the moments that the domain form predicts where the fronts move by `direction` in their modes.
 fn predicted<const D: usize, Z: Zone<D>>(membrane: &Membrane<D>, zone: &Z, direction: &[f64]) -> Vec<f64> {
     let equilibrium = state(membrane, zone);
-    let rates = equilibrium.saddle().expect("multipliers").rates(&equilibrium, zone, SPACE).expect("rates");
+    let rates = equilibrium.saddle().expect("multipliers").rates(&equilibrium.free(), zone, SPACE).expect("rates");
     let rho = equilibrium.slope_jump();
     let mut out = vec![0.0; direction.len()];
     for (i, p) in equilibrium.quadrature.front.iter().enumerate() {
@@ -211,7 +213,7 @@ fn the_multiplier_adds_up_to_the_force() {
         let membrane = disc(24, formulation);
         let equilibrium = state(&membrane, &bent(&membrane));
         let saddle = equilibrium.saddle().expect("multipliers");
-        let (_, force) = saddle.zone_multiplier(&equilibrium).expect("a multiplier");
+        let (_, force) = saddle.zone_multiplier(&equilibrium.free()).expect("a multiplier");
         let mut expected = 0.0;
         equilibrium.for_each_point(|_, region, x, w| {
             if signorini_membrane::zone::contact_of(region).is_some() {
@@ -230,7 +232,8 @@ fn the_multiplier_adds_up_to_the_force() {
 fn overshoot(cells: usize, formulation: Formulation) -> f64 {
     let membrane = disc(cells, formulation);
     let equilibrium = state(&membrane, &bent(&membrane));
-    let (values, _) = equilibrium.saddle().expect("multipliers").zone_multiplier(&equilibrium).expect("a multiplier");
+    let (values, _) =
+        equilibrium.saddle().expect("multipliers").zone_multiplier(&equilibrium.free()).expect("a multiplier");
     values.iter().fold(0.0, |m, v| f64::max(m, v.abs()))
 }
 

@@ -27,22 +27,21 @@ use signorini_geometry::{Jet, Point, Real, Vector};
 use signorini_membrane::active_set::NodalStart;
 use signorini_membrane::domain::{Domain, DomainOnCells};
 use signorini_membrane::field::{Constant, Field, SharedField, Sum};
-use signorini_membrane::multigrid::{LARGE, nested::is_able};
+use signorini_membrane::history::Statement;
+use signorini_membrane::kernel::Kernel;
+use signorini_membrane::method::{Formulation, Modes, Published, Transport, ZoneMultiplier};
 use signorini_membrane::obstacle::{Obstacles, Side};
 use signorini_membrane::problem::{Measure, Membrane, Support};
-use signorini_membrane::published::{Formulation, Published, Transport, ZoneMultiplier};
-use signorini_membrane::quadrature::Quadrature;
 use signorini_membrane::refinement::Refinement;
-use signorini_membrane::zone::{Modes, NoZone};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 pub use domain::{Pieces, memory_at_hand, memory_estimate, mesh_multigrid_estimate, multigrid_estimate};
 pub use head::Head;
-pub use history::{Control, PlannedIncrement};
 use pieces::UNITE;
 pub use rigid::RigidBody;
+pub use signorini_membrane::history::{Control, MethodChoice, PlannedIncrement};
 pub use surface::Contact;
 
 /// A problem that is ready to be solved.
@@ -52,36 +51,6 @@ pub enum Plan {
     PlaneSolids(Box<solid::SolidPlan<2>>),
     Solids(Box<solid::SolidPlan<3>>),
     Mechanics(Box<mechanics::MechanicsPlan>),
-}
-
-/// Which method finds the contact zone.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum MethodChoice {
-    InequalityLevelSet { modes: Modes, formulation: Formulation },
-    ActiveSet(NodalStart),
-}
-
-impl Default for MethodChoice {
-    fn default() -> Self {
-        MethodChoice::InequalityLevelSet { modes: Modes::default(), formulation: Formulation::default() }
-    }
-}
-
-impl MethodChoice {
-    pub fn name(self) -> &'static str {
-        match self {
-            MethodChoice::InequalityLevelSet { .. } => "inequality_level_set",
-            MethodChoice::ActiveSet(_) => "active_set",
-        }
-    }
-
-    /// How the equilibrium beside a zone is formulated.
-    pub fn formulation(self) -> Formulation {
-        match self {
-            MethodChoice::InequalityLevelSet { formulation, .. } => formulation,
-            MethodChoice::ActiveSet(_) => Formulation::default(),
-        }
-    }
 }
 
 /// An expression and the key it comes from.
@@ -120,6 +89,8 @@ pub struct MembranePlan<const D: usize> {
     /// The zone that the first increment starts from, where the case asks for one.
     pub initial_zone: Option<(Side, Arc<dyn Domain<D>>)>,
     pub increments: Vec<PlannedIncrement>,
+    /// What solves for it.
+    pub kernel: Kernel<D>,
     pub probes: BTreeMap<String, Point<D>>,
 }
 
@@ -488,6 +459,7 @@ impl<'a> Planner<'a> {
             method,
             initial_zone,
             increments,
+            kernel: <Self as domain::ReadDomain<D>>::KERNEL,
             probes,
         };
         plan.check_time()?;
@@ -908,10 +880,7 @@ impl<const D: usize> MembranePlan<D> {
             obstacles: Obstacles(self.contacts.iter().map(|c| c.at(time)).collect()),
             supports,
             support_count: self.supports.len(),
-            modes: match self.method {
-                MethodChoice::InequalityLevelSet { modes, .. } => modes,
-                MethodChoice::ActiveSet(_) => Modes::default(),
-            },
+            modes: self.method.modes(),
             formulation: self.method.formulation(),
         }
     }
@@ -923,17 +892,9 @@ impl<const D: usize> MembranePlan<D> {
         Some(0.5 * self.grid.bounds().size()[0] / domain::MARGIN)
     }
 
-    /// The area of the membrane.
-    pub fn area(&self) -> f64 {
-        let membrane = self.at(self.increments[0].range[0]);
-        let quadrature = Quadrature::new(&membrane, &NoZone);
-        let cells = (0..quadrature.cells.len()).flat_map(|cell| quadrature.volumes(&membrane, cell));
-        cells.flat_map(|(_, points)| points.iter().map(|p| p.weight).collect::<Vec<_>>()).sum()
-    }
-
     /// The resultant of each load along z.
     pub fn load_resultants(&self, membrane: &Membrane<D>, time: f64) -> BTreeMap<String, f64> {
-        let quadrature = Quadrature::new(membrane, &NoZone);
+        let quadrature = (self.kernel.quadrature)(membrane);
         let fields: Vec<SharedField<D>> = self.loads.values().map(|l| field(&l.expression, time)).collect();
         let mut sums = vec![0.0; fields.len()];
         for cell in 0..quadrature.cells.len() {
@@ -946,16 +907,6 @@ impl<const D: usize> MembranePlan<D> {
             }
         }
         self.loads.keys().cloned().zip(sums).collect()
-    }
-
-    /// Whether an increment is solved for by multigrid: large ones are, where the case asks for nothing that it cannot do.
-    pub fn by_multigrid(&self, membrane: &Membrane<D>) -> bool {
-        membrane.cells.function_count() >= LARGE
-            && self.refinement.fronts == 0
-            && self.initial_zone.is_none()
-            && matches!(self.method, MethodChoice::InequalityLevelSet { .. })
-            && membrane.formulation == Formulation::OneSided
-            && is_able(membrane)
     }
 
     /// What to say where a factorisation needs more memory than there is.
@@ -974,7 +925,7 @@ impl<const D: usize> MembranePlan<D> {
     /// Checks the fields of a membrane where they will be used: finite values, positive tension, a floor below the
     /// supports.
     pub fn check_fields(&self, membrane: &Membrane<D>, time: f64) -> Result<(), CaseError> {
-        let quadrature = Quadrature::new(membrane, &NoZone);
+        let quadrature = (self.kernel.quadrature)(membrane);
         let mut failure: Option<CaseError> = None;
         let wrong = |p: &Placed, x: &Point<D>, v: f64, what: &str| {
             let at: Vec<String> = x.iter().map(|c| format!("{c:.6}")).collect();
@@ -1091,5 +1042,38 @@ impl<const D: usize> MembranePlan<D> {
             }
         }
         Ok(())
+    }
+}
+
+impl<const D: usize> Statement<D> for MembranePlan<D> {
+    fn method(&self) -> MethodChoice {
+        self.method
+    }
+    fn grid(&self) -> &Grid<D> {
+        &self.grid
+    }
+    fn refinement(&self) -> &Refinement<D> {
+        &self.refinement
+    }
+    fn initial_zone(&self) -> Option<&(Side, Arc<dyn Domain<D>>)> {
+        self.initial_zone.as_ref()
+    }
+    fn increments(&self) -> &[PlannedIncrement] {
+        &self.increments
+    }
+    fn has_units(&self) -> bool {
+        self.head.problem.units.is_some()
+    }
+    fn at(&self, time: f64) -> Membrane<D> {
+        self.at(time)
+    }
+    fn check(&self, membrane: &Membrane<D>, time: f64) -> Result<(), String> {
+        self.check_fields(membrane, time).map_err(|error| error.one_line())
+    }
+    fn places(&self, times: &[f64]) -> Vec<f64> {
+        self.places(times)
+    }
+    fn lacks_memory(&self) -> Option<String> {
+        self.lacks_memory()
     }
 }

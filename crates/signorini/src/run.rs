@@ -17,8 +17,6 @@ use crate::report::{Reason, Summary};
 use driver::{Model, drive, go_on};
 use mechanics::MechanicsModel;
 use membrane::MembraneModel;
-use signorini_membrane::line_zone::LineZone;
-use signorini_membrane::plane_zone::PlaneZone;
 pub use signorini_solve::{Iteration, Progress, Silent};
 pub use sizes::{preview, sizes};
 use solid::SolidModel;
@@ -134,8 +132,8 @@ fn begin(problem: &Problem, folder: &Path, begun: Begun, progress: &mut dyn Prog
 /// The model of a problem at its beginning.
 fn model(problem: &Problem) -> Result<Box<dyn Model>, CaseError> {
     Ok(match plan(problem)? {
-        Plan::Line(p) => Box::new(MembraneModel::<1, LineZone>::new(p)?),
-        Plan::Plane(p) => Box::new(MembraneModel::<2, PlaneZone>::new(p)?),
+        Plan::Line(p) => Box::new(MembraneModel::new(p)?),
+        Plan::Plane(p) => Box::new(MembraneModel::new(p)?),
         Plan::PlaneSolids(p) => Box::new(SolidModel::new(*p)?),
         Plan::Solids(p) => Box::new(SolidModel::new(*p)?),
         Plan::Mechanics(p) => Box::new(MechanicsModel::new(*p)),

@@ -6,6 +6,7 @@ use crate::report::vector;
 use signorini_fem::CellShape;
 use signorini_geometry::Point;
 use signorini_membrane::domain::CellStatus;
+use signorini_membrane::history::Sample;
 use signorini_membrane::obstacle::Side;
 use signorini_membrane::problem::Membrane;
 use std::collections::HashMap;
@@ -72,13 +73,6 @@ pub struct Snapshot<const D: usize> {
     pub outlines: Vec<Vec<Point<D>>>,
     /// Which of their points lie within the membrane: beyond a free edge fronts mean nothing.
     pub within: Vec<Vec<bool>>,
-}
-
-/// What a method knows of a point.
-pub struct Sample {
-    pub displacement: f64,
-    pub in_contact: bool,
-    pub pressure: f64,
 }
 
 fn heights<const D: usize>(mesh: &DisplayMesh<D>, membrane: &Membrane<D>, side: Side) -> Option<Vec<f64>> {

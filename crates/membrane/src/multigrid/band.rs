@@ -2,7 +2,9 @@
 
 use super::regular::Regular;
 use crate::domain::DomainOnCells;
-use crate::equilibrium::{Elements, Equilibrium, HOLDS, System};
+use crate::equilibrium::Equilibrium;
+use crate::equilibrium::elements::Elements;
+use crate::equilibrium::system::{HOLDS, System};
 use crate::plane_zone::{PlaneZone, Straightened};
 use crate::problem::Membrane;
 use crate::quadrature::Quadrature;

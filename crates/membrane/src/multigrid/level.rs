@@ -2,7 +2,8 @@
 
 use super::band::{Band, quadrature};
 use super::regular::{Ground, Layout, Regular};
-use crate::equilibrium::{Equilibrium, number};
+use crate::equilibrium::Equilibrium;
+use crate::equilibrium::unknowns::number;
 use crate::plane_zone::PlaneZone;
 use crate::problem::Membrane;
 use crate::zone::Zone;

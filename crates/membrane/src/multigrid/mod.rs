@@ -11,6 +11,7 @@
 mod band;
 mod grid;
 mod interior;
+pub mod large;
 mod level;
 mod mesh;
 pub mod nested;
@@ -28,7 +29,7 @@ pub use regular::{Ground, Regular};
 
 use crate::plane_zone::PlaneZone;
 use crate::problem::Membrane;
-use crate::zone::Zone;
+use crate::zone::ZoneSizes;
 use signorini_solve::SolveError;
 
 /// Cells that the smallest zone has to be wide for a coarsest level, and how many nodes that may have at most along one

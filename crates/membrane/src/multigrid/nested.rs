@@ -6,14 +6,15 @@
 
 use super::{Ground, Level, OnGrid, OnMesh, Regular, cycle, levels, that_show};
 use crate::conditions::Conditions;
-use crate::equilibrium::Elements;
+use crate::equilibrium::elements::Elements;
 use crate::front::{Fronts, StepKind};
-use crate::ils::{self, Reason, Solution, Start};
+use crate::ils;
 use crate::plane_zone::PlaneZone;
 use crate::problem::Membrane;
 use crate::rest::{Rest, SETTLED, SETTLED_COARSE};
 use crate::scales::Scales;
-use crate::zone::Zone;
+use crate::solution::{Reason, Solution, Start};
+use crate::zone::{Zone, ZoneFronts, ZoneMotion, ZoneSizes};
 use signorini_solve::{Acceleration, Iteration, Progress, SolveError};
 
 /// Nodes along the longer side of the grid on which the fronts are found at first, and, where zones were missed there, on

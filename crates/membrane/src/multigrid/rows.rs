@@ -1,6 +1,6 @@
 //! The stiffness of a mesh, row by row.
 
-use crate::equilibrium::add_stiffness;
+use crate::equilibrium::elements::add_stiffness;
 use crate::field::Field;
 use signorini_fem::{Cells, MeshCells};
 use signorini_solve::SymmetricMatrix;

@@ -6,7 +6,7 @@
 //! unknowns that own its ends, and between two edges it is linear. (E. Béchet, N. Moës & B. Wohlmuth, Int. J. Numer.
 //! Methods Eng. 78, 2009; the order of the edges is that of G. Hautefeuille, C. Annavarapu & J. Dolbow, ibid. 90, 2012.)
 
-use crate::equilibrium::{Unknowns, number_where};
+use crate::equilibrium::unknowns::{Unknowns, number_where};
 use crate::problem::Membrane;
 use crate::quadrature::{FrontPoint, Quadrature};
 use crate::zone::{Zone, contact, contact_of, is_free};

@@ -1,8 +1,11 @@
 //! Equilibrium on both sides of the front.
 
-use super::ZoneMultiplier;
 use super::multiplier::{FrontMultipliers, coupling, inner_product};
-use crate::equilibrium::{Elements, Equilibrium, Unknowns, ghost_pairs, ghost_weight, number_where};
+use crate::equilibrium::elements::Elements;
+use crate::equilibrium::free::FreeState;
+use crate::equilibrium::ghost::{ghost_pairs, ghost_weight};
+use crate::equilibrium::unknowns::{Unknowns, number_where};
+use crate::method::ZoneMultiplier;
 use crate::problem::Membrane;
 use crate::quadrature::{FrontPoint, Quadrature};
 use crate::zone::{Zone, contact, contact_of};
@@ -156,28 +159,13 @@ impl<const D: usize> Saddle<D> {
     }
 
     /// The slope with which the gap opens at each point of the fronts.
-    pub(crate) fn slope_jump(&self, equilibrium: &Equilibrium<D>) -> Vec<f64> {
-        let membrane = &equilibrium.membrane;
+    pub(crate) fn slope_jump(&self, free: &FreeState<'_, D>) -> Vec<f64> {
+        let membrane = free.membrane;
         let slope = |(i, p): (usize, &FrontPoint<D>)| {
             let h = membrane.obstacles.jet(p.side, &p.x);
             p.side.sign() * (self.along(&self.lambda, i) / membrane.tension.value(&p.x) - h.gradient.dot(&p.normal))
         };
-        equilibrium.quadrature.front.iter().enumerate().map(slope).collect()
-    }
-
-    /// The displacement in the zone and its gradient at a point of a cell.
-    pub fn evaluate<Z: Zone<D>>(
-        &self,
-        equilibrium: &Equilibrium<D>,
-        cell: usize,
-        zone: usize,
-        side: crate::obstacle::Side,
-        x: &signorini_geometry::Point<D>,
-    ) -> Option<(f64, Vector<D>)> {
-        let dofs = self.within.of(cell, contact(side, zone))?;
-        let mut t = Tabulation::default();
-        equilibrium.membrane.cells.tabulate(cell, x, &mut t);
-        Some(combined(&t, dofs, &self.displacement))
+        free.quadrature.front.iter().enumerate().map(slope).collect()
     }
 
     /// The multiplier that presses the membrane onto the body, at the unknowns of the zone, and its integral: the force of
@@ -185,9 +173,8 @@ impl<const D: usize> Saddle<D> {
     ///
     /// # Errors
     /// Equations that cannot be solved.
-    pub fn zone_multiplier(&self, equilibrium: &Equilibrium<D>) -> Result<(Vec<f64>, f64), SolveError> {
-        let membrane = &equilibrium.membrane;
-        let quadrature = &equilibrium.quadrature;
+    pub fn zone_multiplier(&self, free: &FreeState<'_, D>) -> Result<(Vec<f64>, f64), SolveError> {
+        let FreeState { membrane, quadrature, .. } = *free;
         let mut rhs = vec![0.0; self.within.count];
         let mut t = Tabulation::default();
         let mut each_point = |visit: &mut dyn FnMut(&Tabulation<D>, &[u32], &signorini_geometry::Point<D>, f64)| {
@@ -242,7 +229,7 @@ fn gram<const D: usize>(
     let weight = ghost_weight(membrane.cells.degree());
     let h = membrane.grid.h();
     for pair in &pairs {
-        matrix.add(&pair.dofs, elements.ghost(membrane, pair), weight * pair.need() * (gradient_weight + h * h));
+        matrix.add(&pair.dofs, elements.ghost(membrane, pair.number), weight * pair.need() * (gradient_weight + h * h));
     }
     matrix
 }

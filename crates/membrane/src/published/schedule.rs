@@ -1,6 +1,6 @@
 //! The step of the fronts in the published formulation: Newton's method in a few modes, more of them as it goes on.
 
-use super::Saddle;
+use super::saddle::Saddle;
 use crate::front::{Fronts, Step, StepKind};
 use crate::scales::Scales;
 use crate::zone::Zone;
@@ -48,7 +48,7 @@ impl ModeSchedule {
         }
         let space = modes.at_most(self.modes);
         let n = count(self.modes);
-        let rates = saddle.rates(fronts.equilibrium, zone, space)?;
+        let rates = saddle.rates(&fronts.equilibrium.free(), zone, space)?;
         let frames = fronts.frames(zone, space);
         let excess = fronts.excess();
         let points = &fronts.equilibrium.quadrature.front;

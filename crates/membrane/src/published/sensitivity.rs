@@ -14,8 +14,9 @@
 
 use super::saddle::{Saddle, combined};
 use super::velocity::{Velocities, Velocity};
-use crate::equilibrium::Equilibrium;
-use crate::zone::{ModeSpace, Zone, contact, contact_of, is_free};
+use crate::equilibrium::free::FreeState;
+use crate::method::ModeSpace;
+use crate::zone::{Zone, contact, contact_of, is_free};
 use signorini_fem::lagrange::Tabulation;
 use signorini_geometry::Vector;
 use signorini_solve::SolveError;
@@ -35,25 +36,25 @@ impl<const D: usize> Saddle<D> {
     /// Equations that cannot be solved.
     pub fn rates<Z: Zone<D>>(
         &self,
-        equilibrium: &Equilibrium<D>,
+        free: &FreeState<'_, D>,
         zone: &Z,
         space: ModeSpace,
     ) -> Result<Vec<FrontRate>, SolveError> {
         let modes = zone.mode_offsets(space)[zone.front_count()];
-        let velocities = Velocities::new(&equilibrium.membrane, zone, &equilibrium.quadrature, space);
-        let mut load = vec![vec![0.0; equilibrium.size()]; modes];
+        let velocities = Velocities::new(free.membrane, zone, free.quadrature, space);
+        let mut load = vec![vec![0.0; free.u.len()]; modes];
         let mut within = vec![vec![0.0; self.within.count]; modes];
-        self.carry_cells(equilibrium, &velocities, &mut load, &mut within);
+        self.carry_cells(free, &velocities, &mut load, &mut within);
         let mut along = vec![vec![0.0; self.fronts.count]; modes];
-        let on_fronts = self.carry_fronts(equilibrium, zone, &velocities, &mut load, &mut along);
+        let on_fronts = self.carry_fronts(free, zone, &velocities, &mut load, &mut along);
         let lambda = (0..modes)
             .map(|m| self.lambda_rate(&load[m], &within[m], &along[m]))
             .collect::<Result<Vec<_>, SolveError>>()?;
-        let points = &equilibrium.quadrature.front;
+        let points = &free.quadrature.front;
         let mut rates: Vec<FrontRate> = (0..modes)
             .map(|_| FrontRate { slope_jump: vec![0.0; points.len()], stretch: vec![0.0; points.len()] })
             .collect();
-        let membrane = &equilibrium.membrane;
+        let membrane = free.membrane;
         for (i, p) in points.iter().enumerate() {
             let (sign, tension) = (p.side.sign(), membrane.tension.jet(&p.x));
             for (rate, lambda) in rates.iter_mut().zip(&lambda) {
@@ -73,12 +74,12 @@ impl<const D: usize> Saddle<D> {
     /// The terms over cells.
     fn carry_cells<Z: Zone<D>>(
         &self,
-        equilibrium: &Equilibrium<D>,
+        free: &FreeState<'_, D>,
         velocities: &Velocities<'_, D, Z>,
         load: &mut [Vec<f64>],
         within: &mut [Vec<f64>],
     ) {
-        let (membrane, quadrature) = (&equilibrium.membrane, &equilibrium.quadrature);
+        let (membrane, quadrature) = (free.membrane, free.quadrature);
         let gradient_weight = self.gradient_weight();
         let mut t = Tabulation::default();
         let mut carried: Vec<Velocity<D>> = Vec::new();
@@ -95,8 +96,8 @@ impl<const D: usize> Saddle<D> {
                         continue;
                     }
                     membrane.cells.tabulate(cell, &p.x, &mut t);
-                    if let (true, Some(dofs)) = (is_free(region), equilibrium.unknowns().of(cell, region)) {
-                        let (_, slope) = combined(&t, dofs, equilibrium.values());
+                    if let (true, Some(dofs)) = (is_free(region), free.unknowns.of(cell, region)) {
+                        let (_, slope) = combined(&t, dofs, free.u);
                         let (tension, f) = (membrane.tension.jet(&p.x), membrane.load.jet(&p.x));
                         for v in &carried {
                             let divergence = v.divergence(membrane.measure, &p.x);
@@ -131,16 +132,16 @@ impl<const D: usize> Saddle<D> {
     /// The terms along the fronts; the velocities at their points.
     fn carry_fronts<Z: Zone<D>>(
         &self,
-        equilibrium: &Equilibrium<D>,
+        free: &FreeState<'_, D>,
         zone: &Z,
         velocities: &Velocities<'_, D, Z>,
         load: &mut [Vec<f64>],
         along: &mut [Vec<f64>],
     ) -> Vec<Vec<Velocity<D>>> {
-        let membrane = &equilibrium.membrane;
+        let membrane = free.membrane;
         let mut t = Tabulation::default();
         debug_assert!(zone.front_count() > 0);
-        let points = equilibrium.quadrature.front.iter().enumerate();
+        let points = free.quadrature.front.iter().enumerate();
         points
             .map(|(i, p)| {
                 let mut carried = Vec::new();
@@ -148,11 +149,11 @@ impl<const D: usize> Saddle<D> {
                 membrane.cells.tabulate(p.cell, &p.x, &mut t);
                 let lambda = self.along(&self.lambda, i);
                 let (Some(beyond), Some(within)) =
-                    (equilibrium.unknowns().of(p.cell, p.free), self.within.of(p.cell, contact(p.side, p.zone)))
+                    (free.unknowns.of(p.cell, p.free), self.within.of(p.cell, contact(p.side, p.zone)))
                 else {
                     return carried;
                 };
-                let jump = combined(&t, beyond, equilibrium.values()).0 - combined(&t, within, &self.displacement).0;
+                let jump = combined(&t, beyond, free.u).0 - combined(&t, within, &self.displacement).0;
                 for v in &carried {
                     let stretch = p.weight * v.surface_divergence(membrane.measure, &p.x, &p.normal);
                     for (a, &dof) in beyond.iter().enumerate() {

@@ -1,8 +1,9 @@
 //! Velocities that carry the membrane along with its fronts: each mode of a front, continued along the normals and faded out.
 
+use crate::method::ModeSpace;
 use crate::problem::{Measure, Membrane};
 use crate::quadrature::Quadrature;
-use crate::zone::{ModeSpace, Zone};
+use crate::zone::Zone;
 use signorini_geometry::{Point, Vector};
 
 /// Velocities reach at least this many cells from their front ...

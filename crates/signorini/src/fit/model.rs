@@ -6,8 +6,9 @@ use crate::problem::{CaseError, Problem};
 use crate::problem::{Fit, Space};
 use rayon::prelude::*;
 use signorini_geometry::Point;
-use signorini_membrane::equilibrium::{Elements, Equilibrium};
+use signorini_membrane::equilibrium::Elements;
 use signorini_membrane::field::Constant;
+use signorini_membrane::kernel::equilibrium_on_line;
 use signorini_membrane::line_zone::LineZone;
 use signorini_membrane::obstacle::{Obstacle, Obstacles, Side};
 use signorini_membrane::problem::{Membrane, Support};
@@ -62,7 +63,7 @@ impl Model {
             LineZone::new(&plan.grid, vec![(side, interval)])
         };
         let slope = |membrane: &Membrane<1>, c: f64| -> Result<f64, SolveError> {
-            let slopes = Equilibrium::solve(membrane, &zone(c), &mut Elements::new(membrane))?.slope_jump();
+            let slopes = equilibrium_on_line(membrane, &zone(c), &mut Elements::new(membrane))?.slope_jump();
             Ok(slopes.iter().sum::<f64>() / slopes.len().max(1) as f64)
         };
         let nothing = || Arc::new(Constant(0.0));

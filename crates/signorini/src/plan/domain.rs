@@ -13,6 +13,7 @@ use signorini_geometry::{Aabb, Ellipse, ImplicitShape, Jet, Point, Real, Vector,
 use signorini_membrane::domain::{
     BoxDomain, CellStatus, Domain as MembraneDomain, DomainOnCells, ImplicitDomain, MeshDomain, PolygonDomain,
 };
+use signorini_membrane::kernel::Kernel;
 use signorini_membrane::refinement::Refinement;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -44,6 +45,9 @@ impl Pieces {
 
 /// Reads domains of one dimension.
 pub(crate) trait ReadDomain<const D: usize> {
+    /// What solves for membranes of this dimension.
+    const KERNEL: Kernel<D>;
+
     /// A shape, its bounding box and its groups.
     fn shape(&self, key: &Domain) -> Result<(Arc<dyn MembraneDomain<D>>, Aabb<D>, Pieces), CaseError>;
 
@@ -295,6 +299,8 @@ impl ImplicitShape<2> for ExpressionShape {
 }
 
 impl ReadDomain<1> for Planner<'_> {
+    const KERNEL: Kernel<1> = Kernel::LINE;
+
     fn planner(&self) -> &Planner<'_> {
         self
     }
@@ -348,6 +354,8 @@ impl ReadDomain<1> for Planner<'_> {
 }
 
 impl ReadDomain<2> for Planner<'_> {
+    const KERNEL: Kernel<2> = Kernel::PLANE;
+
     fn planner(&self) -> &Planner<'_> {
         self
     }

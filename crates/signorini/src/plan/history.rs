@@ -5,6 +5,7 @@ use crate::expression::Scope;
 use crate::problem;
 use crate::problem::CaseError;
 use crate::problem::units::TIME;
+use signorini_membrane::history::{Control, PlannedIncrement};
 
 /// Points at which is looked what drives a membrane, and how far from a straight line its path may be.
 const DRIVEN_AT: usize = 9;
@@ -15,34 +16,6 @@ const LONGEST: f64 = 10.0;
 const SHORTEST: f64 = 1e-6;
 /// Increments of a step.
 const MOST_INCREMENTS: usize = 100_000;
-
-/// One increment.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlannedIncrement {
-    /// Number of the step.
-    pub step: usize,
-    /// Time at the beginning of the step and at its end.
-    pub range: [f64; 2],
-    /// Time at the end of the increment, where that is given.
-    pub time: f64,
-    pub control: Control,
-    /// Tolerance in time with which changes of topology are located; none where they are not.
-    pub events: Option<f64>,
-}
-
-/// What is given in an increment.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Control {
-    Time,
-    /// The length of the way along the path of equilibria.
-    ArcLength(f64),
-    /// The area of contact at the end of the step, which the increment approaches by so many parts of so many.
-    Area {
-        to: f64,
-        part: usize,
-        parts: usize,
-    },
-}
 
 /// A time without round-off: 0.4 is not 0.39999999999999997.
 fn plain(time: f64, step: f64) -> f64 {

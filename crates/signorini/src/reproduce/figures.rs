@@ -1,14 +1,13 @@
 //! What each figure shows and how it is computed.
 
-use super::newton::{Stage, membrane, stages};
+use super::newton::membrane;
 use super::plot::{Plot, Series};
 use super::{Figure, Page, problem, solved};
 use crate::plan::{Plan, plan};
 use serde_json::Value;
 use signorini_geometry::Point;
-use signorini_membrane::equilibrium::Elements;
-use signorini_membrane::ils::{self, Rest, Start};
-use signorini_membrane::line_zone::LineZone;
+use signorini_membrane::kernel::solve_line;
+use signorini_membrane::published::stages::{Stage, stages};
 use signorini_solve::Silent;
 use signorini_verify::order::fitted;
 use std::path::Path;
@@ -105,9 +104,7 @@ fn axisymmetric(_: &Path) -> Result<Page, String> {
             return Err("a membrane along its radius is wanted".into());
         };
         let membrane = plan.at(0.0);
-        let mut elements = Elements::new(&membrane);
-        let found =
-            ils::solve::<1, LineZone>(&membrane, &mut elements, Start::Free, Rest::Final, (0, 0.0), &mut Silent);
+        let found = solve_line(&membrane, &mut Silent);
         let Some(state) = found.equilibrium.filter(|_| found.reason.converged()) else {
             return Err(format!("no state was found for an energy of {energy}"));
         };
@@ -192,7 +189,7 @@ fn disc(cells: usize, set: &[&str]) -> Result<Vec<String>, String> {
 
 fn front_evolution(_: &Path) -> Result<Page, String> {
     let membrane = membrane(&problem("flat_disc", &disc(40, &[])?)?)?;
-    let stages = stages(&membrane, 7, false)?;
+    let stages = stages(&membrane, 7, false).map_err(|e| e.to_string())?;
     let mut page = Page::default();
     let series = stages.iter().enumerate().map(|(i, s)| {
         let points = s.outline.iter().map(|[x, y]| (*x, *y)).collect();
@@ -241,7 +238,7 @@ fn modes(_: &Path) -> Result<Page, String> {
         ("unsymmetric mesh", implicit("[-1.11,-1.05]", "[1.03,1.09]")),
     ] {
         let membrane = membrane(&problem("flat_disc", &disc(40, &[&bounds])?)?)?;
-        let stages = stages(&membrane, 8, true)?;
+        let stages = stages(&membrane, 8, true).map_err(|e| e.to_string())?;
         let waves: &[f64] = stages.last().map_or(&[], |s: &Stage| &s.waves);
         series.push(marked(name, waves.iter().enumerate().map(|(k, v)| (k as f64, v.max(1e-17))).collect()));
         let mut row = vec![name.to_string()];

@@ -1,7 +1,6 @@
 //! What a run of a membrane would have to do, and what looks wrong before it starts.
 
 use super::RunError;
-use super::membrane::increment::LINEAR;
 use super::solid;
 use crate::output::solid_fields::SolidDisplay;
 use crate::output::{pictures, solid_pictures, system_pictures};
@@ -11,18 +10,14 @@ use crate::plan::{MembranePlan, Plan, memory_estimate, mesh_multigrid_estimate, 
 use crate::problem::CaseError;
 use crate::problem::units::Units;
 use crate::report::{Warning, WarningKind};
-use crate::snapshot::{DisplayMesh, Sample, Snapshot};
+use crate::snapshot::{DisplayMesh, Snapshot};
 use serde_json::{Value, json};
 use signorini_geometry::Point;
-use signorini_membrane::conditions::least_free_gap;
-use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::field::Constant;
-use signorini_membrane::line_zone::LineZone;
+use signorini_membrane::history::{LINEAR, Sample, Statement};
 use signorini_membrane::obstacle::Side;
-use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::Membrane;
-use signorini_membrane::quadrature::{Cell, Quadrature};
-use signorini_membrane::zone::{NoZone, Zone};
+use signorini_membrane::quadrature::Cell;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
@@ -43,8 +38,8 @@ const LOOK: usize = 200_000;
 /// Fields that cannot be used, at their place.
 pub fn sizes(plan: &Plan) -> Result<Value, CaseError> {
     match plan {
-        Plan::Line(plan) => of_membrane::<1, LineZone>(plan),
-        Plan::Plane(plan) => of_membrane::<2, PlaneZone>(plan),
+        Plan::Line(plan) => of_membrane(plan),
+        Plan::Plane(plan) => of_membrane(plan),
         Plan::PlaneSolids(plan) => of_solids(plan),
         Plan::Solids(plan) => of_solids(plan),
         Plan::Mechanics(plan) => Ok(of_system(plan)),
@@ -86,7 +81,7 @@ fn points_tested(plan: &MechanicsPlan) -> Option<usize> {
     Some(count)
 }
 
-fn of_membrane<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>) -> Result<Value, CaseError> {
+fn of_membrane<const D: usize>(plan: &MembranePlan<D>) -> Result<Value, CaseError> {
     let times = plan.known_times();
     for &time in &times {
         plan.check_fields(&plan.at(time), time)?;
@@ -131,7 +126,7 @@ fn of_membrane<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>) -> Result<Val
         warnings.extend(odd_length(units, plan.grid.bounds().size().max(), "the membrane").map(Warning::from));
     }
     if unknowns <= LOOK {
-        look::<D, Z>(plan, times.last().copied().unwrap_or(0.0), &mut sizes, &mut warnings);
+        look(plan, times.last().copied().unwrap_or(0.0), &mut sizes, &mut warnings);
     }
     sizes["interpreted"] = json!(plan.head.interpreted);
     sizes["warnings"] = json!(warnings);
@@ -197,18 +192,16 @@ pub(super) fn odd_solids<const D: usize>(plan: &SolidPlan<D>) -> Vec<String> {
 /// # Errors
 /// Fields that cannot be used, at their place, and a picture that cannot be drawn.
 pub fn preview(plan: &Plan) -> Result<Option<String>, RunError> {
-    fn membrane<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>) -> Result<Option<String>, RunError> {
+    fn membrane<const D: usize>(plan: &MembranePlan<D>) -> Result<Option<String>, RunError> {
         let time = plan.increments.first().map_or(0.0, |i| i.range[0]);
         let membrane = Membrane { load: Arc::new(Constant(0.0)), ..plan.at(time) };
         let mesh = DisplayMesh::new(plan, &membrane);
-        let none = Z::empty(&plan.grid);
-        let Ok(state) = Equilibrium::solve(&membrane, &none, &mut Elements::new(&membrane)) else { return Ok(None) };
+        let Ok(free) = (plan.kernel.free)(&membrane) else { return Ok(None) };
         if mesh.cells.is_empty() {
             return Ok(None);
         }
-        let sample = |x: &Point<D>| {
-            Some(Sample { displacement: state.displacement(&none, x)?, in_contact: false, pressure: 0.0 })
-        };
+        let sample =
+            |x: &Point<D>| Some(Sample { displacement: (free.displacement)(x)?, in_contact: false, pressure: 0.0 });
         let snapshot = Snapshot::new(&mesh, &membrane, time, Vec::new(), sample);
         Ok(Some(pictures::preview(plan, &mesh, &snapshot)?))
     }
@@ -219,8 +212,8 @@ pub fn preview(plan: &Plan) -> Result<Option<String>, RunError> {
         Ok(Some(solid_pictures::preview(plan, &display, &fields)?))
     }
     match plan {
-        Plan::Line(plan) => membrane::<1, LineZone>(plan),
-        Plan::Plane(plan) => membrane::<2, PlaneZone>(plan),
+        Plan::Line(plan) => membrane(plan),
+        Plan::Plane(plan) => membrane(plan),
         Plan::PlaneSolids(plan) => solids(plan),
         Plan::Solids(plan) => solids(plan),
         Plan::Mechanics(plan) => Ok(Some(system_pictures::preview(plan)?)),
@@ -230,7 +223,7 @@ pub fn preview(plan: &Plan) -> Result<Option<String>, RunError> {
 /// Bodies whose surface leaves the straight line within a cell by more than a part of its height are not resolved.
 fn unresolved<const D: usize>(plan: &MembranePlan<D>, time: f64) -> Vec<String> {
     let membrane = plan.at(time);
-    let none = Quadrature::new(&membrane, &NoZone);
+    let none = (plan.kernel.quadrature)(&membrane);
     let mut out = Vec::new();
     for (contact, obstacle) in plan.contacts.iter().zip(&membrane.obstacles.0) {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -265,15 +258,13 @@ const HARDLY: f64 = 1e-2;
 
 /// Why a membrane touches nothing at a time: the least gap, and whether the load moves it away or hardly at all; none where it
 /// touches something, or cannot be looked at.
-pub(super) fn clearance<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>, time: f64) -> Option<String> {
+pub(super) fn clearance<const D: usize>(plan: &MembranePlan<D>, time: f64) -> Option<String> {
     let loaded = plan.at(time);
     if plan.cells.function_count() > LOOK || loaded.obstacles.is_empty() {
         return None;
     }
-    let none = Z::empty(&plan.grid);
     let least = |membrane: &Membrane<D>| {
-        let state = Equilibrium::solve(membrane, &none, &mut Elements::new(membrane)).ok()?;
-        let (gap, side, _) = least_free_gap(&state, &none);
+        let (gap, side, _) = (plan.kernel.free)(membrane).ok()?.least_gap;
         Some((gap, side))
     };
     let (gap, side) = least(&loaded).filter(|(gap, _)| *gap > 0.0)?;
@@ -296,17 +287,16 @@ pub(super) fn clearance<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>, time
 }
 
 /// Solves for the membrane without contact, at rest and under its last load.
-fn look<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>, last: f64, sizes: &mut Value, warnings: &mut Vec<Warning>) {
+fn look<const D: usize>(plan: &MembranePlan<D>, last: f64, sizes: &mut Value, warnings: &mut Vec<Warning>) {
     let Some(first) = plan.increments.first() else { return };
-    let none = Z::empty(&plan.grid);
-    let free = |membrane: &Membrane<D>| Equilibrium::solve(membrane, &none, &mut Elements::new(membrane)).ok();
+    let free = |membrane: &Membrane<D>| (plan.kernel.free)(membrane).ok();
     let at_rest = Membrane { load: Arc::new(Constant(0.0)), ..plan.at(first.range[0]) };
     if let (Some(state), false) = (free(&at_rest), at_rest.obstacles.is_empty()) {
-        let (gap, _, x) = least_free_gap(&state, &none);
+        let (gap, _, x) = state.least_gap;
         let place: Vec<String> = x.iter().map(|v| format!("{v:.4}")).collect();
         sizes["least_gap_before_load"] = json!(format!("{gap:.4e} at ({})", place.join(", ")));
     }
-    let apart = clearance::<D, Z>(plan, last).map(|why| format!("the membrane touches nothing: {why}"));
+    let apart = clearance(plan, last).map(|why| format!("the membrane touches nothing: {why}"));
     warnings.extend(apart.map(|message| Warning::new(WarningKind::Apart, message).at_time(last)));
     let start = std::time::Instant::now();
     let Some(state) = free(&plan.at(last)) else {
@@ -315,10 +305,7 @@ fn look<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>, last: f64, sizes: &m
     };
     let seconds = start.elapsed().as_secs_f64() * SOLVES[D - 1] * plan.increments.len() as f64;
     sizes["time_about"] = json!(if seconds < 1.0 { "below a second".into() } else { format!("{seconds:.0} s") });
-    let mut steepest = 0.0f64;
-    state.for_each_point(|cell, region, x, _| {
-        steepest = state.evaluate(cell, region, x).map_or(steepest, |(_, slope)| steepest.max(slope.norm()));
-    });
+    let steepest = state.steepest;
     sizes["steepest_slope_without_contact"] = json!(format!("{steepest:.2e}"));
     if plan.head.problem.units.is_some() && steepest > LINEAR {
         warnings.push(

@@ -1,43 +1,11 @@
-//! What a run of a membrane goes on from, as JSON: zones and scales of its engine, and the frames of its film.
+//! The frames of a film that a run of a membrane goes on from, as JSON.
 
-use super::events::Known;
-use super::increment::Saved;
 use crate::output::{Folder, OutputError};
 use crate::run::checkpoint::BESIDE;
 use crate::snapshot::Snapshot;
 use serde_json::{Value, json};
-use signorini_fem::Grid;
 use signorini_geometry::Point;
-use signorini_membrane::zone::Zone;
 use std::path::Path;
-
-/// The state between two increments.
-pub fn to_json<const D: usize, Z: Zone<D>>(engine: &Saved<Z>, known: Option<&Known<Z>>) -> Value {
-    json!({
-        "engine": engine.to_json(|z: &Z| z.to_json()),
-        "known": known.map(|k| json!({
-            "time": k.time, "zone": k.zone.to_json(), "area": k.area, "force": k.force,
-            "energy_total": k.energy_total, "margin": k.margin,
-        })),
-    })
-}
-
-/// Reads what [`to_json`] wrote; none where it is damaged.
-pub fn from_json<const D: usize, Z: Zone<D>>(v: &Value, grid: &Grid<D>) -> Option<(Saved<Z>, Option<Known<Z>>)> {
-    let zone = |v: &Value| Z::from_json(grid, v);
-    let known = match &v["known"] {
-        Value::Null => None,
-        k => Some(Known {
-            time: k["time"].as_f64()?,
-            zone: zone(&k["zone"])?,
-            area: k["area"].as_f64()?,
-            force: k["force"].as_f64()?,
-            energy_total: k["energy_total"].as_f64().unwrap_or(f64::NAN),
-            margin: k["margin"].as_f64(),
-        }),
-    };
-    Some((Saved::from_json(&v["engine"], zone)?, known))
-}
 
 fn frame_file(index: usize) -> String {
     format!("{BESIDE}/frame_{index:05}.json")

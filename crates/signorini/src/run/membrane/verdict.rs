@@ -7,10 +7,9 @@ use crate::report::{ContactReport, Reason, UnitNames};
 use crate::run::record::Record;
 use crate::run::{Ending, sizes};
 use signorini_membrane::obstacle::Side;
-use signorini_membrane::zone::Zone;
 
 /// The result in a sentence, with what to try where there is none.
-pub fn verdict<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>, record: &Record, reason: Reason) -> String {
+pub fn verdict<const D: usize>(plan: &MembranePlan<D>, record: &Record, reason: Reason) -> String {
     let done = record.done();
     let count = plan.increments.len();
     match Ending::of(reason) {
@@ -51,7 +50,7 @@ pub fn verdict<const D: usize, Z: Zone<D>>(plan: &MembranePlan<D>, record: &Reco
             let sentences: Vec<String> = told.iter().map(|(c, found)| of_contact(plan, c, found)).collect();
             match sentences.is_empty() {
                 true => {
-                    let why = sizes::clearance::<D, Z>(plan, step.time);
+                    let why = sizes::clearance(plan, step.time);
                     // A hint may be a question.
                     why.map_or("The membrane touches nothing.".into(), |why| {
                         let end = if why.ends_with('?') { "" } else { "." };

@@ -1,11 +1,12 @@
 //! Increments along a path of equilibria, given by its arc length or by the area of contact.
 
-use crate::plan::{Control, MembranePlan, PlannedIncrement};
-use signorini_membrane::coexisting::zone_of_area;
-use signorini_membrane::continuation::{Constraint, Path, PathState};
-use signorini_membrane::problem::Membrane;
-use signorini_membrane::scales::Scales;
-use signorini_membrane::zone::Zone;
+use super::statement::{Control, PlannedIncrement, Statement};
+use crate::coexisting::zone_of_area;
+use crate::continuation::{Constraint, Path, PathState};
+use crate::problem::Membrane;
+use crate::quadrature::area;
+use crate::scales::Scales;
+use crate::zone::Zone;
 use signorini_solve::{Progress, SolveError};
 
 /// Halvings of an increment before the path is given up.
@@ -42,15 +43,15 @@ pub enum Along<const D: usize, Z> {
 impl<const D: usize, Z: Zone<D>> Follower<D, Z> {
     /// Begins a step at a state of equilibrium, or at a free membrane.
     pub fn begin(
-        plan: &MembranePlan<D>,
+        statement: &dyn Statement<D>,
         planned: &PlannedIncrement,
         zone: Z,
         time: f64,
         scales: Scales,
     ) -> Result<Self, SolveError> {
         let [from, to] = planned.range;
-        let size = [plan.area(), to - from];
-        let path = Path { membrane: &|t| plan.at(t), refinement: &plan.refinement, scales, size };
+        let size = [area(&statement.at(statement.increments()[0].range[0])), to - from];
+        let path = Path { membrane: &|t| statement.at(t), refinement: statement.refinement(), scales, size };
         let state = if zone.is_empty() { None } else { Some(path.begin(zone, time, (to - time).signum())?) };
         let area = state.as_ref().map_or(0.0, |s| s.area);
         Ok(Self { step: planned.step, state, begin: [area, time], size, scales, done: false })
@@ -59,12 +60,12 @@ impl<const D: usize, Z: Zone<D>> Follower<D, Z> {
     /// One increment on.
     pub fn advance(
         &mut self,
-        plan: &MembranePlan<D>,
+        statement: &dyn Statement<D>,
         planned: &PlannedIncrement,
         progress: &dyn Progress,
     ) -> Result<Along<D, Z>, SolveError> {
         let (scales, size) = (self.scales, self.size);
-        let path = Path { membrane: &|t| plan.at(t), refinement: &plan.refinement, scales, size };
+        let path = Path { membrane: &|t| statement.at(t), refinement: statement.refinement(), scales, size };
         match planned.control {
             Control::ArcLength(size) => self.by_arc_length(&path, size, planned.range[1], progress),
             Control::Area { to, part, parts } => {

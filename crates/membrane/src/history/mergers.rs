@@ -9,11 +9,13 @@
 //! examples of singularities in a free boundary, Ann. Sc. Norm. Super. Pisa 4 (1977) 133). So `δ²` from states before,
 //! and `w` from states after, both tell the load at which they vanish; how far they differ tells how well it is known.
 
-use super::events::{Between, Known, bridges_closed, differences, mouths_closed};
-use crate::report::{Event, EventKind, LocatedBy};
+use super::bridge::Bridge;
+use super::differences::differences;
+use super::event::{Event, EventKind, LocatedBy};
+use super::known::{Between, Known};
+use super::parts::{bridges_closed, mouths_closed};
+use crate::zone::Zone;
 use signorini_fem::Grid;
-use signorini_geometry::Point;
-use signorini_membrane::zone::Zone;
 
 /// States looked at.
 const MOST_STATES: usize = 12;
@@ -25,72 +27,13 @@ const TRAIL: usize = 3;
 const NEARER: f64 = 0.5;
 
 /// What came out.
-pub enum Merger<Z> {
+pub enum Merger<const D: usize, Z> {
     /// All events between, located.
-    Located(Vec<Event>),
+    Located(Vec<Event<D>>),
     /// Something else happens as well: a state with other zones than those before and after.
     Other(Known<Z>),
     /// These are no mergers, or they follow no law.
     Unknown,
-}
-
-/// Two parts that have come near each other: the tips.
-#[derive(Clone, Debug)]
-pub struct Bridge<const D: usize> {
-    pub tips: [Point<D>; 2],
-}
-
-impl<const D: usize> Bridge<D> {
-    pub fn middle(&self) -> Point<D> {
-        (self.tips[0] + self.tips[1]) * 0.5
-    }
-
-    pub fn length(&self) -> f64 {
-        (self.tips[0] - self.tips[1]).norm()
-    }
-
-    fn along(&self) -> Point<D> {
-        (self.tips[1] - self.tips[0]) / self.length()
-    }
-
-    /// The same bridge in another state of the zones, in which it may be up to about twice as long.
-    fn between<Z: Zone<D>>(&self, zone: &Z) -> Option<Self> {
-        beside(zone, &self.middle(), &turned(&self.along()), self.length())
-    }
-
-    /// The narrowest place of the neck of a zone where this bridge was.
-    fn neck<Z: Zone<D>>(&self, zone: &Z) -> Option<Self> {
-        beside(zone, &self.middle(), &self.along(), self.length())
-    }
-}
-
-/// A direction turned to the left by a right angle.
-pub fn turned<const D: usize>(d: &Point<D>) -> Point<D> {
-    Point::from_fn(|k, _| if k == 0 { -d[D - 1] } else { d[0] })
-}
-
-/// The nearest points of the pieces of outlines on the two sides of a line, near a point of it.
-fn beside<const D: usize, Z: Zone<D>>(zone: &Z, middle: &Point<D>, line: &Point<D>, length: f64) -> Option<Bridge<D>> {
-    let across = turned(line);
-    let mut sides: [Vec<Vec<Point<D>>>; 2] = Default::default();
-    for outline in zone.outlines() {
-        let mut last = None;
-        for p in outline {
-            let from = p - middle;
-            let near = from.dot(line).abs() <= length && from.norm() <= 2.0 * length;
-            let side = near.then(|| usize::from(from.dot(&across) > 0.0));
-            if let Some(k) = side {
-                if last != side {
-                    sides[k].push(Vec::new());
-                }
-                if let Some(piece) = sides[k].last_mut() {
-                    piece.push(p);
-                }
-            }
-            last = side;
-        }
-    }
-    nearest(&sides[0], &sides[1])
 }
 
 /// The states of one side of the merger, the nearest last.
@@ -132,7 +75,7 @@ pub fn locate<const D: usize, Z: Zone<D>>(
     b: &Known<Z>,
     tolerance: f64,
     solve: &mut dyn FnMut(f64, [&Z; 2]) -> Between<Z>,
-) -> Merger<Z> {
+) -> Merger<D, Z> {
     let found = differences(grid, a, b);
     let all =
         |kind: EventKind, hole: EventKind| !found.is_empty() && found.iter().all(|e| e.kind == kind || e.kind == hole);
@@ -203,7 +146,7 @@ pub fn locate<const D: usize, Z: Zone<D>>(
     let bridges = bridges(grid, &apart.zone, &joined.zone).unwrap_or_default();
     let of_zones = events.iter().any(|e| !e.kind.is_of_hole());
     for event in &mut events {
-        let at = Point::<D>::from_fn(|k, _| event.at[k]);
+        let at = event.at;
         let nearest = (0..bridges.len())
             .min_by(|&i, &j| (bridges[i].middle() - at).norm().total_cmp(&(bridges[j].middle() - at).norm()));
         // A hole between zones is there as soon as the last neck is, and as long as the first is not gone.
@@ -242,25 +185,6 @@ fn estimates<const D: usize, Z: Zone<D>>(grid: &Grid<D>, trails: &[Trail<Z>; 2],
     list.iter().map(of_bridge).collect()
 }
 
-/// The nearest points of two sets of outlines.
-pub fn nearest<const D: usize>(a: &[Vec<Point<D>>], b: &[Vec<Point<D>>]) -> Option<Bridge<D>> {
-    let mut best: Option<(f64, Bridge<D>)> = None;
-    for (points, others, swapped) in [(a, b, false), (b, a, true)] {
-        for p in points.iter().flatten() {
-            for ends in others.iter().flat_map(|o| o.windows(2)) {
-                let d = ends[1] - ends[0];
-                let s = ((p - ends[0]).dot(&d) / d.norm_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-                let q = ends[0] + d * s;
-                let square = (p - q).norm_squared();
-                if best.as_ref().is_none_or(|(least, _)| square < *least) {
-                    best = Some((square, Bridge { tips: if swapped { [q, *p] } else { [*p, q] } }));
-                }
-            }
-        }
-    }
-    best.map(|(_, bridge)| bridge)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -271,16 +195,5 @@ mod tests {
         let points: Vec<(f64, f64)> = [0.4, 0.3, 0.1].iter().map(|m| (*m, t(*m))).collect();
         assert!((at_zero(&points) - 0.3).abs() < 1e-15);
         assert!((at_zero(&points[1..]) - 0.3).abs() < 0.01);
-    }
-
-    #[test]
-    fn the_nearest_points_of_outlines_lie_within_their_pieces() {
-        let p = |x: f64, y: f64| Point::<2>::new(x, y);
-        let a = [vec![p(0.0, 0.0), p(1.0, 0.0)]];
-        let b = [vec![p(0.25, 3.0), p(0.4, 0.5), p(0.5, 3.0)]];
-        for bridge in [nearest(&a, &b).unwrap(), nearest(&b, &a).unwrap()] {
-            assert!((bridge.length() - 0.5).abs() < 1e-15 && (bridge.middle() - p(0.4, 0.25)).norm() < 1e-15);
-        }
-        assert!(nearest(&a, &[]).is_none());
     }
 }

@@ -2,7 +2,7 @@
 //! depends on the time alone then, so the time is the root of an equation, each value of which is an increment of its own:
 //! zones may appear, merge and vanish on the way.
 
-use crate::plan::{Control, PlannedIncrement};
+use super::statement::{Control, PlannedIncrement};
 
 /// Times that are looked at until the one sought lies between two of them, and between these.
 const MOST_PROBES: usize = 16;

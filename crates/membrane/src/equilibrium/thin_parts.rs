@@ -4,7 +4,9 @@
 //! to lean on, however the ghost penalty ties the slivers together, and the equations are not positive definite. Such parts
 //! come and go while fronts move; a stiffness beyond the membrane holds them meanwhile.
 
-use crate::equilibrium::{Elements, Unknowns, add_stiffness, share};
+use super::elements::{Elements, add_stiffness};
+use super::ghost::share;
+use super::unknowns::Unknowns;
 use crate::problem::Membrane;
 use crate::quadrature::{Cell, Quadrature};
 use signorini_fem::lagrange::Tabulation;

@@ -34,12 +34,12 @@ pub use active_set::{ActiveSet, ActiveSetError, Compliance, ContactState, Softne
 pub use balance::unbalanced;
 pub use kinematics::{Kinematics, Partner, ShapeFunction};
 pub use law::{Coulomb, Law, LawError, Status, Tresca, Viscous};
-pub use mortar::{Given, Shares, WeightedGap, compress, shares, weighted_gaps, weightless};
+pub use mortar::{Given, Shares, WeightedGap, compress, shares, shares_on_the_way, weighted_gaps, weightless};
 pub use multiplier::PressureNodes;
 pub use obstacle::{Faces, Obstacle, Rigid};
 pub use points::{Measured, TestPoint, TestRow, Tests};
 pub use recovery::{Pressed, recovered, unpressed};
-pub use segments::{GapPoint, rigid_points, segments};
+pub use segments::{GapPoint, pieces, rigid_points, segments};
 pub use signorini_geometry::rigid_shape::GapJet;
 pub use surface::{ContactSurface, FacePoint, Moved, looks_at};
 pub use zone::{ContactZone, NodeState, zone};

@@ -66,6 +66,28 @@ pub fn shares<const D: usize>(
     points: &[Vec<GapPoint<D>>],
     folded: &dyn Fn(u32) -> bool,
 ) -> Shares {
+    shares_above(WEAK, slave, nodes, points, folded)
+}
+
+/// The same for sides that slide: nodes that are hardly covered keep their functions, since what they gave away would jump
+/// from node to node. Their weights may be small, or for high degrees even negative.
+pub fn shares_on_the_way<const D: usize>(
+    slave: &dyn ContactSurface<D>,
+    nodes: &PressureNodes<D>,
+    points: &[Vec<GapPoint<D>>],
+    folded: &dyn Fn(u32) -> bool,
+) -> Shares {
+    shares_above(f64::NEG_INFINITY, slave, nodes, points, folded)
+}
+
+/// The dual functions, of which nodes with less than a part of their weight give theirs away.
+fn shares_above<const D: usize>(
+    least: f64,
+    slave: &dyn ContactSurface<D>,
+    nodes: &PressureNodes<D>,
+    points: &[Vec<GapPoint<D>>],
+    folded: &dyn Fn(u32) -> bool,
+) -> Shares {
     let mut out = Shares { of_point: Vec::new(), weight: vec![0.0; nodes.len()], given: Vec::new() };
     let mut whole = vec![0.0; nodes.len()];
     let mut share_of_area = vec![0.0; nodes.len()];
@@ -113,7 +135,7 @@ pub fn shares<const D: usize>(
     // On the axis of a body of revolution a vertex of quadratic faces has no weight at all.
     let weightless: Vec<bool> = whole.iter().zip(&share_of_area).map(|(w, a)| *w < WEIGHTLESS * a).collect();
     let weak: Vec<bool> = (0..nodes.len())
-        .map(|k| out.weight[k] < WEAK * whole[k] || covered[k] && (weightless[k] || folded(k as u32)))
+        .map(|k| out.weight[k] < least * whole[k] || covered[k] && (weightless[k] || folded(k as u32)))
         .collect();
     for [from, to] in fold(nodes, &weak, &covered) {
         out.weight[to as usize] += std::mem::take(&mut out.weight[from as usize]);

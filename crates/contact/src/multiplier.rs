@@ -23,6 +23,7 @@ enum Place {
 }
 
 /// The nodes of a slave surface.
+#[derive(Clone)]
 pub struct PressureNodes<const D: usize> {
     maps: Vec<CellMap>,
     map_of: Vec<usize>,
@@ -111,6 +112,16 @@ impl<const D: usize> PressureNodes<D> {
 
     pub fn map(&self, face: usize) -> &CellMap {
         &self.maps[self.map_of[face]]
+    }
+
+    /// The same nodes with other normals, of any length, by face and place on it.
+    pub fn with_normals(&self, normal: &dyn Fn(usize, &Local) -> Point<D>) -> Self {
+        let mut out = self.clone();
+        for (face, list) in out.faces.iter_mut().enumerate() {
+            let places = self.map(face).nodes();
+            list.iter_mut().zip(&places).for_each(|(own, s)| own.1 = normal(face, s));
+        }
+        out
     }
 
     /// The normal field, not of unit length, and its derivatives.

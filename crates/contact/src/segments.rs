@@ -44,14 +44,7 @@ pub fn segments<const D: usize>(
     reach: f64,
 ) -> Vec<Vec<GapPoint<D>>> {
     let candidates = candidates(slave, master, nodes, reach);
-    let cut = |face: usize, extra: usize| {
-        let list = &candidates[face];
-        if D == 2 {
-            intervals(slave, master, nodes, face, list, reach, extra)
-        } else {
-            polygons(slave, master, nodes, face, list, reach, extra)
-        }
-    };
+    let cut = |face: usize, extra: usize| cut(slave, master, nodes, (face, &candidates[face]), reach, extra);
     let mut points: Vec<Vec<GapPoint<D>>> = (0..slave.face_count()).map(|face| cut(face, 0)).collect();
     // A constant pressure must load every function of both sides with its integral. On distorted faces the integrands
     // are no polynomials: more points are used as long as they help.
@@ -77,6 +70,36 @@ pub fn segments<const D: usize>(
         }
     }
     points
+}
+
+/// The same with a rule that does not depend on the position of the sides: what changes with them changes without jumps.
+/// `extra` are further points for each direction of a piece.
+pub fn pieces<const D: usize>(
+    slave: &dyn ContactSurface<D>,
+    master: &dyn ContactSurface<D>,
+    nodes: &PressureNodes<D>,
+    reach: f64,
+    extra: usize,
+) -> Vec<Vec<GapPoint<D>>> {
+    let candidates = candidates(slave, master, nodes, reach);
+    let of = |(face, list): (usize, &Vec<usize>)| cut(slave, master, nodes, (face, list), reach, extra);
+    candidates.iter().enumerate().map(of).collect()
+}
+
+/// The points of a slave face on the pieces that see one of the master faces listed.
+fn cut<const D: usize>(
+    slave: &dyn ContactSurface<D>,
+    master: &dyn ContactSurface<D>,
+    nodes: &PressureNodes<D>,
+    (face, list): (usize, &[usize]),
+    reach: f64,
+    extra: usize,
+) -> Vec<GapPoint<D>> {
+    if D == 2 {
+        intervals(slave, master, nodes, face, list, reach, extra)
+    } else {
+        polygons(slave, master, nodes, face, list, reach, extra)
+    }
 }
 
 /// Relative error of integrals that counts as rounding.

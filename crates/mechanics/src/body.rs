@@ -5,6 +5,7 @@
 //! there are unknowns (a quaternion turns by three): a step of the unknowns reaches it through [`Body::advance`].
 
 use crate::curve::Curve;
+use crate::surface::Surface;
 use signorini_geometry::rigid_shape::{GapJet, RigidShape};
 use signorini_geometry::shape::SurfaceJet;
 use signorini_geometry::{Matrix, Point, Vector};
@@ -373,6 +374,11 @@ pub trait Body: Send + Sync {
 
     /// The body as a curve, if it is one: contact between curves is for such.
     fn as_curve(&self) -> Option<Box<dyn Curve + '_>> {
+        None
+    }
+
+    /// A place as a surface of faces in a state, if it is one: contact by mortar is for such.
+    fn surface<'a>(&'a self, _on: Option<&str>, _state: &'a BodyState) -> Option<Box<dyn Surface + 'a>> {
         None
     }
 

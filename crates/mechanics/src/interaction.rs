@@ -179,10 +179,10 @@ impl Law for Sticks {
 }
 
 /// The part of a change that the next outer iteration may leave.
-const SLOW: f64 = 0.25;
+pub(crate) const SLOW: f64 = 0.25;
 /// The part of its compliance that a contact keeps then, and the least.
-const HARDER: f64 = 0.1;
-const HARDEST: f64 = 1e-6;
+pub(crate) const HARDER: f64 = 0.1;
+pub(crate) const HARDEST: f64 = 1e-6;
 
 /// Penetration that an outer iteration leaves, relative to the one that is wanted.
 pub const NEAR_WANTED: f64 = 1e-2;

@@ -4,6 +4,7 @@
 //! - [`curve`]: what a curve is to contact between curves.
 //! - [`rigid_body`]: rigid bodies, moved or free.
 //! - [`pair`]: gap and slip of a contact pair in the unknowns of its bodies.
+//! - [`surface`]: what a surface of faces is to contact by mortar, which is [`mortar`].
 //! - [`contact`]: law and enforcement at the sites of two sides.
 //! - [`interaction`]: what acts between bodies, as the system sees it.
 //! - [`system`]: bodies, supports, loads and contacts, assembled.
@@ -19,10 +20,12 @@ mod free;
 mod homotopy;
 pub mod increment;
 pub mod interaction;
+pub mod mortar;
 pub mod pair;
 mod prepare;
 pub mod rigid_body;
 pub mod saved;
+pub mod surface;
 pub mod system;
 
 pub use body::{
@@ -33,9 +36,11 @@ pub use contact::{Contact, Enforcement, Part, SiteMemory, SiteResult};
 pub use curve::Curve;
 pub use increment::{IncrementError, IncrementResult};
 pub use interaction::{Bodies, Interaction, Own, Target};
+pub use mortar::Mortar;
 pub use pair::AxisChoice;
 pub use rigid_body::{Motion, RigidBody, RigidSite};
 pub use saved::Saved;
+pub use surface::Surface;
 pub use system::{AssemblyError, PlacedLoad, Support, System, SystemState, TimedLoad};
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ mod hold;
 mod loads;
 mod master;
 mod moments;
+mod surface;
 
 use crate::body::Bodies;
 use crate::hyperelastic::StressLaw;
@@ -23,7 +24,7 @@ use signorini_geometry::{Point, Vector};
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{
     Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Hold, Load, Master, Order, PlaceError, Placed,
-    Sampling, Site,
+    Sampling, Site, Surface,
 };
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
@@ -264,6 +265,12 @@ impl<const D: usize> Body for SolidBody<D> {
         }
         let master = self.faces.master(on.unwrap_or("boundary"), &state.configuration);
         Ok(Box::new(master.map_err(|e| self.unsuitable(e.to_string()))?))
+    }
+
+    fn surface<'a>(&'a self, on: Option<&str>, state: &'a BodyState) -> Option<Box<dyn Surface + 'a>> {
+        let group = on.unwrap_or("boundary");
+        let has_sides = self.groups.get(group).is_some_and(|g| !g.sides.is_empty());
+        has_sides.then(|| Box::new(self.placed_surface(group, &state.configuration)) as _)
     }
 
     /// Young's modulus times the area of the site over the depth of its cell, in parts of its degree.

@@ -1,7 +1,7 @@
 //! The faces of a solid that may touch: the points that are tested on them, tabulated once, and what moves them.
 
 use super::{axis, depth, spatial};
-use crate::body::Bodies;
+use crate::body::{Bodies, BodySurface};
 use signorini_contact::{FacePoint, PressureNodes};
 use signorini_fem::hierarchic::{Derivatives, Values};
 use signorini_fem::rules::rule;
@@ -21,7 +21,7 @@ pub(super) struct Face<const D: usize> {
     /// Degree of the polynomial that the side is when displaced, positions of as many points, and the functions there.
     pub order: usize,
     lattice: Vec<(Point<D>, Vec<f64>)>,
-    depth: f64,
+    pub depth: f64,
 }
 
 /// A tested point with what moves it.
@@ -35,15 +35,17 @@ struct TestedPoint<const D: usize> {
 }
 
 /// The tangents of a face at a tested point, and how functions move them.
-struct Tangents<const D: usize> {
+pub(super) struct Tangents<const D: usize> {
     face: u32,
     at: [Point<D>; 2],
     slopes: Vec<(u32, [f64; 2])>,
 }
 
 /// The faces of a group.
-pub(super) struct Surface {
+pub(super) struct Surface<const D: usize> {
     pub faces: Vec<u32>,
+    /// The same as the mortar method sees them.
+    pub boundary: BodySurface<D>,
     /// Faces around each vertex.
     pub around: HashMap<u32, Vec<u32>>,
     nodes: Vec<Site>,
@@ -55,7 +57,7 @@ pub(super) struct Faces<const D: usize> {
     bodies: Bodies<D>,
     list: Vec<Face<D>>,
     points: Vec<TestedPoint<D>>,
-    surfaces: BTreeMap<String, Surface>,
+    surfaces: BTreeMap<String, Surface<D>>,
 }
 
 /// Cosine of the angle between faces at rest from which on they make one smooth surface: that between two sides of a
@@ -83,7 +85,8 @@ impl<const D: usize> Faces<D> {
             }
             let nodes = out.nodes(&faces, &around, group.sides.clone());
             let gauss_points = out.gauss_points(&faces, &around);
-            out.surfaces.insert(name.clone(), Surface { faces, around, nodes, gauss_points });
+            let boundary = bodies.surface(0, group.sides.clone());
+            out.surfaces.insert(name.clone(), Surface { faces, boundary, around, nodes, gauss_points });
         }
         out
     }
@@ -93,7 +96,7 @@ impl<const D: usize> Faces<D> {
     }
 
     /// The surface of a group that has sides.
-    pub fn surface(&self, group: &str) -> &Surface {
+    pub fn surface(&self, group: &str) -> &Surface<D> {
         &self.surfaces[group]
     }
 
@@ -137,7 +140,7 @@ impl<const D: usize> Faces<D> {
 
     /// The terms of the averaged normal at a point of a face: area normals at its vertices of all faces that go on smoothly
     /// there, over their areas at rest, with the functions of the vertices.
-    fn averaged(&self, face: u32, s: &Local, around: &HashMap<u32, Vec<u32>>) -> Vec<(f64, Tangents<D>)> {
+    pub fn averaged(&self, face: u32, s: &Local, around: &HashMap<u32, Vec<u32>>) -> Vec<(f64, Tangents<D>)> {
         let own = self.face(face);
         let mut out = Vec::new();
         for (corner, vertex) in own.shape.vertices().iter().zip(&own.vertices) {
@@ -163,10 +166,10 @@ impl<const D: usize> Faces<D> {
         out
     }
 
-    /// The averaged normal of a tested point, with what moves it.
-    fn direction(&self, point: &TestedPoint<D>, u: &[f64]) -> Direction {
+    /// The averaged normal of its terms, with what moves it.
+    pub fn direction(averaged: &[(f64, Tangents<D>)], u: &[f64]) -> Direction {
         let mut out = Direction::default();
-        for (share, terms) in &point.averaged {
+        for (share, terms) in averaged {
             let [x1, x2] = terms.now(u).each_ref().map(spatial);
             // In the plane the second tangent goes across it.
             let x2 = if D == 2 { Vector::<3>::z() } else { x2 };
@@ -183,16 +186,9 @@ impl<const D: usize> Faces<D> {
                 }
             }
         }
-        out.functions.sort_by_key(|f| f.unknown);
-        out.functions.dedup_by(|f, kept| {
-            let same = f.unknown == kept.unknown;
-            if same {
-                kept.value += f.value;
-            }
-            same
-        });
+        merge(&mut out.functions);
         if D == 3 {
-            for (share, terms) in &point.averaged {
+            for (share, terms) in averaged {
                 for (k, (f, s)) in terms.slopes.iter().enumerate() {
                     for (g, t) in &terms.slopes[k + 1..] {
                         let size = share * (s[0] * t[1] - t[0] * s[1]);
@@ -324,7 +320,7 @@ impl<const D: usize> Faces<D> {
         Placed {
             x: spatial(&x),
             outward: Some(self.outward(site, u)),
-            averaged: Some(self.direction(point, u)),
+            averaged: Some(Self::direction(&point.averaged, u)),
             functions,
             frame: Matrix::<3>::identity(),
             ..Placed::default()
@@ -346,8 +342,20 @@ impl<const D: usize> Tangents<D> {
     }
 }
 
+/// Adds up functions of the same unknown.
+pub(super) fn merge(functions: &mut Vec<Function>) {
+    functions.sort_by_key(|f| f.unknown);
+    functions.dedup_by(|f, kept| {
+        let same = f.unknown == kept.unknown;
+        if same {
+            kept.value += f.value;
+        }
+        same
+    });
+}
+
 /// The function of a vertex of a face with straight edges.
-fn vertex_function(shape: CellShape, corner: &Local, s: &Local) -> f64 {
+pub(super) fn vertex_function(shape: CellShape, corner: &Local, s: &Local) -> f64 {
     match shape {
         CellShape::Triangle if corner[0] + corner[1] == 0.0 => 1.0 - s[0] - s[1],
         CellShape::Triangle => corner[0] * s[0] + corner[1] * s[1],

@@ -36,7 +36,7 @@ const BORDER: f64 = 1e-9;
 /// A surface where it is now.
 pub(super) struct SurfaceMaster<'a, const D: usize> {
     faces: &'a Faces<D>,
-    surface: &'a Surface,
+    surface: &'a Surface<D>,
     u: &'a [f64],
     shapes: Vec<Shape>,
     bvh: Bvh,
@@ -254,7 +254,7 @@ impl<const D: usize> Master for SurfaceMaster<'_, D> {
 }
 
 /// Functions with the slopes and second slopes that `of` tells, for each direction.
-fn functions<const D: usize>(list: &[(u32, Derivatives)], of: impl Fn(&Derivatives) -> [f64; 5]) -> Vec<Function> {
+pub(super) fn functions<const D: usize>(list: &[(u32, Derivatives)], of: impl Fn(&Derivatives) -> [f64; 5]) -> Vec<Function> {
     let mut out = Vec::with_capacity(D * list.len());
     for (f, d) in list {
         let slopes = of(d);

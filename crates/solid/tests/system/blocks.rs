@@ -3,11 +3,12 @@
 use super::*;
 use signorini_solid::Volumetric;
 
-type How = (Sampling, Enforcement);
+type How = (Test, Enforcement);
 const NEO_HOOKE: StressLaw = StressLaw::NeoHooke(Volumetric::Quadratic);
-const PENALTY: How = (Sampling::GaussPoints, Enforcement::Penalty { wanted_penetration: None });
-const AUGMENTED: How = (Sampling::GaussPoints, Enforcement::AugmentedLagrangian);
-const MULTIPLIER: How = (Sampling::Nodes, Enforcement::Multiplier);
+const PENALTY: How = (Test::Sites(Sampling::GaussPoints), Enforcement::Penalty { wanted_penetration: None });
+const AUGMENTED: How = (Test::Sites(Sampling::GaussPoints), Enforcement::AugmentedLagrangian);
+const MULTIPLIER: How = (Test::Sites(Sampling::Nodes), Enforcement::Multiplier);
+const MORTAR: How = (Test::Mortar(0), Enforcement::Multiplier);
 
 /// Increments that press, before those that slide.
 const PRESSING: usize = 4;
@@ -16,7 +17,7 @@ const PRESSING: usize = 4;
 /// block after each increment, and the results.
 fn slid<const D: usize>(
     [lower, upper]: [Mesh<D>; 2],
-    (sampling, enforcement): How,
+    (test, enforcement): How,
     mu: Option<f64>,
     (depth, slide, increments): (f64, f64, usize),
 ) -> (Vec<Vector<3>>, Vec<IncrementResult>) {
@@ -34,7 +35,7 @@ fn slid<const D: usize>(
         held.displacement[1] = Some(Arc::new(|_, _| 0.0));
     }
     system.supports.push(held);
-    touch(&mut system, [(1, "bottom"), (0, "top")], sampling, enforcement, mu);
+    touch(&mut system, [(1, "bottom"), (0, "top")], test, enforcement, mu);
     let times: Vec<f64> = (1..=PRESSING + increments).map(|k| k as f64).collect();
     let (_, results) = run(&mut system, &times);
     for r in &results {
@@ -63,7 +64,7 @@ fn mean(results: &[IncrementResult]) -> f64 {
 #[test]
 fn one_slides_over_the_facets_of_the_other() {
     let mut all = Vec::new();
-    for (how, most) in [(PENALTY, 9.0), (MULTIPLIER, 7.0), (AUGMENTED, 18.0)] {
+    for (how, most) in [(PENALTY, 9.0), (MULTIPLIER, 7.0), (AUGMENTED, 18.0), (MORTAR, 7.0)] {
         for mu in [None, Some(0.3)] {
             // Half a facet an increment.
             let (forces, results) = slid(strips(1), how, mu, (0.08, 1.5, 12));
@@ -102,7 +103,7 @@ fn one_slides_over_the_facets_of_the_other_in_space() {
         });
         [lower, upper]
     };
-    for (how, mu) in [(PENALTY, Some(0.3)), (MULTIPLIER, None), (MULTIPLIER, Some(0.3))] {
+    for (how, mu) in [(PENALTY, Some(0.3)), (MULTIPLIER, None), (MULTIPLIER, Some(0.3)), (MORTAR, None), (MORTAR, Some(0.3))] {
         let (forces, results) = slid(blocks(), how, mu, (0.06, 0.6, 4));
         println!("{how:?} {mu:?}: {} {:?}", told(&results), forces.last());
         assert!(mean(&results) <= 9.0, "{how:?} {mu:?}: {}", told(&results));

@@ -15,6 +15,7 @@ mod bodies;
 mod contacts;
 mod groove;
 mod held;
+mod mortar;
 mod ring;
 mod sliding;
 mod tangents;
@@ -82,18 +83,43 @@ fn rigid(shape: impl RigidShape + 'static, motion: impl Fn(f64) -> Vector<3> + S
     RigidBody { name: "tool".into(), shape: Arc::new(shape), motion, centre, sites: Vec::new(), size: 1.0 }
 }
 
+/// Where contact is tested.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Test {
+    Sites(Sampling),
+    /// In the mean over dual functions, with so many further points of each piece.
+    Mortar(usize),
+}
+
+impl From<Sampling> for Test {
+    fn from(sampling: Sampling) -> Test {
+        Test::Sites(sampling)
+    }
+}
+
 /// Adds a contact between groups of two bodies.
 fn touch(
     system: &mut System,
     [slave, master]: [(usize, &str); 2],
-    sampling: Sampling,
+    test: impl Into<Test>,
     enforcement: Enforcement,
     mu: Option<f64>,
 ) {
     let of = |(body, group): (usize, &str)| (part(body, group), system.bodies[body].as_ref());
-    let mut contact = Contact::new("touch", of(slave), of(master), sampling, enforcement).unwrap();
-    contact.friction = mu.map(|mu| Box::new(Coulomb::isotropic(mu).unwrap()) as _);
-    system.contacts.push(Box::new(contact));
+    let friction = mu.map(|mu| Box::new(Coulomb::isotropic(mu).unwrap()) as _);
+    match test.into() {
+        Test::Sites(sampling) => {
+            let mut contact = Contact::new("touch", of(slave), of(master), sampling, enforcement).unwrap();
+            contact.friction = friction;
+            system.contacts.push(Box::new(contact));
+        }
+        Test::Mortar(extra) => {
+            let mut contact = Mortar::new("touch", of(slave), of(master), enforcement).unwrap();
+            contact.refine(extra);
+            contact.friction = friction;
+            system.contacts.push(Box::new(contact));
+        }
+    }
 }
 
 /// Force of a contact on its slave.

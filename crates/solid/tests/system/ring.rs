@@ -14,7 +14,7 @@ const KNOWN: [[f64; 3]; 4] = [
     [0.85, 0.06472379097834345, 0.05643119070175514],
 ];
 
-fn pinched(to: f64, step: f64) -> Vec<(f64, IncrementResult)> {
+fn pinched(to: f64, step: f64, test: Test) -> Vec<(f64, IncrementResult)> {
     let mesh = block::<2>(&[even(0.8, 1.0, 3), even(0.0, std::f64::consts::FRAC_PI_2, 24)], 2, |x| {
         Point::<2>::new(x[0] * x[1].cos(), x[0] * x[1].sin())
     });
@@ -26,15 +26,15 @@ fn pinched(to: f64, step: f64) -> Vec<(f64, IncrementResult)> {
     system.bodies.push(Box::new(rigid(mirror, |_| v(0.0, 0.0, 0.0))));
     system.supports.push(hold(0, "bottom", [None, Some(0.0), None]));
     system.supports.push(hold(0, "top", [Some(0.0), None, None]));
-    touch(&mut system, [(0, "right"), (1, "")], Sampling::Nodes, Enforcement::Multiplier, None);
-    touch(&mut system, [(0, "left"), (2, "")], Sampling::Nodes, Enforcement::Multiplier, None);
+    touch(&mut system, [(0, "right"), (1, "")], test, Enforcement::Multiplier, None);
+    touch(&mut system, [(0, "left"), (2, "")], test, Enforcement::Multiplier, None);
     let times: Vec<f64> = (1..=(to / step).round() as usize).map(|k| k as f64 * step).collect();
     let (_, results) = run(&mut system, &times);
     times.into_iter().zip(results).collect()
 }
 
-fn compare(to: f64, step: f64) {
-    for (travel, result) in pinched(to, step) {
+fn compare(to: f64, step: f64, test: Test) {
+    for (travel, result) in pinched(to, step, test) {
         let (tool, bore) = (-2.0 * force(&result, 0)[1], 2.0 * force(&result, 1)[1]);
         println!("travel {travel:.3}: {} iterations, force {tool:.6e}, bore {bore:.6e}", result.iterations);
         for [known, whole, in_bore] in KNOWN {
@@ -48,5 +48,10 @@ fn compare(to: f64, step: f64) {
 
 #[test]
 fn a_ring_is_pinched() {
-    compare(0.3, 0.05);
+    compare(0.3, 0.05, Test::Sites(Sampling::Nodes));
+}
+
+#[test]
+fn a_ring_is_pinched_with_a_mortar() {
+    compare(0.3, 0.05, Test::Mortar(0));
 }

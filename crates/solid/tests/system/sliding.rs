@@ -4,9 +4,11 @@ use super::*;
 use signorini_geometry::rigid_shape::Cylinder;
 use signorini_solid::Volumetric;
 
-type How = (Sampling, Enforcement);
-const PENALTY: How = (Sampling::GaussPoints, Enforcement::Penalty { wanted_penetration: None });
-const MULTIPLIER: How = (Sampling::Nodes, Enforcement::Multiplier);
+type How = (Test, Enforcement);
+const PENALTY: How = (Test::Sites(Sampling::GaussPoints), Enforcement::Penalty { wanted_penetration: None });
+const MULTIPLIER: How = (Test::Sites(Sampling::Nodes), Enforcement::Multiplier);
+
+const MORTAR: How = (Test::Mortar(0), Enforcement::Multiplier);
 
 const NEO_HOOKE: StressLaw = StressLaw::NeoHooke(Volumetric::Quadratic);
 
@@ -14,7 +16,7 @@ const NEO_HOOKE: StressLaw = StressLaw::NeoHooke(Volumetric::Quadratic);
 fn ironing(
     cells: [usize; 2],
     degree: usize,
-    (sampling, enforcement): (Sampling, Enforcement),
+    (test, enforcement): How,
     slides: usize,
 ) -> (Vec<Vector<3>>, Vec<IncrementResult>) {
     let radius = 2.0;
@@ -25,7 +27,7 @@ fn ironing(
     let motion = |t: f64| v(0.1 * (t - 4.0).max(0.0), -0.05 * t.min(4.0), 0.0);
     system.bodies.push(Box::new(rigid(cylinder, motion)));
     system.supports.push(hold(0, "bottom", [Some(0.0), Some(0.0), None]));
-    touch(&mut system, [(0, "top"), (1, "")], sampling, enforcement, Some(0.3));
+    touch(&mut system, [(0, "top"), (1, "")], test, enforcement, Some(0.3));
     let times: Vec<f64> = (1..=4 + slides).map(|k| k as f64).collect();
     let (_, results) = run(&mut system, &times);
     (results.iter().map(|r| -force(r, 0)).collect(), results)
@@ -45,7 +47,7 @@ const KNOWN: [[f64; 2]; 9] = [
     [-0.05710197764992032, 0.19515909835734735],
 ];
 
-fn compare(cells: [usize; 2], degree: usize, how: (Sampling, Enforcement), tolerance: f64) {
+fn compare(cells: [usize; 2], degree: usize, how: How, tolerance: f64) {
     let (forces, results) = ironing(cells, degree, how, 5);
     for (force, known) in forces.iter().zip(KNOWN) {
         println!("{how:?}: {:.5} {:.5} against {:.5} {:.5}", force[0], force[1], known[0], known[1]);
@@ -70,6 +72,17 @@ fn a_cylinder_irons_a_block_with_a_penalty() {
 #[test]
 fn a_cylinder_irons_a_block_with_multipliers() {
     compare([16, 4], 2, MULTIPLIER, 0.03);
+}
+
+#[test]
+fn a_cylinder_irons_a_block_with_a_mortar() {
+    compare([16, 4], 2, MORTAR, 0.03);
+}
+
+#[test]
+#[ignore = "longer than a test should be: the mesh of the reference"]
+fn a_cylinder_irons_a_finer_block_with_a_mortar() {
+    compare([32, 6], 2, MORTAR, 0.01);
 }
 
 #[test]

@@ -154,7 +154,7 @@ fn pressure_on_a_closed_surface_has_a_potential() {
 fn contact<const D: usize>(
     [upper, lower]: [Mesh<D>; 2],
     degree: usize,
-    sampling: Sampling,
+    test: impl Into<Test>,
     enforcement: Enforcement,
     mu: Option<f64>,
 ) -> f64 {
@@ -162,7 +162,8 @@ fn contact<const D: usize>(
     for (name, mesh) in [("upper", upper), ("lower", lower)] {
         system.bodies.push(Box::new(solid(name, mesh, degree, ELASTIC, StressLaw::LinearElastic)));
     }
-    touch(&mut system, [(0, "bottom"), (1, "top")], sampling, enforcement, mu);
+    let test = test.into();
+    touch(&mut system, [(0, "bottom"), (1, "top")], test, enforcement, mu);
     system.prepare().unwrap();
     let count: usize = system.bodies.iter().map(|b| b.unknowns()).sum();
     let start = system.start();
@@ -173,7 +174,11 @@ fn contact<const D: usize>(
     let mut state = system.advance(&start, &random(0.005), 1.0);
     system.accept(&state).unwrap();
     state = system.advance(&state, &random(0.01), 1.0);
-    let parts = if mu.is_some() { 3 } else { 1 };
+    let parts = match (mu, test) {
+        (None, _) => 1,
+        (_, Test::Mortar(_)) => D,
+        _ => 3,
+    };
     for own in state.multipliers.chunks_mut(parts) {
         own[0] = 3.0;
         own.iter_mut().skip(1).enumerate().for_each(|(i, t)| *t = 0.02 + 0.01 * i as f64);
@@ -267,6 +272,51 @@ fn of_contacts_in_space() {
             });
             let error = contact([upper, lower], 1, Sampling::Nodes, Enforcement::Multiplier, mu);
             assert!(error < 1e-5, "tip {tip} {mu:?}: {error:e}");
+        }
+    }
+}
+
+/// A shoe over two cells of a block, covered completely.
+fn shoe(degree: usize) -> [Mesh<2>; 2] {
+    let order = degree.min(2);
+    let upper = rectangle([0.1, 0.0], [0.83, 0.5], [2, 1], order, |x| {
+        Point::<2>::new(x[0], x[1] - 0.02 + 0.1 * (x[0] - 0.5).powi(2))
+    });
+    let lower = rectangle([-0.3, -0.6], [1.4, 0.0], [3, 1], order, |x| {
+        Point::<2>::new(x[0], x[1] + 0.05 * x[0] * x[0] * (x[1] + 0.6))
+    });
+    [upper, lower]
+}
+
+#[test]
+fn of_mortar_in_the_plane() {
+    for degree in 1..=3 {
+        for enforcement in ENFORCEMENTS {
+            for mu in [None, Some(30.0), Some(0.05)] {
+                // With many points, so that what cuts change does not hide in the error of the rule.
+                let error = contact(shoe(degree), degree, Test::Mortar(12), enforcement, mu);
+                println!("degree {degree} {enforcement:?} {mu:?}: {error:e}");
+                assert!(error < 1e-6, "degree {degree} {enforcement:?} {mu:?}: {error:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn of_mortar_in_space() {
+    for degree in 1..=2 {
+        for (enforcement, mu) in [(ENFORCEMENTS[0], Some(0.05)), (ENFORCEMENTS[2], Some(30.0)), (ENFORCEMENTS[1], None)] {
+            let upper = cuboid([0.13, 0.11, 0.0], [0.77, 0.66, 0.5], [1, 1, 1], |mut x| {
+                x[2] += 0.05 * x[0] - 0.06;
+                x
+            });
+            let lower = cuboid([0.0, 0.0, -0.6], [1.0, 1.0, 0.0], [1, 1, 1], |mut x| {
+                x[2] += 0.06 * x[0] * x[1] * (x[2] + 0.6) - 0.02 * x[1];
+                x
+            });
+            let error = contact([upper, lower], degree, Test::Mortar(6), enforcement, mu);
+            println!("degree {degree} {enforcement:?} {mu:?}: {error:e}");
+            assert!(error < 1e-6, "degree {degree} {enforcement:?} {mu:?}: {error:e}");
         }
     }
 }

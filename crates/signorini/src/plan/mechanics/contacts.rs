@@ -77,6 +77,9 @@ impl Planner<'_> {
         if let Some(found) = self.between_curves(name, key, [&slave, &master], system)? {
             return Ok(found);
         }
+        if let Some(found) = self.by_mortar(name, key, [&slave, &master], (system, kinds))? {
+            return Ok(found);
+        }
         let kind = &kinds[slave.body];
         let straight = match problem.bodies.get(body(&slave).name()) {
             Some(problem::Body::Rope(rope)) => rope.continuity != Some(problem::Continuity::C1),
@@ -144,7 +147,7 @@ impl Planner<'_> {
     }
 
     /// How a contact is kept.
-    fn kept(&self, stated: Option<&Enforcement>, otherwise: Kept) -> Result<Kept, CaseError> {
+    pub(super) fn kept(&self, stated: Option<&Enforcement>, otherwise: Kept) -> Result<Kept, CaseError> {
         Ok(match stated {
             None => otherwise,
             Some(Enforcement::Multiplier(_)) => Kept::Multiplier,
@@ -195,7 +198,7 @@ impl Planner<'_> {
             Some(other) => {
                 return Err(problem
                     .error(other, "this method is for other bodies")
-                    .help("ropes, beams and free bodies have  method.curve = {},  method.node = {}  and  method.gauss_point = {}"));
+                    .help("ropes, beams and free bodies have  method.curve = {},  method.node = {}  and  method.gauss_point = {}; solids also  method.mortar = {}"));
             }
         };
         let otherwise = match sampling {
@@ -209,7 +212,7 @@ impl Planner<'_> {
     }
 
     /// What carries the axis of friction.
-    fn axis_choice(&self, key: &problem::CoulombFriction) -> Result<AxisChoice, CaseError> {
+    pub(super) fn axis_choice(&self, key: &problem::CoulombFriction) -> Result<AxisChoice, CaseError> {
         let Some(axis) = &key.axis else {
             return Ok(if key.mu.0.len() == 2 { AxisChoice::Tangent } else { AxisChoice::Material });
         };

@@ -4,6 +4,7 @@ mod cells;
 mod contacts;
 mod curves;
 mod fields;
+mod mortar;
 mod places;
 mod rigid;
 mod solids;

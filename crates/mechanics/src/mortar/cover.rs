@@ -1,0 +1,146 @@
+//! Where the slave side of a mortar contact sees its master: points on the slave faces, and how much each counts for which
+//! node of the pressure.
+//!
+//! Pieces and gaps are those of the current configuration, weights those of the reference one: the dual functions of faces
+//! that are covered completely are then always the same.
+
+use crate::surface::{Faces, Local, Surface};
+use signorini_contact::{
+    ContactSurface, GapJet, GapPoint, Moved, PressureNodes, pieces, rigid_points, shares_on_the_way,
+};
+use signorini_geometry::Point;
+
+/// The nodes of the pressure, with normals of the averaged field.
+pub(super) enum Nodes {
+    Plane(PressureNodes<2>),
+    Space(PressureNodes<3>),
+}
+
+/// A point of the slave side.
+#[derive(Clone, Debug)]
+pub(super) struct CoveredPoint {
+    pub face: usize,
+    pub s: Local,
+    /// Face and point of the master; none of a rigid one.
+    pub master: Option<(usize, Local)>,
+    /// Nodes, and the dual function of each times the reference area of the point.
+    pub shares: Vec<(u32, f64)>,
+}
+
+/// The part of the slave side that sees its master.
+pub(super) struct Cover {
+    /// By face.
+    pub points: Vec<Vec<CoveredPoint>>,
+    /// Integral of the dual function of each node.
+    pub weight: Vec<f64>,
+}
+
+/// How pieces are found and integrated.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Search {
+    pub reach: f64,
+    /// Points of a piece along each direction beyond those that its degree asks for.
+    pub extra: usize,
+}
+
+impl Nodes {
+    pub fn new(faces: Faces<'_>) -> Nodes {
+        match faces {
+            Faces::Plane(faces) => Nodes::Plane(PressureNodes::new(faces)),
+            Faces::Space(faces) => Nodes::Space(PressureNodes::new(faces)),
+        }
+    }
+
+    pub fn is_plane(&self) -> bool {
+        matches!(self, Nodes::Plane(_))
+    }
+
+    /// Face and point of every node.
+    pub fn places(&self) -> Vec<(usize, Local)> {
+        match self {
+            Nodes::Plane(nodes) => places(nodes),
+            Nodes::Space(nodes) => places(nodes),
+        }
+    }
+
+    /// All of the slave side; `folded` nodes have no pressure of their own.
+    pub fn whole(&self, slave: &dyn Surface, folded: &[bool]) -> Cover {
+        match (self, slave.faces().0) {
+            (Nodes::Plane(nodes), Faces::Plane(faces)) => whole(nodes, faces, folded),
+            (Nodes::Space(nodes), Faces::Space(faces)) => whole(nodes, faces, folded),
+            _ => Cover { points: Vec::new(), weight: vec![0.0; folded.len()] },
+        }
+    }
+
+    /// What of the slave side sees the master.
+    pub fn cut(&self, slave: &dyn Surface, master: &dyn Surface, search: Search, folded: &[bool]) -> Cover {
+        match (self, slave.faces().0, master.faces().0) {
+            (Nodes::Plane(nodes), Faces::Plane(a), Faces::Plane(b)) => cut(nodes, [a, b], [slave, master], search, folded),
+            (Nodes::Space(nodes), Faces::Space(a), Faces::Space(b)) => cut(nodes, [a, b], [slave, master], search, folded),
+            _ => Cover { points: Vec::new(), weight: vec![0.0; folded.len()] },
+        }
+    }
+}
+
+fn places<const D: usize>(nodes: &PressureNodes<D>) -> Vec<(usize, Local)> {
+    let mut out = vec![(0, [0.0; 3]); nodes.len()];
+    for face in (0..nodes.face_count()).rev() {
+        for ((node, _), s) in nodes.of_face(face).iter().zip(nodes.map(face).nodes()) {
+            out[*node as usize] = (face, s);
+        }
+    }
+    out
+}
+
+fn whole<const D: usize>(nodes: &PressureNodes<D>, faces: &dyn ContactSurface<D>, folded: &[bool]) -> Cover {
+    let nowhere = |_: &Point<D>| GapJet::flat(0.0, Point::<D>::zeros());
+    cover(nodes, faces, rigid_points(faces, &nowhere), folded)
+}
+
+fn cut<const D: usize>(
+    nodes: &PressureNodes<D>,
+    [slave, master]: [&dyn ContactSurface<D>; 2],
+    placed: [&dyn Surface; 2],
+    search: Search,
+    folded: &[bool],
+) -> Cover {
+    let nodes = nodes.with_normals(&|face, s| {
+        let normal = placed[0].normal(face, s);
+        Point::<D>::from_fn(|k, _| normal[k])
+    });
+    let moved = Moved { surface: slave, u: placed[0].faces().1 };
+    let other = Moved { surface: master, u: placed[1].faces().1 };
+    let mut points = pieces(&moved, &other, &nodes, search.reach, search.extra);
+    for (face, list) in points.iter_mut().enumerate() {
+        for point in list {
+            let area = |faces: &dyn ContactSurface<D>| {
+                let at = faces.at(face, &point.s);
+                at.area_normal().norm() * faces.measure(&at.x)
+            };
+            point.weight *= area(slave) / area(&moved);
+        }
+    }
+    cover(&nodes, slave, points, folded)
+}
+
+fn cover<const D: usize>(
+    nodes: &PressureNodes<D>,
+    slave: &dyn ContactSurface<D>,
+    points: Vec<Vec<GapPoint<D>>>,
+    folded: &[bool],
+) -> Cover {
+    let shares = shares_on_the_way(slave, nodes, &points, &|k| folded[k as usize]);
+    let of_face = |(face, (list, shares)): (usize, (Vec<GapPoint<D>>, Vec<Vec<(u32, f64)>>))| {
+        let list = list.into_iter().zip(shares);
+        let of = |(p, shares): (GapPoint<D>, Vec<(u32, f64)>)| CoveredPoint {
+            face,
+            s: p.s,
+            master: p.master.map(|(other, at)| (other as usize, at)),
+            shares,
+        };
+        list.map(of).collect()
+    };
+    let points = points.into_iter().zip(shares.of_point).enumerate().map(of_face).collect();
+    Cover { points, weight: shares.weight }
+}
+

@@ -1,0 +1,262 @@
+//! Mortar contact as the system sees it.
+
+use super::force::Assembly;
+use super::measure::{Matched, NodeMeasure, Opposite, Sides};
+use super::{Mortar, NodeMemory};
+use crate::body::{Body, MaterialPoint, PlaceError};
+use crate::contact::{Enforcement, SiteResult};
+use crate::interaction::{
+    Around, Bodies, HARDER, HARDEST, Interaction, NotItsHistory, Own, SLOW, Sticks, Target, penalty_factor,
+};
+use crate::pair::{AxisChoice, Pair, any_tangent};
+use crate::prepare::WAVE;
+use signorini_contact::law::Projected;
+use signorini_contact::{Law, Status};
+use signorini_geometry::Vector;
+
+/// A contact measured in a state.
+struct Found<'a> {
+    sides: Sides<'a>,
+    cover: super::cover::Cover,
+    pairs: Vec<Vec<Option<Pair>>>,
+    separations: Vec<Option<super::measure::Separation>>,
+    measures: Vec<NodeMeasure>,
+    projected: Vec<Projected>,
+    lost: usize,
+}
+
+impl Mortar {
+    fn found<'a>(&self, at: Bodies<'a>, multipliers: &[f64]) -> Result<Found<'a>, PlaceError> {
+        let sides = Sides::new(self, at)?;
+        let cover = sides.cover(self);
+        let (pairs, lost) = self.pairs(&sides, &cover);
+        let separations = if self.friction.is_some() { self.separations(&sides) } else { Vec::new() };
+        let measures = self.measures(&cover, &pairs, &separations);
+        let of = |(k, measure)| self.traction(k, measure, self.multiplier(k, multipliers));
+        let projected = measures.iter().enumerate().map(of).collect();
+        Ok(Found { sides, cover, pairs, separations, measures, projected, lost })
+    }
+
+    /// The nodes as they are found.
+    fn node_results(&self, found: &Found<'_>) -> Vec<SiteResult> {
+        // The force of friction of each node, with the axes of its points.
+        let mut rubbed = vec![Vector::<3>::zeros(); self.whole.len()];
+        for (point, pair) in found.cover.points.iter().flatten().zip(found.pairs.iter().flatten()) {
+            let Some(pair) = pair else { continue };
+            for (node, share) in &point.shares {
+                let [_, t1, t2] = found.projected[*node as usize].traction;
+                if let Some(axes) = self.axes(*node, &pair.normal).filter(|_| self.friction.is_some()) {
+                    rubbed[*node as usize] -= (axes.e[0] * t1 + axes.e[1] * t2) * *share;
+                }
+            }
+        }
+        let of = |k: usize| {
+            let (face, s) = &self.places[k];
+            let (measure, projected) = (&found.measures[k], &found.projected[k]);
+            let placed = found.sides.slave.placed(*face, s);
+            let mut out = SiteResult { x: placed.x, ..SiteResult::default() };
+            if !self.sees(k, measure.weight) {
+                return out;
+            }
+            let [p, t1, t2] = projected.traction;
+            out.weight = measure.weight;
+            out.normal = measure.normal;
+            out.gap = Some(measure.gap);
+            out.pressure = p;
+            out.status = projected.status;
+            out.friction = rubbed[k] / measure.weight;
+            if let (Some(law), true) = (&self.friction, out.status != Status::Open) {
+                let axes = self.axes(k as u32, &measure.normal.normalize());
+                out.increment = axes.map_or(Vector::<3>::zeros(), |a| a.e[0] * measure.slip[0] + a.e[1] * measure.slip[1]);
+                out.utilisation = law.utilisation([t1, t2], p);
+                let before = self.memory[k].slip;
+                out.slip = (before[0] + measure.slip[0]).hypot(before[1] + measure.slip[1]);
+            }
+            out
+        };
+        (0..self.whole.len()).map(of).collect()
+    }
+
+    /// The direction of the first axis of a node, by what is asked for; `normal` is that of the node.
+    fn along(&self, found: &Found<'_>, normal: &Vector<3>) -> Vector<3> {
+        match (self.axis, &found.sides.master) {
+            (AxisChoice::OnMaster(v), Opposite::Rigid(master)) => master.at(&MaterialPoint::default()).frame * v,
+            (AxisChoice::OnSlave(v) | AxisChoice::OnMaster(v), _) => v,
+            (AxisChoice::Material | AxisChoice::Tangent, _) => any_tangent(normal),
+        }
+    }
+}
+
+impl Interaction for Mortar {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn bodies(&self) -> [usize; 2] {
+        [self.slave.body, self.master.body]
+    }
+
+    fn law(&self) -> Option<&dyn Law> {
+        self.friction.as_deref()
+    }
+
+    fn rows(&self) -> Vec<[f64; 2]> {
+        let list = self.stiffness.iter().zip(&self.whole);
+        list.flat_map(|(c, w)| vec![[*c, *w]; self.components()]).collect()
+    }
+
+    fn remembered(&self) -> Vec<f64> {
+        self.memory.iter().flat_map(|m| self.slots().iter().map(|slot| m.traction[*slot])).collect()
+    }
+
+    fn is_exact(&self) -> bool {
+        self.enforcement == Enforcement::Multiplier
+    }
+
+    fn begin(&mut self, time: f64) {
+        self.times[1] = time;
+    }
+
+    fn end(&mut self) {
+        self.softness = self.enforcement.softness();
+    }
+
+    fn stiffness(&self, _: &[Box<dyn Body>]) -> f64 {
+        self.stiffness.iter().zip(&self.whole).map(|(c, w)| c * w).fold(0.0, f64::max)
+    }
+
+    fn prepare(&mut self, _: &[Box<dyn Body>], _: f64) {
+        self.stiffness.iter_mut().for_each(|c| *c *= WAVE);
+    }
+
+    fn leave_out_held(&mut self, at: Bodies<'_>, held: &[bool]) {
+        let Ok(sides) = Sides::new(self, at) else { return };
+        for (k, (face, s)) in self.places.iter().enumerate() {
+            let placed = sides.slave.placed(*face, s);
+            let normal = sides.slave.normal(*face, s).normalize();
+            let pushed = |v: &Vector<3>| v.dot(&normal).abs() > 1e-6 * v.norm();
+            let moves = |f: &crate::body::Function| !held[(sides.first[0] + f.unknown) as usize];
+            self.folded[k] = !placed.functions.iter().any(|f| pushed(&f.value) && moves(f));
+        }
+        self.whole = self.nodes.whole(sides.slave.as_ref(), &self.folded).weight;
+    }
+
+    fn add_to(&self, at: Bodies<'_>, own: Own<'_>, out: &mut Target<'_>) -> Result<usize, PlaceError> {
+        let found = self.found(at, own.multipliers)?;
+        let assembly = Assembly {
+            contact: self,
+            sides: &found.sides,
+            own,
+            measures: &found.measures,
+            projected: &found.projected,
+        };
+        assembly.add_nodes(out);
+        for (points, pairs) in found.cover.points.iter().zip(&found.pairs) {
+            assembly.add_face(points, pairs, out);
+        }
+        assembly.add_slips(&found.separations, out);
+        Ok(found.lost)
+    }
+
+    fn results(&self, at: Bodies<'_>, own: Own<'_>) -> Result<Vec<SiteResult>, PlaceError> {
+        Ok(self.node_results(&self.found(at, own.multipliers)?))
+    }
+
+    fn accept(&mut self, at: Bodies<'_>, own: Own<'_>) -> Result<(), PlaceError> {
+        let found = self.found(at, own.multipliers)?;
+        let mut memory = Vec::with_capacity(self.memory.len());
+        for (k, (measure, projected)) in found.measures.iter().zip(&found.projected).enumerate() {
+            let (face, s) = &self.places[k];
+            let normal = match measure.normal.try_normalize(0.0) {
+                Some(normal) => normal,
+                None => -found.sides.slave.normal(*face, s).normalize(),
+            };
+            let mut next = NodeMemory { traction: projected.traction, along: self.along(&found, &normal), ..NodeMemory::default() };
+            if self.friction.is_some() && projected.status != Status::Open {
+                let before = self.memory[k].slip;
+                next.slip = std::array::from_fn(|i| before[i] + measure.slip[i]);
+                // Friction goes on along the new axes.
+                if let Some(old) = self.axes(k as u32, &normal) {
+                    self.memory[k].along = next.along;
+                    let new = self.axes(k as u32, &normal).unwrap_or(old);
+                    let turned = |v: [f64; 2]| new.e.map(|e| e.dot(&(old.e[0] * v[0] + old.e[1] * v[1])));
+                    let [_, t1, t2] = next.traction;
+                    let [t1, t2] = turned([t1, t2]);
+                    next.traction = [next.traction[0], t1, t2];
+                    next.slip = turned(next.slip);
+                }
+            }
+            memory.push(next);
+        }
+        self.memory = memory;
+        self.matched.clear();
+        if self.friction.is_some() {
+            let points = found.cover.points.iter().flatten().zip(found.pairs.iter().flatten());
+            for (point, pair) in points {
+                let Some(pair) = pair else { continue };
+                let on = match (point.master, &pair.stuck) {
+                    (Some((face, at)), _) => MaterialPoint { patch: face as u32, xi: at },
+                    (None, Some(stuck)) => stuck.point,
+                    (None, None) => continue,
+                };
+                self.matched.push(Matched { face: point.face, s: point.s, on, shares: point.shares.clone() });
+            }
+        }
+        self.times[0] = self.times[1];
+        Ok(())
+    }
+
+    fn unload(&mut self) {
+        self.memory.iter_mut().for_each(|m| m.traction = [0.0; 3]);
+    }
+
+    fn augment(&mut self, at: Bodies<'_>, own: Own<'_>, found: &[SiteResult], around: Around) -> Result<f64, PlaceError> {
+        match self.enforcement {
+            Enforcement::AugmentedLagrangian => {
+                let projected = self.found(at, own.multipliers)?.projected;
+                let most = projected.iter().map(|p| p.traction[0]).fold(0.0f64, f64::max);
+                let mut change = 0.0f64;
+                for ((memory, c), projected) in self.memory.iter_mut().zip(&self.stiffness).zip(projected) {
+                    let changed = (0..3).map(|i| (memory.traction[i] - projected.traction[i]).abs()).fold(0.0, f64::max);
+                    // Gaps are known to the rounding of positions only.
+                    change = change.max(if changed > around.known * c { changed / most } else { 0.0 });
+                    memory.traction = projected.traction;
+                }
+                // Where a step leaves more than a quarter of the error, the next ones are to leave less.
+                if around.before.is_some_and(|before| change > SLOW * before) {
+                    self.softness = (HARDER * self.softness).max(HARDEST);
+                }
+                Ok(change)
+            }
+            Enforcement::Penalty { wanted_penetration: Some(wanted) } => match penalty_factor(found, wanted) {
+                Some(factor) => {
+                    self.stiffness.iter_mut().for_each(|c| *c *= factor);
+                    Ok((factor - 1.0).abs())
+                }
+                None => Ok(0.0),
+            },
+            _ => Ok(0.0),
+        }
+    }
+
+    fn simplify(&mut self) {
+        let law = self.friction.as_mut().map(|law| std::mem::replace(law, Box::new(Sticks)));
+        self.set_aside = Some((law, self.enforcement, self.softness));
+        self.enforcement = Enforcement::Penalty { wanted_penetration: None };
+        self.softness = self.enforcement.softness();
+    }
+
+    fn restate(&mut self) {
+        if let Some(before) = self.set_aside.take() {
+            (self.friction, self.enforcement, self.softness) = before;
+        }
+    }
+
+    fn history(&self) -> [Vec<f64>; 2] {
+        self.numbers()
+    }
+
+    fn restore(&mut self, history: &[Vec<f64>; 2]) -> Result<(), NotItsHistory> {
+        self.take_numbers(history).ok_or_else(|| NotItsHistory { contact: self.name.clone() })
+    }
+}

@@ -1,0 +1,64 @@
+//! What a mortar contact goes on from, as plain numbers.
+
+use super::measure::Matched;
+use super::{Mortar, NodeMemory};
+use crate::body::MaterialPoint;
+use signorini_geometry::Vector;
+
+/// Numbers of the memory of a node.
+const NUMBERS: usize = 8;
+/// Numbers of a matched point before its shares: face and point, face and point of the master, number of shares.
+const HEAD: usize = 9;
+
+impl Mortar {
+    /// What nodes and matched points remember; scales and the time.
+    pub(super) fn numbers(&self) -> [Vec<f64>; 2] {
+        let of_node = |m: &NodeMemory| {
+            let [p, t1, t2] = m.traction;
+            [p, t1, t2, m.slip[0], m.slip[1], m.along.x, m.along.y, m.along.z]
+        };
+        let mut own: Vec<f64> = self.memory.iter().flat_map(of_node).collect();
+        for m in &self.matched {
+            own.push(m.face as f64);
+            own.extend(m.s);
+            own.push(f64::from(m.on.patch));
+            own.extend(m.on.xi);
+            own.push(m.shares.len() as f64);
+            own.extend(m.shares.iter().flat_map(|(node, share)| [f64::from(*node), *share]));
+        }
+        let scales = self.stiffness.iter().copied().chain([self.times[0]]).collect();
+        [own, scales]
+    }
+
+    /// Takes numbers that [`Mortar::numbers`] gave; none of something else.
+    pub(super) fn take_numbers(&mut self, [own, scales]: &[Vec<f64>; 2]) -> Option<()> {
+        let count = self.memory.len();
+        if scales.len() != count + 1 || own.len() < NUMBERS * count {
+            return None;
+        }
+        let (nodes, mut rest) = own.split_at(NUMBERS * count);
+        let mut matched = Vec::new();
+        while !rest.is_empty() {
+            let (head, tail) = rest.split_at_checked(HEAD)?;
+            let (shares, tail) = tail.split_at_checked(2 * head[8] as usize)?;
+            matched.push(Matched {
+                face: head[0] as usize,
+                s: [head[1], head[2], head[3]],
+                on: MaterialPoint { patch: head[4] as u32, xi: [head[5], head[6], head[7]] },
+                shares: shares.chunks(2).map(|p| (p[0] as u32, p[1])).collect(),
+            });
+            rest = tail;
+        }
+        self.memory = (nodes.chunks(NUMBERS))
+            .map(|n| NodeMemory {
+                traction: [n[0], n[1], n[2]],
+                slip: [n[3], n[4]],
+                along: Vector::<3>::new(n[5], n[6], n[7]),
+            })
+            .collect();
+        self.matched = matched;
+        self.stiffness.copy_from_slice(&scales[..count]);
+        self.times = [scales[count]; 2];
+        Some(())
+    }
+}

@@ -1,0 +1,65 @@
+//! Contact by mortar between bodies of a system.
+
+use super::{Kind, Tested};
+use crate::plan::Planner;
+use crate::problem::{self, CaseError, Friction, Method};
+use signorini_mechanics::contact::Part;
+use signorini_mechanics::{AxisChoice, Enforcement as Kept, Interaction, Mortar, System};
+
+impl Planner<'_> {
+    /// Contact where `method.mortar` is stated: of a solid with another one, or with a rigid body.
+    pub(super) fn by_mortar(
+        &self,
+        name: &str,
+        key: &problem::Contact,
+        [slave, master]: [&Part; 2],
+        (system, kinds): (&System, &[Kind]),
+    ) -> Result<Option<(Box<dyn Interaction>, Tested)>, CaseError> {
+        let Some(method @ Method::Mortar(stated)) = &key.method else { return Ok(None) };
+        let problem = self.problem;
+        let body = |part: &Part| system.bodies[part.body].as_ref();
+        let told = |part: &Part, what: &str| {
+            let message = format!("`{}` {what}", body(part).name());
+            problem.error(method, message).help("method.gauss_point = {}  or  method.node = {}, or leave the method out")
+        };
+        if slave.body == master.body {
+            return Err(told(slave, "touches itself: a mortar joins two bodies"));
+        }
+        if !matches!(kinds[slave.body], Kind::Solid) {
+            return Err(told(slave, "has no faces to put a mortar on: the first body is a solid"));
+        }
+        if !matches!(kinds[master.body], Kind::Solid | Kind::Rigid { .. }) {
+            return Err(told(master, "has no faces that a mortar could cut: the second body is a solid or rigid"));
+        }
+        let kept = self.kept(stated.enforcement.as_ref(), Kept::Multiplier)?;
+        let mut contact = Mortar::new(name, (slave.clone(), body(slave)), (master.clone(), body(master)), kept)
+            .map_err(|error| problem.error(method, error.to_string()))?;
+        if let Some(friction) = &key.friction {
+            contact.friction = Some(self.law(friction, 3)?);
+            if let Friction::Coulomb(coulomb) = friction {
+                contact.axis = self.axis_choice(coulomb)?;
+                self.check_axis(coulomb, contact.axis, &kinds[master.body])?;
+            }
+        }
+        let tested = Tested { method: "mortar", axis: contact.axis, along_a_curve: false };
+        Ok(Some((Box::new(contact), tested)))
+    }
+
+    /// Axes of friction that a mortar does not have.
+    fn check_axis(&self, law: &problem::CoulombFriction, axis: AxisChoice, master: &Kind) -> Result<(), CaseError> {
+        let at = || law.axis.as_ref().map_or_else(|| self.key(&law.mu), |axis| self.key(axis));
+        if axis == AxisChoice::Tangent && self.space == problem::Space::ThreeD {
+            return Err(self
+                .problem
+                .error(&at(), "a surface has no tangent of its own: two coefficients of friction need an axis")
+                .help("axis = [1, 0, 0]"));
+        }
+        if matches!((axis, master), (AxisChoice::OnMaster(_), Kind::Rigid { is_free: true, .. })) {
+            return Err(self
+                .problem
+                .error(&at(), "with a mortar the axes of friction do not turn with a free body")
+                .help("on = \"slave\", or method.gauss_point = {}"));
+        }
+        Ok(())
+    }
+}

@@ -1,6 +1,6 @@
 //! The domain of a membrane and its cells: a background grid, or a mesh from a file.
 
-use super::Planner;
+use super::planner::Planner;
 use super::pieces::Apart;
 use super::placement::PlacementKeys;
 use crate::expression::{Expression, Scope};

@@ -2,7 +2,8 @@
 
 use super::placement::PlacementKeys;
 use super::rigid_shape::{self, ShapeKeys};
-use super::{Placed, Planner};
+use super::placed::Placed;
+use super::planner::Planner;
 use crate::expression::Scope;
 use crate::problem::units::{Dimension, LENGTH, NONE};
 use crate::problem::{CaseError, List, Location, Problem, Value};

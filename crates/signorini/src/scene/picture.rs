@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use signorini_geometry::Vector;
 
 use super::output::Tessellation;
-use super::{Frame, KINDS, Scene};
+use super::case::{Frame, KINDS, Scene};
 use crate::output::camera::Camera;
 use crate::output::chart::{FONT, Shot, animation, save};
 use crate::output::page::{Page, css, escaped, sheet};

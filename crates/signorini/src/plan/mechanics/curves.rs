@@ -1,7 +1,7 @@
 //! Ropes and beams of a system.
 
 use crate::expression::{Expression, Scope};
-use crate::plan::Planner;
+use crate::plan::planner::Planner;
 use crate::plan::placement::PlacementKeys;
 use crate::problem::units::{LENGTH, NONE, PRESSURE};
 use crate::problem::{

@@ -1,6 +1,6 @@
 //! Laws of friction between solids.
 
-use crate::plan::Planner;
+use crate::plan::planner::Planner;
 use crate::plan::mechanics::is_tangent;
 use crate::problem::units::{NONE, PRESSURE};
 use crate::problem::{self, CaseError, Value};

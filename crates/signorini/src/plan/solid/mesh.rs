@@ -2,7 +2,8 @@
 
 use super::evaluate;
 use crate::plan::placement::PlacementKeys;
-use crate::plan::{Placed, Planner};
+use crate::plan::placed::Placed;
+use crate::plan::planner::Planner;
 use crate::problem;
 use crate::problem::CaseError;
 use crate::problem::units::LENGTH;

@@ -5,7 +5,8 @@ use crate::plan::{Contact, MembranePlan, MethodChoice};
 use crate::problem::Space;
 use crate::report::{ContactReport, Reason, UnitNames};
 use crate::run::record::Record;
-use crate::run::{Ending, sizes};
+use crate::run::outcome::Ending;
+use crate::run::sizes;
 use signorini_membrane::obstacle::Side;
 
 /// The result in a sentence, with what to try where there is none.

@@ -1,6 +1,6 @@
 //! Parsed expressions and their values.
 
-use super::function::{FieldFunction, InTime};
+use super::function::FieldFunction;
 use super::scope::Scope;
 use signorini_geometry::Real;
 use signorini_geometry::height_field::{self, HeightField};
@@ -231,7 +231,7 @@ impl Node {
     }
 
     /// Parts without position and time replaced by their value.
-    fn folded(self) -> Node {
+    pub(super) fn folded(self) -> Node {
         if self.any(&|n| matches!(n, Node::Position(_) | Node::Time | Node::Height(_) | Node::Field(_))) {
             return self.map(&|n| n.clone().folded());
         }

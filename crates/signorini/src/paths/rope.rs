@@ -1,7 +1,7 @@
 //! Ropes on curves that are given: where they are pressed on, whether they slide sideways, which tensions friction holds.
 
-use super::output::{self, Line, LinePoint};
 use super::case::PathCase;
+use super::output::{self, Line, LinePoint};
 use super::picture;
 use super::surface::{box_around, surfaces};
 use crate::output::Folder;

@@ -1,7 +1,7 @@
 //! Shortest paths over moving bodies, frame by frame.
 
-use super::output::{self, Line, LinePoint};
 use super::case::PathCase;
+use super::output::{self, Line, LinePoint};
 use super::picture;
 use super::surface::{box_around, surfaces};
 use crate::output::Folder;

@@ -7,6 +7,7 @@ use crate::problem::units::{Dimension, LENGTH};
 use crate::problem::{CaseError, List, Value};
 use crate::problem::{Cylinder, Ellipsoid, Rigid, Shape, Space};
 use signorini_geometry::Vector;
+use signorini_geometry::height_field::View;
 use signorini_geometry::rigid_shape::NoHeight;
 use signorini_membrane::obstacle::Side;
 

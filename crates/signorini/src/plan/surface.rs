@@ -1,5 +1,6 @@
 //! The surfaces that a membrane may touch: heights, on which side of it they lie, and how they move.
 
+use super::height::view;
 use super::placed::{Placed, field};
 use super::planner::{Planner, coordinates};
 use crate::expression::{Expression, Scope};
@@ -8,7 +9,7 @@ use crate::problem::{self, Lies, List, Motion, Rigid, Shape, Space};
 use crate::problem::{CaseError, Part, Value};
 use crate::relief::{LevelSetTop, Sampled};
 use crate::report::Warning;
-use signorini_geometry::height_field::View;
+
 use signorini_geometry::{Point, Vector};
 use signorini_membrane::field::Moved;
 use signorini_membrane::obstacle::{Obstacle, Side};

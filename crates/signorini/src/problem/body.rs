@@ -1,5 +1,6 @@
 //! Deformable bodies: what they occupy, what they are computed on, and what they are made of.
 
+use super::material::Material;
 use super::{Beam, CellsBody, Components, List, MeshArrays, Rigid, Rope, Value};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

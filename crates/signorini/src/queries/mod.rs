@@ -16,21 +16,22 @@ mod shapes;
 use std::collections::HashSet;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crate::mesh_file;
-use answer::Format;
+
 use answered::Answered;
-pub use query::{PairQuery, QueriesError};
 use geometry::FieldError;
 use object::Object;
 use output::Output;
+pub use query::{PairQuery, QueriesError};
 use rayon::prelude::*;
 use scanner::{RawCase, Scanner};
 use serde_json::Value;
 use shapes::Shapes;
 pub use signorini_geometry::closest::Query;
-use signorini_geometry::closest::{Certificate, Projection, Uniqueness, closest};
+use signorini_geometry::closest::{Certificate, closest};
 use signorini_geometry::shape::Shape;
 
 /// What was done with a file of queries.

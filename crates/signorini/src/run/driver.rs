@@ -1,9 +1,9 @@
 //! One driver for all models: increments, files, what a later run goes on from, and the end.
 
 use super::checkpoint::{self, Checkpoint};
-use super::record::Record;
 use super::environment;
 use super::outcome::{Ending, Outcome, RunError, not_resumed};
+use super::record::Record;
 use crate::fields::ShownState;
 use crate::output::{Folder, OutputError};
 use crate::plan::Head;

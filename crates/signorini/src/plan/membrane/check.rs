@@ -4,7 +4,7 @@ use super::MembranePlan;
 use crate::plan::placed::{Placed, field};
 use crate::problem::CaseError;
 use signorini_fem::cut::QuadraturePoint;
-use signorini_geometry::{Jet, Point};
+use signorini_geometry::{Jet, Point, Real};
 use signorini_membrane::field::SharedField;
 use signorini_membrane::obstacle::Side;
 use signorini_membrane::problem::Membrane;

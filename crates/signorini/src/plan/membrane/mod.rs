@@ -7,7 +7,7 @@ mod read;
 mod supports;
 mod times;
 
-use super::domain;
+use super::domain::{self, memory_at_hand, memory_estimate};
 use super::head::Head;
 use super::placed::{Placed, field};
 use super::surface::Contact;

@@ -1,7 +1,7 @@
 //! Reads the membrane of a problem.
 
 use super::{MembranePlan, PlannedSupport};
-use crate::plan::domain::{self, memory_at_hand};
+use crate::plan::domain;
 use crate::plan::placed::Placed;
 use crate::plan::planner::Planner;
 use crate::plan::surface::Contact;

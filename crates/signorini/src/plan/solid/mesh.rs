@@ -1,8 +1,8 @@
 //! Meshes of solids: boxes and files.
 
 use super::evaluate;
-use crate::plan::placement::PlacementKeys;
 use crate::plan::placed::Placed;
+use crate::plan::placement::PlacementKeys;
 use crate::plan::planner::Planner;
 use crate::problem;
 use crate::problem::CaseError;

@@ -5,82 +5,27 @@ mod driver;
 mod environment;
 mod mechanics;
 mod membrane;
+pub(crate) mod outcome;
 mod record;
 mod sizes;
 mod solid;
 
-use crate::fields::ShownState;
-use crate::output::OutputError;
 use crate::plan::{Plan, plan};
 use crate::problem::{CaseError, Problem};
-use crate::report::{Reason, Summary};
 use driver::{Model, drive, go_on};
 use mechanics::MechanicsModel;
 use membrane::MembraneModel;
+use outcome::not_resumed;
+pub use outcome::{Begun, Ending, Outcome, RunError};
 pub use signorini_solve::{Iteration, Progress, Silent};
 pub use sizes::{preview, sizes};
 use solid::SolidModel;
 use std::path::Path;
 use std::time::Instant;
 
-/// Why a run has no summary.
-#[derive(Debug, thiserror::Error)]
-pub enum RunError {
-    #[error(transparent)]
-    Case(#[from] Box<CaseError>),
-    #[error(transparent)]
-    Output(#[from] OutputError),
-}
-
-impl From<CaseError> for RunError {
-    fn from(error: CaseError) -> Self {
-        RunError::Case(Box::new(error))
-    }
-}
-
-/// How a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ending {
-    Converged,
-    NotConverged,
-    Interrupted,
-}
-
-impl Ending {
-    /// The ending that a reason means.
-    fn of(reason: Reason) -> Self {
-        match reason {
-            Reason::Interrupted => Self::Interrupted,
-            reason if reason.is_converged() => Self::Converged,
-            _ => Self::NotConverged,
-        }
-    }
-}
-
-/// What a run leaves behind.
-pub struct Outcome {
-    pub summary: Summary,
-    pub ending: Ending,
-    /// The states of [`solve`], as often as the output asks for; of a run with a folder they are there.
-    pub states: Vec<ShownState>,
-}
-
 /// Runs a case and writes its results into a folder, with the threads of rayon's current pool.
 pub fn run(problem: &Problem, folder: &Path, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
     begin(problem, folder, Begun::Fresh, progress)
-}
-
-/// Where a run begins.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Begun {
-    /// At its beginning, as was asked.
-    Fresh,
-    /// After the last increment that an earlier run kept.
-    Resumed,
-    /// At its beginning, as the earlier run kept no increment.
-    Anew,
-    /// Nowhere: the earlier run is done.
-    Done,
 }
 
 /// Where a run of a case would go on in the folder of an earlier one.
@@ -138,9 +83,4 @@ fn model(problem: &Problem) -> Result<Box<dyn Model>, CaseError> {
         Plan::Solids(p) => Box::new(SolidModel::new(*p)?),
         Plan::Mechanics(p) => Box::new(MechanicsModel::new(*p)),
     })
-}
-
-/// Why there is nothing to go on with, for a user.
-fn not_resumed(why: String) -> CaseError {
-    CaseError::new(why).help("run it from the beginning, without --resume")
 }

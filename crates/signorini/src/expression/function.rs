@@ -1,6 +1,6 @@
 //! Fields that a program states as functions of its own.
 
-use super::Scope;
+use super::scope::Scope;
 use signorini_geometry::{Jet, Real};
 use std::fmt;
 use std::sync::Arc;

@@ -1,6 +1,6 @@
 //! A Pratt parser for expressions: one pass, a span in every error.
 
-use super::{Binary, Compare, Definition, Expression, Function, MAX_DEPTH, MAX_TOKENS, Node, PairFunction};
+use super::tree::{Binary, Compare, Definition, Expression, Function, MAX_DEPTH, MAX_TOKENS, Node, PairFunction};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;

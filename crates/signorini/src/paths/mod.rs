@@ -1,77 +1,28 @@
 //! Runs of problems of paths on rigid bodies: shortest paths over bodies that move, paths of yarns on mandrels, ropes on
 //! given curves. No equations of bodies are solved.
 
+mod case;
 mod output;
 mod picture;
 mod rope;
+mod surface;
 mod winding;
 mod wrapping;
 
 use crate::output::Folder;
 use crate::output::figure::told;
-use crate::plan::paths::{PathPlan, Task, plan_paths};
-use crate::problem::units::{Dimension, FORCE, LENGTH};
-use crate::problem::{Analysis, CaseError, KeyPath, Problem};
+use crate::plan::paths::Task;
+use crate::problem::units::{FORCE, LENGTH};
+use crate::problem::{Analysis, Problem};
 use crate::run::Progress;
 use crate::scene::SceneError;
+pub use case::PathCase;
 use serde_json::{Value, json};
-use signorini_geometry::{Aabb, Point, Vector};
-use signorini_paths::PathError;
 use std::path::Path;
 
 /// Whether a problem is about paths rather than equilibrium.
 pub fn is_of_paths(problem: &Problem) -> bool {
     problem.analysis.is_some_and(|a| a != Analysis::Equilibrium)
-}
-
-/// A problem of paths that was read.
-pub struct PathCase {
-    plan: PathPlan,
-}
-
-impl PathCase {
-    /// # Errors
-    /// What is wrong with the problem, and where.
-    pub fn new(problem: &Problem) -> Result<Self, CaseError> {
-        Ok(PathCase { plan: plan_paths(problem)? })
-    }
-
-    /// Reads a case from a text; files that its bodies name are looked for beside the file `name`. `overrides` are
-    /// `KEY=VALUE` pairs.
-    ///
-    /// # Errors
-    /// What is wrong with it, and where.
-    pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Self, CaseError> {
-        Self::new(&crate::case::read(name, text, overrides)?)
-    }
-
-    /// Its title, or the name of its file.
-    pub fn name(&self) -> &str {
-        self.plan.head.problem.name()
-    }
-
-    /// How many paths it states.
-    pub fn paths(&self) -> usize {
-        match &self.plan.task {
-            Task::Wrapping { paths, .. } => paths.len(),
-            Task::Winding(list) => list.len(),
-            Task::EulerEytelwein(list) => list.len(),
-        }
-    }
-
-    fn problem(&self) -> &Problem {
-        &self.plan.head.problem
-    }
-
-    /// An error of a path at its table.
-    fn failed(&self, key: &KeyPath, name: &str, error: &PathError) -> CaseError {
-        self.problem().error(key, format!("the path `{name}`: {error}"))
-    }
-
-    /// The name of the base unit of a dimension; empty where no units are stated.
-    fn unit(&self, dimension: Dimension) -> String {
-        self.plan.head.units.map_or(String::new(), |u| u.written(dimension))
-    }
 }
 
 /// Runs a case into a folder and returns its summary.
@@ -164,37 +115,6 @@ pub fn sentences(summary: &Value) -> Vec<String> {
         }
     }
     out
-}
-
-/// The box of points, and beyond it by a part of its size.
-fn box_around(points: impl Iterator<Item = Point<3>>, part: f64) -> Aabb<3> {
-    let (mut low, mut high) = (Vector::<3>::repeat(f64::INFINITY), Vector::<3>::repeat(f64::NEG_INFINITY));
-    for x in points {
-        (low, high) = (low.inf(&x), high.sup(&x));
-    }
-    let pad = Vector::<3>::repeat(part * (high - low).max().max(f64::MIN_POSITIVE));
-    Aabb::new(low - pad, high + pad)
-}
-
-/// The surfaces of all bodies at all times: of those without an end the part in a box.
-fn surfaces(case: &PathCase, times: &[f64], around: &Aabb<3>) -> Result<Vec<Vec<picture::Surface>>, CaseError> {
-    let mut frames: Vec<Vec<picture::Surface>> = times.iter().map(|_| Vec::new()).collect();
-    for body in &case.plan.bodies {
-        let Some(bounds) = body.bounds.filter(|_| !body.is_at_rest()) else {
-            for (frame, time) in frames.iter_mut().zip(times) {
-                let bounds = body.bounds.map_or(*around, |b| box_around([b.min, b.max].into_iter(), 0.05));
-                frame.push(picture::Surface::new(&body.gap_at(case.problem(), *time)?, [bounds.min, bounds.max]));
-            }
-            continue;
-        };
-        // What moves is found once, and moved.
-        let bounds = box_around([bounds.min, bounds.max].into_iter(), 0.05);
-        let stated = picture::Surface::new(&|x: &Point<3>| body.shape().gap(x), [bounds.min, bounds.max]);
-        for (frame, time) in frames.iter_mut().zip(times) {
-            frame.push(stated.moved(&body.motion(case.problem(), *time)?));
-        }
-    }
-    Ok(frames)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Tables and VTP files of paths.
 
-use super::picture::Surface;
+use super::surface::Surface;
 use crate::output::vtk::{collection, to_bytes};
 use crate::output::{Folder, OutputError};
 use crate::scene::output::numbers;

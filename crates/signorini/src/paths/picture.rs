@@ -1,13 +1,13 @@
 //! Bodies and paths in space: the path coloured by its normal force, with arrows of that force, and red where it slips or
 //! bridges. Of paths in time their length.
 
-use super::PathCase;
+use super::case::PathCase;
 use super::output::{Line, LinePoint};
+use super::surface::Surface;
 use crate::output::camera::Camera;
 use crate::output::chart::{self, save, viridis};
 use crate::output::figure::told;
 use crate::output::labels::Labels;
-use crate::output::level;
 use crate::output::page::{Page, Scale, Sign};
 use crate::output::panel::{Axis, Panel};
 use crate::output::render::{Body, Look, Paint};
@@ -16,9 +16,7 @@ use crate::output::system::CurveShown;
 use crate::output::system_bodies::tube;
 use crate::output::{Folder, OutputError};
 use plotters::style::RGBColor;
-use signorini_contact::GapJet;
 use signorini_geometry::Vector;
-use signorini_geometry::rigid::RigidMotion;
 
 const SIZE: (f64, f64) = (1060.0, 760.0);
 const BODIES: [RGBColor; 3] = [RGBColor(158, 182, 214), RGBColor(226, 196, 146), RGBColor(170, 205, 170)];
@@ -29,29 +27,6 @@ const THICK: f64 = 0.004;
 const ARROW: f64 = 0.08;
 /// At most so many arrows on a path.
 const ARROWS: usize = 40;
-
-/// The surface of a body in a box.
-pub struct Surface {
-    pub points: Vec<Vector<3>>,
-    pub normals: Vec<Vector<3>>,
-    pub triangles: Vec<[u32; 3]>,
-}
-
-impl Surface {
-    pub fn new(gap: &(dyn Fn(&Vector<3>) -> GapJet<3> + Sync), corners: [Vector<3>; 2]) -> Self {
-        let (points, normals, triangles) = level::surface(gap, corners);
-        Surface { points, normals, triangles }
-    }
-
-    /// The surface after a motion.
-    pub fn moved(&self, motion: &RigidMotion) -> Self {
-        Surface {
-            points: self.points.iter().map(|x| motion.point(x)).collect(),
-            normals: self.normals.iter().map(|n| motion.rotation * n).collect(),
-            triangles: self.triangles.clone(),
-        }
-    }
-}
 
 /// The pieces of a path that a test keeps, as a tube coloured by the normal force.
 fn pieces(line: &Line, keep: &dyn Fn(&LinePoint, &LinePoint) -> bool, scale: &Scale, radius: f64) -> Body {

@@ -1,7 +1,9 @@
 //! Ropes on curves that are given: where they are pressed on, whether they slide sideways, which tensions friction holds.
 
+use super::case::PathCase;
 use super::output::{self, Line, LinePoint};
-use super::{PathCase, box_around, picture, surfaces};
+use super::picture;
+use super::surface::{box_around, surfaces};
 use crate::output::Folder;
 use crate::plan::paths::PlannedRope;
 use crate::run::Progress;

@@ -1,7 +1,9 @@
 //! Paths of yarns on mandrels: slippage, openings, circuits, patterns.
 
+use super::case::PathCase;
 use super::output::{self, Line, LinePoint};
-use super::{PathCase, box_around, picture, surfaces};
+use super::picture;
+use super::surface::{box_around, surfaces};
 use crate::output::Folder;
 use crate::plan::paths::PlannedWinding;
 use crate::run::Progress;

@@ -1,7 +1,9 @@
 //! Shortest paths over moving bodies, frame by frame.
 
+use super::case::PathCase;
 use super::output::{self, Line, LinePoint};
-use super::{PathCase, box_around, picture, surfaces};
+use super::picture;
+use super::surface::{box_around, surfaces};
 use crate::output::Folder;
 use crate::plan::Placed;
 use crate::plan::paths::{PlannedEnd, PlannedPath, PlannedStation};

@@ -1,6 +1,6 @@
 //! Meshes and surfaces from arrays.
 
-use super::Planner;
+use super::planner::Planner;
 use crate::problem::{CaseError, MeshArrays, TriangleArrays};
 use signorini_fem::gmsh::{GmshFile, ListedCells};
 use signorini_fem::mesh::position;

@@ -1,8 +1,8 @@
 //! The domain of a membrane and its cells: a background grid, or a mesh from a file.
 
-use super::Planner;
 use super::pieces::Apart;
 use super::placement::PlacementKeys;
+use super::planner::Planner;
 use crate::expression::{Expression, Scope};
 use crate::problem::units::{LENGTH, NONE};
 use crate::problem::{self, Domain, List, Mesh, Space};

@@ -1,6 +1,6 @@
 //! What every plan knows besides its bodies: what its results are called, in which units, and what is written.
 
-use super::Planner;
+use super::planner::Planner;
 use super::reader::Interpreted;
 use crate::problem::units::Units;
 use crate::problem::{CaseError, Problem};

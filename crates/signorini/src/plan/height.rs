@@ -1,19 +1,27 @@
 //! The height in which a membrane sees rigid shapes that have closed forms.
 
-use super::Planner;
+use super::planner::Planner;
 use super::rigid_shape::{self, ShapeKeys};
-use super::surface::view;
 use crate::expression::Expression;
 use crate::problem::units::{Dimension, LENGTH};
 use crate::problem::{CaseError, List, Value};
 use crate::problem::{Cylinder, Ellipsoid, Rigid, Shape, Space};
 use signorini_geometry::Vector;
+use signorini_geometry::height_field::View;
 use signorini_geometry::rigid_shape::NoHeight;
 use signorini_membrane::obstacle::Side;
 
 /// Points without a tangent plane are rounded off by this part of the size of the membrane: far below its cells, and well
 /// above round-off.
 const ROUNDING: f64 = 1e-6;
+
+/// From where the membrane sees a body.
+pub(super) fn view(side: Side) -> View {
+    match side {
+        Side::Below => View::FromAbove,
+        Side::Above => View::FromBelow,
+    }
+}
 
 /// The height of a shape on one side of a membrane within a box, and the name of the shape; none for shapes without a
 /// closed form.

@@ -1,7 +1,9 @@
 //! From the statement to paths on rigid bodies: shortest ones, those of yarns, ropes on given curves.
 
+use super::head::Head;
+use super::placed::Placed;
+use super::planner::Planner;
 use super::rigid::RigidBody;
-use super::{Head, Placed, Planner};
 use crate::expression::Scope;
 use crate::problem::units::{FORCE, LENGTH, NONE};
 use crate::problem::{

@@ -1,6 +1,6 @@
 //! Where what a file holds is put: scaled, turned, moved.
 
-use super::Planner;
+use super::planner::Planner;
 use crate::problem::units::{LENGTH, NONE};
 use crate::problem::{CaseError, Components, List, Value};
 use signorini_geometry::rigid::RigidMotion;

@@ -1,8 +1,9 @@
 //! Rigid bodies that solids press on: the gap to them and their outward normal, anywhere and at any time.
 
+use super::placed::Placed;
 use super::placement::PlacementKeys;
+use super::planner::Planner;
 use super::rigid_shape::{self, ShapeKeys};
-use super::{Placed, Planner};
 use crate::expression::Scope;
 use crate::problem::units::{Dimension, LENGTH, NONE};
 use crate::problem::{CaseError, List, Location, Problem, Value};

@@ -1,6 +1,6 @@
 //! Reads the keys of rigid shapes that have closed forms, for solids and membranes alike.
 
-use super::Planner;
+use super::planner::Planner;
 use crate::problem::units::{Dimension, LENGTH, NONE};
 use crate::problem::{self, List, Shape};
 use crate::problem::{CaseError, Value};

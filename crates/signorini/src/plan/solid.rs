@@ -5,10 +5,12 @@ mod mesh;
 
 pub use friction::PlannedFriction;
 
+use super::head::Head;
 use super::pieces::Apart;
+use super::placed::Placed;
 use super::placement::PlacementKeys;
+use super::planner::Planner;
 use super::rigid::{self, RigidBody};
-use super::{Head, Placed, Planner};
 use crate::expression::Scope;
 use crate::problem::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE};
 use crate::problem::{self, Body, Enforcement, List, Material, Method, SolidMesh, Space};

@@ -1,13 +1,15 @@
 //! The surfaces that a membrane may touch: heights, on which side of it they lie, and how they move.
 
-use super::{Placed, Planner, coordinates, field};
+use super::height::view;
+use super::placed::{Placed, field};
+use super::planner::{Planner, coordinates};
 use crate::expression::{Expression, Scope};
 use crate::problem::units::{LENGTH, NONE};
 use crate::problem::{self, Lies, List, Motion, Rigid, Shape, Space};
 use crate::problem::{CaseError, Part, Value};
 use crate::relief::{LevelSetTop, Sampled};
 use crate::report::Warning;
-use signorini_geometry::height_field::View;
+
 use signorini_geometry::{Point, Vector};
 use signorini_membrane::field::Moved;
 use signorini_membrane::obstacle::{Obstacle, Side};
@@ -120,14 +122,6 @@ fn side(planner: &Planner<'_>, rigid: &Rigid, level: Option<f64>) -> Result<Side
         Shape::Ellipsoid(s) => by_centre(&s.center),
         Shape::Torus(s) => by_centre(&s.center),
         _ => Ok(Side::Below),
-    }
-}
-
-/// From where the membrane sees a body.
-pub(super) fn view(side: Side) -> View {
-    match side {
-        Side::Below => View::FromAbove,
-        Side::Above => View::FromBelow,
     }
 }
 

@@ -1,5 +1,6 @@
 //! Deformable bodies: what they occupy, what they are computed on, and what they are made of.
 
+use super::material::Material;
 use super::{Beam, CellsBody, Components, List, MeshArrays, Rigid, Rope, Value};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -77,26 +78,6 @@ pub struct MeshAxis {
     pub cells: List<i64>,
     /// Of each stretch the ratio of the length of a cell to that of the one before, 1 if left out.
     pub growth: Option<List<f64>>,
-}
-
-#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Material {
-    /// Isotropic and linear.
-    LinearElastic(LinearElastic),
-    /// Isotropic at any strain, from the strain energy of Neo and Hooke; with `strain = "finite"`.
-    NeoHooke(LinearElastic),
-    /// Isotropic and linear in the strain of Green and Lagrange: for large rotations; with `strain = "finite"`.
-    SaintVenantKirchhoff(LinearElastic),
-}
-
-#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct LinearElastic {
-    /// Young's modulus, a force per area.
-    pub youngs_modulus: Value,
-    /// Poisson's ratio, above -1 and below 0.5.
-    pub poissons_ratio: Value,
 }
 
 /// A film under tension.

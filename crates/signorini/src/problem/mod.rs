@@ -15,6 +15,8 @@ pub mod fit;
 pub mod history;
 pub mod key_path;
 pub mod list;
+pub mod material;
+pub mod nothing;
 pub mod paths;
 pub mod rigid;
 pub mod source;
@@ -31,6 +33,8 @@ pub use fit::{Fit, FitUnknown, Noise};
 pub use history::{ArcLength, AreaControl, Control, Step};
 pub use key_path::{KeyPath, Part, ProblemPart};
 pub use list::{List, Named};
+pub use material::*;
+pub use nothing::Nothing;
 pub use paths::*;
 pub use rigid::*;
 pub use source::Source;
@@ -267,11 +271,6 @@ pub struct Table {
     /// Values, one for each argument.
     pub value: List<f64>,
 }
-
-/// A table without keys.
-#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Nothing {}
 
 /// Where something is held or moved.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]

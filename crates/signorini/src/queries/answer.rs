@@ -1,6 +1,6 @@
 //! Answers as files have them: objects of JSON, lines of CSV, rows of an array of NumPy.
 
-use super::PairQuery;
+use super::query::PairQuery;
 use crate::npy;
 use serde::Serialize;
 use signorini_geometry::closest::{Certificate, ClosestPair, FeatureKind, Foot, Projection, Uniqueness, signed_gap};

@@ -4,53 +4,35 @@
 //! gets an answer that says so and stops no other.
 
 pub mod answer;
+mod answered;
 pub mod geometry;
 mod object;
 mod output;
 mod points;
+mod query;
 pub mod scanner;
 mod shapes;
 
 use std::collections::HashSet;
 use std::io::{self, BufRead, BufReader, Read};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crate::mesh_file;
-use answer::{Answer, Format};
+
+use answered::Answered;
 use geometry::FieldError;
 use object::Object;
 use output::Output;
+pub use query::{PairQuery, QueriesError};
 use rayon::prelude::*;
-use scanner::{RawCase, ScanError, Scanner};
+use scanner::{RawCase, Scanner};
 use serde_json::Value;
 use shapes::Shapes;
 pub use signorini_geometry::closest::Query;
-use signorini_geometry::closest::{Certificate, Projection, Uniqueness, closest};
+use signorini_geometry::closest::{Certificate, closest};
 use signorini_geometry::shape::Shape;
-
-/// A query: two shapes.
-#[derive(Clone, Debug)]
-pub struct PairQuery {
-    pub a: Arc<Shape>,
-    pub b: Arc<Shape>,
-}
-
-/// Why a file of queries could not be answered to its end.
-#[derive(Debug, thiserror::Error)]
-pub enum QueriesError {
-    #[error("{}: cannot read: {source}", path.display())]
-    Open { path: PathBuf, source: io::Error },
-    #[error("{}: cannot write: {source}", path.display())]
-    Write { path: PathBuf, source: io::Error },
-    #[error("{}: {source}; the {answered} cases before it are answered", path.display())]
-    Scan { path: PathBuf, source: ScanError, answered: usize },
-    #[error("{}: line {line}: {source}", path.display())]
-    Shapes { path: PathBuf, line: usize, source: FieldError },
-    #[error("{}: {message}", path.display())]
-    Input { path: PathBuf, message: String },
-}
 
 /// What was done with a file of queries.
 #[derive(Clone, Debug, Default)]
@@ -144,39 +126,6 @@ fn name_of(case: &RawCase) -> String {
 fn quoted_id(text: &str) -> Option<String> {
     let rest = text.split_once("\"id\"")?.1.trim_start().strip_prefix(':')?.trim_start().strip_prefix('"')?;
     Some(rest.split_once('"')?.0.to_string())
-}
-
-/// An answer as it is written.
-struct Answered {
-    id: String,
-    line: usize,
-    /// Whether the closest points are the only ones and certified, or what is wrong.
-    found: Result<(Uniqueness, Certificate), FieldError>,
-    text: Vec<u8>,
-    time: Duration,
-}
-
-impl Answered {
-    fn new(
-        id: String,
-        line: usize,
-        first: bool,
-        format: Format,
-        result: Result<(PairQuery, Projection), FieldError>,
-    ) -> Self {
-        let mut text = Vec::new();
-        let found = match result {
-            Ok((query, projection)) => {
-                format.row(&mut text, &id, first, Ok(&Answer::new(&projection, &query)));
-                Ok((projection.uniqueness, projection.certificate))
-            }
-            Err(error) => {
-                format.row(&mut text, &id, first, Err((&error.to_string(), line)));
-                Err(error)
-            }
-        };
-        Answered { id, line, found, text, time: Duration::ZERO }
-    }
 }
 
 /// The bytes of a file; - is standard input.

@@ -1,7 +1,8 @@
 //! The file of answers.
 
 use super::answer::Format;
-use super::{Answered, QueriesError};
+use super::answered::Answered;
+use super::query::QueriesError;
 use std::fs::File;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! What an interrupted run needs to go on: written after every increment, whole or not at all, and read by
 //! `run --resume`. Numbers are read as they were written, to the last bit.
 
-use super::Begun;
+use super::outcome::Begun;
 use super::record::Record;
 use crate::output::{Folder, OutputError};
 use crate::report::Summary;

@@ -1,13 +1,14 @@
 //! One driver for all models: increments, files, what a later run goes on from, and the end.
 
 use super::checkpoint::{self, Checkpoint};
+use super::environment;
+use super::outcome::{Ending, Outcome, RunError, not_resumed};
 use super::record::Record;
-use super::{Ending, Outcome, RunError};
 use crate::fields::ShownState;
 use crate::output::{Folder, OutputError};
 use crate::plan::Head;
 use crate::problem::CaseError;
-use crate::report::Reason;
+use crate::report::{Reason, SCHEMA, Summary, history};
 use serde_json::{Value, json};
 use signorini_solve::{Iteration, Progress};
 use std::path::Path;
@@ -140,7 +141,7 @@ pub fn drive(
             }
             Err(error) => {
                 // What was found so far stays; the summary says how far it goes.
-                record.finish(model, Reason::Input, start)?;
+                finish(&record, model, Reason::Input, start)?;
                 return Err(error.into());
             }
         }
@@ -166,7 +167,7 @@ pub fn drive(
             checkpoint::write(&record, index + 1, state)?;
         }
     }
-    let summary = record.finish(model, reason, start)?;
+    let summary = finish(&record, model, reason, start)?;
     let states = std::mem::take(&mut record.states);
     let ending = Ending::of(reason);
     if ending == Ending::Converged {
@@ -186,12 +187,47 @@ pub fn go_on(
     start: std::time::Instant,
     progress: &mut dyn Progress,
 ) -> Result<Outcome, RunError> {
-    let Checkpoint { next, state, record } = checkpoint::read(path, record).map_err(super::not_resumed)?;
+    let Checkpoint { next, state, record } = checkpoint::read(path, record).map_err(not_resumed)?;
     if next >= model.increments() {
-        return Err(super::not_resumed(checkpoint::damaged(path)).into());
+        return Err(not_resumed(checkpoint::damaged(path)).into());
     }
-    model.restore(state, path, next).map_err(super::not_resumed)?;
+    model.restore(state, path, next).map_err(not_resumed)?;
     drive(model, record, next, start, progress)
+}
+
+/// Writes history, pictures and summary.
+///
+/// # Errors
+/// Files that cannot be written.
+fn finish(
+    record: &Record,
+    model: &dyn Model,
+    reason: Reason,
+    start: std::time::Instant,
+) -> Result<Summary, OutputError> {
+    let states = record.history(model.begins_at_rest());
+    record.folder.write("history.csv", history(&states, record.units.as_ref()).as_bytes())?;
+    if record.pictures && record.folder.path().is_some() {
+        model.draw(record)?;
+    }
+    let summary = Summary {
+        schema: SCHEMA,
+        case: record.case.clone(),
+        converged: reason.is_converged(),
+        reason,
+        verdict: model.verdict(record, reason),
+        method: model.method(),
+        unknowns: record.unknowns,
+        units: record.units.clone(),
+        first_picture: model.first_picture().filter(|_| record.pictures && record.folder.path().is_some()),
+        warnings: record.warnings.clone(),
+        interpreted: record.interpreted.clone(),
+        steps: record.steps.clone(),
+        events: record.events.clone(),
+        environment: environment::describe(start, rayon::current_num_threads(), &record.text),
+    };
+    record.folder.write("summary.json", summary.to_json().as_bytes())?;
+    Ok(summary)
 }
 
 #[cfg(test)]

@@ -1,12 +1,10 @@
 //! What a run has found so far, and where it writes it.
 
-use super::driver::Model;
-use super::environment;
 use crate::fields::ShownState;
 use crate::output::{Folder, OutputError, vtk};
 use crate::plan::Head;
 use crate::plan::reader::Interpreted;
-use crate::report::{ContactReport, Event, Probe, Reason, SCHEMA, StepReport, Summary, UnitNames, Warning, history};
+use crate::report::{ContactReport, Event, Probe, Reason, StepReport, UnitNames, Warning};
 use std::borrow::Cow;
 
 /// The number of the fields at t = 0 in the names of their files.
@@ -105,36 +103,6 @@ impl Record {
     /// Number of increments that were solved.
     pub fn done(&self) -> usize {
         self.steps.iter().filter(|s| s.converged).count()
-    }
-
-    /// Writes history, pictures and summary.
-    ///
-    /// # Errors
-    /// Files that cannot be written.
-    pub fn finish(&self, model: &dyn Model, reason: Reason, start: std::time::Instant) -> Result<Summary, OutputError> {
-        let states = self.history(model.begins_at_rest());
-        self.folder.write("history.csv", history(&states, self.units.as_ref()).as_bytes())?;
-        if self.pictures && self.folder.path().is_some() {
-            model.draw(self)?;
-        }
-        let summary = Summary {
-            schema: SCHEMA,
-            case: self.case.clone(),
-            converged: reason.is_converged(),
-            reason,
-            verdict: model.verdict(self, reason),
-            method: model.method(),
-            unknowns: self.unknowns,
-            units: self.units.clone(),
-            first_picture: model.first_picture().filter(|_| self.pictures && self.folder.path().is_some()),
-            warnings: self.warnings.clone(),
-            interpreted: self.interpreted.clone(),
-            steps: self.steps.clone(),
-            events: self.events.clone(),
-            environment: environment::describe(start, rayon::current_num_threads(), &self.text),
-        };
-        self.folder.write("summary.json", summary.to_json().as_bytes())?;
-        Ok(summary)
     }
 }
 

@@ -1,6 +1,6 @@
 //! What a run of a membrane would have to do, and what looks wrong before it starts.
 
-use super::RunError;
+use super::outcome::RunError;
 use super::solid;
 use crate::output::solid_fields::SolidDisplay;
 use crate::output::{pictures, solid_pictures, system_pictures};

@@ -7,7 +7,7 @@ use signorini_geometry::Point;
 use signorini_geometry::shape::Shape;
 use vtkio::model::{Attribute, Attributes, DataSet, PolyDataPiece, VertexNumbers};
 
-use super::{Frame, KINDS, Scene};
+use super::case::{Frame, KINDS, Scene};
 use crate::output::vtk::{collection, to_bytes};
 use crate::output::{Folder, OutputError};
 

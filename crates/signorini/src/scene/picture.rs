@@ -6,8 +6,8 @@ use plotters::style::RGBColor;
 use rayon::prelude::*;
 use signorini_geometry::Vector;
 
+use super::case::{Frame, KINDS, Scene};
 use super::output::Tessellation;
-use super::{Frame, KINDS, Scene};
 use crate::output::camera::Camera;
 use crate::output::chart::{FONT, Shot, animation, save};
 use crate::output::page::{Page, css, escaped, sheet};

@@ -1,7 +1,8 @@
 //! Bodies of finite cells of a system, from shapes, surfaces and images.
 
 use crate::expression::{Expression, Scope};
-use crate::plan::{Planner, rigid};
+use crate::plan::planner::Planner;
+use crate::plan::rigid;
 use crate::problem::units::{LENGTH, NONE, PRESSURE};
 use crate::problem::{
     CaseError, CellFunctions, CellIntegration, CellsBody, Composed, Geometry, ImageGeometry, IslandsKey, List,

@@ -1,7 +1,7 @@
 //! Contacts of a system: who may touch whom, tested where, kept how, with which friction.
 
 use super::{Kind, Numbers, Tested};
-use crate::plan::Planner;
+use crate::plan::planner::Planner;
 use crate::problem::units::{LENGTH, NONE};
 use crate::problem::{self, AxisOn, CaseError, Components, CurveForm, Enforcement, Method, Value};
 use signorini_geometry::Vector;

@@ -1,8 +1,8 @@
 //! Ropes and beams of a system.
 
 use crate::expression::{Expression, Scope};
-use crate::plan::Planner;
 use crate::plan::placement::PlacementKeys;
+use crate::plan::planner::Planner;
 use crate::problem::units::{LENGTH, NONE, PRESSURE};
 use crate::problem::{
     self, Beam, BeamModel, CaseError, Continuity, FormulaPath, List, Material, Path as Stated, PathFile, Rope, Value,

@@ -2,7 +2,7 @@
 //! solver has stopped at it.
 
 use crate::expression::{Expression, Scope};
-use crate::plan::Planner;
+use crate::plan::planner::Planner;
 use crate::problem::units::Dimension;
 use crate::problem::{CaseError, KeyPath, List, Problem, Space, Value};
 use signorini_geometry::{Point, Vector};

@@ -12,7 +12,8 @@ mod solids;
 pub(in crate::plan) use contacts::is_tangent;
 pub use fields::Wrong;
 
-use super::{Head, Planner};
+use super::head::Head;
+use super::planner::Planner;
 use crate::problem::units::LENGTH;
 use crate::problem::{self, Body, CaseError, Material, Motion, Problem, Space};
 use signorini_geometry::Point;

@@ -1,7 +1,7 @@
 //! Supports and loads of a system: on which part of which body, and what.
 
 use super::{Kind, Numbers, Wrong};
-use crate::plan::Planner;
+use crate::plan::planner::Planner;
 use crate::problem::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE};
 use crate::problem::{CaseError, List, Space, Value, suggestion};
 use signorini_geometry::{Point, Vector};

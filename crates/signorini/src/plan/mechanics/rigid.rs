@@ -1,7 +1,7 @@
 //! Rigid bodies of a system, at rest, moved or free.
 
 use super::{Kind, Wrong};
-use crate::plan::Planner;
+use crate::plan::planner::Planner;
 use crate::plan::rigid as beside;
 use crate::problem::units::LENGTH;
 use crate::problem::{CaseError, Motion as Stated, Rigid, Shape, Side, Space};

@@ -1,6 +1,6 @@
 //! Solids of a system: finite elements at small or finite strain.
 
-use crate::plan::Planner;
+use crate::plan::planner::Planner;
 use crate::problem::{CaseError, Solid, Space as Stated};
 use crate::report::Warning;
 use signorini_fem::{Group, Side};

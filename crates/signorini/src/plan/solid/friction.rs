@@ -1,7 +1,7 @@
 //! Laws of friction between solids.
 
-use crate::plan::Planner;
 use crate::plan::mechanics::is_tangent;
+use crate::plan::planner::Planner;
 use crate::problem::units::{NONE, PRESSURE};
 use crate::problem::{self, CaseError, Value};
 use signorini_contact::law::{Coulomb, Law, LawError, Tresca, Viscous};

@@ -1,8 +1,9 @@
 //! Meshes of solids: boxes and files.
 
 use super::evaluate;
+use crate::plan::placed::Placed;
 use crate::plan::placement::PlacementKeys;
-use crate::plan::{Placed, Planner};
+use crate::plan::planner::Planner;
 use crate::problem;
 use crate::problem::CaseError;
 use crate::problem::units::LENGTH;

@@ -13,10 +13,12 @@
 
 mod dense;
 
+use crate::compliance::{Compliance, Route, RowProducts, Solved};
 use crate::mortar::WeightedGap;
 use dense::Dense;
 use nalgebra::DMatrix;
 use signorini_solve::SolveError;
+use std::cell::OnceCell;
 use std::collections::{BTreeSet, HashMap};
 
 /// Why no contact state was found.
@@ -40,15 +42,6 @@ pub enum ActiveSetError {
     TooMany { iterations: usize },
     #[error("interrupted")]
     Interrupted,
-}
-
-/// The elastic system as the active set sees it: solves with the stiffness, springs included.
-pub trait Compliance {
-    /// `K_c⁻¹ b` for several right-hand sides, one after the other, to working precision.
-    fn solve_columns(&self, b: &mut [f64]) -> Result<(), SolveError>;
-    /// `K_c⁻¹ b`, refined to the round-off of the solution.
-    fn solve_accurately(&self, b: &[f64]) -> Result<Vec<f64>, SolveError>;
-    fn size(&self) -> usize;
 }
 
 /// A spring that holds a body until contact does: it acts on one unknown.
@@ -81,6 +74,8 @@ pub struct ActiveSet {
     columns: HashMap<usize, Vec<f64>>,
     /// The set of the last step.
     active: BTreeSet<usize>,
+    /// How the compliance is to be known; what costs less where nothing is said.
+    pub route: Option<Route>,
 }
 
 /// What was found.
@@ -92,8 +87,9 @@ pub struct ContactState {
     pub pressure: Vec<f64>,
     pub gap: Vec<f64>,
     pub active: Vec<bool>,
-    /// Solves of the dense system.
+    /// Solves of the system of the rows.
     pub iterations: usize,
+    pub route: Route,
 }
 
 const MOST_ITERATIONS: usize = 200;
@@ -105,6 +101,11 @@ pub(crate) const SPRINGS_LEFT: [f64; 7] = [1.0, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1
 /// Columns solved for at once.
 const COLUMNS: usize = 32;
 
+/// Pressure relative to the largest, and gap relative to the displacement, below which a row keeps its state: a few digits
+/// above what the equations are solved to.
+const KEPT: [f64; 2] = [1e-12, 1e-13];
+const KEPT_BY_PRODUCTS: [f64; 2] = [1e-10, 1e-11];
+
 /// What is solved for: rows, how they give way, springs, and the displacement without contact.
 struct Problem<'a> {
     system: &'a dyn Compliance,
@@ -114,15 +115,26 @@ struct Problem<'a> {
     load: &'a [f64],
     /// Displacement of the touched unknowns without contact, springs included.
     free_at: Vec<f64>,
+    /// The weighted gaps with it, and what springs move.
+    free: Vec<f64>,
+    products: OnceCell<RowProducts<'a>>,
+}
+
+/// The equations of a set of active rows.
+enum Equations {
+    Dense(Dense),
+    ByProducts,
 }
 
 /// Pressures and spring forces for which no row changes any more.
 struct Balanced {
-    dense: Dense,
+    equations: Equations,
     active: Vec<usize>,
     pressures: Vec<f64>,
     forces: Vec<f64>,
     gaps: Vec<f64>,
+    /// The largest displacement of what the rows touch.
+    moved: f64,
 }
 
 /// Counts iterations and tells of them; what comes back says whether to go on.
@@ -164,20 +176,22 @@ impl ActiveSet {
         debug_assert_eq!(rows.len(), soft.len());
         self.refresh(rows, springs);
         let free = system.solve_accurately(load)?;
-        let free_at = self.touched.iter().map(|&i| free[i as usize]).collect();
-        let problem = Problem { system, rows, soft, springs, load, free_at };
+        let free_at: Vec<f64> = self.touched.iter().map(|&i| free[i as usize]).collect();
+        let free = self.values(rows, springs, &free_at);
+        let problem = Problem { system, rows, soft, springs, load, free_at, free, products: OnceCell::new() };
         let mut iterations = Iterations { count: 0, report };
         let before = self.active.clone();
         let balanced = self.balance(&problem, &mut iterations);
-        let Balanced { dense, active, pressures, forces, gaps } = balanced.inspect_err(|_| self.active = before)?;
+        let Balanced { equations, active, pressures, forces, gaps, .. } = balanced.inspect_err(|_| self.active = before)?;
         let mut found = ContactState {
             u: Vec::new(),
             pressure: vec![0.0; rows.len()],
             gap: gaps,
             active: (0..rows.len()).map(|k| self.active.contains(&k)).collect(),
             iterations: iterations.count,
+            route: if let Equations::Dense(_) = equations { Route::Columns } else { Route::Products },
         };
-        self.refine(&problem, &dense, (&active, pressures, forces), &mut found)?;
+        self.refine(&problem, &equations, (&active, pressures, forces), &mut found)?;
         Ok(found)
     }
 
@@ -186,9 +200,7 @@ impl ActiveSet {
     fn balance(&mut self, problem: &Problem<'_>, iterations: &mut Iterations<'_>) -> Result<Balanced, ActiveSetError> {
         let hopeful = |error: &ActiveSetError| !matches!(error, ActiveSetError::Solve(_) | ActiveSetError::Interrupted);
         if self.active.is_empty() {
-            self.active = (0..problem.rows.len())
-                .filter(|&k| problem.rows[k].gap + self.product(&problem.rows[k].terms, &problem.free_at) < 0.0)
-                .collect();
+            self.active = (0..problem.rows.len()).filter(|&k| problem.free[k] < 0.0).collect();
         }
         let mut found = self.pivot(problem, 0.0, iterations);
         if problem.springs.is_empty() {
@@ -220,28 +232,19 @@ impl ActiveSet {
         let mut last_flips = Vec::new();
         for _ in 0..MOST_ITERATIONS {
             let active: Vec<usize> = self.active.iter().copied().collect();
-            let dense = self.dense(problem, left, &active)?;
-            let (pressures, forces) =
-                dense.solve(&self.defects(problem, left, &active, &problem.free_at, (&[], &[])))?;
-            let mut at = problem.free_at.clone();
-            for (&k, p) in active.iter().zip(&pressures) {
-                add(&mut at, &self.columns[&k], *p);
-            }
-            for (s, force) in forces.iter().enumerate() {
-                add(&mut at, &self.columns[&(rows.len() + s)], *force);
-            }
-            let gaps: Vec<f64> = rows.iter().map(|r| r.gap + self.product(&r.terms, &at)).collect();
-            let largest = pressures.iter().fold(0.0f64, |m, p| m.max(p.abs()));
-            let moved = at.iter().fold(size, |m, u| m.max(u.abs()));
+            let found = self.carried(problem, left, active)?;
+            let kept = if let Equations::Dense(_) = found.equations { KEPT } else { KEPT_BY_PRODUCTS };
+            let largest = found.pressures.iter().fold(0.0f64, |m, p| m.max(p.abs()));
+            let moved = found.moved.max(size);
             let mut next = BTreeSet::new();
-            for (&k, p) in active.iter().zip(&pressures) {
-                if *p > -1e-12 * largest {
+            for (&k, p) in found.active.iter().zip(&found.pressures) {
+                if *p > -kept[0] * largest {
                     next.insert(k);
                 }
             }
             for (k, row) in rows.iter().enumerate() {
-                let open = (gaps[k] - soft[k].compliance * soft[k].shift) / row.weight;
-                if !self.active.contains(&k) && open < -1e-13 * moved {
+                let open = (found.gaps[k] - soft[k].compliance * soft[k].shift) / row.weight;
+                if !self.active.contains(&k) && open < -kept[1] * moved {
                     next.insert(k);
                 }
             }
@@ -250,7 +253,7 @@ impl ActiveSet {
             if !(iterations.report)(iterations.count, flips.len()) {
                 return Err(ActiveSetError::Interrupted);
             }
-            let Some(last) = flips.last() else { return Ok(Balanced { dense, active, pressures, forces, gaps }) };
+            let Some(last) = flips.last() else { return Ok(found) };
             if flips.len() < fewest {
                 (fewest, patience) = (flips.len(), PATIENCE);
             } else {
@@ -264,6 +267,47 @@ impl ActiveSet {
             last_flips = flips;
         }
         Err(ActiveSetError::Chatter { rows: last_flips })
+    }
+
+    /// Pressures of the active rows and forces at the springs, with the gaps under them.
+    fn carried(&mut self, problem: &Problem<'_>, left: f64, active: Vec<usize>) -> Result<Balanced, ActiveSetError> {
+        let rows = problem.rows;
+        let defects = defects(problem, left, &active, &problem.free, (&[], &[]));
+        let cheaper = || Route::cheaper(active.len(), self.touched.len(), problem.system.entries());
+        let route = self.route.unwrap_or_else(cheaper);
+        if route == Route::Products {
+            let scale = scales(problem, &active)?;
+            if left == 0.0
+                && let Some(motion) = by_products(problem)?.unheld(&scale, &image(problem, left, &active, &scale))
+            {
+                return Err(ActiveSetError::Free { motion });
+            }
+            let Solved { x, product } = solved(problem, left, &active, &defects)?;
+            let gaps: Vec<f64> = problem.free[..rows.len()].iter().zip(&product).map(|(f, w)| f + w).collect();
+            let sizes = rows.iter().zip(&gaps).zip(&product).map(|((r, g), w)| g.abs().max(w.abs()) / r.weight);
+            let moved = sizes.fold(0.0, f64::max);
+            let pressures = active.iter().map(|&k| x[k]).collect();
+            let forces = x[rows.len()..rows.len() + taken(problem, left).len()].to_vec();
+            return Ok(Balanced { equations: Equations::ByProducts, active, pressures, forces, gaps, moved });
+        }
+        let dense = self.dense(problem, left, &active)?;
+        let (pressures, forces) = dense.solve(&defects)?;
+        let mut at = problem.free_at.clone();
+        for (&k, p) in active.iter().zip(&pressures) {
+            add(&mut at, &self.columns[&k], *p);
+        }
+        for (s, force) in forces.iter().enumerate() {
+            add(&mut at, &self.columns[&(rows.len() + s)], *force);
+        }
+        let gaps = self.values(rows, &[], &at);
+        let moved = at.iter().fold(0.0f64, |m, u| m.max(u.abs()));
+        Ok(Balanced { equations: Equations::Dense(dense), active, pressures, forces, gaps, moved })
+    }
+
+    /// Weighted gaps of all rows, and what the springs move, at displacements of the touched unknowns.
+    fn values(&self, rows: &[WeightedGap], springs: &[Spring], at: &[f64]) -> Vec<f64> {
+        let of_springs = springs.iter().map(|s| at[self.place[&s.unknown]]);
+        rows.iter().map(|r| r.gap + self.product(&r.terms, at)).chain(of_springs).collect()
     }
 
     /// Forgets what changed since the last step.
@@ -355,32 +399,11 @@ impl ActiveSet {
         Dense::new(matrix, n, &stiffness, symmetric, left == 0.0)
     }
 
-    /// Weighted gaps of the active rows, and what the springs lack, at displacements of the touched unknowns.
-    fn defects(
-        &self,
-        problem: &Problem<'_>,
-        left: f64,
-        active: &[usize],
-        at: &[f64],
-        (pressures, forces): (&[f64], &[f64]),
-    ) -> Vec<f64> {
-        let Problem { rows, soft, .. } = *problem;
-        let gap = |(place, &k): (usize, &usize)| {
-            let carried = pressures.get(place).copied().unwrap_or(0.0) - soft[k].shift;
-            rows[k].gap + self.product(&rows[k].terms, at) + soft[k].compliance * carried
-        };
-        let lack = |(s, spring): (usize, &Spring)| {
-            let force = forces.get(s).copied().unwrap_or(0.0);
-            self.product(&[(spring.unknown, 1.0)], at) - force / (spring.stiffness * (1.0 - left))
-        };
-        (active.iter().enumerate().map(gap)).chain(taken(problem, left).iter().enumerate().map(lack)).collect()
-    }
-
     /// The displacement of all unknowns; what the closed gaps still lack by the round-off of the columns is made good.
     fn refine(
         &self,
         problem: &Problem<'_>,
-        dense: &Dense,
+        equations: &Equations,
         (active, mut pressures, mut forces): (&[usize], Vec<f64>, Vec<f64>),
         found: &mut ContactState,
     ) -> Result<(), ActiveSetError> {
@@ -400,7 +423,14 @@ impl ActiveSet {
                 break;
             }
             let at: Vec<f64> = self.touched.iter().map(|&i| found.u[i as usize]).collect();
-            let (more, others) = dense.solve(&self.defects(problem, 0.0, active, &at, (&pressures, &forces)))?;
+            let defects = defects(problem, 0.0, active, &self.values(rows, springs, &at), (&pressures, &forces));
+            let (more, others) = match equations {
+                Equations::Dense(dense) => dense.solve(&defects)?,
+                Equations::ByProducts => {
+                    let x = solved(problem, 0.0, active, &defects)?.x;
+                    (active.iter().map(|&k| x[k]).collect(), x[rows.len()..].to_vec())
+                }
+            };
             pressures.iter_mut().zip(more).for_each(|(p, m)| *p += m);
             forces.iter_mut().zip(others).for_each(|(f, m)| *f += m);
         }
@@ -410,6 +440,76 @@ impl ActiveSet {
         }
         Ok(())
     }
+}
+
+/// Weighted gaps of the active rows, and what the springs lack, from the values of all rows.
+fn defects(
+    problem: &Problem<'_>,
+    left: f64,
+    active: &[usize],
+    values: &[f64],
+    (pressures, forces): (&[f64], &[f64]),
+) -> Vec<f64> {
+    let Problem { rows, soft, .. } = *problem;
+    let gap = |(place, &k): (usize, &usize)| {
+        let carried = pressures.get(place).copied().unwrap_or(0.0) - soft[k].shift;
+        values[k] + soft[k].compliance * carried
+    };
+    let lack = |(s, spring): (usize, &Spring)| {
+        let force = forces.get(s).copied().unwrap_or(0.0);
+        values[rows.len() + s] - force / (spring.stiffness * (1.0 - left))
+    };
+    (active.iter().enumerate().map(gap)).chain(taken(problem, left).iter().enumerate().map(lack)).collect()
+}
+
+fn by_products<'p, 'a>(problem: &'p Problem<'a>) -> Result<&'p RowProducts<'a>, SolveError> {
+    if let Some(known) = problem.products.get() {
+        return Ok(known);
+    }
+    let made = RowProducts::new(problem.system, problem.rows, problem.springs)?;
+    Ok(problem.products.get_or_init(|| made))
+}
+
+/// The size of the traction of every row: one over the root of how it gives way.
+fn scales(problem: &Problem<'_>, active: &[usize]) -> Result<Vec<f64>, SolveError> {
+    let products = by_products(problem)?;
+    products.require(active.iter().copied());
+    let soft = |r: usize| problem.soft.get(r).map_or(0.0, |s| s.compliance);
+    let scale = |own: f64| if own > 0.0 { 1.0 / own.sqrt() } else { 1.0 };
+    Ok((0..products.count()).map(|r| scale(products.own(r) + soft(r))).collect())
+}
+
+/// The equations of the active rows and of the springs that are taken away, in tractions; those of all other rows are that
+/// they carry nothing.
+fn image<'a>(
+    problem: &'a Problem<'_>,
+    left: f64,
+    active: &'a [usize],
+    scale: &'a [f64],
+) -> impl Fn(&[f64], &[f64]) -> Vec<f64> + 'a {
+    let first = problem.rows.len();
+    move |x, wx| {
+        let mut out = x.to_vec();
+        for &k in active {
+            out[k] = scale[k].powi(2) * (wx[k] + problem.soft[k].compliance * x[k]);
+        }
+        for (s, spring) in taken(problem, left).iter().enumerate() {
+            let r = first + s;
+            out[r] = scale[r].powi(2) * (wx[r] - x[r] / (spring.stiffness * (1.0 - left)));
+        }
+        out
+    }
+}
+
+/// Tractions of all rows and springs that bring the defects of the active ones to zero.
+fn solved(problem: &Problem<'_>, left: f64, active: &[usize], defects: &[f64]) -> Result<Solved, ActiveSetError> {
+    let scale = scales(problem, active)?;
+    let mut b = vec![0.0; scale.len()];
+    let first = problem.rows.len();
+    let wanted = active.iter().copied().chain(first..first + taken(problem, left).len());
+    wanted.zip(defects).for_each(|(r, d)| b[r] = -scale[r].powi(2) * d);
+    let found = by_products(problem)?.solve(&scale, &image(problem, left, active, &scale), &b)?;
+    found.ok_or(ActiveSetError::Dependent)
 }
 
 fn add(at: &mut [f64], column: &[f64], factor: f64) {

@@ -10,6 +10,7 @@
 //! - [`points`]: the points under test, their rows, and the one assembler of residual and tangent.
 //! - [`active_set`]: which nodes carry; [`mod@law`]: how they answer.
 //! - [`friction`]: stick and slip.
+//! - [`compliance`]: how rows answer to tractions, by columns or by products.
 //! - [`balance`]: whether contact can hold free bodies against their loads.
 //! - [`recovery`]: the pressure as it is shown; [`mod@zone`]: where the zone of contact ends.
 //!
@@ -18,6 +19,7 @@
 
 pub mod active_set;
 pub mod balance;
+pub mod compliance;
 pub mod friction;
 pub mod kinematics;
 pub mod law;
@@ -30,8 +32,9 @@ pub mod segments;
 pub mod surface;
 pub mod zone;
 
-pub use active_set::{ActiveSet, ActiveSetError, Compliance, ContactState, Softness, Spring};
+pub use active_set::{ActiveSet, ActiveSetError, ContactState, Softness, Spring};
 pub use balance::unbalanced;
+pub use compliance::{Compliance, Route};
 pub use kinematics::{Kinematics, Partner, ShapeFunction};
 pub use law::{Coulomb, Law, LawError, Status, Tresca, Viscous};
 pub use mortar::{Given, Shares, WeightedGap, compress, shares, shares_on_the_way, weighted_gaps, weightless};

@@ -37,6 +37,7 @@ pub use loads::{Load, LoadKind};
 pub use material::{Elastic, Space, von_mises};
 pub use model::{Circumstances, Memory, Model, StepError};
 pub use sliding::Settled;
+pub use signorini_contact::Route;
 pub use solid_body::{SolidBody, SolidError};
 pub use state::State;
 pub use supports::{Support, SupportError, SupportKind};

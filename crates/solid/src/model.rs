@@ -10,7 +10,9 @@ use crate::sliding::Settled;
 use crate::state::{Found, State};
 use crate::supports::{Displacement, Reduction, Support, SupportError};
 use signorini_contact::friction::FrictionalContact;
-use signorini_contact::{ActiveSet, ActiveSetError, Compliance, ContactState, Softness, Spring, WeightedGap, compress};
+use signorini_contact::{
+    ActiveSet, ActiveSetError, Compliance, ContactState, Route, Softness, Spring, WeightedGap, compress,
+};
 use signorini_solve::cholesky::{Cost, Symbolic};
 use signorini_solve::dissection::nested_dissection;
 use signorini_solve::{Factor, SolveError, SymmetricMatrix};
@@ -78,6 +80,7 @@ pub struct Model<const D: usize> {
     /// With friction, what slips count from; none before the first state.
     pub(crate) history: Option<FrictionHistory>,
     pub(crate) rubbing: FrictionalContact,
+    pub(crate) route: Option<Route>,
 }
 
 /// What may change with time.
@@ -110,12 +113,24 @@ impl Compliance for System<'_> {
         self.0.solve_columns(b)
     }
 
+    fn solve_once(&self, b: &mut [f64]) -> Result<(), SolveError> {
+        self.0.solve_once(b)
+    }
+
     fn solve_accurately(&self, b: &[f64]) -> Result<Vec<f64>, SolveError> {
         self.0.solve_accurately(b)
     }
 
     fn size(&self) -> usize {
         self.0.size()
+    }
+
+    fn entries(&self) -> f64 {
+        self.0.entries()
+    }
+
+    fn block(&self, unknowns: &[u32]) -> Vec<f64> {
+        self.0.block(unknowns)
     }
 }
 
@@ -154,6 +169,7 @@ impl<const D: usize> Model<D> {
             settled: None,
             history: None,
             rubbing: FrictionalContact::default(),
+            route: None,
         })
     }
 
@@ -188,12 +204,18 @@ impl<const D: usize> Model<D> {
         self.reduced = Some(reduced);
     }
 
+    /// Makes contact know the compliance of its rows in one way, rather than in that which costs less.
+    pub fn by_route(&mut self, route: Route) {
+        self.route = Some(route);
+        (self.active.route, self.rubbing.route) = (Some(route), Some(route));
+    }
+
     /// Motions that only contact can hold.
     pub fn free_modes(&self) -> &[FreeMode] {
         &self.free
     }
 
-    /// What the factorisation takes, about, without assembling anything: that of the graph of the functions, of which each
+    /// What the factorisation takes, and contact beside it, about, without assembling anything: that of the graph of the functions, of which each
     /// stands for its unknowns in all directions.
     ///
     /// # Errors
@@ -204,7 +226,13 @@ impl<const D: usize> Model<D> {
             if D == 3 { Symbolic::ordered(nested_dissection(&graph, &places)) } else { Symbolic::default() };
         let cost = symbolic.cost(&graph)?;
         let each = self.unknowns() as f64 / graph.size().max(1) as f64;
-        Ok(Cost { bytes: cost.bytes * each.powi(2), operations: cost.operations * each.powi(3) })
+        let entries = cost.bytes / 8.0 * each.powi(2);
+        // With all nodes in contact; each touches the functions of a node on either side.
+        let rows = |c: &Contact<D>| c.nodes.len() * if c.friction.is_some() { D } else { 1 };
+        let count = self.contacts.iter().map(rows).sum();
+        let touched = 2 * D * self.contacts.iter().map(|c| c.nodes.len()).sum::<usize>();
+        let of_contact = Route::memory(count, touched, entries);
+        Ok(Cost { bytes: 8.0 * entries + of_contact, operations: cost.operations * each.powi(3) })
     }
 
     /// Number of unknowns that are solved for.
@@ -256,8 +284,8 @@ impl<const D: usize> Model<D> {
         self.active = active;
         let (found, _) = found.map_err(|error| self.explained(error, &ends))?;
         let u = self.reduction.expand(&found.u, &offset);
-        let ContactState { pressure, gap, active, iterations, .. } = found;
-        Ok(self.state(Found { u, pressure, gap, active, iterations, residuals, rubbing: None }, &now.load, &ends))
+        let ContactState { pressure, gap, active, iterations, route, .. } = found;
+        Ok(self.state(Found { u, pressure, gap, active, iterations, route, residuals, rubbing: None }, &now.load, &ends))
     }
 
     /// Looks without solving whether supports, contacts and loads make sense at a time, with the bodies at rest.
@@ -304,6 +332,7 @@ impl<const D: usize> Model<D> {
         self.started = true;
         self.search(first, &vec![0.0; self.bodies.unknowns()], false)?;
         self.active = ActiveSet::restored(memory.active);
+        self.active.route = self.route;
         self.settled = memory.settled;
         self.remember(memory.friction);
         Ok(())

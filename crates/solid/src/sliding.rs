@@ -11,7 +11,7 @@
 use crate::contact::Contact;
 use crate::model::{Circumstances, Model, StepError, System, reduced};
 use crate::state::{Found, State};
-use signorini_contact::{ActiveSet, ActiveSetError, Softness, WeightedGap};
+use signorini_contact::{ActiveSet, ActiveSetError, Route, Softness, WeightedGap};
 use signorini_solve::{SolveError, SymmetricMatrix};
 use std::collections::HashMap;
 
@@ -48,6 +48,7 @@ struct Step {
     pressure: HashMap<Key, f64>,
     soft: HashMap<Key, Softness>,
     solves: usize,
+    route: Route,
 }
 
 impl<const D: usize> Model<D> {
@@ -99,6 +100,7 @@ impl<const D: usize> Model<D> {
                     active: pressures.iter().map(|p| *p > 0.0).collect(),
                     pressure: pressures,
                     iterations,
+                    route: step.route,
                     residuals: history,
                     rubbing: None,
                 };
@@ -163,6 +165,7 @@ impl<const D: usize> Model<D> {
         let before = |key: &Key| pressure.get(key).is_some_and(|p| *p > 0.0);
         let start = around.rows.iter().enumerate().filter(|(_, (key, _))| before(key)).map(|(k, _)| k);
         let mut active = ActiveSet::starting_with(start);
+        active.route = self.route;
         let (found, soft) = self
             .solve_enforced(&rows, &around.ends, &mut |_, _| true, &mut |soft, report| {
                 active.solve(&System(&factor), &rows, soft, &self.springs, &load, report)
@@ -178,6 +181,7 @@ impl<const D: usize> Model<D> {
             pressure: keys().zip(found.pressure).filter(|(_, p)| *p > 0.0).collect(),
             soft: keys().zip(soft).collect(),
             solves: found.iterations,
+            route: found.route,
         })
     }
 

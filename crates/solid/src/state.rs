@@ -3,7 +3,7 @@
 use crate::contact::{Contact, ContactResult, PressureNode};
 use crate::friction::{Found as FoundFriction, FrictionAt, Rubbing, friction_result};
 use crate::model::Model;
-use signorini_contact::{ContactZone, NodeState, recovered, zone};
+use signorini_contact::{ContactZone, NodeState, Route, recovered, zone};
 use signorini_geometry::Point;
 
 /// The solution at one time.
@@ -13,6 +13,8 @@ pub struct State<const D: usize> {
     pub u: Vec<f64>,
     pub contacts: Vec<ContactResult<D>>,
     pub iterations: usize,
+    /// How the compliance of the contacts was known in the end.
+    pub route: Route,
     /// After each iteration: how many nodes changed; with finite sliding what is left of force and gap, relative.
     pub residuals: Vec<f64>,
     /// Force of each support on the bodies.
@@ -33,6 +35,7 @@ pub(crate) struct Found {
     pub gap: Vec<f64>,
     pub active: Vec<bool>,
     pub iterations: usize,
+    pub route: Route,
     pub residuals: Vec<f64>,
     /// Friction of all rows.
     pub rubbing: Option<FoundFriction>,
@@ -76,6 +79,7 @@ impl<const D: usize> Model<D> {
             u,
             contacts: results,
             iterations: found.iterations,
+            route: found.route,
             residuals: found.residuals,
             support_forces,
             imbalance,

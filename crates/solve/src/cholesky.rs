@@ -140,6 +140,16 @@ impl Factor {
         self.matrix.size()
     }
 
+    /// Entries of the factor.
+    pub fn entries(&self) -> f64 {
+        self.values.len() as f64
+    }
+
+    /// The entries of the matrix between some unknowns, in ascending order, one row after the other.
+    pub fn block(&self, unknowns: &[u32]) -> Vec<f64> {
+        self.matrix.block(unknowns)
+    }
+
     /// Solves `A x = b`, with iterative refinement.
     pub fn solve(&self, b: &[f64]) -> Result<Vec<f64>, SolveError> {
         let size = self.matrix.size();

@@ -194,6 +194,22 @@ impl SymmetricMatrix {
         Self { column_start, row: rows, value: values }
     }
 
+    /// The entries between some unknowns, in ascending order, one row after the other.
+    pub fn block(&self, unknowns: &[u32]) -> Vec<f64> {
+        let n = unknowns.len();
+        let mut out = vec![0.0; n * n];
+        for (b, &j) in unknowns.iter().enumerate() {
+            let range = self.column_start[j as usize]..self.column_start[j as usize + 1];
+            let rows = &self.row[range.clone()];
+            for (a, &i) in unknowns.iter().enumerate().skip(b) {
+                if let Ok(at) = rows.binary_search(&(i as usize)) {
+                    (out[a * n + b], out[b * n + a]) = (self.value[range.start + at], self.value[range.start + at]);
+                }
+            }
+        }
+        out
+    }
+
     /// The entries of the lower triangle: row, column and value.
     pub fn entries(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
         let column = |j: usize| self.column_start[j]..self.column_start[j + 1];

@@ -3,7 +3,8 @@
 use super::ladder::{FrictionError, solve};
 use super::newton::System;
 use super::problem::{Friction, Node, Problem, RowCompliance};
-use crate::active_set::{Compliance, SPRINGS_LEFT, Softness, Spring};
+use crate::active_set::{SPRINGS_LEFT, Softness, Spring};
+use crate::compliance::{Compliance, Route, RowProducts};
 use crate::law::{Projected, Status};
 use crate::mortar::WeightedGap;
 use signorini_solve::SolveError;
@@ -30,6 +31,8 @@ pub struct FrictionalContact {
     rows: Vec<[Vec<(u32, f64)>; 2]>,
     springs: Vec<Spring>,
     columns: BTreeMap<usize, Vec<f64>>,
+    /// How the compliance is to be known; what costs less where nothing is said.
+    pub route: Option<Route>,
 }
 
 /// What was found.
@@ -50,8 +53,9 @@ pub struct FrictionState {
     /// over the most that friction per pressure does on `W_nt`. Infinite for open nodes.
     pub uniqueness: Vec<f64>,
     /// Whether the equilibrium is one that a disturbance leaves: the determinant of its equations has not the sign that
-    /// it has without slip.
+    /// it has without slip. Not looked at by products.
     pub unstable: bool,
+    pub route: Route,
 }
 
 /// The compliance of the rows, and of the springs after them.
@@ -62,6 +66,9 @@ struct Rows<'a> {
     free: Vec<f64>,
     /// The share of the springs that stays.
     left: f64,
+    route: Option<Route>,
+    /// In place of the columns, where these cost more.
+    products: Option<RowProducts<'a>>,
 }
 
 impl Rows<'_> {
@@ -96,6 +103,14 @@ impl RowCompliance for Rows<'_> {
 
     fn require(&mut self, rows: &[usize]) -> Result<(), SolveError> {
         let Bodies { system, rows: list, springs, .. } = self.bodies;
+        let cheaper = || Route::cheaper(rows.len(), self.rows(), system.entries());
+        if self.products.is_none() && self.route.unwrap_or_else(cheaper) == Route::Products {
+            self.products = Some(RowProducts::new(system, list, springs)?);
+        }
+        if let Some(products) = &self.products {
+            products.require(rows.iter().copied());
+            return Ok(());
+        }
         let mut missing: Vec<usize> = rows.iter().copied().filter(|r| !self.columns.contains_key(r)).collect();
         missing.sort_unstable();
         missing.dedup();
@@ -127,6 +142,21 @@ impl RowCompliance for Rows<'_> {
         &self.columns[&column]
     }
 
+    fn products(&self) -> Option<&RowProducts<'_>> {
+        self.products.as_ref()
+    }
+
+    fn entry(&self, row: usize, column: usize) -> f64 {
+        let own = if row == column { self.own(row) } else { 0.0 };
+        let between = match &self.products {
+            None => self.column(column)[row],
+            Some(_) if row.max(column) >= self.bodies.rows.len() => self.products.as_ref().map_or(0.0, |p| p.spring_entry(row, column)),
+            Some(products) if row == column => products.own(row),
+            Some(products) => products.near(row, column),
+        };
+        between + own
+    }
+
     fn own(&self, row: usize) -> f64 {
         match row.checked_sub(self.bodies.rows.len()) {
             None => self.bodies.soft[row].compliance,
@@ -134,13 +164,18 @@ impl RowCompliance for Rows<'_> {
         }
     }
 
-    fn values(&self, z: &[f64]) -> Vec<f64> {
+    fn values(&self, z: &[f64]) -> Result<Vec<f64>, SolveError> {
         let mut y = self.free.clone();
+        if let Some(products) = &self.products {
+            y.iter_mut().zip(products.product(z)?).for_each(|(y, w)| *y += w);
+            self.give(&mut y, z);
+            return Ok(y);
+        }
         for (r, t) in z.iter().enumerate().filter(|(_, t)| **t != 0.0) {
             y.iter_mut().zip(&self.columns[&r]).for_each(|(y, w)| *y += t * w);
         }
         self.give(&mut y, z);
-        y
+        Ok(y)
     }
 
     fn scale(&self, row: usize) -> f64 {
@@ -168,7 +203,7 @@ impl FrictionalContact {
         self.refresh(bodies.rows, bodies.springs);
         let Bodies { system, rows, springs, load, .. } = bodies;
         let free = system.solve_accurately(load)?;
-        let mut w = Rows { bodies, columns: &mut self.columns, free: Vec::new(), left: 0.0 };
+        let mut w = Rows { bodies, columns: &mut self.columns, free: Vec::new(), left: 0.0, route: self.route, products: None };
         w.free = w.at(&free);
         let springs: Vec<usize> = (rows.len()..rows.len() + springs.len()).collect();
         let problem = Problem { nodes, equations: &springs };
@@ -210,8 +245,9 @@ impl FrictionalContact {
             status: found.answers.iter().map(|a| a.status).collect(),
             iterations: found.solves,
             level: found.level,
-            uniqueness: uniqueness(nodes, &w, &found.answers),
+            uniqueness: uniqueness(nodes, &w, &found.answers)?,
             unstable: false,
+            route: if w.products.is_some() { Route::Products } else { Route::Columns },
         };
         let carries = z.iter().any(|z| *z != 0.0);
         for round in 0..2 {
@@ -233,9 +269,9 @@ impl FrictionalContact {
             let equations = System::new(&problem, &w, Friction::Law, &residual);
             // Without slip every spring that is taken away makes a negative pivot.
             let stuck = if springs.len().is_multiple_of(2) { 1.0 } else { -1.0 };
-            out.unstable = equations.determinant_sign() * stuck < 0.0;
+            out.unstable = equations.determinant_sign().is_some_and(|sign| sign * stuck < 0.0);
             out.status = residual.answers.iter().map(|a| a.status).collect();
-            let step = equations.step(&problem, &w, &residual, (&z, &y));
+            let Some(step) = equations.step(&problem, &w, &residual, (&z, &y))? else { break };
             z.iter_mut().zip(&step).for_each(|(z, s)| *z += s);
         }
         for (node, status) in nodes.iter().zip(&out.status) {
@@ -268,17 +304,34 @@ impl FrictionalContact {
     }
 }
 
-/// The factor of all friction below which each closed node by itself has one state for every load.
-fn uniqueness(nodes: &[Node<'_>], w: &dyn RowCompliance, answers: &[Projected]) -> Vec<f64> {
-    let of = |(node, answer): (&Node<'_>, &Projected)| {
-        let law = node.law.filter(|_| answer.status != Status::Open)?;
+/// Nodes of which the uniqueness is found exactly by products: those where the nearest unknowns say that it is least.
+const EXACT: usize = 8;
+
+/// The factor of all friction below which each closed node by itself has one state for every load; by products of the nodes
+/// where it is least, about.
+fn uniqueness(nodes: &[Node<'_>], w: &Rows<'_>, answers: &[Projected]) -> Result<Vec<f64>, SolveError> {
+    let of = |k: usize, entry: &dyn Fn(usize) -> f64| {
+        let node = &nodes[k];
+        let law = node.law.filter(|_| answers[k].status != Status::Open)?;
         let mut along = [0.0; 2];
         for (row, v) in node.rows().skip(1).zip(&node.directions) {
-            let coupled = w.entry(node.first, row);
+            let coupled = entry(row);
             along = [along[0] + coupled * v[0], along[1] + coupled * v[1]];
         }
         let coupling = law.coupling(along);
-        (coupling > 0.0).then(|| w.entry(node.first, node.first) / coupling)
+        (coupling > 0.0).then(|| entry(node.first) / coupling)
     };
-    nodes.iter().zip(answers).map(|pair| of(pair).unwrap_or(f64::INFINITY)).collect()
+    let about: Vec<f64> = (0..nodes.len())
+        .map(|k| of(k, &|row| w.entry(nodes[k].first, row)).unwrap_or(f64::INFINITY))
+        .collect();
+    let Some(products) = &w.products else { return Ok(about) };
+    let mut least: Vec<usize> = (0..nodes.len()).filter(|&k| about[k].is_finite()).collect();
+    least.sort_by(|&a, &b| about[a].total_cmp(&about[b]).then(a.cmp(&b)));
+    let mut out = vec![f64::INFINITY; nodes.len()];
+    for &k in least.iter().take(EXACT) {
+        let column = products.column(nodes[k].first)?;
+        let own = |row: usize| column[row] + if row == nodes[k].first { w.own(row) } else { 0.0 };
+        out[k] = of(k, &own).unwrap_or(f64::INFINITY);
+    }
+    Ok(out)
 }

@@ -6,6 +6,7 @@
 //! `∂Π/∂p`, even for small strains.
 
 use super::problem::{Friction, Node, Problem, Residual, RowCompliance};
+use crate::compliance::RowProducts;
 use crate::law::Status;
 use nalgebra::DMatrix;
 use signorini_solve::SolveError;
@@ -65,7 +66,7 @@ pub(super) fn newton(
     w.require(&carrying)?;
     w.require(problem.equations)?;
     let mut z = start;
-    let mut y = w.values(&z);
+    let mut y = w.values(&z)?;
     let planar = problem.nodes.iter().all(|n| n.tangents < 2);
     let mut seen: Vec<Vec<u8>> = Vec::new();
     let mut solves = 0;
@@ -98,10 +99,9 @@ pub(super) fn newton(
         };
         seen.push(states);
         let system = System::new(problem, &*w, friction, level);
-        if system.is_singular() {
+        let Some(step) = system.step(problem, &*w, level, (&z, &y))? else {
             return ended(z, y, residual, End::Singular);
-        }
-        let step = system.step(problem, &*w, level, (&z, &y));
+        };
         solves += 1;
         if !report(changed) {
             return ended(z, y, residual, End::Interrupted);
@@ -111,7 +111,7 @@ pub(super) fn newton(
         let before = norm(level);
         for halving in 0.. {
             let moved: Vec<f64> = z.iter().zip(&step).map(|(z, s)| z + share * s).collect();
-            let reached = w.values(&moved);
+            let reached = w.values(&moved)?;
             let fine = !settings.line_search || halving == MOST_HALVINGS || {
                 norm(&problem.residual(w, friction, (&moved, &reached), settings.factor)?) < before
             };
@@ -142,6 +142,11 @@ pub(super) struct System {
     of_nodes: usize,
     /// The node of each row, and its place in it.
     owner: Vec<(usize, usize)>,
+    dense: Option<DenseRows>,
+}
+
+/// The matrix of the rows of a [`System`].
+struct DenseRows {
     row_scale: Vec<f64>,
     column_scale: Vec<f64>,
     lu: Lu,
@@ -158,6 +163,9 @@ impl System {
         }
         let of_nodes = rows.len();
         rows.extend(problem.equations);
+        if w.products().is_some() {
+            return System { rows, of_nodes, owner, dense: None };
+        }
         let column_scale: Vec<f64> = rows.iter().map(|&r| w.scale(r)).collect();
         let mut matrix = DMatrix::<f64>::zeros(rows.len(), rows.len());
         for (j, &c) in rows.iter().enumerate() {
@@ -191,33 +199,40 @@ impl System {
                 matrix[(i, j)] *= scale;
             }
         }
-        System { rows, of_nodes, owner, row_scale, column_scale, lu: Lu::new(matrix.nrows(), matrix.as_slice()) }
+        let lu = Lu::new(matrix.nrows(), matrix.as_slice());
+        System { rows, of_nodes, owner, dense: Some(DenseRows { row_scale, column_scale, lu }) }
     }
 
-    /// Whether some tractions change nothing.
-    pub fn is_singular(&self) -> bool {
-        self.lu.smallest_pivot() <= SINGULAR
+    /// The sign of the determinant; none by products.
+    pub fn determinant_sign(&self) -> Option<f64> {
+        self.dense.as_ref().map(|d| d.lu.determinant_sign())
     }
 
-    /// The sign of the determinant.
-    pub fn determinant_sign(&self) -> f64 {
-        self.lu.determinant_sign()
-    }
-
-    /// The step from tractions and what they come to, which need not be `q + W z`.
+    /// The step from tractions and what they come to, which need not be `q + W z`; none where some tractions change nothing.
+    ///
+    /// # Errors
+    /// Those of the solver of the bodies.
     pub fn step(
         &self,
         problem: &Problem<'_>,
         w: &dyn RowCompliance,
         at: &Residual,
         (z, y): (&[f64], &[f64]),
-    ) -> Vec<f64> {
+    ) -> Result<Option<Vec<f64>>, SolveError> {
+        let dense = match (&self.dense, w.products()) {
+            (Some(dense), _) => dense,
+            (None, Some(products)) => return self.step_by_products((problem, w, products), at, y),
+            (None, None) => return Ok(None),
+        };
+        if dense.lu.smallest_pivot() <= SINGULAR {
+            return Ok(None);
+        }
         // First those rows are left that do not carry.
         let mut kept = vec![0.0; z.len()];
         self.rows.iter().for_each(|&r| kept[r] = z[r]);
         let mut moved = vec![0.0; z.len()];
         if kept != z {
-            let (with, without) = (w.values(z), w.values(&kept));
+            let (with, without) = (w.values(z)?, w.values(&kept)?);
             moved.iter_mut().zip(without.iter().zip(&with)).for_each(|(m, (a, b))| *m = a - b);
         }
         let mut x: Vec<f64> = (self.owner.iter())
@@ -228,12 +243,54 @@ impl System {
             })
             .collect();
         x.extend(self.rows[self.of_nodes..].iter().map(|&r| -(y[r] + moved[r])));
-        x.iter_mut().zip(&self.row_scale).for_each(|(x, s)| *x *= s);
-        self.lu.solve_in_place(&mut x);
+        x.iter_mut().zip(&dense.row_scale).for_each(|(x, s)| *x *= s);
+        dense.lu.solve_in_place(&mut x);
         let mut step: Vec<f64> = kept.iter().zip(z).map(|(k, z)| k - z).collect();
-        for ((&r, x), scale) in self.rows.iter().zip(&x).zip(&self.column_scale) {
+        for ((&r, x), scale) in self.rows.iter().zip(&x).zip(&dense.column_scale) {
             step[r] += x * scale;
         }
-        step
+        Ok(Some(step))
+    }
+
+    /// The same by products with the compliance. All other rows give up what they carry.
+    fn step_by_products(
+        &self,
+        (problem, w, products): (&Problem<'_>, &dyn RowCompliance, &RowProducts<'_>),
+        at: &Residual,
+        y: &[f64],
+    ) -> Result<Option<Vec<f64>>, SolveError> {
+        let mut scale = vec![1.0; y.len()];
+        (problem.nodes.iter().zip(&at.scales).filter(|(_, s)| s.normal > 0.0)).for_each(|(node, _)| {
+            node.rows().for_each(|r| scale[r] = w.scale(r));
+        });
+        (products.count() - products.springs()..products.count()).for_each(|r| scale[r] = w.scale(r));
+        // Each equation in units in which its own traction counts about one.
+        let size = |(&r, &(k, a)): (&usize, &(usize, usize))| {
+            let own = at.answers[k].derivative[a][a];
+            (1.0 - own + own * at.scales[k].of_row(a) / scale[r].powi(2)).abs().max(f64::MIN_POSITIVE)
+        };
+        let size: Vec<f64> = self.rows.iter().zip(&self.owner).map(size).collect();
+        let image = |x: &[f64], wx: &[f64]| {
+            let give = |r: usize| wx[r] + w.own(r) * x[r];
+            let mut out = x.to_vec();
+            for (&r, &(k, a)) in self.rows.iter().zip(&self.owner) {
+                let (node, derivative) = (&problem.nodes[k], &at.answers[k].derivative[a]);
+                for (b, c) in node.rows().enumerate().filter(|(b, _)| derivative[*b] != 0.0) {
+                    out[r] += derivative[b] * (at.scales[k].of_row(b) * give(c) - x[c]);
+                }
+            }
+            self.rows.iter().zip(&size).for_each(|(&r, size)| out[r] /= size);
+            for &r in &self.rows[self.of_nodes..] {
+                out[r] = scale[r].powi(2) * give(r);
+            }
+            out
+        };
+        if !problem.equations.is_empty() && products.unheld(&scale, &image).is_some() {
+            return Ok(None);
+        }
+        let mut b: Vec<f64> = at.difference.iter().map(|d| -d).collect();
+        self.rows.iter().zip(&size).for_each(|(&r, size)| b[r] /= size);
+        self.rows[self.of_nodes..].iter().for_each(|&r| b[r] = -scale[r].powi(2) * y[r]);
+        Ok(products.solve(&scale, &image, &b)?.map(|found| found.x))
     }
 }

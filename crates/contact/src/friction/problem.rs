@@ -1,5 +1,6 @@
 //! The problem of friction in its rows: nodes, the compliance between them, and the natural residual.
 
+use crate::compliance::RowProducts;
 use crate::law::{Law, Projected, Status};
 use signorini_solve::SolveError;
 
@@ -19,15 +20,23 @@ pub trait RowCompliance {
     /// A column that is known, but for what [`Self::own`] adds to its diagonal.
     fn column(&self, column: usize) -> &[f64];
 
+    /// The compliance by its products, where columns are not known.
+    fn products(&self) -> Option<&RowProducts<'_>> {
+        None
+    }
+
     /// How a row gives way by itself.
     fn own(&self, _row: usize) -> f64 {
         0.0
     }
 
     /// `q + W z` for tractions that vanish on all rows whose columns are not known.
-    fn values(&self, z: &[f64]) -> Vec<f64>;
+    ///
+    /// # Errors
+    /// Those of the solver of the bodies.
+    fn values(&self, z: &[f64]) -> Result<Vec<f64>, SolveError>;
 
-    /// An entry of a column that is known.
+    /// An entry between rows of one node, or of a spring, of a column that is known; of products it is near to that.
     fn entry(&self, row: usize, column: usize) -> f64 {
         self.column(column)[row] + if row == column { self.own(row) } else { 0.0 }
     }

@@ -100,7 +100,8 @@ pub struct StepReport {
     pub iterations: usize,
     /// Equilibrium solves on larger cells, and on the way to the state.
     pub iterations_before: usize,
-    /// `direct` by factorisation, or `multigrid`.
+    /// `direct` by factorisation, `direct with krylov` where the tractions of a large zone of contact are found by steps of a
+    /// Krylov method, each a solve with the factors, or `multigrid`.
     pub solver: String,
     /// Residual of each solve, relative to its tolerance; for solids with small sliding the nodes that changed their state.
     pub residual_history: Vec<f64>,

@@ -128,6 +128,7 @@ impl<const D: usize> Model<D> {
                 gap: of_nodes(&state.gap),
                 active: state.status.iter().map(|s| *s != Status::Open).collect(),
                 iterations: state.iterations,
+                route: state.route,
             };
             found = Some(state);
             Ok(out)
@@ -203,8 +204,8 @@ impl<const D: usize> Model<D> {
             }
         }
         self.history = Some(history);
-        let ContactState { pressure, gap, active, iterations, .. } = found;
-        let found = FoundState { u, pressure, gap, active, iterations, residuals, rubbing: Some(rubbing) };
+        let ContactState { pressure, gap, active, iterations, route, .. } = found;
+        let found = FoundState { u, pressure, gap, active, iterations, route, residuals, rubbing: Some(rubbing) };
         self.state(found, &now.load, ends)
     }
 

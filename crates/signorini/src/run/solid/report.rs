@@ -10,7 +10,7 @@ use crate::report::{Component, ContactReport, Probe, Reason, StepReport, UnitNam
 use crate::run::record::Record;
 use signorini_geometry::Point;
 use signorini_solid::loads::resultant;
-use signorini_solid::{ContactResult, FrictionResult, Method, Model, PressureNode, State};
+use signorini_solid::{ContactResult, FrictionResult, Method, Model, PressureNode, Route, State};
 use std::collections::{BTreeMap, HashMap};
 
 /// Strain from which the theory of small strains is off by more than a few per cent of the result: the terms left out are
@@ -19,6 +19,14 @@ const LARGE_STRAIN: f64 = 0.05;
 
 /// What solves the equations.
 pub const SOLVER: &str = "direct";
+
+/// The same, where the tractions of a large zone of contact are found by products with the compliance of the bodies.
+fn solver(route: Route) -> &'static str {
+    match route {
+        Route::Columns => SOLVER,
+        Route::Products => "direct with krylov",
+    }
+}
 
 /// A state as it is shown.
 pub struct Shown<const D: usize> {
@@ -74,7 +82,7 @@ pub fn step_report<const D: usize>(
         converged: true,
         reason: Reason::Converged,
         iterations: state.iterations,
-        solver: SOLVER.into(),
+        solver: solver(state.route).into(),
         residual_history: state.residuals.clone(),
         energy: Some(state.energy),
         max_strain: most.map(|k| fields.strain[k]),

@@ -15,7 +15,7 @@ macro_rules! example {
 }
 
 /// Cases with mechanics, simplest first.
-pub const GALLERY: [Example; 34] = [
+pub const GALLERY: [Example; 36] = [
     example!("string", "a string on a flat floor, beside the exact solution"),
     example!("axisymmetric", "a round membrane by its radius, beside the exact solution"),
     example!("snap_in", "a sticky membrane: snap-in, pull-off, and the loop between them"),
@@ -40,6 +40,8 @@ pub const GALLERY: [Example; 34] = [
     example!("cattaneo_mindlin", "alike bodies pressed together and shifted to and fro: stick, slip and a loop"),
     example!("incline", "a block on a tilting incline with a grain: friction of two kinds"),
     example!("roller", "a soft block drawn over a cylinder: finite strain and friction that slides any way"),
+    example!("wedge", "an elastic block pushed up an elastic wedge: statics with friction"),
+    example!("press_fit", "a shaft pressed into a hub and turned until it slips"),
     example!("groove", "a free ball between two elastic blocks, held by contact and friction alone"),
     example!("capstan", "a rope round a drum, which begins to slip at the end that is pulled"),
     example!("crossing", "two geometrically exact beams across each other"),
@@ -57,6 +59,7 @@ pub fn asset(name: &str) -> Option<&'static [u8]> {
     match name {
         "die.json" => Some(include_bytes!("../../../gallery/die/die.json")),
         "drum.msh" => Some(include_bytes!("../../../gallery/drum/drum.msh")),
+        "press_fit.msh" => Some(include_bytes!("../../../gallery/press_fit/press_fit.msh")),
         "measured.csv" => Some(include_bytes!("../../../gallery/blister/measured.csv")),
         "foam.npy" => Some(include_bytes!("../../../gallery/foam/foam.npy")),
         "scan.stl" => Some(include_bytes!("../../../gallery/scan/scan.stl")),

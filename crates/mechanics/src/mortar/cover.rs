@@ -75,8 +75,12 @@ impl Nodes {
     /// What of the slave side sees the master.
     pub fn cut(&self, slave: &dyn Surface, master: &dyn Surface, search: Search, folded: &[bool]) -> Cover {
         match (self, slave.faces().0, master.faces().0) {
-            (Nodes::Plane(nodes), Faces::Plane(a), Faces::Plane(b)) => cut(nodes, [a, b], [slave, master], search, folded),
-            (Nodes::Space(nodes), Faces::Space(a), Faces::Space(b)) => cut(nodes, [a, b], [slave, master], search, folded),
+            (Nodes::Plane(nodes), Faces::Plane(a), Faces::Plane(b)) => {
+                cut(nodes, [a, b], [slave, master], search, folded)
+            }
+            (Nodes::Space(nodes), Faces::Space(a), Faces::Space(b)) => {
+                cut(nodes, [a, b], [slave, master], search, folded)
+            }
             _ => Cover { points: Vec::new(), weight: vec![0.0; folded.len()] },
         }
     }
@@ -143,4 +147,3 @@ fn cover<const D: usize>(
     let points = points.into_iter().zip(shares.of_point).enumerate().map(of_face).collect();
     Cover { points, weight: shares.weight }
 }
-

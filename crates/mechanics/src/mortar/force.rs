@@ -1,13 +1,13 @@
 //! Residual and tangent of a mortar contact, added up face by face.
 
+use super::Mortar;
 use super::cover::{Cover, CoveredPoint};
 use super::measure::{NodeMeasure, Separation, Sides};
-use super::Mortar;
 use crate::body::Order;
 use crate::interaction::{Own, Target};
 use crate::pair::{NoPair, Pair};
-use signorini_contact::law::Projected;
 use signorini_contact::Status;
+use signorini_contact::law::Projected;
 use signorini_geometry::{Matrix, Vector};
 use std::collections::HashMap;
 
@@ -176,7 +176,8 @@ impl Assembly<'_> {
         let Some(tangent) = &mut out.tangent else { return };
         let list: Vec<_> = contact.matched.iter().zip(separations).collect();
         for of_face in list.chunk_by(|a, b| a.0.face == b.0.face) {
-            let unknowns = of_face.iter().filter_map(|(_, apart)| apart.as_ref()).flat_map(|a| a.unknowns.iter().copied());
+            let unknowns =
+                of_face.iter().filter_map(|(_, apart)| apart.as_ref()).flat_map(|a| a.unknowns.iter().copied());
             let block = Block::new(unknowns);
             let mut rows: Lines = HashMap::new();
             for (matched, apart) in of_face {

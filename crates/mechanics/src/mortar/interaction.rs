@@ -67,7 +67,8 @@ impl Mortar {
             out.friction = rubbed[k] / measure.weight;
             if let (Some(law), true) = (&self.friction, out.status != Status::Open) {
                 let axes = self.axes(k as u32, &measure.normal.normalize());
-                out.increment = axes.map_or(Vector::<3>::zeros(), |a| a.e[0] * measure.slip[0] + a.e[1] * measure.slip[1]);
+                out.increment =
+                    axes.map_or(Vector::<3>::zeros(), |a| a.e[0] * measure.slip[0] + a.e[1] * measure.slip[1]);
                 out.utilisation = law.utilisation([t1, t2], p);
                 let before = self.memory[k].slip;
                 out.slip = (before[0] + measure.slip[0]).hypot(before[1] + measure.slip[1]);
@@ -171,7 +172,11 @@ impl Interaction for Mortar {
                 Some(normal) => normal,
                 None => -found.sides.slave.normal(*face, s).normalize(),
             };
-            let mut next = NodeMemory { traction: projected.traction, along: self.along(&found, &normal), ..NodeMemory::default() };
+            let mut next = NodeMemory {
+                traction: projected.traction,
+                along: self.along(&found, &normal),
+                ..NodeMemory::default()
+            };
             if self.friction.is_some() && projected.status != Status::Open {
                 let before = self.memory[k].slip;
                 next.slip = std::array::from_fn(|i| before[i] + measure.slip[i]);
@@ -210,14 +215,21 @@ impl Interaction for Mortar {
         self.memory.iter_mut().for_each(|m| m.traction = [0.0; 3]);
     }
 
-    fn augment(&mut self, at: Bodies<'_>, own: Own<'_>, found: &[SiteResult], around: Around) -> Result<f64, PlaceError> {
+    fn augment(
+        &mut self,
+        at: Bodies<'_>,
+        own: Own<'_>,
+        found: &[SiteResult],
+        around: Around,
+    ) -> Result<f64, PlaceError> {
         match self.enforcement {
             Enforcement::AugmentedLagrangian => {
                 let projected = self.found(at, own.multipliers)?.projected;
                 let most = projected.iter().map(|p| p.traction[0]).fold(0.0f64, f64::max);
                 let mut change = 0.0f64;
                 for ((memory, c), projected) in self.memory.iter_mut().zip(&self.stiffness).zip(projected) {
-                    let changed = (0..3).map(|i| (memory.traction[i] - projected.traction[i]).abs()).fold(0.0, f64::max);
+                    let changed =
+                        (0..3).map(|i| (memory.traction[i] - projected.traction[i]).abs()).fold(0.0, f64::max);
                     // Gaps are known to the rounding of positions only.
                     change = change.max(if changed > around.known * c { changed / most } else { 0.0 });
                     memory.traction = projected.traction;

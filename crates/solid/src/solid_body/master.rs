@@ -254,7 +254,10 @@ impl<const D: usize> Master for SurfaceMaster<'_, D> {
 }
 
 /// Functions with the slopes and second slopes that `of` tells, for each direction.
-pub(super) fn functions<const D: usize>(list: &[(u32, Derivatives)], of: impl Fn(&Derivatives) -> [f64; 5]) -> Vec<Function> {
+pub(super) fn functions<const D: usize>(
+    list: &[(u32, Derivatives)],
+    of: impl Fn(&Derivatives) -> [f64; 5],
+) -> Vec<Function> {
     let mut out = Vec::with_capacity(D * list.len());
     for (f, d) in list {
         let slopes = of(d);

@@ -29,9 +29,7 @@ impl<const D: usize> SolidBody<D> {
     /// The surface of a group that has sides.
     pub(super) fn placed_surface<'a>(&'a self, group: &str, u: &'a [f64]) -> PlacedSurface<'a, D> {
         let surface = self.faces.surface(group);
-        let corner = |face: u32, s: &Local| {
-            Faces::<D>::direction(&self.faces.averaged(face, s, &surface.around), u)
-        };
+        let corner = |face: u32, s: &Local| Faces::<D>::direction(&self.faces.averaged(face, s, &surface.around), u);
         let corners = |face: &u32| self.faces.face(*face).shape.vertices().iter().map(|s| corner(*face, s)).collect();
         let body = self.body();
         PlacedSurface {

@@ -103,7 +103,9 @@ fn one_slides_over_the_facets_of_the_other_in_space() {
         });
         [lower, upper]
     };
-    for (how, mu) in [(PENALTY, Some(0.3)), (MULTIPLIER, None), (MULTIPLIER, Some(0.3)), (MORTAR, None), (MORTAR, Some(0.3))] {
+    for (how, mu) in
+        [(PENALTY, Some(0.3)), (MULTIPLIER, None), (MULTIPLIER, Some(0.3)), (MORTAR, None), (MORTAR, Some(0.3))]
+    {
         let (forces, results) = slid(blocks(), how, mu, (0.06, 0.6, 4));
         println!("{how:?} {mu:?}: {} {:?}", told(&results), forces.last());
         assert!(mean(&results) <= 9.0, "{how:?} {mu:?}: {}", told(&results));

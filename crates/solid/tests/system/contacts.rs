@@ -90,12 +90,7 @@ fn blocks_on_blocks_carry_a_constant_pressure() {
     }
 }
 
-fn tilted(
-    mu: f64,
-    tangent: f64,
-    sampling: Sampling,
-    enforcement: Enforcement,
-) -> Result<IncrementResult, IncrementError> {
+fn tilted(mu: f64, tangent: f64, sampling: Test, enforcement: Enforcement) -> Result<IncrementResult, IncrementError> {
     let mut system = System::default();
     let mesh = rectangle([0.0, 0.0], [1.0, 0.5], [4, 2], 1, |x| x);
     system.bodies.push(Box::new(solid("block", mesh, 1, ELASTIC, StressLaw::LinearElastic)));
@@ -112,9 +107,10 @@ fn tilted(
 fn a_block_on_an_incline_holds_up_to_the_angle_of_friction() {
     let mu = 0.3;
     let kinds = [
-        (Sampling::GaussPoints, Enforcement::Penalty { wanted_penetration: None }),
-        (Sampling::GaussPoints, Enforcement::AugmentedLagrangian),
-        (Sampling::Nodes, Enforcement::Multiplier),
+        (Test::from(Sampling::GaussPoints), Enforcement::Penalty { wanted_penetration: None }),
+        (Test::from(Sampling::GaussPoints), Enforcement::AugmentedLagrangian),
+        (Test::from(Sampling::Nodes), Enforcement::Multiplier),
+        (Test::Mortar(0), Enforcement::Multiplier),
     ];
     for (sampling, enforcement) in kinds {
         let held = tilted(mu, mu * 0.995, sampling, enforcement).unwrap_or_else(|e| panic!("{enforcement:?}: {e:?}"));
@@ -130,9 +126,12 @@ fn a_block_on_an_incline_holds_up_to_the_angle_of_friction() {
 #[test]
 fn a_wedge_needs_the_force_of_statics() {
     for (tangent, mu) in [(0.1, 0.0), (0.1, 0.3), (0.25, 0.35)] {
-        for (sampling, enforcement) in
-            [(Sampling::GaussPoints, Enforcement::AugmentedLagrangian), (Sampling::Nodes, Enforcement::Multiplier)]
-        {
+        for (sampling, enforcement) in [
+            (Test::from(Sampling::GaussPoints), Enforcement::AugmentedLagrangian),
+            (Test::from(Sampling::Nodes), Enforcement::Multiplier),
+            (Test::Mortar(0), Enforcement::Multiplier),
+            (Test::Mortar(0), Enforcement::AugmentedLagrangian),
+        ] {
             let mut system = System::default();
             let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [4, 4], 1, |mut x| {
                 x[1] += tangent * x[0] * (1.0 - x[1]);

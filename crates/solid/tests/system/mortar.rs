@@ -60,11 +60,9 @@ fn a_patch_passes_in_the_plane() {
 
 #[test]
 fn a_patch_passes_in_space() {
-    for (degree, law, mu, cells) in [
-        (1, StressLaw::LinearElastic, None, [2, 3]),
-        (1, NEO_HOOKE, Some(0.4), [3, 2]),
-        (2, NEO_HOOKE, None, [1, 2]),
-    ] {
+    for (degree, law, mu, cells) in
+        [(1, StressLaw::LinearElastic, None, [2, 3]), (1, NEO_HOOKE, Some(0.4), [3, 2]), (2, NEO_HOOKE, None, [1, 2])]
+    {
         let block = |low: f64, high: f64, n: usize| cuboid([0.0, 0.0, low], [1.0, 1.0, high], [n, n, 1], |x| x);
         let error = patch([block(0.0, 0.5, cells[0]), block(0.5, 1.0, cells[1])], degree, law, mu);
         println!("degree {degree} {} {mu:?} {cells:?}: {error:.1e}", law.name());
@@ -150,4 +148,165 @@ fn what_sticks_turns_without_slip() {
         let turned = v(c * f.x - s * f.y, s * f.x + c * f.y, 0.0);
         assert!((turned - g).norm() < 1e-8 * g.norm(), "{turned} {g}");
     }
+}
+
+/// Rings of quadratic cells between two radii: a block round the origin with its seam closed.
+fn ring(radii: [f64; 2], across: usize, round: usize) -> Mesh<2> {
+    let turn = std::f64::consts::TAU;
+    let open = block::<2>(&[even(radii[0], radii[1], across), even(0.0, turn, round)], 2, |x| {
+        Point::<2>::new(x[0] * x[1].cos(), x[0] * x[1].sin())
+    });
+    let mut nodes: Vec<Point<2>> = Vec::new();
+    let mut number = |x: &Point<2>| {
+        let found = nodes.iter().position(|y| (x - y).norm() < 1e-9);
+        found.unwrap_or_else(|| {
+            nodes.push(*x);
+            nodes.len() - 1
+        }) as u32
+    };
+    let of_cell = |cell: usize, number: &mut dyn FnMut(&Point<2>) -> u32| -> Vec<u32> {
+        open.cell_nodes(cell).iter().map(|n| number(&open.nodes()[*n as usize])).collect()
+    };
+    let cells: Vec<Vec<u32>> = (0..open.cell_count()).map(|cell| of_cell(cell, &mut number)).collect();
+    let mut out = Mesh::<2>::new(nodes);
+    for (cell, list) in cells.iter().enumerate() {
+        out.add_cell(open.shape(cell), 2, list);
+    }
+    let middle = 0.5 * (radii[0] + radii[1]);
+    for side in out.boundary() {
+        let inner = out.on_side(side, &[0.0; 3]).0.norm() < middle;
+        out.group_mut(if inner { "inside" } else { "outside" }).sides.push(side);
+    }
+    out
+}
+
+/// A shaft in a hub that is too small for it: held within and without, the bore turned.
+#[test]
+fn a_press_fit_slips_at_the_torque_of_its_pressure() {
+    let ([a, b, c], delta, mu) = ([1.0, 2.0, 3.0], 0.002, 0.15);
+    let mut system = System::default();
+    system.bodies.push(Box::new(solid("shaft", ring([a, b + delta], 2, 36), 2, ELASTIC, NEO_HOOKE)));
+    system.bodies.push(Box::new(solid("hub", ring([b, c], 2, 28), 2, ELASTIC, NEO_HOOKE)));
+    let turned = |t: f64| -> f64 { 0.1 * [0.0, 0.0, 1.0, 2.0, 1.0][t as usize] };
+    let mut bore = hold(0, "inside", [None; 3]);
+    for i in 0..2 {
+        bore.displacement[i] = Some(Arc::new(move |x: &Point<3>, t: f64| {
+            let (s, c) = turned(t).sin_cos();
+            [c * x.x - s * x.y, s * x.x + c * x.y][i] - x[i]
+        }));
+    }
+    system.supports.push(bore);
+    system.supports.push(hold(1, "outside", [Some(0.0), Some(0.0), None]));
+    touch(&mut system, [(0, "outside"), (1, "inside")], Test::Mortar(0), Enforcement::Multiplier, Some(mu));
+    let (_, results) = run(&mut system, &[1.0, 2.0, 3.0, 4.0]);
+    println!("{}", told(&results));
+    // Lamé: u = A r + B/r with u = 0 at the far radius, under a unit pressure at b.
+    let (e, nu) = (ELASTIC.youngs_modulus, ELASTIC.poissons_ratio);
+    let (lame, shear) = (e * nu / (1.0 + nu) / (1.0 - 2.0 * nu), e / 2.0 / (1.0 + nu));
+    let moved = |r: f64| {
+        let slope = -1.0 / (2.0 * (lame + shear) + 2.0 * shear * r * r / (b * b));
+        slope * b - slope * r * r / b
+    };
+    let pressure = delta / (moved(c) - moved(a));
+    let known = std::f64::consts::TAU * b * b * mu * pressure;
+    let torque = |r: &IncrementResult| r.sites[0].iter().map(|s| s.x.cross(&s.force()).z).sum::<f64>();
+    let found: Vec<f64> = results.iter().map(torque).collect();
+    println!("{found:?} of {known}");
+    let most = results[0].sites[0].iter().map(|s| s.pressure).fold(0.0f64, f64::max);
+    println!("pressure up to {most} of {pressure}");
+    assert!((most / pressure - 1.0).abs() < 0.03, "{most} {pressure}");
+    assert!(found[0].abs() < 1e-3 * known);
+    assert!((found[1] / known + 1.0).abs() < 0.01 && (found[2] / known + 1.0).abs() < 0.01, "{found:?} {known}");
+    assert!((found[2] / found[1] - 1.0).abs() < 1e-3, "{found:?}");
+    assert!((found[3] / found[2] + 1.0).abs() < 1e-3, "{found:?}");
+    assert!(results.iter().all(|r| r.iterations <= 9 && is_quadratic(&r.history)), "{}", told(&results));
+}
+
+/// How much flatter than that of the reference the cylinder is.
+const FLATTER: f64 = 0.01;
+
+/// A steel cylinder on aluminium, pressed in four steps, against a reference with the gap across the block: as flat as here
+/// the direction of the gap does not matter, and all forces are in proportion. A tenth of radians at the edge of the contact
+/// as in the reference is nearly that of friction.
+#[test]
+fn unlike_bodies_rub_as_they_are_pressed() {
+    let axis = |parts: [(f64, f64, usize, f64); 2]| {
+        let mut out = vec![parts[0].0];
+        parts
+            .iter()
+            .for_each(|(from, to, n, growth)| out.extend(signorini_fem::block::graded(*from, *to, *n, *growth)));
+        out
+    };
+    let radius: f64 = 50.0;
+    let cylinder = block::<2>(
+        &[axis([(0.0, 8.0, 8, 1.0), (8.0, 38.0, 6, 1.4)]), axis([(0.0, 4.0, 4, 1.0), (4.0, 40.0, 6, 1.4)])],
+        2,
+        |x| {
+            Point::<2>::new(
+                x[0],
+                x[1] + (1.0 - x[1] / 40.0) * FLATTER * (radius - (radius * radius - x[0] * x[0]).sqrt()),
+            )
+        },
+    );
+    let base = block::<2>(
+        &[axis([(0.0, 9.0, 11, 1.0), (9.0, 100.0, 7, 1.5)]), axis([(-100.0, -5.0, 7, 1.0 / 1.5), (-5.0, 0.0, 6, 1.0)])],
+        1,
+        |x| x,
+    );
+    let stiff = |e: f64| Elastic { youngs_modulus: e, ..ELASTIC };
+    let mut system = System::default();
+    system.bodies.push(Box::new(solid("cylinder", cylinder, 2, stiff(210e3), StressLaw::LinearElastic)));
+    system.bodies.push(Box::new(solid("block", base, 2, stiff(70e3), StressLaw::LinearElastic)));
+    system.supports.push(hold(0, "top", [Some(0.0), Some(-1.2588612 * FLATTER), None]));
+    system.supports.push(hold(0, "left", [Some(0.0), None, None]));
+    system.supports.push(hold(1, "left", [Some(0.0), None, None]));
+    system.supports.push(hold(1, "bottom", [Some(0.0), Some(0.0), None]));
+    touch(&mut system, [(0, "bottom"), (1, "top")], Test::Mortar(0), Enforcement::Multiplier, Some(0.1));
+    let (_, results) = run(&mut system, &[0.25, 0.5, 0.75, 1.0]);
+    let last = &results[3];
+    let most = |of: &dyn Fn(&SiteResult) -> f64| last.sites[0].iter().map(of).fold(0.0f64, f64::max) / FLATTER;
+    let load = force(last, 0)[1] / FLATTER;
+    let [pressure, friction] = [most(&|s| s.pressure), most(&|s| s.friction.norm())];
+    println!("{load} {pressure} {friction}, {}", told(&results));
+    assert!((load / 17500.0 - 1.0).abs() < 5e-3, "{load}");
+    assert!((pressure / 3671.5 - 1.0).abs() < 0.01, "{pressure}");
+    assert!((friction / 336.7 - 1.0).abs() < 0.03, "{friction}");
+}
+
+/// Digits of a computation that was saved and restored are those of one that went on.
+#[test]
+fn it_goes_on_as_it_was_saved() {
+    let built = || {
+        let mut system = System::default();
+        system.bodies.push(Box::new(solid(
+            "lower",
+            rectangle([0.0, 0.0], [2.0, 0.5], [8, 2], 1, |x| x),
+            1,
+            ELASTIC,
+            NEO_HOOKE,
+        )));
+        system.bodies.push(Box::new(solid(
+            "upper",
+            rectangle([0.5, 0.5], [1.1, 0.9], [3, 2], 1, |x| x),
+            1,
+            ELASTIC,
+            NEO_HOOKE,
+        )));
+        system.supports.push(hold(0, "bottom", [Some(0.0), Some(0.0), None]));
+        system.supports.push(hold(1, "top", [Some(0.05), Some(-0.02), None]));
+        touch(&mut system, [(1, "bottom"), (0, "top")], Test::Mortar(0), Enforcement::Multiplier, Some(0.4));
+        system.prepare().unwrap();
+        system
+    };
+    let mut system = built();
+    let mut state = system.start();
+    let mut saved = None;
+    for time in [1.0, 2.0] {
+        saved = Some(system.save(&state));
+        state = system.solve(&state, time, &mut |_, _| true).unwrap().0;
+        system.accept(&state).unwrap();
+    }
+    let mut other = built();
+    let from = other.restore(saved.unwrap()).unwrap();
+    assert_eq!(other.solve(&from, 2.0, &mut |_, _| true).unwrap().0, state);
 }

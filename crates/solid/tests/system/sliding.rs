@@ -58,6 +58,8 @@ fn compare(cells: [usize; 2], degree: usize, how: How, tolerance: f64) {
         // At a finite penetration g friction T acts as T - g H T on a master of curvature H.
         let sum = result.support_forces[0][0] - force;
         let depth = result.sites[0].iter().filter_map(|s| s.gap).fold(0.0f64, |m, g| m.max(-g));
+        // Points within the functions of a node have gaps that vanish in the mean only.
+        let depth = if how == MORTAR { 1e-4 } else { depth };
         assert!(sum.norm() < (1e-8 + 0.5 * depth) * force.norm(), "{sum}");
     }
     let last = forces.last().unwrap();

@@ -292,9 +292,9 @@ fn shoe(degree: usize) -> [Mesh<2>; 2] {
 fn of_mortar_in_the_plane() {
     for degree in 1..=3 {
         for enforcement in ENFORCEMENTS {
-            for mu in [None, Some(30.0), Some(0.05)] {
+            for mu in [None, Some(30.0), Some(2e-3)] {
                 // With many points, so that what cuts change does not hide in the error of the rule.
-                let error = contact(shoe(degree), degree, Test::Mortar(12), enforcement, mu);
+                let error = contact(shoe(degree), degree, Test::Mortar(8), enforcement, mu);
                 println!("degree {degree} {enforcement:?} {mu:?}: {error:e}");
                 assert!(error < 1e-6, "degree {degree} {enforcement:?} {mu:?}: {error:e}");
             }
@@ -305,7 +305,8 @@ fn of_mortar_in_the_plane() {
 #[test]
 fn of_mortar_in_space() {
     for degree in 1..=2 {
-        for (enforcement, mu) in [(ENFORCEMENTS[0], Some(0.05)), (ENFORCEMENTS[2], Some(30.0)), (ENFORCEMENTS[1], None)] {
+        for (enforcement, mu) in [(ENFORCEMENTS[0], Some(2e-3)), (ENFORCEMENTS[2], Some(30.0)), (ENFORCEMENTS[1], None)]
+        {
             let upper = cuboid([0.13, 0.11, 0.0], [0.77, 0.66, 0.5], [1, 1, 1], |mut x| {
                 x[2] += 0.05 * x[0] - 0.06;
                 x
@@ -314,7 +315,8 @@ fn of_mortar_in_space() {
                 x[2] += 0.06 * x[0] * x[1] * (x[2] + 0.6) - 0.02 * x[1];
                 x
             });
-            let error = contact([upper, lower], degree, Test::Mortar(6), enforcement, mu);
+            // All of the slave side sees one face: no cuts.
+            let error = contact([upper, lower], degree, Test::Mortar(0), enforcement, mu);
             println!("degree {degree} {enforcement:?} {mu:?}: {error:e}");
             assert!(error < 1e-6, "degree {degree} {enforcement:?} {mu:?}: {error:e}");
         }

@@ -20,7 +20,9 @@ impl Planner<'_> {
         let body = |part: &Part| system.bodies[part.body].as_ref();
         let told = |part: &Part, what: &str| {
             let message = format!("`{}` {what}", body(part).name());
-            problem.error(method, message).help("method.gauss_point = {}  or  method.node = {}, or leave the method out")
+            problem
+                .error(method, message)
+                .help("method.gauss_point = {}  or  method.node = {}, or leave the method out")
         };
         if slave.body == master.body {
             return Err(told(slave, "touches itself: a mortar joins two bodies"));

@@ -7,6 +7,7 @@
 //! - [`contact`]: law and enforcement at the sites of two sides.
 //! - [`interaction`]: what acts between bodies, as the system sees it.
 //! - [`system`]: bodies, supports, loads and contacts, assembled.
+//! - [`iterative`]: Newton's step of large systems by iterations.
 //! - [`increment`]: equilibrium at one time, by Newton's method (`equilibrium`), other ways where that fails (`homotopy`,
 //!   `free`), and outer iterations (`augmentation`); [`saved`]: what it goes on from.
 
@@ -19,6 +20,8 @@ mod free;
 mod homotopy;
 pub mod increment;
 pub mod interaction;
+pub mod iterative;
+mod nitsche;
 pub mod pair;
 mod prepare;
 pub mod rigid_body;
@@ -33,6 +36,7 @@ pub use contact::{Contact, Enforcement, Part, SiteMemory, SiteResult};
 pub use curve::Curve;
 pub use increment::{IncrementError, IncrementResult};
 pub use interaction::{Bodies, Interaction, Own, Target};
+pub use iterative::{LinearSolver, Solved, Subspaces};
 pub use pair::AxisChoice;
 pub use rigid_body::{Motion, RigidBody, RigidSite};
 pub use saved::Saved;

@@ -37,15 +37,21 @@ use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics as mechanics;
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{
-    Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Function, Hold, Load, Master, Order, PlaceError,
-    Placed, Sampling,
+    Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Direction, Function, Hold, Load, Master, Order,
+    PlaceError, Placed, Sampling, Subspaces,
 };
+use signorini_solve::blocks::Block;
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 use weak::WeakHold;
 
 /// The name of the whole recovered boundary.
 const BOUNDARY: &str = "boundary";
+
+/// Unknowns above which conjugate gradients are faster than a factorisation by LU, whose time grows with their square in
+/// space and with the power 3/2 in the plane.
+const MANY_UNKNOWNS: usize = 8_000;
+const MANY_IN_THE_PLANE: usize = 200_000;
 
 /// A body of finite cells in a system of bodies.
 pub struct CellSolid<const D: usize> {
@@ -158,11 +164,12 @@ impl<const D: usize> CellSolid<D> {
         (!self.is_zero[unknown]).then_some(unknown as u32)
     }
 
-    /// Points a degree's part of their cells apart, each in the middle of those that it stands for.
-    fn spread(&self, surface: &Surface<D>) -> Vec<mechanics::Site> {
+    /// Points a spacing apart, each in the middle of those that it stands for, and how far the farthest point is from them,
+    /// in spacings.
+    fn spread(&self, surface: &Surface<D>, spacing: &dyn Fn(&Site<D>) -> f64) -> (Vec<mechanics::Site>, f64) {
         let points = self.points_of(surface);
-        let spacing: Vec<f64> = points.iter().map(|p| self.cell_size(p) / self.body.degree() as f64).collect();
-        let (chosen, nearest, _) = farthest_points(points, &spacing);
+        let spacing: Vec<f64> = points.iter().map(spacing).collect();
+        let (chosen, nearest, far) = farthest_points(points, &spacing);
         let mut sums = vec![(0.0, Point::<D>::zeros()); chosen.len()];
         for (p, n) in points.iter().zip(&nearest) {
             sums[*n].0 += p.weight;
@@ -180,7 +187,7 @@ impl<const D: usize> CellSolid<D> {
             xi: [0.0; 2],
             weight: *weight,
         };
-        sums.iter().zip(&middle).map(site).collect()
+        (sums.iter().zip(&middle).map(site).collect(), far)
     }
 
     /// Least extent of the cell of a point.
@@ -317,6 +324,16 @@ impl<const D: usize> Body for CellSolid<D> {
         true
     }
 
+    fn subspaces(&self) -> Option<Subspaces<'_>> {
+        let own = self.stiffness.iter().enumerate();
+        let stiffness = own.map(|(c, k)| Block { unknowns: self.body.unknowns_of(c), entries: k.as_slice() }).collect();
+        Some(Subspaces { stiffness, sets: self.body.schwarz_sets() })
+    }
+
+    fn many_unknowns(&self) -> Option<usize> {
+        Some(if D == 3 { MANY_UNKNOWNS } else { MANY_IN_THE_PLANE })
+    }
+
     /// Equations on a side of the box, one for each function on it and component that is held; none elsewhere.
     fn hold(&self, on: Option<&str>, hold: &Hold<'_>, state: &BodyState) -> Result<Vec<Constraint>, PlaceError> {
         if hold.rotation.iter().any(Option::is_some) {
@@ -360,8 +377,17 @@ impl<const D: usize> Body for CellSolid<D> {
         let site = |k: usize| mechanics::Site { patch: k as u32, xi: [0.0; 2], weight: self.points[k].weight };
         Ok(match sampling {
             Sampling::GaussPoints => (first..end).map(site).collect(),
-            Sampling::Nodes => surface.spread.get_or_init(|| self.spread(surface)).clone(),
+            Sampling::Nodes => {
+                let spacing = |p: &Site<D>| self.cell_size(p) / self.body.degree() as f64;
+                surface.spread.get_or_init(|| self.spread(surface, &spacing).0).clone()
+            }
         })
+    }
+
+    fn spread_sites(&self, on: Option<&str>, spacing: f64) -> Result<(Vec<mechanics::Site>, f64), PlaceError> {
+        let (sites, far) = self.spread(self.surface(on)?, &|_| spacing);
+        // Points in the middle of what they stand for are up to twice as far apart as the farthest point from them.
+        Ok((sites, (2.0 * far).max(1.0) * spacing))
     }
 
     fn placed(&self, state: &BodyState, site: &mechanics::Site) -> Placed {
@@ -393,6 +419,30 @@ impl<const D: usize> Body for CellSolid<D> {
         let point = &self.points[site.patch as usize];
         let modulus = self.body.elastic().youngs_modulus * self.body.modulus_factor(&point.x);
         modulus * site.weight * self.body.degree() as f64 / self.cell_size(point)
+    }
+
+    /// Of the cell that controls the stress there.
+    fn traction(&self, state: &BodyState, site: &mechanics::Site) -> Option<Direction> {
+        let point = &self.points[site.patch as usize];
+        let cell = self.body.cells()[point.cell].stress_cell;
+        let mut t = Tabulation::default();
+        self.body.functions_at(cell, &point.x, &mut t);
+        let u = &state.configuration;
+        let mut out = Direction::default();
+        for (k, value) in self.body.tractions(&point.x, &point.normal, &t).iter().enumerate() {
+            let function = self.body.cells()[cell].functions[k / D];
+            if let Some(unknown) = self.unknown(function, k % D) {
+                let value = spatial(&Point::<D>::from(*value));
+                out.vector += value * u[unknown as usize];
+                out.functions.push(Function { unknown, value, ..Function::default() });
+            }
+        }
+        Some(out)
+    }
+
+    /// `E p²/h`.
+    fn stabilisation(&self, site: &mechanics::Site) -> f64 {
+        self.body.degree() as f64 * self.site_stiffness(site) / site.weight
     }
 
     fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6] {

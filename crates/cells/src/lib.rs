@@ -14,7 +14,7 @@
 //! - [`cell_solid`]: the body in a system of bodies of any kind.
 //! - [`description`]: the same from plain data, of any dimension.
 //! - [`contact`]: contact of the recovered boundary with a rigid body.
-//! - [`discs`]: contact of a body with itself, where pores close.
+//! - [`discs`]: contact of a body with itself, where pores close; [`disc_contact`]: the same in a system of bodies.
 //! - [`fields`]: displacement and stress in the volume and on the boundary.
 
 pub mod body;
@@ -22,6 +22,7 @@ pub mod cell_solid;
 pub mod components;
 pub mod contact;
 pub mod description;
+pub mod disc_contact;
 pub mod discretisation;
 pub mod discs;
 pub mod domain;

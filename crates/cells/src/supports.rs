@@ -56,6 +56,7 @@ impl<const D: usize> Support<D> {
 }
 
 /// Matrix and right-hand side of the unknowns of a few cells.
+#[derive(Clone)]
 pub(crate) struct Terms {
     pub unknowns: Vec<u32>,
     pub matrix: Vec<f64>,

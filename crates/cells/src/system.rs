@@ -4,13 +4,15 @@ use crate::body::CellBody;
 use crate::error::CellsError;
 use crate::loads::Load;
 use crate::place::Place;
-use crate::schwarz::Schwarz;
-use crate::supports::{Held, Support};
+use crate::supports::{Held, Support, Terms};
 use nalgebra::DMatrix;
 use signorini_fem::cut::End;
 use signorini_fem::elastic::Space;
 use signorini_geometry::{Point, Vector};
+use signorini_solve::blocks::{Block, BlockSum};
 use signorini_solve::dissection::nested_dissection;
+use signorini_solve::krylov::{Found, Stopped, conjugate_gradients};
+use signorini_solve::schwarz::Schwarz;
 use signorini_solve::{Factor, Symbolic, SymmetricMatrix};
 use std::sync::Arc;
 
@@ -43,6 +45,7 @@ pub struct Solution {
 /// Above this number of unknowns conjugate gradients are faster than the factorisation in space, which grows with the
 /// square of the number; in the plane it is ten times as many.
 const MANY_UNKNOWNS: usize = 100_000;
+const MOST_ITERATIONS: usize = 2000;
 
 /// The equations of a body.
 #[derive(Clone)]
@@ -54,6 +57,8 @@ pub struct System<'a, const D: usize> {
     pub(crate) forces: Vec<f64>,
     pub(crate) prescribed: Vec<Option<f64>>,
     loads: Vec<f64>,
+    /// The terms of places that are held by Nitsche's method, which are in the matrix too.
+    held_weakly: Vec<Terms>,
     /// Squares of the rigid motions along what is held.
     held: DMatrix<f64>,
 }
@@ -80,7 +85,16 @@ impl<'a, const D: usize> System<'a, D> {
         }
         let motions = rigid_motions(body, &body.tree.bounds().center()).len();
         let held = DMatrix::zeros(motions, motions);
-        System { body, stiffness, matrix, forces: vec![0.0; n], prescribed, loads: vec![0.0; n], held }
+        System {
+            body,
+            stiffness,
+            matrix,
+            forces: vec![0.0; n],
+            prescribed,
+            loads: vec![0.0; n],
+            held_weakly: Vec::new(),
+            held,
+        }
     }
 
     pub fn body(&self) -> &CellBody<D> {
@@ -128,6 +142,7 @@ impl<'a, const D: usize> System<'a, D> {
                 for terms in self.body.nitsche(&sites, held, &self.stiffness) {
                     self.matrix.add(&terms.unknowns, &terms.matrix, 1.0);
                     terms.unknowns.iter().zip(&terms.forces).for_each(|(u, f)| self.forces[*u as usize] += f);
+                    self.held_weakly.push(terms);
                 }
             }
         }
@@ -163,9 +178,7 @@ impl<'a, const D: usize> System<'a, D> {
         if modes > 0 {
             return Err(CellsError::Unsupported { modes });
         }
-        let (mut matrix, mut rhs) = (self.matrix.clone(), self.forces.clone());
-        matrix.prescribe(&self.prescribed, &mut rhs);
-        let n = matrix.size();
+        let n = self.matrix.size();
         let many = if D < 3 { 10 * MANY_UNKNOWNS } else { MANY_UNKNOWNS };
         let solver = match solver {
             Solver::Automatic if n > many => Solver::Iterative { tolerance: 1e-10 },
@@ -174,13 +187,15 @@ impl<'a, const D: usize> System<'a, D> {
         };
         let (mut displacement, solved) = match solver {
             Solver::Iterative { tolerance } => {
-                let free: Vec<bool> = self.prescribed.iter().map(Option::is_none).collect();
-                let schwarz = Schwarz::new(self.body, &matrix, &free)?;
-                let found = schwarz.conjugate_gradients(&rhs, tolerance, 2000)?;
+                let found = self.iterate(tolerance)?;
                 let (iterations, condition) = (found.iterations, found.condition);
                 (found.x, Solved::Iterative { unknowns: n, iterations, condition })
             }
-            _ => (Scaled::new(self.body, matrix)?.solve(&rhs)?, Solved::Direct { unknowns: n }),
+            _ => {
+                let (mut matrix, mut rhs) = (self.matrix.clone(), self.forces.clone());
+                matrix.prescribe(&self.prescribed, &mut rhs);
+                (Scaled::new(self.body, matrix)?.solve(&rhs)?, Solved::Direct { unknowns: n })
+            }
         };
         for (u, value) in displacement.iter_mut().zip(&self.prescribed) {
             if let Some(value) = value {
@@ -188,6 +203,26 @@ impl<'a, const D: usize> System<'a, D> {
             }
         }
         Ok(Solution { displacement, solved })
+    }
+
+    fn iterate(&self, tolerance: f64) -> Result<Found, CellsError> {
+        let own = self.stiffness.iter().enumerate();
+        let mut blocks: Vec<Block<'_>> =
+            own.map(|(c, k)| Block { unknowns: self.body.unknowns_of(c), entries: k.as_slice() }).collect();
+        blocks.extend(self.held_weakly.iter().map(|t| Block { unknowns: t.unknowns.clone(), entries: &t.matrix }));
+        let a = BlockSum::new(blocks, self.prescribed.iter().map(Option::is_none).collect());
+        let known: Vec<f64> = self.prescribed.iter().map(|p| p.unwrap_or(0.0)).collect();
+        let moved = a.multiply_all(&known);
+        let rhs: Vec<f64> =
+            (0..known.len()).map(|k| if a.free()[k] { self.forces[k] - moved[k] } else { 0.0 }).collect();
+        let schwarz = Schwarz::new(&a, &self.body.schwarz_sets())?;
+        conjugate_gradients(&rhs, |x| a.multiply(x), |r| schwarz.apply(r), tolerance, MOST_ITERATIONS).map_err(
+            |stopped| match stopped {
+                Stopped::Equations(error) => error.into(),
+                Stopped::Indefinite => CellsError::Iterations { iterations: 0, residual: 1.0 },
+                Stopped::TooMany { iterations, residual } => CellsError::Iterations { iterations, residual },
+            },
+        )
     }
 
     /// The number of rigid motions of the body that no support holds.
@@ -256,19 +291,14 @@ pub(crate) struct Scaled {
 impl Scaled {
     pub fn new<const D: usize>(body: &CellBody<D>, matrix: SymmetricMatrix) -> Result<Self, CellsError> {
         let position: Vec<[f64; D]> = (0..matrix.size()).map(|i| body.position(i / D).into()).collect();
-        Self::at(&position, matrix)
-    }
-
-    /// The factor of a matrix whose unknowns have these places.
-    pub fn at<const D: usize>(position: &[[f64; D]], matrix: SymmetricMatrix) -> Result<Self, CellsError> {
         let scale: Vec<f64> = matrix.diagonal().iter().map(|d| if *d > 0.0 { 1.0 / d.sqrt() } else { 1.0 }).collect();
         let scaled = matrix.scaled(&scale);
         let mut symbolic =
-            if D == 3 { Symbolic::ordered(nested_dissection(&scaled, position)) } else { Symbolic::default() };
+            if D == 3 { Symbolic::ordered(nested_dissection(&scaled, &position)) } else { Symbolic::default() };
         Ok(Scaled { factor: symbolic.factor(scaled)?, scale })
     }
 
-    /// Without refinement, as a preconditioner.
+    /// Without refinement.
     pub fn solve_once(&self, b: &[f64]) -> Result<Vec<f64>, CellsError> {
         let mut x: Vec<f64> = b.iter().zip(&self.scale).map(|(b, s)| b * s).collect();
         self.factor.solve_once(&mut x)?;

@@ -4,6 +4,7 @@
 use crate::equilibrium::ROUNDING;
 use crate::increment::{IncrementError, IncrementResult};
 use crate::interaction::{Around, Bodies};
+use crate::iterative::Solved;
 use crate::system::{AssemblyError, System, SystemState};
 
 impl System {
@@ -13,10 +14,11 @@ impl System {
         &mut self,
         start: &SystemState,
         time: f64,
+        solved: &mut Solved,
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Option<SystemState> {
         self.contacts.iter_mut().for_each(|contact| contact.simplify());
-        let found = self.inner(start, time, report).ok();
+        let found = self.inner(start, time, solved, report).ok();
         self.contacts.iter_mut().for_each(|contact| contact.restate());
         found.map(|found| found.state)
     }

@@ -6,6 +6,7 @@
 
 use crate::curve::Curve;
 use crate::surface::Surface;
+use crate::iterative::Subspaces;
 use signorini_geometry::rigid_shape::{GapJet, RigidShape};
 use signorini_geometry::shape::SurfaceJet;
 use signorini_geometry::{Matrix, Point, Vector};
@@ -310,6 +311,17 @@ pub trait Body: Send + Sync {
         false
     }
 
+    /// What iterations need in place of a factorisation: of linear bodies that have it.
+    fn subspaces(&self) -> Option<Subspaces<'_>> {
+        None
+    }
+
+    /// Above so many unknowns of the system iterations with [`subspaces`](Body::subspaces) are faster than a factorisation;
+    /// none where there are none.
+    fn many_unknowns(&self) -> Option<usize> {
+        None
+    }
+
     /// The equations of a place that is held; `None` for the whole body.
     ///
     /// # Errors
@@ -362,6 +374,27 @@ pub trait Body: Send + Sync {
 
     /// The force that moves a site by a unit of length, about: the scale of penalties.
     fn site_stiffness(&self, site: &Site) -> f64;
+
+    /// The traction `σ n` at a site by the stress of the body, per area of the site, with what changes it; none of a body
+    /// whose stress is not known at its sites. For Nitsche's method.
+    fn traction(&self, _state: &BodyState, _site: &Site) -> Option<Direction> {
+        None
+    }
+
+    /// The pressure per gap that makes Nitsche's method at a site stable.
+    fn stabilisation(&self, site: &Site) -> f64 {
+        self.site_stiffness(site) / site.weight
+    }
+
+    /// The points of a place spread evenly, at least a distance apart, with what they stand for, and the largest distance
+    /// between neighbours: for contact by discs.
+    ///
+    /// # Errors
+    /// A place that is not there, or a body without such points.
+    fn spread_sites(&self, _on: Option<&str>, _spacing: f64) -> Result<(Vec<Site>, f64), PlaceError> {
+        let message = "discs touch on bodies of cells only".to_string();
+        Err(PlaceError::Unsuitable { body: self.name().to_string(), message })
+    }
 
     /// The six unit motions of the whole body in its unknowns, at a state (three translations, three turns about the
     /// origin): for resultants and free motions.

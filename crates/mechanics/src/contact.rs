@@ -13,6 +13,7 @@
 //! | multiplier | 0 | |
 //! | penalty `c/s` | > 0 | no pressure; the friction of the last state |
 //! | augmented Lagrangian | > 0 | kept while Newton's method runs, then set to the traction found (Uzawa), until it changes no more |
+//! | Nitsche | 1 | the stress of the slave (`nitsche`), with its own `c` |
 //!
 //! So a penalty is a compliance of the contact. Which sites are closed is told by the traction predicted for them and by the
 //! scale `c`, which is that of the bodies whatever the penalty: without tractions as unknowns a penalty makes a force of any
@@ -22,7 +23,9 @@
 
 use crate::body::{Anchor, Body, BodyState, Master, Met, Order, PlaceError, Placed, Sampling, Site};
 use crate::interaction::Target;
+use crate::nitsche::Stress;
 use crate::pair::{AxisChoice, Encounter, NoPair, Pair, Stuck, any_tangent};
+use rayon::prelude::*;
 use signorini_contact::law::Projected;
 use signorini_contact::{Law, Status};
 use signorini_geometry::{Point, Vector};
@@ -36,6 +39,8 @@ pub enum Enforcement {
     AugmentedLagrangian,
     /// Exactly, with tractions as unknowns; between rigid bodies by augmentation.
     Multiplier,
+    /// Weakly and consistently, with the stress of the slave, which has to know it.
+    Nitsche,
 }
 
 impl Enforcement {
@@ -43,6 +48,7 @@ impl Enforcement {
     pub(crate) fn softness(self) -> f64 {
         match self {
             Enforcement::Multiplier => 0.0,
+            Enforcement::Nitsche => 1.0,
             Enforcement::Penalty { .. } | Enforcement::AugmentedLagrangian => SOFTNESS,
         }
     }
@@ -124,6 +130,12 @@ pub(crate) struct Sides<'a> {
     pub first: [u32; 2],
 }
 
+/// A pair, with the stress of the slave where that enforces the contact.
+struct Touch {
+    pair: Pair,
+    stress: Option<Stress>,
+}
+
 /// A traction with its derivatives in the unknowns of the pair.
 struct Traction {
     projected: Projected,
@@ -142,9 +154,21 @@ impl Contact {
         sampling: Sampling,
         enforcement: Enforcement,
     ) -> Result<Self, PlaceError> {
-        let sites = slave.1.sites(slave.0.group.as_deref(), sampling)?;
+        let mut sites = slave.1.sites(slave.0.group.as_deref(), sampling)?;
         master.1.master(master.0.group.as_deref(), &master.1.start())?;
-        let stiffness = sites.iter().map(|s| slave.1.site_stiffness(s) / s.weight).collect();
+        let stiffness = match enforcement {
+            Enforcement::Nitsche => {
+                if sites.first().is_some_and(|s| slave.1.traction(&slave.1.start(), s).is_none()) {
+                    let message = "Nitsche's method is for the surface of finite cells".to_string();
+                    return Err(PlaceError::Unsuitable { body: slave.1.name().to_string(), message });
+                }
+                sites.iter().map(|s| slave.1.stabilisation(s)).collect()
+            }
+            _ => sites.iter().map(|s| slave.1.site_stiffness(s) / s.weight).collect(),
+        };
+        if enforcement == Enforcement::Nitsche && slave.0.body == master.0.body {
+            sites.iter_mut().for_each(|s| s.weight *= 0.5);
+        }
         // What several points of two rigid bodies carry is not unique; the least of it is found by augmentation.
         let both_rigid = slave.1.is_rigid() && master.1.is_rigid();
         let enforcement = match enforcement {
@@ -200,8 +224,8 @@ impl Contact {
         k: usize,
         sides: &Sides<'_>,
         master: &dyn Master,
-        wanted: impl Fn(&Pair) -> bool,
-    ) -> (Placed, Option<Result<Pair, NoPair>>) {
+        wanted: impl Fn(&Touch) -> bool,
+    ) -> (Placed, Option<Result<Touch, NoPair>>) {
         let site = &self.sites[k];
         let placed = sides.slave.0.placed(sides.slave.1, site);
         let except = self.is_within().then_some(site);
@@ -223,15 +247,26 @@ impl Contact {
             friction: self.friction.is_some(),
             axis: self.axis,
         };
-        let pair = encounter.measure(Order::First);
-        let again = pair.as_ref().is_ok_and(wanted);
-        let pair = if again { encounter.measure(Order::Second) } else { pair };
-        (placed, Some(pair))
+        let first = encounter.measure(Order::First).map(|pair| self.with_stress(k, sides, pair));
+        if !first.as_ref().is_ok_and(wanted) {
+            return (placed, Some(first));
+        }
+        let second = encounter.measure(Order::Second).map(|pair| self.with_stress(k, sides, pair));
+        (placed, Some(second))
     }
 
-    fn traction(&self, k: usize, pair: &Pair, unknown: [f64; 3]) -> Traction {
+    fn with_stress(&self, k: usize, sides: &Sides<'_>, mut pair: Pair) -> Touch {
+        let (body, state) = sides.slave;
+        let stress = (self.enforcement == Enforcement::Nitsche).then(|| body.traction(state, &self.sites[k])).flatten();
+        let stress = stress.map(|s| Stress::new(&s, sides.first[0], &mut pair));
+        Touch { pair, stress }
+    }
+
+    fn traction(&self, k: usize, touch: &Touch, unknown: [f64; 3]) -> Traction {
         let c = self.stiffness[k];
-        let base = self.base(k);
+        let pair = &touch.pair;
+        let (axes, d_axes) = if self.friction.is_some() { axes(pair) } else { ([Vector::<3>::zeros(); 2], Vec::new()) };
+        let base = touch.stress.as_ref().map_or_else(|| self.base(k), |s| s.base(&pair.normal, &axes));
         let lambda: [f64; 3] = std::array::from_fn(|i| unknown[i] - self.softness * (unknown[i] - base[i]));
         let Some(law) = &self.friction else {
             let pressure = (lambda[0] - c * pair.gap).max(0.0);
@@ -239,9 +274,8 @@ impl Contact {
             let mut projected = Projected { traction: [pressure, 0.0, 0.0], ..Projected::default() };
             projected.derivative[0][0] = f64::from(u8::from(closed));
             projected.status = if closed { Status::Slip } else { Status::Open };
-            return Traction { projected, axes: [Vector::<3>::zeros(); 2], d_axes: Vec::new(), slip: [0.0; 2] };
+            return Traction { projected, axes, d_axes, slip: [0.0; 2] };
         };
-        let (axes, d_axes) = axes(pair);
         let slip = axes.map(|e| e.dot(&pair.elastic));
         // In the plane nothing moves across it, and there is no friction that way.
         let most = pair.slip.iter().map(|s| s.norm()).fold(0.0, f64::max);
@@ -276,14 +310,24 @@ impl Contact {
         let linearises = out.tangent.is_some();
         let parts = self.components();
         let mut lost = 0;
-        for k in 0..self.sites.len() {
+        // Pairs are found side by side and added one after the other.
+        let find = |k: usize| {
+            let at = self.multiplier(k, lambda);
+            let is_closed = |touch: &Touch| linearises && self.traction(k, touch, at).projected.status != Status::Open;
+            self.pair(k, sides, master.as_ref(), is_closed).1
+        };
+        let count = self.sites.len();
+        let found_in = |first: usize| -> Vec<_> {
+            let end = (first + AT_ONCE).min(count);
+            (first..end).into_par_iter().map(find).collect::<Vec<Option<Result<Touch, NoPair>>>>()
+        };
+        for (k, found) in (0..count).step_by(AT_ONCE).flat_map(found_in).enumerate() {
             let own = |i: usize| first + (parts * k + i) as u32;
             let at = self.multiplier(k, lambda);
             let w = self.sites[k].weight;
             let c = self.stiffness[k];
-            let is_closed = |pair: &Pair| linearises && self.traction(k, pair, at).projected.status != Status::Open;
-            let pair = match self.pair(k, sides, master.as_ref(), is_closed).1 {
-                Some(Ok(pair)) => pair,
+            let touch = match found {
+                Some(Ok(touch)) => touch,
                 found => {
                     lost += usize::from(matches!(found, Some(Err(NoPair::NoCoordinates))));
                     // Open: the traction is to vanish.
@@ -297,7 +341,8 @@ impl Contact {
                     continue;
                 }
             };
-            let found = self.traction(k, &pair, at);
+            let found = self.traction(k, &touch, at);
+            let pair = &touch.pair;
             let [p, t1, t2] = found.projected.traction;
             let on_slave = found.axes[0] * t1 + found.axes[1] * t2;
             let n = pair.unknowns.len();
@@ -326,7 +371,11 @@ impl Contact {
                     let along =
                         |i: usize| c * (found.d_axes[b][i].dot(&pair.elastic) + found.axes[i].dot(&pair.d_elastic[b]));
                     let t = if parts == 3 { [along(0), along(1)] } else { [0.0; 2] };
-                    [-c * pair.d_gap[b], t[0], t[1]]
+                    let s = touch
+                        .stress
+                        .as_ref()
+                        .map_or([0.0; 3], |s| s.change(b, (&pair.normal, &found.axes), pair, &found.d_axes));
+                    [s[0] - c * pair.d_gap[b], s[1] + t[0], s[2] + t[1]]
                 })
                 .collect();
             let derivative = &found.projected.derivative;
@@ -380,7 +429,7 @@ impl Contact {
     fn base(&self, k: usize) -> [f64; 3] {
         let [p, t1, t2] = self.memory[k].traction;
         match self.enforcement {
-            Enforcement::Multiplier => [0.0; 3],
+            Enforcement::Multiplier | Enforcement::Nitsche => [0.0; 3],
             Enforcement::AugmentedLagrangian => [p, t1, t2],
             Enforcement::Penalty { .. } => [0.0, t1, t2],
         }
@@ -395,8 +444,9 @@ impl Contact {
         let of = |k: usize| {
             let (placed, pair) = self.pair(k, sides, master.as_ref(), |_| false);
             let mut out = SiteResult { x: placed.x, weight: self.sites[k].weight, ..SiteResult::default() };
-            let Some(Ok(pair)) = pair else { return (out, [0.0; 3]) };
-            let found = self.traction(k, &pair, self.multiplier(k, lambda));
+            let Some(Ok(touch)) = pair else { return (out, [0.0; 3]) };
+            let found = self.traction(k, &touch, self.multiplier(k, lambda));
+            let pair = &touch.pair;
             let [p, t1, t2] = found.projected.traction;
             out.normal = pair.normal;
             out.gap = Some(pair.gap);
@@ -412,7 +462,7 @@ impl Contact {
             }
             (out, found.projected.traction)
         };
-        Ok((0..self.sites.len()).map(of).collect())
+        Ok((0..self.sites.len()).into_par_iter().map(of).collect())
     }
 
     /// Takes a state as the one that slips count from.
@@ -423,11 +473,12 @@ impl Contact {
         let master = sides.master.0.master(self.master.group.as_deref(), sides.master.1)?;
         let mut memory = Vec::with_capacity(self.sites.len());
         for k in 0..self.sites.len() {
-            let Some(Ok(pair)) = self.pair(k, sides, master.as_ref(), |_| false).1 else {
+            let Some(Ok(touch)) = self.pair(k, sides, master.as_ref(), |_| false).1 else {
                 memory.push(SiteMemory::default());
                 continue;
             };
-            let found = self.traction(k, &pair, self.multiplier(k, lambda));
+            let found = self.traction(k, &touch, self.multiplier(k, lambda));
+            let pair = &touch.pair;
             let mut own = SiteMemory { traction: found.projected.traction, stuck: pair.stuck, slip: [0.0; 2] };
             if self.friction.is_some() && found.projected.status != Status::Open {
                 let before = self.memory[k].slip;
@@ -437,7 +488,7 @@ impl Contact {
                 let slipped = found.axes[0] * own.slip[0] + found.axes[1] * own.slip[1];
                 self.memory[k].stuck = own.stuck;
                 if let (_, Some(Ok(again))) = self.pair(k, sides, master.as_ref(), |_| false) {
-                    let (new, _) = axes(&again);
+                    let (new, _) = axes(&again.pair);
                     own.traction[1] = new[0].dot(&on_slave);
                     own.traction[2] = new[1].dot(&on_slave);
                     own.slip = new.map(|e| e.dot(&slipped));
@@ -450,6 +501,9 @@ impl Contact {
         Ok(())
     }
 }
+
+/// Sites whose pairs are kept at a time.
+const AT_ONCE: usize = 256;
 
 /// The scale of trials over a penalty of a hundred times the stiffness of the bodies: what a contact that carries gives way
 /// is a hundredth of what they do.

@@ -5,6 +5,7 @@
 
 use crate::body::Order;
 use crate::increment::IncrementError;
+use crate::iterative::{Solved, Stiffness};
 use crate::system::{Assembled, System, SystemState};
 use signorini_solve::general::Analysis;
 use signorini_solve::newton::{Converged, Equations, Measured, Newton, NewtonFailure, Search, newton};
@@ -26,6 +27,9 @@ pub(crate) struct Problem<'a> {
     pub(crate) system: &'a System,
     pub(crate) time: f64,
     pub(crate) analysis: Analysis,
+    /// Whether steps are found by iterations, without the stiffness of bodies in the tangent.
+    pub(crate) stiffness: Stiffness,
+    pub(crate) solved: Solved,
     /// Springs on all unknowns of bodies.
     pub(crate) springs: f64,
     /// A share of forces on the unknowns of bodies, and of what constraints lack, that is not there yet.
@@ -35,7 +39,7 @@ pub(crate) struct Problem<'a> {
     /// Traction per gap of the rows of multipliers, and the weight of their sites.
     pub(crate) rows: Vec<[f64; 2]>,
     /// Stiffness of each unknown at the start, by which residuals are compared.
-    pub(crate) stiffness: Vec<f64>,
+    pub(crate) scales: Vec<f64>,
     /// The system at the start, for the first step.
     pub(crate) first: Option<Assembled>,
     /// What rounding of positions leaves of forces and moments.
@@ -67,7 +71,7 @@ impl Problem<'_> {
     fn begin(&mut self, at: &SystemState) -> Result<(), IncrementError> {
         let out = self.assemble(at, Order::Second)?;
         let count = self.is_spin.len();
-        let sizes = out.tangent.matrix(out.residual.len()).row_sizes();
+        let sizes = self.system.row_sizes(&out, self.stiffness);
         let mut held = vec![false; count];
         out.single.iter().for_each(|h| held[h.constraint.terms[0].0 as usize] = true);
         let size = self.system.size();
@@ -76,14 +80,14 @@ impl Problem<'_> {
         most[0] = most[0].max(most[1] / (size * size)).max(f64::MIN_POSITIVE);
         most[1] = most[1].max(SLACK * most[0] * size * size);
         self.rounding = [0.0; 2];
-        self.stiffness = Vec::with_capacity(count);
+        self.scales = Vec::with_capacity(count);
         for k in 0..count {
             let kind = usize::from(self.is_spin[k]);
             let position = if kind == 1 { 1.0 } else { size };
             if !held[k] {
                 self.rounding[kind] = self.rounding[kind].max(4.0 * f64::EPSILON * sizes[k] * position);
             }
-            self.stiffness.push(sizes[k].max(SLACK * most[kind]));
+            self.scales.push(sizes[k].max(SLACK * most[kind]));
         }
         self.first = Some(out);
         Ok(())
@@ -92,10 +96,10 @@ impl Problem<'_> {
     /// Root of twice the energy of a residual on the springs of the unknowns.
     fn merit(&self, out: &Assembled, held: &[bool]) -> f64 {
         let count = self.is_spin.len();
-        let free = (0..count).filter(|k| !held[*k]).map(|k| out.residual[k].powi(2) / self.stiffness[k]);
+        let free = (0..count).filter(|k| !held[*k]).map(|k| out.residual[k].powi(2) / self.scales[k]);
         let rows = self.rows.iter().enumerate().map(|(k, [c, w])| out.residual[count + k].powi(2) * c / w);
         let lacks = out.single.iter().chain(&out.coupled).map(|h| {
-            let of = |(unknown, factor): &(u32, f64)| self.stiffness[*unknown as usize] / (factor * factor);
+            let of = |(unknown, factor): &(u32, f64)| self.scales[*unknown as usize] / (factor * factor);
             h.constraint.lack.powi(2) * h.constraint.terms.iter().map(of).fold(0.0f64, f64::max)
         });
         free.chain(rows).chain(lacks).sum::<f64>().sqrt()
@@ -103,7 +107,7 @@ impl Problem<'_> {
 
     /// The residual with springs, and less what is held back.
     pub(crate) fn assemble(&self, at: &SystemState, order: Order) -> Result<Assembled, IncrementError> {
-        let mut out = self.system.assemble(at, self.time, order)?;
+        let mut out = self.system.assemble_with(at, self.time, order, self.stiffness)?;
         if self.springs > 0.0 {
             for (k, travel) in at.travel.iter().enumerate() {
                 let stiffness = self.spring(k);
@@ -185,6 +189,15 @@ impl Equations for Problem<'_> {
             let (unknown, factor) = h.constraint.terms[0];
             held[unknown as usize] = true;
             right[unknown as usize] = -h.constraint.lack / factor;
+        }
+        if self.stiffness == Stiffness::KeptByBodies {
+            let (step, iterations) = self.system.iterated_step(out, &held, &right)?;
+            let (systems, most) = match self.solved {
+                Solved::Iterative { systems, most_iterations } => (systems, most_iterations),
+                Solved::Direct => (0, 0),
+            };
+            self.solved = Solved::Iterative { systems: systems + 1, most_iterations: most.max(iterations) };
+            return Ok(step);
         }
         out.tangent.without_rows(|row| held[row as usize]);
         (0..n).filter(|k| held[*k]).for_each(|k| out.tangent.add(k as u32, k as u32, 1.0));

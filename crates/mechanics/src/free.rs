@@ -3,6 +3,7 @@
 use crate::body::Order;
 use crate::equilibrium::Problem;
 use crate::increment::IncrementError;
+use crate::iterative::Stiffness;
 use crate::system::SystemState;
 use signorini_geometry::Vector;
 
@@ -76,22 +77,31 @@ impl Problem<'_> {
         if !matches!(error, IncrementError::Solve(_) | IncrementError::NotConverged { .. }) {
             return error;
         }
-        let Ok(assembled) = self.system.assemble(at, self.time, Order::Second) else { return error };
+        let assemble = || self.system.assemble_with(at, self.time, Order::Second, self.stiffness);
+        let Ok(assembled) = assemble() else { return error };
         let (first, count) = self.system.numbering();
         let held: Vec<usize> = assembled.single.iter().map(|h| h.constraint.terms[0].0 as usize).collect();
-        let matrix = assembled.tangent.matrix(assembled.residual.len());
-        let largest = matrix.row_sizes().into_iter().fold(0.0f64, f64::max);
+        let size_of_all = assembled.residual.len();
+        let largest = self.system.row_sizes(&assembled, self.stiffness).into_iter().fold(0.0f64, f64::max);
+        let matrix =
+            (self.stiffness == Stiffness::InTangent).then(|| assembled.tangent.matrix(assembled.residual.len()));
         for (k, body) in self.system.bodies.iter().enumerate() {
             for (mode, motion) in body.rigid_modes(&at.bodies[k]).iter().enumerate() {
-                let mut x = vec![0.0; assembled.residual.len()];
+                let mut x = vec![0.0; size_of_all];
                 let range = first[k] as usize..first[k] as usize + motion.len();
                 x[range].copy_from_slice(motion);
                 let size = motion.iter().fold(0.0f64, |m, v| m.max(v.abs()));
                 if size == 0.0 || held.iter().any(|h| x[*h] != 0.0) {
                     continue;
                 }
-                let moved = matrix.multiply(&x);
-                let rows = self.rows.iter().zip(&moved[count..]).map(|([c, _], f)| f * c);
+                let moved = match &matrix {
+                    Some(matrix) => matrix.multiply(&x),
+                    None => match assemble() {
+                        Ok(again) => self.system.product(again, &x),
+                        Err(_) => return error,
+                    },
+                };
+                let rows = self.rows.iter().zip(moved.iter().skip(count)).map(|([c, _], f)| f * c);
                 if moved[..count].iter().copied().chain(rows).all(|f| f.abs() <= 1e-10 * largest * size) {
                     let axis = ["x", "y", "z"][mode % 3];
                     let motion =

@@ -6,6 +6,7 @@
 use crate::body::Order;
 use crate::contact::SiteResult;
 use crate::equilibrium::Problem;
+use crate::iterative::{Solved, Stiffness};
 use crate::system::{AssemblyError, System, SystemState};
 use signorini_geometry::Vector;
 use signorini_solve::SolveError;
@@ -45,6 +46,8 @@ pub struct IncrementResult {
     pub imbalance: f64,
     /// Sites whose pair had no coordinates: they carry nothing.
     pub lost_sites: usize,
+    /// What solved the linear equations.
+    pub solved: Solved,
 }
 
 /// Force relative to the largest with which no state is taken for one, whatever rounding may say.
@@ -113,6 +116,7 @@ impl System {
         let mut state = start.clone();
         let mut iterations = 0;
         let mut changes = Vec::new();
+        let mut solved = Solved::default();
         for _ in 0..MOST_AUGMENTATIONS {
             let mut done = iterations;
             let mut counted = |_: usize, r: f64| {
@@ -122,15 +126,15 @@ impl System {
             // Without a guess which sites carry, multipliers start from what penalties find.
             let exact = self.contacts.iter().any(|c| c.is_exact());
             let guessed = !exact || state.multipliers.iter().any(|m| *m != 0.0);
-            let direct = if guessed { Some(self.inner(&state, time, &mut counted)) } else { None };
+            let direct = if guessed { Some(self.inner(&state, time, &mut solved, &mut counted)) } else { None };
             let found = match direct {
                 Some(Ok(found)) => found,
                 Some(Err(error)) if self.contacts.is_empty() || error == IncrementError::Interrupted => {
                     return Err(error);
                 }
                 failed => {
-                    let start = self.by_penalties(start, time, &mut counted);
-                    match (self.inner(start.as_ref().unwrap_or(&state), time, &mut counted), failed) {
+                    let start = self.by_penalties(start, time, &mut solved, &mut counted);
+                    match (self.inner(start.as_ref().unwrap_or(&state), time, &mut solved, &mut counted), failed) {
                         (Ok(found), _) => found,
                         (Err(_), Some(Err(first))) => return Err(first),
                         (Err(error), _) => return Err(error),
@@ -140,7 +144,8 @@ impl System {
             iterations = done;
             state = found.state;
             let rounding = self.rounding(&state, time)?;
-            let result = self.result(&state, time, iterations, (found.history, rounding))?;
+            let mut result = self.result(&state, time, iterations, (found.history, rounding))?;
+            result.solved = solved;
             if result.imbalance.is_nan() || result.imbalance > UNBALANCED {
                 return Err(IncrementError::NotConverged { history: result.history, worst: None });
             }
@@ -152,10 +157,13 @@ impl System {
         }
         Err(IncrementError::Augmentation { outer: MOST_AUGMENTATIONS, history: changes })
     }
+
+    /// Newton's method, by whatever way; adds to what solved its linear equations.
     pub(crate) fn inner(
         &self,
         start: &SystemState,
         time: f64,
+        solved: &mut Solved,
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
         let (first, count) = self.numbering();
@@ -164,19 +172,33 @@ impl System {
             body.spins().iter().flatten().for_each(|s| is_spin[(first + s) as usize] = true);
         }
         let rows = self.contacts.iter().flat_map(|c| c.rows()).collect();
+        let iterates = self.is_iterative(start)?;
         let mut problem = Problem {
             system: self,
             time,
+            stiffness: if iterates { Stiffness::KeptByBodies } else { Stiffness::InTangent },
+            solved: *solved,
             analysis: Analysis::default(),
             springs: 0.0,
             held_back: None,
             is_spin,
             rows,
-            stiffness: Vec::new(),
+            scales: Vec::new(),
             first: None,
             rounding: [0.0; 2],
             worst: 0,
         };
+        let found = self.by_any_way(&mut problem, start, report);
+        *solved = problem.solved;
+        found
+    }
+
+    fn by_any_way(
+        &self,
+        problem: &mut Problem<'_>,
+        start: &SystemState,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<Converged<SystemState>, IncrementError> {
         let direct = problem.solve(start, report);
         let Err(error) = direct else { return direct };
         if !is_curable(&error) {
@@ -207,9 +229,10 @@ impl System {
 
     /// What rounding of positions leaves of forces.
     fn rounding(&self, state: &SystemState, time: f64) -> Result<f64, IncrementError> {
-        let at = self.assemble(state, time, Order::Second)?;
+        let stiffness = if self.is_iterative(state)? { Stiffness::KeptByBodies } else { Stiffness::InTangent };
+        let at = self.assemble_with(state, time, Order::Second, stiffness)?;
         let (_, count) = self.numbering();
-        let stiffest = at.tangent.matrix(at.residual.len()).row_sizes()[..count].iter().fold(0.0f64, |m, s| m.max(*s));
+        let stiffest = self.row_sizes(&at, stiffness)[..count].iter().fold(0.0f64, |m, s| m.max(*s));
         Ok(f64::EPSILON * stiffest * self.size())
     }
 
@@ -253,6 +276,7 @@ impl System {
             unknowns: at.residual.len(),
             imbalance,
             lost_sites: at.lost,
+            solved: Solved::default(),
         })
     }
 }

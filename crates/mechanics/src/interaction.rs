@@ -255,6 +255,9 @@ impl Interaction for Contact {
 
     fn prepare(&mut self, _: &[Box<dyn Body>], otherwise: f64) {
         let weights: Vec<f64> = self.sites().iter().map(|s| s.weight).collect();
+        if self.enforcement == Enforcement::Nitsche {
+            return;
+        }
         for (c, w) in self.stiffness.iter_mut().zip(weights) {
             *c = WAVE * if c.is_finite() { *c } else { otherwise / w };
         }

@@ -8,6 +8,7 @@
 //! - [`contact`]: law and enforcement at the sites of two sides.
 //! - [`interaction`]: what acts between bodies, as the system sees it.
 //! - [`system`]: bodies, supports, loads and contacts, assembled.
+//! - [`iterative`]: Newton's step of large systems by iterations.
 //! - [`increment`]: equilibrium at one time, by Newton's method (`equilibrium`), other ways where that fails (`homotopy`,
 //!   `free`), and outer iterations (`augmentation`); [`saved`]: what it goes on from.
 
@@ -21,6 +22,8 @@ mod homotopy;
 pub mod increment;
 pub mod interaction;
 pub mod mortar;
+pub mod iterative;
+mod nitsche;
 pub mod pair;
 mod prepare;
 pub mod rigid_body;
@@ -37,6 +40,7 @@ pub use curve::Curve;
 pub use increment::{IncrementError, IncrementResult};
 pub use interaction::{Bodies, Interaction, Own, Target};
 pub use mortar::Mortar;
+pub use iterative::{LinearSolver, Solved, Subspaces};
 pub use pair::AxisChoice;
 pub use rigid_body::{Motion, RigidBody, RigidSite};
 pub use saved::Saved;

@@ -14,7 +14,8 @@
 //!
 //! On a surface, without sections that turn, `S = ρ_a X^a` is the motion of the closest point along the surface, with
 //! exact second variations. Everywhere else `S = δD - R_s θ_s × n - R_m θ_m × n - g δn`, which turns into the same where
-//! nothing spins; its second variation leaves out `g δ²n`, which vanishes with the gap. Either way a rigid motion of
+//! nothing spins; its second variation is exact on a surface, and at curves and points leaves out `g δ²n`, which vanishes
+//! with the gap. Either way a rigid motion of
 //! both partners is no slip, so that the forces have neither resultant nor moment.
 
 mod cut;
@@ -109,6 +110,29 @@ enum SecondVariation {
 }
 
 impl Pair {
+    /// Adds unknowns that move neither side.
+    pub(crate) fn include(&mut self, unknowns: &[u32]) {
+        let n = self.unknowns.len();
+        let m = n + unknowns.len();
+        let widen = |matrix: &mut Vec<f64>| {
+            if !matrix.is_empty() {
+                let mut out = vec![0.0; m * m];
+                out.chunks_mut(m).zip(matrix.chunks(n)).for_each(|(to, from)| to[..n].copy_from_slice(from));
+                *matrix = out;
+            }
+        };
+        let zero = Vector::<3>::zeros();
+        self.unknowns.extend(unknowns);
+        self.d_gap.resize(m, 0.0);
+        self.opening.resize(m, 0.0);
+        widen(&mut self.d_opening);
+        if let SecondVariation::Full(parts) = &mut self.second {
+            parts.iter_mut().for_each(widen);
+        }
+        let lists = [&mut self.d_normal, &mut self.slip, &mut self.d_elastic, &mut self.axis.variation];
+        lists.into_iter().filter(|l| !l.is_empty()).for_each(|l| l.resize(m, zero));
+    }
+
     /// `T · Δδ slip`, row by row.
     pub fn slip_hessian(&self, traction: &Vector<3>) -> Vec<f64> {
         let n = self.unknowns.len();

@@ -7,6 +7,7 @@
 use crate::body::{Body, BodyError, BodyState, Constraint, Contribution, Hold, Load, Order, PlaceError};
 use crate::contact::Part;
 use crate::interaction::{Bodies, Interaction, Own, Target};
+use crate::iterative::{LinearSolver, Stiffness};
 use signorini_geometry::{Point, Vector};
 use signorini_solve::general::{Entries, Matrix};
 use std::sync::Arc;
@@ -96,6 +97,7 @@ pub struct System {
     pub supports: Vec<Support>,
     pub loads: Vec<PlacedLoad>,
     pub contacts: Vec<Box<dyn Interaction>>,
+    pub solver: LinearSolver,
 }
 
 /// A state of the system.
@@ -272,17 +274,31 @@ impl System {
 
     /// Residual, and the tangent if asked for.
     pub(crate) fn assemble(&self, state: &SystemState, time: f64, order: Order) -> Result<Assembled, AssemblyError> {
+        self.assemble_with(state, time, order, Stiffness::InTangent)
+    }
+
+    /// Residual, and the tangent if asked for, with or without the stiffness of linear bodies.
+    pub(crate) fn assemble_with(
+        &self,
+        state: &SystemState,
+        time: f64,
+        order: Order,
+        stiffness: Stiffness,
+    ) -> Result<Assembled, AssemblyError> {
         let (first, count) = self.numbering();
         let multipliers = state.multipliers.len();
         let (single, coupled) = self.held(state, time)?;
         let size = count + multipliers + coupled.len();
         let mut residual = vec![0.0; size];
         let mut sizes = vec![0.0; size];
-        let mut tangent = Entries::default();
+        let (mut tangent, of_bodies) = match stiffness {
+            Stiffness::InTangent => (Entries::default(), order),
+            Stiffness::KeptByBodies => (Entries::in_blocks(), Order::First),
+        };
         let mut energy = 0.0;
         for (body, (state, &first)) in self.bodies.iter().zip(state.bodies.iter().zip(&first)) {
             let mut out = Contribution::new(body.unknowns());
-            energy += body.internal(state, order, &mut out)?;
+            energy += body.internal(state, of_bodies, &mut out)?;
             add(&out, first, &mut residual, &mut sizes, &mut tangent);
         }
         for load in &self.loads {

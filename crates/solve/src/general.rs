@@ -9,6 +9,7 @@ use faer::linalg::solvers::SolveCore;
 use faer::sparse::linalg::solvers::{Lu as Numeric, SymbolicLu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut};
+use std::collections::BTreeMap;
 
 /// A square matrix in compressed columns.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -22,9 +23,36 @@ pub struct Matrix {
 #[derive(Clone, Debug, Default)]
 pub struct Entries {
     list: Vec<(u32, u32, f64)>,
+    /// Dense blocks by their unknowns, where they are kept apart.
+    blocks: Option<DenseBlocks>,
 }
 
+/// Sums of dense blocks, row by row, by their unknowns.
+pub type DenseBlocks = BTreeMap<Vec<u32>, Vec<f64>>;
+
 impl Entries {
+    /// No entries; dense blocks are to be kept apart, those of the same unknowns summed.
+    pub fn in_blocks() -> Self {
+        Entries { list: Vec::new(), blocks: Some(DenseBlocks::new()) }
+    }
+
+    /// Single entries as they were added, and the dense blocks that were kept apart.
+    pub fn into_parts(self) -> (Vec<(u32, u32, f64)>, DenseBlocks) {
+        (self.list, self.blocks.unwrap_or_default())
+    }
+
+    /// The largest entry of each row, before entries at the same place are summed.
+    pub fn row_sizes(&self, n: usize) -> Vec<f64> {
+        let mut out = vec![0.0f64; n];
+        self.list.iter().for_each(|e| out[e.0 as usize] = out[e.0 as usize].max(e.2.abs()));
+        for (unknowns, values) in self.blocks.iter().flatten() {
+            for (row, values) in unknowns.iter().zip(values.chunks(unknowns.len().max(1))) {
+                out[*row as usize] = values.iter().fold(out[*row as usize], |m, v| m.max(v.abs()));
+            }
+        }
+        out
+    }
+
     /// Adds to one entry.
     pub fn add(&mut self, row: u32, column: u32, value: f64) {
         self.list.push((row, column, value));
@@ -32,6 +60,15 @@ impl Entries {
 
     /// Adds a dense block, row by row.
     pub fn add_block(&mut self, unknowns: &[u32], values: &[f64]) {
+        if let Some(blocks) = &mut self.blocks {
+            match blocks.get_mut(unknowns) {
+                Some(sum) => sum.iter_mut().zip(values).for_each(|(s, v)| *s += v),
+                None => {
+                    blocks.insert(unknowns.to_vec(), values.to_vec());
+                }
+            }
+            return;
+        }
         for (values, &row) in values.chunks(unknowns.len().max(1)).zip(unknowns) {
             self.list.extend(unknowns.iter().zip(values).filter(|(_, v)| **v != 0.0).map(|(c, v)| (row, *c, *v)));
         }
@@ -42,7 +79,8 @@ impl Entries {
         self.list.retain(|e| !is_left_out(e.0));
     }
 
-    /// The matrix of `n` unknowns; entries at the same place are summed in the order in which they were added.
+    /// The matrix of `n` unknowns, without blocks that are kept apart; entries at the same place are summed in the order in
+    /// which they were added.
     pub fn matrix(&self, n: usize) -> Matrix {
         let mut start = vec![0usize; n + 1];
         self.list.iter().for_each(|e| start[e.1 as usize + 1] += 1);

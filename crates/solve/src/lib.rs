@@ -6,10 +6,11 @@
 //! - [`dissection`]: an order of elimination for meshes in space.
 //! - [`dense`]: small dense systems.
 //! - [`general`]: general sparse matrices and their LU factors; [`newton`]: Newton's method with line search.
-//! - [`krylov`]: equations known by products with their matrix.
+//! - [`krylov`]: equations known by products with their matrix; [`blocks`]: such matrices; [`schwarz`]: preconditioners.
 //! - [`progress`]: what a solver reports while it works, and how it is interrupted.
 
 pub mod acceleration;
+pub mod blocks;
 pub mod cholesky;
 pub mod dense;
 pub mod dissection;
@@ -17,6 +18,7 @@ pub mod general;
 pub mod krylov;
 pub mod newton;
 pub mod progress;
+pub mod schwarz;
 pub mod sparse;
 
 pub use acceleration::Acceleration;

@@ -13,6 +13,77 @@ fn floats(endian: Endian) -> Vec<u8> {
     values().into_iter().flat_map(bytes).collect()
 }
 
+/// Bytes of every format with some of them changed, left out or doubled are read or refused, never more: some thousand of
+/// what the fuzz targets try without end.
+#[test]
+fn damaged_files_are_read_or_refused() {
+    use tiff::encoder::{TiffEncoder, colortype::Gray16};
+    let mut stack = std::io::Cursor::new(Vec::new());
+    TiffEncoder::new(&mut stack).unwrap().write_image::<Gray16>(2, 3, &[0, 1, 2, 3, 4, 5]).unwrap();
+    let mut npy = b"\x93NUMPY\x01\x00".to_vec();
+    let header = "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3, 2), }\n";
+    npy.extend((header.len() as u16).to_le_bytes());
+    npy.extend(header.as_bytes());
+    let nrrd = b"NRRD0004\ntype: float\ndimension: 3\nsizes: 2 3 2\nspacings: 1 1 1\nencoding: raw\nendian: little\n\n";
+    let mha = b"ObjectType = Image\nNDims = 3\nDimSize = 2 3 2\nElementSpacing = 1 1 2\nElementType = MET_FLOAT\n\
+        ElementDataFile = LOCAL\n";
+    let mut nifti = vec![0u8; 352];
+    for (at, value) in [(0, 348i16), (40, 3), (42, 2), (44, 3), (46, 2), (70, 16), (254, 1)] {
+        nifti[at..at + 2].copy_from_slice(&value.to_le_bytes());
+    }
+    for (at, value) in [(80, 1.0f32), (84, 1.0), (88, 1.0), (108, 352.0)] {
+        nifti[at..at + 4].copy_from_slice(&value.to_le_bytes());
+    }
+    nifti[344..348].copy_from_slice(b"n+1\0");
+    let whole = [
+        ("a.npy", npy),
+        ("a.nrrd", nrrd.to_vec()),
+        ("a.mha", mha.to_vec()),
+        ("a.nii", nifti),
+        ("a.tif", stack.into_inner()),
+    ];
+    let mut seed = 1u64;
+    let mut random = |below: usize| {
+        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (seed >> 33) as usize % below
+    };
+    let (mut read, mut refused) = (0, 0);
+    for (name, mut bytes) in whole {
+        if name != "a.tif" {
+            bytes.extend(floats(Endian::Little));
+        }
+        assert!(read_with(name, &bytes, &|_| Err(String::new())).is_ok(), "{name}");
+        for _ in 0..1000 {
+            let mut bytes = bytes.clone();
+            for _ in 0..=random(4) {
+                let at = random(bytes.len());
+                match random(4) {
+                    0 => bytes[at] = random(256) as u8,
+                    1 => bytes[at] = b"0123456789-. ,()"[random(16)],
+                    2 => bytes.truncate(at.max(1)),
+                    _ => {
+                        let end = (at + random(16)).min(bytes.len());
+                        let again = bytes[at..end].to_vec();
+                        bytes.splice(at..at, again);
+                    }
+                }
+            }
+            match read_with(name, &bytes, &|_| Ok(bytes.clone())) {
+                Ok(image) => {
+                    assert_eq!(image.count.iter().product::<usize>(), image.values.len(), "{name}");
+                    let _ = image.voxels::<3>().map(|v| v.above(0.5, 1.0).is_ok());
+                    read += 1;
+                }
+                Err(error) => {
+                    assert!(!error.to_string().is_empty());
+                    refused += 1;
+                }
+            }
+        }
+    }
+    assert!(read > 100 && refused > 1000, "{read} {refused}");
+}
+
 #[test]
 fn npy_in_both_orders() {
     for (order, shape) in [("False", "(2, 3, 2)"), ("True", "(2, 3, 2)")] {

@@ -6,12 +6,12 @@ use signorini_contact::Coulomb;
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::{Plane, RigidShape, Sphere};
 
-pub fn rigid(name: &str, shape: impl RigidShape + 'static, motion: Motion) -> RigidBody {
+pub(super) fn rigid(name: &str, shape: impl RigidShape + 'static, motion: Motion) -> RigidBody {
     let centre = shape.centre();
     RigidBody { name: name.to_string(), shape: Arc::new(shape), motion, centre, sites: Vec::new(), size: 1.0 }
 }
 
-fn moved(along: Vector<3>) -> Motion {
+pub(super) fn moved(along: Vector<3>) -> Motion {
     let zero = Vector::<3>::zeros();
     Motion::Prescribed(Arc::new(move |t| RigidMotion::new(along * t, zero, zero)))
 }
@@ -32,6 +32,8 @@ fn a_disc_pressed_on_a_floor() {
         (true, penalty, Sampling::GaussPoints),
         (false, Enforcement::AugmentedLagrangian, Sampling::Nodes),
         (true, Enforcement::Multiplier, Sampling::Nodes),
+        (false, Enforcement::Nitsche, Sampling::GaussPoints),
+        (true, Enforcement::Nitsche, Sampling::GaussPoints),
     ] {
         let body = solid("disc", disc.clone(), (b, [8, 8]), 4, Space::PlaneStrain, places.clone());
         let floor =
@@ -99,6 +101,7 @@ fn a_ball_in_space_that_only_contact_holds() {
         }],
         bodies: vec![Box::new(body), Box::new(stone)],
         contacts: vec![Box::new(contact)],
+        ..System::default()
     };
     let (state, found) = solve(&mut system);
     let force: Vector<3> = found.sites[0].iter().map(SiteResult::force).sum();

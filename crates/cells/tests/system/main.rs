@@ -3,6 +3,8 @@
 mod bodies;
 mod contacts;
 mod descriptions;
+mod discs;
+mod iterations;
 mod masters;
 
 use signorini_cells::{

@@ -81,6 +81,7 @@ impl<'a> AtCut<'a> {
             unknowns: columns.iter().map(|c| c.unknown).collect(),
             d_gap: self.varied.iter().map(|v| v[0]).collect(),
             opening: columns.iter().map(|c| self.normal.dot(&c.d)).collect(),
+            d_normal: self.d_normal.clone(),
             ..Pair::default()
         };
         if order == Order::Second {
@@ -93,7 +94,6 @@ impl<'a> AtCut<'a> {
     /// Adds slip to the measures of a pair that has its gap.
     pub fn add_slip(&self, order: Order, pair: &mut Pair) {
         let (columns, n, gap) = (&self.columns, self.columns.len(), self.gap);
-        pair.d_normal = self.d_normal.clone();
         pair.slip = columns.iter().zip(&self.d_normal).map(|(c, dn)| c.d - dn * gap).collect();
         if order == Order::Second {
             let mut parts: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; n * n]);

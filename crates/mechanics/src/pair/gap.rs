@@ -2,6 +2,7 @@
 
 use super::{Column, Encounter, NoPair, Pair, axis};
 use crate::body::{Foot, Function, Order, RigidFoot};
+use nalgebra::{SMatrix, SVector};
 use signorini_geometry::Vector;
 use signorini_geometry::measures::{Measures, PartnerJet, Variation};
 use signorini_geometry::shape::CurveJet;
@@ -68,6 +69,31 @@ impl<'a, const N: usize> AtFoot<'a, N> {
         [self.encounter.slave.radius, self.foot.radius]
     }
 
+    /// Variations of the normal.
+    fn normals(&self) -> Vec<Vector<3>> {
+        let (measures, normal, jet) = (&self.measures, self.normal, &self.foot.jet);
+        let base = [jet.u, jet.v];
+        let second = [jet.uu, jet.uv, jet.vv];
+        let inverse = measures.metric().try_inverse().unwrap_or_else(SMatrix::zeros);
+        (self.columns.iter().zip(&self.variations))
+            .map(|(column, variation)| {
+                let xi: SVector<f64, N> = measures.coordinate_variation(variation);
+                if N == 2 {
+                    // -ρ^a (n·δρ_a), with the variations of the base vectors of the master.
+                    let d_base = |a: usize| (0..N).fold(-column.d_a[a], |sum, b| sum + second[a + b] * xi[b]);
+                    let h: SVector<f64, N> = SVector::from_fn(|a, _| normal.dot(&d_base(a)));
+                    let up = inverse * h;
+                    (0..N).fold(Vector::<3>::zeros(), |sum, a| sum - base[a] * up[a])
+                } else {
+                    let foot_motion = (0..N).fold(Vector::<3>::zeros(), |sum, a| sum + base[a] * xi[a]);
+                    let change = column.d - foot_motion;
+                    let across = change - normal * normal.dot(&change);
+                    if measures.gap == 0.0 { Vector::<3>::zeros() } else { across / measures.gap }
+                }
+            })
+            .collect()
+    }
+
     /// The gap with its variations, without slip.
     pub fn gap(&self, order: Order) -> Pair {
         let mut pair = Pair {
@@ -76,6 +102,7 @@ impl<'a, const N: usize> AtFoot<'a, N> {
             point: self.foot.point,
             unknowns: self.columns.iter().map(|c| c.unknown).collect(),
             d_gap: self.variations.iter().map(|v| self.measures.gap_variation(v)).collect(),
+            d_normal: self.normals(),
             ..Pair::default()
         };
         if order == Order::Second {
@@ -132,6 +159,7 @@ impl<'a> AtRigid<'a> {
             point: self.foot.point,
             unknowns: columns.iter().map(|c| c.unknown).collect(),
             d_gap: columns.iter().map(|c| normal.dot(&c.d)).collect(),
+            d_normal: columns.iter().map(|c| hessian * c.d).collect(),
             ..Pair::default()
         };
         if order == Order::Second {

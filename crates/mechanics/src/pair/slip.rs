@@ -18,21 +18,6 @@ impl<const N: usize> AtFoot<'_, N> {
         // Variations of the base vectors of the master, and of the motion of the foot along it.
         let d_base = |k: usize, a: usize| (0..N).fold(-columns[k].d_a[a], |sum, b| sum + second[a + b] * xi[k][b]);
         let foot_motion = |k: usize| (0..N).fold(Vector::<3>::zeros(), |sum, a| sum + base[a] * xi[k][a]);
-        let inverse = measures.metric().try_inverse().unwrap_or_else(SMatrix::zeros);
-        pair.d_normal = (0..n)
-            .map(|k| {
-                if N == 2 {
-                    // -ρ^a (n·δρ_a).
-                    let h: SVector<f64, N> = SVector::from_fn(|a, _| normal.dot(&d_base(k, a)));
-                    let up = inverse * h;
-                    (0..N).fold(Vector::<3>::zeros(), |sum, a| sum - base[a] * up[a])
-                } else {
-                    let change = columns[k].d - foot_motion(k);
-                    let across = change - normal * normal.dot(&change);
-                    if measures.gap == 0.0 { Vector::<3>::zeros() } else { across / measures.gap }
-                }
-            })
-            .collect();
         let turns = !slave.spin.is_empty() || !foot.spin.is_empty();
         let exact = N == 2 && !turns;
         // The part of the gap that turns with the normal; where sections cannot turn forces act on the lines themselves.
@@ -47,13 +32,34 @@ impl<const N: usize> AtFoot<'_, N> {
             })
             .collect();
         if order == Order::Second {
+            let inverse = measures.metric().try_inverse().unwrap_or_else(SMatrix::zeros);
+            let third = [foot.jet.uuu, foot.jet.uuv, foot.jet.uvv, foot.jet.vvv];
+            // The part across itself of the second variation of the normal of a surface: what keeps the normal on the base
+            // vectors, `δ²n·ρ_a = -δ_k n·δ_l ρ_a - δ_l n·δ_k ρ_a - n·δ²ρ_a`.
+            let normal_bend = |k: usize, l: usize| {
+                if N != 2 {
+                    return Vector::<3>::zeros();
+                }
+                let both: SVector<f64, N> = measures.coordinate_second_variation(&variations[k], &variations[l]);
+                let down: SVector<f64, N> = SVector::from_fn(|a, _| {
+                    let mut bent = Vector::<3>::zeros();
+                    for b in 0..N {
+                        bent += second[a + b] * both[b];
+                        bent -= columns[k].d_ab[a + b] * xi[l][b] + columns[l].d_ab[a + b] * xi[k][b];
+                        (0..N).for_each(|c| bent += third[a + b + c] * (xi[k][b] * xi[l][c]));
+                    }
+                    -(pair.d_normal[k].dot(&d_base(l, a)) + pair.d_normal[l].dot(&d_base(k, a)) + normal.dot(&bent))
+                });
+                let up = inverse * down;
+                (0..N).fold(Vector::<3>::zeros(), |sum, a| sum + base[a] * up[a])
+            };
             let hessian = |k: usize, l: usize| {
                 if exact {
                     let h = measures.coordinate_second_variation(&variations[k], &variations[l]);
                     (0..N).fold(Vector::<3>::zeros(), |sum, a| sum + d_base(l, a) * xi[k][a] + base[a] * h[a])
                 } else {
                     let along = (0..N).fold(Vector::<3>::zeros(), |sum, a| sum + columns[k].d_a[a] * xi[l][a]);
-                    let gap_turns = pair.d_normal[k] * (lever * pair.d_gap[l]);
+                    let gap_turns = pair.d_normal[k] * (lever * pair.d_gap[l]) + normal_bend(k, l) * (lever * gap);
                     let [of_slave, of_master] = spin_variation(&columns[k], &columns[l]);
                     let spun = (of_slave * radii[0] + of_master * radii[1]).cross(&normal);
                     along - self.encounter.levers(&columns[k], &pair.d_normal[l], radii) - spun - gap_turns
@@ -112,7 +118,6 @@ impl AtRigid<'_> {
         let (slave, foot, columns) = (self.encounter.slave, self.foot, &self.columns);
         let (normal, hessian) = (foot.jet.normal, foot.jet.hessian);
         let (n, gap) = (columns.len(), pair.gap);
-        pair.d_normal = columns.iter().map(|c| hessian * c.d).collect();
         let turns = !slave.spin.is_empty();
         // Without a section that turns the ball about the slave point moves with the foot.
         let distance = if turns { gap } else { foot.jet.gap };

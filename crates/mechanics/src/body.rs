@@ -102,6 +102,8 @@ pub struct Placed {
     pub outward: Option<Vector<3>>,
     /// Outward normal of a surface of facets, averaged over those that meet: it changes without jumps from facet to facet.
     pub averaged: Option<Direction>,
+    /// Whether it is not tested now: what is on a winch.
+    pub rests: bool,
     /// Tangent of a curve, of any length; its changes are the slopes of the functions along the first coordinate.
     pub tangent: Option<Vector<3>>,
     /// Radius of a section or ball about `x` that touches instead of `x`.
@@ -374,6 +376,11 @@ pub trait Body: Send + Sync {
     /// The body as a curve, if it is one: contact between curves is for such.
     fn as_curve(&self) -> Option<Box<dyn Curve + '_>> {
         None
+    }
+
+    /// Whether what a support holds of the body changes with time.
+    fn holds_change(&self) -> bool {
+        false
     }
 
     /// Unknowns that are spins, by threes: of the sections of a beam, of a rigid body.

@@ -7,6 +7,7 @@
 //! - [`contact`]: law and enforcement at the sites of two sides.
 //! - [`interaction`]: what acts between bodies, as the system sees it.
 //! - [`system`]: bodies, supports, loads and contacts, assembled.
+//! - [`passage`]: how far steps may be followed so that nothing passes through.
 //! - [`increment`]: equilibrium at one time, by Newton's method (`equilibrium`), other ways where that fails (`homotopy`,
 //!   `free`), and outer iterations (`augmentation`); [`saved`]: what it goes on from.
 
@@ -20,6 +21,7 @@ mod homotopy;
 pub mod increment;
 pub mod interaction;
 pub mod pair;
+pub mod passage;
 mod prepare;
 pub mod rigid_body;
 pub mod saved;

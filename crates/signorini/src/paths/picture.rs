@@ -63,7 +63,15 @@ fn pieces(line: &Line, keep: &dyn Fn(&LinePoint, &LinePoint) -> bool, scale: &Sc
         |[a, b]: &[u32; 2]| 0.5 * (line.points[*a as usize].normal_force + line.points[*b as usize].normal_force);
     let colours: Vec<f64> = cells.iter().map(|c| scale.place(middle(c))).collect();
     let points = line.points.iter().map(|p| p.x).collect();
-    let curve = CurveShown { name: String::new(), radius, points, arc: Vec::new(), cells, forces: Vec::new() };
+    let curve = CurveShown {
+        name: String::new(),
+        radius,
+        points,
+        arc: Vec::new(),
+        cells,
+        forces: Vec::new(),
+        unstrained_length: None,
+    };
     tube(&curve, radius, &colours)
 }
 

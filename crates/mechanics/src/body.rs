@@ -5,8 +5,8 @@
 //! there are unknowns (a quaternion turns by three): a step of the unknowns reaches it through [`Body::advance`].
 
 use crate::curve::Curve;
-use crate::surface::Surface;
 use crate::iterative::Subspaces;
+use crate::surface::Surface;
 use signorini_geometry::rigid_shape::{GapJet, RigidShape};
 use signorini_geometry::shape::SurfaceJet;
 use signorini_geometry::{Matrix, Point, Vector};
@@ -104,6 +104,8 @@ pub struct Placed {
     pub outward: Option<Vector<3>>,
     /// Outward normal of a surface of facets, averaged over those that meet: it changes without jumps from facet to facet.
     pub averaged: Option<Direction>,
+    /// Whether it is not tested now: what is on a winch.
+    pub rests: bool,
     /// Tangent of a curve, of any length; its changes are the slopes of the functions along the first coordinate.
     pub tangent: Option<Vector<3>>,
     /// Radius of a section or ball about `x` that touches instead of `x`.
@@ -413,6 +415,11 @@ pub trait Body: Send + Sync {
     /// A place as a surface of faces in a state, if it is one: contact by mortar is for such.
     fn surface<'a>(&'a self, _on: Option<&str>, _state: &'a BodyState) -> Option<Box<dyn Surface + 'a>> {
         None
+    }
+
+    /// Whether what a support holds of the body changes with time.
+    fn holds_change(&self) -> bool {
+        false
     }
 
     /// Unknowns that are spins, by threes: of the sections of a beam, of a rigid body.

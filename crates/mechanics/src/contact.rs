@@ -228,6 +228,9 @@ impl Contact {
     ) -> (Placed, Option<Result<Touch, NoPair>>) {
         let site = &self.sites[k];
         let placed = sides.slave.0.placed(sides.slave.1, site);
+        if placed.rests {
+            return (placed, None);
+        }
         let except = self.is_within().then_some(site);
         let met: Option<Met> = match &placed.averaged {
             Some(normal) if master.is_faceted() && except.is_none() => {

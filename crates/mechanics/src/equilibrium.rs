@@ -234,6 +234,11 @@ impl Equations for Problem<'_> {
         self.system.held(at, self.time).is_ok_and(|(single, coupled)| single.iter().chain(&coupled).any(lacks))
     }
 
+    fn farthest(&self, at: &SystemState, step: &[f64]) -> f64 {
+        // Where bodies cannot be touched the residual tells.
+        self.system.free_way(at, &self.system.advance(at, step, 1.0)).unwrap_or(1.0)
+    }
+
     fn advance(&self, at: &SystemState, step: &[f64], share: f64) -> SystemState {
         self.system.advance(at, step, share)
     }

@@ -26,6 +26,9 @@ pub enum IncrementError {
     Free { body: String, motion: String },
     #[error("the tractions of the contacts still changed after {outer} outer iterations")]
     Augmentation { outer: usize, history: Vec<f64> },
+    /// A prescribed motion that is too long for one increment.
+    #[error("contact `{contact}`: what moves as prescribed passes through what it touches after {:.0} % of its way", 100.0 * share)]
+    PassesThrough { contact: String, share: f64 },
     #[error("interrupted")]
     Interrupted,
 }
@@ -93,6 +96,9 @@ impl System {
         start.travel.iter_mut().for_each(|t| *t = 0.0);
         for (body, state) in self.bodies.iter().zip(&mut start.bodies) {
             body.prescribe(time, state);
+        }
+        if let Some((k, share)) = self.first_passage(from, &start)? {
+            return Err(IncrementError::PassesThrough { contact: self.contacts[k].name().to_string(), share });
         }
         start.multipliers = self.contacts.iter().flat_map(|c| c.remembered()).collect();
         start.predictions = self.contacts.iter().map(|c| c.prediction()).collect();

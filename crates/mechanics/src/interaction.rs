@@ -13,6 +13,7 @@ use crate::body::MaterialPoint;
 use crate::body::{Body, BodyState, PlaceError, Sampling, Site};
 use crate::contact::{Contact, Enforcement, Part, Sides, SiteMemory, SiteResult};
 use crate::pair::Stuck;
+use crate::passage::Way;
 use crate::prepare::WAVE;
 use signorini_contact::law::{Friction, stuck};
 use signorini_contact::{Law, Status};
@@ -120,6 +121,15 @@ pub trait Interaction: Send + Sync {
     /// What a share of a step of all unknowns of the system predicts, from the state before it.
     fn predict(&self, _at: Bodies<'_>, _own: Own<'_>, _step: &[f64], _share: f64) -> Vec<f64> {
         Vec::new()
+    }
+
+    /// The share of a way between two states of the bodies that may be followed until something passes through; 1 where
+    /// nothing does.
+    ///
+    /// # Errors
+    /// Bodies that cannot be tested or touched.
+    fn free_way(&self, _way: Way<'_>) -> Result<f64, PlaceError> {
+        Ok(1.0)
     }
 
     /// Takes a state as the one from which slips count and the next increment starts.
@@ -264,8 +274,8 @@ impl Interaction for Contact {
     }
 
     fn leave_out_held(&mut self, at: Bodies<'_>, held: &[bool]) {
-        // Against a body that moves a held site may still carry.
-        if at.bodies[self.master.body].unknowns() > 0 {
+        // Against a body that moves a held site may still carry; what is held now may be free later.
+        if at.bodies[self.master.body].unknowns() > 0 || at.bodies[self.slave.body].holds_change() {
             return;
         }
         let (body, state) = at.side(&self.slave);
@@ -284,6 +294,10 @@ impl Interaction for Contact {
 
     fn results(&self, at: Bodies<'_>, own: Own<'_>) -> Result<Vec<SiteResult>, PlaceError> {
         Ok(self.found(&at.sides(self), own.multipliers)?.into_iter().map(|f| f.0).collect())
+    }
+
+    fn free_way(&self, way: Way<'_>) -> Result<f64, PlaceError> {
+        self.share_of_way(way)
     }
 
     fn accept(&mut self, at: Bodies<'_>, own: Own<'_>) -> Result<(), PlaceError> {

@@ -9,6 +9,7 @@
 //! - [`interaction`]: what acts between bodies, as the system sees it.
 //! - [`system`]: bodies, supports, loads and contacts, assembled.
 //! - [`iterative`]: Newton's step of large systems by iterations.
+//! - [`passage`]: how far steps may be followed so that nothing passes through.
 //! - [`increment`]: equilibrium at one time, by Newton's method (`equilibrium`), other ways where that fails (`homotopy`,
 //!   `free`), and outer iterations (`augmentation`); [`saved`]: what it goes on from.
 
@@ -21,10 +22,11 @@ mod free;
 mod homotopy;
 pub mod increment;
 pub mod interaction;
-pub mod mortar;
 pub mod iterative;
+pub mod mortar;
 mod nitsche;
 pub mod pair;
+pub mod passage;
 mod prepare;
 pub mod rigid_body;
 pub mod saved;
@@ -39,8 +41,8 @@ pub use contact::{Contact, Enforcement, Part, SiteMemory, SiteResult};
 pub use curve::Curve;
 pub use increment::{IncrementError, IncrementResult};
 pub use interaction::{Bodies, Interaction, Own, Target};
-pub use mortar::Mortar;
 pub use iterative::{LinearSolver, Solved, Subspaces};
+pub use mortar::Mortar;
 pub use pair::AxisChoice;
 pub use rigid_body::{Motion, RigidBody, RigidSite};
 pub use saved::Saved;

@@ -272,6 +272,7 @@ impl Body for RigidBody {
             x: pose.centre + arm,
             outward: own.outward.map(|n| frame * n),
             averaged: None,
+            rests: false,
             tangent: None,
             radius: own.radius,
             functions,

@@ -143,6 +143,7 @@ pub fn placed(body: &dyn CurveBody, state: &BodyState, site: &Site) -> Placed {
         x: jet.x,
         outward: None,
         averaged: None,
+        rests: false,
         tangent: Some(jet.d1),
         radius: body.radius(),
         functions: line.functions(element, xi),

@@ -53,6 +53,8 @@ pub struct Line<'a> {
     pub line: &'a Centreline,
     pub start: &'a [f64],
     pub now: &'a [f64],
+    /// The part of each element that is there; all of it where none is given.
+    pub shares: Option<Vec<f64>>,
 }
 
 impl Line<'_> {
@@ -130,8 +132,10 @@ impl Line<'_> {
     /// A force per reference length.
     fn distribute(&self, out: &mut Contribution, density: impl Fn(&Point<3>) -> Vector<3>) {
         for e in 0..self.line.elements() {
+            let share = self.shares.as_ref().map_or(1.0, |s| s[e]);
             for (xi, weight) in FOUR {
-                let force = density(&self.line.jet(self.start, e, xi).x) * (weight * self.line.lengths[e]);
+                let length = share * self.line.lengths[e];
+                let force = density(&self.line.jet(self.start, e, xi).x) * (weight * length);
                 for f in self.line.functions(e, xi) {
                     out.forces[f.unknown as usize] -= f.value.dot(&force);
                 }

@@ -4,10 +4,11 @@
 mod bodies;
 
 use bodies::*;
-use signorini_contact::{Coulomb, Status};
+use signorini_contact::{Coulomb, Status, Viscous};
 use signorini_geometry::Vector;
 use signorini_mechanics::body::Body;
-use signorini_mechanics::{BodyState, Enforcement, IncrementResult, System};
+use signorini_mechanics::{BodyState, Enforcement, IncrementResult, Part, PlacedLoad, System, TimedLoad};
+use signorini_rope::curve_pair::CurveContact;
 use signorini_rope::curve_pair::contact::{Ends, Form, Penalties};
 use signorini_rope::quaternion;
 use signorini_rope::section::Stiffness;
@@ -67,6 +68,81 @@ impl Crossing {
         }
         let end = &state.bodies[0].configuration[10 * self.cells[0]..];
         (total(&result.sites[0]), -end[2], most)
+    }
+}
+
+/// A rope taken across another by ten times their thickness in one increment: they do not pass through each other.
+#[test]
+fn ropes_that_are_moved_far_do_not_pass_through_each_other() {
+    for down in [0.5, 2.0] {
+        let ends = |x: V, z: f64| [x * -1.0 + V::z() * z, x + V::z() * z];
+        let rod = slender(1.0, 50.0);
+        let all: Vec<Box<dyn Body>> = vec![
+            Box::new(beam("upper", &ends(V::x(), 0.2), 8, rod, 0.05)),
+            Box::new(beam("lower", &ends(V::y(), 0.0), 8, rod, 0.05)),
+        ];
+        let mut system = system(all, |_| {});
+        for group in ["start", "end"] {
+            let displacement = [at_zero(), at_zero(), field(move |_: &V, t| -down * t)];
+            system.supports.push(held(0, group, displacement, [None, None, None]));
+            system.supports.push(held(1, group, [(); 3].map(|()| at_zero()), [None, None, None]));
+        }
+        system.prepare().unwrap();
+        let start = system.start();
+        let (state, result) = system.solve(&start, 1.0, &mut |_, _| true).unwrap();
+        let middle = |b: usize| state.bodies[b].configuration[10 * 4 + 2];
+        println!(
+            "{down}: middles at {:.4} and {:.4}, force {:.4}, {} iterations",
+            middle(0),
+            middle(1),
+            total(&result.sites[0]),
+            result.iterations
+        );
+        assert!(middle(0) > middle(1) + 0.08 && total(&result.sites[0]) > 0.0);
+    }
+}
+
+/// A rod that is pressed on another and drawn over it, along itself and across: friction by the velocity, and none at rest.
+#[test]
+fn viscous_friction_between_rods_follows_the_velocity() {
+    let (mu, slow) = (0.4, 0.02);
+    for (enforcement, way) in [
+        (Enforcement::Penalty { wanted_penetration: None }, V::x()),
+        (Enforcement::AugmentedLagrangian, V::new(0.6, 0.8, 0.0)),
+    ] {
+        let ends = |x: V, z: f64| [x * -1.0 + V::z() * z, x + V::z() * z];
+        let rod = slender(5.0, 1e3);
+        let all: Vec<Box<dyn Body>> = vec![
+            Box::new(beam("upper", &ends(V::x(), 0.1), 4, rod, 0.05)),
+            Box::new(beam("lower", &ends(V::y(), 0.0), 4, rod, 0.05)),
+        ];
+        let sides = [(0, all[0].as_ref()), (1, all[1].as_ref())];
+        let mut contact = CurveContact::new("touch", sides[0], sides[1], enforcement).unwrap();
+        contact.friction = Some(Box::new(Viscous::new(mu, slow).unwrap()));
+        let mut system = System { bodies: all, contacts: vec![Box::new(contact)], ..System::default() };
+        // Down in a unit of time, then along for one, then at rest for many.
+        let at = move |t: f64| V::z() * (-0.01 * t.min(1.0)) + way * (slow * (t - 1.0).clamp(0.0, 1.0));
+        for (body, group) in [(0, "start"), (0, "end"), (1, "start"), (1, "end")] {
+            let still = move |t: f64| if body == 0 { at(t) } else { V::zeros() };
+            let displacement = [0, 1, 2].map(|i| field(move |_: &V, t| still(t)[i]));
+            system.supports.push(held(body, group, displacement, [(); 3].map(|()| at_zero())));
+        }
+        system.prepare().unwrap();
+        let mut state = system.start();
+        for time in [1.0, 1.2, 1.4, 1.6, 1.8, 2.0, 200.0, 20000.0] {
+            let (found, result) = system.solve(&state, time, &mut |_, _| true).unwrap();
+            system.accept(&found).unwrap();
+            state = found;
+            let site = result.sites[0].iter().find(|s| s.pressure > 0.0).unwrap();
+            let rubbed = -site.friction.dot(&way) / site.pressure;
+            println!("{enforcement:?}, t = {time}: {rubbed:.6} of the pressure, {} iterations", result.iterations);
+            if time == 2.0 {
+                // At the velocity of the law.
+                assert!((rubbed / (mu / 2f64.sqrt()) - 1.0).abs() < 2e-2, "{rubbed}");
+            } else if time == 20000.0 {
+                assert!(rubbed.abs() < 1e-3 * mu, "{rubbed}");
+            }
+        }
     }
 }
 
@@ -179,9 +255,19 @@ fn the_angle_goes_from_crossing_to_parallel_without_a_jump() {
     assert!(worst.0 < 5e-3 && most <= 8);
 }
 
-/// Two parallel tubes that touch, turned about their common axis at one end.
+/// Two parallel tubes that touch, turned about their common axis at one end: by penalties the published figures.
 #[test]
 fn two_tubes_are_twisted_by_a_full_turn() {
+    twist(24, None, &[(12, 0.7485, 1.3033, 30), (24, 7.519, 2.7674, 36)]);
+}
+
+/// The same exactly: at two points of each element, with forces that a finer division of the penalty tends to.
+#[test]
+fn two_tubes_are_twisted_without_penetration() {
+    twist(12, Some(Enforcement::AugmentedLagrangian), &[(12, 0.7485, 1.3033, 16)]);
+}
+
+fn twist(steps: u32, enforcement: Option<Enforcement>, known: &[(u32, f64, f64, usize)]) {
     let (radius, length, cells) = (0.1, 4.0, 10);
     let stiffness = Stiffness { axial: 400.0, shear: [160.0; 2], torsion: 0.8, bending: [1.0; 2] };
     let tube =
@@ -190,7 +276,10 @@ fn two_tubes_are_twisted_by_a_full_turn() {
     let mut system = system(tubes.iter().map(|b| Box::new(b.clone()) as Box<dyn Body>).collect(), |contact| {
         contact.form = Form::Line;
         contact.ends = Ends::PassBy;
-        contact.stated = Some(Penalties { point: 0.0, line: 2e3 });
+        match enforcement {
+            Some(enforcement) => contact.enforcement = enforcement,
+            None => contact.stated = Some(Penalties { point: 0.0, line: 2e3 }),
+        }
         contact.reach = 0.02;
     });
     let increment = 15f64.to_radians();
@@ -205,7 +294,7 @@ fn two_tubes_are_twisted_by_a_full_turn() {
     system.prepare().unwrap();
     let mut state = system.start();
     let mut before = (0.0, 0.0);
-    for step in 1..=24 {
+    for step in 1..=steps {
         // Every section turns by its share of the angle.
         let helical = |b: usize, s: &BodyState| {
             tubes[b].moved(s, |x| {
@@ -238,16 +327,64 @@ fn two_tubes_are_twisted_by_a_full_turn() {
                 result.imbalance
             );
         }
-        assert!(result.iterations <= 10 && result.imbalance < 1e-9, "{:?}", result.history);
+        let most = if enforcement.is_some() { 30 } else { 10 };
+        assert!(result.iterations <= most && result.imbalance < 1e-9, "{} {:?}", result.iterations, result.history);
         assert!(force >= before.0 && torque.abs() > before.1);
         before = (force, torque.abs());
-        let reference = [(12, 0.7485, 1.3033), (24, 7.519, 2.7674)];
-        for (at, f, t) in reference {
-            if step == at {
-                assert!((force / f - 1.0).abs() < 1e-2 && (torque.abs() / t - 1.0).abs() < 2e-3, "{force} {torque}");
-                assert!(step == 12 || active == 36, "{active}");
-            }
+        for &(at, f, t, count) in known.iter().filter(|k| k.0 == step) {
+            assert!((force / f - 1.0).abs() < 1e-2 && (torque.abs() / t - 1.0).abs() < 2e-3, "{at} {force} {torque}");
+            assert!(active == count, "{active}");
         }
+    }
+}
+
+/// Two rods that lie on each other all along, the upper one under a force per length or at its end: exactly, and with a
+/// penalty that is far stiffer than they are.
+#[test]
+fn rods_lie_flush_on_each_other() {
+    let small = 1e-3;
+    let solve = |enforcement: Enforcement, at_end: bool| {
+        let ends = |z: f64, length: f64| [V::z() * z, V::x() * length + V::z() * z];
+        let all: Vec<Box<dyn Body>> = vec![
+            Box::new(beam("upper", &ends(0.1, 10.0), 10, slender(200.0, 1e6), 0.05)),
+            Box::new(beam("lower", &ends(0.0, 8.0), 8, slender(200.0, 1e6), 0.05)),
+        ];
+        let sides = [(0, all[0].as_ref()), (1, all[1].as_ref())];
+        let mut contact = CurveContact::new("touch", sides[0], sides[1], enforcement).unwrap();
+        contact.form = Form::Line;
+        let mut system = System { bodies: all, contacts: vec![Box::new(contact)], ..System::default() };
+        system.supports = (0..2).map(|b| clamped(b, "start")).collect();
+        if at_end {
+            system.loads.push(pulled(0, "end", V::new(0.0, 0.0, -small)));
+        } else {
+            let weight = TimedLoad::BodyForce(std::sync::Arc::new(move |_, t| V::z() * (-0.1 * small * t)));
+            system.loads.push(PlacedLoad { name: "w".into(), part: Part { body: 0, group: None }, load: weight });
+        }
+        system.prepare().unwrap();
+        let start = system.start();
+        let mut count = 0;
+        let (state, result) = system
+            .solve(&start, 1.0, &mut |_, _| {
+                count += 1;
+                count < 200
+            })
+            .unwrap();
+        let deepest = result.sites[0].iter().filter_map(|s| s.gap).fold(0.0, f64::min);
+        let end = -state.bodies[0].configuration[100 + 2] + 0.1;
+        println!(
+            "{enforcement:?}, at the end {at_end}: F {:.6}, end {:.6}, {count} iterations, {deepest:.1e}",
+            total(&result.sites[0]) / small,
+            end / small
+        );
+        (total(&result.sites[0]) / small, end / small)
+    };
+    for (at_end, force) in [(true, 0.6875), (false, 0.484)] {
+        let (exact, end) = solve(Enforcement::AugmentedLagrangian, at_end);
+        // At the end of the shorter rod it is the force of a leaf spring; under a force per length what bears the half of it.
+        assert!((exact / force - 1.0).abs() < if at_end { 1e-4 } else { 2e-2 });
+        let stiff = solve(Enforcement::Penalty { wanted_penetration: Some(1e-10) }, at_end);
+        // Where both rods bend alike, what they carry at their ends is not determined as well as how they lie.
+        assert!((stiff.0 / exact - 1.0).abs() < 5e-3 && (stiff.1 / end - 1.0).abs() < 1e-4);
     }
 }
 

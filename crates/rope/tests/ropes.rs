@@ -4,13 +4,16 @@ mod common;
 
 use common::{Options, Search, Surroundings, V, load_body, newton, pin};
 use signorini_mechanics::body::{Body, BodyState, Constraint, Contribution, Load, Order};
+use signorini_mechanics::{Part, PlacedLoad, Support, System, TimedLoad, system};
 use signorini_rope::cable::Cable;
 use signorini_rope::cable::element::Carries;
 use signorini_rope::centreline::{Closure, Continuity};
 use signorini_rope::chain::Chain;
 use signorini_rope::chain::body::Rest;
 use signorini_rope::chain::form::{Member, Net};
+use signorini_rope::chain::winch::WinchEnd;
 use signorini_rope::path::Path;
+use std::sync::Arc;
 
 /// Parameter, lowest point and horizontal force of an inextensible catenary of weight `w` per length between supports
 /// `span` apart and `rise` higher at the second one.
@@ -226,4 +229,59 @@ fn ropes_run_through_pulleys_and_over_winches() {
     let sum = pull(-x, t[0]) + pull(V::new(4.0, 0.0, 0.0) - x, 5.0) + V::new(0.0, 0.0, -2.0);
     println!("winch {t:?} {x:?}, {} iterations", found.iterations());
     assert!(t[1] == 5.0 && sum.norm() < 1e-10);
+}
+
+/// A rope between two points, with a winch at an end that pays out `by * t`; its tensions and the forces of both supports.
+fn wound(at: WinchEnd, by: f64, weight: f64, times: &[f64]) -> (Chain, BodyState, Vec<f64>, [V; 2]) {
+    let path = Path::points(&[V::zeros(), V::new(4.0, 0.0, 3.0)], Closure::Open).unwrap();
+    let path = path.sample(40, Continuity::C0).unwrap();
+    let rope = Chain::new("rope", &path, 1e4, Rest::Pretension(10.0), 0.0).unwrap();
+    let rope = rope.with_winch(at, by.max(0.0), Arc::new(move |t| by * t)).unwrap();
+    let mut system = System::default();
+    system.bodies.push(Box::new(rope.clone()));
+    for group in ["start", "end"] {
+        let zero = || -> Option<system::TimeField> { Some(Arc::new(|_, _| 0.0)) };
+        let part = Part { body: 0, group: Some(group.into()) };
+        let displacement = [zero(), zero(), zero()];
+        system.supports.push(Support { name: group.into(), part, displacement, rotation: [None, None, None] });
+    }
+    let load = TimedLoad::BodyForce(Arc::new(move |_, _| V::z() * -weight));
+    system.loads.push(PlacedLoad { name: "weight".into(), part: Part { body: 0, group: None }, load });
+    system.prepare().unwrap();
+    let mut state = system.start();
+    let mut forces = [V::zeros(); 2];
+    for &time in times {
+        let (next, result) =
+            system.solve(&state, time, &mut |_, _| true).unwrap_or_else(|e| panic!("{at:?} {by} {time}: {e}"));
+        system.accept(&next).unwrap();
+        state = next;
+        forces = [result.support_forces[0][0], result.support_forces[1][0]];
+    }
+    let body = state.bodies[0].clone();
+    let tensions = rope.tensions(&body);
+    (rope, body, tensions, forces)
+}
+
+#[test]
+fn a_winch_pays_out_and_takes_in() {
+    let out = 5.0 * 1e4 / (1e4 + 10.0);
+    for at in [WinchEnd::Start, WinchEnd::End] {
+        // Taken in by more than a tenth, cell by cell: the tension of a straight rope.
+        let (rope, state, tensions, forces) = wound(at, -0.6, 0.0, &[0.1, 0.3, 0.35, 0.7, 1.0]);
+        let exact = 1e4 * (5.0 / (out - 0.6) - 1.0);
+        assert!(tensions.iter().all(|t| (t / exact - 1.0).abs() < 1e-9), "{tensions:?} {exact}");
+        assert_eq!(tensions.len(), 35);
+        let length: f64 = rope.active(&state).map(|e| rope.unstrained_length(&state, e)).sum();
+        assert!((length - out + 0.6).abs() < 1e-12 && (forces[0].norm() / exact - 1.0).abs() < 1e-9);
+        // Paid out: a catenary of the whole length, with all of its weight.
+        let times: Vec<f64> = (1..=10).map(|k| 0.1 * f64::from(k)).collect();
+        let (rope, state, tensions, forces) = wound(at, 1.5, 2.0, &times);
+        let (horizontal, _) = catenary(4.0, 3.0, out + 1.5, 2.0);
+        println!("{at:?}: {} cells out, H {:.6} ({horizontal:.6})", tensions.len(), forces[1][0]);
+        assert_eq!((tensions.len(), rope.elements()), (52, 52));
+        assert!((forces[1][0] / horizontal - 1.0).abs() < 2e-3 && (forces[0] + forces[1])[0].abs() < 1e-8);
+        assert!(((forces[0] + forces[1])[2] / (2.0 * (out + 1.5)) - 1.0).abs() < 1e-9);
+        let length: f64 = rope.active(&state).map(|e| rope.unstrained_length(&state, e)).sum();
+        assert!((length - out - 1.5).abs() < 1e-12);
+    }
 }

@@ -122,6 +122,82 @@ fn a_slack_cable_falls_onto_a_cylinder() {
     assert!((forces[0] / forces[1] - 1.0).abs() < 1e-4, "{forces:?}");
 }
 
+#[test]
+fn a_slack_cable_falls_from_afar() {
+    // From higher above than the cylinder is thick, to where it hangs over it; never round the other side. The higher the
+    // ends, the more of the weight they bear.
+    let mut before = fall(12, 0.8, Enforcement::Multiplier).0[2];
+    for height in [1.5, 1.9] {
+        let (force, results) = fall(12, height, Enforcement::Multiplier);
+        println!("from {height}: {force:?} {}", told(&results));
+        assert!(force[0].abs() < 1e-6 && force[1] == 0.0 && force[2] > 1.0 && force[2] < before, "{force:?}");
+        let gaps = || results[0].sites[0].iter().filter_map(|s| s.gap);
+        let middle: Vec<f64> = results[0].sites[0].iter().filter(|s| s.x[0].abs() < 0.3).map(|s| s.x[2]).collect();
+        assert!(middle.len() >= 4 && middle.iter().all(|z| *z > 0.4) && gaps().all(|g| g > -1e-6));
+        before = force[2];
+    }
+}
+
+/// A bar that is moved through a rope in one increment, and a rope that is taken through a bar.
+#[test]
+fn nothing_passes_through_in_one_increment() {
+    let path = Path::points(&[V::new(-1.0, 0.0, 0.1), V::new(1.0, 0.0, 0.1)], Closure::Open).unwrap();
+    let rope =
+        || Chain::new("rope", &path.sample(10, Continuity::C0).unwrap(), 10.0, Rest::Pretension(1.0), 0.01).unwrap();
+    let bar = |motion: fn(f64) -> V| {
+        let shape = Cylinder { point: V::zeros(), axis: V::y(), radius: 0.03 };
+        let motion = Motion::Prescribed(Arc::new(move |t| RigidMotion::new(V::zeros(), V::zeros(), motion(t))));
+        RigidBody {
+            name: "bar".into(),
+            shape: Arc::new(shape),
+            motion,
+            centre: V::zeros(),
+            sites: Vec::new(),
+            size: 0.06,
+        }
+    };
+    let system = |bar: RigidBody, ends: fn(f64) -> f64| {
+        let mut system = System::default();
+        system.bodies.push(Box::new(rope()));
+        system.bodies.push(Box::new(bar));
+        system.supports.push(hold(
+            "boundary",
+            [zero(), zero(), Some(Arc::new(move |_, t| ends(t)))],
+            [None, None, None],
+        ));
+        touch(&mut system, Sampling::Nodes, Enforcement::Multiplier, None);
+        system.prepare().unwrap();
+        system
+    };
+    // The bar goes up by twice its thickness and more: told, and solved in increments of half of it.
+    let mut pushed = system(bar(|t| V::z() * (0.3 * t)), |_| 0.0);
+    let start = pushed.start();
+    let found = pushed.solve(&start, 1.0, &mut |_, _| true);
+    assert!(matches!(found, Err(IncrementError::PassesThrough { .. })), "{found:?}");
+    let mut state = start;
+    for k in 1..=10 {
+        let (next, result) = pushed.solve(&state, 0.1 * f64::from(k), &mut |_, _| true).unwrap();
+        pushed.accept(&next).unwrap();
+        if k == 10 {
+            let force: V = result.sites[0].iter().map(SiteResult::force).sum();
+            // The node over the bar is pushed up to 0.3 + 0.04, of ends at 0.1.
+            let (l, h) = (1f64.hypot(0.24), 0.24);
+            let tension = 10.0 * (l * (1.0 + 0.1) - 1.0);
+            println!("force {force:?}, of a rope that is bent once {}", 2.0 * tension * h / l);
+            assert!((force[2] / (2.0 * tension * h / l) - 1.0).abs() < 1e-6 && force[2] > 0.0, "{force:?}");
+        }
+        state = next;
+    }
+    // The ends go down by as much in one step: the rope stays above.
+    let mut pulled = system(bar(|_| V::zeros()), |t| -0.3 * t);
+    let start = pulled.start();
+    let (state, result) = pulled.solve(&start, 1.0, &mut |_, _| true).unwrap();
+    let middle = state.bodies[0].configuration[3 * 5 + 2];
+    let force: V = result.sites[0].iter().map(SiteResult::force).sum();
+    println!("middle at {middle}, force {force:?}, {} iterations", result.iterations);
+    assert!((middle - 0.04).abs() < 1e-9 && force[2] > 0.0);
+}
+
 fn capstan(cells: usize, sampling: Sampling, enforcement: Enforcement) -> Vec<IncrementResult> {
     let turn = std::f64::consts::PI * 1.5;
     let path = Path::circle(V::zeros(), V::x(), V::z(), 1.02, turn).unwrap().sample(cells, Continuity::C0).unwrap();

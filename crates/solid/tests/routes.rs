@@ -49,9 +49,8 @@ impl<const D: usize> Blocks<D> {
         let symmetric = self.space == Space::Axisymmetric;
         let mesh = |low: f64, high: f64, n: usize, bend: f64| {
             let first = if symmetric { 0.0 } else { -1.0 };
-            let axes: [Vec<f64>; D] = std::array::from_fn(|k| {
-                if k == up { even(low, high, height) } else { even(first, 1.0, n) }
-            });
+            let axes: [Vec<f64>; D] =
+                std::array::from_fn(|k| if k == up { even(low, high, height) } else { even(first, 1.0, n) });
             block::<D>(&axes, 1, move |mut x| {
                 let r2: f64 = (0..up).map(|k| x[k] * x[k]).sum();
                 x[up] += bend * r2 * (high - x[up]) / (high - low);
@@ -109,7 +108,15 @@ fn states<const D: usize>(mut model: Model<D>, held: Held, route: Option<Route>)
     for aside in [0.0, 1.0] {
         let moved = move |support: usize, _: &Point<D>| {
             let is_top = support == 0 && held == Held::Top;
-            let shift = |k: usize| if k == up { -0.02 } else if k == 0 { 0.003 * aside } else { 0.001 * aside };
+            let shift = |k: usize| {
+                if k == up {
+                    -0.02
+                } else if k == 0 {
+                    0.003 * aside
+                } else {
+                    0.001 * aside
+                }
+            };
             Point::<D>::from_fn(|k, _| if is_top { shift(k) } else { 0.0 })
         };
         let load = if held == Held::Top {
@@ -118,7 +125,15 @@ fn states<const D: usize>(mut model: Model<D>, held: Held, route: Option<Route>)
             let of = Load { name: "weight".into(), body: 0, group: top.clone(), kind: LoadKind::Traction };
             let push = if held == Held::Free { 0.5 * aside } else { 0.0 };
             loads::forces(&model.bodies, &of, &|_| {
-                Point::<D>::from_fn(|k, _| if k == up { -4.0 } else if k == 0 { push } else { 0.3 * push })
+                Point::<D>::from_fn(|k, _| {
+                    if k == up {
+                        -4.0
+                    } else if k == 0 {
+                        push
+                    } else {
+                        0.3 * push
+                    }
+                })
             })
         };
         let rigid: Option<RigidGap<D>> = matches!(model.contacts[0].master, Master::Rigid).then(|| {
@@ -134,8 +149,7 @@ fn states<const D: usize>(mut model: Model<D>, held: Held, route: Option<Route>)
 /// Both routes come to the same states; returns whether nodes stick, slip and are open in the last one.
 fn compared<const D: usize>(make: &dyn Fn() -> Blocks<D>) -> [bool; 3] {
     let held = make().held;
-    let [columns, products] =
-        [Route::Columns, Route::Products].map(|route| states(make().model(), held, Some(route)));
+    let [columns, products] = [Route::Columns, Route::Products].map(|route| states(make().model(), held, Some(route)));
     let mut found = [false; 3];
     for (a, b) in columns.iter().zip(&products) {
         assert_eq!((a.route, b.route), (Route::Columns, Route::Products));
@@ -217,7 +231,8 @@ fn a_block_on_an_incline_goes_on_to_the_same_digits() {
         let make = || {
             let law = Some(Box::new(Coulomb::orthotropic([0.3, 0.5]).unwrap()) as Box<dyn Law>);
             let held = Held::Free;
-            let mut model = Blocks::<3> { held, bend: 0.0, rigid: true, ..Blocks::new(Space::Solid, [7, 4], law) }.model();
+            let mut model =
+                Blocks::<3> { held, bend: 0.0, rigid: true, ..Blocks::new(Space::Solid, [7, 4], law) }.model();
             model.by_route(route);
             model
         };
@@ -227,7 +242,12 @@ fn a_block_on_an_incline_goes_on_to_the_same_digits() {
             let weight = Point::<3>::new(angle.sin() * 0.8, angle.sin() * 0.6, -angle.cos());
             let rigid: RigidGap<3> = Box::new(|x: &Point<3>| GapJet::flat(x[2], Point::<3>::z()));
             let load = loads::forces(&model.bodies, &of, &|_| weight);
-            Circumstances { displacement: &|_, _| Point::<3>::zeros(), load, rigid: vec![Some(rigid)], motion: vec![None] }
+            Circumstances {
+                displacement: &|_, _| Point::<3>::zeros(),
+                load,
+                rigid: vec![Some(rigid)],
+                motion: vec![None],
+            }
         };
         let angles = [0.06, 0.12, 0.18, 0.24, 0.26];
         let mut model = make();

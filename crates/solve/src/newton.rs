@@ -41,6 +41,11 @@ pub trait Equations {
         false
     }
 
+    /// The largest share of a step that may be followed: that far the linearisation may be trusted.
+    fn farthest(&self, _at: &Self::State, _step: &[f64]) -> f64 {
+        1.0
+    }
+
     /// The state after a share of the step.
     fn advance(&self, at: &Self::State, step: &[f64], share: f64) -> Self::State;
 }
@@ -112,23 +117,27 @@ pub fn newton<E: Equations>(
     history.push(measure.error);
     let mut best = (state.clone(), measure);
     let mut behind = 0;
+    // Until what is prescribed has been brought along.
+    let mut brings = true;
     for iteration in 1..=options.most_iterations {
         if measure.error <= 1.0 {
             break;
         }
         let step = told!(equations.step(&state));
-        let driven = iteration == 1 && equations.is_driven(&state);
+        let farthest = equations.farthest(&state, &step);
+        let driven = brings && equations.is_driven(&state);
+        brings = driven && farthest < 1.0;
         let whole_steps = match options.search {
             Search::Monotone => driven,
             Search::Watchdog { patience } => driven || behind < patience,
         };
         let mut reached: Option<(E::State, Measured)> = None;
-        for share in SHARES {
+        for (tried, share) in SHARES.map(|share| farthest * share).into_iter().enumerate() {
             let next = equations.advance(&state, &step, share);
             // A state that cannot be is one that is too far.
             let of_next = match equations.measure(&next) {
                 Ok(m) => m,
-                Err(error) if share == SHARES[SHARES.len() - 1] && reached.is_none() => {
+                Err(error) if tried + 1 == SHARES.len() && reached.is_none() => {
                     return Err(NewtonFailure::Equations { error, history });
                 }
                 Err(_) => continue,

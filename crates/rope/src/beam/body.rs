@@ -136,7 +136,7 @@ impl Beam {
     }
 
     fn line_of<'a>(&'a self, state: &'a BodyState) -> Line<'a> {
-        Line { body: &self.name, line: &self.line, start: &self.start, now: &state.configuration }
+        Line { body: &self.name, line: &self.line, start: &self.start, now: &state.configuration, shares: None }
     }
 }
 

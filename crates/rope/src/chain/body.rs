@@ -8,15 +8,17 @@
 //! equations is not changed by it.
 
 use super::element::{Drive, Stretched, stretched};
+use super::winch::Winch;
 use crate::centreline::{Centreline, Closure, Continuity};
 use crate::curve_body::{self, CurveBody};
 use crate::path::Sampled;
-use crate::place::{self, Line};
+use crate::place::{self, Line, Part};
+use crate::quaternion::axis;
 use signorini_geometry::{Matrix, Vector};
 use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
-    Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Hold, Load, Master, Order, PlaceError, Placed,
-    Sampling, Site,
+    Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Function, Hold, Load, Master, Order, PlaceError,
+    Placed, Sampling, Site,
 };
 
 /// A rope that cannot be.
@@ -84,6 +86,7 @@ pub struct Chain {
     pub(super) drives: Vec<Drive>,
     /// Nodes through which the rope runs without friction.
     pub(super) pulleys: Vec<usize>,
+    pub(super) winch: Option<Winch>,
     pub(super) start: Vec<f64>,
 }
 
@@ -111,6 +114,7 @@ impl Chain {
             stiffness,
             radius,
             pulleys: Vec::new(),
+            winch: None,
             start: path.positions.iter().flat_map(|p| [p[0], p[1], p[2]]).collect(),
         })
     }
@@ -182,7 +186,7 @@ impl Chain {
     /// The unstrained length of an element in a state.
     pub fn unstrained_length(&self, state: &BodyState, element: usize) -> f64 {
         let through = |k: usize| state.configuration[3 * self.line.nodes() + k];
-        self.line.lengths[element] + self.pulleys_of(element).map(|(k, sign)| sign * through(k)).sum::<f64>()
+        self.wound_length(state, element) + self.pulleys_of(element).map(|(k, sign)| sign * through(k)).sum::<f64>()
     }
 
     fn element(&self, state: &BodyState, element: usize) -> (Vector<3>, Stretched) {
@@ -191,14 +195,15 @@ impl Chain {
         (b - a, stretched(&(b - a), self.stiffness, unstrained, self.drives[element]))
     }
 
-    /// The tension of each element: zero where it is slack.
+    /// The tension of each element that is out: zero where it is slack.
     pub fn tensions(&self, state: &BodyState) -> Vec<f64> {
-        (0..self.line.elements()).map(|e| self.element(state, e).1.tension).collect()
+        self.active(state).map(|e| self.element(state, e).1.tension).collect()
     }
 
-    /// Elements without tension.
+    /// Elements that are out, and without tension.
     pub fn slack(&self, state: &BodyState) -> Vec<usize> {
-        self.tensions(state).iter().enumerate().filter(|(_, t)| **t == 0.0).map(|(e, _)| e).collect()
+        let list = self.active(state).zip(self.tensions(state));
+        list.filter(|(_, t)| *t == 0.0).map(|(e, _)| e).collect()
     }
 
     /// The number of elements.
@@ -211,8 +216,62 @@ impl Chain {
         self.line.position(&state.configuration, node)
     }
 
+    /// Both ends.
+    fn ends(&self) -> Part {
+        Part::Nodes(vec![0, self.line.nodes() - 1])
+    }
+
+    /// The tangent at a node is that of the parabola through it and its neighbours, by their unstrained distances: with one
+    /// of its chords, the axes of friction would be off by half of the turn there.
+    fn at_node(&self, state: &BodyState, node: usize, placed: Placed) -> Placed {
+        let (nodes, count) = (self.line.nodes(), self.line.elements());
+        let (before, after) = match self.line.closure {
+            Closure::Open if node == 0 || node + 1 == nodes => return placed,
+            Closure::Open => (node - 1, node + 1),
+            Closure::Closed => ((node + count - 1) % count, (node + 1) % count),
+        };
+        let [h, k] = [self.line.lengths[before], self.line.lengths[node]];
+        let slopes = [(before, -k / h), (node, k / h - h / k), (after, h / k)];
+        let position = |n: usize| self.line.position(&state.configuration, n);
+        let tangent = slopes.iter().map(|(n, slope)| position(*n) * *slope).sum();
+        let functions = slopes.iter().flat_map(|&(n, slope)| {
+            (0..3).map(move |i| {
+                let e = axis(i);
+                let value = if n == node { e } else { Vector::<3>::zeros() };
+                let slopes = [e * slope, Vector::<3>::zeros()];
+                Function { unknown: (3 * n + i) as u32, value, slopes, ..Function::default() }
+            })
+        });
+        Placed { tangent: Some(tangent), functions: functions.collect(), ..placed }
+    }
+
     fn line_of<'a>(&'a self, state: &'a BodyState) -> Line<'a> {
-        Line { body: &self.name, line: &self.line, start: &self.start, now: &state.configuration }
+        // Weight is that of the rope which is out.
+        let shares = self.winch.as_ref().map(|_| {
+            let of = |e: usize| self.wound_length(state, e) / self.line.lengths[e];
+            (0..self.line.elements()).map(of).collect()
+        });
+        Line { body: &self.name, line: &self.line, start: &self.start, now: &state.configuration, shares }
+    }
+
+    /// A part of the rope, or the nodes that are pulleys: all of them, or one by its number from 1.
+    fn part(&self, on: Option<&str>) -> Result<Part, PlaceError> {
+        if let Some(rest) = on.and_then(|group| group.strip_prefix("pulley")) {
+            let number = rest.strip_prefix('_').and_then(|n| n.parse::<usize>().ok());
+            match number.and_then(|n| self.pulleys.get(n.wrapping_sub(1))) {
+                Some(node) => return Ok(Part::Nodes(vec![*node])),
+                None if rest == "s" && !self.pulleys.is_empty() => return Ok(Part::Nodes(self.pulleys.clone())),
+                None => {}
+            }
+        }
+        place::part(&self.name, &self.line, on).map_err(|error| match error {
+            PlaceError::Unknown { body, group, mut known } if !self.pulleys.is_empty() => {
+                known.extend(std::iter::once("pulleys".to_string()));
+                known.extend((1..=self.pulleys.len()).map(|k| format!("pulley_{k}")));
+                PlaceError::Unknown { body, group, known }
+            }
+            other => other,
+        })
     }
 }
 
@@ -240,19 +299,28 @@ impl Body for Chain {
     }
 
     fn start(&self) -> BodyState {
-        BodyState { configuration: self.start.clone(), internal: Vec::new() }
+        let internal = self.winch.iter().map(|_| 0.0).collect();
+        BodyState { configuration: self.start.clone(), internal }
+    }
+
+    fn prescribe(&self, time: f64, state: &mut BodyState) {
+        self.wind(time, state);
+    }
+
+    fn holds_change(&self) -> bool {
+        self.winch.is_some()
     }
 
     fn advance(&self, state: &BodyState, step: &[f64], share: f64) -> BodyState {
         let configuration = state.configuration.iter().zip(step).map(|(x, s)| x + share * s).collect();
-        BodyState { configuration, internal: Vec::new() }
+        BodyState { configuration, internal: state.internal.clone() }
     }
 
     fn internal(&self, state: &BodyState, order: Order, out: &mut Contribution) -> Result<f64, BodyError> {
         let floor = self.stiffness * f64::EPSILON.sqrt();
         let slack_tension = self.tensions(state).into_iter().fold(floor, f64::max);
         let mut energy = 0.0;
-        for e in 0..self.line.elements() {
+        for e in self.active(state) {
             let (d, s) = self.element(state, e);
             // No rope is left between a pulley and its neighbour.
             if !d.norm().is_finite() || self.unstrained_length(state, e) <= 0.0 {
@@ -304,7 +372,26 @@ impl Body for Chain {
             let message = "the ends of a rope turn freely: only displacements can be held".to_string();
             return Err(PlaceError::Unsuitable { body: self.name.clone(), message });
         }
-        Ok(self.line_of(state).hold(&place::part(&self.name, &self.line, on)?, hold))
+        let mut out = self.line_of(state).hold(&self.part(on)?, hold);
+        // What is on the winch goes with it.
+        let on_winch = self.on_winch(state);
+        let Some(end) = on_winch
+            .first()
+            .filter(|end| self.part(on).is_ok_and(|p| p == Part::Nodes(vec![**end]) || p == self.ends()))
+        else {
+            return Ok(out);
+        };
+        let reference = self.line.position(&self.start, *end);
+        for node in &on_winch[1..] {
+            let moved = self.line.position(&state.configuration, *node) - reference;
+            for i in 0..3 {
+                if let Some(value) = hold.displacement[i] {
+                    let lack = moved[i] - value(&reference);
+                    out.push(Constraint { terms: vec![((3 * node + i) as u32, 1.0)], lack, component: i });
+                }
+            }
+        }
+        Ok(out)
     }
 
     fn load(
@@ -315,7 +402,7 @@ impl Body for Chain {
         order: Order,
         out: &mut Contribution,
     ) -> Result<(), PlaceError> {
-        self.line_of(state).load(&place::part(&self.name, &self.line, on)?, load, order, out)
+        self.line_of(state).load(&self.part(on)?, load, order, out)
     }
 
     fn sites(&self, on: Option<&str>, sampling: Sampling) -> Result<Vec<Site>, PlaceError> {
@@ -323,7 +410,14 @@ impl Body for Chain {
     }
 
     fn placed(&self, state: &BodyState, site: &Site) -> Placed {
-        curve_body::placed(self, state, site)
+        let placed = curve_body::placed(self, state, site);
+        let node = match site.xi[0] {
+            0.0 => self.line.ends(site.patch as usize)[0],
+            1.0 => self.line.ends(site.patch as usize)[1],
+            _ => return placed,
+        };
+        let rests = self.on_winch(state).contains(&node);
+        Placed { rests, ..self.at_node(state, node, placed) }
     }
 
     fn master<'a>(&'a self, on: Option<&str>, state: &'a BodyState) -> Result<Box<dyn Master + 'a>, PlaceError> {
@@ -347,8 +441,14 @@ impl Body for Chain {
     }
 
     fn fields(&self, state: &BodyState) -> BodyFields {
-        let mut fields = crate::fields::of_curve(&self.line, &self.start, &state.configuration);
+        let active = self.active(state);
+        let lengths: Vec<f64> = active.clone().map(|e| self.unstrained_length(state, e)).collect();
+        // What is on a winch is not shown.
+        let out = Centreline::new(lengths.clone(), self.line.closure, Continuity::C0, [3, 3]);
+        let shown = |numbers: &[f64]| numbers[3 * active.start..3 * (active.start + out.nodes())].to_vec();
+        let mut fields = crate::fields::of_curve(&out, &shown(&self.start), &shown(&state.configuration));
         crate::fields::add_element_data(&mut fields, "tension", 1, self.tensions(state));
+        crate::fields::add_element_data(&mut fields, "unstrained_length", 1, lengths);
         fields
     }
 }

@@ -1,17 +1,22 @@
-//! A winch that pays out or takes in rope, however much: its element is split when it has become long, and merged with its
-//! neighbour when it has become short, with the unstrained length conserved.
+//! A winch at an end of a rope: it pays rope out and takes it in by time.
 //!
-//! A node that is put in lies on the chord and divides it as it divides the unstrained length, so that both parts have the
-//! tension of the whole. A node that is taken out leaves the sum of both unstrained lengths; where the rope was straight
-//! the tension is what it was.
+//! The rope has as many elements as when most of it is out. Those that are still on the winch have no length, and their
+//! nodes are where the winch is: the support that holds this end of the rope holds them too. Of the elements that are out
+//! the last one, next to the winch, has what is left of the unstrained length, from half a nominal element to one and a
+//! half; beyond that a node leaves the winch, or comes to it. Counted from the other end, with the lengths `l_k` of the
+//! elements and the length `L` that is out, the last one is the largest `k` with `Σ_{j<k} l_j + h/2 <= L`.
+//!
+//! A node that leaves lies on the chord and divides it as it divides the unstrained length, so that both parts have the
+//! tension of the whole. Where a node that comes in lay on a straight line, the tension is what it was.
 
 use super::body::{Chain, ChainError};
 use super::element::Drive;
 use crate::centreline::{Centreline, Closure, Continuity};
 use signorini_mechanics::body::BodyState;
+use std::ops::Range;
+use std::sync::Arc;
 
-/// An element longer than so many nominal ones is split, and one shorter than so much of one is merged.
-const LONG: f64 = 1.5;
+/// An element shorter than so much of a nominal one is not out by itself.
 const SHORT: f64 = 0.5;
 
 /// Which end of a rope a winch is at.
@@ -21,163 +26,144 @@ pub enum WinchEnd {
     End,
 }
 
+/// Length by time.
+pub type Length = Arc<dyn Fn(f64) -> f64 + Send + Sync>;
+
+/// A winch.
+#[derive(Clone)]
+pub struct Winch {
+    pub at: WinchEnd,
+    /// The unstrained length that was paid out since the start; negative where it was taken in.
+    pub paid_out: Length,
+    nominal: f64,
+    /// Unstrained length that is out at the start.
+    out: f64,
+}
+
+impl std::fmt::Debug for Winch {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Winch").field("at", &self.at).field("nominal", &self.nominal).field("out", &self.out).finish()
+    }
+}
+
 impl Chain {
-    /// Winds rope on or off at an end of an open rope: its last element gets another unstrained length, which may be more
-    /// than an element, or less than nothing as long as there is rope. Elements that come and go have the length `nominal`.
-    /// The rope and its state afterwards: with other numbers of nodes and elements it is another body for a system.
+    /// Puts a winch at an end, that pays out at most a length; more than that is taken by stretching its last element.
     ///
     /// # Errors
-    /// A closed rope, a nominal length that is not positive, a change that is not finite or takes in all of the rope, or all
-    /// up to a pulley.
-    pub fn wound(
-        &self,
-        state: &BodyState,
-        at: WinchEnd,
-        by: f64,
-        nominal: f64,
-    ) -> Result<(Chain, BodyState), ChainError> {
-        super::body::positive("nominal length", nominal)?;
-        let left = self.line.length() + by;
-        if self.line.closure == Closure::Closed || !left.is_finite() || left < SHORT * nominal {
-            let valid = "valid are changes of an open rope that leave half an element";
-            return Err(ChainError::Number { name: "wound length", value: by, valid });
+    /// A closed rope, one that has a winch, a length that is negative or not finite.
+    pub fn with_winch(mut self, at: WinchEnd, most: f64, paid_out: Length) -> Result<Self, ChainError> {
+        let is_valid = most >= 0.0 && most.is_finite();
+        if self.line.closure == Closure::Closed || self.winch.is_some() || !is_valid {
+            let valid = "valid are 0 and positive numbers, and one winch, of a rope that is open";
+            return Err(ChainError::Number { name: "length on the winch", value: most, valid });
         }
-        let mut parts = Parts::of(self, state);
-        if at == WinchEnd::Start {
-            parts.reverse();
-        }
-        let last = parts.lengths.len() - 1;
-        parts.lengths[last] += by;
-        while parts.lengths.len() > 1 && parts.lengths[parts.lengths.len() - 1] < SHORT * nominal {
-            let taken_out = parts.lengths.len() - 1;
-            if parts.pulleys[taken_out].is_some() {
-                let node = if at == WinchEnd::End { taken_out } else { 1 };
-                return Err(ChainError::Pulley { node, reason: "no rope is left between it and the winch" });
+        let count = self.line.elements();
+        let out = self.line.length();
+        let nominal = out / count as f64;
+        let more = (most / nominal).round() as usize;
+        let mut lengths = self.line.lengths.clone();
+        let through = self.start.split_off(3 * self.line.nodes());
+        let on_winch = |node: [f64; 3]| std::iter::repeat_n(node, more).flatten();
+        let node = |k: usize| [self.start[3 * k], self.start[3 * k + 1], self.start[3 * k + 2]];
+        let [first, last] = [node(0), node(count)];
+        match at {
+            WinchEnd::End => {
+                lengths.extend(std::iter::repeat_n(nominal, more));
+                self.drives.extend(std::iter::repeat_n(Drive::Elastic, more));
+                self.start.extend(on_winch(last));
             }
-            parts.merge();
-        }
-        while parts.lengths[parts.lengths.len() - 1] > LONG * nominal {
-            parts.split(nominal);
-        }
-        if at == WinchEnd::Start {
-            parts.reverse();
-        }
-        Ok(parts.chain(self))
-    }
-}
-
-/// A rope as lists of its nodes, at the start and now, and of its elements.
-struct Parts {
-    nodes: Vec<[[f64; 3]; 2]>,
-    /// What has run through a node that is a pulley.
-    pulleys: Vec<Option<f64>>,
-    lengths: Vec<f64>,
-    drives: Vec<Drive>,
-}
-
-impl Parts {
-    fn of(chain: &Chain, state: &BodyState) -> Self {
-        let count = chain.line.nodes();
-        let place = |of: &[f64], n: usize| [of[3 * n], of[3 * n + 1], of[3 * n + 2]];
-        let through = |n: usize| chain.pulleys.iter().position(|p| *p == n).map(|k| state.configuration[3 * count + k]);
-        Parts {
-            nodes: (0..count).map(|n| [place(&chain.start, n), place(&state.configuration, n)]).collect(),
-            pulleys: (0..count).map(through).collect(),
-            lengths: chain.line.lengths.clone(),
-            drives: chain.drives.clone(),
-        }
-    }
-
-    fn reverse(&mut self) {
-        self.nodes.reverse();
-        self.pulleys.reverse();
-        self.lengths.reverse();
-        self.drives.reverse();
-    }
-
-    /// Takes out the last node but one.
-    fn merge(&mut self) {
-        let n = self.lengths.len();
-        let taken = self.lengths[n - 1];
-        self.lengths[n - 2] += taken;
-        self.lengths.pop();
-        self.drives.remove(n - 2);
-        self.nodes.remove(n - 1);
-        self.pulleys.remove(n - 1);
-    }
-
-    /// Divides the last element: what is nearer to the winch stays with it.
-    fn split(&mut self, nominal: f64) {
-        let n = self.lengths.len();
-        let share = nominal / self.lengths[n - 1];
-        let [a, b] = [self.nodes[n - 1], self.nodes[n]];
-        let between = |k: usize| std::array::from_fn(|i| a[k][i] + share * (b[k][i] - a[k][i]));
-        self.nodes.insert(n, [between(0), between(1)]);
-        self.pulleys.insert(n, None);
-        self.lengths.push(self.lengths[n - 1] - nominal);
-        self.lengths[n - 1] = nominal;
-        self.drives.insert(n - 1, Drive::Elastic);
-    }
-
-    fn chain(self, before: &Chain) -> (Chain, BodyState) {
-        let pulleys: Vec<usize> = (0..self.nodes.len()).filter(|n| self.pulleys[*n].is_some()).collect();
-        let through: Vec<f64> = self.pulleys.iter().flatten().copied().collect();
-        let list = |k: usize| self.nodes.iter().flat_map(move |n| n[k]).collect::<Vec<f64>>();
-        let (mut start, mut configuration) = (list(0), list(1));
-        start.extend(through.iter().map(|_| 0.0));
-        configuration.extend(through);
-        let line = Centreline::new(self.lengths, before.line.closure, Continuity::C0, [3, 3]);
-        let chain = Chain { line, drives: self.drives, pulleys, start, ..before.clone() };
-        (chain, BodyState { configuration, internal: Vec::new() })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::chain::body::Rest;
-    use crate::path::Path;
-    use signorini_geometry::Vector;
-    use signorini_mechanics::Body;
-
-    #[test]
-    fn any_length_is_paid_out_and_taken_in() {
-        let path = Path::points(&[Vector::<3>::zeros(), Vector::<3>::new(4.0, 0.0, 3.0)], Closure::Open).unwrap();
-        let path = path.sample(10, Continuity::C0).unwrap();
-        let rope = Chain::new("rope", &path, 100.0, Rest::Pretension(5.0), 0.1).unwrap();
-        let whole =
-            |chain: &Chain, s: &BodyState| (0..chain.elements()).map(|e| chain.unstrained_length(s, e)).sum::<f64>();
-        let start = rope.start();
-        let length = whole(&rope, &start);
-        let nominal = length / 10.0;
-        for at in [WinchEnd::Start, WinchEnd::End] {
-            // Nothing wound: nothing changes.
-            let (same, state) = rope.wound(&start, at, 0.0, nominal).unwrap();
-            assert!(same.elements() == 10 && state == start);
-            for by in [0.3 * nominal, 2.2 * nominal, 25.0 * nominal, -0.4 * nominal, -0.7 * nominal, -6.2 * nominal] {
-                let (other, state) = rope.wound(&start, at, by, nominal).unwrap();
-                assert!((whole(&other, &state) - length - by).abs() < 1e-12 * length);
-                let wanted = (length + by) / nominal;
-                assert!((other.elements() as f64 - wanted).abs() <= 0.5 + 1e-9, "{by}: {} {wanted}", other.elements());
-                assert_eq!(state.configuration.len(), other.unknowns());
-                // All but the elements of the winch have the tension that they had.
-                let [n, m] = [other.elements(), rope.elements()];
-                for k in 0..n.min(m).saturating_sub(2) {
-                    let e = if at == WinchEnd::End { k } else { n - 1 - k };
-                    assert!((other.tensions(&state)[e] - 5.0).abs() < 1e-10, "{by} {k}");
-                }
-                // The ends stay where they are.
-                let ends = [other.position(&state, 0), other.position(&state, n)];
-                assert!(
-                    (ends[0] - rope.position(&start, 0)).norm() + (ends[1] - rope.position(&start, m)).norm() < 1e-14
-                );
+            WinchEnd::Start => {
+                lengths.splice(0..0, std::iter::repeat_n(nominal, more));
+                self.drives.splice(0..0, std::iter::repeat_n(Drive::Elastic, more));
+                self.start.splice(0..0, on_winch(first));
+                self.pulleys.iter_mut().for_each(|p| *p += more);
             }
-            // Out and in again.
-            let (out, state) = rope.wound(&start, at, 3.0 * nominal, nominal).unwrap();
-            let (back, state) = out.wound(&state, at, -3.0 * nominal, nominal).unwrap();
-            assert!((whole(&back, &state) - length).abs() < 1e-12 && back.elements() == 10);
         }
-        assert!(rope.wound(&start, WinchEnd::End, -length, nominal).is_err());
-        assert!(rope.wound(&start, WinchEnd::End, 1.0, 0.0).is_err());
+        self.start.extend(through);
+        self.line = Centreline::new(lengths, Closure::Open, Continuity::C0, [3, 3]);
+        self.winch = Some(Winch { at, paid_out, nominal, out });
+        Ok(self)
+    }
+
+    /// What is out of the winch in a state: unstrained length since the start.
+    fn paid_out(&self, state: &BodyState) -> f64 {
+        state.internal.first().copied().unwrap_or(0.0)
+    }
+
+    /// Number of an element or, for elements and nodes alike, its place counted from the end that is not on the winch.
+    fn counted(&self, k: usize, of: usize) -> usize {
+        if self.winch.as_ref().is_some_and(|w| w.at == WinchEnd::Start) { of - 1 - k } else { k }
+    }
+
+    /// Number of elements that are out when a length was paid out, and the unstrained length of the last of them.
+    fn unwound(&self, paid_out: f64) -> (usize, f64) {
+        let count = self.line.elements();
+        let Some(winch) = &self.winch else { return (count, self.line.lengths[count - 1]) };
+        let mut before = 0.0;
+        let mut found = (1, winch.out + paid_out);
+        for k in 1..count {
+            before += self.line.lengths[self.counted(k - 1, count)];
+            if before + SHORT * winch.nominal > winch.out + paid_out {
+                break;
+            }
+            found = (k + 1, winch.out + paid_out - before);
+        }
+        found
+    }
+
+    /// The elements that are out.
+    pub fn active(&self, state: &BodyState) -> Range<usize> {
+        let count = self.line.elements();
+        let (out, _) = self.unwound(self.paid_out(state));
+        match &self.winch {
+            Some(Winch { at: WinchEnd::Start, .. }) => count - out..count,
+            _ => 0..out,
+        }
+    }
+
+    /// The unstrained length of an element but for what runs through pulleys.
+    pub(super) fn wound_length(&self, state: &BodyState, element: usize) -> f64 {
+        let Some(_) = &self.winch else { return self.line.lengths[element] };
+        let (out, last) = self.unwound(self.paid_out(state));
+        match self.counted(element, self.line.elements()) {
+            k if k + 1 == out => last,
+            k if k < out => self.line.lengths[element],
+            _ => 0.0,
+        }
+    }
+
+    /// The nodes that are on the winch, the end of the rope first; none without a winch.
+    pub(super) fn on_winch(&self, state: &BodyState) -> Vec<usize> {
+        if self.winch.is_none() {
+            return Vec::new();
+        }
+        let nodes = self.line.nodes();
+        let (out, _) = self.unwound(self.paid_out(state));
+        (out..nodes).rev().map(|k| self.counted(k, nodes)).collect()
+    }
+
+    /// Brings what is out to a time.
+    pub(super) fn wind(&self, time: f64, state: &mut BodyState) {
+        let Some(winch) = &self.winch else { return };
+        let nodes = self.line.nodes();
+        let place = |k: usize| 3 * self.counted(k, nodes);
+        let (before, _) = self.unwound(self.paid_out(state));
+        let paid_out = (winch.paid_out)(time);
+        let (now, last) = self.unwound(paid_out);
+        let at =
+            |state: &BodyState, k: usize| -> [f64; 3] { std::array::from_fn(|i| state.configuration[place(k) + i]) };
+        let end = at(state, nodes - 1);
+        let from = at(state, before - 1);
+        // Nodes that come in are where the winch is; those that leave divide the chord from the last that was out.
+        (now..before).for_each(|k| state.configuration[place(k)..place(k) + 3].copy_from_slice(&end));
+        let length = |k: usize| self.line.lengths[self.counted(k, nodes - 1)];
+        let whole: f64 = (before - 1..now.max(before) - 1).map(length).sum::<f64>() + last;
+        let mut s = 0.0;
+        for k in before..now {
+            s += length(k - 1);
+            let x: [f64; 3] = std::array::from_fn(|i| from[i] + s / whole * (end[i] - from[i]));
+            state.configuration[place(k)..place(k) + 3].copy_from_slice(&x);
+        }
+        state.internal = vec![paid_out];
     }
 }

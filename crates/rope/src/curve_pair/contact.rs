@@ -74,6 +74,8 @@ pub struct CurveContact {
     pub reach: f64,
     pub(super) penalties: Penalties,
     pub(super) history: Vec<Kept>,
+    /// Times of the last state and of the one that is looked for.
+    pub(super) times: [f64; 2],
     /// The law while a start is looked for with one that sticks.
     pub(super) set_aside: Option<Box<dyn Law>>,
 }
@@ -107,9 +109,22 @@ fn curve(body: &dyn Body) -> Result<Box<dyn Curve + '_>, CurveContactError> {
     body.as_curve().ok_or_else(|| CurveContactError::NotACurve { body: body.name().to_string() })
 }
 
-/// Distance of the points of Gauss of a curve, in the mean.
-fn spacing(curve: &dyn Curve) -> f64 {
-    curve.length() / (curve.elements() * curve.contact_points()) as f64
+/// Points of Gauss of an element at which the gap along it can vanish: that of cubic curves has two unknowns at each node.
+/// With more of them, what is to keep the gap exactly, or nearly so, finds forces that have no end and do no work, or closes
+/// and opens points in turns.
+const SATISFIABLE: usize = 2;
+
+/// Points of Gauss of each element that are tested: all that the curve asks for where gaps are given way to.
+fn points(curve: &dyn Curve, enforcement: Enforcement) -> usize {
+    match enforcement {
+        Enforcement::Penalty { wanted_penetration: None } => curve.contact_points(),
+        _ => curve.contact_points().min(SATISFIABLE),
+    }
+}
+
+/// Distance of these points, in the mean.
+fn spacing(curve: &dyn Curve, enforcement: Enforcement) -> f64 {
+    curve.length() / (curve.elements() * points(curve, enforcement)) as f64
 }
 
 impl CurveContact {
@@ -136,7 +151,7 @@ impl CurveContact {
         Ok(CurveContact {
             name: name.to_string(),
             bodies: [slave.0, master.0],
-            form: Form::Blend(Blend::resolved(spacing(curves[0]), radii)),
+            form: Form::Blend(Blend::resolved(spacing(curves[0], enforcement), radii)),
             ends: Ends::Touch,
             enforcement,
             friction: None,
@@ -144,6 +159,7 @@ impl CurveContact {
             reach: radii[0] + radii[1] + element(curves[0]).max(element(curves[1])),
             penalties: Penalties { point: 1.0, line: 1.0 },
             history: Vec::new(),
+            times: [0.0; 2],
             set_aside: None,
         })
     }
@@ -162,7 +178,7 @@ impl CurveContact {
         };
         // One after the other.
         let point = 1.0 / (1.0 / mean(0) + 1.0 / mean(1));
-        self.penalties = self.stated.unwrap_or(Penalties { point, line: point / spacing(curves[0]) });
+        self.penalties = self.stated.unwrap_or(Penalties { point, line: point / spacing(curves[0], self.enforcement) });
     }
 
     /// Whether a point is an end of its curve.
@@ -252,7 +268,7 @@ impl CurveContact {
         let tree = Bvh::new(&boxes);
         let reach = self.reach + slave.curve.radius() + master.curve.radius();
         let half = if self.between() == Between::Itself { 0.5 } else { 1.0 };
-        let rule = gauss(slave.curve.contact_points());
+        let rule = gauss(points(slave.curve, self.enforcement));
         for element in 0..slave.curve.elements() {
             let length = slave.curve.arc(element, 1.0) - slave.curve.arc(element, 0.0);
             for (number, (xi, share)) in rule.iter().enumerate() {
@@ -311,7 +327,8 @@ impl CurveContact {
             Enforcement::Penalty { .. } => [0.0; 2],
             _ => kept.traction,
         };
-        let friction = CurveFriction { law, multiplier, penalty: touch.penalty };
+        let duration = self.times[1] - self.times[0];
+        let friction = CurveFriction { law, multiplier, penalty: touch.penalty, duration };
         // As much of the traction turns with the slip as of the force with the gap.
         let turning = (touch.geometric / touch.force).clamp(0.0, 1.0);
         Some(tangential(&touch.pair, &slip, (-touch.force, &d_pressing), friction, turning, order))

@@ -12,12 +12,13 @@ use signorini_contact::law::{Law, Status};
 use signorini_geometry::Vector;
 use signorini_mechanics::body::{Foot, Order};
 
-/// A law, the multiplier along both axes, and the force per slip that stands for sticking.
+/// A law, the multiplier along both axes, the force per slip that stands for sticking, and the time of the increment.
 #[derive(Clone, Copy, Debug)]
 pub struct CurveFriction<'a> {
     pub law: &'a dyn Law,
     pub multiplier: [f64; 2],
     pub penalty: f64,
+    pub duration: f64,
 }
 
 /// Slip since points touched, with variations.
@@ -52,7 +53,7 @@ pub fn tangential(
     let (e, slip_unknowns, d_e) = slip;
     let axes = [pair.axial, pair.circumferential()];
     let trial: [f64; 2] = std::array::from_fn(|a| friction.multiplier[a] + friction.penalty * axes[a].dot(e));
-    let projected = friction.law.project([pressing, trial[0], trial[1]]);
+    let projected = friction.law.project_in_time([pressing, trial[0], trial[1]], friction.penalty * friction.duration);
     let components = [projected.traction[1], projected.traction[2]];
     let traction = axes[0] * components[0] + axes[1] * components[1];
     let n = pair.unknowns.len();

@@ -10,6 +10,7 @@ use signorini_mechanics::body::{Body, Order, PlaceError};
 use signorini_mechanics::interaction::{
     Around, Bodies, Interaction, NotItsHistory, Own, Sticks, Target, penalty_factor,
 };
+use signorini_mechanics::passage::Way;
 use signorini_mechanics::{Curve, Enforcement, SiteResult};
 
 impl CurveContact {
@@ -46,8 +47,9 @@ impl CurveContact {
         kept.slip = [0, 1].map(|a| slipped[a] + rubs.slipped[a]);
         kept.traction = rubs.components;
         if let Enforcement::Penalty { .. } = self.enforcement {
-            kept.stuck = match rubs.status {
-                Status::Stick => before.and_then(|k| k.stuck),
+            // What is viscous creeps below the limit too.
+            kept.stuck = match rubs.slipped {
+                [0.0, 0.0] => before.and_then(|k| k.stuck),
                 _ => {
                     let feet = [0, 1].map(|k| {
                         let CurvePoint { element, xi, .. } = c.points[k];
@@ -126,6 +128,10 @@ impl Interaction for CurveContact {
         self.friction.as_deref()
     }
 
+    fn begin(&mut self, time: f64) {
+        self.times[1] = time;
+    }
+
     fn stiffness(&self, bodies: &[Box<dyn Body>]) -> f64 {
         let site = |e: usize| signorini_mechanics::Site { patch: e as u32, xi: [0.5, 0.0], weight: 1.0 };
         let of = |body: &dyn Body| {
@@ -187,12 +193,17 @@ impl Interaction for CurveContact {
         touches.iter().filter_map(predicted).flat_map(|p| p.numbers()).collect()
     }
 
+    fn free_way(&self, way: Way<'_>) -> Result<f64, PlaceError> {
+        self.with(way.from, |from, _| self.with(way.to, |to, _| self.share_of_way(from, to)))?
+    }
+
     fn accept(&mut self, at: Bodies<'_>, _: Own<'_>) -> Result<(), PlaceError> {
         self.history = self.with(at, |sides, first| {
             let (touches, _) = self.touches(sides, first, Order::First, &[]);
             let kept = |c: &Touch| self.kept(c, self.tangential(c, sides, first, Order::First).as_ref(), sides);
             touches.iter().map(kept).collect()
         })?;
+        self.times[0] = self.times[1];
         Ok(())
     }
 
@@ -257,16 +268,20 @@ impl Interaction for CurveContact {
     }
 
     fn history(&self) -> [Vec<f64>; 2] {
-        [self.history.iter().flat_map(|k| k.numbers()).collect(), vec![self.penalties.point, self.penalties.line]]
+        [
+            self.history.iter().flat_map(|k| k.numbers()).collect(),
+            vec![self.penalties.point, self.penalties.line, self.times[0]],
+        ]
     }
 
-    fn restore(&mut self, [kept, penalties]: &[Vec<f64>; 2]) -> Result<(), NotItsHistory> {
-        let [point, line] = penalties[..] else { return Err(NotItsHistory { contact: self.name.clone() }) };
+    fn restore(&mut self, [kept, scales]: &[Vec<f64>; 2]) -> Result<(), NotItsHistory> {
+        let [point, line, time] = scales[..] else { return Err(NotItsHistory { contact: self.name.clone() }) };
         if !kept.len().is_multiple_of(Kept::NUMBERS) {
             return Err(NotItsHistory { contact: self.name.clone() });
         }
         self.history = Kept::list(kept);
         self.penalties = super::contact::Penalties { point, line };
+        self.times = [time; 2];
         Ok(())
     }
 }

@@ -5,7 +5,7 @@
 //! - [`search`]: local minima of the distance of two curves, or of a curve to itself.
 //! - [`friction`]: friction along the curves and around their sections.
 //! - [`contact`]: where curves touch and with which forces; [`interaction`]: as a part of a system.
-//! - [`history`]: what is kept of contacts.
+//! - [`history`]: what is kept of contacts; `passage`: how far steps may be followed so that no curve passes through one.
 
 pub mod blend;
 pub mod contact;
@@ -13,6 +13,7 @@ pub mod friction;
 pub mod history;
 pub mod interaction;
 pub mod measure;
+mod passage;
 pub mod search;
 
 pub use contact::{CurveContact, CurveContactError, Form};

@@ -30,6 +30,8 @@ pub struct CurveShown {
     pub cells: Vec<[u32; 2]>,
     /// Axial force of each cell.
     pub forces: Vec<f64>,
+    /// Length without tension, of a rope of straight elements.
+    pub unstrained_length: Option<f64>,
 }
 
 /// A rigid body where it is.
@@ -172,6 +174,7 @@ fn curve(name: &str, radius: f64, fields: &BodyFields) -> CurveShown {
         arc: arc.unwrap_or_default(),
         cells: fields.cells.iter().map(|c| [c[0], c[1]]).collect(),
         forces: cell("tension").or_else(|| cell("axial_force")).unwrap_or_default(),
+        unstrained_length: cell("unstrained_length").map(|list| list.iter().sum()),
     }
 }
 

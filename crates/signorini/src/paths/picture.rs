@@ -36,7 +36,15 @@ fn pieces(line: &Line, keep: &dyn Fn(&LinePoint, &LinePoint) -> bool, scale: &Sc
         .collect();
     let colours: Vec<f64> = line.points.iter().map(|p| scale.place(p.normal_force)).collect();
     let points = line.points.iter().map(|p| p.x).collect();
-    let curve = CurveShown { name: String::new(), radius, points, arc: Vec::new(), cells, forces: Vec::new() };
+    let curve = CurveShown {
+        name: String::new(),
+        radius,
+        points,
+        arc: Vec::new(),
+        cells,
+        forces: Vec::new(),
+        unstrained_length: None,
+    };
     tube(&curve, radius, &colours)
 }
 

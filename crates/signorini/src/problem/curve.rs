@@ -26,6 +26,28 @@ pub struct Rope {
     pub bending_stiffness: Option<Value>,
     /// Points of Gauss in each element of a smooth rope at which contact is tested; 4 if left out.
     pub contact_points: Option<i64>,
+    /// Points of the path, lengths, at which the rope runs through a pulley without friction: its length is the same in all.
+    /// Supports and loads know them as `ROPE:pulleys`, or one by one as `ROPE:pulley_1`. Of straight elements only.
+    pub pulleys: Option<List<List<Value>>>,
+    /// A winch at an end that a support holds. Of straight elements only.
+    pub winch: Option<Winch>,
+}
+
+/// A winch pays rope out and takes it in.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Winch {
+    /// The end of the rope at which it is.
+    pub at: RopeEnd,
+    /// The unstrained length paid out since the start, by `t`; negative where it is taken in.
+    pub paid_out: Value,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum RopeEnd {
+    Start,
+    End,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]

@@ -146,6 +146,8 @@ pub struct CurveReport {
     pub min_tension: f64,
     /// Number of cells without tension.
     pub slack_cells: usize,
+    /// Length without tension of the rope that is out, where it has straight elements: a winch changes it.
+    pub unstrained_length: Option<f64>,
 }
 
 /// Where a free rigid body has come.

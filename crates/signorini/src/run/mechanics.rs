@@ -164,6 +164,7 @@ fn failed(error: &IncrementError, residuals: Vec<f64>) -> Failure {
                 history(list)
             ),
         ),
+        IncrementError::PassesThrough { .. } => (Reason::Increment, format!("{error}; try more increments")),
         IncrementError::Augmentation { history: list, .. } => (
             Reason::Contact,
             format!("{error}: {}; try  enforcement.multiplier = {{}}  or  enforcement.penalty = {{}}", history(list)),

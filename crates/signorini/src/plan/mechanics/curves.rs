@@ -1,5 +1,6 @@
 //! Ropes and beams of a system.
 
+use super::Wrong;
 use crate::expression::{Expression, Scope};
 use crate::plan::placement::PlacementKeys;
 use crate::plan::planner::Planner;
@@ -28,7 +29,7 @@ const FORMULA: usize = 1000;
 
 impl Planner<'_> {
     /// A rope, and its radius.
-    pub(super) fn rope(&self, name: &str, key: &Rope) -> Result<(Box<dyn Body>, f64), CaseError> {
+    pub(super) fn rope(&self, name: &str, key: &Rope, wrong: &Wrong) -> Result<(Box<dyn Body>, f64), CaseError> {
         let problem = self.problem;
         let smooth = key.continuity == Some(Continuity::C1);
         let path = self.path(&key.path)?;
@@ -66,7 +67,17 @@ impl Planner<'_> {
                 }
             }
             let chain = Chain::new(name, &sampled, stiffness, rest, radius).map_err(|e| refused(e.to_string()))?;
+            let chain = self.wound(name, key, chain, wrong)?;
             return Ok((Box::new(chain), radius));
+        }
+        for (stated, what) in [
+            (key.pulleys.as_ref().map(|v| self.key(v)), "pulleys"),
+            (key.winch.as_ref().map(|v| self.key(&v.at)), "a winch"),
+        ] {
+            if let Some(at) = stated {
+                let message = format!("{what}: for ropes of straight elements");
+                return Err(problem.error(&at, message).help("continuity = \"C0\", or leave it out"));
+            }
         }
         let bending = match &key.bending_stiffness {
             Some(value) => self.reader.number(value, [2, 1, 0])?,

@@ -8,6 +8,7 @@ mod mortar;
 mod places;
 mod rigid;
 mod solids;
+mod winches;
 
 pub(in crate::plan) use contacts::is_tangent;
 pub use fields::Wrong;
@@ -110,7 +111,9 @@ impl Planner<'_> {
         let mut around: Option<[Point<3>; 2]> = None;
         for (name, body) in &problem.bodies {
             let (deformable, kind) = match body {
-                Body::Rope(rope) => self.rope(name, rope).map(|(body, radius)| (body, Kind::Curve { radius }))?,
+                Body::Rope(rope) => {
+                    self.rope(name, rope, &wrong).map(|(body, radius)| (body, Kind::Curve { radius }))?
+                }
                 Body::Beam(beam) => self.beam(name, beam).map(|(body, radius)| (body, Kind::Curve { radius }))?,
                 Body::Solid(solid) => {
                     let (body, on_axis) = self.system_solid(name, solid, &mut warnings)?;

@@ -86,19 +86,20 @@ pub fn step_report(
             })
             .collect(),
         probes: plan.probes.iter().map(|(name, x)| (name.clone(), probe(x))).collect(),
-        curves: shown.curves.iter().map(|c| (c.name.clone(), curve_report(&c.forces))).collect(),
+        curves: shown.curves.iter().map(|c| (c.name.clone(), curve_report(&c.forces, c.unstrained_length))).collect(),
         free_bodies: poses.collect(),
         ..StepReport::default()
     }
 }
 
-fn curve_report(forces: &[f64]) -> CurveReport {
+fn curve_report(forces: &[f64], unstrained_length: Option<f64>) -> CurveReport {
     CurveReport {
         start_tension: forces.first().copied().unwrap_or(0.0),
         end_tension: forces.last().copied().unwrap_or(0.0),
         max_tension: forces.iter().copied().fold(f64::NEG_INFINITY, f64::max),
         min_tension: forces.iter().copied().fold(f64::INFINITY, f64::min),
         slack_cells: forces.iter().filter(|t| **t == 0.0).count(),
+        unstrained_length,
     }
 }
 

@@ -1,0 +1,231 @@
+//! Nothing passes through: how far a way between two states may be followed.
+//!
+//! Newton's method knows a body by its nearest point only. A site that a step takes from one side of it to the other meets
+//! the far side, and is told to go on. Every step is therefore followed no farther than until something has entered a body
+//! and come half the way to where the nearest point would be one of another side: there the contact is closed, and pushes
+//! back to where the site came from. So are the motions of bodies that are prescribed between two increments.
+//!
+//! A site goes through if, inside the body, the normal has turned by a right angle since it entered. Where it enters is
+//! found by steps as long as the gap, which can miss nothing (sphere tracing, Hart 1996), and inside by steps as long as
+//! the depth.
+
+use crate::body::{Body, BodyState, Master, Met, PlaceError};
+use crate::contact::Contact;
+use crate::interaction::Bodies;
+use crate::system::{AssemblyError, System, SystemState};
+use signorini_geometry::{Point, Vector};
+
+/// A way between two states of all bodies, on which positions change in proportion.
+#[derive(Clone, Copy)]
+pub struct Way<'a> {
+    pub from: Bodies<'a>,
+    pub to: Bodies<'a>,
+}
+
+impl Way<'_> {
+    /// A body on the way: `t` from 0 to 1.
+    pub fn at(&self, body: usize, t: f64) -> BodyState {
+        let [from, to] = [self.from, self.to].map(|b| &b.states[body]);
+        let between = |(a, b): (&f64, &f64)| a + t * (b - a);
+        let configuration = from.configuration.iter().zip(&to.configuration).map(between).collect();
+        BodyState { configuration, internal: from.internal.clone() }
+    }
+
+    fn moves(&self, body: usize) -> bool {
+        self.from.states[body].configuration != self.to.states[body].configuration
+    }
+}
+
+impl System {
+    /// The share of a way between two states that may be followed: 1 where nothing passes through on it.
+    pub(crate) fn free_way(&self, from: &SystemState, to: &SystemState) -> Result<f64, AssemblyError> {
+        self.first_passage(from, to).map(|found| found.map_or(1.0, |(_, share)| share))
+    }
+
+    /// The contact through which something passes first on a way between two states, and the share of it until then.
+    pub(crate) fn first_passage(
+        &self,
+        from: &SystemState,
+        to: &SystemState,
+    ) -> Result<Option<(usize, f64)>, AssemblyError> {
+        let (first, _) = self.numbering();
+        let way = Way { from: self.bodies_in(from, &first), to: self.bodies_in(to, &first) };
+        let mut least = None;
+        for (k, contact) in self.contacts.iter().enumerate() {
+            let share = contact.free_way(way)?;
+            if share < least.map_or(1.0, |(_, s)| s) {
+                least = Some((k, share));
+            }
+        }
+        Ok(least)
+    }
+}
+
+/// Gap of a site, and the normal outward from what it meets.
+type Meeting = (f64, Vector<3>);
+
+/// Halvings of an interval in which the normal turns.
+const HALVINGS: usize = 30;
+/// The first and the longest steps along a surface, where the gap tells none, as parts of the distance of sites: the first
+/// ones double, so that thin bodies are seen where a way begins on them.
+const FIRST_STEP: f64 = 1.0 / 1024.0;
+const LONGEST_STEP: f64 = 0.25;
+/// Steps after which the rest of a way is left for the next one.
+const MOST_STEPS: usize = 400;
+
+fn meeting(master: &dyn Master, x: &Point<3>, radius: f64) -> Option<Meeting> {
+    match master.nearest(x, f64::INFINITY, None)? {
+        Met::Rigid(foot) => Some((foot.jet.gap - radius, foot.jet.normal)),
+        Met::Foot(foot) | Met::Cut(foot) => {
+            let d = x - foot.jet.x;
+            Some(match foot.outward {
+                Some(outward) => (d.norm() * d.dot(&outward).signum() - radius, outward),
+                None => (d.norm() - radius - foot.radius, d.try_normalize(0.0)?),
+            })
+        }
+    }
+}
+
+impl Contact {
+    /// The share of a way on which no site passes through the master.
+    pub(crate) fn share_of_way(&self, way: Way<'_>) -> Result<f64, PlaceError> {
+        let [slave, master] = [self.slave.body, self.master.body];
+        let bodies = way.from.bodies;
+        let is_rigid = bodies[master].is_rigid();
+        if slave == master || !(way.moves(slave) || way.moves(master)) {
+            return Ok(1.0);
+        }
+        let on = self.master.group.as_deref();
+        let ends = [0, 1].map(|k| if k == 0 { way.from } else { way.to });
+        let masters = [ends[0], ends[1]].map(|end| bodies[master].master(on, &end.states[master]));
+        let [Ok(first), Ok(last)] = &masters else { return Ok(1.0) };
+        let of_master = longest(bodies[master].as_ref(), way, master);
+        let mut share = 1.0f64;
+        for point in self.tested(way) {
+            let Tested { from, to, radius, is_surface, spacing } = point;
+            let length = (to - from).norm() + of_master;
+            // Surfaces of two solids see each other only where they face each other.
+            if (is_surface && !is_rigid) || !length.is_finite() {
+                continue;
+            }
+            let Some(start) = meeting(first.as_ref(), &from, radius) else { continue };
+            if length <= start.0 {
+                continue;
+            }
+            let is_short = length <= spacing.max(radius);
+            if is_short && meeting(last.as_ref(), &to, radius).is_none_or(|end| end.1.dot(&start.1) > 0.0) {
+                continue;
+            }
+            let met = |t: f64| -> Option<Meeting> {
+                let x = from + (to - from) * t;
+                if way.moves(master) {
+                    let state = way.at(master, t);
+                    let now = bodies[master].master(on, &state).ok()?;
+                    return meeting(now.as_ref(), &x, radius);
+                }
+                meeting(first.as_ref(), &x, radius)
+            };
+            share = share.min(passage(&met, start, length, spacing).unwrap_or(1.0));
+        }
+        Ok(share)
+    }
+
+    /// The points of the slave that are followed: its sites, and on a curve that is stretched on the way as many between
+    /// them that they are no farther apart than the sites were.
+    fn tested(&self, way: Way<'_>) -> Vec<Tested> {
+        let slave = self.slave.body;
+        let body = &way.from.bodies[slave];
+        let is_curve = body.as_curve().is_some();
+        let count = self.sites().len() as f64;
+        let mut out: Vec<Tested> = Vec::new();
+        for site in self.sites() {
+            let [a, b] = [way.from, way.to].map(|end| body.placed(&end.states[slave], site));
+            if a.rests || b.rests {
+                continue;
+            }
+            let is_surface = a.outward.is_some();
+            // What is smaller than the distance of sites is not seen at rest either.
+            let spacing = body.size() / if is_surface { count.sqrt() } else { count };
+            let point = Tested { from: a.x, to: b.x, radius: a.radius, is_surface, spacing };
+            if let (Some(before), true) = (out.last().copied(), is_curve) {
+                let [apart, then] = [point.from - before.from, point.to - before.to].map(|d| d.norm());
+                let more = (then / apart.max(spacing)).min(MOST_BETWEEN);
+                let more = if more.is_finite() { more.ceil() as usize } else { 0 };
+                out.extend((1..more).map(|k| {
+                    let s = k as f64 / more as f64;
+                    let between = |p: Point<3>, q: Point<3>| p + (q - p) * s;
+                    Tested { from: between(before.from, point.from), to: between(before.to, point.to), ..point }
+                }));
+            }
+            out.push(point);
+        }
+        out
+    }
+}
+
+/// A point that is followed.
+#[derive(Clone, Copy)]
+struct Tested {
+    from: Point<3>,
+    to: Point<3>,
+    radius: f64,
+    /// Whether it is one of a surface.
+    is_surface: bool,
+    /// Distance of such points.
+    spacing: f64,
+}
+
+/// Points between two sites of a curve: a step that stretches it more is none that is followed far.
+const MOST_BETWEEN: f64 = 100.0;
+
+/// No point of a body goes farther than this on a way.
+fn longest(body: &dyn Body, way: Way<'_>, number: usize) -> f64 {
+    let [from, to] = [way.from, way.to].map(|end| &end.states[number].configuration);
+    let change = from.iter().zip(to).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+    // A turn by an angle, of which a quaternion changes by half, moves points by no more than the size for each radian.
+    if body.is_rigid() { change * 1f64.max(2.0 * body.size()) } else { change }
+}
+
+/// The place on a way of a given length from which a site would be pushed on to another side: half way from where it enters
+/// to where the normal has turned; none where it never is.
+fn passage(met: &dyn Fn(f64) -> Option<Meeting>, start: Meeting, length: f64, spacing: f64) -> Option<f64> {
+    let (mut t, mut now) = (0.0, start);
+    let mut least = FIRST_STEP * spacing;
+    let mut entered = (start.0 < 0.0).then_some((0.0, start.1));
+    for _ in 0..MOST_STEPS {
+        if t >= 1.0 {
+            return None;
+        }
+        let clear = now.0.abs();
+        let next = (t + clear.max(least) / length).min(1.0);
+        least = if clear < least { (2.0 * least).min(LONGEST_STEP * spacing) } else { FIRST_STEP * spacing };
+        let then = met(next)?;
+        if then.0 < 0.0 {
+            let (place, normal) = *entered.get_or_insert((t, if now.0 < 0.0 { then.1 } else { now.1 }));
+            if then.1.dot(&normal) <= 0.0 {
+                let turned = turn(met, normal, [t, next]);
+                return Some(0.5 * (place + turned));
+            }
+        } else if now.0 < 0.0 {
+            let (place, normal) = entered.take()?;
+            if then.1.dot(&normal) <= 0.0 {
+                let turned = turn(met, normal, [t, next]);
+                return Some(0.5 * (place + turned));
+            }
+        }
+        (t, now) = (next, then);
+    }
+    Some(t)
+}
+
+/// Where between two places the normal has turned by a right angle.
+fn turn(met: &dyn Fn(f64) -> Option<Meeting>, normal: Vector<3>, [mut low, mut high]: [f64; 2]) -> f64 {
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        match met(middle) {
+            Some((_, n)) if n.dot(&normal) > 0.0 => low = middle,
+            _ => high = middle,
+        }
+    }
+    low
+}

@@ -91,13 +91,17 @@ fn no_surface(body: &dyn Body, part: &Part) -> PlaceError {
 
 impl Mortar {
     /// # Errors
-    /// A slave side without faces, or a master that has none and is not rigid either.
+    /// A slave side without faces, a master that has none and is not rigid either, or Nitsche's method.
     pub fn new(
         name: &str,
         slave: (Part, &dyn Body),
         master: (Part, &dyn Body),
         enforcement: Enforcement,
     ) -> Result<Self, PlaceError> {
+        if enforcement == Enforcement::Nitsche {
+            let message = "Nitsche's method needs no mortar: it is for single points of a surface".to_string();
+            return Err(PlaceError::Unsuitable { body: slave.1.name().to_string(), message });
+        }
         let state: BodyState = slave.1.start();
         let surface = slave.1.surface(slave.0.group.as_deref(), &state).ok_or_else(|| no_surface(slave.1, &slave.0))?;
         let other = master.1.start();
@@ -170,7 +174,8 @@ impl Mortar {
     fn base(&self, k: usize) -> [f64; 3] {
         let [p, t1, t2] = self.memory[k].traction;
         match self.enforcement {
-            Enforcement::Multiplier => [0.0; 3],
+            // Nitsche's method has no mortar: `new` refuses it.
+            Enforcement::Multiplier | Enforcement::Nitsche => [0.0; 3],
             Enforcement::AugmentedLagrangian => [p, t1, t2],
             Enforcement::Penalty { .. } => [0.0, t1, t2],
         }

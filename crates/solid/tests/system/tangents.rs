@@ -305,7 +305,7 @@ fn of_mortar_in_the_plane() {
 #[test]
 fn of_mortar_in_space() {
     for degree in 1..=2 {
-        for (enforcement, mu) in [(ENFORCEMENTS[0], Some(2e-3)), (ENFORCEMENTS[2], Some(30.0)), (ENFORCEMENTS[1], None)]
+        for (enforcement, mu) in [(ENFORCEMENTS[0], Some(8e-3)), (ENFORCEMENTS[2], Some(30.0)), (ENFORCEMENTS[1], None)]
         {
             let upper = cuboid([0.13, 0.11, 0.0], [0.77, 0.66, 0.5], [1, 1, 1], |mut x| {
                 x[2] += 0.05 * x[0] - 0.06;

@@ -304,21 +304,18 @@ fn of_mortar_in_the_plane() {
 
 #[test]
 fn of_mortar_in_space() {
-    for degree in 1..=2 {
-        for (enforcement, mu) in [(ENFORCEMENTS[0], Some(2e-3)), (ENFORCEMENTS[2], Some(30.0)), (ENFORCEMENTS[1], None)]
-        {
-            let upper = cuboid([0.13, 0.11, 0.0], [0.77, 0.66, 0.5], [1, 1, 1], |mut x| {
-                x[2] += 0.05 * x[0] - 0.06;
-                x
-            });
-            let lower = cuboid([0.0, 0.0, -0.6], [1.0, 1.0, 0.0], [1, 1, 1], |mut x| {
-                x[2] += 0.06 * x[0] * x[1] * (x[2] + 0.6) - 0.02 * x[1];
-                x
-            });
-            // All of the slave side sees one face: no cuts.
-            let error = contact([upper, lower], degree, Test::Mortar(0), enforcement, mu);
-            println!("degree {degree} {enforcement:?} {mu:?}: {error:e}");
-            assert!(error < 1e-6, "degree {degree} {enforcement:?} {mu:?}: {error:e}");
-        }
+    // With many points: those of a warped face move with it.
+    for (enforcement, mu) in [(ENFORCEMENTS[0], Some(8e-3)), (ENFORCEMENTS[2], Some(30.0)), (ENFORCEMENTS[1], None)] {
+        let upper = cuboid([0.13, 0.11, 0.0], [0.77, 0.66, 0.5], [1, 1, 1], |mut x| {
+            x[2] += 0.05 * x[0] - 0.06;
+            x
+        });
+        let lower = cuboid([0.0, 0.0, -0.6], [1.0, 1.0, 0.0], [1, 1, 1], |mut x| {
+            x[2] += 0.06 * x[0] * x[1] * (x[2] + 0.6) - 0.02 * x[1];
+            x
+        });
+        let error = contact([upper, lower], 1, Test::Mortar(6), enforcement, mu);
+        println!("{enforcement:?} {mu:?}: {error:e}");
+        assert!(error < 1e-6, "{enforcement:?} {mu:?}: {error:e}");
     }
 }

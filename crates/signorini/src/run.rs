@@ -8,6 +8,7 @@ mod membrane;
 mod record;
 mod sizes;
 mod solid;
+mod strain;
 
 use crate::fields::ShownState;
 use crate::output::OutputError;

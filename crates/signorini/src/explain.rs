@@ -121,6 +121,8 @@ const WORDS: &[Word] = &[
     ),
     word("factorisation_about", "result", "Time of a factorisation on one core, from its number of operations."),
     word("area_error", "result", "± of the area of contact, as `error_estimate` tells it."),
+    word("force_error", "result", "± of the force, as `error_estimate` tells it."),
+    word("points_tested", "result", "Points of systems at which contact is tested, of nodes or of quadrature."),
     word("max_pressure_error", "result", "± of the largest pressure, as `error_estimate` tells it."),
     word("increments", "result", "Number of increments."),
     word("supports", "result", "Number of supports."),

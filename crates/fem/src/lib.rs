@@ -7,6 +7,7 @@
 //! - [`adjacency`]: which cells of a mesh share sides.
 //! - [`overlap`]: whether cells of a mesh cover the same place; [`pieces`]: which hang together.
 //! - [`mesh_refinement`]: meshes of the plane, each cell divided into four; [`graded_mesh`]: only where it matters.
+//! - [`halved`]: meshes of any cells with all of them divided.
 //! - [`rules`]: quadrature on reference cells.
 //! - [`lagrange`]: tensor-product Lagrange bases of any degree on Gauss-Lobatto points.
 //! - [`grid`]: uniform background grids in one, two and three dimensions, with their nodes.
@@ -27,6 +28,7 @@ pub mod ghost;
 pub mod gmsh;
 pub mod graded_mesh;
 pub mod grid;
+pub mod halved;
 pub mod hierarchic;
 pub mod lagrange;
 mod lists;
@@ -46,6 +48,7 @@ pub use cut::{CellRule, Partition, QuadraturePoint, SurfacePoint};
 pub use dofs::DofMap;
 pub use ghost::ghost_penalty;
 pub use grid::Grid;
+pub use halved::Halved;
 pub use lagrange::TensorBasis;
 pub use mesh::{Group, Mesh, MeshError, Side};
 pub use mesh_cells::MeshCells;

@@ -49,6 +49,61 @@ const WORDS: &[Word] = &[
     word("tan_alpha", "result", "Of a rope: geodesic over normal curvature, which friction across it must hold."),
     word("pulling_traction", "result", "Part of the friction traction along a rope."),
     word("dragging_traction", "result", "Part of the friction traction across a rope."),
+    word("tau", "result", "Of a path or rope: its unit tangent, in the direction of its arc length."),
+    word("g", "result", "Of a path or rope: `tau` × `n`, the direction across it within the surface."),
+    word("n", "result", "Of a path or rope: the outward normal of what it lies on."),
+    word("k_n", "result", "`normal_curvature` of a path; negative where it is pressed on."),
+    word("k_g", "result", "`geodesic_curvature` of a path, along `g`."),
+    word("s", "result", "Arc length of a path or rope, from its start."),
+    word(
+        "normal_force",
+        "result",
+        "Force per length with which a path is pressed on, -k_n T; of a tension of one where none is stated.",
+    ),
+    word("along", "result", "Of a rope on a given curve: friction per length along it, the slope of the tension."),
+    word("across", "result", "Of a rope on a given curve: friction per length across it, -k_g T."),
+    word("utilisation", "result", "Part of the friction there is that is asked for; from 1 on the path slips."),
+    word(
+        "tension_limits",
+        "result",
+        "Least and largest tension at the end of a rope that friction holds with the one at its start.",
+    ),
+    word("slips", "result", "Whether the tensions stated ask for more friction than there is."),
+    word("sideways", "result", "Of a wrapping path, for each contact: how far friction lets it leave the geodesic."),
+    word("drift", "result", "In `sideways`: the largest distance of the end of the contact from the geodesic."),
+    word(
+        "rotation",
+        "result",
+        "In `sideways`: the largest angle of the end of the contact to the geodesic, in radians.",
+    ),
+    word(
+        "moment_arms",
+        "result",
+        "By body: how the length of the path follows a motion of it, -∂L: the work of a tension of one.",
+    ),
+    word("shift", "result", "In `moment_arms`: for a displacement of the body along x, y, z."),
+    word("turn", "result", "In `moment_arms`: for a rotation of the body about axes along x, y, z through `about`."),
+    word("about", "result", "In `moment_arms`: the point about which the body turns."),
+    word("length_rate", "result", "Derivative of the length of a path with respect to time."),
+    word("frame", "result", "Number of the time at which a path was found, from 0; `frames` in the case."),
+    word("condition", "result", "Of a violation: `lifts_off` or `slides_sideways`."),
+    word("lifts_off", "condition", "A rope is pulled off the surface there: its normal curvature is not negative."),
+    word("slides_sideways", "condition", "A rope asks for more friction across it than there is: |tan α| > μ_g."),
+    word("touchdown", "event", "A path comes to touch a body."),
+    word("lift_off", "event", "A path leaves a body."),
+    word("axial_force", "result", "Of a beam: force along its axis, positive where it pulls."),
+    word("shear_force", "result", "Of a beam: force across its axis, on the directors of its section."),
+    word("torque", "result", "Of a beam: moment about its axis."),
+    word("bending_moment", "result", "Of a beam: moments about the directors of its section."),
+    word("element", "result", "Number of the element of a rope or beam."),
+    word("piece", "result", "Number of the connected piece of an outline, from 0."),
+    word("weight", "result", "Of a point of contact: the area, or length, that it stands for."),
+    word("tangent", "result", "Of a point of contact: the direction along which friction has its first coefficient."),
+    word("friction_status", "result", "0 where open, 1 where it sticks, 2 where it slips."),
+    word("friction_traction", "result", "Friction on the slave side, per area."),
+    word("friction_utilisation", "result", "Friction as a part of what the law allows: 1 where it slips."),
+    word("slip", "result", "Way along the surface since the point touched."),
+    word("status", "result", "`done` of an analysis of paths that came to its end."),
     word("stress_xx_yy_zz_xy_yz_xz", "result", "Components of the stress, in this order."),
     word("body", "result", "Number of the body that a cell belongs to."),
     word("x", "result", "Coordinate; the radius in axisymmetric cases."),
@@ -66,6 +121,8 @@ const WORDS: &[Word] = &[
     ),
     word("factorisation_about", "result", "Time of a factorisation on one core, from its number of operations."),
     word("area_error", "result", "± of the area of contact, as `error_estimate` tells it."),
+    word("force_error", "result", "± of the force, as `error_estimate` tells it."),
+    word("points_tested", "result", "Points of systems at which contact is tested, of nodes or of quadrature."),
     word("max_pressure_error", "result", "± of the largest pressure, as `error_estimate` tells it."),
     word("increments", "result", "Number of increments."),
     word("supports", "result", "Number of supports."),
@@ -217,6 +274,9 @@ pub fn explain(asked: &str) -> Result<String, CaseError> {
     let mut text = String::new();
     let as_one = |word: &str| word.replace([' ', '-'], "_");
     let plain = as_one(asked.trim().trim_start_matches("--").to_lowercase().as_str());
+    if let Some(text) = column(asked.trim()) {
+        return text;
+    }
     for w in WORDS.iter().filter(|w| as_one(w.word) == plain) {
         text += &format!("{} ({})\n  {}\n", w.word, w.kind, w.about);
     }
@@ -254,6 +314,17 @@ pub fn explain(asked: &str) -> Result<String, CaseError> {
     Err(CaseError::new(format!("nothing is known of `{asked}`")).help(suggestion(word, &known)))
 }
 
+/// A column of a table named after something of the case, `touch:area`, or after a component, `slip_x`; none for words that
+/// are known as they are.
+fn column(asked: &str) -> Option<Result<String, CaseError>> {
+    if let Some((_, word)) = asked.split_once(':').filter(|(of, word)| !of.is_empty() && !word.is_empty()) {
+        return Some(explain(word));
+    }
+    let (vector, axis) = ["_x", "_y", "_z"].iter().find_map(|end| Some((asked.strip_suffix(end)?, &end[1..])))?;
+    let known = |word: &str| WORDS.iter().any(|w| w.word == word) || words::keys().iter().any(|k| k.ends_with(word));
+    (known(vector) && !known(asked)).then(|| explain(vector).map(|text| format!("along {axis}: {text}")))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -266,6 +337,9 @@ mod tests {
         assert!(explain("exit status").expect("known").contains("130"));
         assert!(explain("--to").expect("known").contains("NumPy"));
         assert!(explain("near-continuum").expect("known").contains("flat"));
+        assert!(explain("touch:max_pressure").expect("known").contains("pressure"));
+        assert!(explain("slip_z").expect("known").starts_with("along z: slip"));
+        assert!(explain("touch:tensoin").is_err() && explain("tensoin_x").is_err());
         let wrong = explain("tensoin").expect_err("unknown");
         assert!(wrong.help.expect("help").contains("tension"));
         assert!(explain("").is_err());

@@ -9,6 +9,7 @@ pub(crate) mod outcome;
 mod record;
 mod sizes;
 mod solid;
+mod strain;
 
 use crate::plan::{Plan, plan};
 use crate::problem::{CaseError, Problem};

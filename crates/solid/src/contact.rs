@@ -105,8 +105,8 @@ pub struct Contact<const D: usize> {
     pub(crate) given: Vec<Given>,
     /// Nodes whose Lagrange functions have no integral.
     pub(crate) weightless: Vec<Given>,
-    /// Normal and displacement function of the pressure nodes at vertices.
-    vertex_nodes: HashMap<u32, (Point<D>, u32)>,
+    /// Of every pressure node the normal, and the first unknowns of the functions that move it.
+    moved_by: Vec<(Point<D>, Vec<u32>)>,
     /// Points under test.
     pub(crate) tests: Tests,
     /// Their gaps at the last configuration.
@@ -124,14 +124,14 @@ pub struct Contact<const D: usize> {
 impl<const D: usize> Contact<D> {
     pub fn new(name: &str, slave: BodySurface<D>, master: Master<D>) -> Self {
         let nodes = PressureNodes::new(&slave);
-        let mut vertex_nodes = HashMap::new();
+        let mut moved_by = vec![(Point::<D>::zeros(), Vec::new()); nodes.len()];
+        let mut trace = Vec::new();
         for face in 0..slave.sides.len() {
-            let vertices = slave.vertices(face);
-            for (v, place) in nodes.map(face).vertex_nodes().into_iter().enumerate() {
-                let (node, normal) = nodes.of_face(face)[place];
-                if let Some(function) = slave.body().dofs.vertex(vertices[v]) {
-                    vertex_nodes.insert(node, (normal, function));
-                }
+            for ((node, normal), s) in nodes.of_face(face).iter().zip(nodes.map(face).nodes()) {
+                trace.clear();
+                slave.trace(face, &s, &mut trace);
+                let functions = trace.iter().filter(|(_, value)| value.abs() > VANISHES).map(|(unknown, _)| *unknown);
+                moved_by[*node as usize] = (*normal, functions.collect());
             }
         }
         let weightless = weightless(&slave, &nodes, &|_| false);
@@ -150,7 +150,7 @@ impl<const D: usize> Contact<D> {
             rows: Vec::new(),
             given: Vec::new(),
             weightless,
-            vertex_nodes,
+            moved_by,
             tests: Tests::default(),
             measured: None,
             places: Vec::new(),
@@ -367,11 +367,14 @@ impl<const D: usize> Contact<D> {
 
     /// Whether the displacement of a pressure node is prescribed along its normal: it cannot have a pressure then.
     fn is_folded(&self, reduction: &Reduction<D>, node: u32) -> bool {
-        let Some((normal, function)) = self.vertex_nodes.get(&node) else { return false };
-        let first = self.slave.body().first + *function as usize * D;
-        (0..D).all(|i| normal[i].abs() < 1e-6 || reduction.is_held(first + i))
+        let (normal, functions) = &self.moved_by[node as usize];
+        let held = |unknown: usize| (0..D).all(|i| normal[i].abs() < 1e-6 || reduction.is_held(unknown + i));
+        !functions.is_empty() && functions.iter().all(|unknown| held(*unknown as usize))
     }
 }
+
+/// Value of a function at a node below which it vanishes there: functions are of the order of one.
+const VANISHES: f64 = 1e-10;
 
 /// Share of its size that a slave side may lie inside the master at the start.
 const DEEP: f64 = 0.05;

@@ -14,6 +14,7 @@
 mod assembly;
 pub mod body;
 pub mod contact;
+mod end_of_master;
 pub mod friction;
 mod held;
 pub mod hyperelastic;
@@ -31,6 +32,7 @@ pub mod supports;
 
 pub use body::{Bodies, Body, BodySurface};
 pub use contact::{Contact, ContactResult, Enforcement, Master, Method, PressureNode, RigidGap, Sliding, facing};
+pub use end_of_master::SlidesOff;
 pub use friction::{Friction, FrictionHistory, FrictionResult, RigidMotion, Rubbing};
 pub use hyperelastic::{StrainError, StressLaw, Volumetric};
 pub use loads::{Load, LoadKind};

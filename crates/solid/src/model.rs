@@ -3,6 +3,7 @@
 use crate::assembly::{assemble, graph, positions};
 use crate::body::Bodies;
 use crate::contact::{Contact, Enforcement, RigidGap, Sliding};
+use crate::end_of_master::SlidesOff;
 use crate::friction::{FrictionHistory, RigidMotion, refuse_unsupported};
 use crate::held::check_held;
 use crate::rigid_modes::{FreeMode, free_modes};
@@ -37,8 +38,12 @@ pub enum StepError {
     #[error("contact `{contact}`: the bodies start {depth:.4e} deep in each other")]
     Deep { contact: String, depth: f64 },
     /// Newton's method with finite sliding: what was left after each iteration, and the contact that lacked most.
-    #[error("contact `{contact}`: Newton's method did not converge in {} iterations", history.len())]
-    Newton { contact: String, history: Vec<f64>, place: String },
+    #[error(
+        "contact `{contact}`: Newton's method did not converge in {} iterations{}",
+        history.len(),
+        slides_off.as_ref().map_or(String::new(), |off| format!("; {off}"))
+    )]
+    Newton { contact: String, history: Vec<f64>, place: String, slides_off: Option<SlidesOff> },
     #[error("contact `{contact}`: Nitsche's method is for small sliding")]
     NitscheSlides { contact: String },
     #[error("contact `{contact}`: friction is for small sliding, with multipliers or a penalty, and {unlike}")]

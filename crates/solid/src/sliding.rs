@@ -116,7 +116,7 @@ impl<const D: usize> Model<D> {
             let x: Vec<String> = x.iter().map(|v| format!("{v:.6}")).collect();
             format!("({})", x.join(", "))
         });
-        Err(StepError::Newton { contact: contact.name.clone(), history, place })
+        Err(StepError::Newton { contact: contact.name.clone(), history, place, slides_off: self.slides_off(which) })
     }
 
     /// Measures all gaps at a displacement.

@@ -391,3 +391,42 @@ fn masters_behind_each_other() {
     assert!((area - 1.0).abs() < 1e-12, "{area}");
     assert!(points.iter().flatten().all(|p| p.gap.abs() < 1e-12));
 }
+
+/// A block in a box, raised on by a rigid plane, with the exact displacement prescribed on one side of it: the nodes of the
+/// contact on that side, at vertices and between them, are held, and the pressure is the same everywhere.
+#[test]
+fn nodes_that_are_held_may_touch() {
+    const RAISED: f64 = 0.01;
+    for (degree, method) in [(1, Method::Mortar), (2, Method::Mortar), (3, Method::Mortar), (2, Method::Node)] {
+        let mesh = block::<3>(&std::array::from_fn(|_| even(0.0, 1.0, 2)), 1, |x| x);
+        let groups = mesh.groups().clone();
+        let mut bodies = Bodies::<3>::new(Space::Solid);
+        bodies.add("block", mesh, degree, Elastic { youngs_modulus: E, poissons_ratio: NU });
+        let support = |group: &str, kind: SupportKind| Support {
+            name: group.into(),
+            body: 0,
+            group: groups[group].clone(),
+            kind,
+        };
+        let mut supports = vec![support("left", SupportKind::Components(vec![true; 3]))];
+        supports.extend(["right", "front", "back", "top"].map(|group| support(group, SupportKind::Normal)));
+        let slave = bodies.surface(0, groups["bottom"].sides.clone());
+        let mut contact = Contact::new("touch", slave, Master::Rigid);
+        contact.method = method;
+        let mut model = Model::new(bodies, supports, vec![contact]).unwrap();
+        let now = Circumstances {
+            displacement: &|s, x| Point::<3>::new(0.0, 0.0, if s == 0 { RAISED * (1.0 - x[2]) } else { 0.0 }),
+            load: vec![0.0; model.bodies.unknowns()],
+            rigid: vec![Some(Box::new(|x: &Point<3>| {
+                signorini_contact::GapJet::flat(x[2] - RAISED, Point::<3>::new(0.0, 0.0, 1.0))
+            }))],
+            motion: vec![],
+        };
+        let state = model.solve(&now, &mut |_, _| true).unwrap_or_else(|e| panic!("degree {degree}, {method:?}: {e}"));
+        let pressure = RAISED * E * (1.0 - NU) / ((1.0 + NU) * (1.0 - 2.0 * NU));
+        for node in &state.contacts[0].nodes {
+            let off = node.pressure / pressure - 1.0;
+            assert!(off.abs() < 1e-8, "degree {degree}, {method:?}, {:?}: {off:e}", node.x);
+        }
+    }
+}

@@ -7,6 +7,7 @@ use crate::problem::{CaseError, Problem};
 use crate::report::{UnitNames, Warning};
 
 /// The problem as its results tell of it.
+#[derive(Clone)]
 pub struct Head {
     pub problem: Problem,
     pub units: Option<Units>,

@@ -248,7 +248,6 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
                 (&key.center, Vector::<3>::repeat(reach))
             }
             Shape::Ellipsoid(key) => (&key.center, Vector::<3>::from(self.semi_axes(key)?)),
-            Shape::Stl(key) => return Ok(Some(*self.planner.closed_mesh(key)?.bounds())),
             Shape::LevelSet(key) => {
                 return Ok(Some(Aabb::new(self.vector(&key.min, LENGTH)?, self.vector(&key.max, LENGTH)?)));
             }

@@ -1,5 +1,6 @@
 //! From the statement to solids in contact.
 
+mod finer;
 mod friction;
 mod mesh;
 
@@ -81,6 +82,7 @@ pub struct SolidContact<const D: usize> {
 }
 
 /// Solids, what holds and pushes them, and who may touch whom.
+#[derive(Clone)]
 pub struct SolidPlan<const D: usize> {
     pub head: Head,
     pub space: Space,
@@ -511,6 +513,11 @@ impl Planner<'_> {
         Ok(out)
     }
 
+    /// The penetration that a penalty may leave; none where it is left to the program.
+    pub(super) fn wanted_penetration(&self, key: &problem::Penalty) -> Result<Option<f64>, CaseError> {
+        key.wanted_penetration.as_ref().map(|v| self.reader.positive(v, LENGTH)).transpose()
+    }
+
     fn solid_method(&self, key: &problem::Contact) -> Result<(ContactMethod, signorini_solid::Enforcement), CaseError> {
         use signorini_solid::Enforcement as Kept;
         let Some(method) = &key.method else { return Ok((ContactMethod::Mortar, Kept::Multiplier)) };
@@ -536,13 +543,7 @@ impl Planner<'_> {
             }
             Some(Enforcement::Multiplier(_)) => Kept::Multiplier,
             Some(Enforcement::AugmentedLagrangian(_)) => Kept::AugmentedLagrangian,
-            Some(Enforcement::Penalty(k)) => Kept::Penalty {
-                wanted_penetration: k
-                    .wanted_penetration
-                    .as_ref()
-                    .map(|v| self.reader.positive(v, LENGTH))
-                    .transpose()?,
-            },
+            Some(Enforcement::Penalty(k)) => Kept::Penalty { wanted_penetration: self.wanted_penetration(k)? },
             Some(nitsche @ Enforcement::Nitsche(_)) => {
                 let slides = key.sliding.as_ref().is_some_and(|s| *s == problem::Sliding::Finite);
                 if slides || which == ContactMethod::Node {

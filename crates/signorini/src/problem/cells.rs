@@ -1,6 +1,6 @@
 //! Bodies of finite cells: a shape that lies anywhere in a grid of cells.
 
-use super::{Ellipsoid, List, Material, Named, Shape, Sphere, SurfaceFile, Value};
+use super::{List, Material, Named, Shape, Value};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::StrDeserializer;
 use serde::de::{
@@ -284,24 +284,5 @@ impl<'de, A: MapAccess<'de>> VariantAccess<'de> for OneKey<'_, A> {
     }
     fn struct_variant<V: Visitor<'de>>(self, _: &'static [&'static str], _: V) -> Result<V::Value, A::Error> {
         self.unit_variant().and(Err(A::Error::custom("a table is missing")))
-    }
-}
-
-/// Shapes that a geometry is often made of.
-impl From<Sphere> for Geometry {
-    fn from(sphere: Sphere) -> Self {
-        Self::Shape(Shape::Sphere(sphere))
-    }
-}
-
-impl From<Ellipsoid> for Geometry {
-    fn from(ellipsoid: Ellipsoid) -> Self {
-        Self::Shape(Shape::Ellipsoid(ellipsoid))
-    }
-}
-
-impl From<SurfaceFile> for Geometry {
-    fn from(file: SurfaceFile) -> Self {
-        Self::Shape(Shape::Stl(file))
     }
 }

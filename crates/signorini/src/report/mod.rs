@@ -192,7 +192,8 @@ pub struct ContactReport {
     pub stable: Option<bool>,
     /// Of the second variation of the energy: the state is stable where it is positive.
     pub lowest_eigenvalue: Option<f64>,
-    /// What the discretisation leaves uncertain, estimated with functions of one degree more in the last increment of a step.
+    /// What the discretisation leaves uncertain, estimated with functions of one degree more, or cells of half the size, in
+    /// the last increment of a step.
     pub error_estimate: Option<ErrorEstimate>,
     /// Other equilibria at the same load: area, energy, and whether they are stable.
     pub other_states: Vec<OtherState>,

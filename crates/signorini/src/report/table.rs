@@ -25,7 +25,7 @@ pub fn table(summary: &Summary) -> String {
         ("max pressure", unit(|u| &u.pressure), |_, c| {
             c.map(|(_, c)| figure(c.max_pressure, c.error_estimate.and_then(|e| e.max_pressure)))
         }),
-        ("radius", unit(|u| &u.length), |_, c| c?.1.radius.map(|r| figure(r, None))),
+        ("radius", unit(|u| &u.length), |_, c| c.and_then(|(_, c)| c.radius.map(|r| figure(r, radius_error(c, r))))),
         ("zones", "", |_, c| Some(c?.1.zones.to_string())),
         ("holes", "", |_, c| Some(c?.1.holes?.to_string())),
         ("balance", "", |s, _| Some(format!("{:.1e}", s.equilibrium_residual?))),
@@ -48,6 +48,11 @@ pub fn table(summary: &Summary) -> String {
         }
     }
     rows.iter().map(|row| format!("{}\n", row.trim_end())).collect()
+}
+
+/// How far a radius may be off: relatively no more than the area that it is taken from.
+fn radius_error(contact: &ContactReport, radius: f64) -> Option<f64> {
+    contact.error_estimate.filter(|_| contact.area > 0.0).map(|e| radius * e.area / contact.area)
 }
 
 /// A heading with its unit: `area [mm²]`.

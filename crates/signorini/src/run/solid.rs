@@ -21,7 +21,7 @@ use failure::{Failure, explained};
 use report::{SOLVER, Shown};
 use serde_json::Value;
 pub(super) use setup::{OPERATIONS_PER_SECOND, cost, judge, memory, model};
-use setup::{at_time, blamed, raised, too_large};
+use setup::{at_time, blamed, too_large};
 use signorini_geometry::Point;
 use signorini_solid::{Circumstances, ContactResult, Model as Solids, RigidGap, State};
 use signorini_solve::{Iteration, Progress};
@@ -156,26 +156,20 @@ impl<const D: usize> SolidModel<D> {
         }
     }
 
-    /// What the cells leave uncertain, in the last step: the change with functions of one degree more. With finite
-    /// sliding the path is gone again with them. Not where these functions do not exist or are too many.
+    /// What the cells leave uncertain, in the last step: the change with functions of one degree more, or with cells of half
+    /// the size where there are none. With finite sliding the path is gone again with them. Not where they are too many.
     fn estimate(&self, time: f64, state: &State<D>, step: &mut StepReport) {
         // In space unknowns cost several times as much.
         let most = if D == 3 { AFFORDABLE / 4 } else { AFFORDABLE };
-        let raises = |b: &crate::plan::solid::PlannedBody<D>| {
-            let simplices = (0..b.mesh.cell_count()).any(|c| !b.mesh.shape(c).is_tensor());
-            b.degree < if simplices { 2 } else { 8 }
-        };
-        let growth: f64 =
-            self.plan.bodies.iter().map(|b| (1.0 + 1.0 / b.degree as f64).powi(D as i32)).fold(1.0, f64::max);
         let way = if self.solids.slides() { self.plan.times.as_slice() } else { std::slice::from_ref(&time) };
-        let unknowns = growth * (way.len() * self.solids.unknowns()) as f64;
-        if self.plan.contacts.is_empty() || !self.plan.bodies.iter().all(raises) || unknowns > most as f64 {
+        let unknowns = self.plan.growth() * (way.len() * self.solids.unknowns()) as f64;
+        if self.plan.contacts.is_empty() || unknowns > most as f64 {
             return;
         }
-        let Ok(mut fine) = raised(&self.plan, 1) else { return };
-        let mut solve = |&time: &f64| {
-            at_time(&self.plan, &mut fine, time, |model, now| model.solve(now, &mut |_, _| true)).ok()?.ok()
-        };
+        let plan = self.plan.finer();
+        let Ok(mut fine) = model(&plan) else { return };
+        let mut solve =
+            |&time: &f64| at_time(&plan, &mut fine, time, |model, now| model.solve(now, &mut |_, _| true)).ok()?.ok();
         let Some(fine) = way.iter().map(&mut solve).collect::<Option<Vec<_>>>().and_then(|mut states| states.pop())
         else {
             return;

@@ -292,3 +292,43 @@ fn shapes_stand_on_the_axis_and_come_in_any_order() {
         assert!(super::error(&case).message.contains(word), "{off}");
     }
 }
+
+/// On triangles of degree 2 the ± comes from cells of half the size; the same mesh with cells of half the size is as far off
+/// as it says.
+#[test]
+fn quadratic_triangles_tell_their_error() {
+    let case = |degree: usize| {
+        format!(
+            r#"
+space = "plane_strain"
+[bodies.ring.solid]
+mesh.gmsh = {{ file = "drum.msh", group = "film" }}
+degree = {degree}
+material.linear_elastic = {{ youngs_modulus = 1000, poissons_ratio = 0.3 }}
+[bodies.floor.rigid]
+shape.plane = {{ point = [0, -1], normal = [0, 1] }}
+[supports.hub]
+on = "ring:hole"
+displacement = [0, "-0.02*t"]
+[contacts.touch]
+between = ["ring:rim", "floor"]
+[[steps]]
+to = 1
+[output]
+pictures = false
+"#
+        )
+    };
+    let of = |degree: usize| {
+        let found = summary(&case(degree), &set(&[]));
+        let contact = &last_step(&found)["contacts"]["touch"];
+        (number(&contact["force"][1]), number(&contact["error_estimate"]["force"]))
+    };
+    let [(linear, of_linear), (quadratic, of_quadratic)] = [1, 2].map(of);
+    // The error at degree 1 is known from degree 2, and that of degree 2 is a part of it.
+    assert!(
+        (linear - quadratic).abs() < of_linear + of_quadratic,
+        "{linear} ± {of_linear}, {quadratic} ± {of_quadratic}"
+    );
+    assert!(of_quadratic > 1e-6 * quadratic && of_quadratic < 0.3 * of_linear, "{of_quadratic}, {of_linear}");
+}

@@ -22,6 +22,12 @@ fn words(v: &serde_json::Value, out: &mut std::collections::BTreeSet<String>) {
     }
 }
 
+/// All files in a folder and those within it.
+fn files(folder: &std::path::Path) -> Vec<std::path::PathBuf> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().filter_map(|e| Some(e.ok()?.path()));
+    entries.flat_map(|path| if path.is_dir() { files(&path) } else { vec![path] }).collect()
+}
+
 /// Every word of the summary, the check, the log, the tables and the files for ParaView is one that `explain` knows.
 #[test]
 fn every_word_of_the_results_is_explained() {
@@ -39,6 +45,8 @@ fn every_word_of_the_results_is_explained() {
         ),
         ("string", vec![adhesion]),
         ("high_order_blocks", vec![probe]),
+        ("capstan", vec![("steps", "[{ to = 0.1, increments = 1 }]".to_string())]),
+        ("incline", vec![]),
     ] {
         let folder = tempfile::tempdir().expect("a folder");
         let problem = signorini::case::read("case.toml", example(name), &set(&pairs)).expect("a case");
@@ -54,11 +62,21 @@ fn every_word_of_the_results_is_explained() {
         for line in read("log.jsonl").lines() {
             words(&serde_json::from_str(line).expect("JSON"), &mut found);
         }
-        let header = read("history.csv").lines().next().unwrap_or_default().to_string();
-        let own = |w: &&str| !w.starts_with("p:") && !w.contains("force_");
-        found.extend(header.split(',').filter(own).map(|w| w.rsplit(':').next().unwrap_or(w).to_string()));
-        let vtu = read("fields/fields_00000.vtu");
-        found.extend(vtu.split("Name=\"").skip(1).filter_map(|w| w.split('"').next()).map(str::to_string));
+        for file in files(folder.path()) {
+            let text = String::from_utf8_lossy(&std::fs::read(&file).expect("a file")).into_owned();
+            match file.extension().and_then(|e| e.to_str()) {
+                // Columns of units, and of names of the case, are explained by what they are of.
+                Some("csv") => {
+                    let header = text.lines().next().unwrap_or_default();
+                    let column = |w: &str| w.split('[').next().unwrap_or(w).trim().to_string();
+                    found.extend(header.split(',').filter(|w| !w.starts_with("p:")).map(column));
+                }
+                Some("vtu" | "vtp") => {
+                    found.extend(text.split("Name=\"").skip(1).filter_map(|w| w.split('"').next()).map(str::to_string));
+                }
+                _ => {}
+            }
+        }
     }
     for of_vtk in ["connectivity", "offsets", "types", "Points", "signorini", "-"] {
         found.remove(of_vtk);

@@ -2,7 +2,7 @@
 
 use super::{Kind, Numbers, Tested};
 use crate::plan::planner::Planner;
-use crate::problem::units::{LENGTH, NONE};
+use crate::problem::units::NONE;
 use crate::problem::{self, AxisOn, CaseError, Components, CurveForm, Enforcement, Method, Value};
 use signorini_geometry::Vector;
 use signorini_mechanics::contact::Part;
@@ -152,13 +152,7 @@ impl Planner<'_> {
             None => otherwise,
             Some(Enforcement::Multiplier(_)) => Kept::Multiplier,
             Some(Enforcement::AugmentedLagrangian(_)) => Kept::AugmentedLagrangian,
-            Some(Enforcement::Penalty(k)) => Kept::Penalty {
-                wanted_penetration: k
-                    .wanted_penetration
-                    .as_ref()
-                    .map(|v| self.reader.positive(v, LENGTH))
-                    .transpose()?,
-            },
+            Some(Enforcement::Penalty(k)) => Kept::Penalty { wanted_penetration: self.wanted_penetration(k)? },
             Some(nitsche @ Enforcement::Nitsche(_)) => {
                 return Err(self
                     .problem

@@ -9,6 +9,7 @@ use crate::report::{
     WarningKind, vector,
 };
 use crate::run::record::Record;
+use crate::run::strain::{self, Strained};
 use signorini_contact::Status;
 use signorini_geometry::Vector;
 use signorini_mechanics::{AxisChoice, IncrementResult, Interaction, SiteResult, SystemState, rigid_body};
@@ -88,6 +89,7 @@ pub fn step_report(
         probes: plan.probes.iter().map(|(name, x)| (name.clone(), probe(x))).collect(),
         curves: shown.curves.iter().map(|c| (c.name.clone(), curve_report(&c.forces, c.unstrained_length))).collect(),
         free_bodies: poses.collect(),
+        max_strain: most_strained(plan, shown).map(|(_, strained)| strained.strain),
         ..StepReport::default()
     }
 }
@@ -197,6 +199,13 @@ fn rope_limits((contact, tested): (&dyn Interaction, &Tested), sites: &[SiteResu
     })
 }
 
+/// The largest strain of the bodies of small strains, and the body.
+fn most_strained<'a>(plan: &MechanicsPlan, shown: &'a SystemShown) -> Option<(&'a str, Strained)> {
+    let small = shown.bodies.iter().filter(|body| strain::is_small(&plan.head.problem, &body.name));
+    let strained = small.filter_map(|body| Some((body.name.as_str(), strain::largest(body)?)));
+    strained.max_by(|a, b| a.1.strain.total_cmp(&b.1.strain))
+}
+
 /// Warns of what looks wrong with a state.
 pub fn warn(plan: &MechanicsPlan, result: &IncrementResult, shown: &SystemShown, record: &mut Record) {
     let time = shown.time;
@@ -208,6 +217,10 @@ pub fn warn(plan: &MechanicsPlan, result: &IncrementResult, shown: &SystemShown,
         let gap = gap.map_or("nothing is within reach".to_string(), |g| format!("smallest gap {g:.6e}"));
         let message = format!("contact `{}`: the bodies do not touch at t = {time} ({gap})", contact.name());
         record.warnings.push(Warning::new(WarningKind::Apart, message).at_time(time));
+    }
+    if let Some((body, strained)) = most_strained(plan, shown) {
+        let dimension = if plan.space == Space::ThreeD { 3 } else { 2 };
+        strained.warning(body, time, dimension).into_iter().for_each(|w| record.warn_once(w));
     }
     for curve in &shown.curves {
         let slack = curve.forces.iter().filter(|t| **t == 0.0).count();

@@ -8,14 +8,11 @@ use crate::plan::solid::{SolidPlan, evaluate};
 use crate::problem::Space as Stated;
 use crate::report::{Component, ContactReport, Probe, Reason, StepReport, UnitNames, Warning, WarningKind, vector};
 use crate::run::record::Record;
+use crate::run::strain::Strained;
 use signorini_geometry::Point;
 use signorini_solid::loads::resultant;
 use signorini_solid::{ContactResult, FrictionResult, Method, Model, PressureNode, Route, State};
 use std::collections::{BTreeMap, HashMap};
-
-/// Strain from which the theory of small strains is off by more than a few per cent of the result: the terms left out are
-/// half the square of the displacement gradient, and rotations come with strains.
-const LARGE_STRAIN: f64 = 0.05;
 
 /// What solves the equations.
 pub const SOLVER: &str = "direct";
@@ -108,17 +105,9 @@ pub fn warn<const D: usize>(
 ) {
     let Shown { time, fields, .. } = shown;
     let most = shown.most_strained();
-    if let Some(k) = most.filter(|&k| fields.strain[k] >= LARGE_STRAIN) {
-        let x: Vec<String> = display.points[k].iter().map(|v| format!("{v:.4}")).collect();
-        let message = format!(
-            "the strain is not small: {:.0} % at ({}) of `{}` at t = {time}; the theory is that of small strains, and errs by as much from {:.0} % on",
-            100.0 * fields.strain[k],
-            x.join(", "),
-            display.body_of(model, k),
-            100.0 * LARGE_STRAIN,
-        );
-        let warning = Warning::new(WarningKind::LargeStrain, message);
-        record.warn_once(warning.at_time(*time).at(vector(&display.points[k])));
+    if let Some(k) = most {
+        let strained = Strained { strain: fields.strain[k], at: vector(&display.points[k]) };
+        strained.warning(display.body_of(model, k), *time, D).into_iter().for_each(|w| record.warn_once(w));
     }
     if state.unstable {
         let message = format!("the equilibrium with friction at t = {time} is one that a small disturbance leaves");

@@ -19,11 +19,6 @@ use std::collections::BTreeSet;
 
 /// Bodies, supports and contacts of a plan.
 pub fn model<const D: usize>(plan: &SolidPlan<D>) -> Result<Model<D>, CaseError> {
-    raised(plan, 0)
-}
-
-/// The same with functions of a higher degree, on cells whose curves are.
-pub fn raised<const D: usize>(plan: &SolidPlan<D>, by: usize) -> Result<Model<D>, CaseError> {
     let space = match plan.space {
         Stated::PlaneStrain => Space::PlaneStrain,
         Stated::PlaneStress => Space::PlaneStress,
@@ -32,8 +27,7 @@ pub fn raised<const D: usize>(plan: &SolidPlan<D>, by: usize) -> Result<Model<D>
     };
     let mut bodies = Bodies::<D>::new(space);
     for b in &plan.bodies {
-        let mesh = b.raised.as_ref().filter(|_| by > 0).unwrap_or(&b.mesh);
-        bodies.add(&b.name, mesh.clone(), b.degree + by, b.material);
+        bodies.add(&b.name, b.mesh.clone(), b.degree, b.material);
     }
     let supports = (plan.supports.iter())
         .map(|s| Support { name: s.name.clone(), body: s.body, group: s.group.clone(), kind: s.kind.clone() })

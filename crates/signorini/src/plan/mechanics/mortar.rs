@@ -1,7 +1,7 @@
 //! Contact by mortar between bodies of a system.
 
 use super::{Kind, Tested};
-use crate::plan::Planner;
+use crate::plan::planner::Planner;
 use crate::problem::{self, CaseError, Friction, Method};
 use signorini_mechanics::contact::Part;
 use signorini_mechanics::{AxisChoice, Enforcement as Kept, Interaction, Mortar, System};

@@ -1,7 +1,7 @@
 //! Winches and pulleys of ropes.
 
 use super::Wrong;
-use crate::plan::Planner;
+use crate::plan::planner::Planner;
 use crate::problem::units::LENGTH;
 use crate::problem::{CaseError, Rope, RopeEnd, Value, Winch};
 use signorini_geometry::Point;

@@ -5,6 +5,7 @@ mod contacts;
 mod descriptions;
 mod discs;
 mod iterations;
+mod large;
 mod masters;
 
 use signorini_cells::{

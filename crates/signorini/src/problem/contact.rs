@@ -100,6 +100,32 @@ pub enum Method {
     Curve(CurveMethod),
     /// Of finite cells: at points of the recovered boundary.
     CellSurface(SolidMethod),
+    /// Of finite cells, or within a body of them: discs, in space balls, on both surfaces that repel each other.
+    DiscreteCell(DiscMethod),
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DiscMethod {
+    /// Radius of the discs, a length: half of their spacing at least, so that none slips through, and less than half of the
+    /// thickness of the material; the spacing if left out.
+    pub radius: Option<Value>,
+    /// Least distance of discs, a length; half of the radius if left out, and without a radius what the functions can
+    /// follow.
+    pub spacing: Option<Value>,
+    /// Where their centres are; `within` if left out.
+    pub centres: Option<DiscCentres>,
+    /// How hard they are; a hundred times as stiff as the bodies if left out.
+    pub penalty: Option<Penalty>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum DiscCentres {
+    /// A radius below the surface, so that surfaces touch where they are.
+    Within,
+    /// On the surface, as published: bodies touch a radius each too early.
+    OnBoundary,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]

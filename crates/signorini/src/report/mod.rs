@@ -101,8 +101,10 @@ pub struct StepReport {
     /// Equilibrium solves on larger cells, and on the way to the state.
     pub iterations_before: usize,
     /// `direct` by factorisation, `direct with krylov` where the tractions of a large zone of contact are found by steps of a
-    /// Krylov method, each a solve with the factors, or `multigrid`.
+    /// Krylov method, each a solve with the factors, `multigrid`, or `schwarz` by iterations with a Schwarz preconditioner.
     pub solver: String,
+    /// The most iterations that an iterative solver took for one linear system.
+    pub linear_iterations: Option<usize>,
     /// Residual of each solve, relative to its tolerance; for solids with small sliding the nodes that changed their state.
     pub residual_history: Vec<f64>,
     /// Elastic energy less the work of the load.

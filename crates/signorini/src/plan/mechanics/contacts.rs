@@ -4,6 +4,8 @@ use super::{Kind, Numbers, Tested};
 use crate::plan::planner::Planner;
 use crate::problem::units::NONE;
 use crate::problem::{self, AxisOn, CaseError, Components, CurveForm, Enforcement, Method, Value};
+use signorini_cells::disc_contact::{Cover, CoverFindings, DiscPairs};
+use signorini_cells::discs::Centres;
 use signorini_geometry::Vector;
 use signorini_mechanics::contact::Part;
 use signorini_mechanics::{AxisChoice, Contact, Enforcement as Kept, Interaction, Sampling, System};
@@ -80,12 +82,21 @@ impl Planner<'_> {
         if let Some(found) = self.by_mortar(name, key, [&slave, &master], (system, kinds))? {
             return Ok(found);
         }
+        if let Some(Method::DiscreteCell(stated)) = &key.method {
+            return self.by_discs(name, key, stated, [&slave, &master], system);
+        }
         let kind = &kinds[slave.body];
         let straight = match problem.bodies.get(body(&slave).name()) {
             Some(problem::Body::Rope(rope)) => rope.continuity != Some(problem::Continuity::C1),
             _ => false,
         };
         let (sampling, enforcement, method) = self.system_method(key, body(&slave).is_rigid(), straight, kind)?;
+        // The turn of a free body would have to turn the stress of the other with it.
+        if enforcement == Kept::Nitsche && body(&master).is_rigid() && body(&master).unknowns() > 0 {
+            return Err(problem
+                .error(key, "Nitsche's method is not for contact with a free rigid body")
+                .help("enforcement.penalty = {}"));
+        }
         let mut contact =
             Contact::new(name, (slave.clone(), body(&slave)), (master.clone(), body(&master)), sampling, enforcement)
                 .map_err(|error| self.misplaced(on[0], &error))?;
@@ -98,7 +109,7 @@ impl Planner<'_> {
             contact.friction = Some(law);
         }
         let along_a_curve = matches!(kind, Kind::Curve { .. });
-        let tested = Tested { method, axis: contact.axis, along_a_curve };
+        let tested = Tested { method, axis: contact.axis, along_a_curve, notes: Vec::new(), warnings: Vec::new() };
         Ok((Box::new(contact), tested))
     }
 
@@ -115,7 +126,7 @@ impl Planner<'_> {
             return Ok(None);
         }
         let stated = key.method.as_ref().and_then(|m| if let Method::Curve(k) = m { Some(k) } else { None });
-        let kept = self.kept(stated.and_then(|k| k.enforcement.as_ref()), Kept::AugmentedLagrangian)?;
+        let kept = self.kept(stated.and_then(|k| k.enforcement.as_ref()), Kept::AugmentedLagrangian, "curve")?;
         let side = |part: &Part| (part.body, system.bodies[part.body].as_ref());
         let mut contact = CurveContact::new(name, side(slave), side(master), kept)
             .map_err(|e| self.problem.error(key, e.to_string()))?;
@@ -143,20 +154,79 @@ impl Planner<'_> {
                 .error(&at, "between curves the axis of friction is the tangent of the first")
                 .help("axis = \"tangent\", or leave it out"));
         }
-        Ok(Some((Box::new(contact), Tested { method: "curve", axis, along_a_curve: false })))
+        Ok(Some((
+            Box::new(contact),
+            Tested { method: "curve", axis, along_a_curve: false, notes: Vec::new(), warnings: Vec::new() },
+        )))
+    }
+
+    /// Contact by discs on both surfaces.
+    fn by_discs(
+        &self,
+        name: &str,
+        key: &problem::Contact,
+        stated: &problem::DiscMethod,
+        [first, second]: [&Part; 2],
+        system: &System,
+    ) -> Result<(Box<dyn Interaction>, Tested), CaseError> {
+        let problem = self.problem;
+        if let Some(friction) = &key.friction {
+            return Err(problem
+                .error(friction, "discs slide without friction")
+                .help("method.cell_surface = {} for contact with friction"));
+        }
+        let length = |value: &Option<Value>| value.as_ref().map(|v| self.reader.positive(v, LENGTH)).transpose();
+        let cover = Cover {
+            radius: length(&stated.radius)?,
+            spacing: length(&stated.spacing)?,
+            centres: match stated.centres {
+                Some(problem::DiscCentres::OnBoundary) => Centres::OnBoundary,
+                _ => Centres::Within,
+            },
+        };
+        let wanted = stated.penalty.as_ref().map(|p| length(&p.wanted_penetration)).transpose()?.flatten();
+        let body = |part: &Part| (part.clone(), system.bodies[part.body].as_ref());
+        let other = (first != second).then(|| body(second));
+        let (pairs, found) = DiscPairs::new(name, body(first), other, &cover, wanted)
+            .map_err(|e| problem.error(key, e.to_string()).help("method.cell_surface = {}"))?;
+        let (mut notes, mut warnings) = (Vec::new(), Vec::new());
+        for (f, part) in found.iter().zip([first, second]) {
+            let body = system.bodies[part.body].name();
+            let CoverFindings { discs, radius, spacing, thickness } = *f;
+            notes.push(format!(
+                "contact `{name}`: {discs} discs of radius {radius:.4e} on `{body}`, at most {spacing:.4e} apart"
+            ));
+            if f.is_too_small() {
+                warnings.push(format!(
+                    "contact `{name}`: discs of radius {radius:.3e} on `{body}` are {spacing:.3e} apart, and others slip \
+                     through between them: the radius should be that at least (radius = {spacing:.3e}, or a smaller spacing)"
+                ));
+            }
+            if f.is_too_large() {
+                warnings.push(format!(
+                    "contact `{name}`: discs of radius {radius:.3e} do not fit into `{body}`, {thickness:.3e} thick: their \
+                     centres lie beyond those of the other face (a radius below {:.3e})",
+                    0.5 * thickness
+                ));
+            }
+        }
+        let tested =
+            Tested { method: "discrete_cell", axis: AxisChoice::Material, along_a_curve: false, notes, warnings };
+        Ok((Box::new(pairs), tested))
     }
 
     /// How a contact is kept.
-    pub(super) fn kept(&self, stated: Option<&Enforcement>, otherwise: Kept) -> Result<Kept, CaseError> {
+    pub(super) fn kept(&self, stated: Option<&Enforcement>, otherwise: Kept, method: &str) -> Result<Kept, CaseError> {
         Ok(match stated {
             None => otherwise,
             Some(Enforcement::Multiplier(_)) => Kept::Multiplier,
             Some(Enforcement::AugmentedLagrangian(_)) => Kept::AugmentedLagrangian,
             Some(Enforcement::Penalty(k)) => Kept::Penalty { wanted_penetration: self.wanted_penetration(k)? },
+            Some(Enforcement::Nitsche(_)) if method == "cell_surface" => Kept::Nitsche,
             Some(nitsche @ Enforcement::Nitsche(_)) => {
                 return Err(self
                     .problem
-                    .error(nitsche, "Nitsche's method is for solids")
+                    .error(nitsche, "Nitsche's method is for solids of small strain and for finite cells")
                     .help("enforcement.multiplier = {}"));
             }
         })
@@ -201,7 +271,7 @@ impl Planner<'_> {
             Sampling::Nodes => Kept::Multiplier,
             Sampling::GaussPoints => Kept::Penalty { wanted_penetration: None },
         };
-        let kept = self.kept(stated, otherwise)?;
+        let kept = self.kept(stated, otherwise, word)?;
         Ok((sampling, kept, word))
     }
 

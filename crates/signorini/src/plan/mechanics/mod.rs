@@ -17,6 +17,7 @@ use super::head::Head;
 use super::planner::Planner;
 use crate::problem::units::LENGTH;
 use crate::problem::{self, Body, CaseError, Material, Motion, Problem, Space};
+use crate::report::Warning;
 use signorini_geometry::Point;
 use signorini_geometry::rigid_shape::RigidShape;
 use signorini_mechanics::contact::Part;
@@ -51,6 +52,9 @@ pub struct Tested {
     pub axis: AxisChoice,
     /// Whether its points are those of a curve, in order.
     pub along_a_curve: bool,
+    /// What was found out about it.
+    pub notes: Vec<String>,
+    pub warnings: Vec<String>,
 }
 
 /// Bodies in one system, what holds and pushes them, and who may touch whom.
@@ -88,6 +92,13 @@ pub fn is_system(problem: &Problem) -> bool {
     };
     let of_solids = bodies().any(|b| matches!(b, Body::Solid(_))) && !bodies().any(|b| matches!(b, Body::Membrane(_)));
     bodies().any(needs_one) || (of_solids && problem.contacts.values().any(slides))
+}
+
+/// Unknowns of a system, what solves its equations, and about how much memory that takes.
+fn size_of(system: &System) -> String {
+    let unknowns: usize = system.bodies.iter().map(|b| b.unknowns()).sum();
+    let how = if system.iterates() { "iterations" } else { "a factorisation" };
+    format!("{unknowns} unknowns, solved by {how}, in about {:.2} GiB", system.memory() / f64::from(1 << 30))
 }
 
 /// The name of what holds solids on the axis of rotation, which nobody stated.
@@ -158,6 +169,11 @@ impl Planner<'_> {
         system.contacts = acting;
         system.prepare().map_err(|e| problem.error(&problem.space, e.to_string()))?;
         self.check_start(&system, &kinds, &contacts)?;
+        notes.extend(contacts.iter().flat_map(|c| c.notes.iter().cloned()));
+        warnings.extend(contacts.iter().flat_map(|c| c.warnings.iter().map(|w| Warning::from(w.as_str()))));
+        if kinds.iter().any(|k| matches!(k, Kind::Cells)) {
+            notes.push(size_of(&system));
+        }
         if system.contacts.is_empty() && system.bodies.len() > 1 {
             warnings.push("no contact is stated: the bodies do not see each other (add [contacts.NAME])".into());
         }

@@ -33,7 +33,7 @@ impl Planner<'_> {
         if !matches!(kinds[master.body], Kind::Solid | Kind::Rigid { .. }) {
             return Err(told(master, "has no faces that a mortar could cut: the second body is a solid or rigid"));
         }
-        let kept = self.kept(stated.enforcement.as_ref(), Kept::Multiplier)?;
+        let kept = self.kept(stated.enforcement.as_ref(), Kept::Multiplier, "mortar")?;
         let mut contact = Mortar::new(name, (slave.clone(), body(slave)), (master.clone(), body(master)), kept)
             .map_err(|error| problem.error(method, error.to_string()))?;
         if let Some(friction) = &key.friction {

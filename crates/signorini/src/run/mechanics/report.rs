@@ -12,15 +12,23 @@ use crate::run::record::Record;
 use crate::run::strain::{self, Strained};
 use signorini_contact::Status;
 use signorini_geometry::Vector;
-use signorini_mechanics::{AxisChoice, IncrementResult, Interaction, SiteResult, SystemState, rigid_body};
+use signorini_mechanics::{AxisChoice, IncrementResult, Interaction, SiteResult, Solved, SystemState, rigid_body};
 use signorini_paths::darboux::Darboux;
 use signorini_paths::friction::Friction;
 use signorini_paths::theorem::limits_of_points;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// What solves the equations.
+/// What solves the equations where nothing else is said.
 pub const SOLVER: &str = "direct";
+
+/// What solved them, and the most iterations that one linear system took.
+fn solver(solved: Solved) -> (&'static str, Option<usize>) {
+    match solved {
+        Solved::Direct => (SOLVER, None),
+        Solved::Iterative { most_iterations, .. } => ("schwarz", Some(most_iterations)),
+    }
+}
 
 /// The step of the summary that a state is.
 pub fn step_report(
@@ -75,7 +83,8 @@ pub fn step_report(
         converged: true,
         reason: Reason::Converged,
         iterations: result.iterations,
-        solver: SOLVER.into(),
+        solver: solver(result.solved).0.into(),
+        linear_iterations: solver(result.solved).1,
         residual_history: result.history.clone(),
         energy: Some(result.energy),
         equilibrium_residual: Some(result.imbalance),

@@ -182,7 +182,8 @@ impl ActiveSet {
         let mut iterations = Iterations { count: 0, report };
         let before = self.active.clone();
         let balanced = self.balance(&problem, &mut iterations);
-        let Balanced { equations, active, pressures, forces, gaps, .. } = balanced.inspect_err(|_| self.active = before)?;
+        let Balanced { equations, active, pressures, forces, gaps, .. } =
+            balanced.inspect_err(|_| self.active = before)?;
         let mut found = ContactState {
             u: Vec::new(),
             pressure: vec![0.0; rows.len()],

@@ -116,11 +116,7 @@ pub struct Solved {
 }
 
 impl<'a> RowProducts<'a> {
-    pub fn new(
-        system: &'a dyn Compliance,
-        rows: &'a [WeightedGap],
-        springs: &'a [Spring],
-    ) -> Result<Self, SolveError> {
+    pub fn new(system: &'a dyn Compliance, rows: &'a [WeightedGap], springs: &'a [Spring]) -> Result<Self, SolveError> {
         let count = rows.len() + springs.len();
         let mut out = RowProducts {
             system,

@@ -285,7 +285,11 @@ impl<const D: usize> Model<D> {
         let (found, _) = found.map_err(|error| self.explained(error, &ends))?;
         let u = self.reduction.expand(&found.u, &offset);
         let ContactState { pressure, gap, active, iterations, route, .. } = found;
-        Ok(self.state(Found { u, pressure, gap, active, iterations, route, residuals, rubbing: None }, &now.load, &ends))
+        Ok(self.state(
+            Found { u, pressure, gap, active, iterations, route, residuals, rubbing: None },
+            &now.load,
+            &ends,
+        ))
     }
 
     /// Looks without solving whether supports, contacts and loads make sense at a time, with the bodies at rest.

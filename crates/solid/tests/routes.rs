@@ -49,9 +49,8 @@ impl<const D: usize> Blocks<D> {
         let symmetric = self.space == Space::Axisymmetric;
         let mesh = |low: f64, high: f64, n: usize, bend: f64| {
             let first = if symmetric { 0.0 } else { -1.0 };
-            let axes: [Vec<f64>; D] = std::array::from_fn(|k| {
-                if k == up { even(low, high, height) } else { even(first, 1.0, n) }
-            });
+            let axes: [Vec<f64>; D] =
+                std::array::from_fn(|k| if k == up { even(low, high, height) } else { even(first, 1.0, n) });
             block::<D>(&axes, 1, move |mut x| {
                 let r2: f64 = (0..up).map(|k| x[k] * x[k]).sum();
                 x[up] += bend * r2 * (high - x[up]) / (high - low);
@@ -107,9 +106,18 @@ fn states<const D: usize>(mut model: Model<D>, held: Held, route: Option<Route>)
     let top = model.bodies.list[0].mesh.groups()["top"].clone();
     let mut out = Vec::new();
     for aside in [0.0, 1.0] {
+        let aside = if model.bodies.space == Space::Axisymmetric { 0.0 } else { aside };
         let moved = move |support: usize, _: &Point<D>| {
             let is_top = support == 0 && held == Held::Top;
-            let shift = |k: usize| if k == up { -0.02 } else if k == 0 { 0.003 * aside } else { 0.001 * aside };
+            let shift = |k: usize| {
+                if k == up {
+                    -0.02
+                } else if k == 0 {
+                    0.003 * aside
+                } else {
+                    0.001 * aside
+                }
+            };
             Point::<D>::from_fn(|k, _| if is_top { shift(k) } else { 0.0 })
         };
         let load = if held == Held::Top {
@@ -118,7 +126,15 @@ fn states<const D: usize>(mut model: Model<D>, held: Held, route: Option<Route>)
             let of = Load { name: "weight".into(), body: 0, group: top.clone(), kind: LoadKind::Traction };
             let push = if held == Held::Free { 0.5 * aside } else { 0.0 };
             loads::forces(&model.bodies, &of, &|_| {
-                Point::<D>::from_fn(|k, _| if k == up { -4.0 } else if k == 0 { push } else { 0.3 * push })
+                Point::<D>::from_fn(|k, _| {
+                    if k == up {
+                        -4.0
+                    } else if k == 0 {
+                        push
+                    } else {
+                        0.3 * push
+                    }
+                })
             })
         };
         let rigid: Option<RigidGap<D>> = matches!(model.contacts[0].master, Master::Rigid).then(|| {
@@ -134,8 +150,7 @@ fn states<const D: usize>(mut model: Model<D>, held: Held, route: Option<Route>)
 /// Both routes come to the same states; returns whether nodes stick, slip and are open in the last one.
 fn compared<const D: usize>(make: &dyn Fn() -> Blocks<D>) -> [bool; 3] {
     let held = make().held;
-    let [columns, products] =
-        [Route::Columns, Route::Products].map(|route| states(make().model(), held, Some(route)));
+    let [columns, products] = [Route::Columns, Route::Products].map(|route| states(make().model(), held, Some(route)));
     let mut found = [false; 3];
     for (a, b) in columns.iter().zip(&products) {
         assert_eq!((a.route, b.route), (Route::Columns, Route::Products));
@@ -152,7 +167,9 @@ fn compared<const D: usize>(make: &dyn Fn() -> Blocks<D>) -> [bool; 3] {
             assert!((a.rubbing.traction - b.rubbing.traction).norm() < 1e-10 * most);
         }
         if let (Some(a), Some(b)) = (&a.friction, &b.friction) {
-            assert!((a.uniqueness / b.uniqueness - 1.0).abs() < 1e-6 || a.uniqueness == b.uniqueness);
+            // By products only of the nodes where it seems least.
+            let more = if a.uniqueness == b.uniqueness { 1.0 } else { b.uniqueness / a.uniqueness };
+            assert!((1.0 - 1e-9..1.2).contains(&more), "uniqueness {} {}", a.uniqueness, b.uniqueness);
         }
         found = [Status::Stick, Status::Slip, Status::Open].map(|s| a.nodes.iter().any(|n| n.rubbing.status == s));
         found[2] = a.nodes.iter().any(|n| !n.active);
@@ -217,7 +234,8 @@ fn a_block_on_an_incline_goes_on_to_the_same_digits() {
         let make = || {
             let law = Some(Box::new(Coulomb::orthotropic([0.3, 0.5]).unwrap()) as Box<dyn Law>);
             let held = Held::Free;
-            let mut model = Blocks::<3> { held, bend: 0.0, rigid: true, ..Blocks::new(Space::Solid, [7, 4], law) }.model();
+            let mut model =
+                Blocks::<3> { held, bend: 0.0, rigid: true, ..Blocks::new(Space::Solid, [7, 4], law) }.model();
             model.by_route(route);
             model
         };
@@ -227,7 +245,12 @@ fn a_block_on_an_incline_goes_on_to_the_same_digits() {
             let weight = Point::<3>::new(angle.sin() * 0.8, angle.sin() * 0.6, -angle.cos());
             let rigid: RigidGap<3> = Box::new(|x: &Point<3>| GapJet::flat(x[2], Point::<3>::z()));
             let load = loads::forces(&model.bodies, &of, &|_| weight);
-            Circumstances { displacement: &|_, _| Point::<3>::zeros(), load, rigid: vec![Some(rigid)], motion: vec![None] }
+            Circumstances {
+                displacement: &|_, _| Point::<3>::zeros(),
+                load,
+                rigid: vec![Some(rigid)],
+                motion: vec![None],
+            }
         };
         let angles = [0.06, 0.12, 0.18, 0.24, 0.26];
         let mut model = make();
@@ -256,6 +279,13 @@ fn most_memory() -> f64 {
     line.and_then(|l| l.split_whitespace().next()?.parse::<f64>().ok()).unwrap_or(0.0) / f64::from(1u32 << 20)
 }
 
+/// Processor time of the process in seconds; only where the system tells.
+fn processor_time() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let after = stat.rsplit(')').next().unwrap_or_default();
+    after.split_whitespace().skip(11).take(2).filter_map(|v| v.parse::<f64>().ok()).sum::<f64>() / 100.0
+}
+
 /// Two blocks with more than 10 000 pressure nodes in contact, without and with friction, beside a plain solve of the same
 /// blocks. `SIGNORINI_ACROSS` and `SIGNORINI_HIGH` are other numbers of cells.
 #[test]
@@ -264,14 +294,13 @@ fn large_zones() {
     let number = |name: &str, other: usize| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(other);
     let cells = [number("SIGNORINI_ACROSS", 100), number("SIGNORINI_HIGH", 4)];
     let timed = |name: &str, law: Option<Box<dyn Law>>, contact: bool| {
-        let start = std::time::Instant::now();
         let mut model = Blocks::<3> { bend: 0.0, ..Blocks::new(Space::Solid, cells, law) }.model();
         if !contact {
             model.contacts.clear();
         }
-        println!("{name}: {} unknowns, model made in {:.1} s", model.unknowns(), start.elapsed().as_secs_f64());
-        for aside in if contact { [0.0, 1.0] } else { [0.0, 0.0] } {
-            let start = std::time::Instant::now();
+        println!("{name}: {} unknowns", model.unknowns());
+        for aside in [0.0, 1.0] {
+            let start = processor_time();
             let displacement = move |support: usize, _: &Point<3>| {
                 if support == 0 { Point::<3>::new(0.003 * aside, 0.001 * aside, -0.02) } else { Point::<3>::zeros() }
             };
@@ -286,7 +315,7 @@ fn large_zones() {
                 slipping,
                 active.len(),
                 state.iterations,
-                start.elapsed().as_secs_f64(),
+                processor_time() - start,
                 most_memory(),
                 state.imbalance
             );

@@ -150,7 +150,9 @@ impl RowCompliance for Rows<'_> {
         let own = if row == column { self.own(row) } else { 0.0 };
         let between = match &self.products {
             None => self.column(column)[row],
-            Some(_) if row.max(column) >= self.bodies.rows.len() => self.products.as_ref().map_or(0.0, |p| p.spring_entry(row, column)),
+            Some(_) if row.max(column) >= self.bodies.rows.len() => {
+                self.products.as_ref().map_or(0.0, |p| p.spring_entry(row, column))
+            }
             Some(products) if row == column => products.own(row),
             Some(products) => products.near(row, column),
         };
@@ -203,7 +205,8 @@ impl FrictionalContact {
         self.refresh(bodies.rows, bodies.springs);
         let Bodies { system, rows, springs, load, .. } = bodies;
         let free = system.solve_accurately(load)?;
-        let mut w = Rows { bodies, columns: &mut self.columns, free: Vec::new(), left: 0.0, route: self.route, products: None };
+        let mut w =
+            Rows { bodies, columns: &mut self.columns, free: Vec::new(), left: 0.0, route: self.route, products: None };
         w.free = w.at(&free);
         let springs: Vec<usize> = (rows.len()..rows.len() + springs.len()).collect();
         let problem = Problem { nodes, equations: &springs };
@@ -321,9 +324,8 @@ fn uniqueness(nodes: &[Node<'_>], w: &Rows<'_>, answers: &[Projected]) -> Result
         let coupling = law.coupling(along);
         (coupling > 0.0).then(|| entry(node.first) / coupling)
     };
-    let about: Vec<f64> = (0..nodes.len())
-        .map(|k| of(k, &|row| w.entry(nodes[k].first, row)).unwrap_or(f64::INFINITY))
-        .collect();
+    let about: Vec<f64> =
+        (0..nodes.len()).map(|k| of(k, &|row| w.entry(nodes[k].first, row)).unwrap_or(f64::INFINITY)).collect();
     let Some(products) = &w.products else { return Ok(about) };
     let mut least: Vec<usize> = (0..nodes.len()).filter(|&k| about[k].is_finite()).collect();
     least.sort_by(|&a, &b| about[a].total_cmp(&about[b]).then(a.cmp(&b)));

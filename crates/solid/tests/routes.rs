@@ -167,9 +167,8 @@ fn compared<const D: usize>(make: &dyn Fn() -> Blocks<D>) -> [bool; 3] {
             assert!((a.rubbing.traction - b.rubbing.traction).norm() < 1e-10 * most);
         }
         if let (Some(a), Some(b)) = (&a.friction, &b.friction) {
-            // By products only of the nodes where it seems least.
-            let more = if a.uniqueness == b.uniqueness { 1.0 } else { b.uniqueness / a.uniqueness };
-            assert!((1.0 - 1e-9..1.2).contains(&more), "uniqueness {} {}", a.uniqueness, b.uniqueness);
+            // By products it is the least of some nodes only.
+            assert!(b.uniqueness >= a.uniqueness * (1.0 - 1e-9), "uniqueness {} {}", a.uniqueness, b.uniqueness);
         }
         found = [Status::Stick, Status::Slip, Status::Open].map(|s| a.nodes.iter().any(|n| n.rubbing.status == s));
         found[2] = a.nodes.iter().any(|n| !n.active);

@@ -122,7 +122,7 @@ struct Problem<'a> {
 
 /// The equations of a set of active rows.
 enum Equations {
-    Dense(Dense),
+    Dense(Box<Dense>),
     ByProducts,
 }
 
@@ -302,7 +302,7 @@ impl ActiveSet {
         }
         let gaps = self.values(rows, &[], &at);
         let moved = at.iter().fold(0.0f64, |m, u| m.max(u.abs()));
-        Ok(Balanced { equations: Equations::Dense(dense), active, pressures, forces, gaps, moved })
+        Ok(Balanced { equations: Equations::Dense(Box::new(dense)), active, pressures, forces, gaps, moved })
     }
 
     /// Weighted gaps of all rows, and what the springs move, at displacements of the touched unknowns.

@@ -106,6 +106,7 @@ fn states<const D: usize>(mut model: Model<D>, held: Held, route: Option<Route>)
     let top = model.bodies.list[0].mesh.groups()["top"].clone();
     let mut out = Vec::new();
     for aside in [0.0, 1.0] {
+        let aside = if model.bodies.space == Space::Axisymmetric { 0.0 } else { aside };
         let moved = move |support: usize, _: &Point<D>| {
             let is_top = support == 0 && held == Held::Top;
             let shift = |k: usize| {
@@ -166,7 +167,8 @@ fn compared<const D: usize>(make: &dyn Fn() -> Blocks<D>) -> [bool; 3] {
             assert!((a.rubbing.traction - b.rubbing.traction).norm() < 1e-10 * most);
         }
         if let (Some(a), Some(b)) = (&a.friction, &b.friction) {
-            assert!((a.uniqueness / b.uniqueness - 1.0).abs() < 1e-6 || a.uniqueness == b.uniqueness);
+            // By products it is the least of some nodes only.
+            assert!(b.uniqueness >= a.uniqueness * (1.0 - 1e-9), "uniqueness {} {}", a.uniqueness, b.uniqueness);
         }
         found = [Status::Stick, Status::Slip, Status::Open].map(|s| a.nodes.iter().any(|n| n.rubbing.status == s));
         found[2] = a.nodes.iter().any(|n| !n.active);
@@ -276,6 +278,13 @@ fn most_memory() -> f64 {
     line.and_then(|l| l.split_whitespace().next()?.parse::<f64>().ok()).unwrap_or(0.0) / f64::from(1u32 << 20)
 }
 
+/// Processor time of the process in seconds; only where the system tells.
+fn processor_time() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let after = stat.rsplit(')').next().unwrap_or_default();
+    after.split_whitespace().skip(11).take(2).filter_map(|v| v.parse::<f64>().ok()).sum::<f64>() / 100.0
+}
+
 /// Two blocks with more than 10 000 pressure nodes in contact, without and with friction, beside a plain solve of the same
 /// blocks. `SIGNORINI_ACROSS` and `SIGNORINI_HIGH` are other numbers of cells.
 #[test]
@@ -284,14 +293,13 @@ fn large_zones() {
     let number = |name: &str, other: usize| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(other);
     let cells = [number("SIGNORINI_ACROSS", 100), number("SIGNORINI_HIGH", 4)];
     let timed = |name: &str, law: Option<Box<dyn Law>>, contact: bool| {
-        let start = std::time::Instant::now();
         let mut model = Blocks::<3> { bend: 0.0, ..Blocks::new(Space::Solid, cells, law) }.model();
         if !contact {
             model.contacts.clear();
         }
-        println!("{name}: {} unknowns, model made in {:.1} s", model.unknowns(), start.elapsed().as_secs_f64());
-        for aside in if contact { [0.0, 1.0] } else { [0.0, 0.0] } {
-            let start = std::time::Instant::now();
+        println!("{name}: {} unknowns", model.unknowns());
+        for aside in [0.0, 1.0] {
+            let start = processor_time();
             let displacement = move |support: usize, _: &Point<3>| {
                 if support == 0 { Point::<3>::new(0.003 * aside, 0.001 * aside, -0.02) } else { Point::<3>::zeros() }
             };
@@ -306,7 +314,7 @@ fn large_zones() {
                 slipping,
                 active.len(),
                 state.iterations,
-                start.elapsed().as_secs_f64(),
+                processor_time() - start,
                 most_memory(),
                 state.imbalance
             );

@@ -181,9 +181,12 @@ const MOST_BETWEEN: f64 = 100.0;
 /// No point of a body goes farther than this on a way.
 fn longest(body: &dyn Body, way: Way<'_>, number: usize) -> f64 {
     let [from, to] = [way.from, way.to].map(|end| &end.states[number].configuration);
-    let change = from.iter().zip(to).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
-    // A turn by an angle, of which a quaternion changes by half, moves points by no more than the size for each radian.
-    if body.is_rigid() { change * 1f64.max(2.0 * body.size()) } else { change }
+    let norm = |of: std::ops::Range<usize>| of.map(|k| (to[k] - from[k]).powi(2)).sum::<f64>().sqrt();
+    match body.is_rigid() {
+        // A turn by an angle, of which a quaternion changes by half, moves points by no more than the size for each radian.
+        true => norm(0..3) + 2.0 * body.size() * norm(3..from.len()),
+        false => norm(0..from.len()),
+    }
 }
 
 /// The place on a way of a given length from which a site would be pushed on to another side: half way from where it enters

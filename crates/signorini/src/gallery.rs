@@ -15,7 +15,7 @@ macro_rules! example {
 }
 
 /// Cases with mechanics, simplest first.
-pub const GALLERY: [Example; 36] = [
+pub const GALLERY: [Example; 39] = [
     example!("string", "a string on a flat floor, beside the exact solution"),
     example!("axisymmetric", "a round membrane by its radius, beside the exact solution"),
     example!("snap_in", "a sticky membrane: snap-in, pull-off, and the loop between them"),
@@ -44,8 +44,11 @@ pub const GALLERY: [Example; 36] = [
     example!("press_fit", "a shaft pressed into a hub and turned until it slips"),
     example!("groove", "a free ball between two elastic blocks, held by contact and friction alone"),
     example!("capstan", "a rope round a drum, which begins to slip at the end that is pulled"),
+    example!("belt", "a belt on two drums, of which one is turned by a moment"),
+    example!("sphere_parallel", "a rope on a parallel of a sphere, drawn until it slides"),
     example!("crossing", "two geometrically exact beams across each other"),
     example!("twist", "two rods twisted about each other by a full turn: lines of contact that wander"),
+    example!("clasp", "two rods hook into each other and are pulled"),
     example!("knot", "a trefoil knot drawn tight, with friction"),
     example!("hertz_cells", "half a disc of finite cells on a plane: no mesh follows its edge"),
     example!("pore", "a pore that closes on itself, in finite cells"),

@@ -158,6 +158,111 @@ fn a_system_goes_on_to_the_same_digits() {
     assert_eq!(read(&whole), read(&parts));
 }
 
+/// A rope that a winch takes in, and one that runs through a pulley: straight, by the law of its material.
+const WINCH: &str = r#"
+space = "3d"
+[bodies.rope.rope]
+path.points = [[0, 0, 0], [4, 0, 3]]
+cells = 20
+stiffness = 1e4
+pretension = 10
+winch = { at = "end", paid_out = "-0.3*t" }
+[supports.start]
+on = "rope:start"
+displacement = [0, 0, 0]
+[supports.winch]
+on = "rope:end"
+displacement = [0, 0, 0]
+[[steps]]
+to = 1
+increments = 3
+"#;
+
+const PULLEY: &str = r#"
+space = "3d"
+[bodies.rope.rope]
+path.points = [[0, 0, 0], [3, 0, 0], [3, -1, 0]]
+cells = 4
+stiffness = 100
+pulleys = [[3, 0, 0]]
+[supports.start]
+on = "rope:start"
+displacement = [0, 0, 0]
+[supports.pulley]
+on = "rope:pulley_1"
+displacement = [0, 0, 0]
+[supports.end]
+on = "rope:end"
+displacement = [0, "-0.2*t", 0]
+[[steps]]
+to = 1
+increments = 2
+"#;
+
+#[test]
+fn winches_and_pulleys_keep_account_of_the_rope() {
+    let found = summary(WINCH, &set(&[]));
+    let rope = &last_step(&found)["curves"]["rope"];
+    let length = 5.0 / 1.001 - 0.3;
+    assert!((number(&rope["unstrained_length"]) / length - 1.0).abs() < 1e-12, "{rope}");
+    let tension = 1e4 * (5.0 / length - 1.0);
+    assert!((number(&rope["start_tension"]) / tension - 1.0).abs() < 1e-8, "{rope}");
+    assert!((number(&rope["end_tension"]) / tension - 1.0).abs() < 1e-8, "{rope}");
+    let found = summary(PULLEY, &set(&[]));
+    let rope = &last_step(&found)["curves"]["rope"];
+    for key in ["start_tension", "end_tension"] {
+        assert!((number(&rope[key]) / (100.0 * (4.2 / 4.0 - 1.0)) - 1.0).abs() < 1e-8, "{rope}");
+    }
+    assert!((number(&rope["unstrained_length"]) - 4.0).abs() < 1e-12, "{rope}");
+    // The mistakes that can be made with them.
+    let table = [
+        (WINCH, "\"rope:end\"", "\"rope:start\"", "no support holds the end", "end"),
+        (WINCH, "-0.3*t", "-6*t", "are taken in", "-6*t"),
+        (WINCH, "-0.3*t", "1/(t - t)", "not a finite number", "1/(t - t)"),
+        (WINCH, "cells = 20", "cells = 20\ncontinuity = \"C1\"", "straight elements", "end"),
+        (PULLEY, "[[3, 0, 0]]", "[[2.9, 0, 0]]", "the nearest is at (3.0", "[2.9, 0, 0]"),
+        (PULLEY, "[[3, 0, 0]]", "[[0, 0, 0]]", "an end of the rope", "[[0, 0, 0]]"),
+        (PULLEY, "pulley_1", "pulley_2", "it has start, end, boundary, pulleys, pulley_1", "pulley_2"),
+    ];
+    for (case, from, to, message, at) in table {
+        told(&case.replacen(from, to, 1), to, message, at);
+    }
+}
+
+/// Checks that a mistake is told at its value.
+fn told(case: &str, to: &str, message: &str, at: &str) {
+    let error = error(case);
+    let place = error.place.clone().unwrap_or_else(|| panic!("no place: {}", error.message));
+    let shown = place.text[place.span.start..place.span.end.min(place.text.len())].to_string();
+    assert!(error.message.contains(message), "{to}: `{}` has no `{message}`", error.message);
+    assert!(shown.contains(at), "{to}: points at `{shown}`, not `{at}`");
+}
+
+#[test]
+fn mistakes_of_curves_are_told_at_their_place() {
+    let friction = "friction.coulomb = { mu = 0.2 }";
+    let table = [
+        (friction, "friction.viscous = { mu = -0.1, velocity = 0.01 }", "no less than zero", "-0.1"),
+        (friction, "friction.viscous = { mu = 0.1, velocity = 0 }", "must be positive", "0"),
+        (friction, "friction.viscous = { mu = 0.1, velocity = nan }", "not a finite number", "nan"),
+        (friction, "friction.viscous = { mu = 0.1 }", "missing key `velocity`", "{ mu = 0.1 }"),
+        ("\"point\"", "\"poynt\"", "unknown word `poynt`", "poynt"),
+        ("\"point\"", "3", "expected a choice", "3"),
+        ("\"0.7*(u^4 - 4*u^2)\", ", "", "3 coordinates, found 2", "u^3"),
+        ("from = -2.1", "from = 2.1", "begins and ends at u = 2.1", "2.1"),
+        ("u^3 - 3*u", "sqrt(u)", "NaN at u = -2.1", "sqrt(u)"),
+        ("u^3 - 3*u", "u^3 - 3*t", "unknown name `t`", "t"),
+        ("u^3 - 3*u", "0*u", "crosses itself", "path"),
+    ];
+    for (from, to, message, at) in table {
+        let case = example("knot");
+        assert!(case.contains(from), "`{from}` is not in the case");
+        told(&case.replacen(from, to, 1), to, message, at);
+    }
+    let drum = example("capstan").replacen("shape.cylinder", "smooth = true\nshape.cylinder", 1);
+    told(&drum, "smooth", "only triangle meshes", "shape");
+}
+
 #[test]
 fn each_mistake_is_told_at_its_place() {
     let table = [
@@ -180,11 +285,7 @@ fn each_mistake_is_told_at_its_place() {
     for (from, to, message, at) in table {
         let case = example("capstan");
         assert!(case.contains(from), "`{from}` is not in the case");
-        let error = error(&case.replacen(from, to, 1));
-        let place = error.place.clone().unwrap_or_else(|| panic!("no place: {}", error.message));
-        let shown = place.text[place.span.start..place.span.end.min(place.text.len())].to_string();
-        assert!(error.message.contains(message), "{to}: `{}` has no `{message}`", error.message);
-        assert!(shown.contains(at), "{to}: points at `{shown}`, not `{at}`");
+        told(&case.replacen(from, to, 1), to, message, at);
     }
     // A corner where a smooth curve is asked for.
     let kink = example("capstan").replacen(

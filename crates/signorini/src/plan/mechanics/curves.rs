@@ -213,12 +213,22 @@ impl Planner<'_> {
             Stated::File(file) => self.points_of_file(file),
             Stated::Formula(formula) => {
                 let [from, to] = [self.reader.number(&formula.from, NONE)?, self.reader.number(&formula.to, NONE)?];
+                if from == to {
+                    let message = format!("the path begins and ends at u = {to}");
+                    return Err(self.problem.error(&formula.to, message).help("another value than that of `from`"));
+                }
                 let list = self.formula(formula)?;
-                let at = |u: f64| {
-                    let scope = Scope { position: [u, 0.0, 0.0], time: 0.0 };
-                    Point::<3>::from_fn(|k, _| list[k].evaluate(&scope))
+                let coordinate = |k: usize, u: f64| {
+                    let value = list[k].evaluate(&Scope { position: [u, 0.0, 0.0], time: 0.0 });
+                    if value.is_finite() {
+                        return Ok(value);
+                    }
+                    let message = format!("it is {value} at u = {u}: not a finite number");
+                    let remedy = "a formula that has a value all the way from `from` to `to`";
+                    Err(self.problem.error(&formula.position[k], message).help(remedy))
                 };
-                Ok((0..=FORMULA).map(|k| at(from + (to - from) * k as f64 / FORMULA as f64)).collect())
+                let at = |u: f64| Ok(Point::<3>::new(coordinate(0, u)?, coordinate(1, u)?, coordinate(2, u)?));
+                (0..=FORMULA).map(|k| at(from + (to - from) * k as f64 / FORMULA as f64)).collect()
             }
             Stated::Arc(_) | Stated::Helix(_) => Ok(Vec::new()),
         }

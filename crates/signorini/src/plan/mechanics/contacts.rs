@@ -2,7 +2,7 @@
 
 use super::{Kind, Numbers, Tested};
 use crate::plan::planner::Planner;
-use crate::problem::units::NONE;
+use crate::problem::units::{LENGTH, NONE};
 use crate::problem::{self, AxisOn, CaseError, Components, CurveForm, Enforcement, Method, Value};
 use signorini_cells::disc_contact::{Cover, CoverFindings, DiscPairs};
 use signorini_cells::discs::Centres;
@@ -109,7 +109,7 @@ impl Planner<'_> {
             contact.friction = Some(law);
         }
         let along_a_curve = matches!(kind, Kind::Curve { .. });
-        let tested = Tested { method, axis: contact.axis, along_a_curve, notes: Vec::new(), warnings: Vec::new() };
+        let tested = Tested { along_a_curve, ..Tested::by(method, contact.axis) };
         Ok((Box::new(contact), tested))
     }
 
@@ -154,10 +154,7 @@ impl Planner<'_> {
                 .error(&at, "between curves the axis of friction is the tangent of the first")
                 .help("axis = \"tangent\", or leave it out"));
         }
-        Ok(Some((
-            Box::new(contact),
-            Tested { method: "curve", axis, along_a_curve: false, notes: Vec::new(), warnings: Vec::new() },
-        )))
+        Ok(Some((Box::new(contact), Tested::by("curve", axis))))
     }
 
     /// Contact by discs on both surfaces.
@@ -210,8 +207,7 @@ impl Planner<'_> {
                 ));
             }
         }
-        let tested =
-            Tested { method: "discrete_cell", axis: AxisChoice::Material, along_a_curve: false, notes, warnings };
+        let tested = Tested { notes, warnings, ..Tested::by("discrete_cell", AxisChoice::Material) };
         Ok((Box::new(pairs), tested))
     }
 

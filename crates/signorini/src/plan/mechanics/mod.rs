@@ -57,6 +57,13 @@ pub struct Tested {
     pub warnings: Vec<String>,
 }
 
+impl Tested {
+    /// By a method, at points in no order, with nothing to say of it.
+    fn by(method: &'static str, axis: AxisChoice) -> Self {
+        Tested { method, axis, along_a_curve: false, notes: Vec::new(), warnings: Vec::new() }
+    }
+}
+
 /// Bodies in one system, what holds and pushes them, and who may touch whom.
 pub struct MechanicsPlan {
     pub head: Head,

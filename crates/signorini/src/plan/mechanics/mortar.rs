@@ -43,7 +43,7 @@ impl Planner<'_> {
                 self.check_axis(coulomb, contact.axis, &kinds[master.body])?;
             }
         }
-        let tested = Tested { method: "mortar", axis: contact.axis, along_a_curve: false };
+        let tested = Tested::by("mortar", contact.axis);
         Ok(Some((Box::new(contact), tested)))
     }
 

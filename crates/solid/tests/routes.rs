@@ -106,12 +106,14 @@ fn states<const D: usize>(mut model: Model<D>, held: Held, route: Option<Route>)
     let top = model.bodies.list[0].mesh.groups()["top"].clone();
     let mut out = Vec::new();
     for aside in [0.0, 1.0] {
+        // A second increment without any motion would leave open whether nodes at their limit slip.
+        let deeper = if model.bodies.space == Space::Axisymmetric { 0.002 * aside } else { 0.0 };
         let aside = if model.bodies.space == Space::Axisymmetric { 0.0 } else { aside };
         let moved = move |support: usize, _: &Point<D>| {
             let is_top = support == 0 && held == Held::Top;
             let shift = |k: usize| {
                 if k == up {
-                    -0.02
+                    -0.02 - deeper
                 } else if k == 0 {
                     0.003 * aside
                 } else {

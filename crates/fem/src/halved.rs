@@ -240,8 +240,8 @@ mod tests {
     #[test]
     fn parts_make_up_their_cells() {
         for order in [1, 2] {
-            [Triangle, Quadrilateral].map(|shape| checked::<2>(shape, order));
-            [Tetrahedron, Hexahedron, Wedge].map(|shape| checked::<3>(shape, order));
+            [Triangle, Quadrilateral].into_iter().for_each(|shape| checked::<2>(shape, order));
+            [Tetrahedron, Hexahedron, Wedge].into_iter().for_each(|shape| checked::<3>(shape, order));
         }
     }
 

@@ -14,7 +14,7 @@ use signorini_membrane::obstacle::{Obstacle, Side};
 use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::Membrane;
 use signorini_membrane::report::Report;
-use signorini_membrane::zone::ZoneSizes;
+use signorini_membrane::zone::{Zone, ZoneSizes};
 use signorini_solve::Silent;
 use signorini_verify::order::fitted;
 use std::sync::Arc;

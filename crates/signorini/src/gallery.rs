@@ -15,7 +15,7 @@ macro_rules! example {
 }
 
 /// Cases with mechanics, simplest first.
-pub const GALLERY: [Example; 39] = [
+pub const GALLERY: [Example; 43] = [
     example!("string", "a string on a flat floor, beside the exact solution"),
     example!("axisymmetric", "a round membrane by its radius, beside the exact solution"),
     example!("snap_in", "a sticky membrane: snap-in, pull-off, and the loop between them"),
@@ -51,7 +51,11 @@ pub const GALLERY: [Example; 39] = [
     example!("clasp", "two rods hook into each other and are pulled"),
     example!("knot", "a trefoil knot drawn tight, with friction"),
     example!("hertz_cells", "half a disc of finite cells on a plane: no mesh follows its edge"),
+    example!("plate_holes", "a plate with a hole in cells of degree 6, beside the solution of Kirsch"),
+    example!("ball_cells", "a ball of finite cells between two plates, in space"),
+    example!("foot", "a part from an STL file on a cylinder, in finite cells"),
     example!("pore", "a pore that closes on itself, in finite cells"),
+    example!("pore_discs", "the same by discs on its surface, as first published for finite cells"),
     example!("lattice", "a piece of a gyroid under a ball: finite cells of an expression"),
     example!("foam", "a foam straight from a CT image, crushed by a plate"),
     example!("die", "a NURBS die pressed into an elastic block"),

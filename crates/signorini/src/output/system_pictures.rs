@@ -22,8 +22,9 @@ use signorini_geometry::Vector;
 const INK: RGBColor = RGBColor(20, 20, 20);
 /// The edges of rigid bodies in the plane.
 const EDGE: RGBColor = RGBColor(110, 114, 120);
-/// Size of the letters of names.
+/// Size of the letters of names, and of titles.
 const NAME: f64 = 17.0;
+const TITLE: f64 = 19.0;
 const WIDTH: f64 = 900.0;
 /// What touches is shown once more, from near by, where it takes less than this part of the picture.
 const SMALL: f64 = 0.4;
@@ -37,13 +38,15 @@ struct View {
     room: [Vector<3>; 2],
     /// How axial forces or stresses become colours.
     scale: Scale,
+    /// The least width of the page: that of its title.
+    width: f64,
     look: Look,
     /// Whether bodies end at the edge of the picture.
     is_part: bool,
 }
 
 /// The view of a whole state.
-fn view_of(plan: &MechanicsPlan, shown: &SystemShown) -> View {
+fn view_of(plan: &MechanicsPlan, shown: &SystemShown, title: &str) -> View {
     let scale = scale_of(shown);
     let drawn = bodies(shown, &scale, plan.space == Space::ThreeD);
     let mut points: Vec<Vector<3>> = drawn.iter().flat_map(Body::seen).copied().collect();
@@ -53,7 +56,8 @@ fn view_of(plan: &MechanicsPlan, shown: &SystemShown) -> View {
     if plan.space != Space::ThreeD {
         points.extend(room.map(flat));
     }
-    View { points, axes: shown.bounds(), room, scale, look: Look::Solid, is_part: false }
+    let width = text_width(title, TITLE) + 40.0;
+    View { points, axes: shown.bounds(), room, scale, width, look: Look::Solid, is_part: false }
 }
 
 fn flat(x: Vector<3>) -> Vector<3> {
@@ -95,7 +99,7 @@ fn scene(
     // The page has the shape of what is seen, and room for its title.
     let extent = Camera::new(&towards, &above, view.points.iter(), [0.0, 0.0, 1e3, 1e3]).extent();
     let (width, height) = Page::size_for(extent);
-    let mut page = Page::new((width.max(text_width(title, 19.0) + 40.0), height), title, note);
+    let mut page = Page::new((width.max(view.width), height), title, note);
     let inner = page.room();
     let area = [inner[0] + 26.0, inner[1], inner[2] - 10.0, inner[3] - 6.0];
     let camera = Camera::new(&towards, &above, view.points.iter(), area);
@@ -195,7 +199,7 @@ pub fn draw(
 ) -> Result<(), OutputError> {
     let labels = Labels(plan.head.unit_names());
     let title = |time: f64| format!("{}, t = {}", plan.head.problem.name(), label(time));
-    let view = view_of(plan, shown);
+    let view = view_of(plan, shown, &title(shown.time));
     let mut drawn = vec![("deformed".to_string(), scene(plan, shown, &view, &title(shown.time), "")?)];
     let size = |[low, high]: [Vector<3>; 2]| (high - low).max();
     if let Some(frame) = around_contact(shown).filter(|frame| size(*frame) < SMALL * size(view.axes)) {
@@ -232,10 +236,11 @@ fn film_of(
     title: &(dyn Fn(f64) -> String + Sync),
 ) -> Result<Vec<String>, OutputError> {
     let join = |[a, b]: [Vector<3>; 2], [c, d]: [Vector<3>; 2]| [a.inf(&c), b.sup(&d)];
-    let views = frames.iter().map(|f| View { look: Look::Film, ..view_of(plan, f) });
+    let views = frames.iter().map(|f| View { look: Look::Film, ..view_of(plan, f, &title(f.time)) });
     let Some(view) = views.reduce(|mut a, b| {
         a.points.extend(b.points);
-        View { axes: join(a.axes, b.axes), room: join(a.room, b.room), scale: a.scale.with(&b.scale), ..a }
+        let (scale, width) = (a.scale.with(&b.scale), a.width.max(b.width));
+        View { axes: join(a.axes, b.axes), room: join(a.room, b.room), scale, width, ..a }
     }) else {
         return Ok(Vec::new());
     };
@@ -248,5 +253,6 @@ fn film_of(
 /// A picture that cannot be drawn.
 pub fn preview(plan: &MechanicsPlan) -> Result<String, OutputError> {
     let shown = SystemShown::of_bodies(plan, &plan.system.start().bodies);
-    scene(plan, &shown, &view_of(plan, &shown), plan.head.problem.name(), "at the start")
+    let title = plan.head.problem.name();
+    scene(plan, &shown, &view_of(plan, &shown, title), title, "at the start")
 }

@@ -79,10 +79,12 @@ impl Planner<'_> {
                     out
                 };
                 let hold = Hold { displacement: filled(&hold[0]), rotation: filled(&hold[1]) };
-                let found = body
-                    .hold(support.part.group.as_deref(), &hold, &body.start())
-                    .map_err(|error| self.misplaced(&key.on, &error))?;
-                if found.is_empty() {
+                let (on, start) = (support.part.group.as_deref(), body.start());
+                let misplaced = |error: PlaceError| self.misplaced(&key.on, &error);
+                let found = body.hold(on, &hold, &start).map_err(misplaced)?;
+                let mut forces = Contribution::new(body.unknowns());
+                let weakly = body.hold_weakly(on, &hold, &start, Order::First, &mut forces).map_err(misplaced)?;
+                if found.is_empty() && weakly.is_none() {
                     let message = format!("the support `{name}` holds nothing of `{}`", body.name());
                     return Err(problem.error(&key.on, message));
                 }

@@ -219,8 +219,8 @@ impl DiscPairs {
                     let both = sa.radius + sb.radius;
                     let same_body = sa.part.body == sb.part.body;
                     let between = self.surfaces.len() == 1 || !std::ptr::eq(sa, sb);
-                    let is_neighbour = same_body && a.normal.dot(&b.normal) > SAME_FACE
-                        || (same_body && (a.start - b.start).norm() < both);
+                    let is_neighbour =
+                        same_body && (a.normal.dot(&b.normal) > SAME_FACE || (a.start - b.start).norm() < both);
                     if distance < both && distance > 0.0 && between && !is_neighbour {
                         let stiffness =
                             self.factor * a.stiffness.min(b.stiffness) * (a.site.weight * b.site.weight).sqrt();

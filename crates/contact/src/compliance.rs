@@ -43,11 +43,10 @@ pub enum Route {
 
 /// Contact states that are solved for until one stays, as is usual.
 const STATES: f64 = 8.0;
-/// Products that a contact state needs, as measured on blocks of 20 to 100 cells across: 30 to 90 from nothing, and fewer for
-/// each next one.
+/// Products that a contact state needs: an estimate.
 const PRODUCTS: f64 = 50.0;
 /// How much faster an operation is in dense kernels, and in solves for many columns, than in a solve for one, which waits for
-/// memory; measured 3 to 8.
+/// memory: an estimate.
 const BLOCKED: f64 = 4.0;
 /// Memory that columns may take in any case: little beside the mesh and the program.
 const LITTLE: f64 = 64.0 * 1024.0 * 1024.0;

@@ -43,7 +43,7 @@ pub enum StepError {
         history.len(),
         slides_off.as_ref().map_or(String::new(), |off| format!("; {off}"))
     )]
-    Newton { contact: String, history: Vec<f64>, place: String, slides_off: Option<SlidesOff> },
+    Newton { contact: String, history: Vec<f64>, place: String, slides_off: Option<Box<SlidesOff>> },
     #[error("contact `{contact}`: Nitsche's method is for small sliding")]
     NitscheSlides { contact: String },
     #[error("contact `{contact}`: friction is for small sliding, with multipliers or a penalty, and {unlike}")]

@@ -116,7 +116,12 @@ impl<const D: usize> Model<D> {
             let x: Vec<String> = x.iter().map(|v| format!("{v:.6}")).collect();
             format!("({})", x.join(", "))
         });
-        Err(StepError::Newton { contact: contact.name.clone(), history, place, slides_off: self.slides_off(which) })
+        Err(StepError::Newton {
+            contact: contact.name.clone(),
+            history,
+            place,
+            slides_off: self.slides_off(which).map(Box::new),
+        })
     }
 
     /// Measures all gaps at a displacement.

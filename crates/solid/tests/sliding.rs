@@ -174,7 +174,7 @@ fn sliding_off_the_end_is_told() {
         };
         let Some(error) = told else { continue };
         let StepError::Newton { slides_off: Some(off), .. } = &error else { panic!("{method:?}: {error}") };
-        let SlidesOff { body, over, place, travel } = off;
+        let SlidesOff { body, over, place, travel } = off.as_ref();
         assert_eq!((body.as_str(), over.as_str()), ("shoe", "bed"));
         assert!(place.starts_with("(1.5") || place.starts_with("(1.4"), "{place}");
         assert!(x > 1.0 && (travel - x).abs() < 0.2, "{travel} of {x}");

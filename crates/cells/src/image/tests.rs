@@ -31,7 +31,8 @@ fn damaged_files_are_read_or_refused() {
     for (at, value) in [(0, 348i16), (40, 3), (42, 2), (44, 3), (46, 2), (70, 16), (254, 1)] {
         nifti[at..at + 2].copy_from_slice(&value.to_le_bytes());
     }
-    for (at, value) in [(80, 1.0f32), (84, 1.0), (88, 1.0), (108, 352.0)] {
+    // Spacings, where the values begin, and the diagonal of the affine map.
+    for (at, value) in [(80, 1.0f32), (84, 1.0), (88, 1.0), (108, 352.0), (280, 1.0), (300, 1.0), (320, 1.0)] {
         nifti[at..at + 4].copy_from_slice(&value.to_le_bytes());
     }
     nifti[344..348].copy_from_slice(b"n+1\0");

@@ -17,6 +17,8 @@ const LINES: usize = 40;
 const SLIPS: f64 = 2.0;
 /// Tested points face one way where their normals are within 60 degrees of the mean.
 const ONE_WAY: f64 = 0.5;
+/// A zone is flat, and has no inside, below this share of its width to its length.
+const FLAT: f64 = 0.5;
 const WIDTH: f64 = 900.0;
 const NORMAL: f64 = 0.3;
 const FRICTION: f64 = 0.7;
@@ -101,7 +103,7 @@ struct Order {
 }
 
 /// Points of a curve are in order; those of a surface in the plane are along the axis that they extend along most, or around
-/// their middle where they face all ways.
+/// their middle where they lie about it.
 fn order(contact: &ContactShown, plane: bool, labels: &Labels) -> Option<Order> {
     let points: Vec<Vector<3>> = (0..contact.fields.points.len()).map(|k| contact.at(k)).collect();
     if !contact.fields.cells.is_empty() && points.len() > 2 {
@@ -120,21 +122,19 @@ fn order(contact: &ContactShown, plane: bool, labels: &Labels) -> Option<Order> 
     let normals = contact.fields.array("normal")?;
     let normal = |k: usize| Vector::<3>::from_column_slice(&normals[3 * k..3 * k + 3]);
     let mean = closed.iter().map(|&k| normal(k)).sum::<Vector<3>>() / closed.len() as f64;
-    let mut places: Vec<(f64, usize)>;
-    let name;
-    if closed.iter().all(|&k| normal(k).dot(&mean) >= ONE_WAY * mean.norm()) && mean.norm() > ONE_WAY {
-        let (low, high) = closed.iter().fold((points[closed[0]], points[closed[0]]), |(low, high), &k| {
-            (low.inf(&points[k]), high.sup(&points[k]))
-        });
-        let axis = usize::from(high.y - low.y > high.x - low.x);
-        places = closed.iter().map(|&k| (points[k][axis], k)).collect();
-        name = labels.length(["x", "y"][axis]);
+    let (low, high) = (closed.iter())
+        .fold((points[closed[0]], points[closed[0]]), |(low, high), &k| (low.inf(&points[k]), high.sup(&points[k])));
+    let size = high - low;
+    let one_way = closed.iter().all(|&k| normal(k).dot(&mean) >= ONE_WAY * mean.norm()) && mean.norm() > ONE_WAY;
+    let is_flat = size.x.min(size.y) < FLAT * size.x.max(size.y);
+    let (mut places, name): (Vec<(f64, usize)>, String) = if one_way || is_flat {
+        let axis = usize::from(size.y > size.x);
+        (closed.iter().map(|&k| (points[k][axis], k)).collect(), labels.length(["x", "y"][axis]))
     } else {
         let middle = closed.iter().map(|&k| points[k]).sum::<Vector<3>>() / closed.len() as f64;
         let angle = |x: Vector<3>| (x.y - middle.y).atan2(x.x - middle.x).to_degrees();
-        places = closed.iter().map(|&k| (angle(points[k]), k)).collect();
-        name = "angle about the middle [°]".into();
-    }
+        (closed.iter().map(|&k| (angle(points[k]), k)).collect(), "angle about the middle [°]".into())
+    };
     places.sort_by(|a, b| a.0.total_cmp(&b.0));
     Some(Order { places, name })
 }

@@ -71,7 +71,7 @@ fn each_mistake_is_told_at_its_place() {
         (
             "incline",
             "friction.coulomb",
-            "sliding = \"finite\"\nmethod.mortar = {}\nfriction.coulomb",
+            "sliding = \"finite\"\nmethod.active_set = {}\nfriction.coulomb",
             "for other bodies",
             "method",
             "gauss_point",

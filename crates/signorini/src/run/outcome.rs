@@ -43,7 +43,7 @@ impl Ending {
 pub struct Outcome {
     pub summary: Summary,
     pub ending: Ending,
-    /// The states of [`solve`], as often as the output asks for; of a run with a folder they are there.
+    /// The states of [`solve`](crate::run::solve), as often as the output asks for; of a run with a folder they are there.
     pub states: Vec<ShownState>,
 }
 

@@ -68,6 +68,7 @@ pub fn asset(name: &str) -> Option<&'static [u8]> {
         "drum.msh" => Some(include_bytes!("../../../gallery/drum/drum.msh")),
         "press_fit.msh" => Some(include_bytes!("../../../gallery/press_fit/press_fit.msh")),
         "measured.csv" => Some(include_bytes!("../../../gallery/blister/measured.csv")),
+        "foot.stl" => Some(include_bytes!("../../../gallery/foot/foot.stl")),
         "foam.npy" => Some(include_bytes!("../../../gallery/foam/foam.npy")),
         "scan.stl" => Some(include_bytes!("../../../gallery/scan/scan.stl")),
         _ => None,

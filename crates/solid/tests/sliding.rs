@@ -159,7 +159,7 @@ fn a_failed_step_leaves_no_trace() {
 
 /// What slides off the end of another body leaves it, or is told by name and place; the state before stays.
 #[test]
-#[ignore = "not yet seen to pass"]
+#[ignore = "contact at nodes ends without a word about the end of the master"]
 fn sliding_off_the_end_is_told() {
     for method in [Method::Mortar, Method::Node] {
         let mut model = model::<2>(method, Sliding::Finite, false, 2);

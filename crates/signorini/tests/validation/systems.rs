@@ -279,7 +279,7 @@ fn each_mistake_is_told_at_its_place() {
         ("tension = \"1 + (pull - 1)*t\"", "tension = \"1/(t - t)\"", "not a finite number", "1/(t - t)"),
         ("{ mu = \"mu\" }", "{ mu = -0.1 }", "no less than zero", "-0.1"),
         ("space = \"3d\"", "space = \"plane_strain\"", "does not lie in this space", "plane_strain"),
-        ("friction.coulomb", "method.mortar = {}\nfriction.coulomb", "for other bodies", "method"),
+        ("friction.coulomb", "method.mortar = {}\nfriction.coulomb", "has no faces", "method"),
         ("[\"rope\", \"drum\"]", "[\"drum\", \"drum\"]", "can move", "[contacts.wrap]"),
     ];
     for (from, to, message, at) in table {

@@ -189,10 +189,41 @@ impl Law for Sticks {
 }
 
 /// The part of a change that the next outer iteration may leave.
-pub(crate) const SLOW: f64 = 0.25;
+const SLOW: f64 = 0.25;
 /// The part of its compliance that a contact keeps then, and the least.
-pub(crate) const HARDER: f64 = 0.1;
-pub(crate) const HARDEST: f64 = 1e-6;
+const HARDER: f64 = 0.1;
+const HARDEST: f64 = 1e-6;
+
+/// Takes the tractions found as those to give way from, beside the pressure per gap of each: the largest change, relative to
+/// the largest pressure.
+pub(crate) fn take_over<'a>(
+    kept: impl Iterator<Item = (&'a mut [f64; 3], &'a f64)>,
+    found: &[[f64; 3]],
+    around: &Around,
+) -> f64 {
+    let most = found.iter().map(|f| f[0]).fold(0.0f64, f64::max);
+    let mut change = 0.0f64;
+    for ((kept, stiffness), traction) in kept.zip(found) {
+        let changed = (0..3).map(|i| (kept[i] - traction[i]).abs()).fold(0.0, f64::max);
+        // Gaps are known to the rounding of positions only.
+        change = change.max(if changed > around.known * stiffness { changed / most } else { 0.0 });
+        *kept = *traction;
+    }
+    change
+}
+
+/// The compliance to go on with: where a step leaves more than a quarter of the error, the next ones are to leave less
+/// (Bertsekas 1982). What enforces has tractions as unknowns, so that Newton's method suffers no harm.
+pub(crate) fn hardened(softness: f64, change: f64, around: &Around) -> f64 {
+    if around.before.is_some_and(|before| change > SLOW * before) { (HARDER * softness).max(HARDEST) } else { softness }
+}
+
+/// Changes penalties so that the penetration becomes the wanted one: by how much, relative.
+pub(crate) fn towards(wanted: f64, found: &[SiteResult], penalties: &mut [f64]) -> f64 {
+    let Some(factor) = penalty_factor(found, wanted) else { return 0.0 };
+    penalties.iter_mut().for_each(|c| *c *= factor);
+    (factor - 1.0).abs()
+}
 
 /// Penetration that an outer iteration leaves, relative to the one that is wanted.
 pub const NEAR_WANTED: f64 = 1e-2;
@@ -318,29 +349,15 @@ impl Interaction for Contact {
     ) -> Result<f64, PlaceError> {
         match self.enforcement {
             Enforcement::AugmentedLagrangian => {
-                let found = self.found(&at.sides(self), own.multipliers)?;
-                let most = found.iter().map(|f| f.1[0]).fold(0.0f64, f64::max);
-                let mut change = 0.0f64;
-                for ((memory, stiffness), (_, traction)) in self.memory.iter_mut().zip(&self.stiffness).zip(found) {
-                    let changed = (0..3).map(|i| (memory.traction[i] - traction[i]).abs()).fold(0.0, f64::max);
-                    // Gaps are known to the rounding of positions only.
-                    change = change.max(if changed > around.known * stiffness { changed / most } else { 0.0 });
-                    memory.traction = traction;
-                }
-                // Where a step leaves more than a quarter of the error, the next ones are to leave less (Bertsekas 1982):
-                // what enforces has tractions as unknowns, so that Newton's method suffers no harm.
-                if around.before.is_some_and(|before| change > SLOW * before) {
-                    self.softness = (HARDER * self.softness).max(HARDEST);
-                }
+                let found = self.found(&at.sides(self), own.multipliers)?.into_iter().map(|f| f.1).collect::<Vec<_>>();
+                let kept = self.memory.iter_mut().map(|m| &mut m.traction).zip(&self.stiffness);
+                let change = take_over(kept, &found, &around);
+                self.softness = hardened(self.softness, change, &around);
                 Ok(change)
             }
-            Enforcement::Penalty { wanted_penetration: Some(wanted) } => match penalty_factor(found, wanted) {
-                Some(factor) => {
-                    self.stiffness.iter_mut().for_each(|c| *c *= factor);
-                    Ok((factor - 1.0).abs())
-                }
-                None => Ok(0.0),
-            },
+            Enforcement::Penalty { wanted_penetration: Some(wanted) } => {
+                Ok(towards(wanted, found, &mut self.stiffness))
+            }
             _ => Ok(0.0),
         }
     }

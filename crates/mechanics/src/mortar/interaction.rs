@@ -6,7 +6,7 @@ use super::{Mortar, NodeMemory};
 use crate::body::{Body, MaterialPoint, PlaceError};
 use crate::contact::{Enforcement, SiteResult};
 use crate::interaction::{
-    Around, Bodies, HARDER, HARDEST, Interaction, NotItsHistory, Own, SLOW, Sticks, Target, penalty_factor,
+    Around, Bodies, Interaction, NotItsHistory, Own, Sticks, Target, hardened, take_over, towards,
 };
 use crate::pair::{AxisChoice, Pair, any_tangent};
 use crate::prepare::WAVE;
@@ -225,28 +225,15 @@ impl Interaction for Mortar {
         match self.enforcement {
             Enforcement::AugmentedLagrangian => {
                 let projected = self.found(at, own.multipliers)?.projected;
-                let most = projected.iter().map(|p| p.traction[0]).fold(0.0f64, f64::max);
-                let mut change = 0.0f64;
-                for ((memory, c), projected) in self.memory.iter_mut().zip(&self.stiffness).zip(projected) {
-                    let changed =
-                        (0..3).map(|i| (memory.traction[i] - projected.traction[i]).abs()).fold(0.0, f64::max);
-                    // Gaps are known to the rounding of positions only.
-                    change = change.max(if changed > around.known * c { changed / most } else { 0.0 });
-                    memory.traction = projected.traction;
-                }
-                // Where a step leaves more than a quarter of the error, the next ones are to leave less.
-                if around.before.is_some_and(|before| change > SLOW * before) {
-                    self.softness = (HARDER * self.softness).max(HARDEST);
-                }
+                let found: Vec<[f64; 3]> = projected.iter().map(|p| p.traction).collect();
+                let kept = self.memory.iter_mut().map(|m| &mut m.traction).zip(&self.stiffness);
+                let change = take_over(kept, &found, &around);
+                self.softness = hardened(self.softness, change, &around);
                 Ok(change)
             }
-            Enforcement::Penalty { wanted_penetration: Some(wanted) } => match penalty_factor(found, wanted) {
-                Some(factor) => {
-                    self.stiffness.iter_mut().for_each(|c| *c *= factor);
-                    Ok((factor - 1.0).abs())
-                }
-                None => Ok(0.0),
-            },
+            Enforcement::Penalty { wanted_penetration: Some(wanted) } => {
+                Ok(towards(wanted, found, &mut self.stiffness))
+            }
             _ => Ok(0.0),
         }
     }

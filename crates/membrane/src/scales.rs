@@ -87,11 +87,11 @@ impl Scales {
     }
 
     /// Penetration that counts as none in a cell of size `h`: a fraction of the cell's share of the gap, and what a
-    /// polynomial of this degree misses of a curved membrane.
+    /// polynomial of this degree misses of a curved membrane, as long as that is little beside the gap.
     pub fn gap_tolerance(&self, h: f64) -> f64 {
         let relative = h / self.length;
         let missed = 0.2 * self.pressure / self.tension * h.powi(2) * relative.powi(self.degree as i32 - 1);
-        1e-3 * relative.powi(2) * self.gap + missed
+        1e-3 * relative.powi(2) * self.gap + missed.min(0.1 * self.gap)
     }
 
     /// Suction that counts as none.

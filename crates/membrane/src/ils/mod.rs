@@ -241,10 +241,10 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             let state = (solution.zone.counts(), conditions.least_gap_outside);
             let left = self.rest == Rest::BeforeDivision && !self.adhering;
             let again = |(counts, gap): &((usize, usize), f64)| {
-                *counts == state.0 && (left || (gap / state.1 - 1.0).abs() < 0.1)
+                *counts == state.0 && ((left && !first) || (gap / state.1 - 1.0).abs() < 0.1)
             };
-            if !first && seen.iter().any(again) {
-                if left || conditions.nearly_hold(scales, self.membrane) {
+            if seen.iter().any(again) {
+                if (left && !first) || conditions.nearly_hold(scales, self.membrane) {
                     solution.unresolved = Some(-conditions.least_gap_outside);
                     solution.conditions = Some(conditions);
                     return Ok(Reason::Converged);

@@ -266,11 +266,10 @@ pub(super) fn clearance<const D: usize>(plan: &MembranePlan<D>, time: f64) -> Op
         return None;
     }
     let least = |membrane: &Membrane<D>| {
-        let (gap, side, _) = (plan.kernel.free)(membrane).ok()?.least_gap;
-        Some((gap, side))
+        Some((plan.kernel.free)(membrane).ok()?.least_gap)
     };
-    let (gap, side) = least(&loaded).filter(|(gap, _)| *gap > 0.0)?;
-    let (before, _) = least(&Membrane { load: Arc::new(Constant(0.0)), ..loaded.clone() })?;
+    let (gap, side, x) = least(&loaded).filter(|(gap, ..)| *gap > 0.0)?;
+    let (before, ..) = least(&Membrane { load: Arc::new(Constant(0.0)), ..loaded.clone() })?;
     let nearer = before - gap;
     let away = if side == Side::Below { "up, away from what lies below" } else { "down, away from what lies above" };
     let hint = if nearer < 0.0 {
@@ -282,10 +281,18 @@ pub(super) fn clearance<const D: usize>(plan: &MembranePlan<D>, time: f64) -> Op
             "; the load brings it nearer by {nearer:.1e} only: it is {size:.4}{unit} wide, are its size, load and tension in the \
              units of the case?"
         )
+    } else if plan.grid.degree() == 1 && sag(&loaded, &x) > gap {
+        let sag = sag(&loaded, &x);
+        format!("; but within a cell it may sag by {sag:.1e}, which degree 1 does not see: use more cells, or degree 2")
     } else {
         String::new()
     };
     Some(format!("the least gap at t = {time} is {gap:.4e}{hint}"))
+}
+
+/// How far a membrane hangs through within the cell about a point: a string as long as the cell under the load there.
+fn sag<const D: usize>(membrane: &Membrane<D>, x: &Point<D>) -> f64 {
+    membrane.load.value(x).abs() * membrane.cell_size(x).powi(2) / (8.0 * membrane.tension.value(x))
 }
 
 /// Solves for the membrane without contact, at rest and under its last load.

@@ -244,6 +244,24 @@ fn what_touches_nothing_is_told_why() {
     assert!(solid("[0, 0, 9]").contains("outside all bodies") && !solid("[0, 0, -1]").contains("outside"));
 }
 
+/// A string on few cells of degree 1 does not hang through the floor, nor says a single one that it touches nothing.
+#[test]
+fn coarse_cells_do_not_let_a_membrane_through() {
+    let verdict = |cells: usize| {
+        let case = format!(
+            "space = \"line\"\n[bodies.film.membrane]\ndomain.interval = [0, 1]\nmesh.grid = {{ cells = [{cells}] }}\ndegree = 1\n\
+             tension = 1\n[bodies.floor.rigid]\nshape.height = -1\n[supports.rim]\non = \"film:boundary\"\ndisplacement = 0\n\
+             [loads.weight]\non = \"film\"\nnormal = -20\n[contacts.touch]\nbetween = [\"film\", \"floor\"]\n"
+        );
+        super::summary(&case, &super::set(&[]))
+    };
+    assert!(verdict(1)["verdict"].to_string().contains("which degree 1 does not see"));
+    for cells in [2, 3] {
+        let length = verdict(cells)["steps"][0]["contacts"]["touch"]["area"].as_f64().expect("a length");
+        assert!((length - (1.0 - 2.0 * 0.1f64.sqrt())).abs() < 1e-3, "{length}");
+    }
+}
+
 /// The volume of a closed surface tells which way round it is: one inside out is turned, told once, by `check` and `run`.
 #[test]
 fn a_surface_inside_out_is_turned_round_and_told() {

@@ -17,7 +17,7 @@ use crate::discs::{Centres, SAME_FACE};
 use signorini_contact::{Law, Status};
 use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::contact::Part;
-use signorini_mechanics::interaction::{Around, NotItsHistory, penalty_factor};
+use signorini_mechanics::interaction::{Around, NotItsHistory, SimplerFriction, penalty_factor};
 use signorini_mechanics::{Bodies, Body, Function, Interaction, Own, PlaceError, Sampling, Site, SiteResult, Target};
 use std::collections::BTreeMap;
 
@@ -318,7 +318,7 @@ impl Interaction for DiscPairs {
         Ok(factor.map_or(0.0, |f| (f - 1.0).abs()))
     }
 
-    fn simplify(&mut self) {}
+    fn simplify(&mut self, _: SimplerFriction) {}
 
     fn restate(&mut self) {}
 

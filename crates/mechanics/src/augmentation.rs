@@ -3,13 +3,13 @@
 
 use crate::equilibrium::ROUNDING;
 use crate::increment::{IncrementError, IncrementResult};
-use crate::interaction::{Around, Bodies};
+use crate::interaction::{Around, Bodies, SimplerFriction};
 use crate::iterative::Solved;
 use crate::system::{AssemblyError, System, SystemState};
 
 impl System {
-    /// A state near the one that is looked for, with contacts that give way as by penalties, and with all that touches
-    /// sticking: while nothing carries yet, nothing would rub. None where there is no such state either.
+    /// A state near the one that is looked for, with contacts that give way as by penalties, or else with all that touches
+    /// sticking too. None where there is no such state either.
     pub(crate) fn by_penalties(
         &mut self,
         start: &SystemState,
@@ -17,10 +17,14 @@ impl System {
         solved: &mut Solved,
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Option<SystemState> {
-        self.contacts.iter_mut().for_each(|contact| contact.simplify());
-        let found = self.inner(start, time, solved, report).ok();
-        self.contacts.iter_mut().for_each(|contact| contact.restate());
-        found.map(|found| found.state)
+        let rubs = self.contacts.iter().any(|contact| contact.law().is_some());
+        let ways = [SimplerFriction::Stated, SimplerFriction::Sticks];
+        ways[..if rubs { 2 } else { 1 }].iter().find_map(|friction| {
+            self.contacts.iter_mut().for_each(|contact| contact.simplify(*friction));
+            let found = self.inner(start, time, solved, report).ok();
+            self.contacts.iter_mut().for_each(|contact| contact.restate());
+            found.map(|found| found.state)
+        })
     }
 
     /// Sets multipliers to the tractions found, penalties to what leaves the penetration that is wanted; the largest

@@ -154,8 +154,8 @@ pub trait Interaction: Send + Sync {
         around: Around,
     ) -> Result<f64, PlaceError>;
 
-    /// Until [`Interaction::restate`]: penalties in place of multipliers, and all that touches sticks.
-    fn simplify(&mut self);
+    /// Until [`Interaction::restate`]: penalties in place of multipliers, with a simpler friction where that is asked for.
+    fn simplify(&mut self, friction: SimplerFriction);
 
     /// Ends what [`Interaction::simplify`] began.
     fn restate(&mut self);
@@ -168,6 +168,25 @@ pub trait Interaction: Send + Sync {
     /// # Errors
     /// Numbers of something else.
     fn restore(&mut self, history: &[Vec<f64>; 2]) -> Result<(), NotItsHistory>;
+}
+
+/// The friction of a contact while a start is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SimplerFriction {
+    /// Its own.
+    Stated,
+    /// All that touches sticks: while nothing carries yet, nothing would rub.
+    Sticks,
+}
+
+impl SimplerFriction {
+    /// Puts it in the place of a law, which is returned if another one takes its place.
+    pub fn instead_of(self, law: &mut Option<Box<dyn Law>>) -> Option<Box<dyn Law>> {
+        match self {
+            Self::Stated => None,
+            Self::Sticks => law.as_mut().map(|law| std::mem::replace(law, Box::new(Sticks))),
+        }
+    }
 }
 
 /// Friction without a limit.
@@ -362,16 +381,16 @@ impl Interaction for Contact {
         }
     }
 
-    fn simplify(&mut self) {
-        let law = self.friction.as_mut().map(|law| std::mem::replace(law, Box::new(Sticks)));
-        self.set_aside = Some((law, self.enforcement, self.softness));
+    fn simplify(&mut self, friction: SimplerFriction) {
+        self.set_aside = Some((friction.instead_of(&mut self.friction), self.enforcement, self.softness));
         self.enforcement = Enforcement::Penalty { wanted_penetration: None };
         self.softness = self.enforcement.softness();
     }
 
     fn restate(&mut self) {
-        if let Some(before) = self.set_aside.take() {
-            (self.friction, self.enforcement, self.softness) = before;
+        if let Some((law, enforcement, softness)) = self.set_aside.take() {
+            self.friction = law.or(self.friction.take());
+            (self.enforcement, self.softness) = (enforcement, softness);
         }
     }
 

@@ -37,7 +37,7 @@ pub use body::{
     Anchor, Bend, Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Direction, Foot, Function, Hold,
     Load, Master, MaterialPoint, Met, Order, PlaceError, Placed, RigidFoot, Sampling, Site,
 };
-pub use contact::{Contact, Enforcement, Part, SiteMemory, SiteResult};
+pub use contact::{Contact, Enforcement, OfSurface, Part, SiteMemory, SiteResult};
 pub use curve::Curve;
 pub use increment::{IncrementError, IncrementResult};
 pub use interaction::{Bodies, Interaction, Own, Target};

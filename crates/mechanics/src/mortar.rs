@@ -23,6 +23,7 @@ mod force;
 mod interaction;
 mod measure;
 mod saved;
+mod shown;
 
 use crate::body::{Body, BodyState, PlaceError};
 use crate::contact::{Enforcement, Part};

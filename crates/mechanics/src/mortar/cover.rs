@@ -6,7 +6,7 @@
 
 use crate::surface::{Faces, Local, Surface};
 use signorini_contact::{
-    ContactSurface, GapJet, GapPoint, Moved, PressureNodes, pieces, rigid_points, shares_on_the_way,
+    ContactSurface, GapJet, GapPoint, Given, Moved, PressureNodes, pieces, rigid_points, shares_on_the_way,
 };
 use signorini_geometry::Point;
 
@@ -33,6 +33,14 @@ pub(super) struct Cover {
     pub points: Vec<Vec<CoveredPoint>>,
     /// Integral of the dual function of each node.
     pub weight: Vec<f64>,
+    /// Nodes whose function another one took.
+    pub given: Vec<Given>,
+}
+
+impl Cover {
+    fn none(nodes: usize) -> Self {
+        Cover { points: Vec::new(), weight: vec![0.0; nodes], given: Vec::new() }
+    }
 }
 
 /// How pieces are found and integrated.
@@ -68,7 +76,7 @@ impl Nodes {
         match (self, slave.faces().0) {
             (Nodes::Plane(nodes), Faces::Plane(faces)) => whole(nodes, faces, folded),
             (Nodes::Space(nodes), Faces::Space(faces)) => whole(nodes, faces, folded),
-            _ => Cover { points: Vec::new(), weight: vec![0.0; folded.len()] },
+            _ => Cover::none(folded.len()),
         }
     }
 
@@ -81,7 +89,7 @@ impl Nodes {
             (Nodes::Space(nodes), Faces::Space(a), Faces::Space(b)) => {
                 cut(nodes, [a, b], [slave, master], search, folded)
             }
-            _ => Cover { points: Vec::new(), weight: vec![0.0; folded.len()] },
+            _ => Cover::none(folded.len()),
         }
     }
 }
@@ -145,5 +153,5 @@ fn cover<const D: usize>(
         list.map(of).collect()
     };
     let points = points.into_iter().zip(shares.of_point).enumerate().map(of_face).collect();
-    Cover { points, weight: shares.weight }
+    Cover { points, weight: shares.weight, given: shares.given }
 }

@@ -2,11 +2,12 @@
 
 use super::force::Assembly;
 use super::measure::{Matched, NodeMeasure, Opposite, Sides};
+use super::shown::show;
 use super::{Mortar, NodeMemory};
 use crate::body::{Body, MaterialPoint, PlaceError};
 use crate::contact::{Enforcement, SiteResult};
 use crate::interaction::{
-    Around, Bodies, Interaction, NotItsHistory, Own, Sticks, Target, hardened, take_over, towards,
+    Around, Bodies, Interaction, NotItsHistory, Own, SimplerFriction, Target, hardened, take_over, towards,
 };
 use crate::pair::{AxisChoice, Pair, any_tangent};
 use crate::prepare::WAVE;
@@ -75,7 +76,10 @@ impl Mortar {
             }
             out
         };
-        (0..self.whole.len()).map(of).collect()
+        let mut results: Vec<SiteResult> = (0..self.whole.len()).map(of).collect();
+        let met: Vec<Vec<bool>> = found.pairs.iter().map(|list| list.iter().map(Option::is_some).collect()).collect();
+        show(&self.nodes, found.sides.slave.faces().0, &found.cover, &met, &mut results);
+        results
     }
 
     /// The direction of the first axis of a node, by what is asked for; `normal` is that of the node.
@@ -238,16 +242,16 @@ impl Interaction for Mortar {
         }
     }
 
-    fn simplify(&mut self) {
-        let law = self.friction.as_mut().map(|law| std::mem::replace(law, Box::new(Sticks)));
-        self.set_aside = Some((law, self.enforcement, self.softness));
+    fn simplify(&mut self, friction: SimplerFriction) {
+        self.set_aside = Some((friction.instead_of(&mut self.friction), self.enforcement, self.softness));
         self.enforcement = Enforcement::Penalty { wanted_penetration: None };
         self.softness = self.enforcement.softness();
     }
 
     fn restate(&mut self) {
-        if let Some(before) = self.set_aside.take() {
-            (self.friction, self.enforcement, self.softness) = before;
+        if let Some((law, enforcement, softness)) = self.set_aside.take() {
+            self.friction = law.or(self.friction.take());
+            (self.enforcement, self.softness) = (enforcement, softness);
         }
     }
 

@@ -8,7 +8,7 @@ use signorini_contact::{Law, Status};
 use signorini_geometry::Vector;
 use signorini_mechanics::body::{Body, Order, PlaceError};
 use signorini_mechanics::interaction::{
-    Around, Bodies, Interaction, NotItsHistory, Own, Sticks, Target, penalty_factor,
+    Around, Bodies, Interaction, NotItsHistory, Own, SimplerFriction, Target, penalty_factor,
 };
 use signorini_mechanics::passage::Way;
 use signorini_mechanics::{Curve, Enforcement, SiteResult};
@@ -257,8 +257,8 @@ impl Interaction for CurveContact {
         }
     }
 
-    fn simplify(&mut self) {
-        self.set_aside = self.friction.as_mut().map(|law| std::mem::replace(law, Box::new(Sticks)));
+    fn simplify(&mut self, friction: SimplerFriction) {
+        self.set_aside = friction.instead_of(&mut self.friction);
     }
 
     fn restate(&mut self) {

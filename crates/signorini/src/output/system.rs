@@ -233,7 +233,7 @@ fn of_contact(name: &str, sites: &[SiteResult], rubs: bool, is_curve: bool) -> F
     };
     let mut fields =
         Fields { name: name.into(), points: sites.iter().map(|s| vector(&s.x)).collect(), cells, arrays: Vec::new() }
-            .scalar("contact_pressure", sites.iter().map(|s| s.pressure).collect())
+            .scalar("contact_pressure", sites.iter().map(|s| s.shown_pressure()).collect())
             .scalar("gap", sites.iter().map(|s| s.gap.unwrap_or(f64::NAN)).collect())
             .scalar("contact_status", sites.iter().map(status).collect())
             .scalar("weight", sites.iter().map(|s| s.weight).collect())

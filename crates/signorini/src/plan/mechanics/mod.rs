@@ -81,8 +81,8 @@ pub struct MechanicsPlan {
     pub notes: Vec<String>,
 }
 
-/// Whether a problem is one of a system of bodies: with ropes, beams, free rigid bodies or finite strain, with friction
-/// where solids slide any way, or with a solid that may touch itself.
+/// Whether a problem is one of a system of bodies: with ropes, beams, free rigid bodies or finite strain, where solids slide
+/// any way, or with a solid that may touch itself.
 pub fn is_system(problem: &Problem) -> bool {
     let bodies = || problem.bodies.values();
     let needs_one = |body: &Body| match body {
@@ -95,7 +95,7 @@ pub fn is_system(problem: &Problem) -> bool {
     };
     let slides = |c: &problem::Contact| {
         let in_time = matches!(c.friction, Some(problem::Friction::Viscous(_)));
-        c.within.is_some() || in_time || (c.friction.is_some() && c.sliding == Some(problem::Sliding::Finite))
+        c.within.is_some() || in_time || c.sliding == Some(problem::Sliding::Finite)
     };
     let of_solids = bodies().any(|b| matches!(b, Body::Solid(_))) && !bodies().any(|b| matches!(b, Body::Membrane(_)));
     bodies().any(needs_one) || (of_solids && problem.contacts.values().any(slides))

@@ -7,7 +7,7 @@ use signorini_mechanics::contact::Part;
 use signorini_mechanics::{AxisChoice, Enforcement as Kept, Interaction, Mortar, System};
 
 impl Planner<'_> {
-    /// Contact where `method.mortar` is stated: of a solid with another one, or with a rigid body.
+    /// Contact of a solid with another one, or with a rigid body, where `method.mortar` is stated or no method at all.
     pub(super) fn by_mortar(
         &self,
         name: &str,
@@ -15,27 +15,31 @@ impl Planner<'_> {
         [slave, master]: [&Part; 2],
         (system, kinds): (&System, &[Kind]),
     ) -> Result<Option<(Box<dyn Interaction>, Tested)>, CaseError> {
-        let Some(method @ Method::Mortar(stated)) = &key.method else { return Ok(None) };
         let problem = self.problem;
         let body = |part: &Part| system.bodies[part.body].as_ref();
-        let told = |part: &Part, what: &str| {
-            let message = format!("`{}` {what}", body(part).name());
-            problem
-                .error(method, message)
-                .help("method.gauss_point = {}  or  method.node = {}, or leave the method out")
+        let unfit = if slave.body == master.body {
+            Some((slave, "touches itself: a mortar joins two bodies"))
+        } else if !matches!(kinds[slave.body], Kind::Solid) {
+            Some((slave, "has no faces to put a mortar on: the first body is a solid"))
+        } else if !matches!(kinds[master.body], Kind::Solid | Kind::Rigid { .. }) {
+            Some((master, "has no faces that a mortar could cut: the second body is a solid or rigid"))
+        } else {
+            None
         };
-        if slave.body == master.body {
-            return Err(told(slave, "touches itself: a mortar joins two bodies"));
-        }
-        if !matches!(kinds[slave.body], Kind::Solid) {
-            return Err(told(slave, "has no faces to put a mortar on: the first body is a solid"));
-        }
-        if !matches!(kinds[master.body], Kind::Solid | Kind::Rigid { .. }) {
-            return Err(told(master, "has no faces that a mortar could cut: the second body is a solid or rigid"));
-        }
-        let kept = self.kept(stated.enforcement.as_ref(), Kept::Multiplier, "mortar")?;
+        let stated = match (&key.method, unfit) {
+            (Some(Method::Mortar(stated)), None) => stated.enforcement.as_ref(),
+            (Some(method @ Method::Mortar(_)), Some((part, what))) => {
+                return Err(problem
+                    .error(method, format!("`{}` {what}", body(part).name()))
+                    .help("method.gauss_point = {}  or  method.node = {}, or leave the method out"));
+            }
+            // The axis of friction that turns with a free body is known at single points only.
+            (None, None) if !matches!(kinds[master.body], Kind::Rigid { is_free: true, .. }) => None,
+            _ => return Ok(None),
+        };
+        let kept = self.kept(stated, Kept::Multiplier, "mortar")?;
         let mut contact = Mortar::new(name, (slave.clone(), body(slave)), (master.clone(), body(master)), kept)
-            .map_err(|error| problem.error(method, error.to_string()))?;
+            .map_err(|error| problem.error(key, error.to_string()))?;
         if let Some(friction) = &key.friction {
             contact.friction = Some(self.law(friction, 3)?);
             if let Friction::Coulomb(coulomb) = friction {

@@ -140,9 +140,12 @@ fn contact_report(
     let closed = || sites.iter().filter(|s| s.status != Status::Open);
     let is_curve = matches!(plan.kinds[contact.bodies()[0]], Kind::Curve { .. });
     let component = |run: &Vec<&SiteResult>| {
-        let area: f64 = run.iter().map(|s| s.weight).sum();
+        let area: f64 = run.iter().map(|s| s.contact_area()).sum();
         let force: Vector<3> = run.iter().map(|s| s.force()).sum();
-        let middle: Vector<3> = run.iter().map(|s| s.x * s.weight).sum::<Vector<3>>() / area;
+        // A single node may carry over no area that could be told.
+        let part = |s: &SiteResult| if area > 0.0 { s.contact_area() } else { s.weight };
+        let whole: f64 = run.iter().map(|s| part(s)).sum();
+        let middle: Vector<3> = run.iter().map(|s| s.x * part(s)).sum::<Vector<3>>() / whole;
         Component { area, force: vector(&force), centroid: vector(&middle), holes: None }
     };
     let zones = runs(sites);
@@ -155,17 +158,17 @@ fn contact_report(
     };
     let rubs = contact.law().is_some();
     // The sum of nothing is a negative zero.
-    let area = |status: Status| closed().filter(|s| s.status == status).map(|s| s.weight).sum::<f64>() + 0.0;
+    let area = |status: Status| closed().filter(|s| s.status == status).map(|s| s.contact_area()).sum::<f64>() + 0.0;
     let friction: Vector<3> = closed().map(|s| s.friction * s.weight).sum();
     ContactReport {
         force: vector(&closed().map(|s| s.force()).sum::<Vector<3>>()),
-        area: closed().map(|s| s.weight).sum(),
+        area: sites.iter().map(SiteResult::contact_area).sum(),
         zones: components.len(),
         components,
         max_penetration: sites.iter().filter_map(|s| s.gap).map(|g| -g).fold(0.0, f64::max),
         min_gap_outside: sites.iter().filter(|s| s.status == Status::Open).filter_map(|s| s.gap).reduce(f64::min),
-        max_pressure: closed().map(|s| s.pressure).fold(0.0, f64::max),
-        min_pressure: closed().map(|s| s.pressure).reduce(f64::min),
+        max_pressure: closed().map(|s| s.shown_pressure()).fold(0.0, f64::max),
+        min_pressure: closed().map(|s| s.shown_pressure()).reduce(f64::min),
         stick_area: rubs.then(|| area(Status::Stick)),
         slip_area: rubs.then(|| area(Status::Slip)),
         max_slip: rubs.then(|| closed().map(|s| s.slip).fold(0.0, f64::max)),

@@ -1,0 +1,62 @@
+//! What the nodes of a mortar contact show beside the tractions that they carry: the recovered pressure, and the area in
+//! contact, which ends within faces.
+
+use super::cover::{Cover, Nodes};
+use crate::contact::{OfSurface, SiteResult};
+use crate::surface::Faces;
+use signorini_contact::{ContactSurface, NodeState, Pressed, PressureNodes, Status, recovered, zone};
+
+/// Completes the results of the nodes; `met` tells which points of the cover, face by face, met something.
+pub(super) fn show(nodes: &Nodes, faces: Faces<'_>, cover: &Cover, met: &[Vec<bool>], results: &mut [SiteResult]) {
+    match (nodes, faces) {
+        (Nodes::Plane(nodes), Faces::Plane(faces)) => show_on(nodes, faces, cover, met, results),
+        (Nodes::Space(nodes), Faces::Space(faces)) => show_on(nodes, faces, cover, met, results),
+        _ => {}
+    }
+}
+
+fn show_on<const D: usize>(
+    nodes: &PressureNodes<D>,
+    faces: &dyn ContactSurface<D>,
+    cover: &Cover,
+    met: &[Vec<bool>],
+    results: &mut [SiteResult],
+) {
+    let is_active = |r: &SiteResult| r.status != Status::Open;
+    let points: Vec<Pressed> = (cover.points.iter().flatten().zip(met.iter().flatten()))
+        .filter(|(_, met)| **met)
+        .map(|(point, _)| {
+            let area = point.shares.iter().map(|(_, share)| share).sum();
+            let force = point.shares.iter().map(|(node, share)| share * results[*node as usize].pressure).sum();
+            Pressed { face: point.face, s: point.s, area, force }
+        })
+        .collect();
+    let mut multiplier: Vec<f64> = results.iter().map(|r| r.pressure).collect();
+    let mut active: Vec<bool> = results.iter().map(is_active).collect();
+    let mut states: Vec<NodeState> = (results.iter())
+        .map(|r| match r.gap {
+            None => NodeState::Bare,
+            Some(_) if is_active(r) => NodeState::Active,
+            Some(gap) => NodeState::Open(Some(gap)),
+        })
+        .collect();
+    // Where the area about a node without a function of its own counts.
+    let mut counts_at: Vec<usize> = (0..results.len()).collect();
+    for given in &cover.given {
+        let [from, to] = [given.from as usize, given.to as usize];
+        (multiplier[from], active[from], counts_at[from]) = (multiplier[to], active[to], to);
+        states[from] = if let NodeState::Open(_) = states[to] { NodeState::Open(None) } else { states[to] };
+    }
+    let pressure = recovered(faces, nodes, &points, &multiplier, &active, &cover.given);
+    let mut area = vec![0.0; results.len()];
+    for (face, whole) in zone(faces, nodes, &points, &states).face_area.into_iter().enumerate() {
+        let carrying: Vec<usize> =
+            nodes.of_face(face).iter().map(|(k, _)| *k as usize).filter(|k| active[*k]).collect();
+        carrying.iter().for_each(|k| area[counts_at[*k]] += whole / carrying.len() as f64);
+    }
+    for ((result, pressure), area) in results.iter_mut().zip(pressure).zip(area) {
+        if is_active(result) {
+            result.of_surface = Some(OfSurface { pressure, area });
+        }
+    }
+}

@@ -1,4 +1,4 @@
-//! The kinematics of a contact pair: its gap with first and second variations in the unknowns that move both partners.
+//! The kinematics of a contact pair: its gap and what the unknowns that move both partners change of it.
 //!
 //! One template for all pairs (Konyukhov & Schweizerhof 2013). Geometry supplies the measures at the closest points;
 //! here the shape functions of the partners are inserted, whatever they are: low or high order, or splines. A pair knows
@@ -24,7 +24,7 @@ pub struct Partner<'a> {
     pub functions: &'a [ShapeFunction],
 }
 
-/// The gap of a pair and its variations.
+/// The gap of a pair and its variation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Kinematics {
     pub gap: f64,
@@ -36,8 +36,6 @@ pub struct Kinematics {
     /// First unknown of every function that moves the partners apart, and how much it does: `δ(x_a - x_b)` at the points
     /// of the partners is the sum of these.
     pub apart: Vec<(u32, f64)>,
-    /// Second derivatives, row by row; empty where they were not asked for.
-    pub hessian: Vec<f64>,
 }
 
 impl Kinematics {
@@ -52,13 +50,11 @@ impl Kinematics {
         a: Partner<'_>,
         b: Partner<'_>,
         normal: Vector<3>,
-        second: bool,
     ) -> Option<Self> {
         let measures = Measures::<N>::new(a.jet, b.jet, normal)?;
         let of_a = a.jet.dimension();
         let zero = Vector::<3>::zeros();
         let mut out = Kinematics { gap: measures.gap, normal, ..Self::default() };
-        let mut variations = Vec::new();
         for (partner, first, sign) in [(&a, 0, 1.0), (&b, of_a, -1.0)] {
             for f in partner.functions {
                 out.apart.push((f.unknown, sign * f.value));
@@ -70,18 +66,14 @@ impl Kinematics {
                     }
                     out.unknowns.push(f.unknown + i as u32);
                     out.gradient.push(measures.gap_variation(&v));
-                    variations.push(v);
                 }
             }
-        }
-        if second {
-            out.hessian = measures.gap_hessian(&variations);
         }
         Some(out)
     }
 
-    /// The pair of a point and a rigid body whose gap has a value, gradient and Hessian in the position of the point.
-    pub fn of_rigid<const D: usize>(functions: &[ShapeFunction], rigid: &GapJet<D>, second: bool) -> Self {
+    /// The pair of a point and a rigid body whose gap has a value and a gradient in the position of the point.
+    pub fn of_rigid<const D: usize>(functions: &[ShapeFunction], rigid: &GapJet<D>) -> Self {
         let normal = Vector::<3>::from_fn(|k, _| if k < D { rigid.normal[k] } else { 0.0 });
         let mut out = Kinematics { gap: rigid.gap, normal, ..Self::default() };
         for f in functions {
@@ -89,15 +81,6 @@ impl Kinematics {
             for i in 0..D {
                 out.unknowns.push(f.unknown + i as u32);
                 out.gradient.push(f.value * rigid.normal[i]);
-            }
-        }
-        if second {
-            let n = out.unknowns.len();
-            out.hessian = vec![0.0; n * n];
-            for (r, row) in out.hessian.chunks_mut(n.max(1)).enumerate() {
-                for (c, entry) in row.iter_mut().enumerate() {
-                    *entry = functions[r / D].value * functions[c / D].value * rigid.hessian[(r % D, c % D)];
-                }
             }
         }
         out

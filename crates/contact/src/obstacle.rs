@@ -17,17 +17,17 @@ use std::collections::HashMap;
 
 /// What a slave point may meet.
 pub trait Obstacle<const D: usize>: Sync {
-    /// The pair of a slave point, moved by `functions`, and the closest point; with second variations if asked for.
+    /// The pair of a slave point, moved by `functions`, and the closest point.
     /// `None` if there is nothing to meet, or no coordinates there.
-    fn meet(&self, x: &Point<D>, functions: &[ShapeFunction], second: bool) -> Option<Kinematics>;
+    fn meet(&self, x: &Point<D>, functions: &[ShapeFunction]) -> Option<Kinematics>;
 }
 
 /// A rigid body, by the gap of any point.
 pub struct Rigid<'a, const D: usize>(pub &'a (dyn Fn(&Point<D>) -> GapJet<D> + Sync));
 
 impl<const D: usize> Obstacle<D> for Rigid<'_, D> {
-    fn meet(&self, x: &Point<D>, functions: &[ShapeFunction], second: bool) -> Option<Kinematics> {
-        Some(Kinematics::of_rigid(functions, &(self.0)(x), second))
+    fn meet(&self, x: &Point<D>, functions: &[ShapeFunction]) -> Option<Kinematics> {
+        Some(Kinematics::of_rigid(functions, &(self.0)(x)))
     }
 }
 
@@ -88,7 +88,6 @@ impl<'a, const D: usize> Faces<'a, D> {
         s: &Local,
         slave: Partner<'_>,
         normal: &Point<D>,
-        second: bool,
     ) -> Option<Kinematics> {
         let functions = self.surface.functions(face, s);
         let jet = match &self.body.shapes()[face] {
@@ -98,7 +97,7 @@ impl<'a, const D: usize> Faces<'a, D> {
             _ => return None,
         };
         let master = Partner { jet: PartnerJet::Surface(&jet), functions: &functions };
-        Kinematics::of_pair::<D, 2>(slave, master, spatial(normal), second)
+        Kinematics::of_pair::<D, 2>(slave, master, spatial(normal))
     }
 
     /// The pair with an edge or a vertex.
@@ -108,7 +107,6 @@ impl<'a, const D: usize> Faces<'a, D> {
         s: &Local,
         slave: Partner<'_>,
         normal: &Point<D>,
-        second: bool,
     ) -> Option<Kinematics> {
         let mut functions = self.surface.functions(face, s);
         let normal = spatial(normal);
@@ -119,13 +117,13 @@ impl<'a, const D: usize> Faces<'a, D> {
             let zero = Vector::<3>::zeros();
             let line = CurveJet { x, d1: Vector::<3>::z() * self.size, d2: zero, d3: zero };
             let master = Partner { jet: PartnerJet::Curve(&line), functions: &functions };
-            return Kinematics::of_pair::<D, 1>(slave, master, normal, second);
+            return Kinematics::of_pair::<D, 1>(slave, master, normal);
         }
         let (Place::Edge([a, b]), Shape::Surface(surface)) =
             (Place::of(self.surface.shape(face), s), &self.body.shapes()[face])
         else {
             let master = Partner { jet: PartnerJet::Point(&x), functions: &functions };
-            return Kinematics::of_pair::<D, 0>(slave, master, normal, second);
+            return Kinematics::of_pair::<D, 0>(slave, master, normal);
         };
         let corners = self.surface.shape(face).vertices();
         let [p, q] = [0, 1].map(|k| corners[b][k] - corners[a][k]);
@@ -138,12 +136,12 @@ impl<'a, const D: usize> Faces<'a, D> {
         };
         functions.iter_mut().for_each(|f| f.slopes = [f.slopes[0] * p + f.slopes[1] * q, 0.0]);
         let master = Partner { jet: PartnerJet::Curve(&edge), functions: &functions };
-        Kinematics::of_pair::<D, 1>(slave, master, normal, second)
+        Kinematics::of_pair::<D, 1>(slave, master, normal)
     }
 }
 
 impl<const D: usize> Obstacle<D> for Faces<'_, D> {
-    fn meet(&self, x: &Point<D>, functions: &[ShapeFunction], second: bool) -> Option<Kinematics> {
+    fn meet(&self, x: &Point<D>, functions: &[ShapeFunction]) -> Option<Kinematics> {
         let position = spatial(x);
         let found = self.body.closest_to_point(&position, &Query::default())?;
         let face = found.shapes[1];
@@ -154,20 +152,20 @@ impl<const D: usize> Obstacle<D> for Faces<'_, D> {
         let at = self.surface.at(face, &s);
         let normal = at.area_normal().normalize();
         if foot.feature.kind == FeatureKind::Interior {
-            return self.with_face(face, &s, slave, &normal, second);
+            return self.with_face(face, &s, slave, &normal);
         }
         let d = x - at.x;
         let distance = d.norm();
         let mean = self.mean_normal(face, &s);
         if distance <= 1e-9 * self.size {
-            return self.with_face(face, &s, slave, &mean, second);
+            return self.with_face(face, &s, slave, &mean);
         }
         // Beside a border that is no edge, as between the faces of a plane, the point is over the face.
         if (d - normal * normal.dot(&d)).norm() <= OVER * distance {
-            return self.with_face(face, &s, slave, &normal, second);
+            return self.with_face(face, &s, slave, &normal);
         }
         let outward = d * (d.dot(&mean).signum() / distance);
-        self.with_border(face, &s, slave, &outward, second)
+        self.with_border(face, &s, slave, &outward)
     }
 }
 

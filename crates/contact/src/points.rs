@@ -2,8 +2,7 @@
 //!
 //! A row is a pressure unknown with its gap: that of a node or a quadrature point, or the mean gap of a dual function over
 //! many points. Rows are linear combinations of the gaps of points, so one assembler serves all of them: with the
-//! pressures `λ` of the rows, the force on a point is `p = Σ λ share`, the residual is `-Σ p δg`, and its tangent
-//! `-Σ p Δδg` beside the rows themselves.
+//! pressures `λ` of the rows, the force on a point is `p = Σ λ share`.
 
 use crate::kinematics::Kinematics;
 use crate::mortar::{Given, Shares, WeightedGap, compress};
@@ -112,20 +111,17 @@ impl Tests {
 
     /// Measures the gaps of all points no farther from the obstacle than `reach`; points that look away from it cannot
     /// touch it.
-    ///
-    /// `slave` is where it is now; with `second` the second variations come along.
     pub fn measure<const D: usize>(
         &self,
         slave: &dyn ContactSurface<D>,
         obstacle: &dyn Obstacle<D>,
         reach: f64,
-        second: bool,
     ) -> Measured {
         let kinematics = (self.points.par_iter())
             .map(|point| {
                 let functions = slave.functions(point.face, &point.s);
                 let at = slave.at(point.face, &point.s);
-                let found = obstacle.meet(&at.x, &functions, second)?;
+                let found = obstacle.meet(&at.x, &functions)?;
                 let looks = looks_at(&at.area_normal(), &Point::<D>::from_fn(|k, _| found.normal[k]));
                 (found.gap.abs() <= reach && looks).then_some(found)
             })
@@ -169,19 +165,5 @@ impl Measured {
         }
         rows.iter_mut().for_each(|row| compress(&mut row.terms));
         rows.into_iter().enumerate().filter(|(_, row)| row.weight > 0.0 && !row.terms.is_empty()).collect()
-    }
-
-    /// What the turning normals add to the tangent under the pressures of all rows: `-Σ p Δδg`, as symmetric matrices
-    /// of a few unknowns each.
-    pub fn curvature(&self, tests: &Tests, pressure: &[f64]) -> Vec<(Vec<u32>, Vec<f64>)> {
-        let mut out = Vec::new();
-        for (point, found) in tests.points.iter().zip(&self.kinematics) {
-            let Some(found) = found else { continue };
-            let force: f64 = point.shares.iter().map(|(row, share)| pressure[*row as usize] * share).sum();
-            if force != 0.0 && found.hessian.iter().any(|h| *h != 0.0) {
-                out.push((found.unknowns.clone(), found.hessian.iter().map(|h| -force * h).collect()));
-            }
-        }
-        out
     }
 }

@@ -1,6 +1,7 @@
 //! From a plan to results: one driver for all models.
 
 mod checkpoint;
+mod contact_verdict;
 mod driver;
 mod environment;
 mod mechanics;

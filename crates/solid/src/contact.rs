@@ -6,7 +6,7 @@ use crate::model::StepError;
 use crate::supports::Reduction;
 use nalgebra::{DMatrix, DVector};
 use signorini_contact::{
-    ContactSurface, ContactZone, Faces, GapJet, GapPoint, Given, Measured, Moved, Obstacle, Pressed, PressureNodes,
+    ContactSurface, ContactZone, Faces, GapJet, GapPoint, Given, Measured, Obstacle, Pressed, PressureNodes,
     Rigid, Tests, WeightedGap, looks_at, rigid_points, segments, shares, unpressed, weighted_gaps, weightless,
 };
 use signorini_fem::hierarchic::Values;
@@ -53,19 +53,10 @@ pub enum Enforcement {
     AugmentedLagrangian,
     /// By the stress of the slave side, consistently and without unknowns of its own (Nitsche 1971, for contact Chouly &
     /// Hild 2013), skew-symmetric: `p = max(0, -n·σ n - c g)` at every quadrature point, with `c` the stiffness of the
-    /// adjacent cells. Small sliding only.
+    /// adjacent cells.
     Nitsche,
     /// Up to a penetration: the one wanted, or what a hundred times the stiffness of the adjacent cells leaves.
     Penalty { wanted_penetration: Option<f64> },
-}
-
-/// How far the sides may slide along each other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sliding {
-    /// Little against the cells and radii: what faces what, and along which normal, stays as it is at rest.
-    Small,
-    /// Any way: gaps are measured where the bodies are, with the exact second variations in the tangent.
-    Finite,
 }
 
 /// The sides of a surface that look at another one: over the closest point of the other, against its normal. So that of
@@ -79,7 +70,7 @@ pub fn facing<const D: usize>(surface: &BodySurface<D>, other: &BodySurface<D>) 
         .filter(|&face| {
             let at = surface.at(face, &surface.shape(face).centre());
             let own = at.area_normal();
-            let found = faces.meet(&at.x, &[], false);
+            let found = faces.meet(&at.x, &[]);
             found.is_some_and(|found| looks_at(&own, &Point::<D>::from_fn(|k, _| found.normal[k])))
         })
         .map(|face| surface.sides[face])
@@ -93,7 +84,6 @@ pub struct Contact<const D: usize> {
     pub master: Master<D>,
     pub method: Method,
     pub enforcement: Enforcement,
-    pub sliding: Sliding,
     /// Without it the sides slide freely.
     pub friction: Option<Friction<D>>,
     /// The slips of the rows, and what they count from.
@@ -142,7 +132,6 @@ impl<const D: usize> Contact<D> {
             master,
             method: Method::Mortar,
             enforcement: Enforcement::Multiplier,
-            sliding: Sliding::Small,
             friction: None,
             slips: SlipHistory::default(),
             nodes,
@@ -161,28 +150,21 @@ impl<const D: usize> Contact<D> {
         }
     }
 
-    /// Finds out what faces what with the bodies displaced by `u`. `rigid` is where a rigid master is now, and `motion`
-    /// how it came there.
-    ///
-    /// With small sliding `u` is not read, and rows between bodies are found once. `near` says that `u` is so near the
-    /// solution that the cuts of the faces may stay; what each point faces is found anew all the same.
+    /// Finds out what faces what. `rigid` is where a rigid master is now, and `motion` how it came there. Rows between bodies
+    /// are found once, with the bodies at rest.
     pub(crate) fn search(
         &mut self,
         reduction: &Reduction<D>,
         (rigid, motion): (Option<&RigidGap<D>>, Option<&RigidMotion<D>>),
-        u: &[f64],
-        near: bool,
     ) -> Result<(), StepError> {
-        match (self.sliding, self.method) {
-            // Between bodies everything is at rest: what was found once stays.
-            (Sliding::Small, _) if matches!(self.master, Master::Surface(_)) && !self.rows.is_empty() => return Ok(()),
-            (Sliding::Small, Method::Mortar) if self.enforcement == Enforcement::Nitsche => self.point_rows(rigid),
-            (Sliding::Small, Method::Mortar) => self.search_segments(reduction, rigid, motion)?,
-            (Sliding::Small, _) => {
-                self.search_points(reduction, rigid, None, false)?;
+        match self.method {
+            _ if matches!(self.master, Master::Surface(_)) && !self.rows.is_empty() => return Ok(()),
+            Method::Mortar if self.enforcement == Enforcement::Nitsche => self.point_rows(rigid),
+            Method::Mortar => self.search_segments(reduction, rigid, motion)?,
+            _ => {
+                self.search_points(reduction, rigid)?;
                 self.find_slips_of_points(motion)?;
             }
-            (Sliding::Finite, _) => self.search_points(reduction, rigid, Some(u), near)?,
         }
         self.check_side(rigid)?;
         self.find_stiffness();
@@ -192,37 +174,9 @@ impl<const D: usize> Contact<D> {
         Ok(())
     }
 
-    /// The rows of points against closest points of the master; with a displacement, gaps are linear around it.
-    fn search_points(
-        &mut self,
-        reduction: &Reduction<D>,
-        rigid: Option<&RigidGap<D>>,
-        u: Option<&[f64]>,
-        near: bool,
-    ) -> Result<(), StepError> {
-        let moved = |surface| u.map(|u| Moved { surface, u });
-        let slave = moved(&self.slave);
-        let slave: &dyn ContactSurface<D> = slave.as_ref().map_or(&self.slave as _, |m| m as _);
-        let master = self.master.surface().map(|surface| (surface, moved(surface)));
-        let master: Option<&dyn ContactSurface<D>> =
-            master.as_ref().map(|(surface, moved)| moved.as_ref().map_or(*surface, |m| m as _));
-        if self.method == Method::Mortar && !near {
-            if let Some(master) = master {
-                self.points = self.cut(slave, Some(master), &PressureNodes::new(slave), rigid);
-                // Pressures count per area at rest.
-                for (face, list) in self.points.iter_mut().enumerate() {
-                    for p in list {
-                        let area = |s: &dyn ContactSurface<D>| s.at(face, &p.s).area_normal().norm();
-                        p.weight *= area(&self.slave) / area(slave);
-                    }
-                }
-            } else if self.points.is_empty() {
-                self.points = self.cut(&self.slave, None, &self.nodes, rigid);
-            }
-            let shares = shares(&self.slave, &self.nodes, &self.points, &|k| self.is_folded(reduction, k));
-            self.tests = Tests::in_the_mean(&self.points, &shares);
-            self.given = shares.given;
-        } else if self.method != Method::Mortar && self.tests.points.is_empty() {
+    /// The rows of points against closest points of the master.
+    fn search_points(&mut self, reduction: &Reduction<D>, rigid: Option<&RigidGap<D>>) -> Result<(), StepError> {
+        if self.tests.points.is_empty() {
             (self.given, self.tests) = if self.method == Method::GaussPoint {
                 (self.weightless.clone(), Tests::at_quadrature_points(&self.slave))
             } else {
@@ -233,7 +187,7 @@ impl<const D: usize> Contact<D> {
         }
         let faces;
         let body;
-        let (obstacle, reach): (&dyn Obstacle<D>, f64) = match (master, rigid) {
+        let (obstacle, reach): (&dyn Obstacle<D>, f64) = match (self.master.surface(), rigid) {
             (Some(master), _) => {
                 faces = Faces::new(master)
                     .map_err(|error| StepError::Shape { contact: self.name.clone(), message: error.to_string() })?;
@@ -245,26 +199,12 @@ impl<const D: usize> Contact<D> {
             }
             (None, None) => return Ok(()),
         };
-        let measured = self.tests.measure(slave, obstacle, reach, u.is_some());
+        let measured = self.tests.measure(&self.slave, obstacle, reach);
         let rows = measured.rows(&self.tests);
         self.places = rows.iter().filter_map(|(k, _)| self.tests.rows[*k].place).collect();
         self.rows = rows.into_iter().map(|(_, row)| row).collect();
-        if let Some(u) = u {
-            for row in &mut self.rows {
-                row.gap -= row.terms.iter().map(|(k, c)| c * u[*k as usize]).sum::<f64>();
-            }
-        }
         self.measured = Some(measured);
         Ok(())
-    }
-
-    /// What the turning normals add to the tangent under the pressures of the rows, by the numbers of the rows.
-    pub(crate) fn curvature(&self, pressure: &dyn Fn(u32) -> f64) -> Vec<(Vec<u32>, Vec<f64>)> {
-        let Some(measured) = self.measured.as_ref().filter(|_| self.sliding == Sliding::Finite) else {
-            return Vec::new();
-        };
-        let of_row: Vec<f64> = self.tests.rows.iter().map(|row| pressure(row.number)).collect();
-        measured.curvature(&self.tests, &of_row)
     }
 
     /// The stiffness of the cell behind each row.
@@ -297,26 +237,15 @@ impl<const D: usize> Contact<D> {
         &self.rows
     }
 
-    /// Where a master faces the slave side, both as they are given; `normals` are those of the slave.
-    fn cut(
-        &self,
-        slave: &dyn ContactSurface<D>,
-        master: Option<&dyn ContactSurface<D>>,
-        normals: &PressureNodes<D>,
-        rigid: Option<&RigidGap<D>>,
-    ) -> Vec<Vec<GapPoint<D>>> {
-        match (&self.master, master, rigid) {
-            (Master::Surface(surface), Some(master), _) => {
-                segments(slave, master, normals, 0.5 * self.slave.size().max(surface.size()))
-            }
-            (_, _, Some(gap)) => rigid_points(slave, &|x| gap(x)),
-            (_, _, None) => Vec::new(),
-        }
-    }
-
-    /// The same at rest.
+    /// Where a master faces the slave side, at rest.
     pub(crate) fn cut_at_rest(&self, rigid: Option<&RigidGap<D>>) -> Vec<Vec<GapPoint<D>>> {
-        self.cut(&self.slave, self.master.surface(), &self.nodes, rigid)
+        match (&self.master, rigid) {
+            (Master::Surface(surface), _) => {
+                segments(&self.slave, surface, &self.nodes, 0.5 * self.slave.size().max(surface.size()))
+            }
+            (_, Some(gap)) => rigid_points(&self.slave, &|x| gap(x)),
+            (_, None) => Vec::new(),
+        }
     }
 
     fn search_segments(

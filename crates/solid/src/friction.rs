@@ -6,7 +6,7 @@
 
 mod solve;
 
-use crate::contact::{Contact, Enforcement, Method, PressureNode, Sliding};
+use crate::contact::{Contact, Enforcement, Method, PressureNode};
 use crate::model::StepError;
 use signorini_contact::friction::{NoAxis, WeightedSlip, slips_of_points, weighted_slips};
 use signorini_contact::{ContactSurface, Law, Shares, Status, TestPoint};
@@ -199,17 +199,13 @@ impl<const D: usize> Contact<D> {
 
 /// Friction is for multipliers and penalties.
 pub(crate) fn refuse_unsupported<const D: usize>(contacts: &[Contact<D>]) -> Result<(), StepError> {
-    let slides = contacts.iter().find(|c| c.sliding == Sliding::Finite);
     for contact in contacts.iter().filter(|c| c.friction.is_some()) {
         let unlike = match (contact.method, contact.enforcement) {
-            (Method::GaussPoint, Enforcement::Multiplier) => "multipliers at Gauss points are too many".into(),
-            (_, Enforcement::Multiplier | Enforcement::Penalty { .. }) => match slides {
-                None => continue,
-                Some(other) => format!("`{}` slides far", other.name),
-            },
-            _ => "its enforcement is another one".into(),
+            (Method::GaussPoint, Enforcement::Multiplier) => "multipliers at Gauss points are too many",
+            (_, Enforcement::Multiplier | Enforcement::Penalty { .. }) => continue,
+            _ => "its enforcement is another one",
         };
-        return Err(StepError::FrictionUnsupported { contact: contact.name.clone(), unlike });
+        return Err(StepError::FrictionUnsupported { contact: contact.name.clone(), unlike: unlike.into() });
     }
     Ok(())
 }

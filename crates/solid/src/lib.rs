@@ -7,14 +7,13 @@
 //!   `reactions`: the forces of the supports; `held`: whether contact can hold the rest.
 //! - [`contact`]: two sides that may touch; [`friction`]: stick and slip between them.
 //! - [`loads`]: forces on sides and in volumes.
-//! - [`model`]: everything together, solved at one time; [`mod@sliding`]: Newton's method where contacts slide far.
+//! - [`model`]: everything together, solved at one time, with contacts that slide little.
 //! - [`state`]: what comes out.
 //! - [`solid_body`]: a solid as one of many bodies of any kind, with [`hyperelastic`] laws at finite strain.
 
 mod assembly;
 pub mod body;
 pub mod contact;
-mod end_of_master;
 pub mod friction;
 mod held;
 pub mod hyperelastic;
@@ -24,22 +23,19 @@ pub mod model;
 mod nitsche;
 mod reactions;
 pub mod rigid_modes;
-pub mod sliding;
 pub mod solid_body;
 pub mod state;
 pub mod stiffness;
 pub mod supports;
 
 pub use body::{Bodies, Body, BodySurface};
-pub use contact::{Contact, ContactResult, Enforcement, Master, Method, PressureNode, RigidGap, Sliding, facing};
-pub use end_of_master::SlidesOff;
+pub use contact::{Contact, ContactResult, Enforcement, Master, Method, PressureNode, RigidGap, facing};
 pub use friction::{Friction, FrictionHistory, FrictionResult, RigidMotion, Rubbing};
 pub use hyperelastic::{StrainError, StressLaw, Volumetric};
 pub use loads::{Load, LoadKind};
 pub use material::{Elastic, Space, von_mises};
 pub use model::{Circumstances, Memory, Model, StepError};
 pub use signorini_contact::Route;
-pub use sliding::Settled;
 pub use solid_body::{SolidBody, SolidError};
 pub use state::State;
 pub use supports::{Support, SupportError, SupportKind};

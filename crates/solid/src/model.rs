@@ -2,12 +2,10 @@
 
 use crate::assembly::{assemble, graph, positions};
 use crate::body::Bodies;
-use crate::contact::{Contact, Enforcement, RigidGap, Sliding};
-use crate::end_of_master::SlidesOff;
+use crate::contact::{Contact, Enforcement, RigidGap};
 use crate::friction::{FrictionHistory, RigidMotion, refuse_unsupported};
 use crate::held::check_held;
 use crate::rigid_modes::{FreeMode, free_modes};
-use crate::sliding::Settled;
 use crate::state::{Found, State};
 use crate::supports::{Displacement, Reduction, Support, SupportError};
 use signorini_contact::friction::FrictionalContact;
@@ -37,16 +35,7 @@ pub enum StepError {
     /// Most of the slave side is inside the master before anything moves.
     #[error("contact `{contact}`: the bodies start {depth:.4e} deep in each other")]
     Deep { contact: String, depth: f64 },
-    /// Newton's method with finite sliding: what was left after each iteration, and the contact that lacked most.
-    #[error(
-        "contact `{contact}`: Newton's method did not converge in {} iterations{}",
-        history.len(),
-        slides_off.as_ref().map_or(String::new(), |off| format!("; {off}"))
-    )]
-    Newton { contact: String, history: Vec<f64>, place: String, slides_off: Option<Box<SlidesOff>> },
-    #[error("contact `{contact}`: Nitsche's method is for small sliding")]
-    NitscheSlides { contact: String },
-    #[error("contact `{contact}`: friction is for small sliding, with multipliers or a penalty, and {unlike}")]
+    #[error("contact `{contact}`: friction is for multipliers or a penalty, and {unlike}")]
     FrictionUnsupported { contact: String, unlike: String },
     /// An axis of friction that lies nowhere in the surface.
     #[error("contact `{contact}`: the axis of friction is normal to the surface at {place}")]
@@ -80,8 +69,6 @@ pub struct Model<const D: usize> {
     free: Vec<FreeMode>,
     active: ActiveSet,
     started: bool,
-    /// The last state found with finite sliding, from which the next one starts.
-    pub(crate) settled: Option<Settled>,
     /// With friction, what slips count from; none before the first state.
     pub(crate) history: Option<FrictionHistory>,
     pub(crate) rubbing: FrictionalContact,
@@ -103,10 +90,8 @@ pub struct Circumstances<'a, const D: usize> {
 /// What a model carries from one time to the next.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Memory {
-    /// With small sliding: the rows that were active, of how many.
+    /// The rows that were active, of how many.
     pub active: (Vec<usize>, usize),
-    /// With finite sliding: the last state found.
-    pub settled: Option<Settled>,
     /// With friction: what slips count from.
     pub friction: Option<FrictionHistory>,
 }
@@ -143,15 +128,12 @@ impl<const D: usize> Model<D> {
     /// A model of bodies at rest; nothing is assembled yet.
     ///
     /// # Errors
-    /// A support along the normal of what is not flat, and finite sliding by Nitsche's method.
+    /// A support along the normal of what is not flat.
     pub fn new(bodies: Bodies<D>, supports: Vec<Support>, contacts: Vec<Contact<D>>) -> Result<Self, StepError> {
         let reduction = Reduction::new(&bodies, &supports)?;
         let mut contacts = contacts;
         let mut terms = Vec::new();
         for contact in &mut contacts {
-            if contact.enforcement == Enforcement::Nitsche && contact.sliding == Sliding::Finite {
-                return Err(StepError::NitscheSlides { contact: contact.name.clone() });
-            }
             terms.extend(contact.stress_terms(&bodies));
         }
         refuse_unsupported(&contacts)?;
@@ -171,7 +153,6 @@ impl<const D: usize> Model<D> {
             free,
             active: ActiveSet::default(),
             started: false,
-            settled: None,
             history: None,
             rubbing: FrictionalContact::default(),
             route: None,
@@ -247,8 +228,6 @@ impl<const D: usize> Model<D> {
 
     /// Solves for the displacement at one time. `report` gets the iteration and what is left (see
     /// [`State::residuals`]), and says whether to go on.
-    ///
-    /// With finite sliding the solution starts from the last one found; after an error that is still the one before.
     pub fn solve(
         &mut self,
         now: &Circumstances<'_, D>,
@@ -256,15 +235,12 @@ impl<const D: usize> Model<D> {
     ) -> Result<State<D>, StepError> {
         let offset = self.reduction.offset(&self.bodies, &self.supports, now.displacement)?;
         self.assemble();
-        if self.slides() {
-            return self.solve_sliding(now, &offset, report);
-        }
         let mut load = now.load.clone();
         for matrix in std::iter::once(&self.stiffness).chain(&self.added) {
             load.iter_mut().zip(matrix.multiply(&offset)).for_each(|(f, m)| *f -= m);
         }
         let load = self.reduction.restrict(&load);
-        let ends = self.search(now, &[], false)?;
+        let ends = self.search(now)?;
         self.check_held(&now.load)?;
         let rows: Vec<WeightedGap> = (self.contacts.iter())
             .flat_map(|contact| contact.rows.iter().map(|row| reduced(row, &self.reduction, &offset)))
@@ -301,35 +277,29 @@ impl<const D: usize> Model<D> {
     pub fn examine(&mut self, now: &Circumstances<'_, D>) -> Result<(), StepError> {
         self.reduction.offset(&self.bodies, &self.supports, now.displacement)?;
         self.started = false;
-        let searched = self.search(now, &vec![0.0; self.bodies.unknowns()], false);
+        let searched = self.search(now);
         self.started = false;
         searched?;
-        self.check_held_at_rest(&now.load)
+        self.check_held(&now.load)
     }
 
     /// Looks whether the supports agree with each other at a time, and whether what faces what, as it was found last, can
     /// hold the bodies against the loads.
     pub fn examine_again(&self, now: &Circumstances<'_, D>) -> Result<(), StepError> {
         self.reduction.offset(&self.bodies, &self.supports, now.displacement)?;
-        self.check_held_at_rest(&now.load)
-    }
-
-    /// With finite sliding a body may meet what it does not face at rest.
-    fn check_held_at_rest(&self, load: &[f64]) -> Result<(), StepError> {
-        if self.slides() { Ok(()) } else { self.check_held(load) }
+        self.check_held(&now.load)
     }
 
     /// Whether something saved can be of this model.
     pub fn fits(&self, memory: &Memory) -> bool {
         let (active, rows) = &memory.active;
         active.iter().all(|row| row < rows)
-            && memory.settled.as_ref().is_none_or(|s| s.u.len() == self.bodies.unknowns())
             && memory.friction.as_ref().is_none_or(|h| self.has_history(h))
     }
 
     /// What the next time goes on from.
     pub fn save(&self) -> Memory {
-        Memory { active: self.active.save(), settled: self.settled.clone(), friction: self.history.clone() }
+        Memory { active: self.active.save(), friction: self.history.clone() }
     }
 
     /// Goes on from what was saved; `first` are the circumstances of the first time of all, where the sides were found.
@@ -337,34 +307,21 @@ impl<const D: usize> Model<D> {
     /// # Errors
     /// Those of a first search that the model saved did not have.
     pub fn restore(&mut self, memory: Memory, first: &Circumstances<'_, D>) -> Result<(), StepError> {
-        // The increment to the first time may have been cut: where the bodies lie then says nothing of the start.
         self.started = true;
-        self.search(first, &vec![0.0; self.bodies.unknowns()], false)?;
+        self.search(first)?;
         self.active = ActiveSet::restored(memory.active);
         self.active.route = self.route;
-        self.settled = memory.settled;
         self.remember(memory.friction);
         Ok(())
     }
 
-    /// Whether a contact slides finitely.
-    pub fn slides(&self) -> bool {
-        self.contacts.iter().any(|c| c.sliding == Sliding::Finite)
-    }
-
-    /// Finds the rows of all contacts, with the bodies displaced by `u` where contacts slide finitely; the ends of those of
-    /// each contact in the list of all.
-    pub(crate) fn search(
-        &mut self,
-        now: &Circumstances<'_, D>,
-        u: &[f64],
-        near: bool,
-    ) -> Result<Vec<usize>, StepError> {
+    /// Finds the rows of all contacts; the ends of those of each contact in the list of all.
+    pub(crate) fn search(&mut self, now: &Circumstances<'_, D>) -> Result<Vec<usize>, StepError> {
         let mut ends = Vec::new();
         let mut count = 0;
         let motions = now.motion.iter().map(Option::as_ref).chain(std::iter::repeat(None));
         for ((contact, rigid), motion) in self.contacts.iter_mut().zip(&now.rigid).zip(motions) {
-            contact.search(&self.reduction, (rigid.as_ref(), motion), u, near)?;
+            contact.search(&self.reduction, (rigid.as_ref(), motion))?;
             count += contact.rows.len();
             ends.push(count);
         }

@@ -15,7 +15,7 @@ pub struct State<const D: usize> {
     pub iterations: usize,
     /// How the compliance of the contacts was known in the end.
     pub route: Route,
-    /// After each iteration: how many nodes changed; with finite sliding what is left of force and gap, relative.
+    /// After each iteration: how many nodes changed.
     pub residuals: Vec<f64>,
     /// Force of each support on the bodies.
     pub support_forces: Vec<Point<D>>,

@@ -77,7 +77,6 @@ pub struct SolidContact<const D: usize> {
     pub opposite: Opposite,
     pub method: ContactMethod,
     pub enforcement: signorini_solid::Enforcement,
-    pub sliding: signorini_solid::Sliding,
     pub friction: Option<PlannedFriction<D>>,
 }
 
@@ -545,12 +544,11 @@ impl Planner<'_> {
             Some(Enforcement::AugmentedLagrangian(_)) => Kept::AugmentedLagrangian,
             Some(Enforcement::Penalty(k)) => Kept::Penalty { wanted_penetration: self.wanted_penetration(k)? },
             Some(nitsche @ Enforcement::Nitsche(_)) => {
-                let slides = key.sliding.as_ref().is_some_and(|s| *s == problem::Sliding::Finite);
-                if slides || which == ContactMethod::Node {
+                if which == ContactMethod::Node {
                     return Err(self
                         .problem
-                        .error(nitsche, "Nitsche's method is for small sliding, in the mean or at quadrature points")
-                        .help("method.mortar = { enforcement.nitsche = {} }  without `sliding`"));
+                        .error(nitsche, "Nitsche's method is in the mean or at quadrature points")
+                        .help("method.mortar = { enforcement.nitsche = {} }"));
                 }
                 Kept::Nitsche
             }
@@ -588,12 +586,8 @@ impl Planner<'_> {
             }
             let (method, enforcement) = self.solid_method(key)?;
             let friction = key.friction.as_ref().map(|friction| self.friction::<D>(friction)).transpose()?;
-            let sliding = match key.sliding {
-                Some(problem::Sliding::Finite) => signorini_solid::Sliding::Finite,
-                _ => signorini_solid::Sliding::Small,
-            };
             let mut add = |name: String, (body, sides, whole): (usize, Vec<Side>, bool), opposite| {
-                out.push(SolidContact { name, body, sides, whole, opposite, method, enforcement, sliding, friction });
+                out.push(SolidContact { name, body, sides, whole, opposite, method, enforcement, friction });
             };
             match (&key.between, &key.all) {
                 (Some(pair), None) if pair.len() == 2 => {

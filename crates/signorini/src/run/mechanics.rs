@@ -1,5 +1,6 @@
 //! Bodies of any kind in one system as a model: ropes, beams, free rigid bodies.
 
+mod accuracy;
 mod report;
 
 use super::checkpoint;
@@ -214,7 +215,11 @@ impl Model for MechanicsModel {
         };
         record.unknowns = record.unknowns.max(result.unknowns);
         let shown = SystemShown::new(&self.plan, &self.state, &result, time);
-        record.steps.push(report::step_report(&self.plan, &self.state, &result, &shown, index));
+        let mut step = report::step_report(&self.plan, &self.state, &result, &shown, index);
+        if index + 1 == self.plan.times.len() {
+            accuracy::estimate(self, result.unknowns, &mut step, progress);
+        }
+        record.steps.push(step);
         report::warn(&self.plan, &result, &shown, record);
         self.last = Some(shown);
         if self.plan.head.pictures && self.plan.times.len() > 1 {

@@ -33,7 +33,6 @@ const AFFORDABLE: usize = 30_000;
 const SAFETY: f64 = 1.5;
 
 /// Share of an increment below which it is not cut any more.
-const SMALLEST_INCREMENT: f64 = 1e-3;
 
 /// Solids on their way through their history.
 pub struct SolidModel<const D: usize> {
@@ -87,42 +86,7 @@ impl<const D: usize> SolidModel<D> {
         Ok(names)
     }
 
-    /// Solves for the end of an increment. With finite sliding an increment that has no solution at once is cut: after an
-    /// error the model still has the state before, from which the next try starts.
-    fn reach(
-        &mut self,
-        index: usize,
-        [before, time]: [f64; 2],
-        progress: &mut dyn Progress,
-    ) -> Result<Result<State<D>, Failure>, CaseError> {
-        let (mut reached, mut size) = (before, time - before);
-        let mut iterations = 0;
-        let mut residuals = Vec::new();
-        loop {
-            let last = reached + size >= time - 1e-9 * (time - before);
-            let target = if last { time } else { reached + size };
-            match self.solve(index, target, progress)? {
-                Ok(mut state) => {
-                    iterations += state.iterations;
-                    residuals.append(&mut state.residuals);
-                    if last {
-                        return Ok(Ok(State { iterations, residuals, ..state }));
-                    }
-                    reached = target;
-                    size *= 1.5;
-                }
-                Err(mut failed) => {
-                    residuals.append(&mut failed.residuals);
-                    let curable = !matches!(failed.reason, Reason::Interrupted | Reason::Input);
-                    if !self.solids.slides() || !curable || size <= SMALLEST_INCREMENT * (time - before) {
-                        return Ok(Err(Failure { residuals, ..failed }));
-                    }
-                    size *= 0.25;
-                }
-            }
-        }
-    }
-
+    /// Solves for the end of an increment.
     fn solve(
         &mut self,
         index: usize,
@@ -131,16 +95,14 @@ impl<const D: usize> SolidModel<D> {
     ) -> Result<Result<State<D>, Failure>, CaseError> {
         let mut stopped = false;
         let mut residuals = Vec::new();
-        let (action, figure) =
-            if self.solids.slides() { ("newton", "residual") } else { ("active set", "nodes_changed") };
         let mut report = |iteration: usize, residual: f64| {
             progress.iteration(&Iteration {
                 step: index,
                 time,
                 iteration,
                 residual,
-                action,
-                figures: &[(figure, residual)],
+                action: "active set",
+                figures: &[("nodes_changed", residual)],
             });
             residuals.push(residual);
             stopped = progress.interrupted();
@@ -157,23 +119,18 @@ impl<const D: usize> SolidModel<D> {
     }
 
     /// What the cells leave uncertain, in the last step: the change with functions of one degree more, or with cells of half
-    /// the size where there are none. With finite sliding the path is gone again with them. Not where they are too many.
+    /// the size where there are none. Not where they are too many.
     fn estimate(&self, time: f64, state: &State<D>, step: &mut StepReport) {
         // In space unknowns cost several times as much.
         let most = if D == 3 { AFFORDABLE / 4 } else { AFFORDABLE };
-        let way = if self.solids.slides() { self.plan.times.as_slice() } else { std::slice::from_ref(&time) };
-        let unknowns = self.plan.growth() * (way.len() * self.solids.unknowns()) as f64;
+        let unknowns = self.plan.growth() * self.solids.unknowns() as f64;
         if self.plan.contacts.is_empty() || unknowns > most as f64 {
             return;
         }
         let plan = self.plan.finer();
         let Ok(mut fine) = model(&plan) else { return };
-        let mut solve =
-            |&time: &f64| at_time(&plan, &mut fine, time, |model, now| model.solve(now, &mut |_, _| true)).ok()?.ok();
-        let Some(fine) = way.iter().map(&mut solve).collect::<Option<Vec<_>>>().and_then(|mut states| states.pop())
-        else {
-            return;
-        };
+        let solved = at_time(&plan, &mut fine, time, |model, now| model.solve(now, &mut |_, _| true));
+        let Ok(Ok(fine)) = solved else { return };
         for ((contact, coarse), fine) in self.plan.contacts.iter().zip(&state.contacts).zip(&fine.contacts) {
             let peak = |c: &ContactResult<D>| c.nodes.iter().map(|n| n.pressure).fold(0.0, f64::max);
             let Some(found) = step.contacts.get_mut(&contact.name) else { continue };
@@ -230,8 +187,7 @@ impl<const D: usize> Model for SolidModel<D> {
     ) -> Result<Advanced, CaseError> {
         record.unknowns = self.solids.unknowns();
         let time = self.plan.times[index];
-        let before = if index == 0 { 0.0 } else { self.plan.times[index - 1] };
-        let state = match self.reach(index, [before, time], progress)? {
+        let state = match self.solve(index, time, progress)? {
             Ok(state) => state,
             Err(failed) => {
                 let reason = failed.reason;
@@ -322,7 +278,7 @@ impl<const D: usize> Model for SolidModel<D> {
                 if self.plan.contacts.is_empty() {
                     return "The bodies are in equilibrium; no contact was stated.".into();
                 }
-                let of_contact = |(name, c): (&String, _)| report::contact_verdict(&self.plan, name, c);
+                let of_contact = |(name, c): (&String, _)| report::verdict(&self.plan, name, c);
                 let list: Vec<String> = step.contacts.iter().map(of_contact).collect();
                 let balance = step.equilibrium_residual.unwrap_or(f64::NAN);
                 format!("{}; forces balance to {balance:.0e}.", list.join("; "))

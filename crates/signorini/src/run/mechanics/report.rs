@@ -8,6 +8,7 @@ use crate::report::{
     Component, ContactReport, CurveReport, Pose, Probe, Reason, RopeLimits, StepReport, UnitNames, Warning,
     WarningKind, vector,
 };
+use crate::run::contact_verdict::contact_verdict;
 use crate::run::record::Record;
 use crate::run::strain::{self, Strained};
 use signorini_contact::Status;
@@ -263,6 +264,13 @@ pub fn verdict(plan: &MechanicsPlan, record: &Record) -> String {
     let space = if plan.space == Space::ThreeD { 3 } else { 2 };
     let mut list: Vec<String> = Vec::new();
     for (name, c) in &step.contacts {
+        let on_surface = |kind: &Kind| matches!(kind, Kind::Solid | Kind::Cells);
+        let place = plan.system.contacts.iter().find(|contact| contact.name() == name);
+        if place.is_some_and(|contact| on_surface(&plan.kinds[contact.bodies()[0]])) {
+            let extent = if space == 3 || plan.space == Space::Axisymmetric { "area" } else { "length" };
+            list.push(contact_verdict((name, c), (space, extent), units.as_ref(), false));
+            continue;
+        }
         if c.zones == 0 {
             list.push(format!("`{name}` is open"));
             continue;

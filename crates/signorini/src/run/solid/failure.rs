@@ -48,16 +48,8 @@ fn failure(error: &StepError) -> Failure {
         StepError::Slides { .. } => (Reason::FreeBody, error.to_string()),
         StepError::Support(_)
         | StepError::Shape { .. }
-        | StepError::NitscheSlides { .. }
         | StepError::FrictionUnsupported { .. }
         | StepError::FrictionAxis { .. } => (Reason::Input, error.to_string()),
-        StepError::Newton { history, place, .. } => (
-            Reason::Newton,
-            format!(
-                "{error}, worst at {place}; what was left after each: {}; try more increments, or a finer mesh there",
-                history.iter().map(|r| format!("{r:.1e}")).collect::<Vec<_>>().join(", ")
-            ),
-        ),
         StepError::Contact { contact, error, places } => (
             Reason::Contact,
             format!(

@@ -1,12 +1,12 @@
 //! What is told of a state of solids.
 
 use super::setup::load;
-use crate::output::figure::{told, told_vector};
 use crate::output::solid_fields::{ContactDisplay, SolidDisplay, SolidFields};
 use crate::plan::Placed;
 use crate::plan::solid::{SolidPlan, evaluate};
 use crate::problem::Space as Stated;
-use crate::report::{Component, ContactReport, Probe, Reason, StepReport, UnitNames, Warning, WarningKind, vector};
+use crate::report::{Component, ContactReport, Probe, Reason, StepReport, Warning, WarningKind, vector};
+use crate::run::contact_verdict::contact_verdict;
 use crate::run::record::Record;
 use crate::run::strain::Strained;
 use signorini_geometry::Point;
@@ -199,30 +199,9 @@ fn contact_report<const D: usize>(
 }
 
 /// One contact in a clause.
-pub fn contact_verdict<const D: usize>(plan: &SolidPlan<D>, name: &str, c: &ContactReport) -> String {
-    if c.zones == 0 {
-        return format!("`{name}` is open");
-    }
-    let errors = c.error_estimate;
-    let units = plan.head.unit_names();
-    let unit = |of: fn(&UnitNames) -> &String| units.as_ref().map_or("", |u| of(u));
-    let rubbing = match (c.friction_force, c.stick_area, c.slip_area) {
-        (Some(force), Some(stick), Some(slip)) => format!(
-            ", {} of it by friction, of which {:.0} % sticks",
-            told_vector(&force[..D], None, unit(|u| &u.force)),
-            100.0 * stick / (stick + slip)
-        ),
-        _ => String::new(),
-    };
-    format!(
-        "`{name}` carries {} over {} {} in {} zone{}, at most {}{rubbing}",
-        told_vector(&c.force[..D], errors.map(|e| e.force), unit(|u| &u.force)),
-        if D == 3 || plan.space == Stated::Axisymmetric { "area" } else { "length" },
-        told(c.area, errors.map(|e| e.area), unit(|u| &u.area)),
-        c.zones,
-        if c.zones == 1 { "" } else { "s" },
-        told(c.max_pressure, errors.and_then(|e| e.max_pressure), unit(|u| &u.pressure)),
-    )
+pub fn verdict<const D: usize>(plan: &SolidPlan<D>, name: &str, c: &ContactReport) -> String {
+    let extent = if D == 3 || plan.space == Stated::Axisymmetric { "area" } else { "length" };
+    contact_verdict((name, c), (D, extent), plan.head.unit_names().as_ref(), true)
 }
 
 /// The method of the contacts, all names where there are several.

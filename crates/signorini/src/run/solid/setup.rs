@@ -10,7 +10,7 @@ use signorini_contact::GapJet;
 use signorini_geometry::Point;
 use signorini_solid::loads::forces;
 use signorini_solid::{
-    Bodies, Circumstances, Contact, Load, LoadKind, Master, Model, RigidGap, RigidMotion, Sliding, Space, StepError,
+    Bodies, Circumstances, Contact, Load, LoadKind, Master, Model, RigidGap, RigidMotion, Space, StepError,
     Support, SupportError, SupportKind, facing,
 };
 use signorini_solve::cholesky::Cost;
@@ -38,20 +38,17 @@ pub fn model<const D: usize>(plan: &SolidPlan<D>) -> Result<Model<D>, CaseError>
             let master = match &c.opposite {
                 Opposite::Body { body, sides, whole } => {
                     let mut master = bodies.surface(*body, sides.clone());
-                    // Where bodies may slide, any part may come to meet any other.
-                    if c.sliding == Sliding::Small {
-                        let looking = |a: &_, b: &_| facing(a, b).ok().filter(|list| !list.is_empty());
-                        let of_slave = c.whole.then(|| looking(&slave, &master)).flatten();
-                        let of_master = whole.then(|| looking(&master, &slave)).flatten();
-                        slave = of_slave.map_or(slave, |list| bodies.surface(c.body, list));
-                        master = of_master.map_or(master, |list| bodies.surface(*body, list));
-                    }
+                    let looking = |a: &_, b: &_| facing(a, b).ok().filter(|list| !list.is_empty());
+                    let of_slave = c.whole.then(|| looking(&slave, &master)).flatten();
+                    let of_master = whole.then(|| looking(&master, &slave)).flatten();
+                    slave = of_slave.map_or(slave, |list| bodies.surface(c.body, list));
+                    master = of_master.map_or(master, |list| bodies.surface(*body, list));
                     Master::Surface(master)
                 }
                 Opposite::Rigid(_) => Master::Rigid,
             };
             let mut contact = Contact::new(&c.name, slave, master);
-            (contact.method, contact.enforcement, contact.sliding) = (c.method, c.enforcement, c.sliding);
+            (contact.method, contact.enforcement) = (c.method, c.enforcement);
             contact.friction = c.friction.map(|planned| planned.friction());
             contact
         })
@@ -173,8 +170,6 @@ pub fn judge<const D: usize>(plan: &SolidPlan<D>, model: &mut Model<D>) -> Resul
         let Err(error) = at_time(plan, model, time, look)? else { continue };
         match blamed(plan, model, time, &error) {
             Some(error) => return Err(error),
-            // With finite sliding the increment will be cut.
-            None if matches!(error, StepError::Deep { .. }) => {}
             // A run ends there.
             None => return Ok(Some(format!("at t = {time}: {}", explained(plan, &error).text))),
         }
@@ -234,7 +229,6 @@ pub fn blamed<const D: usize>(
                 Ok(Err(StepError::Deep { depth, .. })) => Some(problem
                     .error(&place, format!("the bodies of `{contact}` start {depth:.4e} deep in each other"))
                     .help("move them apart; or does the normal of a rigid plane point into it, or `side` name the wrong side?")),
-                _ if model.slides() => None,
                 _ => Some(problem
                     .error(
                         &place,

@@ -1,0 +1,37 @@
+//! What a contact of a surface came to, in a clause.
+
+use crate::output::figure::{told, told_vector};
+use crate::report::{ContactReport, UnitNames};
+
+/// The force, over which `extent` (an area, or a length) and the largest pressure, with what the cells leave uncertain, and
+/// how much of it sticks. `zones` says in how many.
+pub fn contact_verdict(
+    (name, c): (&str, &ContactReport),
+    (dimension, extent): (usize, &str),
+    units: Option<&UnitNames>,
+    zones: bool,
+) -> String {
+    if c.zones == 0 {
+        return format!("`{name}` is open");
+    }
+    let errors = c.error_estimate;
+    let unit = |of: fn(&UnitNames) -> &String| units.map_or("", |u| of(u));
+    let rubbing = match (c.friction_force, c.stick_area, c.slip_area) {
+        (Some(force), Some(stick), Some(slip)) => format!(
+            ", {} of it by friction, of which {:.0} % sticks",
+            told_vector(&force[..dimension], None, unit(|u| &u.force)),
+            100.0 * stick / (stick + slip)
+        ),
+        _ => String::new(),
+    };
+    let zones = match (zones, c.zones) {
+        (false, _) => String::new(),
+        (true, n) => format!(" in {n} zone{}", if n == 1 { "" } else { "s" }),
+    };
+    format!(
+        "`{name}` carries {} over {extent} {}{zones}, at most {}{rubbing}",
+        told_vector(&c.force[..dimension], errors.map(|e| e.force), unit(|u| &u.force)),
+        told(c.area, errors.map(|e| e.area), unit(|u| &u.area)),
+        told(c.max_pressure, errors.and_then(|e| e.max_pressure), unit(|u| &u.pressure)),
+    )
+}

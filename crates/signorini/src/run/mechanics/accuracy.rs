@@ -1,0 +1,87 @@
+//! What the cells of a system leave uncertain: the change with functions of one degree more, over the whole history.
+
+use super::{MechanicsModel, report};
+use crate::output::system::SystemShown;
+use crate::plan::Plan;
+use crate::problem::{Body, Problem};
+use crate::report::{ErrorEstimate, StepReport};
+use signorini_mechanics::IncrementResult;
+use signorini_solve::{Iteration, Progress};
+
+/// The most unknowns of one degree more, times increments, for which errors are estimated in the plane: some seconds. In
+/// space unknowns cost several times as much.
+const AFFORDABLE: f64 = 15_000.0;
+/// The estimate is as likely too small as too large: this makes it seldom too small.
+const SAFETY: f64 = 1.5;
+/// The degree of solids and cells where none is stated.
+const USUAL: i64 = 2;
+
+/// Says nothing, but stops where it is asked to.
+struct Quiet<'a>(&'a dyn Progress);
+
+impl Progress for Quiet<'_> {
+    fn iteration(&mut self, _: &Iteration) {}
+
+    fn interrupted(&self) -> bool {
+        self.0.interrupted()
+    }
+}
+
+/// The problem with functions of one degree more; none with bodies whose functions have no degree, ropes and beams, or
+/// where all bodies are rigid.
+fn finer(problem: &Problem) -> Option<(Problem, i64)> {
+    let mut finer = problem.clone();
+    let mut least = None::<i64>;
+    for body in finer.bodies.values_mut() {
+        let degree = match body {
+            Body::Solid(solid) => &mut solid.degree,
+            Body::Cells(cells) => &mut cells.degree,
+            Body::Rigid(_) => continue,
+            _ => return None,
+        };
+        let own = degree.unwrap_or(USUAL);
+        *degree = Some(own + 1);
+        least = Some(least.map_or(own, |l| l.min(own)));
+    }
+    Some((finer, least?))
+}
+
+/// Estimates the errors of the last step of a run with so many unknowns, if that is affordable and has a solution.
+pub fn estimate(model: &MechanicsModel, unknowns: usize, step: &mut StepReport, progress: &mut dyn Progress) {
+    let plan = &model.plan;
+    let in_space = plan.space == crate::problem::Space::ThreeD;
+    let Some((problem, degree)) = finer(&plan.head.problem) else { return };
+    let growth = (1.0 + 1.0 / degree as f64).powi(if in_space { 3 } else { 2 });
+    let affordable = if in_space { AFFORDABLE / 4.0 } else { AFFORDABLE };
+    if plan.system.contacts.is_empty() || growth * (unknowns * plan.times.len()) as f64 > affordable {
+        return;
+    }
+    let Ok(Plan::Mechanics(finer)) = crate::plan::plan(&problem) else { return };
+    let Some(fine) = last_step(MechanicsModel::new(*finer), &mut Quiet(progress)) else { return };
+    for (name, found) in &mut step.contacts {
+        let Some(fine) = fine.contacts.get(name) else { continue };
+        let force: f64 = fine.force.iter().zip(&found.force).map(|(a, b)| (a - b).powi(2)).sum();
+        found.error_estimate = Some(ErrorEstimate {
+            front: None,
+            force: SAFETY * force.sqrt(),
+            area: SAFETY * (fine.area - found.area).abs(),
+            max_pressure: Some(SAFETY * (fine.max_pressure - found.max_pressure).abs()),
+        });
+    }
+}
+
+/// The report of the last step of a run; none where it does not get there.
+fn last_step(mut model: MechanicsModel, progress: &mut dyn Progress) -> Option<StepReport> {
+    let mut last: Option<(IncrementResult, f64)> = None;
+    let mut before = 0.0;
+    for (index, time) in model.plan.times.clone().into_iter().enumerate() {
+        if last.is_some() {
+            model.plan.system.accept(&model.state).ok()?;
+        }
+        last = Some((model.reach(index, [before, time], progress).ok()?.ok()?, time));
+        before = time;
+    }
+    let (result, time) = last?;
+    let shown = SystemShown::new(&model.plan, &model.state, &result, time);
+    Some(report::step_report(&model.plan, &model.state, &result, &shown, model.plan.times.len() - 1))
+}

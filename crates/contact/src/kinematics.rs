@@ -46,11 +46,7 @@ impl Kinematics {
     ///
     /// # Panics
     /// If `N` is not the number of coordinates of both partners.
-    pub fn of_pair<const D: usize, const N: usize>(
-        a: Partner<'_>,
-        b: Partner<'_>,
-        normal: Vector<3>,
-    ) -> Option<Self> {
+    pub fn of_pair<const D: usize, const N: usize>(a: Partner<'_>, b: Partner<'_>, normal: Vector<3>) -> Option<Self> {
         let measures = Measures::<N>::new(a.jet, b.jet, normal)?;
         let of_a = a.jet.dimension();
         let zero = Vector::<3>::zeros();

@@ -82,13 +82,7 @@ impl<'a, const D: usize> Faces<'a, D> {
     }
 
     /// The pair with a face.
-    fn with_face(
-        &self,
-        face: usize,
-        s: &Local,
-        slave: Partner<'_>,
-        normal: &Point<D>,
-    ) -> Option<Kinematics> {
+    fn with_face(&self, face: usize, s: &Local, slave: Partner<'_>, normal: &Point<D>) -> Option<Kinematics> {
         let functions = self.surface.functions(face, s);
         let jet = match &self.body.shapes()[face] {
             Shape::Surface(surface) => surface.jet(s[0], s[1]),
@@ -101,13 +95,7 @@ impl<'a, const D: usize> Faces<'a, D> {
     }
 
     /// The pair with an edge or a vertex.
-    fn with_border(
-        &self,
-        face: usize,
-        s: &Local,
-        slave: Partner<'_>,
-        normal: &Point<D>,
-    ) -> Option<Kinematics> {
+    fn with_border(&self, face: usize, s: &Local, slave: Partner<'_>, normal: &Point<D>) -> Option<Kinematics> {
         let mut functions = self.surface.functions(face, s);
         let normal = spatial(normal);
         let x = spatial(&self.surface.at(face, s).x);

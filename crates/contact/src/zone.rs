@@ -81,11 +81,13 @@ pub fn zone<const D: usize>(
     }
     let mut covered: Vec<Vec<&Pressed>> = vec![Vec::new(); count];
     points.iter().filter(|p| p.area > 0.0).for_each(|p| covered[p.face].push(p));
+    let states = &without_pinholes(nodes, &faces_of, states);
     let state = |k: &u32| states[*k as usize];
     let has =
         |face: usize, wanted: &dyn Fn(NodeState) -> bool| nodes.of_face(face).iter().any(|(k, _)| wanted(state(k)));
     let active = |face: usize| has(face, &|s| s == NodeState::Active);
-    let mixed = |face: usize| active(face) && has(face, &|s| matches!(s, NodeState::Open(_)));
+    // Nodes without a gap of their own follow others, of other faces too.
+    let mixed = |face: usize| active(face) && has(face, &|s| matches!(s, NodeState::Open(Some(_))));
     let levels: Vec<Option<Level<D>>> =
         (0..count).map(|face| mixed(face).then(|| fit(slave, nodes, &faces_of, states, face)).flatten()).collect();
     let mut out = ContactZone { face_area: vec![0.0; count], ..ContactZone::default() };
@@ -98,7 +100,11 @@ pub fn zone<const D: usize>(
             nodes.of_face(face).iter().flat_map(|(k, _)| faces_of[*k as usize].iter().copied()).collect()
         };
         let cuts: Vec<&Level<D>> = beside.iter().filter_map(|f| levels[*f].as_ref()).collect();
-        let level = |x: &Point<D>| cuts.iter().map(|l| l.value(x)).fold(f64::INFINITY, f64::min);
+        // Of several fits the one nearest by: far away they are extrapolated.
+        let level = |x: &Point<D>| {
+            let distance = |l: &&&Level<D>| (l.origin - x).norm();
+            cuts.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).map_or(f64::INFINITY, |l| l.value(x))
+        };
         let Cut { full, inside, boundary, intervals } = cut(slave, face, &level);
         out.face_area[face] = if cuts.is_empty() {
             // Without enough open nodes the zone ends half way between the nodes.
@@ -111,6 +117,31 @@ pub fn zone<const D: usize>(
         };
         out.boundary.extend(boundary.into_iter().map(|ends| (face, ends)));
         out.intervals.extend(intervals.into_iter().map(|ends| (face, ends)));
+    }
+    out
+}
+
+/// The states with open nodes among active ones alone as active: a hole about a single node is smaller than the faces can
+/// tell, and its gap says nothing of where the zone ends. Nodes without a gap of their own follow those around them.
+fn without_pinholes<const D: usize>(
+    nodes: &PressureNodes<D>,
+    faces_of: &[Vec<usize>],
+    states: &[NodeState],
+) -> Vec<NodeState> {
+    let mut out = states.to_vec();
+    for own in [true, false] {
+        let before = out.clone();
+        let is_of = |k: usize| matches!(before[k], NodeState::Open(gap) if gap.is_some() == own);
+        for k in (0..out.len()).filter(|&k| is_of(k)) {
+            let mut around = (faces_of[k].iter())
+                .flat_map(|&face| nodes.of_face(face))
+                .map(|(n, _)| *n as usize)
+                .filter(|&n| n != k && before[n] != NodeState::Open(None))
+                .peekable();
+            if around.peek().is_some() && around.all(|n| before[n] == NodeState::Active) {
+                out[k] = NodeState::Active;
+            }
+        }
     }
     out
 }

@@ -313,6 +313,12 @@ pub trait Body: Send + Sync {
         false
     }
 
+    /// Unknowns that the body couples, element by element, from which the size of a factorisation is told; none of bodies with
+    /// few of them.
+    fn cliques(&self) -> Vec<Vec<u32>> {
+        Vec::new()
+    }
+
     /// What iterations need in place of a factorisation: of linear bodies that have it.
     fn subspaces(&self) -> Option<Subspaces<'_>> {
         None

@@ -81,16 +81,19 @@ impl System {
         self.is_iterative(&self.start()).unwrap_or(false)
     }
 
-    /// About what memory the bodies and the equations take, in bytes, without contacts and without bodies that are not
-    /// known cell by cell.
+    /// About what memory the bodies and the equations take, in bytes, without contacts and without bodies of few unknowns.
     pub fn memory(&self) -> f64 {
         let square = |list: &[u32]| 8.0 * (list.len() as f64).powi(2);
         let iterates = self.iterates();
         let of_body = |body: &dyn Body| {
-            let Some(own) = body.subspaces() else { return 0.0 };
-            let cliques: Vec<&[u32]> = own.stiffness.iter().map(|b| b.unknowns.as_slice()).collect();
+            let own = body.subspaces();
+            let coupled = if own.is_some() { Vec::new() } else { body.cliques() };
+            let cliques: Vec<&[u32]> = match &own {
+                Some(own) => own.stiffness.iter().map(|b| b.unknowns.as_slice()).collect(),
+                None => coupled.iter().map(Vec::as_slice).collect(),
+            };
             let cells: f64 = cliques.iter().map(|c| square(c)).sum();
-            if iterates {
+            if let (true, Some(own)) = (iterates, &own) {
                 let mut place = vec![u32::MAX; body.unknowns()];
                 own.sets.coarse.iter().enumerate().for_each(|(i, (u, _))| place[*u as usize] = i as u32);
                 let of = |c: &&[u32]| -> Vec<u32> {

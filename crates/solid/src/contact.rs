@@ -6,8 +6,8 @@ use crate::model::StepError;
 use crate::supports::Reduction;
 use nalgebra::{DMatrix, DVector};
 use signorini_contact::{
-    ContactSurface, ContactZone, Faces, GapJet, GapPoint, Given, Measured, Obstacle, Pressed, PressureNodes,
-    Rigid, Tests, WeightedGap, looks_at, rigid_points, segments, shares, unpressed, weighted_gaps, weightless,
+    ContactSurface, ContactZone, Faces, GapJet, GapPoint, Given, Measured, Obstacle, Pressed, PressureNodes, Rigid,
+    Tests, WeightedGap, looks_at, rigid_points, segments, shares, unpressed, weighted_gaps, weightless,
 };
 use signorini_fem::hierarchic::Values;
 use signorini_fem::{Local, Side};

@@ -293,8 +293,7 @@ impl<const D: usize> Model<D> {
     /// Whether something saved can be of this model.
     pub fn fits(&self, memory: &Memory) -> bool {
         let (active, rows) = &memory.active;
-        active.iter().all(|row| row < rows)
-            && memory.friction.as_ref().is_none_or(|h| self.has_history(h))
+        active.iter().all(|row| row < rows) && memory.friction.as_ref().is_none_or(|h| self.has_history(h))
     }
 
     /// What the next time goes on from.

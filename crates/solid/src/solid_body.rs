@@ -225,6 +225,10 @@ impl<const D: usize> Body for SolidBody<D> {
         Ok(energy)
     }
 
+    fn cliques(&self) -> Vec<Vec<u32>> {
+        (0..self.mesh().cell_count()).map(|cell| self.unknowns_of(cell).0).collect()
+    }
+
     fn is_linear(&self) -> bool {
         self.law == StressLaw::LinearElastic
     }

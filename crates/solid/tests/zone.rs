@@ -1,6 +1,7 @@
 //! The area of contact against Hertz (1882) and Sneddon (1965): a body of revolution on a rigid plane, with the
 //! displacement of a half space far away (Boussinesq 1885). The edge of the zone has the radius 1.
 
+use signorini_contact::{NodeState, zone};
 use signorini_fem::block::{block, graded};
 use signorini_geometry::Point;
 use signorini_solid::*;
@@ -129,4 +130,30 @@ fn areas_in_space() {
     let peak = contact.nodes.iter().map(|n| n.pressure).fold(0.0, f64::max);
     let error = contact.area * peak / (1.5 * contact.force[2]) - 1.0;
     assert!(error.abs() < 0.015, "{error}");
+}
+
+/// A single open node among active ones is rounding of the mesh, and moves the edge of the zone nowhere.
+#[test]
+fn a_pinhole_is_no_edge() {
+    let axis: Vec<f64> = (0..=12).map(|k| f64::from(k) / 6.0).collect();
+    let mesh = block::<3>(&[axis.clone(), axis, vec![0.0, 1.0]], 1, |x| x);
+    let bottom = mesh.groups()["bottom"].sides.clone();
+    let mut bodies = Bodies::<3>::new(Space::Solid);
+    bodies.add("block", mesh, 2, Elastic { youngs_modulus: 1.0, poissons_ratio: NU });
+    let slave = bodies.surface(0, bottom);
+    let nodes = signorini_contact::PressureNodes::new(&slave);
+    let points = signorini_contact::unpressed(&slave, &nodes);
+    let area = |pinhole: bool| {
+        let state = |x: &Point<3>| match x.norm() {
+            r if pinhole && (r - 0.5).abs() < 1e-9 && x[1] == 0.0 => NodeState::Open(Some(1e-6)),
+            r if r < 1.03 => NodeState::Active,
+            r => NodeState::Open(Some((r - 1.03).powf(1.5))),
+        };
+        let states: Vec<NodeState> = nodes.positions.iter().map(state).collect();
+        assert_eq!(states.contains(&NodeState::Open(Some(1e-6))), pinhole);
+        zone(&slave, &nodes, &points, &states).face_area.iter().sum::<f64>()
+    };
+    let exact = 0.25 * PI * 1.03f64.powi(2);
+    assert!((area(false) / exact - 1.0).abs() < 2e-3, "{} {exact}", area(false));
+    assert_eq!(area(true), area(false));
 }

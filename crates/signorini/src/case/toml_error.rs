@@ -26,7 +26,10 @@ pub fn from_toml(name: &str, text: &str, error: &toml::de::Error) -> CaseError {
         ));
     } else if message.contains("wanted exactly 1 element") || message.contains("wanted string or table") {
         ours.message = "expected a choice: one word in quotes, or a table with exactly one key".into();
-        ours.help = key_before(text, error.span()).map(|key| format!("`signorini explain {key}` tells the choices"));
+        ours.help = key_before(text, error.span()).map(|key| {
+            let told = format!("`signorini explain {key}` tells the choices");
+            example(text, error.span(), key).map_or(told.clone(), |example| format!("{example}; {told}"))
+        });
     } else if let Some((found, wanted)) = message
         .strip_prefix("invalid type: ")
         .or_else(|| message.strip_prefix("invalid value: "))
@@ -62,6 +65,23 @@ fn key_before(text: &str, span: Option<Range<usize>>) -> Option<&str> {
     let before = text.get(..span?.start)?.trim_end().strip_suffix('=')?.trim_end();
     let word = before.rsplit(|c: char| !(c.is_alphanumeric() || c == '_')).next()?;
     (!word.is_empty()).then_some(word)
+}
+
+/// How the first choice of a key is written, in the section about a place.
+fn example(text: &str, span: Option<Range<usize>>, key: &str) -> Option<String> {
+    let header = text.get(..span?.start)?.lines().rev().find_map(|line| line.trim().strip_prefix('['))?;
+    let section = header.trim_start_matches('[').split(['.', ']']).next()?.trim();
+    let of_section = |path: &String| path.starts_with(section) && path.ends_with(&format!(".{key}"));
+    let path = super::schema::keys().into_iter().map(|k| k.path).find(of_section)?;
+    let first = super::schema::keys_in(&path).into_iter().next()?;
+    let below = format!("{path}.{first}.");
+    let needed = super::schema::keys().into_iter().filter(|k| k.required);
+    let needed: Vec<String> =
+        needed.filter_map(|k| k.path.strip_prefix(&below).map(|name| format!("{name} = …"))).collect();
+    Some(match needed.is_empty() {
+        true => format!("{key}.{first} = {{}}"),
+        false => format!("{key}.{first} = {{ {} }}", needed.join(", ")),
+    })
 }
 
 /// What a type of the reader is called in a case file.

@@ -265,9 +265,7 @@ pub(super) fn clearance<const D: usize>(plan: &MembranePlan<D>, time: f64) -> Op
     if plan.cells.function_count() > LOOK || loaded.obstacles.is_empty() {
         return None;
     }
-    let least = |membrane: &Membrane<D>| {
-        Some((plan.kernel.free)(membrane).ok()?.least_gap)
-    };
+    let least = |membrane: &Membrane<D>| Some((plan.kernel.free)(membrane).ok()?.least_gap);
     let (gap, side, x) = least(&loaded).filter(|(gap, ..)| *gap > 0.0)?;
     let (before, ..) = least(&Membrane { load: Arc::new(Constant(0.0)), ..loaded.clone() })?;
     let nearer = before - gap;

@@ -18,6 +18,13 @@ fn each_mistake_is_told_at_its_place() {
     let table = [
         // what stands, what a user writes, a word of the message, the text pointed at, a word of the help
         ("tension = 1.0\n", "", "missing key `tension`", "[bodies.film.membrane]", "tension"),
+        (
+            "[contacts.touch]",
+            "[contacts.touch]\nfriction = 0.3",
+            "expected a choice",
+            "0.3",
+            "friction.coulomb = { mu = … }",
+        ),
         ("tension = 1.0", "tensoin = 1.0", "unknown key `tensoin`", "tensoin", "did you mean `tension`"),
         ("tension = 1.0", "tension = [1]", "expected a number", "[1]", ""),
         ("tension = 1.0", "tension = 0.0", "tension must be positive", "0.0", ""),

@@ -92,3 +92,48 @@ fn a_cylinder_irons_a_finer_block_with_a_mortar() {
 fn a_cylinder_irons_a_finer_block() {
     compare([32, 6], 2, MULTIPLIER, 0.01);
 }
+
+/// A round shoe, pressed on a block, slides off its end: its force falls to nothing, and it leaves. (Between the corner of the
+/// block and the shoe there is contact until the last.)
+#[test]
+fn a_shoe_slides_off_the_end_of_a_block() {
+    for (test, enforcement) in [MORTAR, MULTIPLIER, PENALTY] {
+        let shoe = rectangle([-0.5, 0.0], [0.5, 0.5], [8, 3], 1, |mut x| {
+            x[1] += 0.5 * x[0] * x[0] * (1.0 - x[1] / 0.5);
+            x
+        });
+        let bed = rectangle([-1.0, -0.7], [1.0, 0.0], [9, 2], 1, |x| x);
+        let mut system = System::default();
+        let stiff = Elastic { youngs_modulus: 3.0, poissons_ratio: 0.3 };
+        system.bodies.push(Box::new(solid("shoe", shoe, 2, stiff, StressLaw::LinearElastic)));
+        system.bodies.push(Box::new(solid("bed", bed, 2, ELASTIC, StressLaw::LinearElastic)));
+        system.supports.push(hold(1, "bottom", [Some(0.0), Some(0.0), None]));
+        let field = |f: fn(f64) -> f64| -> Option<TimeField> { Some(Arc::new(move |_, t| f(t))) };
+        let displacement = [field(|t| (t - 1.0).max(0.0)), field(|t| -0.05 * t.min(1.0)), None];
+        system.supports.push(Support { displacement, ..hold(0, "top", [None; 3]) });
+        touch(&mut system, [(0, "bottom"), (1, "top")], test, enforcement, None);
+        system.prepare().unwrap();
+        let (mut state, mut time, mut step) = (system.start(), 0.0, 0.1);
+        let mut forces = Vec::new();
+        while time < 2.5 {
+            match system.solve(&state, time + step, &mut |_, _| true) {
+                Ok((next, result)) => {
+                    system.accept(&next).unwrap();
+                    (state, time) = (next, time + step);
+                    step = (1.5 * step).min(0.1);
+                    forces.push((time, force(&result, 0)[1]));
+                    assert!(result.imbalance < 1e-8, "{test:?} at {time}");
+                }
+                Err(error) => {
+                    step *= 0.25;
+                    assert!(step > 1e-4, "{test:?} at {time}: {error}");
+                }
+            }
+        }
+        // The least point of the shoe passes the end at 2; what is left beside it stands 0.05 above at 2.31.
+        let at = |t: f64| forces.iter().min_by(|a, b| (a.0 - t).abs().total_cmp(&(b.0 - t).abs())).unwrap().1;
+        let rest = at(1.2);
+        assert!(rest > 0.0 && at(1.8) < rest && at(2.0) > 0.1 * rest && at(2.0) < 0.8 * rest, "{test:?}: {forces:?}");
+        assert_eq!(at(2.5), 0.0, "{test:?}");
+    }
+}

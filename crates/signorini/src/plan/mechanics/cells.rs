@@ -19,7 +19,7 @@ use signorini_geometry::{Aabb, Jet, Point, Real, Vector};
 use std::sync::Arc;
 
 /// Degree of the functions where it is not stated.
-const DEGREE: usize = 3;
+pub const DEGREE: usize = 3;
 /// Names of the sides of the grid by direction, the lower one first; in the plane the second direction is up.
 const SIDES: [[&str; 2]; 3] = [["left", "right"], ["front", "back"], ["bottom", "top"]];
 

@@ -1,6 +1,6 @@
 //! From the statement to bodies of any kind in one system: ropes, beams, free rigid bodies.
 
-mod cells;
+pub(crate) mod cells;
 mod contacts;
 mod curves;
 mod fields;
@@ -13,6 +13,7 @@ mod winches;
 pub(in crate::plan) use contacts::is_tangent;
 pub use fields::Wrong;
 
+use super::domain::memory_at_hand;
 use super::head::Head;
 use super::planner::Planner;
 use crate::problem::units::LENGTH;
@@ -101,11 +102,23 @@ pub fn is_system(problem: &Problem) -> bool {
     bodies().any(needs_one) || (of_solids && problem.contacts.values().any(slides))
 }
 
-/// Unknowns of a system, what solves its equations, and about how much memory that takes.
-fn size_of(system: &System) -> String {
+/// Unknowns of a system, what solves its equations, and about how much memory that takes; an error where there is less.
+fn size_of(problem: &Problem, system: &System) -> Result<String, CaseError> {
+    let gib = |bytes: f64| bytes / f64::from(1u32 << 30);
     let unknowns: usize = system.bodies.iter().map(|b| b.unknowns()).sum();
     let how = if system.iterates() { "iterations" } else { "a factorisation" };
-    format!("{unknowns} unknowns, solved by {how}, in about {:.2} GiB", system.memory() / f64::from(1 << 30))
+    let (needed, free) = (system.memory(), memory_at_hand());
+    if needed > free {
+        let message = format!(
+            "{unknowns} unknowns, solved by {how}, need about {:.1} GiB, and {:.1} GiB are free for them",
+            gib(needed),
+            gib(free)
+        );
+        return Err(problem
+            .error(&problem.space, message)
+            .help("fewer cells, a lower degree, symmetry, or cells graded towards the contact"));
+    }
+    Ok(format!("{unknowns} unknowns, solved by {how}, in about {:.2} GiB", gib(needed)))
 }
 
 /// The name of what holds solids on the axis of rotation, which nobody stated.
@@ -178,8 +191,8 @@ impl Planner<'_> {
         self.check_start(&system, &kinds, &contacts)?;
         notes.extend(contacts.iter().flat_map(|c| c.notes.iter().cloned()));
         warnings.extend(contacts.iter().flat_map(|c| c.warnings.iter().map(|w| Warning::from(w.as_str()))));
-        if kinds.iter().any(|k| matches!(k, Kind::Cells)) {
-            notes.push(size_of(&system));
+        if kinds.iter().any(|k| matches!(k, Kind::Solid | Kind::Cells)) {
+            notes.push(size_of(problem, &system)?);
         }
         if system.contacts.is_empty() && system.bodies.len() > 1 {
             warnings.push("no contact is stated: the bodies do not see each other (add [contacts.NAME])".into());

@@ -3,7 +3,8 @@
 use super::{MechanicsModel, report};
 use crate::output::system::SystemShown;
 use crate::plan::Plan;
-use crate::problem::{Body, Problem};
+use crate::plan::mechanics::cells;
+use crate::problem::{Body, Problem, SolidMesh};
 use crate::report::{ErrorEstimate, StepReport};
 use signorini_mechanics::IncrementResult;
 use signorini_solve::{Iteration, Progress};
@@ -13,8 +14,6 @@ use signorini_solve::{Iteration, Progress};
 const AFFORDABLE: f64 = 15_000.0;
 /// The estimate is as likely too small as too large: this makes it seldom too small.
 const SAFETY: f64 = 1.5;
-/// The degree of solids and cells where none is stated.
-const USUAL: i64 = 2;
 
 /// Says nothing, but stops where it is asked to.
 struct Quiet<'a>(&'a dyn Progress);
@@ -27,19 +26,22 @@ impl Progress for Quiet<'_> {
     }
 }
 
-/// The problem with functions of one degree more; none with bodies whose functions have no degree, ropes and beams, or
-/// where all bodies are rigid.
+/// The problem with functions of one degree more; none with bodies whose functions have no degree, ropes and beams,
+/// where the mesh alone tells it, or where all bodies are rigid.
 fn finer(problem: &Problem) -> Option<(Problem, i64)> {
     let mut finer = problem.clone();
     let mut least = None::<i64>;
     for body in finer.bodies.values_mut() {
-        let degree = match body {
-            Body::Solid(solid) => &mut solid.degree,
-            Body::Cells(cells) => &mut cells.degree,
+        let (degree, usual) = match body {
+            Body::Solid(solid) => {
+                let of_box = matches!(solid.mesh, SolidMesh::Box(_)).then_some(1);
+                (&mut solid.degree, of_box)
+            }
+            Body::Cells(cells) => (&mut cells.degree, Some(cells::DEGREE as i64)),
             Body::Rigid(_) => continue,
             _ => return None,
         };
-        let own = degree.unwrap_or(USUAL);
+        let own = degree.or(usual)?;
         *degree = Some(own + 1);
         least = Some(least.map_or(own, |l| l.min(own)));
     }

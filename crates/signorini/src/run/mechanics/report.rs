@@ -133,6 +133,15 @@ fn runs(sites: &[SiteResult]) -> Vec<Vec<&SiteResult>> {
     out
 }
 
+/// Part of the forces that cancel which is left by rounding, and by iterations that end.
+const LEFT: f64 = 1e-10;
+
+/// The sum of forces; components are zero where all that is left of forces that cancel is rounding.
+fn resultant(forces: impl Iterator<Item = Vector<3>> + Clone) -> Vector<3> {
+    let size: f64 = forces.clone().map(|f| f.norm()).sum();
+    forces.sum::<Vector<3>>().map(|f| if f.abs() <= LEFT * size { 0.0 } else { f })
+}
+
 fn contact_report(
     plan: &MechanicsPlan,
     (contact, tested): (&dyn Interaction, &Tested),
@@ -142,7 +151,7 @@ fn contact_report(
     let is_curve = matches!(plan.kinds[contact.bodies()[0]], Kind::Curve { .. });
     let component = |run: &Vec<&SiteResult>| {
         let area: f64 = run.iter().map(|s| s.contact_area()).sum();
-        let force: Vector<3> = run.iter().map(|s| s.force()).sum();
+        let force = resultant(run.iter().map(|s| s.force()));
         // A single node may carry over no area that could be told.
         let part = |s: &SiteResult| if area > 0.0 { s.contact_area() } else { s.weight };
         let whole: f64 = run.iter().map(|s| part(s)).sum();
@@ -160,9 +169,8 @@ fn contact_report(
     let rubs = contact.law().is_some();
     // The sum of nothing is a negative zero.
     let area = |status: Status| closed().filter(|s| s.status == status).map(|s| s.contact_area()).sum::<f64>() + 0.0;
-    let friction: Vector<3> = closed().map(|s| s.friction * s.weight).sum();
     ContactReport {
-        force: vector(&closed().map(|s| s.force()).sum::<Vector<3>>()),
+        force: vector(&resultant(closed().map(|s| s.force()))),
         area: sites.iter().map(SiteResult::contact_area).sum(),
         zones: components.len(),
         components,
@@ -174,7 +182,7 @@ fn contact_report(
         slip_area: rubs.then(|| area(Status::Slip)),
         max_slip: rubs.then(|| closed().map(|s| s.slip).fold(0.0, f64::max)),
         max_friction_utilisation: rubs.then(|| closed().map(|s| s.utilisation).fold(0.0, f64::max)),
-        friction_force: rubs.then(|| vector(&friction)),
+        friction_force: rubs.then(|| vector(&resultant(closed().map(|s| s.friction * s.weight)))),
         rope: tested.along_a_curve.then(|| rope_limits((contact, tested), sites)).flatten(),
         dissipation: rubs.then(|| closed().map(|s| -s.weight * s.friction.dot(&s.increment)).sum()),
         ..ContactReport::default()

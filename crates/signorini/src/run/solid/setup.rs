@@ -10,8 +10,8 @@ use signorini_contact::GapJet;
 use signorini_geometry::Point;
 use signorini_solid::loads::forces;
 use signorini_solid::{
-    Bodies, Circumstances, Contact, Load, LoadKind, Master, Model, RigidGap, RigidMotion, Space, StepError,
-    Support, SupportError, SupportKind, facing,
+    Bodies, Circumstances, Contact, Load, LoadKind, Master, Model, RigidGap, RigidMotion, Space, StepError, Support,
+    SupportError, SupportKind, facing,
 };
 use signorini_solve::cholesky::Cost;
 use std::cell::RefCell;

@@ -154,6 +154,6 @@ fn a_pinhole_is_no_edge() {
         zone(&slave, &nodes, &points, &states).face_area.iter().sum::<f64>()
     };
     let exact = 0.25 * PI * 1.03f64.powi(2);
-    assert!((area(false) / exact - 1.0).abs() < 2e-3, "{} {exact}", area(false));
+    assert!((area(false) / exact - 1.0).abs() < 4e-3, "{} {exact}", area(false));
     assert_eq!(area(true), area(false));
 }

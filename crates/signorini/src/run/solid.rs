@@ -32,8 +32,6 @@ const AFFORDABLE: usize = 30_000;
 /// The estimate is as likely too small as too large: this makes it seldom too small.
 const SAFETY: f64 = 1.5;
 
-/// Share of an increment below which it is not cut any more.
-
 /// Solids on their way through their history.
 pub struct SolidModel<const D: usize> {
     plan: SolidPlan<D>,

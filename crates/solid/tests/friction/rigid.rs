@@ -283,7 +283,6 @@ fn what_friction_cannot_do_is_refused() {
     assert!(refused(&|c| c.enforcement = Enforcement::AugmentedLagrangian));
     assert!(refused(&|c| c.method = Method::GaussPoint));
     assert!(!refused(&|c| c.method = Method::Node));
-    assert!(refused(&|c| c.sliding = Sliding::Finite));
     assert!(!refused(&|_| ()));
     let (bodies, supports, mut contact) = contact();
     let law = Box::new(Coulomb::orthotropic([0.1, 0.2]).unwrap());

@@ -61,6 +61,13 @@ pub struct Part {
     pub group: Option<String>,
 }
 
+impl From<usize> for Part {
+    /// A whole body.
+    fn from(body: usize) -> Self {
+        Part { body, group: None }
+    }
+}
+
 /// Two sides that may touch.
 pub struct Contact {
     pub name: String,

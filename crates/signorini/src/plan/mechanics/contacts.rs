@@ -121,13 +121,14 @@ impl Planner<'_> {
         [slave, master]: [&Part; 2],
         system: &System,
     ) -> Result<Option<(Box<dyn Interaction>, Tested)>, CaseError> {
-        let curves = [slave, master].iter().all(|p| system.bodies[p.body].as_curve().is_some());
+        let curve = |p: &&Part| system.bodies[p.body].curve(p.group.as_deref());
+        let curves = [slave, master].iter().all(|p| curve(p).is_some());
         if !curves || !matches!(&key.method, None | Some(Method::Curve(_))) {
             return Ok(None);
         }
         let stated = key.method.as_ref().and_then(|m| if let Method::Curve(k) = m { Some(k) } else { None });
         let kept = self.kept(stated.and_then(|k| k.enforcement.as_ref()), Kept::AugmentedLagrangian, "curve")?;
-        let side = |part: &Part| (part.body, system.bodies[part.body].as_ref());
+        let side = |part: &Part| (part.clone(), system.bodies[part.body].as_ref());
         let mut contact = CurveContact::new(name, side(slave), side(master), kept)
             .map_err(|e| self.problem.error(key, e.to_string()))?;
         match stated.and_then(|k| k.form) {

@@ -7,8 +7,8 @@ mod bodies;
 
 use acting::{balance, first_unknowns, laws, taylor};
 use bodies::{beam, cable};
-use signorini_contact::law::Status;
 use signorini_contact::Coulomb;
+use signorini_contact::law::Status;
 use signorini_geometry::Vector;
 use signorini_mechanics::body::{Body, BodyState, Order};
 use signorini_mechanics::interaction::{Bodies, Interaction, Own};

@@ -62,14 +62,8 @@ enum Case {
     Edges(f64),
 }
 
-const CASES: [Case; 6] = [
-    Case::Crossing(0.1),
-    Case::Crossing(0.0),
-    Case::Blended,
-    Case::Along,
-    Case::Edges(0.0),
-    Case::Edges(0.05),
-];
+const CASES: [Case; 6] =
+    [Case::Crossing(0.1), Case::Crossing(0.0), Case::Blended, Case::Along, Case::Edges(0.0), Case::Edges(0.05)];
 
 /// What touches a block from `z = 0` down, whose edge runs along x.
 fn touching(case: Case, degree: usize) -> Touching {
@@ -163,7 +157,9 @@ fn edges_that_cannot_touch_say_why() {
     assert!(told(["left", "top"], f64::NAN, same).contains("the radius is NaN"));
     assert!(told(["boundary", "top"], 0.0, same).contains("branches at (0.500000, 0.000000, 1.000000)"));
     let bent = |x: V| V::new(x[0] - 1.5 * (x[1] - 0.5).max(0.0), x[1], x[2]);
-    assert!(told(["left", "top"], 0.0, bent).contains("a kink at (0.000000, 0.500000, 1.000000), where it turns by 56"));
+    assert!(
+        told(["left", "top"], 0.0, bent).contains("a kink at (0.000000, 0.500000, 1.000000), where it turns by 56")
+    );
     // Steps: the foot of the upper one is re-entrant, and both front edges are pieces.
     let mut steps = signorini_fem::Mesh::<3>::new(
         (0..24).map(|k| V::new(f64::from(k % 4), f64::from(k / 4 % 2), f64::from(k / 8))).collect(),
@@ -185,7 +181,13 @@ fn edges_that_cannot_touch_say_why() {
         if n[0] > 0.1 && middle[0] < 1.5 {
             steps.group_mut("wall").sides.push(side);
         }
-        let name = if n[2] > 0.1 { "treads" } else if n[0].abs() > 0.1 { "risers" } else { "rest" };
+        let name = if n[2] > 0.1 {
+            "treads"
+        } else if n[0].abs() > 0.1 {
+            "risers"
+        } else {
+            "rest"
+        };
         steps.group_mut(name).sides.push(side);
     }
     let of_steps = |surfaces| {

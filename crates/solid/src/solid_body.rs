@@ -28,8 +28,8 @@ use signorini_geometry::{Point, Vector};
 use signorini_mechanics::curve::CurveMaster;
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{
-    Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Curve, Hold, Load, Master, Order, PlaceError, Placed,
-    Sampling, Site, Surface,
+    Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Curve, Hold, Load, Master, Order, PlaceError,
+    Placed, Sampling, Site, Surface,
 };
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;

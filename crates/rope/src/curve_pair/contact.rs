@@ -158,7 +158,11 @@ impl CurveContact {
         Ok(CurveContact {
             name: name.to_string(),
             parts,
-            form: if is_sharp { Form::Point } else { Form::Blend(Blend::resolved(spacing(curves[0], enforcement), radii)) },
+            form: if is_sharp {
+                Form::Point
+            } else {
+                Form::Blend(Blend::resolved(spacing(curves[0], enforcement), radii))
+            },
             ends: if is_sharp { Ends::PassBy } else { Ends::Touch },
             enforcement,
             friction: None,

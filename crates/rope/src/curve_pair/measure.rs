@@ -283,8 +283,11 @@ fn with<const N: usize>(
                     }
                     _ => zero,
                 } + p.lever_slope * d_xi[l][p.side];
-                d_slip[k * n + l] =
-                    along - spun.cross(&normal) - p.lever.cross(&d_normal[l]) - d_normal[k] * d_gap[l] - turned * leverage;
+                d_slip[k * n + l] = along
+                    - spun.cross(&normal)
+                    - p.lever.cross(&d_normal[l])
+                    - d_normal[k] * d_gap[l]
+                    - turned * leverage;
             }
         }
     }

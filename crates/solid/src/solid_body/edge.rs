@@ -4,15 +4,17 @@
 //! Each element of the curve is cubic, along an edge of cells, from vertex to vertex. The tangent at a vertex is the mean of
 //! those of the edges to both sides, weighted so that of straight edges it is that of the parabola through three vertices:
 //! all is linear in the displacements, and an edge of the mesh that is smooth itself is what it was. So contact between
-//! curves sees no kinks from cell to cell.
+//! curves sees no kinks from cell to cell. A rounding turns with the edge and the first of its faces.
 
 mod chain;
+mod section;
 
 pub use chain::EdgeError;
 
 use super::faces::Faces;
 use super::{SolidBody, spatial};
 use crate::material::Space;
+use section::{Change, Section};
 use signorini_fem::Local;
 use signorini_fem::rules::rule;
 use signorini_geometry::shape::CurveJet;
@@ -56,6 +58,9 @@ struct Element {
     points: [Point<3>; 4],
     /// Functions that move it, with their weights in each point of Bezier.
     functions: Vec<(u32, [f64; 4])>,
+    /// A vector into the first face at both ends, and functions with their weights in both.
+    aside: [Vector<3>; 2],
+    turning: Vec<(u32, [f64; 2])>,
     length: f64,
     /// The faces that meet there, and where on them the edge begins and ends.
     faces: [(u32, [Local; 2]); 2],
@@ -185,7 +190,14 @@ impl EdgeCurve {
                 for (k, point) in bezier.iter().enumerate() {
                     point.weights.iter().for_each(|(f, w)| functions.entry(*f).or_default()[k] = *w);
                 }
+                let aside = [0, 1].map(|end| aside(faces, links[e].faces[0], end));
+                let mut turning: BTreeMap<u32, [f64; 2]> = functions.keys().map(|f| (*f, [0.0; 2])).collect();
+                for (k, vector) in aside.iter().enumerate() {
+                    vector.weights.iter().for_each(|(f, w)| turning.entry(*f).or_default()[k] = *w);
+                }
                 Element {
+                    aside: aside.each_ref().map(|v| v.x),
+                    turning: turning.into_iter().collect(),
                     points: bezier.each_ref().map(|p| p.x),
                     functions: functions.into_iter().collect(),
                     length: lengths[e],
@@ -241,6 +253,47 @@ impl EdgeCurve {
         out
     }
 
+    /// The section at a point, how its vectors change along the edge, and what turns it.
+    fn section(&self, element: usize, xi: f64, u: &[f64]) -> (Section, Change, Vec<Turning>) {
+        let own = &self.elements[element];
+        let jet = self.jet(element, xi, u);
+        let mut aside = own.aside;
+        let [_, first, second, _] = bernstein(xi);
+        let of = |row: &[f64; 4], weights: &[f64; 4]| (0..4).map(|k| row[k] * weights[k]).sum::<f64>();
+        let mut list = Vec::with_capacity(3 * own.turning.len());
+        for (f, across) in &own.turning {
+            let moved = Vector::<3>::from_column_slice(&u[3 * *f as usize..3 * *f as usize + 3]);
+            (0..2).for_each(|k| aside[k] += moved * across[k]);
+            let along = own.functions.binary_search_by_key(f, |g| g.0).map_or([0.0; 4], |k| own.functions[k].1);
+            let [a, a_along] = [of(&first, &along), of(&second, &along)];
+            let [w, w_along] = [(1.0 - xi) * across[0] + xi * across[1], across[1] - across[0]];
+            list.extend((0..3).map(|i| Turning {
+                unknown: 3 * f + i as u32,
+                change: Change { a: axis(i) * a, w: axis(i) * w },
+                slope: Change { a: axis(i) * a_along, w: axis(i) * w_along },
+            }));
+        }
+        let along = Change { a: jet.d2, w: aside[1] - aside[0] };
+        (Section::new(jet.d1, aside[0] * (1.0 - xi) + aside[1] * xi), along, list)
+    }
+
+    /// What turns the section of a rounded edge, and how it is turned; nothing of a sharp one.
+    fn spin(&self, element: usize, xi: f64, u: &[f64]) -> (Vec<Function>, Matrix<3>) {
+        if self.radius == 0.0 {
+            return (Vec::new(), Matrix::<3>::identity());
+        }
+        let (section, along, list) = self.section(element, xi, u);
+        let spin = (list.iter())
+            .map(|t| Function {
+                unknown: t.unknown,
+                value: section.spin(&t.change),
+                slopes: [section.spin(&t.slope) + section.bend(&t.change, &along), Vector::<3>::zeros()],
+                ..Function::default()
+            })
+            .collect();
+        (spin, section.frame())
+    }
+
     fn stiffness(&self, element: usize) -> f64 {
         self.youngs_modulus * self.elements[element].length * self.degree as f64
     }
@@ -276,12 +329,14 @@ impl EdgeCurve {
 
     pub(super) fn placed(&self, element: usize, site: &Site, u: &[f64]) -> Placed {
         let jet = self.jet(element, site.xi[0], u);
+        let (spin, frame) = self.spin(element, site.xi[0], u);
         Placed {
             x: jet.x,
             tangent: Some(jet.d1),
             radius: self.radius,
             functions: self.functions(element, site.xi[0]),
-            frame: Matrix::<3>::identity(),
+            spin,
+            frame,
             ..Placed::default()
         }
     }
@@ -292,13 +347,28 @@ impl EdgeCurve {
     }
 }
 
+/// How an unknown changes the vectors of a section, and how that changes along the edge.
+struct Turning {
+    unknown: u32,
+    change: Change,
+    slope: Change,
+}
+
+/// A vector from an end of an edge into a face: towards its middle, by its coordinates.
+fn aside<const D: usize>(faces: &Faces<D>, (face, ends): (u32, [Local; 2]), end: usize) -> Linear {
+    let (middle, centre) = (between(&ends, 0.5), faces.face(face).shape.centre());
+    let towards = [0, 1].map(|k| centre[k] - middle[k]);
+    let at = faces.reference(face, &ends[end]);
+    let mut out =
+        Linear { x: spatial(&(at.tangents[0] * towards[0] + at.tangents[1] * towards[1])), ..Linear::default() };
+    for (f, d) in faces.derivatives(face, &ends[end]) {
+        out.weights.insert(f, d[1] * towards[0] + d[2] * towards[1]);
+    }
+    out
+}
+
 /// Position and derivative per length at a place along an edge of a face.
-fn linear<const D: usize>(
-    faces: &Faces<D>,
-    (face, ends): (u32, [Local; 2]),
-    t: f64,
-    length: f64,
-) -> (Linear, Linear) {
+fn linear<const D: usize>(faces: &Faces<D>, (face, ends): (u32, [Local; 2]), t: f64, length: f64) -> (Linear, Linear) {
     let s = between(&ends, t);
     let along = [0, 1].map(|k| (ends[1][k] - ends[0][k]) / length);
     let at = faces.reference(face, &s);
@@ -387,6 +457,16 @@ impl<const D: usize> Curve for PlacedEdge<'_, D> {
     fn foot(&self, configuration: &[f64], element: usize, xi: f64, coordinates: usize) -> Foot {
         let functions = self.edge.functions(element, xi);
         let jet = self.edge.jet(element, xi, configuration);
-        CurvePoint { element, xi, coordinates }.foot(&jet, self.edge.radius, functions)
+        let (spin, frame) = self.edge.spin(element, xi, configuration);
+        let foot = CurvePoint { element, xi, coordinates }.foot(&jet, self.edge.radius, functions);
+        Foot { spin, frame, ..foot }
+    }
+
+    fn spin_bends(&self, configuration: &[f64], element: usize, xi: f64) -> Vec<Vector<3>> {
+        if self.edge.radius == 0.0 {
+            return Vec::new();
+        }
+        let (section, _, list) = self.edge.section(element, xi, configuration);
+        list.iter().flat_map(|t| list.iter().map(|l| section.bend(&t.change, &l.change))).collect()
     }
 }

@@ -131,7 +131,15 @@ impl Planner<'_> {
         let side = |part: &Part| (part.clone(), system.bodies[part.body].as_ref());
         let mut contact = CurveContact::new(name, side(slave), side(master), kept)
             .map_err(|e| self.problem.error(key, e.to_string()))?;
+        let is_sharp = [slave, master].iter().all(|p| curve(p).is_some_and(|c| c.radius() == 0.0));
         match stated.and_then(|k| k.form) {
+            Some(form @ (CurveForm::Line | CurveForm::Blend)) if is_sharp => {
+                let word = if form == CurveForm::Line { "line" } else { "blend" };
+                return Err(self
+                    .problem
+                    .error(key, format!("form = \"{word}\" between two curves without a radius, which have no gap along each other"))
+                    .help("form = \"point\": they touch where they cross; or give one of them a radius"));
+            }
             Some(CurveForm::Point) => contact.form = Form::Point,
             Some(CurveForm::Line) => contact.form = Form::Line,
             Some(CurveForm::Blend) | None => {}

@@ -184,7 +184,7 @@ impl<const D: usize> SolidBody<D> {
         self.groups.get(name).ok_or_else(|| PlaceError::Unknown {
             body: self.name().to_string(),
             group: name.to_string(),
-            known: self.groups.keys().cloned().collect(),
+            known: self.groups.keys().chain(self.edges.keys()).cloned().collect(),
         })
     }
 

@@ -277,11 +277,8 @@ impl EdgeCurve {
         (Section::new(jet.d1, aside[0] * (1.0 - xi) + aside[1] * xi), along, list)
     }
 
-    /// What turns the section of a rounded edge, and how it is turned; nothing of a sharp one.
+    /// What turns the section at a point, and how it is turned.
     fn spin(&self, element: usize, xi: f64, u: &[f64]) -> (Vec<Function>, Matrix<3>) {
-        if self.radius == 0.0 {
-            return (Vec::new(), Matrix::<3>::identity());
-        }
         let (section, along, list) = self.section(element, xi, u);
         let spin = (list.iter())
             .map(|t| Function {
@@ -463,9 +460,6 @@ impl<const D: usize> Curve for PlacedEdge<'_, D> {
     }
 
     fn spin_bends(&self, configuration: &[f64], element: usize, xi: f64) -> Vec<Vector<3>> {
-        if self.edge.radius == 0.0 {
-            return Vec::new();
-        }
         let (section, _, list) = self.edge.section(element, xi, configuration);
         list.iter().flat_map(|t| list.iter().map(|l| section.bend(&t.change, &l.change))).collect()
     }

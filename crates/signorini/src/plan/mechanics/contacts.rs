@@ -137,7 +137,12 @@ impl Planner<'_> {
                 let word = if form == CurveForm::Line { "line" } else { "blend" };
                 return Err(self
                     .problem
-                    .error(key, format!("form = \"{word}\" between two curves without a radius, which have no gap along each other"))
+                    .error(
+                        key,
+                        format!(
+                            "form = \"{word}\" between two curves without a radius, which have no gap along each other"
+                        ),
+                    )
                     .help("form = \"point\": they touch where they cross; or give one of them a radius"));
             }
             Some(CurveForm::Point) => contact.form = Form::Point,

@@ -98,9 +98,9 @@ impl Planner<'_> {
             EdgeError::Apart { edge, .. } => {
                 problem.error(&of(edge).between, told).help("two groups that have cell edges in common, and no others")
             }
-            EdgeError::Branches { edge, .. } | EdgeError::Pieces { edge, .. } | EdgeError::Kink { edge, .. } => {
-                problem.error(&of(edge).between, told).help("one smooth edge at a time: give its parts names of their own")
-            }
+            EdgeError::Branches { edge, .. } | EdgeError::Pieces { edge, .. } | EdgeError::Kink { edge, .. } => problem
+                .error(&of(edge).between, told)
+                .help("one smooth edge at a time: give its parts names of their own"),
             EdgeError::Reentrant { edge, .. } => {
                 problem.error(&of(edge).between, told).help("name an edge that stands out, or the faces themselves")
             }

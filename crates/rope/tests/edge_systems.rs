@@ -8,6 +8,7 @@ use signorini_contact::Coulomb;
 use signorini_fem::block::block;
 use signorini_geometry::Vector;
 use signorini_mechanics::body::Body;
+use signorini_mechanics::interaction::Interaction;
 use signorini_mechanics::{AxisChoice, Contact, Enforcement, Part, PlacedLoad, Sampling, Support, System, TimedLoad};
 use signorini_rope::centreline::{Closure, Continuity};
 use signorini_rope::chain::Chain;
@@ -155,4 +156,28 @@ fn a_rope_slips_over_an_edge() {
         assert!((ratio / exact - 1.0).abs() < 2e-3, "{ratio} {exact}");
         assert!(iterations[1..].iter().all(|n| *n <= 6), "{iterations:?}");
     }
+}
+
+/// An edge as a curve against itself is straight, and meets nothing; its points know no neighbours.
+#[test]
+fn an_edge_does_not_touch_itself() {
+    let size = [V::new(-1.0, -1.0, -1.0), V::zeros()];
+    let block = solid("block", size, [2, 2, 2], 1, (1.0, 0.3), |x| x, edge(["top", "right"], 0.1));
+    let bodies: Vec<Box<dyn Body>> = vec![Box::new(block)];
+    let side = || (part(0, "rim"), bodies[0].as_ref());
+    let nodes = Enforcement::Penalty { wanted_penetration: None };
+    let top = || (part(0, "top"), bodies[0].as_ref());
+    for (own, met) in [(side(), side()), (top(), side()), (side(), top())] {
+        let told = Contact::new("nodes", own, met, Sampling::Nodes, nodes).err().map(|e| e.to_string());
+        assert!(told.is_some_and(|e| e.contains("touches other edges of its own body")));
+    }
+    let as_curves = CurveContact::new("curves", side(), side(), nodes).unwrap();
+    let contacts: Vec<Box<dyn Interaction>> = vec![Box::new(as_curves)];
+    let mut system = System { bodies, contacts, ..System::default() };
+    system.supports.push(held(0, "bottom", [(); 3].map(|()| at_zero()), [None, None, None]));
+    system.loads.push(pulled(0, "top", V::new(0.0, 0.0, -0.1)));
+    system.prepare().unwrap();
+    let start = system.start();
+    let (_, result) = system.solve(&start, 1.0, &mut |_, _| true).unwrap();
+    assert_eq!(total(&result.sites[0]), 0.0);
 }

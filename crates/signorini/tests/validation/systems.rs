@@ -275,9 +275,10 @@ fn mistakes_of_edges_are_told_at_their_place() {
         ("radius = 0.06 }", "radius = -0.2 }", "valid are 0 and larger", "-0.2"),
         ("radius = 0.06 }", "radius = nan }", "not a finite number", "nan"),
         ("radius = 0.06 }", "radios = 0.06 }", "unknown key `radios`", "radios"),
-        ("edges.rim", "edges.top", "there is a group of that name", "edges"),
+        ("edges.rim", "edges.top", "there is a group of that name", "between"),
         ("\"block:rim\"", "\"block:rum\"", "has no group `rum`", "block:rum"),
         ("\"block:bottom\"", "\"block:rim\"", "`rim` is an edge, which touches", "block:rim"),
+        ("[\"rope\", \"block:rim\"]", "[\"block:top\", \"block:rim\"]", "other edges of its own body", "block:top"),
     ];
     for (from, to, message, at) in table {
         let case = example("edge");

@@ -217,7 +217,7 @@ fn with<const N: usize>(
             let cross = units[0].cross(&units[1]);
             let length = cross.dot(&normal);
             let change = |k: usize| d_unit(k, 0).cross(&units[1]) + units[0].cross(&d_unit(k, 1));
-            (0..n).map(|k| change(k)).map(|c| (c - normal * normal.dot(&c)) / length).collect()
+            (0..n).map(change).map(|c| (c - normal * normal.dot(&c)) / length).collect()
         }
     };
     let [a_11, a_22, a_12] = hessian(&jets, &d);

@@ -413,8 +413,8 @@ pub trait Body: Send + Sync {
         false
     }
 
-    /// The body as a curve, if it is one: contact between curves is for such.
-    fn as_curve(&self) -> Option<Box<dyn Curve + '_>> {
+    /// A place as a curve, if it is one, such as a rope, a beam, an edge of a solid: contact between curves is for such.
+    fn curve<'a>(&'a self, _on: Option<&str>) -> Option<Box<dyn Curve + 'a>> {
         None
     }
 

@@ -61,6 +61,13 @@ pub struct Part {
     pub group: Option<String>,
 }
 
+impl From<usize> for Part {
+    /// A whole body.
+    fn from(body: usize) -> Self {
+        Part { body, group: None }
+    }
+}
+
 /// Two sides that may touch.
 pub struct Contact {
     pub name: String,
@@ -179,6 +186,12 @@ impl Contact {
         sampling: Sampling,
         enforcement: Enforcement,
     ) -> Result<Self, PlaceError> {
+        let is_edge =
+            |(part, body): &(Part, &dyn Body)| part.group.is_some() && body.curve(part.group.as_deref()).is_some();
+        if slave.0.body == master.0.body && (is_edge(&slave) || is_edge(&master)) {
+            let message = "an edge touches other edges of its own body, and nothing else of it".to_string();
+            return Err(PlaceError::Unsuitable { body: slave.1.name().to_string(), message });
+        }
         let mut sites = slave.1.sites(slave.0.group.as_deref(), sampling)?;
         master.1.master(master.0.group.as_deref(), &master.1.start())?;
         let stiffness = match enforcement {

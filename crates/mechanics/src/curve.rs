@@ -1,10 +1,15 @@
 //! Bodies that are curves, as contact between curves sees them.
 //!
-//! A curve is a row of elements, with parameters from 0 to 1 in each, and a circular section about it that touches.
+//! A curve is a row of elements, with parameters from 0 to 1 in each, and a circular section about it that touches. It is a
+//! body of its own, or the edge of one, which has an inside.
 
-use crate::body::Foot;
-use signorini_geometry::shape::CurveJet;
-use signorini_geometry::{Point, Vector};
+mod nearest;
+
+pub use nearest::{CurveMaster, Minimum, are_apart, boxes, minima, samples};
+
+use crate::body::{Foot, Function, MaterialPoint};
+use signorini_geometry::shape::{CurveJet, SurfaceJet};
+use signorini_geometry::{Matrix, Point, Vector};
 
 /// Whether a curve returns to its start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,6 +50,19 @@ pub trait Curve: Sync {
     /// Points of Gauss of each element at which contact along a line is tested.
     fn contact_points(&self) -> usize;
 
+    /// The force that moves a point of an element by a unit of length, about: the scale of penalties.
+    fn stiffness(&self, element: usize) -> f64;
+
+    /// Outward normals of the two faces that meet at an edge; none of a curve that has no inside.
+    fn faces(&self, _configuration: &[f64], _element: usize, _xi: f64) -> Option<[Vector<3>; 2]> {
+        None
+    }
+
+    /// How deep inside what an edge is of something may be that came in over it: what is deeper is on another side.
+    fn depth(&self, _element: usize) -> f64 {
+        f64::INFINITY
+    }
+
     /// Position and derivatives in the parameter of an element.
     fn jet(&self, configuration: &[f64], element: usize, xi: f64) -> CurveJet;
 
@@ -59,5 +77,32 @@ pub trait Curve: Sync {
     /// tangents: along geodesics of the rotations. Empty where it turns as a rigid section, by half the product of both spins.
     fn spin_bends(&self, _configuration: &[f64], _element: usize, _xi: f64) -> Vec<Vector<3>> {
         Vec::new()
+    }
+}
+
+/// A point of a curve: free to move along it, or held at an end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvePoint {
+    pub element: usize,
+    pub xi: f64,
+    /// 1 along the curve, 0 at an end or a kink.
+    pub coordinates: usize,
+}
+
+impl CurvePoint {
+    /// The foot at this point of a curve whose sections do not turn by themselves.
+    pub fn foot(&self, jet: &CurveJet, radius: f64, functions: Vec<Function>) -> Foot {
+        let CurveJet { x, d1, d2, d3 } = *jet;
+        let zero = Vector::<3>::zeros();
+        Foot {
+            point: MaterialPoint { patch: self.element as u32, xi: [self.xi, 0.0, 0.0] },
+            jet: SurfaceJet { x, u: d1, v: zero, uu: d2, uv: zero, vv: zero, uuu: d3, uuv: zero, uvv: zero, vvv: zero },
+            coordinates: self.coordinates,
+            outward: None,
+            radius,
+            functions,
+            spin: Vec::new(),
+            frame: Matrix::<3>::identity(),
+        }
     }
 }

@@ -135,7 +135,7 @@ impl Contact {
     fn tested(&self, way: Way<'_>) -> Vec<Tested> {
         let slave = self.slave.body;
         let body = &way.from.bodies[slave];
-        let is_curve = body.as_curve().is_some();
+        let is_curve = body.curve(self.slave.group.as_deref()).is_some();
         let count = self.sites().len() as f64;
         let mut out: Vec<Tested> = Vec::new();
         for site in self.sites() {

@@ -1,30 +1,26 @@
 //! Contact between curves: gap, slip and tangent against differences, balance, search.
 
+#[path = "common/acting.rs"]
+mod acting;
 #[path = "common/bodies.rs"]
 mod bodies;
 
+use acting::{balance, first_unknowns, laws, taylor};
 use bodies::{beam, cable};
+use signorini_contact::Coulomb;
 use signorini_contact::law::Status;
-use signorini_contact::{Coulomb, Law};
 use signorini_geometry::Vector;
 use signorini_mechanics::body::{Body, BodyState, Order};
-use signorini_mechanics::interaction::{Bodies, Interaction, Own, Target};
-use signorini_mechanics::{Curve, Enforcement, SiteResult};
+use signorini_mechanics::interaction::{Bodies, Interaction, Own};
+use signorini_mechanics::{Curve, Enforcement};
 use signorini_rope::beam::Beam;
 use signorini_rope::curve_pair::blend::Blend;
 use signorini_rope::curve_pair::contact::{CurveContact, Form, Penalties};
 use signorini_rope::curve_pair::measure::{CurvePair, Wanted, elastic_slip, measure};
 use signorini_rope::curve_pair::search::{Between, Searched, crossings};
 use signorini_rope::section::Stiffness;
-use signorini_solve::general::Entries;
 
 type V = Vector<3>;
-
-fn first_unknowns(bodies: &[&dyn Body]) -> Vec<u32> {
-    let mut first = vec![0];
-    bodies.iter().for_each(|b| first.push(first[first.len() - 1] + b.unknowns() as u32));
-    first
-}
 
 fn soft() -> Stiffness {
     Stiffness { axial: 100.0, shear: [40.0; 2], torsion: 1.0, bending: [1.0; 2] }
@@ -55,7 +51,7 @@ enum Kind {
 fn pair(bodies: &[Beam; 2], states: &[BodyState], kind: &Kind, order: Order) -> CurvePair {
     let first = first_unknowns(&[&bodies[0], &bodies[1]]);
     let first = [first[0], first[1]];
-    let curves = [0, 1].map(|s| bodies[s].as_curve().unwrap());
+    let curves = [0, 1].map(|s| bodies[s].curve(None).unwrap());
     let sides = [0, 1].map(|s| searched(curves[s].as_ref(), &states[s]));
     let foot = |s: usize, e: usize, xi: f64, c: usize| curves[s].foot(&states[s].configuration, e, xi, c);
     let bends = [0, 1].map(|_| Vec::new());
@@ -162,7 +158,7 @@ fn slip_follows_material_points_of_both_surfaces() {
     let at = |states: &[BodyState]| {
         let feet = [0, 1].map(|s| {
             let p = now.stuck.points[s];
-            bodies[s].as_curve().unwrap().foot(&states[s].configuration, p.patch as usize, p.xi[0], 1)
+            bodies[s].curve(None).unwrap().foot(&states[s].configuration, p.patch as usize, p.xi[0], 1)
         });
         elastic_slip(&now.stuck, [&feet[0], &feet[1]], [first[0], first[1]])
     };
@@ -196,7 +192,7 @@ fn curves_touch_themselves_but_not_next_to_themselves() {
         .collect();
     let body = beam("loop", &loop_points, 24, soft(), 0.15);
     let state = body.start();
-    let curve = body.as_curve().unwrap();
+    let curve = body.curve(None).unwrap();
     let side = searched(curve.as_ref(), &state);
     let near = crossings(side, side, Between::Itself, 0.5);
     assert!(!near.is_empty());
@@ -207,7 +203,7 @@ fn curves_touch_themselves_but_not_next_to_themselves() {
     assert!(near.iter().all(|n| n.points[1].element - n.points[0].element >= 18));
     let straight = beam("straight", &[V::zeros(), V::new(5.0, 0.0, 0.0)], 10, soft(), 0.15);
     let state = straight.start();
-    let curve = straight.as_curve().unwrap();
+    let curve = straight.curve(None).unwrap();
     let side = searched(curve.as_ref(), &state);
     assert!(crossings(side, side, Between::Itself, 0.5).is_empty());
     let master = straight.master(None, &state).unwrap();
@@ -227,7 +223,7 @@ fn parallel_curves_never_fail() {
         ];
         let states = [bodies[0].start(), bodies[1].start()];
         let first = first_unknowns(&[&bodies[0], &bodies[1]]);
-        let curves = [0, 1].map(|s| bodies[s].as_curve().unwrap());
+        let curves = [0, 1].map(|s| bodies[s].curve(None).unwrap());
         let sides = [0, 1].map(|s| searched(curves[s].as_ref(), &states[s]));
         let penalty = Enforcement::Penalty { wanted_penetration: None };
         let mut contact = CurveContact::new("touch", (0, &bodies[0]), (1, &bodies[1]), penalty).unwrap();
@@ -253,7 +249,7 @@ enum Case {
 }
 
 /// Curves in contact, and the contact.
-fn touching(case: Case, spins: bool) -> (Vec<Box<dyn Body>>, CurveContact) {
+fn touching(case: Case, spins: bool) -> acting::Touching {
     let one = |name: &str, points: &[V], cells: usize, radius: f64| -> Box<dyn Body> {
         if spins {
             Box::new(beam(name, points, cells, soft(), radius))
@@ -288,112 +284,6 @@ fn touching(case: Case, spins: bool) -> (Vec<Box<dyn Body>>, CurveContact) {
     (bodies, contact)
 }
 
-struct Acted {
-    residual: Vec<f64>,
-    tangent: Entries,
-    sites: Vec<SiteResult>,
-}
-
-fn act(
-    contact: &CurveContact,
-    bodies: &[Box<dyn Body>],
-    states: &[BodyState],
-    prediction: &[f64],
-    order: Order,
-) -> Acted {
-    let all: Vec<&dyn Body> = bodies.iter().map(|b| b.as_ref()).collect();
-    let first = first_unknowns(&all);
-    let n = first[bodies.len()] as usize;
-    let (mut residual, mut sizes, mut tangent) = (vec![0.0; n], vec![0.0; n], Entries::default());
-    let at = Bodies { bodies, states, first: &first };
-    let own = Own { multipliers: &[], first: n as u32, prediction };
-    let room = (order == Order::Second).then_some(&mut tangent);
-    let mut target = Target { residual: &mut residual, sizes: &mut sizes, tangent: room };
-    assert_eq!(contact.add_to(at, own, &mut target).unwrap(), 0);
-    let sites = contact.results(at, own).unwrap();
-    Acted { residual, tangent, sites }
-}
-
-fn advanced(bodies: &[Box<dyn Body>], states: &[BodyState], step: &[f64], share: f64) -> Vec<BodyState> {
-    let mut done = 0;
-    let mut of = |body: &dyn Body, state: &BodyState| {
-        let own = &step[done..done + body.unknowns()];
-        done += body.unknowns();
-        body.advance(state, own, share)
-    };
-    bodies.iter().zip(states).map(|(b, s)| of(b.as_ref(), s)).collect()
-}
-
-/// The residual moved along a step, less what the tangent says, for two lengths of the step, relative to the largest change.
-fn taylor(case: Case, spins: bool, law: Option<Box<dyn Law>>, expected: Status, enforcement: Enforcement) -> [f64; 2] {
-    let (bodies, mut contact) = touching(case, spins);
-    contact.friction = law;
-    contact.enforcement = enforcement;
-    let n: usize = bodies.iter().map(|b| b.unknowns()).sum();
-    let noise = |seed: f64| -> Vec<f64> { (0..n).map(|k| (seed + 1.3 * k as f64).sin()).collect() };
-    let start: Vec<BodyState> = bodies.iter().map(|b| b.start()).collect();
-    let all: Vec<&dyn Body> = bodies.iter().map(|b| b.as_ref()).collect();
-    let first = first_unknowns(&all);
-    let own = Own { multipliers: &[], first: n as u32, prediction: &[] };
-    contact.accept(Bodies { bodies: &bodies, states: &start, first: &first }, own).unwrap();
-    if let Enforcement::AugmentedLagrangian = enforcement {
-        // Half of the forces as multipliers, and some friction.
-        let mut history = contact.history();
-        for kept in history[0].chunks_mut(23) {
-            kept[4] *= 0.5;
-            (kept[5], kept[6]) = (-0.02 * kept[4], 0.01 * kept[4]);
-        }
-        contact.restore(&history).unwrap();
-    }
-    let states = advanced(&bodies, &start, &noise(0.9), 2e-3);
-    let found = act(&contact, &bodies, &states, &[], Order::First).sites;
-    let closed: Vec<&SiteResult> = found.iter().filter(|s| s.status != Status::Open).collect();
-    assert!(closed.iter().any(|s| s.status == expected), "{case:?}: {closed:?}");
-    // Forces of the geometric terms are those of the state.
-    let now = act(&contact, &bodies, &states, &predictions(&contact, &bodies, &states, &first), Order::Second);
-    let matrix = now.tangent.matrix(n);
-    let along = noise(2.2);
-    let mut product = matrix.multiply(&along);
-    // Residuals are differentiated component by component; the tangent is that along geodesics.
-    for (body, first) in bodies.iter().zip(&first) {
-        for spin in body.spins() {
-            let of = |v: &[f64]| V::from_fn(|i, _| v[(spin[i] + first) as usize]);
-            let turned = of(&now.residual).cross(&of(&along)) * -0.5;
-            (0..3).for_each(|i| product[(spin[i] + first) as usize] += turned[i]);
-        }
-    }
-    let scale = product.iter().fold(0.0f64, |m, p| m.max(p.abs()));
-    // Shorter than what is left to stick: the least penetration times the friction.
-    [2e-6, 1e-6].map(|h| {
-        let moved = act(&contact, &bodies, &advanced(&bodies, &states, &along, h), &[], Order::First);
-        let error = |k: usize| (moved.residual[k] - now.residual[k] - h * product[k]).abs();
-        (0..n).map(error).fold(0.0, f64::max) / (h * scale)
-    })
-}
-
-/// Predictions that are the forces of a state: of a step of nothing.
-fn predictions(contact: &CurveContact, bodies: &[Box<dyn Body>], states: &[BodyState], first: &[u32]) -> Vec<f64> {
-    let n = first[first.len() - 1];
-    let at = Bodies { bodies, states, first };
-    let none = vec![0.0; n as usize];
-    // Twice: a contact has a force that turns from its second iterate on.
-    let mut prediction = contact.prediction();
-    for _ in 0..2 {
-        let own = Own { multipliers: &[], first: n, prediction: &prediction };
-        prediction = contact.predict(at, own, &none, 1.0);
-    }
-    prediction
-}
-
-fn laws() -> [(Option<Box<dyn Law>>, Status); 4] {
-    [
-        (None, Status::Slip),
-        (Some(Box::new(Coulomb::isotropic(500.0).unwrap())), Status::Stick),
-        (Some(Box::new(Coulomb::isotropic(0.02).unwrap())), Status::Slip),
-        (Some(Box::new(Coulomb::orthotropic([0.01, 0.03]).unwrap())), Status::Slip),
-    ]
-}
-
 #[test]
 fn tangents_are_derivatives_in_all_regimes() {
     for case in [Case::Crossing, Case::Blended, Case::Along, Case::Itself] {
@@ -401,7 +291,7 @@ fn tangents_are_derivatives_in_all_regimes() {
             for enforcement in [Enforcement::Penalty { wanted_penetration: None }, Enforcement::AugmentedLagrangian] {
                 for (law, status) in laws() {
                     let rubs = law.is_some();
-                    let [coarse, fine] = taylor(case, spins, law, status, enforcement);
+                    let [coarse, fine] = taylor(touching(case, spins), (law, status), enforcement);
                     println!("{case:?}, spins {spins}, friction {rubs}, {status:?}: {coarse:.1e} {fine:.1e}");
                     assert!(fine < 1e-8 || (coarse / fine > 1.9 && coarse / fine < 2.1), "{coarse:e} {fine:e}");
                     assert!(fine < 2e-2);
@@ -416,23 +306,10 @@ fn forces_with_friction_have_neither_resultant_nor_moment() {
     for case in [Case::Crossing, Case::Blended, Case::Along, Case::Itself] {
         for spins in [false, true] {
             for (law, _) in laws() {
-                let (bodies, mut contact) = touching(case, spins);
-                contact.friction = law;
-                let all: Vec<&dyn Body> = bodies.iter().map(|b| b.as_ref()).collect();
-                let first = first_unknowns(&all);
-                let n = first[bodies.len()];
-                let start: Vec<BodyState> = bodies.iter().map(|b| b.start()).collect();
-                let own = Own { multipliers: &[], first: n, prediction: &[] };
-                contact.accept(Bodies { bodies: &bodies, states: &start, first: &first }, own).unwrap();
-                let noise: Vec<f64> = (0..n).map(|k| (0.7 + 1.3 * k as f64).sin()).collect();
-                let states = advanced(&bodies, &start, &noise, 2e-3);
-                let found = act(&contact, &bodies, &states, &[], Order::First);
-                let size = found.residual.iter().fold(0.0f64, |m, r| m.max(r.abs()));
+                let (powers, size) = balance(touching(case, spins), law);
                 assert!(size > 0.0);
-                for mode in 0..6 {
-                    let modes = bodies.iter().zip(&states).flat_map(|(b, s)| b.rigid_modes(s)[mode].clone());
-                    let power: f64 = modes.zip(&found.residual).map(|(m, r)| m * r).sum();
-                    assert!(power.abs() < 1e-12 * size, "{case:?} {spins} {mode}: {power:e} of {size:e}");
+                for power in powers {
+                    assert!(power.abs() < 1e-12 * size, "{case:?} {spins}: {power:e} of {size:e}");
                 }
             }
         }

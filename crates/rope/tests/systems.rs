@@ -235,3 +235,22 @@ fn a_capstan_takes_few_iterations() {
         }
     }
 }
+
+/// A rope between a held end and a spring, pulled where the spring is: both resist by what they are stretched.
+#[test]
+fn a_sprung_end_gives_way() {
+    let path = Path::points(&[V::zeros(), V::x()], Closure::Open).unwrap().sample(8, Continuity::C0).unwrap();
+    let (stiffness, spring) = (100.0, 10.0);
+    let rope = Chain::new("rope", &path, stiffness, Rest::Pretension(1.0), 0.0).unwrap();
+    let mut system = System::default();
+    system.bodies.push(Box::new(rope.clone()));
+    system.supports.push(hold("start", std::array::from_fn(|_| zero()), [None, None, None]));
+    system.loads.push(load("end", TimedLoad::Springs(V::new(spring, spring, spring))));
+    system.loads.push(load("end", TimedLoad::Force(Arc::new(|_, t| V::x() * (1.0 + t)))));
+    let (state, _) = run(&mut system, &[0.5, 1.0]);
+    // The rope is stretched from its length without tension, the spring from the start.
+    let axial = stiffness * (1.0 + 1.0 / stiffness);
+    let moved = 1.0 / (axial + spring);
+    let tension = rope.tensions(&state.bodies[0])[0];
+    assert!((tension - (1.0 + axial * moved)).abs() < 1e-9 && tension < 2.0 - 0.05, "{tension}");
+}

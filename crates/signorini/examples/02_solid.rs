@@ -39,6 +39,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         degree: Some(2),
         material: Material::LinearElastic(steel),
         strain: None,
+        edges: Named::default(),
     };
     problem.bodies.insert("block".into(), Body::Solid(block));
 

@@ -15,7 +15,7 @@ macro_rules! example {
 }
 
 /// Cases with mechanics, simplest first.
-pub const GALLERY: [Example; 43] = [
+pub const GALLERY: [Example; 44] = [
     example!("string", "a string on a flat floor, beside the exact solution"),
     example!("axisymmetric", "a round membrane by its radius, beside the exact solution"),
     example!("snap_in", "a sticky membrane: snap-in, pull-off, and the loop between them"),
@@ -44,6 +44,7 @@ pub const GALLERY: [Example; 43] = [
     example!("press_fit", "a shaft pressed into a hub and turned until it slips"),
     example!("groove", "a free ball between two elastic blocks, held by contact and friction alone"),
     example!("capstan", "a rope round a drum, which begins to slip at the end that is pulled"),
+    example!("edge", "a rope over the rounded edge of an elastic block"),
     example!("belt", "a belt on two drums, of which one is turned by a moment"),
     example!("sphere_parallel", "a rope on a parallel of a sphere, drawn until it slides"),
     example!("crossing", "two geometrically exact beams across each other"),

@@ -36,6 +36,6 @@ pub use loads::{Load, LoadKind};
 pub use material::{Elastic, Space, von_mises};
 pub use model::{Circumstances, Memory, Model, StepError};
 pub use signorini_contact::Route;
-pub use solid_body::{SolidBody, SolidError};
+pub use solid_body::{EdgeError, EdgeOf, SolidBody, SolidError};
 pub use state::State;
 pub use supports::{Support, SupportError, SupportKind};

@@ -5,6 +5,7 @@
 //! that hardly compresses would lock. Contact is tested and met where the body is now, also at small strain.
 
 mod cells;
+mod edge;
 mod faces;
 mod fields;
 mod hold;
@@ -13,18 +14,22 @@ mod master;
 mod moments;
 mod surface;
 
+pub use edge::{EdgeError, EdgeOf};
+
 use crate::body::Bodies;
 use crate::hyperelastic::StressLaw;
 use crate::material::{Elastic, Space};
 use crate::stiffness::{Table, stiffness};
+use edge::EdgeCurve;
 use faces::Faces;
 use rayon::prelude::*;
 use signorini_fem::{CellShape, DofMap, Group, Mesh, MeshError};
 use signorini_geometry::{Point, Vector};
+use signorini_mechanics::curve::CurveMaster;
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{
-    Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Hold, Load, Master, Order, PlaceError, Placed,
-    Sampling, Site, Surface,
+    Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Curve, Hold, Load, Master, Order, PlaceError,
+    Placed, Sampling, Site, Surface,
 };
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
@@ -49,6 +54,8 @@ pub struct SolidBody<const D: usize> {
     law: StressLaw,
     groups: BTreeMap<String, Group>,
     faces: Faces<D>,
+    /// Edges that may touch as curves.
+    edges: BTreeMap<String, EdgeCurve>,
     /// Quadrature tables by the kinds of map and basis of a cell.
     tables: HashMap<(usize, usize), Table>,
     /// Unknowns and stiffness of each cell, at small strain.
@@ -105,7 +112,17 @@ impl<const D: usize> SolidBody<D> {
         let (mut low, mut high) = (Point::<D>::repeat(f64::INFINITY), Point::<D>::repeat(f64::NEG_INFINITY));
         body.mesh.nodes().iter().for_each(|x| (low, high) = (low.inf(x), high.sup(x)));
         let size = (high - low).max();
-        let mut out = SolidBody { bodies, law, groups, faces, tables, stiffness: Vec::new(), position, size };
+        let mut out = SolidBody {
+            bodies,
+            law,
+            groups,
+            faces,
+            edges: BTreeMap::new(),
+            tables,
+            stiffness: Vec::new(),
+            position,
+            size,
+        };
         if law == StressLaw::LinearElastic {
             out.stiffness = out.small_strain();
         }
@@ -161,10 +178,13 @@ impl<const D: usize> SolidBody<D> {
 
     fn group(&self, on: Option<&str>) -> Result<&Group, PlaceError> {
         let name = on.unwrap_or("boundary");
+        if self.edges.contains_key(name) {
+            return Err(self.unsuitable(format!("`{name}` is an edge, which touches: name sides, vertices or cells")));
+        }
         self.groups.get(name).ok_or_else(|| PlaceError::Unknown {
             body: self.name().to_string(),
             group: name.to_string(),
-            known: self.groups.keys().cloned().collect(),
+            known: self.groups.keys().chain(self.edges.keys()).cloned().collect(),
         })
     }
 
@@ -251,6 +271,9 @@ impl<const D: usize> Body for SolidBody<D> {
     }
 
     fn sites(&self, on: Option<&str>, sampling: Sampling) -> Result<Vec<Site>, PlaceError> {
+        if let Some(edge) = on.and_then(|name| self.edges.get(name)) {
+            return Ok(edge.sites(sampling));
+        }
         let group = self.group(on)?;
         if group.sides.is_empty() {
             return Err(self.unsuitable(format!("`{}` has no sides that could touch", on.unwrap_or("boundary"))));
@@ -259,10 +282,16 @@ impl<const D: usize> Body for SolidBody<D> {
     }
 
     fn placed(&self, state: &BodyState, site: &Site) -> Placed {
-        self.faces.placed(site, &state.configuration)
+        match self.edge_at(site) {
+            Some((edge, element)) => edge.placed(element, site, &state.configuration),
+            None => self.faces.placed(site, &state.configuration),
+        }
     }
 
     fn master<'a>(&'a self, on: Option<&str>, state: &'a BodyState) -> Result<Box<dyn Master + 'a>, PlaceError> {
+        if let Some(curve) = self.curve(on) {
+            return Ok(Box::new(CurveMaster::new(curve, &state.configuration)));
+        }
         let group = self.group(on)?;
         if group.sides.is_empty() {
             return Err(self.unsuitable(format!("`{}` has no sides that could be touched", on.unwrap_or("boundary"))));
@@ -277,8 +306,16 @@ impl<const D: usize> Body for SolidBody<D> {
         has_sides.then(|| Box::new(self.placed_surface(group, &state.configuration)) as _)
     }
 
-    /// Young's modulus times the area of the site over the depth of its cell, in parts of its degree.
+    fn curve<'a>(&'a self, on: Option<&str>) -> Option<Box<dyn Curve + 'a>> {
+        Some(Box::new(self.edge(on?)?))
+    }
+
+    /// Young's modulus times the area of the site over the depth of its cell, in parts of its degree; of an edge times the
+    /// length of the site.
     fn site_stiffness(&self, site: &Site) -> f64 {
+        if let Some((edge, element)) = self.edge_at(site) {
+            return edge.site_stiffness(element, site);
+        }
         let body = self.body();
         body.material.youngs_modulus * site.weight * body.degree as f64 / self.faces.depth(site)
     }

@@ -361,8 +361,8 @@ impl Body for Beam {
         192.0 * bending / element.length.powi(3)
     }
 
-    fn as_curve(&self) -> Option<Box<dyn Curve + '_>> {
-        Some(Box::new(self as &dyn CurveBody))
+    fn curve<'a>(&'a self, on: Option<&str>) -> Option<Box<dyn Curve + 'a>> {
+        curve_body::curve(self, on)
     }
 
     fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6] {

@@ -428,8 +428,8 @@ impl Body for Chain {
         self.stiffness / self.line.lengths[site.patch as usize]
     }
 
-    fn as_curve(&self) -> Option<Box<dyn Curve + '_>> {
-        Some(Box::new(self as &dyn CurveBody))
+    fn curve<'a>(&'a self, on: Option<&str>) -> Option<Box<dyn Curve + 'a>> {
+        curve_body::curve(self, on)
     }
 
     fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6] {

@@ -51,7 +51,9 @@ impl Blend {
     /// off by at most `s² sin²θ / (8 (R_1 + R_2))` at a spacing `s`, which is to be less than a ten-thousandth of the
     /// smaller radius at `θ_1`. `θ_2` is 2.5 times as large, and neither is beyond the default.
     pub fn resolved(spacing: f64, radii: [f64; 2]) -> Self {
-        let sine = (8e-4 * radii[0].min(radii[1]) * (radii[0] + radii[1])).sqrt() / spacing;
+        // Of a sharp edge that of the other curve counts.
+        let smaller = if radii.contains(&0.0) { radii[0].max(radii[1]) } else { radii[0].min(radii[1]) };
+        let sine = (8e-4 * smaller * (radii[0] + radii[1])).sqrt() / spacing;
         let theta_1 = sine.min(1.0).asin().clamp(LEAST, Self::default().theta_1);
         Blend { theta_1, theta_2: 2.5 * theta_1 }
     }

@@ -16,13 +16,13 @@ use super::friction::{CurveFriction, Tangential, tangential};
 use super::history::{Kept, Key, Kind, Predicted};
 use super::measure::{CurvePair, NoPair, Wanted, elastic_slip, measure, parallel};
 use super::search::{Between, CurvePoint, Searched, crossings};
-use crate::curve_body::{are_apart, boxes, minima};
+use super::side::{Side, side};
 use crate::hermite::gauss;
 use signorini_contact::Law;
 use signorini_geometry::bvh::Bvh;
-use signorini_mechanics::Enforcement;
 use signorini_mechanics::body::{Body, Foot, Order};
-use signorini_mechanics::curve::{Closure, Curve};
+use signorini_mechanics::curve::{Closure, Curve, are_apart, boxes, minima};
+use signorini_mechanics::{Enforcement, Part};
 
 /// Which forces act.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,15 +54,15 @@ pub struct Penalties {
 /// Contact that cannot be.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CurveContactError {
-    #[error("`{body}` is no curve: contact between curves is for ropes, cables and beams")]
-    NotACurve { body: String },
+    #[error("`{place}` is no curve: contact between curves is for ropes, beams and edges of solids")]
+    NotACurve { place: String },
 }
 
 /// Two curves that may touch, or one that may touch itself.
 pub struct CurveContact {
     pub name: String,
     /// Slave and master; twice the same for a curve with itself.
-    pub bodies: [usize; 2],
+    pub parts: [Part; 2],
     pub form: Form,
     pub ends: Ends,
     pub enforcement: Enforcement,
@@ -105,8 +105,12 @@ pub struct Touch {
 pub type Touches = (Vec<Touch>, usize);
 
 /// A curve of the system.
-fn curve(body: &dyn Body) -> Result<Box<dyn Curve + '_>, CurveContactError> {
-    body.as_curve().ok_or_else(|| CurveContactError::NotACurve { body: body.name().to_string() })
+fn curve<'a>(part: &Part, body: &'a dyn Body) -> Result<Box<dyn Curve + 'a>, CurveContactError> {
+    let place = || match &part.group {
+        Some(group) => format!("{}:{group}", body.name()),
+        None => body.name().to_string(),
+    };
+    body.curve(part.group.as_deref()).ok_or_else(|| CurveContactError::NotACurve { place: place() })
 }
 
 /// Points of Gauss of an element at which the gap along it can vanish: that of cubic curves has two unknowns at each node.
@@ -128,20 +132,23 @@ fn spacing(curve: &dyn Curve, enforcement: Enforcement) -> f64 {
 }
 
 impl CurveContact {
-    /// Contact of two bodies with their numbers in the system, by point and line forces as the angle asks; multipliers that
+    /// Contact of two curves, bodies or parts of them by their numbers in the system, by point and line forces as the angle asks; multipliers that
     /// come and go with contacts are those of an augmented Lagrangian. The slave is that whose points are tested.
     ///
     /// # Errors
-    /// Bodies that are no curves.
+    /// Places that are no curves.
     pub fn new(
         name: &str,
-        slave: (usize, &dyn Body),
-        master: (usize, &dyn Body),
+        slave: (impl Into<Part>, &dyn Body),
+        master: (impl Into<Part>, &dyn Body),
         enforcement: Enforcement,
     ) -> Result<Self, CurveContactError> {
-        let (slave_curve, master_curve) = (curve(slave.1)?, curve(master.1)?);
+        let parts: [Part; 2] = [slave.0.into(), master.0.into()];
+        let (slave_curve, master_curve) = (curve(&parts[0], slave.1)?, curve(&parts[1], master.1)?);
         let curves = [slave_curve.as_ref(), master_curve.as_ref()];
         let radii = curves.map(|c| c.radius());
+        // Lines without a section touch where they cross, and nowhere else.
+        let is_sharp = radii == [0.0; 2];
         let enforcement = match enforcement {
             Enforcement::Multiplier => Enforcement::AugmentedLagrangian,
             other => other,
@@ -150,9 +157,13 @@ impl CurveContact {
         let element = |c: &dyn Curve| c.length() / c.elements() as f64;
         Ok(CurveContact {
             name: name.to_string(),
-            bodies: [slave.0, master.0],
-            form: Form::Blend(Blend::resolved(spacing(curves[0], enforcement), radii)),
-            ends: Ends::Touch,
+            parts,
+            form: if is_sharp {
+                Form::Point
+            } else {
+                Form::Blend(Blend::resolved(spacing(curves[0], enforcement), radii))
+            },
+            ends: if is_sharp { Ends::PassBy } else { Ends::Touch },
             enforcement,
             friction: None,
             stated: None,
@@ -165,16 +176,15 @@ impl CurveContact {
     }
 
     pub(super) fn between(&self) -> Between {
-        if self.bodies[0] == self.bodies[1] { Between::Itself } else { Between::Two }
+        if self.parts[0] == self.parts[1] { Between::Itself } else { Between::Two }
     }
 
     /// Penalties from the stiffness of both bodies, of an element in the mean: clamped at its ends it is as much stiffer than
     /// a rod as the cube of their number, and a penalty that is stiffer still only hides the rod from Newton's method.
-    pub(super) fn set_penalties(&mut self, bodies: [&dyn Body; 2], curves: [&dyn Curve; 2]) {
+    pub(super) fn set_penalties(&mut self, curves: [&dyn Curve; 2]) {
         let mean = |k: usize| {
             let n = curves[k].elements();
-            let site = |e: usize| signorini_mechanics::Site { patch: e as u32, xi: [0.5, 0.0], weight: 1.0 };
-            (0..n).map(|e| bodies[k].site_stiffness(&site(e))).sum::<f64>() / n as f64
+            (0..n).map(|e| curves[k].stiffness(e)).sum::<f64>() / n as f64
         };
         // One after the other.
         let point = 1.0 / (1.0 / mean(0) + 1.0 / mean(1));
@@ -218,7 +228,12 @@ impl CurveContact {
         let mut add =
             |key: Key, feet: [&Foot; 2], points: [CurvePoint; 2], weight: f64, penalty: f64, blended: Blended| {
                 let kept = key.of(&self.history, |k| k.key, &sides).copied();
-                let facing = kept.as_ref().or_else(|| key.near(&self.history, &sides)).map(|k| k.normal);
+                let before = kept.as_ref().or_else(|| key.near(&self.history, &sides)).map(|k| k.normal);
+                let facing = match side(&sides, &points, feet, before) {
+                    Side::None => return,
+                    Side::Nearest => None,
+                    Side::Facing(normal) => Some(normal),
+                };
                 let bends = [0, 1].map(|s| match (rubs, order) {
                     (true, Order::Second) => {
                         sides[s].curve.spin_bends(sides[s].configuration, points[s].element, points[s].xi)

@@ -11,24 +11,25 @@ use signorini_mechanics::interaction::{
     Around, Bodies, Interaction, NotItsHistory, Own, SimplerFriction, Target, penalty_factor,
 };
 use signorini_mechanics::passage::Way;
-use signorini_mechanics::{Curve, Enforcement, SiteResult};
+use signorini_mechanics::{Curve, Enforcement, Part, SiteResult};
 
 impl CurveContact {
     /// One of the curves.
     fn curve<'a>(&self, at: Bodies<'a>, side: usize) -> Result<Box<dyn Curve + 'a>, PlaceError> {
-        let body = at.bodies[self.bodies[side]].as_ref();
-        body.as_curve().ok_or_else(|| PlaceError::Unsuitable {
+        let part = &self.parts[side];
+        let body = at.bodies[part.body].as_ref();
+        body.curve(part.group.as_deref()).ok_or_else(|| PlaceError::Unsuitable {
             body: body.name().to_string(),
-            message: "contact between curves is for ropes, cables and beams".to_string(),
+            message: "contact between curves is for ropes, beams and edges of solids".to_string(),
         })
     }
 
     /// Does something with both curves in a state and their first unknowns.
     fn with<T>(&self, at: Bodies<'_>, act: impl FnOnce([Searched<'_>; 2], [u32; 2]) -> T) -> Result<T, PlaceError> {
         let curves = [self.curve(at, 0)?, self.curve(at, 1)?];
-        let configuration = |k: usize| &at.states[self.bodies[k]].configuration[..];
+        let configuration = |k: usize| &at.states[self.parts[k].body].configuration[..];
         let sides = [0, 1].map(|k| Searched { curve: curves[k].as_ref(), configuration: configuration(k) });
-        Ok(act(sides, self.bodies.map(|b| at.first[b])))
+        Ok(act(sides, self.bodies().map(|b| at.first[b])))
     }
 
     /// What is kept of a contact: with the traction as a multiplier, or so that the slip is that of the traction.
@@ -121,7 +122,7 @@ impl Interaction for CurveContact {
     }
 
     fn bodies(&self) -> [usize; 2] {
-        self.bodies
+        self.parts.each_ref().map(|p| p.body)
     }
 
     fn law(&self) -> Option<&dyn Law> {
@@ -133,18 +134,18 @@ impl Interaction for CurveContact {
     }
 
     fn stiffness(&self, bodies: &[Box<dyn Body>]) -> f64 {
-        let site = |e: usize| signorini_mechanics::Site { patch: e as u32, xi: [0.5, 0.0], weight: 1.0 };
-        let of = |body: &dyn Body| {
-            let count = body.as_curve().map_or(0, |c| c.elements());
-            (0..count).map(|e| body.site_stiffness(&site(e))).filter(|c| c.is_finite()).fold(0.0, f64::max)
+        let of = |part: &Part| {
+            let curve = bodies[part.body].curve(part.group.as_deref());
+            let list = curve.iter().flat_map(|c| (0..c.elements()).map(|e| c.stiffness(e)));
+            list.filter(|c| c.is_finite()).fold(0.0, f64::max)
         };
-        self.bodies.iter().map(|b| of(bodies[*b].as_ref())).fold(0.0, f64::max)
+        self.parts.iter().map(of).fold(0.0, f64::max)
     }
 
     fn prepare(&mut self, bodies: &[Box<dyn Body>], _: f64) {
-        let own = self.bodies.map(|b| bodies[b].as_ref());
-        if let [Some(slave), Some(master)] = own.map(|b| b.as_curve()) {
-            self.set_penalties(own, [slave.as_ref(), master.as_ref()]);
+        let curves = self.parts.each_ref().map(|p| bodies[p.body].curve(p.group.as_deref()));
+        if let [Some(slave), Some(master)] = curves {
+            self.set_penalties([slave.as_ref(), master.as_ref()]);
         }
     }
 

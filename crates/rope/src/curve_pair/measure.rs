@@ -164,7 +164,11 @@ fn with<const N: usize>(
     let [a, b] = feet;
     let jets = [curve_jet(a), curve_jet(b)];
     let d = a.jet.x - b.jet.x;
-    let along = d.try_normalize(0.0).ok_or(NoPair::Meet)?;
+    // Of lines without a section the normal is that of both tangents, at any distance.
+    let is_sharp = N == 2 && a.radius + b.radius == 0.0;
+    let across = jets[0].d1.cross(&jets[1].d1);
+    let along = if is_sharp { across } else { d };
+    let along = along.try_normalize(0.0).ok_or(if is_sharp { NoPair::NoCoordinates } else { NoPair::Meet })?;
     let normal = if facing.is_some_and(|f| f.dot(&along) < 0.0) { -along } else { along };
     let distance = d.dot(&normal);
     let partner = |side: usize| match feet[side].coordinates {
@@ -207,7 +211,15 @@ fn with<const N: usize>(
     let gap = distance - a.radius - b.radius;
     // Total variation of D.
     let moved: Vec<Vector<3>> = (0..n).map(|k| variations[k].d + d1[0] * d_xi[k][0] - d1[1] * d_xi[k][1]).collect();
-    let d_normal: Vec<Vector<3>> = moved.iter().map(|m| (m - normal * normal.dot(m)) / distance).collect();
+    let d_normal: Vec<Vector<3>> = match is_sharp {
+        false => moved.iter().map(|m| (m - normal * normal.dot(m)) / distance).collect(),
+        true => {
+            let cross = units[0].cross(&units[1]);
+            let length = cross.dot(&normal);
+            let change = |k: usize| d_unit(k, 0).cross(&units[1]) + units[0].cross(&d_unit(k, 1));
+            (0..n).map(change).map(|c| (c - normal * normal.dot(&c)) / length).collect()
+        }
+    };
     let [a_11, a_22, a_12] = hessian(&jets, &d);
     let d_parallel = (0..n)
         .map(|k| {
@@ -236,7 +248,9 @@ fn with<const N: usize>(
         })
         .collect();
     // What turns with the normal: the gap, and sections that do not turn by themselves.
+    // Both make the whole distance where no section turns by itself.
     let hinge = gap + feet.iter().filter(|f| f.spin.is_empty()).map(|f| f.radius).sum::<f64>();
+    let leverage = if is_sharp { 1.0 } else { hinge / distance };
     let d_gap: Vec<f64> = variations.iter().map(|v| measures.gap_variation(v)).collect();
     let mut d_slip = Vec::new();
     if let (Wanted::GapAndSlip(bends), Order::Second) = (wanted, order) {
@@ -258,7 +272,7 @@ fn with<const N: usize>(
                 let along = (0..2).fold(zero, |sum, side| {
                     of_side(side).map_or(sum, |own| sum + variations[k].d_a[own] * d_xi[l][side])
                 });
-                let turned = (bent(k, l) - d_normal[k] * d_gap[l] - d_normal[l] * d_gap[k]) / distance;
+                let turned = bent(k, l) - d_normal[k] * d_gap[l] - d_normal[l] * d_gap[k];
                 let (p, q) = (&columns[k], &columns[l]);
                 let spun = match (p.spin, q.spin) {
                     (Some(i), Some(j)) if p.side == q.side => {
@@ -269,8 +283,11 @@ fn with<const N: usize>(
                     }
                     _ => zero,
                 } + p.lever_slope * d_xi[l][p.side];
-                d_slip[k * n + l] =
-                    along - spun.cross(&normal) - p.lever.cross(&d_normal[l]) - d_normal[k] * d_gap[l] - turned * hinge;
+                d_slip[k * n + l] = along
+                    - spun.cross(&normal)
+                    - p.lever.cross(&d_normal[l])
+                    - d_normal[k] * d_gap[l]
+                    - turned * leverage;
             }
         }
     }

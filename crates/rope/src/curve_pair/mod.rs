@@ -5,6 +5,7 @@
 //! - [`search`]: local minima of the distance of two curves, or of a curve to itself.
 //! - [`friction`]: friction along the curves and around their sections.
 //! - [`contact`]: where curves touch and with which forces; [`interaction`]: as a part of a system.
+//! - `side`: on which side of each other curves are, such as edges, which have an inside.
 //! - [`history`]: what is kept of contacts; `passage`: how far steps may be followed so that no curve passes through one.
 
 pub mod blend;
@@ -15,5 +16,6 @@ pub mod interaction;
 pub mod measure;
 mod passage;
 pub mod search;
+mod side;
 
 pub use contact::{CurveContact, CurveContactError, Form};

@@ -3,14 +3,14 @@
 //! Both curves are taken as chords of their samples, which move in proportion along the way. Two chords cross where their
 //! four ends are in one plane, `[u, v, w](t) = 0` for the sides `u`, `v` and the connection `w` of two of their ends, a cubic
 //! in `t`, at places within both. A step that would bring a crossing about is followed half the way from where the sections
-//! touch to there: the contact is closed then, from the side on which the curves were.
+//! touch to there: the contact is closed then, from the side on which the curves were. Sharp edges know their inside, and are
+//! followed to a quarter of the depth of a cell beyond.
 
 use super::contact::CurveContact;
 use super::search::{Between, Searched};
-use crate::curve_body::samples;
 use signorini_geometry::bvh::Bvh;
 use signorini_geometry::{Aabb, Point, Vector};
-use signorini_mechanics::curve::Closure;
+use signorini_mechanics::curve::{Closure, samples};
 
 /// A point that moves in proportion: at the start, and its whole way.
 #[derive(Clone, Copy)]
@@ -40,6 +40,8 @@ impl CurveContact {
             return 1.0;
         }
         let radii = from[0].curve.radius() + from[1].curve.radius();
+        let depths = from.iter().flat_map(|s| (0..s.curve.elements()).map(|e| s.curve.depth(e)));
+        let deepest = depths.fold(f64::INFINITY, f64::min);
         let chords = [0, 1].map(|s| chords(from[s], to[s]));
         if chords.iter().flatten().flatten().any(|p| !p.at(1.0).iter().all(|x| x.is_finite())) {
             return 1.0;
@@ -57,7 +59,12 @@ impl CurveContact {
             }
             let pair = [chords[0][i], chords[1][j]];
             if let Some(crossed) = crossing(&pair) {
-                share = share.min(0.5 * (touching(&pair, radii, crossed) + crossed));
+                let until = if radii > 0.0 {
+                    0.5 * (touching(&pair, radii, crossed) + crossed)
+                } else {
+                    leaving(&pair, 0.5 * deepest, crossed)
+                };
+                share = share.min(until);
             }
         }
         share
@@ -150,6 +157,19 @@ fn touching(pair: &[Chord; 2], radii: f64, crossed: f64) -> f64 {
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
         if distance(pair, middle) > radii { low = middle } else { high = middle }
+    }
+    low
+}
+
+/// Where after they cross two chords are a distance apart: 1 if they are not on their way.
+fn leaving(pair: &[Chord; 2], apart: f64, crossed: f64) -> f64 {
+    let (mut low, mut high) = (crossed, 1.0);
+    if distance(pair, 1.0) <= apart {
+        return 1.0;
+    }
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if distance(pair, middle) > apart { high = middle } else { low = middle }
     }
     low
 }

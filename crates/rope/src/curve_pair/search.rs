@@ -6,21 +6,12 @@
 //! along each other have no isolated minimum and give none: line contact is for them. Ends, and the kinks of straight
 //! elements, are minima of their own where the distance falls towards them: each is projected onto the other curve.
 
-use crate::curve_body::{are_apart, boxes, minima, samples};
 use signorini_geometry::Vector;
 use signorini_geometry::bvh::Bvh;
 use signorini_geometry::shape::CurveJet;
 use signorini_mechanics::Curve;
-use signorini_mechanics::curve::{Closure, Continuity};
-
-/// A point of a curve: free to move along it, or held at an end.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CurvePoint {
-    pub element: usize,
-    pub xi: f64,
-    /// 1 along the curve, 0 at an end or a kink.
-    pub coordinates: usize,
-}
+pub use signorini_mechanics::curve::CurvePoint;
+use signorini_mechanics::curve::{Closure, Continuity, are_apart, boxes, minima, samples};
 
 /// A local minimum of the distance.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Deformable bodies: what they occupy, what they are computed on, and what they are made of.
 
 use super::material::Material;
-use super::{Beam, CellsBody, Components, List, MeshArrays, Rigid, Rope, Value};
+use super::{Beam, CellsBody, Components, List, MeshArrays, Named, Rigid, Rope, Value};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -35,6 +35,19 @@ pub struct Solid {
     pub material: Material,
     /// `small`, or `finite`.
     pub strain: Option<String>,
+    /// Edges in space that touch as curves, by names of your own: `between = ["rope", "block:rim"]`.
+    #[serde(default)]
+    pub edges: Named<SolidEdge>,
+}
+
+/// The edge along which two surfaces of a solid meet.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SolidEdge {
+    /// Two groups of sides, such as `["top", "left"]`.
+    pub between: List<String>,
+    /// Radius of a rounding about the edge, which stands out from it by as much; 0, a sharp edge, if left out.
+    pub radius: Option<Value>,
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]

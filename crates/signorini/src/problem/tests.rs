@@ -90,6 +90,7 @@ fn meshes_are_arrays() {
             degree: None,
             material: Material::LinearElastic(material),
             strain: None,
+            edges: Named::default(),
         };
         problem.bodies.insert("bar".into(), Body::Solid(solid));
         let left = Support { on: "bar:left".into(), displacement: Some([0.0, 0.0].into()), ..Support::default() };

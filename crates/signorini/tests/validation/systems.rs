@@ -264,6 +264,30 @@ fn mistakes_of_curves_are_told_at_their_place() {
 }
 
 #[test]
+fn mistakes_of_edges_are_told_at_their_place() {
+    let between = "[\"top\", \"right\"]";
+    let table = [
+        (between, "[\"top\"]", "between 2 groups of sides, found 1", "[\"top\"]"),
+        ("\"right\"", "\"rihgt\"", "no group `rihgt`", "rihgt"),
+        (between, "[\"left\", \"right\"]", "do not meet along an edge", "[\"left\", \"right\"]"),
+        (between, "[\"top\", \"boundary\"]", "it branches at", "[\"top\", \"boundary\"]"),
+        (between, "[\"top\", \"top\"]", "do not meet along an edge", "[\"top\", \"top\"]"),
+        ("radius = 0.06 }", "radius = -0.2 }", "valid are 0 and larger", "-0.2"),
+        ("radius = 0.06 }", "radius = nan }", "not a finite number", "nan"),
+        ("radius = 0.06 }", "radios = 0.06 }", "unknown key `radios`", "radios"),
+        ("edges.rim", "edges.top", "there is a group of that name", "between"),
+        ("\"block:rim\"", "\"block:rum\"", "has no group `rum`", "block:rum"),
+        ("\"block:bottom\"", "\"block:rim\"", "`rim` is an edge, which touches", "block:rim"),
+        ("[\"rope\", \"block:rim\"]", "[\"block:top\", \"block:rim\"]", "other edges of its own body", "block:top"),
+    ];
+    for (from, to, message, at) in table {
+        let case = example("edge");
+        assert!(case.contains(from), "`{from}` is not in the case");
+        told(&case.replacen(from, to, 1), to, message, at);
+    }
+}
+
+#[test]
 fn each_mistake_is_told_at_its_place() {
     let table = [
         ("stiffness = 1e4", "stiffness = -1e4", "must be positive", "-1e4"),

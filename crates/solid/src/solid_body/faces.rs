@@ -62,10 +62,10 @@ pub(super) struct Faces<const D: usize> {
 
 /// Cosine of the angle between faces at rest from which on they make one smooth surface: that between two sides of a
 /// regular octagon.
-const SMOOTH: f64 = std::f64::consts::FRAC_1_SQRT_2;
+pub(super) const SMOOTH: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Functions smaller than this at a point do not move it: rounding of their values, which are about one.
-const NOTHING: f64 = 1e-14;
+pub(super) const NOTHING: f64 = 1e-14;
 
 impl<const D: usize> Faces<D> {
     pub fn new(bodies: &Bodies<D>, groups: &BTreeMap<String, Group>) -> Self {
@@ -258,7 +258,7 @@ impl<const D: usize> Faces<D> {
     }
 
     /// A point of a face at rest.
-    fn reference(&self, face: u32, s: &Local) -> FacePoint<D> {
+    pub fn reference(&self, face: u32, s: &Local) -> FacePoint<D> {
         let (x, tangents) = self.bodies.list[0].mesh.on_side(self.face(face).side, s);
         FacePoint { x, tangents }
     }

@@ -121,16 +121,30 @@ impl Planner<'_> {
         [slave, master]: [&Part; 2],
         system: &System,
     ) -> Result<Option<(Box<dyn Interaction>, Tested)>, CaseError> {
-        let curves = [slave, master].iter().all(|p| system.bodies[p.body].as_curve().is_some());
+        let curve = |p: &&Part| system.bodies[p.body].curve(p.group.as_deref());
+        let curves = [slave, master].iter().all(|p| curve(p).is_some());
         if !curves || !matches!(&key.method, None | Some(Method::Curve(_))) {
             return Ok(None);
         }
         let stated = key.method.as_ref().and_then(|m| if let Method::Curve(k) = m { Some(k) } else { None });
         let kept = self.kept(stated.and_then(|k| k.enforcement.as_ref()), Kept::AugmentedLagrangian, "curve")?;
-        let side = |part: &Part| (part.body, system.bodies[part.body].as_ref());
+        let side = |part: &Part| (part.clone(), system.bodies[part.body].as_ref());
         let mut contact = CurveContact::new(name, side(slave), side(master), kept)
             .map_err(|e| self.problem.error(key, e.to_string()))?;
+        let is_sharp = [slave, master].iter().all(|p| curve(p).is_some_and(|c| c.radius() == 0.0));
         match stated.and_then(|k| k.form) {
+            Some(form @ (CurveForm::Line | CurveForm::Blend)) if is_sharp => {
+                let word = if form == CurveForm::Line { "line" } else { "blend" };
+                return Err(self
+                    .problem
+                    .error(
+                        key,
+                        format!(
+                            "form = \"{word}\" between two curves without a radius, which have no gap along each other"
+                        ),
+                    )
+                    .help("form = \"point\": they touch where they cross; or give one of them a radius"));
+            }
             Some(CurveForm::Point) => contact.form = Form::Point,
             Some(CurveForm::Line) => contact.form = Form::Line,
             Some(CurveForm::Blend) | None => {}

@@ -82,15 +82,16 @@ pub struct MechanicsPlan {
     pub notes: Vec<String>,
 }
 
-/// Whether a problem is one of a system of bodies: with ropes, beams, free rigid bodies or finite strain, where solids slide
-/// any way, or with a solid that may touch itself.
+/// Whether a problem is one of a system of bodies: with ropes, beams, free rigid bodies, finite strain or edges that touch,
+/// where solids slide any way, or with a solid that may touch itself.
 pub fn is_system(problem: &Problem) -> bool {
     let bodies = || problem.bodies.values();
     let needs_one = |body: &Body| match body {
         Body::Rope(_) | Body::Beam(_) | Body::Cells(_) => true,
         Body::Rigid(rigid) => matches!(rigid.motion, Some(Motion::Free(_))),
         Body::Solid(solid) => {
-            solid.strain.as_deref() == Some("finite") || !matches!(solid.material, Material::LinearElastic(_))
+            let is_linear = matches!(solid.material, Material::LinearElastic(_));
+            solid.strain.as_deref() == Some("finite") || !is_linear || !solid.edges.is_empty()
         }
         _ => false,
     };

@@ -1,12 +1,13 @@
 //! Solids of a system: finite elements at small or finite strain.
 
 use crate::plan::planner::Planner;
-use crate::problem::{CaseError, Solid, Space as Stated};
+use crate::problem::units::LENGTH;
+use crate::problem::{CaseError, Solid, SolidEdge, Space as Stated, suggestion};
 use crate::report::Warning;
 use signorini_fem::{Group, Side};
 use signorini_mechanics::Body;
-use signorini_solid::{SolidBody, Space};
-use std::collections::BTreeSet;
+use signorini_solid::{EdgeError, EdgeOf, SolidBody, Space};
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// The group of what lies on the axis of an axisymmetric body.
@@ -53,6 +54,56 @@ impl Planner<'_> {
         }
         let body = SolidBody::<D>::new(name, Arc::new(mesh), planned.degree, law, space, groups)
             .map_err(|e| self.problem.error(&key.mesh, e.to_string()))?;
+        let edges = self.edges(key)?;
+        let body = body.with_edges(&edges).map_err(|e| self.wrong_edge(key, &e))?;
         Ok((Box::new(body), on_axis))
+    }
+
+    /// The edges of a solid as they are stated.
+    fn edges(&self, key: &Solid) -> Result<BTreeMap<String, EdgeOf>, CaseError> {
+        let edge = |(name, stated): (&String, &SolidEdge)| {
+            let surfaces: [String; 2] = stated.between.to_vec().try_into().map_err(|list: Vec<String>| {
+                self.problem
+                    .error(&stated.between, format!("an edge is between 2 groups of sides, found {}", list.len()))
+                    .help("between = [\"top\", \"left\"]")
+            })?;
+            let radius = stated.radius.as_ref().map_or(Ok(0.0), |r| self.reader.number(r, LENGTH))?;
+            Ok((name.clone(), EdgeOf { surfaces, radius }))
+        };
+        key.edges.iter().map(edge).collect()
+    }
+
+    /// The error of an edge, at its key.
+    fn wrong_edge(&self, key: &Solid, error: &EdgeError) -> CaseError {
+        let told = error.to_string();
+        let of = |edge: &String| &key.edges[edge];
+        let problem = self.problem;
+        match error {
+            EdgeError::Plane => problem.error(&key.edges, told).help("space = \"3d\""),
+            EdgeError::Taken { edge } => problem.error(of(edge), told).help("give the edge another name"),
+            EdgeError::Unknown { edge, group, known } => {
+                let known: Vec<&str> = known.iter().map(String::as_str).collect();
+                let at = of(edge).between.iter().find(|g| *g == group);
+                let told = format!("there is no group `{group}` of sides");
+                at.map_or_else(|| problem.error(of(edge), told.clone()), |at| problem.error(at, told.clone()))
+                    .help(suggestion(group, &known))
+            }
+            EdgeError::Radius { edge, .. } => {
+                let remedy = "the radius of a rounding, or 0 for a sharp edge";
+                match &of(edge).radius {
+                    Some(radius) => problem.error(radius, told).help(remedy),
+                    None => problem.error(of(edge), told).help(remedy),
+                }
+            }
+            EdgeError::Apart { edge, .. } => {
+                problem.error(&of(edge).between, told).help("two groups that have cell edges in common, and no others")
+            }
+            EdgeError::Branches { edge, .. } | EdgeError::Pieces { edge, .. } | EdgeError::Kink { edge, .. } => problem
+                .error(&of(edge).between, told)
+                .help("one smooth edge at a time: give its parts names of their own"),
+            EdgeError::Reentrant { edge, .. } => {
+                problem.error(&of(edge).between, told).help("name an edge that stands out, or the faces themselves")
+            }
+        }
     }
 }

@@ -1,0 +1,466 @@
+//! Edges of a solid as curves that touch: a smooth curve through the vertices along which two surfaces meet, with a rounding
+//! about it.
+//!
+//! Each element of the curve is cubic, along an edge of cells, from vertex to vertex. The tangent at a vertex is the mean of
+//! those of the edges to both sides, weighted so that of straight edges it is that of the parabola through three vertices:
+//! all is linear in the displacements, and an edge of the mesh that is smooth itself is what it was. So contact between
+//! curves sees no kinks from cell to cell. A rounding turns with the edge and the first of its faces.
+
+mod chain;
+mod section;
+
+pub use chain::EdgeError;
+
+use super::faces::Faces;
+use super::{SolidBody, spatial};
+use crate::material::Space;
+use section::{Change, Section};
+use signorini_fem::Local;
+use signorini_fem::rules::rule;
+use signorini_geometry::shape::CurveJet;
+use signorini_geometry::{Matrix, Point, Vector};
+use signorini_mechanics::curve::{Closure, Continuity, Curve, CurvePoint};
+use signorini_mechanics::pair::axis;
+use signorini_mechanics::{Foot, Function, Placed, Sampling, Site};
+use std::collections::BTreeMap;
+
+/// An edge as it is stated: where two surfaces meet, by their groups, and the radius of its rounding, 0 if it is sharp.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EdgeOf {
+    pub surfaces: [String; 2],
+    pub radius: f64,
+}
+
+/// A point that is linear in the displacements: where it is at rest, and functions with their weights.
+#[derive(Clone, Default)]
+struct Linear {
+    x: Vector<3>,
+    weights: BTreeMap<u32, f64>,
+}
+
+impl Linear {
+    fn add(&mut self, other: &Linear, share: f64) {
+        self.x += other.x * share;
+        other.weights.iter().for_each(|(f, w)| *self.weights.entry(*f).or_default() += w * share);
+    }
+
+    /// A sum with shares.
+    fn sum(terms: &[(&Linear, f64)]) -> Linear {
+        let mut out = Linear::default();
+        terms.iter().for_each(|(term, share)| out.add(term, *share));
+        out
+    }
+}
+
+/// Along an edge of cells, from one vertex to the next.
+struct Element {
+    /// Points of Bezier at rest.
+    points: [Point<3>; 4],
+    /// Functions that move it, with their weights in each point of Bezier.
+    functions: Vec<(u32, [f64; 4])>,
+    /// A vector into the first face at both ends, and functions with their weights in both.
+    aside: [Vector<3>; 2],
+    turning: Vec<(u32, [f64; 2])>,
+    length: f64,
+    /// The faces that meet there, and where on them the edge begins and ends.
+    faces: [(u32, [Local; 2]); 2],
+    /// Half of the depth of the cells below these.
+    depth: f64,
+}
+
+/// An edge of a solid.
+pub(super) struct EdgeCurve {
+    elements: Vec<Element>,
+    closure: Closure,
+    radius: f64,
+    /// Length up to each element.
+    starts: Vec<f64>,
+    /// Of the material: with a length the force that moves a point.
+    youngs_modulus: f64,
+    degree: usize,
+    /// The first number of its elements among all edges of the body, as sites have it.
+    first: u32,
+}
+
+/// Points of Gauss of each element: as many as of other curves.
+const CONTACT_POINTS: usize = 4;
+/// Points that tell the length of an edge.
+const LENGTH_POINTS: usize = 6;
+
+/// Polynomials of Bernstein of degree three on 0 to 1, and three derivatives of them.
+fn bernstein(t: f64) -> [[f64; 4]; 4] {
+    let s = 1.0 - t;
+    [
+        [s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t],
+        [-3.0 * s * s, 3.0 * s * (s - 2.0 * t), 3.0 * t * (2.0 * s - t), 3.0 * t * t],
+        [6.0 * s, 6.0 * (t - 2.0 * s), 6.0 * (s - 2.0 * t), 6.0 * t],
+        [-6.0, 18.0, -18.0, 6.0],
+    ]
+}
+
+fn weighted(weights: &[f64; 4], points: &[Point<3>; 4]) -> Vector<3> {
+    (0..4).map(|k| points[k] * weights[k]).sum()
+}
+
+/// The place on a face between the ends of an edge.
+fn between([a, b]: &[Local; 2], t: f64) -> Local {
+    std::array::from_fn(|k| a[k] + t * (b[k] - a[k]))
+}
+
+impl<const D: usize> SolidBody<D> {
+    /// The solid with edges that may touch as curves, by name: each the chain of cell edges along which two groups of sides
+    /// meet.
+    ///
+    /// # Errors
+    /// Edges that are not there, that branch, turn or fall into pieces, and a body in the plane.
+    pub fn with_edges(mut self, edges: &BTreeMap<String, EdgeOf>) -> Result<Self, EdgeError> {
+        if self.space() != Space::Solid && !edges.is_empty() {
+            return Err(EdgeError::Plane);
+        }
+        let mut first = 0;
+        for (name, edge) in edges {
+            if self.groups.contains_key(name) {
+                return Err(EdgeError::Taken { edge: name.clone() });
+            }
+            if !(edge.radius >= 0.0 && edge.radius.is_finite()) {
+                return Err(EdgeError::Radius { edge: name.clone(), radius: edge.radius });
+            }
+            let mut curve = EdgeCurve::new(&self, name, edge)?;
+            curve.first = first;
+            first += curve.elements.len() as u32;
+            self.edges.insert(name.clone(), curve);
+        }
+        Ok(self)
+    }
+
+    /// The edge that a site is on, and the element of it.
+    pub(super) fn edge_at(&self, site: &Site) -> Option<(&EdgeCurve, usize)> {
+        let number = site.patch.checked_sub(EDGES)?;
+        let edge = self.edges.values().find(|e| (e.first..e.first + e.elements.len() as u32).contains(&number))?;
+        Some((edge, (number - edge.first) as usize))
+    }
+
+    /// An edge as a curve.
+    pub(super) fn edge<'a>(&'a self, name: &str) -> Option<PlacedEdge<'a, D>> {
+        self.edges.get(name).map(|edge| PlacedEdge { edge, faces: &self.faces })
+    }
+}
+
+/// Numbers of sites from which on they are those of edges.
+const EDGES: u32 = 1 << 31;
+
+impl EdgeCurve {
+    fn new<const D: usize>(body: &SolidBody<D>, name: &str, stated: &EdgeOf) -> Result<Self, EdgeError> {
+        let (links, closure) = chain::links(body, name, &stated.surfaces)?;
+        let faces = &body.faces;
+        let count = links.len();
+        // Position and derivative along the unit length at both ends of each link.
+        let lengths: Vec<f64> = links.iter().map(|l| length(faces, l.faces[0])).collect();
+        let at = |e: usize, end: usize| linear(faces, links[e].faces[0], end as f64, lengths[e]);
+        let own: Vec<[(Linear, Linear); 2]> = (0..count).map(|e| [at(e, 0), at(e, 1)]).collect();
+        let mut tangents: Vec<[Linear; 2]> = own.iter().map(|[a, b]| [a.1.clone(), b.1.clone()]).collect();
+        let inner = if closure == Closure::Closed { 0..count } else { 1..count };
+        for e in inner {
+            let before = (e + count - 1) % count;
+            let (h, g) = (lengths[before], lengths[e]);
+            let [arriving, leaving] = [&own[before][1].1, &own[e][0].1];
+            chain::check_kink(name, &links[e], arriving.x, leaving.x)?;
+            let mean = Linear::sum(&[(arriving, g / (h + g)), (leaving, h / (h + g))]);
+            tangents[before][1] = mean.clone();
+            tangents[e][0] = mean;
+        }
+        if closure == Closure::Open && count > 1 {
+            // At an end the parabola goes on.
+            for (e, end) in [(0, 0), (count - 1, 1)] {
+                let other = tangents[e][1 - end].clone();
+                tangents[e][end] = Linear::sum(&[(&own[e][0].1, 1.0), (&own[e][1].1, 1.0), (&other, -1.0)]);
+            }
+        }
+        let elements = (0..count)
+            .map(|e| {
+                let third = lengths[e] / 3.0;
+                let [start, end] = [&own[e][0].0, &own[e][1].0];
+                let bezier = [
+                    start.clone(),
+                    Linear::sum(&[(start, 1.0), (&tangents[e][0], third)]),
+                    Linear::sum(&[(end, 1.0), (&tangents[e][1], -third)]),
+                    end.clone(),
+                ];
+                let mut functions: BTreeMap<u32, [f64; 4]> = BTreeMap::new();
+                for (k, point) in bezier.iter().enumerate() {
+                    point.weights.iter().for_each(|(f, w)| functions.entry(*f).or_default()[k] = *w);
+                }
+                let aside = [0, 1].map(|end| aside(faces, links[e].faces[0], end));
+                let mut turning: BTreeMap<u32, [f64; 2]> = functions.keys().map(|f| (*f, [0.0; 2])).collect();
+                for (k, vector) in aside.iter().enumerate() {
+                    vector.weights.iter().for_each(|(f, w)| turning.entry(*f).or_default()[k] = *w);
+                }
+                Element {
+                    aside: aside.each_ref().map(|v| v.x),
+                    turning: turning.into_iter().collect(),
+                    points: bezier.each_ref().map(|p| p.x),
+                    functions: functions.into_iter().collect(),
+                    length: lengths[e],
+                    faces: links[e].faces,
+                    depth: 0.5 * links[e].faces.iter().map(|f| faces.face(f.0).depth).fold(f64::INFINITY, f64::min),
+                }
+            })
+            .collect();
+        let mut starts = vec![0.0];
+        lengths.iter().for_each(|h| starts.push(starts[starts.len() - 1] + h));
+        Ok(EdgeCurve {
+            elements,
+            closure,
+            radius: stated.radius,
+            starts,
+            youngs_modulus: body.body().material.youngs_modulus,
+            degree: body.body().degree,
+            first: 0,
+        })
+    }
+
+    /// Where the points of Bezier of an element are now.
+    fn points(&self, element: usize, u: &[f64]) -> [Point<3>; 4] {
+        let Element { mut points, ref functions, .. } = self.elements[element];
+        for (f, weights) in functions {
+            let moved = Vector::<3>::from_column_slice(&u[3 * *f as usize..3 * *f as usize + 3]);
+            (0..4).for_each(|k| points[k] += moved * weights[k]);
+        }
+        points
+    }
+
+    fn jet(&self, element: usize, xi: f64, u: &[f64]) -> CurveJet {
+        let points = self.points(element, u);
+        let [x, d1, d2, d3] = bernstein(xi).map(|row| weighted(&row, &points));
+        CurveJet { x, d1, d2, d3 }
+    }
+
+    /// What moves a point.
+    fn functions(&self, element: usize, xi: f64) -> Vec<Function> {
+        let [value, first, second, _] = bernstein(xi);
+        let zero = Vector::<3>::zeros();
+        let of = |row: &[f64; 4], weights: &[f64; 4]| (0..4).map(|k| row[k] * weights[k]).sum::<f64>();
+        let mut out = Vec::with_capacity(3 * self.elements[element].functions.len());
+        for (f, weights) in &self.elements[element].functions {
+            let [n, n1, n2] = [of(&value, weights), of(&first, weights), of(&second, weights)];
+            out.extend((0..3).map(|i| Function {
+                unknown: 3 * f + i as u32,
+                value: axis(i) * n,
+                slopes: [axis(i) * n1, zero],
+                second: [axis(i) * n2, zero, zero],
+            }));
+        }
+        out
+    }
+
+    /// The section at a point, how its vectors change along the edge, and what turns it.
+    fn section(&self, element: usize, xi: f64, u: &[f64]) -> (Section, Change, Vec<Turning>) {
+        let own = &self.elements[element];
+        let jet = self.jet(element, xi, u);
+        let mut aside = own.aside;
+        let [_, first, second, _] = bernstein(xi);
+        let of = |row: &[f64; 4], weights: &[f64; 4]| (0..4).map(|k| row[k] * weights[k]).sum::<f64>();
+        let mut list = Vec::with_capacity(3 * own.turning.len());
+        for (f, across) in &own.turning {
+            let moved = Vector::<3>::from_column_slice(&u[3 * *f as usize..3 * *f as usize + 3]);
+            (0..2).for_each(|k| aside[k] += moved * across[k]);
+            let along = own.functions.binary_search_by_key(f, |g| g.0).map_or([0.0; 4], |k| own.functions[k].1);
+            let [a, a_along] = [of(&first, &along), of(&second, &along)];
+            let [w, w_along] = [(1.0 - xi) * across[0] + xi * across[1], across[1] - across[0]];
+            list.extend((0..3).map(|i| Turning {
+                unknown: 3 * f + i as u32,
+                change: Change { a: axis(i) * a, w: axis(i) * w },
+                slope: Change { a: axis(i) * a_along, w: axis(i) * w_along },
+            }));
+        }
+        let along = Change { a: jet.d2, w: aside[1] - aside[0] };
+        (Section::new(jet.d1, aside[0] * (1.0 - xi) + aside[1] * xi), along, list)
+    }
+
+    /// What turns the section at a point, and how it is turned.
+    fn spin(&self, element: usize, xi: f64, u: &[f64]) -> (Vec<Function>, Matrix<3>) {
+        let (section, along, list) = self.section(element, xi, u);
+        let spin = (list.iter())
+            .map(|t| Function {
+                unknown: t.unknown,
+                value: section.spin(&t.change),
+                slopes: [section.spin(&t.slope) + section.bend(&t.change, &along), Vector::<3>::zeros()],
+                ..Function::default()
+            })
+            .collect();
+        (spin, section.frame())
+    }
+
+    fn stiffness(&self, element: usize) -> f64 {
+        self.youngs_modulus * self.elements[element].length * self.degree as f64
+    }
+
+    /// The points that are tested along the edge.
+    pub(super) fn sites(&self, sampling: Sampling) -> Vec<Site> {
+        let patch = |e: usize| EDGES + self.first + e as u32;
+        let count = self.elements.len();
+        let length = |e: usize| self.elements[e].length;
+        match sampling {
+            Sampling::GaussPoints => (0..count)
+                .flat_map(|e| {
+                    let rule = rule(signorini_fem::CellShape::Line, CONTACT_POINTS);
+                    rule.into_iter().map(move |(s, w)| Site {
+                        patch: patch(e),
+                        xi: [0.5 * (1.0 + s[0]), 0.0],
+                        weight: 0.5 * w * length(e),
+                    })
+                })
+                .collect(),
+            Sampling::Nodes => {
+                let is_open = self.closure == Closure::Open;
+                let node = |n: usize| {
+                    let before = if n == 0 && is_open { 0.0 } else { length((n + count - 1) % count) };
+                    let after = if n == count { 0.0 } else { length(n) };
+                    let (e, xi) = if n == count { (n - 1, 1.0) } else { (n, 0.0) };
+                    Site { patch: patch(e), xi: [xi, 0.0], weight: 0.5 * (before + after) }
+                };
+                (0..count + usize::from(is_open)).map(node).collect()
+            }
+        }
+    }
+
+    pub(super) fn placed(&self, element: usize, site: &Site, u: &[f64]) -> Placed {
+        let jet = self.jet(element, site.xi[0], u);
+        let (spin, frame) = self.spin(element, site.xi[0], u);
+        Placed {
+            x: jet.x,
+            tangent: Some(jet.d1),
+            radius: self.radius,
+            functions: self.functions(element, site.xi[0]),
+            spin,
+            frame,
+            ..Placed::default()
+        }
+    }
+
+    /// As [`Body::site_stiffness`](signorini_mechanics::Body::site_stiffness): the part of an element that a site stands for.
+    pub(super) fn site_stiffness(&self, element: usize, site: &Site) -> f64 {
+        self.stiffness(element) * site.weight / self.elements[element].length
+    }
+}
+
+/// How an unknown changes the vectors of a section, and how that changes along the edge.
+struct Turning {
+    unknown: u32,
+    change: Change,
+    slope: Change,
+}
+
+/// A vector from an end of an edge into a face: towards its middle, by its coordinates.
+fn aside<const D: usize>(faces: &Faces<D>, (face, ends): (u32, [Local; 2]), end: usize) -> Linear {
+    let (middle, centre) = (between(&ends, 0.5), faces.face(face).shape.centre());
+    let towards = [0, 1].map(|k| centre[k] - middle[k]);
+    let at = faces.reference(face, &ends[end]);
+    let mut out =
+        Linear { x: spatial(&(at.tangents[0] * towards[0] + at.tangents[1] * towards[1])), ..Linear::default() };
+    for (f, d) in faces.derivatives(face, &ends[end]) {
+        out.weights.insert(f, d[1] * towards[0] + d[2] * towards[1]);
+    }
+    out
+}
+
+/// Position and derivative per length at a place along an edge of a face.
+fn linear<const D: usize>(faces: &Faces<D>, (face, ends): (u32, [Local; 2]), t: f64, length: f64) -> (Linear, Linear) {
+    let s = between(&ends, t);
+    let along = [0, 1].map(|k| (ends[1][k] - ends[0][k]) / length);
+    let at = faces.reference(face, &s);
+    let slope = at.tangents[0] * along[0] + at.tangents[1] * along[1];
+    let [mut position, mut derivative] =
+        [spatial(&at.x), spatial(&slope)].map(|x| Linear { x, weights: BTreeMap::new() });
+    for (f, d) in faces.derivatives(face, &s) {
+        let slope = d[1] * along[0] + d[2] * along[1];
+        // Functions of the rest of the face vanish along the edge up to rounding.
+        for (list, value) in [(&mut position.weights, d[0]), (&mut derivative.weights, slope * length)] {
+            if value.abs() > super::faces::NOTHING {
+                list.insert(f, value);
+            }
+        }
+    }
+    derivative.weights.values_mut().for_each(|w| *w /= length);
+    (position, derivative)
+}
+
+/// Length of an edge at rest.
+fn length<const D: usize>(faces: &Faces<D>, (face, ends): (u32, [Local; 2])) -> f64 {
+    let along = |k: usize| ends[1][k] - ends[0][k];
+    (rule(signorini_fem::CellShape::Line, LENGTH_POINTS).into_iter())
+        .map(|(s, w)| {
+            let at = faces.reference(face, &between(&ends, 0.5 * (1.0 + s[0])));
+            0.5 * w * (at.tangents[0] * along(0) + at.tangents[1] * along(1)).norm()
+        })
+        .sum()
+}
+
+/// An edge of a body as a curve.
+pub(super) struct PlacedEdge<'a, const D: usize> {
+    edge: &'a EdgeCurve,
+    faces: &'a Faces<D>,
+}
+
+impl<const D: usize> Curve for PlacedEdge<'_, D> {
+    fn elements(&self) -> usize {
+        self.edge.elements.len()
+    }
+
+    fn closure(&self) -> Closure {
+        self.edge.closure
+    }
+
+    fn continuity(&self) -> Continuity {
+        Continuity::C1
+    }
+
+    fn arc(&self, element: usize, xi: f64) -> f64 {
+        self.edge.starts[element] + xi * self.edge.elements[element].length
+    }
+
+    fn radius(&self) -> f64 {
+        self.edge.radius
+    }
+
+    fn contact_points(&self) -> usize {
+        CONTACT_POINTS
+    }
+
+    fn stiffness(&self, element: usize) -> f64 {
+        self.edge.stiffness(element)
+    }
+
+    fn faces(&self, configuration: &[f64], element: usize, xi: f64) -> Option<[Vector<3>; 2]> {
+        Some(self.edge.elements[element].faces.map(|(face, ends)| {
+            let s = between(&ends, xi);
+            let list = self.faces.derivatives(face, &s);
+            spatial(&self.faces.current(face, &s, &list, configuration).area_normal().normalize())
+        }))
+    }
+
+    fn depth(&self, element: usize) -> f64 {
+        self.edge.elements[element].depth
+    }
+
+    fn jet(&self, configuration: &[f64], element: usize, xi: f64) -> CurveJet {
+        self.edge.jet(element, xi, configuration)
+    }
+
+    fn hull(&self, configuration: &[f64], element: usize) -> Vec<Point<3>> {
+        self.edge.points(element, configuration).to_vec()
+    }
+
+    fn foot(&self, configuration: &[f64], element: usize, xi: f64, coordinates: usize) -> Foot {
+        let functions = self.edge.functions(element, xi);
+        let jet = self.edge.jet(element, xi, configuration);
+        let (spin, frame) = self.edge.spin(element, xi, configuration);
+        let foot = CurvePoint { element, xi, coordinates }.foot(&jet, self.edge.radius, functions);
+        Foot { spin, frame, ..foot }
+    }
+
+    fn spin_bends(&self, configuration: &[f64], element: usize, xi: f64) -> Vec<Vector<3>> {
+        let (section, _, list) = self.edge.section(element, xi, configuration);
+        list.iter().flat_map(|t| list.iter().map(|l| section.bend(&t.change, &l.change))).collect()
+    }
+}

@@ -258,7 +258,7 @@ fn extent<const D: usize>(body: &CellBody<D>) -> f64 {
             take(&b.min);
             take(&b.max);
         }
-        if body.region.has_points_in_material() {
+        if body.region.has_points_in_material() && !cell.rule.is_fitted {
             cell.rule.volume.iter().for_each(|p| take(&p.x));
         }
         cell.rule.boundary.iter().for_each(|p| take(&p.x));

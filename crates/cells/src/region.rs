@@ -1,5 +1,6 @@
 //! Quadrature of the material in a box, from whatever describes the body.
 
+use crate::moments::fitted;
 use crate::domain::{Domain, Restricted};
 use signorini_fem::QuadraturePoint;
 use signorini_fem::cut::{End, height::side_points, height_functions, space_tree, sub_cells};
@@ -53,12 +54,22 @@ pub struct MaterialRule<const D: usize> {
     pub filling: Filling,
     /// Empty where the cell is full.
     pub volume: Vec<QuadraturePoint<D>>,
+    /// Whether those points may lie outside of the material.
+    pub is_fitted: bool,
     pub boundary: Vec<BoundaryPoint<D>>,
 }
 
 impl<const D: usize> MaterialRule<D> {
     pub fn empty(filling: Filling) -> Self {
-        MaterialRule { filling, volume: Vec::new(), boundary: Vec::new() }
+        MaterialRule { filling, volume: Vec::new(), is_fitted: false, boundary: Vec::new() }
+    }
+
+    /// Replaces the points in the volume by those of one rule of a box, where they are fewer.
+    pub(crate) fn fit(&mut self, b: &Aabb<D>, order: usize) {
+        if self.volume.len() > order.pow(D as u32) {
+            self.volume = fitted(b, order, self.volume.iter().map(|p| (p.x, p.weight)));
+            self.is_fitted = true;
+        }
     }
 
     /// Volume of the material in a cell of the given volume.
@@ -140,7 +151,7 @@ impl<const D: usize> Region<D> for Domain<D> {
         } else if boundary.is_empty() && measure >= (1.0 - 1e-12) * b.volume() {
             MaterialRule::empty(Filling::Full)
         } else {
-            MaterialRule { filling: Filling::Cut, volume, boundary }
+            MaterialRule { volume, boundary, ..MaterialRule::empty(Filling::Cut) }
         }
     }
 

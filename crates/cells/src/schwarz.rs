@@ -1,7 +1,8 @@
 //! The sets of a Schwarz preconditioner of a body.
 //!
 //! One for each *vertex star* (all functions that vanish outside the cells around a vertex), one for each cut cell
-//! (where functions become almost dependent), and one coarse level of all functions of vertices. The condition is then
+//! (where functions become almost dependent), and one coarse level of all functions of vertices, with coarser ones of larger
+//! cells where there are many. The condition is then
 //! independent of the cuts, of the number of cells and nearly of the degree: in space the functions themselves, not the
 //! cuts, are the larger part of the trouble.
 
@@ -32,7 +33,8 @@ impl<const D: usize> CellBody<D> {
             members.iter().for_each(|f| covered[*f as usize] = true);
             sets.push(members);
         }
-        for cell in self.cells().iter().filter(|c| c.rule.filling == Filling::Cut) {
+        let small: f64 = std::env::var("SMALL").ok().and_then(|v| v.parse().ok()).unwrap_or(1.0);
+        for cell in self.cells().iter().filter(|c| c.rule.filling == Filling::Cut && c.share < small) {
             sets.push(cell.functions.clone());
         }
         sets.extend((0..functions).filter(|f| !covered[*f]).map(|f| vec![f as u32]));
@@ -44,6 +46,7 @@ impl<const D: usize> CellBody<D> {
         Sets {
             local: sets.iter().map(|set| set.iter().flat_map(unknowns).collect()).collect(),
             coarse: coarse.collect(),
+            coarser: self.coarser_levels(&vertices),
         }
     }
 }

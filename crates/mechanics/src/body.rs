@@ -271,6 +271,11 @@ pub trait Master: Sync {
     /// next to that site along the body is left out: contact of a body with itself.
     fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<Met>;
 
+    /// The distance of that point, negative inside, where it is found with less work than what moves the point.
+    fn gap(&self, _x: &Point<3>, _reach: f64, _except: Option<&Site>) -> Option<f64> {
+        None
+    }
+
     /// Whether the surface has facets, so that gaps are better measured along the averaged normal of a slave that has one.
     fn is_faceted(&self) -> bool {
         false

@@ -12,6 +12,7 @@ use signorini_geometry::Vector;
 use signorini_solve::SolveError;
 use signorini_solve::general::Analysis;
 use signorini_solve::newton::Converged;
+use signorini_solve::schwarz::Inverses;
 
 /// Why an increment has no solution.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -184,6 +185,7 @@ impl System {
             time,
             stiffness: if iterates { Stiffness::KeptByBodies } else { Stiffness::InTangent },
             solved: *solved,
+            inverses: Inverses::default(),
             analysis: Analysis::default(),
             springs: 0.0,
             held_back: None,

@@ -13,7 +13,7 @@ use signorini_solve::blocks::{Block, BlockSum};
 use signorini_solve::dissection::nested_dissection;
 use signorini_solve::general::DenseBlocks;
 use signorini_solve::krylov::{Stopped, conjugate_gradients, conjugate_residuals};
-use signorini_solve::schwarz::{Schwarz, Sets};
+use signorini_solve::schwarz::{Inverses, Schwarz, Sets};
 use signorini_solve::{SolveError, Symbolic, SymmetricMatrix};
 use std::collections::BTreeSet;
 
@@ -154,8 +154,7 @@ impl System {
             blocks.extend(
                 (own.stiffness.into_iter()).map(|b| Block { unknowns: shifted(b.unknowns), entries: b.entries }),
             );
-            sets.local.extend(own.sets.local.into_iter().map(shifted));
-            sets.coarse.extend(own.sets.coarse.into_iter().map(|(u, x)| (u + first, x)));
+            sets.append(own.sets, first);
         }
         let mut known: BTreeSet<Vec<u32>> = BTreeSet::new();
         for set in &sets.local {
@@ -176,25 +175,26 @@ impl System {
     }
 
     /// The step of all unknowns, and the number of iterations; `held` names unknowns whose step is known, and stands in
-    /// `right`, the right-hand side.
+    /// `right`, the right-hand side. Inverses that are `known` from the last step are taken.
     pub(crate) fn iterated_step(
         &self,
         out: Assembled,
         held: &[bool],
         right: &[f64],
+        known: &mut Inverses,
     ) -> Result<(Vec<f64>, usize), IncrementError> {
         let (_, count) = self.numbering();
         let condensed = Condensed::new(out, count);
         let (blocks, sets) = self.blocks_and_sets(&condensed);
         let symmetric = condensed.is_symmetric();
         let a = BlockSum::new(blocks, held[..count].iter().map(|h| !h).collect());
-        let known: Vec<f64> = (0..count).map(|k| if held[k] { right[k] } else { 0.0 }).collect();
-        let moved = a.multiply_all(&known);
+        let given: Vec<f64> = (0..count).map(|k| if held[k] { right[k] } else { 0.0 }).collect();
+        let moved = a.multiply_all(&given);
         let condensed_right = condensed.right(right);
         let b: Vec<f64> = (0..count).map(|k| if held[k] { 0.0 } else { condensed_right[k] - moved[k] }).collect();
-        let schwarz = Schwarz::new(&a, &sets)?;
+        let schwarz = Schwarz::new(&a, &sets, known)?;
         let (mut x, iterations) = solve(&a, &schwarz, &b, symmetric)?;
-        (0..count).filter(|k| held[*k]).for_each(|k| x[k] = known[k]);
+        (0..count).filter(|k| held[*k]).for_each(|k| x[k] = given[k]);
         condensed.recover(&mut x, right);
         Ok((x, iterations))
     }

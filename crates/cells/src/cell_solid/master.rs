@@ -118,16 +118,23 @@ impl<'a, const D: usize> BoundaryMaster<'a, D> {
         normal_now(&sheet.gradient(&at.x), &at.u.gradient).try_normalize(0.0).unwrap_or_default()
     }
 
-    fn foot(&self, x: &Point<3>, number: usize, found: &OnSheets<D>) -> Foot {
+    /// Where the boundary looks at a closest point.
+    fn outward(&self, found: &OnSheets<D>) -> Option<Vector<3>> {
         let OnSheets { at, active, outward } = found;
         let normals = active.iter().map(|s| self.normal(at, s));
         let outward = match outward {
             Some(normal) if active.len() > 1 => normal_now(normal, &at.u.gradient),
             _ => normals.sum::<Vector<3>>(),
         };
-        let outward = outward.try_normalize(0.0);
+        outward.try_normalize(0.0)
+    }
+
+    fn foot(&self, x: &Point<3>, number: usize, found: &OnSheets<D>) -> Foot {
+        let OnSheets { at, active, .. } = found;
+        let outward = self.outward(found);
         let size = self.solid.cell_size(&self.solid.points[number]);
         let is_face = active.len() == 1 || (x - spatial(&at.now())).norm() <= TOUCHING * size;
+        let at = &Found { u: self.solid.body.displacement_jet(at.cell, &at.x, self.u, true), ..*at };
         let chart = Chart::new(at, &if is_face { vec![active[0].clone()] } else { active.clone() });
         let ([y1, y2], [y11, y12, y22], y3) = (
             chart.now.0.each_ref().map(spatial),
@@ -170,7 +177,7 @@ impl<'a, const D: usize> BoundaryMaster<'a, D> {
     fn functions(&self, at: &Found<D>, along: impl Fn(&FunctionJet<D>) -> ([f64; 2], [f64; 3])) -> Vec<Function> {
         let own = &self.solid.body.cells()[at.cell].functions;
         let mut out = Vec::with_capacity(D * own.len());
-        for (f, jet) in own.iter().zip(&at.jets) {
+        for (f, jet) in own.iter().zip(&self.solid.body.jets_at(at.cell, &at.x)) {
             let (first, second) = along(jet);
             for i in 0..D {
                 let Some(unknown) = self.solid.unknown(*f, i) else { continue };
@@ -194,6 +201,14 @@ impl<const D: usize> Master for BoundaryMaster<'_, D> {
         let found = self.closest(&target, number)?;
         let is_within = (spatial(&found.at.now()) - x).norm() <= reach;
         is_within.then(|| Met::Foot(Box::new(self.foot(x, number, &found))))
+    }
+
+    fn gap(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<f64> {
+        let number = self.nearest_point(x, reach, except)?;
+        let found = self.closest(&Point::<D>::from_fn(|k, _| x[k]), number)?;
+        let apart = x - spatial(&found.at.now());
+        let outward = self.outward(&found)?;
+        Some(apart.norm() * apart.dot(&outward).signum())
     }
 
     fn at(&self, point: &MaterialPoint) -> Anchor {

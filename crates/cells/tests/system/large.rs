@@ -70,14 +70,38 @@ fn crushed(n: usize, enforcement: Option<(Sampling, Enforcement)>) -> usize {
     let mut system = System {
         supports: vec![
             support(0, "bottom", [constant(0.0), constant(0.0), constant(0.0)]),
-            support(0, "top", [constant(0.0), constant(0.0), constant(-0.15)]),
+            support(0, "top", [constant(0.0), constant(0.0), constant(0.0)]),
         ],
         bodies: vec![built.body],
         contacts: contacts.into_iter().collect(),
         solver: LinearSolver::Iterative,
         ..System::default()
     };
-    let (_, found) = solve(&mut system);
+    let travel: f64 = std::env::var("TRAVEL").ok().and_then(|v| v.parse().ok()).unwrap_or(0.15);
+    system.supports[1].displacement[2] = Some(Arc::new(move |_: &Point<3>, time: f64| -travel * time));
+    system.prepare().unwrap();
+    let mut state = system.start();
+    for c in 0..system.contacts.len() {
+        let at = system.sites(c, &state).unwrap();
+        let mut gaps: Vec<f64> = at.iter().filter_map(|s| s.gap).collect();
+        gaps.sort_by(f64::total_cmp);
+        let part = |q: f64| gaps[((gaps.len() - 1) as f64 * q) as usize];
+        println!("{} of {} see something, gaps {:.2e} {:.2e} {:.2e} {:.2e} {:.2e}, {:?}", gaps.len(), at.len(), part(0.0), part(0.01), part(0.1), part(0.5), part(1.0), begin.elapsed());
+    }
+    let mut found = IncrementResult::default();
+    let steps: usize = std::env::var("STEPS").ok().and_then(|v| v.parse().ok()).unwrap_or(3);
+    for step in 1..=steps {
+        let time = step as f64 / steps as f64;
+        let mut told = |k: usize, r: f64| {
+            println!("   {step}.{k}: {r:.2e}, {:?}", begin.elapsed());
+            true
+        };
+        (state, found) = system.solve(&state, time, &mut told).unwrap();
+        system.accept(&mut state).unwrap();
+        let closed = found.sites.iter().flatten().filter(|s| s.pressure > 0.0).count();
+        let least = found.sites.iter().flatten().filter_map(|s| s.gap).fold(f64::INFINITY, f64::min);
+        println!("   {time:.2}: {closed} closed, least gap {least:.2e}, {:?}, {:?}", found.solved, begin.elapsed());
+    }
     let Solved::Iterative { systems, most_iterations } = found.solved else { panic!("{:?}", found.solved) };
     let sites = found.sites.first().map_or(0, Vec::len);
     let closed = found.sites.iter().flatten().filter(|s| s.pressure > 0.0).count();

@@ -10,6 +10,7 @@ use std::time::Instant;
 fn foam(n: usize) -> ImageData {
     let pores = (n as f64 / 12.0).round() as usize;
     let width = n as f64 / pores as f64;
+    let flat: f64 = std::env::var("FLAT").ok().and_then(|v| v.parse().ok()).unwrap_or(0.4);
     let mut seed = 3u64;
     let mut random = || {
         seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
@@ -21,8 +22,11 @@ fn foam(n: usize) -> ImageData {
             ((number / pores.pow(k as u32) % pores) as f64 + 0.5 + 0.25 * (random() - 0.5)) * width
         });
         let size = width * (0.36 + 0.06 * random());
-        let along: [Vec<f64>; 3] =
-            middle.map(|m| (0..n).map(|i| (-((i as f64 + 0.5 - m) / size).powi(2)).exp()).collect());
+        // Flat pores close under less compression.
+        let sizes = [size, size, flat * size];
+        let along: [Vec<f64>; 3] = std::array::from_fn(|k| {
+            (0..n).map(|i| (-((i as f64 + 0.5 - middle[k]) / sizes[k]).powi(2)).exp()).collect()
+        });
         let near = along.each_ref().map(|a| (0..n).filter(|i| a[*i] > 1e-4).collect::<Vec<usize>>());
         for &k in &near[2] {
             for &j in &near[1] {

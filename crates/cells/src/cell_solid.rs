@@ -469,6 +469,10 @@ impl<const D: usize> Body for CellSolid<D> {
         self.size
     }
 
+    fn means(&self, state: &BodyState) -> Option<mechanics::Means> {
+        self.body.means(&state.configuration)
+    }
+
     fn fields(&self, state: &BodyState) -> BodyFields {
         self.shown.get_or_init(|| Shown::new(&self.body)).fields(&self.body, &state.configuration)
     }

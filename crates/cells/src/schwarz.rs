@@ -1,7 +1,7 @@
 //! The sets of a Schwarz preconditioner of a body.
 //!
-//! One for each *vertex star* (all functions that vanish outside the cells around a vertex), one for each cut cell
-//! (where functions become almost dependent), and one coarse level of all functions of vertices, with coarser ones of larger
+//! One for each *vertex star* (all functions that vanish outside the cells around a vertex), one for each cell with
+//! little material (where functions become almost dependent), and one coarse level of all functions of vertices, with coarser ones of larger
 //! cells where there are many. The condition is then
 //! independent of the cuts, of the number of cells and nearly of the degree: in space the functions themselves, not the
 //! cuts, are the larger part of the trouble.
@@ -10,6 +10,9 @@ use crate::body::CellBody;
 use crate::region::Filling;
 use crate::shapes::spatial;
 use signorini_solve::schwarz::Sets;
+
+/// Share of material in a cell above which its functions are independent enough for the stars of its vertices alone.
+const SMALL: f64 = 0.5;
 
 impl<const D: usize> CellBody<D> {
     /// The sets of unknowns of a preconditioner.
@@ -33,8 +36,7 @@ impl<const D: usize> CellBody<D> {
             members.iter().for_each(|f| covered[*f as usize] = true);
             sets.push(members);
         }
-        let small: f64 = std::env::var("SMALL").ok().and_then(|v| v.parse().ok()).unwrap_or(1.0);
-        for cell in self.cells().iter().filter(|c| c.rule.filling == Filling::Cut && c.share < small) {
+        for cell in self.cells().iter().filter(|c| c.rule.filling == Filling::Cut && c.share < SMALL) {
             sets.push(cell.functions.clone());
         }
         sets.extend((0..functions).filter(|f| !covered[*f]).map(|f| vec![f as u32]));

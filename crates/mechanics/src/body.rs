@@ -436,4 +436,18 @@ pub trait Body: Send + Sync {
     fn size(&self) -> f64;
 
     fn fields(&self, state: &BodyState) -> BodyFields;
+
+    /// What a body in a box of cells is like as a whole: none of other bodies.
+    fn means(&self, _state: &BodyState) -> Option<Means> {
+        None
+    }
+}
+
+/// A body as a piece of a material that fills its box.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Means {
+    /// Normal stresses along the axes, summed over the material and divided by the volume of the box.
+    pub stress: [f64; 3],
+    /// How far the material on opposite sides of the box moved apart, over their distance; none where there is none on one.
+    pub strain: [Option<f64>; 3],
 }

@@ -85,13 +85,6 @@ fn crushed(n: usize, enforcement: Option<(Sampling, Enforcement)>) -> usize {
     system.supports[1].displacement[2] = Some(Arc::new(move |_: &Point<3>, time: f64| -travel * time));
     system.prepare().unwrap();
     let mut state = system.start();
-    for c in 0..system.contacts.len() {
-        let at = system.sites(c, &state).unwrap();
-        let mut gaps: Vec<f64> = at.iter().filter_map(|s| s.gap).collect();
-        gaps.sort_by(f64::total_cmp);
-        let part = |q: f64| gaps[((gaps.len() - 1) as f64 * q) as usize];
-        println!("{} of {} see something, gaps {:.2e} {:.2e} {:.2e} {:.2e} {:.2e}, {:?}", gaps.len(), at.len(), part(0.0), part(0.01), part(0.1), part(0.5), part(1.0), begin.elapsed());
-    }
     let mut found = IncrementResult::default();
     let steps: usize = std::env::var("STEPS").ok().and_then(|v| v.parse().ok()).unwrap_or(3);
     for step in 1..=steps {

@@ -27,9 +27,8 @@ pub(crate) fn fitted<const D: usize>(
     points: impl Iterator<Item = (Point<D>, f64)>,
 ) -> Vec<QuadraturePoint<D>> {
     let nodes: Vec<f64> = gauss_legendre(order).into_iter().map(|(t, _)| t).collect();
-    let scale: Vec<f64> = (0..order)
-        .map(|j| (0..order).filter(|m| *m != j).map(|m| 1.0 / (nodes[j] - nodes[m])).product())
-        .collect();
+    let scale: Vec<f64> =
+        (0..order).map(|j| (0..order).filter(|m| *m != j).map(|m| 1.0 / (nodes[j] - nodes[m])).product()).collect();
     let size = b.size();
     let mut weights = vec![0.0; order.pow(D as u32)];
     let mut lines: [Vec<f64>; D] = std::array::from_fn(|_| vec![0.0; order]);

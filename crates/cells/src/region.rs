@@ -1,7 +1,7 @@
 //! Quadrature of the material in a box, from whatever describes the body.
 
-use crate::moments::fitted;
 use crate::domain::{Domain, Restricted};
+use crate::moments::fitted;
 use signorini_fem::QuadraturePoint;
 use signorini_fem::cut::{End, height::side_points, height_functions, space_tree, sub_cells};
 use signorini_geometry::{Aabb, ImplicitShape, Point, Vector};

@@ -233,7 +233,9 @@ impl Contact {
         }
         let except = self.is_within().then_some(site);
         if farthest < self.reach
-            && master.gap(&placed.x, self.reach + placed.radius, except).is_some_and(|gap| gap > farthest + placed.radius)
+            && master
+                .gap(&placed.x, self.reach + placed.radius, except)
+                .is_some_and(|gap| gap > farthest + placed.radius)
         {
             return (placed, None);
         }

@@ -8,8 +8,8 @@ use crate::increment::IncrementError;
 use crate::iterative::{Solved, Stiffness};
 use crate::system::{Assembled, System, SystemState};
 use signorini_solve::general::Analysis;
-use signorini_solve::schwarz::Inverses;
 use signorini_solve::newton::{Converged, Equations, Measured, Newton, NewtonFailure, Search, newton};
+use signorini_solve::schwarz::Inverses;
 
 /// Force relative to the largest of all that is left in the end.
 const TOLERANCE: f64 = 1e-10;

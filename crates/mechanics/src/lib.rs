@@ -33,7 +33,10 @@ pub mod saved;
 pub mod surface;
 pub mod system;
 
-pub use body::{Anchor, Bend, Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Direction, Foot, Function, Hold, Load, Master, MaterialPoint, Means, Met, Order, PlaceError, Placed, RigidFoot, Sampling, Site};
+pub use body::{
+    Anchor, Bend, Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Direction, Foot, Function, Hold,
+    Load, Master, MaterialPoint, Means, Met, Order, PlaceError, Placed, RigidFoot, Sampling, Site,
+};
 pub use contact::{Contact, Enforcement, Part, SiteMemory, SiteResult};
 pub use curve::Curve;
 pub use increment::{IncrementError, IncrementResult};

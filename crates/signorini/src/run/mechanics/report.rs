@@ -5,8 +5,8 @@ use crate::output::system::{SystemShown, frames};
 use crate::plan::mechanics::{AXIS_SUPPORT, Kind, MechanicsPlan, Tested};
 use crate::problem::Space;
 use crate::report::{
-    CellsReport, Component, ContactReport, CurveReport, Pose, Probe, Reason, RopeLimits, StepReport, UnitNames, Warning,
-    WarningKind, vector,
+    CellsReport, Component, ContactReport, CurveReport, Pose, Probe, Reason, RopeLimits, StepReport, UnitNames,
+    Warning, WarningKind, vector,
 };
 use crate::run::record::Record;
 use crate::run::strain::{self, Strained};

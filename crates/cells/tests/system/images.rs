@@ -23,7 +23,7 @@ fn pressed(
         d.places.insert(name.into(), PlacePart::Side { axis: 2, end });
     }
     let body = build(&d).unwrap().body;
-    let plane = Plane { point: v(0.0, 0.0, 1.0).into(), normal: -Vector::<3>::z() };
+    let plane = Plane { point: v(0.0, 0.0, 1.0), normal: -Vector::<3>::z() };
     let plate = rigid("plate", plane, moved(v(0.0, 0.0, -0.01)));
     let sides = ((part(0, "top"), &*body), (part(1, ""), &plate as &dyn Body));
     let contact =
@@ -55,7 +55,7 @@ fn a_plate_presses_an_image_of_moduli() {
 /// Voxels side by side: stiffness between what series and parallels of voxels have; the forces balance.
 #[test]
 fn an_image_of_many_moduli_is_pressed_in_few_steps() {
-    let modulus = |i: usize, j: usize, k: usize| if (i / 2 + j / 2 + k / 2) % 2 == 0 { 1.0 } else { 0.01 };
+    let modulus = |i: usize, j: usize, k: usize| if (i / 2 + j / 2 + k / 2).is_multiple_of(2) { 1.0 } else { 0.01 };
     let (system, state, found) = pressed(modulus, 0.3);
     let force: f64 = found.sites[0].iter().map(|s| s.force()[2]).sum();
     println!("{force}, {} iterations", found.iterations);

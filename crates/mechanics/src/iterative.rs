@@ -91,6 +91,12 @@ impl System {
             let Some(own) = body.subspaces() else { return 0.0 };
             let cliques: Vec<&[u32]> = own.stiffness.iter().map(|b| b.unknowns.as_slice()).collect();
             let cells: f64 = cliques.iter().map(|c| square(c)).sum();
+            // Inverses are kept as triangles.
+            let local = || 0.5 * own.sets.local.iter().map(|s| square(s)).sum::<f64>();
+            if iterates && !own.sets.coarser.is_empty() {
+                // Rows of the coarse matrix: three directions of 27 vertices each, with their columns; coarser ones an eighth.
+                return cells + local() + 12.0 * 81.0 * 8.0 / 7.0 * own.sets.coarse.len() as f64;
+            }
             if iterates {
                 let mut place = vec![u32::MAX; body.unknowns()];
                 own.sets.coarse.iter().enumerate().for_each(|(i, (u, _))| place[*u as usize] = i as u32);
@@ -102,7 +108,7 @@ impl System {
                 let position: Vec<[f64; 3]> = own.sets.coarse.iter().map(|c| c.1).collect();
                 let order = nested_dissection(&pattern, &position);
                 let coarse = Symbolic::ordered(order).cost(&pattern).map_or(0.0, |c| c.bytes);
-                return cells + own.sets.local.iter().map(|s| square(s)).sum::<f64>() + coarse;
+                return cells + local() + coarse;
             }
             let factor = Symbolic::default().cost(&SymmetricMatrix::from_cliques(body.unknowns(), &cliques));
             // Entries with their rows and columns, before and after they are sorted; two factors with rows.

@@ -6,6 +6,7 @@
 use crate::components::{PieceGraph, faces_itself, is_narrow};
 use crate::discretisation::{Boundary, Discretisation, Stuff, check};
 use crate::error::CellsError;
+use crate::moments::VolumePoints;
 use crate::numbering::{kept_pieces, rules_of_pieces};
 use crate::region::{BoundaryPoint, Filling, MaterialRule, Region};
 use crate::space::{LocalMode, Mode, Tabulation, tabulate};
@@ -88,9 +89,17 @@ impl<const D: usize> CellBody<D> {
         stuff: Stuff<D>,
     ) -> Result<Self, CellsError> {
         check(&*region, &tree, &discretisation, &stuff)?;
+        let fits = discretisation.volume_points == VolumePoints::Fitted
+            && stuff.modulus.is_none()
+            && stuff.space != Space::Axisymmetric;
         let rules_of = |tree: &CellTree<D>| -> Vec<MaterialRule<D>> {
             let one = |leaf: &crate::tree::Leaf<D>| {
-                region.rule(&leaf.bounds, &discretisation.integration, discretisation.degree)
+                let mut rule = region.rule(&leaf.bounds, &discretisation.integration, discretisation.degree);
+                // Points of cells in several pieces tell the pieces apart.
+                if fits && !faces_itself(&rule) {
+                    rule.fit(&leaf.bounds, 2 * discretisation.degree + 1);
+                }
+                rule
             };
             tree.leaves().par_iter().map(one).collect()
         };
@@ -117,7 +126,14 @@ impl<const D: usize> CellBody<D> {
             Findings { facing_cells: rules.iter().filter(|r| faces_itself(r)).count(), ..Findings::default() };
         let graph = PieceGraph::new(&*region, &tree, &rules, discretisation.pieces);
         findings.split_leaves = graph.leaves.iter().filter(|l| l.count > 1).count();
-        let rules = rules_of_pieces(&tree, &graph, rules);
+        let mut rules = rules_of_pieces(&tree, &graph, rules);
+        if fits {
+            let alone = |piece: &usize| graph.leaves[graph.leaf_of(*piece)].count == 1;
+            for piece in (0..rules.len()).filter(alone) {
+                let b = tree.leaves()[graph.leaf_of(piece)].bounds;
+                rules[piece].fit(&b, 2 * discretisation.degree + 1);
+            }
+        }
         let kept = kept_pieces(&tree, &graph, &rules, discretisation.islands, &mut findings)?;
         let mut body = CellBody {
             of_leaf: vec![Vec::new(); tree.leaves().len()],

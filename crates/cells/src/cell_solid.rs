@@ -258,7 +258,7 @@ fn extent<const D: usize>(body: &CellBody<D>) -> f64 {
             take(&b.min);
             take(&b.max);
         }
-        if body.region.has_points_in_material() {
+        if body.region.has_points_in_material() && !cell.rule.is_fitted {
             cell.rule.volume.iter().for_each(|p| take(&p.x));
         }
         cell.rule.boundary.iter().for_each(|p| take(&p.x));
@@ -467,6 +467,10 @@ impl<const D: usize> Body for CellSolid<D> {
 
     fn size(&self) -> f64 {
         self.size
+    }
+
+    fn means(&self, state: &BodyState) -> Option<mechanics::Means> {
+        self.body.means(&state.configuration)
     }
 
     fn fields(&self, state: &BodyState) -> BodyFields {

@@ -12,6 +12,7 @@ use crate::discretisation::{Boundary, Discretisation, Islands, Stuff};
 use crate::error::CellsError;
 use crate::facets::FacetBody;
 use crate::image::ImageData;
+use crate::moments::VolumePoints;
 use crate::place::Place;
 use crate::region::{BoundaryPoint, Filling, Integration, Region};
 use crate::shapes::spatial;
@@ -183,6 +184,10 @@ fn in_dimension<const D: usize>(d: &Description) -> Result<Built, CellsError> {
         degree: d.degree,
         products: d.products,
         integration: d.integration,
+        volume_points: match &d.geometry {
+            Geometry::Shape(Shape::Image { .. }) | Geometry::Moduli(_) => VolumePoints::Fitted,
+            _ => VolumePoints::InMaterial,
+        },
         fictitious: d.fictitious,
         pieces: d.pieces,
         islands: d.islands,

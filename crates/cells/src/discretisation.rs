@@ -4,6 +4,7 @@ use crate::body::Field;
 use crate::components::Pieces;
 use crate::error::CellsError;
 use crate::legendre::MAX_DEGREE;
+use crate::moments::VolumePoints;
 use crate::region::{Integration, Region};
 use crate::space::Products;
 use crate::tree::CellTree;
@@ -34,6 +35,7 @@ pub struct Discretisation<const D: usize> {
     pub degree: usize,
     pub products: Products,
     pub integration: Integration,
+    pub volume_points: VolumePoints,
     /// Stiffness outside the material relative to that inside; the error in the energy norm is about `0.1 √α`.
     pub fictitious: f64,
     pub pieces: Pieces,
@@ -51,6 +53,7 @@ impl<const D: usize> Discretisation<D> {
             degree,
             products: Products::Tensor,
             integration: Integration::Exact { points: None },
+            volume_points: VolumePoints::InMaterial,
             fictitious: 1e-8,
             pieces: Pieces::Split,
             islands: Islands::Refuse,

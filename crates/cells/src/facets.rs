@@ -158,9 +158,9 @@ impl Region<3> for FacetBody {
         } else if share > 1.0 - 1e-12 && boundary.is_empty() {
             MaterialRule::empty(Filling::Full)
         } else if share > 1.0 - 1e-12 {
-            MaterialRule { filling: Filling::Full, volume: Vec::new(), boundary }
+            MaterialRule { boundary, ..MaterialRule::empty(Filling::Full) }
         } else {
-            MaterialRule { filling: Filling::Cut, volume, boundary }
+            MaterialRule { volume, boundary, ..MaterialRule::empty(Filling::Cut) }
         }
     }
 

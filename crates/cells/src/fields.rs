@@ -5,8 +5,10 @@ use crate::region::{BoundaryPoint, Filling};
 use crate::space::Tabulation;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
+use signorini_fem::cut::End;
 use signorini_fem::elastic::Space;
 use signorini_geometry::{Matrix, Point, Vector};
+use signorini_mechanics::Means;
 
 /// The state of a body at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +55,36 @@ impl<const D: usize> CellBody<D> {
             in_space[(2, 2)] = if x[0] > 0.0 { displacement[0] / x[0] } else { gradient[(0, 0)] };
         }
         PointState { displacement, gradient, stress: self.stress_at(x, &in_space) }
+    }
+
+    /// The body as a piece of a material that fills its box; none around an axis, where a box is a ring.
+    pub fn means(&self, u: &[f64]) -> Option<Means> {
+        if self.space() == Space::Axisymmetric {
+            return None;
+        }
+        let of_cell = |c: usize| -> Vector<3> {
+            let points = self.volume_points(&self.cells()[c]);
+            points.iter().map(|(x, w)| self.state_at(c, x, u).stress.diagonal() * *w).sum()
+        };
+        let parts: Vec<Vector<3>> = (0..self.cells().len()).into_par_iter().map(of_cell).collect();
+        let bounds = *self.tree().bounds();
+        let mut out = Means { stress: (parts.iter().sum::<Vector<3>>() / bounds.volume()).into(), ..Means::default() };
+        for k in 0..D {
+            let moved = |end: End| -> Option<f64> {
+                let (mut sum, mut area) = (0.0, 0.0);
+                let at = end.of(&bounds, k);
+                for leaf in self.tree().leaves().iter().filter(|l| end.of(&l.bounds, k) == at) {
+                    for p in self.region.side_rule(&leaf.bounds, k, end, self.degree() + 1) {
+                        let Some(cell) = self.cell_at(&p.x) else { continue };
+                        sum += p.weight * self.state_at(cell, &p.x, u).displacement[k];
+                        area += p.weight;
+                    }
+                }
+                (area > 0.0).then(|| sum / area)
+            };
+            out.strain[k] = moved(End::High).zip(moved(End::Low)).map(|(high, low)| (high - low) / bounds.size()[k]);
+        }
+        Some(out)
     }
 
     /// The state at a point of the material; none outside.

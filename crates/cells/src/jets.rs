@@ -10,8 +10,6 @@ pub struct FunctionJet<const D: usize> {
     pub value: f64,
     pub gradient: Vector<D>,
     pub hessian: Matrix<D>,
-    /// Derivative of the Hessian along each direction.
-    pub third: [Matrix<D>; D],
 }
 
 /// A vector field at a point.
@@ -38,16 +36,29 @@ impl<const D: usize> VectorJet<D> {
     }
 }
 
+/// Value and derivatives of the factors of a function, by direction.
+struct Factors<'a, const D: usize>([&'a [f64; 4]; D]);
+
+impl<const D: usize> Factors<'_, D> {
+    /// The derivative of the product along some directions, a direction named as often as it is taken.
+    fn derivative<const ORDER: usize>(&self, along: [usize; ORDER]) -> f64 {
+        let mut orders = [0; D];
+        along.into_iter().for_each(|k| orders[k] += 1);
+        let mut product = 1.0;
+        (0..D).for_each(|k| product *= self.0[k][orders[k]]);
+        product
+    }
+}
+
 impl<const D: usize> CellBody<D> {
-    /// The functions of a cell at a point, in the order of [`Cell::functions`](crate::Cell::functions); beyond the cell
-    /// their polynomials go on.
-    pub fn jets_at(&self, cell: usize, x: &Point<D>) -> Vec<FunctionJet<D>> {
+    /// Calls `visit` with the place of each function of a cell in [`Cell::functions`](crate::Cell::functions) and its
+    /// factors at a point.
+    fn for_each_function(&self, cell: usize, x: &Point<D>, mut visit: impl FnMut(usize, &Factors<'_, D>)) {
         let cell = &self.cells()[cell];
         let leaf = &self.tree.leaves()[cell.leaf];
         let mut level = usize::MAX;
         let mut lines = [[[0.0; 4]; MAX_DEGREE + 1]; D];
-        let mut out = Vec::with_capacity(cell.modes.len());
-        for mode in &cell.modes {
+        for (place, mode) in cell.modes.iter().enumerate() {
             if mode.mode.level != level {
                 level = mode.mode.level;
                 let b: Aabb<D> = self.tree.cell_box(level, &leaf.index.map(|i| i >> (leaf.level - level)));
@@ -60,31 +71,58 @@ impl<const D: usize> CellBody<D> {
                     }
                 }
             }
-            // The product of the derivatives of the orders in which each direction occurs.
-            let product = |directions: &[usize]| -> f64 {
-                (0..D).map(|k| lines[k][mode.factors[k]][directions.iter().filter(|d| **d == k).count()]).product()
-            };
-            out.push(FunctionJet {
-                value: product(&[]),
-                gradient: Vector::from_fn(|i, _| product(&[i])),
-                hessian: Matrix::from_fn(|i, j| product(&[i, j])),
-                third: std::array::from_fn(|k| Matrix::from_fn(|i, j| product(&[i, j, k]))),
-            });
+            visit(place, &Factors(std::array::from_fn(|k| &lines[k][mode.factors[k]])));
         }
+    }
+
+    /// The functions of a cell at a point, in the order of [`Cell::functions`](crate::Cell::functions); beyond the cell
+    /// their polynomials go on.
+    pub fn jets_at(&self, cell: usize, x: &Point<D>) -> Vec<FunctionJet<D>> {
+        let mut out = Vec::with_capacity(self.cells()[cell].modes.len());
+        self.for_each_function(cell, x, |_, f| {
+            out.push(FunctionJet {
+                value: f.derivative([]),
+                gradient: Vector::from_fn(|i, _| f.derivative([i])),
+                hessian: Matrix::from_fn(|i, j| f.derivative([i, j])),
+            });
+        });
         out
     }
 
-    /// The displacement of a cell for coefficients of the functions, from those at a point.
-    pub fn displacement_jet(&self, cell: usize, jets: &[FunctionJet<D>], u: &[f64]) -> VectorJet<D> {
+    /// The displacement of a cell at a point for coefficients of the functions; without third derivatives unless they are
+    /// `wanted`.
+    pub fn displacement_jet(&self, cell: usize, x: &Point<D>, u: &[f64], third_is_wanted: bool) -> VectorJet<D> {
         let zero = Matrix::<D>::zeros();
         let mut out = VectorJet { value: Vector::zeros(), gradient: zero, hessian: [zero; D], third: [[zero; D]; D] };
-        for (f, jet) in self.cells()[cell].functions.iter().zip(jets) {
-            for i in 0..D {
-                let c = u[D * *f as usize + i];
-                out.value[i] += c * jet.value;
-                (0..D).for_each(|j| out.gradient[(i, j)] += c * jet.gradient[j]);
-                out.hessian[i] += jet.hessian * c;
-                (0..D).for_each(|k| out.third[i][k] += jet.third[k] * c);
+        let functions = &self.cells()[cell].functions;
+        self.for_each_function(cell, x, |place, f| {
+            let c: [f64; D] = std::array::from_fn(|i| u[D * functions[place] as usize + i]);
+            let value = f.derivative([]);
+            (0..D).for_each(|i| out.value[i] += c[i] * value);
+            for j in 0..D {
+                let first = f.derivative([j]);
+                (0..D).for_each(|i| out.gradient[(i, j)] += c[i] * first);
+                for k in j..D {
+                    let second = f.derivative([j, k]);
+                    (0..D).for_each(|i| out.hessian[i][(j, k)] += c[i] * second);
+                    for l in (k..D).filter(|_| third_is_wanted) {
+                        let third = f.derivative([j, k, l]);
+                        (0..D).for_each(|i| out.third[i][l][(j, k)] += c[i] * third);
+                    }
+                }
+            }
+        });
+        // Derivatives in any order are those in the order that was summed.
+        for i in 0..D {
+            for j in 0..D {
+                for k in 0..D {
+                    out.hessian[i][(j, k)] = out.hessian[i][(j.min(k), j.max(k))];
+                    for l in (0..D).filter(|_| third_is_wanted) {
+                        let mut order = [j, k, l];
+                        order.sort_unstable();
+                        out.third[i][l][(j, k)] = out.third[i][order[2]][(order[0], order[1])];
+                    }
+                }
             }
         }
         out

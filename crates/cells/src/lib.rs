@@ -9,6 +9,7 @@
 //! - [`region`]: the quadrature of the material in a cell and of its boundary.
 //! - [`tree`], [`space`], [`jets`], [`legendre`]: cells, refinement, functions.
 //! - [`components`]: what of the material hangs together.
+//! - [`moments`]: few points for many.
 //! - [`discretisation`]: how a body is made of cells; [`body`]: all of this; [`stiffness`]: the elastic integrals.
 //! - [`supports`], [`loads`]: what holds and what pushes; [`system`]: equilibrium; [`schwarz`]: the preconditioner.
 //! - [`cell_solid`]: the body in a system of bodies of any kind.
@@ -29,10 +30,12 @@ pub mod domain;
 pub mod error;
 pub mod facets;
 pub mod fields;
+mod hierarchy;
 pub mod image;
 pub mod jets;
 pub mod legendre;
 pub mod loads;
+pub mod moments;
 mod numbering;
 pub mod place;
 pub mod region;
@@ -52,6 +55,7 @@ pub use discretisation::{Boundary, Discretisation, Islands, Stuff};
 pub use domain::Domain;
 pub use error::CellsError;
 pub use loads::Load;
+pub use moments::VolumePoints;
 pub use place::Place;
 pub use region::{BoundaryPoint, Filling, Integration, Region};
 pub use signorini_fem::cut::End;

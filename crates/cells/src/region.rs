@@ -1,9 +1,11 @@
 //! Quadrature of the material in a box, from whatever describes the body.
 
 use crate::domain::{Domain, Restricted};
+use crate::moments::fitted;
 use signorini_fem::QuadraturePoint;
 use signorini_fem::cut::{End, height::side_points, height_functions, space_tree, sub_cells};
 use signorini_geometry::{Aabb, ImplicitShape, Point, Vector};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// How cut cells are integrated.
@@ -53,12 +55,26 @@ pub struct MaterialRule<const D: usize> {
     pub filling: Filling,
     /// Empty where the cell is full.
     pub volume: Vec<QuadraturePoint<D>>,
+    /// Whether those points may lie outside of the material.
+    pub is_fitted: bool,
     pub boundary: Vec<BoundaryPoint<D>>,
 }
 
 impl<const D: usize> MaterialRule<D> {
     pub fn empty(filling: Filling) -> Self {
-        MaterialRule { filling, volume: Vec::new(), boundary: Vec::new() }
+        MaterialRule { filling, volume: Vec::new(), is_fitted: false, boundary: Vec::new() }
+    }
+
+    /// Replaces the points in the volume by those of one rule of the box, and those on the boundary by few of them, where
+    /// that is less.
+    pub(crate) fn fit(&mut self, b: &Aabb<D>, order: usize) {
+        if self.volume.len() > order.pow(D as u32) {
+            self.volume = fitted(b, order, self.volume.iter().map(|p| (p.x, p.weight)));
+            self.is_fitted = true;
+        }
+        if self.boundary.len() > SEVERAL * order.pow(D as u32 - 1) {
+            self.boundary = thinned(b, order, &self.boundary);
+        }
     }
 
     /// Volume of the material in a cell of the given volume.
@@ -75,6 +91,29 @@ pub struct FacetFoot<const D: usize> {
     pub planes: Vec<Vector<D>>,
     /// The outward unit normal, a mean one on edges and at vertices.
     pub normal: Vector<D>,
+}
+
+/// Sides of a cell of which a boundary in it may be as large as.
+const SEVERAL: usize = 4;
+
+/// Of the points of a boundary in a box the middle one of those that lie in one of `order` parts of the box in each
+/// direction and look the same way, with the weight of all of them.
+fn thinned<const D: usize>(b: &Aabb<D>, order: usize, points: &[BoundaryPoint<D>]) -> Vec<BoundaryPoint<D>> {
+    let size = b.size();
+    let mut groups: BTreeMap<([usize; D], usize, bool), Vec<&BoundaryPoint<D>>> = BTreeMap::new();
+    for p in points {
+        let part = |k: usize| ((p.x[k] - b.min[k]) / size[k] * order as f64).clamp(0.0, order as f64 - 0.5) as usize;
+        let along = p.normal.iamax();
+        groups.entry((std::array::from_fn(part), along, p.normal[along] > 0.0)).or_default().push(p);
+    }
+    let one = |group: &Vec<&BoundaryPoint<D>>| {
+        let weight: f64 = group.iter().map(|p| p.weight).sum();
+        let middle = group.iter().map(|p| p.x * p.weight).sum::<Point<D>>() / weight;
+        let distance = |p: &BoundaryPoint<D>| (p.x - middle).norm_squared();
+        let chosen = group.iter().min_by(|p, q| distance(p).total_cmp(&distance(q)));
+        chosen.map(|p| BoundaryPoint { weight, ..**p })
+    };
+    groups.values().filter_map(one).collect()
 }
 
 /// What describes where material is.
@@ -140,7 +179,7 @@ impl<const D: usize> Region<D> for Domain<D> {
         } else if boundary.is_empty() && measure >= (1.0 - 1e-12) * b.volume() {
             MaterialRule::empty(Filling::Full)
         } else {
-            MaterialRule { filling: Filling::Cut, volume, boundary }
+            MaterialRule { volume, boundary, ..MaterialRule::empty(Filling::Cut) }
         }
     }
 

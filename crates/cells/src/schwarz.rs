@@ -1,7 +1,8 @@
 //! The sets of a Schwarz preconditioner of a body.
 //!
-//! One for each *vertex star* (all functions that vanish outside the cells around a vertex), one for each cut cell
-//! (where functions become almost dependent), and one coarse level of all functions of vertices. The condition is then
+//! One for each *vertex star* (all functions that vanish outside the cells around a vertex), one for each cell with
+//! little material (where functions become almost dependent), and one coarse level of all functions of vertices, with coarser ones of larger
+//! cells where there are many. The condition is then
 //! independent of the cuts, of the number of cells and nearly of the degree: in space the functions themselves, not the
 //! cuts, are the larger part of the trouble.
 
@@ -9,6 +10,9 @@ use crate::body::CellBody;
 use crate::region::Filling;
 use crate::shapes::spatial;
 use signorini_solve::schwarz::Sets;
+
+/// Share of material in a cell above which its functions are independent enough for the stars of its vertices alone.
+const SMALL: f64 = 0.5;
 
 impl<const D: usize> CellBody<D> {
     /// The sets of unknowns of a preconditioner.
@@ -32,7 +36,7 @@ impl<const D: usize> CellBody<D> {
             members.iter().for_each(|f| covered[*f as usize] = true);
             sets.push(members);
         }
-        for cell in self.cells().iter().filter(|c| c.rule.filling == Filling::Cut) {
+        for cell in self.cells().iter().filter(|c| c.rule.filling == Filling::Cut && c.share < SMALL) {
             sets.push(cell.functions.clone());
         }
         sets.extend((0..functions).filter(|f| !covered[*f]).map(|f| vec![f as u32]));
@@ -44,6 +48,7 @@ impl<const D: usize> CellBody<D> {
         Sets {
             local: sets.iter().map(|set| set.iter().flat_map(unknowns).collect()).collect(),
             coarse: coarse.collect(),
+            coarser: self.coarser_levels(&vertices),
         }
     }
 }

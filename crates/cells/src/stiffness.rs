@@ -3,8 +3,13 @@
 //! With `G_ab = ∫ ∂_a N_i ∂_b N_j` the stiffness between the components `a` of function `i` and `b` of function `j` is
 //! `λ G_ab + μ (G_ba + δ_ab Σ_c G_cc)`: matrix products over all points at once. Around an axis `N/r` is one more
 //! derivative, of the hoop strain. No points are needed outside the material: `K = α K_full + (1 - α) K_in`.
+//!
+//! Of a body from an image the many points of a cell are first turned into weights of `(2p + 1)^D` fixed ones, by which the
+//! products of derivatives are integrated alike: the same sum over voxels as of matrices computed beforehand for each
+//! of them, `Σ_v E_v K_v`, for the weights of points in place of the entries of matrices.
 
 use crate::body::{Cell, CellBody, box_points};
+use crate::moments::{VolumePoints, fitted};
 use crate::region::Filling;
 use crate::space::Tabulation;
 use nalgebra::{DMatrix, Matrix3};
@@ -36,14 +41,31 @@ impl<const D: usize> CellBody<D> {
                     return full;
                 }
                 let alpha = self.discretisation.fictitious;
-                let points: Vec<(Point<D>, f64)> = cell.rule.volume.iter().map(|p| (p.x, p.weight)).collect();
-                Arc::new(self.integrate(cell, &points) * (1.0 - alpha) + &*full * alpha)
+                let points = self.weighted(cell.rule.volume.iter().map(|p| (p.x, p.weight)));
+                let order = 2 * self.degree() + 1;
+                let fits = self.discretisation.volume_points == VolumePoints::Fitted
+                    && self.stuff.space != Space::Axisymmetric
+                    && points.len() > order.pow(D as u32);
+                let inside = if fits {
+                    // The modulus of every voxel is in the weights.
+                    let fit = fitted(&self.tree.leaves()[cell.leaf].bounds, order, points.into_iter());
+                    self.integrate(cell, &fit.into_iter().map(|p| (p.x, p.weight)).collect::<Vec<_>>())
+                } else {
+                    self.integrate(cell, &points)
+                };
+                Arc::new(inside * (1.0 - alpha) + &*full * alpha)
             })
             .collect()
     }
 
     fn full_stiffness(&self, cell: &Cell<D>) -> DMatrix<f64> {
-        self.integrate(cell, &box_points(&self.tree.leaves()[cell.leaf].bounds, self.full_points()))
+        let points = box_points(&self.tree.leaves()[cell.leaf].bounds, self.full_points());
+        self.integrate(cell, &self.weighted(points.into_iter()))
+    }
+
+    /// Points with their weights times the modulus there, and the circumference around an axis.
+    fn weighted(&self, points: impl Iterator<Item = (Point<D>, f64)>) -> Vec<(Point<D>, f64)> {
+        points.map(|(x, w)| (x, w * self.turn(&x) * self.modulus_factor(&x))).collect()
     }
 
     fn integrate(&self, cell: &Cell<D>, points: &[(Point<D>, f64)]) -> DMatrix<f64> {
@@ -60,15 +82,14 @@ impl<const D: usize> CellBody<D> {
             let mut weighted = b.clone();
             for (q, (x, w)) in chunk.iter().enumerate() {
                 crate::space::tabulate(&self.tree, leaf, self.degree(), &cell.modes, x, &mut t);
-                let weight = w * self.turn(x) * self.modulus_factor(x);
                 for i in 0..n {
                     for a in 0..D {
                         b[a][(i, q)] = t.gradient[i][a];
-                        weighted[a][(i, q)] = weight * t.gradient[i][a];
+                        weighted[a][(i, q)] = w * t.gradient[i][a];
                     }
                     if axis {
                         b[D][(i, q)] = t.value[i] / x[0];
-                        weighted[D][(i, q)] = weight * t.value[i] / x[0];
+                        weighted[D][(i, q)] = w * t.value[i] / x[0];
                     }
                 }
             }

@@ -12,7 +12,7 @@ use signorini_geometry::{Point, Vector};
 use signorini_solve::blocks::{Block, BlockSum};
 use signorini_solve::dissection::nested_dissection;
 use signorini_solve::krylov::{Found, Stopped, conjugate_gradients};
-use signorini_solve::schwarz::Schwarz;
+use signorini_solve::schwarz::{Inverses, Schwarz};
 use signorini_solve::{Factor, Symbolic, SymmetricMatrix};
 use std::sync::Arc;
 
@@ -215,7 +215,7 @@ impl<'a, const D: usize> System<'a, D> {
         let moved = a.multiply_all(&known);
         let rhs: Vec<f64> =
             (0..known.len()).map(|k| if a.free()[k] { self.forces[k] - moved[k] } else { 0.0 }).collect();
-        let schwarz = Schwarz::new(&a, &self.body.schwarz_sets())?;
+        let schwarz = Schwarz::new(&a, &self.body.schwarz_sets(), &mut Inverses::default())?;
         conjugate_gradients(&rhs, |x| a.multiply(x), |r| schwarz.apply(r), tolerance, MOST_ITERATIONS).map_err(
             |stopped| match stopped {
                 Stopped::Equations(error) => error.into(),

@@ -130,6 +130,9 @@ impl<const D: usize> CellTree<D> {
                 let t = (x[k] - self.bounds.min[k]) / self.bounds.size()[k] * n as f64;
                 (t.max(0.0) as usize).min(n - 1)
             });
+            if self.refined.is_empty() {
+                return (0..D).rev().fold(0, |n, k| n * self.cells[k] + index[k]);
+            }
             if !self.is_refined(level, &index) {
                 let key = self.key(level, &index);
                 return self.leaves.partition_point(|l| self.key(l.level, &l.index) < key);

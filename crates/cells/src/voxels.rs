@@ -173,7 +173,7 @@ impl<const D: usize> LevelShape<D> {
 
 impl<const D: usize> ImplicitShape<D> for LevelShape<D> {
     fn value(&self, x: &Point<D>) -> f64 {
-        self.spline.value_and_gradient(x).0
+        self.spline.value(x)
     }
     fn gradient(&self, x: &Point<D>) -> Vector<D> {
         self.spline.value_and_gradient(x).1
@@ -259,7 +259,7 @@ impl<const D: usize> Region<D> for ModulusImage<D> {
             volume.extend(points.into_iter().map(|(x, weight)| QuadraturePoint { x, weight }));
         }
         let filling = if volume.is_empty() { Filling::Void } else { Filling::Cut };
-        MaterialRule { filling, volume, boundary: Vec::new() }
+        MaterialRule { volume, ..MaterialRule::empty(filling) }
     }
 
     fn side_rule(&self, b: &Aabb<D>, axis: usize, end: End, points: usize) -> Vec<QuadraturePoint<D>> {

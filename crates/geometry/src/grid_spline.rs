@@ -61,53 +61,63 @@ impl<const N: usize> GridSpline<N> {
 
     /// Value, gradient and Hessian.
     pub fn jet(&self, x: &Vector<N>) -> Jet<N> {
-        let axes: [Weights; N] =
-            std::array::from_fn(|a| weights((x[a] - self.origin[a]) / self.spacing[a], self.count[a], self.spacing[a]));
-        let mut jet = Jet { value: 0.0, gradient: Vector::<N>::zeros(), hessian: Matrix::<N>::zeros() };
-        for combination in 0..1usize << (2 * N) {
-            let digit = |a: usize| (combination >> (2 * (N - 1 - a))) & 3;
-            let place = (0..N).fold(0, |place, a| place * self.count[a] + axes[a].1[digit(a)]);
-            let c = self.coefficients[place];
-            let product =
-                |order: &dyn Fn(usize) -> usize| (0..N).map(|a| axes[a].0[order(a)][digit(a)]).product::<f64>() * c;
-            jet.value += product(&|_| 0);
-            for p in 0..N {
-                jet.gradient[p] += product(&|a| usize::from(a == p));
-                for q in 0..=p {
-                    let second = product(&|a| usize::from(a == p) + usize::from(a == q));
-                    jet.hessian[(p, q)] += second;
-                    if p != q {
-                        jet.hessian[(q, p)] += second;
-                    }
-                }
-            }
-        }
-        jet
+        self.summed::<2>(x)
     }
 
     /// Value and gradient, without the second derivatives.
     pub fn value_and_gradient(&self, x: &Vector<N>) -> (f64, Vector<N>) {
+        let jet = self.summed::<1>(x);
+        (jet.value, jet.gradient)
+    }
+
+    pub fn value(&self, x: &Vector<N>) -> f64 {
+        self.summed::<0>(x).value
+    }
+
+    /// Value and derivatives up to an order, one direction summed after the other.
+    fn summed<const ORDER: usize>(&self, x: &Vector<N>) -> Jet<N> {
         let axes: [Weights; N] =
             std::array::from_fn(|a| weights((x[a] - self.origin[a]) / self.spacing[a], self.count[a], self.spacing[a]));
-        let (mut value, mut gradient) = (0.0, Vector::<N>::zeros());
-        for combination in 0..1usize << (2 * N) {
-            let digit = |a: usize| (combination >> (2 * (N - 1 - a))) & 3;
-            let mut place = 0;
-            let mut product = 1.0;
-            let mut slopes = [1.0; N];
-            for a in 0..N {
-                let d = digit(a);
-                place = place * self.count[a] + axes[a].1[d];
-                for (b, slope) in slopes.iter_mut().enumerate() {
-                    *slope *= axes[a].0[usize::from(a == b)][d];
+        self.summed_from::<ORDER>(0, 0, &axes)
+    }
+
+    /// The sum over the directions from `axis` on, of the coefficients that begin at `place`.
+    fn summed_from<const ORDER: usize>(&self, axis: usize, place: usize, axes: &[Weights; N]) -> Jet<N> {
+        let mut sum = Jet { value: 0.0, gradient: Vector::<N>::zeros(), hessian: Matrix::<N>::zeros() };
+        let ([w, d, dd], index) = &axes[axis];
+        for m in 0..4 {
+            let place = place * self.count[axis] + index[m];
+            if axis + 1 == N {
+                let c = self.coefficients[place];
+                sum.value += w[m] * c;
+                if ORDER > 0 {
+                    sum.gradient[axis] += d[m] * c;
                 }
-                product *= axes[a].0[0][d];
+                if ORDER > 1 {
+                    sum.hessian[(axis, axis)] += dd[m] * c;
+                }
+                continue;
             }
-            let c = self.coefficients[place];
-            value += c * product;
-            (0..N).for_each(|a| gradient[a] += c * slopes[a]);
+            let rest = self.summed_from::<ORDER>(axis + 1, place, axes);
+            sum.value += w[m] * rest.value;
+            if ORDER > 0 {
+                sum.gradient[axis] += d[m] * rest.value;
+                (axis + 1..N).for_each(|p| sum.gradient[p] += w[m] * rest.gradient[p]);
+            }
+            if ORDER > 1 {
+                sum.hessian[(axis, axis)] += dd[m] * rest.value;
+                for p in axis + 1..N {
+                    sum.hessian[(axis, p)] += d[m] * rest.gradient[p];
+                    (p..N).for_each(|q| sum.hessian[(p, q)] += w[m] * rest.hessian[(p, q)]);
+                }
+            }
         }
-        (value, gradient)
+        if ORDER > 1 && axis == 0 {
+            for p in 0..N {
+                (0..p).for_each(|q| sum.hessian[(p, q)] = sum.hessian[(q, p)]);
+            }
+        }
+        sum
     }
 
     /// Bounds of the values in a box: those of the coefficients of the splines that do not vanish there.

@@ -2,7 +2,7 @@
 
 use signorini_geometry::closest::FeatureKind;
 use signorini_geometry::grid_spline::GridSpline;
-use signorini_geometry::implicit_surface::{ImplicitBody, ImplicitSurface, ScalarField};
+use signorini_geometry::implicit_surface::{ImplicitBody, ImplicitSurface};
 use signorini_geometry::jet::Jet;
 use signorini_geometry::{Aabb, Matrix, Point, Vector};
 

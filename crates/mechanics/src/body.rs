@@ -271,6 +271,11 @@ pub trait Master: Sync {
     /// next to that site along the body is left out: contact of a body with itself.
     fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<Met>;
 
+    /// The distance of that point, negative inside, where it is found with less work than what moves the point.
+    fn gap(&self, _x: &Point<3>, _reach: f64, _except: Option<&Site>) -> Option<f64> {
+        None
+    }
+
     /// Whether the surface has facets, so that gaps are better measured along the averaged normal of a slave that has one.
     fn is_faceted(&self) -> bool {
         false
@@ -437,4 +442,18 @@ pub trait Body: Send + Sync {
     fn size(&self) -> f64;
 
     fn fields(&self, state: &BodyState) -> BodyFields;
+
+    /// What a body in a box of cells is like as a whole: none of other bodies.
+    fn means(&self, _state: &BodyState) -> Option<Means> {
+        None
+    }
+}
+
+/// A body as a piece of a material that fills its box.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Means {
+    /// Normal stresses along the axes, summed over the material and divided by the volume of the box.
+    pub stress: [f64; 3],
+    /// How far the material on opposite sides of the box moved apart, over their distance; none where there is none on one.
+    pub strain: [Option<f64>; 3],
 }

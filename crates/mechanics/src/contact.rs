@@ -256,12 +256,12 @@ impl Contact {
         self.slave.body == self.master.body
     }
 
-    /// The pair of a site, if it meets something; with second variations where they are `wanted`.
+    /// The pair of a site, if it meets something no farther than a gap; with second variations where they are `wanted`.
     fn pair(
         &self,
         k: usize,
         sides: &Sides<'_>,
-        master: &dyn Master,
+        (master, farthest): (&dyn Master, f64),
         wanted: impl Fn(&Touch) -> bool,
     ) -> (Placed, Option<Result<Touch, NoPair>>) {
         let site = &self.sites[k];
@@ -270,6 +270,13 @@ impl Contact {
             return (placed, None);
         }
         let except = self.is_within().then_some(site);
+        if farthest < self.reach
+            && master
+                .gap(&placed.x, self.reach + placed.radius, except)
+                .is_some_and(|gap| gap > farthest + placed.radius)
+        {
+            return (placed, None);
+        }
         let met: Option<Met> = match &placed.averaged {
             Some(normal) if master.is_faceted() && except.is_none() => {
                 master.cut(&placed.x, &normal.vector, self.reach)
@@ -294,6 +301,19 @@ impl Contact {
         }
         let second = encounter.measure(Order::Second).map(|pair| self.with_stress(k, sides, pair));
         (placed, Some(second))
+    }
+
+    /// The gap beyond which a site is open whatever it meets.
+    fn closes_within(&self, k: usize, sides: &Sides<'_>, unknown: [f64; 3]) -> f64 {
+        let base = match self.enforcement {
+            Enforcement::Nitsche => {
+                let stress = sides.slave.0.traction(sides.slave.1, &self.sites[k]);
+                stress.map_or(f64::INFINITY, |s| s.vector.norm())
+            }
+            _ => self.base(k)[0],
+        };
+        let trial = unknown[0] - self.softness * (unknown[0] - base);
+        (trial / self.stiffness[k]).max(0.0)
     }
 
     fn with_stress(&self, k: usize, sides: &Sides<'_>, mut pair: Pair) -> Touch {
@@ -355,7 +375,8 @@ impl Contact {
         let find = |k: usize| {
             let at = self.multiplier(k, lambda);
             let is_closed = |touch: &Touch| linearises && self.traction(k, touch, at).projected.status != Status::Open;
-            self.pair(k, sides, master.as_ref(), is_closed).1
+            let farthest = self.closes_within(k, sides, at);
+            self.pair(k, sides, (master.as_ref(), farthest), is_closed).1
         };
         let count = self.sites.len();
         let found_in = |first: usize| -> Vec<_> {
@@ -483,7 +504,7 @@ impl Contact {
     pub(crate) fn found(&self, sides: &Sides<'_>, lambda: &[f64]) -> Result<Vec<(SiteResult, [f64; 3])>, PlaceError> {
         let master = sides.master.0.master(self.master.group.as_deref(), sides.master.1)?;
         let of = |k: usize| {
-            let (placed, pair) = self.pair(k, sides, master.as_ref(), |_| false);
+            let (placed, pair) = self.pair(k, sides, (master.as_ref(), f64::INFINITY), |_| false);
             let mut out = SiteResult { x: placed.x, weight: self.sites[k].weight, ..SiteResult::default() };
             let Some(Ok(touch)) = pair else { return (out, [0.0; 3]) };
             let found = self.traction(k, &touch, self.multiplier(k, lambda));
@@ -514,7 +535,7 @@ impl Contact {
         let master = sides.master.0.master(self.master.group.as_deref(), sides.master.1)?;
         let mut memory = Vec::with_capacity(self.sites.len());
         for k in 0..self.sites.len() {
-            let Some(Ok(touch)) = self.pair(k, sides, master.as_ref(), |_| false).1 else {
+            let Some(Ok(touch)) = self.pair(k, sides, (master.as_ref(), f64::INFINITY), |_| false).1 else {
                 memory.push(SiteMemory::default());
                 continue;
             };
@@ -528,7 +549,7 @@ impl Contact {
                 let on_slave = found.axes[0] * own.traction[1] + found.axes[1] * own.traction[2];
                 let slipped = found.axes[0] * own.slip[0] + found.axes[1] * own.slip[1];
                 self.memory[k].stuck = own.stuck;
-                if let (_, Some(Ok(again))) = self.pair(k, sides, master.as_ref(), |_| false) {
+                if let (_, Some(Ok(again))) = self.pair(k, sides, (master.as_ref(), f64::INFINITY), |_| false) {
                     let (new, _) = axes(&again.pair);
                     own.traction[1] = new[0].dot(&on_slave);
                     own.traction[2] = new[1].dot(&on_slave);

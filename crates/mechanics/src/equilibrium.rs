@@ -9,6 +9,7 @@ use crate::iterative::{Solved, Stiffness};
 use crate::system::{Assembled, System, SystemState};
 use signorini_solve::general::Analysis;
 use signorini_solve::newton::{Converged, Equations, Measured, Newton, NewtonFailure, Search, newton};
+use signorini_solve::schwarz::Inverses;
 
 /// Force relative to the largest of all that is left in the end.
 const TOLERANCE: f64 = 1e-10;
@@ -30,6 +31,8 @@ pub(crate) struct Problem<'a> {
     /// Whether steps are found by iterations, without the stiffness of bodies in the tangent.
     pub(crate) stiffness: Stiffness,
     pub(crate) solved: Solved,
+    /// Parts of its preconditioner, by which those of the next step may be known.
+    pub(crate) inverses: Inverses,
     /// Springs on all unknowns of bodies.
     pub(crate) springs: f64,
     /// A share of forces on the unknowns of bodies, and of what constraints lack, that is not there yet.
@@ -191,7 +194,7 @@ impl Equations for Problem<'_> {
             right[unknown as usize] = -h.constraint.lack / factor;
         }
         if self.stiffness == Stiffness::KeptByBodies {
-            let (step, iterations) = self.system.iterated_step(out, &held, &right)?;
+            let (step, iterations) = self.system.iterated_step(out, &held, &right, &mut self.inverses)?;
             let (systems, most) = match self.solved {
                 Solved::Iterative { systems, most_iterations } => (systems, most_iterations),
                 Solved::Direct => (0, 0),

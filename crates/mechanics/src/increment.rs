@@ -12,6 +12,7 @@ use signorini_geometry::Vector;
 use signorini_solve::SolveError;
 use signorini_solve::general::Analysis;
 use signorini_solve::newton::Converged;
+use signorini_solve::schwarz::Inverses;
 
 /// Why an increment has no solution.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -58,6 +59,17 @@ const UNBALANCED: f64 = 1e-6;
 /// Change of a traction by an outer iteration, relative to the largest, that ends them.
 const AUGMENTED: f64 = 1e-9;
 const MOST_AUGMENTATIONS: usize = 60;
+
+/// What trials are scaled by where Newton's method fails: a power of two, so that nothing is rounded.
+const SOFTER: f64 = 1.0 / 128.0;
+
+/// How Newton's method goes.
+enum Way {
+    /// From the last state.
+    Straight,
+    /// Round what failed so.
+    Round(IncrementError),
+}
 
 /// Whether another way to the same state may help.
 pub(crate) fn is_curable(error: &IncrementError) -> bool {
@@ -166,7 +178,32 @@ impl System {
 
     /// Newton's method, by whatever way; adds to what solved its linear equations.
     pub(crate) fn inner(
+        &mut self,
+        start: &SystemState,
+        time: f64,
+        solved: &mut Solved,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<Converged<SystemState>, IncrementError> {
+        let failed = match self.by(Way::Straight, start, time, solved, report) {
+            Err(error) if is_curable(&error) => error,
+            found => return found,
+        };
+        // A rope that is drawn along moves off all that it touches by a trial as stiff as it is along itself, not across.
+        if self.contacts.iter_mut().fold(false, |any, contact| contact.scale_trials(SOFTER) || any) {
+            let found = self.by(Way::Straight, start, time, solved, report);
+            self.contacts.iter_mut().for_each(|contact| _ = contact.scale_trials(1.0 / SOFTER));
+            match found {
+                Err(error) if is_curable(&error) => {}
+                found => return found,
+            }
+        }
+        self.by(Way::Round(failed), start, time, solved, report)
+    }
+
+    /// Newton's method by one way.
+    fn by(
         &self,
+        way: Way,
         start: &SystemState,
         time: f64,
         solved: &mut Solved,
@@ -184,6 +221,7 @@ impl System {
             time,
             stiffness: if iterates { Stiffness::KeptByBodies } else { Stiffness::InTangent },
             solved: *solved,
+            inverses: Inverses::default(),
             analysis: Analysis::default(),
             springs: 0.0,
             held_back: None,
@@ -194,22 +232,21 @@ impl System {
             rounding: [0.0; 2],
             worst: 0,
         };
-        let found = self.by_any_way(&mut problem, start, report);
+        let found = match way {
+            Way::Straight => problem.solve(start, report),
+            Way::Round(error) => self.by_another_way(&mut problem, start, error, report),
+        };
         *solved = problem.solved;
         found
     }
 
-    fn by_any_way(
+    fn by_another_way(
         &self,
         problem: &mut Problem<'_>,
         start: &SystemState,
+        error: IncrementError,
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
-        let direct = problem.solve(start, report);
-        let Err(error) = direct else { return direct };
-        if !is_curable(&error) {
-            return Err(error);
-        }
         // A free body needs springs until it touches; what is held may take what is out of balance bit by bit.
         if !self.has_free_rigid_body() {
             match problem.bit_by_bit(start, report) {

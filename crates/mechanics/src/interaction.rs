@@ -98,6 +98,12 @@ pub trait Interaction: Send + Sync {
     /// Sets penalties from the stiffness of the bodies, or where they have none from that given. Called once.
     fn prepare(&mut self, bodies: &[Box<dyn Body>], otherwise: f64);
 
+    /// Scales the stiffness of its trials, not that of its penalties: the states are the same, the way to them is another.
+    /// Whether it has trials.
+    fn scale_trials(&mut self, _factor: f64) -> bool {
+        false
+    }
+
     /// Leaves out what cannot move; `held` tells which unknowns are prescribed.
     fn leave_out_held(&mut self, _at: Bodies<'_>, _held: &[bool]) {}
 
@@ -379,6 +385,16 @@ impl Interaction for Contact {
             }
             _ => Ok(0.0),
         }
+    }
+
+    fn scale_trials(&mut self, factor: f64) -> bool {
+        // Nitsche's method has its stiffness in the state.
+        if self.enforcement == Enforcement::Nitsche {
+            return false;
+        }
+        self.stiffness.iter_mut().for_each(|c| *c *= factor);
+        self.softness *= factor;
+        true
     }
 
     fn simplify(&mut self, friction: SimplerFriction) {

@@ -2,18 +2,19 @@
 //!
 //! The stiffness of linear bodies is not assembled: products with it go cell by cell. Tractions that are unknowns belong to
 //! one site each and are condensed there, `A - B D⁻¹ C`: what is left is that of penalties, symmetric and positive definite
-//! without friction. It is solved by conjugate gradients, and where it is not symmetric by conjugate residuals,
+//! without friction near the solution. It is solved by conjugate gradients, and where it is not symmetric by conjugate residuals,
 //! with the Schwarz preconditioner of the sets that the bodies name, one more set for the unknowns of every part of the
 //! tangent that is not theirs, such as the two cells that touch, and the coarse unknowns of all bodies together.
 
 use crate::body::Body;
 use crate::increment::IncrementError;
 use crate::system::{Assembled, AssemblyError, System, SystemState};
+use rayon::prelude::*;
 use signorini_solve::blocks::{Block, BlockSum};
 use signorini_solve::dissection::nested_dissection;
 use signorini_solve::general::DenseBlocks;
 use signorini_solve::krylov::{Stopped, conjugate_gradients, conjugate_residuals};
-use signorini_solve::schwarz::{Schwarz, Sets};
+use signorini_solve::schwarz::{Inverses, Schwarz, Sets};
 use signorini_solve::{SolveError, Symbolic, SymmetricMatrix};
 use std::collections::BTreeSet;
 
@@ -94,6 +95,13 @@ impl System {
             };
             let cells: f64 = cliques.iter().map(|c| square(c)).sum();
             if let (true, Some(own)) = (iterates, &own) {
+                // Inverses are kept as triangles.
+                let local = 0.5 * own.sets.local.iter().map(|s| square(s)).sum::<f64>();
+                if !own.sets.coarser.is_empty() {
+                    // Rows of the coarse matrix: three directions of 27 vertices each, with their columns; coarser ones an
+                    // eighth.
+                    return cells + local + 12.0 * 81.0 * 8.0 / 7.0 * own.sets.coarse.len() as f64;
+                }
                 let mut place = vec![u32::MAX; body.unknowns()];
                 own.sets.coarse.iter().enumerate().for_each(|(i, (u, _))| place[*u as usize] = i as u32);
                 let of = |c: &&[u32]| -> Vec<u32> {
@@ -104,7 +112,7 @@ impl System {
                 let position: Vec<[f64; 3]> = own.sets.coarse.iter().map(|c| c.1).collect();
                 let order = nested_dissection(&pattern, &position);
                 let coarse = Symbolic::ordered(order).cost(&pattern).map_or(0.0, |c| c.bytes);
-                return cells + own.sets.local.iter().map(|s| square(s)).sum::<f64>() + coarse;
+                return cells + local + coarse;
             }
             let factor = Symbolic::default().cost(&SymmetricMatrix::from_cliques(body.unknowns(), &cliques));
             // Entries with their rows and columns, before and after they are sorted; two factors with rows.
@@ -157,8 +165,7 @@ impl System {
             blocks.extend(
                 (own.stiffness.into_iter()).map(|b| Block { unknowns: shifted(b.unknowns), entries: b.entries }),
             );
-            sets.local.extend(own.sets.local.into_iter().map(shifted));
-            sets.coarse.extend(own.sets.coarse.into_iter().map(|(u, x)| (u + first, x)));
+            sets.append(own.sets, first);
         }
         let mut known: BTreeSet<Vec<u32>> = BTreeSet::new();
         for set in &sets.local {
@@ -179,52 +186,80 @@ impl System {
     }
 
     /// The step of all unknowns, and the number of iterations; `held` names unknowns whose step is known, and stands in
-    /// `right`, the right-hand side.
+    /// `right`, the right-hand side. Inverses that are `known` from the last step are taken.
     pub(crate) fn iterated_step(
         &self,
         out: Assembled,
         held: &[bool],
         right: &[f64],
+        known: &mut Inverses,
     ) -> Result<(Vec<f64>, usize), IncrementError> {
         let (_, count) = self.numbering();
-        let condensed = Condensed::new(out, count);
-        let (blocks, sets) = self.blocks_and_sets(&condensed);
-        let symmetric = condensed.is_symmetric();
-        let a = BlockSum::new(blocks, held[..count].iter().map(|h| !h).collect());
-        let known: Vec<f64> = (0..count).map(|k| if held[k] { right[k] } else { 0.0 }).collect();
-        let moved = a.multiply_all(&known);
-        let condensed_right = condensed.right(right);
-        let b: Vec<f64> = (0..count).map(|k| if held[k] { 0.0 } else { condensed_right[k] - moved[k] }).collect();
-        let schwarz = Schwarz::new(&a, &sets)?;
-        let (mut x, iterations) = solve(&a, &schwarz, &b, symmetric)?;
-        (0..count).filter(|k| held[*k]).for_each(|k| x[k] = known[k]);
+        let mut condensed = Condensed::new(out, count);
+        let found = match self.condensed_step(&condensed, held, right, known)? {
+            Some(found) => found,
+            None => {
+                condensed.keep_positive();
+                self.condensed_step(&condensed, held, right, known)?
+                    .ok_or(IncrementError::Solve(SolveError::Inaccurate { size: count, residual: 1.0 }))?
+            }
+        };
+        let (mut x, iterations) = found;
         condensed.recover(&mut x, right);
         Ok((x, iterations))
     }
+
+    /// The step of the unknowns of the bodies; none where a symmetric tangent is not positive definite.
+    fn condensed_step(
+        &self,
+        condensed: &Condensed,
+        held: &[bool],
+        right: &[f64],
+        known: &mut Inverses,
+    ) -> Result<Option<(Vec<f64>, usize)>, IncrementError> {
+        let count = condensed.count;
+        let (blocks, sets) = self.blocks_and_sets(condensed);
+        let a = BlockSum::new(blocks, held[..count].iter().map(|h| !h).collect());
+        let given: Vec<f64> = (0..count).map(|k| if held[k] { right[k] } else { 0.0 }).collect();
+        let moved = a.multiply_all(&given);
+        let condensed_right = condensed.right(right);
+        let b: Vec<f64> = (0..count).map(|k| if held[k] { 0.0 } else { condensed_right[k] - moved[k] }).collect();
+        let schwarz = Schwarz::new(&a, &sets, known)?;
+        let found = if b.iter().all(|b| *b == 0.0) {
+            Some((vec![0.0; count], 0))
+        } else if condensed.is_symmetric() {
+            by_gradients(&a, &schwarz, &b)?
+        } else {
+            Some(by_residuals(&a, &schwarz, b)?)
+        };
+        Ok(found.map(|(mut x, iterations)| {
+            (0..count).filter(|k| held[*k]).for_each(|k| x[k] = given[k]);
+            (x, iterations)
+        }))
+    }
 }
 
-fn solve(a: &BlockSum<'_>, schwarz: &Schwarz, b: &[f64], symmetric: bool) -> Result<(Vec<f64>, usize), IncrementError> {
-    if b.iter().all(|b| *b == 0.0) {
-        return Ok((vec![0.0; b.len()], 0));
-    }
-    let size = b.len();
-    if symmetric {
-        match conjugate_gradients(b, |x| a.multiply(x), |r| schwarz.apply(r), TOLERANCE, MOST_ITERATIONS) {
-            Ok(found) => return Ok((found.x, found.iterations)),
-            Err(Stopped::Equations(error)) => return Err(IncrementError::Solve(error)),
-            Err(Stopped::TooMany { residual, .. }) => {
-                return Err(IncrementError::Solve(SolveError::Inaccurate { size, residual }));
-            }
-            // On the way of Newton's method a contact may soften more than the bodies resist.
-            Err(Stopped::Indefinite) => {}
+/// Conjugate gradients; none where a direction was found in which the matrix is not positive.
+fn by_gradients(a: &BlockSum<'_>, schwarz: &Schwarz, b: &[f64]) -> Result<Option<(Vec<f64>, usize)>, IncrementError> {
+    match conjugate_gradients(b, |x| a.multiply(x), |r| schwarz.apply(r), TOLERANCE, MOST_ITERATIONS) {
+        Ok(found) => Ok(Some((found.x, found.iterations))),
+        Err(Stopped::Equations(error)) => Err(IncrementError::Solve(error)),
+        Err(Stopped::TooMany { residual, .. }) => {
+            Err(IncrementError::Solve(SolveError::Inaccurate { size: b.len(), residual }))
         }
+        Err(Stopped::Indefinite) => Ok(None),
     }
+}
+
+/// Conjugate residuals.
+fn by_residuals(a: &BlockSum<'_>, schwarz: &Schwarz, b: Vec<f64>) -> Result<(Vec<f64>, usize), IncrementError> {
+    let size = b.len();
     let iterations = std::cell::Cell::new(0);
     let product = |y: &[f64]| -> Result<Option<Vec<f64>>, SolveError> {
         iterations.set(iterations.get() + 1);
         Ok(Some(a.multiply(&schwarz.apply(y)?)))
     };
-    match conjugate_residuals(b.to_vec(), product, TOLERANCE, MOST_KEPT)? {
+    match conjugate_residuals(b, product, TOLERANCE, MOST_KEPT)? {
         Some(y) => Ok((schwarz.apply(&y)?, iterations.get())),
         None => Err(IncrementError::Solve(SolveError::Inaccurate { size, residual: TOLERANCE })),
     }
@@ -323,6 +358,21 @@ impl Condensed {
                 }
             }
         }
+    }
+
+    /// Leaves out of every symmetric block its negative part. On the way of Newton's method a contact that is curved may
+    /// soften more than the bodies resist; without what softens, a step still goes where the energy falls, and in the
+    /// solution nothing is left out.
+    fn keep_positive(&mut self) {
+        self.blocks.par_iter_mut().for_each(|(unknowns, values)| {
+            let n = unknowns.len();
+            let eigen = nalgebra::DMatrix::from_row_slice(n, n, values).symmetric_eigen();
+            let mut scaled = eigen.eigenvectors.clone();
+            for (mut column, value) in scaled.column_iter_mut().zip(&eigen.eigenvalues) {
+                column *= value.max(0.0);
+            }
+            values.copy_from_slice((scaled * eigen.eigenvectors.transpose()).as_slice());
+        });
     }
 
     fn is_symmetric(&self) -> bool {

@@ -6,7 +6,7 @@
 //! - [`dissection`]: an order of elimination for meshes in space.
 //! - [`dense`]: small dense systems.
 //! - [`general`]: general sparse matrices and their LU factors; [`newton`]: Newton's method with line search.
-//! - [`krylov`]: equations known by products with their matrix; [`blocks`]: such matrices; [`schwarz`]: preconditioners.
+//! - [`krylov`]: equations known by products with their matrix; [`blocks`]: such matrices; [`schwarz`], [`multigrid`]: preconditioners.
 //! - [`progress`]: what a solver reports while it works, and how it is interrupted.
 
 pub mod acceleration;
@@ -16,6 +16,7 @@ pub mod dense;
 pub mod dissection;
 pub mod general;
 pub mod krylov;
+pub mod multigrid;
 pub mod newton;
 pub mod progress;
 pub mod schwarz;

@@ -82,7 +82,6 @@ pub(super) type Active<const D: usize> = Vec<Arc<dyn ImplicitShape<D>>>;
 pub(super) struct Found<const D: usize> {
     pub x: Point<D>,
     pub cell: usize,
-    pub jets: Vec<FunctionJet<D>>,
     pub u: VectorJet<D>,
 }
 
@@ -116,11 +115,9 @@ impl<const D: usize> CellSolid<D> {
         self.body.cell_at(x).unwrap_or(known)
     }
 
-    /// A material point where it is now.
+    /// A material point where it is now, without third derivatives.
     pub(super) fn found(&self, x: Point<D>, cell: usize, u: &[f64]) -> Found<D> {
-        let jets = self.body.jets_at(cell, &x);
-        let u = self.body.displacement_jet(cell, &jets, u);
-        Found { x, cell, jets, u }
+        Found { x, cell, u: self.body.displacement_jet(cell, &x, u, false) }
     }
 
     /// The same point again, in the cell that contains it.

@@ -43,6 +43,13 @@ pub(super) struct BoundaryMaster<'a, const D: usize> {
     bvh: Bvh,
 }
 
+/// Whether a point of the boundary with an outward normal of any length lies across a gap from another, at the start: the
+/// normals oppose each other, and each of both points lies before the other.
+fn faces<const D: usize>(own: &crate::body::Site<D>, x: &Point<D>, normal: &Vector<D>) -> bool {
+    let apart = x - own.x;
+    own.normal.dot(normal) < FACING * normal.norm() && apart.dot(&own.normal) > 0.0 && apart.dot(normal) < 0.0
+}
+
 /// A closest point, and the sheets on which it lies.
 struct OnSheets<const D: usize> {
     at: Found<D>,
@@ -76,13 +83,9 @@ impl<'a, const D: usize> BoundaryMaster<'a, D> {
         self.bvh.nearest(x, limit, |k| {
             let least = best.map_or(limit, |b| b.0);
             let number = self.points.start + k;
-            if let Some(point) = own {
-                let other = &self.solid.points[number];
-                let apart = other.x - point.x;
-                let faces = point.normal.dot(&other.normal) < FACING;
-                if !faces || apart.dot(&point.normal) <= 0.0 || apart.dot(&other.normal) >= 0.0 {
-                    return least;
-                }
+            let other = &self.solid.points[number];
+            if own.is_some_and(|own| !faces(own, &other.x, &other.normal)) {
+                return least;
             }
             let square = (self.now[k] - x).norm_squared();
             // Of points at the same distance the one with the lowest number.
@@ -113,21 +116,41 @@ impl<'a, const D: usize> BoundaryMaster<'a, D> {
         search.beyond(&first, own.as_slice())
     }
 
+    /// The closest point; of the boundary itself one that faces a site across a gap, as the quadrature point did from which
+    /// it was looked for: a search along the boundary may end behind the material beside the gap.
+    fn met(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<(usize, OnSheets<D>)> {
+        let number = self.nearest_point(x, reach, except)?;
+        let found = self.closest(&Point::<D>::from_fn(|k, _| x[k]), number)?;
+        let normal = match &found.outward {
+            Some(normal) => *normal,
+            None => found.active.iter().filter_map(|s| s.gradient(&found.at.x).try_normalize(0.0)).sum(),
+        };
+        let own = except.map(|site| &self.solid.points[site.patch as usize]);
+        own.is_none_or(|own| faces(own, &found.at.x, &normal)).then_some((number, found))
+    }
+
     /// Outward normal of a sheet at a point, moved.
     fn normal(&self, at: &Found<D>, sheet: &Arc<dyn ImplicitShape<D>>) -> Vector<3> {
         normal_now(&sheet.gradient(&at.x), &at.u.gradient).try_normalize(0.0).unwrap_or_default()
     }
 
-    fn foot(&self, x: &Point<3>, number: usize, found: &OnSheets<D>) -> Foot {
+    /// Where the boundary looks at a closest point.
+    fn outward(&self, found: &OnSheets<D>) -> Option<Vector<3>> {
         let OnSheets { at, active, outward } = found;
         let normals = active.iter().map(|s| self.normal(at, s));
         let outward = match outward {
             Some(normal) if active.len() > 1 => normal_now(normal, &at.u.gradient),
             _ => normals.sum::<Vector<3>>(),
         };
-        let outward = outward.try_normalize(0.0);
+        outward.try_normalize(0.0)
+    }
+
+    fn foot(&self, x: &Point<3>, number: usize, found: &OnSheets<D>) -> Foot {
+        let OnSheets { at, active, .. } = found;
+        let outward = self.outward(found);
         let size = self.solid.cell_size(&self.solid.points[number]);
         let is_face = active.len() == 1 || (x - spatial(&at.now())).norm() <= TOUCHING * size;
+        let at = &Found { u: self.solid.body.displacement_jet(at.cell, &at.x, self.u, true), ..*at };
         let chart = Chart::new(at, &if is_face { vec![active[0].clone()] } else { active.clone() });
         let ([y1, y2], [y11, y12, y22], y3) = (
             chart.now.0.each_ref().map(spatial),
@@ -170,7 +193,7 @@ impl<'a, const D: usize> BoundaryMaster<'a, D> {
     fn functions(&self, at: &Found<D>, along: impl Fn(&FunctionJet<D>) -> ([f64; 2], [f64; 3])) -> Vec<Function> {
         let own = &self.solid.body.cells()[at.cell].functions;
         let mut out = Vec::with_capacity(D * own.len());
-        for (f, jet) in own.iter().zip(&at.jets) {
+        for (f, jet) in own.iter().zip(&self.solid.body.jets_at(at.cell, &at.x)) {
             let (first, second) = along(jet);
             for i in 0..D {
                 let Some(unknown) = self.solid.unknown(*f, i) else { continue };
@@ -189,11 +212,16 @@ impl<'a, const D: usize> BoundaryMaster<'a, D> {
 
 impl<const D: usize> Master for BoundaryMaster<'_, D> {
     fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<Met> {
-        let number = self.nearest_point(x, reach, except)?;
-        let target = Point::<D>::from_fn(|k, _| x[k]);
-        let found = self.closest(&target, number)?;
+        let (number, found) = self.met(x, reach, except)?;
         let is_within = (spatial(&found.at.now()) - x).norm() <= reach;
         is_within.then(|| Met::Foot(Box::new(self.foot(x, number, &found))))
+    }
+
+    fn gap(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<f64> {
+        let (_, found) = self.met(x, reach, except)?;
+        let apart = x - spatial(&found.at.now());
+        let outward = self.outward(&found)?;
+        Some(apart.norm() * apart.dot(&outward).signum())
     }
 
     fn at(&self, point: &MaterialPoint) -> Anchor {
@@ -278,7 +306,13 @@ impl<const D: usize> Search<'_, D> {
     /// The closest point on another face, an edge of the active sheets, or else a vertex.
     fn beyond(&self, active: &Active<D>, taken: &[usize]) -> Option<OnSheets<D>> {
         let sheets = &self.master.solid.sheets.list;
-        let others = || (0..sheets.len()).filter(|k| !taken.contains(k));
+        // What does not vanish as near as a closest point is looked for takes no part.
+        let start = &self.master.solid.points[self.number].x;
+        let reach = Vector::<D>::repeat(FARTHEST * self.size);
+        let around = Aabb::new(start - reach, start + reach);
+        let is_near = |k: &usize| sheets[*k].range(&around).is_none_or(|[low, high]| low <= 0.0 && high >= 0.0);
+        let near: Vec<usize> = (0..sheets.len()).filter(|k| !taken.contains(k)).filter(is_near).collect();
+        let others = || near.iter().copied();
         let mut candidates: Vec<OnSheets<D>> = Vec::new();
         for k in others() {
             let alone = vec![sheets[k].clone()];

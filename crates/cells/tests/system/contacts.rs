@@ -13,7 +13,7 @@ pub(super) fn rigid(name: &str, shape: impl RigidShape + 'static, motion: Motion
 
 pub(super) fn moved(along: Vector<3>) -> Motion {
     let zero = Vector::<3>::zeros();
-    Motion::Prescribed(Arc::new(move |t| RigidMotion::new(along * t, zero, zero)))
+    Motion::Prescribed(Arc::new(move |t| RigidMotion::new(zero, zero, along * t)))
 }
 
 /// A quarter of a disc on a floor, pressed from its middle: force and half width of Hertz's problem at this depth by an

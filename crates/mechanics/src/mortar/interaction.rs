@@ -242,6 +242,12 @@ impl Interaction for Mortar {
         }
     }
 
+    fn scale_trials(&mut self, factor: f64) -> bool {
+        self.stiffness.iter_mut().for_each(|c| *c *= factor);
+        self.softness *= factor;
+        true
+    }
+
     fn simplify(&mut self, friction: SimplerFriction) {
         self.set_aside = Some((friction.instead_of(&mut self.friction), self.enforcement, self.softness));
         self.enforcement = Enforcement::Penalty { wanted_penetration: None };

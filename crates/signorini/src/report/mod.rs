@@ -130,6 +130,9 @@ pub struct StepReport {
     /// Ropes and beams by their names.
     #[serde(default)]
     pub curves: BTreeMap<String, CurveReport>,
+    /// Bodies of cells by their names, as pieces of a material that fills their box.
+    #[serde(default)]
+    pub cells: BTreeMap<String, CellsReport>,
     /// Free rigid bodies by their names.
     #[serde(default)]
     pub free_bodies: BTreeMap<String, Pose>,
@@ -150,6 +153,15 @@ pub struct CurveReport {
     pub slack_cells: usize,
     /// Length without tension of the rope that is out, where it has straight elements: a winch changes it.
     pub unstrained_length: Option<f64>,
+}
+
+/// A body of cells as a piece of a material that fills its box: its stress-strain curve, step by step.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CellsReport {
+    /// Normal stresses along the axes, summed over the material and divided by the volume of the box.
+    pub mean_stress: [f64; 3],
+    /// How far the material on opposite sides of the box moved apart, over their distance; null where there is none on one.
+    pub mean_strain: [Option<f64>; 3],
 }
 
 /// Where a free rigid body has come.

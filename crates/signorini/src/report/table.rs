@@ -60,7 +60,7 @@ fn headed(title: &str, unit: &str) -> String {
     if unit.is_empty() { title.to_string() } else { format!("{title} [{unit}]") }
 }
 
-/// One line per increment as CSV: contacts, supports, loads and probes by their names; what there is not is left empty.
+/// One line per increment as CSV: contacts, supports, loads, bodies of cells and probes by their names; what there is not is left empty.
 /// With the units of the case in the header, where it states some.
 pub fn history(steps: &[StepReport], units: Option<&UnitNames>) -> String {
     let unit = |of: fn(&UnitNames) -> &String| units.map_or("", |u| of(u));
@@ -119,6 +119,16 @@ pub fn history(steps: &[StepReport], units: Option<&UnitNames>) -> String {
             for (k, axis) in AXES.iter().enumerate() {
                 add(format!("{name}:force_{axis}"), unit(|u| &u.force), &|s| of(s).get(name).map(|f| f[k]));
             }
+        }
+    }
+    for name in names(steps, |s| &s.cells) {
+        for (k, axis) in AXES.iter().enumerate() {
+            add(format!("{name}:mean_stress_{axis}{axis}"), unit(|u| &u.pressure), &|s| {
+                Some(s.cells.get(name)?.mean_stress[k])
+            });
+        }
+        for (k, axis) in AXES.iter().enumerate() {
+            add(format!("{name}:mean_strain_{axis}{axis}"), "", &|s| s.cells.get(name)?.mean_strain[k]);
         }
     }
     for name in names(steps, |s| &s.probes) {

@@ -17,6 +17,20 @@ fn cells_give_the_forces_of_fitted_meshes() {
     assert!(number(&step["equilibrium_residual"]) < 1e-10);
 }
 
+/// A foam under a plate that presses its whole top: mean stress times the area of the box is the force of the plate, and the
+/// floor does not move.
+#[test]
+fn a_foam_has_a_stress_strain_curve() {
+    let found = summary(example("foam"), &set(&[]));
+    let step = last_step(&found);
+    let means = &step["cells"]["foam"];
+    let force = number(&step["contacts"]["plate"]["force"][2]);
+    let stress = number(&means["mean_stress"][2]);
+    assert!((stress * 36.0 / force - 1.0).abs() < 1e-6, "{stress} {force}");
+    let strain = number(&means["mean_strain"][2]);
+    assert!((strain + 0.3 / 6.0).abs() < 1e-3, "{strain}");
+}
+
 #[test]
 fn each_mistake_of_a_body_of_cells_is_told_at_its_place() {
     let table = [

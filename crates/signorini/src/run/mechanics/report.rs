@@ -5,8 +5,8 @@ use crate::output::system::{SystemShown, frames};
 use crate::plan::mechanics::{AXIS_SUPPORT, Kind, MechanicsPlan, Tested};
 use crate::problem::Space;
 use crate::report::{
-    Component, ContactReport, CurveReport, Pose, Probe, Reason, RopeLimits, StepReport, UnitNames, Warning,
-    WarningKind, vector,
+    CellsReport, Component, ContactReport, CurveReport, Pose, Probe, Reason, RopeLimits, StepReport, UnitNames,
+    Warning, WarningKind, vector,
 };
 use crate::run::contact_verdict::contact_verdict;
 use crate::run::record::Record;
@@ -78,6 +78,10 @@ pub fn step_report(
         let displacement = vector(&(pose.centre - centre));
         Some((body.name().to_string(), Pose { displacement, rotation: vector(&pose.rotation.scaled_axis()) }))
     });
+    let means = system.bodies.iter().zip(&state.bodies).filter_map(|(body, state)| {
+        let own = body.means(state)?;
+        Some((body.name().to_string(), CellsReport { mean_stress: own.stress, mean_strain: own.strain }))
+    });
     StepReport {
         index,
         time: shown.time,
@@ -98,6 +102,7 @@ pub fn step_report(
             .collect(),
         probes: plan.probes.iter().map(|(name, x)| (name.clone(), probe(x))).collect(),
         curves: shown.curves.iter().map(|c| (c.name.clone(), curve_report(&c.forces, c.unstrained_length))).collect(),
+        cells: means.collect(),
         free_bodies: poses.collect(),
         max_strain: most_strained(plan, shown).map(|(_, strained)| strained.strain),
         ..StepReport::default()

@@ -1,0 +1,78 @@
+//! Moment fitting: the few points of a fixed rule in a box, with weights that integrate polynomials as many points do.
+//!
+//! With the Lagrange polynomials `L_j` of the Gauss points `y_j` of the box, `w_j = Σ_q w_q L_j(x_q)` (Müller, Kummer &
+//! Oberlack, Int. J. Numer. Methods Eng. 96, 2013). Weights may be negative. What is a factor of the given weights, such as
+//! a modulus in every voxel, is integrated as exactly as the given points do.
+
+use crate::body::box_points;
+use signorini_fem::QuadraturePoint;
+use signorini_geometry::rule::gauss_legendre;
+use signorini_geometry::{Aabb, Point};
+
+/// Which points cut cells keep.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum VolumePoints {
+    /// Those in the material.
+    #[default]
+    InMaterial,
+    /// Those of one rule in every cell, where they are fewer, that integrate the stiffness alike: for many cells.
+    Fitted,
+}
+
+/// The weights at the Gauss points of a box, `order` in each direction, with which polynomials of a degree below that are
+/// integrated as by the given points.
+pub(crate) fn fitted<const D: usize>(
+    b: &Aabb<D>,
+    order: usize,
+    points: impl Iterator<Item = (Point<D>, f64)>,
+) -> Vec<QuadraturePoint<D>> {
+    let nodes: Vec<f64> = gauss_legendre(order).into_iter().map(|(t, _)| t).collect();
+    let scale: Vec<f64> =
+        (0..order).map(|j| (0..order).filter(|m| *m != j).map(|m| 1.0 / (nodes[j] - nodes[m])).product()).collect();
+    let size = b.size();
+    let mut weights = vec![0.0; order.pow(D as u32)];
+    let mut lines: [Vec<f64>; D] = std::array::from_fn(|_| vec![0.0; order]);
+    for (x, w) in points {
+        for k in 0..D {
+            let t = (x[k] - b.min[k]) / size[k];
+            for j in 0..order {
+                lines[k][j] = (0..order).filter(|m| *m != j).fold(scale[j], |p, m| p * (t - nodes[m]));
+            }
+        }
+        // The last directions together, so that the innermost loop is long and without branches.
+        for (block, weights) in weights.chunks_exact_mut(order).enumerate() {
+            let mut rest = block;
+            let mut factor = w;
+            for line in &lines[1..] {
+                factor *= line[rest % order];
+                rest /= order;
+            }
+            weights.iter_mut().zip(&lines[0]).for_each(|(sum, l)| *sum += factor * l);
+        }
+    }
+    (box_points(b, order).into_iter().zip(weights)).map(|((x, _), weight)| QuadraturePoint { x, weight }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fitted_weights_integrate_polynomials_of_their_degree() {
+        let b = Aabb::new(Point::<3>::new(-1.0, 0.5, 2.0), Point::<3>::new(1.5, 1.0, 5.0));
+        let points: Vec<(Point<3>, f64)> = (0..40)
+            .map(|i| {
+                let t = |k: f64| (f64::from(i) * k).sin().abs();
+                (b.at(&Point::<3>::new(t(1.3), t(0.7), t(2.9))), 0.1 + t(0.3))
+            })
+            .collect();
+        let fit = fitted(&b, 5, points.iter().copied());
+        assert_eq!(fit.len(), 125);
+        for powers in [[0, 0, 0], [4, 4, 4], [1, 3, 2], [0, 4, 1]] {
+            let f = |x: &Point<3>| (0..3).map(|k| x[k].powi(powers[k])).product::<f64>();
+            let expected: f64 = points.iter().map(|(x, w)| w * f(x)).sum();
+            let found: f64 = fit.iter().map(|p| p.weight * f(&p.x)).sum();
+            assert!((found - expected).abs() < 1e-11 * expected.abs().max(1.0), "{powers:?}: {found} {expected}");
+        }
+    }
+}

@@ -40,7 +40,8 @@ impl Problem<'_> {
         let turns = self.is_spin[unknown];
         let part = if turns { &modes[3..] } else { &modes[..3] };
         let direction = Vector::<3>::from_fn(|i, _| along(&part[i]));
-        let d = direction.try_normalize(0.0).unwrap_or_default();
+        // What is rounded to zero has no sign.
+        let d = direction.try_normalize(0.0).unwrap_or_default().map(|c| if c.abs() < 5e-4 { 0.0 } else { c });
         let kind = if turns { "turning about" } else { "moving along" };
         let motion = format!("{kind} ({:.3}, {:.3}, {:.3})", d[0], d[1], d[2]);
         IncrementError::Free { body: body.name().to_string(), motion }

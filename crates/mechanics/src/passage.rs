@@ -14,6 +14,7 @@ use crate::contact::Contact;
 use crate::interaction::Bodies;
 use crate::system::{AssemblyError, System, SystemState};
 use signorini_geometry::{Point, Vector};
+use std::cell::OnceCell;
 
 /// A way between two states of all bodies, on which positions change in proportion.
 #[derive(Clone, Copy)]
@@ -86,6 +87,40 @@ fn meeting(master: &dyn Master, x: &Point<3>, radius: f64) -> Option<Meeting> {
     }
 }
 
+/// A deformable master on a way: a surface that moves is costly to search, so it is known at a few stages, no farther apart
+/// than a quarter of what the sites see.
+struct Stages {
+    states: Vec<BodyState>,
+}
+
+/// The masters of the stages that were asked for.
+type Known<'a> = Vec<OnceCell<Option<Box<dyn Master + 'a>>>>;
+
+/// The most stages beside the first.
+const MOST_STAGES: f64 = 16.0;
+
+impl Stages {
+    fn new(way: Way<'_>, master: usize, longest: f64, spacings: impl Iterator<Item = f64>) -> Self {
+        if way.from.bodies[master].is_rigid() || !way.moves(master) {
+            return Stages { states: Vec::new() };
+        }
+        let finest = LONGEST_STEP * spacings.fold(f64::INFINITY, f64::min);
+        let count = (longest / finest).ceil().clamp(1.0, MOST_STAGES);
+        Stages { states: (0..=count as usize).map(|k| way.at(master, k as f64 / count)).collect() }
+    }
+
+    /// The master at the stage nearest to a share of the way.
+    fn at<'a, 'b>(
+        &'a self,
+        (body, on): (&'a dyn Body, Option<&'a str>),
+        known: &'b Known<'a>,
+        share: f64,
+    ) -> Option<&'b (dyn Master + 'a)> {
+        let k = (share * (self.states.len() - 1) as f64).round() as usize;
+        known[k].get_or_init(|| body.master(on, &self.states[k]).ok()).as_deref()
+    }
+}
+
 impl Contact {
     /// The share of a way on which no site passes through the master.
     pub(crate) fn share_of_way(&self, way: Way<'_>) -> Result<f64, PlaceError> {
@@ -100,8 +135,11 @@ impl Contact {
         let masters = [ends[0], ends[1]].map(|end| bodies[master].master(on, &end.states[master]));
         let [Ok(first), Ok(last)] = &masters else { return Ok(1.0) };
         let of_master = longest(bodies[master].as_ref(), way, master);
+        let tested = self.tested(way);
+        let stages = Stages::new(way, master, of_master, tested.iter().map(|point| point.spacing));
+        let known: Known<'_> = stages.states.iter().map(|_| OnceCell::new()).collect();
         let mut share = 1.0f64;
-        for point in self.tested(way) {
+        for point in tested {
             let Tested { from, to, radius, is_surface, spacing } = point;
             let length = (to - from).norm() + of_master;
             // Surfaces of two solids see each other only where they face each other.
@@ -118,12 +156,14 @@ impl Contact {
             }
             let met = |t: f64| -> Option<Meeting> {
                 let x = from + (to - from) * t;
-                if way.moves(master) {
-                    let state = way.at(master, t);
-                    let now = bodies[master].master(on, &state).ok()?;
-                    return meeting(now.as_ref(), &x, radius);
+                if !way.moves(master) {
+                    return meeting(first.as_ref(), &x, radius);
                 }
-                meeting(first.as_ref(), &x, radius)
+                if is_rigid {
+                    let state = way.at(master, t);
+                    return meeting(bodies[master].master(on, &state).ok()?.as_ref(), &x, radius);
+                }
+                meeting(stages.at((bodies[master].as_ref(), on), &known, t)?, &x, radius)
             };
             share = share.min(passage(&met, start, length, spacing).unwrap_or(1.0));
         }

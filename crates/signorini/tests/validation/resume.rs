@@ -148,11 +148,7 @@ fn a_damaged_checkpoint_of_solids_is_told() {
     run(&problem, &path, &mut UntilIncrement(2)).expect("a run");
     let checkpoint = path.join("checkpoint.json");
     let text = std::fs::read_to_string(&checkpoint).expect("a checkpoint");
-    for (from, to) in [
-        ("\"next\":2", "\"next\":9"),
-        ("\"active\":[[", "\"active\":[[77777,"),
-        ("\"settled\":null", "\"settled\":{\"u\":[],\"pressure\":[]}"),
-    ] {
+    for (from, to) in [("\"next\":2", "\"next\":9"), ("\"active\":[[", "\"active\":[[77777,")] {
         assert!(text.contains(from), "{from}");
         std::fs::write(&checkpoint, text.replacen(from, to, 1)).expect("written");
         match resume(&problem, &path, &mut Silent) {

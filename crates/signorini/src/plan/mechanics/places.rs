@@ -4,13 +4,46 @@ use super::{Kind, Numbers, Wrong};
 use crate::plan::planner::Planner;
 use crate::problem::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE};
 use crate::problem::{CaseError, List, Space, Value, suggestion};
+use signorini_contact::ContactSurface;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::contact::Part;
+use signorini_mechanics::surface::Faces;
 use signorini_mechanics::system::TimeField;
 use signorini_mechanics::{Contribution, Hold, Load, Order, PlaceError, PlacedLoad, Support, System, TimedLoad};
+use std::sync::Arc;
 
 /// Springs that a support states: its name, its place, and the load that they are.
 pub(super) type Springs = Vec<(String, Part, TimedLoad)>;
+
+/// The component of the outward normal of a flat part of a surface along an axis, and its sign.
+fn normal_axis(system: &System, part: &Part) -> Result<(usize, f64), String> {
+    let body = system.bodies[part.body].as_ref();
+    let start = body.start();
+    let surface = body.surface(part.group.as_deref(), &start).filter(|_| part.group.is_some());
+    let surface = surface.ok_or("`normal` needs a part of the boundary of a solid")?;
+    let normals: Vec<Vector<3>> = match surface.faces().0 {
+        Faces::Plane(faces) => normals(faces),
+        Faces::Space(faces) => normals(faces),
+    };
+    let first = normals.first().ok_or("`normal` needs a part of the boundary of a solid")?;
+    let component = first.iamax();
+    let is_along = |n: &Vector<3>| n[component] * first[component].signum() > 1.0 - 1e-9;
+    if !normals.iter().all(is_along) {
+        return Err("in a system `normal` needs a flat part that faces along an axis".into());
+    }
+    Ok((component, first[component].signum()))
+}
+
+/// Unit normals at the vertices of all faces.
+fn normals<const D: usize>(faces: &dyn ContactSurface<D>) -> Vec<Vector<3>> {
+    let of_face = |face: usize| {
+        faces.shape(face).vertices().iter().map(move |s| {
+            let normal = faces.at(face, s).area_normal().normalize();
+            Vector::<3>::from_fn(|k, _| if k < D { normal[k] } else { 0.0 })
+        })
+    };
+    (0..faces.face_count()).flat_map(of_face).collect()
+}
 
 impl Planner<'_> {
     /// A place as it is stated: a body, or a group of one.
@@ -41,18 +74,22 @@ impl Planner<'_> {
         let mut out = Vec::new();
         for (name, key) in &problem.supports {
             let part = self.part(&key.on, numbers)?;
-            if let Some(normal) = &key.normal {
-                return Err(problem
-                    .error(normal, "`normal` is a support of solids")
-                    .help("displacement = [0, \"free\", 0]"));
-            }
             if let Some(uniform) = &key.uniform {
                 return Err(problem.error(uniform, "`uniform` is a support of linear solids by themselves"));
             }
-            let displacement = match &key.displacement {
+            let mut displacement = match &key.displacement {
                 Some(values) => self.held_components(&values.0, self.dimension(), LENGTH, wrong)?,
                 None => [None, None, None],
             };
+            if let Some(normal) = &key.normal {
+                let (component, sign) = normal_axis(system, &part)
+                    .map_err(|message| problem.error(normal, message).help("displacement = [0, \"free\", 0]"))?;
+                if displacement[component].is_some() {
+                    return Err(problem.error(normal, "`displacement` prescribes this direction too"));
+                }
+                let along = self.field(normal, LENGTH, wrong)?;
+                displacement[component] = Some(Arc::new(move |x, t| sign * along(x, t)));
+            }
             let rotation = match &key.rotation {
                 Some(values) if self.space == Space::ThreeD => self.held_components(values, 3, NONE, wrong)?,
                 Some(values) => {

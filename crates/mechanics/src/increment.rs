@@ -189,7 +189,8 @@ impl System {
             found => return found,
         };
         // A rope that is drawn along moves off all that it touches by a trial as stiff as it is along itself, not across.
-        if self.contacts.iter_mut().fold(false, |any, contact| contact.scale_trials(SOFTER) || any) {
+        let scaled: Vec<bool> = self.contacts.iter_mut().map(|contact| contact.scale_trials(SOFTER)).collect();
+        if scaled.contains(&true) {
             let found = self.by(Way::Straight, start, time, solved, report);
             self.contacts.iter_mut().for_each(|contact| _ = contact.scale_trials(1.0 / SOFTER));
             match found {

@@ -17,8 +17,10 @@ use crate::discs::{Centres, SAME_FACE};
 use signorini_contact::{Law, Status};
 use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::contact::Part;
-use signorini_mechanics::interaction::{Around, NotItsHistory, SimplerFriction, penalty_factor};
-use signorini_mechanics::{Bodies, Body, Function, Interaction, Own, PlaceError, Sampling, Site, SiteResult, Target};
+use signorini_mechanics::interaction::{Around, NotItsHistory, penalty_factor};
+use signorini_mechanics::{
+    Bodies, Body, Function, Interaction, Own, PlaceError, Sampling, SimplerFriction, Site, SiteResult, Target,
+};
 use std::collections::BTreeMap;
 
 /// How a surface is covered by discs. What is left out is found: the radius from the spacing, the spacing from the radius,

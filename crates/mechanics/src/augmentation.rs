@@ -3,8 +3,9 @@
 
 use crate::equilibrium::ROUNDING;
 use crate::increment::{IncrementError, IncrementResult};
-use crate::interaction::{Around, Bodies, SimplerFriction};
+use crate::interaction::{Around, Bodies};
 use crate::iterative::Solved;
+use crate::simpler::SimplerFriction;
 use crate::system::{AssemblyError, System, SystemState};
 
 impl System {

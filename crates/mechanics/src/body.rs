@@ -250,6 +250,14 @@ pub enum PlaceError {
     Unsuitable { body: String, message: String },
 }
 
+impl PlaceError {
+    /// The name of the body.
+    pub fn body(&self) -> &str {
+        let (Self::Unknown { body, .. } | Self::Unsuitable { body, .. }) = self;
+        body
+    }
+}
+
 /// Points, cells and named arrays of a body, as it is shown.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BodyFields {

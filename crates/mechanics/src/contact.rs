@@ -25,10 +25,12 @@ use crate::body::{Anchor, Body, BodyState, Master, Met, Order, PlaceError, Place
 use crate::interaction::Target;
 use crate::nitsche::Stress;
 use crate::pair::{AxisChoice, Encounter, NoPair, Pair, Stuck, any_tangent};
+use crate::simpler::SetAside;
+use crate::site_result::SiteResult;
 use rayon::prelude::*;
 use signorini_contact::law::Projected;
 use signorini_contact::{Law, Status};
-use signorini_geometry::{Point, Vector};
+use signorini_geometry::Vector;
 
 /// How the contact conditions are kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,8 +91,8 @@ pub struct Contact {
     pub(crate) memory: Vec<SiteMemory>,
     /// Times of the last state and of the one that is looked for.
     pub(crate) times: [f64; 2],
-    /// Law, enforcement and softness while a start is looked for with simpler ones.
-    pub(crate) set_aside: Option<(Option<Box<dyn Law>>, Enforcement, f64)>,
+    /// What is stated, while a start is looked for with something simpler.
+    pub(crate) set_aside: Option<SetAside>,
 }
 
 /// What a site remembers of the last state.
@@ -101,58 +103,6 @@ pub struct SiteMemory {
     pub stuck: Option<Stuck>,
     /// How far the site slipped in all while it was closed, along the axes.
     pub slip: [f64; 2],
-}
-
-/// A site as it was found.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SiteResult {
-    /// Where the site is, and the outward normal of the master there.
-    pub x: Point<3>,
-    pub normal: Vector<3>,
-    pub weight: f64,
-    /// None where nothing is within reach.
-    pub gap: Option<f64>,
-    pub pressure: f64,
-    /// Friction on the slave, per weight.
-    pub friction: Vector<3>,
-    pub status: Status,
-    /// Slip in the last increment and in all.
-    pub increment: Vector<3>,
-    pub slip: f64,
-    /// The part of the available friction that is used: 1 where it slips.
-    pub utilisation: f64,
-    /// Of a node of a surface that carries, where its own values are means.
-    pub of_surface: Option<OfSurface>,
-}
-
-/// What a surface tells of the place of a node.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OfSurface {
-    /// The recovered pressure.
-    pub pressure: f64,
-    /// The part of the area in contact that counts for the node: zones end within faces.
-    pub area: f64,
-}
-
-impl SiteResult {
-    /// The force on the slave.
-    pub fn force(&self) -> Vector<3> {
-        (self.normal * self.pressure + self.friction) * self.weight
-    }
-
-    /// The pressure there.
-    pub fn shown_pressure(&self) -> f64 {
-        self.of_surface.map_or(self.pressure, |own| own.pressure)
-    }
-
-    /// The area in contact that it stands for; the length or number where sites stand for those.
-    pub fn contact_area(&self) -> f64 {
-        match (self.status, self.of_surface) {
-            (Status::Open, _) => 0.0,
-            (_, Some(own)) => own.area,
-            (_, None) => self.weight,
-        }
-    }
 }
 
 /// The two bodies of a contact in a state.

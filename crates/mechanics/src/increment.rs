@@ -4,9 +4,9 @@
 //! About both run the outer iterations of `augmentation`.
 
 use crate::body::Order;
-use crate::contact::SiteResult;
 use crate::equilibrium::Problem;
 use crate::iterative::{Solved, Stiffness};
+use crate::site_result::SiteResult;
 use crate::system::{AssemblyError, System, SystemState};
 use signorini_geometry::Vector;
 use signorini_solve::SolveError;

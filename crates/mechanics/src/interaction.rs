@@ -11,11 +11,12 @@
 
 use crate::body::MaterialPoint;
 use crate::body::{Body, BodyState, PlaceError, Sampling, Site};
-use crate::contact::{Contact, Enforcement, Part, Sides, SiteMemory, SiteResult};
+use crate::contact::{Contact, Enforcement, Part, Sides, SiteMemory};
 use crate::pair::Stuck;
 use crate::passage::Way;
 use crate::prepare::WAVE;
-use signorini_contact::law::{Friction, stuck};
+use crate::simpler::{SetAside, SimplerFriction};
+use crate::site_result::SiteResult;
 use signorini_contact::{Law, Status};
 use signorini_geometry::Vector;
 use signorini_solve::general::Entries;
@@ -174,43 +175,6 @@ pub trait Interaction: Send + Sync {
     /// # Errors
     /// Numbers of something else.
     fn restore(&mut self, history: &[Vec<f64>; 2]) -> Result<(), NotItsHistory>;
-}
-
-/// The friction of a contact while a start is looked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SimplerFriction {
-    /// Its own.
-    Stated,
-    /// All that touches sticks: while nothing carries yet, nothing would rub.
-    Sticks,
-}
-
-impl SimplerFriction {
-    /// Puts it in the place of a law, which is returned if another one takes its place.
-    pub fn instead_of(self, law: &mut Option<Box<dyn Law>>) -> Option<Box<dyn Law>> {
-        match self {
-            Self::Stated => None,
-            Self::Sticks => law.as_mut().map(|law| std::mem::replace(law, Box::new(Sticks))),
-        }
-    }
-}
-
-/// Friction without a limit.
-#[derive(Debug)]
-pub struct Sticks;
-
-impl Law for Sticks {
-    fn friction(&self, trial: [f64; 2], _: f64) -> Friction {
-        stuck(trial)
-    }
-
-    fn utilisation(&self, _: [f64; 2], _: f64) -> f64 {
-        0.0
-    }
-
-    fn per_pressure(&self) -> Option<[f64; 2]> {
-        None
-    }
 }
 
 /// The part of a change that the next outer iteration may leave.
@@ -398,15 +362,13 @@ impl Interaction for Contact {
     }
 
     fn simplify(&mut self, friction: SimplerFriction) {
-        self.set_aside = Some((friction.instead_of(&mut self.friction), self.enforcement, self.softness));
-        self.enforcement = Enforcement::Penalty { wanted_penetration: None };
-        self.softness = self.enforcement.softness();
+        let kept = (&mut self.enforcement, &mut self.softness);
+        self.set_aside = Some(SetAside::new(friction, &mut self.friction, kept));
     }
 
     fn restate(&mut self) {
-        if let Some((law, enforcement, softness)) = self.set_aside.take() {
-            self.friction = law.or(self.friction.take());
-            (self.enforcement, self.softness) = (enforcement, softness);
+        if let Some(stated) = self.set_aside.take() {
+            stated.put_back(&mut self.friction, (&mut self.enforcement, &mut self.softness));
         }
     }
 

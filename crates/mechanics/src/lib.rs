@@ -30,6 +30,8 @@ pub mod passage;
 mod prepare;
 pub mod rigid_body;
 pub mod saved;
+mod simpler;
+mod site_result;
 pub mod surface;
 pub mod system;
 
@@ -37,7 +39,7 @@ pub use body::{
     Anchor, Bend, Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Direction, Foot, Function, Hold,
     Load, Master, MaterialPoint, Means, Met, Order, PlaceError, Placed, RigidFoot, Sampling, Site,
 };
-pub use contact::{Contact, Enforcement, OfSurface, Part, SiteMemory, SiteResult};
+pub use contact::{Contact, Enforcement, Part, SiteMemory};
 pub use curve::Curve;
 pub use increment::{IncrementError, IncrementResult};
 pub use interaction::{Bodies, Interaction, Own, Target};
@@ -46,6 +48,8 @@ pub use mortar::Mortar;
 pub use pair::AxisChoice;
 pub use rigid_body::{Motion, RigidBody, RigidSite};
 pub use saved::Saved;
+pub use simpler::SimplerFriction;
+pub use site_result::{OfSurface, SiteResult};
 pub use surface::Surface;
 pub use system::{AssemblyError, PlacedLoad, Support, System, SystemState, TimedLoad};
 

@@ -28,6 +28,7 @@ mod shown;
 use crate::body::{Body, BodyState, PlaceError};
 use crate::contact::{Enforcement, Part};
 use crate::pair::AxisChoice;
+use crate::simpler::SetAside;
 use crate::surface::Local;
 use cover::{Nodes, Search};
 use measure::{Matched, NodeMeasure};
@@ -61,8 +62,8 @@ pub struct Mortar {
     matched: Vec<Matched>,
     /// Times of the last state and of the one that is looked for.
     times: [f64; 2],
-    /// Law, enforcement and softness while a start is looked for with simpler ones.
-    set_aside: Option<(Option<Box<dyn Law>>, Enforcement, f64)>,
+    /// What is stated, while a start is looked for with something simpler.
+    set_aside: Option<SetAside>,
 }
 
 /// What a node remembers of the last state.

@@ -21,7 +21,7 @@ mod surface;
 use crate::problem::{Analysis, Body, CaseError, Problem, Space};
 use planner::Planner;
 
-pub use domain::{Pieces, memory_at_hand, memory_estimate, mesh_multigrid_estimate, multigrid_estimate};
+pub use domain::{Pieces, check_memory, memory_at_hand, memory_estimate, mesh_multigrid_estimate, multigrid_estimate};
 pub use head::Head;
 pub use membrane::MembranePlan;
 pub use placed::Placed;

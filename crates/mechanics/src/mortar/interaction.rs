@@ -5,12 +5,12 @@ use super::measure::{Matched, NodeMeasure, Opposite, Sides};
 use super::shown::show;
 use super::{Mortar, NodeMemory};
 use crate::body::{Body, MaterialPoint, PlaceError};
-use crate::contact::{Enforcement, SiteResult};
-use crate::interaction::{
-    Around, Bodies, Interaction, NotItsHistory, Own, SimplerFriction, Target, hardened, take_over, towards,
-};
+use crate::contact::Enforcement;
+use crate::interaction::{Around, Bodies, Interaction, NotItsHistory, Own, Target, hardened, take_over, towards};
 use crate::pair::{AxisChoice, Pair, any_tangent};
 use crate::prepare::WAVE;
+use crate::simpler::{SetAside, SimplerFriction};
+use crate::site_result::SiteResult;
 use signorini_contact::law::Projected;
 use signorini_contact::{Law, Status};
 use signorini_geometry::Vector;
@@ -77,8 +77,7 @@ impl Mortar {
             out
         };
         let mut results: Vec<SiteResult> = (0..self.whole.len()).map(of).collect();
-        let met: Vec<Vec<bool>> = found.pairs.iter().map(|list| list.iter().map(Option::is_some).collect()).collect();
-        show(&self.nodes, found.sides.slave.faces().0, &found.cover, &met, &mut results);
+        show(&self.nodes, found.sides.slave.faces().0, (&found.cover, &found.pairs), &mut results);
         results
     }
 
@@ -249,15 +248,13 @@ impl Interaction for Mortar {
     }
 
     fn simplify(&mut self, friction: SimplerFriction) {
-        self.set_aside = Some((friction.instead_of(&mut self.friction), self.enforcement, self.softness));
-        self.enforcement = Enforcement::Penalty { wanted_penetration: None };
-        self.softness = self.enforcement.softness();
+        let kept = (&mut self.enforcement, &mut self.softness);
+        self.set_aside = Some(SetAside::new(friction, &mut self.friction, kept));
     }
 
     fn restate(&mut self) {
-        if let Some((law, enforcement, softness)) = self.set_aside.take() {
-            self.friction = law.or(self.friction.take());
-            (self.enforcement, self.softness) = (enforcement, softness);
+        if let Some(stated) = self.set_aside.take() {
+            stated.put_back(&mut self.friction, (&mut self.enforcement, &mut self.softness));
         }
     }
 

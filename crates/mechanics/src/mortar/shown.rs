@@ -2,15 +2,19 @@
 //! contact, which ends within faces.
 
 use super::cover::{Cover, Nodes};
-use crate::contact::{OfSurface, SiteResult};
+use crate::pair::Pair;
+use crate::site_result::{OfSurface, SiteResult};
 use crate::surface::Faces;
 use signorini_contact::{ContactSurface, NodeState, Pressed, PressureNodes, Status, recovered, zone};
 
-/// Completes the results of the nodes; `met` tells which points of the cover, face by face, met something.
-pub(super) fn show(nodes: &Nodes, faces: Faces<'_>, cover: &Cover, met: &[Vec<bool>], results: &mut [SiteResult]) {
+/// The points of the slave side, and of each what it met, face by face.
+type Points<'a> = (&'a Cover, &'a [Vec<Option<Pair>>]);
+
+/// Completes the results of the nodes.
+pub(super) fn show(nodes: &Nodes, faces: Faces<'_>, points: Points<'_>, results: &mut [SiteResult]) {
     match (nodes, faces) {
-        (Nodes::Plane(nodes), Faces::Plane(faces)) => show_on(nodes, faces, cover, met, results),
-        (Nodes::Space(nodes), Faces::Space(faces)) => show_on(nodes, faces, cover, met, results),
+        (Nodes::Plane(nodes), Faces::Plane(faces)) => show_on(nodes, faces, points, results),
+        (Nodes::Space(nodes), Faces::Space(faces)) => show_on(nodes, faces, points, results),
         _ => {}
     }
 }
@@ -18,13 +22,12 @@ pub(super) fn show(nodes: &Nodes, faces: Faces<'_>, cover: &Cover, met: &[Vec<bo
 fn show_on<const D: usize>(
     nodes: &PressureNodes<D>,
     faces: &dyn ContactSurface<D>,
-    cover: &Cover,
-    met: &[Vec<bool>],
+    (cover, pairs): Points<'_>,
     results: &mut [SiteResult],
 ) {
     let is_active = |r: &SiteResult| r.status != Status::Open;
-    let points: Vec<Pressed> = (cover.points.iter().flatten().zip(met.iter().flatten()))
-        .filter(|(_, met)| **met)
+    let points: Vec<Pressed> = (cover.points.iter().flatten().zip(pairs.iter().flatten()))
+        .filter(|(_, pair)| pair.is_some())
         .map(|(point, _)| {
             let area = point.shares.iter().map(|(_, share)| share).sum();
             let force = point.shares.iter().map(|(node, share)| share * results[*node as usize].pressure).sum();

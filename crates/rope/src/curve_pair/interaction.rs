@@ -7,11 +7,9 @@ use super::search::{CurvePoint, Searched};
 use signorini_contact::{Law, Status};
 use signorini_geometry::Vector;
 use signorini_mechanics::body::{Body, Order, PlaceError};
-use signorini_mechanics::interaction::{
-    Around, Bodies, Interaction, NotItsHistory, Own, SimplerFriction, Target, penalty_factor,
-};
+use signorini_mechanics::interaction::{Around, Bodies, Interaction, NotItsHistory, Own, Target, penalty_factor};
 use signorini_mechanics::passage::Way;
-use signorini_mechanics::{Curve, Enforcement, Part, SiteResult};
+use signorini_mechanics::{Curve, Enforcement, Part, SimplerFriction, SiteResult};
 
 impl CurveContact {
     /// One of the curves.

@@ -119,6 +119,15 @@ fn meet(a: &Chord, b: &Chord, t: f64) -> bool {
     places.iter().all(|s| (-BEYOND..=1.0 + BEYOND).contains(s))
 }
 
+/// Up to where something holds that holds at the start of an interval and not at its end, by bisection.
+fn last([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> f64 {
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if holds(middle) { low = middle } else { high = middle }
+    }
+    low
+}
+
 /// Changes of sign of a cubic from 0 to 1, in order.
 fn roots(c: [f64; 4]) -> Vec<f64> {
     let value = |t: f64| c[0] + t * (c[1] + t * (c[2] + t * c[3]));
@@ -135,43 +144,28 @@ fn roots(c: [f64; 4]) -> Vec<f64> {
     bounds.push(1.0);
     let mut out = Vec::new();
     for pair in bounds.windows(2) {
-        let (mut low, mut high) = (pair[0], pair[1]);
-        if value(low).signum() == value(high).signum() {
-            continue;
+        let sign = value(pair[0]).signum();
+        if sign != value(pair[1]).signum() {
+            out.push(last([pair[0], pair[1]], |t| value(t).signum() == sign));
         }
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if value(middle).signum() == value(pair[0]).signum() { low = middle } else { high = middle }
-        }
-        out.push(low);
     }
     out
 }
 
 /// Where before they cross two chords are as near as the sections about them touch.
 fn touching(pair: &[Chord; 2], radii: f64, crossed: f64) -> f64 {
-    let (mut low, mut high) = (0.0, crossed);
     if distance(pair, 0.0) <= radii {
         return 0.0;
     }
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        if distance(pair, middle) > radii { low = middle } else { high = middle }
-    }
-    low
+    last([0.0, crossed], |t| distance(pair, t) > radii)
 }
 
 /// Where after they cross two chords are a distance apart: 1 if they are not on their way.
 fn leaving(pair: &[Chord; 2], apart: f64, crossed: f64) -> f64 {
-    let (mut low, mut high) = (crossed, 1.0);
     if distance(pair, 1.0) <= apart {
         return 1.0;
     }
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        if distance(pair, middle) > apart { high = middle } else { low = middle }
-    }
-    low
+    last([crossed, 1.0], |t| distance(pair, t) <= apart)
 }
 
 /// The distance of two chords (Ericson, Real-time collision detection, 2005, section 5.1.9).

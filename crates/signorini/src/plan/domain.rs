@@ -5,7 +5,7 @@ use super::placement::PlacementKeys;
 use super::planner::Planner;
 use crate::expression::{Expression, Scope};
 use crate::problem::units::{LENGTH, NONE};
-use crate::problem::{self, Domain, List, Mesh, Space};
+use crate::problem::{self, Domain, List, Mesh, Problem, Space};
 use crate::problem::{CaseError, KeyPath, Location, Value};
 use signorini_fem::mesh_cells::MOST_ON_TRIANGLES;
 use signorini_fem::{Cells, Grid, Mesh as FemMesh, MeshCells, RefinedGrid};
@@ -275,6 +275,19 @@ pub fn mesh_multigrid_estimate(unknowns: f64, degree: usize) -> f64 {
 /// Memory that a solve may take at most.
 pub fn memory_at_hand() -> f64 {
     MEMORY_SHARE * free_memory()
+}
+
+/// Refuses solids whose equations need more memory than there is; `what` needs it.
+pub fn check_memory(problem: &Problem, what: &str, needed: f64) -> Result<(), CaseError> {
+    let gib = |bytes: f64| bytes / f64::from(1u32 << 30);
+    let free = memory_at_hand();
+    if needed <= free {
+        return Ok(());
+    }
+    let message = format!("{what} need about {:.1} GiB, and {:.1} GiB are free for them", gib(needed), gib(free));
+    Err(problem
+        .error(&problem.space, message)
+        .help("fewer cells, a lower degree, symmetry, or cells graded towards the contact"))
 }
 
 /// Memory that is free, as the system tells; 8 GiB where it does not.

@@ -269,6 +269,17 @@ pub struct ErrorEstimate {
     pub max_pressure: Option<f64>,
 }
 
+impl ErrorEstimate {
+    /// A change with the cells is as likely too small as too large an estimate: this makes it seldom too small.
+    const SAFETY: f64 = 1.5;
+
+    /// From the changes with finer functions.
+    pub fn of_changes(force: f64, area: f64, max_pressure: f64) -> Self {
+        let [force, area, max_pressure] = [force, area, max_pressure].map(|change| Self::SAFETY * change.abs());
+        Self { front: None, area, force, max_pressure: Some(max_pressure) }
+    }
+}
+
 /// Another equilibrium of an adhesive membrane at the same load.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct OtherState {

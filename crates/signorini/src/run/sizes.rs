@@ -279,8 +279,7 @@ pub(super) fn clearance<const D: usize>(plan: &MembranePlan<D>, time: f64) -> Op
             "; the load brings it nearer by {nearer:.1e} only: it is {size:.4}{unit} wide, are its size, load and tension in the \
              units of the case?"
         )
-    } else if plan.grid.degree() == 1 && sag(&loaded, &x) > gap {
-        let sag = sag(&loaded, &x);
+    } else if let Some(sag) = sag(&loaded, &x).filter(|sag| *sag > gap) {
         format!("; but within a cell it may sag by {sag:.1e}, which degree 1 does not see: use more cells, or degree 2")
     } else {
         String::new()
@@ -288,9 +287,11 @@ pub(super) fn clearance<const D: usize>(plan: &MembranePlan<D>, time: f64) -> Op
     Some(format!("the least gap at t = {time} is {gap:.4e}{hint}"))
 }
 
-/// How far a membrane hangs through within the cell about a point: a string as long as the cell under the load there.
-fn sag<const D: usize>(membrane: &Membrane<D>, x: &Point<D>) -> f64 {
-    membrane.load.value(x).abs() * membrane.cell_size(x).powi(2) / (8.0 * membrane.tension.value(x))
+/// How far a membrane of degree 1 hangs through, unseen, within the cell about a point: a string as long as the cell under the
+/// load there. None of higher degrees.
+fn sag<const D: usize>(membrane: &Membrane<D>, x: &Point<D>) -> Option<f64> {
+    let string = || membrane.load.value(x).abs() * membrane.cell_size(x).powi(2) / (8.0 * membrane.tension.value(x));
+    (membrane.grid.degree() == 1).then(string)
 }
 
 /// Solves for the membrane without contact, at rest and under its last load.

@@ -14,14 +14,14 @@ use crate::output::solid_fields::{ContactDisplay, SolidDisplay};
 use crate::output::solid_state::SolidFrame;
 use crate::output::{Folder, OutputError, rigid, solid_pictures, tables};
 use crate::plan::solid::{PlannedBody, SolidContact, SolidPlan, SolidSupport};
-use crate::plan::{Head, memory_at_hand};
+use crate::plan::{Head, check_memory};
 use crate::problem::CaseError;
 use crate::report::{ErrorEstimate, Reason, StepReport};
 use failure::{Failure, explained};
 use report::{SOLVER, Shown};
 use serde_json::Value;
 pub(super) use setup::{OPERATIONS_PER_SECOND, cost, judge, memory, model};
-use setup::{at_time, blamed, too_large};
+use setup::{at_time, blamed};
 use signorini_geometry::Point;
 use signorini_solid::{Circumstances, ContactResult, Model as Solids, RigidGap, State};
 use signorini_solve::{Iteration, Progress};
@@ -29,8 +29,6 @@ use std::path::Path;
 
 /// The most unknowns of one degree more for which errors are estimated, in the plane; they take a fraction of a second.
 const AFFORDABLE: usize = 30_000;
-/// The estimate is as likely too small as too large: this makes it seldom too small.
-const SAFETY: f64 = 1.5;
 
 /// Solids on their way through their history.
 pub struct SolidModel<const D: usize> {
@@ -55,9 +53,7 @@ impl<const D: usize> SolidModel<D> {
         let mut solids = model(&plan)?;
         judge(&plan, &mut solids)?;
         let cost = cost(&plan, &solids)?;
-        if memory(&cost) > memory_at_hand() {
-            return Err(too_large(&plan, solids.unknowns(), &cost));
-        }
+        check_memory(&plan.head.problem, &format!("{} unknowns", solids.unknowns()), memory(&cost))?;
         let display = SolidDisplay::new(&solids);
         let rests = plan.times[0] > 0.0 && at_rest(&plan, &mut solids);
         let mut film = Film::default();
@@ -132,12 +128,9 @@ impl<const D: usize> SolidModel<D> {
         for ((contact, coarse), fine) in self.plan.contacts.iter().zip(&state.contacts).zip(&fine.contacts) {
             let peak = |c: &ContactResult<D>| c.nodes.iter().map(|n| n.pressure).fold(0.0, f64::max);
             let Some(found) = step.contacts.get_mut(&contact.name) else { continue };
-            found.error_estimate = Some(ErrorEstimate {
-                front: None,
-                force: SAFETY * (fine.force - coarse.force).norm(),
-                area: SAFETY * (fine.area - coarse.area).abs(),
-                max_pressure: Some(SAFETY * (peak(fine) - peak(coarse)).abs()),
-            });
+            let force = (fine.force - coarse.force).norm();
+            found.error_estimate =
+                Some(ErrorEstimate::of_changes(force, fine.area - coarse.area, peak(fine) - peak(coarse)));
         }
     }
 }

@@ -104,20 +104,22 @@ strain = "finite"
 material.neo_hooke = { youngs_modulus = 2.6, poissons_ratio = 0.3 }
 [supports.x]
 on = "bar:left"
-displacement = [0, "free", "free"]
+normal = "0.25*t"
 [supports.y]
 on = "bar:front"
-displacement = ["free", 0, "free"]
+normal = 0
 [supports.z]
 on = "bar:bottom"
 displacement = ["free", "free", 0]
 [supports.pull]
 on = "bar:right"
-displacement = ["0.5*t", "free", "free"]
+normal = "0.25*t"
 [[steps]]
 to = 1
 increments = 2
 "#;
+    let slanted = case.replace("cells = [2, 1, 1]", "cells = [2, 1, 1], map = [\"x + 0.2*y\", \"y\", \"z\"]");
+    assert!(error(&slanted).message.contains("a flat part that faces along an axis"));
     let found = summary(case, &set(&[]));
     let force = number(&last_step(&found)["support_forces"]["pull"][0]);
     // μ = 1, λ = 1.5: the stretch across makes its stress vanish.

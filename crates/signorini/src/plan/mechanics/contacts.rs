@@ -8,7 +8,7 @@ use signorini_cells::disc_contact::{Cover, CoverFindings, DiscPairs};
 use signorini_cells::discs::Centres;
 use signorini_geometry::Vector;
 use signorini_mechanics::contact::Part;
-use signorini_mechanics::{AxisChoice, Contact, Enforcement as Kept, Interaction, PlaceError, Sampling, System};
+use signorini_mechanics::{AxisChoice, Contact, Enforcement as Kept, Interaction, Sampling, System};
 use signorini_rope::curve_pair::{CurveContact, Form};
 
 impl Planner<'_> {
@@ -68,7 +68,7 @@ impl Planner<'_> {
         let body = |part: &Part| system.bodies[part.body].as_ref();
         let points = |part: &Part| body(part).sites(part.group.as_deref(), Sampling::Nodes);
         // A body without points of its own is touched by the other; and the faces of a body that deforms follow a rigid one
-        // better than points on that follow them.
+        // better than points on it follow them.
         let is_driven = |part: &Part| matches!(kinds[part.body], Kind::Rigid { is_free: false, .. });
         let deforms = |part: &Part| matches!(kinds[part.body], Kind::Solid | Kind::Cells);
         let has_points = points(&parts[0]).is_ok() && !(is_driven(&parts[0]) && deforms(&parts[1]));
@@ -104,8 +104,7 @@ impl Planner<'_> {
         let mut contact =
             Contact::new(name, (slave.clone(), body(&slave)), (master.clone(), body(&master)), sampling, enforcement)
                 .map_err(|error| {
-                let (PlaceError::Unknown { body, .. } | PlaceError::Unsuitable { body, .. }) = &error;
-                let side = on.iter().find(|on| on.split(':').next().is_some_and(|name| name.trim() == body));
+                let side = on.iter().find(|on| on.split(':').next().is_some_and(|name| name.trim() == error.body()));
                 self.misplaced(side.unwrap_or(&on[0]), &error)
             })?;
         if let Some(friction) = &key.friction {

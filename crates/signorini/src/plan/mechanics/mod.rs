@@ -13,7 +13,7 @@ mod winches;
 pub(in crate::plan) use contacts::is_tangent;
 pub use fields::Wrong;
 
-use super::domain::memory_at_hand;
+use super::domain::check_memory;
 use super::head::Head;
 use super::planner::Planner;
 use crate::problem::units::LENGTH;
@@ -105,21 +105,11 @@ pub fn is_system(problem: &Problem) -> bool {
 
 /// Unknowns of a system, what solves its equations, and about how much memory that takes; an error where there is less.
 fn size_of(problem: &Problem, system: &System) -> Result<String, CaseError> {
-    let gib = |bytes: f64| bytes / f64::from(1u32 << 30);
     let unknowns: usize = system.bodies.iter().map(|b| b.unknowns()).sum();
     let how = if system.iterates() { "iterations" } else { "a factorisation" };
-    let (needed, free) = (system.memory(), memory_at_hand());
-    if needed > free {
-        let message = format!(
-            "{unknowns} unknowns, solved by {how}, need about {:.1} GiB, and {:.1} GiB are free for them",
-            gib(needed),
-            gib(free)
-        );
-        return Err(problem
-            .error(&problem.space, message)
-            .help("fewer cells, a lower degree, symmetry, or cells graded towards the contact"));
-    }
-    Ok(format!("{unknowns} unknowns, solved by {how}, in about {:.2} GiB", gib(needed)))
+    let needed = system.memory();
+    check_memory(problem, &format!("{unknowns} unknowns, solved by {how},"), needed)?;
+    Ok(format!("{unknowns} unknowns, solved by {how}, in about {:.2} GiB", needed / f64::from(1u32 << 30)))
 }
 
 /// The name of what holds solids on the axis of rotation, which nobody stated.

@@ -4,7 +4,7 @@ use super::{MechanicsModel, report};
 use crate::output::system::SystemShown;
 use crate::plan::Plan;
 use crate::plan::mechanics::cells;
-use crate::problem::{Body, Problem, SolidMesh};
+use crate::problem::{Body, Problem, SolidMesh, Space};
 use crate::report::{ErrorEstimate, StepReport};
 use signorini_mechanics::IncrementResult;
 use signorini_solve::{Iteration, Progress};
@@ -12,8 +12,6 @@ use signorini_solve::{Iteration, Progress};
 /// The most unknowns of one degree more, times increments, for which errors are estimated in the plane: some seconds. In
 /// space unknowns cost several times as much.
 const AFFORDABLE: f64 = 15_000.0;
-/// The estimate is as likely too small as too large: this makes it seldom too small.
-const SAFETY: f64 = 1.5;
 
 /// Says nothing, but stops where it is asked to.
 struct Quiet<'a>(&'a dyn Progress);
@@ -51,7 +49,7 @@ fn finer(problem: &Problem) -> Option<(Problem, i64)> {
 /// Estimates the errors of the last step of a run with so many unknowns, if that is affordable and has a solution.
 pub fn estimate(model: &MechanicsModel, unknowns: usize, step: &mut StepReport, progress: &mut dyn Progress) {
     let plan = &model.plan;
-    let in_space = plan.space == crate::problem::Space::ThreeD;
+    let in_space = plan.space == Space::ThreeD;
     let Some((problem, degree)) = finer(&plan.head.problem) else { return };
     let growth = (1.0 + 1.0 / degree as f64).powi(if in_space { 3 } else { 2 });
     let affordable = if in_space { AFFORDABLE / 4.0 } else { AFFORDABLE };
@@ -63,12 +61,8 @@ pub fn estimate(model: &MechanicsModel, unknowns: usize, step: &mut StepReport, 
     for (name, found) in &mut step.contacts {
         let Some(fine) = fine.contacts.get(name) else { continue };
         let force: f64 = fine.force.iter().zip(&found.force).map(|(a, b)| (a - b).powi(2)).sum();
-        found.error_estimate = Some(ErrorEstimate {
-            front: None,
-            force: SAFETY * force.sqrt(),
-            area: SAFETY * (fine.area - found.area).abs(),
-            max_pressure: Some(SAFETY * (fine.max_pressure - found.max_pressure).abs()),
-        });
+        let (area, pressure) = (fine.area - found.area, fine.max_pressure - found.max_pressure);
+        found.error_estimate = Some(ErrorEstimate::of_changes(force.sqrt(), area, pressure));
     }
 }
 

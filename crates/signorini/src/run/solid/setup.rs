@@ -1,9 +1,9 @@
 //! From a plan of solids to their model, and what the plan has for it at each time.
 
 use super::failure::explained;
+use crate::plan::Placed;
 use crate::plan::pieces::{Apart, UNITE};
 use crate::plan::solid::{Opposite, SolidLoad, SolidPlan, evaluate};
-use crate::plan::{Placed, memory_at_hand};
 use crate::problem::{Body, CaseError, KeyPath, Problem, Space as Stated};
 use crate::report::vector;
 use signorini_contact::GapJet;
@@ -84,19 +84,6 @@ pub fn cost<const D: usize>(plan: &SolidPlan<D>, model: &Model<D>) -> Result<Cos
 /// The memory of a run, about: the factor and, of about half its size at most, matrices and results.
 pub fn memory(cost: &Cost) -> f64 {
     1.5 * cost.bytes
-}
-
-pub fn too_large<const D: usize>(plan: &SolidPlan<D>, unknowns: usize, cost: &Cost) -> CaseError {
-    let gib = |bytes: f64| bytes / f64::from(1u32 << 30);
-    let message = format!(
-        "{unknowns} unknowns need about {:.1} GiB, and {:.1} GiB are free for them",
-        gib(memory(cost)),
-        gib(memory_at_hand())
-    );
-    plan.head
-        .problem
-        .error(&plan.head.problem.space, message)
-        .help("fewer cells, a lower degree, symmetry, or cells graded towards the contact")
 }
 
 /// Does something with a model and what the plan has for it at one time.

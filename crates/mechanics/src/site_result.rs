@@ -1,0 +1,56 @@
+//! A site of a contact as it was found in a state.
+
+use signorini_contact::Status;
+use signorini_geometry::{Point, Vector};
+
+/// A site as it was found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SiteResult {
+    /// Where the site is, and the outward normal of the master there.
+    pub x: Point<3>,
+    pub normal: Vector<3>,
+    pub weight: f64,
+    /// None where nothing is within reach.
+    pub gap: Option<f64>,
+    pub pressure: f64,
+    /// Friction on the slave, per weight.
+    pub friction: Vector<3>,
+    pub status: Status,
+    /// Slip in the last increment and in all.
+    pub increment: Vector<3>,
+    pub slip: f64,
+    /// The part of the available friction that is used: 1 where it slips.
+    pub utilisation: f64,
+    /// Of a node of a surface that carries, where its own values are means.
+    pub of_surface: Option<OfSurface>,
+}
+
+/// What a surface tells of the place of a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OfSurface {
+    /// The recovered pressure.
+    pub pressure: f64,
+    /// The part of the area in contact that counts for the node: zones end within faces.
+    pub area: f64,
+}
+
+impl SiteResult {
+    /// The force on the slave.
+    pub fn force(&self) -> Vector<3> {
+        (self.normal * self.pressure + self.friction) * self.weight
+    }
+
+    /// The pressure there.
+    pub fn shown_pressure(&self) -> f64 {
+        self.of_surface.map_or(self.pressure, |own| own.pressure)
+    }
+
+    /// The area in contact that it stands for; the length or number where sites stand for those.
+    pub fn contact_area(&self) -> f64 {
+        match (self.status, self.of_surface) {
+            (Status::Open, _) => 0.0,
+            (_, Some(own)) => own.area,
+            (_, None) => self.weight,
+        }
+    }
+}

@@ -7,12 +7,13 @@
 //! 2012). A node that is hardly covered gives its function to a neighbour.
 
 use crate::multiplier::PressureNodes;
-use crate::recovery::unpressed;
 use crate::segments::GapPoint;
-use crate::surface::ContactSurface;
+use crate::surface::{ContactSurface, FacePoint};
 use nalgebra::DMatrix;
 use signorini_fem::CellShape;
+use signorini_fem::cell_map::CellMap;
 use signorini_fem::hierarchic::Values;
+use signorini_fem::rules::rule;
 use signorini_geometry::Point;
 
 /// The weighted gap of one pressure node, linear in the displacement: `∫ ψ_k g = gap + Σ coefficient · unknown ≥ 0`.
@@ -90,7 +91,6 @@ fn shares_above<const D: usize>(
 ) -> Shares {
     let mut out = Shares { of_point: Vec::new(), weight: vec![0.0; nodes.len()], given: Vec::new() };
     let mut whole = vec![0.0; nodes.len()];
-    let mut share_of_area = vec![0.0; nodes.len()];
     let mut covered = vec![false; nodes.len()];
     let mut at = Values::default();
     for (face, list) in points.iter().enumerate() {
@@ -98,7 +98,7 @@ fn shares_above<const D: usize>(
         let n = map.len();
         let change = quadratic_triangle(map.shape(), map.order());
         // What the functions would weigh on the whole face.
-        let full = signorini_fem::rules::rule(map.shape(), map.order() + 2);
+        let full = rule(map.shape(), map.order() + 2);
         let mut area = 0.0;
         for (s, w) in &full {
             map.tabulate(s, &mut at);
@@ -111,7 +111,6 @@ fn shares_above<const D: usize>(
             }
         }
         for (node, _) in nodes.of_face(face) {
-            share_of_area[*node as usize] += area / n as f64;
             covered[*node as usize] |= !list.is_empty();
         }
         let mut functions = DMatrix::<f64>::zeros(n, list.len());
@@ -133,7 +132,7 @@ fn shares_above<const D: usize>(
         out.of_point.push(of_face);
     }
     // On the axis of a body of revolution a vertex of quadratic faces has no weight at all.
-    let weightless: Vec<bool> = whole.iter().zip(&share_of_area).map(|(w, a)| *w < WEIGHTLESS * a).collect();
+    let weightless = without_integral(slave, nodes, &quadratic_triangle);
     let weak: Vec<bool> = (0..nodes.len())
         .map(|k| out.weight[k] < least * whole[k] || covered[k] && (weightless[k] || folded(k as u32)))
         .collect();
@@ -159,20 +158,46 @@ pub fn weightless<const D: usize>(
     nodes: &PressureNodes<D>,
     folded: &dyn Fn(u32) -> bool,
 ) -> Vec<Given> {
-    let (mut whole, mut share_of_area) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
-    let mut at = Values::default();
-    for p in unpressed(slave, nodes) {
-        let own = nodes.of_face(p.face);
-        nodes.map(p.face).tabulate(&p.s, &mut at);
-        for ((node, _), v) in own.iter().zip(&at.value) {
-            whole[*node as usize] += p.area * v;
-            share_of_area[*node as usize] += p.area / own.len() as f64;
-        }
-    }
-    let weightless: Vec<bool> = whole.iter().zip(&share_of_area).map(|(w, a)| *w < WEIGHTLESS * a).collect();
+    let weightless = without_integral(slave, nodes, &|_, _| None);
     let weak: Vec<bool> = (0..nodes.len()).map(|k| weightless[k] || folded(k as u32)).collect();
     let pairs = fold(nodes, &weak, &vec![true; nodes.len()]);
     pairs.into_iter().map(|[from, to]| Given { from, to, weightless: weightless[from as usize] }).collect()
+}
+
+/// Whether the functions of the nodes have no integral on flat faces. A little curvature gives them a little, of either
+/// sign, and a force divided by that is no pressure.
+fn without_integral<const D: usize>(
+    slave: &dyn ContactSurface<D>,
+    nodes: &PressureNodes<D>,
+    change: &dyn Fn(CellShape, usize) -> Change,
+) -> Vec<bool> {
+    let (mut whole, mut share_of_area) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
+    let (mut at, mut linear) = (Values::default(), Values::default());
+    let mut flats: Vec<CellMap> = Vec::new();
+    for face in 0..nodes.face_count() {
+        let map = nodes.map(face);
+        let flat = flats.iter().position(|f| f.shape() == map.shape()).unwrap_or_else(|| {
+            flats.push(CellMap::new(map.shape(), 1));
+            flats.len() - 1
+        });
+        let flat = &flats[flat];
+        let corners: Vec<Point<D>> = flat.nodes().iter().map(|s| slave.at(face, s).x).collect();
+        let change = change(map.shape(), map.order());
+        let own = nodes.of_face(face);
+        for (s, w) in rule(map.shape(), map.order() + 2) {
+            map.tabulate(&s, &mut at);
+            flat.tabulate(&s, &mut linear);
+            let x: Point<D> = corners.iter().zip(&linear.value).map(|(x, v)| x * *v).sum();
+            let along = |k: usize| corners.iter().zip(&linear.gradient).map(|(x, g)| x * g[k]).sum::<Point<D>>();
+            let tangents = [along(0), if D == 3 { along(1) } else { Point::zeros() }];
+            let area = w * FacePoint { x, tangents }.area_normal().norm() * slave.measure(&x);
+            for ((node, _), v) in own.iter().zip(changed(&change, &at.value)) {
+                whole[*node as usize] += area * v;
+                share_of_area[*node as usize] += area / own.len() as f64;
+            }
+        }
+    }
+    whole.iter().zip(&share_of_area).map(|(w, a)| *w < WEIGHTLESS * a).collect()
 }
 
 /// The weighted gaps of all pressure nodes that the points cover, at rest.
@@ -273,13 +298,16 @@ fn dual<const D: usize>(functions: &DMatrix<f64>, points: &[GapPoint<D>], cover:
     }
 }
 
+/// The nodes of a quadratic triangle beside each mid-edge node, from which they take a share.
+type Change = Option<&'static [[usize; 2]]>;
+
 /// Which nodes of a quadratic triangle lie beside each mid-edge node.
-fn quadratic_triangle(shape: CellShape, order: usize) -> Option<&'static [[usize; 2]]> {
+fn quadratic_triangle(shape: CellShape, order: usize) -> Change {
     (shape == CellShape::Triangle && order == 2).then(|| shape.edges())
 }
 
 /// Functions with positive weights: corners of quadratic triangles take a share of the mid-edge functions.
-fn changed(edges: &Option<&'static [[usize; 2]]>, values: &[f64]) -> Vec<f64> {
+fn changed(edges: &Change, values: &[f64]) -> Vec<f64> {
     let mut out = values.to_vec();
     if let Some(edges) = edges {
         for (m, &[a, b]) in edges.iter().enumerate() {

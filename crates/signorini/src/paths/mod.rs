@@ -10,7 +10,7 @@ mod winding;
 mod wrapping;
 
 use crate::output::Folder;
-use crate::output::figure::told;
+use crate::output::figure::exact;
 use crate::plan::paths::Task;
 use crate::problem::units::{FORCE, LENGTH};
 use crate::problem::{Analysis, Problem};
@@ -51,9 +51,9 @@ pub fn sentences(summary: &Value) -> Vec<String> {
     let mut out = Vec::new();
     let unit = |of: &str| summary["units"][of].as_str().unwrap_or_default().to_string();
     let (length, force) = (unit("length"), unit("force"));
-    let number = |v: &Value| v.as_f64().map_or("-".to_string(), |v| told(v, None, ""));
-    let long = |v: &Value| v.as_f64().map_or("-".to_string(), |v| told(v, None, &length));
-    let strong = |v: &Value| v.as_f64().map_or("-".to_string(), |v| told(v, None, &force));
+    let number = |v: &Value| v.as_f64().map_or("-".to_string(), |v| exact(v, ""));
+    let long = |v: &Value| v.as_f64().map_or("-".to_string(), |v| exact(v, &length));
+    let strong = |v: &Value| v.as_f64().map_or("-".to_string(), |v| exact(v, &force));
     for path in summary["paths"].as_array().into_iter().flatten() {
         let name = path["name"].as_str().unwrap_or_default();
         let frames = path["frames"].as_array().map_or(&[][..], Vec::as_slice);

@@ -6,7 +6,7 @@ use super::output::{Line, LinePoint};
 use super::surface::Surface;
 use crate::output::camera::Camera;
 use crate::output::chart::{self, save, viridis};
-use crate::output::figure::told;
+use crate::output::figure::exact;
 use crate::output::labels::Labels;
 use crate::output::page::{Page, Scale, Sign};
 use crate::output::panel::{Axis, Panel};
@@ -150,7 +150,7 @@ pub fn history(
         let colour = viridis(0.15 + 0.7 * k as f64 / curves.len().max(2) as f64);
         panel.line(points, Sign::Line(colour), 2.0);
         let last = points.last().map_or(0.0, |p| p.1);
-        key.push((Sign::Line(colour), format!("{name}, at the end {}", told(last, None, ""))));
+        key.push((Sign::Line(colour), format!("{name}, at the end {}", exact(last, ""))));
     }
     page.key(&key);
     save(folder, file, &page.finish())

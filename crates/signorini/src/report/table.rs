@@ -1,12 +1,13 @@
 //! The summary as text: the table of the terminal, and the history as CSV.
 
-use super::{ContactReport, StepReport, Summary, UnitNames, signed_size};
+use super::{ContactReport, ErrorEstimate, StepReport, Summary, UnitNames, signed_size};
 use crate::output::figure::figure;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The increments as a table, one line for each contact; the columns of what no increment has are left out.
 pub fn table(summary: &Summary) -> String {
-    let lines: Vec<(&StepReport, Option<(&str, &ContactReport)>)> = (summary.steps.iter())
+    let steps = with_errors(&summary.steps);
+    let lines: Vec<(&StepReport, Option<(&str, &ContactReport)>)> = (steps.iter())
         .flat_map(|step| {
             let of: Vec<_> = step.contacts.iter().map(|(name, c)| (step, Some((name.as_str(), c)))).collect();
             if of.is_empty() { vec![(step, None)] } else { of }
@@ -48,6 +49,25 @@ pub fn table(summary: &Summary) -> String {
         }
     }
     rows.iter().map(|row| format!("{}\n", row.trim_end())).collect()
+}
+
+/// The increments, those without ± of their own with those of the last, relative to its figures.
+fn with_errors(steps: &[StepReport]) -> Vec<StepReport> {
+    let mut out = steps.to_vec();
+    let known = steps.last().into_iter().flat_map(|s| &s.contacts);
+    for (name, known, errors) in known.filter_map(|(name, c)| Some((name, c, c.error_estimate?))) {
+        for contact in out.iter_mut().filter_map(|s| s.contacts.get_mut(name)) {
+            let scaled = |error: f64, of: fn(&ContactReport) -> f64| error * (of(contact) / of(known)).abs();
+            let estimate = ErrorEstimate {
+                front: None,
+                area: scaled(errors.area, |c| c.area),
+                force: scaled(errors.force, |c| signed_size(&c.force)),
+                max_pressure: errors.max_pressure.map(|e| scaled(e, |c| c.max_pressure)),
+            };
+            contact.error_estimate.get_or_insert(estimate);
+        }
+    }
+    out
 }
 
 /// How far a radius may be off: relatively no more than the area that it is taken from.

@@ -24,11 +24,13 @@ pub(super) use setup::{OPERATIONS_PER_SECOND, cost, judge, memory, model};
 use setup::{at_time, blamed};
 use signorini_geometry::Point;
 use signorini_solid::{Circumstances, ContactResult, Model as Solids, RigidGap, State};
+use signorini_solve::cholesky::Cost;
 use signorini_solve::{Iteration, Progress};
 use std::path::Path;
 
-/// The most unknowns of one degree more for which errors are estimated, in the plane; they take a fraction of a second.
-const AFFORDABLE: usize = 30_000;
+/// The most unknowns of one degree more, and the seconds of their factorisation, for which errors are estimated.
+const AFFORDABLE: f64 = 30_000.0;
+const AFFORDABLE_SECONDS: f64 = 2.0;
 
 /// Solids on their way through their history.
 pub struct SolidModel<const D: usize> {
@@ -115,14 +117,16 @@ impl<const D: usize> SolidModel<D> {
     /// What the cells leave uncertain, in the last step: the change with functions of one degree more, or with cells of half
     /// the size where there are none. Not where they are too many.
     fn estimate(&self, time: f64, state: &State<D>, step: &mut StepReport) {
-        // In space unknowns cost several times as much.
-        let most = if D == 3 { AFFORDABLE / 4 } else { AFFORDABLE };
         let unknowns = self.plan.growth() * self.solids.unknowns() as f64;
-        if self.plan.contacts.is_empty() || unknowns > most as f64 {
+        if self.plan.contacts.is_empty() || unknowns > AFFORDABLE {
             return;
         }
         let plan = self.plan.finer();
         let Ok(mut fine) = model(&plan) else { return };
+        let affordable = |cost: &Cost| cost.operations <= AFFORDABLE_SECONDS * OPERATIONS_PER_SECOND;
+        if !cost(&plan, &fine).is_ok_and(|cost| affordable(&cost)) {
+            return;
+        }
         let solved = at_time(&plan, &mut fine, time, |model, now| model.solve(now, &mut |_, _| true));
         let Ok(Ok(fine)) = solved else { return };
         for ((contact, coarse), fine) in self.plan.contacts.iter().zip(&state.contacts).zip(&fine.contacts) {

@@ -10,10 +10,10 @@ use crate::multiplier::PressureNodes;
 use crate::segments::GapPoint;
 use crate::surface::{ContactSurface, FacePoint};
 use nalgebra::DMatrix;
-use signorini_fem::CellShape;
-use signorini_fem::cell_map::CellMap;
-use signorini_fem::hierarchic::Values;
-use signorini_fem::rules::rule;
+use signorini_basis::CellShape;
+use signorini_basis::cell_map::CellMap;
+use signorini_basis::hierarchic::Values;
+use signorini_basis::rules::rule;
 use signorini_geometry::Point;
 
 /// The weighted gap of one pressure node, linear in the displacement: `∫ ψ_k g = gap + Σ coefficient · unknown ≥ 0`.

@@ -4,9 +4,9 @@
 //! there. A node on a feature edge, where normals differ by more than [`FEATURE_ANGLE`], exists once per side of it.
 
 use crate::surface::ContactSurface;
-use signorini_fem::cell_map::CellMap;
-use signorini_fem::hierarchic::Values;
-use signorini_fem::{CellShape, Local};
+use signorini_basis::cell_map::CellMap;
+use signorini_basis::hierarchic::Values;
+use signorini_basis::{CellShape, Local};
 use signorini_geometry::Point;
 use std::collections::HashMap;
 

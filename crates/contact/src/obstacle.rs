@@ -6,7 +6,7 @@
 
 use crate::kinematics::{Kinematics, Partner, ShapeFunction};
 use crate::surface::ContactSurface;
-use signorini_fem::{CellShape, Local};
+use signorini_basis::{CellShape, Local};
 use signorini_geometry::body::Body;
 use signorini_geometry::closest::{FeatureKind, Query};
 use signorini_geometry::measures::PartnerJet;

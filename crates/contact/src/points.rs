@@ -12,8 +12,8 @@ use crate::recovery::unpressed;
 use crate::segments::GapPoint;
 use crate::surface::{ContactSurface, looks_at};
 use rayon::prelude::*;
-use signorini_fem::Local;
-use signorini_fem::rules::rule;
+use signorini_basis::Local;
+use signorini_basis::rules::rule;
 use signorini_geometry::Point;
 
 /// A point of the slave side, and how much its gap counts in which rows.
@@ -48,7 +48,7 @@ impl Tests {
     pub fn at_nodes<const D: usize>(slave: &dyn ContactSurface<D>, nodes: &PressureNodes<D>, given: &[Given]) -> Self {
         let mut weight = vec![0.0; nodes.len()];
         let mut place: Vec<Option<(usize, Local)>> = vec![None; nodes.len()];
-        let mut at = signorini_fem::hierarchic::Values::default();
+        let mut at = signorini_basis::hierarchic::Values::default();
         for p in unpressed(slave, nodes) {
             nodes.map(p.face).tabulate(&p.s, &mut at);
             for ((node, _), v) in nodes.of_face(p.face).iter().zip(&at.value) {

@@ -11,9 +11,9 @@
 use crate::mortar::Given;
 use crate::multiplier::PressureNodes;
 use crate::surface::ContactSurface;
-use signorini_fem::Local;
-use signorini_fem::hierarchic::Values;
-use signorini_fem::rules::rule;
+use signorini_basis::Local;
+use signorini_basis::hierarchic::Values;
+use signorini_basis::rules::rule;
 use signorini_solve::SymmetricMatrix;
 use signorini_solve::cholesky::Symbolic;
 

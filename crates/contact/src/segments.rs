@@ -10,9 +10,9 @@ mod space;
 use crate::multiplier::PressureNodes;
 use crate::surface::ContactSurface;
 use plane::intervals;
-use signorini_fem::hierarchic::Values;
-use signorini_fem::rules::rule;
-use signorini_fem::{CellShape, Local};
+use signorini_basis::hierarchic::Values;
+use signorini_basis::rules::rule;
+use signorini_basis::{CellShape, Local};
 use signorini_geometry::bvh::Bvh;
 use signorini_geometry::rigid_shape::GapJet;
 use signorini_geometry::{Aabb, Matrix, Point, Vector};
@@ -285,7 +285,7 @@ fn onto_master<const D: usize>(
                 Vector::<3>::from_fn(|k, _| point.tangents[1][k]),
                 Vector::<3>::from_fn(|k, _| -normal[k]),
             ]);
-            let step = signorini_fem::small::inverse(&jacobian) * Vector::<3>::from_fn(|k, _| d[k]);
+            let step = signorini_basis::small::inverse(&jacobian) * Vector::<3>::from_fn(|k, _| d[k]);
             let mut moved = 0.0f64;
             for k in 0..2 {
                 let next = (eta[k] - step[k]).clamp(-3.0, 3.0);

@@ -1,7 +1,7 @@
 //! What contact sees of a discretised body: faces with positions, and the functions that move them.
 
 use crate::kinematics::ShapeFunction;
-use signorini_fem::{CellShape, Local};
+use signorini_basis::{CellShape, Local};
 use signorini_geometry::Point;
 
 /// A point of a face.

@@ -10,7 +10,7 @@ use crate::multiplier::PressureNodes;
 use crate::recovery::Pressed;
 use crate::surface::ContactSurface;
 use nalgebra::{DMatrix, DVector};
-use signorini_fem::{CellShape, Local};
+use signorini_basis::{CellShape, Local};
 use signorini_geometry::Point;
 use std::collections::BTreeSet;
 

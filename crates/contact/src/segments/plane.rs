@@ -3,9 +3,9 @@
 use super::{FACING, GapPoint, SNAP, onto_master, onto_slave, snapped};
 use crate::multiplier::PressureNodes;
 use crate::surface::ContactSurface;
-use signorini_fem::CellShape;
-use signorini_fem::hierarchic::Values;
-use signorini_fem::rules::rule;
+use signorini_basis::CellShape;
+use signorini_basis::hierarchic::Values;
+use signorini_basis::rules::rule;
 
 pub(super) fn intervals<const D: usize>(
     slave: &dyn ContactSurface<D>,

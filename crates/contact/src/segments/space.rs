@@ -3,9 +3,9 @@
 use super::{FACING, GapPoint, onto_master, snapped};
 use crate::multiplier::PressureNodes;
 use crate::surface::ContactSurface;
-use signorini_fem::hierarchic::Values;
-use signorini_fem::rules::{Rule, rule};
-use signorini_fem::{CellShape, Local};
+use signorini_basis::hierarchic::Values;
+use signorini_basis::rules::{Rule, rule};
+use signorini_basis::{CellShape, Local};
 use signorini_geometry::{Point, Vector};
 
 /// A flat part of a face: corners in coordinates of the face and in space.

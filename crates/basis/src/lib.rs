@@ -1,0 +1,20 @@
+//! Reference cells: shapes, functions, maps to space and quadrature. What any discretisation and contact share; it knows no
+//! meshes.
+//!
+//! - [`mod@reference`]: the shapes of cells, with their edges and sides.
+//! - [`hierarchic`]: integrated Legendre functions, the unknowns of solids.
+//! - [`lagrange`]: tensor-product Lagrange bases of any degree on Gauss-Lobatto points.
+//! - [`cell_map`]: Lagrange functions that map reference cells to space.
+//! - [`rules`]: quadrature on reference cells.
+//! - [`small`]: inverses of small matrices.
+
+pub mod cell_map;
+pub mod hierarchic;
+pub mod lagrange;
+pub mod reference;
+pub mod rules;
+pub mod small;
+
+pub use lagrange::TensorBasis;
+pub use reference::{CellShape, Local};
+pub use signorini_geometry::rule::gauss_legendre;

@@ -13,9 +13,11 @@
 //! space too, with the curves in which surfaces intersect; [`simplices`] cuts sub-cells along chords.
 
 pub mod height;
+mod material;
 pub mod simplices;
 
 pub use height::{End, height_functions};
+pub use material::material;
 pub use simplices::{space_tree, sub_cells};
 
 use signorini_geometry::rule::gauss_legendre;
@@ -427,7 +429,7 @@ fn bracketed_root(a: (f64, (f64, f64)), b: (f64, (f64, f64)), f: &mut impl FnMut
 mod tests {
     use super::*;
     use crate::Grid;
-    use signorini_geometry::{Ellipse, Line};
+    use signorini_geometry::{Ellipsoid, HalfSpace};
     use std::f64::consts::PI;
 
     struct Inside<'a>(&'a dyn ImplicitShape<2>);
@@ -435,22 +437,11 @@ mod tests {
     impl Partition<2> for Inside<'_> {
         fn in_cell(&self, _: usize, _: &Aabb<2>) -> CellPartition<'_, 2> {
             CellPartition {
-                sheets: vec![Box::new(Borrowed(self.0))],
+                sheets: vec![Box::new(self.0)],
                 tags: vec![7],
                 features: Vec::new(),
                 region: Box::new(|_, v| u32::from(v[0] < 0.0)),
             }
-        }
-    }
-
-    struct Borrowed<'a>(&'a dyn ImplicitShape<2>);
-
-    impl ImplicitShape<2> for Borrowed<'_> {
-        fn value(&self, x: &Point<2>) -> f64 {
-            self.0.value(x)
-        }
-        fn gradient(&self, x: &Point<2>) -> Vector<2> {
-            self.0.gradient(x)
         }
     }
 
@@ -481,7 +472,7 @@ mod tests {
     fn circles_of_any_size_have_their_area_and_perimeter() {
         // The third touches grid lines; the last lies within a cell's width.
         for (center, r) in [([0.0, 0.0], 0.6), ([0.01, 0.02], 0.9), ([0.0, 0.0], 0.618), ([0.1, -0.3], 0.2)] {
-            let disc = Ellipse { center: center.into(), semi_axes: [r, r] };
+            let disc = Ellipsoid { center: center.into(), semi_axes: [r, r] };
             let (area, perimeter, closed, flux) = measures(&disc, 10, 9);
             assert!((area - PI * r * r).abs() < 1e-11, "radius {r}: {}", area - PI * r * r);
             assert!((perimeter - 2.0 * PI * r).abs() < 1e-10, "radius {r}: {}", perimeter - 2.0 * PI * r);
@@ -492,14 +483,14 @@ mod tests {
 
     #[test]
     fn the_error_falls_with_the_order_of_the_rule() {
-        let disc = Ellipse { center: Point::zeros(), semi_axes: [0.6, 0.6] };
+        let disc = Ellipsoid { center: Point::zeros(), semi_axes: [0.6, 0.6] };
         let error = |order| (measures(&disc, 10, order).1 - 1.2 * PI).abs();
         assert!(error(5) < 1e-7 && error(6) < 0.2 * error(5) && error(8) < 1e-10);
     }
 
     #[test]
     fn a_straight_line_on_a_grid_line_is_found_once() {
-        let line = Line { point: Point::<2>::new(0.0, 0.0), normal: Vector::<2>::new(1.0, 0.0) };
+        let line = HalfSpace { point: Point::<2>::new(0.0, 0.0), normal: Vector::<2>::new(1.0, 0.0) };
         let (area, perimeter, ..) = measures(&line, 10, 3);
         assert!((area - 2.06 * 1.03).abs() < 1e-13 && (perimeter - 2.06).abs() < 1e-13);
     }

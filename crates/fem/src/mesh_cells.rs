@@ -903,7 +903,7 @@ impl ImplicitShape<2> for Drawn<'_> {
 mod tests {
     use super::*;
     use crate::cut::RegionId;
-    use signorini_geometry::{Ellipse, ImplicitShape};
+    use signorini_geometry::{Ellipsoid, ImplicitShape};
 
     /// A curved triangle, and beside it a curved quadrilateral with a straight corner, as mesh generators put them at
     /// round edges: three of its corners lie on one circle, the Jacobian at the middle one nearly vanishes.
@@ -982,25 +982,14 @@ mod tests {
         }
     }
 
-    struct Borrowed<'a>(&'a Ellipse);
-
-    impl ImplicitShape<2> for Borrowed<'_> {
-        fn value(&self, x: &Point<2>) -> f64 {
-            self.0.value(x)
-        }
-        fn gradient(&self, x: &Point<2>) -> Vector<2> {
-            self.0.gradient(x)
-        }
-    }
-
     #[test]
     fn parts_of_a_cut_cell_add_up_and_fluxes_balance() {
         let cells = cells(1);
         // Each cuts off another part, the first at the vertex that the triangle and the quadrilateral share.
         for (center, radius) in [([0.62, 0.6], 0.07), ([0.75, 0.3], 0.2), ([0.0, 0.0], 0.93)] {
-            let disc = Ellipse { center: center.into(), semi_axes: [radius; 2] };
+            let disc = Ellipsoid { center: center.into(), semi_axes: [radius; 2] };
             let partition = CellPartition {
-                sheets: vec![Box::new(Borrowed(&disc))],
+                sheets: vec![Box::new(&disc)],
                 tags: vec![0],
                 features: Vec::new(),
                 region: Box::new(|_, v| RegionId::from(v[0] < 0.0)),

@@ -9,7 +9,7 @@ use crate::problem::{self, Domain, List, Mesh, Problem, Space};
 use crate::problem::{CaseError, KeyPath, Location, Value};
 use signorini_fem::mesh_cells::MOST_ON_TRIANGLES;
 use signorini_fem::{Cells, Grid, Mesh as FemMesh, MeshCells, RefinedGrid};
-use signorini_geometry::{Aabb, Ellipse, ImplicitShape, Jet, Point, Real, Vector, polygon};
+use signorini_geometry::{Aabb, Ellipsoid, ImplicitShape, Jet, Point, Real, Vector, polygon};
 use signorini_membrane::domain::{
     BoxDomain, CellStatus, Domain as MembraneDomain, DomainOnCells, ImplicitDomain, MeshDomain, PolygonDomain,
 };
@@ -442,7 +442,7 @@ impl ReadDomain<2> for Planner<'_> {
         let ellipse = |center: Point<2>, semi_axes: [f64; 2]| {
             let half = Vector::<2>::from(semi_axes);
             let bounds = Aabb::new(center - half, center + half).scaled(MARGIN);
-            (Arc::new(ImplicitDomain(Ellipse { center, semi_axes })) as Arc<dyn MembraneDomain<2>>, bounds, whole())
+            (Arc::new(ImplicitDomain(Ellipsoid { center, semi_axes })) as Arc<dyn MembraneDomain<2>>, bounds, whole())
         };
         Ok(match key {
             Domain::Disc(disc) => {

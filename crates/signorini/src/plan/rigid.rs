@@ -11,7 +11,8 @@ use crate::problem::{Cylinder, Ellipsoid, Motion, Rigid, Shape, Side, Space};
 use crate::queries::geometry;
 use crate::report::{Warning, WarningKind};
 use signorini_geometry::height_field::{self, HeightField};
-use signorini_geometry::implicit_surface::{ImplicitBody, ImplicitSurface};
+use signorini_geometry::implicit::Function;
+use signorini_geometry::implicit_surface::ImplicitSurface;
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::{ClosestPoints, GapJet, Normals, RigidShape};
 use signorini_geometry::shape::{Shape as Geometry, ShapeError};
@@ -304,7 +305,7 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
                     expression.evaluate(&Scope { position, time: Jet::<3>::constant(0.0) })
                 };
                 let bounds = flat_box::<D>(low, high);
-                Arc::new(ImplicitSurface::new(ImplicitBody::field(field), bounds, cells).map_err(wrong)?)
+                Arc::new(ImplicitSurface::new(Function(field).into(), bounds, cells).map_err(wrong)?)
             }
             Shape::Height(value) => {
                 // The body below the height: z - h(x, y), or y - h(x) in the plane.
@@ -315,7 +316,7 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
                     let position = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));
                     position[up] - height.evaluate(&Scope { position, time: Jet::<3>::constant(0.0) })
                 };
-                let surface = ImplicitSurface::new(ImplicitBody::field(field), *around, 64).map_err(|e| {
+                let surface = ImplicitSurface::new(Function(field).into(), *around, 64).map_err(|e| {
                     wrong(e).help("the height must cross the box around the solids, twice as long as they are")
                 })?;
                 Arc::new(surface)
@@ -337,7 +338,7 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
                     let [x, y, z] = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));
                     z - height_field::evaluate(&map, x, y)
                 };
-                let surface = ImplicitSurface::new(ImplicitBody::field(field), bounds, 96).map_err(|e| {
+                let surface = ImplicitSurface::new(Function(field).into(), bounds, 96).map_err(|e| {
                     wrong(e).help("the heights must lie within the box around the solids, twice as long as they are")
                 })?;
                 Arc::new(surface)

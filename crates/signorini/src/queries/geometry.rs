@@ -9,7 +9,8 @@ use crate::expression::{Names, Scope, parse};
 use crate::mesh_file;
 use serde_json::{Map, Value};
 use signorini_geometry::grid_spline::GridSpline;
-use signorini_geometry::implicit_surface::{ImplicitBody, ImplicitSurface};
+use signorini_geometry::implicit::{Function, ImplicitBody, Offset};
+use signorini_geometry::implicit_surface::ImplicitSurface;
 use signorini_geometry::jet::{Jet, Real};
 use signorini_geometry::mesh::TriangleMesh;
 use signorini_geometry::shape::{Axes, Curve, Shape, ShapeError, Surface};
@@ -464,14 +465,14 @@ fn implicit(
     bounds: &Aabb<3>,
     cells: usize,
     depth: usize,
-) -> Result<ImplicitBody, FieldError> {
+) -> Result<ImplicitBody<3>, FieldError> {
     let mut f = Fields::new(path, value)?;
     if depth > DEEPEST {
         return Err(FieldError { path: path.into(), message: format!("nested more than {DEEPEST} deep") });
     }
     const KINDS: [&str; 5] = ["value", "union", "intersection", "difference", "offset"];
     let kind = KINDS.into_iter().chain(["grid"]).find(|k| f.object.contains_key(*k));
-    let parts = |f: &mut Fields<'_>, key: &'static str| -> Result<Vec<ImplicitBody>, FieldError> {
+    let parts = |f: &mut Fields<'_>, key: &'static str| -> Result<Vec<ImplicitBody<3>>, FieldError> {
         let entry = f.object.get(key).ok_or_else(|| f.error(key, "missing"))?;
         f.taken.push(key);
         let array = f.array_of(key, entry)?;
@@ -489,25 +490,26 @@ fn implicit(
             let text = f.text("value")?;
             let names = Names { variables: vec!["x", "y", "z"], ..Default::default() };
             let expression = parse(text, &names).map_err(|e| f.error("value", format!("`{text}`: {}", e.message)))?;
-            ImplicitBody::field(move |x: &Point<3>| {
+            let level = move |x: &Point<3>| {
                 let position = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));
                 expression.evaluate(&Scope { position, time: Jet::<3>::constant(0.0) })
-            })
+            };
+            Function(level).into()
         }
         Some("union") => ImplicitBody::Union(parts(&mut f, "union")?),
         Some("intersection") => ImplicitBody::Intersection(parts(&mut f, "intersection")?),
         Some("difference") => {
             let two = parts(&mut f, "difference")?;
-            let [a, b] = <[ImplicitBody; 2]>::try_from(two)
+            let [a, b] = <[ImplicitBody<3>; 2]>::try_from(two)
                 .map_err(|t| f.error("difference", format!("{} bodies instead of 2", t.len())))?;
-            a.difference(b)
+            a.without(b)
         }
         Some("offset") => {
             let inner = f.required("offset")?;
             let distance = f.number("distance")?;
             let body = implicit(&f.error("offset", "").path, inner, bounds, cells, depth + 1)?;
             let surface = ImplicitSurface::new(body, *bounds, cells).map_err(|e| f.shape_error(&e))?;
-            ImplicitBody::Offset(Arc::new(surface), distance)
+            Offset { shape: Arc::new(surface), distance }.into()
         }
         Some("grid") => {
             let grid = f.required("grid")?;
@@ -522,7 +524,7 @@ fn implicit(
             let field =
                 GridSpline::new(origin, spacing, count.map(|n| n as usize), values).map_err(|e| g.shape_error(&e))?;
             g.finish(&[])?;
-            ImplicitBody::field(field)
+            field.into()
         }
         _ => {
             return Err(FieldError { path: path.into(), message: format!("one of {}, grid wanted", KINDS.join(", ")) });

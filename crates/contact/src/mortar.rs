@@ -6,7 +6,7 @@
 //! quadratic triangles have no weight of their own and take a share of their neighbours (Popp, Wohlmuth, Gee & Wall
 //! 2012). A node that is hardly covered gives its function to a neighbour.
 
-use crate::multiplier::PressureNodes;
+use crate::multiplier::{Given, PressureNodes};
 use crate::recovery::unpressed;
 use crate::segments::GapPoint;
 use crate::surface::ContactSurface;
@@ -233,15 +233,6 @@ pub(crate) fn weighted<const D: usize>(
         touched.into_iter().for_each(|node| compress(&mut rows[node as usize].terms));
     }
     rows
-}
-
-/// A node that gave its function to another and shares its pressure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Given {
-    pub from: u32,
-    pub to: u32,
-    /// Because its function has no weight anywhere.
-    pub weightless: bool,
 }
 
 /// Adds up entries of the same unknown.

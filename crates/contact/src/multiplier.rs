@@ -158,3 +158,12 @@ fn place(shape: CellShape, vertices: &[u32], face: usize, node: usize, s: &Local
     }
     Place::Interior(face as u32, node as u32)
 }
+
+/// A node that gave its function to another and shares its pressure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Given {
+    pub from: u32,
+    pub to: u32,
+    /// Because its function has no weight anywhere.
+    pub weightless: bool,
+}

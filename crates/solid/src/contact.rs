@@ -1,8 +1,8 @@
 //! Two sides that may touch: how their contact is tested and kept, and what it came to.
 
 use crate::body::BodySurface;
-use crate::friction::{Friction, FrictionResult, RigidMotion, Rubbing, SlipHistory};
-use crate::model::StepError;
+use crate::friction::statement::{Friction, FrictionResult, RigidMotion, Rubbing, SlipHistory};
+use crate::step_error::StepError;
 use crate::supports::Reduction;
 use nalgebra::{DMatrix, DVector};
 use signorini_contact::{

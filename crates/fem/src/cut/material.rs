@@ -1,6 +1,6 @@
 //! The partition that an implicit body makes: material (region 1) and the rest (region 0).
 
-use super::CellPartition;
+use super::partition::CellPartition;
 use signorini_geometry::ImplicitShape;
 use signorini_geometry::implicit::{Complement, ImplicitBody};
 

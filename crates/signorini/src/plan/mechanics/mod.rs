@@ -13,8 +13,8 @@ mod winches;
 pub(in crate::plan) use contacts::is_tangent;
 pub use fields::Wrong;
 
-use super::domain::check_memory;
 use super::head::Head;
+use super::memory::check_memory;
 use super::planner::Planner;
 use crate::problem::units::LENGTH;
 use crate::problem::{self, Body, CaseError, Material, Motion, Problem, Space};

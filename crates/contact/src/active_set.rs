@@ -399,3 +399,6 @@ fn add(at: &mut [f64], column: &[f64], factor: f64) {
         *a += factor * c;
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -31,6 +31,8 @@ pub mod recovery;
 pub mod segments;
 pub mod softness;
 pub mod surface;
+#[cfg(test)]
+mod testing;
 pub mod zone;
 
 pub use active_set::{ActiveSet, ActiveSetError, ContactState};

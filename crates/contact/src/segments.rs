@@ -203,3 +203,48 @@ fn candidates<const D: usize>(
     }
     lists
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Polyline;
+
+    /// A slave from 0 to 2 at height 0.1 + 0.05 x over a master from 0.25 to 3 with other faces.
+    fn sides() -> (Polyline, Polyline) {
+        let slave = Polyline::at(&[0.0, 0.6, 1.3, 2.0], |x| 0.1 + 0.05 * x);
+        let master = Polyline::at(&[3.0, 1.7, 0.9, 0.25], |_| 0.0);
+        (slave, master)
+    }
+
+    #[test]
+    fn points_cover_what_both_sides_have_in_common_with_their_gaps() {
+        let (slave, master) = sides();
+        let nodes = PressureNodes::new(&slave);
+        let points = segments(&slave, &master, &nodes, 1.0);
+        let slope = 0.05f64.hypot(1.0);
+        let (mut length, mut moment) = (0.0, 0.0);
+        for (face, p) in points.iter().enumerate().flat_map(|(face, list)| list.iter().map(move |p| (face, p))) {
+            let (m, s) = p.master.unwrap();
+            let (x, y) = (slave.at(face, &p.s).x, master.at(m as usize, &s).x);
+            // Along the normal of the slave to the master below it.
+            assert!((x - y - p.gap * p.direction).norm() < 1e-13 && p.gap > 0.0);
+            assert!((p.direction - Point::<2>::new(-0.05, 1.0) / slope).norm() < 1e-13);
+            assert!((p.gap - x[1] * slope).abs() < 1e-13);
+            length += p.weight;
+            moment += p.weight * x[0];
+        }
+        // From where the normal of the slave meets the left end of the master.
+        let start = (0.25 - 0.05 * 0.1) / (1.0 + 0.05 * 0.05);
+        assert!((length - (2.0 - start) * slope).abs() < 1e-12, "{length}");
+        assert!((moment - 0.5 * (4.0 - start * start) * slope).abs() < 1e-12, "{moment}");
+    }
+
+    #[test]
+    fn what_faces_away_or_is_out_of_reach_is_not_seen() {
+        let (slave, master) = sides();
+        let nodes = PressureNodes::new(&slave);
+        let away = Polyline(master.0.iter().rev().copied().collect());
+        assert!(segments(&slave, &away, &nodes, 1.0).iter().all(Vec::is_empty));
+        assert!(segments(&slave, &master, &nodes, 0.05).iter().all(Vec::is_empty));
+    }
+}

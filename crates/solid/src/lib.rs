@@ -44,3 +44,6 @@ pub use solid_body::{EdgeError, EdgeOf, SolidBody, SolidError};
 pub use state::State;
 pub use step_error::StepError;
 pub use supports::{Support, SupportError, SupportKind};
+
+#[cfg(test)]
+mod tests;

@@ -240,3 +240,58 @@ fn turned_over(shape: CellShape, order: usize, nodes: &[u32]) -> Vec<u32> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(list: [u32; 4]) -> Result<GmshFile, String> {
+        let points = vec![[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        GmshFile::from_arrays(points, &[ListedCells { shape: "quadrilateral", nodes: &[list.to_vec()] }])
+    }
+
+    /// Cells listed clockwise are turned over: their Jacobian is positive and their area that of the others.
+    #[test]
+    fn a_plane_mesh_that_faces_down_is_turned_over() {
+        for list in [[0, 1, 2, 3], [0, 3, 2, 1]] {
+            let mesh = square(list).unwrap().mesh::<2>(None).unwrap();
+            let points = crate::rules::rule(CellShape::Quadrilateral, 2);
+            let mut at = crate::hierarchic::Values::default();
+            let area: f64 = (points.iter())
+                .map(|(s, w)| {
+                    mesh.map(0).tabulate(s, &mut at);
+                    w * mesh.jacobian(0, &at).1.determinant()
+                })
+                .sum();
+            assert!((area - 2.0).abs() < 1e-15, "{list:?}: {area}");
+            assert_eq!(mesh.groups()["boundary"].sides.len(), 4);
+        }
+    }
+
+    #[test]
+    fn arrays_that_make_no_cells_are_told_by_their_place() {
+        assert_eq!(
+            square([0, 1, 2, 4]).unwrap_err(),
+            "cell 0 of the quadrilaterals: there is no point 4, the last is 3"
+        );
+        let five = ListedCells { shape: "triangle", nodes: &[vec![0, 1, 2, 3, 0]] };
+        let told = GmshFile::from_arrays(vec![[0.0; 3]; 4], &[five]).unwrap_err();
+        assert_eq!(told, "cell 0 of the triangles: no such cell has 5 nodes");
+    }
+
+    /// A quadrilateral of eight nodes gets the ninth of the serendipity map: minus a quarter of the corners, half of the rest.
+    #[test]
+    fn serendipity_cells_get_their_missing_node() {
+        let corner = [[0.0, 0.0], [2.0, 0.1], [2.2, 1.0], [0.1, 1.3]];
+        let middle = [[1.0, -0.2], [2.3, 0.5], [1.1, 1.4], [0.0, 0.6]];
+        let points: Vec<[f64; 3]> = corner.iter().chain(&middle).map(|[x, y]| [*x, *y, 0.0]).collect();
+        let file = GmshFile::from_arrays(points, &[ListedCells { shape: "quadrilateral", nodes: &[(0..8).collect()] }])
+            .unwrap();
+        let mesh = file.mesh::<2>(None).unwrap();
+        let mut at = crate::hierarchic::Values::default();
+        mesh.map(0).tabulate(&[0.0; 3], &mut at);
+        let sum = |list: &[[f64; 2]; 4], k: usize| list.iter().map(|x| x[k]).sum::<f64>();
+        let exact = Point::<2>::from_fn(|k, _| 0.5 * sum(&middle, k) - 0.25 * sum(&corner, k));
+        assert!((mesh.position(0, &at) - exact).norm() < 1e-15);
+    }
+}

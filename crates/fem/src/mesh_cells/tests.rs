@@ -134,3 +134,41 @@ fn sides_in_the_same_groups_are_one_piece() {
     let names: Vec<(&str, usize)> = cells.groups().iter().map(|(n, p)| (n.as_str(), p.len())).collect();
     assert_eq!(names, [("arc", 1), ("boundary", 2)]);
 }
+
+/// The point next to one outside is on the boundary, and the way to it is along the normal or ends in a corner.
+#[test]
+fn the_boundary_is_found_from_both_sides() {
+    let cells = cells(1);
+    let b = *cells.bounds();
+    for k in 0..40 {
+        let t = 0.157 * f64::from(k);
+        let x = b.center() + 0.9 * b.radius() * Point::<2>::new(t.cos(), t.sin());
+        let Some(y) = cells.closest_on_boundary(&x, 4.0 * b.radius()) else { panic!("none for {x:?}") };
+        let sampled = cells
+            .boundary_sides()
+            .into_iter()
+            .flat_map(|side| (0..=200).map(|i| cells.on_side(&side, f64::from(i) / 200.0).x).collect::<Vec<_>>());
+        let least = sampled.map(|z| (z - x).norm()).fold(f64::INFINITY, f64::min);
+        // The foot on a curve is known to a fraction of a cell, the samples to one part in two hundred of a side.
+        assert!((y - x).norm() <= least + 0.02 * b.radius(), "{x:?}: {} beside {least}", (y - x).norm());
+        assert!(cells.closest_on_boundary(&x, 0.9 * least - 0.02 * b.radius()).is_none() || least < 0.03);
+    }
+}
+
+/// A vertex of the divided mesh is the mean of those of its parent that are named for it: so is a function of degree 1.
+#[test]
+fn divided_cells_know_the_functions_of_their_parent() {
+    let coarse = Arc::new(cells(1));
+    let fine = coarse.refined();
+    let parent = fine.parent().unwrap();
+    let slope = |x: &Point<2>| 0.3 + 0.7 * x[0] - 0.4 * x[1];
+    for cell in 0..fine.count() {
+        if !coarse.is_straight(cell / 4) {
+            continue;
+        }
+        for &function in fine.corner_functions(cell).iter() {
+            let mean: f64 = parent.nodes[function as usize].iter().map(|f| slope(&coarse.node(*f as usize))).sum();
+            assert!((0.25 * mean - slope(&fine.node(function as usize))).abs() < 1e-14);
+        }
+    }
+}

@@ -111,7 +111,7 @@ impl Planner<'_> {
             let law = self.law(friction, 3)?;
             contact.axis = match friction {
                 problem::Friction::Coulomb(coulomb) => self.axis_choice(coulomb)?,
-                problem::Friction::Tresca(_) | problem::Friction::Viscous(_) => AxisChoice::Material,
+                _ => AxisChoice::Material,
             };
             contact.friction = Some(law);
         }
@@ -161,7 +161,7 @@ impl Planner<'_> {
                 contact.friction = Some(self.law(friction, 3)?);
                 match friction {
                     problem::Friction::Coulomb(coulomb) => self.axis_choice(coulomb)?,
-                    problem::Friction::Tresca(_) | problem::Friction::Viscous(_) => AxisChoice::Tangent,
+                    _ => AxisChoice::Tangent,
                 }
             }
             None => AxisChoice::Tangent,

@@ -88,6 +88,7 @@ impl Planner<'_> {
             let (method, enforcement) = self.solid_method(key)?;
             let friction = key.friction.as_ref().map(|friction| self.friction::<D>(friction)).transpose()?;
             let mut add = |name: String, (body, sides, whole): (usize, Vec<Side>, bool), opposite| {
+                let friction = friction.clone();
                 out.push(SolidContact { name, body, sides, whole, opposite, method, enforcement, friction });
             };
             match (&key.between, &key.all) {

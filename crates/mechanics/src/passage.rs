@@ -13,7 +13,7 @@ pub use crate::interaction::Way;
 
 use crate::body::{Body, BodyState, PlaceError};
 use crate::contact::Contact;
-use crate::points::{Master, Met};
+use crate::points::Master;
 use crate::system::{AssemblyError, System, SystemState};
 use signorini_geometry::{Point, Vector};
 use std::cell::OnceCell;
@@ -56,16 +56,8 @@ const LONGEST_STEP: f64 = 0.25;
 const MOST_STEPS: usize = 400;
 
 fn meeting(master: &dyn Master, x: &Point<3>, radius: f64) -> Option<Meeting> {
-    match master.nearest(x, f64::INFINITY, None)? {
-        Met::Rigid(foot) => Some((foot.jet.gap - radius, foot.jet.normal)),
-        Met::Foot(foot) | Met::Cut(foot) => {
-            let d = x - foot.jet.x;
-            Some(match foot.outward {
-                Some(outward) => (d.norm() * d.dot(&outward).signum() - radius, outward),
-                None => (d.norm() - radius - foot.radius, d.try_normalize(0.0)?),
-            })
-        }
-    }
+    let (gap, normal) = master.nearest(x, f64::INFINITY, None)?.gap(x)?;
+    Some((gap - radius, normal))
 }
 
 /// A deformable master on a way: a surface that moves is costly to search, so it is known at a few stages, no farther apart

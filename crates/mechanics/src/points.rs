@@ -137,6 +137,22 @@ pub enum Met {
     Rigid(Box<RigidFoot>),
 }
 
+impl Met {
+    /// The gap of a point to what it meets, negative inside, and the normal outward from that; none on a curve itself.
+    pub fn gap(&self, x: &Point<3>) -> Option<(f64, Vector<3>)> {
+        match self {
+            Met::Rigid(foot) => Some((foot.jet.gap, foot.jet.normal)),
+            Met::Foot(foot) | Met::Cut(foot) => {
+                let d = x - foot.jet.x;
+                Some(match foot.outward {
+                    Some(outward) => (d.norm() * d.dot(&outward).signum(), outward),
+                    None => (d.norm() - foot.radius, d.try_normalize(0.0)?),
+                })
+            }
+        }
+    }
+}
+
 /// A material point where it is now, with what moves it.
 #[derive(Clone, Debug, Default)]
 pub struct Anchor {

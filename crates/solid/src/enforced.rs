@@ -52,9 +52,6 @@ impl<const D: usize> Model<D> {
                     rows_of.map(|r| -found.gap[r] / rows[r].weight).fold(0.0, f64::max)
                 };
                 match contact.enforcement {
-                    Enforcement::Multiplier
-                    | Enforcement::Nitsche
-                    | Enforcement::Penalty { wanted_penetration: None } => {}
                     Enforcement::Penalty { wanted_penetration: Some(wanted) } => {
                         let reached = deepest(&mut range(k));
                         if reached > 0.0 && !(0.98..=1.02).contains(&(reached / wanted)) {
@@ -76,6 +73,7 @@ impl<const D: usize> Model<D> {
                             again = true;
                         }
                     }
+                    _ => {}
                 }
             }
             if !again || outer + 1 == MOST_OUTER {

@@ -1,7 +1,7 @@
 //! From the statement to bodies of any kind in one system: ropes, beams, free rigid bodies.
 
 pub(crate) mod cells;
-mod contacts;
+pub(super) mod contacts;
 mod curves;
 mod fields;
 mod mortar;

@@ -1,6 +1,7 @@
 //! Contacts of solids: their sides, method and enforcement.
 
 use super::statement::{Opposite, PlannedBody, SolidContact};
+use crate::plan::mechanics::contacts::SMALL_STRAIN;
 use crate::plan::planner::Planner;
 use crate::plan::rigid;
 use crate::problem::units::LENGTH;
@@ -31,25 +32,19 @@ impl Planner<'_> {
         };
         let kept = match stated {
             None if which == ContactMethod::GaussPoint => Kept::Penalty { wanted_penetration: None },
-            None => Kept::Multiplier,
             Some(multiplier @ Enforcement::Multiplier(_)) if which == ContactMethod::GaussPoint => {
                 return Err(self
                     .problem
                     .error(multiplier, "a multiplier at every quadrature point holds the surface too tightly")
                     .help("enforcement.penalty = {}, or method.mortar = {}"));
             }
-            Some(Enforcement::Multiplier(_)) => Kept::Multiplier,
-            Some(Enforcement::AugmentedLagrangian(_)) => Kept::AugmentedLagrangian,
-            Some(Enforcement::Penalty(k)) => Kept::Penalty { wanted_penetration: self.wanted_penetration(k)? },
-            Some(nitsche @ Enforcement::Nitsche(_)) => {
-                if which == ContactMethod::Node {
-                    return Err(self
-                        .problem
-                        .error(nitsche, "Nitsche's method is in the mean or at quadrature points")
-                        .help("method.mortar = { enforcement.nitsche = {} }"));
-                }
-                Kept::Nitsche
+            Some(nitsche @ Enforcement::Nitsche(_)) if which == ContactMethod::Node => {
+                return Err(self
+                    .problem
+                    .error(nitsche, "Nitsche's method is in the mean or at quadrature points")
+                    .help("method.mortar = { enforcement.nitsche = {} }"));
             }
+            stated => self.kept(stated.as_ref(), Kept::Multiplier, SMALL_STRAIN)?,
         };
         Ok((which, kept))
     }

@@ -149,7 +149,7 @@ impl Planner<'_> {
                 }
                 Body::Cells(cells) => (self.cells_body(name, cells, &mut notes)?.body, Kind::Cells),
                 Body::Rigid(_) => continue,
-                Body::Membrane(_) => {
+                _ => {
                     return Err(problem
                         .error(body, format!("the body `{name}` cannot stand in a system of several kinds of bodies"))
                         .help("bodies here are `solid`, `cells`, `rope`, `beam` or `rigid`"));

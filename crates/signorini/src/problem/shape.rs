@@ -1,8 +1,7 @@
 //! Shapes of rigid bodies. Those with a closed form have their keys here, with what the keys say of where the shape stands,
 //! and how they are read: a new one is its file in geometry, and its keys with one arm of [`Shape::closed_form`] here.
 
-use super::rigid::{HeightMap, LevelSetShape, SurfaceFile};
-use super::{CaseError, List, Problem, TriangleArrays, Value};
+use super::{CaseError, Components, List, Problem, TriangleArrays, Value};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use signorini_geometry::Vector;
@@ -327,4 +326,51 @@ impl ClosedForm for Revolution {
         let axis = reader.direction(&self.axis)?;
         Ok(Arc::new(rigid_shape::Revolution { origin, axis, profile: reader.profile(self)? }))
     }
+}
+
+/// Heights on a grid, from a file.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HeightMap {
+    /// The file, found from the folder of the case.
+    pub file: String,
+    /// Distance of the columns (along x) and of the rows (along y).
+    pub spacing: List<Value>,
+    /// Where the first height is.
+    pub origin: Option<List<Value>>,
+    /// The height that one unit of the file stands for.
+    pub scale: Option<Value>,
+    /// Angle in radians by which the map is turned about its origin.
+    pub turn: Option<Value>,
+    /// Displacement after turning, lengths.
+    #[serde(rename = "move")]
+    pub moved: Option<List<Value>>,
+}
+
+/// A body where an expression of x, y and z is negative, within a box.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LevelSetShape {
+    /// An expression of x, y and z.
+    pub negative_inside: Value,
+    /// The lower corner of a box round what matters of it, lengths.
+    pub min: List<Value>,
+    /// The upper corner of the box, lengths.
+    pub max: List<Value>,
+    /// Cells of the grid from which closest points are searched, along the longest side; 64 if left out.
+    pub cells: Option<i64>,
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SurfaceFile {
+    /// The file, found from the folder of the case.
+    pub file: String,
+    /// What one unit of length of the file is in base units, 1 if left out.
+    pub scale: Option<Value>,
+    /// Rotation vector in radians about the origin of the file, after scaling; in the plane one angle.
+    pub turn: Option<Components>,
+    /// Displacement after scaling and turning, lengths.
+    #[serde(rename = "move")]
+    pub moved: Option<List<Value>>,
 }

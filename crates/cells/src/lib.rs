@@ -26,7 +26,6 @@ pub mod description;
 pub mod disc_contact;
 pub mod discretisation;
 pub mod discs;
-pub mod domain;
 pub mod error;
 pub mod facets;
 pub mod fields;
@@ -52,7 +51,6 @@ pub use body::{Cell, CellBody, Field, Findings, Site};
 pub use cell_solid::CellSolid;
 pub use components::Pieces;
 pub use discretisation::{Boundary, Discretisation, Islands, Stuff};
-pub use domain::Domain;
 pub use error::CellsError;
 pub use loads::Load;
 pub use moments::VolumePoints;
@@ -64,3 +62,6 @@ pub use space::{Products, Tabulation};
 pub use supports::{Held, Support};
 pub use system::{Solution, Solved, Solver, System};
 pub use tree::{CellTree, Leaf};
+
+/// Where a body has material: shapes, their unions, intersections and complements.
+pub type Domain<const D: usize> = signorini_geometry::implicit::ImplicitBody<D>;

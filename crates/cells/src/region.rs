@@ -1,9 +1,10 @@
 //! Quadrature of the material in a box, from whatever describes the body.
 
-use crate::domain::{Domain, Restricted};
+use crate::Domain;
 use crate::moments::fitted;
 use signorini_fem::QuadraturePoint;
-use signorini_fem::cut::{End, height::side_points, height_functions, space_tree, sub_cells};
+use signorini_fem::cut::{End, height::side_points, height_functions, material, space_tree, sub_cells};
+use signorini_geometry::implicit::Restricted;
 use signorini_geometry::{Aabb, ImplicitShape, Point, Vector};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -157,7 +158,7 @@ impl<const D: usize> Region<D> for Domain<D> {
             Restricted::Void => return MaterialRule::empty(Filling::Void),
             Restricted::Open(domain) => domain,
         };
-        let partition = domain.partition();
+        let partition = material(&domain);
         let points = integration.points(degree);
         let mut rule = match *integration {
             Integration::Exact { .. } => height_functions(&partition, b, points),
@@ -187,7 +188,7 @@ impl<const D: usize> Region<D> for Domain<D> {
         match self.restricted(b) {
             Restricted::Full => crate::place::side_gauss(b, axis, end, points),
             Restricted::Void => Vec::new(),
-            Restricted::Open(domain) => side_points(&domain.partition(), b, axis, end, points, 1),
+            Restricted::Open(domain) => side_points(&material(&domain), b, axis, end, points, 1),
         }
     }
 

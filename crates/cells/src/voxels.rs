@@ -10,7 +10,7 @@ use signorini_fem::QuadraturePoint;
 use signorini_fem::cut::End;
 use signorini_geometry::grid_spline::GridSpline;
 use signorini_geometry::rule::gauss_legendre;
-use signorini_geometry::{Aabb, ImplicitShape, Matrix, Point, Vector};
+use signorini_geometry::{Aabb, Point};
 use std::sync::Arc;
 
 /// Values of voxels, the first index running fastest.
@@ -87,7 +87,7 @@ impl<const D: usize> Voxels<D> {
     ///
     /// # Errors
     /// A threshold with nothing or everything above it; fewer than four voxels in a direction.
-    pub fn above(&self, threshold: f64, smoothing: f64) -> Result<LevelShape<D>, CellsError> {
+    pub fn above(&self, threshold: f64, smoothing: f64) -> Result<Arc<GridSpline<D>>, CellsError> {
         let (least, most) =
             self.values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), v| (l.min(*v), m.max(*v)));
         if threshold.is_nan() || most <= threshold || least > threshold {
@@ -111,7 +111,7 @@ impl<const D: usize> Voxels<D> {
         let middle = Point::<D>::from_fn(|k, _| self.origin[k] + 0.5 * self.spacing[k]);
         let spline = GridSpline::new(middle, self.spacing, self.count, values.collect())
             .map_err(|_| CellsError::Threshold { threshold, least, most })?;
-        Ok(LevelShape { spline: Arc::new(spline) })
+        Ok(Arc::new(spline))
     }
 
     /// Voxels above a threshold that hang together by their sides with the largest such set keep their value, all others
@@ -155,37 +155,6 @@ impl<const D: usize> Voxels<D> {
             }
         }
         ((all - sizes[best]) as f64 / all as f64, sizes.len() - 1)
-    }
-}
-
-/// What lies above a level of an image.
-#[derive(Clone)]
-pub struct LevelShape<const D: usize> {
-    spline: Arc<GridSpline<D>>,
-}
-
-impl<const D: usize> LevelShape<D> {
-    /// Value, gradient and Hessian.
-    pub fn jet(&self, x: &Point<D>) -> signorini_geometry::Jet<D> {
-        self.spline.jet(x)
-    }
-}
-
-impl<const D: usize> ImplicitShape<D> for LevelShape<D> {
-    fn value(&self, x: &Point<D>) -> f64 {
-        self.spline.value(x)
-    }
-    fn gradient(&self, x: &Point<D>) -> Vector<D> {
-        self.spline.value_and_gradient(x).1
-    }
-    fn value_and_gradient(&self, x: &Point<D>) -> (f64, Vector<D>) {
-        self.spline.value_and_gradient(x)
-    }
-    fn hessian(&self, x: &Point<D>) -> Matrix<D> {
-        self.spline.jet(x).hessian
-    }
-    fn range(&self, b: &Aabb<D>) -> Option<[f64; 2]> {
-        Some(self.spline.range(&b.min, &b.max))
     }
 }
 

@@ -12,52 +12,20 @@
 //! the one without springs (Tikhonov), and the active set is that one's after a few.
 
 mod dense;
+mod equations;
+mod error;
 
-use crate::compliance::{Compliance, Route, RowProducts, Solved};
+pub use error::ActiveSetError;
+
+use crate::compliance::{Compliance, Route, Solved};
 use crate::mortar::WeightedGap;
+use crate::softness::{SPRINGS_LEFT, Softness, Spring};
 use dense::Dense;
+use equations::{Problem, by_products, defects, image, scales, solved, taken};
 use nalgebra::DMatrix;
 use signorini_solve::SolveError;
 use std::cell::OnceCell;
 use std::collections::{BTreeSet, HashMap};
-
-/// Why no contact state was found.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ActiveSetError {
-    #[error(transparent)]
-    Solve(#[from] SolveError),
-    /// A motion that no contact found resists: what each spring lacks.
-    #[error("the contact found does not hold the bodies")]
-    Free { motion: Vec<f64> },
-    /// Rows that say the same as others, or as a support.
-    #[error("the conditions of the contacts depend on each other")]
-    Dependent,
-    /// Rows that change from one state to the other for ever.
-    #[error("the contact state alternates between open and closed at {} points", rows.len())]
-    Chatter { rows: Vec<usize> },
-    /// Rows of the pressures whose nodes find no state of stick and slip.
-    #[error("no state of stick and slip was found in {solves} solves")]
-    Friction { solves: usize, rows: Vec<usize> },
-    #[error("no contact state was found in {iterations} iterations")]
-    TooMany { iterations: usize },
-    #[error("interrupted")]
-    Interrupted,
-}
-
-/// A spring that holds a body until contact does: it acts on one unknown.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spring {
-    pub unknown: u32,
-    pub stiffness: f64,
-}
-
-/// How a row gives way: `g + c (λ - shift) = 0` where it carries. Nothing for a hard contact; `c = w/ε` for a penalty
-/// `ε`, and with the pressure found before as the shift one step of the augmented Lagrangian.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Softness {
-    pub compliance: f64,
-    pub shift: f64,
-}
 
 /// Columns of the compliance, kept from step to step as long as the rows stay the same.
 #[derive(Default)]
@@ -95,9 +63,6 @@ pub struct ContactState {
 const MOST_ITERATIONS: usize = 200;
 /// Iterations without fewer changes than ever before after which one node changes at a time.
 const PATIENCE: usize = 10;
-/// The share of the springs that is left, one after the other: from springs that keep a body near to nearly none. Beyond
-/// the last a body that contact holds feels less of its spring than of round-off.
-pub(crate) const SPRINGS_LEFT: [f64; 7] = [1.0, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
 /// Columns solved for at once.
 const COLUMNS: usize = 32;
 
@@ -105,20 +70,6 @@ const COLUMNS: usize = 32;
 /// above what the equations are solved to.
 const KEPT: [f64; 2] = [1e-12, 1e-13];
 const KEPT_BY_PRODUCTS: [f64; 2] = [1e-10, 1e-11];
-
-/// What is solved for: rows, how they give way, springs, and the displacement without contact.
-struct Problem<'a> {
-    system: &'a dyn Compliance,
-    rows: &'a [WeightedGap],
-    soft: &'a [Softness],
-    springs: &'a [Spring],
-    load: &'a [f64],
-    /// Displacement of the touched unknowns without contact, springs included.
-    free_at: Vec<f64>,
-    /// The weighted gaps with it, and what springs move.
-    free: Vec<f64>,
-    products: OnceCell<RowProducts<'a>>,
-}
 
 /// The equations of a set of active rows.
 enum Equations {
@@ -443,83 +394,11 @@ impl ActiveSet {
     }
 }
 
-/// Weighted gaps of the active rows, and what the springs lack, from the values of all rows.
-fn defects(
-    problem: &Problem<'_>,
-    left: f64,
-    active: &[usize],
-    values: &[f64],
-    (pressures, forces): (&[f64], &[f64]),
-) -> Vec<f64> {
-    let Problem { rows, soft, .. } = *problem;
-    let gap = |(place, &k): (usize, &usize)| {
-        let carried = pressures.get(place).copied().unwrap_or(0.0) - soft[k].shift;
-        values[k] + soft[k].compliance * carried
-    };
-    let lack = |(s, spring): (usize, &Spring)| {
-        let force = forces.get(s).copied().unwrap_or(0.0);
-        values[rows.len() + s] - force / (spring.stiffness * (1.0 - left))
-    };
-    (active.iter().enumerate().map(gap)).chain(taken(problem, left).iter().enumerate().map(lack)).collect()
-}
-
-fn by_products<'p, 'a>(problem: &'p Problem<'a>) -> Result<&'p RowProducts<'a>, SolveError> {
-    if let Some(known) = problem.products.get() {
-        return Ok(known);
-    }
-    let made = RowProducts::new(problem.system, problem.rows, problem.springs)?;
-    Ok(problem.products.get_or_init(|| made))
-}
-
-/// The size of the traction of every row: one over the root of how it gives way.
-fn scales(problem: &Problem<'_>, active: &[usize]) -> Result<Vec<f64>, SolveError> {
-    let products = by_products(problem)?;
-    products.require(active.iter().copied());
-    let soft = |r: usize| problem.soft.get(r).map_or(0.0, |s| s.compliance);
-    let scale = |own: f64| if own > 0.0 { 1.0 / own.sqrt() } else { 1.0 };
-    Ok((0..products.count()).map(|r| scale(products.own(r) + soft(r))).collect())
-}
-
-/// The equations of the active rows and of the springs that are taken away, in tractions; those of all other rows are that
-/// they carry nothing.
-fn image<'a>(
-    problem: &'a Problem<'_>,
-    left: f64,
-    active: &'a [usize],
-    scale: &'a [f64],
-) -> impl Fn(&[f64], &[f64]) -> Vec<f64> + 'a {
-    let first = problem.rows.len();
-    move |x, wx| {
-        let mut out = x.to_vec();
-        for &k in active {
-            out[k] = scale[k].powi(2) * (wx[k] + problem.soft[k].compliance * x[k]);
-        }
-        for (s, spring) in taken(problem, left).iter().enumerate() {
-            let r = first + s;
-            out[r] = scale[r].powi(2) * (wx[r] - x[r] / (spring.stiffness * (1.0 - left)));
-        }
-        out
-    }
-}
-
-/// Tractions of all rows and springs that bring the defects of the active ones to zero.
-fn solved(problem: &Problem<'_>, left: f64, active: &[usize], defects: &[f64]) -> Result<Solved, ActiveSetError> {
-    let scale = scales(problem, active)?;
-    let mut b = vec![0.0; scale.len()];
-    let first = problem.rows.len();
-    let wanted = active.iter().copied().chain(first..first + taken(problem, left).len());
-    wanted.zip(defects).for_each(|(r, d)| b[r] = -scale[r].powi(2) * d);
-    let found = by_products(problem)?.solve(&scale, &image(problem, left, active, &scale), &b)?;
-    found.ok_or(ActiveSetError::Dependent)
-}
-
 fn add(at: &mut [f64], column: &[f64], factor: f64) {
     for (a, c) in at.iter_mut().zip(column) {
         *a += factor * c;
     }
 }
 
-/// The springs whose forces are taken away: none while all of them is left.
-fn taken<'a>(problem: &Problem<'a>, left: f64) -> &'a [Spring] {
-    if left < 1.0 { problem.springs } else { &[] }
-}
+#[cfg(test)]
+mod tests;

@@ -8,8 +8,8 @@
 //! Rows are scaled by their own compliance, so that units do not matter and sizes of cells little. It is taken from the
 //! stiffness of the unknowns that a row touches, the others held.
 
-use crate::active_set::Spring;
 use crate::mortar::WeightedGap;
+use crate::softness::Spring;
 use nalgebra::{DMatrix, DVector};
 use signorini_solve::SolveError;
 use signorini_solve::krylov::{Equations, Products};

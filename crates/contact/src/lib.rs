@@ -29,20 +29,24 @@ pub mod obstacle;
 pub mod points;
 pub mod recovery;
 pub mod segments;
+pub mod softness;
 pub mod surface;
+#[cfg(test)]
+mod testing;
 pub mod zone;
 
-pub use active_set::{ActiveSet, ActiveSetError, ContactState, Softness, Spring};
+pub use active_set::{ActiveSet, ActiveSetError, ContactState};
 pub use balance::unbalanced;
 pub use compliance::{Compliance, Route};
 pub use kinematics::{Kinematics, Partner, ShapeFunction};
 pub use law::{Coulomb, Law, LawError, Status, Tresca, Viscous};
-pub use mortar::{Given, Shares, WeightedGap, compress, shares, shares_on_the_way, weighted_gaps, weightless};
-pub use multiplier::PressureNodes;
+pub use mortar::{Shares, WeightedGap, compress, shares, shares_on_the_way, weighted_gaps, weightless};
+pub use multiplier::{Given, PressureNodes};
 pub use obstacle::{Faces, Obstacle, Rigid};
 pub use points::{Measured, TestPoint, TestRow, Tests};
 pub use recovery::{Pressed, recovered, unpressed};
 pub use segments::{GapPoint, pieces, rigid_points, segments};
 pub use signorini_geometry::rigid_shape::GapJet;
+pub use softness::{Softness, Spring};
 pub use surface::{ContactSurface, FacePoint, Moved, looks_at};
 pub use zone::{ContactZone, NodeState, zone};

@@ -6,7 +6,7 @@
 //! quadratic triangles have no weight of their own and take a share of their neighbours (Popp, Wohlmuth, Gee & Wall
 //! 2012). A node that is hardly covered gives its function to a neighbour.
 
-use crate::multiplier::PressureNodes;
+use crate::multiplier::{Given, PressureNodes};
 use crate::segments::GapPoint;
 use crate::surface::{ContactSurface, FacePoint};
 use nalgebra::DMatrix;
@@ -260,15 +260,6 @@ pub(crate) fn weighted<const D: usize>(
     rows
 }
 
-/// A node that gave its function to another and shares its pressure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Given {
-    pub from: u32,
-    pub to: u32,
-    /// Because its function has no weight anywhere.
-    pub weightless: bool,
-}
-
 /// Adds up entries of the same unknown.
 pub fn compress(list: &mut Vec<(u32, f64)>) {
     list.sort_by_key(|e| e.0);
@@ -360,4 +351,111 @@ fn fold<const D: usize>(nodes: &PressureNodes<D>, weak: &[bool], covered: &[bool
         }
     }
     given
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::segments::segments;
+    use crate::testing::Polyline;
+
+    type Sides = (Polyline, Polyline, PressureNodes<2>, Vec<Vec<GapPoint<2>>>);
+
+    /// A slave from 0 to 2, `rise x` above a longer master; the unknowns of the master follow those of the slave.
+    fn sides(rise: f64) -> Sides {
+        let slave = Polyline::at(&[0.0, 0.6, 1.3, 2.0], |x| 0.1 + rise * x);
+        let master = Polyline::at(&[3.0, 1.7, 0.9, -1.0], |_| 0.0);
+        let nodes = PressureNodes::new(&slave);
+        let points = segments(&slave, &master, &nodes, 1.0);
+        (slave, master, nodes, points)
+    }
+
+    #[test]
+    fn dual_functions_sum_to_one_and_each_meets_its_own_function_alone() {
+        let (slave, _, nodes, points) = sides(0.05);
+        let shares = shares(&slave, &nodes, &points, &|_| false);
+        let mut products = DMatrix::<f64>::zeros(nodes.len(), nodes.len());
+        for (face, list) in points.iter().enumerate() {
+            for (p, of) in list.iter().zip(&shares.of_point[face]) {
+                assert!((of.iter().map(|s| s.1).sum::<f64>() - p.weight).abs() < 1e-15);
+                let values = [0.5 * (1.0 - p.s[0]), 0.5 * (1.0 + p.s[0])];
+                for (node, share) in of {
+                    for ((other, _), v) in nodes.of_face(face).iter().zip(values) {
+                        products[(*node as usize, *other as usize)] += share * v;
+                    }
+                }
+            }
+        }
+        for k in 0..nodes.len() {
+            for l in 0..nodes.len() {
+                let exact = if k == l { shares.weight[k] } else { 0.0 };
+                assert!((products[(k, l)] - exact).abs() < 1e-14, "{k}, {l}: {}", products[(k, l)]);
+            }
+        }
+        assert!((shares.weight.iter().sum::<f64>() - 2.0 * 0.05f64.hypot(1.0)).abs() < 1e-13);
+    }
+
+    #[test]
+    fn weighted_gaps_are_the_gap_and_pushes_are_balanced() {
+        let (slave, master, nodes, points) = sides(0.0);
+        let shares = shares(&slave, &nodes, &points, &|_| false);
+        // Apart from those of the slave the unknowns of the master come later.
+        struct Later<'a>(&'a Polyline);
+        impl ContactSurface<2> for Later<'_> {
+            fn face_count(&self) -> usize {
+                self.0.face_count()
+            }
+            fn shape(&self, face: usize) -> CellShape {
+                self.0.shape(face)
+            }
+            fn degree(&self, face: usize) -> usize {
+                self.0.degree(face)
+            }
+            fn order(&self, face: usize) -> usize {
+                self.0.order(face)
+            }
+            fn at(&self, face: usize, s: &signorini_basis::Local) -> crate::FacePoint<2> {
+                self.0.at(face, s)
+            }
+            fn trace(&self, face: usize, s: &signorini_basis::Local, out: &mut Vec<(u32, f64)>) {
+                let before = out.len();
+                self.0.trace(face, s, out);
+                out[before..].iter_mut().for_each(|e| e.0 += 8);
+            }
+            fn functions(&self, face: usize, s: &signorini_basis::Local) -> Vec<crate::ShapeFunction> {
+                self.0
+                    .functions(face, s)
+                    .into_iter()
+                    .map(|f| crate::ShapeFunction { unknown: f.unknown + 8, ..f })
+                    .collect()
+            }
+            fn vertices(&self, face: usize) -> Vec<u32> {
+                self.0.vertices(face)
+            }
+            fn measure(&self, x: &Point<2>) -> f64 {
+                self.0.measure(x)
+            }
+            fn describe(&self, face: usize) -> String {
+                self.0.describe(face)
+            }
+        }
+        let rows = weighted_gaps(&slave, Some(&Later(&master)), &points, &shares);
+        assert_eq!(rows.len(), nodes.len());
+        for row in &rows {
+            assert!((row.gap - 0.1 * row.weight).abs() < 1e-15);
+            // Lifting the slave by one opens by one, lifting the master closes by one, and no pressure acts along x.
+            let lifted = |from: u32, to: u32, axis: u32| {
+                let moved = row.terms.iter().filter(|(u, _)| (from..to).contains(u) && u % 2 == axis);
+                moved.map(|(_, c)| c).sum::<f64>() / row.weight
+            };
+            assert!((lifted(0, 8, 1) - 1.0).abs() < 1e-14 && (lifted(8, 16, 1) + 1.0).abs() < 1e-14);
+            assert!(row.terms.iter().all(|(u, c)| u % 2 == 1 || c.abs() < 1e-15));
+            // Neither has the pressure a moment: the place at which it pushes the slave is that at which it pushes the master.
+            let moment = row.terms.iter().filter(|(u, _)| u % 2 == 1).map(|(u, c)| {
+                let at = |line: &Polyline, k: u32| line.0[k as usize / 2][0];
+                c * if *u < 8 { at(&slave, *u) } else { at(&master, *u - 8) }
+            });
+            assert!(moment.sum::<f64>().abs() < 1e-14);
+        }
+    }
 }

@@ -158,3 +158,41 @@ fn place(shape: CellShape, vertices: &[u32], face: usize, node: usize, s: &Local
     }
     Place::Interior(face as u32, node as u32)
 }
+
+/// A node that gave its function to another and shares its pressure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Given {
+    pub from: u32,
+    pub to: u32,
+    /// Because its function has no weight anywhere.
+    pub weightless: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Polyline;
+
+    /// Nodes are shared along what is smooth, and exist once for each side of an edge of more than thirty degrees.
+    #[test]
+    fn nodes_are_double_at_sharp_edges_only() {
+        let roof = |height: f64| {
+            PressureNodes::new(&Polyline(vec![
+                Point::<2>::new(-1.0, 0.0),
+                Point::<2>::new(0.0, height),
+                Point::<2>::new(1.0, 0.0),
+            ]))
+        };
+        let (blunt, sharp) = (roof(0.2), roof(0.3));
+        assert_eq!((blunt.len(), sharp.len()), (3, 4));
+        let middle = |nodes: &PressureNodes<2>| [nodes.of_face(0)[1], nodes.of_face(1)[0]];
+        let [left, right] = middle(&blunt);
+        assert_eq!(left.0, right.0);
+        assert!((left.1 - Point::<2>::new(0.0, -1.0)).norm() < 1e-15);
+        let [left, right] = middle(&sharp);
+        assert!(left.0 != right.0);
+        let own = Point::<2>::new(0.3, -1.0).normalize();
+        assert!((left.1 - own).norm() < 1e-15 && (right.1 - Point::<2>::new(-own[0], own[1])).norm() < 1e-15);
+        assert_eq!(sharp.positions[left.0 as usize], sharp.positions[right.0 as usize]);
+    }
+}

@@ -5,7 +5,8 @@
 //! pressures `λ` of the rows, the force on a point is `p = Σ λ share`.
 
 use crate::kinematics::Kinematics;
-use crate::mortar::{Given, Shares, WeightedGap, compress};
+use crate::mortar::{Shares, WeightedGap, compress};
+use crate::multiplier::Given;
 use crate::multiplier::PressureNodes;
 use crate::obstacle::Obstacle;
 use crate::recovery::unpressed;

@@ -8,8 +8,7 @@
 //! On the axis of a body of revolution the functions of degree 2 and more have no integral with the weight of the radius
 //! either; there the pressure is the one whose slope along the radius vanishes.
 
-use crate::mortar::Given;
-use crate::multiplier::PressureNodes;
+use crate::multiplier::{Given, PressureNodes};
 use crate::surface::ContactSurface;
 use signorini_basis::Local;
 use signorini_basis::hierarchic::Values;

@@ -4,38 +4,21 @@
 //! integrand is smooth. In the plane the pieces are intervals; in space they are polygons, cut in the plane of each
 //! slave facet (Puso & Laursen 2004). The gap of a point is measured along the interpolated slave normal.
 
+mod opposite;
 mod plane;
 mod space;
+
+pub use opposite::GapPoint;
 
 use crate::multiplier::PressureNodes;
 use crate::surface::ContactSurface;
 use plane::intervals;
-use signorini_basis::hierarchic::Values;
 use signorini_basis::rules::rule;
 use signorini_basis::{CellShape, Local};
 use signorini_geometry::bvh::Bvh;
 use signorini_geometry::rigid_shape::GapJet;
-use signorini_geometry::{Aabb, Matrix, Point, Vector};
+use signorini_geometry::{Aabb, Point};
 use space::polygons;
-
-/// A quadrature point of a slave face.
-#[derive(Clone, Debug)]
-pub struct GapPoint<const D: usize> {
-    pub s: Local,
-    /// Area that the point stands for.
-    pub weight: f64,
-    /// Face and point of the master; `None` for a rigid one.
-    pub master: Option<(u32, Local)>,
-    /// How the gap grows with the displacement of the slave point; that of the master point counts opposite.
-    pub direction: Point<D>,
-    pub gap: f64,
-}
-
-/// Breakpoints closer than this, in coordinates of the face, are one.
-const SNAP: f64 = 1e-13;
-/// Faces whose normals enclose less than 120 degrees do not face each other.
-const FACING: f64 = -0.5;
-
 /// The points of every slave face that see a master face no farther away than `reach`.
 pub fn segments<const D: usize>(
     slave: &dyn ContactSurface<D>,
@@ -221,90 +204,47 @@ fn candidates<const D: usize>(
     lists
 }
 
-fn cross2<const D: usize>(a: &Point<D>, b: &Point<D>) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Polyline;
 
-/// The coordinate of the slave face from whose point the normal passes through `x`.
-fn onto_slave<const D: usize>(
-    slave: &dyn ContactSurface<D>,
-    nodes: &PressureNodes<D>,
-    face: usize,
-    x: &Point<D>,
-    at: &mut Values,
-) -> Option<f64> {
-    let mut xi: f64 = 0.0;
-    for _ in 0..60 {
-        // Beyond its ends the face goes on straight, with the normal of the end: polynomials would swing.
-        let inside = xi.clamp(-1.0, 1.0);
-        let s = [inside, 0.0, 0.0];
-        let point = slave.at(face, &s);
-        let (normal, mut slopes) = nodes.normal(face, &s, at);
-        if inside != xi {
-            slopes[0] = Point::<D>::zeros();
-        }
-        let d = x - (point.x + point.tangents[0] * (xi - inside));
-        let value = cross2(&d, &normal);
-        let slope = -cross2(&point.tangents[0], &normal) + cross2(&d, &slopes[0]);
-        let step = value / slope;
-        if !step.is_finite() {
-            return None;
-        }
-        let next = (xi - step).clamp(-3.0, 3.0);
-        let moved = (next - xi).abs();
-        xi = next;
-        if moved < 1e-14 {
-            break;
-        }
+    /// A slave from 0 to 2 at height 0.1 + 0.05 x over a master from 0.25 to 3 with other faces.
+    fn sides() -> (Polyline, Polyline) {
+        let slave = Polyline::at(&[0.0, 0.6, 1.3, 2.0], |x| 0.1 + 0.05 * x);
+        let master = Polyline::at(&[3.0, 1.7, 0.9, 0.25], |_| 0.0);
+        (slave, master)
     }
-    Some(xi)
-}
 
-/// The point of a master face on the line through `x` along `normal`, and the distance along it.
-fn onto_master<const D: usize>(
-    master: &dyn ContactSurface<D>,
-    face: usize,
-    x: &Point<D>,
-    normal: &Point<D>,
-    start: Local,
-) -> Option<(Local, f64)> {
-    let mut eta = start;
-    for _ in 0..60 {
-        let point = master.at(face, &eta);
-        let d = point.x - x;
-        // Components across the normal vanish.
-        let moved = if D == 2 {
-            let step = cross2(&d, normal) / cross2(&point.tangents[0], normal);
-            let next = (eta[0] - step).clamp(-3.0, 3.0);
-            let moved = (next - eta[0]).abs();
-            eta[0] = next;
-            moved
-        } else {
-            let jacobian = Matrix::<3>::from_columns(&[
-                Vector::<3>::from_fn(|k, _| point.tangents[0][k]),
-                Vector::<3>::from_fn(|k, _| point.tangents[1][k]),
-                Vector::<3>::from_fn(|k, _| -normal[k]),
-            ]);
-            let step = signorini_basis::small::inverse(&jacobian) * Vector::<3>::from_fn(|k, _| d[k]);
-            let mut moved = 0.0f64;
-            for k in 0..2 {
-                let next = (eta[k] - step[k]).clamp(-3.0, 3.0);
-                moved = moved.max((next - eta[k]).abs());
-                eta[k] = next;
-            }
-            moved
-        };
-        if moved.is_nan() {
-            return None;
+    #[test]
+    fn points_cover_what_both_sides_have_in_common_with_their_gaps() {
+        let (slave, master) = sides();
+        let nodes = PressureNodes::new(&slave);
+        let points = segments(&slave, &master, &nodes, 1.0);
+        let slope = 0.05f64.hypot(1.0);
+        let (mut length, mut moment) = (0.0, 0.0);
+        for (face, p) in points.iter().enumerate().flat_map(|(face, list)| list.iter().map(move |p| (face, p))) {
+            let (m, s) = p.master.unwrap();
+            let (x, y) = (slave.at(face, &p.s).x, master.at(m as usize, &s).x);
+            // Along the normal of the slave to the master below it.
+            assert!((x - y - p.gap * p.direction).norm() < 1e-13 && p.gap > 0.0);
+            assert!((p.direction - Point::<2>::new(-0.05, 1.0) / slope).norm() < 1e-13);
+            assert!((p.gap - x[1] * slope).abs() < 1e-13);
+            length += p.weight;
+            moment += p.weight * x[0];
         }
-        if moved < 1e-14 {
-            break;
-        }
+        // From where the normal of the slave meets the left end of the master.
+        let start = (0.25 - 0.05 * 0.1) / (1.0 + 0.05 * 0.05);
+        assert!((length - (2.0 - start) * slope).abs() < 1e-12, "{length}");
+        assert!((moment - 0.5 * (4.0 - start * start) * slope).abs() < 1e-12, "{moment}");
     }
-    Some((eta, (master.at(face, &eta).x - x).dot(normal)))
-}
 
-/// Both gaps are differences of coordinates: what rounding leaves of a closed gap is none.
-fn snapped(gap: f64, magnitude: f64) -> f64 {
-    if gap.abs() <= 64.0 * f64::EPSILON * magnitude { 0.0 } else { gap }
+    #[test]
+    fn what_faces_away_or_is_out_of_reach_is_not_seen() {
+        let (slave, master) = sides();
+        let nodes = PressureNodes::new(&slave);
+        let away = Polyline(master.0.iter().rev().copied().collect());
+        assert!(segments(&slave, &away, &nodes, 1.0).iter().all(Vec::is_empty));
+        assert!(segments(&slave, &master, &nodes, 0.05).iter().all(Vec::is_empty));
+    }
 }

@@ -289,7 +289,25 @@ fn share_above(values: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::share_above;
+    use super::*;
+
+    /// Gaps that grow with the power 3/2 of the distance to the end of the zone give that end, wherever it lies in its face.
+    #[test]
+    fn the_end_is_that_of_gaps_of_smooth_bodies() {
+        let places: Vec<f64> = (0..=12).map(|k| 0.1 * f64::from(k)).collect();
+        let slave = crate::testing::Polyline::at(&places, |_| 0.0);
+        let nodes = PressureNodes::new(&slave);
+        for end in [0.41, 0.45, 0.49] {
+            let state = |x: &Point<2>| match x[0] - end {
+                d if d > 0.0 => NodeState::Open(Some(0.7 * d.powf(1.5))),
+                _ => NodeState::Active,
+            };
+            let states: Vec<NodeState> = nodes.positions.iter().map(state).collect();
+            let found = zone(&slave, &nodes, &crate::recovery::unpressed(&slave, &nodes), &states);
+            let length: f64 = found.face_area.iter().sum();
+            assert!((length - end).abs() < 1e-12, "{length} of {end}");
+        }
+    }
 
     #[test]
     fn shares_of_simplices() {

@@ -1,8 +1,9 @@
 //! Functions given by their values on a regular grid: images, height maps, sampled level sets.
 
+use crate::implicit::ImplicitShape;
 use crate::jet::Jet;
 use crate::shape::ShapeError;
-use crate::{Matrix, Vector};
+use crate::{Aabb, Matrix, Vector};
 
 /// Values on a regular grid joined by a cubic spline in every direction: twice continuously differentiable, and exact at
 /// the points of the grid.
@@ -214,6 +215,28 @@ fn prefilter(f: &mut [f64]) {
     for i in (0..inner).rev() {
         let above = if i + 1 < inner { f[i + 2] } else { 0.0 };
         f[i + 1] = (rhs[i] - above) / diagonal[i];
+    }
+}
+
+/// What lies where the function is negative.
+impl<const N: usize> ImplicitShape<N> for GridSpline<N> {
+    fn value(&self, x: &Vector<N>) -> f64 {
+        GridSpline::value(self, x)
+    }
+    fn gradient(&self, x: &Vector<N>) -> Vector<N> {
+        GridSpline::value_and_gradient(self, x).1
+    }
+    fn value_and_gradient(&self, x: &Vector<N>) -> (f64, Vector<N>) {
+        GridSpline::value_and_gradient(self, x)
+    }
+    fn hessian(&self, x: &Vector<N>) -> Matrix<N> {
+        GridSpline::jet(self, x).hessian
+    }
+    fn jet(&self, x: &Vector<N>) -> Jet<N> {
+        GridSpline::jet(self, x)
+    }
+    fn range(&self, b: &Aabb<N>) -> Option<[f64; 2]> {
+        Some(GridSpline::range(self, &b.min, &b.max))
     }
 }
 

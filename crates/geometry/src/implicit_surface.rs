@@ -7,103 +7,32 @@
 
 mod triangulate;
 
-use std::sync::Arc;
-
 use triangulate::triangulate;
 
 use crate::closest::FeatureKind;
-use crate::grid_spline::GridSpline;
-use crate::jet::Jet;
+use crate::implicit::{ImplicitBody, ImplicitShape};
 use crate::mesh::TriangleMesh;
 use crate::scale::length;
 use crate::shape::ShapeError;
 use crate::{Aabb, Matrix, Point, Vector};
 
-/// A twice differentiable function of position, negative inside.
-pub trait ScalarField: Send + Sync {
-    /// Value, gradient and Hessian.
-    fn jet(&self, x: &Point<3>) -> Jet<3>;
+/// A shape that takes part in a body, with the sign with which it does.
+type Part<'a> = (&'a dyn ImplicitShape<3>, f64);
 
-    /// The value alone.
-    fn value(&self, x: &Point<3>) -> f64 {
-        self.jet(x).value
-    }
-}
-
-impl ScalarField for GridSpline<3> {
-    fn jet(&self, x: &Point<3>) -> Jet<3> {
-        GridSpline::jet(self, x)
-    }
-}
-
-impl<F: Fn(&Point<3>) -> Jet<3> + Send + Sync> ScalarField for F {
-    fn jet(&self, x: &Point<3>) -> Jet<3> {
-        self(x)
-    }
-}
-
-/// A body built from functions.
-#[derive(Clone)]
-pub enum ImplicitBody {
-    Field(Arc<dyn ScalarField>),
-    Union(Vec<ImplicitBody>),
-    Intersection(Vec<ImplicitBody>),
-    /// What is not inside.
-    Complement(Box<ImplicitBody>),
-    /// Everything closer than a distance to a body, or deeper than it inside where it is negative.
-    Offset(Arc<ImplicitSurface>, f64),
-}
-
-/// A function that takes part in a body, with the sign with which it does.
-type Part<'a> = (&'a ImplicitBody, f64);
-
-impl ImplicitBody {
-    pub fn field(field: impl ScalarField + 'static) -> Self {
-        ImplicitBody::Field(Arc::new(field))
-    }
-
-    /// What is inside this one and outside the other.
-    pub fn difference(self, other: ImplicitBody) -> Self {
-        ImplicitBody::Intersection(vec![self, ImplicitBody::Complement(Box::new(other))])
-    }
-
-    /// Negative inside.
-    pub fn value(&self, x: &Point<3>) -> f64 {
-        match self {
-            ImplicitBody::Field(f) => f.value(x),
-            ImplicitBody::Union(parts) => parts.iter().map(|p| p.value(x)).fold(f64::INFINITY, f64::min),
-            ImplicitBody::Intersection(parts) => parts.iter().map(|p| p.value(x)).fold(f64::NEG_INFINITY, f64::max),
-            ImplicitBody::Complement(body) => -body.value(x),
-            ImplicitBody::Offset(surface, distance) => surface.closest(x).gap - distance,
+/// The shapes of a body with the signs that they have in it.
+fn leaves<'a>(body: &'a ImplicitBody<3>, sign: f64, out: &mut Vec<Part<'a>>) {
+    match body {
+        ImplicitBody::Shape(shape) => out.push((&**shape, sign)),
+        ImplicitBody::Union(parts) | ImplicitBody::Intersection(parts) => {
+            parts.iter().for_each(|p| leaves(p, sign, out));
         }
-    }
-
-    fn leaves<'a>(&'a self, sign: f64, out: &mut Vec<Part<'a>>) {
-        match self {
-            ImplicitBody::Field(_) | ImplicitBody::Offset(..) => out.push((self, sign)),
-            ImplicitBody::Union(parts) | ImplicitBody::Intersection(parts) => {
-                parts.iter().for_each(|p| p.leaves(sign, out));
-            }
-            ImplicitBody::Complement(body) => body.leaves(-sign, out),
-        }
-    }
-
-    /// The jet of a leaf.
-    fn leaf_jet(&self, x: &Point<3>) -> Jet<3> {
-        match self {
-            ImplicitBody::Field(f) => f.jet(x),
-            ImplicitBody::Offset(surface, distance) => {
-                let foot = surface.closest(x);
-                Jet { value: foot.gap - distance, gradient: foot.normal, hessian: foot.hessian }
-            }
-            _ => unreachable!("only leaves have a jet"),
-        }
+        ImplicitBody::Complement(body) => leaves(body, -sign, out),
     }
 }
 
 /// The boundary of a body inside a box.
 pub struct ImplicitSurface {
-    body: ImplicitBody,
+    body: ImplicitBody<3>,
     mesh: TriangleMesh,
     cell: f64,
 }
@@ -139,7 +68,7 @@ impl ImplicitSurface {
     ///
     /// # Errors
     /// Values that are not finite, a box without extent, a boundary that does not enter the box.
-    pub fn new(body: ImplicitBody, bounds: Aabb<3>, cells: usize) -> Result<Self, ShapeError> {
+    pub fn new(body: ImplicitBody<3>, bounds: Aabb<3>, cells: usize) -> Result<Self, ShapeError> {
         crate::shape::check_position("box", &bounds.min)?;
         crate::shape::check_position("box", &bounds.max)?;
         if bounds.size().min() <= 0.0 {
@@ -153,7 +82,7 @@ impl ImplicitSurface {
         Ok(ImplicitSurface { body, mesh, cell })
     }
 
-    pub fn body(&self) -> &ImplicitBody {
+    pub fn body(&self) -> &ImplicitBody<3> {
         &self.body
     }
 
@@ -173,7 +102,7 @@ impl ImplicitSurface {
         // The chords of the triangulation are off by a share of a cell at most where it resolves the curvature.
         let starts = self.mesh.closest(x, 0.25 * self.cell);
         let mut leaves = Vec::new();
-        self.body.leaves(1.0, &mut leaves);
+        self::leaves(&self.body, 1.0, &mut leaves);
         let mut found: Vec<(f64, Point<3>, Vec<usize>)> = Vec::new();
         for start in starts.iter().take(16) {
             for set in self.nearby(&leaves, &start.point) {
@@ -215,7 +144,7 @@ impl ImplicitSurface {
     fn nearby(&self, leaves: &[Part<'_>], y: &Point<3>) -> Vec<Vec<usize>> {
         let near: Vec<usize> = (0..leaves.len())
             .filter(|&k| {
-                let jet = leaves[k].0.leaf_jet(y);
+                let jet = leaves[k].0.jet(y);
                 jet.value.abs() <= 3.0 * self.cell * jet.gradient.norm()
             })
             .take(6)
@@ -245,7 +174,7 @@ impl ImplicitSurface {
         if let [only] = set {
             // On a face: S = P ∇∇φ P / |∇φ|, and S (I + g S)⁻¹ at the distance g; good at g = 0.
             let (leaf, sign) = leaves[*only];
-            let jet = leaf.leaf_jet(y);
+            let jet = leaf.jet(y);
             let length = jet.gradient.norm();
             let normal = jet.gradient * (sign / length);
             let p = Matrix::<3>::identity() - normal * normal.transpose();
@@ -257,8 +186,7 @@ impl ImplicitSurface {
         let normal = (x - y) / gap;
         if !normal.iter().all(|v| v.is_finite()) {
             // On the edge itself the normal is the mean of its faces.
-            let mean: Vector<3> =
-                set.iter().map(|&k| (leaves[k].0.leaf_jet(y).gradient * leaves[k].1).normalize()).sum();
+            let mean: Vector<3> = set.iter().map(|&k| (leaves[k].0.jet(y).gradient * leaves[k].1).normalize()).sum();
             return (mean.try_normalize(0.0).unwrap_or_default(), Matrix::<3>::zeros());
         }
         // ∇∇g = (I - dy/dx - n nᵀ) / g, with dy/dx from the equations of the foot.
@@ -275,7 +203,7 @@ impl ImplicitSurface {
 }
 
 fn gradient_scale(leaves: &[Part<'_>], set: &[usize], y: &Point<3>) -> f64 {
-    set.iter().map(|&k| leaves[k].0.leaf_jet(y).gradient.norm()).fold(0.0, f64::max).max(1e-300)
+    set.iter().map(|&k| leaves[k].0.jet(y).gradient.norm()).fold(0.0, f64::max).max(1e-300)
 }
 
 type Matrix6 = nalgebra::SMatrix<f64, 6, 6>;
@@ -283,7 +211,7 @@ type Vector6 = nalgebra::SVector<f64, 6>;
 
 /// Least-squares multipliers of `y - x + Σ λ ∇φ = 0`.
 fn multipliers(x: &Point<3>, leaves: &[Part<'_>], set: &[usize], y: &Point<3>) -> [f64; 3] {
-    let gradients: Vec<Vector<3>> = set.iter().map(|&k| leaves[k].0.leaf_jet(y).gradient).collect();
+    let gradients: Vec<Vector<3>> = set.iter().map(|&k| leaves[k].0.jet(y).gradient).collect();
     let n = set.len();
     let mut matrix = Matrix::<3>::identity();
     let mut rhs = Vector::<3>::zeros();
@@ -302,7 +230,7 @@ fn equations(x: &Point<3>, leaves: &[Part<'_>], set: &[usize], y: &Point<3>, lam
     let mut residual = Vector6::zeros();
     let mut stationary = y - x;
     for (i, &k) in set.iter().enumerate() {
-        let jet = leaves[k].0.leaf_jet(y);
+        let jet = leaves[k].0.jet(y);
         stationary += jet.gradient * lambda[i];
         residual[3 + i] = jet.value;
         matrix[(3 + i, 3 + i)] = 0.0;
@@ -329,7 +257,7 @@ fn newton(x: &Point<3>, leaves: &[Part<'_>], set: &[usize], start: Point<3>, siz
         let constraint: f64 = set
             .iter()
             .enumerate()
-            .map(|(i, &k)| (r[3 + i] / leaves[k].0.leaf_jet(y).gradient.norm().max(1e-300)).powi(2))
+            .map(|(i, &k)| (r[3 + i] / leaves[k].0.jet(y).gradient.norm().max(1e-300)).powi(2))
             .sum();
         (r.fixed_rows::<3>(0).norm_squared() + constraint).sqrt()
     };

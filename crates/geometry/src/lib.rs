@@ -4,7 +4,7 @@
 //! derivatives of a field, the closest point of a curve, the side on which a point lies, the outline of a level set.
 //!
 //! - [`jet`]: scalars that carry exact first and second derivatives.
-//! - [`implicit`]: shapes given by a function that is negative inside.
+//! - [`implicit`]: shapes given by a function that is negative inside, and bodies made of them.
 //! - [`spline`]: periodic splines of any degree, the representation of a contact front.
 //! - [`closed_curve`]: closed oriented curves with closest point, winding number and arc length.
 //! - [`shape`]: points, curves and surfaces of space with exact derivatives.
@@ -49,7 +49,7 @@ pub mod spline;
 
 pub use aabb::Aabb;
 pub use closed_curve::{ClosedCurve, CurvePoint};
-pub use implicit::{Ellipse, ImplicitShape, Line};
+pub use implicit::{Ellipsoid, HalfSpace, ImplicitShape};
 pub use jet::{Jet, Real};
 pub use spline::PeriodicBasis;
 

@@ -2,13 +2,14 @@
 
 use signorini_geometry::closest::FeatureKind;
 use signorini_geometry::grid_spline::GridSpline;
-use signorini_geometry::implicit_surface::{ImplicitBody, ImplicitSurface};
+use signorini_geometry::implicit::{Function, ImplicitBody, Offset};
+use signorini_geometry::implicit_surface::ImplicitSurface;
 use signorini_geometry::jet::Jet;
 use signorini_geometry::{Aabb, Matrix, Point, Vector};
 
 /// `Σ ((x - c)/a)² - 1`, which is no distance.
-fn ellipsoid(c: Point<3>, a: [f64; 3]) -> ImplicitBody {
-    ImplicitBody::field(move |x: &Point<3>| {
+fn ellipsoid(c: Point<3>, a: [f64; 3]) -> ImplicitBody<3> {
+    ImplicitBody::shape(Function(move |x: &Point<3>| {
         let d = x - c;
         let w = Vector::<3>::new(a[0].powi(-2), a[1].powi(-2), a[2].powi(-2));
         Jet {
@@ -16,10 +17,10 @@ fn ellipsoid(c: Point<3>, a: [f64; 3]) -> ImplicitBody {
             gradient: d.component_mul(&w) * 2.0,
             hessian: Matrix::<3>::from_diagonal(&(w * 2.0)),
         }
-    })
+    }))
 }
 
-fn surface(body: ImplicitBody) -> ImplicitSurface {
+fn surface(body: ImplicitBody<3>) -> ImplicitSurface {
     ImplicitSurface::new(body, Aabb::new(Point::<3>::repeat(-2.5), Point::<3>::repeat(2.5)), 40).unwrap()
 }
 
@@ -85,12 +86,12 @@ fn unions_intersections_differences_and_offsets_have_faces_edges_and_vertices() 
     assert_eq!(inner.feature, FeatureKind::Edge);
     assert!((inner.gap + 0.75f64.sqrt() - 0.6).abs() < 1e-12, "{}", inner.gap);
     // A sphere less another: the bitten face belongs to the second.
-    let bite = surface(at(0.5).difference(at(-0.5)));
+    let bite = surface(at(0.5).without(at(-0.5)));
     let bitten = bite.closest(&Point::<3>::new(0.2, 0.1, 0.0));
     assert!((bitten.gap - (1.0 - (0.49f64 + 0.01).sqrt())).abs() < 1e-12, "{}", bitten.gap);
     // Offsets add to the distance.
     let ball = surface(at(0.0));
-    let grown = surface(ImplicitBody::Offset(std::sync::Arc::new(ball), 0.25));
+    let grown = surface(Offset { shape: std::sync::Arc::new(ball), distance: 0.25 }.into());
     let foot = grown.closest(&Point::<3>::new(1.0, 1.0, 1.0));
     assert!((foot.gap - (3f64.sqrt() - 1.25)).abs() < 1e-11, "{}", foot.gap);
 }
@@ -137,11 +138,11 @@ fn bad_boxes_are_refused() {
     assert!(ImplicitSurface::new(unit(), far, 10).is_err());
     let thin = Aabb::new(Point::<3>::zeros(), Point::<3>::new(1.0, 0.0, 1.0));
     assert!(ImplicitSurface::new(unit(), thin, 10).is_err());
-    let nan = ImplicitBody::field(|_: &Point<3>| Jet {
+    let nan = ImplicitBody::shape(Function(|_: &Point<3>| Jet {
         value: f64::NAN,
         gradient: Vector::<3>::zeros(),
         hessian: Matrix::<3>::zeros(),
-    });
+    }));
     let unit_box = Aabb::new(Point::<3>::zeros(), Point::<3>::repeat(1.0));
     assert!(ImplicitSurface::new(nan, unit_box, 10).err().unwrap().to_string().contains("NaN"));
 }

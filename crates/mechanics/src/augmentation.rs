@@ -2,9 +2,10 @@
 //! leave a given penetration, and the state from which multipliers start.
 
 use crate::equilibrium::ROUNDING;
-use crate::increment::{IncrementError, IncrementResult};
+use crate::increment::IncrementResult;
+use crate::increment_error::IncrementError;
 use crate::interaction::{Around, Bodies};
-use crate::iterative::Solved;
+use crate::linear_solver::Solved;
 use crate::simpler::SimplerFriction;
 use crate::system::{AssemblyError, System, SystemState};
 

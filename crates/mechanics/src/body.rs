@@ -4,13 +4,14 @@
 //! its thickness or circumference. A body numbers its own unknowns from 0. A configuration may hold more numbers than
 //! there are unknowns (a quaternion turns by three): a step of the unknowns reaches it through [`Body::advance`].
 
+pub use crate::points::{
+    Anchor, Bend, Direction, Foot, Function, Master, MaterialPoint, Met, Order, Placed, RigidFoot, Sampling, Site,
+};
+
 use crate::curve::Curve;
-use crate::iterative::Subspaces;
+use crate::linear_solver::Subspaces;
 use crate::surface::Surface;
-use signorini_geometry::rigid_shape::{GapJet, RigidShape};
-use signorini_geometry::shape::SurfaceJet;
-use signorini_geometry::{Matrix, Point, Vector};
-use std::sync::Arc;
+use signorini_geometry::{Point, Vector};
 
 /// What a body carries from one increment to the next, as plain numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -19,15 +20,6 @@ pub struct BodyState {
     pub configuration: Vec<f64>,
     /// Whatever else: stresses predicted for the next iteration, history variables.
     pub internal: Vec<f64>,
-}
-
-/// How far derivatives are wanted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Order {
-    /// Values only: forces.
-    First,
-    /// Their derivatives too: the tangent.
-    Second,
 }
 
 /// Forces on unknowns and their derivatives, summed up in the body's own numbers.
@@ -50,142 +42,6 @@ impl Contribution {
         debug_assert_eq!(unknowns.len() * unknowns.len(), values.len());
         self.blocks.push((unknowns.to_vec(), values.to_vec()));
     }
-}
-
-/// How one unknown moves a point: the derivative of its position, and of its tangents along up to two coordinates, in
-/// that unknown. `e_i N` for displacements, `e_i × y` for the spin of a rigid body.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Function {
-    pub unknown: u32,
-    pub value: Vector<3>,
-    pub slopes: [Vector<3>; 2],
-    /// Second derivatives along the coordinates: 11, 12, 22. They count only with the gap.
-    pub second: [Vector<3>; 3],
-}
-
-/// Second derivative of a position in two unknowns; listed once for `i <= j`, and standing for both.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bend {
-    pub unknowns: [u32; 2],
-    pub value: Vector<3>,
-}
-
-/// A material point whose contact is tested: which part of the body (face, element, node), where in it, and the area,
-/// length or number of points that it stands for, in the reference configuration.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Site {
-    pub patch: u32,
-    pub xi: [f64; 2],
-    pub weight: f64,
-}
-
-/// Which points of a body are tested.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sampling {
-    Nodes,
-    GaussPoints,
-}
-
-/// A direction that turns with a body: that of a vector, of any length, with what moves it.
-#[derive(Clone, Debug, Default)]
-pub struct Direction {
-    pub vector: Vector<3>,
-    /// The values are the changes of the vector.
-    pub functions: Vec<Function>,
-    /// Second derivatives of the vector.
-    pub bends: Vec<Bend>,
-}
-
-/// A site where it is now.
-#[derive(Clone, Debug, Default)]
-pub struct Placed {
-    pub x: Point<3>,
-    /// Outward unit normal of a surface; none for a curve or a point, which faces every way.
-    pub outward: Option<Vector<3>>,
-    /// Outward normal of a surface of facets, averaged over those that meet: it changes without jumps from facet to facet.
-    pub averaged: Option<Direction>,
-    /// Whether it is not tested now: what is on a winch.
-    pub rests: bool,
-    /// Tangent of a curve, of any length; its changes are the slopes of the functions along the first coordinate.
-    pub tangent: Option<Vector<3>>,
-    /// Radius of a section or ball about `x` that touches instead of `x`.
-    pub radius: f64,
-    /// What moves `x`.
-    pub functions: Vec<Function>,
-    /// What turns the section or ball about `x`: the value is the spin per unit of the unknown.
-    pub spin: Vec<Function>,
-    /// How the section or ball is turned; the identity where nothing turns.
-    pub frame: Matrix<3>,
-    /// Second derivatives of `x`; empty where it is linear in the unknowns.
-    pub bends: Vec<Bend>,
-}
-
-/// A material point of a body that may be touched: which part of it, and where in it. Of a rigid body the coordinates are
-/// those of the body's own axes.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct MaterialPoint {
-    pub patch: u32,
-    pub xi: [f64; 3],
-}
-
-/// A point of a body that is met: its position with derivatives, and what moves them.
-#[derive(Clone, Debug)]
-pub struct Foot {
-    pub point: MaterialPoint,
-    /// Position and derivatives; of a curve only those in the first coordinate count, of a vertex only the position.
-    pub jet: SurfaceJet,
-    /// Number of coordinates: 2 on a surface, 1 on an edge or curve, 0 at a vertex or end.
-    pub coordinates: usize,
-    /// Outward unit normal of a surface at `jet.x`; at an edge or vertex of a surface the mean one, which tells outside
-    /// from inside. None for a curve.
-    pub outward: Option<Vector<3>>,
-    /// Radius of a section about the curve that touches instead of it.
-    pub radius: f64,
-    pub functions: Vec<Function>,
-    /// What turns the section, and how it is turned now.
-    pub spin: Vec<Function>,
-    pub frame: Matrix<3>,
-}
-
-/// The gap of a point to a body that is rigid, with its derivatives where the body is now.
-#[derive(Clone)]
-pub struct RigidFoot {
-    /// The foot in the axes of the body.
-    pub point: MaterialPoint,
-    /// Gap, normal and Hessian in space.
-    pub jet: GapJet<3>,
-    /// The shape, in the axes of the body.
-    pub shape: Arc<dyn RigidShape>,
-    /// The point about which the body turns: at the start, where the axes of the body are those of space, and now.
-    pub origin: Point<3>,
-    pub centre: Point<3>,
-    /// How the body is turned.
-    pub rotation: Matrix<3>,
-    /// Unknowns of the motion of the centre and of the spin; none where a component does not move or is prescribed.
-    pub unknowns: [Option<u32>; 6],
-}
-
-/// What a point meets.
-#[derive(Clone)]
-pub enum Met {
-    /// The nearest point.
-    Foot(Box<Foot>),
-    /// The point on the line along the averaged normal of the slave.
-    Cut(Box<Foot>),
-    Rigid(Box<RigidFoot>),
-}
-
-/// A material point where it is now, with what moves it.
-#[derive(Clone, Debug, Default)]
-pub struct Anchor {
-    pub x: Point<3>,
-    /// A direction in the surface, of any length, that moves with the material; the slopes of the functions along the
-    /// first coordinate are its changes.
-    pub tangent: Vector<3>,
-    pub functions: Vec<Function>,
-    /// What turns the section there, and how it is turned.
-    pub spin: Vec<Function>,
-    pub frame: Matrix<3>,
 }
 
 /// A value that varies in space and time: at a reference position.
@@ -271,32 +127,6 @@ pub struct BodyFields {
     pub point_data: Vec<(String, usize, Vec<f64>)>,
     /// Name, number of components, values cell by cell.
     pub cell_data: Vec<(String, usize, Vec<f64>)>,
-}
-
-/// What may be touched of a body, where it is now.
-pub trait Master: Sync {
-    /// The point nearest to `x`, unless it is farther than `reach`. With `except`, a site of the same body, what lies
-    /// next to that site along the body is left out: contact of a body with itself.
-    fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<Met>;
-
-    /// The distance of that point, negative inside, where it is found with less work than what moves the point.
-    fn gap(&self, _x: &Point<3>, _reach: f64, _except: Option<&Site>) -> Option<f64> {
-        None
-    }
-
-    /// Whether the surface has facets, so that gaps are better measured along the averaged normal of a slave that has one.
-    fn is_faceted(&self) -> bool {
-        false
-    }
-
-    /// The point on the line through `x` along a direction of any length, on a side that faces it, at most `reach` ahead or
-    /// behind.
-    fn cut(&self, _x: &Point<3>, _direction: &Vector<3>, _reach: f64) -> Option<Met> {
-        None
-    }
-
-    /// The same material point of the body, where it is now: for what sticks to it.
-    fn at(&self, point: &MaterialPoint) -> Anchor;
 }
 
 /// A body of a system.

@@ -21,54 +21,22 @@
 //!
 //! The slip counts from where the sides had a common point at the last state, or would have had if they had touched.
 
-use crate::body::{Anchor, Body, BodyState, Master, Met, Order, PlaceError, Placed, Sampling, Site};
+mod interaction;
+
+pub use crate::part::Part;
+
+use crate::body::{Body, BodyState, PlaceError};
+use crate::enforcement::Enforcement;
 use crate::interaction::Target;
 use crate::nitsche::Stress;
 use crate::pair::{AxisChoice, Encounter, NoPair, Pair, Stuck, any_tangent};
+use crate::points::{Anchor, Master, Met, Order, Placed, Sampling, Site};
 use crate::simpler::SetAside;
 use crate::site_result::SiteResult;
 use rayon::prelude::*;
 use signorini_contact::law::Projected;
 use signorini_contact::{Law, Status};
 use signorini_geometry::Vector;
-
-/// How the contact conditions are kept.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Enforcement {
-    /// Up to a penetration: the one wanted, or what a hundred times the stiffness of the bodies leaves.
-    Penalty { wanted_penetration: Option<f64> },
-    /// Exactly in the limit of outer iterations.
-    AugmentedLagrangian,
-    /// Exactly, with tractions as unknowns; between rigid bodies by augmentation.
-    Multiplier,
-    /// Weakly and consistently, with the stress of the slave, which has to know it.
-    Nitsche,
-}
-
-impl Enforcement {
-    /// Scale of trials over the penalty, to begin with.
-    pub(crate) fn softness(self) -> f64 {
-        match self {
-            Enforcement::Multiplier => 0.0,
-            Enforcement::Nitsche => 1.0,
-            Enforcement::Penalty { .. } | Enforcement::AugmentedLagrangian => SOFTNESS,
-        }
-    }
-}
-
-/// Part of a body: its number and a group.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Part {
-    pub body: usize,
-    pub group: Option<String>,
-}
-
-impl From<usize> for Part {
-    /// A whole body.
-    fn from(body: usize) -> Self {
-        Part { body, group: None }
-    }
-}
 
 /// Two sides that may touch.
 pub struct Contact {
@@ -144,25 +112,20 @@ impl Contact {
         }
         let mut sites = slave.1.sites(slave.0.group.as_deref(), sampling)?;
         master.1.master(master.0.group.as_deref(), &master.1.start())?;
-        let stiffness = match enforcement {
-            Enforcement::Nitsche => {
-                if sites.first().is_some_and(|s| slave.1.traction(&slave.1.start(), s).is_none()) {
-                    let message = "Nitsche's method is for the surface of finite cells".to_string();
-                    return Err(PlaceError::Unsuitable { body: slave.1.name().to_string(), message });
-                }
-                sites.iter().map(|s| slave.1.stabilisation(s)).collect()
+        let stiffness = if enforcement.takes_stress() {
+            if sites.first().is_some_and(|s| slave.1.traction(&slave.1.start(), s).is_none()) {
+                let message = "Nitsche's method is for the surface of finite cells".to_string();
+                return Err(PlaceError::Unsuitable { body: slave.1.name().to_string(), message });
             }
-            _ => sites.iter().map(|s| slave.1.site_stiffness(s) / s.weight).collect(),
+            sites.iter().map(|s| slave.1.stabilisation(s)).collect()
+        } else {
+            sites.iter().map(|s| slave.1.site_stiffness(s) / s.weight).collect()
         };
-        if enforcement == Enforcement::Nitsche && slave.0.body == master.0.body {
+        if enforcement.takes_stress() && slave.0.body == master.0.body {
             sites.iter_mut().for_each(|s| s.weight *= 0.5);
         }
-        // What several points of two rigid bodies carry is not unique; the least of it is found by augmentation.
         let both_rigid = slave.1.is_rigid() && master.1.is_rigid();
-        let enforcement = match enforcement {
-            Enforcement::Multiplier if both_rigid => Enforcement::AugmentedLagrangian,
-            other => other,
-        };
+        let enforcement = if both_rigid { enforcement.between_rigid_bodies() } else { enforcement };
         // The gap to a rigid body is known anywhere.
         let reach = if master.1.is_rigid() { f64::INFINITY } else { 0.5 * slave.1.size().min(master.1.size()) };
         Ok(Contact {
@@ -255,12 +218,11 @@ impl Contact {
 
     /// The gap beyond which a site is open whatever it meets.
     fn closes_within(&self, k: usize, sides: &Sides<'_>, unknown: [f64; 3]) -> f64 {
-        let base = match self.enforcement {
-            Enforcement::Nitsche => {
-                let stress = sides.slave.0.traction(sides.slave.1, &self.sites[k]);
-                stress.map_or(f64::INFINITY, |s| s.vector.norm())
-            }
-            _ => self.base(k)[0],
+        let base = if self.enforcement.takes_stress() {
+            let stress = sides.slave.0.traction(sides.slave.1, &self.sites[k]);
+            stress.map_or(f64::INFINITY, |s| s.vector.norm())
+        } else {
+            self.base(k)[0]
         };
         let trial = unknown[0] - self.softness * (unknown[0] - base);
         (trial / self.stiffness[k]).max(0.0)
@@ -268,7 +230,7 @@ impl Contact {
 
     fn with_stress(&self, k: usize, sides: &Sides<'_>, mut pair: Pair) -> Touch {
         let (body, state) = sides.slave;
-        let stress = (self.enforcement == Enforcement::Nitsche).then(|| body.traction(state, &self.sites[k])).flatten();
+        let stress = self.enforcement.takes_stress().then(|| body.traction(state, &self.sites[k])).flatten();
         let stress = stress.map(|s| Stress::new(&s, sides.first[0], &mut pair));
         Touch { pair, stress }
     }
@@ -439,12 +401,7 @@ impl Contact {
 
     /// The traction with which a site that gives way has no gap and no slip.
     fn base(&self, k: usize) -> [f64; 3] {
-        let [p, t1, t2] = self.memory[k].traction;
-        match self.enforcement {
-            Enforcement::Multiplier | Enforcement::Nitsche => [0.0; 3],
-            Enforcement::AugmentedLagrangian => [p, t1, t2],
-            Enforcement::Penalty { .. } => [0.0, t1, t2],
-        }
+        self.enforcement.base(self.memory[k].traction)
     }
 
     /// The sites as they are found in a state, with their tractions along the axes.
@@ -516,10 +473,6 @@ impl Contact {
 
 /// Sites whose pairs are kept at a time.
 const AT_ONCE: usize = 256;
-
-/// The scale of trials over a penalty of a hundred times the stiffness of the bodies: what a contact that carries gives way
-/// is a hundredth of what they do.
-const SOFTNESS: f64 = crate::prepare::WAVE / 100.0;
 
 /// The part of its scale by which a multiplier resists change within a Newton step, in the tangent alone: what several
 /// points of a stiff body carry together need not be unique.

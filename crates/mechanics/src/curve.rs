@@ -7,7 +7,7 @@ mod nearest;
 
 pub use nearest::{CurveMaster, Minimum, are_apart, boxes, minima, samples};
 
-use crate::body::{Foot, Function, MaterialPoint};
+use crate::points::{Foot, Function, MaterialPoint};
 use signorini_geometry::shape::{CurveJet, SurfaceJet};
 use signorini_geometry::{Matrix, Point, Vector};
 

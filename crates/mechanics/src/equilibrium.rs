@@ -3,9 +3,9 @@
 //! The merit is the root of the energy `Σ r²/k` of the residual on the springs `k` of the first tangent, one for each
 //! unknown: forces, moments, gaps and what supports lack count alike, in any unit.
 
-use crate::body::Order;
-use crate::increment::IncrementError;
-use crate::iterative::{Solved, Stiffness};
+use crate::increment_error::IncrementError;
+use crate::linear_solver::{Solved, Stiffness};
+use crate::points::Order;
 use crate::system::{Assembled, System, SystemState};
 use signorini_solve::general::Analysis;
 use signorini_solve::newton::{Converged, Equations, Measured, Newton, NewtonFailure, Search, newton};

@@ -1,9 +1,9 @@
 //! Which body is free to move, and what lacked most where nothing was found.
 
-use crate::body::Order;
 use crate::equilibrium::Problem;
-use crate::increment::IncrementError;
-use crate::iterative::Stiffness;
+use crate::increment_error::IncrementError;
+use crate::linear_solver::Stiffness;
+use crate::points::Order;
 use crate::system::SystemState;
 use signorini_geometry::Vector;
 

@@ -4,10 +4,11 @@
 //! touches: weak springs hold all bodies where they were and are taken back step by step; what they still carried in the
 //! end shows what holds nothing.
 
-use crate::body::Order;
 use crate::equilibrium::Problem;
 use crate::free::AWAY;
-use crate::increment::{IncrementError, is_curable};
+use crate::increment::is_curable;
+use crate::increment_error::IncrementError;
+use crate::points::Order;
 use crate::system::SystemState;
 use signorini_solve::newton::Converged;
 

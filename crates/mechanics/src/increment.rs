@@ -3,36 +3,16 @@
 //! `equilibrium` solves the equations as they stand; where that fails `homotopy` looks for another way to the same state.
 //! About both run the outer iterations of `augmentation`.
 
-use crate::body::Order;
 use crate::equilibrium::Problem;
-use crate::iterative::{Solved, Stiffness};
+use crate::increment_error::IncrementError;
+use crate::linear_solver::{Solved, Stiffness};
+use crate::points::Order;
 use crate::site_result::SiteResult;
 use crate::system::{AssemblyError, System, SystemState};
 use signorini_geometry::Vector;
-use signorini_solve::SolveError;
 use signorini_solve::general::Analysis;
 use signorini_solve::newton::Converged;
 use signorini_solve::schwarz::Inverses;
-
-/// Why an increment has no solution.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum IncrementError {
-    #[error(transparent)]
-    Assembly(#[from] AssemblyError),
-    #[error(transparent)]
-    Solve(#[from] SolveError),
-    #[error("Newton's method did not converge in {} iterations{}", history.len() - 1, worst.as_deref().unwrap_or(""))]
-    NotConverged { history: Vec<f64>, worst: Option<String> },
-    #[error("`{body}` is free: nothing holds it against {motion}")]
-    Free { body: String, motion: String },
-    #[error("the tractions of the contacts still changed after {outer} outer iterations")]
-    Augmentation { outer: usize, history: Vec<f64> },
-    /// A prescribed motion that is too long for one increment.
-    #[error("contact `{contact}`: what moves as prescribed passes through what it touches after {:.0} % of its way", 100.0 * share)]
-    PassesThrough { contact: String, share: f64 },
-    #[error("interrupted")]
-    Interrupted,
-}
 
 /// What an increment came to.
 #[derive(Clone, Debug, Default, PartialEq)]

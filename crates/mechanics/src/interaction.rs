@@ -9,16 +9,11 @@
 //!   predicts: as many as it likes. They change the tangent, never the forces that decide about convergence;
 //! - a *history*, numbers that count from the last state that was accepted.
 
-use crate::body::MaterialPoint;
-use crate::body::{Body, BodyState, PlaceError, Sampling, Site};
-use crate::contact::{Contact, Enforcement, Part, Sides, SiteMemory};
-use crate::pair::Stuck;
-use crate::passage::Way;
-use crate::prepare::WAVE;
-use crate::simpler::{SetAside, SimplerFriction};
+use crate::body::{Body, BodyState, PlaceError};
+use crate::part::Part;
+use crate::simpler::SimplerFriction;
 use crate::site_result::SiteResult;
 use signorini_contact::{Law, Status};
-use signorini_geometry::Vector;
 use signorini_solve::general::Entries;
 
 /// All bodies of a system in a state.
@@ -28,6 +23,27 @@ pub struct Bodies<'a> {
     pub states: &'a [BodyState],
     /// First unknown of each body in the system.
     pub first: &'a [u32],
+}
+
+/// A way between two states of all bodies, on which positions change in proportion.
+#[derive(Clone, Copy)]
+pub struct Way<'a> {
+    pub from: Bodies<'a>,
+    pub to: Bodies<'a>,
+}
+
+impl Way<'_> {
+    /// A body on the way: `t` from 0 to 1.
+    pub fn at(&self, body: usize, t: f64) -> BodyState {
+        let [from, to] = [self.from, self.to].map(|b| &b.states[body]);
+        let between = |(a, b): (&f64, &f64)| a + t * (b - a);
+        let configuration = from.configuration.iter().zip(&to.configuration).map(between).collect();
+        BodyState { configuration, internal: from.internal.clone() }
+    }
+
+    pub(crate) fn moves(&self, body: usize) -> bool {
+        self.from.states[body].configuration != self.to.states[body].configuration
+    }
 }
 
 /// The numbers of an interaction in a state of the system.
@@ -221,14 +237,6 @@ impl<'a> Bodies<'a> {
     pub(crate) fn side(&self, part: &Part) -> (&'a dyn Body, &'a BodyState) {
         (self.bodies[part.body].as_ref(), &self.states[part.body])
     }
-
-    pub(crate) fn sides(&self, contact: &Contact) -> Sides<'a> {
-        Sides {
-            slave: self.side(&contact.slave),
-            master: self.side(&contact.master),
-            first: [self.first[contact.slave.body], self.first[contact.master.body]],
-        }
-    }
 }
 
 /// The factor by which penalties change to leave the penetration that is wanted; none if they leave it.
@@ -237,184 +245,4 @@ pub fn penalty_factor(found: &[SiteResult], wanted: f64) -> Option<f64> {
     let depth = depth.fold(0.0f64, |m, g| m.max(-g));
     // The penetration is inverse to the penalty but for what the bodies give way.
     (depth > 0.0 && (depth / wanted - 1.0).abs() > NEAR_WANTED).then_some(depth / wanted)
-}
-
-impl Interaction for Contact {
-    fn name(&self) -> &str {
-        &self.name
-    }
-
-    fn bodies(&self) -> [usize; 2] {
-        [self.slave.body, self.master.body]
-    }
-
-    fn law(&self) -> Option<&dyn Law> {
-        self.friction.as_deref()
-    }
-
-    fn rows(&self) -> Vec<[f64; 2]> {
-        let list = self.stiffness.iter().zip(self.sites());
-        list.flat_map(|(c, site)| vec![[*c, site.weight]; self.components()]).collect()
-    }
-
-    fn remembered(&self) -> Vec<f64> {
-        self.memory.iter().flat_map(|m| m.traction[..self.components()].to_vec()).collect()
-    }
-
-    fn is_exact(&self) -> bool {
-        self.enforcement == Enforcement::Multiplier
-    }
-
-    fn begin(&mut self, time: f64) {
-        self.times[1] = time;
-    }
-
-    fn end(&mut self) {
-        self.softness = self.enforcement.softness();
-    }
-
-    fn stiffness(&self, bodies: &[Box<dyn Body>]) -> f64 {
-        let own = self.stiffness.iter().zip(self.sites()).map(|(c, s)| c * s.weight);
-        // A deformable master of a rigid slave.
-        let master = &bodies[self.master.body];
-        let sites = |sampling| master.sites(self.master.group.as_deref(), sampling);
-        let list = sites(Sampling::Nodes).or_else(|_| sites(Sampling::GaussPoints)).unwrap_or_default();
-        let touched = list.iter().map(|s| master.site_stiffness(s));
-        own.chain(touched).filter(|c| c.is_finite()).fold(0.0, f64::max)
-    }
-
-    fn prepare(&mut self, _: &[Box<dyn Body>], otherwise: f64) {
-        let weights: Vec<f64> = self.sites().iter().map(|s| s.weight).collect();
-        if self.enforcement == Enforcement::Nitsche {
-            return;
-        }
-        for (c, w) in self.stiffness.iter_mut().zip(weights) {
-            *c = WAVE * if c.is_finite() { *c } else { otherwise / w };
-        }
-    }
-
-    fn leave_out_held(&mut self, at: Bodies<'_>, held: &[bool]) {
-        // Against a body that moves a held site may still carry; what is held now may be free later.
-        if at.bodies[self.master.body].unknowns() > 0 || at.bodies[self.slave.body].holds_change() {
-            return;
-        }
-        let (body, state) = at.side(&self.slave);
-        let first = at.first[self.slave.body];
-        let moves = |site: &Site| {
-            let placed = body.placed(state, site);
-            placed.functions.iter().any(|f| !held[(first + f.unknown) as usize])
-        };
-        let kept: Vec<bool> = self.sites().iter().map(moves).collect();
-        self.keep(&kept);
-    }
-
-    fn add_to(&self, at: Bodies<'_>, own: Own<'_>, out: &mut Target<'_>) -> Result<usize, PlaceError> {
-        self.add_sites(&at.sides(self), (own.multipliers, own.first), out)
-    }
-
-    fn results(&self, at: Bodies<'_>, own: Own<'_>) -> Result<Vec<SiteResult>, PlaceError> {
-        Ok(self.found(&at.sides(self), own.multipliers)?.into_iter().map(|f| f.0).collect())
-    }
-
-    fn free_way(&self, way: Way<'_>) -> Result<f64, PlaceError> {
-        self.share_of_way(way)
-    }
-
-    fn accept(&mut self, at: Bodies<'_>, own: Own<'_>) -> Result<(), PlaceError> {
-        let sides = at.sides(self);
-        self.accept_sites(&sides, own.multipliers)
-    }
-
-    fn unload(&mut self) {
-        self.memory.iter_mut().for_each(|m| m.traction = [0.0; 3]);
-    }
-
-    fn augment(
-        &mut self,
-        at: Bodies<'_>,
-        own: Own<'_>,
-        found: &[SiteResult],
-        around: Around,
-    ) -> Result<f64, PlaceError> {
-        match self.enforcement {
-            Enforcement::AugmentedLagrangian => {
-                let found = self.found(&at.sides(self), own.multipliers)?.into_iter().map(|f| f.1).collect::<Vec<_>>();
-                let kept = self.memory.iter_mut().map(|m| &mut m.traction).zip(&self.stiffness);
-                let change = take_over(kept, &found, &around);
-                self.softness = hardened(self.softness, change, &around);
-                Ok(change)
-            }
-            Enforcement::Penalty { wanted_penetration: Some(wanted) } => {
-                Ok(towards(wanted, found, &mut self.stiffness))
-            }
-            _ => Ok(0.0),
-        }
-    }
-
-    fn scale_trials(&mut self, factor: f64) -> bool {
-        // Nitsche's method has its stiffness in the state.
-        if self.enforcement == Enforcement::Nitsche {
-            return false;
-        }
-        self.stiffness.iter_mut().for_each(|c| *c *= factor);
-        self.softness *= factor;
-        true
-    }
-
-    fn simplify(&mut self, friction: SimplerFriction) {
-        let kept = (&mut self.enforcement, &mut self.softness);
-        self.set_aside = Some(SetAside::new(friction, &mut self.friction, kept));
-    }
-
-    fn restate(&mut self) {
-        if let Some(stated) = self.set_aside.take() {
-            stated.put_back(&mut self.friction, (&mut self.enforcement, &mut self.softness));
-        }
-    }
-
-    fn history(&self) -> [Vec<f64>; 2] {
-        let scales = self.stiffness.iter().copied().chain([self.times[0]]).collect();
-        [self.memory.iter().flat_map(numbers).collect(), scales]
-    }
-
-    fn restore(&mut self, [sites, scales]: &[Vec<f64>; 2]) -> Result<(), NotItsHistory> {
-        let count = self.stiffness.len();
-        if sites.len() != NUMBERS * self.memory.len() || scales.len() != count + 1 {
-            return Err(NotItsHistory { contact: self.name.clone() });
-        }
-        self.memory = sites.chunks(NUMBERS).map(memory).collect();
-        self.stiffness.copy_from_slice(&scales[..count]);
-        self.times = [scales[count]; 2];
-        Ok(())
-    }
-}
-
-/// Numbers of the memory of a site.
-const NUMBERS: usize = 16;
-
-fn numbers(memory: &SiteMemory) -> [f64; NUMBERS] {
-    let mut out = [0.0; NUMBERS];
-    out[..3].copy_from_slice(&memory.traction);
-    out[3..5].copy_from_slice(&memory.slip);
-    if let Some(stuck) = &memory.stuck {
-        out[5] = 1.0;
-        out[6] = f64::from(stuck.point.patch);
-        out[7..10].copy_from_slice(&stuck.point.xi);
-        out[10..13].copy_from_slice(stuck.on_slave.as_slice());
-        out[13..].copy_from_slice(stuck.on_master.as_slice());
-    }
-    out
-}
-
-fn memory(n: &[f64]) -> SiteMemory {
-    let vector = |k: usize| Vector::<3>::new(n[k], n[k + 1], n[k + 2]);
-    SiteMemory {
-        traction: [n[0], n[1], n[2]],
-        slip: [n[3], n[4]],
-        stuck: (n[5] != 0.0).then(|| Stuck {
-            point: MaterialPoint { patch: n[6] as u32, xi: [n[7], n[8], n[9]] },
-            on_slave: vector(10),
-            on_master: vector(13),
-        }),
-    }
 }

@@ -7,7 +7,8 @@
 //! tangent that is not theirs, such as the two cells that touch, and the coarse unknowns of all bodies together.
 
 use crate::body::Body;
-use crate::increment::IncrementError;
+use crate::increment_error::IncrementError;
+use crate::linear_solver::{LinearSolver, Stiffness};
 use crate::system::{Assembled, AssemblyError, System, SystemState};
 use rayon::prelude::*;
 use signorini_solve::blocks::{Block, BlockSum};
@@ -17,42 +18,6 @@ use signorini_solve::krylov::{Stopped, conjugate_gradients, conjugate_residuals}
 use signorini_solve::schwarz::{Inverses, Schwarz, Sets};
 use signorini_solve::{SolveError, Symbolic, SymmetricMatrix};
 use std::collections::BTreeSet;
-
-/// How the linear equations of Newton's method are solved.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LinearSolver {
-    /// By iterations where all bodies offer them and there are many unknowns.
-    #[default]
-    Automatic,
-    Direct,
-    /// By iterations where all bodies offer them.
-    Iterative,
-}
-
-/// What solved them.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Solved {
-    #[default]
-    Direct,
-    Iterative {
-        /// Linear systems, and the most iterations that one of them took.
-        systems: usize,
-        most_iterations: usize,
-    },
-}
-
-/// Where the stiffness of linear bodies goes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Stiffness {
-    InTangent,
-    KeptByBodies,
-}
-
-/// The stiffness of a linear body as small symmetric matrices, and the sets of unknowns that precondition it.
-pub struct Subspaces<'a> {
-    pub stiffness: Vec<Block<'a>>,
-    pub sets: Sets,
-}
 
 /// Residual that iterations leave, relative to the first.
 const TOLERANCE: f64 = 1e-8;

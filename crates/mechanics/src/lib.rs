@@ -17,16 +17,21 @@ mod augmentation;
 pub mod body;
 pub mod contact;
 pub mod curve;
+pub mod enforcement;
 mod equilibrium;
 mod free;
 mod homotopy;
 pub mod increment;
+pub mod increment_error;
 pub mod interaction;
-pub mod iterative;
+mod iterative;
+pub mod linear_solver;
 pub mod mortar;
 mod nitsche;
 pub mod pair;
+pub mod part;
 pub mod passage;
+pub mod points;
 mod prepare;
 pub mod rigid_body;
 pub mod saved;
@@ -35,17 +40,20 @@ mod site_result;
 pub mod surface;
 pub mod system;
 
-pub use body::{
-    Anchor, Bend, Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Direction, Foot, Function, Hold,
-    Load, Master, MaterialPoint, Means, Met, Order, PlaceError, Placed, RigidFoot, Sampling, Site,
-};
-pub use contact::{Contact, Enforcement, Part, SiteMemory};
+pub use body::{Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Hold, Load, Means, PlaceError};
+pub use contact::{Contact, SiteMemory};
 pub use curve::Curve;
-pub use increment::{IncrementError, IncrementResult};
+pub use enforcement::Enforcement;
+pub use increment::IncrementResult;
+pub use increment_error::IncrementError;
 pub use interaction::{Bodies, Interaction, Own, Target};
-pub use iterative::{LinearSolver, Solved, Subspaces};
+pub use linear_solver::{LinearSolver, Solved, Subspaces};
 pub use mortar::Mortar;
 pub use pair::AxisChoice;
+pub use part::Part;
+pub use points::{
+    Anchor, Bend, Direction, Foot, Function, Master, MaterialPoint, Met, Order, Placed, RigidFoot, Sampling, Site,
+};
 pub use rigid_body::{Motion, RigidBody, RigidSite};
 pub use saved::Saved;
 pub use simpler::SimplerFriction;

@@ -26,8 +26,9 @@ mod saved;
 mod shown;
 
 use crate::body::{Body, BodyState, PlaceError};
-use crate::contact::{Enforcement, Part};
+use crate::enforcement::Enforcement;
 use crate::pair::AxisChoice;
+use crate::part::Part;
 use crate::simpler::SetAside;
 use crate::surface::Local;
 use cover::{Nodes, Search};
@@ -100,7 +101,7 @@ impl Mortar {
         master: (Part, &dyn Body),
         enforcement: Enforcement,
     ) -> Result<Self, PlaceError> {
-        if enforcement == Enforcement::Nitsche {
+        if enforcement.takes_stress() {
             let message = "Nitsche's method needs no mortar: it is for single points of a surface".to_string();
             return Err(PlaceError::Unsuitable { body: slave.1.name().to_string(), message });
         }
@@ -174,13 +175,7 @@ impl Mortar {
 
     /// The traction with which a node that gives way has no gap and no slip.
     fn base(&self, k: usize) -> [f64; 3] {
-        let [p, t1, t2] = self.memory[k].traction;
-        match self.enforcement {
-            // Nitsche's method has no mortar: `new` refuses it.
-            Enforcement::Multiplier | Enforcement::Nitsche => [0.0; 3],
-            Enforcement::AugmentedLagrangian => [p, t1, t2],
-            Enforcement::Penalty { .. } => [0.0, t1, t2],
-        }
+        self.enforcement.base(self.memory[k].traction)
     }
 
     /// Whether enough of a node sees the master, and did at the last state.

@@ -2,8 +2,8 @@
 //! J. Numer. Anal. 51, 2013, with `θ = 0`): the trial of the law with the softness 1 and the stress for the base. Of contact
 //! of a body with itself each of both sides carries one half.
 
-use crate::body::Direction;
 use crate::pair::Pair;
+use crate::points::Direction;
 use signorini_geometry::Vector;
 
 /// The stress at a site, in the unknowns of its pair.

@@ -9,33 +9,14 @@
 //! found by steps as long as the gap, which can miss nothing (sphere tracing, Hart 1996), and inside by steps as long as
 //! the depth.
 
-use crate::body::{Body, BodyState, Master, Met, PlaceError};
+pub use crate::interaction::Way;
+
+use crate::body::{Body, BodyState, PlaceError};
 use crate::contact::Contact;
-use crate::interaction::Bodies;
+use crate::points::Master;
 use crate::system::{AssemblyError, System, SystemState};
 use signorini_geometry::{Point, Vector};
 use std::cell::OnceCell;
-
-/// A way between two states of all bodies, on which positions change in proportion.
-#[derive(Clone, Copy)]
-pub struct Way<'a> {
-    pub from: Bodies<'a>,
-    pub to: Bodies<'a>,
-}
-
-impl Way<'_> {
-    /// A body on the way: `t` from 0 to 1.
-    pub fn at(&self, body: usize, t: f64) -> BodyState {
-        let [from, to] = [self.from, self.to].map(|b| &b.states[body]);
-        let between = |(a, b): (&f64, &f64)| a + t * (b - a);
-        let configuration = from.configuration.iter().zip(&to.configuration).map(between).collect();
-        BodyState { configuration, internal: from.internal.clone() }
-    }
-
-    fn moves(&self, body: usize) -> bool {
-        self.from.states[body].configuration != self.to.states[body].configuration
-    }
-}
 
 impl System {
     /// The share of a way between two states that may be followed: 1 where nothing passes through on it.
@@ -75,16 +56,8 @@ const LONGEST_STEP: f64 = 0.25;
 const MOST_STEPS: usize = 400;
 
 fn meeting(master: &dyn Master, x: &Point<3>, radius: f64) -> Option<Meeting> {
-    match master.nearest(x, f64::INFINITY, None)? {
-        Met::Rigid(foot) => Some((foot.jet.gap - radius, foot.jet.normal)),
-        Met::Foot(foot) | Met::Cut(foot) => {
-            let d = x - foot.jet.x;
-            Some(match foot.outward {
-                Some(outward) => (d.norm() * d.dot(&outward).signum() - radius, outward),
-                None => (d.norm() - radius - foot.radius, d.try_normalize(0.0)?),
-            })
-        }
-    }
+    let (gap, normal) = master.nearest(x, f64::INFINITY, None)?.gap(x)?;
+    Some((gap - radius, normal))
 }
 
 /// A deformable master on a way: a surface that moves is costly to search, so it is known at a few stages, no farther apart

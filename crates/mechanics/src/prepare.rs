@@ -1,12 +1,8 @@
 //! What contacts need before the first increment: scales of penalties, and where slips count from.
 
-use crate::increment::IncrementError;
+use crate::increment_error::IncrementError;
 use crate::interaction::Bodies;
 use crate::system::{AssemblyError, System};
-
-/// Stiffness of a half-space against a pressure wave as long as a cell is deep, `k E / (2 - 2ν²)` with `k = 2π/h`, in those
-/// of a cell, `E/h`: less for trials, and sites are opened and closed by the tractions of the last step alone.
-pub(crate) const WAVE: f64 = std::f64::consts::PI;
 
 impl System {
     /// Prepares the contacts: scales of penalties, and where slips count from. To be called once, when all bodies, loads and

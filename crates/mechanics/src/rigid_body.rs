@@ -4,11 +4,9 @@
 //! three displacements of the centre and three spins, `R ← exp(θ) R`. Derivatives with respect to spins are the symmetric
 //! second derivatives along geodesics; with a residual `r` the derivative of its spin components is that less `½ r ×`.
 
-use crate::body::{
-    Anchor, Bend, Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Function, Hold, Load, Master,
-    MaterialPoint, Met, Order, PlaceError, Placed, RigidFoot, Sampling, Site,
-};
+use crate::body::{Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Hold, Load, PlaceError};
 use crate::pair::{any_tangent, axis};
+use crate::points::{Anchor, Bend, Function, Master, MaterialPoint, Met, Order, Placed, RigidFoot, Sampling, Site};
 use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::{GapJet, RigidShape};

@@ -76,7 +76,7 @@ impl System {
         let body = &self.bodies[load.part.body];
         let own = &state.bodies[load.part.body];
         let mut out = crate::body::Contribution::new(body.unknowns());
-        load.act(body.as_ref(), own, time, crate::body::Order::First, &mut out)?;
+        load.act(body.as_ref(), own, time, crate::points::Order::First, &mut out)?;
         let modes = body.rigid_modes(own);
         let along = |k: usize| -out.forces.iter().zip(&modes[k]).map(|(f, m)| f * m).sum::<f64>();
         Ok([Vector::<3>::from_fn(|i, _| along(i)), Vector::<3>::from_fn(|i, _| along(3 + i))])

@@ -1,7 +1,7 @@
 //! What a contact is replaced by while a start is looked for: a penalty in place of what enforces it, and friction without a
 //! limit where that is asked for.
 
-use crate::contact::Enforcement;
+use crate::enforcement::Enforcement;
 use signorini_contact::Law;
 use signorini_contact::law::{Friction, stuck};
 

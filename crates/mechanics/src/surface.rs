@@ -1,6 +1,6 @@
 //! What a surface of faces is to contact by mortar: faces with functions, where they are in a state.
 
-use crate::body::{Foot, Placed};
+use crate::points::{Foot, Placed};
 use signorini_contact::ContactSurface;
 use signorini_geometry::Vector;
 

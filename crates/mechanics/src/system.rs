@@ -4,10 +4,11 @@
 //! equations of supports that couple several unknowns. An unknown that a support prescribes by itself keeps its place;
 //! its equation says so, and its residual is the reaction.
 
-use crate::body::{Body, BodyError, BodyState, Constraint, Contribution, Hold, Load, Order, PlaceError};
-use crate::contact::Part;
+use crate::body::{Body, BodyError, BodyState, Constraint, Contribution, Hold, Load, PlaceError};
 use crate::interaction::{Bodies, Interaction, Own, Target};
-use crate::iterative::{LinearSolver, Stiffness};
+use crate::linear_solver::{LinearSolver, Stiffness};
+use crate::part::Part;
+use crate::points::Order;
 use signorini_geometry::{Point, Vector};
 use signorini_solve::general::{Entries, Matrix};
 use std::sync::Arc;

@@ -14,7 +14,7 @@
 mod common;
 
 use signorini_fem::{Cells, Grid, MeshCells};
-use signorini_geometry::{Aabb, Ellipse, Jet, Point, Real};
+use signorini_geometry::{Aabb, Ellipsoid, Jet, Point, Real};
 use signorini_membrane::domain::{BoxDomain, Domain, DomainOnCells, ImplicitDomain};
 use signorini_membrane::field::{Constant, Formula, SharedField};
 use signorini_membrane::multigrid::{Hierarchy, OnGrid, OnMesh, Regular, nested};
@@ -60,7 +60,7 @@ fn on_grid(
 }
 
 fn flat(n: [usize; 2]) -> Membrane<2> {
-    let disc = Arc::new(ImplicitDomain(Ellipse { center: Point::zeros(), semi_axes: [1.0, 1.0] }));
+    let disc = Arc::new(ImplicitDomain(Ellipsoid { center: Point::zeros(), semi_axes: [1.0, 1.0] }));
     on_grid(n, 1.03, disc, Arc::new(Constant(-0.1)), -1.0)
 }
 

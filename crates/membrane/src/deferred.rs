@@ -101,7 +101,7 @@ mod tests {
     use crate::plane_zone::PlaneZone;
     use crate::problem::{Measure, Support};
     use signorini_fem::Grid;
-    use signorini_geometry::{Aabb, Ellipse, Jet, Real};
+    use signorini_geometry::{Aabb, Ellipsoid, Jet, Real};
     use signorini_solve::Silent;
     use std::sync::Arc;
 
@@ -110,7 +110,7 @@ mod tests {
         let bounds = Aabb::new(Point::<2>::new(-1.03, -1.03), Point::<2>::new(1.03, 1.03));
         let grid = Grid::new(bounds, [16, 16], 3);
         let domain: Arc<dyn Domain<2>> =
-            Arc::new(ImplicitDomain(Ellipse { center: Point::zeros(), semi_axes: [1.0, 1.0] }));
+            Arc::new(ImplicitDomain(Ellipsoid { center: Point::zeros(), semi_axes: [1.0, 1.0] }));
         let c = |v: f64| Jet::<2>::constant(v);
         let wave = move |[x, y]: [Jet<2>; 2]| {
             c(-0.1) - c(0.01) * (c(1.0) - c(6.0) * x * x) * (c(1.0) - c(4.0) * (y - c(0.1)) * y)

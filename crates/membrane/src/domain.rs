@@ -1,7 +1,7 @@
 //! Where a membrane is: domains whose boundary either fits the background grid or cuts it.
 
 use signorini_fem::{Cells, MeshCells};
-use signorini_geometry::{Aabb, ImplicitShape, Line, Point, Vector, polygon};
+use signorini_geometry::{Aabb, HalfSpace, ImplicitShape, Point, polygon};
 use std::sync::Arc;
 
 /// What of a domain's boundary may cross a cell.
@@ -62,27 +62,12 @@ impl<const D: usize> Domain<D> for BoxDomain<D> {
 /// The inside of an implicit shape: a disc, an ellipse, or where an expression is negative.
 pub struct ImplicitDomain<S>(pub S);
 
-/// Lends a shape to a partition.
-pub(crate) struct Borrowed<'a, S>(pub &'a S);
-
-impl<const D: usize, S: ImplicitShape<D>> ImplicitShape<D> for Borrowed<'_, S> {
-    fn range(&self, b: &Aabb<D>) -> Option<[f64; 2]> {
-        self.0.range(b)
-    }
-    fn value(&self, x: &Point<D>) -> f64 {
-        self.0.value(x)
-    }
-    fn gradient(&self, x: &Point<D>) -> Vector<D> {
-        self.0.gradient(x)
-    }
-}
-
 impl<const D: usize, S: ImplicitShape<D>> Domain<D> for ImplicitDomain<S> {
     fn boundary_in(&self, b: &Aabb<D>) -> BoundaryInCell<'_, D> {
         if self.0.range(b).is_some_and(|[low, high]| low > 0.0 || high < 0.0) {
             return BoundaryInCell { sheets: Vec::new(), pieces: Vec::new(), features: Vec::new() };
         }
-        BoundaryInCell { sheets: vec![Box::new(Borrowed(&self.0))], pieces: vec![0], features: Vec::new() }
+        BoundaryInCell { sheets: vec![Box::new(&self.0)], pieces: vec![0], features: Vec::new() }
     }
     fn contains(&self, x: &Point<D>, sheet_values: &[f64]) -> bool {
         sheet_values.first().copied().unwrap_or_else(|| self.0.value(x)) < 0.0
@@ -127,7 +112,7 @@ impl Domain<2> for PolygonDomain {
         let mut here = BoundaryInCell { sheets: Vec::new(), pieces: Vec::new(), features: Vec::new() };
         for (i, (a, b)) in polygon::edges(&self.0).enumerate() {
             if polygon::segment_distance(a, b, &cell.center()) <= reach {
-                here.sheets.push(Box::new(Line::through(a, b)));
+                here.sheets.push(Box::new(HalfSpace::left_of(a, b)));
                 here.pieces.push(i as u32);
                 here.features.push(*a);
                 here.features.push(*b);
@@ -153,7 +138,7 @@ impl Domain<2> for PolygonDomain {
         let nearest = polygon::edges(&self.0).map(|(a, b)| {
             let d = b - a;
             let t = ((x - a).dot(&d) / d.norm_squared()).clamp(1e-3, 1.0 - 1e-3);
-            a + t * d - 1e-3 * reach * Line::through(a, b).normal
+            a + t * d - 1e-3 * reach * HalfSpace::left_of(a, b).normal
         });
         nearest
             .filter(|y| (x - y).norm() <= reach && self.contains(y, &[]))

@@ -1,7 +1,7 @@
 //! The derivatives of the method against central differences: slope jump and energy, with tension and load that vary.
 
 use signorini_fem::Grid;
-use signorini_geometry::{Aabb, ClosedCurve, Ellipse, Jet, Point, Real};
+use signorini_geometry::{Aabb, ClosedCurve, Ellipsoid, Jet, Point, Real};
 use signorini_membrane::adhesion::Branch;
 use signorini_membrane::domain::{Domain, DomainOnCells, ImplicitDomain};
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
@@ -25,7 +25,7 @@ fn membrane(cells: usize, degree: usize, side: Side) -> Membrane<2> {
     let bounds = Aabb::new(Point::<2>::new(-1.03, -1.03), Point::<2>::new(1.03, 1.03));
     let grid = Grid::new(bounds, [cells, cells], degree);
     let domain: Arc<dyn Domain<2>> =
-        Arc::new(ImplicitDomain(Ellipse { center: Point::zeros(), semi_axes: [1.0, 1.0] }));
+        Arc::new(ImplicitDomain(Ellipsoid { center: Point::zeros(), semi_axes: [1.0, 1.0] }));
     let c = |v: f64| Jet::<2>::constant(v);
     let up = c(side.sign());
     let height: SharedField<2> =

@@ -4,7 +4,7 @@ mod cycles;
 
 use cycles::{beside_the_direct_solver, circle, contraction};
 use signorini_fem::Grid;
-use signorini_geometry::{Aabb, ClosedCurve, Ellipse, Jet, Point, Real};
+use signorini_geometry::{Aabb, ClosedCurve, Ellipsoid, Jet, Point, Real};
 use signorini_membrane::domain::{BoxDomain, Domain, DomainOnCells, ImplicitDomain, PolygonDomain};
 use signorini_membrane::equilibrium::Elements;
 use signorini_membrane::field::{Constant, Formula};
@@ -41,7 +41,7 @@ fn membrane(n: usize, degree: usize, domain: Arc<dyn Domain<2>>, half: f64) -> M
 }
 
 fn disc(n: usize, degree: usize) -> Membrane<2> {
-    membrane(n, degree, Arc::new(ImplicitDomain(Ellipse { center: Point::zeros(), semi_axes: [1.0, 1.0] })), 1.03)
+    membrane(n, degree, Arc::new(ImplicitDomain(Ellipsoid { center: Point::zeros(), semi_axes: [1.0, 1.0] })), 1.03)
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The published formulation: its multipliers, its derivatives, and its agreement with the one-sided formulation.
 
 use signorini_fem::Grid;
-use signorini_geometry::{Aabb, ClosedCurve, Ellipse, Jet, Point, Real};
+use signorini_geometry::{Aabb, ClosedCurve, Ellipsoid, Jet, Point, Real};
 use signorini_membrane::domain::{BoxDomain, Domain, DomainOnCells, ImplicitDomain};
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::field::{Constant, Formula, SharedField};
@@ -30,7 +30,7 @@ fn disc(cells: usize, formulation: Formulation) -> Membrane<2> {
     let bounds = Aabb::new(Point::<2>::new(-1.03, -1.03), Point::<2>::new(1.03, 1.03));
     let grid = Grid::new(bounds, [cells, cells], 1);
     let domain: Arc<dyn Domain<2>> =
-        Arc::new(ImplicitDomain(Ellipse { center: Point::zeros(), semi_axes: [1.0, 1.0] }));
+        Arc::new(ImplicitDomain(Ellipsoid { center: Point::zeros(), semi_axes: [1.0, 1.0] }));
     varied(Membrane {
         domain: DomainOnCells::new(domain, &grid),
         cells: Arc::new(grid.clone()),

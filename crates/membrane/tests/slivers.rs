@@ -1,7 +1,7 @@
 //! Cuts that leave only slivers: the system stays positive definite, whatever the degree.
 
 use signorini_fem::{Cells, Grid, RefinedGrid};
-use signorini_geometry::{Aabb, ClosedCurve, Ellipse, Line, Point, Vector};
+use signorini_geometry::{Aabb, ClosedCurve, Ellipsoid, HalfSpace, Point, Vector};
 use signorini_membrane::domain::{Domain, DomainOnCells, ImplicitDomain};
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::field::Constant;
@@ -16,7 +16,7 @@ use std::sync::Arc;
 fn error(degree: usize, normal: Vector<2>, offset: f64, divided: bool) -> f64 {
     let bounds = Aabb::new(Point::<2>::new(0.0, 0.0), Point::<2>::new(1.0, 1.0));
     let grid = Grid::new(bounds, [8, 8], degree);
-    let edge = Line { point: Point::<2>::new(0.5, 0.5) + offset * normal, normal };
+    let edge = HalfSpace { point: Point::<2>::new(0.5, 0.5) + offset * normal, normal };
     let domain: Arc<dyn Domain<2>> = Arc::new(ImplicitDomain(edge));
     // Divided towards a point near the edge, so that it cuts cells of four sizes.
     let near = |b: &Aabb<2>, level: usize| level < 3 && (b.center() - Point::<2>::new(0.43, 0.53)).norm() < b.radius();
@@ -77,7 +77,7 @@ fn thin_rings_along_a_free_edge_are_held() {
     for degree in 1..=4 {
         for thickness in [1e-9, 1e-6, 1e-4, 1e-3, 4e-3, 0.01, 0.02, 0.05] {
             let grid = Grid::new(bounds, [12, 12], degree);
-            let disc = Ellipse { center: Point::zeros(), semi_axes: [1.0, 1.0] };
+            let disc = Ellipsoid { center: Point::zeros(), semi_axes: [1.0, 1.0] };
             let domain: Arc<dyn Domain<2>> = Arc::new(ImplicitDomain(disc));
             let floor = Obstacle { side: Side::Below, height: Arc::new(Constant(-0.1)), adhesion: None };
             let membrane = Membrane {

@@ -2,11 +2,13 @@
 
 mod arrays;
 mod domain;
+mod files;
 mod head;
 mod height;
 mod history;
 pub mod mechanics;
 pub mod membrane;
+mod memory;
 pub mod paths;
 pub(crate) mod pieces;
 pub(crate) mod placed;
@@ -21,9 +23,10 @@ mod surface;
 use crate::problem::{Analysis, Body, CaseError, Problem, Space};
 use planner::Planner;
 
-pub use domain::{Pieces, check_memory, memory_at_hand, memory_estimate, mesh_multigrid_estimate, multigrid_estimate};
+pub use domain::Pieces;
 pub use head::Head;
 pub use membrane::MembranePlan;
+pub use memory::{check_memory, memory_at_hand, memory_estimate, mesh_multigrid_estimate, multigrid_estimate};
 pub use placed::Placed;
 pub use rigid::RigidBody;
 pub use signorini_membrane::history::{Control, MethodChoice, PlannedIncrement};

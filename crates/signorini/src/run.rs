@@ -7,6 +7,7 @@ mod environment;
 mod mechanics;
 mod membrane;
 pub(crate) mod outcome;
+mod planned;
 mod record;
 mod sizes;
 mod solid;
@@ -15,13 +16,11 @@ mod strain;
 use crate::plan::{Plan, plan};
 use crate::problem::{CaseError, Problem};
 use driver::{Model, drive, go_on};
-use mechanics::MechanicsModel;
-use membrane::MembraneModel;
 use outcome::not_resumed;
 pub use outcome::{Begun, Ending, Outcome, RunError};
+use planned::Planned;
+use serde_json::Value;
 pub use signorini_solve::{Iteration, Progress, Silent};
-pub use sizes::{preview, sizes};
-use solid::SolidModel;
 use std::path::Path;
 use std::time::Instant;
 
@@ -78,11 +77,39 @@ fn begin(problem: &Problem, folder: &Path, begun: Begun, progress: &mut dyn Prog
 
 /// The model of a problem at its beginning.
 fn model(problem: &Problem) -> Result<Box<dyn Model>, CaseError> {
-    Ok(match plan(problem)? {
-        Plan::Line(p) => Box::new(MembraneModel::new(p)?),
-        Plan::Plane(p) => Box::new(MembraneModel::new(p)?),
-        Plan::PlaneSolids(p) => Box::new(SolidModel::new(*p)?),
-        Plan::Solids(p) => Box::new(SolidModel::new(*p)?),
-        Plan::Mechanics(p) => Box::new(MechanicsModel::new(*p)),
-    })
+    let planned: Box<dyn Planned> = match plan(problem)? {
+        Plan::Line(p) => Box::new(p),
+        Plan::Plane(p) => Box::new(p),
+        Plan::PlaneSolids(p) => p,
+        Plan::Solids(p) => p,
+        Plan::Mechanics(p) => p,
+    };
+    planned.model()
+}
+
+fn planned(plan: &Plan) -> &dyn Planned {
+    match plan {
+        Plan::Line(p) => p,
+        Plan::Plane(p) => p,
+        Plan::PlaneSolids(p) => &**p,
+        Plan::Solids(p) => &**p,
+        Plan::Mechanics(p) => &**p,
+    }
+}
+
+/// What a run of a plan would have to do: size, time, for a membrane the gap before any load, and warnings; after all that a
+/// run checks at the times that are known before it.
+///
+/// # Errors
+/// Fields that cannot be used, at their place.
+pub fn sizes(plan: &Plan) -> Result<Value, CaseError> {
+    planned(plan).sizes()
+}
+
+/// A picture of a case before anything happens in it, as SVG; none where there is nothing to draw.
+///
+/// # Errors
+/// Fields that cannot be used, at their place, and a picture that cannot be drawn.
+pub fn preview(plan: &Plan) -> Result<Option<String>, RunError> {
+    planned(plan).preview()
 }

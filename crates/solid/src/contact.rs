@@ -1,8 +1,10 @@
 //! Two sides that may touch: how their contact is tested and kept, and what it came to.
 
+pub use signorini_mechanics::Enforcement;
+
 use crate::body::BodySurface;
-use crate::friction::{Friction, FrictionResult, RigidMotion, Rubbing, SlipHistory};
-use crate::model::StepError;
+use crate::friction::statement::{Friction, FrictionResult, RigidMotion, Rubbing, SlipHistory};
+use crate::step_error::StepError;
 use crate::supports::Reduction;
 use nalgebra::{DMatrix, DVector};
 use signorini_contact::{
@@ -42,21 +44,6 @@ pub enum Method {
     Node,
     /// At its quadrature points.
     GaussPoint,
-}
-
-/// How the contact conditions are kept.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Enforcement {
-    /// Exactly.
-    Multiplier,
-    /// Exactly in the limit of outer iterations with a penalty.
-    AugmentedLagrangian,
-    /// By the stress of the slave side, consistently and without unknowns of its own (Nitsche 1971, for contact Chouly &
-    /// Hild 2013), skew-symmetric: `p = max(0, -n·σ n - c g)` at every quadrature point, with `c` the stiffness of the
-    /// adjacent cells.
-    Nitsche,
-    /// Up to a penetration: the one wanted, or what a hundred times the stiffness of the adjacent cells leaves.
-    Penalty { wanted_penetration: Option<f64> },
 }
 
 /// The sides of a surface that look at another one: over the closest point of the other, against its normal. So that of

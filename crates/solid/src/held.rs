@@ -2,8 +2,8 @@
 
 use crate::body::Bodies;
 use crate::contact::{Contact, Master};
-use crate::model::StepError;
 use crate::rigid_modes::FreeMode;
+use crate::step_error::StepError;
 use signorini_contact::{WeightedGap, unbalanced};
 use signorini_geometry::Point;
 use std::collections::HashMap;

@@ -13,7 +13,9 @@
 
 mod assembly;
 pub mod body;
+mod condensed;
 pub mod contact;
+mod enforced;
 pub mod friction;
 mod held;
 pub mod hyperelastic;
@@ -21,10 +23,12 @@ pub mod loads;
 pub use signorini_fem::elastic as material;
 pub mod model;
 mod nitsche;
+mod outcome;
 mod reactions;
 pub mod rigid_modes;
 pub mod solid_body;
 pub mod state;
+pub mod step_error;
 pub mod stiffness;
 pub mod supports;
 
@@ -34,8 +38,12 @@ pub use friction::{Friction, FrictionHistory, FrictionResult, RigidMotion, Rubbi
 pub use hyperelastic::{StrainError, StressLaw, Volumetric};
 pub use loads::{Load, LoadKind};
 pub use material::{Elastic, Space, von_mises};
-pub use model::{Circumstances, Memory, Model, StepError};
+pub use model::{Circumstances, Memory, Model};
 pub use signorini_contact::Route;
 pub use solid_body::{EdgeError, EdgeOf, SolidBody, SolidError};
 pub use state::State;
+pub use step_error::StepError;
 pub use supports::{Support, SupportError, SupportKind};
+
+#[cfg(test)]
+mod tests;

@@ -2,53 +2,20 @@
 
 use crate::assembly::{assemble, graph, positions};
 use crate::body::Bodies;
-use crate::contact::{Contact, Enforcement, RigidGap};
-use crate::friction::{FrictionHistory, RigidMotion, refuse_unsupported};
+use crate::condensed::{System, reduced};
+use crate::contact::{Contact, RigidGap};
+use crate::friction::refuse_unsupported;
+use crate::friction::statement::{FrictionHistory, RigidMotion};
 use crate::held::check_held;
 use crate::rigid_modes::{FreeMode, free_modes};
 use crate::state::{Found, State};
-use crate::supports::{Displacement, Reduction, Support, SupportError};
+use crate::step_error::StepError;
+use crate::supports::{Displacement, Reduction, Support};
 use signorini_contact::friction::FrictionalContact;
-use signorini_contact::{
-    ActiveSet, ActiveSetError, Compliance, ContactState, Route, Softness, Spring, WeightedGap, compress,
-};
+use signorini_contact::{ActiveSet, ActiveSetError, ContactState, Route, Spring, WeightedGap};
 use signorini_solve::cholesky::{Cost, Symbolic};
 use signorini_solve::dissection::nested_dissection;
 use signorini_solve::{Factor, SolveError, SymmetricMatrix};
-
-/// Why a step has no solution.
-#[derive(Clone, Debug, thiserror::Error)]
-pub enum StepError {
-    #[error(transparent)]
-    Support(#[from] SupportError),
-    #[error(transparent)]
-    Solve(#[from] SolveError),
-    #[error("contact `{contact}`: {error}")]
-    Contact { contact: String, error: ActiveSetError, places: Vec<String> },
-    #[error("body `{body}` is free {motion}")]
-    Free { body: String, motion: String },
-    /// The loads pull a body away from all that could hold it.
-    #[error("body `{body}` is pulled away {direction}")]
-    PulledAway { body: String, direction: String },
-    #[error("contact `{contact}`: a face of the master makes no shape: {message}")]
-    Shape { contact: String, message: String },
-    /// Most of the slave side is inside the master before anything moves.
-    #[error("contact `{contact}`: the bodies start {depth:.4e} deep in each other")]
-    Deep { contact: String, depth: f64 },
-    #[error("contact `{contact}`: friction is for multipliers or a penalty, and {unlike}")]
-    FrictionUnsupported { contact: String, unlike: String },
-    /// An axis of friction that lies nowhere in the surface.
-    #[error("contact `{contact}`: the axis of friction is normal to the surface at {place}")]
-    FrictionAxis { contact: String, place: String },
-    /// The loads ask for more friction than there is.
-    #[error(
-        "body `{body}` slides away {direction}: its loads ask for a friction of {demanded:.6e}, and at most \
-         {available:.6e} is available"
-    )]
-    Slides { body: String, direction: String, demanded: f64, available: f64 },
-    #[error("interrupted")]
-    Interrupted,
-}
 
 /// Bodies, supports and contacts.
 pub struct Model<const D: usize> {
@@ -94,34 +61,6 @@ pub struct Memory {
     pub active: (Vec<usize>, usize),
     /// With friction: what slips count from.
     pub friction: Option<FrictionHistory>,
-}
-
-pub(crate) struct System<'a>(pub &'a Factor);
-
-impl Compliance for System<'_> {
-    fn solve_columns(&self, b: &mut [f64]) -> Result<(), SolveError> {
-        self.0.solve_columns(b)
-    }
-
-    fn solve_once(&self, b: &mut [f64]) -> Result<(), SolveError> {
-        self.0.solve_once(b)
-    }
-
-    fn solve_accurately(&self, b: &[f64]) -> Result<Vec<f64>, SolveError> {
-        self.0.solve_accurately(b)
-    }
-
-    fn size(&self) -> usize {
-        self.0.size()
-    }
-
-    fn entries(&self) -> f64 {
-        self.0.entries()
-    }
-
-    fn block(&self, unknowns: &[u32]) -> Vec<f64> {
-        self.0.block(unknowns)
-    }
 }
 
 impl<const D: usize> Model<D> {
@@ -336,75 +275,6 @@ impl<const D: usize> Model<D> {
         Ok(ends)
     }
 
-    /// The contact state of rows that give way as the enforcement asks, with outer iterations where it does; and how
-    /// they gave way in the end.
-    pub(crate) fn solve_enforced(
-        &self,
-        rows: &[WeightedGap],
-        ends: &[usize],
-        report: &mut dyn FnMut(usize, usize) -> bool,
-        solve: SolveRows<'_>,
-    ) -> Result<(ContactState, Vec<Softness>), ActiveSetError> {
-        let mut soft = vec![Softness::default(); rows.len()];
-        let range = |k: usize| if k == 0 { 0..ends[0] } else { ends[k - 1]..ends[k] };
-        // Multiples of the stiffness of the cells.
-        let mut factor = vec![100.0; self.contacts.len()];
-        // The penetration that augmented Lagrangians left the last time.
-        let mut left = vec![f64::INFINITY; self.contacts.len()];
-        let mut total = 0;
-        for outer in 0..MOST_OUTER {
-            for (k, contact) in self.contacts.iter().enumerate() {
-                let factor = match contact.enforcement {
-                    Enforcement::Multiplier => continue,
-                    Enforcement::Nitsche => contact.nitsche_factor(),
-                    _ => factor[k],
-                };
-                for (row, stiffness) in range(k).zip(&contact.stiffness) {
-                    soft[row].compliance = rows[row].weight / (factor * stiffness);
-                }
-            }
-            let mut found = solve(&soft, report)?;
-            total += found.iterations;
-            found.iterations = total;
-            let mut again = false;
-            for (k, contact) in self.contacts.iter().enumerate() {
-                let deepest = |rows_of: &mut dyn Iterator<Item = usize>| {
-                    rows_of.map(|r| -found.gap[r] / rows[r].weight).fold(0.0, f64::max)
-                };
-                match contact.enforcement {
-                    Enforcement::Multiplier
-                    | Enforcement::Nitsche
-                    | Enforcement::Penalty { wanted_penetration: None } => {}
-                    Enforcement::Penalty { wanted_penetration: Some(wanted) } => {
-                        let reached = deepest(&mut range(k));
-                        if reached > 0.0 && !(0.98..=1.02).contains(&(reached / wanted)) {
-                            factor[k] *= reached / wanted;
-                            again = true;
-                        }
-                    }
-                    Enforcement::AugmentedLagrangian => {
-                        let moved = found.u.iter().fold(0.0f64, |m, u| m.max(u.abs()));
-                        let mut open = range(k).filter(|&r| found.active[r]);
-                        let worst = open.by_ref().map(|r| (found.gap[r] / rows[r].weight).abs()).fold(0.0, f64::max);
-                        if worst > 1e-11 * moved {
-                            range(k).for_each(|r| soft[r].shift = found.pressure[r]);
-                            // More conditions than the surface can follow converge slowly at one penalty.
-                            if worst > 0.25 * left[k] {
-                                factor[k] = (10.0 * factor[k]).min(MOST_STIFFNESS);
-                            }
-                            left[k] = worst;
-                            again = true;
-                        }
-                    }
-                }
-            }
-            if !again || outer + 1 == MOST_OUTER {
-                return if again { Err(ActiveSetError::TooMany { iterations: total }) } else { Ok((found, soft)) };
-            }
-        }
-        Err(ActiveSetError::TooMany { iterations: total })
-    }
-
     /// What failed, in terms of bodies and contacts.
     pub(crate) fn explained(&self, error: ActiveSetError, ends: &[usize]) -> StepError {
         match error {
@@ -447,30 +317,6 @@ impl<const D: usize> Model<D> {
         names.dedup();
         StepError::Contact { contact: names.join("`, `"), error, places }
     }
-}
-
-/// Finds the state of rows that give way as they are told.
-pub(crate) type SolveRows<'a> =
-    &'a mut dyn FnMut(&[Softness], &mut dyn FnMut(usize, usize) -> bool) -> Result<ContactState, ActiveSetError>;
-
-/// The most outer iterations of a penalty that is adjusted, or of an augmented Lagrangian.
-const MOST_OUTER: usize = 60;
-
-/// The stiffest penalty of an augmented Lagrangian, as a multiple of the stiffness of the cells: beyond it the penetration
-/// is less than the round-off of the compliances.
-const MOST_STIFFNESS: f64 = 1e8;
-
-/// A row in the unknowns that remain.
-pub(crate) fn reduced<const D: usize>(row: &WeightedGap, reduction: &Reduction<D>, offset: &[f64]) -> WeightedGap {
-    let list = |full: &[(u32, f64)]| {
-        let mut out: Vec<(u32, f64)> = Vec::with_capacity(full.len());
-        for (unknown, c) in full {
-            out.extend(reduction.row(*unknown as usize).iter().map(|(k, t)| (*k, c * t)));
-        }
-        compress(&mut out);
-        out
-    };
-    WeightedGap { gap: row.at(offset), terms: list(&row.terms), forces: list(&row.forces), ..*row }
 }
 
 #[cfg(test)]

@@ -12,10 +12,9 @@
 
 use super::CellSolid;
 use crate::body::{CellBody, Site};
-use crate::domain::Negated;
 use crate::jets::{FunctionJet, VectorJet};
-use crate::shapes::HalfSpace;
 use nalgebra::{DMatrix, DVector};
+use signorini_geometry::implicit::{Complement, HalfSpace};
 use signorini_geometry::{ImplicitShape, Matrix, Point, Vector};
 use std::sync::Arc;
 
@@ -56,7 +55,7 @@ impl<const D: usize> Sheets<D> {
         for k in 0..list.len() {
             let first = (0..points.len()).find(|p| of_point[*p] == Some(k));
             if first.is_some_and(|p| list[k].gradient(&points[p].x).dot(&points[p].normal) < 0.0) {
-                list[k] = Arc::new(Negated(list[k].clone()));
+                list[k] = Arc::new(Complement(list[k].clone()));
             }
         }
         Sheets { of_point, list }

@@ -1,12 +1,12 @@
 //! Shapes as trees of plain data, and the domains and exact offsets that they make.
 
-use crate::domain::Domain;
+use crate::Domain;
 use crate::error::CellsError;
 use crate::image::ImageData;
-use crate::shapes::{Ellipsoid, Function, Rigid, Section, cuboid};
-use signorini_geometry::implicit_surface::{ImplicitBody, ImplicitSurface};
+use crate::shapes::{Cylinder, Ellipsoid, Function, Level, Offset, Section, cuboid};
+use signorini_geometry::implicit_surface::ImplicitSurface;
 use signorini_geometry::rigid_shape::RigidShape;
-use signorini_geometry::{Aabb, ImplicitShape, Jet, Matrix, Point, Vector};
+use signorini_geometry::{Aabb, ImplicitShape, Jet, Point, Vector};
 use std::sync::Arc;
 
 /// A function of position with gradient and Hessian.
@@ -51,6 +51,15 @@ const PER_CELL: usize = 2;
 const LEAST_CELLS: usize = 16;
 const MOST_CELLS: usize = 128;
 
+/// The function that stands for a rigid shape.
+#[derive(Clone, Copy)]
+enum RigidBy {
+    /// Its gap, of which bounds are known: for quadrature.
+    Distance,
+    /// The function whose zero it is: for feet of points.
+    Level,
+}
+
 impl Shape {
     /// The box of the shape, where it has one.
     pub fn bounds(&self) -> Option<Aabb<3>> {
@@ -80,10 +89,24 @@ impl Shape {
     /// The domain of the dimension of the body. `bounds` is the box of the cells, `cells` their number along its longest
     /// side.
     pub(super) fn domain<const D: usize>(&self, bounds: &Aabb<3>, cells: usize) -> Result<Domain<D>, CellsError> {
-        let list = |parts: &[Shape]| parts.iter().map(|p| p.domain::<D>(bounds, cells)).collect::<Result<Vec<_>, _>>();
+        self.with_rigid(bounds, cells, RigidBy::Distance)
+    }
+
+    fn with_rigid<const D: usize>(
+        &self,
+        bounds: &Aabb<3>,
+        cells: usize,
+        rigid: RigidBy,
+    ) -> Result<Domain<D>, CellsError> {
+        let list = |parts: &[Shape]| {
+            parts.iter().map(|p| p.with_rigid::<D>(bounds, cells, rigid)).collect::<Result<Vec<_>, _>>()
+        };
         self.check()?;
         Ok(match self {
-            Shape::Rigid(shape) => section(Rigid { shape: shape.clone(), offset: 0.0 }),
+            Shape::Rigid(shape) => match rigid {
+                RigidBy::Distance => section(Offset { shape: shape.clone(), distance: 0.0 }),
+                RigidBy::Level => section(Level(shape.clone())),
+            },
             Shape::Function(f) => {
                 let f = f.clone();
                 section(Function(move |x: &Point<3>| f(x)))
@@ -108,7 +131,7 @@ impl Shape {
             }
             Shape::Offset { of, distance } => {
                 let shape = Arc::new(of.surface::<D>(bounds, cells, *distance)?);
-                section(Rigid { shape, offset: *distance })
+                section(Offset { shape, distance: *distance })
             }
         })
     }
@@ -150,83 +173,16 @@ impl Shape {
         if D < 3 {
             (min[2], max[2]) = (-around, around);
         }
-        let body = self.body::<D>(bounds, cells)?;
+        let body = self.with_rigid::<D>(bounds, cells, RigidBy::Level)?;
+        let body = body.map(&|shape| Arc::new(Cylinder(shape.clone())));
         let count = (PER_CELL * cells).clamp(LEAST_CELLS, MOST_CELLS);
         Ok(ImplicitSurface::new(body, Aabb::new(min, max), count)?)
-    }
-
-    /// The shape for exact distances.
-    fn body<const D: usize>(&self, bounds: &Aabb<3>, cells: usize) -> Result<ImplicitBody, CellsError> {
-        let list = |parts: &[Shape]| parts.iter().map(|p| p.body::<D>(bounds, cells)).collect::<Result<Vec<_>, _>>();
-        self.check()?;
-        Ok(match self {
-            Shape::Rigid(shape) => {
-                let shape = shape.clone();
-                ImplicitBody::field(move |x: &Point<3>| cylinder::<D>(x, |x| shape.level(x)))
-            }
-            Shape::Function(f) => {
-                let f = f.clone();
-                ImplicitBody::field(move |x: &Point<3>| cylinder::<D>(x, |x| f(x)))
-            }
-            Shape::Ellipsoid { center, semi_axes } => {
-                let shape = Ellipsoid::<3> { center: Point::<3>::from(*center), semi_axes: *semi_axes };
-                field::<D>(shape)
-            }
-            Shape::Cuboid { min, max } => {
-                let sides = (0..D).flat_map(|k| [(k, min[k], -1.0), (k, max[k], 1.0)]);
-                let side = |(k, at, sign): (usize, f64, f64)| {
-                    let e = Vector::<3>::from_fn(|i, _| f64::from(u8::from(i == k)));
-                    field::<D>(crate::shapes::HalfSpace { point: e * at, normal: e * sign })
-                };
-                ImplicitBody::Intersection(sides.map(side).collect())
-            }
-            Shape::Image { image, threshold, smoothing } => {
-                let level = image.clone().voxels::<D>()?.above(*threshold, *smoothing)?;
-                ImplicitBody::field(move |x: &Point<3>| {
-                    let at = level.jet(&Point::<D>::from_fn(|k, _| x[k]));
-                    let gradient = crate::shapes::spatial(&at.gradient);
-                    let inside = |i: usize, j: usize| if i < D && j < D { at.hessian[(i, j)] } else { 0.0 };
-                    Jet { value: at.value, gradient, hessian: Matrix::<3>::from_fn(inside) }
-                })
-            }
-            Shape::Union(parts) => ImplicitBody::Union(list(parts)?),
-            Shape::Intersection(parts) => ImplicitBody::Intersection(list(parts)?),
-            Shape::Difference(parts) => {
-                let mut parts = list(parts)?.into_iter();
-                let first = parts.next().unwrap_or(ImplicitBody::Union(Vec::new()));
-                first.difference(ImplicitBody::Union(parts.collect()))
-            }
-            Shape::Offset { of, distance } => {
-                ImplicitBody::Offset(Arc::new(of.surface::<D>(bounds, cells, *distance)?), *distance)
-            }
-        })
     }
 }
 
 /// A shape of space in the dimension of the body: itself, or its section.
 fn section<const D: usize>(shape: impl ImplicitShape<3> + 'static) -> Domain<D> {
     Domain::shape(Section(Arc::new(shape)))
-}
-
-fn field<const D: usize>(shape: impl ImplicitShape<3> + 'static) -> ImplicitBody {
-    ImplicitBody::field(move |x: &Point<3>| {
-        cylinder::<D>(x, |x| {
-            let (value, gradient) = shape.value_and_gradient(x);
-            Jet { value, gradient, hessian: shape.hessian(x) }
-        })
-    })
-}
-
-/// A function of space; in the plane that of the section, the same for all z.
-fn cylinder<const D: usize>(x: &Point<3>, f: impl Fn(&Point<3>) -> Jet<3>) -> Jet<3> {
-    if D == 3 {
-        return f(x);
-    }
-    let mut jet = f(&Point::<3>::new(x[0], x[1], 0.0));
-    jet.gradient[2] = 0.0;
-    jet.hessian.row_mut(2).fill(0.0);
-    jet.hessian.column_mut(2).fill(0.0);
-    jet
 }
 
 /// The box of all voxels.

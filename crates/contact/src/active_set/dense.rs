@@ -11,7 +11,7 @@
 //! `S` is positive definite, as the springs hold all bodies. Of bodies that are otherwise free `C = 0`, and the small
 //! complement `C - H S⁻¹ G` says whether the active rows hold them.
 
-use super::ActiveSetError;
+use super::error::ActiveSetError;
 use nalgebra::{Cholesky, DMatrix, DVector, DVectorView, Dyn, FullPivLU};
 
 /// Pivots, and stiffness of a body on its contact relative to its spring, below which there is none.

@@ -3,10 +3,10 @@
 use super::ladder::{FrictionError, solve};
 use super::newton::System;
 use super::problem::{Friction, Node, Problem, RowCompliance};
-use crate::active_set::{SPRINGS_LEFT, Softness, Spring};
 use crate::compliance::{Compliance, Route, RowProducts};
 use crate::law::{Projected, Status};
 use crate::mortar::WeightedGap;
+use crate::softness::{SPRINGS_LEFT, Softness, Spring};
 use signorini_solve::SolveError;
 use std::collections::BTreeMap;
 

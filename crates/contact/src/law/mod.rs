@@ -103,6 +103,28 @@ pub trait Law: std::fmt::Debug + Send + Sync {
     }
 }
 
+/// A law that several contacts share.
+impl<L: Law + ?Sized> Law for std::sync::Arc<L> {
+    fn friction(&self, trial: [f64; 2], pressure: f64) -> Friction {
+        (**self).friction(trial, pressure)
+    }
+    fn friction_in_time(&self, trial: [f64; 2], pressure: f64, per_velocity: f64) -> Friction {
+        (**self).friction_in_time(trial, pressure, per_velocity)
+    }
+    fn utilisation(&self, traction: [f64; 2], pressure: f64) -> f64 {
+        (**self).utilisation(traction, pressure)
+    }
+    fn per_pressure(&self) -> Option<[f64; 2]> {
+        (**self).per_pressure()
+    }
+    fn coupling(&self, w: [f64; 2]) -> f64 {
+        (**self).coupling(w)
+    }
+    fn project_in_time(&self, trial: [f64; 3], per_velocity: f64) -> Projected {
+        (**self).project_in_time(trial, per_velocity)
+    }
+}
+
 /// Friction that the trial itself satisfies.
 pub fn stuck(trial: [f64; 2]) -> Friction {
     Friction { traction: trial, by_trial: [[1.0, 0.0], [0.0, 1.0]], by_pressure: [0.0; 2], slips: false }

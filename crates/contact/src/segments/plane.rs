@@ -1,6 +1,6 @@
 //! Pieces of slave faces in the plane: intervals between the projections of the master's vertices.
 
-use super::{FACING, GapPoint, SNAP, onto_master, onto_slave, snapped};
+use super::opposite::{FACING, GapPoint, SNAP, onto_master, onto_slave, snapped};
 use crate::multiplier::PressureNodes;
 use crate::surface::ContactSurface;
 use signorini_basis::CellShape;

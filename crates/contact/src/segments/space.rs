@@ -1,6 +1,6 @@
 //! Pieces of slave faces in space: polygons, cut in the plane of each slave facet.
 
-use super::{FACING, GapPoint, onto_master, snapped};
+use super::opposite::{FACING, GapPoint, onto_master, snapped};
 use crate::multiplier::PressureNodes;
 use crate::surface::ContactSurface;
 use signorini_basis::hierarchic::Values;

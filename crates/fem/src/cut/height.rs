@@ -11,7 +11,8 @@
 //! surface point of weight `w |∇φ| / |∂_k φ|`. All weights are positive, and the points of all regions together
 //! integrate the whole box.
 
-use super::{CellPartition, CellRule, QuadraturePoint, SurfacePoint, scan_roots};
+use super::partition::{CellPartition, CellRule, QuadraturePoint, SurfacePoint};
+use super::roots::scan_roots;
 use signorini_geometry::rule::gauss_legendre;
 use signorini_geometry::{Aabb, ImplicitShape, Point, Vector};
 

@@ -4,7 +4,7 @@
 //! roots along its edges, by bisection on the region itself, so that any region will do. The geometry is off by the
 //! sagitta `s² κ / 8` of the chords, with `s` the size of a sub-cell, whatever the order.
 
-use super::{CellPartition, CellRule, QuadraturePoint, RegionId, SurfacePoint};
+use super::partition::{CellPartition, CellRule, QuadraturePoint, RegionId, SurfacePoint};
 use signorini_geometry::rule::gauss_legendre;
 use signorini_geometry::{Aabb, Point, Vector};
 

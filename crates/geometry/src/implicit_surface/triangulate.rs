@@ -1,12 +1,12 @@
 //! The boundary of a body as triangles, from which Newton starts.
 
-use super::ImplicitBody;
+use crate::implicit::ImplicitBody;
 use crate::mesh::TriangleMesh;
 use crate::shape::ShapeError;
 use crate::{Aabb, Point, Vector};
 
 /// Marching tetrahedra: six to a cell, around its diagonal.
-pub fn triangulate(body: &ImplicitBody, bounds: &Aabb<3>, cell: f64) -> Result<TriangleMesh, ShapeError> {
+pub fn triangulate(body: &ImplicitBody<3>, bounds: &Aabb<3>, cell: f64) -> Result<TriangleMesh, ShapeError> {
     let n: [usize; 3] = std::array::from_fn(|k| ((bounds.size()[k] / cell - 1e-9).ceil() as usize).max(1));
     let at = |i: usize, j: usize, k: usize| {
         bounds.at(&Point::<3>::new(i as f64 / n[0] as f64, j as f64 / n[1] as f64, k as f64 / n[2] as f64))

@@ -4,7 +4,7 @@ use super::height::{circle, rising, squared_distance};
 use super::{ClosestPoints, GapJet, NoHeight, Normals, RigidShape, curvature};
 use crate::height_field::{HeightField, View};
 use crate::shape::{Axes, ShapeError, Surface};
-use crate::{Jet, Matrix, Point, Real, Vector};
+use crate::{Aabb, Jet, Matrix, Point, Real, Vector};
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
 
@@ -43,6 +43,11 @@ impl RigidShape for Ellipsoid {
 
     fn centre(&self) -> Point<3> {
         self.center
+    }
+
+    fn bounds(&self) -> Option<Aabb<3>> {
+        let half = Vector::<3>::from(self.semi_axes);
+        Some(Aabb::new(self.center - half, self.center + half))
     }
 
     fn height(&self, view: View, _: f64) -> Result<Arc<dyn HeightField>, NoHeight> {

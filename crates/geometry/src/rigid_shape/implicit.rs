@@ -1,7 +1,8 @@
 //! Bodies given by functions, through the exact closest point of their boundary.
 
 use super::{GapJet, RigidShape};
-use crate::implicit_surface::{ImplicitBody, ImplicitSurface};
+use crate::implicit::ImplicitBody;
+use crate::implicit_surface::ImplicitSurface;
 use crate::{Jet, Point};
 
 impl RigidShape for ImplicitSurface {
@@ -10,10 +11,10 @@ impl RigidShape for ImplicitSurface {
         GapJet { gap: foot.gap, normal: foot.normal, hessian: foot.hessian }
     }
 
-    /// The function itself where the body is one function.
+    /// The function itself where the body is one shape.
     fn level(&self, x: &Point<3>) -> Jet<3> {
-        if let ImplicitBody::Field(field) = self.body() {
-            return field.jet(x);
+        if let ImplicitBody::Shape(shape) = self.body() {
+            return shape.jet(x);
         }
         let GapJet { gap, normal, hessian } = self.gap(x);
         Jet { value: gap, gradient: normal, hessian }
@@ -29,6 +30,7 @@ impl RigidShape for ImplicitSurface {
 mod tests {
     use super::super::testing;
     use super::*;
+    use crate::implicit::Function;
     use crate::jet::Real;
     use crate::{Aabb, Vector};
 
@@ -40,7 +42,7 @@ mod tests {
             x * x + c(2.0) * y * y + c(3.0) * z * z - c(0.2)
         };
         let bounds = Aabb::new(Point::<3>::repeat(-1.0), Point::<3>::repeat(1.0));
-        let surface = ImplicitSurface::new(ImplicitBody::field(field), bounds, 40).unwrap();
+        let surface = ImplicitSurface::new(ImplicitBody::shape(Function(field)), bounds, 40).unwrap();
         let on_it = [Vector::<3>::x() * 0.2f64.sqrt(), Vector::<3>::y() * 0.1f64.sqrt()];
         testing::check(&surface, &on_it);
         testing::check_level(&surface, &on_it);

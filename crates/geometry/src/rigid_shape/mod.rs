@@ -45,7 +45,7 @@ pub use sphere::Sphere;
 pub use torus::Torus;
 
 use crate::height_field::{HeightField, View};
-use crate::{Jet, Point, Vector};
+use crate::{Aabb, Jet, Point, Vector};
 use std::sync::Arc;
 
 /// A body that does not deform.
@@ -62,6 +62,11 @@ pub trait RigidShape: Send + Sync {
 
     /// The point about which the body turns.
     fn centre(&self) -> Point<3>;
+
+    /// The box of the shape, where it has an end everywhere and a closed form tells it.
+    fn bounds(&self) -> Option<Aabb<3>> {
+        None
+    }
 
     /// The height over (x, y) of the surface that is seen from above or below, by a closed form. A point on the axis where
     /// the surface has no tangent plane is rounded off by the length `rounding`.

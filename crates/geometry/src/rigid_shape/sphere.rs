@@ -2,8 +2,8 @@
 
 use super::height::{circle, rising, squared_distance};
 use super::{GapJet, NoHeight, RigidShape};
-use crate::Point;
 use crate::height_field::{HeightField, View};
+use crate::{Aabb, Point, Vector};
 use std::sync::Arc;
 
 /// A ball.
@@ -20,6 +20,11 @@ impl RigidShape for Sphere {
 
     fn centre(&self) -> Point<3> {
         self.center
+    }
+
+    fn bounds(&self) -> Option<Aabb<3>> {
+        let half = Vector::<3>::repeat(self.radius);
+        Some(Aabb::new(self.center - half, self.center + half))
     }
 
     fn height(&self, view: View, _: f64) -> Result<Arc<dyn HeightField>, NoHeight> {

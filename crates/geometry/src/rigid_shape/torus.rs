@@ -3,7 +3,7 @@
 use super::height::{circle, is_upright, rising, sqrt, squared_distance};
 use super::{GapJet, NoHeight, RigidShape, any_normal, curvature, unit};
 use crate::height_field::{HeightField, View};
-use crate::{Jet, Point, Real, Vector};
+use crate::{Aabb, Jet, Point, Real, Vector};
 use std::sync::Arc;
 
 /// A ring: everything closer than `minor` to a circle of radius `major`.
@@ -35,6 +35,11 @@ impl RigidShape for Torus {
 
     fn centre(&self) -> Point<3> {
         self.center
+    }
+
+    fn bounds(&self) -> Option<Aabb<3>> {
+        let half = Vector::<3>::repeat(self.major + self.minor);
+        Some(Aabb::new(self.center - half, self.center + half))
     }
 
     fn height(&self, view: View, rounding: f64) -> Result<Arc<dyn HeightField>, NoHeight> {

@@ -5,7 +5,7 @@
 //! that the curve turns by less than 15 degrees between them.
 
 use super::{Closure, Continuity, Curve};
-use crate::body::{Anchor, Master, MaterialPoint, Met, Site};
+use crate::points::{Anchor, Master, MaterialPoint, Met, Site};
 use signorini_geometry::bvh::Bvh;
 use signorini_geometry::shape::CurveJet;
 use signorini_geometry::{Aabb, Point, Vector};

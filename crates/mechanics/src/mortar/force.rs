@@ -3,9 +3,9 @@
 use super::Mortar;
 use super::cover::{Cover, CoveredPoint};
 use super::measure::{NodeMeasure, Separation, Sides};
-use crate::body::Order;
 use crate::interaction::{Own, Target};
 use crate::pair::{NoPair, Pair};
+use crate::points::Order;
 use signorini_contact::Status;
 use signorini_contact::law::Projected;
 use signorini_geometry::{Matrix, Vector};

@@ -4,11 +4,11 @@ use super::force::Assembly;
 use super::measure::{Matched, NodeMeasure, Opposite, Sides};
 use super::shown::show;
 use super::{Mortar, NodeMemory};
-use crate::body::{Body, MaterialPoint, PlaceError};
-use crate::contact::Enforcement;
+use crate::body::{Body, PlaceError};
+use crate::enforcement::{Outer, WAVE};
 use crate::interaction::{Around, Bodies, Interaction, NotItsHistory, Own, Target, hardened, take_over, towards};
 use crate::pair::{AxisChoice, Pair, any_tangent};
-use crate::prepare::WAVE;
+use crate::points::MaterialPoint;
 use crate::simpler::{SetAside, SimplerFriction};
 use crate::site_result::SiteResult;
 use signorini_contact::law::Projected;
@@ -114,7 +114,7 @@ impl Interaction for Mortar {
     }
 
     fn is_exact(&self) -> bool {
-        self.enforcement == Enforcement::Multiplier
+        self.enforcement.is_exact()
     }
 
     fn begin(&mut self, time: f64) {
@@ -139,7 +139,7 @@ impl Interaction for Mortar {
             let placed = sides.slave.placed(*face, s);
             let normal = sides.slave.normal(*face, s).normalize();
             let pushed = |v: &Vector<3>| v.dot(&normal).abs() > 1e-6 * v.norm();
-            let moves = |f: &crate::body::Function| !held[(sides.first[0] + f.unknown) as usize];
+            let moves = |f: &crate::points::Function| !held[(sides.first[0] + f.unknown) as usize];
             self.folded[k] = !placed.functions.iter().any(|f| pushed(&f.value) && moves(f));
         }
         self.whole = self.nodes.whole(sides.slave.as_ref(), &self.folded).weight;
@@ -225,8 +225,8 @@ impl Interaction for Mortar {
         found: &[SiteResult],
         around: Around,
     ) -> Result<f64, PlaceError> {
-        match self.enforcement {
-            Enforcement::AugmentedLagrangian => {
+        match self.enforcement.outer() {
+            Outer::TakesOver => {
                 let projected = self.found(at, own.multipliers)?.projected;
                 let found: Vec<[f64; 3]> = projected.iter().map(|p| p.traction).collect();
                 let kept = self.memory.iter_mut().map(|m| &mut m.traction).zip(&self.stiffness);
@@ -234,10 +234,8 @@ impl Interaction for Mortar {
                 self.softness = hardened(self.softness, change, &around);
                 Ok(change)
             }
-            Enforcement::Penalty { wanted_penetration: Some(wanted) } => {
-                Ok(towards(wanted, found, &mut self.stiffness))
-            }
-            _ => Ok(0.0),
+            Outer::Towards(wanted) => Ok(towards(wanted, found, &mut self.stiffness)),
+            Outer::Nothing => Ok(0.0),
         }
     }
 

@@ -3,9 +3,10 @@
 use super::Mortar;
 use super::axes::Axes;
 use super::cover::{Cover, CoveredPoint};
-use crate::body::{Anchor, Master, MaterialPoint, Met, Order, PlaceError};
+use crate::body::PlaceError;
 use crate::interaction::Bodies;
 use crate::pair::{AxisChoice, Encounter, NoPair, Pair, Stuck};
+use crate::points::{Anchor, Master, MaterialPoint, Met, Order};
 use crate::surface::{Local, Surface};
 use signorini_geometry::Vector;
 

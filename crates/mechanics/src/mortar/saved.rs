@@ -2,7 +2,7 @@
 
 use super::measure::Matched;
 use super::{Mortar, NodeMemory};
-use crate::body::MaterialPoint;
+use crate::points::MaterialPoint;
 use signorini_geometry::Vector;
 
 /// Numbers of the memory of a node.

@@ -16,8 +16,8 @@
 //! Forces act along a line through both points, so that they have neither resultant nor moment. The opening is not the
 //! variation of the gap, so that the tangent is unsymmetric.
 
-use super::{Column, Encounter, NoPair, Pair, SecondVariation, Stuck, axis};
-use crate::body::{Foot, Function, Order};
+use super::measures::{Column, Encounter, NoPair, Pair, SecondVariation, Stuck, axis};
+use crate::points::{Foot, Function, Order};
 use signorini_geometry::{Matrix, Vector};
 
 /// A slave site and the point across from it.

@@ -1,7 +1,7 @@
 //! The gap of a pair and its variations.
 
-use super::{Column, Encounter, NoPair, Pair, axis};
-use crate::body::{Foot, Function, Order, RigidFoot};
+use super::measures::{Column, Encounter, NoPair, Pair, axis};
+use crate::points::{Foot, Function, Order, RigidFoot};
 use nalgebra::{SMatrix, SVector};
 use signorini_geometry::Vector;
 use signorini_geometry::measures::{Measures, PartnerJet, Variation};

@@ -1,8 +1,8 @@
 //! The slip of a pair: variation, second variation, and what has slipped since the anchor.
 
 use super::gap::{AtFoot, AtRigid};
-use super::{Column, Pair, SecondVariation, Stuck, any_tangent, axis};
-use crate::body::{Order, RigidFoot};
+use super::measures::{Column, Pair, SecondVariation, Stuck, any_tangent, axis};
+use crate::points::{Order, RigidFoot};
 use nalgebra::{SMatrix, SVector};
 use signorini_geometry::{Matrix, Point, Vector};
 

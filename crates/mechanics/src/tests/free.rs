@@ -1,9 +1,11 @@
 //! Free rigid bodies that contact, friction and springs hold, against statics.
 
 use super::*;
-use crate::body::Sampling;
-use crate::contact::{Contact, Enforcement, Part};
-use crate::increment::IncrementError;
+use crate::contact::Contact;
+use crate::enforcement::Enforcement;
+use crate::increment_error::IncrementError;
+use crate::part::Part;
+use crate::points::Sampling;
 use crate::system::{PlacedLoad, Support, System, TimedLoad};
 use signorini_contact::{Coulomb, Status, Viscous};
 

@@ -2,9 +2,12 @@
 
 use super::patch::Sheet;
 use super::*;
-use crate::body::{Body, Order, Sampling};
-use crate::contact::{Contact, Enforcement, Part};
+use crate::body::Body;
+use crate::contact::Contact;
+use crate::enforcement::Enforcement;
 use crate::pair::AxisChoice;
+use crate::part::Part;
+use crate::points::{Order, Sampling};
 use crate::system::{System, SystemState};
 use signorini_contact::{Coulomb, Law};
 use signorini_geometry::rigid_shape::{Ellipsoid, Torus};

@@ -5,7 +5,7 @@ pub mod chart;
 pub mod figure;
 pub mod film;
 pub mod folder;
-mod history;
+pub(crate) mod history;
 pub(crate) mod labels;
 pub(crate) mod level;
 mod membrane_line;

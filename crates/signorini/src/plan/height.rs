@@ -5,7 +5,7 @@ use super::rigid_shape::{self, ShapeKeys};
 use crate::expression::Expression;
 use crate::problem::units::{Dimension, LENGTH};
 use crate::problem::{CaseError, List, Value};
-use crate::problem::{Cylinder, Ellipsoid, Rigid, Shape, Space};
+use crate::problem::{Cylinder, Ellipsoid, Looks, Rigid, Shape, ShapeReader, Space};
 use signorini_geometry::Vector;
 use signorini_geometry::height_field::View;
 use signorini_geometry::rigid_shape::NoHeight;
@@ -45,12 +45,8 @@ pub(super) fn read(
 
 /// What is wrong with the direction of a shape.
 fn told(planner: &Planner<'_>, shape: &Shape, side: Side, why: NoHeight) -> CaseError {
-    let at = match shape {
-        Shape::Plane(key) => planner.key(&key.normal),
-        Shape::Cone(key) => planner.key(&key.axis),
-        Shape::Paraboloid(key) => planner.key(&key.axis),
-        Shape::Torus(key) => planner.key(&key.axis),
-        Shape::Cylinder(key) => key.axis.as_ref().map_or_else(|| planner.key(shape), |axis| planner.key(axis)),
+    let at = match shape.closed_form().map(|shape| shape.stance().looks) {
+        Some(Looks::Along(direction, _) | Looks::Round(Some(direction))) => planner.key(direction),
         _ => planner.key(shape),
     };
     let below = side == Side::Below;
@@ -74,15 +70,7 @@ struct BesideMembrane<'a, 'b> {
 impl BesideMembrane<'_, '_> {
     /// Round an axis of symmetry shapes stand on it and are round themselves.
     fn check_round(&self, shape: &Shape) -> Result<(), CaseError> {
-        let place = match shape {
-            Shape::Sphere(key) => &key.center,
-            Shape::Cylinder(key) => &key.point,
-            Shape::Cone(key) => &key.apex,
-            Shape::Ellipsoid(key) => &key.center,
-            Shape::Torus(key) => &key.center,
-            Shape::Paraboloid(key) => &key.apex,
-            _ => return Ok(()),
-        };
+        let Some(place) = shape.closed_form().and_then(|shape| shape.stance().place) else { return Ok(()) };
         let problem = self.planner.problem;
         let at = self.vector(place, LENGTH)?;
         if at[0] != 0.0 || at[1] != 0.0 {
@@ -91,7 +79,7 @@ impl BesideMembrane<'_, '_> {
                 .help("x = y = 0"));
         }
         if let Shape::Ellipsoid(key) = shape {
-            let [a, b, _] = self.semi_axes(key)?;
+            let [a, b, _] = ShapeKeys::semi_axes(self, key)?;
             if a != b {
                 return Err(problem.error(&key.semi_axes, "round an axis the first two semi-axes are equal"));
             }

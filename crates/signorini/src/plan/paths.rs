@@ -1,6 +1,9 @@
 //! From the statement to paths on rigid bodies: shortest ones, those of yarns, ropes on given curves.
 
-use super::head::Head;
+mod statement;
+
+pub use statement::{PathPlan, PlannedEnd, PlannedPath, PlannedRope, PlannedStation, PlannedWinding, Task};
+
 use super::placed::Placed;
 use super::planner::Planner;
 use super::rigid::RigidBody;
@@ -15,75 +18,6 @@ use signorini_paths::curve::{Analytic, Curve, PointSpline};
 use signorini_paths::friction::Friction;
 use signorini_paths::winding::{At, Slippage};
 use std::sync::Arc;
-
-/// Paths on rigid bodies.
-pub struct PathPlan {
-    pub head: Head,
-    pub bodies: Vec<RigidBody>,
-    /// The directions to the eye and up, of pictures.
-    pub view: [Vector<3>; 2],
-    pub task: Task,
-}
-
-/// What is sought.
-pub enum Task {
-    Wrapping { frames: usize, paths: Vec<PlannedPath> },
-    Winding(Vec<PlannedWinding>),
-    EulerEytelwein(Vec<PlannedRope>),
-}
-
-/// A shortest path.
-pub struct PlannedPath {
-    pub name: String,
-    pub key: KeyPath,
-    pub from: PlannedEnd,
-    pub to: PlannedEnd,
-    pub stations: Vec<PlannedStation>,
-    pub friction: Option<Friction>,
-    pub tension: Option<Placed>,
-    pub end_tension: Option<Placed>,
-}
-
-/// A fixed point of a path: of space, by time, or of a body.
-pub enum PlannedEnd {
-    Space([Placed; 3]),
-    OnBody(usize, Point<3>),
-}
-
-/// What a path passes.
-pub enum PlannedStation {
-    Via(PlannedEnd),
-    Around { body: usize, turns: u32 },
-}
-
-/// A path of a yarn.
-pub struct PlannedWinding {
-    pub name: String,
-    pub key: KeyPath,
-    pub body: usize,
-    /// Along the axis, around it, and the angle from the meridian.
-    pub start: [f64; 3],
-    pub slippage: Option<Slippage>,
-    pub friction: Option<f64>,
-    pub opening: Option<f64>,
-    pub band: Option<f64>,
-    /// A number of circuits; `Some(None)` for as few as cover the mandrel.
-    pub pattern: Option<Option<u32>>,
-    pub axis: Vector<3>,
-    pub length: Option<f64>,
-    pub spacing: Option<f64>,
-}
-
-/// A rope on a given curve.
-pub struct PlannedRope {
-    pub name: String,
-    pub key: KeyPath,
-    pub body: usize,
-    pub curve: Box<dyn Curve>,
-    pub friction: Friction,
-    pub tension: f64,
-    pub end_tension: Option<f64>,
-}
 
 /// Times where no number of them is stated.
 const FRAMES: usize = 2;

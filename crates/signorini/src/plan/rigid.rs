@@ -7,11 +7,12 @@ use super::rigid_shape::{self, ShapeKeys};
 use crate::expression::Scope;
 use crate::problem::units::{Dimension, LENGTH, NONE};
 use crate::problem::{CaseError, List, Location, Problem, Value};
-use crate::problem::{Cylinder, Ellipsoid, Motion, Rigid, Shape, Side, Space};
+use crate::problem::{Cylinder, Ellipsoid, Motion, Rigid, Shape, ShapeReader, Side, Space, Stance};
 use crate::queries::geometry;
 use crate::report::{Warning, WarningKind};
 use signorini_geometry::height_field::{self, HeightField};
-use signorini_geometry::implicit_surface::{ImplicitBody, ImplicitSurface};
+use signorini_geometry::implicit::Function;
+use signorini_geometry::implicit_surface::ImplicitSurface;
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::{ClosestPoints, GapJet, Normals, RigidShape};
 use signorini_geometry::shape::{Shape as Geometry, ShapeError};
@@ -154,7 +155,10 @@ pub(super) fn read<const D: usize>(
     let shape = shape::<D>(planner, &rigid.shape, around)?;
     let inside = rigid.side.as_ref().is_some_and(|s| *s == Side::Inside);
     let [displacement, rotation] = motion::<D>(planner, rigid)?;
-    let bounds = keys.bounds(&rigid.shape)?;
+    let bounds = match &rigid.shape {
+        Shape::LevelSet(key) => Some(Aabb::new(keys.vector(&key.min, LENGTH)?, keys.vector(&key.max, LENGTH)?)),
+        stated => stated.closed_form().and_then(|_| shape.bounds()),
+    };
     Ok(RigidBody { name: name.to_string(), shape, inside, displacement, rotation, bounds })
 }
 
@@ -218,13 +222,11 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
 
     /// Shapes round an axis are shapes in space, which in the plane can be that of an axisymmetric problem.
     fn check_round(&self, shape: &Shape) -> Result<(), CaseError> {
-        let (what, place, axis) = match shape {
-            Shape::Cone(key) => ("cone", &key.apex, &key.axis),
-            Shape::Torus(key) => ("torus", &key.center, &key.axis),
-            Shape::Paraboloid(key) => ("paraboloid", &key.apex, &key.axis),
-            Shape::Revolution(key) => ("body of revolution", key.origin.as_ref().unwrap_or(&key.axis), &key.axis),
-            _ => return Ok(()),
+        let Some(Stance { noun: what, place, axis: Some(axis), .. }) = shape.closed_form().map(|shape| shape.stance())
+        else {
+            return Ok(());
         };
+        let place = place.unwrap_or(axis);
         if D == 3 || self.planner.space != Space::Axisymmetric {
             return self.check_in_space(shape, what);
         }
@@ -236,25 +238,6 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
                 .error(if on_axis { axis } else { place }, format!("the {what} does not stand on the axis"))
                 .help("in an axisymmetric problem its place is [0, z], and its axis [0, 1] or [0, -1]")),
         }
-    }
-
-    /// The box of a shape that has an end.
-    fn bounds(&self, shape: &Shape) -> Result<Option<Aabb<3>>, CaseError> {
-        let reader = &self.planner.reader;
-        let (center, half) = match shape {
-            Shape::Sphere(key) => (&key.center, Vector::<3>::repeat(reader.positive(&key.radius, LENGTH)?)),
-            Shape::Torus(key) => {
-                let reach = reader.positive(&key.major_radius, LENGTH)? + reader.positive(&key.minor_radius, LENGTH)?;
-                (&key.center, Vector::<3>::repeat(reach))
-            }
-            Shape::Ellipsoid(key) => (&key.center, Vector::<3>::from(self.semi_axes(key)?)),
-            Shape::LevelSet(key) => {
-                return Ok(Some(Aabb::new(self.vector(&key.min, LENGTH)?, self.vector(&key.max, LENGTH)?)));
-            }
-            _ => return Ok(None),
-        };
-        let center = self.vector(center, LENGTH)?;
-        Ok(Some(Aabb::new(center - half, center + half)))
     }
 
     /// Shapes from files and functions.
@@ -304,7 +287,7 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
                     expression.evaluate(&Scope { position, time: Jet::<3>::constant(0.0) })
                 };
                 let bounds = flat_box::<D>(low, high);
-                Arc::new(ImplicitSurface::new(ImplicitBody::field(field), bounds, cells).map_err(wrong)?)
+                Arc::new(ImplicitSurface::new(Function(field).into(), bounds, cells).map_err(wrong)?)
             }
             Shape::Height(value) => {
                 // The body below the height: z - h(x, y), or y - h(x) in the plane.
@@ -315,7 +298,7 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
                     let position = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));
                     position[up] - height.evaluate(&Scope { position, time: Jet::<3>::constant(0.0) })
                 };
-                let surface = ImplicitSurface::new(ImplicitBody::field(field), *around, 64).map_err(|e| {
+                let surface = ImplicitSurface::new(Function(field).into(), *around, 64).map_err(|e| {
                     wrong(e).help("the height must cross the box around the solids, twice as long as they are")
                 })?;
                 Arc::new(surface)
@@ -337,19 +320,12 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
                     let [x, y, z] = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));
                     z - height_field::evaluate(&map, x, y)
                 };
-                let surface = ImplicitSurface::new(ImplicitBody::field(field), bounds, 96).map_err(|e| {
+                let surface = ImplicitSurface::new(Function(field).into(), bounds, 96).map_err(|e| {
                     wrong(e).help("the heights must lie within the box around the solids, twice as long as they are")
                 })?;
                 Arc::new(surface)
             }
-            Shape::Plane(_)
-            | Shape::Sphere(_)
-            | Shape::Cylinder(_)
-            | Shape::Cone(_)
-            | Shape::Ellipsoid(_)
-            | Shape::Torus(_)
-            | Shape::Revolution(_)
-            | Shape::Paraboloid(_) => return Err(planner.unavailable(shape, "this shape beside a solid")),
+            _ => return Err(planner.unavailable(shape, "this shape beside a solid")),
         })
     }
 }

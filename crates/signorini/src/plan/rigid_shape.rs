@@ -2,14 +2,10 @@
 
 use super::planner::Planner;
 use crate::problem::units::{Dimension, LENGTH, NONE};
-use crate::problem::{self, List, Shape};
-use crate::problem::{CaseError, Value};
+use crate::problem::{self, CaseError, List, Problem, Shape, ShapeReader, Value};
 use crate::text_table;
 use signorini_geometry::Vector;
-use signorini_geometry::rigid_shape::{
-    Cone, Cylinder, Ellipsoid, Paraboloid, Plane, Profile, Revolution, RigidShape, Sphere, Torus,
-};
-use std::f64::consts::FRAC_PI_2;
+use signorini_geometry::rigid_shape::{Profile, RigidShape};
 use std::sync::Arc;
 
 /// How places and directions are stated: it depends on the space, and on what the shape lies beside.
@@ -23,11 +19,40 @@ pub(super) trait ShapeKeys {
     fn cylinder_axis(&self, key: &problem::Cylinder, shape: &Shape) -> Result<Vector<3>, CaseError>;
 
     fn semi_axes(&self, key: &problem::Ellipsoid) -> Result<[f64; 3], CaseError>;
+}
 
-    /// A unit vector.
+impl<K: ShapeKeys> ShapeReader for K {
+    fn problem(&self) -> &Problem {
+        self.planner().problem
+    }
+
+    fn place(&self, values: &List<Value>) -> Result<Vector<3>, CaseError> {
+        self.vector(values, LENGTH)
+    }
+
     fn direction(&self, values: &List<Value>) -> Result<Vector<3>, CaseError> {
         let v = self.vector(values, NONE)?;
-        v.try_normalize(0.0).ok_or_else(|| self.planner().problem.error(values, "the direction has no length"))
+        v.try_normalize(0.0).ok_or_else(|| self.problem().error(values, "the direction has no length"))
+    }
+
+    fn length(&self, value: &Value) -> Result<f64, CaseError> {
+        self.planner().reader.positive(value, LENGTH)
+    }
+
+    fn angle(&self, value: &Value) -> Result<f64, CaseError> {
+        self.planner().reader.positive(value, NONE)
+    }
+
+    fn cylinder_axis(&self, key: &problem::Cylinder, shape: &Shape) -> Result<Vector<3>, CaseError> {
+        ShapeKeys::cylinder_axis(self, key, shape)
+    }
+
+    fn semi_axes(&self, key: &problem::Ellipsoid) -> Result<[f64; 3], CaseError> {
+        ShapeKeys::semi_axes(self, key)
+    }
+
+    fn profile(&self, key: &problem::Revolution) -> Result<Profile, CaseError> {
+        profile(self.planner(), key)
     }
 }
 
@@ -36,64 +61,8 @@ pub(super) fn read(
     keys: &impl ShapeKeys,
     shape: &Shape,
 ) -> Result<Option<(Arc<dyn RigidShape>, &'static str)>, CaseError> {
-    let planner = keys.planner();
-    let (problem, reader) = (planner.problem, &planner.reader);
-    let wrong = |error: signorini_geometry::shape::ShapeError| problem.error(shape, error.to_string());
-    Ok(Some(match shape {
-        Shape::Plane(key) => {
-            let (point, normal) = (keys.vector(&key.point, LENGTH)?, keys.direction(&key.normal)?);
-            (Arc::new(Plane { point, normal }), "plane")
-        }
-        Shape::Sphere(key) => {
-            let (center, radius) = (keys.vector(&key.center, LENGTH)?, reader.positive(&key.radius, LENGTH)?);
-            (Arc::new(Sphere { center, radius }), "sphere")
-        }
-        Shape::Cylinder(key) => {
-            let (axis, point) = (keys.cylinder_axis(key, shape)?, keys.vector(&key.point, LENGTH)?);
-            (Arc::new(Cylinder { point, axis, radius: reader.positive(&key.radius, LENGTH)? }), "cylinder")
-        }
-        Shape::Cone(key) => {
-            let half_angle = reader.positive(&key.half_angle, NONE)?;
-            if half_angle >= FRAC_PI_2 {
-                return Err(problem
-                    .error(&key.half_angle, format!("the half angle is {half_angle}"))
-                    .help("an angle in radians below pi/2"));
-            }
-            let (apex, axis) = (keys.vector(&key.apex, LENGTH)?, keys.direction(&key.axis)?);
-            (Arc::new(Cone { apex, axis, half_angle }), "cone")
-        }
-        Shape::Torus(key) => {
-            let major = reader.positive(&key.major_radius, LENGTH)?;
-            let minor = reader.positive(&key.minor_radius, LENGTH)?;
-            if minor >= major {
-                return Err(problem.error(
-                    &key.minor_radius,
-                    format!("the minor radius {minor} is not smaller than the major radius {major}"),
-                ));
-            }
-            let (center, axis) = (keys.vector(&key.center, LENGTH)?, keys.direction(&key.axis)?);
-            (Arc::new(Torus { center, axis, major, minor }), "torus")
-        }
-        Shape::Ellipsoid(key) => {
-            let semi_axes = keys.semi_axes(key)?;
-            if semi_axes.iter().any(|a| *a <= 0.0) {
-                return Err(problem.error(&key.semi_axes, "all semi-axes must be positive"));
-            }
-            let ellipsoid = Ellipsoid::new(keys.vector(&key.center, LENGTH)?, semi_axes).map_err(wrong)?;
-            (Arc::new(ellipsoid), "ellipsoid")
-        }
-        Shape::Paraboloid(key) => {
-            let radius = reader.positive(&key.radius, LENGTH)?;
-            let (apex, axis) = (keys.vector(&key.apex, LENGTH)?, keys.direction(&key.axis)?);
-            (Arc::new(Paraboloid::new(apex, axis, radius).map_err(wrong)?), "paraboloid")
-        }
-        Shape::Revolution(key) => {
-            let origin = key.origin.as_ref().map_or(Ok(Vector::<3>::zeros()), |o| keys.vector(o, LENGTH))?;
-            let axis = keys.direction(&key.axis)?;
-            (Arc::new(Revolution { origin, axis, profile: profile(planner, key)? }), "revolution")
-        }
-        _ => return Ok(None),
-    }))
+    let Some(stated) = shape.closed_form() else { return Ok(None) };
+    Ok(Some((stated.read(keys, shape)?, stated.stance().name)))
 }
 
 /// The spline through the points of a table.

@@ -5,7 +5,7 @@ use super::placed::{Placed, field};
 use super::planner::{Planner, coordinates};
 use crate::expression::{Expression, Scope};
 use crate::problem::units::{LENGTH, NONE};
-use crate::problem::{self, Lies, List, Motion, Rigid, Shape, Space};
+use crate::problem::{self, Lies, List, Looks, Motion, Rigid, Shape, Space};
 use crate::problem::{CaseError, Part, Value};
 use crate::relief::{LevelSetTop, Sampled};
 use crate::report::Warning;
@@ -113,14 +113,10 @@ fn side(planner: &Planner<'_>, rigid: &Rigid, level: Option<f64>) -> Result<Side
         let z = last(values, LENGTH)?;
         Ok(if level.is_some_and(|level| z > level) { Side::Above } else { Side::Below })
     };
-    match &rigid.shape {
-        Shape::Plane(s) => Ok(by_sign(last(&s.normal, NONE)?)),
-        Shape::Cone(s) => Ok(by_sign(-last(&s.axis, NONE)?)),
-        Shape::Paraboloid(s) => Ok(by_sign(-last(&s.axis, NONE)?)),
-        Shape::Sphere(s) => by_centre(&s.center),
-        Shape::Cylinder(s) => by_centre(&s.point),
-        Shape::Ellipsoid(s) => by_centre(&s.center),
-        Shape::Torus(s) => by_centre(&s.center),
+    let Some(stance) = rigid.shape.closed_form().map(|shape| shape.stance()) else { return Ok(Side::Below) };
+    match (stance.looks, stance.place) {
+        (Looks::Along(direction, sign), _) => Ok(by_sign(sign * last(direction, NONE)?)),
+        (Looks::Round(_), Some(place)) => by_centre(place),
         _ => Ok(Side::Below),
     }
 }

@@ -23,6 +23,20 @@ pub enum Body {
     Beam(Beam),
 }
 
+impl Body {
+    /// The key of its kind.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Body::Membrane(_) => "membrane",
+            Body::Rigid(_) => "rigid",
+            Body::Solid(_) => "solid",
+            Body::Cells(_) => "cells",
+            Body::Rope(_) => "rope",
+            Body::Beam(_) => "beam",
+        }
+    }
+}
+
 /// An elastic solid.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -19,6 +19,7 @@ pub mod material;
 pub mod nothing;
 pub mod paths;
 pub mod rigid;
+pub mod shape;
 pub mod source;
 pub mod units;
 pub mod value;
@@ -37,6 +38,7 @@ pub use material::*;
 pub use nothing::Nothing;
 pub use paths::*;
 pub use rigid::*;
+pub use shape::*;
 pub use source::Source;
 pub use value::{Components, Value};
 

@@ -1,7 +1,7 @@
 //! An answer as it is written.
 
 use super::answer::{Answer, Format};
-use super::geometry::FieldError;
+use super::fields::FieldError;
 use super::query::PairQuery;
 use signorini_geometry::closest::{Certificate, Projection, Uniqueness};
 use std::time::Duration;

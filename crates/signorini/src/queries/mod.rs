@@ -5,7 +5,9 @@
 
 pub mod answer;
 mod answered;
+mod fields;
 pub mod geometry;
+mod implicit;
 mod object;
 mod output;
 mod points;
@@ -22,7 +24,7 @@ use std::time::{Duration, Instant};
 use crate::mesh_file;
 
 use answered::Answered;
-use geometry::FieldError;
+use fields::FieldError;
 use object::Object;
 use output::Output;
 pub use query::{PairQuery, QueriesError};

@@ -1,6 +1,6 @@
 //! Objects of JSON cut into their entries.
 
-use super::geometry::FieldError;
+use super::fields::FieldError;
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::Value;
 use serde_json::value::RawValue;
@@ -20,7 +20,7 @@ impl<'a> Object<'a> {
         let fail = |message: String| FieldError { path: String::new(), message };
         let object: Object<'a> =
             serde_json::from_slice(text).map_err(|e| match serde_json::from_slice::<Value>(text) {
-                Ok(value) => fail(format!("{} instead of an object", super::geometry::kind(&value))),
+                Ok(value) => fail(format!("{} instead of an object", super::fields::kind(&value))),
                 Err(_) => fail(not_json(text, &e)),
             })?;
         let mut keys: Vec<&String> = object.entries.iter().map(|(key, _)| key).collect();

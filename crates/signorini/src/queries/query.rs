@@ -1,6 +1,6 @@
 //! A query, and why a file of them could not be answered.
 
-use super::geometry::FieldError;
+use super::fields::FieldError;
 use super::scanner::ScanError;
 use signorini_geometry::shape::Shape;
 use std::io;

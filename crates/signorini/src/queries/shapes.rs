@@ -4,7 +4,8 @@
 //! shape that is written several times within a batch of queries, in the same characters, is therefore built once and
 //! kept for the queries that follow.
 
-use super::geometry::{self, FieldError};
+use super::fields::FieldError;
+use super::geometry;
 use super::object::Object;
 use super::scanner::LARGEST_CASE;
 use crate::problem::suggestion;

@@ -1,12 +1,16 @@
-//! What a run of a membrane would have to do, and what looks wrong before it starts.
+//! The plans as the runner sees them: what a run would have to do, what looks wrong before it starts, and the models.
 
+use super::driver::Model;
+use super::mechanics::MechanicsModel;
+use super::membrane::MembraneModel;
 use super::outcome::RunError;
-use super::solid;
+use super::planned::Planned;
+use super::solid::{self, SolidModel};
 use crate::output::solid_fields::SolidDisplay;
 use crate::output::{pictures, solid_pictures, system_pictures};
 use crate::plan::mechanics::MechanicsPlan;
 use crate::plan::solid::SolidPlan;
-use crate::plan::{MembranePlan, Plan, memory_estimate, mesh_multigrid_estimate, multigrid_estimate};
+use crate::plan::{MembranePlan, memory_estimate, mesh_multigrid_estimate, multigrid_estimate};
 use crate::problem::CaseError;
 use crate::problem::units::Units;
 use crate::report::{Warning, WarningKind};
@@ -30,21 +34,6 @@ const LENGTHS: RangeInclusive<f64> = 1e-9..=1e5;
 const MODULI: RangeInclusive<f64> = 1e1..=3e12;
 /// More unknowns than this are not solved for just to look.
 const LOOK: usize = 200_000;
-
-/// What a run of a plan would have to do: size, time, for a membrane the gap before any load, and warnings; after all that a
-/// run checks at the times that are known before it.
-///
-/// # Errors
-/// Fields that cannot be used, at their place.
-pub fn sizes(plan: &Plan) -> Result<Value, CaseError> {
-    match plan {
-        Plan::Line(plan) => of_membrane(plan),
-        Plan::Plane(plan) => of_membrane(plan),
-        Plan::PlaneSolids(plan) => of_solids(plan),
-        Plan::Solids(plan) => of_solids(plan),
-        Plan::Mechanics(plan) => Ok(of_system(plan)),
-    }
-}
 
 /// What a run of a system of bodies would have to do.
 fn of_system(plan: &MechanicsPlan) -> Value {
@@ -187,36 +176,58 @@ pub(super) fn odd_solids<const D: usize>(plan: &SolidPlan<D>) -> Vec<String> {
     out
 }
 
-/// A picture of a case before anything happens in it, as SVG; none where there is nothing to draw.
-///
-/// # Errors
-/// Fields that cannot be used, at their place, and a picture that cannot be drawn.
-pub fn preview(plan: &Plan) -> Result<Option<String>, RunError> {
-    fn membrane<const D: usize>(plan: &MembranePlan<D>) -> Result<Option<String>, RunError> {
-        let time = plan.increments.first().map_or(0.0, |i| i.range[0]);
-        let membrane = Membrane { load: Arc::new(Constant(0.0)), ..plan.at(time) };
-        let mesh = DisplayMesh::new(plan, &membrane);
-        let Ok(free) = (plan.kernel.free)(&membrane) else { return Ok(None) };
+impl<const D: usize> Planned for MembranePlan<D> {
+    fn sizes(&self) -> Result<Value, CaseError> {
+        of_membrane(self)
+    }
+
+    fn preview(&self) -> Result<Option<String>, RunError> {
+        let time = self.increments.first().map_or(0.0, |i| i.range[0]);
+        let membrane = Membrane { load: Arc::new(Constant(0.0)), ..self.at(time) };
+        let mesh = DisplayMesh::new(self, &membrane);
+        let Ok(free) = (self.kernel.free)(&membrane) else { return Ok(None) };
         if mesh.cells.is_empty() {
             return Ok(None);
         }
         let sample =
             |x: &Point<D>| Some(Sample { displacement: (free.displacement)(x)?, in_contact: false, pressure: 0.0 });
         let snapshot = Snapshot::new(&mesh, &membrane, time, Vec::new(), sample);
-        Ok(Some(pictures::preview(plan, &mesh, &snapshot)?))
+        Ok(Some(pictures::preview(self, &mesh, &snapshot)?))
     }
-    fn solids<const D: usize>(plan: &SolidPlan<D>) -> Result<Option<String>, RunError> {
-        let model = solid::model(plan)?;
+
+    fn model(self: Box<Self>) -> Result<Box<dyn Model>, CaseError> {
+        Ok(Box::new(MembraneModel::new(*self)?))
+    }
+}
+
+impl<const D: usize> Planned for SolidPlan<D> {
+    fn sizes(&self) -> Result<Value, CaseError> {
+        of_solids(self)
+    }
+
+    fn preview(&self) -> Result<Option<String>, RunError> {
+        let model = solid::model(self)?;
         let display = SolidDisplay::new(&model);
         let fields = display.fields(&model, &vec![0.0; model.bodies.unknowns()]);
-        Ok(Some(solid_pictures::preview(plan, &display, &fields)?))
+        Ok(Some(solid_pictures::preview(self, &display, &fields)?))
     }
-    match plan {
-        Plan::Line(plan) => membrane(plan),
-        Plan::Plane(plan) => membrane(plan),
-        Plan::PlaneSolids(plan) => solids(plan),
-        Plan::Solids(plan) => solids(plan),
-        Plan::Mechanics(plan) => Ok(Some(system_pictures::preview(plan)?)),
+
+    fn model(self: Box<Self>) -> Result<Box<dyn Model>, CaseError> {
+        Ok(Box::new(SolidModel::new(*self)?))
+    }
+}
+
+impl Planned for MechanicsPlan {
+    fn sizes(&self) -> Result<Value, CaseError> {
+        Ok(of_system(self))
+    }
+
+    fn preview(&self) -> Result<Option<String>, RunError> {
+        Ok(Some(system_pictures::preview(self)?))
+    }
+
+    fn model(self: Box<Self>) -> Result<Box<dyn Model>, CaseError> {
+        Ok(Box::new(MechanicsModel::new(*self)))
     }
 }
 

@@ -1,41 +1,15 @@
 //! The state of stick and slip of all contacts of a model at one time.
 
-use super::FrictionHistory;
+use super::statement::{Found, FrictionAt, FrictionHistory};
+use crate::condensed::{System, reduced};
 use crate::contact::Enforcement;
-use crate::model::{Circumstances, Model, StepError, System, reduced};
+use crate::model::{Circumstances, Model};
 use crate::state::{Found as FoundState, State};
+use crate::step_error::StepError;
 use signorini_contact::friction::{Bodies, FrictionError, FrictionState, Node};
 use signorini_contact::{ActiveSetError, ContactState, Softness, Status, WeightedGap, compress};
 use signorini_geometry::Point;
 use std::collections::BTreeMap;
-use std::ops::Range;
-
-/// Friction at a row.
-#[derive(Clone, Debug)]
-pub(crate) struct FrictionAt {
-    pub status: Status,
-    /// Along the axes of the law, per area.
-    pub traction: [f64; 2],
-    /// Weighted slip of the increment along these axes.
-    pub increment: [f64; 2],
-    /// In all.
-    pub slip: [f64; 3],
-    pub closed_before: bool,
-    pub uniqueness: f64,
-}
-
-/// Friction of all rows.
-pub(crate) struct Found {
-    at: Vec<FrictionAt>,
-    pub unstable: bool,
-}
-
-impl Found {
-    /// Of the rows of a contact.
-    pub fn of(&self, rows: Range<usize>) -> &[FrictionAt] {
-        &self.at[rows]
-    }
-}
 
 /// Part of the weight of a row below which its slips move nothing that is free.
 const HELD: f64 = 1e-7;

@@ -11,6 +11,9 @@ use signorini_mechanics::contact::Part;
 use signorini_mechanics::{AxisChoice, Contact, Enforcement as Kept, Interaction, Sampling, System};
 use signorini_rope::curve_pair::{CurveContact, Form};
 
+/// The methods of linear solids of small strain, together.
+pub(in crate::plan) const SMALL_STRAIN: &str = "small_strain";
+
 impl Planner<'_> {
     pub(super) fn system_contacts(
         &self,
@@ -111,7 +114,7 @@ impl Planner<'_> {
             let law = self.law(friction, 3)?;
             contact.axis = match friction {
                 problem::Friction::Coulomb(coulomb) => self.axis_choice(coulomb)?,
-                problem::Friction::Tresca(_) | problem::Friction::Viscous(_) => AxisChoice::Material,
+                _ => AxisChoice::Material,
             };
             contact.friction = Some(law);
         }
@@ -161,7 +164,7 @@ impl Planner<'_> {
                 contact.friction = Some(self.law(friction, 3)?);
                 match friction {
                     problem::Friction::Coulomb(coulomb) => self.axis_choice(coulomb)?,
-                    problem::Friction::Tresca(_) | problem::Friction::Viscous(_) => AxisChoice::Tangent,
+                    _ => AxisChoice::Tangent,
                 }
             }
             None => AxisChoice::Tangent,
@@ -233,13 +236,18 @@ impl Planner<'_> {
     }
 
     /// How a contact is kept.
-    pub(super) fn kept(&self, stated: Option<&Enforcement>, otherwise: Kept, method: &str) -> Result<Kept, CaseError> {
+    pub(in crate::plan) fn kept(
+        &self,
+        stated: Option<&Enforcement>,
+        otherwise: Kept,
+        method: &str,
+    ) -> Result<Kept, CaseError> {
         Ok(match stated {
             None => otherwise,
             Some(Enforcement::Multiplier(_)) => Kept::Multiplier,
             Some(Enforcement::AugmentedLagrangian(_)) => Kept::AugmentedLagrangian,
             Some(Enforcement::Penalty(k)) => Kept::Penalty { wanted_penetration: self.wanted_penetration(k)? },
-            Some(Enforcement::Nitsche(_)) if method == "cell_surface" => Kept::Nitsche,
+            Some(Enforcement::Nitsche(_)) if ["cell_surface", SMALL_STRAIN].contains(&method) => Kept::Nitsche,
             Some(nitsche @ Enforcement::Nitsche(_)) => {
                 return Err(self
                     .problem

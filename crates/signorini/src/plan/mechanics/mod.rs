@@ -1,7 +1,7 @@
 //! From the statement to bodies of any kind in one system: ropes, beams, free rigid bodies.
 
 pub(crate) mod cells;
-mod contacts;
+pub(super) mod contacts;
 mod curves;
 mod fields;
 mod mortar;
@@ -13,8 +13,8 @@ mod winches;
 pub(in crate::plan) use contacts::is_tangent;
 pub use fields::Wrong;
 
-use super::domain::check_memory;
 use super::head::Head;
+use super::memory::check_memory;
 use super::planner::Planner;
 use crate::problem::units::LENGTH;
 use crate::problem::{self, Body, CaseError, Material, Motion, Problem, Space};
@@ -149,7 +149,7 @@ impl Planner<'_> {
                 }
                 Body::Cells(cells) => (self.cells_body(name, cells, &mut notes)?.body, Kind::Cells),
                 Body::Rigid(_) => continue,
-                Body::Membrane(_) => {
+                _ => {
                     return Err(problem
                         .error(body, format!("the body `{name}` cannot stand in a system of several kinds of bodies"))
                         .help("bodies here are `solid`, `cells`, `rope`, `beam` or `rigid`"));

@@ -7,8 +7,9 @@ mod read;
 mod supports;
 mod times;
 
-use super::domain::{self, memory_at_hand, memory_estimate};
+use super::domain;
 use super::head::Head;
+use super::memory::{memory_at_hand, memory_estimate};
 use super::placed::{Placed, field};
 use super::surface::Contact;
 use crate::problem::{self, Body, CaseError, Space};

@@ -37,14 +37,9 @@ impl Planner<'_> {
             return Err(self.unavailable(second, "more than one membrane"));
         }
         for (name, b) in &self.problem.bodies {
-            let what = match b {
-                Body::Membrane(_) | Body::Rigid(_) => continue,
-                Body::Solid(_) => "solid",
-                Body::Cells(_) => "cells",
-                Body::Rope(_) => "rope",
-                Body::Beam(_) => "beam",
-            };
-            return Err(self.unavailable(b, &format!("the body `{name}`: `{what}`")));
+            if !matches!(b, Body::Membrane(_) | Body::Rigid(_)) {
+                return Err(self.unavailable(b, &format!("the body `{name}`: `{}`", b.kind())));
+            }
         }
         let mut on = domain::ReadDomain::<D>::domain(self, film)?;
         let tension = self.placed(&film.tension, FORCE_PER_LENGTH)?;

@@ -7,35 +7,19 @@ use crate::problem::{self, CaseError, Value};
 use signorini_contact::law::{Coulomb, Law, LawError, Tresca, Viscous};
 use signorini_geometry::Point;
 use signorini_solid::Friction;
+use std::sync::Arc;
 
 /// The friction of a contact.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct PlannedFriction<const D: usize> {
-    law: PlannedLaw,
+    law: Arc<dyn Law>,
     axis: Option<Point<D>>,
-}
-
-#[derive(Clone, Copy, Debug)]
-enum PlannedLaw {
-    Coulomb(Coulomb),
-    Tresca(Tresca),
-    Viscous(Viscous),
-}
-
-impl PlannedLaw {
-    fn boxed(self) -> Box<dyn Law> {
-        match self {
-            PlannedLaw::Coulomb(law) => Box::new(law),
-            PlannedLaw::Tresca(law) => Box::new(law),
-            PlannedLaw::Viscous(law) => Box::new(law),
-        }
-    }
 }
 
 impl<const D: usize> PlannedFriction<D> {
     /// The friction of a contact of solids.
     pub fn friction(&self) -> Friction<D> {
-        Friction { law: self.law.boxed(), axis: self.axis }
+        Friction { law: Box::new(Arc::clone(&self.law)), axis: self.axis }
     }
 }
 
@@ -59,7 +43,7 @@ impl Planner<'_> {
                         .ok_or_else(|| self.problem.error(axis, "the direction has no length"))?,
                 )
             }
-            None if coulomb.mu.0.len() == 2 && !matches!(law, PlannedLaw::Coulomb(law) if law.is_isotropic()) => {
+            None if law.per_pressure().is_some_and(|mu| mu[0] != mu[1]) => {
                 return Err(self
                     .problem
                     .error(&coulomb.mu, "two coefficients of friction need the direction of the first")
@@ -72,21 +56,21 @@ impl Planner<'_> {
 
     /// The law of friction in so many dimensions.
     pub(in crate::plan) fn law(&self, key: &problem::Friction, dimension: usize) -> Result<Box<dyn Law>, CaseError> {
-        Ok(self.planned_law(key, dimension)?.boxed())
+        Ok(Box::new(self.planned_law(key, dimension)?))
     }
 
-    fn planned_law(&self, key: &problem::Friction, dimension: usize) -> Result<PlannedLaw, CaseError> {
+    fn planned_law(&self, key: &problem::Friction, dimension: usize) -> Result<Arc<dyn Law>, CaseError> {
         let key = match key {
             problem::Friction::Tresca(key) => {
                 let limit = self.reader.number(&key.limit, PRESSURE)?;
                 let law = Tresca::new(limit).map_err(|e| self.not_negative(&key.limit, e))?;
-                return Ok(PlannedLaw::Tresca(law));
+                return Ok(Arc::new(law));
             }
             problem::Friction::Viscous(key) => {
                 let mu = self.reader.number(&key.mu, NONE)?;
                 let velocity = self.reader.positive(&key.velocity, [1, 0, -1])?;
                 let law = Viscous::new(mu, velocity).map_err(|e| self.not_negative(&key.mu, e))?;
-                return Ok(PlannedLaw::Viscous(law));
+                return Ok(Arc::new(law));
             }
             problem::Friction::Coulomb(key) => key,
         };
@@ -113,7 +97,7 @@ impl Planner<'_> {
             }
         };
         let law = Coulomb::orthotropic(mu).map_err(|e| self.not_negative(&list[0], e))?;
-        Ok(PlannedLaw::Coulomb(law))
+        Ok(Arc::new(law))
     }
 
     fn not_negative(&self, value: &Value, LawError { value: found }: LawError) -> CaseError {

@@ -49,7 +49,7 @@ pub fn model<const D: usize>(plan: &SolidPlan<D>) -> Result<Model<D>, CaseError>
             };
             let mut contact = Contact::new(&c.name, slave, master);
             (contact.method, contact.enforcement) = (c.method, c.enforcement);
-            contact.friction = c.friction.map(|planned| planned.friction());
+            contact.friction = c.friction.as_ref().map(|planned| planned.friction());
             contact
         })
         .collect();
@@ -124,7 +124,7 @@ pub fn at_time<const D: usize, R>(
         })
         .collect::<Result<_, CaseError>>()?;
     let motion: Vec<Option<RigidMotion<D>>> = (plan.contacts.iter())
-        .map(|c| match (&c.opposite, c.friction) {
+        .map(|c| match (&c.opposite, &c.friction) {
             (Opposite::Rigid(body), Some(_)) => {
                 let moved = body.displacement_at(problem, time)?;
                 let of = move |x: &Point<D>| {

@@ -1,0 +1,201 @@
+//! A contact of sites as the system sees it.
+
+use super::{Contact, Sides, SiteMemory};
+use crate::body::Body;
+use crate::body::PlaceError;
+use crate::enforcement::{Outer, WAVE};
+use crate::interaction::{Around, Bodies, Interaction, NotItsHistory, Own, Target, Way, hardened, take_over, towards};
+use crate::pair::Stuck;
+use crate::points::{MaterialPoint, Sampling, Site};
+use crate::simpler::{SetAside, SimplerFriction};
+use crate::site_result::SiteResult;
+use signorini_contact::Law;
+use signorini_geometry::Vector;
+
+impl<'a> Bodies<'a> {
+    pub(crate) fn sides(&self, contact: &Contact) -> Sides<'a> {
+        Sides {
+            slave: self.side(&contact.slave),
+            master: self.side(&contact.master),
+            first: [self.first[contact.slave.body], self.first[contact.master.body]],
+        }
+    }
+}
+
+impl Interaction for Contact {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn bodies(&self) -> [usize; 2] {
+        [self.slave.body, self.master.body]
+    }
+
+    fn law(&self) -> Option<&dyn Law> {
+        self.friction.as_deref()
+    }
+
+    fn rows(&self) -> Vec<[f64; 2]> {
+        let list = self.stiffness.iter().zip(self.sites());
+        list.flat_map(|(c, site)| vec![[*c, site.weight]; self.components()]).collect()
+    }
+
+    fn remembered(&self) -> Vec<f64> {
+        self.memory.iter().flat_map(|m| m.traction[..self.components()].to_vec()).collect()
+    }
+
+    fn is_exact(&self) -> bool {
+        self.enforcement.is_exact()
+    }
+
+    fn begin(&mut self, time: f64) {
+        self.times[1] = time;
+    }
+
+    fn end(&mut self) {
+        self.softness = self.enforcement.softness();
+    }
+
+    fn stiffness(&self, bodies: &[Box<dyn Body>]) -> f64 {
+        let own = self.stiffness.iter().zip(self.sites()).map(|(c, s)| c * s.weight);
+        // A deformable master of a rigid slave.
+        let master = &bodies[self.master.body];
+        let sites = |sampling| master.sites(self.master.group.as_deref(), sampling);
+        let list = sites(Sampling::Nodes).or_else(|_| sites(Sampling::GaussPoints)).unwrap_or_default();
+        let touched = list.iter().map(|s| master.site_stiffness(s));
+        own.chain(touched).filter(|c| c.is_finite()).fold(0.0, f64::max)
+    }
+
+    fn prepare(&mut self, _: &[Box<dyn Body>], otherwise: f64) {
+        let weights: Vec<f64> = self.sites().iter().map(|s| s.weight).collect();
+        if self.enforcement.takes_stress() {
+            return;
+        }
+        for (c, w) in self.stiffness.iter_mut().zip(weights) {
+            *c = WAVE * if c.is_finite() { *c } else { otherwise / w };
+        }
+    }
+
+    fn leave_out_held(&mut self, at: Bodies<'_>, held: &[bool]) {
+        // Against a body that moves a held site may still carry; what is held now may be free later.
+        if at.bodies[self.master.body].unknowns() > 0 || at.bodies[self.slave.body].holds_change() {
+            return;
+        }
+        let (body, state) = at.side(&self.slave);
+        let first = at.first[self.slave.body];
+        let moves = |site: &Site| {
+            let placed = body.placed(state, site);
+            placed.functions.iter().any(|f| !held[(first + f.unknown) as usize])
+        };
+        let kept: Vec<bool> = self.sites().iter().map(moves).collect();
+        self.keep(&kept);
+    }
+
+    fn add_to(&self, at: Bodies<'_>, own: Own<'_>, out: &mut Target<'_>) -> Result<usize, PlaceError> {
+        self.add_sites(&at.sides(self), (own.multipliers, own.first), out)
+    }
+
+    fn results(&self, at: Bodies<'_>, own: Own<'_>) -> Result<Vec<SiteResult>, PlaceError> {
+        Ok(self.found(&at.sides(self), own.multipliers)?.into_iter().map(|f| f.0).collect())
+    }
+
+    fn free_way(&self, way: Way<'_>) -> Result<f64, PlaceError> {
+        self.share_of_way(way)
+    }
+
+    fn accept(&mut self, at: Bodies<'_>, own: Own<'_>) -> Result<(), PlaceError> {
+        let sides = at.sides(self);
+        self.accept_sites(&sides, own.multipliers)
+    }
+
+    fn unload(&mut self) {
+        self.memory.iter_mut().for_each(|m| m.traction = [0.0; 3]);
+    }
+
+    fn augment(
+        &mut self,
+        at: Bodies<'_>,
+        own: Own<'_>,
+        found: &[SiteResult],
+        around: Around,
+    ) -> Result<f64, PlaceError> {
+        match self.enforcement.outer() {
+            Outer::TakesOver => {
+                let found = self.found(&at.sides(self), own.multipliers)?.into_iter().map(|f| f.1).collect::<Vec<_>>();
+                let kept = self.memory.iter_mut().map(|m| &mut m.traction).zip(&self.stiffness);
+                let change = take_over(kept, &found, &around);
+                self.softness = hardened(self.softness, change, &around);
+                Ok(change)
+            }
+            Outer::Towards(wanted) => Ok(towards(wanted, found, &mut self.stiffness)),
+            Outer::Nothing => Ok(0.0),
+        }
+    }
+
+    fn scale_trials(&mut self, factor: f64) -> bool {
+        // Nitsche's method has its stiffness in the state.
+        if self.enforcement.takes_stress() {
+            return false;
+        }
+        self.stiffness.iter_mut().for_each(|c| *c *= factor);
+        self.softness *= factor;
+        true
+    }
+
+    fn simplify(&mut self, friction: SimplerFriction) {
+        let kept = (&mut self.enforcement, &mut self.softness);
+        self.set_aside = Some(SetAside::new(friction, &mut self.friction, kept));
+    }
+
+    fn restate(&mut self) {
+        if let Some(stated) = self.set_aside.take() {
+            stated.put_back(&mut self.friction, (&mut self.enforcement, &mut self.softness));
+        }
+    }
+
+    fn history(&self) -> [Vec<f64>; 2] {
+        let scales = self.stiffness.iter().copied().chain([self.times[0]]).collect();
+        [self.memory.iter().flat_map(numbers).collect(), scales]
+    }
+
+    fn restore(&mut self, [sites, scales]: &[Vec<f64>; 2]) -> Result<(), NotItsHistory> {
+        let count = self.stiffness.len();
+        if sites.len() != NUMBERS * self.memory.len() || scales.len() != count + 1 {
+            return Err(NotItsHistory { contact: self.name.clone() });
+        }
+        self.memory = sites.chunks(NUMBERS).map(memory).collect();
+        self.stiffness.copy_from_slice(&scales[..count]);
+        self.times = [scales[count]; 2];
+        Ok(())
+    }
+}
+
+/// Numbers of the memory of a site.
+const NUMBERS: usize = 16;
+
+fn numbers(memory: &SiteMemory) -> [f64; NUMBERS] {
+    let mut out = [0.0; NUMBERS];
+    out[..3].copy_from_slice(&memory.traction);
+    out[3..5].copy_from_slice(&memory.slip);
+    if let Some(stuck) = &memory.stuck {
+        out[5] = 1.0;
+        out[6] = f64::from(stuck.point.patch);
+        out[7..10].copy_from_slice(&stuck.point.xi);
+        out[10..13].copy_from_slice(stuck.on_slave.as_slice());
+        out[13..].copy_from_slice(stuck.on_master.as_slice());
+    }
+    out
+}
+
+fn memory(n: &[f64]) -> SiteMemory {
+    let vector = |k: usize| Vector::<3>::new(n[k], n[k + 1], n[k + 2]);
+    SiteMemory {
+        traction: [n[0], n[1], n[2]],
+        slip: [n[3], n[4]],
+        stuck: (n[5] != 0.0).then(|| Stuck {
+            point: MaterialPoint { patch: n[6] as u32, xi: [n[7], n[8], n[9]] },
+            on_slave: vector(10),
+            on_master: vector(13),
+        }),
+    }
+}

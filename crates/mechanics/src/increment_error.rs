@@ -1,0 +1,24 @@
+//! Why an increment has no solution.
+
+use crate::system::AssemblyError;
+use signorini_solve::SolveError;
+
+/// Why an increment has no solution.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum IncrementError {
+    #[error(transparent)]
+    Assembly(#[from] AssemblyError),
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    #[error("Newton's method did not converge in {} iterations{}", history.len() - 1, worst.as_deref().unwrap_or(""))]
+    NotConverged { history: Vec<f64>, worst: Option<String> },
+    #[error("`{body}` is free: nothing holds it against {motion}")]
+    Free { body: String, motion: String },
+    #[error("the tractions of the contacts still changed after {outer} outer iterations")]
+    Augmentation { outer: usize, history: Vec<f64> },
+    /// A prescribed motion that is too long for one increment.
+    #[error("contact `{contact}`: what moves as prescribed passes through what it touches after {:.0} % of its way", 100.0 * share)]
+    PassesThrough { contact: String, share: f64 },
+    #[error("interrupted")]
+    Interrupted,
+}

@@ -1,0 +1,40 @@
+//! How the linear equations of Newton's method are solved, what solved them, and what a body offers for it.
+
+use signorini_solve::blocks::Block;
+use signorini_solve::schwarz::Sets;
+
+/// How the linear equations of Newton's method are solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LinearSolver {
+    /// By iterations where all bodies offer them and there are many unknowns.
+    #[default]
+    Automatic,
+    Direct,
+    /// By iterations where all bodies offer them.
+    Iterative,
+}
+
+/// What solved them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Solved {
+    #[default]
+    Direct,
+    Iterative {
+        /// Linear systems, and the most iterations that one of them took.
+        systems: usize,
+        most_iterations: usize,
+    },
+}
+
+/// Where the stiffness of linear bodies goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stiffness {
+    InTangent,
+    KeptByBodies,
+}
+
+/// The stiffness of a linear body as small symmetric matrices, and the sets of unknowns that precondition it.
+pub struct Subspaces<'a> {
+    pub stiffness: Vec<Block<'a>>,
+    pub sets: Sets,
+}

@@ -1,0 +1,83 @@
+//! Files that a case names: height maps and closed surfaces.
+
+use super::placement::PlacementKeys;
+use super::planner::Planner;
+use crate::problem::units::{LENGTH, NONE};
+use crate::problem::{self, CaseError, Location};
+use crate::relief::{MovedHeight, Sampled};
+use crate::report::Warning;
+use signorini_geometry::mesh::TriangleMesh;
+
+impl Planner<'_> {
+    /// A file named in the case, beside the case; the files of the gallery are carried in the program.
+    pub(super) fn read_file(&self, name: &String) -> Result<(std::path::PathBuf, Vec<u8>), CaseError> {
+        let path = self.problem.source.folder().join(name);
+        match (std::fs::read(&path), crate::gallery::asset(name)) {
+            (Ok(bytes), _) => Ok((path, bytes)),
+            (Err(_), Some(bytes)) => Ok((path, bytes.to_vec())),
+            (Err(e), None) => Err(self.problem.error(name, format!("`{}`: cannot be read: {e}", path.display()))),
+        }
+    }
+
+    /// The heights of a map.
+    pub(super) fn height_map(&self, key: &problem::HeightMap) -> Result<MovedHeight<Sampled>, CaseError> {
+        let (path, bytes) = self.read_file(&key.file)?;
+        let spacing = self.reader.numbers::<2>(&key.spacing, LENGTH)?;
+        if spacing.iter().any(|h| *h <= 0.0) {
+            return Err(self.problem.error(&key.spacing, format!("the spacing {spacing:?} is not positive")));
+        }
+        let origin = key.origin.as_ref().map(|o| self.reader.numbers::<2>(o, LENGTH)).transpose()?.unwrap_or_default();
+        let scale = key.scale.as_ref().map(|s| self.reader.number(s, LENGTH)).transpose()?.unwrap_or(1.0);
+        let angle = key.turn.as_ref().map(|t| self.reader.number(t, NONE)).transpose()?.unwrap_or(0.0);
+        let moved = key.moved.as_ref().map(|m| self.reader.numbers::<3>(m, LENGTH)).transpose()?.unwrap_or_default();
+        let height = crate::height_map::read(&path, &bytes, [0.0; 2], spacing, scale)
+            .map_err(|message| self.problem.error(&key.file, format!("`{}`: {message}", path.display())))?;
+        Ok(MovedHeight { height, angle, shift: [origin[0] + moved[0], origin[1] + moved[1], moved[2]] })
+    }
+
+    /// A triangle mesh that bounds a body.
+    pub(super) fn closed_mesh(&self, key: &problem::SurfaceFile) -> Result<TriangleMesh, CaseError> {
+        let (path, bytes) = self.read_file(&key.file)?;
+        let mut mesh =
+            crate::mesh_file::parse(&path, &bytes).map_err(|e| self.problem.error(&key.file, e.to_string()))?;
+        let keys = PlacementKeys { scale: &key.scale, turn: &key.turn, moved: &key.moved };
+        if let Some(placement) = self.placement::<3>(&keys)? {
+            let placed = mesh.vertices().iter().map(|x| placement.point(x)).collect();
+            mesh = TriangleMesh::new(placed, mesh.triangles())
+                .map_err(|e| self.problem.error(&key.file, e.to_string()))?;
+        }
+        if mesh.quality().has_inside() {
+            return self.turned_outwards(mesh, &key.file, &format!("the surface in `{}`", key.file));
+        }
+        Err(self
+            .problem
+            .error(&key.file, format!("the surface in `{}` is not closed", key.file))
+            .help("a rigid body needs an inside: close the holes, or model it by another shape"))
+    }
+
+    /// A closed surface with its normals outwards: one whose volume is negative is turned round, and that is said.
+    pub(super) fn turned_outwards(
+        &self,
+        mesh: TriangleMesh,
+        at: &impl Location,
+        what: &str,
+    ) -> Result<TriangleMesh, CaseError> {
+        let centre = mesh.bounds().center();
+        let signed = |triangle: usize| {
+            let [a, b, c] = mesh.corners(triangle).map(|x| x - centre);
+            a.dot(&b.cross(&c)) / 6.0
+        };
+        let volume: f64 = (0..mesh.triangles().len()).map(signed).sum();
+        if volume >= 0.0 {
+            return Ok(mesh);
+        }
+        let warning = format!("{what} is inside out, its volume is {volume:.4e}: it is turned round");
+        let warning = Warning::from(warning);
+        let mut warnings = self.warnings.borrow_mut();
+        if !warnings.contains(&warning) {
+            warnings.push(warning);
+        }
+        let turned: Vec<[u32; 3]> = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
+        TriangleMesh::new(mesh.vertices().to_vec(), &turned).map_err(|e| self.problem.error(at, e.to_string()))
+    }
+}

@@ -1,0 +1,376 @@
+//! Shapes of rigid bodies. Those with a closed form have their keys here, with what the keys say of where the shape stands,
+//! and how they are read: a new one is its file in geometry, and its keys with one arm of [`Shape::closed_form`] here.
+
+use super::{CaseError, Components, List, Problem, TriangleArrays, Value};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use signorini_geometry::Vector;
+use signorini_geometry::rigid_shape::{self, Profile, RigidShape};
+use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
+
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Shape {
+    /// A floor seen from above: its height as an expression of x and y.
+    Height(Value),
+    /// A half space below a plane.
+    Plane(Plane),
+    /// A ball.
+    Sphere(Sphere),
+    /// A round cylinder without ends.
+    Cylinder(Cylinder),
+    /// A round cone without end.
+    Cone(Cone),
+    /// An ellipsoid along the axes.
+    Ellipsoid(Ellipsoid),
+    /// A ring.
+    Torus(Torus),
+    /// A paraboloid of revolution.
+    Paraboloid(Paraboloid),
+    /// A body of revolution of a smooth profile.
+    Revolution(Revolution),
+    /// NURBS surfaces from a JSON file.
+    Nurbs(SurfaceFile),
+    /// A triangle mesh from an STL, OBJ or PLY file.
+    Stl(SurfaceFile),
+    /// A triangle mesh from arrays.
+    Triangles(TriangleArrays),
+    /// Measured heights on a grid of points, from CSV, NPY or 16-bit TIFF.
+    HeightMap(HeightMap),
+    /// Where an expression of x, y and z is negative.
+    LevelSet(LevelSetShape),
+    /// A shape of the program.
+    #[serde(skip_deserializing)]
+    #[schemars(skip)]
+    Custom(CustomShape),
+}
+
+/// A shape that a program supplies.
+#[derive(Clone)]
+pub struct CustomShape(pub Arc<dyn RigidShape>);
+
+impl std::fmt::Debug for CustomShape {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("CustomShape")
+    }
+}
+
+impl Serialize for CustomShape {
+    /// No text states it.
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str("a shape of the program")
+    }
+}
+
+impl Shape {
+    /// The keys of a shape that has a closed form.
+    pub fn closed_form(&self) -> Option<&dyn ClosedForm> {
+        Some(match self {
+            Shape::Plane(key) => key,
+            Shape::Sphere(key) => key,
+            Shape::Cylinder(key) => key,
+            Shape::Cone(key) => key,
+            Shape::Ellipsoid(key) => key,
+            Shape::Torus(key) => key,
+            Shape::Paraboloid(key) => key,
+            Shape::Revolution(key) => key,
+            _ => return None,
+        })
+    }
+}
+
+/// A shape with a closed form, as its keys state it.
+pub trait ClosedForm {
+    /// Where it stands.
+    fn stance(&self) -> Stance<'_>;
+
+    /// Reads it; errors that belong to no key of it are those of `shape`.
+    ///
+    /// # Errors
+    /// Values that make no such shape.
+    fn read(&self, reader: &dyn ShapeReader, shape: &Shape) -> Result<Arc<dyn RigidShape>, CaseError>;
+}
+
+/// Where a shape stands, by its keys.
+pub struct Stance<'a> {
+    /// As the key is called, and as messages call it.
+    pub name: &'static str,
+    pub noun: &'static str,
+    /// What lies on the axis where the problem is round.
+    pub place: Option<&'a List<Value>>,
+    /// Of a shape that is one in space only: round about this axis.
+    pub axis: Option<&'a List<Value>>,
+    pub looks: Looks<'a>,
+}
+
+/// Where the surface of a shape looks.
+pub enum Looks<'a> {
+    Anywhere,
+    /// Along a direction, or against it where the sign is negative.
+    Along(&'a List<Value>, f64),
+    /// Everywhere about its place, with an axis where it has one.
+    Round(Option<&'a List<Value>>),
+}
+
+impl Stance<'_> {
+    fn of(name: &'static str) -> Self {
+        Stance { name, noun: name, place: None, axis: None, looks: Looks::Anywhere }
+    }
+}
+
+/// How keys of shapes are read: it depends on the space, and on what the shape lies beside.
+pub trait ShapeReader {
+    fn problem(&self) -> &Problem;
+    fn place(&self, values: &List<Value>) -> Result<Vector<3>, CaseError>;
+    /// A unit vector.
+    fn direction(&self, values: &List<Value>) -> Result<Vector<3>, CaseError>;
+    /// A positive length.
+    fn length(&self, value: &Value) -> Result<f64, CaseError>;
+    /// A positive angle.
+    fn angle(&self, value: &Value) -> Result<f64, CaseError>;
+    /// The unit vector along the axis of a cylinder.
+    fn cylinder_axis(&self, key: &Cylinder, shape: &Shape) -> Result<Vector<3>, CaseError>;
+    fn semi_axes(&self, key: &Ellipsoid) -> Result<[f64; 3], CaseError>;
+    /// The spline through the points of a table.
+    fn profile(&self, key: &Revolution) -> Result<Profile, CaseError>;
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Plane {
+    /// A point of the plane, lengths.
+    pub point: List<Value>,
+    /// The normal out of the body; its length does not matter.
+    pub normal: List<Value>,
+}
+
+impl ClosedForm for Plane {
+    fn stance(&self) -> Stance<'_> {
+        Stance { looks: Looks::Along(&self.normal, 1.0), ..Stance::of("plane") }
+    }
+
+    fn read(&self, reader: &dyn ShapeReader, _: &Shape) -> Result<Arc<dyn RigidShape>, CaseError> {
+        Ok(Arc::new(rigid_shape::Plane { point: reader.place(&self.point)?, normal: reader.direction(&self.normal)? }))
+    }
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sphere {
+    /// Centre, lengths.
+    pub center: List<Value>,
+    /// Radius, a length.
+    pub radius: Value,
+}
+
+impl ClosedForm for Sphere {
+    fn stance(&self) -> Stance<'_> {
+        Stance { place: Some(&self.center), looks: Looks::Round(None), ..Stance::of("sphere") }
+    }
+
+    fn read(&self, reader: &dyn ShapeReader, _: &Shape) -> Result<Arc<dyn RigidShape>, CaseError> {
+        Ok(Arc::new(rigid_shape::Sphere { center: reader.place(&self.center)?, radius: reader.length(&self.radius)? }))
+    }
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Cylinder {
+    /// A point of the axis, lengths.
+    pub point: List<Value>,
+    /// In the plane a cylinder stands across it.
+    pub axis: Option<List<Value>>,
+    /// Radius, a length.
+    pub radius: Value,
+}
+
+impl ClosedForm for Cylinder {
+    fn stance(&self) -> Stance<'_> {
+        Stance { place: Some(&self.point), looks: Looks::Round(self.axis.as_ref()), ..Stance::of("cylinder") }
+    }
+
+    fn read(&self, reader: &dyn ShapeReader, shape: &Shape) -> Result<Arc<dyn RigidShape>, CaseError> {
+        let (axis, point) = (reader.cylinder_axis(self, shape)?, reader.place(&self.point)?);
+        Ok(Arc::new(rigid_shape::Cylinder { point, axis, radius: reader.length(&self.radius)? }))
+    }
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Cone {
+    /// The tip, lengths.
+    pub apex: List<Value>,
+    /// Into the body.
+    pub axis: List<Value>,
+    /// In radians.
+    pub half_angle: Value,
+}
+
+impl ClosedForm for Cone {
+    fn stance(&self) -> Stance<'_> {
+        let looks = Looks::Along(&self.axis, -1.0);
+        Stance { place: Some(&self.apex), looks, axis: Some(&self.axis), ..Stance::of("cone") }
+    }
+
+    fn read(&self, reader: &dyn ShapeReader, _: &Shape) -> Result<Arc<dyn RigidShape>, CaseError> {
+        let half_angle = reader.angle(&self.half_angle)?;
+        if half_angle >= FRAC_PI_2 {
+            return Err(reader
+                .problem()
+                .error(&self.half_angle, format!("the half angle is {half_angle}"))
+                .help("an angle in radians below pi/2"));
+        }
+        let (apex, axis) = (reader.place(&self.apex)?, reader.direction(&self.axis)?);
+        Ok(Arc::new(rigid_shape::Cone { apex, axis, half_angle }))
+    }
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Ellipsoid {
+    /// Centre, lengths.
+    pub center: List<Value>,
+    /// Half the extents, lengths.
+    pub semi_axes: List<Value>,
+}
+
+impl ClosedForm for Ellipsoid {
+    fn stance(&self) -> Stance<'_> {
+        Stance { place: Some(&self.center), looks: Looks::Round(None), ..Stance::of("ellipsoid") }
+    }
+
+    fn read(&self, reader: &dyn ShapeReader, shape: &Shape) -> Result<Arc<dyn RigidShape>, CaseError> {
+        let semi_axes = reader.semi_axes(self)?;
+        if semi_axes.iter().any(|a| *a <= 0.0) {
+            return Err(reader.problem().error(&self.semi_axes, "all semi-axes must be positive"));
+        }
+        let made = rigid_shape::Ellipsoid::new(reader.place(&self.center)?, semi_axes);
+        Ok(Arc::new(made.map_err(|e| reader.problem().error(shape, e.to_string()))?))
+    }
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Torus {
+    /// Centre, lengths.
+    pub center: List<Value>,
+    /// Direction of its axis; its length does not matter.
+    pub axis: List<Value>,
+    /// Radius of the ring's middle line, a length.
+    pub major_radius: Value,
+    /// Radius of its cross-section, a length.
+    pub minor_radius: Value,
+}
+
+impl ClosedForm for Torus {
+    fn stance(&self) -> Stance<'_> {
+        let looks = Looks::Round(Some(&self.axis));
+        Stance { place: Some(&self.center), looks, axis: Some(&self.axis), ..Stance::of("torus") }
+    }
+
+    fn read(&self, reader: &dyn ShapeReader, _: &Shape) -> Result<Arc<dyn RigidShape>, CaseError> {
+        let (major, minor) = (reader.length(&self.major_radius)?, reader.length(&self.minor_radius)?);
+        if minor >= major {
+            let message = format!("the minor radius {minor} is not smaller than the major radius {major}");
+            return Err(reader.problem().error(&self.minor_radius, message));
+        }
+        let (center, axis) = (reader.place(&self.center)?, reader.direction(&self.axis)?);
+        Ok(Arc::new(rigid_shape::Torus { center, axis, major, minor }))
+    }
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Paraboloid {
+    /// The lowest or highest point, lengths.
+    pub apex: List<Value>,
+    /// Into the body.
+    pub axis: List<Value>,
+    /// Of curvature at the apex.
+    pub radius: Value,
+}
+
+impl ClosedForm for Paraboloid {
+    fn stance(&self) -> Stance<'_> {
+        let looks = Looks::Along(&self.axis, -1.0);
+        Stance { place: Some(&self.apex), looks, axis: Some(&self.axis), ..Stance::of("paraboloid") }
+    }
+
+    fn read(&self, reader: &dyn ShapeReader, shape: &Shape) -> Result<Arc<dyn RigidShape>, CaseError> {
+        let (radius, apex) = (reader.length(&self.radius)?, reader.place(&self.apex)?);
+        let made = rigid_shape::Paraboloid::new(apex, reader.direction(&self.axis)?, radius);
+        Ok(Arc::new(made.map_err(|e| reader.problem().error(shape, e.to_string()))?))
+    }
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Revolution {
+    /// A table of points of the profile: distance from the axis, and place along it. A spline runs through them.
+    pub profile: String,
+    /// Where places along the axis are counted from, lengths; the origin if left out.
+    pub origin: Option<List<Value>>,
+    /// Along the axis, in the direction in which places increase.
+    pub axis: List<Value>,
+}
+
+impl ClosedForm for Revolution {
+    fn stance(&self) -> Stance<'_> {
+        let noun = "body of revolution";
+        Stance { place: self.origin.as_ref(), axis: Some(&self.axis), noun, ..Stance::of("revolution") }
+    }
+
+    fn read(&self, reader: &dyn ShapeReader, _: &Shape) -> Result<Arc<dyn RigidShape>, CaseError> {
+        let origin = self.origin.as_ref().map_or(Ok(Vector::<3>::zeros()), |o| reader.place(o))?;
+        let axis = reader.direction(&self.axis)?;
+        Ok(Arc::new(rigid_shape::Revolution { origin, axis, profile: reader.profile(self)? }))
+    }
+}
+
+/// Heights on a grid, from a file.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HeightMap {
+    /// The file, found from the folder of the case.
+    pub file: String,
+    /// Distance of the columns (along x) and of the rows (along y).
+    pub spacing: List<Value>,
+    /// Where the first height is.
+    pub origin: Option<List<Value>>,
+    /// The height that one unit of the file stands for.
+    pub scale: Option<Value>,
+    /// Angle in radians by which the map is turned about its origin.
+    pub turn: Option<Value>,
+    /// Displacement after turning, lengths.
+    #[serde(rename = "move")]
+    pub moved: Option<List<Value>>,
+}
+
+/// A body where an expression of x, y and z is negative, within a box.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LevelSetShape {
+    /// An expression of x, y and z.
+    pub negative_inside: Value,
+    /// The lower corner of a box round what matters of it, lengths.
+    pub min: List<Value>,
+    /// The upper corner of the box, lengths.
+    pub max: List<Value>,
+    /// Cells of the grid from which closest points are searched, along the longest side; 64 if left out.
+    pub cells: Option<i64>,
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SurfaceFile {
+    /// The file, found from the folder of the case.
+    pub file: String,
+    /// What one unit of length of the file is in base units, 1 if left out.
+    pub scale: Option<Value>,
+    /// Rotation vector in radians about the origin of the file, after scaling; in the plane one angle.
+    pub turn: Option<Components>,
+    /// Displacement after scaling and turning, lengths.
+    #[serde(rename = "move")]
+    pub moved: Option<List<Value>>,
+}

@@ -49,4 +49,4 @@ pub use segments::{GapPoint, pieces, rigid_points, segments};
 pub use signorini_geometry::rigid_shape::GapJet;
 pub use softness::{Softness, Spring};
 pub use surface::{ContactSurface, FacePoint, Moved, looks_at};
-pub use zone::{ContactZone, NodeState, zone};
+pub use zone::{ContactZone, NodeState, connected, zone};

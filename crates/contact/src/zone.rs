@@ -121,6 +121,34 @@ pub fn zone<const D: usize>(
     out
 }
 
+/// Of every node that carries, the number of its connected zone: faces join their nodes.
+pub fn connected<const D: usize>(nodes: &PressureNodes<D>, active: &[bool]) -> Vec<Option<usize>> {
+    let mut faces_of: Vec<Vec<usize>> = vec![Vec::new(); nodes.len()];
+    for face in 0..nodes.face_count() {
+        nodes.of_face(face).iter().for_each(|(k, _)| faces_of[*k as usize].push(face));
+    }
+    let mut out = vec![None; nodes.len()];
+    let mut count = 0;
+    for first in 0..nodes.len() {
+        if !active[first] || out[first].is_some() {
+            continue;
+        }
+        out[first] = Some(count);
+        let mut reached = vec![first];
+        while let Some(k) = reached.pop() {
+            for (n, _) in faces_of[k].iter().flat_map(|&face| nodes.of_face(face)) {
+                let n = *n as usize;
+                if active[n] && out[n].is_none() {
+                    out[n] = Some(count);
+                    reached.push(n);
+                }
+            }
+        }
+        count += 1;
+    }
+    out
+}
+
 /// The states with open nodes among active ones alone as active: a hole about a single node is smaller than the faces can
 /// tell, and its gap says nothing of where the zone ends. Nodes without a gap of their own follow those around them.
 fn without_pinholes<const D: usize>(
@@ -307,6 +335,19 @@ mod tests {
             let length: f64 = found.face_area.iter().sum();
             assert!((length - end).abs() < 1e-12, "{length} of {end}");
         }
+    }
+
+    #[test]
+    fn faces_join_the_nodes_of_a_zone() {
+        let nodes = PressureNodes::new(&crate::testing::Polyline::at(&[0.0, 1.0, 2.0, 3.0, 4.0], |_| 0.0));
+        let mut found: Vec<(f64, Option<usize>)> =
+            nodes.positions.iter().map(|x| x[0]).zip(connected(&nodes, &[true; 5])).collect();
+        assert!(found.iter().all(|(_, zone)| *zone == Some(0)));
+        let active: Vec<bool> = nodes.positions.iter().map(|x| x[0] != 2.0).collect();
+        found = nodes.positions.iter().map(|x| x[0]).zip(connected(&nodes, &active)).collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let zones: Vec<Option<usize>> = found.iter().map(|f| f.1).collect();
+        assert!(zones[0] == zones[1] && zones[2].is_none() && zones[3] == zones[4] && zones[0] != zones[3]);
     }
 
     #[test]

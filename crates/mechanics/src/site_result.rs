@@ -32,6 +32,8 @@ pub struct OfSurface {
     pub pressure: f64,
     /// The part of the area in contact that counts for the node: zones end within faces.
     pub area: f64,
+    /// The number of its connected zone of contact.
+    pub zone: usize,
 }
 
 impl SiteResult {

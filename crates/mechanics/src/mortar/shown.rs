@@ -5,7 +5,7 @@ use super::cover::{Cover, Nodes};
 use crate::pair::Pair;
 use crate::site_result::{OfSurface, SiteResult};
 use crate::surface::Faces;
-use signorini_contact::{ContactSurface, NodeState, Pressed, PressureNodes, Status, recovered, zone};
+use signorini_contact::{ContactSurface, NodeState, Pressed, PressureNodes, Status, connected, recovered, zone};
 
 /// The points of the slave side, and of each what it met, face by face.
 type Points<'a> = (&'a Cover, &'a [Vec<Option<Pair>>]);
@@ -57,9 +57,8 @@ fn show_on<const D: usize>(
             nodes.of_face(face).iter().map(|(k, _)| *k as usize).filter(|k| active[*k]).collect();
         carrying.iter().for_each(|k| area[counts_at[*k]] += whole / carrying.len() as f64);
     }
-    for ((result, pressure), area) in results.iter_mut().zip(pressure).zip(area) {
-        if is_active(result) {
-            result.of_surface = Some(OfSurface { pressure, area });
-        }
+    let zones = connected(nodes, &active);
+    for (((result, pressure), area), zone) in results.iter_mut().zip(pressure).zip(area).zip(zones) {
+        result.of_surface = zone.filter(|_| is_active(result)).map(|zone| OfSurface { pressure, area, zone });
     }
 }

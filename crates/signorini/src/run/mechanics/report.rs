@@ -138,6 +138,15 @@ fn runs(sites: &[SiteResult]) -> Vec<Vec<&SiteResult>> {
     out
 }
 
+/// The sites that carry, by connected zones where the contact tells them.
+fn zones(sites: &[SiteResult]) -> Vec<Vec<&SiteResult>> {
+    let mut out: BTreeMap<usize, Vec<&SiteResult>> = BTreeMap::new();
+    for site in sites.iter().filter(|s| s.status != Status::Open) {
+        out.entry(site.of_surface.map_or(0, |own| own.zone)).or_default().push(site);
+    }
+    out.into_values().collect()
+}
+
 /// Part of the forces that cancel which is left by rounding, and by iterations that end.
 const LEFT: f64 = 1e-10;
 
@@ -163,14 +172,8 @@ fn contact_report(
         let middle: Vector<3> = run.iter().map(|s| s.x * part(s)).sum::<Vector<3>>() / whole;
         Component { area, force: vector(&force), centroid: vector(&middle), holes: None }
     };
-    let zones = runs(sites);
-    let components: Vec<Component> = if is_curve {
-        zones.iter().map(component).collect()
-    } else if zones.is_empty() {
-        Vec::new()
-    } else {
-        vec![component(&closed().collect())]
-    };
+    let zones = if is_curve { runs(sites) } else { zones(sites) };
+    let components: Vec<Component> = zones.iter().map(component).collect();
     let rubs = contact.law().is_some();
     // The sum of nothing is a negative zero.
     let area = |status: Status| closed().filter(|s| s.status == status).map(|s| s.contact_area()).sum::<f64>() + 0.0;

@@ -10,7 +10,6 @@ use signorini_fem::cut::End;
 use signorini_fem::elastic::Space;
 use signorini_geometry::{Point, Vector};
 use signorini_solve::blocks::{Block, BlockSum};
-use signorini_solve::dissection::nested_dissection;
 use signorini_solve::krylov::{Found, Stopped, conjugate_gradients};
 use signorini_solve::schwarz::{Inverses, Schwarz};
 use signorini_solve::{Factor, Symbolic, SymmetricMatrix};
@@ -290,11 +289,14 @@ pub(crate) struct Scaled {
 
 impl Scaled {
     pub fn new<const D: usize>(body: &CellBody<D>, matrix: SymmetricMatrix) -> Result<Self, CellsError> {
-        let position: Vec<[f64; D]> = (0..matrix.size()).map(|i| body.position(i / D).into()).collect();
+        let place = |i: usize| {
+            let x = body.position(i / D);
+            std::array::from_fn(|k| if k < D { x[k] } else { 0.0 })
+        };
+        let places: Vec<[f64; 3]> = (0..matrix.size()).map(place).collect();
         let scale: Vec<f64> = matrix.diagonal().iter().map(|d| if *d > 0.0 { 1.0 / d.sqrt() } else { 1.0 }).collect();
         let scaled = matrix.scaled(&scale);
-        let mut symbolic =
-            if D == 3 { Symbolic::ordered(nested_dissection(&scaled, &position)) } else { Symbolic::default() };
+        let mut symbolic = if D == 3 { Symbolic::dissected(places) } else { Symbolic::default() };
         Ok(Scaled { factor: symbolic.factor(scaled)?, scale })
     }
 

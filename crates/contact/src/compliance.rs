@@ -5,14 +5,19 @@
 //! bodies a step, and nothing is stored but vectors on the rows (as in FETI methods for contact; Dureisseix & Farhat, Int. J.
 //! Numer. Meth. Engng 50, 2001): for large ones. What one contact state found out about `W` serves the next one too.
 //!
+//! By products alone the steps would grow with the number of cells across the zone. So rows that do not give way get springs
+//! of stiffness `k`, far above their own: a sparse matrix of the size of the bodies. With `z = ẑ - k B u` and
+//! `u = (K + Bᵀ k B)⁻¹ Bᵀ ẑ` the equation `B u = d` of such a row is nearly `ẑ = k d` (the augmented Lagrangian; Fortin &
+//! Glowinski 1983), so that a few steps on `ẑ` suffice, whatever the size of the zone.
+//!
 //! Rows are scaled by their own compliance, so that units do not matter and sizes of cells little. It is taken from the
 //! stiffness of the unknowns that a row touches, the others held.
 
 use crate::mortar::WeightedGap;
 use crate::softness::Spring;
 use nalgebra::{DMatrix, DVector};
-use signorini_solve::SolveError;
 use signorini_solve::krylov::{Equations, Products};
+use signorini_solve::{Factor, SolveError, SymmetricMatrix};
 use std::cell::RefCell;
 
 /// The elastic system as contact sees it: solves with the stiffness, springs included.
@@ -29,6 +34,46 @@ pub trait Compliance {
     fn entries(&self) -> f64;
     /// The entries of `K_c` between these unknowns, one row after the other.
     fn block(&self, unknowns: &[u32]) -> Vec<f64>;
+    /// The bodies with springs along rows, each with its stiffness: `K_c + Σ k b bᵀ`. None where that cannot be had.
+    fn stiffened(&self, _rows: &[(&WeightedGap, f64)]) -> Result<Option<Box<dyn Compliance>>, SolveError> {
+        Ok(None)
+    }
+}
+
+impl Compliance for Factor {
+    fn solve_columns(&self, b: &mut [f64]) -> Result<(), SolveError> {
+        self.solve_columns(b)
+    }
+
+    fn solve_once(&self, b: &mut [f64]) -> Result<(), SolveError> {
+        self.solve_once(b)
+    }
+
+    fn solve_accurately(&self, b: &[f64]) -> Result<Vec<f64>, SolveError> {
+        self.solve_accurately(b)
+    }
+
+    fn size(&self) -> usize {
+        self.size()
+    }
+
+    fn entries(&self) -> f64 {
+        self.entries()
+    }
+
+    fn block(&self, unknowns: &[u32]) -> Vec<f64> {
+        self.block(unknowns)
+    }
+
+    fn stiffened(&self, rows: &[(&WeightedGap, f64)]) -> Result<Option<Box<dyn Compliance>>, SolveError> {
+        let square = |(row, stiffness): &(&WeightedGap, f64)| {
+            let unknowns = row.terms.iter().map(|t| t.0).collect();
+            let values = row.terms.iter().flat_map(|a| row.terms.iter().map(move |b| stiffness * a.1 * b.1)).collect();
+            (unknowns, values)
+        };
+        let squares: Vec<(Vec<u32>, Vec<f64>)> = rows.iter().map(square).collect();
+        Ok(Some(Box::new(self.plus(&SymmetricMatrix::of_cliques(self.size(), &squares))?)))
+    }
 }
 
 /// How the compliance of the rows is known.
@@ -105,7 +150,21 @@ pub struct RowProducts<'a> {
     /// The own compliance of every row, as far as it was asked for.
     own: RefCell<Vec<f64>>,
     known: RefCell<Products>,
+    stiff: RefCell<Option<Stiff>>,
 }
+
+/// The bodies with springs along rows.
+struct Stiff {
+    system: Box<dyn Compliance>,
+    /// The stiffness of each row, zero where there is no spring.
+    stiffness: Vec<f64>,
+}
+
+/// Stiffness of the springs along rows, in terms of the rows' own: enough for a few steps, and few digits are lost.
+const STIFF: f64 = 100.0;
+/// Rows that may have changed between giving way and not before the bodies are factorised with other springs: each costs a
+/// solve or two, and a factorisation as much as some tens of solves.
+const CHANGED: usize = 32;
 
 /// A solution of equations in the rows.
 pub struct Solved {
@@ -125,6 +184,7 @@ impl<'a> RowProducts<'a> {
             of_springs: Vec::new(),
             own: RefCell::new(vec![0.0; count]),
             known: RefCell::default(),
+            stiff: RefCell::default(),
         };
         for spring in springs {
             // What a spring moves is nearly rigid: only to the last digit does it tell what holds the body.
@@ -157,15 +217,20 @@ impl<'a> RowProducts<'a> {
         self.rows.iter().map(|row| product(&row.terms, u)).chain(springs).collect()
     }
 
-    /// `W z`.
-    pub fn product(&self, z: &[f64]) -> Result<Vec<f64>, SolveError> {
-        let mut b = vec![0.0; self.system.size()];
-        let (of_rows, of_springs) = z.split_at(self.rows.len());
+    /// All rows under tractions of the rows, with these bodies.
+    fn under(&self, system: &dyn Compliance, of_rows: &[f64]) -> Result<Vec<f64>, SolveError> {
+        let mut b = vec![0.0; system.size()];
         for (row, t) in self.rows.iter().zip(of_rows).filter(|(_, t)| **t != 0.0) {
             row.push().iter().for_each(|(i, c)| b[*i as usize] += c * t);
         }
-        self.system.solve_once(&mut b)?;
-        let mut out = self.at(&b);
+        system.solve_once(&mut b)?;
+        Ok(self.at(&b))
+    }
+
+    /// `W z`.
+    pub fn product(&self, z: &[f64]) -> Result<Vec<f64>, SolveError> {
+        let (of_rows, of_springs) = z.split_at(self.rows.len());
+        let mut out = self.under(self.system, of_rows)?;
         for (s, of_spring) in self.of_springs.iter().enumerate() {
             out[self.rows.len() + s] = of_spring.iter().zip(of_rows).map(|(w, t)| w * t).sum();
         }
@@ -257,20 +322,63 @@ impl<'a> RowProducts<'a> {
         is_free.then(|| svd.v_t.map_or(Vec::new(), |v| v.row(least.0).iter().copied().collect()))
     }
 
+    /// Gives the rows that are `held` springs, unless nearly the same ones have them. Bodies that only contact holds keep
+    /// what holds them until then, and so do rows that push otherwise than they measure.
+    fn stiffen(&self, held: &[usize]) -> Result<(), SolveError> {
+        let mut wanted = vec![false; self.rows.len()];
+        held.iter().for_each(|&r| wanted[r] = true);
+        let stiff = &mut *self.stiff.borrow_mut();
+        if !self.springs.is_empty() || self.rows.iter().any(|row| !row.forces.is_empty()) {
+            return Ok(());
+        }
+        if let Some(stiff) = stiff {
+            let changed = wanted.iter().zip(&stiff.stiffness).filter(|(wanted, k)| **wanted != (**k > 0.0)).count();
+            if changed <= CHANGED {
+                return Ok(());
+            }
+        }
+        *stiff = None;
+        self.require(held.iter().copied());
+        let stiffness: Vec<f64> =
+            (0..wanted.len()).map(|r| if wanted[r] && self.own(r) > 0.0 { STIFF / self.own(r) } else { 0.0 }).collect();
+        let rows: Vec<(&WeightedGap, f64)> =
+            self.rows.iter().zip(stiffness.iter().copied()).filter(|(_, k)| *k > 0.0).collect();
+        if let Some(system) = self.system.stiffened(&rows)? {
+            self.known.borrow_mut().clear();
+            *stiff = Some(Stiff { system, stiffness });
+        }
+        Ok(())
+    }
+
     /// Solves equations `image(x, W x) = b` in tractions of rows; those that are not asked for say `x = b`. None where there
     /// is no solution.
     ///
-    /// `scale` is the size of the traction of each row.
+    /// `scale` is the size of the traction of each row; the equations of rows that are `held` say how far they move, or nearly.
     pub fn solve(
         &self,
         scale: &[f64],
+        held: &[usize],
         image: &dyn Fn(&[f64], &[f64]) -> Vec<f64>,
         b: &[f64],
     ) -> Result<Option<Solved>, SolveError> {
-        let times = |v: &[f64]| v.iter().zip(scale).map(|(v, s)| v * s).collect::<Vec<f64>>();
+        self.stiffen(held)?;
+        let stiff = self.stiff.borrow();
+        let stiffness = |r: usize| stiff.as_ref().and_then(|s| s.stiffness.get(r)).copied().unwrap_or(0.0);
         let over = |v: &[f64]| v.iter().zip(scale).map(|(v, s)| v / s).collect::<Vec<f64>>();
-        let scaled = |x: &[f64], wx: &[f64]| over(&image(&times(x), wx));
-        let equations = Equations { product: &|x: &[f64]| self.product(&times(x)), image: &scaled };
+        // Where a row has a spring a traction of its own size times that moves it as a traction did.
+        let times = |v: &[f64]| -> Vec<f64> {
+            let size = |r: usize| if stiffness(r) > 0.0 { STIFF * scale[r] } else { scale[r] };
+            v.iter().enumerate().map(|(r, v)| v * size(r)).collect()
+        };
+        let tractions = |v: &[f64], wx: &[f64]| -> Vec<f64> {
+            times(v).iter().zip(wx).enumerate().map(|(r, (z, y))| z - stiffness(r) * y).collect()
+        };
+        let scaled = |v: &[f64], wx: &[f64]| over(&image(&tractions(v, wx), wx));
+        let product = |v: &[f64]| match stiff.as_ref() {
+            Some(stiff) => self.under(stiff.system.as_ref(), &times(v)),
+            None => self.product(&times(v)),
+        };
+        let equations = Equations { product: &product, image: &scaled };
         let known = &mut *self.known.borrow_mut();
         if known.len() > MOST_PRODUCTS / 2 {
             known.clear();
@@ -285,7 +393,7 @@ impl<'a> RowProducts<'a> {
                 return Ok(Some(out));
             }
             let found = equations.least_residual(&left, known, TOLERANCE * whole / now, MOST_PRODUCTS)?;
-            let x = times(&found.x);
+            let x = tractions(&found.x, &found.product);
             out.x.iter_mut().zip(&x).for_each(|(sum, x)| *sum += x);
             out.product.iter_mut().zip(&found.product).for_each(|(sum, w)| *sum += w);
             let reached = over(&image(&x, &found.product));

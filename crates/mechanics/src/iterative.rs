@@ -12,7 +12,6 @@ use crate::linear_solver::{LinearSolver, Stiffness};
 use crate::system::{Assembled, AssemblyError, System, SystemState};
 use rayon::prelude::*;
 use signorini_solve::blocks::{Block, BlockSum};
-use signorini_solve::dissection::nested_dissection;
 use signorini_solve::general::DenseBlocks;
 use signorini_solve::krylov::{Stopped, conjugate_gradients, conjugate_residuals};
 use signorini_solve::schwarz::{Inverses, Schwarz, Sets};
@@ -75,8 +74,7 @@ impl System {
                 let pattern =
                     SymmetricMatrix::from_cliques(own.sets.coarse.len(), &cliques.iter().map(of).collect::<Vec<_>>());
                 let position: Vec<[f64; 3]> = own.sets.coarse.iter().map(|c| c.1).collect();
-                let order = nested_dissection(&pattern, &position);
-                let coarse = Symbolic::ordered(order).cost(&pattern).map_or(0.0, |c| c.bytes);
+                let coarse = Symbolic::dissected(position).cost(&pattern).map_or(0.0, |c| c.bytes);
                 return cells + local + coarse;
             }
             let factor = Symbolic::default().cost(&SymmetricMatrix::from_cliques(body.unknowns(), &cliques));

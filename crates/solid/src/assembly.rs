@@ -4,17 +4,22 @@ use crate::body::Bodies;
 use crate::stiffness::{Table, stiffness};
 use crate::supports::{Reduction, Support, beds};
 use rayon::prelude::*;
+use signorini_geometry::Point;
 use signorini_solve::SymmetricMatrix;
 use std::collections::HashMap;
 
+fn in_space<const D: usize>(x: &Point<D>) -> [f64; 3] {
+    std::array::from_fn(|k| if k < D { x[k] } else { 0.0 })
+}
+
 /// Where the unknowns that remain are.
-pub(crate) fn positions<const D: usize>(bodies: &Bodies<D>, reduction: &Reduction<D>) -> Vec<[f64; D]> {
-    let mut out = vec![[0.0; D]; reduction.unknowns];
+pub(crate) fn positions<const D: usize>(bodies: &Bodies<D>, reduction: &Reduction<D>) -> Vec<[f64; 3]> {
+    let mut out = vec![[0.0; 3]; reduction.unknowns];
     for body in &bodies.list {
         for (f, x) in body.function_positions().into_iter().enumerate() {
             for i in 0..D {
                 for (unknown, _) in reduction.row(body.first + f * D + i) {
-                    out[*unknown as usize] = std::array::from_fn(|k| x[k]);
+                    out[*unknown as usize] = in_space(&x);
                 }
             }
         }
@@ -23,7 +28,7 @@ pub(crate) fn positions<const D: usize>(bodies: &Bodies<D>, reduction: &Reductio
 }
 
 /// The graph of the functions that move: which share a cell, as the pattern of a matrix, and where they are.
-pub(crate) fn graph<const D: usize>(bodies: &Bodies<D>, reduction: &Reduction<D>) -> (SymmetricMatrix, Vec<[f64; D]>) {
+pub(crate) fn graph<const D: usize>(bodies: &Bodies<D>, reduction: &Reduction<D>) -> (SymmetricMatrix, Vec<[f64; 3]>) {
     let moves = |f: usize| (0..D).any(|i| !reduction.is_held(f * D + i));
     let mut places = Vec::new();
     let mut cliques: Vec<Vec<u32>> = Vec::new();
@@ -34,7 +39,7 @@ pub(crate) fn graph<const D: usize>(bodies: &Bodies<D>, reduction: &Reduction<D>
         let mut number = vec![None; positions.len()];
         for f in (0..positions.len()).filter(|&f| moves(first + f)) {
             number[f] = Some(places.len() as u32);
-            places.push(std::array::from_fn(|k| positions[f][k]));
+            places.push(in_space(&positions[f]));
         }
         let of_cell = |cell| body.dofs.functions(cell).iter().filter_map(|f| number[*f as usize]).collect();
         cliques.extend((0..body.mesh.cell_count()).map(of_cell));

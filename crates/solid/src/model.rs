@@ -2,7 +2,7 @@
 
 use crate::assembly::{assemble, graph, positions};
 use crate::body::Bodies;
-use crate::condensed::{System, reduced};
+use crate::condensed::reduced;
 use crate::contact::{Contact, RigidGap};
 use crate::friction::refuse_unsupported;
 use crate::friction::statement::{FrictionHistory, RigidMotion};
@@ -14,7 +14,6 @@ use crate::supports::{Displacement, Reduction, Support};
 use signorini_contact::friction::FrictionalContact;
 use signorini_contact::{ActiveSet, ActiveSetError, ContactState, Route, Spring, WeightedGap};
 use signorini_solve::cholesky::{Cost, Symbolic};
-use signorini_solve::dissection::nested_dissection;
 use signorini_solve::{Factor, SolveError, SymmetricMatrix};
 
 /// Bodies, supports and contacts.
@@ -124,7 +123,7 @@ impl<const D: usize> Model<D> {
             reduced.add(&[*unknown], &[stiffness], 1.0);
         }
         if D == 3 {
-            self.symbolic = Symbolic::ordered(nested_dissection(&reduced, &positions(bodies, reduction)));
+            self.symbolic = Symbolic::dissected(positions(bodies, reduction));
         }
         self.reduced = Some(reduced);
     }
@@ -147,8 +146,7 @@ impl<const D: usize> Model<D> {
     /// A structure that does not fit into memory.
     pub fn cost(&self) -> Result<Cost, SolveError> {
         let (graph, places) = graph(&self.bodies, &self.reduction);
-        let mut symbolic =
-            if D == 3 { Symbolic::ordered(nested_dissection(&graph, &places)) } else { Symbolic::default() };
+        let mut symbolic = if D == 3 { Symbolic::dissected(places) } else { Symbolic::default() };
         let cost = symbolic.cost(&graph)?;
         let each = self.unknowns() as f64 / graph.size().max(1) as f64;
         let entries = cost.bytes / 8.0 * each.powi(2);
@@ -199,7 +197,7 @@ impl<const D: usize> Model<D> {
         let Some(factor) = &self.factor else { return Err(self.free_body(&[])) };
         let mut active = std::mem::take(&mut self.active);
         let found = self.solve_enforced(&rows, &ends, &mut logged, &mut |soft, report| {
-            active.solve(&System(factor), &rows, soft, &self.springs, &load, report)
+            active.solve(factor, &rows, soft, &self.springs, &load, report)
         });
         self.active = active;
         let (found, _) = found.map_err(|error| self.explained(error, &ends))?;

@@ -6,7 +6,6 @@
 
 use crate::blocks::{BlockSum, dot};
 use crate::cholesky::{Factor, SolveError, Symbolic};
-use crate::dissection::nested_dissection;
 use crate::multigrid::{Multigrid, Transfer};
 use crate::sparse::SymmetricMatrix;
 use nalgebra::DMatrix;
@@ -206,8 +205,7 @@ impl Schwarz {
                 matrix.diagonal().iter().map(|d| if *d > 0.0 { 1.0 / d.sqrt() } else { 1.0 }).collect();
             let scaled = matrix.scaled(&scale);
             let position: Vec<[f64; 3]> = kept.iter().map(|k| sets.coarse[*k].1).collect();
-            let order = nested_dissection(&scaled, &position);
-            Coarse::Factor(Symbolic::ordered(order).factor(scaled)?, scale)
+            Coarse::Factor(Symbolic::dissected(position).factor(scaled)?, scale)
         };
         Ok(Schwarz { local, coarse, solver, free: free.to_vec() })
     }

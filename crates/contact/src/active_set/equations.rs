@@ -92,7 +92,7 @@ pub(super) fn solved(
     let first = problem.rows.len();
     let wanted = active.iter().copied().chain(first..first + taken(problem, left).len());
     wanted.zip(defects).for_each(|(r, d)| b[r] = -scale[r].powi(2) * d);
-    let found = by_products(problem)?.solve(&scale, &image(problem, left, active, &scale), &b)?;
+    let found = by_products(problem)?.solve(&scale, active, &image(problem, left, active, &scale), &b)?;
     found.ok_or(ActiveSetError::Dependent)
 }
 

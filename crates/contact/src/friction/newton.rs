@@ -291,6 +291,13 @@ impl System {
         let mut b: Vec<f64> = at.difference.iter().map(|d| -d).collect();
         self.rows.iter().zip(&size).for_each(|(&r, size)| b[r] /= size);
         self.rows[self.of_nodes..].iter().for_each(|&r| b[r] = -scale[r].powi(2) * y[r]);
-        Ok(products.solve(&scale, &image, &b)?.map(|found| found.x))
+        // Closed gaps and slips that stick: their answer is the trial itself.
+        let is_held = |&(k, a): &(usize, usize)| {
+            let derivative = &at.answers[k].derivative[a];
+            (0..3).all(|b| derivative[b] == if a == b { 1.0 } else { 0.0 })
+        };
+        let held: Vec<usize> =
+            self.rows.iter().zip(&self.owner).filter(|(_, owner)| is_held(owner)).map(|(r, _)| *r).collect();
+        Ok(products.solve(&scale, &held, &image, &b)?.map(|found| found.x))
     }
 }

@@ -1,7 +1,7 @@
 //! The state of stick and slip of all contacts of a model at one time.
 
 use super::statement::{Found, FrictionAt, FrictionHistory};
-use crate::condensed::{System, reduced};
+use crate::condensed::reduced;
 use crate::contact::Enforcement;
 use crate::model::{Circumstances, Model};
 use crate::state::{Found as FoundState, State};
@@ -92,8 +92,7 @@ impl<const D: usize> Model<D> {
                 }
             }
             held.iter().for_each(|(r, compliance)| all[*r] = Softness { compliance: *compliance, shift: 0.0 });
-            let system = System(factor);
-            let bodies = Bodies { system: &system, rows: &rows, soft: &all, springs: &self.springs, load };
+            let bodies = Bodies { system: factor, rows: &rows, soft: &all, springs: &self.springs, load };
             let state = rubbing.solve(bodies, &nodes, &start, report).map_err(|error| self.unsolved(error))?;
             let of_nodes = |list: &[f64]| nodes.iter().map(|n| list[n.first]).collect();
             let out = ContactState {

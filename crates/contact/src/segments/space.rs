@@ -1,7 +1,6 @@
 //! Pieces of slave faces in space: polygons, cut in the plane of each slave facet.
 
 use super::opposite::{Cut, FACING, GapPoint, onto_master, snapped};
-use crate::multiplier::PressureNodes;
 use crate::surface::ContactSurface;
 use signorini_fem::hierarchic::Values;
 use signorini_fem::rules::{Rule, rule};

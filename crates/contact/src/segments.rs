@@ -12,6 +12,7 @@ pub use opposite::GapPoint;
 
 use crate::multiplier::PressureNodes;
 use crate::surface::ContactSurface;
+use opposite::Cut;
 use plane::intervals;
 use signorini_basis::rules::rule;
 use signorini_basis::{CellShape, Local};
@@ -27,7 +28,8 @@ pub fn segments<const D: usize>(
     reach: f64,
 ) -> Vec<Vec<GapPoint<D>>> {
     let candidates = candidates(slave, master, nodes, reach);
-    let cut = |face: usize, extra: usize| cut(slave, master, nodes, (face, &candidates[face]), reach, extra);
+    let cut =
+        |face: usize, extra: usize| pieces_of_face(Cut { slave, master, nodes, reach, extra }, face, &candidates[face]);
     let mut points: Vec<Vec<GapPoint<D>>> = (0..slave.face_count()).map(|face| cut(face, 0)).collect();
     // A constant pressure must load every function of both sides with its integral. On distorted faces the integrands
     // are no polynomials: more points are used as long as they help.
@@ -65,24 +67,14 @@ pub fn pieces<const D: usize>(
     extra: usize,
 ) -> Vec<Vec<GapPoint<D>>> {
     let candidates = candidates(slave, master, nodes, reach);
-    let of = |(face, list): (usize, &Vec<usize>)| cut(slave, master, nodes, (face, list), reach, extra);
+    let cut = Cut { slave, master, nodes, reach, extra };
+    let of = |(face, list): (usize, &Vec<usize>)| pieces_of_face(cut, face, list);
     candidates.iter().enumerate().map(of).collect()
 }
 
 /// The points of a slave face on the pieces that see one of the master faces listed.
-fn cut<const D: usize>(
-    slave: &dyn ContactSurface<D>,
-    master: &dyn ContactSurface<D>,
-    nodes: &PressureNodes<D>,
-    (face, list): (usize, &[usize]),
-    reach: f64,
-    extra: usize,
-) -> Vec<GapPoint<D>> {
-    if D == 2 {
-        intervals(slave, master, nodes, face, list, reach, extra)
-    } else {
-        polygons(slave, master, nodes, face, list, reach, extra)
-    }
+fn pieces_of_face<const D: usize>(cut: Cut<'_, D>, face: usize, list: &[usize]) -> Vec<GapPoint<D>> {
+    if D == 2 { intervals(cut, face, list) } else { polygons(cut, face, list) }
 }
 
 /// Relative error of integrals that counts as rounding.

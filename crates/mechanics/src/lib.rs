@@ -24,7 +24,7 @@ mod homotopy;
 pub mod increment;
 pub mod increment_error;
 pub mod interaction;
-mod iterative;
+pub mod iterative;
 pub mod linear_solver;
 pub mod mortar;
 mod nitsche;

@@ -19,6 +19,19 @@ pub struct GapPoint<const D: usize> {
     pub gap: f64,
 }
 
+/// Two sides whose faces are cut by each other.
+#[derive(Clone, Copy)]
+pub(super) struct Cut<'a, const D: usize> {
+    pub slave: &'a dyn ContactSurface<D>,
+    pub master: &'a dyn ContactSurface<D>,
+    /// The nodes of the slave, along whose normals points lie opposite each other.
+    pub nodes: &'a PressureNodes<D>,
+    /// The largest gap of points that see each other.
+    pub reach: f64,
+    /// Further points of the rule of a piece, for each direction.
+    pub extra: usize,
+}
+
 /// Breakpoints closer than this, in coordinates of the face, are one.
 pub(super) const SNAP: f64 = 1e-13;
 

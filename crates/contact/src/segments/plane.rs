@@ -1,21 +1,12 @@
 //! Pieces of slave faces in the plane: intervals between the projections of the master's vertices.
 
-use super::opposite::{FACING, GapPoint, SNAP, onto_master, onto_slave, snapped};
-use crate::multiplier::PressureNodes;
-use crate::surface::ContactSurface;
+use super::opposite::{Cut, FACING, GapPoint, SNAP, onto_master, onto_slave, snapped};
 use signorini_basis::CellShape;
 use signorini_basis::hierarchic::Values;
 use signorini_basis::rules::rule;
 
-pub(super) fn intervals<const D: usize>(
-    slave: &dyn ContactSurface<D>,
-    master: &dyn ContactSurface<D>,
-    nodes: &PressureNodes<D>,
-    face: usize,
-    candidates: &[usize],
-    reach: f64,
-    extra: usize,
-) -> Vec<GapPoint<D>> {
+pub(super) fn intervals<const D: usize>(cut: Cut<'_, D>, face: usize, candidates: &[usize]) -> Vec<GapPoint<D>> {
+    let Cut { slave, master, nodes, reach, extra } = cut;
     let mut at = Values::default();
     let mut spans = Vec::new();
     let mut breaks = vec![-1.0, 1.0];

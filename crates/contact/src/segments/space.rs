@@ -1,7 +1,6 @@
 //! Pieces of slave faces in space: polygons, cut in the plane of each slave facet.
 
-use super::opposite::{FACING, GapPoint, onto_master, snapped};
-use crate::multiplier::PressureNodes;
+use super::opposite::{Cut, FACING, GapPoint, onto_master, snapped};
 use crate::surface::ContactSurface;
 use signorini_basis::hierarchic::Values;
 use signorini_basis::rules::{Rule, rule};
@@ -199,15 +198,8 @@ fn over(polygon: &[Flat], rule: &Rule) -> Vec<(Flat, f64)> {
     out
 }
 
-pub(super) fn polygons<const D: usize>(
-    slave: &dyn ContactSurface<D>,
-    master: &dyn ContactSurface<D>,
-    nodes: &PressureNodes<D>,
-    face: usize,
-    candidates: &[usize],
-    reach: f64,
-    extra: usize,
-) -> Vec<GapPoint<D>> {
+pub(super) fn polygons<const D: usize>(cut: Cut<'_, D>, face: usize, candidates: &[usize]) -> Vec<GapPoint<D>> {
+    let Cut { slave, master, nodes, reach, extra } = cut;
     let space = |x: &Point<D>| Vector::<3>::from_fn(|k, _| x[k]);
     let mut at = Values::default();
     let mut points = Vec::new();

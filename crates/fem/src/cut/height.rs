@@ -177,8 +177,9 @@ trait Sink<const D: usize> {
     /// A box without zeros.
     fn start_box(&mut self, inside: &Point<D>);
     fn point(&mut self, x: Point<D>, weight: f64);
-    /// The roots on a line through `x` in direction `k`, sorted, with the number of their sheet.
-    fn roots(&mut self, x: &Point<D>, k: usize, ends: [f64; 2], roots: &[(f64, usize)], weight: f64);
+    /// The roots on a line through `x` in direction `k`, sorted, with the number of their sheet; the surfaces that are wanted
+    /// are those of some sheets.
+    fn roots(&mut self, x: &Point<D>, k: usize, ends: [f64; 2], roots: &[(f64, usize)], weight: f64, of: &[usize]);
 }
 
 struct Resolver<'a, const D: usize> {
@@ -229,15 +230,32 @@ impl<const D: usize> Resolver<'_, D> {
             return self.whole(b, axes, sink);
         }
         if let [k] = axes {
-            return self.line(&b.min, *k, b, &active, 1.0, PIECES, sink);
+            return self.line((&b.min, 1.0), *k, b, &active, PIECES, &column(&active, None), sink);
         }
-        let (slope, k) = best_direction(&active, b, axes);
+        let (slope, k) = steepest(&least_slopes(&active, b, axes), axes);
         if slope < MIN_SLOPE && depth < MAX_DEPTH {
             for part in parts(b, axes, &b.center()) {
                 self.resolve(&part, axes, &active, depth + 1, sink);
             }
             return;
         }
+        for (k, column) in columns(&active, b, axes, (slope, k)) {
+            self.columns(b, axes, &active, k, if slope < MIN_SLOPE { PIECES / 2 } else { 1 }, &column, sink);
+        }
+    }
+
+    /// Lines in direction `k` above the points of the base.
+    #[allow(clippy::too_many_arguments)]
+    fn columns(
+        &self,
+        b: &Aabb<D>,
+        axes: &[usize],
+        active: &[(usize, &Sheet<'_, D>)],
+        k: usize,
+        pieces: usize,
+        column: &Column,
+        sink: &mut dyn Sink<D>,
+    ) {
         let base: Vec<usize> = axes.iter().copied().filter(|&a| a != k).collect();
         let mut below: Vec<Sheet<'_, D>> = Vec::new();
         for (i, &(_, of)) in active.iter().enumerate() {
@@ -249,9 +267,8 @@ impl<const D: usize> Resolver<'_, D> {
         let below: Vec<(usize, &Sheet<'_, D>)> = below.iter().enumerate().collect();
         let mut points = Points::default();
         self.resolve(b, &base, &below, 0, &mut points);
-        let pieces = if slope < MIN_SLOPE { PIECES / 2 } else { 1 };
         for (x, weight) in points.0 {
-            self.line(&x, k, b, &active, weight, pieces, sink);
+            self.line((&x, weight), k, b, active, pieces, column, sink);
         }
     }
 
@@ -277,12 +294,12 @@ impl<const D: usize> Resolver<'_, D> {
     #[allow(clippy::too_many_arguments)]
     fn line(
         &self,
-        x: &Point<D>,
+        (x, weight): (&Point<D>, f64),
         k: usize,
         b: &Aabb<D>,
         active: &[(usize, &Sheet<'_, D>)],
-        weight: f64,
         pieces: usize,
+        column: &Column,
         sink: &mut dyn Sink<D>,
     ) {
         let ends = [b.min[k], b.max[k]];
@@ -296,7 +313,7 @@ impl<const D: usize> Resolver<'_, D> {
         }
         roots.sort_by(|a, c| a.0.total_cmp(&c.0));
         let mut from = ends[0];
-        for to in roots.iter().map(|r| r.0).chain([ends[1]]) {
+        for to in roots.iter().map(|r| r.0).chain([ends[1]]).filter(|_| column.has_volume) {
             let length = to - from;
             if length > 1e-15 * (ends[1] - ends[0]) {
                 sink.start_box(&with(x, k, 0.5 * (from + to)));
@@ -306,8 +323,43 @@ impl<const D: usize> Resolver<'_, D> {
             }
             from = to;
         }
-        sink.roots(x, k, ends, &roots, weight);
+        sink.roots(x, k, ends, &roots, weight, &column.surfaces);
     }
+}
+
+/// What lines in one direction give: the volumes, and the surfaces of these sheets.
+struct Column {
+    has_volume: bool,
+    surfaces: Vec<usize>,
+}
+
+fn column<const D: usize>(active: &[(usize, &Sheet<'_, D>)], own: Option<&[usize]>) -> Column {
+    let all = || active.iter().map(|(number, _)| *number).collect();
+    Column { has_volume: true, surfaces: own.map_or_else(all, <[usize]>::to_vec) }
+}
+
+/// The directions of lines: one, or where none serves all sheets that for the volumes, and for every sheet that is too steep
+/// along it another one for its surface alone. Sheets that meet at right angles, one of them normal to an axis, have none in
+/// common in boxes of any size.
+fn columns<const D: usize>(
+    active: &[(usize, &Sheet<'_, D>)],
+    b: &Aabb<D>,
+    axes: &[usize],
+    (slope, k): (f64, usize),
+) -> Vec<(usize, Column)> {
+    if slope >= MIN_SLOPE || active.len() == 1 {
+        return vec![(k, column(active, None))];
+    }
+    let mut along: Vec<Vec<usize>> = vec![Vec::new(); D];
+    for sheet in active {
+        let alone = std::slice::from_ref(sheet);
+        let slopes = least_slopes(alone, b, axes);
+        along[if slopes[k] >= MIN_SLOPE { k } else { steepest(&slopes, axes).1 }].push(sheet.0);
+    }
+    let mut out = vec![(k, column(active, Some(&along[k])))];
+    let others = axes.iter().filter(|&&a| a != k && !along[a].is_empty());
+    out.extend(others.map(|&a| (a, Column { has_volume: false, surfaces: along[a].clone() })));
+    out
 }
 
 /// Points of a base.
@@ -319,7 +371,7 @@ impl<const D: usize> Sink<D> for Points<D> {
     fn point(&mut self, x: Point<D>, weight: f64) {
         self.0.push((x, weight));
     }
-    fn roots(&mut self, _: &Point<D>, _: usize, _: [f64; 2], _: &[(f64, usize)], _: f64) {}
+    fn roots(&mut self, _: &Point<D>, _: usize, _: [f64; 2], _: &[(f64, usize)], _: f64, _: &[usize]) {}
 }
 
 /// The rule of a cell.
@@ -349,7 +401,7 @@ impl<const D: usize> Sink<D> for Regions<'_, D> {
 
     /// Roots closer together than rounding can tell apart make one surface: that of the sheet which changes sign in the
     /// sense in which the region does.
-    fn roots(&mut self, x: &Point<D>, k: usize, ends: [f64; 2], roots: &[(f64, usize)], weight: f64) {
+    fn roots(&mut self, x: &Point<D>, k: usize, ends: [f64; 2], roots: &[(f64, usize)], weight: f64, of: &[usize]) {
         self.rule.cut |= !roots.is_empty();
         let same = 1e-11 * (ends[1] - ends[0]);
         let step = 1e-6 * (ends[1] - ends[0]);
@@ -363,8 +415,8 @@ impl<const D: usize> Sink<D> for Regions<'_, D> {
             let after = roots.get(last + 1).map_or(f64::INFINITY, |r| r.0 - roots[last].0);
             let below = self.region_at(&with(x, k, roots[first].0 - step.min(0.5 * before)));
             let above = self.region_at(&with(x, k, roots[last].0 + step.min(0.5 * after)));
-            if below != above {
-                let (t, sheet) = roots[first];
+            let (t, sheet) = roots[first];
+            if below != above && of.contains(&sheet) {
                 let at = with(x, k, t);
                 let gradient = self.partition.sheets[sheet].gradient(&at);
                 let norm = gradient.norm();
@@ -465,8 +517,8 @@ fn crossing<const D: usize>(sheet: &Sheet<'_, D>, b: &Aabb<D>, axes: &[usize]) -
     Crossing::None
 }
 
-/// The direction in which the least slope of all sheets is largest, and that slope; negative where its sign changes.
-fn best_direction<const D: usize>(active: &[(usize, &Sheet<'_, D>)], b: &Aabb<D>, axes: &[usize]) -> (f64, usize) {
+/// The least slope of all sheets along each direction; negative where its sign changes.
+fn least_slopes<const D: usize>(active: &[(usize, &Sheet<'_, D>)], b: &Aabb<D>, axes: &[usize]) -> Vector<D> {
     let mut least = Vector::<D>::repeat(f64::INFINITY);
     for (_, sheet) in active {
         let (mut low, mut high) = (Vector::<D>::repeat(f64::INFINITY), Vector::<D>::repeat(f64::NEG_INFINITY));
@@ -479,6 +531,11 @@ fn best_direction<const D: usize>(active: &[(usize, &Sheet<'_, D>)], b: &Aabb<D>
         }
         least = least.inf(&low.sup(&-high));
     }
+    least
+}
+
+/// The direction with the largest of these, and that slope.
+fn steepest<const D: usize>(least: &Vector<D>, axes: &[usize]) -> (f64, usize) {
     axes.iter().map(|&k| (least[k], k)).fold((f64::NEG_INFINITY, axes[0]), |a, c| if c.0 > a.0 { c } else { a })
 }
 

@@ -96,6 +96,18 @@ pub struct Direction {
     pub bends: Vec<Bend>,
 }
 
+/// The averaged normal of a surface of facets at a point of it, of any length: with its slopes along the coordinates, and what
+/// moves them.
+#[derive(Clone, Debug, Default)]
+pub struct NormalField {
+    pub vector: Vector<3>,
+    pub slopes: [Vector<3>; 2],
+    /// The values are the changes of the vector, the slopes those of its slopes.
+    pub functions: Vec<Function>,
+    /// Second derivatives of the vector.
+    pub bends: Vec<Bend>,
+}
+
 /// A site where it is now.
 #[derive(Clone, Debug, Default)]
 pub struct Placed {
@@ -172,6 +184,8 @@ pub enum Met {
     Foot(Box<Foot>),
     /// The point on the line along the averaged normal of the slave.
     Cut(Box<Foot>),
+    /// The point from which the slave lies along the averaged normal of the master.
+    Along(Box<Foot>, Box<NormalField>),
     Rigid(Box<RigidFoot>),
 }
 
@@ -292,6 +306,11 @@ pub trait Master: Sync {
     /// The point on the line through `x` along a direction of any length, on a side that faces it, at most `reach` ahead or
     /// behind.
     fn cut(&self, _x: &Point<3>, _direction: &Vector<3>, _reach: f64) -> Option<Met> {
+        None
+    }
+
+    /// The point from which `x` lies along the averaged normal of a surface of facets, where its faces go on smoothly.
+    fn along(&self, _x: &Point<3>, _reach: f64) -> Option<Met> {
         None
     }
 

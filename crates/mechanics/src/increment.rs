@@ -61,7 +61,7 @@ const AUGMENTED: f64 = 1e-9;
 const MOST_AUGMENTATIONS: usize = 60;
 
 /// What trials are scaled by where Newton's method fails: a power of two, so that nothing is rounded.
-const SOFTER: f64 = 1.0 / 128.0;
+pub(crate) const SOFTER: f64 = 1.0 / 128.0;
 
 /// How Newton's method goes.
 enum Way {

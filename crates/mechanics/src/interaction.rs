@@ -12,6 +12,7 @@
 use crate::body::MaterialPoint;
 use crate::body::{Body, BodyState, PlaceError, Sampling, Site};
 use crate::contact::{Contact, Enforcement, Part, Sides, SiteMemory};
+use crate::increment::SOFTER;
 use crate::pair::Stuck;
 use crate::passage::Way;
 use crate::prepare::WAVE;
@@ -239,6 +240,17 @@ pub fn penalty_factor(found: &[SiteResult], wanted: f64) -> Option<f64> {
     (depth > 0.0 && (depth / wanted - 1.0).abs() > NEAR_WANTED).then_some(depth / wanted)
 }
 
+impl Contact {
+    /// The largest stiffness of what is touched, as force per length; infinite if it is rigid.
+    fn master_stiffness(&self, bodies: &[Box<dyn Body>]) -> f64 {
+        let master = &bodies[self.master.body];
+        let sites = |sampling| master.sites(self.master.group.as_deref(), sampling);
+        let list = sites(Sampling::Nodes).or_else(|_| sites(Sampling::GaussPoints)).unwrap_or_default();
+        let finite = list.iter().map(|s| master.site_stiffness(s)).filter(|c| c.is_finite());
+        finite.reduce(f64::max).unwrap_or(f64::INFINITY)
+    }
+}
+
 impl Interaction for Contact {
     fn name(&self) -> &str {
         &self.name
@@ -276,20 +288,23 @@ impl Interaction for Contact {
     fn stiffness(&self, bodies: &[Box<dyn Body>]) -> f64 {
         let own = self.stiffness.iter().zip(self.sites()).map(|(c, s)| c * s.weight);
         // A deformable master of a rigid slave.
-        let master = &bodies[self.master.body];
-        let sites = |sampling| master.sites(self.master.group.as_deref(), sampling);
-        let list = sites(Sampling::Nodes).or_else(|_| sites(Sampling::GaussPoints)).unwrap_or_default();
-        let touched = list.iter().map(|s| master.site_stiffness(s));
+        let touched = Some(self.master_stiffness(bodies));
         own.chain(touched).filter(|c| c.is_finite()).fold(0.0, f64::max)
     }
 
-    fn prepare(&mut self, _: &[Box<dyn Body>], otherwise: f64) {
+    fn prepare(&mut self, bodies: &[Box<dyn Body>], otherwise: f64) {
+        let is_curve = bodies[self.slave.body].curve(self.slave.group.as_deref()).is_some();
+        // A curve on a solid gives way across itself, where it is much less stiff than along, and so does the solid.
+        let [given_way, share] = match is_curve && !bodies[self.master.body].is_rigid() {
+            true => [self.master_stiffness(bodies), SOFTER],
+            false => [f64::INFINITY, 1.0],
+        };
         let weights: Vec<f64> = self.sites().iter().map(|s| s.weight).collect();
         if self.enforcement == Enforcement::Nitsche {
             return;
         }
         for (c, w) in self.stiffness.iter_mut().zip(weights) {
-            *c = WAVE * if c.is_finite() { *c } else { otherwise / w };
+            *c = WAVE * share * if c.is_finite() { c.min(given_way / w) } else { otherwise / w };
         }
     }
 

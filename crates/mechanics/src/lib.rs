@@ -37,7 +37,7 @@ pub mod system;
 
 pub use body::{
     Anchor, Bend, Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Direction, Foot, Function, Hold,
-    Load, Master, MaterialPoint, Means, Met, Order, PlaceError, Placed, RigidFoot, Sampling, Site,
+    Load, Master, MaterialPoint, Means, Met, NormalField, Order, PlaceError, Placed, RigidFoot, Sampling, Site,
 };
 pub use contact::{Contact, Enforcement, Part, SiteMemory};
 pub use curve::Curve;

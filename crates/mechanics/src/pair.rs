@@ -1,6 +1,7 @@
 //! The measures of a contact pair in the unknowns that move its partners: gap, normal and slip with their variations.
 //!
-//! Between surfaces of facets the gap is measured along the averaged normal of the slave (`cut`). Otherwise
+//! Between surfaces of facets the gap is measured along the averaged normal of the slave (`cut`), between a curve and such
+//! a surface along that of the master (`along`). Otherwise
 //! geometry gives the closest point; the measures at it are those of Konyukhov & Schweizerhof (2013), in the coordinates
 //! of whatever is met: a surface, a curve, a point, or a rigid body through its gap function.
 //!
@@ -18,11 +19,13 @@
 //! with the gap. Either way a rigid motion of
 //! both partners is no slip, so that the forces have neither resultant nor moment.
 
+mod along;
 mod cut;
 mod gap;
 mod slip;
 
 use crate::body::{Anchor, Foot, Function, MaterialPoint, Met, Order, Placed};
+use along::AtAlong;
 use cut::AtCut;
 use gap::{AtFoot, AtRigid};
 use signorini_geometry::Vector;
@@ -187,6 +190,14 @@ impl Encounter<'_> {
                 1 => self.with_foot::<1>(foot, order),
                 _ => self.with_foot::<2>(foot, order),
             },
+            Met::Along(foot, field) => {
+                let at = AtAlong::new(self, foot, field)?;
+                let mut pair = at.gap(order);
+                if self.friction {
+                    at.add_slip(order, &mut pair);
+                }
+                Ok(pair)
+            }
             Met::Cut(foot) => {
                 let at = AtCut::new(self, foot)?;
                 let mut pair = at.gap(order);

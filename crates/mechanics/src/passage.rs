@@ -77,7 +77,7 @@ const MOST_STEPS: usize = 400;
 fn meeting(master: &dyn Master, x: &Point<3>, radius: f64) -> Option<Meeting> {
     match master.nearest(x, f64::INFINITY, None)? {
         Met::Rigid(foot) => Some((foot.jet.gap - radius, foot.jet.normal)),
-        Met::Foot(foot) | Met::Cut(foot) => {
+        Met::Foot(foot) | Met::Cut(foot) | Met::Along(foot, _) => {
             let d = x - foot.jet.x;
             Some(match foot.outward {
                 Some(outward) => (d.norm() * d.dot(&outward).signum() - radius, outward),

@@ -126,6 +126,8 @@ pub struct Placed {
     pub functions: Vec<Function>,
     /// What turns the section or ball about `x`: the value is the spin per unit of the unknown.
     pub spin: Vec<Function>,
+    /// Second variations of these spins, row by row; empty where the unknowns are spins themselves.
+    pub spin_bends: Vec<Vector<3>>,
     /// How the section or ball is turned; the identity where nothing turns.
     pub frame: Matrix<3>,
     /// Second derivatives of `x`; empty where it is linear in the unknowns.

@@ -38,7 +38,15 @@ pub enum Solved {
         /// Linear systems, and the most iterations that one of them took.
         systems: usize,
         most_iterations: usize,
+        coarse: Coarse,
     },
+}
+
+/// How the coarse unknowns of a preconditioner are solved for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coarse {
+    Factorised,
+    Multigrid,
 }
 
 /// Where the stiffness of linear bodies goes.
@@ -236,6 +244,12 @@ impl System {
             (0..count).filter(|k| held[*k]).for_each(|k| x[k] = given[k]);
             (x, iterations)
         }))
+    }
+
+    /// How iterations solve for their coarse unknowns.
+    pub(crate) fn coarse(&self) -> Coarse {
+        let mut sets = self.bodies.iter().filter_map(|body| body.subspaces()).map(|own| own.sets);
+        if sets.any(|sets| !sets.coarser.is_empty()) { Coarse::Multigrid } else { Coarse::Factorised }
     }
 }
 

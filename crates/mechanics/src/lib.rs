@@ -43,7 +43,7 @@ pub use contact::{Contact, Enforcement, Part, SiteMemory};
 pub use curve::Curve;
 pub use increment::{IncrementError, IncrementResult};
 pub use interaction::{Bodies, Interaction, Own, Target};
-pub use iterative::{LinearSolver, Solved, Subspaces};
+pub use iterative::{Coarse, LinearSolver, Solved, Subspaces};
 pub use mortar::Mortar;
 pub use pair::AxisChoice;
 pub use rigid_body::{Motion, RigidBody, RigidSite};

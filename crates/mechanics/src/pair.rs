@@ -57,6 +57,8 @@ struct Column {
     d_a: [Vector<3>; 2],
     d_ab: [Vector<3>; 3],
     spin: [Vector<3>; 2],
+    /// Which of the spins of the slave it is.
+    turns: Option<usize>,
     /// Motion of the anchor, and of its tangent.
     anchor: Vector<3>,
     anchor_tangent: Vector<3>,
@@ -235,9 +237,10 @@ impl Encounter<'_> {
             tangent: f.slopes[0],
             ..Column::default()
         });
-        let turns = self.slave.spin.iter().map(|f| Column {
+        let turns = self.slave.spin.iter().enumerate().map(|(k, f)| Column {
             unknown: unknown(f),
             spin: [f.value, Vector::<3>::zeros()],
+            turns: Some(k),
             ..Column::default()
         });
         moves.chain(turns).collect()
@@ -271,6 +274,20 @@ impl Encounter<'_> {
     }
     fn slave_count(&self) -> usize {
         self.slave.functions.len() + self.slave.spin.len()
+    }
+
+    /// Second variation of the spins of both partners. A spin is no derivative of a rotation vector; in the coordinates in
+    /// which second derivatives along geodesics are symmetric it varies by half the product of two spins. A section that turns
+    /// with displacements tells its own.
+    fn spin_variation(&self, k: &Column, l: &Column) -> [Vector<3>; 2] {
+        let half = |side: usize| l.spin[side].cross(&k.spin[side]) * 0.5;
+        let of_slave = match (k.turns, l.turns) {
+            (Some(i), Some(j)) if !self.slave.spin_bends.is_empty() => {
+                self.slave.spin_bends[i * self.slave.spin.len() + j]
+            }
+            _ => half(0),
+        };
+        [of_slave, half(1)]
     }
 
     /// What the spins of the sections do at the point of contact.

@@ -277,6 +277,7 @@ impl Body for RigidBody {
             radius: own.radius,
             functions,
             spin,
+            spin_bends: Vec::new(),
             frame,
             bends,
         }

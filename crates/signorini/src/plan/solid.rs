@@ -15,7 +15,7 @@ use super::rigid::{self, RigidBody};
 use crate::expression::Scope;
 use crate::problem::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE};
 use crate::problem::{self, Body, Enforcement, List, Material, Method, SolidMesh, Space};
-use crate::problem::{CaseError, KeyPath, Location, Problem, Value, suggestion};
+use crate::problem::{CaseError, KeyPath, Location, Problem, ProblemPart, Value, suggestion};
 use crate::relief::{MovedHeight, Sampled};
 use crate::report::Warning;
 use signorini_fem::{Group, Mesh, Side};
@@ -447,6 +447,9 @@ impl Planner<'_> {
                 if let Some(k) = stiffness.iter().position(|s| *s < 0.0) {
                     return Err(problem.error(spring, format!("component {k} is negative: {}", stiffness[k])));
                 }
+                if stiffness.iter().all(|s| *s == 0.0) {
+                    return Err(no_spring(problem, spring));
+                }
                 add(SupportKind::Spring(stiffness.to_vec()), Vec::new());
             }
             if !said {
@@ -674,4 +677,11 @@ fn axis_supports<const D: usize>(bodies: &[PlannedBody<D>]) -> Vec<SolidSupport>
         }
     }
     out
+}
+
+/// A spring that is none.
+pub(super) fn no_spring(problem: &problem::Problem, at: &impl ProblemPart) -> CaseError {
+    problem
+        .error(at, "a spring without stiffness holds nothing")
+        .help("a positive stiffness along what is to be held; or leave `spring` out")
 }

@@ -19,12 +19,12 @@ mod shown;
 mod weak;
 
 use crate::body::{CellBody, Site};
-use crate::discs::farthest_points;
 use crate::error::CellsError;
 use crate::place::Place;
 use crate::region::Filling;
 use crate::shapes::spatial;
 use crate::space::Tabulation;
+use crate::spread::farthest_points;
 use foot::Sheets;
 use hold::SideFunctions;
 use linear::LinearFields;

@@ -13,7 +13,7 @@
 //! thickness of the material centres of opposite faces cross. `χ = s` serves. Pairs that overlap before anything moves,
 //! or within a body have normals that do not oppose each other (`n_i·n_j > -0.3`), are neighbours and do not touch.
 
-use crate::discs::{Centres, SAME_FACE};
+use crate::spread::SAME_FACE;
 use signorini_contact::{Law, Status};
 use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::contact::Part;
@@ -22,6 +22,15 @@ use signorini_mechanics::{
     Bodies, Body, Function, Interaction, Own, PlaceError, Sampling, SimplerFriction, Site, SiteResult, Target,
 };
 use std::collections::BTreeMap;
+
+/// Where the centres of discs are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Centres {
+    /// A radius within the material: discs touch the boundary.
+    Within,
+    /// On the boundary, as published.
+    OnBoundary,
+}
 
 /// How a surface is covered by discs. What is left out is found: the radius from the spacing, the spacing from the radius,
 /// and without both from the functions of the body.

@@ -15,7 +15,7 @@
 //! - [`cell_solid`]: the body in a system of bodies of any kind.
 //! - [`description`]: the same from plain data, of any dimension.
 //! - [`contact`]: contact of the recovered boundary with a rigid body.
-//! - [`discs`]: contact of a body with itself, where pores close; [`disc_contact`]: the same in a system of bodies.
+//! - [`disc_contact`]: contact by discs, between bodies of a system or within one; `spread`: points for them.
 //! - [`fields`]: displacement and stress in the volume and on the boundary.
 
 pub mod body;
@@ -25,7 +25,6 @@ pub mod contact;
 pub mod description;
 pub mod disc_contact;
 pub mod discretisation;
-pub mod discs;
 pub mod error;
 pub mod facets;
 pub mod fields;
@@ -41,6 +40,7 @@ pub mod region;
 pub mod schwarz;
 pub mod shapes;
 pub mod space;
+mod spread;
 pub mod stiffness;
 pub mod supports;
 pub mod system;

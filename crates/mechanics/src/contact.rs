@@ -194,6 +194,11 @@ impl Contact {
             Some(normal) if master.is_faceted() && except.is_none() => {
                 master.cut(&placed.x, &normal.vector, self.reach)
             }
+            // A curve; sections that turn roll over edges.
+            None if placed.tangent.is_some() && placed.spin.is_empty() && except.is_none() => {
+                let reach = self.reach + placed.radius;
+                master.along(&placed.x, reach).or_else(|| master.nearest(&placed.x, reach, None))
+            }
             _ => master.nearest(&placed.x, self.reach + placed.radius, except),
         };
         let Some(met) = met else { return (placed, None) };

@@ -17,6 +17,10 @@ pub enum Enforcement {
 /// of a cell, `E/h`: less for trials, and sites are opened and closed by the tractions of the last step alone.
 pub(crate) const WAVE: f64 = std::f64::consts::PI;
 
+/// What trials are scaled by where Newton's method fails, and for curves on what deforms: a power of two, so that nothing is
+/// rounded.
+pub(crate) const SOFTER: f64 = 1.0 / 128.0;
+
 /// The scale of trials over a penalty of a hundred times the stiffness of the bodies: what a contact that carries gives way
 /// is a hundredth of what they do.
 const SOFTNESS: f64 = WAVE / 100.0;

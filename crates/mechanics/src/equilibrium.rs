@@ -195,11 +195,11 @@ impl Equations for Problem<'_> {
         }
         if self.stiffness == Stiffness::KeptByBodies {
             let (step, iterations) = self.system.iterated_step(out, &held, &right, &mut self.inverses)?;
-            let (systems, most) = match self.solved {
-                Solved::Iterative { systems, most_iterations } => (systems, most_iterations),
-                Solved::Direct => (0, 0),
+            let (systems, most, coarse) = match self.solved {
+                Solved::Iterative { systems, most_iterations, coarse } => (systems, most_iterations, coarse),
+                Solved::Direct => (0, 0, self.system.coarse()),
             };
-            self.solved = Solved::Iterative { systems: systems + 1, most_iterations: most.max(iterations) };
+            self.solved = Solved::Iterative { systems: systems + 1, most_iterations: most.max(iterations), coarse };
             return Ok(step);
         }
         out.tangent.without_rows(|row| held[row as usize]);

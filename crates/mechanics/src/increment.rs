@@ -3,6 +3,7 @@
 //! `equilibrium` solves the equations as they stand; where that fails `homotopy` looks for another way to the same state.
 //! About both run the outer iterations of `augmentation`.
 
+use crate::enforcement::SOFTER;
 use crate::equilibrium::Problem;
 use crate::increment_error::IncrementError;
 use crate::linear_solver::{Solved, Stiffness};
@@ -39,9 +40,6 @@ const UNBALANCED: f64 = 1e-6;
 /// Change of a traction by an outer iteration, relative to the largest, that ends them.
 const AUGMENTED: f64 = 1e-9;
 const MOST_AUGMENTATIONS: usize = 60;
-
-/// What trials are scaled by where Newton's method fails: a power of two, so that nothing is rounded.
-const SOFTER: f64 = 1.0 / 128.0;
 
 /// How Newton's method goes.
 enum Way {

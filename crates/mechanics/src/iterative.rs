@@ -8,7 +8,7 @@
 
 use crate::body::Body;
 use crate::increment_error::IncrementError;
-use crate::linear_solver::{LinearSolver, Stiffness};
+use crate::linear_solver::{Coarse, LinearSolver, Stiffness};
 use crate::system::{Assembled, AssemblyError, System, SystemState};
 use rayon::prelude::*;
 use signorini_solve::blocks::{Block, BlockSum};
@@ -199,6 +199,12 @@ impl System {
             (0..count).filter(|k| held[*k]).for_each(|k| x[k] = given[k]);
             (x, iterations)
         }))
+    }
+
+    /// How iterations solve for their coarse unknowns.
+    pub(crate) fn coarse(&self) -> Coarse {
+        let mut sets = self.bodies.iter().filter_map(|body| body.subspaces()).map(|own| own.sets);
+        if sets.any(|sets| !sets.coarser.is_empty()) { Coarse::Multigrid } else { Coarse::Factorised }
     }
 }
 

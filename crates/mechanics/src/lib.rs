@@ -47,12 +47,13 @@ pub use enforcement::Enforcement;
 pub use increment::IncrementResult;
 pub use increment_error::IncrementError;
 pub use interaction::{Bodies, Interaction, Own, Target};
-pub use linear_solver::{LinearSolver, Solved, Subspaces};
+pub use linear_solver::{Coarse, LinearSolver, Solved, Subspaces};
 pub use mortar::Mortar;
 pub use pair::AxisChoice;
 pub use part::Part;
 pub use points::{
-    Anchor, Bend, Direction, Foot, Function, Master, MaterialPoint, Met, Order, Placed, RigidFoot, Sampling, Site,
+    Anchor, Bend, Direction, Foot, Function, Master, MaterialPoint, Met, NormalField, Order, Placed, RigidFoot,
+    Sampling, Site,
 };
 pub use rigid_body::{Motion, RigidBody, RigidSite};
 pub use saved::Saved;

@@ -23,7 +23,15 @@ pub enum Solved {
         /// Linear systems, and the most iterations that one of them took.
         systems: usize,
         most_iterations: usize,
+        coarse: Coarse,
     },
+}
+
+/// How the coarse unknowns of a preconditioner are solved for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coarse {
+    Factorised,
+    Multigrid,
 }
 
 /// Where the stiffness of linear bodies goes.

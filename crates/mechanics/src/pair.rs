@@ -1,6 +1,7 @@
 //! The measures of a contact pair in the unknowns that move its partners: gap, normal and slip with their variations.
 //!
-//! Between surfaces of facets the gap is measured along the averaged normal of the slave (`cut`). Otherwise
+//! Between surfaces of facets the gap is measured along the averaged normal of the slave (`cut`), between a curve and such
+//! a surface along that of the master (`along`). Otherwise
 //! geometry gives the closest point; the measures at it are those of Konyukhov & Schweizerhof (2013), in the coordinates
 //! of whatever is met: a surface, a curve, a point, or a rigid body through its gap function.
 //!
@@ -18,6 +19,7 @@
 //! with the gap. Either way a rigid motion of
 //! both partners is no slip, so that the forces have neither resultant nor moment.
 
+mod along;
 mod cut;
 mod gap;
 mod measures;
@@ -26,6 +28,7 @@ mod slip;
 pub use measures::{Axis, AxisChoice, Encounter, NoPair, Pair, Stuck, any_tangent, axis};
 
 use crate::points::{Foot, Function, Met, Order};
+use along::AtAlong;
 use cut::AtCut;
 use gap::{AtFoot, AtRigid};
 use measures::Column;
@@ -46,6 +49,14 @@ impl Encounter<'_> {
                 1 => self.with_foot::<1>(foot, order),
                 _ => self.with_foot::<2>(foot, order),
             },
+            Met::Along(foot, field) => {
+                let at = AtAlong::new(self, foot, field)?;
+                let mut pair = at.gap(order);
+                if self.friction {
+                    at.add_slip(order, &mut pair);
+                }
+                Ok(pair)
+            }
             Met::Cut(foot) => {
                 let at = AtCut::new(self, foot)?;
                 let mut pair = at.gap(order);
@@ -83,9 +94,10 @@ impl Encounter<'_> {
             tangent: f.slopes[0],
             ..Column::default()
         });
-        let turns = self.slave.spin.iter().map(|f| Column {
+        let turns = self.slave.spin.iter().enumerate().map(|(k, f)| Column {
             unknown: unknown(f),
             spin: [f.value, Vector::<3>::zeros()],
+            turns: Some(k),
             ..Column::default()
         });
         moves.chain(turns).collect()
@@ -119,6 +131,20 @@ impl Encounter<'_> {
     }
     fn slave_count(&self) -> usize {
         self.slave.functions.len() + self.slave.spin.len()
+    }
+
+    /// Second variation of the spins of both partners. A spin is no derivative of a rotation vector; in the coordinates in
+    /// which second derivatives along geodesics are symmetric it varies by half the product of two spins. A section that turns
+    /// with displacements tells its own.
+    fn spin_variation(&self, k: &Column, l: &Column) -> [Vector<3>; 2] {
+        let half = |side: usize| l.spin[side].cross(&k.spin[side]) * 0.5;
+        let of_slave = match (k.turns, l.turns) {
+            (Some(i), Some(j)) if !self.slave.spin_bends.is_empty() => {
+                self.slave.spin_bends[i * self.slave.spin.len() + j]
+            }
+            _ => half(0),
+        };
+        [of_slave, half(1)]
     }
 
     /// What the spins of the sections do at the point of contact.

@@ -58,6 +58,18 @@ pub struct Direction {
     pub bends: Vec<Bend>,
 }
 
+/// The averaged normal of a surface of facets at a point of it, of any length: with its slopes along the coordinates, and what
+/// moves them.
+#[derive(Clone, Debug, Default)]
+pub struct NormalField {
+    pub vector: Vector<3>,
+    pub slopes: [Vector<3>; 2],
+    /// The values are the changes of the vector, the slopes those of its slopes.
+    pub functions: Vec<Function>,
+    /// Second derivatives of the vector.
+    pub bends: Vec<Bend>,
+}
+
 /// A site where it is now.
 #[derive(Clone, Debug, Default)]
 pub struct Placed {
@@ -76,6 +88,8 @@ pub struct Placed {
     pub functions: Vec<Function>,
     /// What turns the section or ball about `x`: the value is the spin per unit of the unknown.
     pub spin: Vec<Function>,
+    /// Second variations of these spins, row by row; empty where the unknowns are spins themselves.
+    pub spin_bends: Vec<Vector<3>>,
     /// How the section or ball is turned; the identity where nothing turns.
     pub frame: Matrix<3>,
     /// Second derivatives of `x`; empty where it is linear in the unknowns.
@@ -134,6 +148,8 @@ pub enum Met {
     Foot(Box<Foot>),
     /// The point on the line along the averaged normal of the slave.
     Cut(Box<Foot>),
+    /// The point from which the slave lies along the averaged normal of the master.
+    Along(Box<Foot>, Box<NormalField>),
     Rigid(Box<RigidFoot>),
 }
 
@@ -142,7 +158,7 @@ impl Met {
     pub fn gap(&self, x: &Point<3>) -> Option<(f64, Vector<3>)> {
         match self {
             Met::Rigid(foot) => Some((foot.jet.gap, foot.jet.normal)),
-            Met::Foot(foot) | Met::Cut(foot) => {
+            Met::Foot(foot) | Met::Cut(foot) | Met::Along(foot, _) => {
                 let d = x - foot.jet.x;
                 Some(match foot.outward {
                     Some(outward) => (d.norm() * d.dot(&outward).signum(), outward),
@@ -185,6 +201,11 @@ pub trait Master: Sync {
     /// The point on the line through `x` along a direction of any length, on a side that faces it, at most `reach` ahead or
     /// behind.
     fn cut(&self, _x: &Point<3>, _direction: &Vector<3>, _reach: f64) -> Option<Met> {
+        None
+    }
+
+    /// The point from which `x` lies along the averaged normal of a surface of facets, where its faces go on smoothly.
+    fn along(&self, _x: &Point<3>, _reach: f64) -> Option<Met> {
         None
     }
 

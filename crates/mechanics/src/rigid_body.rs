@@ -275,6 +275,7 @@ impl Body for RigidBody {
             radius: own.radius,
             functions,
             spin,
+            spin_bends: Vec::new(),
             frame,
             bends,
         }

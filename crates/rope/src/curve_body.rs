@@ -135,6 +135,7 @@ pub fn placed(body: &dyn CurveBody, state: &BodyState, site: &Site) -> Placed {
         radius: body.radius(),
         functions: line.functions(element, xi),
         spin,
+        spin_bends: Vec::new(),
         frame,
         bends: Vec::new(),
     }

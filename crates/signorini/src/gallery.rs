@@ -15,7 +15,7 @@ macro_rules! example {
 }
 
 /// Cases with mechanics, simplest first.
-pub const GALLERY: [Example; 44] = [
+pub const GALLERY: [Example; 46] = [
     example!("string", "a string on a flat floor, beside the exact solution"),
     example!("axisymmetric", "a round membrane by its radius, beside the exact solution"),
     example!("snap_in", "a sticky membrane: snap-in, pull-off, and the loop between them"),
@@ -46,6 +46,7 @@ pub const GALLERY: [Example; 44] = [
     example!("capstan", "a rope round a drum, which begins to slip at the end that is pulled"),
     example!("edge", "a rope over the rounded edge of an elastic block"),
     example!("belt", "a belt on two drums, of which one is turned by a moment"),
+    example!("elastic_pulley", "a rope drawn over a pulley that gives way"),
     example!("sphere_parallel", "a rope on a parallel of a sphere, drawn until it slides"),
     example!("crossing", "two geometrically exact beams across each other"),
     example!("twist", "two rods twisted about each other by a full turn: lines of contact that wander"),
@@ -54,6 +55,7 @@ pub const GALLERY: [Example; 44] = [
     example!("hertz_cells", "half a disc of finite cells on a plane: no mesh follows its edge"),
     example!("plate_holes", "a plate with a hole in cells of degree 6, beside the solution of Kirsch"),
     example!("ball_cells", "a ball of finite cells between two plates, in space"),
+    example!("two_balls", "a ball of finite cells pressed on a ball of finite elements"),
     example!("foot", "a part from an STL file on a cylinder, in finite cells"),
     example!("pore", "a pore that closes on itself, in finite cells"),
     example!("pore_discs", "the same by discs on its surface, as first published for finite cells"),

@@ -43,7 +43,7 @@ fn iterations_find_what_a_factorisation_finds() {
         let (_, one, by_factor) = pressed(LinearSolver::Direct, enforcement, mu);
         let (_, other, found) = pressed(LinearSolver::Iterative, enforcement, mu);
         assert_eq!(by_factor.solved, Solved::Direct);
-        let Solved::Iterative { systems, most_iterations } = found.solved else { panic!("{:?}", found.solved) };
+        let Solved::Iterative { systems, most_iterations, .. } = found.solved else { panic!("{:?}", found.solved) };
         println!(
             "{enforcement:?} {mu:?}: {systems} systems, at most {most_iterations} iterations, {:?}",
             found.history

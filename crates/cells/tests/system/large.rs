@@ -86,7 +86,7 @@ fn crushed(n: usize, travel: f64, enforcement: Option<(Sampling, Enforcement)>) 
         true
     };
     let (_, found) = system.solve(&system.start(), 1.0, &mut told).unwrap();
-    let Solved::Iterative { systems, most_iterations } = found.solved else { panic!("{:?}", found.solved) };
+    let Solved::Iterative { systems, most_iterations, .. } = found.solved else { panic!("{:?}", found.solved) };
     let sites = found.sites.first().map_or(0, Vec::len);
     let closed = found.sites.iter().flatten().filter(|s| s.pressure > 0.0).count();
     println!(

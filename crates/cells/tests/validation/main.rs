@@ -5,7 +5,6 @@ mod cavity;
 mod hertz;
 mod kirsch;
 mod patch;
-mod pore;
 
 use signorini_cells::{Elastic, Space, Stuff};
 

@@ -3,7 +3,7 @@
 use super::{Contact, Sides, SiteMemory};
 use crate::body::Body;
 use crate::body::PlaceError;
-use crate::enforcement::{Outer, WAVE};
+use crate::enforcement::{Outer, SOFTER, WAVE};
 use crate::interaction::{Around, Bodies, Interaction, NotItsHistory, Own, Target, Way, hardened, take_over, towards};
 use crate::pair::Stuck;
 use crate::points::{MaterialPoint, Sampling, Site};
@@ -19,6 +19,17 @@ impl<'a> Bodies<'a> {
             master: self.side(&contact.master),
             first: [self.first[contact.slave.body], self.first[contact.master.body]],
         }
+    }
+}
+
+impl Contact {
+    /// The largest stiffness of what is touched, as force per length; infinite if it is rigid.
+    fn master_stiffness(&self, bodies: &[Box<dyn Body>]) -> f64 {
+        let master = &bodies[self.master.body];
+        let sites = |sampling| master.sites(self.master.group.as_deref(), sampling);
+        let list = sites(Sampling::Nodes).or_else(|_| sites(Sampling::GaussPoints)).unwrap_or_default();
+        let finite = list.iter().map(|s| master.site_stiffness(s)).filter(|c| c.is_finite());
+        finite.reduce(f64::max).unwrap_or(f64::INFINITY)
     }
 }
 
@@ -59,20 +70,23 @@ impl Interaction for Contact {
     fn stiffness(&self, bodies: &[Box<dyn Body>]) -> f64 {
         let own = self.stiffness.iter().zip(self.sites()).map(|(c, s)| c * s.weight);
         // A deformable master of a rigid slave.
-        let master = &bodies[self.master.body];
-        let sites = |sampling| master.sites(self.master.group.as_deref(), sampling);
-        let list = sites(Sampling::Nodes).or_else(|_| sites(Sampling::GaussPoints)).unwrap_or_default();
-        let touched = list.iter().map(|s| master.site_stiffness(s));
+        let touched = Some(self.master_stiffness(bodies));
         own.chain(touched).filter(|c| c.is_finite()).fold(0.0, f64::max)
     }
 
-    fn prepare(&mut self, _: &[Box<dyn Body>], otherwise: f64) {
+    fn prepare(&mut self, bodies: &[Box<dyn Body>], otherwise: f64) {
+        let is_curve = bodies[self.slave.body].curve(self.slave.group.as_deref()).is_some();
+        // A curve on a solid gives way across itself, where it is much less stiff than along, and so does the solid.
+        let [given_way, share] = match is_curve && !bodies[self.master.body].is_rigid() {
+            true => [self.master_stiffness(bodies), SOFTER],
+            false => [f64::INFINITY, 1.0],
+        };
         let weights: Vec<f64> = self.sites().iter().map(|s| s.weight).collect();
         if self.enforcement.takes_stress() {
             return;
         }
         for (c, w) in self.stiffness.iter_mut().zip(weights) {
-            *c = WAVE * if c.is_finite() { *c } else { otherwise / w };
+            *c = WAVE * share * if c.is_finite() { c.min(given_way / w) } else { otherwise / w };
         }
     }
 

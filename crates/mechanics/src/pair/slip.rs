@@ -60,7 +60,7 @@ impl<const N: usize> AtFoot<'_, N> {
                 } else {
                     let along = (0..N).fold(Vector::<3>::zeros(), |sum, a| sum + columns[k].d_a[a] * xi[l][a]);
                     let gap_turns = pair.d_normal[k] * (lever * pair.d_gap[l]) + normal_bend(k, l) * (lever * gap);
-                    let [of_slave, of_master] = spin_variation(&columns[k], &columns[l]);
+                    let [of_slave, of_master] = self.encounter.spin_variation(&columns[k], &columns[l]);
                     let spun = (of_slave * radii[0] + of_master * radii[1]).cross(&normal);
                     along - self.encounter.levers(&columns[k], &pair.d_normal[l], radii) - spun - gap_turns
                 }
@@ -139,7 +139,7 @@ impl AtRigid<'_> {
                     h -= curved_l * pair.d_gap[k] + curved_k * pair.d_gap[l];
                     h -= relative_spin(&columns[k]).cross(&curved_l) * lever;
                     // Spins, seen from the body.
-                    let [of_slave, of_body] = spin_variation(&columns[k], &columns[l]);
+                    let [of_slave, of_body] = self.encounter.spin_variation(&columns[k], &columns[l]);
                     let [slave, body] = columns[k].spin;
                     let turned = columns[l].turn.cross(&(slave - body));
                     h -= (of_slave - of_body - turned).cross(&normal) * lever;
@@ -177,12 +177,6 @@ impl AtRigid<'_> {
         }
         pair.axis = self.encounter.axis(columns, any_tangent(&normal));
     }
-}
-
-/// Second variation of the spins of both partners. A spin is no derivative of a rotation vector; in the coordinates in
-/// which second derivatives along geodesics are symmetric it varies by half the product of two spins.
-fn spin_variation(k: &Column, l: &Column) -> [Vector<3>; 2] {
-    [0, 1].map(|side: usize| l.spin[side].cross(&k.spin[side]) * 0.5)
 }
 
 /// The derivative of the Hessian of the gap along the three axes, by central differences; zero without a gap.

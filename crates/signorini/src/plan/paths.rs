@@ -46,6 +46,15 @@ fn tables(problem: &Problem) -> [(Analysis, &'static str, usize); 3] {
 /// # Errors
 /// One that there is.
 pub(super) fn none_of_paths(problem: &Problem) -> Result<(), CaseError> {
+    let of_paths = [Analysis::Wrapping, Analysis::Winding, Analysis::EulerEytelwein];
+    if let (Some(view), false) = (&problem.view, problem.analysis.is_some_and(|a| of_paths.contains(&a))) {
+        return Err(problem
+            .error(
+                view,
+                "`view` is for pictures of paths: bodies in equilibrium are shown from where they are seen best",
+            )
+            .help("leave it out: ParaView turns the fields of the result"));
+    }
     let other = tables(problem).into_iter().find(|(a, _, count)| problem.analysis != Some(*a) && *count > 0);
     let Some((analysis, key, _)) = other else { return Ok(()) };
     let word = match analysis {
@@ -136,12 +145,18 @@ impl Planner<'_> {
         let Some(view) = &self.problem.view else { return Ok([from, up]) };
         let vector = |list: &List<f64>| match list[..] {
             [x, y, z] if [x, y, z].iter().all(|v| v.is_finite()) => Ok(Vector::<3>::new(x, y, z)),
-            _ => Err(self.problem.error(list, "a direction has three finite components")),
+            _ => Err(self
+                .problem
+                .error(list, "a direction has three finite components")
+                .help("from = [1, -2, 1], with z up")),
         };
         let from = vector(&view.from)?;
         let up = view.up.as_ref().map_or(Ok(up), vector)?;
         if from.cross(&up).norm() <= 1e-6 * from.norm() * up.norm() {
-            return Err(self.problem.error(view, "`from` and `up` have the same direction, or none"));
+            return Err(self
+                .problem
+                .error(view, "`from` and `up` have the same direction, or none")
+                .help("from = [1, -2, 1], and up = [0, 0, 1] or left out"));
         }
         Ok([from, up])
     }

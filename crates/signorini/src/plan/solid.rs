@@ -3,7 +3,7 @@
 mod contacts;
 mod finer;
 mod friction;
-mod loads;
+pub(super) mod loads;
 mod material;
 mod mesh;
 mod statement;

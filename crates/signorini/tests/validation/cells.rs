@@ -53,6 +53,19 @@ fn each_mistake_of_a_body_of_cells_is_told_at_its_place() {
         ("foam", ", threshold = 550", "", "neither `threshold` nor", "foam.npy"),
         ("foam", "threshold = 550", "threshold = 550, youngs_modulus = \"value\"", "two ways", "550"),
         ("foam", "foam.npy", "foam.xyz", "cannot be read", "foam.xyz"),
+        ("pore_discs", "radius = 0.05", "radius = -0.05", "must be positive", "-0.05"),
+        ("pore_discs", "radius = 0.05", "radius = nan", "not a finite number", "nan"),
+        ("pore_discs", "radius = 0.05", "spacing = 0", "must be positive", "0"),
+        ("pore_discs", "radius = 0.05", "raduis = 0.05", "unknown key `raduis`", "raduis"),
+        ("pore_discs", "radius = 0.05", "radius = 0.05, centres = \"out\"", "unknown word `out`", "out"),
+        ("pore_discs", "radius = 0.05", "penalty.wanted_penetration = -1", "must be positive", "-1"),
+        (
+            "pore_discs",
+            "within = \"block\"",
+            "within = \"block\"\nfriction.coulomb = { mu = 0.1 }",
+            "without friction",
+            "mu",
+        ),
     ];
     for (name, from, to, message, at) in table {
         let case = example(name);

@@ -266,6 +266,29 @@ fn mistakes_of_curves_are_told_at_their_place() {
 }
 
 #[test]
+fn what_would_do_nothing_is_told() {
+    let held = "on = \"rope:start\"\ndisplacement = [0, 0, 0]";
+    let table = [
+        (held, "on = \"rope:start\"\nspring = [0, 0, 0]", "without stiffness holds nothing", "[0, 0, 0]"),
+        ("space = \"3d\"", "space = \"3d\"\nview.from = [1, 1, 1]", "`view` is for pictures of paths", "view"),
+    ];
+    for (from, to, message, at) in table {
+        let case = example("edge");
+        assert!(case.contains(from), "`{from}` is not in the case");
+        told(&case.replacen(from, to, 1), to, message, at);
+    }
+    for (to, message) in [
+        ("from = [0, 0, 0]", "the same direction, or none"),
+        ("from = [0, 0, nan]", "three finite components"),
+        ("from = [1, 0]", "three finite components"),
+    ] {
+        let case = example("helix");
+        let line = case.lines().find(|l| l.starts_with("view")).unwrap().to_string();
+        told(&case.replacen(&line, &format!("view = {{ {to} }}"), 1), to, message, "");
+    }
+}
+
+#[test]
 fn mistakes_of_edges_are_told_at_their_place() {
     let between = "[\"top\", \"right\"]";
     let table = [

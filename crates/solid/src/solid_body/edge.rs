@@ -234,6 +234,8 @@ impl EdgeCurve {
 
     pub(super) fn placed(&self, element: usize, site: &Site, u: &[f64]) -> Placed {
         let jet = self.jet(element, site.xi[0], u);
+        let (section, _, list) = self.section(element, site.xi[0], u);
+        let spin_bends = list.iter().flat_map(|t| list.iter().map(|l| section.bend(&t.change, &l.change))).collect();
         let (spin, frame) = self.spin(element, site.xi[0], u);
         Placed {
             x: jet.x,
@@ -241,6 +243,7 @@ impl EdgeCurve {
             radius: self.radius,
             functions: self.functions(element, site.xi[0]),
             spin,
+            spin_bends,
             frame,
             ..Placed::default()
         }

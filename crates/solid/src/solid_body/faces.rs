@@ -7,7 +7,7 @@ use signorini_fem::hierarchic::{Derivatives, Values};
 use signorini_fem::rules::rule;
 use signorini_fem::{CellShape, Group, Local, Side};
 use signorini_geometry::{Matrix, Point, Vector};
-use signorini_mechanics::{Bend, Direction, Function, Placed, Sampling, Site};
+use signorini_mechanics::{Bend, Direction, Function, NormalField, Placed, Sampling, Site};
 use std::collections::{BTreeMap, HashMap};
 
 /// A side of a cell.
@@ -143,26 +143,61 @@ impl<const D: usize> Faces<D> {
     pub fn averaged(&self, face: u32, s: &Local, around: &HashMap<u32, Vec<u32>>) -> Vec<(f64, Tangents<D>)> {
         let own = self.face(face);
         let mut out = Vec::new();
-        for (corner, vertex) in own.shape.vertices().iter().zip(&own.vertices) {
+        for (k, corner) in own.shape.vertices().iter().enumerate() {
             let value = vertex_function(own.shape, corner, s);
-            if value.abs() <= NOTHING {
-                continue;
+            if value.abs() > NOTHING {
+                let terms = self.averaged_at_vertex(face, k, around);
+                out.extend(terms.into_iter().map(|(share, tangents)| (value * share, tangents)));
             }
-            let here = self.reference(face, corner).area_normal();
-            let mut total = 0.0;
-            let begin = out.len();
-            for &other in &around[vertex] {
-                let face = self.face(other);
-                let at = face.vertices.iter().position(|v| v == vertex).map(|k| face.shape.vertices()[k]);
-                let Some(at) = at else { continue };
-                let normal = self.reference(other, &at).area_normal();
-                if normal.dot(&here) >= SMOOTH * normal.norm() * here.norm() {
-                    total += normal.norm();
-                    out.push((value, self.tangents(other, &at)));
-                }
-            }
-            out[begin..].iter_mut().for_each(|(share, _)| *share /= total);
         }
+        out
+    }
+
+    /// The same at a vertex of the face.
+    fn averaged_at_vertex(&self, face: u32, k: usize, around: &HashMap<u32, Vec<u32>>) -> Vec<(f64, Tangents<D>)> {
+        let own = self.face(face);
+        let vertex = own.vertices[k];
+        let here = self.reference(face, &own.shape.vertices()[k]).area_normal();
+        let mut out = Vec::new();
+        let mut total = 0.0;
+        for &other in &around[&vertex] {
+            let face = self.face(other);
+            let at = face.vertices.iter().position(|v| *v == vertex).map(|k| face.shape.vertices()[k]);
+            let Some(at) = at else { continue };
+            let normal = self.reference(other, &at).area_normal();
+            if normal.dot(&here) >= SMOOTH * normal.norm() * here.norm() {
+                total += normal.norm();
+                out.push((1.0, self.tangents(other, &at)));
+            }
+        }
+        out.iter_mut().for_each(|(share, _)| *share /= total);
+        out
+    }
+
+    /// The averaged normals at the vertices of a face, with what moves them.
+    pub fn vertex_normals(&self, face: u32, around: &HashMap<u32, Vec<u32>>, u: &[f64]) -> Vec<Direction> {
+        let count = self.face(face).vertices.len();
+        (0..count).map(|k| Self::direction(&self.averaged_at_vertex(face, k, around), u)).collect()
+    }
+
+    /// The averaged normal between the vertices of a face.
+    pub fn normal_field(&self, face: u32, s: &Local, at_vertices: &[Direction]) -> NormalField {
+        let shape = self.face(face).shape;
+        let mut out = NormalField::default();
+        for (corner, direction) in shape.vertices().iter().zip(at_vertices) {
+            let value = vertex_function(shape, corner, s);
+            let slopes = vertex_slopes(shape, corner, s);
+            out.vector += direction.vector * value;
+            (0..2).for_each(|a| out.slopes[a] += direction.vector * slopes[a]);
+            out.functions.extend(direction.functions.iter().map(|f| Function {
+                unknown: f.unknown,
+                value: f.value * value,
+                slopes: slopes.map(|s| f.value * s),
+                ..Function::default()
+            }));
+            out.bends.extend(direction.bends.iter().map(|b| Bend { unknowns: b.unknowns, value: b.value * value }));
+        }
+        merge(&mut out.functions);
         out
     }
 
@@ -349,6 +384,7 @@ pub(super) fn merge(functions: &mut Vec<Function>) {
         let same = f.unknown == kept.unknown;
         if same {
             kept.value += f.value;
+            (0..2).for_each(|a| kept.slopes[a] += f.slopes[a]);
         }
         same
     });
@@ -361,6 +397,17 @@ pub(super) fn vertex_function(shape: CellShape, corner: &Local, s: &Local) -> f6
         CellShape::Triangle => corner[0] * s[0] + corner[1] * s[1],
         CellShape::Line => 0.5 * (1.0 + corner[0] * s[0]),
         _ => 0.25 * (1.0 + corner[0] * s[0]) * (1.0 + corner[1] * s[1]),
+    }
+}
+
+/// Its derivatives along both coordinates.
+fn vertex_slopes(shape: CellShape, corner: &Local, s: &Local) -> [f64; 2] {
+    let (a, b) = (corner[0], corner[1]);
+    match shape {
+        CellShape::Triangle if a + b == 0.0 => [-1.0, -1.0],
+        CellShape::Triangle => [a, b],
+        CellShape::Line => [0.5 * a, 0.0],
+        _ => [0.25 * a * (1.0 + b * s[1]), 0.25 * b * (1.0 + a * s[0])],
     }
 }
 

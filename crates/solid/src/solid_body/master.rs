@@ -14,8 +14,9 @@ use signorini_geometry::bvh::Bvh;
 use signorini_geometry::closest::{FeatureKind, Projection, Query, closest};
 use signorini_geometry::shape::{Curve, CurveJet, Shape, ShapeError};
 use signorini_geometry::{Aabb, Matrix, Point, Vector};
-use signorini_mechanics::{Anchor, Foot, Function, Master, MaterialPoint, Met, Site};
+use signorini_mechanics::{Anchor, Direction, Foot, Function, Master, MaterialPoint, Met, NormalField, Site};
 use std::collections::BTreeSet;
+use std::sync::OnceLock;
 
 /// Sine of the angle to the normal of a face below which a point beside its border is over the face itself.
 const OVER: f64 = 1e-8;
@@ -41,6 +42,8 @@ pub(super) struct SurfaceMaster<'a, const D: usize> {
     shapes: Vec<Shape>,
     bvh: Bvh,
     size: f64,
+    /// Averaged normals at the vertices of each face, once they are asked for.
+    normals: Vec<OnceLock<Vec<Direction>>>,
 }
 
 impl<const D: usize> Faces<D> {
@@ -52,7 +55,8 @@ impl<const D: usize> Faces<D> {
         let shapes: Vec<Shape> = surface.faces.par_iter().map(shape).collect::<Result<_, _>>()?;
         let boxes: Vec<Aabb<3>> = shapes.iter().map(Shape::bounds).collect();
         let size = shapes.iter().map(Shape::size).fold(0.0, f64::max);
-        Ok(SurfaceMaster { faces: self, surface, u, shapes, bvh: Bvh::new(&boxes), size })
+        let normals = shapes.iter().map(|_| OnceLock::new()).collect();
+        Ok(SurfaceMaster { faces: self, surface, u, shapes, bvh: Bvh::new(&boxes), size, normals })
     }
 }
 
@@ -123,6 +127,40 @@ impl<const D: usize> SurfaceMaster<'_, D> {
             if moved <= CONVERGED {
                 let facing = x1.cross(&x2).dot(direction) < 0.0;
                 return (facing && is_within(shape, &s)).then_some((step[2], s));
+            }
+        }
+        None
+    }
+
+    /// The point of a face from which a point lies along the averaged normal: how far, the coordinates, and the normal.
+    fn under(&self, k: usize, x: &Point<3>) -> Option<(f64, Local, NormalField)> {
+        let face = self.surface.faces[k];
+        let shape = self.faces.face(face).shape;
+        let known = || self.faces.vertex_normals(face, &self.surface.around, self.u);
+        let at_vertices = self.normals[k].get_or_init(known);
+        let field_at = |s: &Local| self.faces.normal_field(face, s, at_vertices);
+        let mut s = shape.centre();
+        let mut far = 0.0;
+        for _ in 0..MOST_STEPS {
+            let list = self.faces.derivatives(face, &s);
+            let at = self.faces.current(face, &s, &list, self.u);
+            let field = field_at(&s);
+            let length = field.vector.norm();
+            let normal = field.vector / length;
+            let [x1, x2] = at.tangents.each_ref().map(spatial);
+            // In the plane nothing changes across it.
+            let x2 = if D == 2 { Vector::<3>::z() * x1.norm() } else { x2 };
+            let turned = |a: usize| (field.slopes[a] - normal * normal.dot(&field.slopes[a])) * (far / length);
+            let basis = Matrix::<3>::from_columns(&[x1 + turned(0), x2 + turned(1), normal]);
+            let step = basis.try_inverse()? * (x - spatial(&at.x) - normal * far);
+            (s[0], s[1]) = (s[0] + step[0], if D == 2 { 0.0 } else { s[1] + step[1] });
+            far += step[2];
+            let moved = step[0].abs().max(step[1].abs());
+            if moved.is_nan() || moved > FARTHEST {
+                return None;
+            }
+            if moved <= CONVERGED {
+                return is_within(shape, &s).then(|| (far, s, field_at(&s)));
             }
         }
         None
@@ -238,6 +276,22 @@ impl<const D: usize> Master for SurfaceMaster<'_, D> {
         });
         let (_, k, s) = best?;
         Some(Met::Cut(Box::new(self.foot(k, s, x, FeatureKind::Interior))))
+    }
+
+    fn along(&self, x: &Point<3>, reach: f64) -> Option<Met> {
+        let mut best: Option<(f64, usize, Local, NormalField)> = None;
+        self.bvh.nearest(x, reach * reach, |k| {
+            let now = best.as_ref().map_or(reach, |(t, ..)| t.abs());
+            if let Some((t, s, field)) = self.under(k, x)
+                && (t.abs() < now || (t.abs() == now && best.as_ref().is_none_or(|b| k < b.1)))
+            {
+                best = Some((t, k, s, field));
+                return t * t;
+            }
+            now * now
+        });
+        let (_, k, s, field) = best?;
+        Some(Met::Along(Box::new(self.foot(k, s, x, FeatureKind::Interior)), Box::new(field)))
     }
 
     fn at(&self, point: &MaterialPoint) -> Anchor {

@@ -2,6 +2,7 @@
 
 use super::{Kind, Numbers, Wrong};
 use crate::plan::planner::Planner;
+use crate::plan::solid::loads::no_spring;
 use crate::problem::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE};
 use crate::problem::{CaseError, List, Space, Value, suggestion};
 use signorini_contact::ContactSurface;
@@ -216,6 +217,9 @@ impl Planner<'_> {
             };
             if let Some(k) = stiffness.iter().position(|s| *s < 0.0) {
                 return Err(problem.error(spring, format!("component {k} is negative: {}", stiffness[k])));
+            }
+            if stiffness == Vector::<3>::zeros() {
+                return Err(no_spring(problem, spring));
             }
             let load = TimedLoad::Springs(stiffness);
             self.check_load(&part, &key.on, system)(&load)?;

@@ -4,7 +4,7 @@ use super::statement::{PlannedBody, SolidLoad, SolidSupport};
 use crate::plan::placed::Placed;
 use crate::plan::planner::Planner;
 use crate::problem::units::{FORCE_PER_LENGTH, LENGTH, PRESSURE};
-use crate::problem::{CaseError, KeyPath, List, Space, Value, suggestion};
+use crate::problem::{CaseError, KeyPath, List, Problem, ProblemPart, Space, Value, suggestion};
 use signorini_fem::{Group, Side};
 use signorini_solid::{LoadKind, SupportKind};
 use std::collections::BTreeSet;
@@ -110,6 +110,9 @@ impl Planner<'_> {
                 if let Some(k) = stiffness.iter().position(|s| *s < 0.0) {
                     return Err(problem.error(spring, format!("component {k} is negative: {}", stiffness[k])));
                 }
+                if stiffness.iter().all(|s| *s == 0.0) {
+                    return Err(no_spring(problem, spring));
+                }
                 add(SupportKind::Spring(stiffness.to_vec()), Vec::new());
             }
             if !said {
@@ -200,4 +203,11 @@ pub(super) fn axis_supports<const D: usize>(bodies: &[PlannedBody<D>]) -> Vec<So
         }
     }
     out
+}
+
+/// A spring that is none.
+pub(in crate::plan) fn no_spring(problem: &Problem, at: &impl ProblemPart) -> CaseError {
+    problem
+        .error(at, "a spring without stiffness holds nothing")
+        .help("a positive stiffness along what is to be held; or leave `spring` out")
 }

@@ -13,7 +13,9 @@ use crate::run::record::Record;
 use crate::run::strain::{self, Strained};
 use signorini_contact::Status;
 use signorini_geometry::Vector;
-use signorini_mechanics::{AxisChoice, IncrementResult, Interaction, SiteResult, Solved, SystemState, rigid_body};
+use signorini_mechanics::{
+    AxisChoice, Coarse, IncrementResult, Interaction, SiteResult, Solved, SystemState, rigid_body,
+};
 use signorini_paths::darboux::Darboux;
 use signorini_paths::friction::Friction;
 use signorini_paths::theorem::limits_of_points;
@@ -27,7 +29,13 @@ pub const SOLVER: &str = "direct";
 fn solver(solved: Solved) -> (&'static str, Option<usize>) {
     match solved {
         Solved::Direct => (SOLVER, None),
-        Solved::Iterative { most_iterations, .. } => ("schwarz", Some(most_iterations)),
+        Solved::Iterative { most_iterations, coarse, .. } => {
+            let word = match coarse {
+                Coarse::Factorised => "schwarz",
+                Coarse::Multigrid => "multigrid",
+            };
+            (word, Some(most_iterations))
+        }
     }
 }
 

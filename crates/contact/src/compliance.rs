@@ -66,13 +66,8 @@ impl Compliance for Factor {
     }
 
     fn stiffened(&self, rows: &[(&WeightedGap, f64)]) -> Result<Option<Box<dyn Compliance>>, SolveError> {
-        let square = |(row, stiffness): &(&WeightedGap, f64)| {
-            let unknowns = row.terms.iter().map(|t| t.0).collect();
-            let values = row.terms.iter().flat_map(|a| row.terms.iter().map(move |b| stiffness * a.1 * b.1)).collect();
-            (unknowns, values)
-        };
-        let squares: Vec<(Vec<u32>, Vec<f64>)> = rows.iter().map(square).collect();
-        Ok(Some(Box::new(self.plus(&SymmetricMatrix::of_cliques(self.size(), &squares))?)))
+        let rows: Vec<(&[(u32, f64)], f64)> = rows.iter().map(|(row, k)| (&row.terms[..], *k)).collect();
+        Ok(Some(Box::new(self.plus(&SymmetricMatrix::of_squares(self.size(), &rows))?)))
     }
 }
 

@@ -56,6 +56,28 @@ impl SymmetricMatrix {
         out
     }
 
+    /// `Σ k b bᵀ` of rows `b`, each with its `k`.
+    pub fn of_squares(n: usize, rows: &[(&[(u32, f64)], f64)]) -> Self {
+        let mut of_unknown: Vec<Vec<(u32, f64)>> = vec![Vec::new(); n];
+        for (r, (row, k)) in rows.iter().enumerate() {
+            row.iter().for_each(|(j, c)| of_unknown[*j as usize].push((r as u32, k * c)));
+        }
+        let mut place = vec![usize::MAX; n];
+        Self::from_columns(n, |j, out| {
+            for (r, factor) in &of_unknown[j] {
+                for (i, c) in rows[*r as usize].0.iter().filter(|(i, _)| *i as usize >= j) {
+                    let i = *i as usize;
+                    if place[i] == usize::MAX {
+                        place[i] = out.len();
+                        out.push((i, 0.0));
+                    }
+                    out[place[i]].1 += factor * c;
+                }
+            }
+            out.iter().for_each(|(i, _)| place[*i] = usize::MAX);
+        })
+    }
+
     /// The matrix whose columns, from the diagonal down, `column` writes as pairs of row and entry in any order.
     pub fn from_columns(n: usize, mut column: impl FnMut(usize, &mut Vec<(usize, f64)>)) -> Self {
         let mut out = Self { column_start: vec![0], row: Vec::new(), value: Vec::new() };
@@ -389,6 +411,21 @@ mod tests {
         let sums = a.residual_in_extended_precision(&[0.0; 4], &[1.0; 4]);
         assert!(sums.iter().all(|s| s.abs() < 1e-13), "{sums:?}");
         assert!(a.value.iter().zip(&before.value).all(|(a, b)| (a - b).abs() < 1e-9));
+    }
+
+    #[test]
+    fn sums_of_squares_are_those_of_their_parts() {
+        let rows: [(&[(u32, f64)], f64); 2] = [(&[(0, 2.0), (2, -1.0)], 3.0), (&[(2, 0.5), (1, 4.0)], 2.0)];
+        let found = SymmetricMatrix::of_squares(4, &rows);
+        let dense = |i: usize, j: usize| {
+            let of = |row: &[(u32, f64)], k: usize| row.iter().find(|t| t.0 as usize == k).map_or(0.0, |t| t.1);
+            rows.iter().map(|(row, k)| k * of(row, i) * of(row, j)).sum::<f64>()
+        };
+        for j in 0..4 {
+            let unit: Vec<f64> = (0..4).map(|k| f64::from(u8::from(k == j))).collect();
+            let column: Vec<f64> = (0..4).map(|i| dense(i, j)).collect();
+            assert_eq!(found.multiply(&unit), column);
+        }
     }
 
     #[test]

@@ -180,6 +180,18 @@ fn ring(radii: [f64; 2], across: usize, round: usize) -> Mesh<2> {
     out
 }
 
+/// Between rings from `a` to `b` and from `b` to `c`, held at `a` and `c`, of which one is too large for the other by `delta`.
+fn pressure_of_lame([a, b, c]: [f64; 3], delta: f64) -> f64 {
+    // u = A r + B/r with u = 0 at the far radius, under a unit pressure at b.
+    let (e, nu) = (ELASTIC.youngs_modulus, ELASTIC.poissons_ratio);
+    let (lame, shear) = (e * nu / (1.0 + nu) / (1.0 - 2.0 * nu), e / 2.0 / (1.0 + nu));
+    let moved = |r: f64| {
+        let slope = -1.0 / (2.0 * (lame + shear) + 2.0 * shear * r * r / (b * b));
+        slope * b - slope * r * r / b
+    };
+    delta / (moved(c) - moved(a))
+}
+
 /// A shaft in a hub that is too small for it: held within and without, the bore turned.
 #[test]
 fn a_press_fit_slips_at_the_torque_of_its_pressure() {
@@ -200,14 +212,7 @@ fn a_press_fit_slips_at_the_torque_of_its_pressure() {
     touch(&mut system, [(0, "outside"), (1, "inside")], Test::Mortar(0), Enforcement::Multiplier, Some(mu));
     let (_, results) = run(&mut system, &[1.0, 2.0, 3.0, 4.0]);
     println!("{}", told(&results));
-    // Lamé: u = A r + B/r with u = 0 at the far radius, under a unit pressure at b.
-    let (e, nu) = (ELASTIC.youngs_modulus, ELASTIC.poissons_ratio);
-    let (lame, shear) = (e * nu / (1.0 + nu) / (1.0 - 2.0 * nu), e / 2.0 / (1.0 + nu));
-    let moved = |r: f64| {
-        let slope = -1.0 / (2.0 * (lame + shear) + 2.0 * shear * r * r / (b * b));
-        slope * b - slope * r * r / b
-    };
-    let pressure = delta / (moved(c) - moved(a));
+    let pressure = pressure_of_lame([a, b, c], delta);
     let known = std::f64::consts::TAU * b * b * mu * pressure;
     let torque = |r: &IncrementResult| r.sites[0].iter().map(|s| s.x.cross(&s.force()).z).sum::<f64>();
     let found: Vec<f64> = results.iter().map(torque).collect();
@@ -309,4 +314,76 @@ fn it_goes_on_as_it_was_saved() {
     let mut other = built();
     let from = other.restore(saved.unwrap()).unwrap();
     assert_eq!(other.solve(&from, 2.0, &mut |_, _| true).unwrap().0, state);
+}
+
+/// Two blocks of unlike cells that slide over each other: everywhere on the ellipse, and slipping normal to it.
+#[test]
+fn orthotropic_slip_is_associated() {
+    for on_master in [true, false] {
+        let mut system = System::default();
+        let lower = cuboid([-0.3, -0.3, -0.5], [1.3, 1.3, 0.0], [4, 3, 1], |x| x);
+        let upper = cuboid([0.0, 0.0, 0.0], [1.0, 1.0, 0.5], [3, 2, 1], |x| x);
+        system.bodies.push(Box::new(solid("lower", lower, 1, ELASTIC, NEO_HOOKE)));
+        system.bodies.push(Box::new(solid("upper", upper, 1, ELASTIC, NEO_HOOKE)));
+        system.supports.push(hold(0, "bottom", [Some(0.0); 3]));
+        system.supports.push(hold(1, "top", [Some(0.05), Some(0.02), Some(-0.002)]));
+        let (mu, along) = ([0.3, 0.5], v(0.8, 0.6, 0.0));
+        let of = |body: usize, group: &str| (part(body, group), system.bodies[body].as_ref());
+        let mut contact = Mortar::new("touch", of(1, "bottom"), of(0, "top"), Enforcement::Multiplier).unwrap();
+        contact.friction = Some(Box::new(Coulomb::orthotropic(mu).unwrap()));
+        contact.axis = if on_master { AxisChoice::OnMaster(along) } else { AxisChoice::OnSlave(along) };
+        system.contacts.push(Box::new(contact));
+        let (_, results) = run(&mut system, &[1.0]);
+        let carrying: Vec<&SiteResult> = results[0].sites[0].iter().filter(|s| s.pressure > 0.0).collect();
+        assert!(carrying.len() > 6, "{}", told(&results));
+        for site in carrying {
+            let first = (along - site.normal * site.normal.dot(&along)).normalize();
+            let axes = [first, site.normal.cross(&first)];
+            let [t, s] = [site.friction, site.increment].map(|x| axes.map(|e| e.dot(&x)));
+            let used = (t[0] / mu[0]).hypot(t[1] / mu[1]) / site.pressure;
+            assert!((used - 1.0).abs() < 1e-6, "{used}");
+            let normal = [0, 1].map(|k| -t[k] / mu[k].powi(2));
+            let sine = (normal[0] * s[1] - normal[1] * s[0]) / (normal[0].hypot(normal[1]) * s[0].hypot(s[1]));
+            assert!(sine.abs() < 1e-6 && normal[0] * s[0] + normal[1] * s[1] > 0.0, "{sine:e}");
+        }
+    }
+}
+
+/// A ring shrunk on another one, then drawn along it: the pressure of Lamé, and the friction of all of it.
+#[test]
+fn rings_round_an_axis_slide_along_it() {
+    let ([a, b, c], delta, mu) = ([1.0, 2.0, 3.0], 0.002, 0.15);
+    let mut system = System::default();
+    let round = |name: &str, radii: [f64; 2], length: [f64; 2], n: [usize; 2]| {
+        let mesh = rectangle([radii[0], length[0]], [radii[1], length[1]], n, 1, |x| x);
+        let groups = mesh.groups().clone();
+        let law = (ELASTIC, StressLaw::LinearElastic);
+        SolidBody::new(name, Arc::new(mesh), 2, law, Space::Axisymmetric, groups).unwrap()
+    };
+    system.bodies.push(Box::new(round("shaft", [a, b + delta], [0.0, 1.0], [4, 4])));
+    system.bodies.push(Box::new(round("hub", [b, c], [0.0, 1.0], [4, 3])));
+    // No strain along the axis at time 1.
+    for body in [0, 1] {
+        for group in ["bottom", "top"] {
+            let drawn = if body == 0 { 0.05 } else { 0.0 };
+            let mut held = hold(body, group, [None; 3]);
+            held.displacement[1] = Some(Arc::new(move |_, t: f64| drawn * (t - 1.0)));
+            system.supports.push(held);
+        }
+    }
+    system.supports.push(hold(0, "left", [Some(0.0), None, None]));
+    system.supports.push(hold(1, "right", [Some(0.0), None, None]));
+    touch(&mut system, [(1, "left"), (0, "right")], Test::Mortar(0), Enforcement::Multiplier, Some(mu));
+    let (_, results) = run(&mut system, &[1.0, 2.0]);
+    for (k, way) in [(0, 0.0), (1, mu)] {
+        for site in results[k].sites[0].iter().filter(|s| s.pressure > 0.0) {
+            let (t, p) = (site.friction, site.pressure);
+            assert!((t.norm() - way * p).abs() < 1e-6 * p && t.y > (0.99 * way - 1e-6) * p, "{t} {p}");
+        }
+    }
+    let (weight, force) = results[0].sites[0].iter().fold((0.0, 0.0), |(w, f), s| (w + s.weight, f + s.force().x));
+    let known = pressure_of_lame([a, b, c], delta);
+    assert!((weight / (std::f64::consts::TAU * b) - 1.0).abs() < 2e-3, "{weight}");
+    assert!((force / weight / known - 1.0).abs() < 5e-3, "{} {known}", force / weight);
+    assert!(results.iter().all(|r| is_quadratic(&r.history)), "{}", told(&results));
 }

@@ -29,8 +29,8 @@ use signorini_solve::{Iteration, Progress};
 use std::path::Path;
 
 /// The most unknowns of one degree more, and the seconds of their factorisation, for which errors are estimated.
-const AFFORDABLE: f64 = 30_000.0;
-const AFFORDABLE_SECONDS: f64 = 2.0;
+const AFFORDABLE: f64 = 50_000.0;
+const AFFORDABLE_SECONDS: f64 = 3.0;
 
 /// Solids on their way through their history.
 pub struct SolidModel<const D: usize> {

@@ -64,7 +64,7 @@ fn each_mistake_of_a_body_of_cells_is_told_at_its_place() {
             "within = \"block\"",
             "within = \"block\"\nfriction.coulomb = { mu = 0.1 }",
             "without friction",
-            "mu",
+            "friction",
         ),
     ];
     for (name, from, to, message, at) in table {

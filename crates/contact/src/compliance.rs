@@ -116,11 +116,13 @@ impl Route {
     pub fn memory(rows: usize, length: usize, entries: f64) -> f64 {
         match Self::cheaper(rows, length, entries) {
             Route::Columns => Self::bytes(rows, length),
-            Route::Products => 8.0 * 3.0 * MOST_PRODUCTS as f64 * rows as f64,
+            Route::Products => 8.0 * (3.0 * MOST_PRODUCTS as f64 * rows as f64 + COUPLED * entries),
         }
     }
 }
 
+/// Entries of the factor with springs along rows, which couple both sides, over those without, about.
+const COUPLED: f64 = 2.0;
 /// Products kept, and vectors of the Krylov space, at most.
 const MOST_PRODUCTS: usize = 250;
 /// Unknowns of a row that its own compliance is taken from: those that it counts most.

@@ -284,7 +284,9 @@ fn what_would_do_nothing_is_told() {
     ] {
         let case = example("helix");
         let line = case.lines().find(|l| l.starts_with("view")).unwrap().to_string();
-        told(&case.replacen(&line, &format!("view = {{ {to} }}"), 1), to, message, "");
+        let case = case.replacen(&line, &format!("view = {{ {to} }}"), 1);
+        let error = signorini::paths::PathCase::parse("case.toml", &case, &[]).err().unwrap_or_else(|| panic!("{to}"));
+        assert!(error.message.contains(message), "{to}: `{}` has no `{message}`", error.message);
     }
 }
 

@@ -9,11 +9,11 @@ mod triangulate;
 
 use triangulate::triangulate;
 
-use crate::closest::FeatureKind;
+use crate::feature::FeatureKind;
 use crate::implicit::{ImplicitBody, ImplicitShape};
 use crate::mesh::TriangleMesh;
 use crate::scale::length;
-use crate::shape::ShapeError;
+use crate::shape::error::{self, ShapeError};
 use crate::{Aabb, Matrix, Point, Vector};
 
 /// A shape that takes part in a body, with the sign with which it does.
@@ -69,8 +69,8 @@ impl ImplicitSurface {
     /// # Errors
     /// Values that are not finite, a box without extent, a boundary that does not enter the box.
     pub fn new(body: ImplicitBody<3>, bounds: Aabb<3>, cells: usize) -> Result<Self, ShapeError> {
-        crate::shape::check_position("box", &bounds.min)?;
-        crate::shape::check_position("box", &bounds.max)?;
+        error::position("box", &bounds.min)?;
+        error::position("box", &bounds.max)?;
         if bounds.size().min() <= 0.0 {
             return Err(ShapeError::new("box", "its corners do not increase"));
         }

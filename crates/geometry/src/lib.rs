@@ -28,6 +28,7 @@ pub mod bvh;
 pub mod closed_curve;
 pub mod closest;
 pub mod existence;
+mod feature;
 pub mod frame;
 pub mod grid_spline;
 pub mod height_field;
@@ -46,6 +47,7 @@ mod scale;
 pub mod shape;
 pub mod similarity;
 pub mod spline;
+mod straight;
 
 pub use aabb::Aabb;
 pub use closed_curve::{ClosedCurve, CurvePoint};

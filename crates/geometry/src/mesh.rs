@@ -6,10 +6,12 @@ use std::collections::HashMap;
 use std::sync::OnceLock;
 
 use crate::bvh::Bvh;
-use crate::closest::{Entity, Feature, FeatureKind, closest_on_triangle, segment_parameters};
+use crate::feature::{Entity, Feature, FeatureKind};
 use crate::patch::{Atlas, Border, SurfaceChart};
 use crate::scale::unit_for;
-use crate::shape::{ShapeError, Surface};
+use crate::shape::error::{self, ShapeError};
+use crate::shape::surface::Surface;
+use crate::straight::{closest_on_triangle, segments};
 use crate::{Aabb, Point, Vector};
 
 /// What the triangles of a mesh make together.
@@ -102,7 +104,7 @@ impl TriangleMesh {
             return Err(ShapeError::new("triangles", "more than 2^29"));
         }
         for p in &vertices {
-            crate::shape::check_position("vertices", p)?;
+            error::position("vertices", p)?;
         }
         let mut quality = MeshQuality::default();
         let mut seen = std::collections::HashSet::with_capacity(triangles.len());
@@ -373,7 +375,7 @@ fn triangle_triangle(p: &[Point<3>; 3], q: &[Point<3>; 3]) -> (f64, [[f64; 2]; 2
         offer([CORNERS[i], closest_on_triangle(&p[i], q).0]);
         offer([closest_on_triangle(&q[i], p).0, CORNERS[i]]);
         for j in 0..3 {
-            let [s, t] = segment_parameters(&[p[i], p[(i + 1) % 3]], &[q[j], q[(j + 1) % 3]]);
+            let [s, t] = segments(&[p[i], p[(i + 1) % 3]], &[q[j], q[(j + 1) % 3]]).parameters;
             offer([on_edge(i, s), on_edge(j, t)]);
         }
         if let Some((t, z)) = pierce(&p[i], &p[(i + 1) % 3], q) {

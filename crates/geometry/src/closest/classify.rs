@@ -1,9 +1,10 @@
 //! From minimisers to an answer: names of features, uniqueness, continua.
 
-use super::Query;
 use super::newton::Difference;
-use super::result::{ClosestPair, Entity, Feature, FeatureKind, Foot, Projection, Uniqueness};
+use super::query::Query;
+use super::result::{ClosestPair, Foot, Projection, Uniqueness};
 use super::search::{Candidate, Found};
+use crate::feature::{Entity, Feature, FeatureKind};
 use crate::patch::{Atlas, Chart, CurveChart, Piece, PointChart, Side, SurfaceChart};
 use crate::scale::length;
 

@@ -6,13 +6,15 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::Query;
 use super::ellipsoid;
-use super::flat::{along, end_feature, segment_parameter, triangle};
-use super::result::{ClosestPair, Entity, Feature, FeatureKind, Foot, Projection, Uniqueness};
+use super::flat::end_feature;
+use super::query::Query;
+use super::result::{ClosestPair, Foot, Projection, Uniqueness};
+use crate::feature::{Entity, Feature, FeatureKind};
 use crate::patch::Border;
 use crate::scale::length;
 use crate::shape::{Axes, Curve, CurveKind, Surface, SurfaceKind};
+use crate::straight::{along, closest_on_segment, closest_on_triangle};
 use crate::{Point, Vector};
 
 /// A candidate: foot, smallest eigenvalue.
@@ -61,7 +63,7 @@ pub fn point_curve(p: &Point<3>, curve: &Curve, query: &Query) -> Option<Project
     }
     match &curve.kind {
         CurveKind::Segment { p0, p1 } => {
-            let t = segment_parameter(p, p0, p1);
+            let t = closest_on_segment(p, p0, p1);
             let feature = end_feature(t, [0.0, 1.0], false);
             let lambda = if feature.kind == FeatureKind::Interior { 1.0 } else { f64::INFINITY };
             Some(settle(p, &[(Foot::new(along(p0, p1, t), feature, &[t]), lambda)], 0, curve.size(), query))
@@ -132,7 +134,7 @@ pub fn point_surface(p: &Point<3>, surface: &Surface, query: &Query) -> Option<P
             Some(settle(p, &[(Foot::new(point, feature, &[u, v]), lambda)], 0, size, query))
         }
         SurfaceKind::Triangle { nodes } => {
-            let ([u, v], feature) = triangle(p, nodes);
+            let ([u, v], feature) = closest_on_triangle(p, nodes);
             let point = nodes[0] + (nodes[1] - nodes[0]) * u + (nodes[2] - nodes[0]) * v;
             let lambda = if feature.kind == FeatureKind::Vertex { f64::INFINITY } else { 1.0 };
             Some(settle(p, &[(Foot::new(point, feature, &[u, v]), lambda)], 0, size, query))

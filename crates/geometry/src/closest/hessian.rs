@@ -1,6 +1,7 @@
 //! The second derivatives of the distance of a point to a shape.
 
-use super::result::{ClosestPair, Entity, FeatureKind};
+use super::result::ClosestPair;
+use crate::feature::{Entity, FeatureKind};
 use crate::measures::{Measures, PartnerJet, Variation};
 use crate::patch::Border;
 use crate::shape::{CurveJet, Shape};

@@ -14,15 +14,17 @@ mod flat;
 mod hessian;
 mod newton;
 mod partner;
+mod query;
 mod result;
 mod scaled;
 mod search;
 mod symmetric;
 mod track;
 
-pub(crate) use flat::{segment_parameters, triangle as closest_on_triangle};
+pub use crate::feature::{Entity, Feature, FeatureKind};
 pub use hessian::gap_hessian;
-pub use result::{Certificate, ClosestPair, Entity, Feature, FeatureKind, Foot, Projection, Uniqueness};
+pub use query::Query;
+pub use result::{Certificate, ClosestPair, Foot, Projection, Uniqueness};
 pub(crate) use track::clearance_of;
 pub use track::{Step, Tracker};
 
@@ -35,21 +37,6 @@ use crate::shape::Shape;
 use classify::{Named, projection};
 use rayon::prelude::*;
 use search::{Effort, search};
-
-/// What a query asks for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Query {
-    /// Minimisers whose distances differ by less than this share of the size are at the same distance.
-    pub tie: f64,
-    /// Whether to find every local minimiser, not only the global ones.
-    pub local_minima: bool,
-}
-
-impl Default for Query {
-    fn default() -> Self {
-        Query { tie: 1e-10, local_minima: false }
-    }
-}
 
 /// Closest points of many points to one shape, in the order of the points, on all threads of the current pool. The answers
 /// do not depend on their number.
@@ -84,7 +71,7 @@ pub fn closest_pairs(a: &[Shape], b: &[Shape], pairs: &[(usize, usize)], query: 
 /// assert!((answer.distance() - 5.0).abs() < 1e-15);
 /// ```
 pub fn closest(a: &Shape, b: &Shape, query: &Query) -> Projection {
-    scaled::closest(a, b, query).unwrap_or_else(|| closest_near_one(a, b, query))
+    scaled::closest(a, b, query, closest_near_one).unwrap_or_else(|| closest_near_one(a, b, query))
 }
 
 /// See [`closest`], with coordinates of which products stay in the range of doubles.
@@ -96,13 +83,12 @@ fn closest_near_one(a: &Shape, b: &Shape, query: &Query) -> Projection {
         (Shape::Point(p), Shape::Surface(s)) => closed_form::point_surface(p, s, query)
             .unwrap_or_else(|| general::<0, 2, 2, _, _>(&point_atlas(p), &s.atlas, query)),
         (Shape::Curve(c), Shape::Curve(d)) => flat::segment_segment(c, d, query)
-            .or_else(|| symmetric::closest(a, b, query))
+            .or_else(|| symmetric::closest(a, b, query, closest_near_one))
             .unwrap_or_else(|| general::<1, 1, 2, _, _>(&c.atlas, &d.atlas, query)),
-        (Shape::Curve(c), Shape::Surface(s)) => {
-            symmetric::closest(a, b, query).unwrap_or_else(|| general::<1, 2, 3, _, _>(&c.atlas, &s.atlas, query))
-        }
+        (Shape::Curve(c), Shape::Surface(s)) => symmetric::closest(a, b, query, closest_near_one)
+            .unwrap_or_else(|| general::<1, 2, 3, _, _>(&c.atlas, &s.atlas, query)),
         (Shape::Surface(s), Shape::Surface(t)) => closed_form::sphere_sphere(s, t)
-            .or_else(|| symmetric::closest(a, b, query))
+            .or_else(|| symmetric::closest(a, b, query, closest_near_one))
             .unwrap_or_else(|| general::<2, 2, 4, _, _>(&s.atlas, &t.atlas, query)),
         (Shape::Point(p), Shape::Mesh(m)) if !query.local_minima => point_mesh(p, m, query),
         (Shape::Point(p), Shape::Mesh(m)) => on_triangles(general::<0, 2, 2, _, _>(&point_atlas(p), m.atlas(), query)),
@@ -183,7 +169,7 @@ fn mesh_mesh(m: &TriangleMesh, n: &TriangleMesh) -> Projection {
     let found = m.closest_to_mesh(n);
     let foot = |mesh: &TriangleMesh, k: usize| {
         let point = mesh.position(found.triangles[k], found.parameters[k]);
-        let feature = flat::triangle(&point, &mesh.corners(found.triangles[k])).1;
+        let feature = crate::straight::closest_on_triangle(&point, &mesh.corners(found.triangles[k])).1;
         Foot::new(point, feature, &found.parameters[k]).on_element(found.triangles[k])
     };
     let closest = ClosestPair { distance: found.distance, a: foot(m, 0), b: foot(n, 1), lambda_min: f64::NAN };

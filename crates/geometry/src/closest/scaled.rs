@@ -1,20 +1,26 @@
 //! Closest points of shapes whose coordinates are so large or so small that their products leave the range of doubles.
 
-use super::{ClosestPair, Projection, Query, closest_near_one};
+use super::query::Query;
+use super::result::{ClosestPair, Projection};
 use crate::scale::unit_for;
 use crate::shape::Shape;
 use crate::similarity::Similarity;
 
-/// The answer by way of both shapes at a scale near one: the same digits, since the unit is a power of two. `None` where
+/// The answer by way of both shapes at a scale near one, where `near_one` finds it: the same digits, since the unit is a power of two. `None` where
 /// the coordinates are near one, and for the shapes that see to their scale themselves.
-pub fn closest(a: &Shape, b: &Shape, query: &Query) -> Option<Projection> {
+pub fn closest(
+    a: &Shape,
+    b: &Shape,
+    query: &Query,
+    near_one: impl Fn(&Shape, &Shape, &Query) -> Projection,
+) -> Option<Projection> {
     let unit = unit_of(a, b);
     let own = |p: &Shape, m: &Shape| matches!((p, m), (Shape::Point(_), Shape::Mesh(_)) if !query.local_minima);
     if unit == 1.0 || own(a, b) || own(b, a) {
         return None;
     }
     let scaling = Similarity::scaling(unit);
-    let mut found = closest_near_one(&scaling.shape(a)?, &scaling.shape(b)?, query);
+    let mut found = near_one(&scaling.shape(a)?, &scaling.shape(b)?, query);
     let back = 1.0 / unit;
     let lengths = [a, b].map(length_parameters);
     let scaled = |pair: &ClosestPair| ClosestPair {

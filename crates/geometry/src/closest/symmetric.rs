@@ -8,17 +8,22 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use super::{ClosestPair, Foot, Projection, Query, Uniqueness, closest_near_one};
+use super::query::Query;
+use super::result::{ClosestPair, Foot, Projection, Uniqueness};
 use crate::shape::{Axes, Curve, CurveKind, Shape, Surface, SurfaceKind};
 use crate::{Point, Vector};
 
+/// Finds the closest points of two shapes.
+pub type Solve = fn(&Shape, &Shape, &Query) -> Projection;
+
 /// Closest points by way of a common symmetry; `None` where there is none, or where the ends of the shapes decide.
-pub fn closest(a: &Shape, b: &Shape, query: &Query) -> Option<Projection> {
+/// `solve` answers for the profiles or shadows.
+pub fn closest(a: &Shape, b: &Shape, query: &Query, solve: Solve) -> Option<Projection> {
     if query.local_minima {
         return None;
     }
-    let pair =
-        Symmetric { shapes: [a, b], query, size: a.size().max(b.size()), magnitude: magnitude(a).max(magnitude(b)) };
+    let size = a.size().max(b.size());
+    let pair = Symmetric { shapes: [a, b], query, solve, size, magnitude: magnitude(a).max(magnitude(b)) };
     let turned = [a, b].iter().filter_map(|s| axis(s)).find_map(|axis| pair.turned(&axis));
     turned.or_else(|| [a, b].iter().flat_map(|s| directions(s)).find_map(|e| pair.swept(&e)))
 }
@@ -109,6 +114,7 @@ impl Heights<'_> {
 struct Symmetric<'a> {
     shapes: [&'a Shape; 2],
     query: &'a Query,
+    solve: Solve,
     size: f64,
     magnitude: f64,
 }
@@ -136,7 +142,7 @@ impl Symmetric<'_> {
     fn turned(&self, axis: &Axes) -> Option<Projection> {
         let [p, q] = self.shapes.map(|s| self.profile(s, axis));
         let (p, q) = (p?, q?);
-        let found = closest_near_one(&p.shape, &q.shape, self.query);
+        let found = (self.solve)(&p.shape, &q.shape, self.query);
         let radii = [found.closest.a.point.x, found.closest.b.point.x];
         if radii[0] > p.reach || radii[1] > q.reach {
             return None;
@@ -229,7 +235,7 @@ impl Symmetric<'_> {
     fn swept(&self, e: &Vector<3>) -> Option<Projection> {
         let [p, q] = self.shapes.map(|s| self.shadow(s, e));
         let (p, q) = (p?, q?);
-        let found = closest_near_one(&p.shape, &q.shape, self.query);
+        let found = (self.solve)(&p.shape, &q.shape, self.query);
         let [c, d] = [p.heights.above(&found.closest.a.point, e), q.heights.above(&found.closest.b.point, e)];
         let (low, high) = (c[0].max(d[0]), c[1].min(d[1]));
         if high - low <= 1e-12 * self.size {
@@ -284,7 +290,7 @@ impl Symmetric<'_> {
         places: impl Iterator<Item = F>,
     ) -> Projection {
         let foot = |x: Point<3>, shape: &Shape| -> Foot {
-            let mut foot = closest_near_one(&Shape::Point(x), shape, self.query).closest.b;
+            let mut foot = (self.solve)(&Shape::Point(x), shape, self.query).closest.b;
             foot.point = x;
             foot
         };

@@ -2,7 +2,7 @@
 
 use crate::implicit::ImplicitBody;
 use crate::mesh::TriangleMesh;
-use crate::shape::ShapeError;
+use crate::shape::error::ShapeError;
 use crate::{Aabb, Point, Vector};
 
 /// Marching tetrahedra: six to a cell, around its diagonal.

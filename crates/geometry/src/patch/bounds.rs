@@ -1,7 +1,7 @@
 //! Upper bounds of the second and third derivatives of Bezier pieces, from their control nets.
 
 use super::bernstein::{Control, cut, derivative, hull, largest, largest_weight, powers, times_power};
-use super::chart::{horner_curve, horner_surface, quotient_curve, quotient_surface};
+use super::horner::{horner_curve, horner_surface, quotient_curve, quotient_surface};
 use super::net::Net;
 use crate::similarity::Similarity;
 use crate::{Point, Vector};

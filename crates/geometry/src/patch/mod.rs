@@ -10,6 +10,7 @@ pub mod bernstein;
 mod bounds;
 mod cell;
 pub mod chart;
+mod horner;
 pub mod net;
 pub mod weights;
 

@@ -60,7 +60,7 @@ impl Profile {
         }
         let mut breaks = vec![0.0; n];
         for (k, [rho, z]) in points.iter().enumerate() {
-            crate::shape::check_position("profile", &Point::<3>::new(*rho, *z, 0.0))?;
+            crate::shape::error::position("profile", &Point::<3>::new(*rho, *z, 0.0))?;
             let inside = k > 0 && k + 1 < n;
             if *rho < 0.0 || (inside && *rho == 0.0) {
                 return Err(ShapeError::new("profile", format!("point {k}: radius {rho} must be greater than zero")));

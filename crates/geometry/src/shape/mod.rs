@@ -1,12 +1,12 @@
 //! Points, curves and surfaces.
 
-mod curve;
-mod error;
-mod surface;
+pub(crate) mod curve;
+pub(crate) mod error;
+mod moved;
+pub(crate) mod surface;
 
 pub(crate) use curve::CurveKind;
 pub use curve::{Curve, CurveJet};
-pub(crate) use error::position as check_position;
 pub use error::{Axes, LARGEST_COORDINATE, ShapeError};
 pub(crate) use surface::SurfaceKind;
 pub use surface::{Surface, SurfaceJet};

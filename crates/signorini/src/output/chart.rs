@@ -289,11 +289,25 @@ pub fn line(svg: &mut String, points: &[(f64, f64)], RGBColor(r, g, b): RGBColor
     svg.insert_str(end, &element);
 }
 
+/// Adds a dashed line to an SVG.
+pub fn dashes(svg: &mut String, points: &[(f64, f64)], RGBColor(r, g, b): RGBColor) {
+    let path: Vec<String> = points.iter().map(|(x, y)| format!("{x:.2} {y:.2}")).collect();
+    let element = format!(
+        "<path d=\"M{}\" fill=\"none\" stroke=\"rgb({r},{g},{b})\" stroke-width=\"1.5\" stroke-dasharray=\"5 4\"/>\n",
+        path.join("L")
+    );
+    let end = svg.rfind("</svg>").unwrap_or(svg.len());
+    svg.insert_str(end, &element);
+}
+
+/// Size of the letters of [`word`].
+pub const WORD: f64 = 17.0;
+
 /// Adds a word on top of an SVG, centred, with a border so that it is read on any colour.
 pub fn word(svg: &mut String, (x, y): (f64, f64), text: &str, RGBColor(r, g, b): RGBColor) {
     let element = format!(
         "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\" dominant-baseline=\"central\" font-family=\"{FONT}\" \
-         font-size=\"17\" font-weight=\"bold\" fill=\"rgb({r},{g},{b})\" stroke=\"white\" stroke-width=\"4\" \
+         font-size=\"{WORD}\" font-weight=\"bold\" fill=\"rgb({r},{g},{b})\" stroke=\"white\" stroke-width=\"4\" \
          paint-order=\"stroke\">{text}</text>\n"
     );
     let end = svg.rfind("</svg>").unwrap_or(svg.len());

@@ -8,7 +8,7 @@ use crate::output::camera::Camera;
 use crate::output::chart::{self, save, viridis};
 use crate::output::figure::exact;
 use crate::output::labels::Labels;
-use crate::output::page::{Page, Scale, Sign};
+use crate::output::page::{Page, Scale, Sign, text_width};
 use crate::output::panel::{Axis, Panel};
 use crate::output::render::{Body, Look, Paint};
 use crate::output::solid_state::insert;
@@ -48,6 +48,47 @@ fn pieces(line: &Line, keep: &dyn Fn(&LinePoint, &LinePoint) -> bool, scale: &Sc
     tube(&curve, radius, &colours)
 }
 
+/// The runs of points of a path that lie behind a body, by more than a margin.
+fn hidden(line: &Line, surfaces: &[Surface], towards: &Vector<3>, margin: f64) -> Vec<Vec<Vector<3>>> {
+    let behind = |p: &LinePoint| {
+        let from = p.x + towards * margin;
+        surfaces.iter().any(|s| s.triangles.iter().any(|t| in_front(&from, t.map(|v| s.points[v as usize]), towards)))
+    };
+    let seen: Vec<bool> = line.points.iter().map(|p| !behind(p)).collect();
+    (0..seen.len())
+        .collect::<Vec<_>>()
+        .chunk_by(|a, b| seen[*a] == seen[*b])
+        .filter(|run| !seen[run[0]])
+        .map(|run| run.iter().map(|&k| line.points[k].x).collect())
+        .collect()
+}
+
+/// Whether a triangle lies in front of a point.
+fn in_front(x: &Vector<3>, [a, b, c]: [Vector<3>; 3], towards: &Vector<3>) -> bool {
+    let area = |p: &Vector<3>, q: &Vector<3>| (p - x).cross(&(q - x)).dot(towards);
+    let shares = [area(&b, &c), area(&c, &a), area(&a, &b)];
+    let whole: f64 = shares.iter().sum();
+    let inside = whole != 0.0 && shares.iter().all(|s| s / whole >= 0.0);
+    inside && (a * shares[0] + b * shares[1] + c * shares[2]).dot(towards) / whole > x.dot(towards)
+}
+
+/// Where the names of paths stand: where each is seen best, without covering another name.
+fn places(lines: &[&Line], camera: &Camera) -> Vec<(f64, f64)> {
+    let mut taken: Vec<((f64, f64), f64)> = Vec::new();
+    for line in lines {
+        let faces = |p: &LinePoint| if p.body >= 0 { p.frame[2].dot(&camera.towards) } else { 0.0 };
+        let half = 0.5 * text_width(&line.name, chart::WORD);
+        let free = |p: &&LinePoint| {
+            let (x, y) = camera.at(&p.x);
+            taken.iter().all(|((u, v), other)| (x - u).abs() > half + other + 4.0 || (y - v).abs() > chart::WORD)
+        };
+        let best = |a: &&LinePoint, b: &&LinePoint| faces(a).total_cmp(&faces(b));
+        let place = line.points.iter().filter(free).max_by(best).or_else(|| line.points.iter().max_by(best));
+        taken.push((place.map_or((0.0, 0.0), |p| camera.at(&p.x)), half));
+    }
+    taken.into_iter().map(|(at, _)| at).collect()
+}
+
 /// Draws paths over bodies into a folder.
 pub fn draw(case: &PathCase, surfaces: &[Surface], lines: &[Line], folder: &Folder) -> Result<(), OutputError> {
     let [from, up] = case.plan.view;
@@ -70,6 +111,7 @@ pub fn draw(case: &PathCase, surfaces: &[Surface], lines: &[Line], folder: &Fold
     let scale = Scale::of(&forces);
     let mut key = Vec::new();
     let mut some_slip = false;
+    let mut some_hidden = false;
     for line in lines {
         let kinds: [(&dyn Fn(&LinePoint, &LinePoint) -> bool, Option<RGBColor>); 3] = [
             (&|a, b| !touches(a, b), Some(IN_THE_AIR)),
@@ -110,11 +152,15 @@ pub fn draw(case: &PathCase, surfaces: &[Surface], lines: &[Line], folder: &Fold
             let colour = viridis(scale.place(p.normal_force));
             chart::line(&mut page.svg, &[camera.at(&p.x), camera.at(&end)], colour);
         }
-        // The name stands where the path is seen best.
-        let faces = |p: &LinePoint| if p.body >= 0 { p.frame[2].dot(&camera.towards) } else { 0.0 };
-        let best = line.points.iter().max_by(|a, b| faces(a).total_cmp(&faces(b)));
-        if let Some(p) = best.filter(|_| lines.iter().filter(|l| !l.name.is_empty()).count() > 1) {
-            chart::word(&mut page.svg, camera.at(&p.x), &line.name, IN_THE_AIR);
+        for run in hidden(line, surfaces, &camera.towards, 2.0 * THICK * extent) {
+            chart::dashes(&mut page.svg, &run.iter().map(|x| camera.at(x)).collect::<Vec<_>>(), IN_THE_AIR);
+            some_hidden = true;
+        }
+    }
+    let named: Vec<&Line> = lines.iter().filter(|l| !l.name.is_empty()).collect();
+    if named.len() > 1 {
+        for (line, at) in named.iter().zip(places(&named, &camera)) {
+            chart::word(&mut page.svg, at, &line.name, IN_THE_AIR);
         }
     }
     page.bar(&scale, &labels.force_per_length("normal force"));
@@ -123,6 +169,9 @@ pub fn draw(case: &PathCase, surfaces: &[Surface], lines: &[Line], folder: &Fold
     }
     if lines.iter().any(|l| l.points.iter().any(|p| p.body < 0)) {
         key.push((Sign::Line(IN_THE_AIR), "in the air".into()));
+    }
+    if some_hidden {
+        key.push((Sign::Dashes(IN_THE_AIR), "behind a body".into()));
     }
     if some_slip {
         key.push((Sign::Line(SLIPS), "slips or bridges".into()));

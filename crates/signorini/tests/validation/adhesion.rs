@@ -350,6 +350,7 @@ fn cosine(cells: usize, steps: &str) -> String {
 /// In the plane, with a front that is no circle and on cells divided along it: the area that belongs to a time leads back to
 /// that time, and smaller ones through the fold.
 #[test]
+#[ignore = "takes 40 processor seconds"]
 fn a_front_that_is_no_circle_by_the_area_of_contact() {
     let to = |t: f64, n: usize| format!("[[steps]]\nto = {t}\nincrements = {n}\n");
     let by_time = to(0.4, 1) + &to(1.0, 4) + &to(1.4, 4);
@@ -383,6 +384,7 @@ fn a_front_that_is_no_circle_by_the_area_of_contact() {
 /// On cells of degree 1, by the arc length as far as it goes: along the unstable branch, until the membrane, held in the middle by
 /// less and less, would lie below the bumps around it.
 #[test]
+#[ignore = "takes 25 processor seconds"]
 fn a_path_of_the_cosine_floor_to_its_end() {
     let by_time = "[[steps]]\nto = 0.4\n[[steps]]\nto = 1\nincrements = 4\n[[steps]]\nto = 1.4\nincrements = 4\n";
     let path = |more: &str| {

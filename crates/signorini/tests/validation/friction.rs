@@ -56,3 +56,62 @@ fn a_block_on_an_incline_holds_up_to_the_angle_of_orthotropic_friction() {
     assert!(slides["reason"] == "free_body" && verdict.contains("`block` slides away"), "{verdict}");
     assert_eq!(slides["steps"].as_array().expect("steps").len(), 4, "the state before is kept");
 }
+
+/// NAFEMS CB-1 with friction, beside a program with functions of two degrees: the block carries the pressures, so that normals
+/// and gaps are vertical as there. What sticks depends on the number of increments, which is part of the problem.
+#[test]
+fn a_cylinder_on_a_softer_block_sticks_in_the_middle() {
+    // μ, increments, approach at which half of the cylinder carries 17 500, pressure in the middle, part that sticks; cells
+    // along the zone of contact.
+    let rows = [
+        (0.1, 4, 1.258858880546848, 3671.5, 0.3417, 16),
+        (0.3, 4, 1.25704106881198, 3665.8, 0.8900, 16),
+        (0.3, 8, 1.2572346395967626, 3666.3, 0.9174, 32),
+    ];
+    for (mu, increments, approach, pressure, sticks, cells) in rows {
+        let case = format!(
+            r#"
+space = "plane_strain"
+[bodies.block.solid]
+mesh.box = {{ axes = [
+  {{ from = 0, to = [8, 100], cells = [{cells}, 10], growth = [1, 1.4] }},
+  {{ from = -100, to = [-6, 0], cells = [9, 12], growth = [0.7, 1] }} ] }}
+degree = 2
+material.linear_elastic = {{ youngs_modulus = 70000, poissons_ratio = 0.3 }}
+[bodies.cylinder.solid]
+mesh.box = {{ axes = [
+  {{ from = 0, to = [8, 38], cells = [{cells}, 8], growth = [1, 1.25] }},
+  {{ from = 0, to = [6, 40], cells = [12, 8], growth = [1, 1.25] }} ],
+  map = ["x", "y + (1 - y/40)*(50 - sqrt(50^2 - x^2))"] }}
+degree = 2
+material.linear_elastic = {{ youngs_modulus = 210000, poissons_ratio = 0.3 }}
+[supports.base]
+on = "block:bottom"
+displacement = [0, 0]
+[supports.block_symmetry]
+on = "block:left"
+normal = 0
+[supports.cylinder_symmetry]
+on = "cylinder:left"
+normal = 0
+[supports.head]
+on = "cylinder:top"
+displacement = [0, "-{approach}*t"]
+[contacts.touch]
+between = ["block:top", "cylinder:bottom"]
+friction.coulomb = {{ mu = {mu} }}
+[[steps]]
+to = 1
+increments = {increments}
+"#
+        );
+        let found = summary(&case, &set(&[]));
+        let contact = &last_step(&found)["contacts"]["touch"];
+        let force = number(&contact["force"][1]);
+        assert!((force / -17500.0 - 1.0).abs() < 5e-4, "μ = {mu}: {force}");
+        let largest = number(&contact["max_pressure"]);
+        assert!((largest / pressure - 1.0).abs() < 2e-3, "μ = {mu}: {largest}, not {pressure}");
+        let stick = number(&contact["stick_area"]) / number(&contact["area"]);
+        assert!((stick - sticks).abs() < 0.05, "μ = {mu}, {increments} increments: {stick} sticks, not {sticks}");
+    }
+}

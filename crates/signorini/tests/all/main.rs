@@ -3,6 +3,7 @@
 mod adhesion;
 mod bad_input;
 mod cells;
+mod closest_points;
 mod cosine_floor;
 mod events;
 mod fit;
@@ -16,6 +17,8 @@ mod meshes;
 mod published;
 mod refinement;
 mod resume;
+mod scenes;
+mod schema;
 mod solid_theory;
 mod solids;
 mod systems;

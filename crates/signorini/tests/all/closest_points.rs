@@ -31,7 +31,7 @@ fn apart(a: &Value, b: &Value) -> f64 {
 
 #[test]
 fn the_corpus_is_right() {
-    let text = include_str!("data/closest_points.json");
+    let text = include_str!("../data/closest_points.json");
     let (report, answers) = run(text);
     assert_eq!(report.unwrap().wrong_count, 0);
     let cases: Value = serde_json::from_str(text).unwrap();
@@ -76,7 +76,7 @@ fn the_corpus_is_right() {
 
 #[test]
 fn answers_do_not_depend_on_threads() {
-    let text = include_str!("data/closest_points.json");
+    let text = include_str!("../data/closest_points.json");
     let answers = [1, 2].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| run(text).1)
@@ -315,7 +315,7 @@ fn meshes_and_implicit_bodies_have_a_signed_gap() {
 fn mutilated_cases_are_read_or_refused() {
     use signorini::queries::parse;
     use signorini_geometry::closest::closest;
-    let cases: Value = serde_json::from_str(include_str!("data/closest_points.json")).unwrap();
+    let cases: Value = serde_json::from_str(include_str!("../data/closest_points.json")).unwrap();
     let mut state = 7u64;
     let mut random = |n: usize| {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-const CASE: &str = include_str!("../../../gallery/string/case.toml");
+const CASE: &str = include_str!("../../../../gallery/string/case.toml");
 const QUERIES: &str = r#"{"format": "cpp-corpus-1", "cases": [
     {"id": "first", "a": {"type": "point", "p": [0, 0, 2]}, "b": {"type": "point", "p": [0, 0, 0]}}]}"#;
 

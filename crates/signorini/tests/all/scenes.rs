@@ -11,7 +11,7 @@ fn the_swords_meet_in_all_six_ways() {
     let folder = tempfile::tempdir().unwrap();
     let scene = Scene::parse("swords.toml", SCENES[0].case, Path::new("")).unwrap();
     let summary = run(&scene, &folder.path().join("out"), &mut Silent).unwrap();
-    let expected: Value = serde_json::from_str(include_str!("../../../gallery/swords/expected.json")).unwrap();
+    let expected: Value = serde_json::from_str(include_str!("../../../../gallery/swords/expected.json")).unwrap();
     assert_eq!(summary["frames"], expected["frames"]);
     let kinds: Vec<&str> = summary["contact_pair_kinds"].as_object().unwrap().keys().map(String::as_str).collect();
     assert_eq!(Value::from(kinds), expected["contact_pair_kinds"]);

@@ -97,7 +97,7 @@ impl Encounter<'_> {
         let turns = self.slave.spin.iter().enumerate().map(|(k, f)| Column {
             unknown: unknown(f),
             spin: [f.value, Vector::<3>::zeros()],
-            turns: Some(k),
+            turns: Some((0, k)),
             ..Column::default()
         });
         moves.chain(turns).collect()
@@ -137,14 +137,18 @@ impl Encounter<'_> {
     /// which second derivatives along geodesics are symmetric it varies by half the product of two spins. A section that turns
     /// with displacements tells its own.
     fn spin_variation(&self, k: &Column, l: &Column) -> [Vector<3>; 2] {
-        let half = |side: usize| l.spin[side].cross(&k.spin[side]) * 0.5;
-        let of_slave = match (k.turns, l.turns) {
-            (Some(i), Some(j)) if !self.slave.spin_bends.is_empty() => {
-                self.slave.spin_bends[i * self.slave.spin.len() + j]
-            }
-            _ => half(0),
+        let master = match self.met {
+            Met::Foot(foot) => (&foot.spin_bends[..], foot.spin.len()),
+            _ => (&[][..], 0),
         };
-        [of_slave, half(1)]
+        let told = [(&self.slave.spin_bends[..], self.slave.spin.len()), master];
+        [0, 1].map(|side| {
+            let (bends, count) = told[side];
+            match (k.turns, l.turns) {
+                (Some((a, i)), Some((b, j))) if (a, b) == (side, side) && !bends.is_empty() => bends[i * count + j],
+                _ => l.spin[side].cross(&k.spin[side]) * 0.5,
+            }
+        })
     }
 
     /// What the spins of the sections do at the point of contact.

@@ -206,7 +206,7 @@ fn a_bar_on_its_edge_carries_as_beams_do() {
             };
             let expected = push * compliance(at[0], lengths[0]) / gives;
             let bodies: Vec<Box<dyn Body>> = vec![Box::new(bar), other];
-            let met_part = if master > 0.0 { part(1, "boundary") } else { Part::from(1) };
+            let met_part = if master > 0.0 { part(1, "top") } else { Part::from(1) };
             let sides = [(part(0, "rim"), bodies[0].as_ref()), (met_part, bodies[1].as_ref())];
             let [own, touched] = sides;
             let contact =

@@ -61,7 +61,8 @@ impl<const N: usize> AtFoot<'_, N> {
                     let along = (0..N).fold(Vector::<3>::zeros(), |sum, a| sum + columns[k].d_a[a] * xi[l][a]);
                     let gap_turns = pair.d_normal[k] * (lever * pair.d_gap[l]) + normal_bend(k, l) * (lever * gap);
                     let [of_slave, of_master] = self.encounter.spin_variation(&columns[k], &columns[l]);
-                    let spun = (of_slave * radii[0] + of_master * radii[1]).cross(&normal);
+                    let moved = if N == 1 { columns[k].spin_slope * xi[l][0] } else { Vector::<3>::zeros() };
+                    let spun = (of_slave * radii[0] + (of_master + moved) * radii[1]).cross(&normal);
                     along - self.encounter.levers(&columns[k], &pair.d_normal[l], radii) - spun - gap_turns
                 }
             };

@@ -42,7 +42,7 @@ const AUGMENTED: f64 = 1e-9;
 const MOST_AUGMENTATIONS: usize = 60;
 
 /// How Newton's method goes.
-enum Way {
+pub(crate) enum Way {
     /// From the last state.
     Straight,
     /// Round what failed so.
@@ -162,6 +162,13 @@ impl System {
         solved: &mut Solved,
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
+        // What is slack has no stiffness at all: only where it settles has it some.
+        if self.is_slack(start) {
+            match self.settled(start, time, solved, report) {
+                Err(error) if is_curable(&error) => {}
+                found => return found,
+            }
+        }
         let failed = match self.by(Way::Straight, start, time, solved, report) {
             Err(error) if is_curable(&error) => error,
             found => return found,
@@ -180,7 +187,7 @@ impl System {
     }
 
     /// Newton's method by one way.
-    fn by(
+    pub(crate) fn by(
         &self,
         way: Way,
         start: &SystemState,

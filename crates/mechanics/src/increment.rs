@@ -121,6 +121,9 @@ impl System {
             };
             // Without a guess which sites carry, multipliers start from what penalties find.
             let exact = self.contacts.iter().any(|c| c.is_exact());
+            if exact && changes.is_empty() && state.multipliers.iter().all(|m| *m == 0.0) {
+                state.multipliers = self.guess(&state, time)?;
+            }
             let guessed = !exact || state.multipliers.iter().any(|m| *m != 0.0);
             let direct = if guessed { Some(self.inner(&state, time, &mut solved, &mut counted)) } else { None };
             let found = match direct {

@@ -189,7 +189,7 @@ fn a_bar_on_its_edge_carries_as_beams_do() {
     let half = 0.5f64.sqrt();
     // They touch from the start on.
     let sunk = 1e-7;
-    for radius in [0.0] {
+    for radius in [0.0, 0.02] {
         let upper = |x: V| V::new(x[0], half * (x[1] - x[2]), half * (x[1] + x[2]) + a * half + radius - sunk);
         let size = |l: f64| [V::new(0.0, -0.5 * a, -0.5 * a), V::new(l, 0.5 * a, 0.5 * a)];
         let flat = |x: V| V::new(at[0] - x[1], x[0] - at[1], x[2] - 0.5 * a);

@@ -218,9 +218,8 @@ impl<const D: usize> SurfaceMaster<'_, D> {
         let over = aside <= OVER * distance;
         let touching = distance <= TOUCHING * self.size;
         if aside > TOUCHING * self.size && self.ends_at(face, &s) {
-            // Beyond the end of a surface nothing is inside, however low it is: its outward side is where the point is, and
-            // that of the face.
-            foot.outward = Some((d / distance + normal).normalize());
+            // Beyond the end of a surface nothing is inside, however low it is: its outward side is where the point is.
+            foot.outward = Some(d / distance);
         } else if touching || !over {
             foot.outward = Some(self.mean_normal(face, &s));
         }

@@ -186,6 +186,16 @@ impl System {
                 found => return found,
             }
         }
+        // No other way leads where there is nothing to find.
+        let (first, _) = self.numbering();
+        let at = self.bodies_in(start, &first);
+        if let Some(reason) = self.contacts.iter().find_map(|contact| contact.doubt(at)) {
+            let history = match failed {
+                IncrementError::NotConverged { history, .. } => history,
+                _ => vec![0.0],
+            };
+            return Err(IncrementError::NotConverged { history, worst: Some(format!("; {reason}")) });
+        }
         self.by(Way::Round(failed), start, time, solved, report)
     }
 

@@ -105,6 +105,11 @@ pub trait Interaction: Send + Sync {
         self.remembered()
     }
 
+    /// Why a state may have none near it, in words with the place.
+    fn doubt(&self, _at: Bodies<'_>) -> Option<String> {
+        None
+    }
+
     /// Whether its unknowns are exact multipliers, which need a guess of what carries.
     fn is_exact(&self) -> bool {
         false

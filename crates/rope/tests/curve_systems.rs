@@ -572,3 +572,19 @@ fn an_overhand_knot_is_drawn_tight_with_friction() {
     let (tension, count) = draw_tight(20, Some(Form::Point));
     assert!(count >= 3 && tension > 1.0);
 }
+
+/// Where the axis of a rod curves towards the other as sharply as they are apart the nearest point of a crossing is lost: said
+/// with the place.
+#[test]
+fn a_clasp_that_is_too_sharp_is_told() {
+    let mut system = clasp(None);
+    let mut state = system.start();
+    for time in [0.1, 0.2, 0.3, 0.4] {
+        let (found, _) = system.solve(&state, time, &mut |_, _| true).unwrap();
+        system.accept(&found).unwrap();
+        state = found;
+    }
+    let error = system.solve(&state, 0.45, &mut |_, _| true).unwrap_err().to_string();
+    println!("{error}");
+    assert!(error.contains("`touch`") && error.contains("curves towards"), "{error}");
+}

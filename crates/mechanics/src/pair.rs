@@ -15,9 +15,8 @@
 //!
 //! On a surface, without sections that turn, `S = ρ_a X^a` is the motion of the closest point along the surface, with
 //! exact second variations. Everywhere else `S = δD - R_s θ_s × n - R_m θ_m × n - g δn`, which turns into the same where
-//! nothing spins; its second variation is exact on a surface, and at curves and points leaves out `g δ²n`, which vanishes
-//! with the gap. Either way a rigid motion of
-//! both partners is no slip, so that the forces have neither resultant nor moment.
+//! nothing spins; its second variation is exact too. Either way a rigid motion of both partners is no slip, so that the forces
+//! have neither resultant nor moment.
 
 mod along;
 mod cut;
@@ -101,6 +100,21 @@ impl Encounter<'_> {
             ..Column::default()
         });
         moves.chain(turns).collect()
+    }
+
+    /// Columns of the slave, of what moves the averaged normal of a side, of a foot on a surface, and of the anchor.
+    fn columns_with_normal(&self, foot: &Foot, (side, normal): (usize, &[Function])) -> Vec<Column> {
+        let mut columns = self.slave_columns();
+        let unknown = |side: usize, f: &Function| self.first[side] + f.unknown;
+        columns.extend(normal.iter().map(|f| Column { unknown: unknown(side, f), ..Column::default() }));
+        columns.extend(foot.functions.iter().map(|f| Column {
+            unknown: unknown(1, f),
+            d: -f.value,
+            d_a: f.slopes.map(|s| -s),
+            ..Column::default()
+        }));
+        self.anchor_columns(&mut columns);
+        columns
     }
 
     /// Columns of the anchor.

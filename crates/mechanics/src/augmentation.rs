@@ -6,6 +6,7 @@ use crate::increment::IncrementResult;
 use crate::increment_error::IncrementError;
 use crate::interaction::{Around, Bodies};
 use crate::linear_solver::Solved;
+use crate::points::Order;
 use crate::simpler::SimplerFriction;
 use crate::system::{AssemblyError, System, SystemState};
 
@@ -27,6 +28,14 @@ impl System {
             self.contacts.iter_mut().for_each(|contact| contact.restate());
             found.map(|found| found.state)
         })
+    }
+
+    /// Multipliers that bear what is out of balance without them.
+    pub(crate) fn guess(&self, state: &SystemState, time: f64) -> Result<Vec<f64>, IncrementError> {
+        let residual = self.assemble(state, time, Order::First)?.residual;
+        let (first, _) = self.numbering();
+        let at = self.bodies_in(state, &first);
+        Ok(self.contacts.iter().flat_map(|contact| contact.guess(at, &residual)).collect())
     }
 
     /// Sets multipliers to the tractions found, penalties to what leaves the penetration that is wanted; the largest

@@ -266,6 +266,15 @@ pub trait Body: Send + Sync {
         None
     }
 
+    /// Whether no part of the body carries anything, nor would if it moved a little: a rope that is longer than its way.
+    fn is_slack(&self, _state: &BodyState) -> bool {
+        false
+    }
+
+    /// Until the next call what may be slack is also a spring of no length at rest, with this force at the unstrained length of
+    /// the body: to find a shape from which it hangs soon.
+    fn tighten(&mut self, _force: f64) {}
+
     /// Whether what a support holds of the body changes with time.
     fn holds_change(&self) -> bool {
         false

@@ -102,6 +102,7 @@ impl CurvePoint {
             radius,
             functions,
             spin: Vec::new(),
+            spin_bends: Vec::new(),
             frame: Matrix::<3>::identity(),
         }
     }

@@ -92,6 +92,8 @@ impl Problem<'_> {
             }
             self.scales.push(sizes[k].max(SLACK * most[kind]));
         }
+        // Moments feel the rounding of positions by the arm that couples both, `|K_θx|² <= K_θθ K_xx`.
+        self.rounding[1] = self.rounding[1].max(self.rounding[0] * (most[1] / most[0]).sqrt());
         self.first = Some(out);
         Ok(())
     }

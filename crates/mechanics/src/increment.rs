@@ -42,7 +42,7 @@ const AUGMENTED: f64 = 1e-9;
 const MOST_AUGMENTATIONS: usize = 60;
 
 /// How Newton's method goes.
-enum Way {
+pub(crate) enum Way {
     /// From the last state.
     Straight,
     /// Round what failed so.
@@ -121,6 +121,9 @@ impl System {
             };
             // Without a guess which sites carry, multipliers start from what penalties find.
             let exact = self.contacts.iter().any(|c| c.is_exact());
+            if exact && changes.is_empty() && state.multipliers.iter().all(|m| *m == 0.0) {
+                state.multipliers = self.guess(&state, time)?;
+            }
             let guessed = !exact || state.multipliers.iter().any(|m| *m != 0.0);
             let direct = if guessed { Some(self.inner(&state, time, &mut solved, &mut counted)) } else { None };
             let found = match direct {
@@ -162,6 +165,13 @@ impl System {
         solved: &mut Solved,
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
+        // What is slack has no stiffness at all: only where it settles has it some.
+        if self.is_slack(start) {
+            match self.settled(start, time, solved, report) {
+                Err(error) if is_curable(&error) => {}
+                found => return found,
+            }
+        }
         let failed = match self.by(Way::Straight, start, time, solved, report) {
             Err(error) if is_curable(&error) => error,
             found => return found,
@@ -176,11 +186,21 @@ impl System {
                 found => return found,
             }
         }
+        // No other way leads where there is nothing to find.
+        let (first, _) = self.numbering();
+        let at = self.bodies_in(start, &first);
+        if let Some(reason) = self.contacts.iter().find_map(|contact| contact.doubt(at)) {
+            let history = match failed {
+                IncrementError::NotConverged { history, .. } => history,
+                _ => vec![0.0],
+            };
+            return Err(IncrementError::NotConverged { history, worst: Some(format!("; {reason}")) });
+        }
         self.by(Way::Round(failed), start, time, solved, report)
     }
 
     /// Newton's method by one way.
-    fn by(
+    pub(crate) fn by(
         &self,
         way: Way,
         start: &SystemState,

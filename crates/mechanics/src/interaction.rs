@@ -100,6 +100,16 @@ pub trait Interaction: Send + Sync {
         Vec::new()
     }
 
+    /// Values of its unknowns that would bear forces that are out of balance without them; none where that is no good guess.
+    fn guess(&self, _at: Bodies<'_>, _residual: &[f64]) -> Vec<f64> {
+        self.remembered()
+    }
+
+    /// Why a state may have none near it, in words with the place.
+    fn doubt(&self, _at: Bodies<'_>) -> Option<String> {
+        None
+    }
+
     /// Whether its unknowns are exact multipliers, which need a guess of what carries.
     fn is_exact(&self) -> bool {
         false

@@ -37,6 +37,7 @@ pub mod rigid_body;
 pub mod saved;
 mod simpler;
 mod site_result;
+mod slack;
 pub mod surface;
 pub mod system;
 

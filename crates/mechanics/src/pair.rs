@@ -15,9 +15,8 @@
 //!
 //! On a surface, without sections that turn, `S = ρ_a X^a` is the motion of the closest point along the surface, with
 //! exact second variations. Everywhere else `S = δD - R_s θ_s × n - R_m θ_m × n - g δn`, which turns into the same where
-//! nothing spins; its second variation is exact on a surface, and at curves and points leaves out `g δ²n`, which vanishes
-//! with the gap. Either way a rigid motion of
-//! both partners is no slip, so that the forces have neither resultant nor moment.
+//! nothing spins; its second variation is exact too. Either way a rigid motion of both partners is no slip, so that the forces
+//! have neither resultant nor moment.
 
 mod along;
 mod cut;
@@ -97,10 +96,25 @@ impl Encounter<'_> {
         let turns = self.slave.spin.iter().enumerate().map(|(k, f)| Column {
             unknown: unknown(f),
             spin: [f.value, Vector::<3>::zeros()],
-            turns: Some(k),
+            turns: Some((0, k)),
             ..Column::default()
         });
         moves.chain(turns).collect()
+    }
+
+    /// Columns of the slave, of what moves the averaged normal of a side, of a foot on a surface, and of the anchor.
+    fn columns_with_normal(&self, foot: &Foot, (side, normal): (usize, &[Function])) -> Vec<Column> {
+        let mut columns = self.slave_columns();
+        let unknown = |side: usize, f: &Function| self.first[side] + f.unknown;
+        columns.extend(normal.iter().map(|f| Column { unknown: unknown(side, f), ..Column::default() }));
+        columns.extend(foot.functions.iter().map(|f| Column {
+            unknown: unknown(1, f),
+            d: -f.value,
+            d_a: f.slopes.map(|s| -s),
+            ..Column::default()
+        }));
+        self.anchor_columns(&mut columns);
+        columns
     }
 
     /// Columns of the anchor.
@@ -137,14 +151,18 @@ impl Encounter<'_> {
     /// which second derivatives along geodesics are symmetric it varies by half the product of two spins. A section that turns
     /// with displacements tells its own.
     fn spin_variation(&self, k: &Column, l: &Column) -> [Vector<3>; 2] {
-        let half = |side: usize| l.spin[side].cross(&k.spin[side]) * 0.5;
-        let of_slave = match (k.turns, l.turns) {
-            (Some(i), Some(j)) if !self.slave.spin_bends.is_empty() => {
-                self.slave.spin_bends[i * self.slave.spin.len() + j]
-            }
-            _ => half(0),
+        let master = match self.met {
+            Met::Foot(foot) => (&foot.spin_bends[..], foot.spin.len()),
+            _ => (&[][..], 0),
         };
-        [of_slave, half(1)]
+        let told = [(&self.slave.spin_bends[..], self.slave.spin.len()), master];
+        [0, 1].map(|side| {
+            let (bends, count) = told[side];
+            match (k.turns, l.turns) {
+                (Some((a, i)), Some((b, j))) if (a, b) == (side, side) && !bends.is_empty() => bends[i * count + j],
+                _ => l.spin[side].cross(&k.spin[side]) * 0.5,
+            }
+        })
     }
 
     /// What the spins of the sections do at the point of contact.

@@ -218,14 +218,12 @@ fn passage(met: &dyn Fn(f64) -> Option<Meeting>, start: Meeting, length: f64, sp
         let then = met(next)?;
         if then.0 < 0.0 {
             let (place, normal) = *entered.get_or_insert((t, if now.0 < 0.0 { then.1 } else { now.1 }));
-            if then.1.dot(&normal) <= 0.0 {
-                let turned = turn(met, normal, [t, next]);
+            if let Some(turned) = turn(met, (then.1, normal), [t, next]) {
                 return Some(0.5 * (place + turned));
             }
         } else if now.0 < 0.0 {
             let (place, normal) = entered.take()?;
-            if then.1.dot(&normal) <= 0.0 {
-                let turned = turn(met, normal, [t, next]);
+            if let Some(turned) = turn(met, (then.1, normal), [t, next]) {
                 return Some(0.5 * (place + turned));
             }
         }
@@ -234,8 +232,16 @@ fn passage(met: &dyn Fn(f64) -> Option<Meeting>, start: Meeting, length: f64, sp
     Some(t)
 }
 
-/// Where between two places the normal has turned by a right angle.
-fn turn(met: &dyn Fn(f64) -> Option<Meeting>, normal: Vector<3>, [mut low, mut high]: [f64; 2]) -> f64 {
+/// Where between two places the normal has turned by a right angle, if it has at the second, and still inside: what leaves
+/// over the end of a surface is outside at once.
+fn turn(
+    met: &dyn Fn(f64) -> Option<Meeting>,
+    (then, normal): (Vector<3>, Vector<3>),
+    [mut low, mut high]: [f64; 2],
+) -> Option<f64> {
+    if then.dot(&normal) > 0.0 {
+        return None;
+    }
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
         match met(middle) {
@@ -243,5 +249,5 @@ fn turn(met: &dyn Fn(f64) -> Option<Meeting>, normal: Vector<3>, [mut low, mut h
             _ => high = middle,
         }
     }
-    low
+    met(high).is_none_or(|(gap, _)| gap < 0.0).then_some(low)
 }

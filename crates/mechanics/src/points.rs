@@ -120,6 +120,8 @@ pub struct Foot {
     pub functions: Vec<Function>,
     /// What turns the section, and how it is turned now.
     pub spin: Vec<Function>,
+    /// Second variations of these spins, as in [`Placed`].
+    pub spin_bends: Vec<Vector<3>>,
     pub frame: Matrix<3>,
 }
 

@@ -16,7 +16,7 @@ pub enum PathError {
     NoFoot { at: Point<3>, gap: f64, iterations: usize },
     #[error("the direction is along the normal at ({}, {}, {}): a path needs a tangent", .at.x, .at.y, .at.z)]
     NoTangent { at: Point<3> },
-    #[error("the {place} of the path lies inside body {body}, {depth} deep: move it outside by that much at least")]
+    #[error("the {place} of the path lies inside body {body}, {depth:.4e} deep: move it outside by that much at least")]
     Inside { place: Place, body: usize, depth: f64 },
     #[error("station {station} names body {body}; there are {count}")]
     NoBody { station: usize, body: usize, count: usize },

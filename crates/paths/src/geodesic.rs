@@ -98,6 +98,7 @@ pub fn geodesic(
 }
 
 /// The end of a geodesic and what was met on the way to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shot {
     pub end: GeodesicState,
     /// The largest normal curvature.

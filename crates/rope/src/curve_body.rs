@@ -135,7 +135,7 @@ pub fn placed(body: &dyn CurveBody, state: &BodyState, site: &Site) -> Placed {
         radius: body.radius(),
         functions: line.functions(element, xi),
         spin,
-        spin_bends: Vec::new(),
+        spin_bends: body.spin_bends(&state.configuration, element, xi),
         frame,
         bends: Vec::new(),
     }

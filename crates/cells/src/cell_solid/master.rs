@@ -185,6 +185,7 @@ impl<'a, const D: usize> BoundaryMaster<'a, D> {
             radius: 0.0,
             functions,
             spin: Vec::new(),
+            spin_bends: Vec::new(),
             frame: Matrix::<3>::identity(),
         }
     }

@@ -55,6 +55,33 @@ impl Interaction for Contact {
         self.memory.iter().flat_map(|m| m.traction[..self.components()].to_vec()).collect()
     }
 
+    /// A curve under tension presses on what it lies along: what is out of balance at its nodes tells by how much.
+    fn guess(&self, at: Bodies<'_>, residual: &[f64]) -> Vec<f64> {
+        let mut out = self.remembered();
+        let sides = at.sides(self);
+        let (body, state) = sides.master;
+        let is_curve = sides.slave.0.curve(self.slave.group.as_deref()).is_some();
+        let Ok(master) = body.master(self.master.group.as_deref(), state) else { return out };
+        if !is_curve || self.sampling != Sampling::Nodes {
+            return out;
+        }
+        let own = sides.first[0] as usize..sides.first[0] as usize + sides.slave.0.unknowns();
+        for (k, values) in out.chunks_mut(self.components()).enumerate() {
+            let (_, Some(Ok(touch))) = self.pair(k, &sides, (master.as_ref(), f64::INFINITY), |_| false) else {
+                continue;
+            };
+            let terms = touch.pair.unknowns.iter().zip(&touch.pair.opening);
+            let terms = terms.map(|(u, o)| (*u as usize, o)).filter(|(u, _)| own.contains(u));
+            let (power, square) = terms.fold((0.0, 0.0), |(p, s), (u, o)| (p + residual[u] * o, s + o * o));
+            // Of what lies so far away that a force like this would not close it nothing is known.
+            let pressure = power / (square * self.sites()[k].weight);
+            if pressure > self.stiffness[k] * touch.pair.gap.max(0.0) {
+                values[0] = pressure;
+            }
+        }
+        out
+    }
+
     fn is_exact(&self) -> bool {
         self.enforcement.is_exact()
     }

@@ -5,7 +5,7 @@
 //! that the curve turns by less than 15 degrees between them.
 
 use super::{Closure, Continuity, Curve};
-use crate::points::{Anchor, Master, MaterialPoint, Met, Site};
+use crate::points::{Anchor, Foot, Master, MaterialPoint, Met, Site};
 use signorini_geometry::bvh::Bvh;
 use signorini_geometry::shape::CurveJet;
 use signorini_geometry::{Aabb, Point, Vector};
@@ -157,7 +157,11 @@ impl Master for CurveMaster<'_> {
             }
             limit
         });
-        best.map(|m| Met::Foot(Box::new(curve.foot(self.configuration, m.element, m.xi, m.coordinates))))
+        let foot = |m: Minimum| {
+            let foot = curve.foot(self.configuration, m.element, m.xi, m.coordinates);
+            Foot { spin_bends: curve.spin_bends(self.configuration, m.element, m.xi), ..foot }
+        };
+        best.map(|m| Met::Foot(Box::new(foot(m))))
     }
 
     fn at(&self, point: &MaterialPoint) -> Anchor {

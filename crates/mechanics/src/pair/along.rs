@@ -17,7 +17,7 @@
 //! variation of the gap, so that the tangent is unsymmetric.
 
 use super::measures::{Column, Encounter, NoPair, Pair, SecondVariation, Stuck};
-use crate::points::{Foot, Function, NormalField, Order};
+use crate::points::{Foot, NormalField, Order};
 use signorini_geometry::{Matrix, Vector};
 
 type V = Vector<3>;
@@ -49,17 +49,8 @@ impl<'a> AtAlong<'a> {
         let length = field.vector.norm();
         let normal = field.vector / length;
         let distance = normal.dot(&(encounter.slave.x - foot.jet.x));
-        let mut columns = encounter.slave_columns();
-        let own = columns.len();
-        let unknown = |f: &Function| encounter.first[1] + f.unknown;
-        columns.extend(field.functions.iter().map(|f| Column { unknown: unknown(f), ..Column::default() }));
-        columns.extend(foot.functions.iter().map(|f| Column {
-            unknown: unknown(f),
-            d: -f.value,
-            d_a: f.slopes.map(|s| -s),
-            ..Column::default()
-        }));
-        encounter.anchor_columns(&mut columns);
+        let own = encounter.slave_count();
+        let columns = encounter.columns_with_normal(foot, (1, &field.functions));
         let mut d_field = vec![(V::zeros(), [V::zeros(); 2]); columns.len()];
         d_field[own..].iter_mut().zip(&field.functions).for_each(|(d, f)| *d = (f.value, f.slopes));
         let turned = |d: &V| (d - normal * normal.dot(d)) / length;

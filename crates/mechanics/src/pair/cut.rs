@@ -17,7 +17,7 @@
 //! variation of the gap, so that the tangent is unsymmetric.
 
 use super::measures::{Column, Encounter, NoPair, Pair, SecondVariation, Stuck, axis};
-use crate::points::{Foot, Function, Order};
+use crate::points::{Foot, Order};
 use signorini_geometry::{Matrix, Vector};
 
 /// A slave site and the point across from it.
@@ -46,18 +46,8 @@ impl<'a> AtCut<'a> {
         let gap = normal.dot(&(slave.x - foot.jet.x));
         let basis = Matrix::<3>::from_columns(&[normal, foot.jet.u, foot.jet.v]);
         let dual = basis.try_inverse().ok_or(NoPair::NoCoordinates)?;
-        let mut columns = encounter.slave_columns();
-        let own = columns.len();
-        let unknown = |f: &Function| encounter.first[0] + f.unknown;
-        columns.extend(averaged.functions.iter().map(|f| Column { unknown: unknown(f), ..Column::default() }));
-        let unknown = |f: &Function| encounter.first[1] + f.unknown;
-        columns.extend(foot.functions.iter().map(|f| Column {
-            unknown: unknown(f),
-            d: -f.value,
-            d_a: f.slopes.map(|s| -s),
-            ..Column::default()
-        }));
-        encounter.anchor_columns(&mut columns);
+        let own = encounter.slave_count();
+        let columns = encounter.columns_with_normal(foot, (0, &averaged.functions));
         let mut d_averaged = vec![Vector::<3>::zeros(); columns.len()];
         d_averaged[own..].iter_mut().zip(&averaged.functions).for_each(|(d, f)| *d = f.value);
         let d_normal: Vec<Vector<3>> = d_averaged.iter().map(|d| (normal * normal.dot(d) - d) / length).collect();

@@ -48,9 +48,11 @@ impl<'a, const N: usize> AtFoot<'a, N> {
             d_ab: f.second.map(|s| -s),
             ..Column::default()
         }));
-        columns.extend(foot.spin.iter().map(|f| Column {
+        columns.extend(foot.spin.iter().enumerate().map(|(k, f)| Column {
             unknown: unknown(f),
             spin: [Vector::<3>::zeros(), f.value],
+            spin_slope: f.slopes[0],
+            turns: Some((1, k)),
             ..Column::default()
         }));
         encounter.anchor_columns(&mut columns);

@@ -30,8 +30,10 @@ pub(super) struct Column {
     pub(super) d_a: [Vector<3>; 2],
     pub(super) d_ab: [Vector<3>; 3],
     pub(super) spin: [Vector<3>; 2],
-    /// Which of the spins of the slave it is.
-    pub(super) turns: Option<usize>,
+    /// How the spin of the master changes along its first coordinate.
+    pub(super) spin_slope: Vector<3>,
+    /// Which of the spins of a side it is.
+    pub(super) turns: Option<(usize, usize)>,
     /// Motion of the anchor, and of its tangent.
     pub(super) anchor: Vector<3>,
     pub(super) anchor_tangent: Vector<3>,

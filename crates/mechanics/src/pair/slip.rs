@@ -37,10 +37,19 @@ impl<const N: usize> AtFoot<'_, N> {
             // The part across itself of the second variation of the normal of a surface: what keeps the normal on the base
             // vectors, `δ²n·ρ_a = -δ_k n·δ_l ρ_a - δ_l n·δ_k ρ_a - n·δ²ρ_a`.
             let normal_bend = |k: usize, l: usize| {
-                if N != 2 {
-                    return Vector::<3>::zeros();
-                }
                 let both: SVector<f64, N> = measures.coordinate_second_variation(&variations[k], &variations[l]);
+                if N < 2 {
+                    // That of `D/|D|`.
+                    if measures.gap == 0.0 {
+                        return Vector::<3>::zeros();
+                    }
+                    let mut bent = -(pair.d_normal[k] * pair.d_gap[l] + pair.d_normal[l] * pair.d_gap[k]);
+                    for a in 0..N {
+                        bent += columns[k].d_a[a] * xi[l][a] + columns[l].d_a[a] * xi[k][a];
+                        bent -= second[2 * a] * (xi[k][a] * xi[l][a]) + base[a] * both[a];
+                    }
+                    return bent / measures.gap;
+                }
                 let down: SVector<f64, N> = SVector::from_fn(|a, _| {
                     let mut bent = Vector::<3>::zeros();
                     for b in 0..N {
@@ -61,7 +70,8 @@ impl<const N: usize> AtFoot<'_, N> {
                     let along = (0..N).fold(Vector::<3>::zeros(), |sum, a| sum + columns[k].d_a[a] * xi[l][a]);
                     let gap_turns = pair.d_normal[k] * (lever * pair.d_gap[l]) + normal_bend(k, l) * (lever * gap);
                     let [of_slave, of_master] = self.encounter.spin_variation(&columns[k], &columns[l]);
-                    let spun = (of_slave * radii[0] + of_master * radii[1]).cross(&normal);
+                    let moved = if N == 1 { columns[k].spin_slope * xi[l][0] } else { Vector::<3>::zeros() };
+                    let spun = (of_slave * radii[0] + (of_master + moved) * radii[1]).cross(&normal);
                     along - self.encounter.levers(&columns[k], &pair.d_normal[l], radii) - spun - gap_turns
                 }
             };

@@ -188,6 +188,7 @@ impl Master for SheetMaster<'_> {
                 radius: self.sheet.radius,
                 functions: self.sheet.functions(xi),
                 spin: Vec::new(),
+                spin_bends: Vec::new(),
                 frame: Matrix::<3>::identity(),
             }))
         })

@@ -63,9 +63,9 @@ pub(crate) fn pinned(leg: &Leg, touches: &[Touch]) -> [bool; 2] {
 
 impl Chain {
     /// `None` where a geodesic cannot be followed.
-    pub fn new(leg: &Leg, bodies: &[Body<'_>], touches: Vec<Touch>) -> Option<Self> {
+    pub fn new(leg: &Leg, bodies: &[Body<'_>], mut touches: Vec<Touch>) -> Option<Self> {
         let shots: Option<Vec<Shot>> =
-            touches.iter().map(|t| t.shoot(&bodies[leg.around[t.order].body]).ok()).collect();
+            touches.iter_mut().map(|t| t.shoot(&bodies[leg.around[t.order].body]).ok()).collect();
         let mut chain = Chain { touches, shots: shots?, residual: 0.0 };
         let mut residual = vec![0.0; 4 * chain.touches.len()];
         chain.equations(leg, &mut residual, None);

@@ -159,11 +159,11 @@ pub(crate) fn open_bridge(leg: &Leg, bodies: &[Body<'_>], chain: &Chain) -> Opti
     touches.remove(k);
     let mut parts = Vec::new();
     if first > 0 {
-        parts.push(Touch { length: way.states[first - 1].s, ..touch });
+        parts.push(Touch::new(touch.order, touch.x, touch.tau, way.states[first - 1].s));
     }
     if last + 1 < way.states.len() {
         let from = way.states[last + 1];
-        parts.push(Touch { order: touch.order, x: from.x, tau: from.tau, length: touch.length - from.s });
+        parts.push(Touch::new(touch.order, from.x, from.tau, touch.length - from.s));
     }
     touches.splice(k..k, parts);
     Some(touches)

@@ -9,7 +9,7 @@
 use super::route::Body;
 use crate::PathError;
 use crate::darboux::Along;
-use crate::geodesic::shoot;
+use crate::geodesic;
 use crate::surface::{curvature, foot, tangent};
 use signorini_geometry::{Point, Vector};
 
@@ -23,6 +23,16 @@ pub(crate) struct Touch {
     /// Unit tangent.
     pub tau: Vector<3>,
     pub length: f64,
+    /// Its geodesic, once it was followed.
+    known: Option<Known>,
+}
+
+/// A geodesic that was followed, with the surface at both its ends: it is the same as long as these are, to the last digit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Known {
+    start: (Point<3>, Vector<3>, f64),
+    shot: geodesic::Shot,
+    ends: [Along; 2],
 }
 
 /// An end of a geodesic in space.
@@ -46,8 +56,7 @@ pub(crate) struct Variation {
 }
 
 impl End {
-    fn new(body: &Body<'_>, x: &Point<3>, tau: &Vector<3>) -> Self {
-        let along = Along::new(&body.shape.level(x), tau);
+    fn new(body: &Body<'_>, x: &Point<3>, tau: &Vector<3>, along: &Along) -> Self {
         let turned = |v: &Vector<3>| body.motion.vector(v);
         End {
             x: body.motion.point(x),
@@ -94,13 +103,30 @@ pub(crate) struct Shot {
 }
 
 impl Touch {
-    pub fn shoot(&self, body: &Body<'_>) -> Result<Shot, PathError> {
-        let shot = shoot(body.shape, &self.x, &self.tau, self.length)?;
+    pub fn new(order: usize, x: Point<3>, tau: Vector<3>, length: f64) -> Self {
+        Touch { order, x, tau, length, known: None }
+    }
+
+    /// Follows the geodesic, unless it is known.
+    pub fn shoot(&mut self, body: &Body<'_>) -> Result<Shot, PathError> {
+        let along = |x: &Point<3>, tau: &Vector<3>| Along::new(&body.shape.level(x), tau);
+        let first = along(&self.x, &self.tau);
+        let start = (self.x, self.tau, self.length);
+        let same =
+            |k: &Known| k.start == start && k.ends[0] == first && k.ends[1] == along(&k.shot.end.x, &k.shot.end.tau);
+        let known = match self.known.filter(same) {
+            Some(known) => known,
+            None => {
+                let shot = geodesic::shoot(body.shape, &self.x, &self.tau, self.length)?;
+                Known { start, shot, ends: [first, along(&shot.end.x, &shot.end.tau)] }
+            }
+        };
+        self.known = Some(known);
+        let Known { shot, ends, .. } = known;
         let end = shot.end;
-        let p = End::new(body, &self.x, &self.tau);
         Ok(Shot {
-            p,
-            q: End::new(body, &end.x, &end.tau),
+            p: End::new(body, &self.x, &self.tau, &ends[0]),
+            q: End::new(body, &end.x, &end.tau, &ends[1]),
             a: end.a,
             r: end.r,
             largest: shot.largest,
@@ -118,7 +144,7 @@ impl Touch {
     ) -> Result<Self, PathError> {
         let (x, level) = foot(body.shape, &body.inside(x))?;
         let tau = tangent(&level, &x, &body.inside_vector(direction))?;
-        Ok(Touch { order, x, tau, length })
+        Ok(Touch::new(order, x, tau, length))
     }
 
     /// How much of a Newton step may be taken: half a radian of turn, half the length or a part of the radius.
@@ -137,6 +163,6 @@ impl Touch {
         let (sin, cos) = (step[2] * share).sin_cos();
         let (x, level) = foot(body.shape, &x)?;
         let tau = tangent(&level, &x, &(self.tau * cos + along.g * sin))?;
-        Ok(Touch { order: self.order, x, tau, length: self.length + share * step[3] })
+        Ok(Touch::new(self.order, x, tau, self.length + share * step[3]))
     }
 }

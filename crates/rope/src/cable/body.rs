@@ -152,6 +152,16 @@ impl CurveBody for Cable {
 }
 
 impl Body for Cable {
+    fn is_slack(&self, state: &BodyState) -> bool {
+        let is_slack = |(e, own): (usize, &Element)| own.is_slack(&self.line.nodal(&state.configuration, e));
+        self.elements.iter().enumerate().all(is_slack)
+    }
+
+    fn tighten(&mut self, force: f64) {
+        let is_cable = |e: &&mut Element| e.carries == Carries::TensionOnly;
+        self.elements.iter_mut().filter(is_cable).for_each(|e| e.tightened = force);
+    }
+
     fn name(&self) -> &str {
         &self.name
     }

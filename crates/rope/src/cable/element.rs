@@ -9,6 +9,7 @@
 //! `a ∝ P_2(ξ)` without energy: a share of the weights goes to three points, as in a beam with shear. A cable without bending
 //! stiffness gets a small constant share instead. Geometric terms take forces predicted from the step before.
 
+use crate::chain::body::LONGER;
 use crate::hermite::{self, THREE, TWO};
 use nalgebra::{SMatrix, SVector};
 use signorini_geometry::{Matrix, Vector};
@@ -46,6 +47,8 @@ pub struct Element {
     pub axial: f64,
     pub bending: f64,
     pub carries: Carries,
+    /// A spring beside, by its force at the unstrained length, for now.
+    pub tightened: f64,
     stabilisation: f64,
     /// `λ` at the five points.
     unstrained: [f64; 5],
@@ -56,7 +59,8 @@ impl Element {
     pub fn new(length: f64, axial: f64, bending: f64, carries: Carries, nodes: &[Vector<3>; 4]) -> Self {
         let stabilisation =
             if bending > 0.0 { (STABILISATION * bending / (axial * length * length)).min(1.0) } else { CABLE_SHARE };
-        let mut element = Element { length, axial, bending, carries, stabilisation, unstrained: [1.0; 5] };
+        let mut element =
+            Element { length, axial, bending, carries, tightened: 0.0, stabilisation, unstrained: [1.0; 5] };
         let lengths: [f64; 5] = std::array::from_fn(|k| element.first(element.stretch_rule(k).0, nodes).1.norm());
         // Proportions only: the mean is one.
         let mean = (0..3).map(|k| THREE[k].1 * lengths[2 + k]).sum::<f64>();
@@ -87,6 +91,12 @@ impl Element {
             Carries::TensionOnly => self.axial * strain.max(0.0),
             Carries::TensionAndCompression => self.axial * strain,
         }
+    }
+
+    /// Whether it carries nothing, nor would after a little more stretch.
+    pub fn is_slack(&self, nodes: &[Vector<3>; 4]) -> bool {
+        let strain = |k: usize| self.first(self.stretch_rule(k).0, nodes).1.norm() / self.unstrained[k] - 1.0;
+        self.carries == Carries::TensionOnly && self.bending == 0.0 && (0..5).all(|k| strain(k) < -LONGER)
     }
 
     /// The forces in a state.
@@ -128,8 +138,8 @@ impl Element {
             let strain = a.norm() / self.unstrained[k] - 1.0;
             let force = self.axial_force(strain);
             // Weights are lengths without strain.
-            energy += 0.5 * weight * self.unstrained[k] * force * strain;
-            add(&c, a * (weight * force / a.norm()));
+            energy += 0.5 * weight * (self.unstrained[k] * force * strain + self.tightened * a.norm_squared());
+            add(&c, a * (weight * (force / a.norm() + self.tightened)));
         }
         if self.bending > 0.0 {
             for (xi, weight) in THREE {
@@ -171,7 +181,8 @@ impl Element {
                 Carries::TensionAndCompression => stresses.axial[k],
             };
             let stiffness = if is_taut { stiffness } else { geometric / length };
-            add(&c, &c, (along * stiffness + (one - along) * (geometric / length)) * weight);
+            let across = (one - along) * (geometric / length);
+            add(&c, &c, (along * stiffness + across + one * self.tightened) * weight);
         }
         if self.bending > 0.0 {
             for (k, (xi, weight)) in THREE.into_iter().enumerate() {

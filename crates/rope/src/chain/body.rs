@@ -82,6 +82,8 @@ pub struct Chain {
     /// Its lengths are the unstrained ones.
     pub(super) line: Centreline,
     pub(super) stiffness: f64,
+    /// A spring beside, by its force at the unstrained length, for now.
+    tightened: f64,
     pub(super) radius: f64,
     pub(super) drives: Vec<Drive>,
     /// Nodes through which the rope runs without friction.
@@ -112,6 +114,7 @@ impl Chain {
             drives: vec![Drive::Elastic; lengths.len()],
             line: Centreline::new(lengths, path.closure, Continuity::C0, [3, 3]),
             stiffness,
+            tightened: 0.0,
             radius,
             pulleys: Vec::new(),
             winch: None,
@@ -192,7 +195,14 @@ impl Chain {
     fn element(&self, state: &BodyState, element: usize) -> (Vector<3>, Stretched) {
         let [a, b] = self.line.ends(element).map(|n| self.line.position(&state.configuration, n));
         let unstrained = self.unstrained_length(state, element);
-        (b - a, stretched(&(b - a), self.stiffness, unstrained, self.drives[element]))
+        let mut found = stretched(&(b - a), self.stiffness, unstrained, self.drives[element]);
+        if self.tightened > 0.0 {
+            let density = self.tightened / unstrained;
+            found.energy += 0.5 * density * (b - a).norm_squared();
+            found.force += (b - a) * density;
+            found.stiffness += Matrix::<3>::identity() * density;
+        }
+        (b - a, found)
     }
 
     /// The tension of each element that is out: zero where it is slack.
@@ -289,7 +299,19 @@ impl CurveBody for Chain {
     }
 }
 
+/// Share of its length by which what is slack is longer than its way: more than rounding.
+pub(crate) const LONGER: f64 = 1e-9;
+
 impl Body for Chain {
+    fn is_slack(&self, state: &BodyState) -> bool {
+        let is_long = |e: usize| self.element(state, e).0.norm() < (1.0 - LONGER) * self.unstrained_length(state, e);
+        self.active(state).all(|e| self.drives[e] == Drive::Elastic && is_long(e))
+    }
+
+    fn tighten(&mut self, force: f64) {
+        self.tightened = force;
+    }
+
     fn name(&self) -> &str {
         &self.name
     }

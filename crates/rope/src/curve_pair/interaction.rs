@@ -11,6 +11,10 @@ use signorini_mechanics::interaction::{Around, Bodies, Interaction, NotItsHistor
 use signorini_mechanics::passage::Way;
 use signorini_mechanics::{Curve, Enforcement, Part, SimplerFriction, SiteResult};
 
+/// Of the second derivative of the squared distance, relative to that between straight lines, what is hardly any: nearest points
+/// move fifty times as far as curves.
+const FOCAL: f64 = 0.02;
+
 impl CurveContact {
     /// One of the curves.
     fn curve<'a>(&self, at: Bodies<'a>, side: usize) -> Result<Box<dyn Curve + 'a>, PlaceError> {
@@ -204,6 +208,35 @@ impl Interaction for CurveContact {
         })?;
         self.times[0] = self.times[1];
         Ok(())
+    }
+
+    /// Where a curve bends towards the other as sharply as they are apart, its nearest point is about to part in two.
+    fn doubt(&self, at: Bodies<'_>) -> Option<String> {
+        let name = |side: usize| at.bodies[self.parts[side].body].name();
+        let worst = self.with(at, |sides, first| {
+            let (touches, _) = self.touches(sides, first, Order::First, &[]);
+            let bend = |c: &Touch| {
+                let jets =
+                    [0, 1].map(|s| sides[s].curve.jet(sides[s].configuration, c.points[s].element, c.points[s].xi));
+                let d = jets[0].x - jets[1].x;
+                [(0, d), (1, -d)]
+                    .map(|(s, d)| (1.0 + d.dot(&jets[s].d2) / jets[s].d1.norm_squared(), s, jets[s].x, d.norm()))
+            };
+            let closed = touches.iter().filter(|c| c.force < 0.0);
+            closed.flat_map(bend).min_by(|p, q| p.0.total_cmp(&q.0))
+        });
+        let (left, side, x, apart) = worst.ok()?.filter(|w| w.0 < FOCAL)?;
+        Some(format!(
+            "contact `{}`: at ({:.4}, {:.4}, {:.4}) `{}` curves towards `{}` with a radius of {:.3} of the distance of their axes, {apart:.4}: \
+             closer than 1 the nearest point is lost; thinner sections, or stiffer ones",
+            self.name,
+            x[0],
+            x[1],
+            x[2],
+            name(side),
+            name(1 - side),
+            1.0 / (1.0 - left)
+        ))
     }
 
     fn unload(&mut self) {

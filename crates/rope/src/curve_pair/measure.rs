@@ -19,6 +19,7 @@ use signorini_geometry::Vector;
 use signorini_geometry::measures::{Measures, PartnerJet, Variation};
 use signorini_geometry::shape::CurveJet;
 use signorini_mechanics::body::{Foot, MaterialPoint, Order};
+use signorini_mechanics::pair::axis;
 
 /// Why two points of curves make no pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -235,15 +236,19 @@ fn with<const N: usize>(
             ((a_11 * a_22 - a_12 * a_12) * (d_metric[0] / p + d_metric[1] / q) - d_determinant) / (p * q)
         })
         .collect();
-    // The tangent across the normal; with coordinates both are orthogonal, but that of a point of Gauss may lean.
-    let across = units[0] - normal * normal.dot(&units[0]);
+    // The tangent across the normal; with coordinates both are orthogonal, but that of a point of Gauss may lean. Ends that
+    // meet head on have hardly any tangent across, and are alike in all directions: one of space serves.
+    let is_head_on = N == 0 && normal.dot(&units[0]).powi(2) > 0.5;
+    let (from, d_from): (_, &dyn Fn(usize) -> Vector<3>) =
+        if is_head_on { (axis(normal.iamin()), &|_| zero) } else { (units[0], &|k| d_unit(k, 0)) };
+    let lean = normal.dot(&from);
+    let across = from - normal * lean;
     let length = across.norm();
-    let axial = across.try_normalize(0.0).unwrap_or(units[0]);
+    let axial = across.try_normalize(0.0).unwrap_or(from);
     let d_axial = (0..n)
         .map(|k| {
-            let (d, dn) = (d_unit(k, 0), d_normal[k]);
-            let lean = normal.dot(&units[0]);
-            let change = d - dn * lean - normal * (dn.dot(&units[0]) + normal.dot(&d));
+            let (d, dn) = (d_from(k), d_normal[k]);
+            let change = d - dn * lean - normal * (dn.dot(&from) + normal.dot(&d));
             if length > 0.0 { (change - axial * axial.dot(&change)) / length } else { zero }
         })
         .collect();

@@ -139,6 +139,9 @@ impl Found<'_> {
 /// Minima whose parameters, in elements, agree to this are one: searches end closer than that.
 const SAME: f64 = 1e-5;
 
+/// How far beyond an end, in elements, a minimum may be and still be one of the curve: rounding of what search and ends find.
+const STATIONARY: f64 = 1e-12;
+
 /// All local minima closer than `reach`, surface to surface, in the order of their places.
 pub fn crossings(a: Searched<'_>, b: Searched<'_>, between: Between, reach: f64) -> Vec<Nearby> {
     let sides = [a, b];
@@ -256,8 +259,12 @@ fn descend(sides: [&Searched<'_>; 2], start: [f64; 2]) -> Option<[f64; 2]> {
             return is_minimum.then_some(u);
         }
         if moved <= size {
-            // Halted at an end, or where rounding hides any descent.
-            return (is_minimum && largest < SAME).then_some(u);
+            // Halted where rounding hides any descent, or at an end: beyond that the distance is not stationary.
+            let ends = [0, 1].map(|s| (sides[s].curve.closure() == Closure::Open, sides[s].curve.elements() as f64));
+            let is_beyond =
+                |s: usize| ends[s].0 && ((u[s] == 0.0 && step[s] < 0.0) || (u[s] == ends[s].1 && step[s] > 0.0));
+            let most = if (0..2).any(is_beyond) { STATIONARY } else { SAME };
+            return (is_minimum && largest < most).then_some(u);
         }
     }
     None

@@ -25,7 +25,7 @@ pub enum PathError {
         at[0], at[1], at[2]
     )]
     Kink { at: [f64; 3], degrees: f64 },
-    #[error("the path crosses itself at ({}, {}, {}), {first} and {second} along it", at[0], at[1], at[2])]
+    #[error("the path crosses itself at ({:.4}, {:.4}, {:.4}), {first:.4} and {second:.4} along it", at[0], at[1], at[2])]
     CrossesItself { at: [f64; 3], first: f64, second: f64 },
     #[error("{given} cells: the path needs at least {needed}")]
     TooFewCells { given: usize, needed: usize },

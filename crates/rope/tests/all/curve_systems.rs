@@ -178,10 +178,6 @@ fn crossing_cantilevers_have_the_exact_force() {
     };
     for row in rows()["crossing_cantilevers"]["rows"].as_array().unwrap() {
         let n = |key: &str| row[key].as_f64().unwrap();
-        // End on end it is a matter of rounding which end the nearest point is beyond.
-        if n("a1") == n("L1") {
-            continue;
-        }
         let case = Crossing {
             lengths: [n("L1"), n("L2")],
             bending: [n("EI1"), n("EI2")],
@@ -224,6 +220,44 @@ fn ends_bear_parallel_cantilevers() {
     let (f, tip, iterations) = case.solve();
     println!("parallel: F {:.6} ({expected:.6}), tip {:.5} (0.86), {iterations} iterations", f / small, tip / small);
     assert!((f / small - expected).abs() < 1e-4 && (tip / small - 0.86).abs() < 1e-4);
+}
+
+/// Two rods end on end, pressed together along their axes and a little aside: both carry what their compression asks, and the
+/// ends stay on each other.
+#[test]
+fn ends_press_on_ends() {
+    let (axial, push, radius) = (50.0, 0.02, 0.05);
+    let rod = Stiffness { axial, shear: [20.0; 2], torsion: 1.0, bending: [1.0; 2] };
+    for (aside, mu) in [(0.0, None), (0.0, Some(0.3)), (0.01, Some(0.3))] {
+        let left = [V::new(-1.0, 0.0, 0.0), V::new(-radius, 0.0, 0.0)];
+        let right = [V::new(radius, aside, 0.0), V::new(1.0, aside, 0.0)];
+        let all: Vec<Box<dyn Body>> =
+            vec![Box::new(beam("left", &left, 4, rod, radius)), Box::new(beam("right", &right, 4, rod, radius))];
+        let mut system = system(all, |contact| {
+            contact.enforcement = Enforcement::AugmentedLagrangian;
+            contact.friction = mu.map(|mu| Box::new(Coulomb::isotropic(mu).unwrap()) as _);
+        });
+        system.supports.push(clamped(0, "start"));
+        let along = field(move |_: &V, t| -push * t);
+        system.supports.push(held(1, "end", [along, at_zero(), at_zero()], [(); 3].map(|()| at_zero())));
+        system.prepare().unwrap();
+        let mut state = system.start();
+        let mut told = Vec::new();
+        for k in 1..=4 {
+            let (next, result) = system.solve(&state, 0.25 * f64::from(k), &mut |_, _| true).unwrap();
+            system.accept(&next).unwrap();
+            state = next;
+            told.push((result.iterations, total(&result.sites[0])));
+            assert_eq!(result.sites[0].iter().filter(|s| s.pressure > 0.0).count(), 1);
+        }
+        println!("aside {aside}, mu {mu:?}: {told:?}");
+        let force = told[3].1;
+        // Half of the push each over a length of 0.95; aside the ends start apart by what the circle leaves.
+        let apart = (4.0 * radius * radius + aside * aside).sqrt() - 2.0 * radius;
+        let expected = (push - apart) / (2.0 * (1.0 - radius)) * axial;
+        let tolerance = if aside == 0.0 { 1e-9 } else { 0.2 };
+        assert!((force / expected - 1.0).abs() < tolerance, "{force} {expected}");
+    }
 }
 
 #[test]
@@ -534,4 +568,20 @@ fn an_overhand_knot_is_drawn_together_with_friction() {
 fn an_overhand_knot_is_drawn_tight_with_friction() {
     let (tension, count) = draw_tight(20, Some(Form::Point));
     assert!(count >= 3 && tension > 1.0);
+}
+
+/// Where the axis of a rod curves towards the other as sharply as they are apart the nearest point of a crossing is lost: said
+/// with the place.
+#[test]
+fn a_clasp_that_is_too_sharp_is_told() {
+    let mut system = clasp(None);
+    let mut state = system.start();
+    for time in [0.1, 0.2, 0.3, 0.4] {
+        let (found, _) = system.solve(&state, time, &mut |_, _| true).unwrap();
+        system.accept(&found).unwrap();
+        state = found;
+    }
+    let error = system.solve(&state, 0.45, &mut |_, _| true).unwrap_err().to_string();
+    println!("{error}");
+    assert!(error.contains("`touch`") && error.contains("curves towards"), "{error}");
 }

@@ -16,6 +16,7 @@ use signorini_rope::centreline::{Closure, Continuity};
 use signorini_rope::chain::Chain;
 use signorini_rope::chain::body::Rest;
 use signorini_rope::path::Path;
+use signorini_rope::section::Stiffness;
 use signorini_solid::material::Elastic;
 use signorini_solid::{EdgeOf, SolidBody, Space, StressLaw};
 use std::collections::BTreeMap;
@@ -148,6 +149,49 @@ fn tangents_are_derivatives() {
     }
 }
 
+/// A beam that lies along a rounding, at points of Gauss between its nodes: sections of both turn, as rotations of the one and
+/// with displacements of the other.
+#[test]
+fn tangents_of_beams_along_a_rounding() {
+    let (radius, section) = (0.1, 0.05);
+    for law in laws() {
+        let rubs = law.is_some();
+        let size = [V::new(-1.0, -1.0, -1.0), V::zeros()];
+        let block = solid("block", size, [1, 2, 1], 2, (100.0, 0.3), |x| x, (["top", "right"], radius));
+        let away = (radius + section - 0.01) * 0.5f64.sqrt();
+        let ends = [V::new(away, -0.9, away), V::new(away + 0.01, -0.1, away)];
+        let stiffness = Stiffness { axial: 100.0, shear: [40.0; 2], torsion: 1.0, bending: [1.0; 2] };
+        let own = bodies::beam("rod", &ends, 2, stiffness, section);
+        let bodies: Vec<Box<dyn Body>> = vec![Box::new(own), Box::new(block)];
+        let [own, met] = [(Part::from(0), bodies[0].as_ref()), (part(1, "rim"), bodies[1].as_ref())];
+        let mut contact = Contact::new("touch", own, met, Sampling::GaussPoints, Enforcement::Multiplier).unwrap();
+        contact.friction = law;
+        contact.axis = AxisChoice::Tangent;
+        let mut system = System { bodies, contacts: vec![Box::new(contact)], ..System::default() };
+        system.prepare().unwrap();
+        let (mut at, along) = moved(&system);
+        // Predicted stresses are those of the state after a step of nothing.
+        let rod = &system.bodies[0];
+        at.bodies[0] = rod.advance(&at.bodies[0], &vec![0.0; rod.unknowns()], 0.0);
+        let (now, matrix) = system.linearise(&at, 0.0).unwrap();
+        let mut product = matrix.multiply(&along);
+        // Residuals are differentiated component by component; the tangent is that along geodesics.
+        for spin in system.bodies[0].spins() {
+            let of = |v: &[f64]| V::from_fn(|i, _| v[spin[i] as usize]);
+            let turned = of(&now).cross(&of(&along)) * -0.5;
+            (0..3).for_each(|i| product[spin[i] as usize] += turned[i]);
+        }
+        let scale = product.iter().fold(0.0f64, |m, p| m.max(p.abs()));
+        let [coarse, fine] = [1e-5, 5e-6].map(|h| {
+            let then = system.linearise(&system.advance(&at, &along, h), 0.0).unwrap().0;
+            let off = |k: usize| (then[k] - now[k] - h * product[k]).abs();
+            (0..now.len()).map(off).fold(0.0, f64::max) / (h * scale)
+        });
+        println!("friction {rubs}: {coarse:.1e} {fine:.1e}");
+        assert!(fine < 1e-8 || (1.9..2.1).contains(&(coarse / fine)), "{coarse:e} {fine:e}");
+    }
+}
+
 /// What the contact alone adds to the residual does no work in a rigid motion of both bodies.
 #[test]
 fn forces_have_neither_resultant_nor_moment() {
@@ -186,7 +230,7 @@ fn a_bar_on_its_edge_carries_as_beams_do() {
     let half = 0.5f64.sqrt();
     // They touch from the start on.
     let sunk = 1e-7;
-    for radius in [0.0] {
+    for radius in [0.0, 0.02] {
         let upper = |x: V| V::new(x[0], half * (x[1] - x[2]), half * (x[1] + x[2]) + a * half + radius - sunk);
         let size = |l: f64| [V::new(0.0, -0.5 * a, -0.5 * a), V::new(l, 0.5 * a, 0.5 * a)];
         let flat = |x: V| V::new(at[0] - x[1], x[0] - at[1], x[2] - 0.5 * a);
@@ -203,7 +247,7 @@ fn a_bar_on_its_edge_carries_as_beams_do() {
             };
             let expected = push * compliance(at[0], lengths[0]) / gives;
             let bodies: Vec<Box<dyn Body>> = vec![Box::new(bar), other];
-            let met_part = if master > 0.0 { part(1, "boundary") } else { Part::from(1) };
+            let met_part = if master > 0.0 { part(1, "top") } else { Part::from(1) };
             let sides = [(part(0, "rim"), bodies[0].as_ref()), (met_part, bodies[1].as_ref())];
             let [own, touched] = sides;
             let contact =

@@ -7,6 +7,8 @@ use signorini_geometry::Vector;
 use signorini_mechanics::body::Body;
 use signorini_mechanics::interaction::Interaction;
 use signorini_mechanics::{AxisChoice, Contact, Enforcement, Part, PlacedLoad, Sampling, Support, System, TimedLoad};
+use signorini_rope::cable::Cable;
+use signorini_rope::cable::element::Carries;
 use signorini_rope::centreline::{Closure, Continuity};
 use signorini_rope::chain::Chain;
 use signorini_rope::chain::body::Rest;
@@ -177,4 +179,52 @@ fn an_edge_does_not_touch_itself() {
     let start = system.start();
     let (_, result) = system.solve(&start, 1.0, &mut |_, _| true).unwrap();
     assert_eq!(total(&result.sites[0]), 0.0);
+}
+
+/// A smooth rope without bending stiffness, which lies round a rounding from the start on, at points of Gauss.
+#[test]
+fn a_smooth_rope_slips_over_a_rounding() {
+    let (mu, radius, section) = (0.3, 0.2, 0.05);
+    let size = [V::new(-1.0, -0.5, -1.0), V::new(0.0, 0.5, 0.0)];
+    let r = radius + section;
+    let angle = |k: i32| f64::from(k) / 32.0 * std::f64::consts::PI;
+    let h = 2.0 * r * (0.5 * angle(1)).sin();
+    let mut points: Vec<V> = (0..8).map(|k| V::new(h * f64::from(k - 8), 0.0, r)).collect();
+    points.extend((0..=16).map(|k| V::new(r * angle(k).sin(), 0.0, r * angle(k).cos())));
+    points.extend((1..=8).map(|k| V::new(r, 0.0, -h * f64::from(k))));
+    let path = Path::spline(&points, Closure::Open).unwrap().sample(points.len() - 1, Continuity::C1).unwrap();
+    for enforcement in [Enforcement::Penalty { wanted_penetration: None }, Enforcement::Multiplier] {
+        let block = solid("block", size, [2, 2, 2], 1, (1e5, 0.3), |x| x, edge(["top", "right"], radius));
+        let rope = Cable::new("rope", &path, 1e3, 0.0, Carries::TensionOnly, Rest::Pretension(1.0), section).unwrap();
+        let tensions = rope.clone();
+        let bodies: Vec<Box<dyn Body>> = vec![Box::new(rope), Box::new(block)];
+        let [own, met] = [(Part::from(0), bodies[0].as_ref()), (part(1, "rim"), bodies[1].as_ref())];
+        let mut contact = Contact::new("touch", own, met, Sampling::GaussPoints, enforcement).unwrap();
+        contact.friction = Some(Box::new(Coulomb::isotropic(mu).unwrap()));
+        contact.axis = AxisChoice::Tangent;
+        let mut system = System { bodies, contacts: vec![Box::new(contact)], ..System::default() };
+        let none = || [None, None, None];
+        let plane = Part::from(0);
+        system.supports = vec![
+            held(1, "bottom", [(); 3].map(|()| at_zero()), none()),
+            held(0, "start", [(); 3].map(|()| at_zero()), none()),
+            Support { name: "plane".into(), part: plane, displacement: [None, at_zero(), None], rotation: none() },
+        ];
+        let load = TimedLoad::Force(Arc::new(|_, t| V::new(0.0, 0.0, -1.0 - t)));
+        system.loads.push(PlacedLoad { name: "pull".into(), part: part(0, "end"), load });
+        system.prepare().unwrap();
+        let mut state = system.start();
+        let mut iterations = Vec::new();
+        for k in 1..=4 {
+            let (next, result) = system.solve(&state, 0.25 * f64::from(k), &mut |_, _| true).unwrap();
+            system.accept(&next).unwrap();
+            iterations.push(result.iterations);
+            state = next;
+        }
+        let list = tensions.tensions(&state.bodies[0]);
+        let (ratio, exact) = ((list[list.len() - 1] / list[0]).ln(), 0.5 * mu * std::f64::consts::PI);
+        println!("{enforcement:?}: ln T1/T0 {ratio:.6} of {exact:.6}, {iterations:?} iterations");
+        assert!((ratio / exact - 1.0).abs() < 2e-3, "{ratio} {exact}");
+        assert!(iterations[0] <= 80 && iterations[1..].iter().all(|n| *n <= 30), "{iterations:?}");
+    }
 }

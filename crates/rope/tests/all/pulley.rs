@@ -48,6 +48,8 @@ fn system(young: f64, mu: Option<f64>, enforcement: Enforcement) -> (System, Cha
         (0..=ROUND).map(|k| PI * f64::from(k) / f64::from(ROUND)).map(|a| V::new(-r * a.cos(), r * a.sin(), 0.0)),
     );
     points.extend((1..=STRAIGHT).map(|k| down(k, r)));
+    // As files have them: some nodes start a millionth off the pulley, others in it.
+    let points: Vec<V> = points.iter().map(|p| p.map(|v| (v * 1e6).round() / 1e6)).collect();
     let path = Path::points(&points, Closure::Open).unwrap().sample(points.len() - 1, Continuity::C0).unwrap();
     let rope = Chain::new("rope", &path, 200.0, Rest::Pretension(0.1), SECTION).unwrap();
     let copy = rope.clone();
@@ -94,7 +96,7 @@ fn a_rope_slips_over_an_elastic_pulley() {
     let turn = PI / f64::from(ROUND);
     let (exact, off) = (mu * PI, (mu * mu + 0.25) * turn * turn / 3.0);
     let mut depths = Vec::new();
-    for young in [1e5, 200.0] {
+    for young in [1e5, 1e3, 200.0] {
         let (mut system, rope) = system(young, Some(mu), Enforcement::Multiplier);
         let (state, result, iterations) = pulled(&mut system, 6);
         let list = rope.tensions(&state.bodies[0]);
@@ -107,9 +109,9 @@ fn a_rope_slips_over_an_elastic_pulley() {
         );
         assert!((ratio / exact - 1.0).abs() < off, "{ratio}");
         assert!(result.imbalance < 1e-9);
-        assert!(iterations.iter().sum::<usize>() <= 150, "{iterations:?}");
+        assert!(iterations[0] <= 12 && iterations[1..].iter().all(|n| *n <= 6), "{iterations:?}");
     }
-    assert!((5e-4..5e-3).contains(&(depths[1] - depths[0])), "{depths:?}");
+    assert!((5e-4..5e-3).contains(&(depths[2] - depths[0])), "{depths:?}");
 }
 
 /// Residual and tangent fit each other, with nodes on the borders of faces.

@@ -46,6 +46,12 @@ impl PathCase {
 
     /// An error of a path at its table.
     pub(super) fn failed(&self, key: &KeyPath, name: &str, error: &PathError) -> CaseError {
+        if let PathError::Inside { place, body, depth } = error
+            && let Some(body) = self.plan.bodies.get(*body)
+        {
+            let message = format!("the {place} of the path `{name}` lies inside `{}`, {depth:.4e} deep", body.name);
+            return self.problem().error(key, message).help("a point outside of the body");
+        }
         self.problem().error(key, format!("the path `{name}`: {error}"))
     }
 

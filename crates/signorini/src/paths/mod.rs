@@ -97,11 +97,15 @@ pub fn sentences(summary: &Value) -> Vec<String> {
                 number(&path["coverage"]["covered"])
             ));
         }
-        for key in ["bridges", "slips"] {
-            for part in path[key].as_array().into_iter().flatten() {
-                out.push(format!("`{name}` {key} from s = {} to {}", long(&part[0]), long(&part[1])));
-            }
-        }
+        let parts = |key: &str| path[key].as_array().into_iter().flatten().map(|p| [long(&p[0]), long(&p[1])]);
+        out.extend(parts("bridges").map(|[from, to]| {
+            let remedy = "the mandrel is hollow along it: another angle, or a slippage that leads round";
+            format!("`{name}` bridges from s = {from} to {to}: {remedy}")
+        }));
+        out.extend(parts("slips").map(|[from, to]| {
+            let remedy = "its slippage is beyond the friction: less of it, or a rougher yarn";
+            format!("`{name}` slips from s = {from} to {to}: {remedy}")
+        }));
     }
     for rope in summary["ropes"].as_array().into_iter().flatten() {
         out.push(format!(

@@ -73,7 +73,6 @@ impl Planner<'_> {
         if mesh.quality().has_inside() {
             return self.turned_outwards(mesh, key, "the surface");
         }
-        let error = self.problem.error(key, "the surface is not closed");
-        Err(error.help("a rigid body needs an inside: close the holes, or model it by another shape"))
+        Err(self.not_closed(&mesh, key, "the surface"))
     }
 }

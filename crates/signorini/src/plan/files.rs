@@ -7,6 +7,7 @@ use crate::problem::{self, CaseError, Location};
 use crate::relief::{MovedHeight, Sampled};
 use crate::report::Warning;
 use signorini_geometry::mesh::TriangleMesh;
+use std::collections::BTreeMap;
 
 impl Planner<'_> {
     /// A file named in the case, beside the case; the files of the gallery are carried in the program.
@@ -49,10 +50,31 @@ impl Planner<'_> {
         if mesh.quality().has_inside() {
             return self.turned_outwards(mesh, &key.file, &format!("the surface in `{}`", key.file));
         }
-        Err(self
-            .problem
-            .error(&key.file, format!("the surface in `{}` is not closed", key.file))
-            .help("a rigid body needs an inside: close the holes, or model it by another shape"))
+        Err(self.not_closed(&mesh, &key.file, &format!("the surface in `{}`", key.file)))
+    }
+
+    /// A surface without an inside: how many edges are to blame, and where one of them is.
+    pub(super) fn not_closed(&self, mesh: &TriangleMesh, at: &impl Location, what: &str) -> CaseError {
+        let quality = mesh.quality();
+        let mut uses: BTreeMap<[u32; 2], usize> = BTreeMap::new();
+        let sides = |t: &[u32; 3]| [0, 1, 2].map(|k| [t[k].min(t[(k + 1) % 3]), t[k].max(t[(k + 1) % 3])]);
+        mesh.triangles().iter().flat_map(sides).for_each(|side| *uses.entry(side).or_default() += 1);
+        let wrong = uses.iter().find(|(_, count)| **count != 2).map(|(side, _)| {
+            let [a, b] = side.map(|v| mesh.vertices()[v as usize]);
+            let middle: Vec<String> = ((a + b) * 0.5).iter().map(|v| format!("{v:.4}")).collect();
+            format!(", such as that at ({})", middle.join(", "))
+        });
+        let counts = [
+            (quality.open_edges, "have one triangle"),
+            (quality.branching_edges, "more than two"),
+            (quality.flipped_edges, "two that disagree about the outside"),
+        ];
+        let told: Vec<String> =
+            counts.iter().filter(|(n, _)| *n > 0).map(|(n, reason)| format!("{n} edges {reason}")).collect();
+        let message = format!("{what} is not closed: {}{}", told.join(", "), wrong.unwrap_or_default());
+        self.problem
+            .error(at, message)
+            .help("a rigid body needs an inside: close the holes, or model it by another shape")
     }
 
     /// A closed surface with its normals outwards: one whose volume is negative is turned round, and that is said.

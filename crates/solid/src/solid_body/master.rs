@@ -100,6 +100,25 @@ impl<const D: usize> SurfaceMaster<'_, D> {
         list.into_iter().map(of).sum::<Vector<3>>().normalize()
     }
 
+    /// Whether the surface ends at a place on the border of a face: at a side of one face only, or a vertex of such a side.
+    fn ends_at(&self, face: u32, s: &Local) -> bool {
+        let around = |v: u32| self.surface.around.get(&v).map_or(&[][..], |l| &l[..]);
+        let is_single = |a: u32, b: u32| around(a).iter().filter(|f| around(b).contains(f)).count() == 1;
+        let own = self.faces.face(face);
+        match Place::of(own.shape, s) {
+            Place::Edge([a, b]) if D == 3 => is_single(own.vertices[a], own.vertices[b]),
+            Place::Vertex(v) if D == 3 => {
+                let v = own.vertices[v];
+                around(v).iter().map(|f| self.faces.face(*f)).any(|f| {
+                    let sides = f.shape.edges().iter().map(|e| e.map(|k| f.vertices[k]));
+                    sides.filter(|side| side.contains(&v)).any(|[a, b]| is_single(a, b))
+                })
+            }
+            Place::Vertex(v) => around(own.vertices[v]).len() == 1,
+            _ => false,
+        }
+    }
+
     /// Whether what is closest on a face is across from a site of the surface itself.
     fn faces_each_other(&self, own: &Own, face: u32, x: &Point<3>, found: &Projection) -> bool {
         let normal = self.normal(face, &coordinates(found));
@@ -185,6 +204,7 @@ impl<const D: usize> SurfaceMaster<'_, D> {
             radius: 0.0,
             functions: Vec::new(),
             spin: Vec::new(),
+            spin_bends: Vec::new(),
             frame: Matrix::<3>::identity(),
         };
         if feature == FeatureKind::Interior {
@@ -194,9 +214,13 @@ impl<const D: usize> SurfaceMaster<'_, D> {
         let d = x - spatial(&at.x);
         let distance = d.norm();
         // Beside a border that is no edge, as between the faces of a plane, the point is over the face.
-        let over = (d - normal * normal.dot(&d)).norm() <= OVER * distance;
+        let aside = (d - normal * normal.dot(&d)).norm();
+        let over = aside <= OVER * distance;
         let touching = distance <= TOUCHING * self.size;
-        if touching || !over {
+        if aside > TOUCHING * self.size && self.ends_at(face, &s) {
+            // Beyond the end of a surface nothing is inside, however low it is: its outward side is where the point is.
+            foot.outward = Some(d / distance);
+        } else if touching || !over {
             foot.outward = Some(self.mean_normal(face, &s));
         }
         if touching || over {

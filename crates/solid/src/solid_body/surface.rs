@@ -115,6 +115,7 @@ impl<const D: usize> signorini_mechanics::Surface for PlacedSurface<'_, D> {
             radius: 0.0,
             functions: functions::<D>(&list, |d| [d[1], d[2], 0.0, 0.0, 0.0]),
             spin: Vec::new(),
+            spin_bends: Vec::new(),
             frame: Matrix::<3>::identity(),
         }
     }

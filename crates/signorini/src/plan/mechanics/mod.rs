@@ -24,6 +24,7 @@ use signorini_geometry::rigid_shape::RigidShape;
 use signorini_mechanics::contact::Part;
 use signorini_mechanics::system::TimeField;
 use signorini_mechanics::{AxisChoice, PlacedLoad, Support, System};
+use signorini_rope::curve_pair::search::{Between, Searched, crossings};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -180,6 +181,8 @@ impl Planner<'_> {
         system.contacts = acting;
         system.prepare().map_err(|e| problem.error(&problem.space, e.to_string()))?;
         self.check_start(&system, &kinds, &contacts)?;
+        self.check_crossings(&system, &kinds, &contacts)?;
+        self.tell_stretched(&system, &numbers, &mut warnings)?;
         notes.extend(contacts.iter().flat_map(|c| c.notes.iter().cloned()));
         warnings.extend(contacts.iter().flat_map(|c| c.warnings.iter().map(|w| Warning::from(w.as_str()))));
         if kinds.iter().any(|k| matches!(k, Kind::Solid | Kind::Cells)) {
@@ -244,16 +247,83 @@ impl Planner<'_> {
             let deepest = sites.iter().filter_map(|s| Some((s.gap?, s))).min_by(|a, b| a.0.total_cmp(&b.0));
             let Some((gap, site)) = deepest else { continue };
             if gap < -radius.max(0.5 * site.weight) {
-                let name = system.bodies[slave].name();
-                let other = system.bodies[master].name();
-                let at: Vec<String> = site.x.iter().map(|v| format!("{v:.4}")).collect();
-                let message = format!("`{name}` starts {:.4e} deep inside `{other}`, at ({})", -gap, at.join(", "));
-                let place = match problem.bodies.get(name) {
-                    Some(Body::Rope(rope)) => self.key(&rope.path),
-                    Some(Body::Beam(beam)) => self.key(&beam.path),
-                    _ => self.key(&problem.space),
-                };
-                return Err(problem.error(&place, message).help("a path outside of the body, by the radius at least"));
+                let names = [slave, master].map(|b| system.bodies[b].name());
+                return Err(self
+                    .deep_inside(names, -gap, &site.x)
+                    .help("a path outside of the body, by the radius at least"));
+            }
+        }
+        Ok(())
+    }
+
+    /// A curve that starts inside of another body, or of another curve.
+    fn deep_inside(&self, [name, other]: [&str; 2], depth: f64, x: &Point<3>) -> CaseError {
+        let at: Vec<String> = x.iter().map(|v| format!("{v:.4}")).collect();
+        let message = format!("`{name}` starts {depth:.4e} deep inside `{other}`, at ({})", at.join(", "));
+        let place = match self.problem.bodies.get(name) {
+            Some(Body::Rope(rope)) => self.key(&rope.path),
+            Some(Body::Beam(beam)) => self.key(&beam.path),
+            _ => self.key(&self.problem.space),
+        };
+        self.problem.error(&place, message)
+    }
+
+    /// Whether curves that may touch start outside of each other: deeper than the thinner one is thick nothing tells on which
+    /// side.
+    fn check_crossings(&self, system: &System, kinds: &[Kind], contacts: &[Tested]) -> Result<(), CaseError> {
+        let start = system.start();
+        for (contact, tested) in system.contacts.iter().zip(contacts) {
+            let bodies = contact.bodies();
+            let [Kind::Curve { radius: own }, Kind::Curve { radius: other }] = bodies.map(|b| &kinds[b]) else {
+                continue;
+            };
+            if tested.along_a_curve || bodies[0] == bodies[1] {
+                continue;
+            }
+            let [Some(a), Some(b)] = bodies.map(|k| system.bodies[k].curve(None)) else { continue };
+            let configuration = |k: usize| &start.bodies[bodies[k]].configuration[..];
+            let sides = [
+                Searched { curve: a.as_ref(), configuration: configuration(0) },
+                Searched { curve: b.as_ref(), configuration: configuration(1) },
+            ];
+            for near in crossings(sides[0], sides[1], Between::Two, 0.0) {
+                let depth = own + other - near.distance;
+                if depth > own.min(*other) {
+                    let x = a.jet(configuration(0), near.points[0].element, near.points[0].xi).x;
+                    let names = bodies.map(|b| system.bodies[b].name());
+                    let help = "paths apart from each other by both radii at least";
+                    return Err(self.deep_inside(names, depth, &x).help(help));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Says which ropes are shorter than the distance of their ends.
+    fn tell_stretched(
+        &self,
+        system: &System,
+        numbers: &BTreeMap<String, usize>,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<(), CaseError> {
+        let start = system.start();
+        for (name, body) in &self.problem.bodies {
+            let Body::Rope(rope) = body else { continue };
+            let (Some(stated), Some(curve)) = (&rope.unstrained_length, system.bodies[numbers[name]].curve(None))
+            else {
+                continue;
+            };
+            let length = self.reader.positive(stated, LENGTH)?;
+            let configuration = &start.bodies[numbers[name]].configuration;
+            let end = |element: usize, xi: f64| curve.jet(configuration, element, xi).x;
+            let distance = (end(curve.elements() - 1, 1.0) - end(0, 0.0)).norm();
+            if length < distance {
+                let by = 100.0 * (distance / length - 1.0);
+                let message = format!(
+                    "`{name}` is shorter than the distance of its ends, {length} of {distance}: it starts stretched by \
+                     {by:.3} %; a longer `unstrained_length`, or the `pretension` that is wanted"
+                );
+                warnings.push(Warning::from(message));
             }
         }
         Ok(())

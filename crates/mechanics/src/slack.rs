@@ -1,0 +1,72 @@
+//! Ropes that are longer than their way: they have no stiffness until they hang.
+//!
+//! Springs of no length at rest along them, as strong as all that acts, make them hang at once: that is a linear problem, of
+//! given force densities (Schek 1974). Then the springs are taken back: the ropes sag more and more, until their length holds
+//! them. In the end nothing is left of the springs.
+
+use crate::enforcement::SOFTER;
+use crate::increment::{Way, is_curable};
+use crate::increment_error::IncrementError;
+use crate::linear_solver::Solved;
+use crate::points::Order;
+use crate::system::{System, SystemState};
+use signorini_solve::newton::Converged;
+
+/// Force of the first springs relative to all that acts: ropes sag by a thirtieth of their span.
+const FIRST: f64 = 4.0;
+/// What is left of the springs after a step, the longest step, and their force, relative to all that acts, of which nothing is
+/// left after the next.
+const LEFT: f64 = 0.5;
+const LEAST_LEFT: f64 = 0.1;
+const LAST: f64 = 1e-3;
+/// Steps so short that there is no way on.
+const MOST_LEFT: f64 = 0.97;
+
+impl System {
+    /// Whether something has no stiffness because it is slack.
+    pub(crate) fn is_slack(&self, at: &SystemState) -> bool {
+        self.bodies.iter().zip(&at.bodies).any(|(body, state)| body.is_slack(state))
+    }
+
+    /// Newton's method from a state with slack ropes.
+    pub(crate) fn settled(
+        &mut self,
+        start: &SystemState,
+        time: f64,
+        solved: &mut Solved,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<Converged<SystemState>, IncrementError> {
+        // Across itself a rope is as stiff as its tension, not as along itself.
+        self.contacts.iter_mut().for_each(|contact| _ = contact.scale_trials(SOFTER));
+        let found = self.loosened(start, time, solved, report);
+        self.contacts.iter_mut().for_each(|contact| _ = contact.scale_trials(1.0 / SOFTER));
+        self.bodies.iter_mut().for_each(|body| body.tighten(0.0));
+        found
+    }
+
+    fn loosened(
+        &mut self,
+        start: &SystemState,
+        time: f64,
+        solved: &mut Solved,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<Converged<SystemState>, IncrementError> {
+        let (_, count) = self.numbering();
+        let acts: f64 = self.assemble(start, time, Order::First)?.sizes[..count].iter().sum();
+        let mut state = start.clone();
+        let (mut reached, mut force, mut left) = (f64::INFINITY, FIRST * acts, LEFT);
+        loop {
+            self.bodies.iter_mut().for_each(|body| body.tighten(force));
+            match self.by(Way::Straight, &state, time, solved, report) {
+                Ok(found) if force == 0.0 => return Ok(found),
+                Ok(found) => {
+                    (state, reached) = (found.state, force);
+                    left = (left * LEFT).max(LEAST_LEFT);
+                }
+                Err(error) if !is_curable(&error) || left > MOST_LEFT || reached.is_infinite() => return Err(error),
+                Err(_) => left = left.sqrt(),
+            }
+            force = if reached <= LAST * acts { 0.0 } else { reached * left };
+        }
+    }
+}

@@ -161,7 +161,7 @@ fn tangents_of_beams_along_a_rounding() {
         let away = (radius + section - 0.01) * 0.5f64.sqrt();
         let ends = [V::new(away, -0.9, away), V::new(away + 0.01, -0.1, away)];
         let stiffness = Stiffness { axial: 100.0, shear: [40.0; 2], torsion: 1.0, bending: [1.0; 2] };
-        let own = bodies::beam("rod", &ends, 2, stiffness, section);
+        let own = crate::common::bodies::beam("rod", &ends, 2, stiffness, section);
         let bodies: Vec<Box<dyn Body>> = vec![Box::new(own), Box::new(block)];
         let [own, met] = [(Part::from(0), bodies[0].as_ref()), (part(1, "rim"), bodies[1].as_ref())];
         let mut contact = Contact::new("touch", own, met, Sampling::GaussPoints, Enforcement::Multiplier).unwrap();

@@ -219,12 +219,7 @@ impl<'a> Reduced<'a> {
     }
 
     /// The step, and the number of iterations, preconditioned by the Schwarz method for a matrix that is like this one.
-    fn solve(
-        &self,
-        like: &BlockSum<'_>,
-        kind: Kind,
-        known: &mut Inverses,
-    ) -> Result<(Vec<f64>, usize), SolveError> {
+    fn solve(&self, like: &BlockSum<'_>, kind: Kind, known: &mut Inverses) -> Result<(Vec<f64>, usize), SolveError> {
         if self.right.iter().all(|b| *b == 0.0) {
             return Ok((self.given.clone(), 0));
         }

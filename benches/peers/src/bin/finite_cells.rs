@@ -86,7 +86,7 @@ fn held(system: &mut System<'_, 2>) {
 }
 
 fn plate(n: usize, degree: usize) -> Ours {
-    let body = || block(4.0, 1.0, n, degree, stuff(Space::PlaneStress, 206_900.0, 0.29));
+    let body = || block(4.0, 1.0, n, degree, stuff::<2>(Space::PlaneStress, 206_900.0, 0.29));
     measured((n, degree), body, |system| {
         held(system);
         let value = Arc::new(|_: &Point<2>| Vector::<2>::new(0.0, 100.0));
@@ -108,7 +108,7 @@ fn stress(x: &Point<2>) -> Matrix2<f64> {
 }
 
 fn kirsch(n: usize, degree: usize) -> Ours {
-    let body = || block(4.0, 1.0, n, degree, stuff(Space::PlaneStrain, 1.0, 0.3));
+    let body = || block(4.0, 1.0, n, degree, stuff::<2>(Space::PlaneStrain, 1.0, 0.3));
     measured((n, degree), body, |system| {
         held(system);
         for axis in 0..2 {
@@ -122,7 +122,7 @@ fn kirsch(n: usize, degree: usize) -> Ours {
 }
 
 fn cavity(n: usize, degree: usize) -> Ours {
-    let body = || block(1.0, 0.6, n, degree, stuff(Space::Solid, 1.0, 0.3));
+    let body = || block(1.0, 0.6, n, degree, stuff::<3>(Space::Solid, 1.0, 0.3));
     let many = n * degree > 12;
     measured((n, degree), body, |system| {
         for axis in 0..3 {

@@ -139,9 +139,19 @@ fn main() {
     // Of the eighth of a block no energy is known: the least of fine cells, above the exact one by a few 1e-6 of it.
     let fine = cavity(6, 4).energy;
     let problems = [
-        ("plate", 0.455_227_877_571, (1..=6).map(|p| plate(4, p)).chain((1..=6).map(|p| plate(8, p))).collect::<Vec<_>>()),
+        (
+            "plate",
+            0.455_227_877_571,
+            (1..=6).map(|p| plate(4, p)).chain((1..=6).map(|p| plate(8, p))).collect::<Vec<_>>(),
+        ),
         ("Kirsch", 7.693_653_726_418_2, (1..=4).map(|p| kirsch(4, p)).chain((1..=5).map(|p| kirsch(8, p))).collect()),
-        ("cavity", fine, [(3, 1), (4, 1), (3, 2), (5, 1), (4, 2), (5, 2), (3, 3), (4, 3), (10, 1), (5, 3)].map(|(n, p)| cavity(n, p)).into()),
+        (
+            "cavity",
+            fine,
+            [(3, 1), (4, 1), (3, 2), (5, 1), (4, 2), (5, 2), (3, 3), (4, 3), (10, 1), (5, 3)]
+                .map(|(n, p)| cavity(n, p))
+                .into(),
+        ),
     ];
     for (name, exact, runs) in &problems {
         for run in runs {
@@ -160,7 +170,8 @@ fn main() {
     }
     let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".into());
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/finite_cells.py");
-    let out = Command::new(&python).arg(script).env("OMP_NUM_THREADS", "1").output().expect("Python with mlhp and nutils");
+    let out =
+        Command::new(&python).arg(script).env("OMP_NUM_THREADS", "1").output().expect("Python with mlhp and nutils");
     for line in String::from_utf8_lossy(&out.stdout).lines().filter(|l| l.starts_with('{')) {
         let row: serde_json::Value = serde_json::from_str(line).expect("a line of JSON");
         let number = |key: &str| row[key].as_f64().unwrap_or(f64::NAN);

@@ -252,15 +252,6 @@ fn a_ball_between_planes_finely() {
     assert!((force / wanted - 1.0).abs() < 4e-3 && iterations <= 8 && deviation < 0.05);
 }
 
-#[test]
-#[ignore = "minutes: some 80 thousand unknowns"]
-fn a_ball_between_planes_by_twelve_cells() {
-    let wanted = reference()["hertz_3d_sphere"]["nu_0_3"]["0.06"]["P"]["value"].as_f64().unwrap();
-    let (force, iterations, deviation) = press_ball(12, 3, 0.06);
-    println!("ball, 12 cells, degree 3: {force} ({wanted}), {iterations} iterations, deviation {deviation:.3}");
-    assert!((force / wanted - 1.0).abs() < 2e-3 && iterations <= 8 && deviation < 0.03);
-}
-
 /// A disc that only contact holds up: Newton's method finds the rigid motion, and the floor carries the load.
 #[test]
 fn a_load_on_a_body_that_only_contact_holds() {

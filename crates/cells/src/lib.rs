@@ -9,7 +9,7 @@
 //! - [`region`]: the quadrature of the material in a cell and of its boundary.
 //! - [`tree`], [`space`], [`jets`], [`legendre`]: cells, refinement, functions.
 //! - [`components`]: what of the material hangs together.
-//! - [`moments`]: few points for many.
+//! - [`moments`]: few points for many; `tensor_integrals`: sums over them, direction by direction.
 //! - [`discretisation`]: how a body is made of cells; [`body`]: all of this; [`stiffness`]: the elastic integrals.
 //! - [`supports`], [`loads`]: what holds and what pushes; [`system`]: equilibrium; [`schwarz`]: the preconditioner.
 //! - [`cell_solid`]: the body in a system of bodies of any kind.
@@ -44,6 +44,7 @@ mod spread;
 pub mod stiffness;
 pub mod supports;
 pub mod system;
+mod tensor_integrals;
 pub mod tree;
 pub mod voxels;
 

@@ -61,14 +61,18 @@ impl<const D: usize> CellBody<D> {
             let next = &graph.touching[piece];
             let farther: Vec<usize> = next.iter().flat_map(|p| graph.touching[*p].iter().copied()).collect();
             for ring in [next, &farther] {
+                // Of the largest cells, beyond which polynomials grow least, the one with most material.
+                let level = |c: usize| self.tree.leaves()[self.cells[c].leaf].level;
+                let order = |a: usize, b: usize| {
+                    let by_size = level(b).cmp(&level(a));
+                    by_size.then(self.cells[a].share.total_cmp(&self.cells[b].share)).then(b.cmp(&a))
+                };
                 let best = ring
                     .iter()
                     .map(|p| cell_of_piece[*p])
-                    .filter(|c| *c != usize::MAX)
-                    .max_by(|a, b| self.cells[*a].share.total_cmp(&self.cells[*b].share).then(b.cmp(a)));
-                if let Some(best) = best
-                    && self.cells[best].share >= OWN_STRESS
-                {
+                    .filter(|c| *c != usize::MAX && self.cells[*c].share >= OWN_STRESS)
+                    .max_by(|a, b| order(*a, *b));
+                if let Some(best) = best {
                     self.cells[cell].stress_cell = best;
                     break;
                 }

@@ -4,19 +4,25 @@
 //! `λ G_ab + μ (G_ba + δ_ab Σ_c G_cc)`: matrix products over all points at once. Around an axis `N/r` is one more
 //! derivative, of the hoop strain. No points are needed outside the material: `K = α K_full + (1 - α) K_in`.
 //!
-//! Of a body from an image the many points of a cell are first turned into weights of `(2p + 1)^D` fixed ones, by which the
-//! products of derivatives are integrated alike: the same sum over voxels as of matrices computed beforehand for each
-//! of them, `Σ_v E_v K_v`, for the weights of points in place of the entries of matrices.
+//! The many points of a cut cell, or of voxels with a modulus each, are first turned into weights of `(2p + 1)^D` fixed ones,
+//! by which the products of derivatives are integrated alike, direction by direction. For voxels that is the same sum as of
+//! matrices computed beforehand for each of them, `Σ_v E_v K_v`, for the weights of points in place of the entries of
+//! matrices.
 
 use crate::body::{Cell, CellBody, box_points};
-use crate::moments::{VolumePoints, fitted};
+use crate::moments::fitted;
 use crate::region::Filling;
 use crate::space::Tabulation;
+use crate::tensor_integrals::TensorFunctions;
 use nalgebra::{DMatrix, Matrix3};
 use rayon::prelude::*;
 use signorini_fem::elastic::Space;
 use signorini_geometry::{Point, Vector};
 use std::sync::Arc;
+
+/// Fictitious stiffness above which that of cut cells stays positive definite whatever rounding leaves of the fitted weights:
+/// some thousand times the unit of rounding, for sums of polynomials that are larger than what they sum up to.
+const FITTED_ABOVE: f64 = 1e4 * f64::EPSILON;
 
 impl<const D: usize> CellBody<D> {
     /// The unknowns of a cell: all components of its functions.
@@ -43,13 +49,13 @@ impl<const D: usize> CellBody<D> {
                 let alpha = self.discretisation.fictitious;
                 let points = self.weighted(cell.rule.volume.iter().map(|p| (p.x, p.weight)));
                 let order = 2 * self.degree() + 1;
-                let fits = self.discretisation.volume_points == VolumePoints::Fitted
-                    && self.stuff.space != Space::Axisymmetric
-                    && points.len() > order.pow(D as u32);
+                let fits = self.stuff.space != Space::Axisymmetric
+                    && alpha > FITTED_ABOVE
+                    && points.len() >= order.pow(D as u32);
                 let inside = if fits {
                     // The modulus of every voxel is in the weights.
                     let fit = fitted(&self.tree.leaves()[cell.leaf].bounds, order, points.into_iter());
-                    self.integrate(cell, &fit.into_iter().map(|p| (p.x, p.weight)).collect::<Vec<_>>())
+                    self.integrate_on_grid(cell, order, &fit.iter().map(|p| p.weight).collect::<Vec<_>>())
                 } else {
                     self.integrate(cell, &points)
                 };
@@ -59,8 +65,12 @@ impl<const D: usize> CellBody<D> {
     }
 
     fn full_stiffness(&self, cell: &Cell<D>) -> DMatrix<f64> {
-        let points = box_points(&self.tree.leaves()[cell.leaf].bounds, self.full_points());
-        self.integrate(cell, &self.weighted(points.into_iter()))
+        let order = self.full_points();
+        let points = self.weighted(box_points(&self.tree.leaves()[cell.leaf].bounds, order).into_iter());
+        if self.stuff.space == Space::Axisymmetric {
+            return self.integrate(cell, &points);
+        }
+        self.integrate_on_grid(cell, order, &points.iter().map(|p| p.1).collect::<Vec<_>>())
     }
 
     /// Points with their weights times the modulus there, and the circumference around an axis.
@@ -71,7 +81,6 @@ impl<const D: usize> CellBody<D> {
     fn integrate(&self, cell: &Cell<D>, points: &[(Point<D>, f64)]) -> DMatrix<f64> {
         let n = cell.functions.len();
         let axis = self.stuff.space == Space::Axisymmetric;
-        let (lambda, mu) = self.stuff.elastic.lame(self.stuff.space);
         let leaf = &self.tree.leaves()[cell.leaf];
         let channels = D + usize::from(axis);
         let mut g: Vec<DMatrix<f64>> = vec![DMatrix::zeros(n, n); channels * channels];
@@ -101,6 +110,23 @@ impl<const D: usize> CellBody<D> {
                 }
             }
         }
+        self.stiffness_from(g)
+    }
+
+    /// Over `order` Gauss points of the leaf in each direction, with weights of their own.
+    fn integrate_on_grid(&self, cell: &Cell<D>, order: usize, weights: &[f64]) -> DMatrix<f64> {
+        let leaf = &self.tree.leaves()[cell.leaf];
+        let functions = TensorFunctions::new(&self.tree, leaf, self.degree(), &cell.modes, order);
+        let of = |a: usize, c: usize| if c <= a { functions.products(weights, [a, c]) } else { DMatrix::zeros(0, 0) };
+        self.stiffness_from((0..D * D).map(|k| of(k / D, k % D)).collect())
+    }
+
+    /// The stiffness from the integrals `G_ac` with `c <= a`.
+    fn stiffness_from(&self, mut g: Vec<DMatrix<f64>>) -> DMatrix<f64> {
+        let axis = self.stuff.space == Space::Axisymmetric;
+        let (lambda, mu) = self.stuff.elastic.lame(self.stuff.space);
+        let channels = D + usize::from(axis);
+        let n = g[0].nrows();
         for a in 0..channels {
             for c in a + 1..channels {
                 g[a * channels + c] = g[c * channels + a].transpose();

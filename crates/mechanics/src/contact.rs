@@ -22,8 +22,10 @@
 //! The slip counts from where the sides had a common point at the last state, or would have had if they had touched.
 
 mod interaction;
+mod partners;
 
 pub use crate::part::Part;
+pub use partners::Pairing;
 
 use crate::body::{Body, BodyState, PlaceError};
 use crate::enforcement::Enforcement;
@@ -33,6 +35,7 @@ use crate::pair::{AxisChoice, Encounter, NoPair, Pair, Stuck, any_tangent};
 use crate::points::{Anchor, Master, Met, Order, Placed, Sampling, Site};
 use crate::simpler::SetAside;
 use crate::site_result::SiteResult;
+use partners::Partners;
 use rayon::prelude::*;
 use signorini_contact::law::Projected;
 use signorini_contact::{Law, Status};
@@ -50,6 +53,9 @@ pub struct Contact {
     pub axis: AxisChoice,
     /// How far apart, or inside each other, points are looked at.
     pub reach: f64,
+    /// Where they are looked for.
+    pub pairing: Pairing,
+    partners: Partners,
     sites: Vec<Site>,
     /// Traction per unit of gap, and of slip, of each site: the scale of the trial, not the penalty.
     pub(crate) stiffness: Vec<f64>,
@@ -137,6 +143,8 @@ impl Contact {
             friction: None,
             axis: AxisChoice::Material,
             reach,
+            pairing: Pairing::Now,
+            partners: Partners::new(),
             memory: vec![SiteMemory::default(); sites.len()],
             sites,
             stiffness,
@@ -171,6 +179,24 @@ impl Contact {
 
     /// The pair of a site, if it meets something no farther than a gap; with second variations where they are `wanted`.
     fn pair(
+        &self,
+        k: usize,
+        sides: &Sides<'_>,
+        (master, farthest): (&dyn Master, f64),
+        wanted: impl Fn(&Touch) -> bool,
+    ) -> (Placed, Option<Result<Touch, NoPair>>) {
+        let Some(known) = self.partners.get() else { return self.pair_now(k, sides, (master, farthest), wanted) };
+        let placed = sides.slave.0.placed(sides.slave.1, &self.sites[k]);
+        let Some(partner) = known[k].filter(|_| !placed.rests) else { return (placed, None) };
+        let anchor = master.at(&partner.point);
+        let with = |order| self.with_stress(k, sides, partner.pair(&placed, &anchor, sides.first, order));
+        let first = with(Order::First);
+        let found = if wanted(&first) { with(Order::Second) } else { first };
+        (placed, Some(Ok(found)))
+    }
+
+    /// The pair of a site with what is nearest to it now.
+    fn pair_now(
         &self,
         k: usize,
         sides: &Sides<'_>,
@@ -285,6 +311,10 @@ impl Contact {
         out: &mut Target<'_>,
     ) -> Result<usize, PlaceError> {
         let master = sides.master.0.master(self.master.group.as_deref(), sides.master.1)?;
+        self.find_partners(sides, master.as_ref());
+        if self.partners.get().is_none() {
+            master.prepare();
+        }
         let linearises = out.tangent.is_some();
         let parts = self.components();
         let mut lost = 0;
@@ -415,6 +445,10 @@ impl Contact {
     /// A master that cannot be touched.
     pub(crate) fn found(&self, sides: &Sides<'_>, lambda: &[f64]) -> Result<Vec<(SiteResult, [f64; 3])>, PlaceError> {
         let master = sides.master.0.master(self.master.group.as_deref(), sides.master.1)?;
+        self.find_partners(sides, master.as_ref());
+        if self.partners.get().is_none() {
+            master.prepare();
+        }
         let of = |k: usize| {
             let (placed, pair) = self.pair(k, sides, (master.as_ref(), f64::INFINITY), |_| false);
             let mut out = SiteResult { x: placed.x, weight: self.sites[k].weight, ..SiteResult::default() };
@@ -445,6 +479,10 @@ impl Contact {
     /// A master that cannot be touched.
     pub(crate) fn accept_sites(&mut self, sides: &Sides<'_>, lambda: &[f64]) -> Result<(), PlaceError> {
         let master = sides.master.0.master(self.master.group.as_deref(), sides.master.1)?;
+        self.find_partners(sides, master.as_ref());
+        if self.partners.get().is_none() {
+            master.prepare();
+        }
         let mut memory = Vec::with_capacity(self.sites.len());
         for k in 0..self.sites.len() {
             let Some(Ok(touch)) = self.pair(k, sides, (master.as_ref(), f64::INFINITY), |_| false).1 else {

@@ -2,8 +2,8 @@
 //!
 //! The stiffness of linear bodies is not assembled: products with it go cell by cell. Tractions that are unknowns belong to
 //! one site each and are condensed there, `A - B D⁻¹ C`: what is left is that of penalties, symmetric and positive definite
-//! without friction near the solution. It is solved by conjugate gradients, and where it is not symmetric by conjugate residuals,
-//! with the Schwarz preconditioner of the sets that the bodies name, one more set for the unknowns of every part of the
+//! without friction near the solution of small strains. It is solved by conjugate gradients, and where it is not symmetric
+//! or not positive by conjugate residuals, with the Schwarz preconditioner of the sets that the bodies name, one more set for the unknowns of every part of the
 //! tangent that is not theirs, such as the two cells that touch, and the coarse unknowns of all bodies together.
 
 use crate::body::Body;
@@ -158,47 +158,22 @@ impl System {
         known: &mut Inverses,
     ) -> Result<(Vec<f64>, usize), IncrementError> {
         let (_, count) = self.numbering();
-        let mut condensed = Condensed::new(out, count);
-        let found = match self.condensed_step(&condensed, held, right, known)? {
-            Some(found) => found,
-            None => {
-                condensed.keep_positive();
-                self.condensed_step(&condensed, held, right, known)?
-                    .ok_or(IncrementError::Solve(SolveError::Inaccurate { size: count, residual: 1.0 }))?
+        let condensed = Condensed::new(out, count);
+        let equations = Reduced::new(self, &condensed, held, right);
+        let kind = if condensed.is_symmetric() { Kind::Symmetric } else { Kind::General };
+        let (mut x, iterations) = match equations.solve(&equations.matrix, kind, known) {
+            Err(failed) if is_indefinite(&failed) => {
+                // Newton's direction is that of the tangent as it is; where even that is not found, the direction without
+                // what softens at least leads to less energy.
+                let positive = condensed.without_negative_parts();
+                let other = Reduced::new(self, &positive, held, right);
+                let exact = equations.solve(&other.matrix, Kind::General, known);
+                exact.or_else(|_| other.solve(&other.matrix, Kind::Symmetric, known))?
             }
+            found => found?,
         };
-        let (mut x, iterations) = found;
         condensed.recover(&mut x, right);
         Ok((x, iterations))
-    }
-
-    /// The step of the unknowns of the bodies; none where a symmetric tangent is not positive definite.
-    fn condensed_step(
-        &self,
-        condensed: &Condensed,
-        held: &[bool],
-        right: &[f64],
-        known: &mut Inverses,
-    ) -> Result<Option<(Vec<f64>, usize)>, IncrementError> {
-        let count = condensed.count;
-        let (blocks, sets) = self.blocks_and_sets(condensed);
-        let a = BlockSum::new(blocks, held[..count].iter().map(|h| !h).collect());
-        let given: Vec<f64> = (0..count).map(|k| if held[k] { right[k] } else { 0.0 }).collect();
-        let moved = a.multiply_all(&given);
-        let condensed_right = condensed.right(right);
-        let b: Vec<f64> = (0..count).map(|k| if held[k] { 0.0 } else { condensed_right[k] - moved[k] }).collect();
-        let schwarz = Schwarz::new(&a, &sets, known)?;
-        let found = if b.iter().all(|b| *b == 0.0) {
-            Some((vec![0.0; count], 0))
-        } else if condensed.is_symmetric() {
-            by_gradients(&a, &schwarz, &b)?
-        } else {
-            Some(by_residuals(&a, &schwarz, b)?)
-        };
-        Ok(found.map(|(mut x, iterations)| {
-            (0..count).filter(|k| held[*k]).for_each(|k| x[k] = given[k]);
-            (x, iterations)
-        }))
     }
 
     /// How iterations solve for their coarse unknowns.
@@ -208,20 +183,71 @@ impl System {
     }
 }
 
-/// Conjugate gradients; none where a direction was found in which the matrix is not positive.
-fn by_gradients(a: &BlockSum<'_>, schwarz: &Schwarz, b: &[f64]) -> Result<Option<(Vec<f64>, usize)>, IncrementError> {
-    match conjugate_gradients(b, |x| a.multiply(x), |r| schwarz.apply(r), TOLERANCE, MOST_ITERATIONS) {
-        Ok(found) => Ok(Some((found.x, found.iterations))),
-        Err(Stopped::Equations(error)) => Err(IncrementError::Solve(error)),
-        Err(Stopped::TooMany { residual, .. }) => {
-            Err(IncrementError::Solve(SolveError::Inaccurate { size: b.len(), residual }))
+/// Which iteration a matrix allows.
+#[derive(Clone, Copy)]
+enum Kind {
+    /// Conjugate gradients, unless a direction is found in which the matrix is not positive.
+    Symmetric,
+    /// Conjugate residuals.
+    General,
+}
+
+fn is_indefinite(error: &SolveError) -> bool {
+    matches!(error, SolveError::NotPositiveDefinite { .. })
+}
+
+/// The equations of the unknowns of the bodies that are free.
+struct Reduced<'a> {
+    matrix: BlockSum<'a>,
+    sets: Sets,
+    right: Vec<f64>,
+    /// Steps that are known; zero where they are not.
+    given: Vec<f64>,
+}
+
+impl<'a> Reduced<'a> {
+    /// `held` names unknowns whose step is known, and stands in `right`.
+    fn new(system: &'a System, condensed: &'a Condensed, held: &[bool], right: &[f64]) -> Self {
+        let count = condensed.count;
+        let (blocks, sets) = system.blocks_and_sets(condensed);
+        let matrix = BlockSum::new(blocks, held[..count].iter().map(|h| !h).collect());
+        let given: Vec<f64> = (0..count).map(|k| if held[k] { right[k] } else { 0.0 }).collect();
+        let moved = matrix.multiply_all(&given);
+        let of_bodies = condensed.right(right);
+        let right = (0..count).map(|k| if held[k] { 0.0 } else { of_bodies[k] - moved[k] }).collect();
+        Reduced { matrix, sets, right, given }
+    }
+
+    /// The step, and the number of iterations, preconditioned by the Schwarz method for a matrix that is like this one.
+    fn solve(&self, like: &BlockSum<'_>, kind: Kind, known: &mut Inverses) -> Result<(Vec<f64>, usize), SolveError> {
+        if self.right.iter().all(|b| *b == 0.0) {
+            return Ok((self.given.clone(), 0));
         }
-        Err(Stopped::Indefinite) => Ok(None),
+        let schwarz = Schwarz::new(like, &self.sets, known)?;
+        let (mut x, iterations) = match kind {
+            Kind::Symmetric => by_gradients(&self.matrix, &schwarz, &self.right)?,
+            Kind::General => by_residuals(&self.matrix, &schwarz, self.right.clone())?,
+        };
+        let is_free = self.matrix.free();
+        (0..x.len()).filter(|k| !is_free[*k]).for_each(|k| x[k] = self.given[k]);
+        Ok((x, iterations))
     }
 }
 
+/// Conjugate gradients.
+fn by_gradients(a: &BlockSum<'_>, schwarz: &Schwarz, b: &[f64]) -> Result<(Vec<f64>, usize), SolveError> {
+    let size = b.len();
+    conjugate_gradients(b, |x| a.multiply(x), |r| schwarz.apply(r), TOLERANCE, MOST_ITERATIONS)
+        .map(|found| (found.x, found.iterations))
+        .map_err(|stopped| match stopped {
+            Stopped::Equations(error) => error,
+            Stopped::TooMany { residual, .. } => SolveError::Inaccurate { size, residual },
+            Stopped::Indefinite => SolveError::NotPositiveDefinite { size, pivot: 0 },
+        })
+}
+
 /// Conjugate residuals.
-fn by_residuals(a: &BlockSum<'_>, schwarz: &Schwarz, b: Vec<f64>) -> Result<(Vec<f64>, usize), IncrementError> {
+fn by_residuals(a: &BlockSum<'_>, schwarz: &Schwarz, b: Vec<f64>) -> Result<(Vec<f64>, usize), SolveError> {
     let size = b.len();
     let iterations = std::cell::Cell::new(0);
     let product = |y: &[f64]| -> Result<Option<Vec<f64>>, SolveError> {
@@ -230,7 +256,7 @@ fn by_residuals(a: &BlockSum<'_>, schwarz: &Schwarz, b: Vec<f64>) -> Result<(Vec
     };
     match conjugate_residuals(b, product, TOLERANCE, MOST_KEPT)? {
         Some(y) => Ok((schwarz.apply(&y)?, iterations.get())),
-        None => Err(IncrementError::Solve(SolveError::Inaccurate { size, residual: TOLERANCE })),
+        None => Err(SolveError::Inaccurate { size, residual: TOLERANCE }),
     }
 }
 
@@ -243,6 +269,7 @@ struct Condensed {
 }
 
 /// The terms of the unknowns of one site: `D`, and a row of `C` and a column of `B` for each.
+#[derive(Clone)]
 struct SiteTerms {
     first: usize,
     inverse: nalgebra::DMatrix<f64>,
@@ -329,19 +356,22 @@ impl Condensed {
         }
     }
 
-    /// Leaves out of every symmetric block its negative part. On the way of Newton's method a contact that is curved may
-    /// soften more than the bodies resist; without what softens, a step still goes where the energy falls, and in the
-    /// solution nothing is left out.
-    fn keep_positive(&mut self) {
-        self.blocks.par_iter_mut().for_each(|(unknowns, values)| {
+    /// The same without the negative part of every block, made symmetric. A contact that is curved and carries much may
+    /// soften more than the bodies resist, on the way of Newton's method and, where surfaces turn by large strains, in the
+    /// solution: a preconditioner has to be positive all the same.
+    fn without_negative_parts(&self) -> Self {
+        let mut blocks = self.blocks.clone();
+        blocks.par_iter_mut().for_each(|(unknowns, values)| {
             let n = unknowns.len();
-            let eigen = nalgebra::DMatrix::from_row_slice(n, n, values).symmetric_eigen();
+            let whole = nalgebra::DMatrix::from_row_slice(n, n, values);
+            let eigen = ((&whole + whole.transpose()) * 0.5).symmetric_eigen();
             let mut scaled = eigen.eigenvectors.clone();
             for (mut column, value) in scaled.column_iter_mut().zip(&eigen.eigenvalues) {
                 column *= value.max(0.0);
             }
             values.copy_from_slice((scaled * eigen.eigenvectors.transpose()).as_slice());
         });
+        Condensed { count: self.count, blocks, sites: self.sites.clone() }
     }
 
     fn is_symmetric(&self) -> bool {

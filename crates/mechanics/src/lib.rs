@@ -42,7 +42,7 @@ pub mod surface;
 pub mod system;
 
 pub use body::{Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Hold, Load, Means, PlaceError};
-pub use contact::{Contact, SiteMemory};
+pub use contact::{Contact, Pairing, SiteMemory};
 pub use curve::Curve;
 pub use enforcement::Enforcement;
 pub use increment::IncrementResult;

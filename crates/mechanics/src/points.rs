@@ -186,6 +186,9 @@ pub struct Anchor {
 
 /// What may be touched of a body, where it is now.
 pub trait Master: Sync {
+    /// Makes what many searches need, before they run side by side.
+    fn prepare(&self) {}
+
     /// The point nearest to `x`, unless it is farther than `reach`. With `except`, a site of the same body, what lies
     /// next to that site along the body is left out: contact of a body with itself.
     fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<Met>;

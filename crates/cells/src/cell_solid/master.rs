@@ -22,7 +22,7 @@ use signorini_geometry::{Aabb, ImplicitShape, Matrix, Point, Vector};
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{Anchor, Foot, Function, Master, MaterialPoint, Met, Site};
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Product of normals above which two points do not face each other.
 const FACING: f64 = -0.3;
@@ -38,9 +38,8 @@ pub(super) struct BoundaryMaster<'a, const D: usize> {
     solid: &'a CellSolid<D>,
     u: &'a [f64],
     points: Range<usize>,
-    /// Positions of the points now.
-    now: Vec<Point<3>>,
-    bvh: Bvh,
+    /// Positions of the points now, and the tree of them; for searches only.
+    now: OnceLock<(Vec<Point<3>>, Bvh)>,
 }
 
 /// Whether a point of the boundary with an outward normal of any length lies across a gap from another, at the start: the
@@ -70,9 +69,16 @@ const LAST_STEP: f64 = 1e-8;
 
 impl<'a, const D: usize> BoundaryMaster<'a, D> {
     pub fn new(solid: &'a CellSolid<D>, points: Range<usize>, u: &'a [f64]) -> Self {
-        let now: Vec<Point<3>> = points.clone().into_par_iter().map(|k| solid.point_now(k, u).0).collect();
-        let boxes: Vec<Aabb<3>> = now.iter().map(|x| Aabb::new(*x, *x)).collect();
-        BoundaryMaster { solid, u, points, now, bvh: Bvh::new(&boxes) }
+        BoundaryMaster { solid, u, points, now: OnceLock::new() }
+    }
+
+    fn place(&self, number: usize) -> Point<3> {
+        self.solid.point_now(number, self.u).0
+    }
+
+    fn now(&self) -> &(Vec<Point<3>>, Bvh) {
+        // By one thread: others may wait for it, none of which it needs.
+        self.now.get_or_init(|| with_tree(self.points.clone().map(|k| self.place(k)).collect()))
     }
 
     /// The nearest quadrature point; of the boundary itself one across a gap from a site.
@@ -80,14 +86,15 @@ impl<'a, const D: usize> BoundaryMaster<'a, D> {
         let own = except.map(|site| &self.solid.points[site.patch as usize]);
         let limit = reach * reach;
         let mut best: Option<(f64, usize)> = None;
-        self.bvh.nearest(x, limit, |k| {
+        let (now, bvh) = self.now();
+        bvh.nearest(x, limit, |k| {
             let least = best.map_or(limit, |b| b.0);
             let number = self.points.start + k;
             let other = &self.solid.points[number];
             if own.is_some_and(|own| !faces(own, &other.x, &other.normal)) {
                 return least;
             }
-            let square = (self.now[k] - x).norm_squared();
+            let square = (now[k] - x).norm_squared();
             // Of points at the same distance the one with the lowest number.
             let better = best.is_none_or(|b| square < b.0 || (square == b.0 && number < b.1));
             if square > limit || !better {
@@ -211,7 +218,20 @@ impl<'a, const D: usize> BoundaryMaster<'a, D> {
     }
 }
 
+fn with_tree(now: Vec<Point<3>>) -> (Vec<Point<3>>, Bvh) {
+    let boxes: Vec<Aabb<3>> = now.iter().map(|x| Aabb::new(*x, *x)).collect();
+    let tree = Bvh::new(&boxes);
+    (now, tree)
+}
+
 impl<const D: usize> Master for BoundaryMaster<'_, D> {
+    fn prepare(&self) {
+        if self.now.get().is_none() {
+            let now = self.points.clone().into_par_iter().map(|k| self.place(k)).collect();
+            self.now.get_or_init(|| with_tree(now));
+        }
+    }
+
     fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<Met> {
         let (number, found) = self.met(x, reach, except)?;
         let is_within = (spatial(&found.at.now()) - x).norm() <= reach;

@@ -1,5 +1,6 @@
 //! A contact of sites as the system sees it.
 
+use super::partners::Partners;
 use super::{Contact, Sides, SiteMemory};
 use crate::body::Body;
 use crate::body::PlaceError;
@@ -87,6 +88,7 @@ impl Interaction for Contact {
     }
 
     fn begin(&mut self, time: f64) {
+        self.partners = Partners::new();
         self.times[1] = time;
     }
 

@@ -27,6 +27,15 @@ fn press(n: usize, degree: usize, delta: f64, integration: Integration, enforcem
     press_refined(n, degree, delta, integration, enforcement, 0)
 }
 
+/// About where the contact zone of a disc ends: `δ = F/(π E*) (2 ln(4/a) - 1)`, `a² = 4 F/(π E*)` (Johnson 1985).
+fn end_of_contact(delta: f64) -> Point<2> {
+    let mut a = 0.1f64;
+    for _ in 0..50 {
+        a = (4.0 * delta / (2.0 * (4.0 / a).ln() - 1.0)).sqrt();
+    }
+    Point::<2>::new(a, 1.0 - (1.0 - a * a).sqrt())
+}
+
 /// With the cells about the end of the contact zone halved so many times.
 fn press_refined(
     n: usize,
@@ -40,8 +49,8 @@ fn press_refined(
     let disc = Domain::shape(ball(Point::<2>::y(), 1.0));
     let setup = Discretisation { integration, ..Discretisation::of_degree(degree) };
     let mut tree = CellTree::new(b, [n, n]).unwrap();
+    let end = end_of_contact(delta);
     for _ in 0..levels {
-        let end = Point::<2>::new(0.1452, 0.0106);
         let leaf = tree.leaves()[tree.leaf_at(&end)];
         tree.refine(|l| *l == leaf || (l.bounds.clamp(&end) - end).norm() < 0.25 * l.size());
     }
@@ -117,6 +126,43 @@ fn published_discretisations() {
             }
         }
     }
+}
+
+/// Three loads by the enforcement that is recommended. Where the zone is narrower than a cell, as that of the least load in
+/// cells of degree 5, the published discretisation has errors of its own, and cells halved at its end have not. The force of
+/// the largest load is 1.2e-4 off.
+#[test]
+fn published_discretisations_at_three_loads() {
+    let nitsche = Enforcement::Nitsche { gamma: 1.0 };
+    let exact = Integration::Exact { points: None };
+    let data = &reference()["hertz_2d"]["0.03"];
+    let mut missed = false;
+    for delta in [0.01, 0.03, 0.08] {
+        let finest = press_refined(16, 5, delta, exact, nitsche, 3);
+        if delta == 0.03 {
+            let [force, peak] = ["P", "p0"].map(|key| data[key]["value"].as_f64().unwrap());
+            println!("finest: {:.2e} {:.2e}", finest.force / force - 1.0, finest.peak / peak - 1.0);
+            assert!((finest.force / force - 1.0).abs() < 6e-5 && (finest.peak / peak - 1.0).abs() < 1e-3);
+        }
+        for (n, degree, tolerance) in [(20, 2, 1e-3), (8, 5, if delta > 0.05 { 1.4e-4 } else { 1e-4 })] {
+            // The zone of the least load is 1.7 cells of degree 2 wide, 0.7 of degree 5.
+            let is_narrow = delta < 0.02;
+            for levels in if is_narrow { 0..4 } else { 0..1 }.step_by(3) {
+                let found = press_refined(n, degree, delta, exact, nitsche, levels);
+                let [force, peak] = [found.force / finest.force - 1.0, found.peak / finest.peak - 1.0];
+                println!(
+                    "{delta}, {n} cells of degree {degree}, {levels} levels: force {:.6}, off by {force:.2e}, peak off by \
+                     {peak:.2e}, deviation {:.4}, {} iterations",
+                    found.force, found.deviation, found.iterations
+                );
+                assert!(found.iterations <= 10, "{delta} {n} {levels}: {}", found.iterations);
+                if !is_narrow || (degree == 5 && levels > 0) {
+                    missed |= force.abs() > tolerance || peak.abs() > 5e-3;
+                }
+            }
+        }
+    }
+    assert!(!missed);
 }
 
 /// Cells halved at the end of the contact zone buy a digit for few unknowns.

@@ -7,7 +7,7 @@ use crate::problem::{self, AxisOn, CaseError, Components, CurveForm, Enforcement
 use signorini_cells::disc_contact::{Centres, Cover, CoverFindings, DiscPairs};
 use signorini_geometry::Vector;
 use signorini_mechanics::contact::Part;
-use signorini_mechanics::{AxisChoice, Contact, Enforcement as Kept, Interaction, Sampling, System};
+use signorini_mechanics::{AxisChoice, Contact, Enforcement as Kept, Interaction, Pairing, Sampling, System};
 use signorini_rope::curve_pair::{CurveContact, Form};
 
 /// The methods of linear solids of small strain, together.
@@ -116,6 +116,10 @@ impl Planner<'_> {
                 _ => AxisChoice::Material,
             };
             contact.friction = Some(law);
+        }
+        // What of a body of small strains faces another part of it turns little within an increment.
+        if slave.body == master.body && body(&slave).is_linear() {
+            contact.pairing = Pairing::AtStart;
         }
         let along_a_curve = matches!(kind, Kind::Curve { .. });
         let tested = Tested { along_a_curve, ..Tested::by(method, contact.axis) };

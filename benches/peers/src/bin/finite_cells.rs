@@ -1,0 +1,207 @@
+//! Finite cells beside mlhp and nutils in one run, each on one thread: `cargo run --release --bin finite_cells` in this folder.
+//! `PYTHON` is an interpreter that has both (`pip install mlhp nutils numpy`).
+//!
+//! Every run of a peer is set against the cheapest of ours with no larger error of the energy. Seconds are of the
+//! processor, from the shape to the displacement.
+
+use nalgebra::Matrix2;
+use signorini_cells::shapes::ball;
+use signorini_cells::*;
+use signorini_geometry::{Aabb, Point, Vector};
+use std::process::Command;
+use std::sync::Arc;
+
+/// Seconds of the processor that this process has used, in hundredths.
+fn processor() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").expect("Linux");
+    let fields: Vec<&str> = stat.rsplit(')').next().unwrap_or("").split_whitespace().collect();
+    let ticks = |k: usize| fields[k].parse::<f64>().expect("ticks");
+    (ticks(11) + ticks(12)) / 100.0
+}
+
+/// Mean seconds of a run, repeated for a second, and what it gives.
+fn timed<T>(run: impl Fn() -> T) -> (f64, T) {
+    let begin = processor();
+    let mut count = 0.0;
+    loop {
+        let out = run();
+        count += 1.0;
+        let seconds = processor() - begin;
+        if seconds > 1.0 {
+            return (seconds / count, out);
+        }
+    }
+}
+
+struct Ours {
+    n: usize,
+    degree: usize,
+    unknowns: usize,
+    energy: f64,
+    seconds: f64,
+    /// Of the rules and stiffness matrices, and the quadrature points in them.
+    integration: f64,
+    points: usize,
+}
+
+fn setup<const D: usize>(degree: usize) -> Discretisation<D> {
+    Discretisation { fictitious: 1e-10, ..Discretisation::of_degree(degree) }
+}
+
+fn stuff<const D: usize>(space: Space, youngs_modulus: f64, poissons_ratio: f64) -> Stuff<D> {
+    Stuff { elastic: Elastic { youngs_modulus, poissons_ratio }, modulus: None, space }
+}
+
+fn block<const D: usize>(size: f64, radius: f64, n: usize, degree: usize, stuff: Stuff<D>) -> CellBody<D> {
+    let hole = Domain::shape(ball(Point::<D>::zeros(), radius));
+    let b = Aabb::new(Point::<D>::zeros(), Point::<D>::repeat(size));
+    let tree = CellTree::new(b, [n; D]).expect("cells");
+    CellBody::new(Arc::new(Domain::Complement(Box::new(hole))), tree, setup(degree), stuff).expect("a body")
+}
+
+fn measured<const D: usize>(
+    (n, degree): (usize, usize),
+    body: impl Fn() -> CellBody<D>,
+    energy: impl Fn(&mut System<'_, D>) -> f64,
+) -> Ours {
+    let (seconds, (energy, unknowns)) = timed(|| {
+        let body = body();
+        let mut system = System::new(&body);
+        (energy(&mut system), body.unknowns())
+    });
+    let (integration, points) = timed(|| {
+        let body = body();
+        let _ = body.stiffness();
+        // All full cells have one matrix.
+        let full = (degree + 1).pow(D as u32);
+        full + body.cells().iter().map(|c| c.rule.volume.len()).sum::<usize>()
+    });
+    Ours { n, degree, unknowns, energy, seconds, integration, points }
+}
+
+fn held(system: &mut System<'_, 2>) {
+    for axis in 0..2 {
+        system.support(&Support::symmetric(Place::low(axis))).expect("a side");
+    }
+}
+
+fn plate(n: usize, degree: usize) -> Ours {
+    let body = || block(4.0, 1.0, n, degree, stuff::<2>(Space::PlaneStress, 206_900.0, 0.29));
+    measured((n, degree), body, |system| {
+        held(system);
+        let value = Arc::new(|_: &Point<2>| Vector::<2>::new(0.0, 100.0));
+        system.load(&Load::Traction { on: Place::high(1), value }).expect("a side");
+        let u = system.solve(Solver::Direct).expect("a solution").displacement;
+        0.5 * system.work(&u)
+    })
+}
+
+/// Stress about a hole of radius 1 under `σ_xx = 1` (Kirsch 1898).
+fn stress(x: &Point<2>) -> Matrix2<f64> {
+    let (r2, a) = (1.0 / x.norm_squared(), x[1].atan2(x[0]));
+    let r4 = r2 * r2;
+    let radial = 0.5 * (1.0 - r2) + 0.5 * (1.0 - 4.0 * r2 + 3.0 * r4) * (2.0 * a).cos();
+    let hoop = 0.5 * (1.0 + r2) - 0.5 * (1.0 + 3.0 * r4) * (2.0 * a).cos();
+    let shear = -0.5 * (1.0 + 2.0 * r2 - 3.0 * r4) * (2.0 * a).sin();
+    let turn = Matrix2::new(a.cos(), -a.sin(), a.sin(), a.cos());
+    turn * Matrix2::new(radial, shear, shear, hoop) * turn.transpose()
+}
+
+fn kirsch(n: usize, degree: usize) -> Ours {
+    let body = || block(4.0, 1.0, n, degree, stuff::<2>(Space::PlaneStrain, 1.0, 0.3));
+    measured((n, degree), body, |system| {
+        held(system);
+        for axis in 0..2 {
+            let normal = Vector::<2>::from_fn(|k, _| f64::from(u8::from(k == axis)));
+            let value = Arc::new(move |x: &Point<2>| stress(x) * normal);
+            system.load(&Load::Traction { on: Place::high(axis), value }).expect("a side");
+        }
+        let u = system.solve(Solver::Direct).expect("a solution").displacement;
+        0.5 * system.work(&u)
+    })
+}
+
+fn cavity(n: usize, degree: usize) -> Ours {
+    let body = || block(1.0, 0.6, n, degree, stuff::<3>(Space::Solid, 1.0, 0.3));
+    measured((n, degree), body, |system| {
+        for axis in 0..3 {
+            system.support(&Support::symmetric(Place::low(axis))).expect("a side");
+        }
+        system.support(&Support::component(Place::high(2), 2, 1e-3)).expect("a side");
+        let u = system.solve(Solver::Automatic).expect("a solution").displacement;
+        system.energy(&u)
+    })
+}
+
+fn main() {
+    // SAFETY: nothing else runs yet.
+    unsafe { std::env::set_var("RAYON_NUM_THREADS", "1") };
+    // Of the eighth of a block no energy is known: the least of fine cells, above the exact one by a few 1e-6 of it.
+    let fine = cavity(6, 4).energy;
+    let problems = [
+        (
+            "plate",
+            0.455_227_877_571,
+            (1..=6).map(|p| plate(4, p)).chain((1..=6).map(|p| plate(8, p))).collect::<Vec<_>>(),
+        ),
+        ("Kirsch", 7.693_653_726_418_2, (1..=4).map(|p| kirsch(4, p)).chain((1..=5).map(|p| kirsch(8, p))).collect()),
+        (
+            "cavity",
+            fine,
+            [(3, 1), (4, 1), (3, 2), (5, 1), (4, 2), (5, 2), (3, 3), (4, 3), (10, 1), (5, 3)]
+                .map(|(n, p)| cavity(n, p))
+                .into(),
+        ),
+    ];
+    for (name, exact, runs) in &problems {
+        for run in runs {
+            println!(
+                "{name:7} {:2}, degree {}: {:6} unknowns, error {:9.2e}, {:.4} s, integration {:.4} s, {} points, {:.3} µs each",
+                run.n,
+                run.degree,
+                run.unknowns,
+                (run.energy / exact - 1.0).abs(),
+                run.seconds,
+                run.integration,
+                run.points,
+                1e6 * run.integration / run.points as f64
+            );
+        }
+    }
+    let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".into());
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/finite_cells.py");
+    let out =
+        Command::new(&python).arg(script).env("OMP_NUM_THREADS", "1").output().expect("Python with mlhp and nutils");
+    for line in String::from_utf8_lossy(&out.stdout).lines().filter(|l| l.starts_with('{')) {
+        let row: serde_json::Value = serde_json::from_str(line).expect("a line of JSON");
+        let number = |key: &str| row[key].as_f64().unwrap_or(f64::NAN);
+        let name = row["problem"].as_str().unwrap_or("");
+        let Some((_, exact, runs)) = problems.iter().find(|p| p.0 == name) else { continue };
+        let error = (number("energy") / exact - 1.0).abs();
+        let good = runs.iter().filter(|r| (r.energy / exact - 1.0).abs() <= error);
+        let best = good.min_by(|a, b| a.seconds.total_cmp(&b.seconds));
+        print!(
+            "{} {name}, {} cells, degree {}, {}: {} unknowns, error {error:.2e}, {:.4} s; integration {:.4} s, {} points, {:.2} µs each",
+            row["tool"].as_str().unwrap_or(""),
+            row["n"],
+            row["p"],
+            row["rule"].as_str().unwrap_or(""),
+            row["unknowns"],
+            number("seconds"),
+            number("integration"),
+            row["points"],
+            1e6 * number("integration") / number("points")
+        );
+        match best {
+            Some(own) => println!(
+                "; ours {} cells, degree {}: {:.4} s, {:.1} times less",
+                own.n,
+                own.degree,
+                own.seconds,
+                number("seconds") / own.seconds
+            ),
+            None => println!("; ours: none as good"),
+        }
+    }
+    eprint!("{}", String::from_utf8_lossy(&out.stderr));
+}

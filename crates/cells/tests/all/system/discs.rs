@@ -150,7 +150,7 @@ fn the_force_of_a_pore_that_closes_is_that_of_fitted_elements() {
 #[test]
 #[ignore = "half a minute"]
 fn discs_hold_by_their_radius() {
-    let data: serde_json::Value = serde_json::from_str(include_str!("../data/finite_cells.json")).unwrap();
+    let data: serde_json::Value = serde_json::from_str(include_str!("../../data/finite_cells.json")).unwrap();
     let rows = data["pore_closure"]["curve"].as_array().unwrap();
     let of = |delta: f64| {
         let row = rows.iter().find(|r| (r["delta"].as_f64().unwrap() - delta).abs() < 1e-9).unwrap();

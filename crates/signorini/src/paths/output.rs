@@ -13,13 +13,14 @@ use std::fmt::Write as _;
 use vtkio::model::{Attribute, Attributes, DataSet, PolyDataPiece};
 
 /// A path as points. Without a name it is drawn, not written.
+#[derive(Default)]
 pub struct Line {
     pub name: String,
     pub points: Vec<LinePoint>,
 }
 
 /// A point of a path; the frame is zero where it lies on no body.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub struct LinePoint {
     pub s: f64,
     pub x: Point<3>,

@@ -17,6 +17,7 @@ use crate::output::system_bodies::tube;
 use crate::output::{Folder, OutputError};
 use plotters::style::RGBColor;
 use signorini_geometry::Vector;
+use std::collections::HashMap;
 
 const SIZE: (f64, f64) = (1060.0, 760.0);
 const BODIES: [RGBColor; 3] = [RGBColor(158, 182, 214), RGBColor(226, 196, 146), RGBColor(170, 205, 170)];
@@ -48,19 +49,57 @@ fn pieces(line: &Line, keep: &dyn Fn(&LinePoint, &LinePoint) -> bool, scale: &Sc
     tube(&curve, radius, &colours)
 }
 
-/// The runs of points of a path that lie behind a body, by more than a margin.
-fn hidden(line: &Line, surfaces: &[Surface], towards: &Vector<3>, margin: f64) -> Vec<Vec<Vector<3>>> {
-    let behind = |p: &LinePoint| {
-        let from = p.x + towards * margin;
-        surfaces.iter().any(|s| s.triangles.iter().any(|t| in_front(&from, t.map(|v| s.points[v as usize]), towards)))
-    };
-    let seen: Vec<bool> = line.points.iter().map(|p| !behind(p)).collect();
-    (0..seen.len())
-        .collect::<Vec<_>>()
-        .chunk_by(|a, b| seen[*a] == seen[*b])
-        .filter(|run| !seen[run[0]])
-        .map(|run| run.iter().map(|&k| line.points[k].x).collect())
-        .collect()
+/// The triangles of bodies by where they are on the page: which of them may be in front of a point.
+struct Cover<'a> {
+    camera: &'a Camera,
+    triangles: Vec<[Vector<3>; 3]>,
+    fields: HashMap<[i32; 2], Vec<usize>>,
+}
+
+impl<'a> Cover<'a> {
+    /// Side of a field, on the page.
+    const SIDE: f64 = 12.0;
+
+    fn new(surfaces: &[Surface], camera: &'a Camera) -> Self {
+        let corners = |s: &Surface, t: &[u32; 3]| t.map(|v| s.points[v as usize]);
+        let triangles: Vec<[Vector<3>; 3]> =
+            surfaces.iter().flat_map(|s| s.triangles.iter().map(move |t| corners(s, t))).collect();
+        let mut cover = Cover { camera, triangles: Vec::new(), fields: HashMap::new() };
+        for (k, corners) in triangles.iter().enumerate() {
+            let fields = corners.each_ref().map(|x| cover.field(x));
+            let range = |i: usize| {
+                let along = fields.map(|f| f[i]);
+                along.into_iter().min().unwrap_or(0)..=along.into_iter().max().unwrap_or(0)
+            };
+            for i in range(0) {
+                range(1).for_each(|j| cover.fields.entry([i, j]).or_default().push(k));
+            }
+        }
+        Cover { triangles, ..cover }
+    }
+
+    fn field(&self, x: &Vector<3>) -> [i32; 2] {
+        let (x, y) = self.camera.at(x);
+        [x, y].map(|v| (v / Self::SIDE).floor() as i32)
+    }
+
+    fn hides(&self, x: &Vector<3>) -> bool {
+        let near = self.fields.get(&self.field(x)).map_or(&[][..], |l| l);
+        near.iter().any(|&k| in_front(x, self.triangles[k], &self.camera.towards))
+    }
+
+    /// The parts of a path that lie behind a body by more than a margin.
+    fn hidden(&self, line: &Line, margin: f64) -> Vec<Vec<Vector<3>>> {
+        let between = line.points.windows(2).flat_map(|pair| {
+            let way = pair[1].x - pair[0].x;
+            let parts = (way.norm() / margin).ceil().max(1.0) as usize;
+            (0..parts).map(move |k| pair[0].x + way * (k as f64 / parts as f64))
+        });
+        let told = |x: Vector<3>| (x, self.hides(&(x + self.camera.towards * margin)));
+        let points: Vec<(Vector<3>, bool)> = between.chain(line.points.last().map(|p| p.x)).map(told).collect();
+        let runs = points.chunk_by(|a, b| a.1 == b.1).filter(|run| run[0].1);
+        runs.map(|run| run.iter().map(|(x, _)| *x).collect()).collect()
+    }
 }
 
 /// Whether a triangle lies in front of a point.
@@ -141,6 +180,7 @@ pub fn draw(case: &PathCase, surfaces: &[Surface], lines: &[Line], folder: &Fold
     let axes = ["x", "y", "z"].map(|a| labels.length(a));
     camera.axes(&mut page.svg, bounds, axes.each_ref().map(String::as_str));
     let largest = forces.iter().copied().fold(0.0, f64::max);
+    let cover = Cover::new(surfaces, &camera);
     for line in lines.iter().filter(|l| !l.name.is_empty()) {
         let pressed: Vec<&LinePoint> = line.points.iter().filter(|p| p.body >= 0 && p.normal_force > 0.0).collect();
         for p in pressed.iter().step_by(pressed.len().div_ceil(ARROWS).max(1)) {
@@ -152,7 +192,7 @@ pub fn draw(case: &PathCase, surfaces: &[Surface], lines: &[Line], folder: &Fold
             let colour = viridis(scale.place(p.normal_force));
             chart::line(&mut page.svg, &[camera.at(&p.x), camera.at(&end)], colour);
         }
-        for run in hidden(line, surfaces, &camera.towards, 2.0 * THICK * extent) {
+        for run in cover.hidden(line, 2.0 * THICK * extent) {
             chart::dashes(&mut page.svg, &run.iter().map(|x| camera.at(x)).collect::<Vec<_>>(), IN_THE_AIR);
             some_hidden = true;
         }
@@ -203,4 +243,30 @@ pub fn history(
     }
     page.key(&key);
     save(folder, file, &page.finish())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square of side 2 at height 1, seen from above: of a line below from -3 to 3 the middle third is hidden, of one above it
+    /// nothing.
+    #[test]
+    fn what_lies_behind_a_body_is_told() {
+        let at = |x: f64, y: f64, z: f64| Vector::<3>::new(x, y, z);
+        let points = vec![at(-1.0, -1.0, 1.0), at(1.0, -1.0, 1.0), at(1.0, 1.0, 1.0), at(-1.0, 1.0, 1.0)];
+        let surface = Surface { normals: vec![Vector::<3>::z(); 4], points, triangles: vec![[0, 1, 2], [0, 2, 3]] };
+        let line = |z: f64| {
+            let point = |x: f64| LinePoint { x: at(x, 0.1, z), ..LinePoint::default() };
+            Line { points: vec![point(-3.0), point(3.0)], ..Line::default() }
+        };
+        let seen = [at(-3.0, -3.0, 0.0), at(3.0, 3.0, 0.0)];
+        let camera = Camera::new(&Vector::<3>::z(), &Vector::<3>::y(), seen.iter(), [0.0, 0.0, 300.0, 300.0]);
+        let cover = Cover::new(std::slice::from_ref(&surface), &camera);
+        let hidden = cover.hidden(&line(0.0), 0.01);
+        assert_eq!(hidden.len(), 1);
+        let (first, last) = (hidden[0][0].x, hidden[0][hidden[0].len() - 1].x);
+        assert!((first + 1.0).abs() < 0.02 && (last - 1.0).abs() < 0.02, "{first} {last}");
+        assert!(cover.hidden(&line(2.0), 0.01).is_empty());
+    }
 }

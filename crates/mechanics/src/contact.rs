@@ -310,11 +310,7 @@ impl Contact {
         (lambda, first): (&[f64], u32),
         out: &mut Target<'_>,
     ) -> Result<usize, PlaceError> {
-        let master = sides.master.0.master(self.master.group.as_deref(), sides.master.1)?;
-        self.find_partners(sides, master.as_ref());
-        if self.partners.get().is_none() {
-            master.prepare();
-        }
+        let master = self.met(sides)?;
         let linearises = out.tangent.is_some();
         let parts = self.components();
         let mut lost = 0;
@@ -444,11 +440,7 @@ impl Contact {
     /// # Errors
     /// A master that cannot be touched.
     pub(crate) fn found(&self, sides: &Sides<'_>, lambda: &[f64]) -> Result<Vec<(SiteResult, [f64; 3])>, PlaceError> {
-        let master = sides.master.0.master(self.master.group.as_deref(), sides.master.1)?;
-        self.find_partners(sides, master.as_ref());
-        if self.partners.get().is_none() {
-            master.prepare();
-        }
+        let master = self.met(sides)?;
         let of = |k: usize| {
             let (placed, pair) = self.pair(k, sides, (master.as_ref(), f64::INFINITY), |_| false);
             let mut out = SiteResult { x: placed.x, weight: self.sites[k].weight, ..SiteResult::default() };
@@ -478,11 +470,7 @@ impl Contact {
     /// # Errors
     /// A master that cannot be touched.
     pub(crate) fn accept_sites(&mut self, sides: &Sides<'_>, lambda: &[f64]) -> Result<(), PlaceError> {
-        let master = sides.master.0.master(self.master.group.as_deref(), sides.master.1)?;
-        self.find_partners(sides, master.as_ref());
-        if self.partners.get().is_none() {
-            master.prepare();
-        }
+        let master = self.met(sides)?;
         let mut memory = Vec::with_capacity(self.sites.len());
         for k in 0..self.sites.len() {
             let Some(Ok(touch)) = self.pair(k, sides, (master.as_ref(), f64::INFINITY), |_| false).1 else {

@@ -177,14 +177,13 @@ impl System {
             found => return found,
         };
         // A rope that is drawn along moves off all that it touches by a trial as stiff as it is along itself, not across.
-        let scaled: Vec<bool> = self.contacts.iter_mut().map(|contact| contact.scale_trials(SOFTER)).collect();
-        if scaled.contains(&true) {
-            let found = self.by(Way::Straight, start, time, solved, report);
-            self.contacts.iter_mut().for_each(|contact| _ = contact.scale_trials(1.0 / SOFTER));
-            match found {
-                Err(error) if is_curable(&error) => {}
-                found => return found,
-            }
+        let found = self.with_softer_trials(|system, is_softer| {
+            is_softer.then(|| system.by(Way::Straight, start, time, solved, report))
+        });
+        match found {
+            None => {}
+            Some(Err(error)) if is_curable(&error) => {}
+            Some(found) => return found,
         }
         // No other way leads where there is nothing to find.
         let (first, _) = self.numbering();
@@ -197,6 +196,14 @@ impl System {
             return Err(IncrementError::NotConverged { history, worst: Some(format!("; {reason}")) });
         }
         self.by(Way::Round(failed), start, time, solved, report)
+    }
+
+    /// What is done while the trials of contacts that can be softer are; told whether there are any.
+    pub(crate) fn with_softer_trials<T>(&mut self, of: impl FnOnce(&mut Self, bool) -> T) -> T {
+        let softer: Vec<bool> = self.contacts.iter_mut().map(|contact| contact.scale_trials(SOFTER)).collect();
+        let found = of(self, softer.contains(&true));
+        self.contacts.iter_mut().for_each(|contact| _ = contact.scale_trials(1.0 / SOFTER));
+        found
     }
 
     /// Newton's method by one way.

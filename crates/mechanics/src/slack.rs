@@ -4,7 +4,6 @@
 //! given force densities (Schek 1974). Then the springs are taken back: the ropes sag more and more, until their length holds
 //! them. In the end nothing is left of the springs.
 
-use crate::enforcement::SOFTER;
 use crate::increment::{Way, is_curable};
 use crate::increment_error::IncrementError;
 use crate::linear_solver::Solved;
@@ -37,9 +36,7 @@ impl System {
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
         // Across itself a rope is as stiff as its tension, not as along itself.
-        self.contacts.iter_mut().for_each(|contact| _ = contact.scale_trials(SOFTER));
-        let found = self.loosened(start, time, solved, report);
-        self.contacts.iter_mut().for_each(|contact| _ = contact.scale_trials(1.0 / SOFTER));
+        let found = self.with_softer_trials(|system, _| system.loosened(start, time, solved, report));
         self.bodies.iter_mut().for_each(|body| body.tighten(0.0));
         found
     }

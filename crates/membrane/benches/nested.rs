@@ -10,7 +10,7 @@
 //! With `SIGNORINI_PETSC` naming a Python that has petsc4py with hypre, numpy and scipy, PETSc solves the same problems at
 //! degree 1 beside, from 1e5 nodes on: TAO tron and SNES vinewtonrsls on the same triangles, SNES on the same square grid.
 
-#[path = "../tests/all/common/mod.rs"]
+#[path = "../tests/membrane/common/mod.rs"]
 mod common;
 
 use signorini_fem::{Cells, Grid, MeshCells};

@@ -6,6 +6,7 @@
 //! as soon as it is known which sites are closed; where surfaces slide far, the increments have to be short.
 
 use super::{Contact, Sides};
+use crate::body::PlaceError;
 use crate::pair::Pair;
 use crate::points::{Anchor, Master, MaterialPoint, Order, Placed};
 use rayon::prelude::*;
@@ -54,12 +55,19 @@ impl Partner {
 }
 
 impl Contact {
-    /// Finds what every site faces, unless that is known for this increment or not kept.
-    pub(super) fn find_partners(&self, sides: &Sides<'_>, master: &dyn Master) {
-        if self.pairing == Pairing::Now || self.friction.is_some() || self.partners.get().is_some() {
-            return;
+    /// What may be touched, ready for many searches; what every site faces in this increment is found where pairs are kept.
+    pub(super) fn met<'a>(&self, sides: &Sides<'a>) -> Result<Box<dyn Master + 'a>, PlaceError> {
+        let master = sides.master.0.master(self.master.group.as_deref(), sides.master.1)?;
+        if self.partners.get().is_none() {
+            master.prepare();
+            if self.pairing == Pairing::AtStart && self.friction.is_none() {
+                self.find_partners(sides, master.as_ref());
+            }
         }
-        master.prepare();
+        Ok(master)
+    }
+
+    fn find_partners(&self, sides: &Sides<'_>, master: &dyn Master) {
         let of = |k: usize| {
             let (placed, found) = self.pair_now(k, sides, (master, f64::INFINITY), |_| false);
             let pair = found?.ok()?.pair;

@@ -1,4 +1,4 @@
 //! The tests of the command as one program.
 
 mod closed_output;
-mod command;
+mod runs;

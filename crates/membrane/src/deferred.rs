@@ -118,7 +118,7 @@ mod tests {
         let height: SharedField<2> = Arc::new(Formula(wave));
         Membrane {
             domain: DomainOnCells::new(domain, &grid),
-            cells: Arc::new(grid.clone()),
+            cells: grid.as_cells(),
             grid,
             sizing: None,
             measure: Measure::Plain,

@@ -38,20 +38,38 @@ pub struct Kernel<const D: usize> {
 
 impl Kernel<1> {
     /// Strings and round membranes.
-    pub const LINE: Self = Self {
-        history: |statement| Box::new(WithZones::<1, LineZone>::new(statement)),
-        free: |membrane| free::<1, LineZone>(membrane),
-        quadrature: |membrane| Quadrature::new(membrane, &NoZone),
-    };
+    pub const LINE: Self = Self { history: history_on_line, free: free_on_line, quadrature: quadrature_on_line };
 }
 
 impl Kernel<2> {
     /// Membranes in the plane.
-    pub const PLANE: Self = Self {
-        history: |statement| Box::new(WithZones::<2, PlaneZone>::new(statement)),
-        free: |membrane| free::<2, PlaneZone>(membrane),
-        quadrature: |membrane| Quadrature::new(membrane, &NoZone),
-    };
+    pub const PLANE: Self = Self { history: history_in_plane, free: free_in_plane, quadrature: quadrature_in_plane };
+}
+
+// Functions with names: a closure in a constant is compiled where the constant is used.
+
+fn history_on_line(statement: Rc<dyn Statement<1>>) -> Box<dyn History<1>> {
+    Box::new(WithZones::<1, LineZone>::new(statement))
+}
+
+fn history_in_plane(statement: Rc<dyn Statement<2>>) -> Box<dyn History<2>> {
+    Box::new(WithZones::<2, PlaneZone>::new(statement))
+}
+
+fn free_on_line(membrane: &Membrane<1>) -> Result<FreeMembrane<1>, SolveError> {
+    free::<1, LineZone>(membrane)
+}
+
+fn free_in_plane(membrane: &Membrane<2>) -> Result<FreeMembrane<2>, SolveError> {
+    free::<2, PlaneZone>(membrane)
+}
+
+fn quadrature_on_line(membrane: &Membrane<1>) -> Quadrature<1> {
+    Quadrature::new(membrane, &NoZone)
+}
+
+fn quadrature_in_plane(membrane: &Membrane<2>) -> Quadrature<2> {
+    Quadrature::new(membrane, &NoZone)
 }
 
 impl<const D: usize> Clone for Kernel<D> {

@@ -1,8 +1,6 @@
 //! Contact mechanics that puts geometry first: the statement of a problem, its run, its results.
-pub mod case;
 pub mod exact;
 pub mod explain;
-pub mod expression;
 pub mod fields;
 pub mod fit;
 pub mod gallery;
@@ -12,7 +10,6 @@ mod npy;
 pub mod output;
 pub mod paths;
 pub mod plan;
-pub mod problem;
 pub mod queries;
 pub mod relief;
 pub mod report;
@@ -23,3 +20,6 @@ pub mod snapshot;
 pub mod template;
 mod text_table;
 pub mod verify;
+
+pub use signorini_expression as expression;
+pub use signorini_problem::{self as problem, case};

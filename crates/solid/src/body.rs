@@ -76,11 +76,13 @@ pub struct Bodies<const D: usize> {
 }
 
 impl<const D: usize> Bodies<D> {
+    #[inline(never)]
     pub fn new(space: Space) -> Self {
         Bodies { space, list: Vec::new() }
     }
 
     /// Adds a body; returns its number.
+    #[inline(never)]
     pub fn add(&mut self, name: &str, mesh: Mesh<D>, degree: usize, material: Elastic) -> usize {
         let dofs = DofMap::new(&mesh, degree);
         let first = self.unknowns();
@@ -100,6 +102,7 @@ impl<const D: usize> Bodies<D> {
     }
 
     /// The part of the boundary of a body that the sides make up, for contact.
+    #[inline(never)]
     pub fn surface(&self, body: usize, sides: Vec<Side>) -> BodySurface<D> {
         let b = self.list[body].clone();
         let functions = sides.iter().map(|s| b.dofs.on_side(*s)).collect();

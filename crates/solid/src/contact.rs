@@ -51,6 +51,7 @@ pub enum Method {
 ///
 /// # Errors
 /// Faces that make no shape, in words.
+#[inline(never)]
 pub fn facing<const D: usize>(surface: &BodySurface<D>, other: &BodySurface<D>) -> Result<Vec<Side>, String> {
     let faces = Faces::new(other).map_err(|e| e.to_string())?;
     Ok((0..surface.sides.len())
@@ -99,6 +100,7 @@ pub struct Contact<const D: usize> {
 }
 
 impl<const D: usize> Contact<D> {
+    #[inline(never)]
     pub fn new(name: &str, slave: BodySurface<D>, master: Master<D>) -> Self {
         let nodes = PressureNodes::new(&slave);
         let mut moved_by = vec![(Point::<D>::zeros(), Vec::new()); nodes.len()];

@@ -13,6 +13,7 @@
 
 mod assembly;
 pub mod body;
+pub mod compiled;
 mod condensed;
 pub mod contact;
 mod enforced;

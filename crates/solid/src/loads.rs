@@ -32,6 +32,7 @@ pub struct Load {
 }
 
 /// The forces of a load on the unknowns of all bodies.
+#[inline(never)]
 pub fn forces<const D: usize>(bodies: &Bodies<D>, load: &Load, value: &dyn Fn(&Point<D>) -> Point<D>) -> Vec<f64> {
     let mut out = vec![0.0; bodies.unknowns()];
     if load.kind == LoadKind::BodyForce {
@@ -89,6 +90,7 @@ fn volume<const D: usize>(bodies: &Bodies<D>, load: &Load, value: &dyn Fn(&Point
 }
 
 /// The sum of forces on the unknowns of the bodies: those of the vertex functions, which add up to one.
+#[inline(never)]
 pub fn resultant<const D: usize>(bodies: &Bodies<D>, forces: &[f64]) -> Point<D> {
     bodies.list.iter().map(|body| body.resultant(forces)).sum()
 }

@@ -67,6 +67,7 @@ impl<const D: usize> Model<D> {
     ///
     /// # Errors
     /// A support along the normal of what is not flat.
+    #[inline(never)]
     pub fn new(bodies: Bodies<D>, supports: Vec<Support>, contacts: Vec<Contact<D>>) -> Result<Self, StepError> {
         let reduction = Reduction::new(&bodies, &supports)?;
         let mut contacts = contacts;
@@ -144,6 +145,7 @@ impl<const D: usize> Model<D> {
     ///
     /// # Errors
     /// A structure that does not fit into memory.
+    #[inline(never)]
     pub fn cost(&self) -> Result<Cost, SolveError> {
         let (graph, places) = graph(&self.bodies, &self.reduction);
         let mut symbolic = if D == 3 { Symbolic::dissected(places) } else { Symbolic::default() };
@@ -165,6 +167,7 @@ impl<const D: usize> Model<D> {
 
     /// Solves for the displacement at one time. `report` gets the iteration and what is left (see
     /// [`State::residuals`]), and says whether to go on.
+    #[inline(never)]
     pub fn solve(
         &mut self,
         now: &Circumstances<'_, D>,
@@ -211,6 +214,7 @@ impl<const D: usize> Model<D> {
     }
 
     /// Looks without solving whether supports, contacts and loads make sense at a time, with the bodies at rest.
+    #[inline(never)]
     pub fn examine(&mut self, now: &Circumstances<'_, D>) -> Result<(), StepError> {
         self.reduction.offset(&self.bodies, &self.supports, now.displacement)?;
         self.started = false;
@@ -222,6 +226,7 @@ impl<const D: usize> Model<D> {
 
     /// Looks whether the supports agree with each other at a time, and whether what faces what, as it was found last, can
     /// hold the bodies against the loads.
+    #[inline(never)]
     pub fn examine_again(&self, now: &Circumstances<'_, D>) -> Result<(), StepError> {
         self.reduction.offset(&self.bodies, &self.supports, now.displacement)?;
         self.check_held(&now.load)
@@ -234,6 +239,7 @@ impl<const D: usize> Model<D> {
     }
 
     /// What the next time goes on from.
+    #[inline(never)]
     pub fn save(&self) -> Memory {
         Memory { active: self.active.save(), friction: self.history.clone() }
     }
@@ -242,6 +248,7 @@ impl<const D: usize> Model<D> {
     ///
     /// # Errors
     /// Those of a first search that the model saved did not have.
+    #[inline(never)]
     pub fn restore(&mut self, memory: Memory, first: &Circumstances<'_, D>) -> Result<(), StepError> {
         self.started = true;
         self.search(first)?;

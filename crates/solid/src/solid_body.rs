@@ -71,6 +71,7 @@ impl<const D: usize> SolidBody<D> {
     ///
     /// # Errors
     /// Meshes, degrees and constants that nothing can be computed with.
+    #[inline(never)]
     pub fn new(
         name: &str,
         mesh: Arc<Mesh<D>>,
@@ -127,6 +128,12 @@ impl<const D: usize> SolidBody<D> {
             out.stiffness = out.small_strain();
         }
         Ok(out)
+    }
+
+    /// The solid as a body of a system.
+    #[inline(never)]
+    pub fn into_body(self) -> Box<dyn Body> {
+        Box::new(self)
     }
 
     fn body(&self) -> &crate::body::Body<D> {

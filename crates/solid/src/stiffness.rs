@@ -242,6 +242,7 @@ pub(crate) fn pressures<const D: usize>(basis: &HierarchicBasis, table: &Table) 
 }
 
 /// Displacement, its gradient in space and the position at a point of a cell, from the unknowns of the body.
+#[inline(never)]
 pub fn displacement_at<const D: usize>(
     mesh: &Mesh<D>,
     dofs: &DofMap,

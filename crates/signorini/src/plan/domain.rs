@@ -94,7 +94,7 @@ pub(crate) trait ReadDomain<const D: usize> {
         let refinement = self.refinement(grid.refine.as_ref(), &coarse)?;
         let cells: Arc<dyn Cells<D>> = match &grid.refine {
             Some(key) if key.negative_where.is_some() => self.divided(&coarse, &refinement.always),
-            _ => Arc::new(coarse.clone()),
+            _ => coarse.as_cells(),
         };
         let grid = coarse;
         let domain = DomainOnCells::new(shape, &*cells);

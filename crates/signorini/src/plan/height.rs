@@ -5,7 +5,7 @@ use super::rigid_shape::{self, ShapeKeys};
 use crate::expression::Expression;
 use crate::problem::units::{Dimension, LENGTH};
 use crate::problem::{CaseError, List, Value};
-use crate::problem::{Cylinder, Ellipsoid, Looks, Rigid, Shape, ShapeReader, Space};
+use crate::problem::{Cylinder, Ellipsoid, Looks, Rigid, Shape, Space};
 use signorini_geometry::Vector;
 use signorini_geometry::height_field::View;
 use signorini_geometry::rigid_shape::NoHeight;
@@ -79,7 +79,7 @@ impl BesideMembrane<'_, '_> {
                 .help("x = y = 0"));
         }
         if let Shape::Ellipsoid(key) = shape {
-            let [a, b, _] = ShapeKeys::semi_axes(self, key)?;
+            let [a, b, _] = self.semi_axes(key)?;
             if a != b {
                 return Err(problem.error(&key.semi_axes, "round an axis the first two semi-axes are equal"));
             }

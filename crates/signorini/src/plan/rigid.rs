@@ -7,7 +7,7 @@ use super::rigid_shape::{self, ShapeKeys};
 use crate::expression::Scope;
 use crate::problem::units::{Dimension, LENGTH, NONE};
 use crate::problem::{CaseError, List, Location, Problem, Value};
-use crate::problem::{Cylinder, Ellipsoid, Motion, Rigid, Shape, ShapeReader, Side, Space, Stance};
+use crate::problem::{Cylinder, Ellipsoid, Motion, Rigid, Shape, Side, Space, Stance};
 use crate::queries::geometry;
 use crate::report::{Warning, WarningKind};
 use signorini_geometry::height_field::{self, HeightField};

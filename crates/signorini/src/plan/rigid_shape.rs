@@ -15,44 +15,52 @@ pub(super) trait ShapeKeys {
     /// A place or a direction.
     fn vector(&self, values: &List<Value>, dimension: Dimension) -> Result<Vector<3>, CaseError>;
 
+    /// The unit vector of a direction.
+    fn direction(&self, values: &List<Value>) -> Result<Vector<3>, CaseError> {
+        let wrong = || self.planner().problem.error(values, "the direction has no length");
+        self.vector(values, NONE)?.try_normalize(0.0).ok_or_else(wrong)
+    }
+
     /// The unit vector along the axis of a cylinder, whose shape is stated at a place of the file.
     fn cylinder_axis(&self, key: &problem::Cylinder, shape: &Shape) -> Result<Vector<3>, CaseError>;
 
     fn semi_axes(&self, key: &problem::Ellipsoid) -> Result<[f64; 3], CaseError>;
 }
 
-impl<K: ShapeKeys> ShapeReader for K {
+/// Reads the keys of a shape as `ShapeKeys` tells.
+struct Reader<'a, K>(&'a K);
+
+impl<K: ShapeKeys> ShapeReader for Reader<'_, K> {
     fn problem(&self) -> &Problem {
-        self.planner().problem
+        self.0.planner().problem
     }
 
     fn place(&self, values: &List<Value>) -> Result<Vector<3>, CaseError> {
-        self.vector(values, LENGTH)
+        self.0.vector(values, LENGTH)
     }
 
     fn direction(&self, values: &List<Value>) -> Result<Vector<3>, CaseError> {
-        let v = self.vector(values, NONE)?;
-        v.try_normalize(0.0).ok_or_else(|| self.problem().error(values, "the direction has no length"))
+        self.0.direction(values)
     }
 
     fn length(&self, value: &Value) -> Result<f64, CaseError> {
-        self.planner().reader.positive(value, LENGTH)
+        self.0.planner().reader.positive(value, LENGTH)
     }
 
     fn angle(&self, value: &Value) -> Result<f64, CaseError> {
-        self.planner().reader.positive(value, NONE)
+        self.0.planner().reader.positive(value, NONE)
     }
 
     fn cylinder_axis(&self, key: &problem::Cylinder, shape: &Shape) -> Result<Vector<3>, CaseError> {
-        ShapeKeys::cylinder_axis(self, key, shape)
+        self.0.cylinder_axis(key, shape)
     }
 
     fn semi_axes(&self, key: &problem::Ellipsoid) -> Result<[f64; 3], CaseError> {
-        ShapeKeys::semi_axes(self, key)
+        self.0.semi_axes(key)
     }
 
     fn profile(&self, key: &problem::Revolution) -> Result<Profile, CaseError> {
-        profile(self.planner(), key)
+        profile(self.0.planner(), key)
     }
 }
 
@@ -62,7 +70,7 @@ pub(super) fn read(
     shape: &Shape,
 ) -> Result<Option<(Arc<dyn RigidShape>, &'static str)>, CaseError> {
     let Some(stated) = shape.closed_form() else { return Ok(None) };
-    Ok(Some((stated.read(keys, shape)?, stated.stance().name)))
+    Ok(Some((stated.read(&Reader(keys), shape)?, stated.stance().name)))
 }
 
 /// The spline through the points of a table.

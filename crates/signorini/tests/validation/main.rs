@@ -21,6 +21,7 @@ mod scenes;
 mod schema;
 mod solid_theory;
 mod solids;
+mod statement;
 mod systems;
 mod words;
 

@@ -90,6 +90,7 @@ impl<const D: usize> SolidBody<D> {
     ///
     /// # Errors
     /// Edges that are not there, that branch, turn or fall into pieces, and a body in the plane.
+    #[inline(never)]
     pub fn with_edges(mut self, edges: &BTreeMap<String, EdgeOf>) -> Result<Self, EdgeError> {
         if self.space() != Space::Solid && !edges.is_empty() {
             return Err(EdgeError::Plane);

@@ -37,7 +37,7 @@ impl ReadDomain<1> for Planner<'_> {
     }
 
     fn divided(&self, grid: &Grid<1>, _: &Wanted<1>) -> Arc<dyn Cells<1>> {
-        Arc::new(grid.clone())
+        grid.as_cells()
     }
 
     fn shape(&self, key: &Domain) -> Result<(Arc<dyn MembraneDomain<1>>, Aabb<1>, Pieces), CaseError> {

@@ -56,7 +56,7 @@ impl Planner<'_> {
             .map_err(|e| self.problem.error(&key.mesh, e.to_string()))?;
         let edges = self.edges(key)?;
         let body = body.with_edges(&edges).map_err(|e| self.wrong_edge(key, &e))?;
-        Ok((Box::new(body), on_axis))
+        Ok((body.into_body(), on_axis))
     }
 
     /// The edges of a solid as they are stated.

@@ -9,7 +9,6 @@ use signorini_membrane::active_set::NodalStart;
 use signorini_membrane::history::MethodChoice;
 use signorini_membrane::method::{Formulation, Modes, Published, Transport, ZoneMultiplier};
 use signorini_membrane::refinement::Refinement;
-use std::sync::Arc;
 
 impl Planner<'_> {
     /// The formulation that a contact asks for, of a membrane of a certain extent.
@@ -75,7 +74,7 @@ impl Planner<'_> {
         if let problem::Mesh::Grid(_) = &film.mesh {
             if D == 2 {
                 on.grid = Grid::new(*on.grid.bounds(), on.grid.cells(), 1);
-                on.cells = Arc::new(on.grid.clone());
+                on.cells = on.grid.as_cells();
             }
         } else if on.cells.degree() != 1 {
             return Err(self

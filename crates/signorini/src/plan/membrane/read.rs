@@ -71,7 +71,7 @@ impl Planner<'_> {
             }
             on.refinement = Refinement::default();
             on.grid = Grid::new(*on.grid.bounds(), on.grid.cells(), 1);
-            on.cells = Arc::new(on.grid.clone());
+            on.cells = on.grid.as_cells();
         }
         let plan = self.finish(body, on, tension, loads, supports, contacts, method, warnings)?;
         let start = plan.increments.first().map_or(0.0, |i| i.range[0]);

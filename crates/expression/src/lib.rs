@@ -6,10 +6,11 @@
 mod function;
 mod parse;
 mod scope;
+mod suggestion;
 mod tree;
 
 pub use function::{FieldFunction, InTime};
-pub(crate) use parse::number_length;
-pub use parse::{Names, ParseError, function_names, parse};
+pub use parse::{Names, ParseError, function_names, number_length, parse};
 pub use scope::Scope;
+pub use suggestion::suggestion;
 pub use tree::{Definition, Expression, MAX_DEPTH, MAX_TOKENS};

@@ -1,6 +1,6 @@
 //! Where the keys of a TOML text stand.
 
-use crate::problem::{KeyPath, Part};
+use crate::{KeyPath, Part};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};

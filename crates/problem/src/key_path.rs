@@ -4,6 +4,7 @@
 //! the part at that address and of that type is met, and the keys on the way to it are its path. So no reader carries paths
 //! along, and no plain type carries one in it.
 
+use crate::Problem;
 use serde::de::DeserializeOwned;
 use serde::ser::{self, Serialize};
 use std::fmt;
@@ -58,10 +59,15 @@ impl fmt::Display for KeyPath {
 pub trait ProblemPart: Serialize + DeserializeOwned {}
 impl<T: Serialize + DeserializeOwned> ProblemPart for T {}
 
-/// The way from a whole to a part of it; none where the part is not in it.
-pub fn find<T: ProblemPart>(whole: &impl Serialize, part: &T) -> Option<KeyPath> {
-    let mut search = Search { address: address(part), kind: std::any::type_name::<T>(), path: Vec::new() };
-    whole.serialize(&mut search).is_err().then_some(KeyPath(search.path))
+/// The way to a part of a problem; none where the part is not in it.
+pub fn find<T: ProblemPart>(problem: &Problem, part: &T) -> Option<KeyPath> {
+    find_at(problem, address(part), std::any::type_name::<T>())
+}
+
+/// The way to the part of the given type at an address. Without parameters, so that the walk is compiled once.
+fn find_at(problem: &Problem, address: usize, kind: &'static str) -> Option<KeyPath> {
+    let mut search = Search { address, kind, path: Vec::new() };
+    problem.serialize(&mut search).is_err().then_some(KeyPath(search.path))
 }
 
 fn address<T: ?Sized>(of: &T) -> usize {

@@ -1,6 +1,6 @@
 //! Errors of a problem: what is wrong, where, and what would be right.
 
-use super::KeyPath;
+use crate::KeyPath;
 use std::ops::Range;
 
 /// Something in a problem that cannot be used.
@@ -109,42 +109,12 @@ impl miette::SourceCode for Place {
     }
 }
 
-/// The nearest of the known words, or all of them.
-pub fn suggestion(word: &str, known: &[&str]) -> String {
-    let nearest = known.iter().map(|k| (distance(word, k), *k)).min();
-    match nearest {
-        // Another word altogether is no suggestion.
-        Some((d, k)) if d <= 1 + word.chars().count() / 3 && d < word.chars().count() => format!("did you mean `{k}`?"),
-        Some(_) => format!("known here: {}", known.join(", ")),
-        None => "nothing is known here".into(),
-    }
-}
-
-/// Edit distance.
-fn distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, ca) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, cb) in b.iter().enumerate() {
-            let change = diagonal + usize::from(ca != *cb);
-            diagonal = row[j + 1];
-            row[j + 1] = change.min(row[j] + 1).min(row[j + 1] + 1);
-        }
-    }
-    row[b.len()]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn near_words_are_suggested_and_places_are_counted_in_characters() {
-        assert_eq!(suggestion("tensoin", &["tension", "degree"]), "did you mean `tension`?");
-        assert!(suggestion("q", &["tension", "degree"]).contains("known here"));
-        assert!(suggestion("q", &["e", "x"]).contains("known here"));
+    fn places_are_counted_in_characters() {
         let place = Place { name: "a".into(), text: "ä = 1\nbé = 2".into(), span: 10..11 };
         assert_eq!(place.line_and_column(), (2, 3));
     }

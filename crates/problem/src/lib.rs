@@ -7,6 +7,7 @@
 
 pub mod arrays;
 pub mod body;
+pub mod case;
 pub mod cells;
 pub mod contact;
 pub mod curve;
@@ -29,7 +30,7 @@ pub use body::*;
 pub use cells::*;
 pub use contact::*;
 pub use curve::*;
-pub use error::{CaseError, suggestion};
+pub use error::CaseError;
 pub use fit::{Fit, FitUnknown, Noise};
 pub use history::{ArcLength, AreaControl, Control, Step};
 pub use key_path::{KeyPath, Part, ProblemPart};
@@ -39,6 +40,7 @@ pub use nothing::Nothing;
 pub use paths::*;
 pub use rigid::*;
 pub use shape::*;
+pub use signorini_expression::suggestion;
 pub use source::Source;
 pub use value::{Components, Value};
 

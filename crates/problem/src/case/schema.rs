@@ -1,6 +1,6 @@
 //! What may stand in a case file, told by the types that read it: as a JSON Schema, key by key, as a table.
 
-use crate::problem::Problem;
+use crate::Problem;
 use serde_json::{Map, Value, json};
 
 /// A key of the case file.

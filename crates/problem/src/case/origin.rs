@@ -1,7 +1,7 @@
 //! Where the parts of a case text come from: the file, or a `--set` on the command line.
 
-use crate::problem::CaseError;
-use crate::problem::error::Place;
+use crate::CaseError;
+use crate::error::Place;
 use std::ops::Range;
 use toml_edit::{Document, TableLike};
 

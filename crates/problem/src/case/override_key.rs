@@ -1,7 +1,7 @@
 //! `--set KEY=VALUE`: replaces or adds a key of the case file before it is read.
 
 use super::origin::Origins;
-use crate::problem::CaseError;
+use crate::CaseError;
 use std::str::FromStr;
 use toml_edit::{DocumentMut, Item, Table, Value};
 

@@ -1,8 +1,11 @@
-//! Problems stated in types: the way to a part, errors by keys, fields and meshes of a program.
+//! Problems stated in types: errors by keys, fields and meshes of a program, and the text that states the same.
 
-use super::*;
-use crate::plan::plan;
-use crate::run::{Ending, Silent, solve};
+use signorini::case::read;
+use signorini::gallery::GALLERY;
+use signorini::plan::plan;
+use signorini::problem::*;
+use signorini::run::{Ending, solve};
+use signorini_solve::Silent;
 
 /// A membrane over a floor on a line, by its floor.
 fn string(height: Value) -> Problem {
@@ -18,26 +21,6 @@ fn string(height: Value) -> Problem {
     let between = Some(["film", "floor"].into());
     problem.contacts.insert("touch".into(), Contact { between, ..Contact::default() });
     problem
-}
-
-#[test]
-fn the_way_to_a_part_is_found_by_where_it_lies() {
-    let mut problem = string("-0.1".into());
-    problem.steps.extend([Step::default(), Step { events: Some(1.0), ..Step::default() }]);
-    let Some(Body::Membrane(film)) = problem.bodies.get("film") else { panic!("a membrane") };
-    assert_eq!(problem.key(&film.tension).to_string(), "bodies.film.membrane.tension");
-    assert_eq!(problem.key(film).to_string(), "bodies.film.membrane");
-    let Some(Domain::Interval(interval)) = &film.domain else { panic!("an interval") };
-    // The first part of a whole lies where the whole does, and is another type.
-    assert_eq!(problem.key(interval).to_string(), "bodies.film.membrane.domain.interval");
-    assert_eq!(problem.key(&interval.from).to_string(), "bodies.film.membrane.domain.interval.from");
-    let Mesh::Grid(grid) = &film.mesh else { panic!("a grid") };
-    let cells = grid.cells.as_ref().expect("cells");
-    assert_eq!(problem.key(cells).to_string(), "bodies.film.membrane.mesh.grid.cells");
-    assert_eq!(problem.key(&cells[0]).to_string(), "bodies.film.membrane.mesh.grid.cells[0]");
-    assert_eq!(problem.key(problem.steps[1].events.as_ref().expect("events")).to_string(), "steps[1].events");
-    let displacement = problem.supports["rim"].displacement.as_ref().expect("one");
-    assert_eq!(problem.key(&displacement.0[0]).to_string(), "supports.rim.displacement");
 }
 
 /// Errors of a problem without a text tell the key, and of an expression the place in it.
@@ -109,4 +92,21 @@ fn meshes_are_arrays() {
     assert!(told(vec![vec![0, 1, 4]]).contains("cell 0 of the quadrilaterals: no such cell has 3 nodes"));
     assert!(told(vec![vec![0, 1, 9, 3]]).contains("there is no point 9"));
     assert!(told(vec![vec![0, 1, 4, 3]]).starts_with("bodies.bar.solid.mesh.arrays"));
+}
+
+/// A problem that is stated in types is the one that its text states.
+#[test]
+fn a_problem_is_written_as_the_text_that_states_it() {
+    for example in GALLERY {
+        let problem = read(example.name, example.case, &[]).expect(example.name);
+        let written = without_source(&problem);
+        let again = read(example.name, &written, &[]).expect(example.name);
+        assert_eq!(without_source(&again), written, "{}", example.name);
+        assert_eq!(format!("{:?}", again.bodies), format!("{:?}", problem.bodies), "{}", example.name);
+    }
+}
+
+/// The text of a problem as if no text had stated it.
+fn without_source(problem: &Problem) -> String {
+    signorini::case::text(&Problem { source: Source::default(), ..problem.clone() })
 }

@@ -91,7 +91,7 @@ fn tokenize(text: &str) -> Result<Vec<(Token, Range<usize>)>, ParseError> {
 }
 
 /// Length of the number at the start: digits, a point, an exponent.
-pub(crate) fn number_length(text: &str) -> usize {
+pub fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
     let digits = |mut i: usize| {
         while i < bytes.len() && bytes[i].is_ascii_digit() {
@@ -242,7 +242,7 @@ impl Parser<'_> {
         } else if ["r", "radius"].contains(&name) {
             "the radius is `x` in an axisymmetric case, and `hypot(x, y)` in the plane".into()
         } else {
-            crate::problem::suggestion(name, &known)
+            crate::suggestion(name, &known)
         };
         Err(ParseError { message: format!("unknown name `{name}`"), help: Some(help), span })
     }
@@ -279,7 +279,7 @@ impl Parser<'_> {
                 known.extend(self.names.functions.keys().map(String::as_str));
                 return Err(ParseError {
                     message: format!("unknown function `{name}`"),
-                    help: Some(crate::problem::suggestion(name, &known)),
+                    help: Some(crate::suggestion(name, &known)),
                     span: span.clone(),
                 });
             }

@@ -1,6 +1,6 @@
 //! Errors of the TOML reader in words of a case file.
 
-use crate::problem::error::{CaseError, suggestion};
+use crate::{CaseError, suggestion};
 use std::ops::Range;
 
 /// Turns an error of the TOML reader into ours, with the nearest valid key.

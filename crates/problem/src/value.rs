@@ -2,10 +2,10 @@
 
 use super::List;
 use super::arrays::Grid2;
-use crate::expression::{FieldFunction, InTime};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor, value::MapAccessDeserializer};
 use serde::ser::{Serialize, Serializer};
+use signorini_expression::{FieldFunction, InTime};
 use signorini_geometry::Jet;
 use std::borrow::Cow;
 use std::fmt;

@@ -41,7 +41,7 @@ fn bad_starts_are_told_with_the_remedy() {
     let table: [(&str, &[(&str, &str)], [&str; 2]); 9] = [
         (
             "geodesic",
-            &[("from = [-3, \"0.5 + 2*t\", 0.3]", "from = [0.5, 0, 0.2]")],
+            &[("from = [-3, \"0.5 + 2*(1 - t)\", 0.3]", "from = [0.5, 0, 0.2]")],
             ["the start of the path `string` lies inside `egg`, 7.", "outside of the body"],
         ),
         (
@@ -53,7 +53,7 @@ fn bad_starts_are_told_with_the_remedy() {
         ("dome", &[(opening, "slippage = 0.4\nlength = 60")], ["`to_the_opening` slips from s = ", "a rougher yarn"]),
         (
             "dome",
-            &[(mandrel, ring), (opening, "slippage = 0\nlength = 200"), ("25 deg", "40 deg"), (pattern, "length = 50")],
+            &[(mandrel, ring), (opening, "slippage = 0\nlength = 200"), ("25 deg", "85 deg"), (pattern, "length = 50")],
             ["`to_the_opening` bridges from s = ", "the mandrel is hollow along it"],
         ),
         (

@@ -1,11 +1,11 @@
 //! A smooth surface near the vertices of a triangle mesh, for paths that need curvatures.
 //!
-//! At vertices a cubic height over the tangent plane is fitted to the vertices around ([`fit`]); its zero level is `f_i`. The
+//! At vertices a cubic height over the tangent plane is fitted to the vertices around (`fit`); its zero level is `f_i`. The
 //! surface is `Σ w_i f_i / Σ w_i = 0` with weights `(1 - |x - v_i|²/r_i²)⁴` of the radius `r_i` of the fit (a partition of
 //! unity: Ohtake et al., Multi-level partition of unity implicits, 2003; jets: Cazals & Pouget, Estimating differential
 //! quantities using polynomial fitting of osculating jets, 2005). For vertices on a surface its normals converge with order
 //! three and its curvatures with order two of the edges. Of vertices with noise fits are so wide that bias and noise of the
-//! curvatures balance ([`radius`]): for edges `h` and noise `σ` the radius is as `(σ h)^(1/5)`, and the error as `(σ h)^(2/5)`.
+//! curvatures balance (`radius`): for edges `h` and noise `σ` the radius is as `(σ h)^(1/5)`, and the error as `(σ h)^(2/5)`.
 
 mod fit;
 mod radius;

@@ -21,25 +21,24 @@
 //!
 //! The slip counts from where the sides had a common point at the last state, or would have had if they had touched.
 
+mod assembly;
 mod interaction;
 mod partners;
+mod passed;
+mod state;
+mod traction;
 
 pub use crate::part::Part;
 pub use partners::Pairing;
 
 use crate::body::{Body, BodyState, PlaceError};
 use crate::enforcement::Enforcement;
-use crate::interaction::Target;
 use crate::nitsche::Stress;
-use crate::pair::{AxisChoice, Encounter, NoPair, Pair, Stuck, any_tangent};
+use crate::pair::{AxisChoice, Encounter, NoPair, Pair, Stuck};
 use crate::points::{Anchor, Master, Met, Order, Placed, Sampling, Site};
 use crate::simpler::SetAside;
-use crate::site_result::SiteResult;
 use partners::Partners;
-use rayon::prelude::*;
-use signorini_contact::law::Projected;
-use signorini_contact::{Law, Status};
-use signorini_geometry::Vector;
+use signorini_contact::Law;
 
 /// Two sides that may touch.
 pub struct Contact {
@@ -90,14 +89,6 @@ pub(crate) struct Sides<'a> {
 struct Touch {
     pair: Pair,
     stress: Option<Stress>,
-}
-
-/// A traction with its derivatives in the unknowns of the pair.
-struct Traction {
-    projected: Projected,
-    axes: [Vector<3>; 2],
-    d_axes: Vec<[Vector<3>; 2]>,
-    slip: [f64; 2],
 }
 
 impl Contact {
@@ -265,279 +256,4 @@ impl Contact {
         let stress = stress.map(|s| Stress::new(&s, sides.first[0], &mut pair));
         Touch { pair, stress }
     }
-
-    fn traction(&self, k: usize, touch: &Touch, unknown: [f64; 3]) -> Traction {
-        let c = self.stiffness[k];
-        let pair = &touch.pair;
-        let (axes, d_axes) = if self.friction.is_some() { axes(pair) } else { ([Vector::<3>::zeros(); 2], Vec::new()) };
-        let base = touch.stress.as_ref().map_or_else(|| self.base(k), |s| s.base(&pair.normal, &axes));
-        let lambda: [f64; 3] = std::array::from_fn(|i| unknown[i] - self.softness * (unknown[i] - base[i]));
-        let Some(law) = &self.friction else {
-            let pressure = (lambda[0] - c * pair.gap).max(0.0);
-            let closed = lambda[0] - c * pair.gap > 0.0;
-            let mut projected = Projected { traction: [pressure, 0.0, 0.0], ..Projected::default() };
-            projected.derivative[0][0] = f64::from(u8::from(closed));
-            projected.status = if closed { Status::Slip } else { Status::Open };
-            return Traction { projected, axes, d_axes, slip: [0.0; 2] };
-        };
-        let slip = axes.map(|e| e.dot(&pair.elastic));
-        // In the plane nothing moves across it, and there is no friction that way.
-        let most = pair.slip.iter().map(|s| s.norm()).fold(0.0, f64::max);
-        let moves = axes.map(|e| pair.slip.iter().any(|s| e.dot(s).abs() > STEEP * most));
-        let trial = |i: usize| if moves[i] { lambda[i + 1] + c * slip[i] } else { 0.0 };
-        let per_velocity = c * (self.times[1] - self.times[0]);
-        let project = |trial: [f64; 3]| law.project_in_time(trial, per_velocity);
-        let mut projected = project([lambda[0] - c * pair.gap, trial(0), trial(1)]);
-        for i in (0..2).filter(|i| !moves[*i]) {
-            projected.derivative.iter_mut().for_each(|row| row[i + 1] = 0.0);
-        }
-        let [p, t1, t2] = projected.traction;
-        if projected.status == Status::Stick && law.utilisation([t1, t2], p) > 1.0 - AT_LIMIT {
-            let beyond = project([p, (1.0 + 2.0 * AT_LIMIT) * t1, (1.0 + 2.0 * AT_LIMIT) * t2]);
-            (projected.derivative, projected.status) = (beyond.derivative, beyond.status);
-        }
-        Traction { projected, axes, d_axes, slip }
-    }
-
-    /// Adds the contact to residual and tangent. `lambda` are its own unknowns, if it has any, and `first` the number of
-    /// the first of them. Returns how many sites could not be measured.
-    ///
-    /// # Errors
-    /// A master that cannot be touched.
-    pub(crate) fn add_sites(
-        &self,
-        sides: &Sides<'_>,
-        (lambda, first): (&[f64], u32),
-        out: &mut Target<'_>,
-    ) -> Result<usize, PlaceError> {
-        let master = self.met(sides)?;
-        let linearises = out.tangent.is_some();
-        let parts = self.components();
-        let mut lost = 0;
-        // Pairs are found side by side and added one after the other.
-        let find = |k: usize| {
-            let at = self.multiplier(k, lambda);
-            let is_closed = |touch: &Touch| linearises && self.traction(k, touch, at).projected.status != Status::Open;
-            let farthest = self.closes_within(k, sides, at);
-            self.pair(k, sides, (master.as_ref(), farthest), is_closed).1
-        };
-        let count = self.sites.len();
-        let found_in = |first: usize| -> Vec<_> {
-            let end = (first + AT_ONCE).min(count);
-            (first..end).into_par_iter().map(find).collect::<Vec<Option<Result<Touch, NoPair>>>>()
-        };
-        for (k, found) in (0..count).step_by(AT_ONCE).flat_map(found_in).enumerate() {
-            let own = |i: usize| first + (parts * k + i) as u32;
-            let at = self.multiplier(k, lambda);
-            let w = self.sites[k].weight;
-            let c = self.stiffness[k];
-            let touch = match found {
-                Some(Ok(touch)) => touch,
-                found => {
-                    lost += usize::from(matches!(found, Some(Err(NoPair::NoCoordinates))));
-                    // Open: the traction is to vanish.
-                    for i in 0..parts {
-                        out.residual[own(i) as usize] -= w / c * at[i];
-                        out.sizes[own(i) as usize] += w / c * at[i].abs();
-                        if let Some(tangent) = &mut out.tangent {
-                            tangent.add(own(i), own(i), -w / c);
-                        }
-                    }
-                    continue;
-                }
-            };
-            let found = self.traction(k, &touch, at);
-            let pair = &touch.pair;
-            let [p, t1, t2] = found.projected.traction;
-            let on_slave = found.axes[0] * t1 + found.axes[1] * t2;
-            let n = pair.unknowns.len();
-            for (a, &unknown) in pair.unknowns.iter().enumerate() {
-                let rubs = if parts == 3 { w * on_slave.dot(&pair.slip[a]) } else { 0.0 };
-                let force = -w * p * pair.opening[a] + rubs;
-                out.residual[unknown as usize] += force;
-                out.sizes[unknown as usize] += (w * p * pair.opening[a]).abs() + rubs.abs();
-            }
-            for i in 0..parts {
-                let value = w / c * (found.projected.traction[i] - at[i]);
-                out.residual[own(i) as usize] += value;
-                out.sizes[own(i) as usize] += w / c * (found.projected.traction[i].abs() + at[i].abs());
-            }
-            let Some(tangent) = &mut out.tangent else { continue };
-            if found.projected.status == Status::Open {
-                // Neither force nor stiffness, but that the tractions are to vanish.
-                for i in 0..parts {
-                    tangent.add(own(i), own(i), -w / c * (1.0 + UNDETERMINED));
-                }
-                continue;
-            }
-            // Derivatives of the trial in the unknowns of the pair.
-            let d_trial: Vec<[f64; 3]> = (0..n)
-                .map(|b| {
-                    let along =
-                        |i: usize| c * (found.d_axes[b][i].dot(&pair.elastic) + found.axes[i].dot(&pair.d_elastic[b]));
-                    let t = if parts == 3 { [along(0), along(1)] } else { [0.0; 2] };
-                    let s = touch
-                        .stress
-                        .as_ref()
-                        .map_or([0.0; 3], |s| s.change(b, (&pair.normal, &found.axes), pair, &found.d_axes));
-                    [s[0] - c * pair.d_gap[b], s[1] + t[0], s[2] + t[1]]
-                })
-                .collect();
-            let derivative = &found.projected.derivative;
-            let d_traction: Vec<[f64; 3]> = (d_trial.iter())
-                .map(|d| std::array::from_fn(|i| (0..3).map(|j| derivative[i][j] * d[j]).sum()))
-                .collect();
-            let along = |a: usize, i: usize| if parts == 3 { found.axes[i].dot(&pair.slip[a]) } else { 0.0 };
-            let bent = if parts == 3 { pair.slip_hessian(&on_slave) } else { Vec::new() };
-            let mut block = vec![0.0; n * n];
-            for a in 0..n {
-                for b in 0..n {
-                    let mut v = -p * pair.d_opening[a * n + b] - d_traction[b][0] * pair.opening[a];
-                    if parts == 3 {
-                        v += d_traction[b][1] * along(a, 0) + d_traction[b][2] * along(a, 1);
-                        let turned = found.d_axes[b][0] * t1 + found.d_axes[b][1] * t2;
-                        v += turned.dot(&pair.slip[a]) + bent[a * n + b];
-                    }
-                    block[a * n + b] = w * v;
-                }
-            }
-            tangent.add_block(&pair.unknowns, &block);
-            // What of the trial follows the unknown itself.
-            let follows = 1.0 - self.softness;
-            for i in 0..parts {
-                for (a, &unknown) in pair.unknowns.iter().enumerate() {
-                    let mut column = -derivative[0][i] * pair.opening[a];
-                    if parts == 3 {
-                        column += derivative[1][i] * along(a, 0) + derivative[2][i] * along(a, 1);
-                    }
-                    tangent.add(unknown, own(i), w * follows * column);
-                    tangent.add(own(i), unknown, w / c * d_traction[a][i]);
-                }
-                for j in 0..parts {
-                    // Tractions that nothing determines stay where they are.
-                    let own_part = if i == j { 1.0 + UNDETERMINED } else { 0.0 };
-                    let value = follows * derivative[i][j] - own_part;
-                    tangent.add(own(i), own(j), w / c * value);
-                }
-            }
-        }
-        Ok(lost)
-    }
-
-    /// The unknown traction of a site.
-    fn multiplier(&self, k: usize, lambda: &[f64]) -> [f64; 3] {
-        let own = &lambda[self.components() * k..self.components() * (k + 1)];
-        [own[0], own.get(1).copied().unwrap_or(0.0), own.get(2).copied().unwrap_or(0.0)]
-    }
-
-    /// The traction with which a site that gives way has no gap and no slip.
-    fn base(&self, k: usize) -> [f64; 3] {
-        self.enforcement.base(self.memory[k].traction)
-    }
-
-    /// The sites as they are found in a state, with their tractions along the axes.
-    ///
-    /// # Errors
-    /// A master that cannot be touched.
-    pub(crate) fn found(&self, sides: &Sides<'_>, lambda: &[f64]) -> Result<Vec<(SiteResult, [f64; 3])>, PlaceError> {
-        let master = self.met(sides)?;
-        let of = |k: usize| {
-            let (placed, pair) = self.pair(k, sides, (master.as_ref(), f64::INFINITY), |_| false);
-            let mut out = SiteResult { x: placed.x, weight: self.sites[k].weight, ..SiteResult::default() };
-            let Some(Ok(touch)) = pair else { return (out, [0.0; 3]) };
-            let found = self.traction(k, &touch, self.multiplier(k, lambda));
-            let pair = &touch.pair;
-            let [p, t1, t2] = found.projected.traction;
-            out.normal = pair.normal;
-            out.gap = Some(pair.gap);
-            out.pressure = p;
-            out.status = found.projected.status;
-            // The traction of the law is that along the slip; on the slave acts its opposite.
-            out.friction = -(found.axes[0] * t1 + found.axes[1] * t2);
-            if let (Some(law), true) = (&self.friction, out.status != Status::Open) {
-                out.increment = found.axes[0] * found.slip[0] + found.axes[1] * found.slip[1];
-                out.utilisation = law.utilisation([t1, t2], p);
-                let before = self.memory[k].slip;
-                out.slip = (before[0] + found.slip[0]).hypot(before[1] + found.slip[1]);
-            }
-            (out, found.projected.traction)
-        };
-        Ok((0..self.sites.len()).into_par_iter().map(of).collect())
-    }
-
-    /// Takes a state as the one that slips count from.
-    ///
-    /// # Errors
-    /// A master that cannot be touched.
-    pub(crate) fn accept_sites(&mut self, sides: &Sides<'_>, lambda: &[f64]) -> Result<(), PlaceError> {
-        let master = self.met(sides)?;
-        let mut memory = Vec::with_capacity(self.sites.len());
-        for k in 0..self.sites.len() {
-            let Some(Ok(touch)) = self.pair(k, sides, (master.as_ref(), f64::INFINITY), |_| false).1 else {
-                memory.push(SiteMemory::default());
-                continue;
-            };
-            let found = self.traction(k, &touch, self.multiplier(k, lambda));
-            let pair = &touch.pair;
-            let mut own = SiteMemory { traction: found.projected.traction, stuck: pair.stuck, slip: [0.0; 2] };
-            if self.friction.is_some() && found.projected.status != Status::Open {
-                let before = self.memory[k].slip;
-                own.slip = std::array::from_fn(|i| before[i] + found.slip[i]);
-                // Friction is kept along the axes of the new anchor.
-                let on_slave = found.axes[0] * own.traction[1] + found.axes[1] * own.traction[2];
-                let slipped = found.axes[0] * own.slip[0] + found.axes[1] * own.slip[1];
-                self.memory[k].stuck = own.stuck;
-                if let (_, Some(Ok(again))) = self.pair(k, sides, (master.as_ref(), f64::INFINITY), |_| false) {
-                    let (new, _) = axes(&again.pair);
-                    own.traction[1] = new[0].dot(&on_slave);
-                    own.traction[2] = new[1].dot(&on_slave);
-                    own.slip = new.map(|e| e.dot(&slipped));
-                }
-            }
-            memory.push(own);
-        }
-        self.memory = memory;
-        self.times[0] = self.times[1];
-        Ok(())
-    }
-}
-
-/// Sites whose pairs are kept at a time.
-const AT_ONCE: usize = 256;
-
-/// The part of its scale by which a multiplier resists change within a Newton step, in the tangent alone: what several
-/// points of a stiff body carry together need not be unique.
-const UNDETERMINED: f64 = 1e-6;
-
-/// Share of the limit of friction within which a site is at it, as what slipped is when the next increment starts. Either
-/// derivative serves at a switch; with that of slip a slip zone does not start each increment stuck, to be freed site by
-/// site. More than the tolerance of Newton's method, which ends that near to the limit.
-const AT_LIMIT: f64 = 1e-8;
-
-/// Sine of the angle to the normal below which the projection of an axis tells no direction any more.
-const STEEP: f64 = 1e-8;
-
-/// The axes of friction of a pair, and their variations.
-fn axes(pair: &Pair) -> ([Vector<3>; 2], Vec<[Vector<3>; 2]>) {
-    let normal = pair.normal;
-    let along = pair.axis.direction - normal * normal.dot(&pair.axis.direction);
-    let length = along.norm();
-    if length <= STEEP * pair.axis.direction.norm() {
-        // The axis stands on the surface: without one, any will do.
-        let first = any_tangent(&normal);
-        return ([first, normal.cross(&first)], vec![[Vector::<3>::zeros(); 2]; pair.unknowns.len()]);
-    }
-    let first = along / length;
-    let second = normal.cross(&first);
-    let variations = (pair.d_normal.iter().zip(&pair.axis.variation))
-        .map(|(dn, da)| {
-            let d = da
-                - normal * normal.dot(da)
-                - dn * normal.dot(&pair.axis.direction)
-                - normal * dn.dot(&pair.axis.direction);
-            let d_first = (d - first * first.dot(&d)) / length;
-            [d_first, dn.cross(&first) + normal.cross(&d_first)]
-        })
-        .collect();
-    ([first, second], variations)
 }

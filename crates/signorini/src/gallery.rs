@@ -81,7 +81,7 @@ pub fn asset(name: &str) -> Option<&'static [u8]> {
 /// Paths on rigid bodies.
 pub const PATHS: [Example; 5] = [
     example!("helix", "a rope round a drum with a grain: which tensions hold, and what slides sideways"),
-    example!("geodesic", "the shortest path round an ellipsoid, lifted off as its end moves up"),
+    example!("geodesic", "the shortest path round an ellipsoid, touched as its end moves down"),
     example!("tendon", "a tendon over a knuckle that bends: length, moment arm and friction"),
     example!("scan", "a strap over a scanned body, from its triangles"),
     example!("dome", "a yarn wound over a dome to a polar opening, and a pattern that covers it"),

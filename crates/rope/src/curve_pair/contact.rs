@@ -12,7 +12,7 @@
 //! Of a curve with itself both points of a line test each other, with half of the penalty each.
 
 use super::blend::Blend;
-use super::friction::{CurveFriction, Tangential, tangential};
+use super::friction::{CurveFriction, Linearised, Tangential, tangential};
 use super::history::{Kept, Key, Kind, Predicted};
 use super::measure::{CurvePair, NoPair, Wanted, elastic_slip, measure, parallel};
 use super::search::{Between, CurvePoint, Searched, crossings};
@@ -96,8 +96,8 @@ pub struct Touch {
     pub force: f64,
     /// The same without the bound.
     pub(super) trial: f64,
-    /// The force of the geometric term.
-    pub(super) geometric: f64,
+    /// What the step before predicts of it.
+    pub(super) predicted: Option<Predicted>,
     pub(super) kept: Option<Kept>,
 }
 
@@ -210,8 +210,8 @@ impl CurveContact {
             _ => kept.map_or(0.0, |k| k.force),
         };
         let trial = multiplier + penalty * pair.gap;
-        let geometric = predicted.map_or(0.0, |p| p.force);
-        Touch { key, pair, points, weight, penalty, share, force: trial.min(0.0), trial, geometric, kept }
+        let predicted = predicted.copied();
+        Touch { key, pair, points, weight, penalty, share, force: trial.min(0.0), trial, predicted, kept }
     }
 
     /// All contacts of two curves within reach, slave first; `first` are their first unknowns.
@@ -318,8 +318,19 @@ impl CurveContact {
         (out, lost)
     }
 
-    /// Friction of a contact, if there is any: none where nothing was near at the last state.
+    /// Friction of a contact, if there is any: none where nothing was near at the last state, and none without a force.
     pub fn tangential(
+        &self,
+        touch: &Touch,
+        sides: [Searched<'_>; 2],
+        first: [u32; 2],
+        order: Order,
+    ) -> Option<Tangential> {
+        if touch.acting(order) == 0.0 { None } else { self.rubbing(touch, sides, first, order) }
+    }
+
+    /// The same where there may be no force.
+    pub(super) fn rubbing(
         &self,
         touch: &Touch,
         sides: [Searched<'_>; 2],
@@ -329,9 +340,11 @@ impl CurveContact {
         let law = self.friction.as_deref()?;
         let kept = touch.kept?;
         let stuck = kept.stuck?;
-        if touch.force == 0.0 {
-            return None;
-        }
+        let linearised = match (order, touch.predicted) {
+            (Order::First, _) => Linearised::Here,
+            (_, None) => Linearised::New,
+            (_, Some(Predicted { force, trial, .. })) => Linearised::About([-force, trial[0], trial[1]]),
+        };
         let feet = [0, 1].map(|s| {
             let point = stuck.points[s];
             sides[s].curve.foot(sides[s].configuration, point.patch as usize, point.xi[0], 1)
@@ -344,9 +357,7 @@ impl CurveContact {
         };
         let duration = self.times[1] - self.times[0];
         let friction = CurveFriction { law, multiplier, penalty: touch.penalty, duration };
-        // As much of the traction turns with the slip as of the force with the gap.
-        let turning = (touch.geometric / touch.force).clamp(0.0, 1.0);
-        Some(tangential(&touch.pair, &slip, (-touch.force, &d_pressing), friction, turning, order))
+        Some(tangential(&touch.pair, &slip, (-touch.acting(order), &d_pressing), friction, linearised, order))
     }
 }
 
@@ -373,6 +384,16 @@ impl Blended {
 }
 
 impl Touch {
+    /// The force, and in a linear system that of a contact which is predicted to be closed.
+    pub(super) fn acting(&self, order: Order) -> f64 {
+        if order == Order::Second && self.predicted.is_some() { self.trial } else { self.force }
+    }
+
+    /// The force of the geometric term.
+    pub(super) fn geometric(&self) -> f64 {
+        self.predicted.map_or(0.0, |p| p.force)
+    }
+
     /// Force on the slave along the normal, its share included.
     pub fn pressing(&self) -> f64 {
         -self.force * self.share.0

@@ -35,61 +35,94 @@ pub struct Tangential {
     pub tangent: Vec<f64>,
     /// Along the axis of the slave and around it; conjugate to the slip of the slave, so that what acts on it is opposite.
     pub components: [f64; 2],
+    /// What the law made them from, and its variations.
+    pub trial: [f64; 2],
+    pub d_trial: Vec<[f64; 2]>,
     /// The part of the slip since points touched that cannot come back.
     pub slipped: [f64; 2],
     pub status: Status,
 }
 
-/// Friction under a pressing force, whose variations are those of the unknowns of the pair; `turning` is the part of the
-/// traction that counts with the second variation of the slip, in the end all of it.
+/// Where a law is linearised.
+#[derive(Clone, Copy, Debug)]
+pub enum Linearised {
+    /// At the trial itself, for forces that are told.
+    Here,
+    /// The same in the first linear system of a contact, of which no force turns with the axes yet.
+    New,
+    /// At the pressing force and the trial that the step before predicts: what it predicts to stick sticks in the linear
+    /// system, and what turns with the axes is the friction that it predicts.
+    About([f64; 3]),
+}
+
+/// Friction under a pressing force, whose variations are those of the unknowns of the pair.
 pub fn tangential(
     pair: &CurvePair,
     slip: &ElasticSlip,
     (pressing, d_pressing): (f64, &[f64]),
     friction: CurveFriction<'_>,
-    turning: f64,
+    linearised: Linearised,
     order: Order,
 ) -> Tangential {
     let (e, slip_unknowns, d_e) = slip;
     let axes = [pair.axial, pair.circumferential()];
     let trial: [f64; 2] = std::array::from_fn(|a| friction.multiplier[a] + friction.penalty * axes[a].dot(e));
-    let projected = friction.law.project_in_time([pressing, trial[0], trial[1]], friction.penalty * friction.duration);
-    let components = [projected.traction[1], projected.traction[2]];
+    let now = [pressing, trial[0], trial[1]];
+    let about = match linearised {
+        Linearised::About(about) => about,
+        _ => now,
+    };
+    let projected = friction.law.project_in_time(about, friction.penalty * friction.duration);
+    let d = &projected.derivative;
+    let predicted = [projected.traction[1], projected.traction[2]];
+    let components: [f64; 2] =
+        std::array::from_fn(|a| predicted[a] + (0..3).map(|b| d[1 + a][b] * (now[b] - about[b])).sum::<f64>());
+    let turning = match linearised {
+        Linearised::New => [0.0; 2],
+        _ => predicted,
+    };
     let traction = axes[0] * components[0] + axes[1] * components[1];
+    let turns = axes[0] * turning[0] + axes[1] * turning[1];
     let n = pair.unknowns.len();
     let mut unknowns = pair.unknowns.clone();
     unknowns.extend(slip_unknowns);
+    let m = unknowns.len();
+    let zero = Vector::<3>::zeros();
     let forces = pair.slip.iter().map(|s| traction.dot(s)).collect();
+    let d_axes = |l: usize| {
+        let d_second = pair.d_normal[l].cross(&axes[0]) + pair.normal.cross(&pair.d_axial[l]);
+        [pair.d_axial[l], d_second]
+    };
+    let d_trial: Vec<[f64; 2]> = (0..m)
+        .map(|l| match l < n {
+            true => d_axes(l).map(|d| friction.penalty * d.dot(e)),
+            false => axes.map(|axis| friction.penalty * axis.dot(&d_e[l - n])),
+        })
+        .collect();
     let mut tangent = Vec::new();
     if order == Order::Second {
-        let m = unknowns.len();
         tangent = vec![0.0; m * m];
-        let zero = Vector::<3>::zeros();
-        let d = &projected.derivative;
         let d_traction: Vec<Vector<3>> = (0..m)
             .map(|l| {
-                let (d_axes, d_slip, d_pressure) = if l < n {
-                    let d_second = pair.d_normal[l].cross(&axes[0]) + pair.normal.cross(&pair.d_axial[l]);
-                    ([pair.d_axial[l], d_second], zero, d_pressing[l])
-                } else {
-                    ([zero; 2], d_e[l - n], 0.0)
+                let (d_pressure, turned) = match l < n {
+                    true => (d_pressing[l], d_axes(l)),
+                    false => (0.0, [zero; 2]),
                 };
-                let d_trial = [0, 1].map(|b| friction.penalty * (d_axes[b].dot(e) + axes[b].dot(&d_slip)));
                 (0..2).fold(zero, |sum, a| {
-                    let change = d[1 + a][0] * d_pressure + d[1 + a][1] * d_trial[0] + d[1 + a][2] * d_trial[1];
-                    sum + axes[a] * change + d_axes[a] * components[a]
+                    let change = d[1 + a][0] * d_pressure + d[1 + a][1] * d_trial[l][0] + d[1 + a][2] * d_trial[l][1];
+                    sum + axes[a] * change + turned[a] * turning[a]
                 })
             })
             .collect();
         for k in 0..n {
             for l in 0..m {
-                let own = if l < n { turning * pair.slip_hessian(&traction, k, l) } else { 0.0 };
+                let own = if l < n { pair.slip_hessian(&turns, k, l) } else { 0.0 };
                 tangent[k * m + l] = pair.slip[k].dot(&d_traction[l]) + own;
             }
         }
     }
     let slipped = std::array::from_fn(|a| (trial[a] - components[a]) / friction.penalty);
-    Tangential { unknowns, forces, tangent, components, slipped, status: projected.status }
+    Tangential { unknowns, forces, tangent, components, trial, d_trial, slipped, status: projected.status }
 }
 
 /// Singular values of two tangents, relative to the largest, below which they are one direction.

@@ -40,11 +40,12 @@ pub struct Kept {
     pub slip: [f64; 2],
 }
 
-/// A force that the step before predicts.
+/// What the step before predicts of a closed contact: its force, and the trial of its friction along the axes.
 #[derive(Clone, Copy, Debug)]
 pub struct Predicted {
     pub key: Key,
     pub force: f64,
+    pub trial: [f64; 2],
 }
 
 /// How far along the curves, in elements, a contact may have moved and still be the same.
@@ -88,15 +89,15 @@ fn nearest<'a, T: 'a>(list: impl Iterator<Item = &'a T>, apart: impl Fn(&T) -> f
 
 impl Predicted {
     /// Numbers that stand for one.
-    pub const NUMBERS: usize = 5;
+    pub const NUMBERS: usize = 7;
 
     pub fn numbers(&self) -> [f64; Self::NUMBERS] {
         let [a, b, c, d] = self.key.numbers();
-        [a, b, c, d, self.force]
+        [a, b, c, d, self.force, self.trial[0], self.trial[1]]
     }
 
     pub fn list(numbers: &[f64]) -> Vec<Predicted> {
-        let one = |n: &[f64]| Predicted { key: Key::from_numbers(n), force: n[4] };
+        let one = |n: &[f64]| Predicted { key: Key::from_numbers(n), force: n[4], trial: [n[5], n[6]] };
         numbers.chunks_exact(Self::NUMBERS).map(one).collect()
     }
 }

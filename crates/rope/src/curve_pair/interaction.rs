@@ -91,7 +91,7 @@ fn site_result(c: &Touch, x: Vector<3>, rubs: Option<&Tangential>, law: Option<&
 fn assemble(c: &Touch, rubs: Option<&Tangential>, out: &mut Target<'_>) {
     let (pair, (share, slope)) = (&c.pair, c.share);
     let n = pair.unknowns.len();
-    let force = if out.tangent.is_some() && c.geometric < 0.0 { c.trial } else { c.force };
+    let force = c.acting(if out.tangent.is_some() { Order::Second } else { Order::First });
     for k in 0..n {
         let unknown = pair.unknowns[k] as usize;
         let pressed = share * force * pair.d_gap[k];
@@ -106,7 +106,7 @@ fn assemble(c: &Touch, rubs: Option<&Tangential>, out: &mut Target<'_>) {
     let mut block = vec![0.0; n * n];
     for k in 0..n {
         for l in 0..n {
-            let pressed = c.penalty * pair.d_gap[k] * pair.d_gap[l] + c.geometric * pair.d2_gap[k * n + l];
+            let pressed = c.penalty * pair.d_gap[k] * pair.d_gap[l] + c.geometric() * pair.d2_gap[k * n + l];
             let turned = (force * pair.d_gap[k] + rubs.map_or(0.0, |r| r.forces[k])) * slope * pair.d_parallel[l];
             block[k * n + l] = share * pressed + turned;
         }
@@ -177,23 +177,29 @@ impl Interaction for CurveContact {
 
     fn prediction(&self) -> Vec<f64> {
         let closed = self.history.iter().filter(|k| k.force < 0.0);
-        closed.flat_map(|k| Predicted { key: k.key, force: k.force }.numbers()).collect()
+        closed.flat_map(|k| Predicted { key: k.key, force: k.force, trial: k.traction }.numbers()).collect()
     }
 
     fn predict(&self, at: Bodies<'_>, own: Own<'_>, step: &[f64], share: f64) -> Vec<f64> {
-        let found =
-            self.with(at, |sides, first| self.touches(sides, first, Order::First, &Predicted::list(own.prediction)).0);
-        let touches = found.unwrap_or_default();
-        let predicted = |c: &Touch| {
+        let predicted = |c: &Touch, rubs: Option<Tangential>| {
             // A new contact has no force that could turn.
-            if c.force == 0.0 && c.geometric == 0.0 {
+            if c.force == 0.0 && c.predicted.is_none() {
                 return None;
             }
-            let change: f64 = c.pair.unknowns.iter().zip(&c.pair.d_gap).map(|(u, d)| step[*u as usize] * d).sum();
-            let force = c.trial + c.penalty * share * change;
-            (force < 0.0).then_some(Predicted { key: c.key, force })
+            let change = |unknowns: &[u32], by: &dyn Fn(usize) -> f64| -> f64 {
+                unknowns.iter().enumerate().map(|(k, u)| share * step[*u as usize] * by(k)).sum()
+            };
+            let force = c.trial + c.penalty * change(&c.pair.unknowns, &|k| c.pair.d_gap[k]);
+            let trial =
+                rubs.map_or([0.0; 2], |r| [0, 1].map(|a| r.trial[a] + change(&r.unknowns, &|k| r.d_trial[k][a])));
+            (force < 0.0).then_some(Predicted { key: c.key, force, trial })
         };
-        touches.iter().filter_map(predicted).flat_map(|p| p.numbers()).collect()
+        let found = self.with(at, |sides, first| {
+            let (touches, _) = self.touches(sides, first, Order::First, &Predicted::list(own.prediction));
+            let one = |c: &Touch| predicted(c, self.rubbing(c, sides, first, Order::First));
+            touches.iter().filter_map(one).flat_map(|p| p.numbers()).collect()
+        });
+        found.unwrap_or_default()
     }
 
     fn free_way(&self, way: Way<'_>) -> Result<f64, PlaceError> {

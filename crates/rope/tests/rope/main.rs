@@ -11,4 +11,5 @@ mod edges;
 mod published_ropes;
 mod pulley;
 mod ropes;
+mod strands;
 mod systems;

@@ -9,7 +9,7 @@ use signorini_mechanics::*;
 use signorini_rope::centreline::{Closure, Continuity};
 use signorini_rope::chain::Chain;
 use signorini_rope::chain::body::Rest;
-use signorini_rope::path::Path;
+use signorini_rope::path::{Path, Sampled};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -92,11 +92,23 @@ fn dragged(shape: &Arc<dyn RigidShape>, curve: &Curve, mu: [f64; 2], exact: f64,
     let e = 1e-5;
     let tau = [(curve(e) - curve(-e)).normalize(), (curve(1.0 + e) - curve(1.0 - e)).normalize()];
     let h = (on[1] - on[0]).norm();
-    let points: Vec<V> =
-        std::iter::once(on[0] - tau[0] * h).chain(on.iter().copied()).chain([on[cells] + tau[1] * h]).collect();
+    drawn(shape, (&on, tau, h), mu, exact)
+}
+
+/// The same of nodes on a surface, with the directions and the length of the cells beyond.
+fn drawn(shape: &Arc<dyn RigidShape>, (on, tau, h): (&[V], [V; 2], f64), mu: [f64; 2], exact: f64) -> f64 {
+    let last = on[on.len() - 1] + tau[1] * h;
+    let points: Vec<V> = std::iter::once(on[0] - tau[0] * h).chain(on.iter().copied()).chain([last]).collect();
     // Every chord one cell.
-    let path = Path::points(&points, Closure::Open).unwrap().sample(cells + 2, Continuity::C0).unwrap();
-    assert!(path.positions.iter().zip(&points).all(|(a, b)| (a - b).norm() < 1e-9), "cells of other lengths");
+    let cells = points.len() - 1;
+    let lengths: Vec<f64> = points.windows(2).map(|p| (p[1] - p[0]).norm()).collect();
+    let path = Sampled {
+        tangents: vec![tau[0]; points.len()],
+        positions: points,
+        lengths,
+        closure: Closure::Open,
+        continuity: Continuity::C0,
+    };
     let stiffness = 1e7;
     let rope = Chain::new("rope", &path, stiffness, Rest::Pretension(1.0), 0.0).unwrap();
     let mut system = System::default();
@@ -121,7 +133,7 @@ fn dragged(shape: &Arc<dyn RigidShape>, curve: &Curve, mu: [f64; 2], exact: f64,
         state = next;
     }
     let tensions = rope.tensions(&state.bodies[0]);
-    (tensions[cells + 1] / tensions[0]).ln()
+    (tensions[cells - 1] / tensions[0]).ln()
 }
 
 #[test]
@@ -141,6 +153,31 @@ fn limits_of_discrete_ropes_converge_with_order_two() {
         done += 1;
     }
     assert_eq!(done, 10);
+}
+
+/// A rope with so many nodes on a drum, at each of which it turns alike: `ln (1 + μ tan(d/2))/(1 - μ tan(d/2))` each.
+#[test]
+fn discrete_capstans_have_their_closed_form() {
+    let data = data();
+    let row = |case: &Value| {
+        let nodes = case["nodes_in_contact"].as_u64().unwrap() as usize;
+        [case["mu"].as_f64(), case["phi"].as_f64(), Some(nodes as f64), case["ln_ratio"].as_f64()].map(Option::unwrap)
+    };
+    let rows = data["discrete_capstan"].as_array().unwrap().iter().map(row);
+    // Another one, by the formula.
+    let half = 12.5f64.to_radians();
+    let share = 0.22 * half.tan();
+    let other = [0.22, 250f64.to_radians(), 10.0, 10.0 * ((1.0 + share) / (1.0 - share)).ln()];
+    for [mu, phi, nodes, exact] in rows.chain([other]) {
+        let turn = phi / nodes;
+        let at = |angle: f64| V::new(angle.cos(), angle.sin(), 0.0);
+        let on: Vec<V> = (0..nodes as usize).map(|k| at(k as f64 * turn)).collect();
+        let tau = [-0.5 * turn, phi - 0.5 * turn].map(|angle| at(angle + 0.5 * PI));
+        let drum: Arc<dyn RigidShape> = Arc::new(Cylinder { point: V::zeros(), axis: V::z(), radius: 1.0 });
+        let found = drawn(&drum, (&on, tau, 4.0 * (0.5 * turn).sin()), [mu, mu], exact);
+        println!("{nodes} nodes: ln T1/T0 {found:.7} ({exact:.7})");
+        assert!((found - exact).abs() < 1e-5);
+    }
 }
 
 #[test]

@@ -223,9 +223,9 @@ fn a_capstan_takes_few_iterations() {
         ] {
             let results = capstan(cells, sampling, enforcement);
             println!("{cells} {enforcement:?}: {}", told(&results));
-            // The slip zone grows by a cell an iteration: by 1.4 and 3.5 cells an increment.
-            let most = if cells == 40 { 4 } else { 6 };
-            assert!(results[1..].iter().all(|r| r.iterations <= most), "{}", told(&results));
+            // However far the slip zone grows; the first increment starts from no friction at all.
+            let most = |k: usize| if k == 0 { 5 } else { 4 };
+            assert!(results[1..].iter().enumerate().all(|(k, r)| r.iterations <= most(k)), "{}", told(&results));
             // Tension falls by exp(-μ φ) from the end to where it sticks.
             let last = &results[16].sites[0];
             let slips: f64 =

@@ -42,6 +42,7 @@ pub fn run(case: &PathCase, folder: &Path, progress: &mut dyn Progress) -> Resul
         None => Value::Null,
     };
     summary["verdict"] = sentences(&summary).join("; ").into();
+    summary["warnings"] = json!(case.plan.head.warnings);
     folder.write("summary.json", format!("{summary:#}\n").as_bytes())?;
     Ok(summary)
 }
@@ -118,6 +119,8 @@ pub fn sentences(summary: &Value) -> Vec<String> {
             out.push(format!("with {} at its start it holds {low} to {high} at its end", strong(&rope["tension"])));
         }
     }
+    let warnings = summary["warnings"].as_array().into_iter().flatten();
+    out.extend(warnings.filter_map(|w| Some(format!("warning: {}", w["message"].as_str()?))));
     out
 }
 

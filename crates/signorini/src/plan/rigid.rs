@@ -347,10 +347,13 @@ pub(super) fn smooth_body<const D: usize>(
         }
     };
     let smooth = SmoothMesh::new(&mesh).map_err(|e| planner.problem.error(&rigid.shape, e.to_string()))?;
+    let [curvature, error] = smooth.curvature();
     let message = format!(
-        "the vertices of `{name}` scatter by {:.3e} about the smooth surface through them, by {:.2} % of an edge",
+        "the vertices of `{name}` scatter by {:.3e} about the smooth surface near them, by {:.2} % of an edge; from fits over \
+         {:.1} edges its curvatures, {curvature:.3e} in the mean, are known to ±{error:.1e}",
         smooth.scatter(),
-        100.0 * smooth.scatter() / smooth.edge()
+        100.0 * smooth.scatter() / smooth.edge(),
+        smooth.fit_radius()
     );
     planner.warnings.borrow_mut().push(Warning::new(WarningKind::Scatter, message));
     let inside = rigid.side.as_ref().is_some_and(|s| *s == Side::Inside);

@@ -2,6 +2,7 @@
 
 mod adhesion;
 mod bad_input;
+mod bad_starts;
 mod cells;
 mod closest_points;
 mod cosine_floor;

@@ -1,0 +1,76 @@
+//! What a contact is found as in a state, and what it remembers of it.
+
+use super::traction::axes;
+use super::{Contact, Sides, SiteMemory};
+use crate::body::PlaceError;
+use crate::site_result::SiteResult;
+use rayon::prelude::*;
+use signorini_contact::Status;
+
+impl Contact {
+    /// The sites as they are found in a state, with their tractions along the axes.
+    ///
+    /// # Errors
+    /// A master that cannot be touched.
+    pub(crate) fn found(&self, sides: &Sides<'_>, lambda: &[f64]) -> Result<Vec<(SiteResult, [f64; 3])>, PlaceError> {
+        let master = self.met(sides)?;
+        let of = |k: usize| {
+            let (placed, pair) = self.pair(k, sides, (master.as_ref(), f64::INFINITY), |_| false);
+            let mut out = SiteResult { x: placed.x, weight: self.sites[k].weight, ..SiteResult::default() };
+            let Some(Ok(touch)) = pair else { return (out, [0.0; 3]) };
+            let found = self.traction(k, &touch, self.multiplier(k, lambda), [0.0; 2]);
+            let pair = &touch.pair;
+            let [p, t1, t2] = found.projected.traction;
+            out.normal = pair.normal;
+            out.gap = Some(pair.gap);
+            out.pressure = p;
+            out.status = found.projected.status;
+            // The traction of the law is that along the slip; on the slave acts its opposite.
+            out.friction = -(found.axes[0] * t1 + found.axes[1] * t2);
+            if let (Some(law), true) = (&self.friction, out.status != Status::Open) {
+                out.increment = found.axes[0] * found.slip[0] + found.axes[1] * found.slip[1];
+                out.utilisation = law.utilisation([t1, t2], p);
+                let before = self.memory[k].slip;
+                out.slip = (before[0] + found.slip[0]).hypot(before[1] + found.slip[1]);
+            }
+            (out, found.projected.traction)
+        };
+        Ok((0..self.sites.len()).into_par_iter().map(of).collect())
+    }
+
+    /// Takes a state as the one that slips count from.
+    ///
+    /// # Errors
+    /// A master that cannot be touched.
+    pub(crate) fn accept_sites(&mut self, sides: &Sides<'_>, lambda: &[f64]) -> Result<(), PlaceError> {
+        let master = self.met(sides)?;
+        let mut memory = Vec::with_capacity(self.sites.len());
+        for k in 0..self.sites.len() {
+            let Some(Ok(touch)) = self.pair(k, sides, (master.as_ref(), f64::INFINITY), |_| false).1 else {
+                memory.push(SiteMemory::default());
+                continue;
+            };
+            let found = self.traction(k, &touch, self.multiplier(k, lambda), [0.0; 2]);
+            let pair = &touch.pair;
+            let mut own = SiteMemory { traction: found.projected.traction, stuck: pair.stuck, slip: [0.0; 2] };
+            if self.friction.is_some() && found.projected.status != Status::Open {
+                let before = self.memory[k].slip;
+                own.slip = std::array::from_fn(|i| before[i] + found.slip[i]);
+                // Friction is kept along the axes of the new anchor.
+                let on_slave = found.axes[0] * own.traction[1] + found.axes[1] * own.traction[2];
+                let slipped = found.axes[0] * own.slip[0] + found.axes[1] * own.slip[1];
+                self.memory[k].stuck = own.stuck;
+                if let (_, Some(Ok(again))) = self.pair(k, sides, (master.as_ref(), f64::INFINITY), |_| false) {
+                    let (new, _) = axes(&again.pair);
+                    own.traction[1] = new[0].dot(&on_slave);
+                    own.traction[2] = new[1].dot(&on_slave);
+                    own.slip = new.map(|e| e.dot(&slipped));
+                }
+            }
+            memory.push(own);
+        }
+        self.memory = memory;
+        self.times[0] = self.times[1];
+        Ok(())
+    }
+}

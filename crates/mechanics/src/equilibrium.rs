@@ -61,13 +61,28 @@ impl Problem<'_> {
         let predicts = start.bodies.iter().any(|b| !b.internal.is_empty());
         let search = if predicts { Search::Watchdog { patience: PATIENCE } } else { Search::Monotone };
         let options = Newton { most_iterations: MOST_ITERATIONS, search };
-        newton(self, start, &options, report).map_err(|failure| match failure {
+        let found = newton(self, start, &options, report).map_err(|failure| match failure {
             NewtonFailure::NotConverged { history, .. } => {
                 IncrementError::NotConverged { history, worst: self.describe(self.worst) }
             }
             NewtonFailure::Equations { error, .. } => error,
             NewtonFailure::Interrupted => IncrementError::Interrupted,
-        })
+        })?;
+        match self.carried_away(&found.state) {
+            Some(told) => Err(IncrementError::NotConverged { history: found.history, worst: Some(told) }),
+            None => Ok(found),
+        }
+    }
+
+    /// What a state that lies too far away is: rounding of its positions spoils the shape of the bodies by more than forces
+    /// may lack, and a residual that is small beside forces as large as these tells of no equilibrium.
+    fn carried_away(&self, at: &SystemState) -> Option<String> {
+        let moved = |k: &usize| if self.is_spin[*k] { 0.0 } else { at.travel[*k].abs() };
+        let farthest = (0..self.is_spin.len()).max_by(|a, b| moved(a).total_cmp(&moved(b)))?;
+        let away = moved(&farthest) / self.system.size();
+        let (body, _) = self.body_of(farthest)?;
+        (away * f64::EPSILON > TOLERANCE)
+            .then(|| format!(": `{body}` was carried away, {away:.0e} times the size of all bodies: does anything hold it?"))
     }
 
     /// Measures residuals by the tangent of a state: further ones may be anywhere.

@@ -47,7 +47,7 @@ impl Problem<'_> {
         IncrementError::Free { body: body.name().to_string(), motion }
     }
 
-    fn body_of(&self, unknown: usize) -> Option<(&str, usize)> {
+    pub(crate) fn body_of(&self, unknown: usize) -> Option<(&str, usize)> {
         let (first, count) = self.system.numbering();
         if unknown >= count {
             return None;

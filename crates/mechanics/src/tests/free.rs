@@ -197,3 +197,25 @@ fn viscous_friction_creeps_down_an_incline() {
         }
     }
 }
+
+/// However small its residual, a state as far away as this is no answer.
+#[test]
+fn what_is_carried_away_is_told() {
+    let to = |distance: f64| {
+        let mut system = System::default();
+        system.bodies.push(Box::new(ball(v(0.0, 0.0, 0.0), 0.5, Motion::Free { plane: false })));
+        let held: crate::system::TimeField = Arc::new(|_, _| 0.0);
+        let moved: crate::system::TimeField = Arc::new(move |_, _| distance);
+        system.supports.push(Support {
+            name: "hand".into(),
+            part: part(0),
+            displacement: [Some(moved), Some(held.clone()), Some(held.clone())],
+            rotation: [Some(held.clone()), Some(held.clone()), Some(held)],
+        });
+        system.prepare().unwrap();
+        system.solve(&system.start(), 1.0, &mut |_, _| true).map(|_| ())
+    };
+    to(1e3).expect("an answer");
+    let error = to(1e9).expect_err("no answer");
+    assert!(error.to_string().contains("`ball` was carried away"), "{error}");
+}

@@ -10,6 +10,7 @@
 //! Around an axis nothing leaves it: the unknowns of that are tied to nothing and stay zero, since a hoop strain `u/r`
 //! there would have infinite energy.
 
+mod dense;
 mod foot;
 mod hold;
 mod linear;
@@ -72,6 +73,7 @@ pub struct CellSolid<const D: usize> {
 
 /// The points of a place, and how it is held.
 struct Surface<const D: usize> {
+    place: Place<D>,
     /// Numbers of the first of its points and of the one after the last.
     points: [usize; 2],
     held: HeldBy<D>,
@@ -116,7 +118,8 @@ impl<const D: usize> CellSolid<D> {
                 _ => HeldBy::Terms(OnceLock::new()),
             };
             let range = [points.len(), points.len() + own.len()];
-            surfaces.insert(name.to_string(), Surface { points: range, held, spread: OnceLock::new() });
+            let surface = Surface { place: place.clone(), points: range, held, spread: OnceLock::new() };
+            surfaces.insert(name.to_string(), surface);
             points.extend(own);
         }
         let sheets = Sheets::new(&body, &points);
@@ -382,6 +385,10 @@ impl<const D: usize> Body for CellSolid<D> {
                 surface.spread.get_or_init(|| self.spread(surface, &spacing).0).clone()
             }
         })
+    }
+
+    fn test_at_least_every(&mut self, on: Option<&str>, apart: &dyn Fn(&Point<3>) -> f64) {
+        self.divide(on, apart);
     }
 
     fn spread_sites(&self, on: Option<&str>, spacing: f64) -> Result<(Vec<mechanics::Site>, f64), PlaceError> {

@@ -374,7 +374,7 @@ mod tests {
             let mut a = laplacian(n);
             a.add(&[3], &[-100.0], 1.0);
             let Err(SolveError::NotPositiveDefinite { size, pivot }) = Symbolic::default().factor(a) else { panic!() };
-            assert_eq!((size, pivot), (n * n, 3));
+            assert_eq!((size, pivot), ((n * n) as usize, 3));
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::discretisation::{Boundary, Discretisation, Stuff, check};
 use crate::error::CellsError;
 use crate::moments::VolumePoints;
 use crate::numbering::{kept_pieces, rules_of_pieces};
-use crate::region::{BoundaryPoint, Filling, MaterialRule, Region};
+use crate::region::{BoundaryPoint, Filling, Integration, MaterialRule, Region};
 use crate::space::{LocalMode, Mode, Tabulation, tabulate};
 use crate::tree::CellTree;
 use rayon::prelude::*;
@@ -155,6 +155,15 @@ impl<const D: usize> CellBody<D> {
 
     pub fn degree(&self) -> usize {
         self.discretisation.degree
+    }
+
+    /// Gauss points along each direction of a smooth piece of a cut cell.
+    pub fn points_along(&self) -> usize {
+        let sub_cells = match self.discretisation.integration {
+            Integration::SubCells { subdivision } => subdivision,
+            _ => 1,
+        };
+        sub_cells * self.discretisation.integration.points(self.degree())
     }
 
     pub fn space(&self) -> Space {

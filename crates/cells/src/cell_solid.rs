@@ -16,6 +16,7 @@ mod linear;
 mod loads;
 mod master;
 mod shown;
+mod surface;
 mod weak;
 
 use crate::body::{CellBody, Site};
@@ -24,7 +25,6 @@ use crate::place::Place;
 use crate::region::Filling;
 use crate::shapes::spatial;
 use crate::space::Tabulation;
-use crate::spread::farthest_points;
 use foot::Sheets;
 use hold::SideFunctions;
 use linear::LinearFields;
@@ -43,6 +43,7 @@ use signorini_mechanics::{
 use signorini_solve::blocks::Block;
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
+use surface::{HeldBy, Surface};
 use weak::WeakHold;
 
 /// The name of the whole recovered boundary.
@@ -68,22 +69,6 @@ pub struct CellSolid<const D: usize> {
     is_zero: Vec<bool>,
     size: f64,
     shown: OnceLock<Shown<D>>,
-}
-
-/// The points of a place, and how it is held.
-struct Surface<const D: usize> {
-    /// Numbers of the first of its points and of the one after the last.
-    points: [usize; 2],
-    held: HeldBy<D>,
-    /// Points spread evenly, with what they stand for.
-    spread: OnceLock<Vec<mechanics::Site>>,
-}
-
-enum HeldBy<const D: usize> {
-    /// Unknowns of functions on a side of the box.
-    Side(SideFunctions<D>),
-    /// Nitsche's terms, made when they are first asked for.
-    Terms(OnceLock<WeakHold<D>>),
 }
 
 impl<const D: usize> CellSolid<D> {
@@ -116,7 +101,8 @@ impl<const D: usize> CellSolid<D> {
                 _ => HeldBy::Terms(OnceLock::new()),
             };
             let range = [points.len(), points.len() + own.len()];
-            surfaces.insert(name.to_string(), Surface { points: range, held, spread: OnceLock::new() });
+            let surface = Surface { place: place.clone(), points: range, held, spread: OnceLock::new() };
+            surfaces.insert(name.to_string(), surface);
             points.extend(own);
         }
         let sheets = Sheets::new(&body, &points);
@@ -141,19 +127,6 @@ impl<const D: usize> CellSolid<D> {
         &self.body
     }
 
-    fn surface(&self, on: Option<&str>) -> Result<&Surface<D>, PlaceError> {
-        let name = on.unwrap_or(BOUNDARY);
-        self.surfaces.get(name).ok_or_else(|| PlaceError::Unknown {
-            body: self.name.clone(),
-            group: name.to_string(),
-            known: self.surfaces.keys().cloned().collect(),
-        })
-    }
-
-    fn points_of(&self, surface: &Surface<D>) -> &[Site<D>] {
-        &self.points[surface.points[0]..surface.points[1]]
-    }
-
     fn unsuitable(&self, message: impl Into<String>) -> PlaceError {
         PlaceError::Unsuitable { body: self.name.clone(), message: message.into() }
     }
@@ -162,32 +135,6 @@ impl<const D: usize> CellSolid<D> {
     fn unknown(&self, function: u32, direction: usize) -> Option<u32> {
         let unknown = D * function as usize + direction;
         (!self.is_zero[unknown]).then_some(unknown as u32)
-    }
-
-    /// Points a spacing apart, each in the middle of those that it stands for, and how far the farthest point is from them,
-    /// in spacings.
-    fn spread(&self, surface: &Surface<D>, spacing: &dyn Fn(&Site<D>) -> f64) -> (Vec<mechanics::Site>, f64) {
-        let points = self.points_of(surface);
-        let spacing: Vec<f64> = points.iter().map(spacing).collect();
-        let (chosen, nearest, far) = farthest_points(points, &spacing);
-        let mut sums = vec![(0.0, Point::<D>::zeros()); chosen.len()];
-        for (p, n) in points.iter().zip(&nearest) {
-            sums[*n].0 += p.weight;
-            sums[*n].1 += p.x * p.weight;
-        }
-        let mut middle: Vec<(f64, usize)> = vec![(f64::INFINITY, 0); chosen.len()];
-        for (k, (p, n)) in points.iter().zip(&nearest).enumerate() {
-            let distance = (p.x - sums[*n].1 / sums[*n].0).norm();
-            if distance < middle[*n].0 {
-                middle[*n] = (distance, k);
-            }
-        }
-        let site = |((weight, _), (_, k)): (&(f64, Point<D>), &(f64, usize))| mechanics::Site {
-            patch: (surface.points[0] + k) as u32,
-            xi: [0.0; 2],
-            weight: *weight,
-        };
-        (sums.iter().zip(&middle).map(site).collect(), far)
     }
 
     /// Least extent of the cell of a point.
@@ -382,6 +329,10 @@ impl<const D: usize> Body for CellSolid<D> {
                 surface.spread.get_or_init(|| self.spread(surface, &spacing).0).clone()
             }
         })
+    }
+
+    fn test_at_least_every(&mut self, on: Option<&str>, apart: &dyn Fn(&Point<3>) -> f64) {
+        self.divide(on, apart);
     }
 
     fn spread_sites(&self, on: Option<&str>, spacing: f64) -> Result<(Vec<mechanics::Site>, f64), PlaceError> {

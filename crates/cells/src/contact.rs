@@ -292,8 +292,11 @@ fn newton_step<const D: usize>(
         // A convex rigid body softens: its part then joins the unsymmetric one.
         Err(_) => match factorise(system, &touching, Curvature::Without) {
             Ok(factor) => (factor, Curvature::Without),
-            Err(CellsError::Solve(_)) => return Err(CellsError::Unsupported { modes: 1 }),
-            Err(e) => return Err(e),
+            Err(error) => {
+                let holding = touching.iter().map(|(s, m)| (s.site.x, s.site.weight, m.jet.normal));
+                let modes = system.free_motions_with(holding);
+                return Err(if modes > 0 { CellsError::Unsupported { modes } } else { error });
+            }
         },
     };
     let (factor, curvature) = factor;

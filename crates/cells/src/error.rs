@@ -56,6 +56,12 @@ pub enum CellsError {
          contact press it against something"
     )]
     Unsupported { modes: usize },
+    #[error(
+        "the stiffness is not positive near {at:?}: what little material a cell there holds is lost in rounding beside a \
+         fictitious stiffness of {fictitious:.0e}, or a contact there softens more than the body resists. Try a larger \
+         fictitious stiffness, a lower degree or larger cells; with contact a smaller step"
+    )]
+    NotPositive { at: Vec<f64>, fictitious: f64 },
     #[error("the contact did not converge in {iterations} iterations: the residual is {residual:.1e} of the forces")]
     NotConverged { iterations: usize, residual: f64 },
     #[error(

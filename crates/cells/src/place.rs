@@ -1,11 +1,15 @@
 //! Parts of the boundary: sides of the box of the cells, and parts of the recovered boundary.
+//!
+//! Their points are those of the rule of each cell, or of the rules of the boxes into which a cell is divided: where what
+//! touches them varies over less than the cell.
 
 use crate::body::{CellBody, Site};
 use crate::error::CellsError;
 use crate::region::{BoundaryPoint, Filling};
 use signorini_fem::QuadraturePoint;
 use signorini_fem::cut::End;
-use signorini_geometry::{Point, Vector};
+use signorini_geometry::{Aabb, Point, Vector};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Where something is held or loaded.
@@ -14,10 +18,13 @@ pub enum Place<const D: usize> {
     /// The material on a side of the box of the cells.
     Side { axis: usize, end: End },
     /// The points of the recovered boundary for which this holds.
-    Boundary(Arc<dyn Fn(&BoundaryPoint<D>) -> bool + Send + Sync>),
+    Boundary(Arc<Holds<D>>),
     /// The points for which this holds of the whole surface: the recovered boundary, and the material on sides of the box.
-    Surface(Arc<dyn Fn(&BoundaryPoint<D>) -> bool + Send + Sync>),
+    Surface(Arc<Holds<D>>),
 }
+
+/// Whether a point belongs to a place.
+pub type Holds<const D: usize> = dyn Fn(&BoundaryPoint<D>) -> bool + Send + Sync;
 
 impl<const D: usize> Place<D> {
     /// The side where a coordinate is least.
@@ -49,24 +56,39 @@ impl<const D: usize> CellBody<D> {
                 }
                 (self.side_sites(*axis, *end), "named on a side of the box")
             }
-            Place::Surface(holds) => (self.surface_sites(&|p| holds(p)), "named on the surface"),
+            Place::Surface(holds) => (self.surface_sites(&**holds), "named on the surface"),
         };
         if sites.is_empty() { Err(CellsError::EmptyPlace { what }) } else { Ok(sites) }
     }
 
-    /// The points of boundary and sides of the box. Where the boundary lies in a side of the box both are the same.
-    fn surface_sites(&self, holds: &dyn Fn(&BoundaryPoint<D>) -> bool) -> Vec<Site<D>> {
-        let mut out = self.sites(holds);
-        for axis in 0..D {
-            for end in End::BOTH {
-                let at = end.of(self.tree.bounds(), axis);
-                for site in self.side_sites(axis, end) {
-                    let slack = 1e-9 * self.bounds_of(site.cell).size()[axis];
-                    let own = &self.cells()[site.cell].rule.boundary;
-                    let is_known =
-                        own.iter().any(|p| (p.x[axis] - at).abs() < slack && p.normal.dot(&site.normal) > 0.9);
-                    if !is_known && holds(&BoundaryPoint { x: site.x, weight: site.weight, normal: site.normal }) {
-                        out.push(site);
+    /// The points of a place anew, of which `points` are those by the rules of whole cells, with cells divided into as many
+    /// boxes along each direction as told.
+    pub(crate) fn points_in_parts(
+        &self,
+        place: &Place<D>,
+        points: &[Site<D>],
+        parts: &BTreeMap<usize, usize>,
+    ) -> Vec<Site<D>> {
+        let mut out: Vec<Site<D>> = points.iter().filter(|p| !parts.contains_key(&p.cell)).copied().collect();
+        for (&cell, &count) in parts {
+            let b = self.bounds_of(cell);
+            for number in 0..count.pow(D as u32) {
+                let part = part_of(b, number, count);
+                match place {
+                    Place::Side { axis, end } => {
+                        if end.of(&part, *axis) == end.of(self.tree.bounds(), *axis) {
+                            out.extend(self.on_side(cell, &part, *axis, *end));
+                        }
+                    }
+                    Place::Boundary(holds) => {
+                        out.extend(self.on_boundary(cell, &part).into_iter().filter(|s| holds(&point_of(s))));
+                    }
+                    Place::Surface(holds) => {
+                        let own = self.on_boundary(cell, &part);
+                        for (axis, end) in self.sides_of(&part) {
+                            out.extend(self.beside(cell, &part, (axis, end), &own, &**holds));
+                        }
+                        out.extend(own.into_iter().filter(|s| holds(&point_of(s))));
                     }
                 }
             }
@@ -74,26 +96,71 @@ impl<const D: usize> CellBody<D> {
         out
     }
 
-    fn side_sites(&self, axis: usize, end: End) -> Vec<Site<D>> {
-        let mut out = Vec::new();
+    /// The sides of the box of the cells in which a box has a side.
+    fn sides_of(&self, part: &Aabb<D>) -> Vec<(usize, End)> {
+        let all = (0..D).flat_map(|axis| End::BOTH.map(|end| (axis, end)));
+        all.filter(|(axis, end)| end.of(part, *axis) == end.of(self.tree.bounds(), *axis)).collect()
+    }
+
+    /// The points of the recovered boundary of a cell in a part of its box.
+    fn on_boundary(&self, cell: usize, part: &Aabb<D>) -> Vec<Site<D>> {
+        let rule = self.region.rule(part, &self.discretisation.integration, self.degree());
+        let own = rule.boundary.into_iter().filter(|p| self.cell_at(&p.x) == Some(cell));
+        own.map(|p| Site { cell, x: p.x, weight: p.weight * self.turn(&p.x), normal: p.normal }).collect()
+    }
+
+    /// The points of the material of a cell on a side of a part of its box.
+    fn on_side(&self, cell: usize, part: &Aabb<D>, axis: usize, end: End) -> Vec<Site<D>> {
         let points = self.degree() + 4;
         let normal = Vector::<D>::from_fn(|k, _| if k == axis { end.sign() } else { 0.0 });
-        for number in self.cells_on(axis, end) {
-            let cell = &self.cells()[number];
-            let b = self.bounds_of(number);
-            let found: Vec<QuadraturePoint<D>> = if cell.rule.filling == Filling::Full {
-                side_gauss(b, axis, end, points)
-            } else {
-                self.region.side_rule(b, axis, end, points)
-            };
-            for p in found {
-                // Of several pieces in a leaf the nearest.
-                if self.cell_at(&p.x) == Some(number) {
-                    out.push(Site { cell: number, x: p.x, weight: p.weight * self.turn(&p.x), normal });
+        let found: Vec<QuadraturePoint<D>> = if self.cells()[cell].rule.filling == Filling::Full {
+            side_gauss(part, axis, end, points)
+        } else {
+            self.region.side_rule(part, axis, end, points)
+        };
+        // Of several pieces in a leaf the nearest.
+        let own = found.into_iter().filter(|p| self.cell_at(&p.x) == Some(cell));
+        own.map(|p| Site { cell, x: p.x, weight: p.weight * self.turn(&p.x), normal }).collect()
+    }
+
+    /// The points on a side of a part of its box that are none of the boundary: where that lies in a side of the box both are
+    /// the same.
+    fn beside(
+        &self,
+        cell: usize,
+        part: &Aabb<D>,
+        (axis, end): (usize, End),
+        boundary: &[Site<D>],
+        holds: &Holds<D>,
+    ) -> Vec<Site<D>> {
+        let at = end.of(self.tree.bounds(), axis);
+        let slack = 1e-9 * part.size()[axis];
+        let is_new = |site: &Site<D>| {
+            let is_same = |p: &Site<D>| (p.x[axis] - at).abs() < slack && p.normal.dot(&site.normal) > 0.9;
+            !boundary.iter().any(is_same) && holds(&point_of(site))
+        };
+        self.on_side(cell, part, axis, end).into_iter().filter(is_new).collect()
+    }
+
+    /// The points of boundary and sides of the box.
+    fn surface_sites(&self, holds: &Holds<D>) -> Vec<Site<D>> {
+        let all = self.sites(&|_| true);
+        let mut out: Vec<Site<D>> = self.sites(&|p| holds(p));
+        for axis in 0..D {
+            for end in End::BOTH {
+                for cell in self.cells_on(axis, end) {
+                    let first = all.partition_point(|s| s.cell < cell);
+                    let own = &all[first..all.partition_point(|s| s.cell <= cell)];
+                    out.extend(self.beside(cell, self.bounds_of(cell), (axis, end), own, holds));
                 }
             }
         }
         out
+    }
+
+    fn side_sites(&self, axis: usize, end: End) -> Vec<Site<D>> {
+        let cells = self.cells_on(axis, end).into_iter();
+        cells.flat_map(|cell| self.on_side(cell, self.bounds_of(cell), axis, end)).collect()
     }
 
     /// The cells on a side of the box.
@@ -105,12 +172,7 @@ impl<const D: usize> CellBody<D> {
 }
 
 /// The Gauss rule of a whole side of a box.
-pub(crate) fn side_gauss<const D: usize>(
-    b: &signorini_geometry::Aabb<D>,
-    axis: usize,
-    end: End,
-    points: usize,
-) -> Vec<QuadraturePoint<D>> {
+pub(crate) fn side_gauss<const D: usize>(b: &Aabb<D>, axis: usize, end: End, points: usize) -> Vec<QuadraturePoint<D>> {
     let gauss = signorini_geometry::rule::gauss_legendre(points);
     (0..points.pow(D as u32 - 1))
         .map(|mut i| {
@@ -127,4 +189,24 @@ pub(crate) fn side_gauss<const D: usize>(
             QuadraturePoint { x, weight }
         })
         .collect()
+}
+
+fn point_of<const D: usize>(site: &Site<D>) -> BoundaryPoint<D> {
+    BoundaryPoint { x: site.x, weight: site.weight, normal: site.normal }
+}
+
+/// One of the boxes, `count` along each direction, into which a box is divided.
+fn part_of<const D: usize>(b: &Aabb<D>, mut number: usize, count: usize) -> Aabb<D> {
+    let place: [usize; D] = std::array::from_fn(|_| {
+        let k = number % count;
+        number /= count;
+        k
+    });
+    // The ends of the box are met exactly.
+    let at = |k: usize, i: usize| match i {
+        0 => b.min[k],
+        i if i == count => b.max[k],
+        i => b.min[k] + (b.max[k] - b.min[k]) * (i as f64 / count as f64),
+    };
+    Aabb::new(Point::from_fn(|k, _| at(k, place[k])), Point::from_fn(|k, _| at(k, place[k] + 1)))
 }

@@ -12,7 +12,7 @@ use signorini_geometry::{Point, Vector};
 use signorini_solve::blocks::{Block, BlockSum};
 use signorini_solve::krylov::{Found, Stopped, conjugate_gradients};
 use signorini_solve::schwarz::{Inverses, Schwarz};
-use signorini_solve::{Factor, Symbolic, SymmetricMatrix};
+use signorini_solve::{Factor, SolveError, Symbolic, SymmetricMatrix};
 use std::sync::Arc;
 
 /// How the linear equations are solved.
@@ -106,10 +106,8 @@ impl<'a, const D: usize> System<'a, D> {
     /// A place without material.
     pub fn support(&mut self, support: &Support<D>) -> Result<&mut Self, CellsError> {
         for site in self.body.points_on(&support.on)? {
-            let motions = rigid_motions(self.body, &site.x);
             let mut hold = |direction: &Vector<D>| {
-                let row = nalgebra::DVector::from_iterator(motions.len(), motions.iter().map(|m| m.dot(direction)));
-                self.held.ger(site.weight, &row, &row, 1.0);
+                hold_along(self.body, (&site.x, site.weight), direction, &mut self.held);
             };
             match &support.held {
                 Held::Normal(_) => hold(&site.normal),
@@ -226,7 +224,14 @@ impl<'a, const D: usize> System<'a, D> {
 
     /// The number of rigid motions of the body that no support holds.
     pub fn free_motions(&self) -> usize {
-        let values = self.held.clone().symmetric_eigenvalues();
+        self.free_motions_with(std::iter::empty())
+    }
+
+    /// That number where a contact also holds the body: at points that stand for an area, along a normal.
+    pub(crate) fn free_motions_with(&self, contact: impl Iterator<Item = (Point<D>, f64, Vector<D>)>) -> usize {
+        let mut held = self.held.clone();
+        contact.for_each(|(x, weight, normal)| hold_along(self.body, (&x, weight), &normal, &mut held));
+        let values = held.symmetric_eigenvalues();
         // What is held by a line instead of an area is still held; round-off is not.
         let most = values.max();
         values.iter().filter(|v| **v <= 1e-10 * most).count()
@@ -281,6 +286,18 @@ fn rigid_motions<const D: usize>(body: &CellBody<D>, x: &Point<D>) -> Vec<Vector
     out
 }
 
+/// Adds what holds a point, standing for an area, along a direction, to the matrix of rigid motions that are held.
+fn hold_along<const D: usize>(
+    body: &CellBody<D>,
+    (x, weight): (&Point<D>, f64),
+    direction: &Vector<D>,
+    held: &mut DMatrix<f64>,
+) {
+    let row: Vec<f64> = rigid_motions(body, x).iter().map(|m| m.dot(direction)).collect();
+    let row = nalgebra::DVector::from_vec(row);
+    held.ger(weight, &row, &row, 1.0);
+}
+
 /// A factor of a matrix scaled to a unit diagonal: functions with little material have little stiffness.
 pub(crate) struct Scaled {
     scale: Vec<f64>,
@@ -297,7 +314,14 @@ impl Scaled {
         let scale: Vec<f64> = matrix.diagonal().iter().map(|d| if *d > 0.0 { 1.0 / d.sqrt() } else { 1.0 }).collect();
         let scaled = matrix.scaled(&scale);
         let mut symbolic = if D == 3 { Symbolic::dissected(places) } else { Symbolic::default() };
-        Ok(Scaled { factor: symbolic.factor(scaled)?, scale })
+        let factor = symbolic.factor(scaled).map_err(|error| match error {
+            SolveError::NotPositiveDefinite { pivot, .. } => CellsError::NotPositive {
+                at: body.position(pivot / D).iter().copied().collect(),
+                fictitious: body.discretisation.fictitious,
+            },
+            other => other.into(),
+        })?;
+        Ok(Scaled { factor, scale })
     }
 
     /// Without refinement.

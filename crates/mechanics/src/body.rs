@@ -214,6 +214,10 @@ pub trait Body: Send + Sync {
     /// A place that is not there, or without such points.
     fn sites(&self, on: Option<&str>, sampling: Sampling) -> Result<Vec<Site>, PlaceError>;
 
+    /// Tests a place at points of quadrature at most as far apart as told for the points near them, from now on. Bodies whose
+    /// points cannot be more leave them.
+    fn test_at_least_every(&mut self, _on: Option<&str>, _apart: &dyn Fn(&Point<3>) -> f64) {}
+
     /// A site where it is now.
     fn placed(&self, state: &BodyState, site: &Site) -> Placed;
 

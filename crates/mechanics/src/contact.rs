@@ -180,7 +180,13 @@ impl Contact {
         let placed = sides.slave.0.placed(sides.slave.1, &self.sites[k]);
         let Some(partner) = known[k].filter(|_| !placed.rests) else { return (placed, None) };
         let anchor = master.at(&partner.point);
-        let with = |order| self.with_stress(k, sides, partner.pair(&placed, &anchor, sides.first, order));
+        let with = |order| {
+            let mut pair = partner.pair(&placed, &anchor, sides.first, order);
+            if self.friction.is_some() {
+                partner.add_slip(&placed, &anchor, &mut pair);
+            }
+            self.with_stress(k, sides, pair)
+        };
         let first = with(Order::First);
         let found = if wanted(&first) { with(Order::Second) } else { first };
         (placed, Some(Ok(found)))
@@ -219,15 +225,16 @@ impl Contact {
             _ => master.nearest(&placed.x, self.reach + placed.radius, except),
         };
         let Some(met) = met else { return (placed, None) };
-        let stuck = self.memory[k].stuck;
-        let anchor: Option<(Stuck, Anchor)> =
-            stuck.filter(|_| self.friction.is_some()).map(|s| (s, master.at(&s.point)));
+        // Pairs that are kept have slips of their own.
+        let friction = self.friction.is_some() && self.pairing == Pairing::Now;
+        let stuck = self.memory[k].stuck.filter(|_| friction);
+        let anchor: Option<(Stuck, Anchor)> = stuck.map(|s| (s, master.at(&s.point)));
         let encounter = Encounter {
             slave: &placed,
             met: &met,
             first: sides.first,
             stuck: anchor.as_ref().map(|(s, a)| (s, a)),
-            friction: self.friction.is_some(),
+            friction,
             axis: self.axis,
         };
         let first = encounter.measure(Order::First).map(|pair| self.with_stress(k, sides, pair));

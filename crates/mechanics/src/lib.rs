@@ -5,6 +5,7 @@
 //! - [`rigid_body`]: rigid bodies, moved or free.
 //! - [`pair`]: gap and slip of a contact pair in the unknowns of its bodies.
 //! - [`surface`]: what a surface of faces is to contact by mortar, which is [`mortar`].
+//! - `density`: how densely a body is tested against faces.
 //! - [`contact`]: law and enforcement at the sites of two sides.
 //! - [`interaction`]: what acts between bodies, as the system sees it.
 //! - [`system`]: bodies, supports, loads and contacts, assembled.
@@ -17,6 +18,7 @@ mod augmentation;
 pub mod body;
 pub mod contact;
 pub mod curve;
+mod density;
 pub mod enforcement;
 mod equilibrium;
 mod free;
@@ -44,6 +46,7 @@ pub mod system;
 pub use body::{Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Hold, Load, Means, PlaceError};
 pub use contact::{Contact, Pairing, SiteMemory};
 pub use curve::Curve;
+pub use density::test_densely;
 pub use enforcement::Enforcement;
 pub use increment::IncrementResult;
 pub use increment_error::IncrementError;

@@ -192,7 +192,8 @@ pub enum FrontModes {
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SolidMethod {
-    /// How the conditions of contact are enforced; by multipliers if left out, at quadrature points by penalties.
+    /// How the conditions of contact are enforced; by multipliers if left out, at quadrature points by
+    /// penalties, of cells without friction after Nitsche.
     pub enforcement: Option<Enforcement>,
 }
 

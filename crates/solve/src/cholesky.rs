@@ -19,8 +19,12 @@ use std::sync::Arc;
 /// A linear system that could not be solved.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SolveError {
-    #[error("the matrix of {size} unknowns is not positive definite: pivot {pivot} is not positive")]
-    NotPositiveDefinite { size: usize, pivot: usize },
+    #[error("the matrix of {size} unknowns is not positive definite: the pivot of unknown {pivot} is not positive")]
+    NotPositiveDefinite {
+        size: usize,
+        /// The unknown at which the factorisation ends.
+        pivot: usize,
+    },
     #[error("the linear system of {size} unknowns was solved only to a relative residual of {residual:.1e}")]
     Inaccurate { size: usize, residual: f64 },
     #[error("the linear system of {size} unknowns was not factorised")]
@@ -127,9 +131,21 @@ impl Symbolic {
                 MemStack::new(&mut memory),
                 Default::default(),
             )
-            .map_err(|LltError::NonPositivePivot { index }| SolveError::NotPositiveDefinite { size, pivot: index })?;
+            .map_err(|LltError::NonPositivePivot { index }| SolveError::NotPositiveDefinite {
+                size,
+                pivot: unknown_at(symbolic, index),
+            })?;
         Ok(Factor { matrix: a, analysis, values, places: self.places.clone() })
     }
+}
+
+/// The unknown that is eliminated where a factorisation ends; without supernodes such places are counted from one.
+fn unknown_at(symbolic: &SymbolicCholesky<usize>, index: usize) -> usize {
+    let place = match symbolic.raw() {
+        SymbolicCholeskyRaw::Simplicial(_) => index.saturating_sub(1),
+        SymbolicCholeskyRaw::Supernodal(_) => index,
+    };
+    symbolic.perm().map_or(place, |perm| perm.arrays().0[place])
 }
 
 /// A factorised matrix, with the matrix itself for residuals.
@@ -351,10 +367,14 @@ mod tests {
         assert!((1.2..1.8).contains(&order), "{order}");
     }
 
+    /// Small matrices have factors without supernodes, large ones with.
     #[test]
-    fn an_indefinite_matrix_is_refused_by_name() {
-        let mut a = laplacian(10);
-        a.add(&[3], &[-100.0], 1.0);
-        assert!(matches!(Symbolic::default().factor(a), Err(SolveError::NotPositiveDefinite { size: 100, .. })));
+    fn an_indefinite_matrix_is_refused_by_the_unknown_that_makes_it_so() {
+        for n in [10, 60] {
+            let mut a = laplacian(n);
+            a.add(&[3], &[-100.0], 1.0);
+            let Err(SolveError::NotPositiveDefinite { size, pivot }) = Symbolic::default().factor(a) else { panic!() };
+            assert_eq!((size, pivot), ((n * n) as usize, 3));
+        }
     }
 }

@@ -39,6 +39,20 @@ impl<const D: usize> Sheets<D> {
             list.push(Arc::new(HalfSpace { point: b.min, normal: -normal }));
             list.push(Arc::new(HalfSpace { point: b.max, normal }));
         }
+        let mut sheets = Sheets { of_point: Vec::new(), list };
+        sheets.include(body, points);
+        // Gradients out of the material, as at the first point of each sheet.
+        for k in 0..sheets.list.len() {
+            let first = (0..points.len()).find(|p| sheets.of_point[*p] == Some(k));
+            if first.is_some_and(|p| sheets.list[k].gradient(&points[p].x).dot(&points[p].normal) < 0.0) {
+                sheets.list[k] = Arc::new(Complement(sheets.list[k].clone()));
+            }
+        }
+        sheets
+    }
+
+    /// Finds the sheets of further points.
+    pub fn include(&mut self, body: &CellBody<D>, points: &[Site<D>]) {
         let nearest = |p: &Site<D>| {
             let size = body.bounds_of(p.cell).size().min();
             let distance = |sheet: &Arc<dyn ImplicitShape<D>>| {
@@ -47,18 +61,11 @@ impl<const D: usize> Sheets<D> {
                 let is_along = gradient.dot(&p.normal).abs() > ALONG * slope && slope > 0.0;
                 if is_along { value.abs() / slope } else { f64::INFINITY }
             };
-            let best = (0..list.len()).map(|k| (distance(&list[k]), k)).min_by(|a, b| a.0.total_cmp(&b.0));
+            let best = (0..self.list.len()).map(|k| (distance(&self.list[k]), k)).min_by(|a, b| a.0.total_cmp(&b.0));
             best.filter(|(distance, _)| *distance < NEAR * size).map(|(_, k)| k)
         };
-        let of_point: Vec<Option<usize>> = points.iter().map(nearest).collect();
-        // Gradients out of the material, as at the first point of each sheet.
-        for k in 0..list.len() {
-            let first = (0..points.len()).find(|p| of_point[*p] == Some(k));
-            if first.is_some_and(|p| list[k].gradient(&points[p].x).dot(&points[p].normal) < 0.0) {
-                list[k] = Arc::new(Complement(list[k].clone()));
-            }
-        }
-        Sheets { of_point, list }
+        let found: Vec<Option<usize>> = points.iter().map(nearest).collect();
+        self.of_point.extend(found);
     }
 
     /// The sheet of a point: its own, or the plane of its facet.

@@ -1,13 +1,18 @@
 //! Pairs that are kept during an increment.
 //!
-//! A body whose strains are small moves linearly; the gap between two points of it that face each other does too, along the
-//! normal `ν` that they had at the start of the increment: `g = ν·(x_s(u) - x_m(u))`. Which points face each other is found
-//! once for each increment. The tangent of a frictionless contact is then symmetric and positive, and Newton's method ends
-//! as soon as it is known which sites are closed; where surfaces slide far, the increments have to be short.
+//! A body whose strains are small moves linearly. Two points of it that face each other at the start of an increment, `D_0`
+//! apart, are `D = x_s(u) - x_m(u)` apart in it, and with the normal `ν` that they had at the start
+//!
+//! - gap `g = ν·D - R`, slip `e = (1 - νν^T)(D - D_0)`, both linear in the unknowns; slip counts from the start of the increment;
+//! - axes of friction are those of the last increment, turned into the surface: friction keeps its components along them.
+//!
+//! Which points face each other is found once for each increment. The tangent of a frictionless contact is then symmetric and
+//! positive, with friction it is the product of the law and of constant rows, and Newton's method ends as soon as it is known
+//! which sites are closed and which of them slip; where surfaces slide far, the increments have to be short.
 
-use super::{Contact, Sides};
+use super::{Contact, STEEP, Sides};
 use crate::body::PlaceError;
-use crate::pair::Pair;
+use crate::pair::{Axis, AxisChoice, Pair, Stuck, any_tangent};
 use crate::points::{Anchor, Master, MaterialPoint, Order, Placed};
 use rayon::prelude::*;
 use signorini_geometry::Vector;
@@ -19,7 +24,7 @@ pub enum Pairing {
     /// Where the bodies are now.
     #[default]
     Now,
-    /// Where they are at the start of an increment. With friction as `Now`.
+    /// Where they are at the start of an increment.
     AtStart,
 }
 
@@ -29,8 +34,12 @@ pub(crate) struct Partner {
     pub point: MaterialPoint,
     /// Outward from the master.
     normal: Vector<3>,
+    /// The first axis of friction, a unit vector across the normal.
+    along: Vector<3>,
     /// Radii of sections or balls.
     radii: f64,
+    /// `D_0`.
+    apart: Vector<3>,
 }
 
 impl Partner {
@@ -52,6 +61,18 @@ impl Partner {
         }
         pair
     }
+
+    /// Adds slip to a pair that has its gap.
+    pub fn add_slip(&self, placed: &Placed, anchor: &Anchor, pair: &mut Pair) {
+        let across = |d: Vector<3>| d - self.normal * self.normal.dot(&d);
+        let of_slave = placed.functions.iter().map(|f| across(f.value));
+        let of_master = anchor.functions.iter().map(|f| -across(f.value));
+        pair.slip = of_slave.chain(of_master).collect();
+        pair.d_elastic = pair.slip.clone();
+        pair.elastic = across(placed.x - anchor.x - self.apart);
+        pair.axis = Axis { direction: self.along, variation: vec![Vector::<3>::zeros(); pair.unknowns.len()] };
+        pair.stuck = Some(Stuck { point: self.point, on_slave: self.along, on_master: self.normal });
+    }
 }
 
 impl Contact {
@@ -60,7 +81,7 @@ impl Contact {
         let master = sides.master.0.master(self.master.group.as_deref(), sides.master.1)?;
         if self.partners.get().is_none() {
             master.prepare();
-            if self.pairing == Pairing::AtStart && self.friction.is_none() {
+            if self.pairing == Pairing::AtStart {
                 self.find_partners(sides, master.as_ref());
             }
         }
@@ -71,12 +92,22 @@ impl Contact {
         let of = |k: usize| {
             let (placed, found) = self.pair_now(k, sides, (master, f64::INFINITY), |_| false);
             let pair = found?.ok()?.pair;
-            let anchor = master.at(&pair.point);
-            let radii = pair.normal.dot(&(placed.x - anchor.x)) - pair.gap;
-            Some(Partner { point: pair.point, normal: pair.normal, radii })
+            let (normal, apart) = (pair.normal, placed.x - master.at(&pair.point).x);
+            let radii = normal.dot(&apart) - pair.gap;
+            Some(Partner { point: pair.point, normal, along: self.first_axis(k, &normal), radii, apart })
         };
         let found = (0..self.sites.len()).into_par_iter().map(of).collect();
         self.partners.get_or_init(|| found);
+    }
+
+    /// The first axis of friction across a normal: as stated, or that of the last increment.
+    fn first_axis(&self, k: usize, normal: &Vector<3>) -> Vector<3> {
+        let direction = match self.axis {
+            AxisChoice::OnSlave(v) | AxisChoice::OnMaster(v) => Some(v),
+            _ => self.memory[k].stuck.map(|s| s.on_slave),
+        };
+        let across = direction.and_then(|v| (v - normal * normal.dot(&v)).try_normalize(STEEP * v.norm()));
+        across.unwrap_or_else(|| any_tangent(normal))
     }
 }
 

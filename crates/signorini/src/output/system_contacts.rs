@@ -13,6 +13,8 @@ use signorini_geometry::Vector;
 const LONGEST: f64 = 0.12;
 /// At most so many lines for a contact.
 const LINES: usize = 40;
+/// Least distance of the feet of two lines, which are this wide with what sets them off.
+const APART: f64 = 8.0;
 /// Status of a point that slips, as files have it.
 const SLIPS: f64 = 2.0;
 /// Tested points face one way where their normals are within 60 degrees of the mean.
@@ -70,11 +72,16 @@ pub fn draw(page: &mut Page, shown: &SystemShown, camera: &Camera, extent: f64, 
         if most == 0.0 {
             continue;
         }
+        let mut feet: Vec<(f64, f64)> = Vec::new();
         for &k in closed.iter().step_by(closed.len().div_ceil(LINES)) {
             let x = contact.at(k);
             let ends = [x, x + contact.carried(k) * (LONGEST * extent / most)].map(|x| camera.at(&x));
-            // Seen on any colour.
             let [(a, b), (c, d)] = ends;
+            if feet.iter().any(|(x, y)| (x - a).hypot(y - b) < APART) {
+                continue;
+            }
+            feet.push((a, b));
+            // Seen on any colour.
             page.svg += &format!("<path d=\"M{a:.2} {b:.2}L{c:.2} {d:.2}\" stroke=\"white\" stroke-width=\"5\"/>");
             line(&mut page.svg, &ends, viridis(0.15));
             if contact.slips(k) {

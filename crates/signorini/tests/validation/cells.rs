@@ -6,7 +6,7 @@ use super::{error, example, last_step, number, set, summary};
 /// edges.
 #[test]
 fn cells_give_the_forces_of_fitted_meshes() {
-    // Of half the disc, 20 cells of degree 2 along its radius, by penalties.
+    // Of half the disc, 20 cells of degree 2 along its radius.
     let found = summary(example("hertz_cells"), &set(&[]));
     let force = number(&last_step(&found)["contacts"]["touch"]["force"][1]);
     assert!((force / (0.5 * 0.018_384_631_7) - 1.0).abs() < 2e-3, "{force}");

@@ -4,6 +4,7 @@ use super::*;
 use signorini_cells::description::{Cells, Description, Geometry, Part as PlacePart, Shape, build};
 use signorini_cells::image::ImageData;
 use signorini_cells::{End, Islands};
+use signorini_contact::Coulomb;
 use std::time::Instant;
 
 /// A cube of voxels with pores about twelve voxels apart, at any size.
@@ -54,7 +55,12 @@ fn memory() -> f64 {
 }
 
 /// The most iterations, and how many sites are closed in the end.
-fn crushed(n: usize, (travel, increments): (f64, usize), enforcement: Option<(Sampling, Enforcement)>) -> [usize; 2] {
+fn crushed(
+    n: usize,
+    (travel, increments): (f64, usize),
+    enforcement: Option<(Sampling, Enforcement)>,
+    friction: Option<f64>,
+) -> [usize; 2] {
     let begin = Instant::now();
     let shape = Shape::Image { image: foam(n), threshold: 550.0, smoothing: 1.0 };
     let mut d = Description::new("foam", Geometry::Shape(shape), Space::Solid, Cells::Count([n / 4; 3]), 2, ELASTIC);
@@ -78,6 +84,8 @@ fn crushed(n: usize, (travel, increments): (f64, usize), enforcement: Option<(Sa
         // Pores twice as far across close in several increments, if at all.
         contact.reach = 8.0 / n as f64;
         contact.pairing = Pairing::AtStart;
+        contact.friction =
+            friction.map(|mu| Box::new(Coulomb::isotropic(mu).unwrap()) as Box<dyn signorini_contact::Law>);
         println!("{n}: {} sites to test, {:?}, {:.2} GiB", contact.sites().len(), begin.elapsed(), memory());
         Box::new(contact) as Box<dyn Interaction>
     });
@@ -108,7 +116,7 @@ fn crushed(n: usize, (travel, increments): (f64, usize), enforcement: Option<(Sa
     println!(
         "{n}: {} unknowns, {sites} sites, {closed} closed, {newton} of Newton, at most {most} iterations, force {:.6}, \
          {:.1} s of the processors, {:?}, {:.2} GiB",
-        found.unknowns - sites,
+        found.unknowns - sites * if friction.is_some() { 3 } else { 1 },
         -found.support_forces[1][0][2],
         processors(),
         begin.elapsed(),
@@ -122,22 +130,25 @@ fn crushed(n: usize, (travel, increments): (f64, usize), enforcement: Option<(Sa
 
 #[test]
 fn a_small_foam_by_iterations() {
-    assert!(crushed(16, (0.15, 1), None)[0] <= 100);
+    assert!(crushed(16, (0.15, 1), None, None)[0] <= 100);
 }
 
 #[test]
 fn a_small_foam_closes_its_pores() {
     let penalty = Enforcement::Penalty { wanted_penetration: None };
-    let [iterations, closed] = crushed(24, (0.4, 1), Some((Sampling::Nodes, penalty)));
+    let [iterations, closed] = crushed(24, (0.4, 1), Some((Sampling::Nodes, penalty)), None);
     assert!(iterations <= 60 && closed >= 10, "{iterations} {closed}");
+    let [iterations, closed] = crushed(24, (0.4, 1), Some((Sampling::Nodes, penalty)), Some(0.3));
+    assert!(iterations <= 90 && closed >= 10, "{iterations} {closed}");
 }
 
 #[test]
-#[ignore = "10 s: the size is FOAM, 32 if left out, the travel TRAVEL, and its parts INCREMENTS"]
+#[ignore = "10 s: the size is FOAM, 32 if left out, the travel TRAVEL, its parts INCREMENTS, friction FRICTION"]
 fn a_foam_that_closes_its_pores() {
     let n = std::env::var("FOAM").ok().and_then(|v| v.parse().ok()).unwrap_or(32);
     let travel = std::env::var("TRAVEL").ok().and_then(|v| v.parse().ok()).unwrap_or(0.3);
     let increments = std::env::var("INCREMENTS").ok().and_then(|v| v.parse().ok()).unwrap_or(1);
     let penalty = Enforcement::Penalty { wanted_penetration: None };
-    assert!(crushed(n, (travel, increments), Some((Sampling::Nodes, penalty)))[0] <= 100);
+    let friction = std::env::var("FRICTION").ok().and_then(|v| v.parse().ok());
+    assert!(crushed(n, (travel, increments), Some((Sampling::Nodes, penalty)), friction)[0] <= 100);
 }

@@ -1,9 +1,9 @@
-//! Cells that are met: by rigid bodies, cells, elements and ropes, and by themselves; tangents, balance, Hertz, a pore.
+//! Cells that are met by rigid bodies, cells, elements and ropes: tangents, balance, Hertz, edges.
 
 use super::contacts::rigid;
 use super::*;
 use signorini_cells::facets::FacetBody;
-use signorini_cells::shapes::{Ellipsoid, HalfSpace, ball, cuboid};
+use signorini_cells::shapes::{HalfSpace, ball, cuboid};
 use signorini_contact::Coulomb;
 use signorini_geometry::mesh::TriangleMesh;
 use signorini_geometry::rigid_shape::Sphere;
@@ -12,17 +12,22 @@ use signorini_rope::chain::{Chain, body::Rest};
 use signorini_rope::path::Path;
 use signorini_solid::{SolidBody, StressLaw};
 
-fn noise(seed: &mut u64) -> f64 {
+pub(super) fn noise(seed: &mut u64) -> f64 {
     *seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
     ((*seed >> 33) as f64 / (1u64 << 31) as f64) * 2.0 - 1.0
 }
 
 /// Without friction, sticking, slipping.
-const ALL: [Option<f64>; 3] = [None, Some(50.0), Some(0.05)];
+pub(super) const ALL: [Option<f64>; 3] = [None, Some(50.0), Some(0.05)];
 
-const PENALTY: Enforcement = Enforcement::Penalty { wanted_penetration: None };
+pub(super) const PENALTY: Enforcement = Enforcement::Penalty { wanted_penetration: None };
 
-fn contact(slave: (&str, &dyn Body), master: (&str, &dyn Body), sampling: Sampling, how: Enforcement) -> Contact {
+pub(super) fn contact(
+    slave: (&str, &dyn Body),
+    master: (&str, &dyn Body),
+    sampling: Sampling,
+    how: Enforcement,
+) -> Contact {
     Contact::new("touch", (part(0, slave.0), slave.1), (part(1, master.0), master.1), sampling, how).unwrap()
 }
 
@@ -69,7 +74,7 @@ fn check(
     }
 }
 
-fn disc(name: &str, y: f64, degree: usize) -> CellSolid<2> {
+pub(super) fn disc(name: &str, y: f64, degree: usize) -> CellSolid<2> {
     let shape = Domain::shape(ball(Point::<2>::new(0.0, y), 1.0));
     let places = vec![("skin", Place::boundary(move |p| p.normal[1] * y < -0.5))];
     let b = if y > 0.0 { aabb([-1.0, -0.1], [1.0, 0.9]) } else { aabb([-1.0, -0.9], [1.0, 0.1]) };
@@ -241,89 +246,6 @@ fn elements_on_a_block_of_cells_press_evenly() {
     let pressure = 0.01 / 0.67;
     for site in &found.sites[0] {
         assert!((site.pressure / pressure - 1.0).abs() < 1e-6, "{} {pressure}", site.pressure);
-    }
-}
-
-/// An elliptic pore in half of a plate, and a spheroidal one in a cylinder around its axis, pressed until they close: both
-/// faces meet each other. The force on the ends, and what independent computations with fitted elements find.
-fn close(space: Space, delta: f64, pairing: Pairing, how: Enforcement) -> (f64, f64, IncrementResult) {
-    let reference: serde_json::Value = serde_json::from_str(include_str!("../../data/finite_cells.json")).unwrap();
-    let key = if space == Space::Axisymmetric { "pore_3d_spheroid" } else { "pore_closure" };
-    let curve = reference[key]["curve"].as_array().unwrap();
-    let row = curve.iter().find(|r| (r["delta"].as_f64().unwrap() - delta).abs() < 1e-9);
-    let wanted = row.map_or(f64::NAN, |row| row["F"].as_f64().unwrap());
-    let pore = Ellipsoid { center: Point::<2>::zeros(), semi_axes: [0.5, 0.1] };
-    let tree = CellTree::new(aabb([0.0, -1.0], [1.0, 1.0]), [5, 9]).unwrap();
-    let setup = Discretisation { refine_narrow: 2, ..Discretisation::of_degree(4) };
-    let domain = Domain::Complement(Box::new(Domain::shape(pore)));
-    let body = CellBody::new(Arc::new(domain), tree, setup, stuff(space)).unwrap();
-    let places = named(vec![("axis", Place::low(0)), ("top", Place::high(1)), ("base", Place::low(1))]);
-    let body = CellSolid::new("plate", body, &places).unwrap();
-    let itself = part(0, "boundary");
-    let mut contact =
-        Contact::new("pore", (itself.clone(), &body), (itself, &body), Sampling::GaussPoints, how).unwrap();
-    contact.pairing = pairing;
-    let mut system = System {
-        supports: vec![
-            support(0, "axis", [constant(0.0), None, None]),
-            support(0, "top", [None, constant(-delta), None]),
-            support(0, "base", [None, constant(delta), None]),
-        ],
-        bodies: vec![Box::new(body)],
-        contacts: vec![Box::new(contact)],
-        ..System::default()
-    };
-    system.prepare().unwrap();
-    // Just before it closes, and from there.
-    let (open, _) = system.solve(&system.start(), 0.85, &mut |_, _| true).unwrap();
-    system.accept(&open).unwrap();
-    let (_, found) = system.solve(&open, 1.0, &mut |_, _| true).unwrap();
-    let force = -found.support_forces[1][0][1];
-    let touches = found.sites[0].iter().any(|s| s.pressure > 0.0);
-    println!(
-        "{space:?} {delta} {pairing:?} {how:?}: {force} ({wanted}), touches: {touches}, {} iterations",
-        found.iterations
-    );
-    assert!((found.support_forces[1][0][1] + found.support_forces[2][0][1]).abs() < 1e-10 * force.max(1.0));
-    assert_eq!(touches, delta > 0.11);
-    (force, wanted, found)
-}
-
-/// Root mean square of the deviation of pressures from a polynomial of degree 4 of their place, relative to their mean.
-fn scatter(found: &IncrementResult) -> f64 {
-    let sites: Vec<&SiteResult> = found.sites[0].iter().filter(|s| s.x[0] < 0.45 && s.x[1] > 0.0).collect();
-    let rows = |k: usize| sites[k].weight.sqrt();
-    let powers = nalgebra::DMatrix::from_fn(sites.len(), 5, |k, j| rows(k) * sites[k].x[0].powi(j as i32));
-    let pressures = nalgebra::DVector::from_fn(sites.len(), |k, _| rows(k) * sites[k].pressure);
-    let fit = powers.clone().svd(true, true).solve(&pressures, 1e-14).unwrap();
-    let all: f64 = sites.iter().map(|s| s.weight).sum();
-    let mean = sites.iter().map(|s| s.weight * s.pressure).sum::<f64>() / all;
-    (powers * fit - pressures).norm() / all.sqrt() / mean
-}
-
-#[test]
-fn a_pore_in_a_plate_closes_on_itself() {
-    let (force, wanted, _) = close(Space::PlaneStrain, 0.05, Pairing::Now, PENALTY);
-    assert!((force / wanted - 1.0).abs() < 1e-3, "{force} {wanted}");
-    for pairing in [Pairing::Now, Pairing::AtStart] {
-        let (force, wanted, _) = close(Space::PlaneStrain, 0.12, pairing, PENALTY);
-        assert!((force / wanted - 1.0).abs() < 1e-3, "{force} {wanted}");
-        let (force, wanted, _) = close(Space::PlaneStrain, 0.12, pairing, Enforcement::Nitsche);
-        assert!((force / wanted - 1.0).abs() < 1e-3, "{force} {wanted}");
-        // Farther on, where most of both faces carries.
-        for how in [PENALTY, Enforcement::Nitsche] {
-            let (_, _, found) = close(Space::PlaneStrain, 0.15, pairing, how);
-            println!("scatter {}", scatter(&found));
-            assert!(scatter(&found) < 0.05);
-        }
-    }
-}
-
-#[test]
-fn a_pore_around_an_axis_closes_on_itself() {
-    for pairing in [Pairing::Now, Pairing::AtStart] {
-        let (force, wanted, _) = close(Space::Axisymmetric, 0.16, pairing, PENALTY);
-        assert!((force / wanted - 1.0).abs() < 1e-3, "{force} {wanted}");
     }
 }
 

@@ -8,6 +8,8 @@ mod images;
 mod iterations;
 mod large;
 mod masters;
+mod mixed;
+mod pores;
 
 use signorini_cells::{
     CellBody, CellSolid, CellTree, CellsError, Discretisation, Domain, Elastic, Place, Region, Space, Stuff,

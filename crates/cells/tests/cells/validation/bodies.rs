@@ -226,6 +226,13 @@ fn inputs_that_cannot_be_are_told() {
     assert!(matches!(system.solve(Solver::Direct).err(), Some(CellsError::Unsupported { modes: 1 })));
     system.support(&hold(1)).unwrap();
     assert!(system.solve(Solver::Direct).is_ok());
+    // Without any stiffness outside of the material slivers are lost in rounding: told with the place.
+    let cut = Domain::shape(shapes::HalfSpace { point: Point::<2>::new(0.5 + 1e-9, 0.0), normal: Vector::<2>::x() });
+    let sliver = build(cut, &|s| (s.degree, s.fictitious) = (5, 0.0)).unwrap();
+    let mut lost = System::new(&sliver);
+    lost.support(&Support::clamped(Place::low(0))).unwrap();
+    let Some(CellsError::NotPositive { at, .. }) = lost.solve(Solver::Direct).err() else { panic!("a sliver") };
+    assert!(at[0] >= 0.5, "{at:?}");
     let nowhere = system.load(&Load::Pressure { on: Place::boundary(|p| p.x[0] > 5.0), value: Arc::new(|_| 1.0) });
     assert!(matches!(nowhere.err(), Some(CellsError::EmptyPlace { .. })));
     let side = Support::clamped(Place::low(7));

@@ -147,7 +147,12 @@ fn published_discretisations_at_three_loads() {
         for (n, degree, tolerance) in [(20, 2, 1e-3), (8, 5, if delta > 0.05 { 1.4e-4 } else { 1e-4 })] {
             // The zone of the least load is 1.7 cells of degree 2 wide, 0.7 of degree 5.
             let is_narrow = delta < 0.02;
-            for levels in if is_narrow { 0..4 } else { 0..1 }.step_by(3) {
+            let levels: &[usize] = match (is_narrow, degree == 5 && delta > 0.05) {
+                (true, _) => &[0, 3],
+                (_, true) => &[0, 1],
+                _ => &[0],
+            };
+            for &levels in levels {
                 let found = press_refined(n, degree, delta, exact, nitsche, levels);
                 let [force, peak] = [found.force / finest.force - 1.0, found.peak / finest.peak - 1.0];
                 println!(
@@ -157,6 +162,7 @@ fn published_discretisations_at_three_loads() {
                 );
                 assert!(found.iterations <= 10, "{delta} {n} {levels}: {}", found.iterations);
                 if !is_narrow || (degree == 5 && levels > 0) {
+                    let tolerance = if levels > 0 { 1e-4 } else { tolerance };
                     missed |= force.abs() > tolerance || peak.abs() > 5e-3;
                 }
             }
@@ -250,6 +256,26 @@ fn a_ball_between_planes_finely() {
     let (force, iterations, deviation) = press_ball(8, 3, 0.06);
     println!("ball, 8 cells, degree 3: {force} ({wanted}), {iterations} iterations, deviation {deviation:.3}");
     assert!((force / wanted - 1.0).abs() < 4e-3 && iterations <= 8 && deviation < 0.05);
+}
+
+/// The size at which the force is to be right within 2e-3; `CELLS` and `DEGREE` are others.
+#[test]
+#[ignore = "three minutes of the processor, 2.4 GB"]
+fn a_ball_between_planes_very_finely() {
+    let number =
+        |name: &str, otherwise: usize| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(otherwise);
+    let (n, degree) = (number("CELLS", 12), number("DEGREE", 3));
+    for delta in ["0.02", "0.06"] {
+        let wanted = reference()["hertz_3d_sphere"]["nu_0_3"][delta]["P"]["value"].as_f64().unwrap();
+        let begin = std::time::Instant::now();
+        let (force, iterations, deviation) = press_ball(n, degree, delta.parse().unwrap());
+        println!(
+            "ball, {n} cells, degree {degree}, {delta}: {force} ({wanted}), off by {:.2e}, {iterations} iterations, deviation {deviation:.3}, {:?}",
+            force / wanted - 1.0,
+            begin.elapsed()
+        );
+        assert!(n < 12 || (force / wanted - 1.0).abs() < 2e-3, "{force}");
+    }
 }
 
 /// A disc that only contact holds up: Newton's method finds the rigid motion, and the floor carries the load.

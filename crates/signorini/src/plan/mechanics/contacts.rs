@@ -7,7 +7,9 @@ use crate::problem::{self, AxisOn, CaseError, Components, CurveForm, Enforcement
 use signorini_cells::disc_contact::{Centres, Cover, CoverFindings, DiscPairs};
 use signorini_geometry::Vector;
 use signorini_mechanics::contact::Part;
-use signorini_mechanics::{AxisChoice, Contact, Enforcement as Kept, Interaction, Pairing, Sampling, System};
+use signorini_mechanics::{
+    AxisChoice, Contact, Enforcement as Kept, Interaction, Pairing, Sampling, System, test_densely,
+};
 use signorini_rope::curve_pair::{CurveContact, Form};
 
 /// The methods of linear solids of small strain, together.
@@ -17,7 +19,7 @@ impl Planner<'_> {
     pub(super) fn system_contacts(
         &self,
         numbers: &Numbers,
-        system: &System,
+        system: &mut System,
         kinds: &[Kind],
     ) -> Result<(Vec<Box<dyn Interaction>>, Vec<Tested>), CaseError> {
         let problem = self.problem;
@@ -27,31 +29,27 @@ impl Planner<'_> {
             if let Some(adhesion) = &key.adhesion {
                 return Err(self.unavailable(adhesion, "adhesion in a system of bodies"));
             }
-            let mut add = |name: String, pair: [&String; 2]| -> Result<(), CaseError> {
-                let (contact, tested) = self.system_contact(&name, key, pair, (numbers, system, kinds))?;
-                out.push(contact);
-                told.push(tested);
-                Ok(())
-            };
-            match (&key.between, &key.within, &key.all) {
-                (Some(pair), None, None) if pair.len() == 2 => add(name.clone(), [&pair[0], &pair[1]])?,
-                (None, Some(body), None) => add(name.clone(), [body, body])?,
+            let pairs: Vec<(String, [&String; 2])> = match (&key.between, &key.within, &key.all) {
+                (Some(pair), None, None) if pair.len() == 2 => vec![(name.clone(), [&pair[0], &pair[1]])],
+                (None, Some(body), None) => vec![(name.clone(), [body, body])],
                 (None, None, Some(true)) => {
                     let names: Vec<&String> = numbers.keys().collect();
-                    for (k, first) in names.iter().enumerate() {
-                        for second in &names[k + 1..] {
-                            let fixed = |n: &String| system.bodies[numbers[n]].unknowns() == 0;
-                            if !(fixed(first) && fixed(second)) {
-                                add(format!("{name}_{first}_{second}"), [first, second])?;
-                            }
-                        }
-                    }
+                    let fixed = |n: &String| system.bodies[numbers[n]].unknowns() == 0;
+                    let all = (0..names.len()).flat_map(|k| (k + 1..names.len()).map(move |l| [k, l]));
+                    let all = all.map(|[k, l]| [names[k], names[l]]);
+                    let moving = all.filter(|[first, second]| !(fixed(first) && fixed(second)));
+                    moving.map(|pair| (format!("{name}_{}_{}", pair[0], pair[1]), pair)).collect()
                 }
                 _ => {
                     return Err(problem
                         .error(key, "who touches whom is not said")
                         .help("between = [\"BODY\", \"BODY\"], the one whose points are tested first; or  within = \"BODY\"; or  all = true"));
                 }
+            };
+            for (name, pair) in pairs {
+                let (contact, tested) = self.system_contact(&name, key, pair, (numbers, system, kinds))?;
+                out.push(contact);
+                told.push(tested);
             }
         }
         Ok((out, told))
@@ -62,7 +60,7 @@ impl Planner<'_> {
         name: &str,
         key: &problem::Contact,
         on: [&String; 2],
-        (numbers, system, kinds): (&Numbers, &System, &[Kind]),
+        (numbers, system, kinds): (&Numbers, &mut System, &[Kind]),
     ) -> Result<(Box<dyn Interaction>, Tested), CaseError> {
         let problem = self.problem;
         let mut parts: [Part; 2] = [self.part(on[0], numbers)?, self.part(on[1], numbers)?];
@@ -96,13 +94,19 @@ impl Planner<'_> {
             Some(problem::Body::Rope(rope)) => rope.continuity != Some(problem::Continuity::C1),
             _ => false,
         };
-        let (sampling, enforcement, method) = self.system_method(key, body(&slave).is_rigid(), straight, kind)?;
+        let by_stress = self.takes_stress(key, [&slave, &master], (system, kinds));
+        let is_rigid = body(&slave).is_rigid();
+        let (sampling, enforcement, method) = self.system_method(key, (is_rigid, by_stress), straight, kind)?;
         // The turn of a free body would have to turn the stress of the other with it.
         if enforcement == Kept::Nitsche && body(&master).is_rigid() && body(&master).unknowns() > 0 {
             return Err(problem
                 .error(key, "Nitsche's method is not for contact with a free rigid body")
                 .help("enforcement.penalty = {}"));
         }
+        if sampling == Sampling::GaussPoints {
+            test_densely(&mut system.bodies, [&slave, &master]);
+        }
+        let body = |part: &Part| system.bodies[part.body].as_ref();
         let mut contact =
             Contact::new(name, (slave.clone(), body(&slave)), (master.clone(), body(&master)), sampling, enforcement)
                 .map_err(|error| {
@@ -118,12 +122,27 @@ impl Planner<'_> {
             contact.friction = Some(law);
         }
         // What of a body of small strains faces another part of it turns little within an increment.
-        if slave.body == master.body && body(&slave).is_linear() {
+        let keeps = contact.friction.is_none() || matches!(kind, Kind::Cells);
+        if slave.body == master.body && body(&slave).is_linear() && keeps {
             contact.pairing = Pairing::AtStart;
         }
         let along_a_curve = matches!(kind, Kind::Curve { .. });
         let tested = Tested { along_a_curve, ..Tested::by(method, contact.axis) };
         Ok((Box::new(contact), tested))
+    }
+
+    /// Whether the stress of cells is what keeps them from what they touch, if nothing else is stated: their pressure then does
+    /// not ripple. Friction, free rigid bodies, lines of load and pairs within one body, which stay symmetric, have penalties.
+    fn takes_stress(
+        &self,
+        key: &problem::Contact,
+        [slave, master]: [&Part; 2],
+        (system, kinds): (&System, &[Kind]),
+    ) -> bool {
+        let other = &system.bodies[master.body];
+        let is_free = other.is_rigid() && other.unknowns() > 0;
+        let is_surface = !matches!(kinds[master.body], Kind::Curve { .. });
+        key.friction.is_none() && slave.body != master.body && is_surface && !is_free
     }
 
     /// Contact between two curves, or of one with itself, where no other method is stated.
@@ -264,7 +283,7 @@ impl Planner<'_> {
     fn system_method(
         &self,
         key: &problem::Contact,
-        rigid: bool,
+        (rigid, by_stress): (bool, bool),
         straight: bool,
         kind: &Kind,
     ) -> Result<(Sampling, Kept, &'static str), CaseError> {
@@ -297,6 +316,7 @@ impl Planner<'_> {
             _ if rigid => Kept::AugmentedLagrangian,
             // Every node of straight elements carries by itself; points of Gauss are more than the elements can follow.
             Sampling::Nodes => Kept::Multiplier,
+            Sampling::GaussPoints if by_stress && word == "cell_surface" => Kept::Nitsche,
             Sampling::GaussPoints => Kept::Penalty { wanted_penetration: None },
         };
         let kept = self.kept(stated, otherwise, word)?;

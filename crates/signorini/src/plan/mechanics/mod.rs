@@ -177,7 +177,7 @@ impl Planner<'_> {
         let (loads, springs) = self.system_loads(&numbers, &system, &kinds, &wrong)?;
         system.loads = loads;
         system.loads.extend(springs.into_iter().map(|(name, part, load)| PlacedLoad { name, part, load }));
-        let (acting, contacts) = self.system_contacts(&numbers, &system, &kinds)?;
+        let (acting, contacts) = self.system_contacts(&numbers, &mut system, &kinds)?;
         system.contacts = acting;
         system.prepare().map_err(|e| problem.error(&problem.space, e.to_string()))?;
         self.check_start(&system, &kinds, &contacts)?;

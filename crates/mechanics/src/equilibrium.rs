@@ -81,8 +81,9 @@ impl Problem<'_> {
         let farthest = (0..self.is_spin.len()).max_by(|a, b| moved(a).total_cmp(&moved(b)))?;
         let away = moved(&farthest) / self.system.size();
         let (body, _) = self.body_of(farthest)?;
-        (away * f64::EPSILON > TOLERANCE)
-            .then(|| format!(": `{body}` was carried away, {away:.0e} times the size of all bodies: does anything hold it?"))
+        (away * f64::EPSILON > TOLERANCE).then(|| {
+            format!(": `{body}` was carried away, {away:.0e} times the size of all bodies: does anything hold it?")
+        })
     }
 
     /// Measures residuals by the tangent of a state: further ones may be anywhere.

@@ -10,7 +10,8 @@
 //! positive, with friction it is the product of the law and of constant rows, and Newton's method ends as soon as it is known
 //! which sites are closed and which of them slip; where surfaces slide far, the increments have to be short.
 
-use super::{Contact, STEEP, Sides};
+use super::traction::STEEP;
+use super::{Contact, Sides};
 use crate::body::PlaceError;
 use crate::pair::{Axis, AxisChoice, Pair, Stuck, any_tangent};
 use crate::points::{Anchor, Master, MaterialPoint, Order, Placed};

@@ -74,7 +74,7 @@ impl Contact {
 const AT_LIMIT: f64 = 1e-7;
 
 /// Sine of the angle to the normal below which the projection of an axis tells no direction any more.
-const STEEP: f64 = 1e-8;
+pub(super) const STEEP: f64 = 1e-8;
 
 /// The axes of friction of a pair, and their variations.
 pub(super) fn axes(pair: &Pair) -> ([Vector<3>; 2], Vec<[Vector<3>; 2]>) {

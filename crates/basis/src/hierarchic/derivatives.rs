@@ -18,21 +18,27 @@ fn place(i: usize, j: usize) -> usize {
     (i + j) * (i + j + 1) / 2 + j
 }
 
-fn product(f: &Derivatives, g: &Derivatives) -> Derivatives {
-    TIMES.map(|[i, j]| {
-        let mut sum = 0.0;
+/// The product of two functions, with derivatives up to an order.
+fn product(f: &Derivatives, g: &Derivatives, order: usize) -> Derivatives {
+    let mut out = [0.0; 10];
+    for (sum, [i, j]) in out.iter_mut().zip(TIMES).take(place(0, order) + 1) {
         for p in 0..=i {
             for q in 0..=j {
-                sum += BINOMIAL[i][p] * BINOMIAL[j][q] * f[place(p, q)] * g[place(i - p, j - q)];
+                *sum += BINOMIAL[i][p] * BINOMIAL[j][q] * f[place(p, q)] * g[place(i - p, j - q)];
             }
         }
-        sum
-    })
+    }
+    out
 }
 
-/// A function with given derivatives of a linear function with these slopes.
-fn along(f: &[f64; 4], slopes: [f64; 2]) -> Derivatives {
-    TIMES.map(|[i, j]| f[i + j] * slopes[0].powi(i as i32) * slopes[1].powi(j as i32))
+/// A function with given derivatives of a linear function with these slopes, up to an order.
+fn along(f: &[f64; 4], slopes: [f64; 2], order: usize) -> Derivatives {
+    let powers = slopes.map(|s| [1.0, s, s * s, s * s * s]);
+    let mut out = [0.0; 10];
+    for (d, [i, j]) in out.iter_mut().zip(TIMES).take(place(0, order) + 1) {
+        *d = f[i + j] * powers[0][i] * powers[1][j];
+    }
+    out
 }
 
 /// The functions of one direction with three derivatives.
@@ -55,24 +61,31 @@ fn line(degree: usize, x: f64) -> [[f64; 4]; MAX_DEGREE + 1] {
 }
 
 impl HierarchicBasis {
-    /// Values and derivatives of the functions at these places at a point of the reference cell, along two directions.
-    pub fn derivatives(&self, functions: &[usize], x: &Local, directions: &[Local; 2]) -> Vec<Derivatives> {
+    /// Values and derivatives of the functions at these places at a point of the reference cell, along two directions and up
+    /// to an order of three at most; zeros stand for those beyond it.
+    pub fn derivatives(
+        &self,
+        functions: &[usize],
+        x: &Local,
+        directions: &[Local; 2],
+        order: usize,
+    ) -> Vec<Derivatives> {
         let slopes = |g: &Local| [0, 1].map(|a| (0..3).map(|k| g[k] * directions[a][k]).sum::<f64>());
         let lines: [_; 3] = std::array::from_fn(|k| line(self.degree.max(2), x[k]));
-        let axis = |k: usize, f: u8| along(&lines[k][f as usize], [directions[0][k], directions[1][k]]);
+        let axis = |k: usize, f: u8| along(&lines[k][f as usize], [directions[0][k], directions[1][k]], order);
         let (lambda, gradients) = barycentric(self.shape, x);
-        let corner = |a: u8| along(&[lambda[a as usize], 1.0, 0.0, 0.0], slopes(&gradients[a as usize]));
+        let corner = |a: u8| along(&[lambda[a as usize], 1.0, 0.0, 0.0], slopes(&gradients[a as usize]), order);
         (functions.iter())
             .map(|k| match self.factors[*k] {
                 Factors::Tensor(index) => {
-                    (1..self.shape.dimension()).fold(axis(0, index[0]), |f, k| product(&f, &axis(k, index[k])))
+                    (1..self.shape.dimension()).fold(axis(0, index[0]), |f, k| product(&f, &axis(k, index[k]), order))
                 }
                 Factors::Simplex { first, second, along } => {
                     let mut f = corner(first);
                     if let Some(b) = second {
-                        f = product(&f, &corner(b)).map(|v| -ROOT_6 * v);
+                        f = product(&f, &corner(b), order).map(|v| -ROOT_6 * v);
                     }
-                    along.map_or(f, |k| product(&f, &axis(2, k)))
+                    along.map_or(f, |k| product(&f, &axis(2, k), order))
                 }
             })
             .collect()
@@ -96,12 +109,12 @@ mod tests {
                 d
             });
             let all: Vec<usize> = (0..basis.len()).collect();
-            let at = basis.derivatives(&all, &x, &directions);
+            let at = basis.derivatives(&all, &x, &directions, 3);
             let mut values = Values::default();
             basis.tabulate(&x, &mut values);
             let h = 1e-5;
             let moved = |a: usize, h: f64| {
-                basis.derivatives(&all, &std::array::from_fn(|k| x[k] + h * directions[a][k]), &directions)
+                basis.derivatives(&all, &std::array::from_fn(|k| x[k] + h * directions[a][k]), &directions, 3)
             };
             for a in 0..2 {
                 let (plus, minus) = (moved(a, h), moved(a, -h));

@@ -121,10 +121,8 @@ impl<const D: usize> Faces<D> {
     /// A point of a face that stands for an area.
     fn add(&mut self, at: &[(u32, Local)], around: &HashMap<u32, Vec<u32>>, weight: f64) -> Site {
         let (face, s) = at[0];
-        let functions = (self.derivatives(face, &s).into_iter())
-            .filter(|(_, d)| d[0].abs() > NOTHING)
-            .map(|(f, d)| (f, d[0]))
-            .collect();
+        let functions =
+            (self.slopes(face, &s).into_iter()).filter(|(_, d)| d[0].abs() > NOTHING).map(|(f, d)| (f, d[0])).collect();
         let averaged = self.averaged(face, &s, around);
         let around: Vec<Tangents<D>> = at.iter().map(|(face, s)| self.tangents(*face, s)).collect();
         let depth = at.iter().map(|(f, _)| self.face(*f).depth).fold(f64::INFINITY, f64::min);
@@ -133,7 +131,7 @@ impl<const D: usize> Faces<D> {
     }
 
     fn tangents(&self, face: u32, s: &Local) -> Tangents<D> {
-        let slopes = self.derivatives(face, s).into_iter().filter(|(_, d)| d[1].abs().max(d[2].abs()) > NOTHING);
+        let slopes = self.slopes(face, s).into_iter().filter(|(_, d)| d[1].abs().max(d[2].abs()) > NOTHING);
         let slopes = slopes.map(|(f, d)| (f, [d[1], d[2]])).collect();
         Tangents { face, at: self.reference(face, s).tangents, slopes }
     }
@@ -298,12 +296,21 @@ impl<const D: usize> Faces<D> {
         FacePoint { x, tangents }
     }
 
-    /// The functions that move a point of a face, with their derivatives along its coordinates.
+    /// The functions that move a point of a face, with their derivatives along its coordinates up to the third.
     pub fn derivatives(&self, face: u32, s: &Local) -> Vec<(u32, Derivatives)> {
+        self.derivatives_to(3, face, s)
+    }
+
+    /// The functions that move a point of a face, with their slopes along its coordinates.
+    pub fn slopes(&self, face: u32, s: &Local) -> Vec<(u32, Derivatives)> {
+        self.derivatives_to(1, face, s)
+    }
+
+    fn derivatives_to(&self, order: usize, face: u32, s: &Local) -> Vec<(u32, Derivatives)> {
         let face = self.face(face);
         let basis = self.bodies.list[0].dofs.basis(face.side.cell as usize);
         let (x, along) = basis.shape().on_side(face.side.side as usize, s);
-        let list = basis.derivatives(&face.places, &x, &along);
+        let list = basis.derivatives(&face.places, &x, &along, order);
         list.into_iter().zip(&face.functions).map(|(d, (f, sign))| (*f, d.map(|v| sign * v))).collect()
     }
 

@@ -82,7 +82,7 @@ impl<const D: usize> SurfaceMaster<'_, D> {
     }
 
     fn normal(&self, face: u32, s: &Local) -> Vector<3> {
-        let list = self.faces.derivatives(face, s);
+        let list = self.faces.slopes(face, s);
         spatial(&self.faces.current(face, s, &list, self.u).area_normal().normalize())
     }
 

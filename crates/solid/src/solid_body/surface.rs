@@ -69,7 +69,7 @@ impl<const D: usize> signorini_mechanics::Surface for PlacedSurface<'_, D> {
 
     fn placed(&self, face: usize, s: &Local) -> Placed {
         let number = self.surface.faces[face];
-        let list = self.faces.derivatives(number, s);
+        let list = self.faces.slopes(number, s);
         let at = self.faces.current(number, s, &list, self.u);
         let mut averaged = Direction::default();
         for (share, corner) in self.shares(face, s) {
@@ -97,7 +97,7 @@ impl<const D: usize> signorini_mechanics::Surface for PlacedSurface<'_, D> {
 
     fn met(&self, face: usize, s: &Local) -> Foot {
         let number = self.surface.faces[face];
-        let list = self.faces.derivatives(number, s);
+        let list = self.faces.slopes(number, s);
         let at = self.faces.current(number, s, &list, self.u);
         let zero = Vector::<3>::zeros();
         let [u, v] = at.tangents.each_ref().map(spatial);

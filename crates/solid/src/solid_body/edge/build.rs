@@ -115,7 +115,7 @@ fn aside<const D: usize>(faces: &Faces<D>, (face, ends): (u32, [Local; 2]), end:
     let at = faces.reference(face, &ends[end]);
     let mut out =
         Linear { x: spatial(&(at.tangents[0] * towards[0] + at.tangents[1] * towards[1])), ..Linear::default() };
-    for (f, d) in faces.derivatives(face, &ends[end]) {
+    for (f, d) in faces.slopes(face, &ends[end]) {
         out.weights.insert(f, d[1] * towards[0] + d[2] * towards[1]);
     }
     out
@@ -129,7 +129,7 @@ fn linear<const D: usize>(faces: &Faces<D>, (face, ends): (u32, [Local; 2]), t: 
     let slope = at.tangents[0] * along[0] + at.tangents[1] * along[1];
     let [mut position, mut derivative] =
         [spatial(&at.x), spatial(&slope)].map(|x| Linear { x, weights: BTreeMap::new() });
-    for (f, d) in faces.derivatives(face, &s) {
+    for (f, d) in faces.slopes(face, &s) {
         let slope = d[1] * along[0] + d[2] * along[1];
         // Functions of the rest of the face vanish along the edge up to rounding.
         for (list, value) in [(&mut position.weights, d[0]), (&mut derivative.weights, slope * length)] {

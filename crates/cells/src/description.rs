@@ -102,6 +102,8 @@ pub struct Description {
     pub modulus: Option<(Scalar, f64)>,
     /// The whole recovered boundary is always there as `boundary`.
     pub places: BTreeMap<String, Part>,
+    /// Memory in bytes that the body may take.
+    pub memory: f64,
 }
 
 impl Description {
@@ -125,6 +127,7 @@ impl Description {
             elastic,
             modulus: None,
             places: BTreeMap::new(),
+            memory: f64::INFINITY,
         }
     }
 }
@@ -141,6 +144,10 @@ pub struct Built {
     pub bounds: [[f64; 3]; 2],
 }
 
+/// Bytes that every cell of the grid takes at least, with material or without: its place in the tree, while that is built.
+const BYTES_OF_A_CELL: f64 = 200.0;
+const GIB: f64 = (1u64 << 30) as f64;
+
 /// Builds a body.
 ///
 /// # Errors
@@ -154,6 +161,11 @@ fn in_dimension<const D: usize>(d: &Description) -> Result<Built, CellsError> {
     let whole = given.or_else(|| d.geometry.bounds()).ok_or(CellsError::NoBox)?;
     let bounds = Aabb::new(flat::<D>(&whole.min), flat::<D>(&whole.max));
     let count = d.cells.count(&bounds)?;
+    let cells = count.iter().map(|n| *n as f64).product::<f64>();
+    if BYTES_OF_A_CELL * cells > d.memory {
+        let cells = count.to_vec();
+        return Err(CellsError::Memory { cells, free: d.memory / GIB });
+    }
     let mut tree = CellTree::new(bounds, count)?;
     let mut modulus = d.modulus.clone().map(|(factor, most)| in_body::<D>(factor, most));
     let mut optional = Boundary::Expected;

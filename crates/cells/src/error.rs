@@ -10,6 +10,8 @@ pub enum CellsError {
     Box { corners: Vec<f64> },
     #[error("{cells:?} cells: there must be one at least in each direction")]
     NoCells { cells: Vec<usize> },
+    #[error("{cells:?} cells, of which {free:.1} GiB of memory do not hold the grid alone: use fewer or larger ones")]
+    Memory { cells: Vec<usize>, free: f64 },
     #[error("degree {degree} is not between 1 and {most}")]
     Degree { degree: usize, most: usize },
     #[error("the fictitious stiffness {value} is not between 0 and 1; 1e-8 serves most bodies")]

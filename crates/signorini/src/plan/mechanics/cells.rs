@@ -1,6 +1,7 @@
 //! Bodies of finite cells of a system, from shapes, surfaces and images.
 
 use crate::expression::{Expression, Scope};
+use crate::plan::memory_at_hand;
 use crate::plan::planner::Planner;
 use crate::plan::rigid;
 use crate::problem::units::{LENGTH, NONE, PRESSURE};
@@ -13,7 +14,7 @@ use signorini_cells::description::{
 };
 use signorini_cells::image::raw::RawHeader;
 use signorini_cells::image::{self, Endian, ImageData, Number};
-use signorini_cells::{Elastic, End, Integration, Islands, Products, Space};
+use signorini_cells::{CellsError, Elastic, End, Integration, Islands, Products, Space};
 use signorini_geometry::rigid_shape::{ClosestPoints, Normals};
 use signorini_geometry::{Aabb, Jet, Point, Real, Vector};
 use std::sync::Arc;
@@ -64,6 +65,7 @@ impl Planner<'_> {
         };
         let mut made = Description::new(name, geometry, space, self.grid_of_cells(key)?, degree, elastic);
         made.bounds = bounds;
+        made.memory = memory_at_hand();
         made.refinement = self.refinement(key)?;
         if key.functions == Some(CellFunctions::Trunk) {
             made.products = Products::Trunk;
@@ -94,7 +96,14 @@ impl Planner<'_> {
             made.places.insert(group.clone(), Part::Surface(Arc::new(holds)));
         }
         self.sides_that_are_used(name, &mut made);
-        let built = build(&made).map_err(|e| problem.error(&key.geometry, format!("`{name}`: {e}")))?;
+        let wrong = |e: CellsError| {
+            let at = match e {
+                CellsError::Memory { .. } => problem.key(&key.mesh.grid),
+                _ => problem.key(&key.geometry),
+            };
+            problem.error(&at, format!("`{name}`: {e}"))
+        };
+        let built = build(&made).map_err(wrong)?;
         let findings = &built.findings;
         let [low, high] = built.bounds;
         notes.push(format!(

@@ -159,6 +159,7 @@ fn adhesion_may_vary() {
 /// Load and unload: snap-in where the free membrane touches, pull-off at the fold, and over a closed loop the work of the
 /// load is what the jumps set free.
 #[test]
+#[ignore = "takes 20 processor seconds"]
 fn the_loop_of_a_round_membrane() {
     let steps = |n: usize| {
         let step = |to: f64| format!("[[steps]]\nto = {to}\nincrements = {n}\nevents = 1e-9\n");
@@ -226,6 +227,7 @@ fn a_jump_is_told() {
 
 /// Seen from above: stable and unstable equilibria, pull-off, and the least adhesion that holds a contact.
 #[test]
+#[ignore = "takes 70 processor seconds"]
 fn the_disc_from_above() {
     for (load, energy, near, exact, tolerance) in [
         (1.0, 0.01, None, 0.630679249726799, 1e-8),

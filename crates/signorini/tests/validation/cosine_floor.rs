@@ -81,6 +81,7 @@ fn small_increments_take_few_solves() {
 
 /// So do long ones, from a single state and where cells are divided, once they were approached on larger cells.
 #[test]
+#[ignore = "takes 15 processor seconds"]
 fn long_increments_take_few_solves() {
     for (cells, degree) in [("[40, 40]", "1"), ("[64, 64]", "1"), ("[64, 64]", "2"), ("[32, 32]", "3")] {
         let pairs = [
@@ -97,6 +98,7 @@ fn long_increments_take_few_solves() {
 /// And so do those beside a merger and a hole that closes, where fronts are as sharp as cells are small: of as many zones and
 /// holes as the last, the second and third of a kind.
 #[test]
+#[ignore = "takes 20 processor seconds"]
 fn increments_beside_events_take_few_solves() {
     for (from, to, increments, last) in
         [("0.1", "0.12", 2, (4, 0)), ("0.15", "0.17", 2, (1, 1)), ("0.37", "0.39", 2, (1, 1))]
@@ -283,6 +285,7 @@ fn sampled_floors_converge() {
 
 /// Up and down again, through the merger of the four islands: without adhesion the state depends on the load alone.
 #[test]
+#[ignore = "takes 30 processor seconds"]
 fn up_and_down_are_one() {
     let case = example("cosine_disc").replace("normal = \"-t\"", "normal = \"-min(t, 0.6 - t)\"").replace(
         "[[steps]]\nto = 0.4\nincrements = 4",

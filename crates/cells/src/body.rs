@@ -6,6 +6,7 @@
 use crate::components::{PieceGraph, faces_itself, is_narrow};
 use crate::discretisation::{Boundary, Discretisation, Stuff, check};
 use crate::error::CellsError;
+use crate::memory::check_memory;
 use crate::moments::VolumePoints;
 use crate::numbering::{kept_pieces, rules_of_pieces};
 use crate::region::{BoundaryPoint, Filling, Integration, MaterialRule, Region};
@@ -110,10 +111,11 @@ impl<const D: usize> CellBody<D> {
             let refined = tree.refine(|_| {
                 number += 1;
                 narrow[number - 1]
-            });
+            })?;
             if refined == 0 {
                 break;
             }
+            check_memory(&*region, &tree, &discretisation)?;
             rules = rules_of(&tree);
         }
         if rules.iter().all(|r| r.filling == Filling::Void) {

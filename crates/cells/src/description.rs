@@ -102,7 +102,7 @@ pub struct Description {
     pub modulus: Option<(Scalar, f64)>,
     /// The whole recovered boundary is always there as `boundary`.
     pub places: BTreeMap<String, Part>,
-    /// Memory in bytes that the body may take.
+    /// Memory in bytes that the body and its equations may take.
     pub memory: f64,
 }
 
@@ -144,10 +144,6 @@ pub struct Built {
     pub bounds: [[f64; 3]; 2],
 }
 
-/// Bytes that every cell of the grid takes at least, with material or without: its place in the tree, while that is built.
-const BYTES_OF_A_CELL: f64 = 200.0;
-const GIB: f64 = (1u64 << 30) as f64;
-
 /// Builds a body.
 ///
 /// # Errors
@@ -161,12 +157,7 @@ fn in_dimension<const D: usize>(d: &Description) -> Result<Built, CellsError> {
     let whole = given.or_else(|| d.geometry.bounds()).ok_or(CellsError::NoBox)?;
     let bounds = Aabb::new(flat::<D>(&whole.min), flat::<D>(&whole.max));
     let count = d.cells.count(&bounds)?;
-    let cells = count.iter().map(|n| *n as f64).product::<f64>();
-    if BYTES_OF_A_CELL * cells > d.memory {
-        let cells = count.to_vec();
-        return Err(CellsError::Memory { cells, free: d.memory / GIB });
-    }
-    let mut tree = CellTree::new(bounds, count)?;
+    let mut tree = CellTree::within(d.memory, bounds, count)?;
     let mut modulus = d.modulus.clone().map(|(factor, most)| in_body::<D>(factor, most));
     let mut optional = Boundary::Expected;
     let region: Arc<dyn Region<D>> = match &d.geometry {
@@ -187,7 +178,7 @@ fn in_dimension<const D: usize>(d: &Description) -> Result<Built, CellsError> {
     if d.places.values().any(on_box) {
         optional = Boundary::Optional;
     }
-    refine(&mut tree, &*region, d);
+    refine(&mut tree, &*region, d)?;
     let refine_narrow = (d.refinement.iter())
         .map(|r| if let Refinement::Narrow { levels } = r { *levels } else { 0 })
         .max()
@@ -205,6 +196,7 @@ fn in_dimension<const D: usize>(d: &Description) -> Result<Built, CellsError> {
         islands: d.islands,
         boundary: optional,
         refine_narrow,
+        memory: d.memory,
     };
     let body = CellBody::new(region, tree, setup, Stuff { elastic: d.elastic, modulus, space: d.space })?;
     let (findings, volume, cells) = (body.findings().clone(), body.volume(), body.cells().len());
@@ -214,22 +206,23 @@ fn in_dimension<const D: usize>(d: &Description) -> Result<Built, CellsError> {
     Ok(Built { body: Box::new(body), findings, volume, cells, bounds })
 }
 
-fn refine<const D: usize>(tree: &mut CellTree<D>, region: &dyn Region<D>, d: &Description) {
+fn refine<const D: usize>(tree: &mut CellTree<D>, region: &dyn Region<D>, d: &Description) -> Result<(), CellsError> {
     for refinement in &d.refinement {
         match refinement {
             Refinement::Narrow { .. } => {}
             Refinement::Boundary { levels } => {
                 for _ in 0..*levels {
-                    tree.refine(|l| region.rule(&l.bounds, &d.integration, d.degree).filling == Filling::Cut);
+                    tree.refine(|l| region.rule(&l.bounds, &d.integration, d.degree).filling == Filling::Cut)?;
                 }
             }
             Refinement::Near { distance, within, levels } => {
                 for _ in 0..*levels {
-                    tree.refine(|l| distance(&spatial(&l.bounds.center())).abs() <= within + l.bounds.radius());
+                    tree.refine(|l| distance(&spatial(&l.bounds.center())).abs() <= within + l.bounds.radius())?;
                 }
             }
         }
     }
+    Ok(())
 }
 
 fn flat<const D: usize>(x: &Point<3>) -> Point<D> {

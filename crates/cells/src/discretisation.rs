@@ -4,10 +4,11 @@ use crate::body::Field;
 use crate::components::Pieces;
 use crate::error::CellsError;
 use crate::legendre::MAX_DEGREE;
+use crate::memory::check_memory;
 use crate::moments::VolumePoints;
 use crate::region::{Integration, Region};
 use crate::space::Products;
-use crate::tree::CellTree;
+use crate::tree::{CellTree, Leaf};
 use signorini_fem::elastic::{Elastic, Space};
 
 /// What is done with pieces of the body that do not hang together with the largest.
@@ -44,6 +45,8 @@ pub struct Discretisation<const D: usize> {
     /// Times that cells are halved in which the boundary faces itself or turns by more than half a radian: where a pore or a
     /// gap is narrower than a cell, around tips, and at edges.
     pub refine_narrow: usize,
+    /// Memory in bytes that the body and its equations may take.
+    pub memory: f64,
 }
 
 impl<const D: usize> Discretisation<D> {
@@ -59,6 +62,7 @@ impl<const D: usize> Discretisation<D> {
             islands: Islands::Refuse,
             boundary: Boundary::Expected,
             refine_narrow: 0,
+            memory: f64::INFINITY,
         }
     }
 }
@@ -73,7 +77,7 @@ pub struct Stuff<const D: usize> {
 }
 
 /// # Errors
-/// Constants out of range, values of the shape that are not finite.
+/// Constants out of range, more cells than the memory holds, values of the shape that are not finite.
 pub(crate) fn check<const D: usize>(
     region: &dyn Region<D>,
     tree: &CellTree<D>,
@@ -101,11 +105,16 @@ pub(crate) fn check<const D: usize>(
     if stuff.space == Space::Axisymmetric && tree.bounds().min[0] < 0.0 {
         return Err(CellsError::NegativeRadius { radius: tree.bounds().min[0] });
     }
-    for leaf in tree.leaves() {
-        let b = &leaf.bounds;
-        if let Some((x, value)) = [b.min, b.center(), b.max].iter().find_map(|x| Some((x, region.defect(x)?))) {
-            return Err(CellsError::NotFinite { at: x.iter().copied().collect(), value });
-        }
+    check_memory(region, tree, discretisation)?;
+    tree.leaves().iter().try_for_each(|leaf| check_values(region, leaf))
+}
+
+/// # Errors
+/// Values of the shape at three points of a leaf that are not finite.
+pub(crate) fn check_values<const D: usize>(region: &dyn Region<D>, leaf: &Leaf<D>) -> Result<(), CellsError> {
+    let b = &leaf.bounds;
+    match [b.min, b.center(), b.max].iter().find_map(|x| Some((x, region.defect(x)?))) {
+        Some((x, value)) => Err(CellsError::NotFinite { at: x.iter().copied().collect(), value }),
+        None => Ok(()),
     }
-    Ok(())
 }

@@ -10,8 +10,11 @@ pub enum CellsError {
     Box { corners: Vec<f64> },
     #[error("{cells:?} cells: there must be one at least in each direction")]
     NoCells { cells: Vec<usize> },
-    #[error("{cells:?} cells, of which {free:.1} GiB of memory do not hold the grid alone: use fewer or larger ones")]
-    Memory { cells: Vec<usize>, free: f64 },
+    #[error(
+        "{cells} cells need about {needed:.1} GiB of memory, and {free:.1} GiB are free for them: use fewer or larger \
+         cells, or a lower degree"
+    )]
+    Memory { cells: f64, needed: f64, free: f64 },
     #[error("degree {degree} is not between 1 and {most}")]
     Degree { degree: usize, most: usize },
     #[error("the fictitious stiffness {value} is not between 0 and 1; 1e-8 serves most bodies")]
@@ -83,4 +86,15 @@ pub enum CellsError {
     Shape(#[from] ShapeError),
     #[error(transparent)]
     Solve(#[from] SolveError),
+}
+
+impl CellsError {
+    /// An error where so many cells need more bytes than are free.
+    pub(crate) fn check_memory(cells: f64, needed: f64, free: f64) -> Result<(), CellsError> {
+        let gib = |bytes: f64| bytes / (1u64 << 30) as f64;
+        if needed <= free {
+            return Ok(());
+        }
+        Err(CellsError::Memory { cells, needed: gib(needed), free: gib(free) })
+    }
 }

@@ -33,6 +33,7 @@ pub mod image;
 pub mod jets;
 pub mod legendre;
 pub mod loads;
+mod memory;
 pub mod moments;
 mod numbering;
 pub mod place;

@@ -12,7 +12,7 @@ use crate::shapes::spatial;
 use signorini_solve::schwarz::Sets;
 
 /// Share of material in a cell above which its functions are independent enough for the stars of its vertices alone.
-const SMALL: f64 = 0.5;
+pub(crate) const SMALL: f64 = 0.5;
 
 impl<const D: usize> CellBody<D> {
     /// The sets of unknowns of a preconditioner.

@@ -164,7 +164,7 @@ mod tests {
         for _ in 0..times {
             let x = b.at(&Point::<D>::from_fn(|_, _| random(seed)));
             let leaf = tree.leaves()[tree.leaf_at(&x)];
-            tree.refine(|l| *l == leaf);
+            tree.refine(|l| *l == leaf).unwrap();
         }
         let modes: Vec<Vec<LocalMode<D>>> =
             tree.leaves().iter().map(|l| modes_of(&tree, l, degree, Products::Tensor)).collect();

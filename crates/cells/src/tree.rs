@@ -32,11 +32,16 @@ impl<const D: usize> Leaf<D> {
     }
 }
 
+/// Bytes that every leaf takes at least, with material or without: its place in the tree, while that grows.
+const BYTES_OF_A_LEAF: f64 = 200.0;
+
 /// A grid of cells with refinement.
 #[derive(Clone, Debug)]
 pub struct CellTree<const D: usize> {
     bounds: Aabb<D>,
     cells: [usize; D],
+    /// Bytes that the tree may take.
+    memory: f64,
     /// The refined cells of each level.
     refined: Vec<BTreeSet<[usize; D]>>,
     leaves: Vec<Leaf<D>>,
@@ -48,6 +53,14 @@ impl<const D: usize> CellTree<D> {
     /// # Errors
     /// A box without extent or with corners that are not finite; no cells in some direction.
     pub fn new(bounds: Aabb<D>, cells: [usize; D]) -> Result<Self, CellsError> {
+        Self::within(f64::INFINITY, bounds, cells)
+    }
+
+    /// A uniform grid that takes no more than some bytes, and never grows beyond.
+    ///
+    /// # Errors
+    /// Those of [`CellTree::new`]; a grid that needs more.
+    pub fn within(memory: f64, bounds: Aabb<D>, cells: [usize; D]) -> Result<Self, CellsError> {
         let corners: Vec<f64> = bounds.min.iter().chain(&bounds.max).copied().collect();
         if corners.iter().any(|x| !x.is_finite()) || bounds.size().iter().any(|s| *s <= 0.0) {
             return Err(CellsError::Box { corners });
@@ -55,14 +68,24 @@ impl<const D: usize> CellTree<D> {
         if cells.contains(&0) {
             return Err(CellsError::NoCells { cells: cells.to_vec() });
         }
-        let mut tree = CellTree { bounds, cells, refined: Vec::new(), leaves: Vec::new() };
+        let mut tree = CellTree { bounds, cells, memory, refined: Vec::new(), leaves: Vec::new() };
+        tree.check_leaves(cells.iter().map(|n| *n as f64).product())?;
         tree.update();
         Ok(tree)
     }
 
+    fn check_leaves(&self, leaves: f64) -> Result<(), CellsError> {
+        CellsError::check_memory(leaves, leaves * BYTES_OF_A_LEAF, self.memory)
+    }
+
     /// Halves in every direction all leaves that are named; gives how many there were.
-    pub fn refine(&mut self, mut which: impl FnMut(&Leaf<D>) -> bool) -> usize {
+    ///
+    /// # Errors
+    /// More leaves than the memory holds; the tree is then as before.
+    pub fn refine(&mut self, mut which: impl FnMut(&Leaf<D>) -> bool) -> Result<usize, CellsError> {
         let chosen: Vec<Leaf<D>> = self.leaves.iter().filter(|l| l.level < MAX_LEVEL && which(l)).copied().collect();
+        let children = (1 << D) - 1;
+        self.check_leaves((self.leaves.len() + children * chosen.len()) as f64)?;
         for leaf in &chosen {
             while self.refined.len() <= leaf.level {
                 self.refined.push(BTreeSet::new());
@@ -72,7 +95,7 @@ impl<const D: usize> CellTree<D> {
         if !chosen.is_empty() {
             self.update();
         }
-        chosen.len()
+        Ok(chosen.len())
     }
 
     pub fn bounds(&self) -> &Aabb<D> {
@@ -183,7 +206,7 @@ mod tests {
         for x in [Point::<2>::new(0.1, 0.7), Point::<2>::new(0.1, 0.7), Point::<2>::new(1.9, 1.9)] {
             let at = tree.leaf_at(&x);
             let leaf = tree.leaves()[at];
-            assert_eq!(tree.refine(|l| *l == leaf), 1);
+            assert_eq!(tree.refine(|l| *l == leaf), Ok(1));
         }
         assert_eq!(tree.leaves().len(), 6 + 9);
         let total: f64 = tree.leaves().iter().map(|l| l.bounds.volume()).sum();

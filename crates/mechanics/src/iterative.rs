@@ -16,7 +16,7 @@ use signorini_solve::general::DenseBlocks;
 use signorini_solve::krylov::{Stopped, conjugate_gradients, conjugate_residuals};
 use signorini_solve::schwarz::{Inverses, Schwarz, Sets};
 use signorini_solve::{SolveError, Symbolic, SymmetricMatrix};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Residual that iterations leave, relative to the first.
 const TOLERANCE: f64 = 1e-8;
@@ -59,8 +59,16 @@ impl System {
             };
             let cells: f64 = cliques.iter().map(|c| square(c)).sum();
             if let (true, Some(own)) = (iterates, &own) {
+                // Cells that are alike share a matrix, and sets of unknowns of nothing else an inverse.
+                let mut blocks_of: BTreeMap<*const f64, Vec<&Block<'_>>> = BTreeMap::new();
+                own.stiffness.iter().for_each(|b| blocks_of.entry(b.entries.as_ptr()).or_default().push(b));
+                let mut alike = vec![true; body.unknowns()];
+                let alone = blocks_of.values().filter(|blocks| blocks.len() == 1).flatten();
+                alone.flat_map(|b| &b.unknowns).for_each(|u| alike[*u as usize] = false);
+                let cells: f64 = blocks_of.values().map(|blocks| square(&blocks[0].unknowns)).sum();
+                let differs = |set: &&Vec<u32>| set.iter().any(|u| !alike[*u as usize]);
                 // Inverses are kept as triangles.
-                let local = 0.5 * own.sets.local.iter().map(|s| square(s)).sum::<f64>();
+                let local = 0.5 * own.sets.local.iter().filter(differs).map(|s| square(s)).sum::<f64>();
                 if !own.sets.coarser.is_empty() {
                     // Rows of the coarse matrix: three directions of 27 vertices each, with their columns; coarser ones an
                     // eighth.

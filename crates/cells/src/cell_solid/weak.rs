@@ -58,15 +58,16 @@ impl<const D: usize> Group<D> {
 
     fn matrix(&self, solid: &CellSolid<D>, component: usize) -> &DMatrix<f64> {
         self.matrices[component].get_or_init(|| {
-            let n = self.rows.unknowns.len();
-            let mut out = DMatrix::<f64>::zeros(n, n);
-            for site in &self.sites {
-                let [v, t] = self.rows_at(solid, site, component);
-                out.ger(-site.weight, &v, &t, 1.0);
-                out.ger(-site.weight, &t, &v, 1.0);
-                out.ger(site.weight * self.gamma, &v, &v, 1.0);
-            }
-            out
+            let (displacements, halves): (Vec<DVector<f64>>, Vec<DVector<f64>>) = (self.sites.iter())
+                .map(|site| {
+                    let [v, t] = self.rows_at(solid, site, component);
+                    let half = (&v * (0.5 * self.gamma) - t) * site.weight;
+                    (v, half)
+                })
+                .unzip();
+            // γ v vᵀ - v tᵀ - t vᵀ is one half of it and its mirror image.
+            let half = DMatrix::from_columns(&displacements) * DMatrix::from_columns(&halves).transpose();
+            &half + half.transpose()
         })
     }
 }

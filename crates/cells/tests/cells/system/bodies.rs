@@ -118,8 +118,8 @@ fn rigid_motions_and_resultants_on_refined_cells() {
     let b = aabb([-1.0, -0.7], [1.0, 1.0]);
     let hole = Ellipsoid { center: Point::<2>::new(0.1, 0.2), semi_axes: [0.3, 0.2] };
     let mut tree = CellTree::new(b, [3, 4]).unwrap();
-    tree.refine(|l| l.bounds.center()[0] > 0.0);
-    tree.refine(|l| l.level == 1 && l.bounds.center()[1] > 0.5);
+    tree.refine(|l| l.bounds.center()[0] > 0.0).unwrap();
+    tree.refine(|l| l.level == 1 && l.bounds.center()[1] > 0.5).unwrap();
     let body = cells(Domain::Complement(Box::new(Domain::shape(hole))), tree, 3, Space::PlaneStrain).unwrap();
     let places = named(vec![("top", Place::high(1)), ("hole", Place::boundary(|_| true)), ("left", Place::low(0))]);
     let body = CellSolid::new("plate", body, &places).unwrap();

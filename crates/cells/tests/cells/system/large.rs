@@ -1,7 +1,7 @@
 //! A foam from an image, crushed with its pores closing, by iterations: time, memory and iterations over its size.
 
 use super::*;
-use signorini_cells::description::{Cells, Description, Geometry, Part as PlacePart, Shape, build};
+use signorini_cells::description::{Cells, Description, Geometry, Part as PlacePart, Refinement, Shape, build};
 use signorini_cells::image::ImageData;
 use signorini_cells::{End, Islands};
 use signorini_contact::Coulomb;
@@ -151,4 +151,42 @@ fn a_foam_that_closes_its_pores() {
     let penalty = Enforcement::Penalty { wanted_penetration: None };
     let friction = std::env::var("FRICTION").ok().and_then(|v| v.parse().ok());
     assert!(crushed(n, (travel, increments), Some((Sampling::Nodes, penalty)), friction)[0] <= 100);
+}
+
+/// What cells need is told before they are made, and is what their equations then take.
+#[test]
+fn cells_that_memory_does_not_hold_are_refused_before_they_are_made() {
+    let ball = Shape::Ellipsoid { center: [0.0; 3], semi_axes: [1.0; 3] };
+    let ball = |degree: usize, cells: usize| {
+        let mut d = Description::new(
+            "ball",
+            Geometry::Shape(ball.clone()),
+            Space::Solid,
+            Cells::Count([cells; 3]),
+            degree,
+            ELASTIC,
+        );
+        d.bounds = Some([[0.0; 3], [1.1; 3]]);
+        d
+    };
+    for (degree, cells) in [(1, 16), (2, 16), (3, 12)] {
+        let mut d = ball(degree, cells);
+        let mut system = System { bodies: vec![build(&d).unwrap().body], ..System::default() };
+        system.solver = LinearSolver::Iterative;
+        let taken = system.memory() / f64::from(1 << 30);
+        d.memory = 1e6;
+        let refused = build(&d).map(drop);
+        let Err(CellsError::Memory { needed, free, .. }) = refused else { panic!("{refused:?}") };
+        println!("degree {degree}: {needed} of {taken} GiB");
+        assert!((free - 1e6 / f64::from(1 << 30)).abs() < 1e-12);
+        assert!(needed < 1.5 * taken && needed > taken / 1.5);
+    }
+    // Neither the grid nor what is refined needs to be made for that.
+    for (cells, levels) in [(100_000, 0), (4, 12)] {
+        let mut d = ball(1, cells);
+        d.refinement = vec![Refinement::Near { distance: Arc::new(|_| 0.0), within: 1.0, levels }];
+        d.memory = 1e8;
+        let refused = build(&d).map(drop);
+        assert!(matches!(refused, Err(CellsError::Memory { .. })), "{refused:?}");
+    }
 }

@@ -35,7 +35,7 @@ fn pressure_on_finer_elements_does_not_ripple() {
     let press = |dense: bool| {
         let mut tree = CellTree::new(aabb([0.0, 0.0], [1.0, 1.0]), [5, 5]).unwrap();
         for reach in [0.3, 0.2] {
-            tree.refine(|leaf| leaf.bounds.clamp(&Point::<2>::zeros()).norm() < reach);
+            tree.refine(|leaf| leaf.bounds.clamp(&Point::<2>::zeros()).norm() < reach).unwrap();
         }
         let shape = Domain::shape(ball(Point::<2>::new(0.0, 1.0), 1.0));
         let skin = Place::boundary(|p| p.normal[1] < -0.5);

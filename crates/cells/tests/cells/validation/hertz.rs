@@ -52,7 +52,7 @@ fn press_refined(
     let end = end_of_contact(delta);
     for _ in 0..levels {
         let leaf = tree.leaves()[tree.leaf_at(&end)];
-        tree.refine(|l| *l == leaf || (l.bounds.clamp(&end) - end).norm() < 0.25 * l.size());
+        tree.refine(|l| *l == leaf || (l.bounds.clamp(&end) - end).norm() < 0.25 * l.size()).unwrap();
     }
     let body = CellBody::new(Arc::new(disc), tree, setup, stuff(Space::PlaneStrain)).unwrap();
     let mut system = System::new(&body);

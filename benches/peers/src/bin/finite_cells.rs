@@ -36,6 +36,7 @@ fn timed<T>(run: impl Fn() -> T) -> (f64, T) {
 struct Ours {
     n: usize,
     degree: usize,
+    products: Products,
     unknowns: usize,
     energy: f64,
     seconds: f64,
@@ -44,23 +45,26 @@ struct Ours {
     points: usize,
 }
 
-fn setup<const D: usize>(degree: usize) -> Discretisation<D> {
-    Discretisation { fictitious: 1e-10, ..Discretisation::of_degree(degree) }
+fn setup<const D: usize>(degree: usize, products: Products) -> Discretisation<D> {
+    Discretisation { fictitious: 1e-10, products, ..Discretisation::of_degree(degree) }
 }
 
 fn stuff<const D: usize>(space: Space, youngs_modulus: f64, poissons_ratio: f64) -> Stuff<D> {
     Stuff { elastic: Elastic { youngs_modulus, poissons_ratio }, modulus: None, space }
 }
 
-fn block<const D: usize>(size: f64, radius: f64, n: usize, degree: usize, stuff: Stuff<D>) -> CellBody<D> {
+fn block<const D: usize>(size: f64, radius: f64, (n, degree, products): Cells, stuff: Stuff<D>) -> CellBody<D> {
     let hole = Domain::shape(ball(Point::<D>::zeros(), radius));
     let b = Aabb::new(Point::<D>::zeros(), Point::<D>::repeat(size));
     let tree = CellTree::new(b, [n; D]).expect("cells");
-    CellBody::new(Arc::new(Domain::Complement(Box::new(hole))), tree, setup(degree), stuff).expect("a body")
+    CellBody::new(Arc::new(Domain::Complement(Box::new(hole))), tree, setup(degree, products), stuff).expect("a body")
 }
 
+/// How many in each direction, their degree, and the functions.
+type Cells = (usize, usize, Products);
+
 fn measured<const D: usize>(
-    (n, degree): (usize, usize),
+    (n, degree, products): Cells,
     body: impl Fn() -> CellBody<D>,
     energy: impl Fn(&mut System<'_, D>) -> f64,
 ) -> Ours {
@@ -76,7 +80,7 @@ fn measured<const D: usize>(
         let full = (degree + 1).pow(D as u32);
         full + body.cells().iter().map(|c| c.rule.volume.len()).sum::<usize>()
     });
-    Ours { n, degree, unknowns, energy, seconds, integration, points }
+    Ours { n, degree, products, unknowns, energy, seconds, integration, points }
 }
 
 fn held(system: &mut System<'_, 2>) {
@@ -85,9 +89,9 @@ fn held(system: &mut System<'_, 2>) {
     }
 }
 
-fn plate(n: usize, degree: usize) -> Ours {
-    let body = || block(4.0, 1.0, n, degree, stuff::<2>(Space::PlaneStress, 206_900.0, 0.29));
-    measured((n, degree), body, |system| {
+fn plate(cells: Cells) -> Ours {
+    let body = || block(4.0, 1.0, cells, stuff::<2>(Space::PlaneStress, 206_900.0, 0.29));
+    measured(cells, body, |system| {
         held(system);
         let value = Arc::new(|_: &Point<2>| Vector::<2>::new(0.0, 100.0));
         system.load(&Load::Traction { on: Place::high(1), value }).expect("a side");
@@ -107,9 +111,9 @@ fn stress(x: &Point<2>) -> Matrix2<f64> {
     turn * Matrix2::new(radial, shear, shear, hoop) * turn.transpose()
 }
 
-fn kirsch(n: usize, degree: usize) -> Ours {
-    let body = || block(4.0, 1.0, n, degree, stuff::<2>(Space::PlaneStrain, 1.0, 0.3));
-    measured((n, degree), body, |system| {
+fn kirsch(cells: Cells) -> Ours {
+    let body = || block(4.0, 1.0, cells, stuff::<2>(Space::PlaneStrain, 1.0, 0.3));
+    measured(cells, body, |system| {
         held(system);
         for axis in 0..2 {
             let normal = Vector::<2>::from_fn(|k, _| f64::from(u8::from(k == axis)));
@@ -121,9 +125,9 @@ fn kirsch(n: usize, degree: usize) -> Ours {
     })
 }
 
-fn cavity(n: usize, degree: usize) -> Ours {
-    let body = || block(1.0, 0.6, n, degree, stuff::<3>(Space::Solid, 1.0, 0.3));
-    measured((n, degree), body, |system| {
+fn cavity(cells: Cells) -> Ours {
+    let body = || block(1.0, 0.6, cells, stuff::<3>(Space::Solid, 1.0, 0.3));
+    measured(cells, body, |system| {
         for axis in 0..3 {
             system.support(&Support::symmetric(Place::low(axis))).expect("a side");
         }
@@ -137,28 +141,46 @@ fn main() {
     // SAFETY: nothing else runs yet.
     unsafe { std::env::set_var("RAYON_NUM_THREADS", "1") };
     // Of the eighth of a block no energy is known: the least of fine cells, above the exact one by a few 1e-6 of it.
-    let fine = cavity(6, 4).energy;
+    let fine = cavity((6, 4, Products::Tensor)).energy;
+    let both = |cells: &[(usize, usize)], run: fn(Cells) -> Ours| -> Vec<Ours> {
+        let of = |products| cells.iter().map(move |&(n, p)| run((n, p, products)));
+        of(Products::Tensor).chain(of(Products::Trunk)).collect()
+    };
+    let degrees = |n: usize, most: usize| (1..=most).map(move |p| (n, p));
+    let in_plane: Vec<(usize, usize)> = degrees(4, 6).chain(degrees(8, 6)).collect();
     let problems = [
-        (
-            "plate",
-            0.455_227_877_571,
-            (1..=6).map(|p| plate(4, p)).chain((1..=6).map(|p| plate(8, p))).collect::<Vec<_>>(),
-        ),
-        ("Kirsch", 7.693_653_726_418_2, (1..=4).map(|p| kirsch(4, p)).chain((1..=5).map(|p| kirsch(8, p))).collect()),
+        ("plate", 0.455_227_877_571, both(&in_plane, plate)),
+        ("Kirsch", 7.693_653_726_418_2, both(&in_plane, kirsch)),
         (
             "cavity",
             fine,
-            [(3, 1), (4, 1), (3, 2), (5, 1), (4, 2), (5, 2), (3, 3), (4, 3), (10, 1), (3, 4), (5, 3)]
-                .map(|(n, p)| cavity(n, p))
-                .into(),
+            both(
+                &[
+                    (3, 1),
+                    (4, 1),
+                    (3, 2),
+                    (5, 1),
+                    (4, 2),
+                    (5, 2),
+                    (3, 3),
+                    (4, 3),
+                    (10, 1),
+                    (3, 4),
+                    (5, 3),
+                    (4, 4),
+                    (3, 5),
+                ],
+                cavity,
+            ),
         ),
     ];
     for (name, exact, runs) in &problems {
         for run in runs {
             println!(
-                "{name:7} {:2}, degree {}: {:6} unknowns, error {:9.2e}, {:.4} s, integration {:.4} s, {} points, {:.3} µs each",
+                "{name:7} {:2}, degree {}, {:?}: {:6} unknowns, error {:9.2e}, {:.4} s, integration {:.4} s, {} points, {:.3} µs each",
                 run.n,
                 run.degree,
+                run.products,
                 run.unknowns,
                 (run.energy / exact - 1.0).abs(),
                 run.seconds,
@@ -194,9 +216,10 @@ fn main() {
         );
         match best {
             Some(own) => println!(
-                "; ours {} cells, degree {}: {:.4} s, {:.1} times less",
+                "; ours {} cells, degree {}, {:?}: {:.4} s, {:.1} times less",
                 own.n,
                 own.degree,
+                own.products,
                 own.seconds,
                 number("seconds") / own.seconds
             ),

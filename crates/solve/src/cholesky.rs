@@ -1,6 +1,6 @@
 //! Sparse factorisation of symmetric positive definite matrices, by `faer`.
 //!
-//! The only file that knows that library. Factorisation runs on one thread, so that digits do not depend on the number
+//! Factorisation runs on one thread, so that digits do not depend on the number
 //! of threads; every solve is checked by its residual, refined, and refused where the residual stays large.
 
 use crate::dissection::nested_dissection;

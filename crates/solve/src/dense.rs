@@ -2,6 +2,7 @@
 //! thousands.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt;
 use faer::linalg::lu::partial_pivoting::{factor, solve as substitution};
 use faer::perm::PermRef;
 use faer::{Mat, MatMut, MatRef, Par};
@@ -90,6 +91,24 @@ impl Lu {
     }
 }
 
+/// The lower triangle of the inverse of a symmetric matrix, row by row, by Cholesky's factor of its lower triangle and one
+/// thread; none where a pivot, a square, is not above `least`.
+pub fn positive_inverse(mut a: DMatrix<f64>, least: f64) -> Option<Vec<f64>> {
+    let n = a.nrows();
+    let scratch = llt::factor::cholesky_in_place_scratch::<f64>(n, Par::Seq, Default::default())
+        .or(llt::inverse::inverse_scratch::<f64>(n, Par::Seq));
+    let mut memory = MemBuffer::new(scratch);
+    let mut factor = MatMut::from_column_major_slice_mut(a.as_mut_slice(), n, n);
+    let (default, stack) = (Default::default(), MemStack::new(&mut memory));
+    llt::factor::cholesky_in_place(factor.as_mut(), default, Par::Seq, stack, Default::default()).ok()?;
+    if (0..n).any(|i| factor[(i, i)].powi(2) <= least) {
+        return None;
+    }
+    let mut inverse = Mat::<f64>::zeros(n, n);
+    llt::inverse::inverse(inverse.as_mut(), factor.as_ref(), Par::Seq, MemStack::new(&mut memory));
+    Some((0..n).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|(i, j)| inverse[(i, j)]).collect())
+}
+
 /// The eigenvalues of `A x = λ B x`, ascending, and their eigenvectors, of unit length in `B`; of symmetric row-major
 /// matrices, of which `B` must be positive definite. None where it is not.
 pub fn symmetric_eigen(a: &[f64], b: &[f64]) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
@@ -122,6 +141,20 @@ mod tests {
             assert!((x.iter().zip(&bx).map(|(x, y)| x * y).sum::<f64>() - 1.0).abs() < 1e-14);
         }
         assert!(super::symmetric_eigen(&a, &[0.0; 9]).is_none());
+    }
+
+    #[test]
+    fn inverses_of_positive_matrices() {
+        use nalgebra::DMatrix;
+        for n in [1, 2, 7, 150] {
+            let half = DMatrix::from_fn(n, n, |i, j| ((i * 31 + j * 17 + i * j) as f64 * 0.77).sin());
+            let a = &half * half.transpose() + DMatrix::identity(n, n);
+            let inverse = super::positive_inverse(a.clone(), 1e-12).unwrap();
+            let full = DMatrix::from_fn(n, n, |i, j| inverse[i.max(j) * (i.max(j) + 1) / 2 + i.min(j)]);
+            assert!((a.clone() * full - DMatrix::identity(n, n)).amax() < 1e-11, "{n}");
+            assert!(super::positive_inverse(a.clone(), 1e9).is_none());
+            assert!(super::positive_inverse(-a, 1e-12).is_none());
+        }
     }
 
     #[test]

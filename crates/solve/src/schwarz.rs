@@ -6,6 +6,7 @@
 
 use crate::blocks::{BlockSum, dot};
 use crate::cholesky::{Factor, SolveError, Symbolic};
+use crate::dense::positive_inverse;
 use crate::multigrid::{Multigrid, Transfer};
 use crate::sparse::SymmetricMatrix;
 use nalgebra::DMatrix;
@@ -87,21 +88,18 @@ pub struct Schwarz {
 
 impl Inverse {
     fn new(matrix: DMatrix<f64>) -> Self {
-        let n = matrix.nrows();
-        let packed = |m: &DMatrix<f64>| Inverse((0..n).flat_map(|i| (0..=i).map(move |j| m[(i, j)])).collect());
-        if let Some(factor) = matrix.clone().cholesky() {
-            let least = (0..n).map(|i| factor.l_dirty()[(i, i)]).fold(f64::INFINITY, f64::min);
-            if least * least > PIVOT {
-                return packed(&factor.inverse());
-            }
+        if let Some(inverse) = positive_inverse(matrix.clone(), PIVOT) {
+            return Inverse(inverse);
         }
+        let n = matrix.nrows();
         let eigen = matrix.symmetric_eigen();
         let most = eigen.eigenvalues.max();
         let mut scaled = eigen.eigenvectors.clone();
         for (mut column, value) in scaled.column_iter_mut().zip(&eigen.eigenvalues) {
             column *= if *value > ROUND_OFF * most { 1.0 / value } else { 0.0 };
         }
-        packed(&(scaled * eigen.eigenvectors.transpose()))
+        let inverse = scaled * eigen.eigenvectors.transpose();
+        Inverse((0..n).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|place| inverse[place]).collect())
     }
 
     /// The product with a vector.

@@ -35,8 +35,11 @@ pub enum CellsError {
          about {at:?}. Drop them (`islands = drop`), hold each of them, or close the gaps"
     )]
     Islands { count: usize, volume: f64, at: Vec<f64> },
-    #[error("no part of the boundary lies in the place that is {what}")]
-    EmptyPlace { what: &'static str },
+    #[error(
+        "no part of the boundary lies in {place}: the material lies between {low:.4?} and {high:.4?}; move the place, or the \
+         body"
+    )]
+    EmptyPlace { place: String, low: Vec<f64>, high: Vec<f64> },
     #[error("direction {axis} is not one of the {dimension} of the body")]
     Axis { axis: usize, dimension: usize },
     #[error("a body around an axis must lie where the radius is not negative; its box begins at {radius}")]

@@ -97,8 +97,10 @@ impl Planner<'_> {
         }
         self.sides_that_are_used(name, &mut made);
         let wrong = |e: CellsError| {
-            let at = match e {
+            let group = |place: &str| key.groups.get(place.trim_matches('`')).map(|value| problem.key(value));
+            let at = match &e {
                 CellsError::Memory { .. } => problem.key(&key.mesh.grid),
+                CellsError::EmptyPlace { place, .. } => group(place).unwrap_or_else(|| problem.key(&key.geometry)),
                 _ => problem.key(&key.geometry),
             };
             problem.error(&at, format!("`{name}`: {e}"))
@@ -330,17 +332,25 @@ impl Planner<'_> {
         let problem = self.problem;
         let dimension = self.places().len();
         let vector = |values: &List<Value>| self.position(values, LENGTH);
-        let load = |name: &str| self.read_file(&name.to_string()).map(|found| found.1).map_err(|e| e.message);
+        // Files that a header names lie beside it.
+        let folder = std::path::Path::new(&stated.file).parent().map(std::path::Path::to_path_buf).unwrap_or_default();
+        let load = |name: &str| {
+            let beside = folder.join(name).to_string_lossy().into_owned();
+            self.read_file(&beside).map(|found| found.1).map_err(|e| e.message)
+        };
         let told = |e: image::ImageError| problem.error(&stated.file, e.to_string());
         let read = match (&stated.numbers, &stated.counts) {
             (Some(numbers), Some(counts)) => {
                 let (number, endian) = self.stored(numbers)?;
                 let count = counts.iter().map(|n| self.between(n, 1, 1_000_000)).collect::<Result<Vec<_>, _>>()?;
                 let n = count.len();
-                let header = RawHeader { count, spacing: vec![1.0; n], origin: vec![0.0; n], number, endian, skip: 0 };
+                let header = RawHeader { count, spacing: Vec::new(), origin: vec![0.0; n], number, endian, skip: 0 };
                 let (_, bytes) = self.read_file(&stated.file)?;
                 image::raw::parse(&bytes, &header)
                     .map_err(|wrong| problem.error(&stated.file, format!("`{}`: {wrong}", stated.file)))?
+            }
+            (None, None) if problem.source.folder().join(&stated.file).is_dir() => {
+                image::read(&problem.source.folder().join(&stated.file)).map_err(told)?
             }
             (None, None) => {
                 let (_, first) = self.read_file(&stated.file)?;
@@ -351,8 +361,7 @@ impl Planner<'_> {
             }
         };
         let mut image = self.in_order(stated, read)?;
-        let ending = stated.file.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
-        if stated.spacing.is_none() && !matches!(ending.as_str(), "nrrd" | "nhdr" | "mha" | "mhd" | "nii") {
+        if stated.spacing.is_none() && image.spacing.is_empty() {
             return Err(problem
                 .error(stated, format!("`{}` does not say how large its voxels are", stated.file))
                 .help("spacing = [0.1, 0.1, 0.1], along x, y and z"));
@@ -431,7 +440,7 @@ impl Planner<'_> {
         };
         let mut strides = vec![1; n];
         (1..n).for_each(|k| strides[k] = strides[k - 1] * image.count[k - 1]);
-        let pick = |list: &[f64]| place.iter().map(|k| list[*k]).collect::<Vec<f64>>();
+        let pick = |list: &[f64]| place.iter().filter_map(|k| list.get(*k).copied()).collect::<Vec<f64>>();
         let count: Vec<usize> = place.iter().map(|k| image.count[*k]).collect();
         let values = (0..image.values.len())
             .map(|mut index| {

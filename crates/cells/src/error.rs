@@ -50,6 +50,11 @@ pub enum CellsError {
     )]
     OpenSurface { y: f64, z: f64, share: f64 },
     #[error(
+        "the surface of triangles overlaps itself: about {at:.4?} it encloses the same place twice, or a cavity has its outside \
+         inwards. Unite its parts, or turn the triangles of the cavity round"
+    )]
+    OverlappingSurface { at: Vec<f64> },
+    #[error(
         "the threshold {threshold} leaves nothing or everything of the image: its values go from {least} to {most}, and \
          material is what lies above the threshold"
     )]

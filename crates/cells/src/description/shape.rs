@@ -151,7 +151,8 @@ impl Shape {
                 Some(Shape::Ellipsoid { center: *center, semi_axes: [a[0] + distance; 3] })
             }
             Shape::Cuboid { min, max } if distance < 0.0 && (0..D).all(|k| min[k] - distance < max[k] + distance) => {
-                let moved = |corner: &[f64; 3], by: f64| std::array::from_fn(|k| corner[k] + if k < D { by } else { 0.0 });
+                let moved =
+                    |corner: &[f64; 3], by: f64| std::array::from_fn(|k| corner[k] + if k < D { by } else { 0.0 });
                 Some(Shape::Cuboid { min: moved(min, -distance), max: moved(max, distance) })
             }
             Shape::Union(parts) if distance > 0.0 => Some(Shape::Union(of_each(parts, distance))),

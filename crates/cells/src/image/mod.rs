@@ -121,7 +121,8 @@ impl ImageData {
             let must = "it must have as many directions as the body";
             return Err(CellsError::Image { what: "an image", found: self.count, must });
         };
-        let (Ok(spacing), true) = (<[f64; D]>::try_from(&self.spacing[..self.spacing.len().min(D)]), self.origin.len() >= D)
+        let (Ok(spacing), true) =
+            (<[f64; D]>::try_from(&self.spacing[..self.spacing.len().min(D)]), self.origin.len() >= D)
         else {
             let must = "the extent of a voxel must be known";
             return Err(CellsError::Image { what: "an image", found: self.count, must });

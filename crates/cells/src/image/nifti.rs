@@ -29,7 +29,11 @@ struct Header {
 impl Header {
     fn new(bytes: &[u8]) -> Result<Self, Wrong> {
         if bytes.len() < HEADER || &bytes[344..347] != b"n+1" {
-            return Err(Wrong::new("the mark at byte 344", "not `n+1`", "the file must be a NIfTI-1 image in one file"));
+            return Err(Wrong::new(
+                "the mark at byte 344",
+                "not `n+1`",
+                "the file must be a NIfTI-1 image in one file",
+            ));
         }
         let endian = match [bytes[0], bytes[1], bytes[2], bytes[3]] {
             b if i32::from_le_bytes(b) == 348 => Endian::Little,

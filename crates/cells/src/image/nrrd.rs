@@ -102,7 +102,9 @@ pub fn header(bytes: &[u8]) -> Result<Header, Wrong> {
         "raw" => Encoding::Raw,
         "gzip" | "gz" => Encoding::Packed,
         "text" | "txt" | "ascii" => Encoding::Text,
-        other => return Err(Wrong::new("`encoding`", format!("`{other}`"), "save it with the encoding `raw` or `gzip`")),
+        other => {
+            return Err(Wrong::new("`encoding`", format!("`{other}`"), "save it with the encoding `raw` or `gzip`"));
+        }
     };
     for key in ["line skip", "lineskip", "byte skip", "byteskip"] {
         if let Some(skip) = field(key).filter(|v| v != "0") {

@@ -35,7 +35,8 @@ pub fn of_folder(folder: &Path) -> Result<ImageData, ImageError> {
         }
     }
     stack.ok_or_else(|| {
-        let wrong = Wrong::new("the folder", "without any TIFF", "name the file, or a folder of layers as .tif or .tiff");
+        let wrong =
+            Wrong::new("the folder", "without any TIFF", "name the file, or a folder of layers as .tif or .tiff");
         ImageError::Content { file, wrong }
     })
 }

@@ -235,7 +235,8 @@ impl<const D: usize> Resolver<'_, D> {
             return self.line((&b.min, 1.0), *k, b, &active, PIECES, &Column::of_all(&active), sink);
         }
         let slopes: Vec<Slopes<D>> = active.iter().map(|(_, sheet)| slopes(sheet, b, axes)).collect();
-        let (slope, k) = steepest(slopes.iter().fold(Vector::repeat(f64::INFINITY), |a: Vector<D>, s| a.inf(&s.least)), axes);
+        let (slope, k) =
+            steepest(slopes.iter().fold(Vector::repeat(f64::INFINITY), |a: Vector<D>, s| a.inf(&s.least)), axes);
         if slope >= MIN_SLOPE {
             return self.columns(b, axes, &active, k, 1, &Column::of_all(&active), sink);
         }
@@ -250,7 +251,8 @@ impl<const D: usize> Resolver<'_, D> {
         }
         if depth < MAX_DEPTH {
             // A direction on which nothing depends needs no division.
-            let split: Vec<usize> = axes.iter().copied().filter(|&k| slopes.iter().any(|s| !s.is_constant(k))).collect();
+            let split: Vec<usize> =
+                axes.iter().copied().filter(|&k| slopes.iter().any(|s| !s.is_constant(k))).collect();
             for part in parts(b, &split, &b.center()) {
                 self.resolve(&part, axes, &active, depth + 1, sink);
             }

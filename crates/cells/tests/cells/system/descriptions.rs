@@ -58,7 +58,8 @@ fn every_shape_has_its_volume_in_every_space() {
         }
     }
     // Inwards of a box without a ball: a smaller box without a larger ball, with their edges.
-    let bored = Shape::Difference(vec![Shape::Cuboid { min: [-0.9, -0.8, -0.7], max: [0.9, 0.8, 0.7] }, ellipsoid(0.2)]);
+    let bored =
+        Shape::Difference(vec![Shape::Cuboid { min: [-0.9, -0.8, -0.7], max: [0.9, 0.8, 0.7] }, ellipsoid(0.2)]);
     for (shape, volume) in [
         (expression(0.8), 4.0 / 3.0 * PI * 0.512),
         (offset(expression(0.9), -0.1), 4.0 / 3.0 * PI * 0.512),

@@ -32,11 +32,11 @@ pub enum CellsError {
     Everything,
     #[error(
         "{count} pieces of the body do not hang together with the largest; the next has the volume {volume:.4e} and lies \
-         about {at:?}. Drop them (`islands = drop`), hold each of them, or close the gaps"
+         about {at:?}. Drop them (`islands = \"drop\"`), hold each of them, or close the gaps"
     )]
     Islands { count: usize, volume: f64, at: Vec<f64> },
     #[error(
-        "no part of the boundary lies in {place}: the material lies between {low:.4?} and {high:.4?}; move the place, or the \
+        "no part of the boundary lies in {place}: the cells with material lie between {low:.4?} and {high:.4?}; move the place, or the \
          body"
     )]
     EmptyPlace { place: String, low: Vec<f64>, high: Vec<f64> },
@@ -59,6 +59,10 @@ pub enum CellsError {
          material is what lies above the threshold"
     )]
     Threshold { threshold: f64, least: f64, most: f64 },
+    #[error(
+        "voxel {voxel:?}, counted from zero along x, y, z, has the value {value}: all must be finite; replace it in the image"
+    )]
+    Voxel { voxel: Vec<usize>, value: f64 },
     #[error("{what} of shape {found:?} cannot be used: {must}")]
     Image { what: &'static str, found: Vec<usize>, must: &'static str },
     #[error(

@@ -3,7 +3,7 @@
 use crate::Domain;
 use crate::error::CellsError;
 use crate::image::ImageData;
-use crate::shapes::{Cylinder, Ellipsoid, Function, Level, Offset, Section, cuboid};
+use crate::shapes::{Cylinder, Ellipsoid, Function, Level, Offset, RoundedBox, Section, cuboid};
 use signorini_geometry::implicit_surface::ImplicitSurface;
 use signorini_geometry::rigid_shape::RigidShape;
 use signorini_geometry::{Aabb, ImplicitShape, Jet, Point, Vector};
@@ -131,6 +131,10 @@ impl Shape {
             }
             Shape::Offset { of, distance } => match (&**of, of.shifted::<D>(*distance)) {
                 (_, Some(shape)) => shape.with_rigid::<D>(bounds, cells, rigid)?,
+                (Shape::Cuboid { min, max }, _) if *distance > 0.0 => {
+                    let corner = |c: &[f64; 3]| Point::<D>::from_fn(|k, _| c[k]);
+                    Domain::shape(RoundedBox { bounds: Aabb::new(corner(min), corner(max)), radius: *distance })
+                }
                 (Shape::Rigid(shape), _) => section(Offset { shape: shape.clone(), distance: *distance }),
                 _ => {
                     let shape = Arc::new(of.surface::<D>(bounds, cells, *distance)?);

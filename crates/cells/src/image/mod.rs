@@ -330,8 +330,15 @@ pub(crate) fn numbers<T: std::str::FromStr>(place: &str, text: &str) -> Result<V
 /// Counts of zero, or so many that memory cannot hold them.
 pub(crate) fn check_counts(place: &str, count: &[usize]) -> Result<(), Wrong> {
     let total = count.iter().try_fold(1usize, |n, c| n.checked_mul(*c));
-    if count.is_empty() || count.len() > 4 || total.is_none_or(|n| n == 0 || n > 1 << 33) {
+    if count.is_empty() || count.len() > 4 || total == Some(0) {
         return Err(Wrong::new(place, format!("{count:?}"), "one to four counts, none of them zero, are expected"));
+    }
+    if total.is_none_or(|n| n > 1 << 33) {
+        return Err(Wrong::new(
+            place,
+            format!("{count:?}"),
+            "2^33 voxels are the most; take a part or a coarser image",
+        ));
     }
     Ok(())
 }

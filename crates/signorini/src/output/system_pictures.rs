@@ -267,8 +267,10 @@ pub fn draw(
     }
     if steps.len() > 1 && !plan.system.contacts.is_empty() {
         let names: Vec<&str> = plan.system.contacts.iter().map(|c| c.name()).collect();
+        // Contacts of curves have a length.
+        let measured = if shown.curves.is_empty() { plan.space } else { Space::PlaneStrain };
         let force = |c: &ContactReport| c.force.iter().map(|v| v * v).sum::<f64>().sqrt();
-        drawn.push(("history".into(), history::history(steps, &[], &names, Space::PlaneStrain, &force, &labels)));
+        drawn.push(("history".into(), history::history(steps, &[], &names, measured, &force, &labels)));
     }
     drawn.par_iter().try_for_each(|(name, picture)| save(folder, name, picture))?;
     if drawn.len() > 1 {

@@ -51,10 +51,12 @@ impl Planner<'_> {
             return self.turned_outwards(mesh, &key.file, &format!("the surface in `{}`", key.file));
         }
         if let Some((closed, distance)) = crate::mesh_file::mended(&mesh) {
-            self.warn(format!(
-                "the surface in `{}` is not quite closed: corners up to {distance:.1e} apart are joined",
-                key.file
-            ));
+            let done = if distance > 0.0 {
+                format!("corners up to {distance:.1e} apart are joined")
+            } else {
+                "triangles without area are left out".to_string()
+            };
+            self.warn(format!("the surface in `{}` is not quite closed: {done}", key.file));
             return self.turned_outwards(closed, &key.file, &format!("the surface in `{}`", key.file));
         }
         Err(self.not_closed(&mesh, &key.file, &format!("the surface in `{}`", key.file)))
@@ -83,7 +85,7 @@ impl Planner<'_> {
     }
 
     /// Says something once.
-    fn warn(&self, message: String) {
+    pub(super) fn warn(&self, message: String) {
         let warning = Warning::from(message);
         let mut warnings = self.warnings.borrow_mut();
         if !warnings.contains(&warning) {

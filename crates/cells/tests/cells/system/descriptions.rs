@@ -41,6 +41,7 @@ fn every_shape_has_its_volume_in_every_space() {
         (offset(expression(0.7), 0.1), PI * 0.64, 4.0 / 3.0 * PI * 0.512),
         (offset(rigid(), 0.1), PI * 0.81, 4.0 / 3.0 * PI * 0.729),
         (cuboid.clone(), 1.21, 1.21 * 0.5),
+        (offset(cuboid.clone(), 0.1), 1.21 + 0.44 + PI * 0.01, f64::INFINITY),
         (Shape::Difference(vec![ellipsoid(0.8), ellipsoid(0.3)]), PI * 0.55, 4.0 / 3.0 * PI * (0.512 - 0.027)),
         (Shape::Union(vec![ellipsoid(0.8), rigid()]), PI * 0.64, 4.0 / 3.0 * PI * 0.512),
         (Shape::Intersection(vec![ellipsoid(0.8), cuboid]), f64::NAN, f64::NAN),
@@ -53,7 +54,7 @@ fn every_shape_has_its_volume_in_every_space() {
             continue;
         }
         assert!((flat.volume / plane - 1.0).abs() < 1e-5, "{} {plane}", flat.volume);
-        if plane != 1.21 {
+        if solid.is_finite() && plane != 1.21 {
             assert!((around.volume / solid - 1.0).abs() < 1e-4, "{} {solid}", around.volume);
         }
     }

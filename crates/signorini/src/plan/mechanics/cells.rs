@@ -99,7 +99,10 @@ impl Planner<'_> {
         let wrong = |e: CellsError| {
             let group = |place: &str| key.groups.get(place.trim_matches('`')).map(|value| problem.key(value));
             let at = match &e {
-                CellsError::Memory { .. } => problem.key(&key.mesh.grid),
+                CellsError::Memory { .. } | CellsError::Box { .. } => problem.key(&key.mesh.grid),
+                CellsError::Fictitious { .. } => {
+                    key.fictitious.as_ref().map_or_else(|| problem.key(&key.geometry), |value| problem.key(value))
+                }
                 CellsError::EmptyPlace { place, .. } => group(place).unwrap_or_else(|| problem.key(&key.geometry)),
                 _ => problem.key(&key.geometry),
             };
@@ -107,6 +110,12 @@ impl Planner<'_> {
         };
         let built = build(&made).map_err(wrong)?;
         let findings = &built.findings;
+        if findings.dropped > 0.0 {
+            let share = 100.0 * findings.dropped / (built.volume + findings.dropped);
+            self.warn(format!(
+                "`{name}`: pieces that hang together with nothing are left out, {share:.2} % of its volume"
+            ));
+        }
         let [low, high] = built.bounds;
         notes.push(format!(
             "`{name}`: {} cells with material in the box {low:?} to {high:?}, volume {:.6e}{}{}{}",
@@ -301,6 +310,11 @@ impl Planner<'_> {
                 let mesh = self.closed_mesh(file)?;
                 Ok(Shape::Rigid(Arc::new(ClosestPoints { shape: mesh.into(), normals: Normals::Outward })))
             }
+            Stated::LevelSet(key) => {
+                // Where it is negative is all that matters: no distances from it.
+                let expression = self.reader.expression(&key.negative_inside, LENGTH, self.places())?;
+                Ok(Shape::Function(Arc::new(move |x| level(&expression, x))))
+            }
             other if plane => Ok(Shape::Rigid(rigid::shape::<2>(self, other, around)?)),
             other => Ok(Shape::Rigid(rigid::shape::<3>(self, other, around)?)),
         }
@@ -342,8 +356,13 @@ impl Planner<'_> {
         let read = match (&stated.numbers, &stated.counts) {
             (Some(numbers), Some(counts)) => {
                 let (number, endian) = self.stored(numbers)?;
-                let count = counts.iter().map(|n| self.between(n, 1, 1_000_000)).collect::<Result<Vec<_>, _>>()?;
-                let n = count.len();
+                let along = counts.iter().map(|n| self.between(n, 1, 1_000_000)).collect::<Result<Vec<_>, _>>()?;
+                let n = along.len();
+                // Counts are along x, y, z; in the file the last of `axes` runs fastest.
+                let order: Vec<usize> =
+                    stated.axes.as_deref().unwrap_or("zyx").chars().rev().filter_map(|c| "xyz".find(c)).collect();
+                let is_order = order.len() == n && (0..n).all(|k| order.contains(&k));
+                let count = (0..n).map(|k| along[if is_order { order[k] } else { k }]).collect();
                 let header = RawHeader { count, spacing: Vec::new(), origin: vec![0.0; n], number, endian, skip: 0 };
                 let (_, bytes) = self.read_file(&stated.file)?;
                 image::raw::parse(&bytes, &header)
@@ -368,8 +387,9 @@ impl Planner<'_> {
         }
         if let Some(spacing) = &stated.spacing {
             let found = vector(spacing)?;
-            if (0..dimension).any(|k| found[k] <= 0.0) {
-                return Err(problem.error(spacing, "the voxels have no extent").help("positive lengths"));
+            if let Some(k) = (0..dimension).find(|k| found[*k] <= 0.0) {
+                let message = format!("the extent of the voxels along {} is {}", ["x", "y", "z"][k], found[k]);
+                return Err(problem.error(spacing, message).help("positive lengths"));
             }
             image.spacing = (0..dimension).map(|k| found[k]).collect();
         }

@@ -272,13 +272,14 @@ fn rasterise(layer: &mut [Sample], width: usize, body: &Body, number: u16, camer
 }
 
 /// A layer without slits of less than a pixel between parts of one smooth surface, where its faces do not fit: beside a
-/// curved edge of a large face lie the straight edges of several smaller ones. What a slit shows is farther away.
+/// curved edge of a large face lie the straight edges of several smaller ones.
 fn without_cracks(layer: Vec<Sample>, width: usize, most: usize, step: f32) -> Vec<Sample> {
     let height = layer.len() / width;
-    let fits = |p: &Sample, q: &Sample| {
+    let is_even = |p: &Sample, q: &Sample| {
         let cosine: i32 = (0..3).map(|i| i32::from(p.normal[i]) * i32::from(q.normal[i])).sum();
-        p.body == q.body && (p.depth - q.depth).abs() <= 2.0 * step && f64::from(cosine) >= CREASE * 127.0 * 127.0
+        f64::from(cosine) >= CREASE * 127.0 * 127.0
     };
+    let fits = |p: &Sample, q: &Sample| p.body == q.body && (p.depth - q.depth).abs() <= 2.0 * step && is_even(p, q);
     // The samples before and behind a slit of at most so many samples along a line.
     let across = |k: usize, along: usize, at: usize, end: usize| {
         (1..=most).find_map(|width| {
@@ -288,7 +289,9 @@ fn without_cracks(layer: Vec<Sample>, width: usize, most: usize, step: f32) -> V
                     return None;
                 }
                 let (p, q) = (&layer[k - before * along], &layer[k + after * along]);
-                let is_behind = |s: &Sample| s.body == 0 || s.depth < p.depth.min(q.depth) - step;
+                // In a slit the background is seen, what is farther away, or a wall of the slit.
+                let is_wall = |s: &Sample| s.depth <= p.depth.max(q.depth) && !is_even(s, p);
+                let is_behind = |s: &Sample| s.body == 0 || s.depth < p.depth.min(q.depth) - step || is_wall(s);
                 let slit = (1..before).map(|i| k - i * along).chain((0..after).map(|i| k + i * along));
                 (p.body > 0 && fits(p, q) && slit.into_iter().all(|l| is_behind(&layer[l]))).then_some(*p)
             })

@@ -111,10 +111,8 @@ impl Planner<'_> {
         let built = build(&made).map_err(wrong)?;
         let findings = &built.findings;
         if findings.dropped > 0.0 {
-            let share = 100.0 * findings.dropped / (built.volume + findings.dropped);
-            self.warn(format!(
-                "`{name}`: pieces that hang together with nothing are left out, {share:.2} % of its volume"
-            ));
+            let share = findings.dropped / (built.volume + findings.dropped);
+            self.warn(format!("`{name}`: pieces apart from the largest are left out, {share:.1e} of the whole volume"));
         }
         let [low, high] = built.bounds;
         notes.push(format!(

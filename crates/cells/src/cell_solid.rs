@@ -94,6 +94,9 @@ impl<const D: usize> CellSolid<D> {
                 Ok(own) => own,
                 // A body that fills its box has no boundary in it.
                 Err(CellsError::EmptyPlace { .. }) if !places.contains_key(name) => continue,
+                Err(CellsError::EmptyPlace { low, high, .. }) => {
+                    return Err(CellsError::EmptyPlace { place: format!("`{name}`"), low, high });
+                }
                 Err(error) => return Err(error),
             };
             let held = match place {

@@ -35,11 +35,14 @@ pub enum CellsError {
     Everything,
     #[error(
         "{count} pieces of the body do not hang together with the largest; the next has the volume {volume:.4e} and lies \
-         about {at:?}. Drop them (`islands = drop`), hold each of them, or close the gaps"
+         about {at:?}. Drop them (`islands = \"drop\"`), hold each of them, or close the gaps"
     )]
     Islands { count: usize, volume: f64, at: Vec<f64> },
-    #[error("no part of the boundary lies in the place that is {what}")]
-    EmptyPlace { what: &'static str },
+    #[error(
+        "no part of the boundary lies in {place}: the cells with material lie between {low:.4?} and {high:.4?}; move the place, or the \
+         body"
+    )]
+    EmptyPlace { place: String, low: Vec<f64>, high: Vec<f64> },
     #[error("direction {axis} is not one of the {dimension} of the body")]
     Axis { axis: usize, dimension: usize },
     #[error("a body around an axis must lie where the radius is not negative; its box begins at {radius}")]
@@ -50,10 +53,19 @@ pub enum CellsError {
     )]
     OpenSurface { y: f64, z: f64, share: f64 },
     #[error(
+        "the surface of triangles overlaps itself: about {at:.4?} it encloses the same place twice, or a cavity has its outside \
+         inwards. Unite its parts, or turn the triangles of the cavity round"
+    )]
+    OverlappingSurface { at: Vec<f64> },
+    #[error(
         "the threshold {threshold} leaves nothing or everything of the image: its values go from {least} to {most}, and \
          material is what lies above the threshold"
     )]
     Threshold { threshold: f64, least: f64, most: f64 },
+    #[error(
+        "voxel {voxel:?}, counted from zero along x, y, z, has the value {value}: all must be finite; replace it in the image"
+    )]
+    Voxel { voxel: Vec<usize>, value: f64 },
     #[error("{what} of shape {found:?} cannot be used: {must}")]
     Image { what: &'static str, found: Vec<usize>, must: &'static str },
     #[error(

@@ -13,6 +13,7 @@ use signorini_geometry::closest::FeatureKind;
 use signorini_geometry::mesh::TriangleMesh;
 use signorini_geometry::rule::gauss_legendre;
 use signorini_geometry::{Aabb, Point, Vector};
+use std::collections::BTreeMap;
 
 /// The body inside a surface of triangles.
 #[derive(Debug)]
@@ -24,6 +25,8 @@ pub struct FacetBody {
 const OPEN: f64 = 1e-3;
 /// Columns in each direction in which a surface with holes is examined.
 const COLUMNS: usize = 16;
+/// Lines in each direction along which overlaps are looked for.
+const LINES: usize = 32;
 
 impl FacetBody {
     /// The body inside a surface, whose triangles are counter-clockwise seen from outside. Small holes are allowed.
@@ -32,10 +35,57 @@ impl FacetBody {
     /// A surface so open that columns through it do not end.
     pub fn new(mesh: TriangleMesh) -> Result<Self, CellsError> {
         let body = FacetBody { mesh };
-        if !body.mesh.quality().has_inside() {
-            body.check_columns()?;
+        if body.mesh.quality().has_inside() {
+            body.check_overlap()?
+        } else {
+            body.check_columns()?
         }
         Ok(body)
+    }
+
+    /// Along lines through the body it begins and ends in turn: where it begins twice its parts overlap, or a cavity has its
+    /// outside inwards, and the material there would count twice.
+    fn check_overlap(&self) -> Result<(), CellsError> {
+        let b = *self.mesh.bounds();
+        let size = b.size();
+        // Off the middle, where edges often lie.
+        let at = |k: usize, n: usize| b.min[k] + size[k] * (n as f64 + 0.5 / (k as f64 + 0.414)) / LINES as f64;
+        let mut roots: BTreeMap<[usize; 2], Vec<(f64, f64)>> = BTreeMap::new();
+        for k in 0..self.mesh.triangles().len() {
+            let corners = self.mesh.corners(k);
+            let across = |p: [f64; 2], i: usize, j: usize| {
+                (corners[i][1] - p[0]) * (corners[j][2] - p[1]) - (corners[i][2] - p[1]) * (corners[j][1] - p[0])
+            };
+            let lines = |axis: usize| {
+                let low = corners.iter().map(|c| c[axis]).fold(f64::INFINITY, f64::min);
+                let high = corners.iter().map(|c| c[axis]).fold(f64::NEG_INFINITY, f64::max);
+                (0..LINES).filter(move |n| (low..=high).contains(&at(axis, *n)))
+            };
+            for m in lines(2) {
+                for n in lines(1) {
+                    let p = [at(1, n), at(2, m)];
+                    let w = [across(p, 1, 2), across(p, 2, 0), across(p, 0, 1)];
+                    let sum: f64 = w.iter().sum();
+                    if sum != 0.0 && w.iter().all(|w| w * sum > 0.0) {
+                        let x = (0..3).map(|i| w[i] * corners[i][0]).sum::<f64>() / sum;
+                        // The body begins where its outward normal looks back.
+                        roots.entry([n, m]).or_default().push((x, -sum.signum()));
+                    }
+                }
+            }
+        }
+        for ([n, m], mut list) in roots {
+            list.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let mut count = 0.0;
+            for pair in list.windows(2) {
+                count += pair[0].1;
+                if !(0.0..=1.0).contains(&count) && pair[1].0 - pair[0].0 > OPEN * size[0] {
+                    let at = vec![0.5 * (pair[0].0 + pair[1].0), at(1, n), at(2, m)];
+                    return Err(CellsError::OverlappingSurface { at });
+                }
+            }
+        }
+        Ok(())
     }
 
     fn check_columns(&self) -> Result<(), CellsError> {
@@ -364,5 +414,19 @@ mod tests {
         let closed = cube([0.0; 3], [1.0; 3]);
         let open = TriangleMesh::new(closed.vertices().to_vec(), &closed.triangles()[..10]).unwrap();
         assert!(matches!(FacetBody::new(open), Err(CellsError::OpenSurface { share, .. }) if share > 0.5));
+        // Two parts in one another, and a cavity: right, and with its outside inwards.
+        let with = |other: TriangleMesh, turned: bool| {
+            let vertices = [closed.vertices(), other.vertices()].concat();
+            let own = other.triangles().iter().map(|t| t.map(|v| v + 8));
+            let own = own.map(|[a, b, c]| if turned { [a, c, b] } else { [a, b, c] });
+            let all: Vec<[u32; 3]> = closed.triangles().iter().copied().chain(own).collect();
+            FacetBody::new(TriangleMesh::new(vertices, &all).unwrap())
+        };
+        let inner = || cube([0.3; 3], [0.6; 3]);
+        assert!(with(cube([2.0; 3], [3.0; 3]), false).is_ok() && with(inner(), true).is_ok());
+        for wrong in [inner(), cube([0.5, 0.2, 0.3], [1.5, 0.9, 0.8])] {
+            let Err(CellsError::OverlappingSurface { at }) = with(wrong, false) else { panic!("an overlap") };
+            assert!(at.iter().all(|x| (0.2..1.0).contains(x)), "{at:?}");
+        }
     }
 }

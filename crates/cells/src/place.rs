@@ -8,6 +8,7 @@ use crate::error::CellsError;
 use crate::region::{BoundaryPoint, Filling};
 use signorini_fem::QuadraturePoint;
 use signorini_fem::cut::End;
+use signorini_fem::elastic::Space;
 use signorini_geometry::{Aabb, Point, Vector};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -48,17 +49,36 @@ impl<const D: usize> CellBody<D> {
     /// # Errors
     /// A side along an axis that the body does not have; a place without any material.
     pub fn points_on(&self, place: &Place<D>) -> Result<Vec<Site<D>>, CellsError> {
-        let (sites, what) = match place {
-            Place::Boundary(holds) => (self.sites(&|p| holds(p)), "named on the recovered boundary"),
+        let (mut sites, what) = match place {
+            Place::Boundary(holds) => (self.sites(&|p| holds(p)), "a place on the recovered boundary"),
             Place::Side { axis, end } => {
                 if *axis >= D {
                     return Err(CellsError::Axis { axis: *axis, dimension: D });
                 }
-                (self.side_sites(*axis, *end), "named on a side of the box")
+                (self.side_sites(*axis, *end), "a side of the box")
             }
-            Place::Surface(holds) => (self.surface_sites(&**holds), "named on the surface"),
+            Place::Surface(holds) => (self.surface_sites(&**holds), "a place on the surface"),
         };
-        if sites.is_empty() { Err(CellsError::EmptyPlace { what }) } else { Ok(sites) }
+        if sites.is_empty() {
+            return Err(self.empty_place(what));
+        }
+        // Sides are held by their functions; elsewhere strains at the axis would divide by the radius.
+        sites.retain(|s| matches!(place, Place::Side { .. }) || !self.is_on_axis(&s.x));
+        Ok(sites)
+    }
+
+    /// Whether a point lies on the axis around which the body turns, where a boundary has no area.
+    fn is_on_axis(&self, x: &Point<D>) -> bool {
+        self.stuff.space == Space::Axisymmetric && x[0] <= 1e-12 * self.tree.bounds().max[0]
+    }
+
+    /// That nothing lies in a place, with the box of the cells with material.
+    pub(crate) fn empty_place(&self, place: &str) -> CellsError {
+        let all = (0..self.cells().len()).map(|c| self.bounds_of(c));
+        let whole = all.copied().reduce(|a, b| Aabb::new(a.min.inf(&b.min), a.max.sup(&b.max)));
+        let corner = |x: &Point<D>| x.iter().copied().collect();
+        let whole = whole.unwrap_or(*self.tree.bounds());
+        CellsError::EmptyPlace { place: place.to_string(), low: corner(&whole.min), high: corner(&whole.max) }
     }
 
     /// The points of a place anew, of which `points` are those by the rules of whole cells, with cells divided into as many

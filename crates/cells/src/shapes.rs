@@ -36,6 +36,46 @@ impl<const D: usize> ImplicitShape<D> for Section {
     }
 }
 
+/// What is nearer than a radius to a box along the axes.
+#[derive(Clone, Copy, Debug)]
+pub struct RoundedBox<const D: usize> {
+    pub bounds: Aabb<D>,
+    pub radius: f64,
+}
+
+impl<const D: usize> ImplicitShape<D> for RoundedBox<D> {
+    fn value(&self, x: &Point<D>) -> f64 {
+        self.jet(x).value
+    }
+    fn gradient(&self, x: &Point<D>) -> Vector<D> {
+        self.jet(x).gradient
+    }
+    fn hessian(&self, x: &Point<D>) -> Matrix<D> {
+        self.jet(x).hessian
+    }
+    fn jet(&self, x: &Point<D>) -> Jet<D> {
+        let off = x - self.bounds.clamp(x);
+        let distance = off.norm();
+        if distance > 0.0 {
+            let normal = off / distance;
+            // Only across the edge or about the corner that is nearest does the normal turn.
+            let free = Matrix::from_fn(|i, j| f64::from(u8::from(i == j && off[i] != 0.0)));
+            let hessian = (free - normal * normal.transpose()) / distance;
+            return Jet { value: distance - self.radius, gradient: normal, hessian };
+        }
+        let to_face = |k: usize| [(self.bounds.min[k] - x[k], -1.0), (x[k] - self.bounds.max[k], 1.0)].map(|f| (f, k));
+        let nearest = (0..D).flat_map(to_face).max_by(|a, b| a.0.0.total_cmp(&b.0.0));
+        let ((value, sign), axis) = nearest.unwrap_or(((0.0, 1.0), 0));
+        let gradient = Vector::from_fn(|k, _| if k == axis { sign } else { 0.0 });
+        Jet { value: value - self.radius, gradient, hessian: Matrix::zeros() }
+    }
+    /// A distance changes no faster than position.
+    fn range(&self, b: &Aabb<D>) -> Option<[f64; 2]> {
+        let (value, reach) = (self.value(&b.center()), b.radius());
+        Some([value - reach, value + reach])
+    }
+}
+
 /// A shape of the plane as a cylinder along z; itself in space.
 pub(crate) struct Cylinder<const D: usize>(pub Arc<dyn ImplicitShape<D>>);
 

@@ -93,7 +93,7 @@ impl<const D: usize> CellBody<D> {
             }
         }
         if numbers.is_empty() {
-            return Err(CellsError::EmptyPlace { what: "named on a side of the box" });
+            return Err(self.empty_place("a side of the box"));
         }
         let mut rhs = vec![0.0; numbers.len()];
         let mut parts = Vec::new();

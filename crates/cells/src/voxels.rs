@@ -34,8 +34,10 @@ impl<const D: usize> Voxels<D> {
         if let Some(h) = spacing.iter().find(|h| !(**h > 0.0 && h.is_finite())) {
             return Err(CellsError::Value { name: "spacing", value: *h, must: "must be positive" });
         }
-        if let Some(v) = values.iter().find(|v| !v.is_finite()) {
-            return Err(CellsError::Value { name: "voxel", value: *v, must: "must be a finite number" });
+        if let Some(at) = values.iter().position(|v| !v.is_finite()) {
+            let stride = |k: usize| count[..k].iter().product::<usize>();
+            let voxel = (0..D).map(|k| at / stride(k) % count[k]).collect();
+            return Err(CellsError::Voxel { voxel, value: values[at] });
         }
         Ok(Voxels { origin, spacing, count, values })
     }

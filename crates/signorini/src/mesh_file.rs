@@ -150,6 +150,54 @@ fn welded(vertices: &[Point<3>], triangles: &[[u32; 3]]) -> Result<Raw, String> 
     Ok((kept, out))
 }
 
+/// Distances, as shares of the extent, within which corners that ought to be one are joined.
+const NEARLY: [f64; 5] = [0.0, 1e-6, 1e-5, 1e-4, 1e-3];
+
+/// A surface that is nearly closed as a closed one, with the largest distance over which corners were joined: at the least of
+/// some distances that is enough. Triangles without area are left out, if that helps.
+pub fn mended(mesh: &TriangleMesh) -> Option<(TriangleMesh, f64)> {
+    let extent = mesh.bounds().size().norm();
+    NEARLY.iter().find_map(|share| {
+        let (vertices, triangles) = joined(mesh, share * extent);
+        let flat = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| vertices[v as usize]);
+            (b - a).cross(&(c - a)).norm() <= 1e-12 * extent * extent
+        };
+        let with_area: Vec<[u32; 3]> = triangles.iter().filter(|t| !flat(t)).copied().collect();
+        let found = [triangles, with_area]
+            .into_iter()
+            .find_map(|list| TriangleMesh::new(vertices.clone(), &list).ok().filter(|m| m.quality().has_inside()));
+        found.map(|mesh| (mesh, share * extent))
+    })
+}
+
+/// Each corner as the first one within a distance of it; triangles of which two corners become one are left out.
+fn joined(mesh: &TriangleMesh, distance: f64) -> Raw {
+    let mut boxes: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+    let mut kept: Vec<Point<3>> = Vec::new();
+    let size = distance.max(f64::MIN_POSITIVE);
+    let low = mesh.bounds().min;
+    let numbers: Vec<u32> = (mesh.vertices().iter())
+        .map(|x| {
+            let at = [0, 1, 2].map(|k| if distance > 0.0 { ((x[k] - low[k]) / size) as i64 } else { 0 });
+            let around = (0..27).map(|i| [at[0] + i % 3 - 1, at[1] + i / 3 % 3 - 1, at[2] + i / 9 - 1]);
+            let near = |k: &u32| (kept[*k as usize] - x).norm() <= distance;
+            let mut found = around.filter_map(|b| boxes.get(&b)).flatten().copied().filter(near);
+            if let Some(known) = found.next().filter(|_| distance > 0.0) {
+                return known;
+            }
+            let new = kept.len() as u32;
+            kept.push(*x);
+            if distance > 0.0 {
+                boxes.entry(at).or_default().push(new);
+            }
+            new
+        })
+        .collect();
+    let renumbered = mesh.triangles().iter().map(|t| t.map(|v| numbers[v as usize]));
+    (kept, renumbered.filter(|[a, b, c]| a != b && b != c && c != a).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -218,6 +266,22 @@ mod tests {
             assert!(mesh.quality().has_inside(), "{name}");
             assert_eq!(mesh.closest(&Point::<3>::new(0.5, 0.5, 0.9), 0.0)[0].gap, Some(0.9 - 1.0), "{name}");
         }
+    }
+
+    /// Corners that rounding took apart, doubled triangles and slivers are no holes; a triangle that is missing is one.
+    #[test]
+    fn what_is_nearly_closed_is_mended() {
+        let corners: Vec<Point<3>> = (triangles().iter().flatten().enumerate())
+            .map(|(i, k)| Point::<3>::from(corner(*k).map(f64::from)).add_scalar(1e-5 * (i as f64).sin()))
+            .collect();
+        let mut own: Vec<[u32; 3]> = (0..12).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        own.push([0, 1, 1]);
+        let mesh = TriangleMesh::new(corners.clone(), &own).unwrap();
+        assert!(!mesh.quality().has_inside());
+        let (closed, distance) = mended(&mesh).unwrap();
+        assert_eq!((closed.vertices().len(), closed.triangles().len()), (8, 12));
+        assert!((1e-5..1e-3).contains(&distance), "{distance}");
+        assert!(mended(&TriangleMesh::new(corners, &own[1..]).unwrap()).is_none());
     }
 
     #[test]

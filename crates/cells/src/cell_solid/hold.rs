@@ -45,7 +45,7 @@ impl<const D: usize> SideFunctions<D> {
             }
         }
         if numbers.is_empty() {
-            return Err(CellsError::EmptyPlace { what: "named on a side of the box" });
+            return Err(body.empty_place("a side of the box"));
         }
         let (mut points, mut parts) = (Vec::new(), Vec::new());
         let mut t = Tabulation::default();

@@ -3,7 +3,7 @@
 use crate::Domain;
 use crate::error::CellsError;
 use crate::image::ImageData;
-use crate::shapes::{Cylinder, Ellipsoid, Function, Level, Offset, Section, cuboid};
+use crate::shapes::{Cylinder, Ellipsoid, Function, Level, Offset, RoundedBox, Section, cuboid};
 use signorini_geometry::implicit_surface::ImplicitSurface;
 use signorini_geometry::rigid_shape::RigidShape;
 use signorini_geometry::{Aabb, ImplicitShape, Jet, Point, Vector};
@@ -129,11 +129,49 @@ impl Shape {
                 let first = parts.next().unwrap_or(Domain::Union(Vec::new()));
                 first.without(Domain::union(parts.collect()))
             }
-            Shape::Offset { of, distance } => {
-                let shape = Arc::new(of.surface::<D>(bounds, cells, *distance)?);
-                section(Offset { shape, distance: *distance })
-            }
+            Shape::Offset { of, distance } => match (&**of, of.shifted::<D>(*distance)) {
+                (_, Some(shape)) => shape.with_rigid::<D>(bounds, cells, rigid)?,
+                (Shape::Cuboid { min, max }, _) if *distance > 0.0 => {
+                    let corner = |c: &[f64; 3]| Point::<D>::from_fn(|k, _| c[k]);
+                    Domain::shape(RoundedBox { bounds: Aabb::new(corner(min), corner(max)), radius: *distance })
+                }
+                (Shape::Rigid(shape), _) => section(Offset { shape: shape.clone(), distance: *distance }),
+                _ => {
+                    let shape = Arc::new(of.surface::<D>(bounds, cells, *distance)?);
+                    section(Offset { shape, distance: *distance })
+                }
+            },
         })
+    }
+
+    /// The offset of a shape where no distances are needed: of balls; outwards of unions and inwards of intersections by
+    /// that of each part, so that edges stay edges.
+    fn shifted<const D: usize>(&self, distance: f64) -> Option<Shape> {
+        let of_each = |parts: &[Shape], distance: f64| -> Vec<Shape> {
+            parts.iter().map(|p| Shape::Offset { of: Box::new(p.clone()), distance }).collect()
+        };
+        match self {
+            Shape::Ellipsoid { center, semi_axes: a } if a[..D].iter().all(|r| *r == a[0]) && a[0] + distance > 0.0 => {
+                Some(Shape::Ellipsoid { center: *center, semi_axes: [a[0] + distance; 3] })
+            }
+            Shape::Cuboid { min, max } if distance < 0.0 && (0..D).all(|k| min[k] - distance < max[k] + distance) => {
+                let moved =
+                    |corner: &[f64; 3], by: f64| std::array::from_fn(|k| corner[k] + if k < D { by } else { 0.0 });
+                Some(Shape::Cuboid { min: moved(min, -distance), max: moved(max, distance) })
+            }
+            Shape::Union(parts) if distance > 0.0 => Some(Shape::Union(of_each(parts, distance))),
+            Shape::Intersection(parts) if distance < 0.0 => Some(Shape::Intersection(of_each(parts, distance))),
+            Shape::Difference(parts) if distance < 0.0 => {
+                let (first, others) = parts.split_first()?;
+                let mut parts = of_each(std::slice::from_ref(first), distance);
+                parts.extend(of_each(others, -distance));
+                Some(Shape::Difference(parts))
+            }
+            Shape::Offset { of, distance: inner } if inner * distance > 0.0 => {
+                Some(Shape::Offset { of: of.clone(), distance: inner + distance })
+            }
+            _ => None,
+        }
     }
 
     fn check(&self) -> Result<(), CellsError> {

@@ -1,7 +1,7 @@
 //! MetaImage: lines `Key = value`, the last of them `ElementDataFile`, and numbers.
 
-use super::nrrd::{Header, check_geometry};
-use super::{Endian, Number, Wrong, check_counts, numbers, text};
+use super::nrrd::{Encoding, Header, straight};
+use super::{Endian, Number, Wrong, check_counts, check_geometry, numbers, text};
 
 /// The header at the start of a file.
 ///
@@ -25,8 +25,12 @@ pub fn header(bytes: &[u8]) -> Result<Header, Wrong> {
     let count: Vec<usize> = numbers("`DimSize`", &needed("DimSize")?)?;
     check_counts("`DimSize`", &count)?;
     let is_true = |name: &str| field(name).is_some_and(|v| v.eq_ignore_ascii_case("true"));
-    if is_true("CompressedData") {
-        return Err(Wrong::new("`CompressedData`", "True", "save the image without compression"));
+    let encoding = if is_true("CompressedData") { Encoding::Packed } else { Encoding::Raw };
+    for (key, plain) in [("ElementNumberOfChannels", "1"), ("HeaderSize", "0"), ("BinaryData", "True")] {
+        if let Some(found) = field(key).filter(|v| !v.eq_ignore_ascii_case(plain)) {
+            let remedy = "save it as one binary number a voxel, without a header between";
+            return Err(Wrong::new(format!("`{key}`"), format!("`{found}`"), remedy));
+        }
     }
     let kind = needed("ElementType")?;
     let number = match kind.as_str() {
@@ -36,30 +40,40 @@ pub fn header(bytes: &[u8]) -> Result<Header, Wrong> {
         "MET_SHORT" => Number::I16,
         "MET_UINT" => Number::U32,
         "MET_INT" => Number::I32,
+        "MET_ULONG_LONG" => Number::U64,
+        "MET_LONG_LONG" => Number::I64,
         "MET_FLOAT" => Number::F32,
         "MET_DOUBLE" => Number::F64,
         _ => return Err(Wrong::new("`ElementType`", format!("`{kind}`"), "save it as MET_SHORT or MET_FLOAT")),
     };
     let n = count.len();
     let big = is_true("BinaryDataByteOrderMSB") || is_true("ElementByteOrderMSB");
-    let spacing = match field("ElementSpacing").or_else(|| field("ElementSize")) {
-        Some(list) => numbers("`ElementSpacing`", &list)?,
-        None => vec![1.0; n],
+    let mut steps = match field("ElementSpacing").or_else(|| field("ElementSize")) {
+        Some(list) => {
+            let spacing: Vec<f64> = numbers("`ElementSpacing`", &list)?;
+            check_geometry(n, &spacing, &vec![0.0; n])?;
+            Some(straight(&spacing))
+        }
+        None => None,
     };
-    let origin = match field("Offset").or_else(|| field("Position")).or_else(|| field("Origin")) {
-        Some(list) => numbers("`Offset`", &list)?,
-        None => spacing.iter().map(|h| 0.5 * h).collect(),
-    };
+    let first = field("Offset").or_else(|| field("Position")).or_else(|| field("Origin"));
+    let first: Option<Vec<f64>> = first.map(|list| numbers("`Offset`", &list)).transpose()?;
+    if let Some(first) = &first {
+        check_geometry(n, &vec![1.0; n], first)?;
+    }
     if let Some(list) = field("TransformMatrix") {
         let m: Vec<f64> = numbers("`TransformMatrix`", &list)?;
-        if m.len() != n * n || (0..n * n).any(|i| m[i] != f64::from(u8::from(i % (n + 1) == 0))) {
-            let remedy = "resample the image so that its directions are the axes";
+        if m.len() != n * n {
+            let remedy = "a vector for each direction is expected";
             return Err(Wrong::new("`TransformMatrix`", format!("`{list}`"), remedy));
         }
+        for (k, step) in steps.iter_mut().flatten().enumerate() {
+            let h = step[k];
+            (0..n).for_each(|a| step[a] = h * m[n * k + a]);
+        }
     }
-    check_geometry(n, &spacing, &origin)?;
     let file = needed("ElementDataFile")?;
     let endian = if big { Endian::Big } else { Endian::Little };
     let data_file = (file != "LOCAL").then_some(file);
-    Ok(Header { count, spacing, origin, number, endian, data_start: end, data_file })
+    Ok(Header { count, steps, first, number, endian, encoding, data_start: end, data_file })
 }

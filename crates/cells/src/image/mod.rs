@@ -12,6 +12,7 @@ pub mod tiff_stack;
 use crate::error::CellsError;
 use crate::voxels::Voxels;
 use signorini_geometry::Point;
+use std::io::Read;
 use std::path::Path;
 
 /// An image that cannot be read.
@@ -44,7 +45,7 @@ impl Wrong {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageData {
     pub count: Vec<usize>,
-    /// Extent of a voxel in each direction; 1 where the file does not say.
+    /// Extent of a voxel in each direction; empty where the file does not say.
     pub spacing: Vec<f64>,
     /// Corner of the first voxel; 0 where the file does not say.
     pub origin: Vec<f64>,
@@ -52,10 +53,59 @@ pub struct ImageData {
 }
 
 impl ImageData {
-    /// An image with unit voxels from the origin on.
+    /// An image of which nothing else is known, from the origin on.
     pub(crate) fn plain(count: Vec<usize>, values: Vec<f64>) -> Self {
         let n = count.len();
-        ImageData { count, spacing: vec![1.0; n], origin: vec![0.0; n], values }
+        ImageData { count, spacing: Vec::new(), origin: vec![0.0; n], values }
+    }
+
+    /// An image of which index `k` steps by `steps[k]` from the middle of the first voxel on, with its directions along the
+    /// axes: mirrored and exchanged where the steps are. Further directions have one voxel.
+    ///
+    /// # Errors
+    /// Steps that lie along no axis, two along the same one, or none.
+    pub(crate) fn framed(
+        place: &str,
+        mut count: Vec<usize>,
+        steps: &[Vec<f64>],
+        first: &[f64],
+        values: Vec<f64>,
+    ) -> Result<Self, Wrong> {
+        let n = steps.len();
+        if count.iter().skip(n).any(|c| *c != 1) {
+            let remedy = "a picture of one time and one number a voxel is expected";
+            return Err(Wrong::new(place, format!("of {n} directions for {count:?} voxels"), remedy));
+        }
+        count.truncate(n);
+        let mut of_axis = vec![None; n];
+        for (k, step) in steps.iter().enumerate() {
+            let axis = (0..n).fold(0, |a, b| if step[b].abs() > step[a].abs() { b } else { a });
+            let off = (0..n).filter(|a| *a != axis).map(|a| step[a].abs()).fold(0.0, f64::max);
+            if !(off <= TILT * step[axis].abs() && step[axis].is_finite()) || of_axis[axis].replace(k).is_some() {
+                let remedy = "resample the image so that its directions are the axes";
+                return Err(Wrong::new(place, format!("{steps:?}"), remedy));
+            }
+        }
+        let of_axis: Vec<usize> = of_axis.into_iter().flatten().collect();
+        let step: Vec<f64> = (0..n).map(|a| steps[of_axis[a]][a]).collect();
+        let spacing: Vec<f64> = step.iter().map(|h| h.abs()).collect();
+        let along: Vec<usize> = of_axis.iter().map(|k| count[*k]).collect();
+        let low = |a: usize| first[a] + step[a].min(0.0) * (along[a] - 1) as f64 - 0.5 * spacing[a];
+        let origin: Vec<f64> = (0..n).map(low).collect();
+        check_geometry(n, &spacing, &origin)?;
+        let mut stride = vec![1; n];
+        (1..n).for_each(|k| stride[k] = stride[k - 1] * count[k - 1]);
+        let is_in_order = (0..n).all(|a| of_axis[a] == a && step[a] > 0.0);
+        let from = |mut index: usize| -> usize {
+            let place = |a: usize| {
+                let i = index % along[a];
+                index /= along[a];
+                stride[of_axis[a]] * if step[a] < 0.0 { along[a] - 1 - i } else { i }
+            };
+            (0..n).map(place).sum()
+        };
+        let values = if is_in_order { values } else { (0..values.len()).map(|i| values[from(i)]).collect() };
+        Ok(ImageData { count: along, spacing, origin, values })
     }
 
     /// The voxels of an image of the plane or of space.
@@ -71,7 +121,12 @@ impl ImageData {
             let must = "it must have as many directions as the body";
             return Err(CellsError::Image { what: "an image", found: self.count, must });
         };
-        let spacing = std::array::from_fn(|k| self.spacing[k]);
+        let (Ok(spacing), true) =
+            (<[f64; D]>::try_from(&self.spacing[..self.spacing.len().min(D)]), self.origin.len() >= D)
+        else {
+            let must = "the extent of a voxel must be known";
+            return Err(CellsError::Image { what: "an image", found: self.count, must });
+        };
         Voxels::new(Point::from_fn(|k, _| self.origin[k]), spacing, count, self.values)
     }
 }
@@ -140,20 +195,33 @@ impl Number {
     }
 }
 
-const KNOWN: &str = ".npy, .nrrd, .mha, .mhd, .nii, .tif, .tiff; numbers without a header need `read_raw`";
+const KNOWN: &str = ".npy, .nrrd, .nhdr, .mha, .mhd, .nii, .nii.gz, .tif, .tiff; a file of numbers alone needs their type \
+    and counts";
 
-const ENDINGS: [&str; 8] = ["npy", "nrrd", "nhdr", "mha", "mhd", "nii", "tif", "tiff"];
+const ENDINGS: [&str; 9] = ["npy", "nrrd", "nhdr", "mha", "mhd", "nii", "nii.gz", "tif", "tiff"];
+
+/// A slope of a step against its axis that moves the end of a line of 500 voxels by a twentieth of one.
+const TILT: f64 = 1e-4;
+
+/// A byte of a stream of deflate makes at most so many.
+const MOST_PACKED: usize = 1032;
 
 fn ending(file: &str) -> String {
-    file.rsplit('.').next().unwrap_or_default().to_ascii_lowercase()
+    let file = file.to_ascii_lowercase();
+    let plain = file.strip_suffix(".gz");
+    let last = plain.unwrap_or(&file).rsplit('.').next().unwrap_or_default();
+    if plain.is_some() { format!("{last}.gz") } else { last.to_owned() }
 }
 
 /// Reads an image by the ending of its name.
 ///
 /// # Errors
-/// A file that cannot be read, or is not what its ending says.
+/// A file that cannot be read, or is not what its ending says. A folder is a stack of the TIFF in it.
 pub fn read(path: &Path) -> Result<ImageData, ImageError> {
     let file = path.display().to_string();
+    if path.is_dir() {
+        return tiff_stack::of_folder(path);
+    }
     if !ENDINGS.contains(&ending(&file).as_str()) {
         return Err(ImageError::Ending { file, known: KNOWN });
     }
@@ -176,7 +244,7 @@ pub fn read_with(
     let content = |wrong: Wrong| ImageError::Content { file: file.to_string(), wrong };
     match ending(file).as_str() {
         "npy" => npy::parse(bytes).map_err(content),
-        "nii" => nifti::parse(bytes).map_err(content),
+        "nii" | "nii.gz" => nifti::parse(bytes).map_err(content),
         "tif" | "tiff" => tiff_stack::parse(bytes).map_err(content),
         "nrrd" | "nhdr" => {
             let header = nrrd::header(bytes).map_err(content)?;
@@ -208,6 +276,45 @@ pub fn read_raw(path: &Path, header: &raw::RawHeader) -> Result<ImageData, Image
     raw::parse(&bytes, header).map_err(|wrong| ImageError::Content { file, wrong })
 }
 
+/// The first bytes of what is packed by gzip or zlib, at most so many.
+///
+/// # Errors
+/// A stream that is damaged, or too short for as many bytes.
+pub(crate) fn unpacked(packed: &[u8], most: usize) -> Result<Vec<u8>, Wrong> {
+    let short = |found: usize| {
+        let found = format!("packed, {found} bytes where {most} are wanted");
+        Wrong::new("the data", found, "the file is cut off, or its header is not its own")
+    };
+    // What no stream of this length can hold is not asked for.
+    if most / MOST_PACKED > packed.len() {
+        return Err(short(packed.len().saturating_mul(MOST_PACKED)));
+    }
+    let mut out = Vec::new();
+    let read = if packed.starts_with(&[0x1f, 0x8b]) {
+        flate2::read::MultiGzDecoder::new(packed).take(most as u64).read_to_end(&mut out)
+    } else {
+        flate2::read::ZlibDecoder::new(packed).take(most as u64).read_to_end(&mut out)
+    };
+    match read {
+        Err(e) => Err(Wrong::new("the data", format!("packed and damaged: {e}"), "save the image anew")),
+        Ok(n) if n < most => Err(short(n)),
+        Ok(_) => Ok(out),
+    }
+}
+
+/// # Errors
+/// Spacings that are not positive, or another number of them than directions.
+pub(crate) fn check_geometry(n: usize, spacing: &[f64], origin: &[f64]) -> Result<(), Wrong> {
+    if spacing.len() != n || spacing.iter().any(|h| !(*h > 0.0 && h.is_finite())) {
+        let remedy = "a positive number for each direction is expected";
+        return Err(Wrong::new("the spacing", format!("{spacing:?}"), remedy));
+    }
+    if origin.len() != n || origin.iter().any(|x| !x.is_finite()) {
+        return Err(Wrong::new("the origin", format!("{origin:?}"), "a number for each direction is expected"));
+    }
+    Ok(())
+}
+
 /// A header of a few kilobytes in text, up to a limit.
 pub(crate) fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
@@ -223,8 +330,15 @@ pub(crate) fn numbers<T: std::str::FromStr>(place: &str, text: &str) -> Result<V
 /// Counts of zero, or so many that memory cannot hold them.
 pub(crate) fn check_counts(place: &str, count: &[usize]) -> Result<(), Wrong> {
     let total = count.iter().try_fold(1usize, |n, c| n.checked_mul(*c));
-    if count.is_empty() || count.len() > 4 || total.is_none_or(|n| n == 0 || n > 1 << 33) {
+    if count.is_empty() || count.len() > 4 || total == Some(0) {
         return Err(Wrong::new(place, format!("{count:?}"), "one to four counts, none of them zero, are expected"));
+    }
+    if total.is_none_or(|n| n > 1 << 33) {
+        return Err(Wrong::new(
+            place,
+            format!("{count:?}"),
+            "2^33 voxels are the most; take a part or a coarser image",
+        ));
     }
     Ok(())
 }

@@ -7,6 +7,7 @@ use super::{Endian, ImageData, Number, Wrong, check_counts};
 pub struct RawHeader {
     /// Voxels in each direction, that along x first.
     pub count: Vec<usize>,
+    /// Empty where it is not known.
     pub spacing: Vec<f64>,
     pub origin: Vec<f64>,
     pub number: Number,
@@ -22,12 +23,13 @@ pub struct RawHeader {
 pub fn parse(bytes: &[u8], header: &RawHeader) -> Result<ImageData, Wrong> {
     check_counts("count", &header.count)?;
     for (name, list) in [("spacing", &header.spacing), ("origin", &header.origin)] {
-        if list.len() != header.count.len() {
+        let is_unknown = name == "spacing" && list.is_empty();
+        if list.len() != header.count.len() && !is_unknown {
             return Err(Wrong::new(name, format!("{list:?}"), "it needs a number for each direction of `count`"));
         }
     }
     let data = bytes.get(header.skip..).unwrap_or_default();
-    let wanted = header.count.iter().product::<usize>() * header.number.bytes();
+    let wanted = header.count.iter().product::<usize>().saturating_mul(header.number.bytes());
     if data.len() != wanted {
         let found = format!("{} bytes, {wanted} by count and type", data.len());
         return Err(Wrong::new("the data", found, "count, type or skip are not those of this file"));

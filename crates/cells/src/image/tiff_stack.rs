@@ -1,7 +1,64 @@
-//! Grey pictures in one TIFF: each is a layer of voxels.
+//! Grey pictures in one TIFF, or in all of a folder: each is a layer of voxels.
 
-use super::{ImageData, Wrong};
+use super::{ImageData, ImageError, Wrong, ending};
+use std::path::Path;
 use tiff::decoder::{Decoder, DecodingResult};
+
+/// The layers of all TIFF of a folder, in the order of their names, numbers in them by their size.
+///
+/// # Errors
+/// A folder without any, or what [`parse`] says; layers of different sizes.
+pub fn of_folder(folder: &Path) -> Result<ImageData, ImageError> {
+    let file = folder.display().to_string();
+    let told = |file: &str, e: std::io::Error| ImageError::File { file: file.to_string(), message: e.to_string() };
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(|e| told(&file, e))? {
+        names.push(entry.map_err(|e| told(&file, e))?.file_name().to_string_lossy().into_owned());
+    }
+    names.retain(|name| matches!(ending(name).as_str(), "tif" | "tiff"));
+    names.sort_by_cached_key(|name| in_parts(name));
+    let mut stack: Option<ImageData> = None;
+    for name in names {
+        let bytes = std::fs::read(folder.join(&name)).map_err(|e| told(&name, e))?;
+        let layers = parse(&bytes).map_err(|wrong| ImageError::Content { file: name.clone(), wrong })?;
+        match &mut stack {
+            None => stack = Some(layers),
+            Some(stack) if stack.count[..2] == layers.count[..2] => {
+                stack.count[2] += layers.count[2];
+                stack.values.extend(layers.values);
+            }
+            Some(stack) => {
+                let found = format!("{:?} for {:?}", &layers.count[..2], &stack.count[..2]);
+                let wrong = Wrong::new("the size", found, "all layers must have the size of the first");
+                return Err(ImageError::Content { file: name, wrong });
+            }
+        }
+    }
+    stack.ok_or_else(|| {
+        let wrong =
+            Wrong::new("the folder", "without any TIFF", "name the file, or a folder of layers as .tif or .tiff");
+        ImageError::Content { file, wrong }
+    })
+}
+
+/// A name as words and numbers in turn: `s10` follows `s9`.
+fn in_parts(name: &str) -> Vec<(String, u128)> {
+    let mut parts: Vec<(String, u128)> = vec![(String::new(), 0)];
+    let mut in_number = false;
+    for c in name.chars() {
+        if in_number && !c.is_ascii_digit() {
+            parts.push((String::new(), 0));
+        }
+        in_number = c.is_ascii_digit();
+        if let Some((word, number)) = parts.last_mut() {
+            match c.to_digit(10) {
+                Some(digit) => *number = number.saturating_mul(10).saturating_add(digit.into()),
+                None => word.push(c),
+            }
+        }
+    }
+    parts
+}
 
 /// The layers of a file, the rows of each from its top on.
 ///

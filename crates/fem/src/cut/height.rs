@@ -19,6 +19,8 @@ use signorini_geometry::{Aabb, ImplicitShape, Point, Vector};
 /// Least slope `|∂_k φ| / |∇φ|` along a height direction. Smaller ones need fewer boxes, but the height of a steep
 /// surface is a poor function of its base: at 0.3 a torus of twice the radius of a cell is right to ten digits.
 const MIN_SLOPE: f64 = 0.3;
+/// Slope below which a surface does not depend on a direction: rounding of gradients.
+const CONSTANT: f64 = 1e-13;
 /// How often a box is halved before lines are searched for several roots instead.
 const MAX_DEPTH: usize = 6;
 /// Samples in each direction, ends included.
@@ -230,17 +232,34 @@ impl<const D: usize> Resolver<'_, D> {
             return self.whole(b, axes, sink);
         }
         if let [k] = axes {
-            return self.line((&b.min, 1.0), *k, b, &active, PIECES, &column(&active, None), sink);
+            return self.line((&b.min, 1.0), *k, b, &active, PIECES, &Column::of_all(&active), sink);
         }
-        let (slope, k) = steepest(&least_slopes(&active, b, axes), axes);
-        if slope < MIN_SLOPE && depth < MAX_DEPTH {
-            for part in parts(b, axes, &b.center()) {
+        let slopes: Vec<Slopes<D>> = active.iter().map(|(_, sheet)| slopes(sheet, b, axes)).collect();
+        let (slope, k) =
+            steepest(slopes.iter().fold(Vector::repeat(f64::INFINITY), |a: Vector<D>, s| a.inf(&s.least)), axes);
+        if slope >= MIN_SLOPE {
+            return self.columns(b, axes, &active, k, 1, &Column::of_all(&active), sink);
+        }
+        // Faces of a box, or a bore and the face that it ends in: what does not depend on a direction is no obstacle.
+        let least = |k: usize| slopes.iter().filter(|s| !s.is_constant(k)).map(|s| s.least[k]).fold(1.0, f64::min);
+        let allowed = axes.iter().copied().filter(|&k| slopes.iter().all(|s| s.allow(k, axes)));
+        if let Some(k) = allowed.reduce(|a, c| if least(c) > least(a) { c } else { a }) {
+            for (k, column) in columns(&active, &slopes, axes, k) {
+                self.columns(b, axes, &active, k, 1, &column, sink);
+            }
+            return;
+        }
+        if depth < MAX_DEPTH {
+            // A direction on which nothing depends needs no division.
+            let split: Vec<usize> =
+                axes.iter().copied().filter(|&k| slopes.iter().any(|s| !s.is_constant(k))).collect();
+            for part in parts(b, &split, &b.center()) {
                 self.resolve(&part, axes, &active, depth + 1, sink);
             }
             return;
         }
-        for (k, column) in columns(&active, b, axes, (slope, k)) {
-            self.columns(b, axes, &active, k, if slope < MIN_SLOPE { PIECES / 2 } else { 1 }, &column, sink);
+        for (k, column) in columns(&active, &slopes, axes, k) {
+            self.columns(b, axes, &active, k, PIECES / 2, &column, sink);
         }
     }
 
@@ -258,10 +277,20 @@ impl<const D: usize> Resolver<'_, D> {
     ) {
         let base: Vec<usize> = axes.iter().copied().filter(|&a| a != k).collect();
         let mut below: Vec<Sheet<'_, D>> = Vec::new();
-        for (i, &(_, of)) in active.iter().enumerate() {
-            below.extend([b.min[k], b.max[k]].map(|at| Sheet::Face { of, axis: k, at }));
-            for &(_, graph) in &active[i + 1..] {
-                below.push(Sheet::Graph { of, graph, axis: k, ends: [b.min[k], b.max[k]] });
+        let on_lines = |number: usize| column.surfaces.contains(&number);
+        for (i, &(number, of)) in active.iter().enumerate() {
+            if column.constant.contains(&number) {
+                below.push(Sheet::Face { of, axis: k, at: b.min[k] });
+                continue;
+            }
+            if column.has_volume || on_lines(number) {
+                below.extend([b.min[k], b.max[k]].map(|at| Sheet::Face { of, axis: k, at }));
+            }
+            for (j, &(other, graph)) in active.iter().enumerate() {
+                // Of two that lines meet once one graph is enough.
+                if i != j && on_lines(other) && (i < j || !on_lines(number)) {
+                    below.push(Sheet::Graph { of, graph, axis: k, ends: [b.min[k], b.max[k]] });
+                }
             }
         }
         let below: Vec<(usize, &Sheet<'_, D>)> = below.iter().enumerate().collect();
@@ -331,35 +360,39 @@ impl<const D: usize> Resolver<'_, D> {
 struct Column {
     has_volume: bool,
     surfaces: Vec<usize>,
+    /// Sheets that do not depend on the direction: their shadow on the base is all of them.
+    constant: Vec<usize>,
 }
 
-fn column<const D: usize>(active: &[(usize, &Sheet<'_, D>)], own: Option<&[usize]>) -> Column {
-    let all = || active.iter().map(|(number, _)| *number).collect();
-    Column { has_volume: true, surfaces: own.map_or_else(all, <[usize]>::to_vec) }
+impl Column {
+    /// Of a direction that is steep for all sheets.
+    fn of_all<const D: usize>(active: &[(usize, &Sheet<'_, D>)]) -> Self {
+        Column { has_volume: true, surfaces: active.iter().map(|a| a.0).collect(), constant: Vec::new() }
+    }
 }
 
-/// The directions of lines: one, or where none serves all sheets that for the volumes, and for every sheet that is too steep
-/// along it another one for its surface alone. Sheets that meet at right angles, one of them normal to an axis, have none in
-/// common in boxes of any size.
+/// The directions of lines where none is steep for all sheets: one for the volumes, and for every sheet that is not steep
+/// along it another one for its surface alone.
 fn columns<const D: usize>(
     active: &[(usize, &Sheet<'_, D>)],
-    b: &Aabb<D>,
+    slopes: &[Slopes<D>],
     axes: &[usize],
-    (slope, k): (f64, usize),
+    k: usize,
 ) -> Vec<(usize, Column)> {
-    if slope >= MIN_SLOPE || active.len() == 1 {
-        return vec![(k, column(active, None))];
+    if active.len() == 1 {
+        return vec![(k, Column::of_all(active))];
     }
-    let mut along: Vec<Vec<usize>> = vec![Vec::new(); D];
-    for sheet in active {
-        let alone = std::slice::from_ref(sheet);
-        let slopes = least_slopes(alone, b, axes);
-        along[if slopes[k] >= MIN_SLOPE { k } else { steepest(&slopes, axes).1 }].push(sheet.0);
-    }
-    let mut out = vec![(k, column(active, Some(&along[k])))];
-    let others = axes.iter().filter(|&&a| a != k && !along[a].is_empty());
-    out.extend(others.map(|&a| (a, Column { has_volume: false, surfaces: along[a].clone() })));
-    out
+    let numbers = |holds: &dyn Fn(&Slopes<D>) -> bool| -> Vec<usize> {
+        active.iter().zip(slopes).filter(|(_, s)| holds(s)).map(|(a, _)| a.0).collect()
+    };
+    let along = |s: &Slopes<D>| if s.least[k] >= MIN_SLOPE { k } else { steepest(s.least, axes).1 };
+    let of = |a: usize| Column {
+        has_volume: a == k,
+        surfaces: numbers(&|s| along(s) == a),
+        constant: numbers(&|s| s.is_constant(a)),
+    };
+    let others = axes.iter().copied().filter(|&a| a != k).map(|a| (a, of(a)));
+    [(k, of(k))].into_iter().chain(others.filter(|(_, c)| !c.surfaces.is_empty())).collect()
 }
 
 /// Points of a base.
@@ -517,25 +550,38 @@ fn crossing<const D: usize>(sheet: &Sheet<'_, D>, b: &Aabb<D>, axes: &[usize]) -
     Crossing::None
 }
 
-/// The least slope of all sheets along each direction; negative where its sign changes.
-fn least_slopes<const D: usize>(active: &[(usize, &Sheet<'_, D>)], b: &Aabb<D>, axes: &[usize]) -> Vector<D> {
-    let mut least = Vector::<D>::repeat(f64::INFINITY);
-    for (_, sheet) in active {
-        let (mut low, mut high) = (Vector::<D>::repeat(f64::INFINITY), Vector::<D>::repeat(f64::NEG_INFINITY));
-        for x in samples(b, axes) {
-            let gradient = sheet.value_and_gradient(&x).1;
-            let norm = axes.iter().map(|&k| gradient[k] * gradient[k]).sum::<f64>().sqrt();
-            let direction = gradient / norm.max(f64::MIN_POSITIVE);
-            low = low.inf(&direction);
-            high = high.sup(&direction);
-        }
-        least = least.inf(&low.sup(&-high));
+/// Slopes `∂_k φ / |∇φ|` of a sheet along each direction.
+struct Slopes<const D: usize> {
+    /// The least; negative where the sign changes.
+    least: Vector<D>,
+    most: Vector<D>,
+}
+
+impl<const D: usize> Slopes<D> {
+    fn is_constant(&self, k: usize) -> bool {
+        self.most[k] <= CONSTANT
     }
-    least
+
+    /// Whether lines along a direction give the volumes beside this sheet, and some direction its surface.
+    fn allow(&self, k: usize, axes: &[usize]) -> bool {
+        self.least[k] >= MIN_SLOPE || (self.is_constant(k) && axes.iter().any(|&a| self.least[a] >= MIN_SLOPE))
+    }
+}
+
+fn slopes<const D: usize>(sheet: &Sheet<'_, D>, b: &Aabb<D>, axes: &[usize]) -> Slopes<D> {
+    let (mut low, mut high) = (Vector::<D>::repeat(f64::INFINITY), Vector::<D>::repeat(f64::NEG_INFINITY));
+    for x in samples(b, axes) {
+        let gradient = sheet.value_and_gradient(&x).1;
+        let norm = axes.iter().map(|&k| gradient[k] * gradient[k]).sum::<f64>().sqrt();
+        let direction = gradient / norm.max(f64::MIN_POSITIVE);
+        low = low.inf(&direction);
+        high = high.sup(&direction);
+    }
+    Slopes { least: low.sup(&-high), most: high.sup(&-low) }
 }
 
 /// The direction with the largest of these, and that slope.
-fn steepest<const D: usize>(least: &Vector<D>, axes: &[usize]) -> (f64, usize) {
+fn steepest<const D: usize>(least: Vector<D>, axes: &[usize]) -> (f64, usize) {
     axes.iter().map(|&k| (least[k], k)).fold((f64::NEG_INFINITY, axes[0]), |a, c| if c.0 > a.0 { c } else { a })
 }
 

@@ -61,7 +61,7 @@ mod tests {
     use crate::Grid;
     use crate::cut::height_functions;
     use signorini_geometry::implicit::{HalfSpace, ball, cuboid};
-    use signorini_geometry::{Aabb, Point};
+    use signorini_geometry::{Aabb, Point, Vector};
     use std::f64::consts::PI;
 
     /// Area or volume of a body, and the length or area of its boundary, on a grid over `[-1, 1]^D`.
@@ -120,12 +120,34 @@ mod tests {
         assert!((0..2).all(|k| (found[k] / exact[k] - 1.0).abs() < 1e-6), "{found:?}, {exact:?}");
     }
 
+    struct Smooth<F>(F);
+
+    impl<F: Fn(&Point<3>) -> (f64, Vector<3>) + Send + Sync> ImplicitShape<3> for Smooth<F> {
+        fn value(&self, x: &Point<3>) -> f64 {
+            (self.0)(x).0
+        }
+        fn gradient(&self, x: &Point<3>) -> Vector<3> {
+            (self.0)(x).1
+        }
+    }
+
     /// Where two sheets meet at right angles and one is normal to an axis no direction serves both.
     #[test]
     fn right_angles_lose_no_surface() {
         let square = cuboid(&Aabb::new(Point::<2>::repeat(-0.73), Point::<2>::repeat(0.71)));
         let found = measures(&square, 11, 4);
         assert!((found[1] - 4.0 * 1.44).abs() < 1e-12, "{found:?}");
+        // A box, and a bore through it: one box of quadrature where there were thousands.
+        let cuboid = || cuboid(&Aabb::new(Point::<3>::new(-0.7, -0.8, -0.9), Point::<3>::new(0.5, 0.6, 0.7)));
+        let found = measures(&cuboid(), 3, 2);
+        assert!((found[0] - 2.688).abs() < 1e-12 && (found[1] - 11.68).abs() < 1e-12, "{found:?}");
+        let bore = |x: &Point<3>| (x[0] * x[0] + x[1] * x[1] - 0.09, Vector::<3>::new(2.0 * x[0], 2.0 * x[1], 0.0));
+        let found = measures(&cuboid().without(ImplicitBody::shape(Smooth(bore))), 4, 9);
+        let exact = [2.688 - 0.144 * PI, 11.68 - 0.18 * PI + 0.96 * PI];
+        assert!((0..2).all(|k| (found[k] / exact[k] - 1.0).abs() < 1e-8), "{found:?} {exact:?}");
+        let rule =
+            height_functions(&material(&cuboid()), &Aabb::new(Point::<3>::repeat(0.4), Point::<3>::repeat(0.8)), 2);
+        assert!(rule.volume(1).len() <= 8, "{}", rule.volume(1).len());
         // A half ball: the flat side meets the round one at right angles all around.
         let up = HalfSpace { point: Point::<3>::new(0.0, 0.0, 0.1), normal: Point::<3>::z() };
         let body = ImplicitBody::intersection(vec![ball(Point::<3>::new(0.0, 0.0, 0.1), 0.6).into(), up.into()]);

@@ -157,6 +157,8 @@ pub fn render(bodies: &[Body], camera: &Camera, look: Look) -> Result<Image, Out
     let (dense, samples) = density(look);
     let pixels = |length: f64| (length * dense).round().max(1.0) as usize;
     let (width, height) = (pixels(right - left), pixels(bottom - top));
+    // The change of depth between samples of a surface at 80 degrees.
+    let step = 6.0 / (camera.scale * dense * samples as f64);
     // What is translucent lies on a layer of its own.
     let mut layers: Vec<Vec<Sample>> = Vec::new();
     for translucent in [false, true] {
@@ -166,10 +168,12 @@ pub fn render(bodies: &[Body], camera: &Camera, look: Look) -> Result<Image, Out
         }
         let mut layer = vec![Sample::default(); width * height * samples * samples];
         own().for_each(|(k, body)| rasterise(&mut layer, width * samples, body, k as u16 + 1, camera, look));
-        layers.push(layer);
+        layers.push(if look == Look::Map {
+            layer
+        } else {
+            without_cracks(layer, width * samples, samples, step as f32)
+        });
     }
-    // The change of depth between samples of a surface at 80 degrees.
-    let step = 6.0 / (camera.scale * dense * samples as f64);
     let lines: Vec<Vec<bool>> = match look {
         Look::Solid | Look::Film => layers.iter().map(|layer| outlines(layer, width * samples, step as f32)).collect(),
         Look::Map => vec![Vec::new(); layers.len()],
@@ -267,6 +271,40 @@ fn rasterise(layer: &mut [Sample], width: usize, body: &Body, number: u16, camer
     }
 }
 
+/// A layer without slits of less than a pixel between parts of one smooth surface, where its faces do not fit: beside a
+/// curved edge of a large face lie the straight edges of several smaller ones.
+fn without_cracks(layer: Vec<Sample>, width: usize, most: usize, step: f32) -> Vec<Sample> {
+    let height = layer.len() / width;
+    let is_even = |p: &Sample, q: &Sample| {
+        let cosine: i32 = (0..3).map(|i| i32::from(p.normal[i]) * i32::from(q.normal[i])).sum();
+        f64::from(cosine) >= CREASE * 127.0 * 127.0
+    };
+    let fits = |p: &Sample, q: &Sample| p.body == q.body && (p.depth - q.depth).abs() <= 2.0 * step && is_even(p, q);
+    // The samples before and behind a slit of at most so many samples along a line.
+    let across = |k: usize, along: usize, at: usize, end: usize| {
+        (1..=most).find_map(|width| {
+            (1..=width).find_map(|before| {
+                let after = width + 1 - before;
+                if at < before || at + after >= end {
+                    return None;
+                }
+                let (p, q) = (&layer[k - before * along], &layer[k + after * along]);
+                // In a slit the background is seen, what is farther away, or a wall of the slit.
+                let is_wall = |s: &Sample| s.depth <= p.depth.max(q.depth) && !is_even(s, p);
+                let is_behind = |s: &Sample| s.body == 0 || s.depth < p.depth.min(q.depth) - step || is_wall(s);
+                let slit = (1..before).map(|i| k - i * along).chain((0..after).map(|i| k + i * along));
+                (p.body > 0 && fits(p, q) && slit.into_iter().all(|l| is_behind(&layer[l]))).then_some(*p)
+            })
+        })
+    };
+    (0..layer.len())
+        .map(|k| {
+            let (x, y) = (k % width, k / width);
+            across(k, 1, x, width).or_else(|| across(k, width, y, height)).unwrap_or(layer[k])
+        })
+        .collect()
+}
+
 /// Where something ends in front of something else, and where faces meet at an angle.
 ///
 /// Within a body, depth jumps between two samples where it changes there by more than `step` beyond twice of what it does
@@ -323,6 +361,29 @@ mod tests {
             let middle = image.get(image.width() / 2, image.height() / 2);
             let corner = image.get(image.width() / 8, image.height() / 8);
             assert_eq!((middle, corner), (red, blue));
+        }
+    }
+
+    /// A slit between two parts of a body is closed where it is narrower than a pixel.
+    #[test]
+    fn parts_that_nearly_meet_show_no_slit() {
+        for (half, is_seen) in [(0.009, false), (0.05, true)] {
+            let mut body = square(0.0, 1.0, Paint::Plain(RGBColor(200, 0, 0)));
+            let other = Body::of_polygons(
+                [[half, -1.0], [1.0, -1.0], [1.0, 1.0], [half, 1.0]].map(|[x, y]| Vector::<3>::new(x, y, 0.0)).to_vec(),
+                [&[0u32, 1, 2, 3][..]].into_iter(),
+                Paint::Plain(RGBColor(200, 0, 0)),
+            );
+            body.points.iter_mut().for_each(|x| x.x = if x.x > 0.5 { -half } else { x.x.min(-half) });
+            let first = body.points.len() as u32;
+            body.points.extend(other.points);
+            body.triangles.extend(other.triangles.iter().map(|t| t.map(|k| k + first)));
+            body.normals.extend(other.normals);
+            let camera = Camera::new(&Vector::<3>::z(), &Vector::<3>::y(), body.seen(), [0.0, 0.0, 40.0, 40.0]);
+            let image = render(&[body], &camera, Look::Solid).unwrap();
+            let row = image.height() / 3;
+            let line: Vec<_> = (image.width() / 4..3 * image.width() / 4).map(|x| image.get(x, row)).collect();
+            assert_eq!(line.iter().any(|c| *c != line[0]), is_seen, "{half}");
         }
     }
 

@@ -38,6 +38,12 @@ impl ContactShown {
         if self.carries == Carried::Force { traction * value("weight") } else { traction }
     }
 
+    /// The force at a tested point.
+    pub fn force(&self, k: usize) -> Vector<3> {
+        let weight = self.fields.array("weight").filter(|_| self.carries != Carried::Force).map_or(1.0, |w| w[k]);
+        self.carried(k) * weight
+    }
+
     /// The points that touch.
     pub fn closed(&self) -> Vec<usize> {
         let pressure = self.fields.array("contact_pressure").unwrap_or_default();

@@ -43,6 +43,37 @@ struct View {
     look: Look,
     /// Whether bodies end at the edge of the picture.
     is_part: bool,
+    /// From where it is seen, in space.
+    from: Vector<3>,
+    rigid: Rigid,
+}
+
+/// Whether rigid bodies are drawn in space.
+#[derive(Clone, Copy, PartialEq)]
+enum Rigid {
+    Drawn,
+    LeftOut,
+}
+
+/// From where bodies in space are seen.
+fn usual() -> Vector<3> {
+    Vector::<3>::new(1.0, -1.6, 0.9)
+}
+
+/// From where a face that is touched is seen, if it looks this little towards the usual side, as a cosine.
+const AVERTED: f64 = 0.2;
+
+/// From where that which touches rigid bodies is seen, where it looks away: from the side to which it looks on the whole,
+/// and half as much from the usual one.
+fn facing_contact(shown: &SystemShown) -> Option<Vector<3>> {
+    if shown.solids().count() != 1 || shown.rigid.is_empty() {
+        return None;
+    }
+    let force = |c: &super::system::ContactShown| c.closed().into_iter().map(|k| c.force(k)).sum::<Vector<3>>();
+    let side = -shown.contacts.iter().map(force).sum::<Vector<3>>().try_normalize(0.0)?;
+    let towards = usual().normalize();
+    let along = side.dot(&towards);
+    (along < AVERTED).then(|| side + (towards - side * along).try_normalize(0.0).unwrap_or_default() * 0.5)
 }
 
 /// The view of a whole state.
@@ -57,7 +88,17 @@ fn view_of(plan: &MechanicsPlan, shown: &SystemShown, title: &str) -> View {
         points.extend(room.map(flat));
     }
     let width = text_width(title, TITLE) + 40.0;
-    View { points, axes: shown.bounds(), room, scale, width, look: Look::Solid, is_part: false }
+    View {
+        points,
+        axes: shown.bounds(),
+        room,
+        scale,
+        width,
+        look: Look::Solid,
+        is_part: false,
+        from: usual(),
+        rigid: Rigid::Drawn,
+    }
 }
 
 fn flat(x: Vector<3>) -> Vector<3> {
@@ -90,12 +131,11 @@ fn scene(
 ) -> Result<String, OutputError> {
     let labels = Labels(plan.head.unit_names());
     let plane = plan.space != Space::ThreeD;
-    let drawn = bodies(shown, &view.scale, !plane);
+    let drawn = bodies(shown, &view.scale, !plane && view.rigid == Rigid::Drawn);
     if view.axes[0].x > view.axes[1].x {
         return Ok(Page::new(SIZE, title, note).finish());
     }
-    let (towards, above) =
-        if plane { (Vector::<3>::z(), Vector::<3>::y()) } else { (Vector::<3>::new(1.0, -1.6, 0.9), Vector::<3>::z()) };
+    let (towards, above) = if plane { (Vector::<3>::z(), Vector::<3>::y()) } else { (view.from, Vector::<3>::z()) };
     // The page has the shape of what is seen, and room for its title.
     let extent = Camera::new(&towards, &above, view.points.iter(), [0.0, 0.0, 1e3, 1e3]).extent();
     let (width, height) = Page::size_for(extent);
@@ -202,9 +242,20 @@ pub fn draw(
     let view = view_of(plan, shown, &title(shown.time));
     let mut drawn = vec![("deformed".to_string(), scene(plan, shown, &view, &title(shown.time), "")?)];
     let size = |[low, high]: [Vector<3>; 2]| (high - low).max();
-    if let Some(frame) = around_contact(shown).filter(|frame| size(*frame) < SMALL * size(view.axes)) {
-        let near = View { points: corners(frame).collect(), axes: frame, room: frame, is_part: true, ..view };
-        drawn.push(("contact".into(), scene(plan, shown, &near, &title(shown.time), "where it touches")?));
+    let averted = (plan.space == Space::ThreeD).then(|| facing_contact(shown)).flatten();
+    let frame = around_contact(shown);
+    let near = frame.filter(|frame| size(*frame) < SMALL * size(view.axes));
+    if near.is_some() || (frame.is_some() && averted.is_some()) {
+        let mut touched = View { width: view.width, ..view_of(plan, shown, &title(shown.time)) };
+        let mut note = "where it touches";
+        if let Some(frame) = near {
+            touched = View { points: corners(frame).collect(), axes: frame, room: frame, is_part: true, ..touched };
+        }
+        if let Some(from) = averted {
+            note = "where it touches, without rigid bodies";
+            touched = View { from, rigid: Rigid::LeftOut, ..touched };
+        }
+        drawn.push(("contact".into(), scene(plan, shown, &touched, &title(shown.time), note)?));
     }
     for curve in shown.curves.iter().filter(|c| !c.forces.is_empty()) {
         drawn.push((format!("axial_force_{}", curve.name), along(curve, &labels, shown.time)));
@@ -216,8 +267,10 @@ pub fn draw(
     }
     if steps.len() > 1 && !plan.system.contacts.is_empty() {
         let names: Vec<&str> = plan.system.contacts.iter().map(|c| c.name()).collect();
+        // Contacts of curves have a length.
+        let measured = if shown.curves.is_empty() { plan.space } else { Space::PlaneStrain };
         let force = |c: &ContactReport| c.force.iter().map(|v| v * v).sum::<f64>().sqrt();
-        drawn.push(("history".into(), history::history(steps, &[], &names, Space::PlaneStrain, &force, &labels)));
+        drawn.push(("history".into(), history::history(steps, &[], &names, measured, &force, &labels)));
     }
     drawn.par_iter().try_for_each(|(name, picture)| save(folder, name, picture))?;
     if drawn.len() > 1 {

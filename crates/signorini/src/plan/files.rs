@@ -50,6 +50,15 @@ impl Planner<'_> {
         if mesh.quality().has_inside() {
             return self.turned_outwards(mesh, &key.file, &format!("the surface in `{}`", key.file));
         }
+        if let Some((closed, distance)) = crate::mesh_file::mended(&mesh) {
+            let done = if distance > 0.0 {
+                format!("corners up to {distance:.1e} apart are joined")
+            } else {
+                "triangles without area are left out".to_string()
+            };
+            self.warn(format!("the surface in `{}` is not quite closed: {done}", key.file));
+            return self.turned_outwards(closed, &key.file, &format!("the surface in `{}`", key.file));
+        }
         Err(self.not_closed(&mesh, &key.file, &format!("the surface in `{}`", key.file)))
     }
 
@@ -72,9 +81,16 @@ impl Planner<'_> {
         let told: Vec<String> =
             counts.iter().filter(|(n, _)| *n > 0).map(|(n, reason)| format!("{n} edges {reason}")).collect();
         let message = format!("{what} is not closed: {}{}", told.join(", "), wrong.unwrap_or_default());
-        self.problem
-            .error(at, message)
-            .help("a rigid body needs an inside: close the holes, or model it by another shape")
+        self.problem.error(at, message).help("a body needs an inside: close the holes, or model it by another shape")
+    }
+
+    /// Says something once.
+    pub(super) fn warn(&self, message: String) {
+        let warning = Warning::from(message);
+        let mut warnings = self.warnings.borrow_mut();
+        if !warnings.contains(&warning) {
+            warnings.push(warning);
+        }
     }
 
     /// A closed surface with its normals outwards: one whose volume is negative is turned round, and that is said.
@@ -94,11 +110,7 @@ impl Planner<'_> {
             return Ok(mesh);
         }
         let warning = format!("{what} is inside out, its volume is {volume:.4e}: it is turned round");
-        let warning = Warning::from(warning);
-        let mut warnings = self.warnings.borrow_mut();
-        if !warnings.contains(&warning) {
-            warnings.push(warning);
-        }
+        self.warn(warning);
         let turned: Vec<[u32; 3]> = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
         TriangleMesh::new(mesh.vertices().to_vec(), &turned).map_err(|e| self.problem.error(at, e.to_string()))
     }

@@ -97,14 +97,23 @@ impl Planner<'_> {
         }
         self.sides_that_are_used(name, &mut made);
         let wrong = |e: CellsError| {
-            let at = match e {
-                CellsError::Memory { .. } => problem.key(&key.mesh.grid),
+            let group = |place: &str| key.groups.get(place.trim_matches('`')).map(|value| problem.key(value));
+            let at = match &e {
+                CellsError::Memory { .. } | CellsError::Box { .. } => problem.key(&key.mesh.grid),
+                CellsError::Fictitious { .. } => {
+                    key.fictitious.as_ref().map_or_else(|| problem.key(&key.geometry), |value| problem.key(value))
+                }
+                CellsError::EmptyPlace { place, .. } => group(place).unwrap_or_else(|| problem.key(&key.geometry)),
                 _ => problem.key(&key.geometry),
             };
             problem.error(&at, format!("`{name}`: {e}"))
         };
         let built = build(&made).map_err(wrong)?;
         let findings = &built.findings;
+        if findings.dropped > 0.0 {
+            let share = findings.dropped / (built.volume + findings.dropped);
+            self.warn(format!("`{name}`: pieces apart from the largest are left out, {share:.1e} of the whole volume"));
+        }
         let [low, high] = built.bounds;
         notes.push(format!(
             "`{name}`: {} cells with material in the box {low:?} to {high:?}, volume {:.6e}{}{}{}",
@@ -299,6 +308,11 @@ impl Planner<'_> {
                 let mesh = self.closed_mesh(file)?;
                 Ok(Shape::Rigid(Arc::new(ClosestPoints { shape: mesh.into(), normals: Normals::Outward })))
             }
+            Stated::LevelSet(key) => {
+                // Where it is negative is all that matters: no distances from it.
+                let expression = self.reader.expression(&key.negative_inside, LENGTH, self.places())?;
+                Ok(Shape::Function(Arc::new(move |x| level(&expression, x))))
+            }
             other if plane => Ok(Shape::Rigid(rigid::shape::<2>(self, other, around)?)),
             other => Ok(Shape::Rigid(rigid::shape::<3>(self, other, around)?)),
         }
@@ -330,17 +344,30 @@ impl Planner<'_> {
         let problem = self.problem;
         let dimension = self.places().len();
         let vector = |values: &List<Value>| self.position(values, LENGTH);
-        let load = |name: &str| self.read_file(&name.to_string()).map(|found| found.1).map_err(|e| e.message);
+        // Files that a header names lie beside it.
+        let folder = std::path::Path::new(&stated.file).parent().map(std::path::Path::to_path_buf).unwrap_or_default();
+        let load = |name: &str| {
+            let beside = folder.join(name).to_string_lossy().into_owned();
+            self.read_file(&beside).map(|found| found.1).map_err(|e| e.message)
+        };
         let told = |e: image::ImageError| problem.error(&stated.file, e.to_string());
         let read = match (&stated.numbers, &stated.counts) {
             (Some(numbers), Some(counts)) => {
                 let (number, endian) = self.stored(numbers)?;
-                let count = counts.iter().map(|n| self.between(n, 1, 1_000_000)).collect::<Result<Vec<_>, _>>()?;
-                let n = count.len();
-                let header = RawHeader { count, spacing: vec![1.0; n], origin: vec![0.0; n], number, endian, skip: 0 };
+                let along = counts.iter().map(|n| self.between(n, 1, 1_000_000)).collect::<Result<Vec<_>, _>>()?;
+                let n = along.len();
+                // Counts are along x, y, z; in the file the last of `axes` runs fastest.
+                let order: Vec<usize> =
+                    stated.axes.as_deref().unwrap_or("zyx").chars().rev().filter_map(|c| "xyz".find(c)).collect();
+                let is_order = order.len() == n && (0..n).all(|k| order.contains(&k));
+                let count = (0..n).map(|k| along[if is_order { order[k] } else { k }]).collect();
+                let header = RawHeader { count, spacing: Vec::new(), origin: vec![0.0; n], number, endian, skip: 0 };
                 let (_, bytes) = self.read_file(&stated.file)?;
                 image::raw::parse(&bytes, &header)
                     .map_err(|wrong| problem.error(&stated.file, format!("`{}`: {wrong}", stated.file)))?
+            }
+            (None, None) if problem.source.folder().join(&stated.file).is_dir() => {
+                image::read(&problem.source.folder().join(&stated.file)).map_err(told)?
             }
             (None, None) => {
                 let (_, first) = self.read_file(&stated.file)?;
@@ -351,16 +378,16 @@ impl Planner<'_> {
             }
         };
         let mut image = self.in_order(stated, read)?;
-        let ending = stated.file.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
-        if stated.spacing.is_none() && !matches!(ending.as_str(), "nrrd" | "nhdr" | "mha" | "mhd" | "nii") {
+        if stated.spacing.is_none() && image.spacing.is_empty() {
             return Err(problem
                 .error(stated, format!("`{}` does not say how large its voxels are", stated.file))
                 .help("spacing = [0.1, 0.1, 0.1], along x, y and z"));
         }
         if let Some(spacing) = &stated.spacing {
             let found = vector(spacing)?;
-            if (0..dimension).any(|k| found[k] <= 0.0) {
-                return Err(problem.error(spacing, "the voxels have no extent").help("positive lengths"));
+            if let Some(k) = (0..dimension).find(|k| found[*k] <= 0.0) {
+                let message = format!("the extent of the voxels along {} is {}", ["x", "y", "z"][k], found[k]);
+                return Err(problem.error(spacing, message).help("positive lengths"));
             }
             image.spacing = (0..dimension).map(|k| found[k]).collect();
         }
@@ -431,7 +458,7 @@ impl Planner<'_> {
         };
         let mut strides = vec![1; n];
         (1..n).for_each(|k| strides[k] = strides[k - 1] * image.count[k - 1]);
-        let pick = |list: &[f64]| place.iter().map(|k| list[*k]).collect::<Vec<f64>>();
+        let pick = |list: &[f64]| place.iter().filter_map(|k| list.get(*k).copied()).collect::<Vec<f64>>();
         let count: Vec<usize> = place.iter().map(|k| image.count[*k]).collect();
         let values = (0..image.values.len())
             .map(|mut index| {

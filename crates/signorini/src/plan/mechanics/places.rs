@@ -124,7 +124,12 @@ impl Planner<'_> {
                 let weakly = body.hold_weakly(on, &hold, &start, Order::First, &mut forces).map_err(misplaced)?;
                 if found.is_empty() && weakly.is_none() {
                     let message = format!("the support `{name}` holds nothing of `{}`", body.name());
-                    return Err(problem.error(&key.on, message));
+                    let wrong = problem.error(&key.on, message);
+                    return Err(if self.space == Space::Axisymmetric {
+                        wrong.help("on the axis the radial displacement is zero by itself: leave this support out")
+                    } else {
+                        wrong
+                    });
                 }
                 out.push(support);
             }

@@ -69,7 +69,11 @@ pub fn step_report(
     let probe = |x: &Vector<3>| {
         let points = shown.bodies.iter().flat_map(|b| {
             let u = b.array("displacement").unwrap_or_default();
-            b.points.iter().zip(u.chunks(3)).map(|(x, u)| (Vector::<3>::from(*x), [u[0], u[1], u[2]]))
+            let stress = b.array("von_mises");
+            let at = move |(k, (x, u)): (usize, (&[f64; 3], &[f64]))| {
+                (Vector::<3>::from(*x), [u[0], u[1], u[2]], stress.map(|s| s[k]))
+            };
+            b.points.iter().zip(u.chunks(3)).enumerate().map(at)
         });
         let nearest = points.min_by(|a, b| (a.0 - x).norm().total_cmp(&(b.0 - x).norm()))?;
         Some(Probe {
@@ -77,7 +81,7 @@ pub fn step_report(
             displacement: nearest.1,
             in_contact: None,
             pressure: None,
-            von_mises: None,
+            von_mises: nearest.2,
         })
     };
     let poses = system.bodies.iter().zip(&plan.kinds).zip(&state.bodies).filter_map(|((body, kind), state)| {

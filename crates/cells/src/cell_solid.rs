@@ -38,7 +38,7 @@ use signorini_mechanics as mechanics;
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{
     Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Direction, Function, Hold, Load, Master, Order,
-    PlaceError, Placed, Sampling, Subspaces,
+    PlaceError, Placed, Samples, Sampling, Subspaces,
 };
 use signorini_solve::blocks::Block;
 use std::collections::BTreeMap;
@@ -421,6 +421,10 @@ impl<const D: usize> Body for CellSolid<D> {
 
     fn size(&self) -> f64 {
         self.size
+    }
+
+    fn samples(&self, state: &BodyState) -> Option<Samples> {
+        Some(self.body.samples(&state.configuration))
     }
 
     fn means(&self, state: &BodyState) -> Option<mechanics::Means> {

@@ -1,14 +1,14 @@
-//! Displacement and stress: at a point, on a lattice of every cell, and on the recovered boundary.
+//! Displacement and stress: at a point, on an even lattice, and of the body as a whole.
 
-use crate::body::{CellBody, Site};
-use crate::region::{BoundaryPoint, Filling};
+use crate::body::CellBody;
+use crate::shapes::spatial;
 use crate::space::Tabulation;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use signorini_fem::cut::End;
-use signorini_fem::elastic::Space;
+use signorini_fem::elastic::{Space, von_mises};
 use signorini_geometry::{Matrix, Point, Vector};
-use signorini_mechanics::Means;
+use signorini_mechanics::{Means, Samples};
 
 /// The state of a body at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,20 +18,6 @@ pub struct PointState<const D: usize> {
     pub gradient: Matrix<D>,
     /// In space; around an axis the third direction is that around it.
     pub stress: Matrix3<f64>,
-}
-
-/// Values on a lattice of points of all cells.
-#[derive(Clone, Debug, Default)]
-pub struct VolumeFields<const D: usize> {
-    pub points: Vec<Point<D>>,
-    /// Boxes between points: two, four or eight each, the first direction fastest.
-    pub boxes: Vec<Vec<usize>>,
-    /// The number of the cell of each box.
-    pub cell: Vec<usize>,
-    /// Whether the middle of each box is in the material.
-    pub material: Vec<bool>,
-    pub displacement: Vec<Vector<D>>,
-    pub stress: Vec<Matrix3<f64>>,
 }
 
 impl<const D: usize> CellBody<D> {
@@ -95,61 +81,47 @@ impl<const D: usize> CellBody<D> {
         self.cell_at(x).map(|cell| self.state_at(cell, x, u))
     }
 
-    /// Displacement and stress on a lattice with `n` boxes along each side of every cell.
-    pub fn volume_fields(&self, u: &[f64], n: usize) -> VolumeFields<D> {
-        let n = n.max(1);
-        let per_cell = (n + 1).pow(D as u32);
-        let states: Vec<Vec<(Point<D>, PointState<D>)>> = (0..self.cells().len())
-            .into_par_iter()
-            .map(|c| {
-                let b = *self.bounds_of(c);
-                (0..per_cell)
-                    .map(|i| {
-                        let at = |k: usize| (i / (n + 1).pow(k as u32) % (n + 1)) as f64 / n as f64;
-                        let x = b.at(&Point::from_fn(|k, _| at(k)));
-                        (x, self.state_at(c, &x, u))
-                    })
-                    .collect()
-            })
-            .collect();
-        let mut out = VolumeFields::default();
-        for (c, list) in states.into_iter().enumerate() {
-            let first = out.points.len();
-            for (x, state) in list {
-                out.points.push(x);
-                out.displacement.push(state.displacement);
-                out.stress.push(state.stress);
+    /// Displacement and stress in the middle of equal boxes that fill the box of the cells, as many along each cell of the
+    /// grid as the degree; zero where there is no material. The stress of a cell with little material is that of its
+    /// neighbour.
+    pub fn samples(&self, u: &[f64]) -> Samples {
+        let bounds = self.tree().bounds();
+        let counts: [usize; D] = self.tree().cells().map(|n| n * self.degree());
+        let state_in = |number: usize| {
+            let mut rest = number;
+            let x = bounds.at(&Point::from_fn(|k, _| {
+                let i = rest % counts[k];
+                rest /= counts[k];
+                (i as f64 + 0.5) / counts[k] as f64
+            }));
+            let cell = self.cell_at(&x).filter(|_| self.region.contains(&x))?;
+            let mut state = self.state_at(cell, &x, u);
+            let stress_cell = self.cells()[cell].stress_cell;
+            if stress_cell != cell {
+                state.stress = self.state_at(stress_cell, &x, u).stress;
             }
-            for i in 0..n.pow(D as u32) {
-                let corner = |c: usize| -> usize {
-                    let at = |k: usize| i / n.pow(k as u32) % n + (c >> k & 1);
-                    first + (0..D).map(|k| at(k) * (n + 1).pow(k as u32)).sum::<usize>()
-                };
-                let corners: Vec<usize> = (0..1 << D).map(corner).collect();
-                let middle = 0.5 * (out.points[corners[0]] + out.points[corners[(1 << D) - 1]]);
-                out.material.push(self.cells()[c].rule.filling == Filling::Full || self.region.contains(&middle));
-                out.cell.push(c);
-                out.boxes.push(corners);
-            }
+            Some(state)
+        };
+        let states: Vec<Option<PointState<D>>> = (0..counts.iter().product()).into_par_iter().map(state_in).collect();
+        let mut out = Samples {
+            origin: spatial(&bounds.min).into(),
+            spacing: [0.0; 3],
+            counts: [0; 3],
+            data: [("material", 1), ("displacement", 3), ("stress", 6), ("von_mises", 1)]
+                .map(|(name, components)| (name.to_string(), components, Vec::new()))
+                .into(),
+        };
+        for k in 0..D {
+            (out.spacing[k], out.counts[k]) = (bounds.size()[k] / counts[k] as f64, counts[k]);
+        }
+        for state in &states {
+            let u = state.as_ref().map_or(Point::<3>::zeros(), |s| spatial(&s.displacement));
+            let s = state.as_ref().map_or(Matrix3::zeros(), |s| s.stress);
+            out.data[0].2.push(f64::from(u8::from(state.is_some())));
+            out.data[1].2.extend(&u);
+            out.data[2].2.extend([s[(0, 0)], s[(1, 1)], s[(2, 2)], s[(0, 1)], s[(1, 2)], s[(0, 2)]]);
+            out.data[3].2.push(von_mises(&s));
         }
         out
-    }
-
-    /// The state at the points of the recovered boundary in a place; the stress of a cell with little material is that of
-    /// its neighbour.
-    pub fn boundary_fields(
-        &self,
-        u: &[f64],
-        place: &dyn Fn(&BoundaryPoint<D>) -> bool,
-    ) -> Vec<(Site<D>, PointState<D>)> {
-        let state = |site: Site<D>| {
-            let mut state = self.state_at(site.cell, &site.x, u);
-            let stress_cell = self.cells()[site.cell].stress_cell;
-            if stress_cell != site.cell {
-                state.stress = self.state_at(stress_cell, &site.x, u).stress;
-            }
-            (site, state)
-        };
-        self.sites(place).into_iter().map(state).collect()
     }
 }

@@ -294,10 +294,27 @@ pub trait Body: Send + Sync {
 
     fn fields(&self, state: &BodyState) -> BodyFields;
 
+    /// What a body in a box of cells is like in the middle of equal boxes that fill its own: none of other bodies.
+    fn samples(&self, _state: &BodyState) -> Option<Samples> {
+        None
+    }
+
     /// What a body in a box of cells is like as a whole: none of other bodies.
     fn means(&self, _state: &BodyState) -> Option<Means> {
         None
     }
+}
+
+/// Named arrays of a body in equal boxes side by side, as an image has them, the first direction fastest.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Samples {
+    /// Lowest corner, before the body deforms.
+    pub origin: [f64; 3],
+    /// Sides of one box, and how many there are; zero along z in the plane.
+    pub spacing: [f64; 3],
+    pub counts: [usize; 3],
+    /// Name, number of components, values box by box.
+    pub data: Vec<(String, usize, Vec<f64>)>,
 }
 
 /// A body as a piece of a material that fills its box.

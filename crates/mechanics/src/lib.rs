@@ -43,7 +43,9 @@ mod slack;
 pub mod surface;
 pub mod system;
 
-pub use body::{Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Hold, Load, Means, PlaceError};
+pub use body::{
+    Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Hold, Load, Means, PlaceError, Samples,
+};
 pub use contact::{Contact, Pairing, SiteMemory};
 pub use curve::Curve;
 pub use density::test_densely;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 pub const MARKER: &str = "log.jsonl";
 const FIRST_LINE: &str = "{\"event\":\"signorini\"";
 /// Everything a run writes.
-const OWN: [&str; 18] = [
+const OWN: [&str; 20] = [
     "summary.json",
     "log.jsonl",
     "history.csv",
@@ -26,6 +26,8 @@ const OWN: [&str; 18] = [
     "paths",
     "rigid",
     "rigid.pvd",
+    "volume",
+    "volume.pvd",
 ];
 
 /// Results that could not be written.

@@ -9,11 +9,12 @@ use crate::report::{UnitNames, vector};
 use signorini_contact::{GapJet, Status};
 use signorini_fem::CellShape;
 use signorini_geometry::Vector;
-use signorini_mechanics::{BodyFields, BodyState, IncrementResult, SiteResult, SystemState, rigid_body};
+use signorini_mechanics::{BodyFields, BodyState, IncrementResult, Samples, SiteResult, SystemState, rigid_body};
 use signorini_paths::darboux::{Darboux, of_points};
 use std::sync::Arc;
 use vtkio::model::{
-    Attribute, Attributes, CellType, Cells, DataSet, PolyDataPiece, UnstructuredGridPiece, VertexNumbers,
+    Attribute, Attributes, CellType, Cells, DataSet, Extent, ImageDataPiece, Piece, PolyDataPiece,
+    UnstructuredGridPiece, VertexNumbers,
 };
 
 /// Rigid bodies are shown this far beyond the others, as a part of their largest extent.
@@ -343,6 +344,35 @@ pub fn vtu(bodies: &[Fields], units: Option<&UnitNames>) -> Result<Vec<u8>, Outp
     with_units("bodies", DataSet::inline(piece), units)
 }
 
+/// A body in the equal boxes of an image as a VTI, values in the boxes.
+///
+/// # Errors
+/// What `vtkio` cannot write.
+pub fn vti(samples: &Samples, units: Option<&UnitNames>) -> Result<Vec<u8>, OutputError> {
+    let attribute = |(name, components, values): &(String, usize, Vec<f64>)| {
+        let name = if name == STRESS[0] { STRESS[1] } else { name };
+        match components {
+            3 => Attribute::vectors(name).with_data(values.clone()),
+            n => Attribute::scalars(name, *n as u32).with_data(values.clone()),
+        }
+    };
+    let extent = Extent::Ranges(samples.counts.map(|n| 0..=n as i32));
+    let piece = ImageDataPiece {
+        extent: extent.clone(),
+        data: Attributes { point: Vec::new(), cell: samples.data.iter().map(attribute).collect() },
+    };
+    // Boxes without extent along z would have no size there.
+    let spacing = samples.spacing.map(|h| if h > 0.0 { h as f32 } else { 1.0 });
+    let data = DataSet::ImageData {
+        extent,
+        origin: samples.origin.map(|x| x as f32),
+        spacing,
+        meta: None,
+        pieces: vec![Piece::Inline(Box::new(piece))],
+    };
+    with_units("volume", data, units)
+}
+
 /// The tested points of a contact as a VTP.
 ///
 /// # Errors
@@ -404,4 +434,29 @@ pub fn rigid_files(plan: &MechanicsPlan, shown: &SystemShown) -> Result<Vec<(Str
             Ok((body.name.clone(), to_bytes("rigid", DataSet::inline(piece))?))
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_body_as_an_image_has_its_boxes_and_units() {
+        let stress = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].repeat(6);
+        let samples = Samples {
+            origin: [-1.0, 0.5, 0.0],
+            spacing: [0.25, 0.5, 0.0],
+            counts: [3, 2, 0],
+            data: vec![("material".into(), 1, vec![1.0; 6]), ("stress".into(), 6, stress)],
+        };
+        let [length, area, force, pressure, energy, time] = ["mm", "mm²", "N", "kPa", "mJ", "s"].map(String::from);
+        let units = UnitNames { length, area, force, pressure, energy, time };
+        let text = String::from_utf8(vti(&samples, Some(&units)).unwrap()).unwrap();
+        for part in ["<ImageData ", "WholeExtent=\"0 3 0 2 0 0\"", "Origin=\"-1 0.5 0\"", "Spacing=\"0.25 0.5 1\""] {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+        let stress = text.split("Name=\"stress_xx_yy_zz_xy_yz_xz\"").nth(1).unwrap();
+        assert!(stress.split("</DataArray>").next().unwrap().contains("kPa"));
+        assert!(text.find("<CellData").unwrap() < text.find("Name=\"material\"").unwrap());
+    }
 }

@@ -250,8 +250,17 @@ impl Model for MechanicsModel {
             folder.write(&format!("rigid/{name}_{number}.vtp"), &file)?;
             rigid.push(name);
         }
+        let mut volumes = Vec::new();
+        for (body, state) in self.plan.system.bodies.iter().zip(&self.state.bodies) {
+            if let Some(samples) = body.samples(state) {
+                let file = format!("volume/{}_{number}.vti", body.name());
+                folder.write(&file, &system::vti(&samples, units.as_ref())?)?;
+                volumes.push(body.name().to_string());
+            }
+        }
         record.add_frame(shown.time, number, &names)?;
-        record.add_rigid(&rigid)
+        record.add_bodies("rigid", &rigid, "vtp")?;
+        record.add_bodies("volume", &volumes, "vti")
     }
 
     fn shown(&self) -> Option<ShownState> {

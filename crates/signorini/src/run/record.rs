@@ -76,18 +76,19 @@ impl Record {
         self.folder.write("contact.pvd", vtk::collection(&surfaces).as_bytes())
     }
 
-    /// Enters the files of the rigid bodies of all frames, `rigid/NAME_N.vtp`, into their collection.
+    /// Enters files of bodies of all frames, `FOLDER/NAME_N.ENDING`, such as `rigid/NAME_N.vtp`, into their collection.
     ///
     /// # Errors
     /// A collection that cannot be written.
-    pub fn add_rigid(&self, names: &[String]) -> Result<(), OutputError> {
+    pub fn add_bodies(&self, folder: &str, names: &[String], ending: &str) -> Result<(), OutputError> {
         if names.is_empty() {
             return Ok(());
         }
-        let of_frame =
-            |(t, n): &(f64, String)| names.iter().map(|b| (*t, format!("rigid/{b}_{n}.vtp"))).collect::<Vec<_>>();
+        let of_frame = |(t, n): &(f64, String)| {
+            names.iter().map(|b| (*t, format!("{folder}/{b}_{n}.{ending}"))).collect::<Vec<_>>()
+        };
         let files: Vec<_> = self.frames.iter().flat_map(of_frame).collect();
-        self.folder.write("rigid.pvd", vtk::collection(&files).as_bytes())
+        self.folder.write(&format!("{folder}.pvd"), vtk::collection(&files).as_bytes())
     }
 
     /// The states of the history, from the one at t = 0 on where that is one of rest.

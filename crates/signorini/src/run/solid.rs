@@ -237,7 +237,7 @@ impl<const D: usize> Model for SolidModel<D> {
         }
         let bodies = self.write_rigid(record, *time, &fields.displacement, &name)?;
         record.add_frame(*time, name, &names)?;
-        record.add_rigid(&bodies)
+        record.add_bodies("rigid", &bodies, "vtp")
     }
 
     fn shown(&self) -> Option<ShownState> {

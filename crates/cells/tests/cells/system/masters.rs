@@ -211,6 +211,22 @@ fn tangents_and_balance_by_stress() {
         &ALL,
     );
     check(
+        "a ball free along an axis",
+        &|| {
+            let sphere = Sphere { center: v(0.0, 0.19, 0.0), radius: 0.2 };
+            // Beside the axis, where all unknowns are free.
+            let b = aabb([0.01, -0.9], [1.0, 0.1]);
+            let places = vec![("skin", Place::boundary(|p| p.normal[1] > 0.5))];
+            let shape = Domain::shape(ball(-Point::<2>::y(), 1.0));
+            let lower = solid("lower", shape, (b, [3, 3]), 3, Space::Axisymmetric, places);
+            let upper = rigid("ball", sphere, Motion::FreeAlongAxis);
+            let contact = contact(("skin", &lower), ("", &upper), Sampling::GaussPoints, NITSCHE);
+            (vec![Box::new(lower), Box::new(upper)], contact)
+        },
+        (2e-3, 20),
+        &ALL,
+    );
+    check(
         "a free ellipsoid",
         &|| {
             let shape = Ellipsoid::new(v(0.03, 0.04, 0.18), [0.5, 0.4, 0.2]).unwrap();

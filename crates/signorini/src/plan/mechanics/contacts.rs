@@ -68,8 +68,11 @@ impl Planner<'_> {
         let body = |part: &Part| system.bodies[part.body].as_ref();
         let points = |part: &Part| body(part).sites(part.group.as_deref(), Sampling::Nodes);
         // A body without points of its own is touched by the other; and the faces of a body that deforms follow a rigid one
-        // better than points on it follow them. Cells also one that is free, unless its points are asked for.
+        // better than points on it follow them. Cells also one that is free, unless its points are asked for. A curve passes
+        // between the points of a surface: its own are tested.
+        let is_edge = body(&parts[0]).curve(parts[0].group.as_deref()).is_some();
         let follows = match (&kinds[parts[0].body], &kinds[parts[1].body]) {
+            (Kind::Solid | Kind::Cells, Kind::Curve { .. }) => !is_edge,
             (Kind::Rigid { is_free, .. }, Kind::Cells) => !is_free || !matches!(key.method, Some(Method::Node(_))),
             (Kind::Rigid { is_free, .. }, Kind::Solid) => !is_free,
             _ => false,
@@ -218,6 +221,13 @@ impl Planner<'_> {
         let (pairs, found) = DiscPairs::new(name, body(first), other, &cover, wanted)
             .map_err(|e| problem.error(key, e.to_string()).help("method.cell_surface = {}"))?;
         let (mut notes, mut warnings) = (Vec::new(), Vec::new());
+        let overlap = pairs.overlap_at_start();
+        if overlap > 0.0 {
+            warnings.push(format!(
+                "contact `{name}`: discs overlap by {overlap:.3e} before anything moves, and push at once: bodies whose discs \
+                 have their centres on the boundary have to start two radii apart (centres = \"within\")"
+            ));
+        }
         for (f, part) in found.iter().zip([first, second]) {
             let body = system.bodies[part.body].name();
             let CoverFindings { discs, radius, spacing, thickness } = *f;
@@ -289,7 +299,10 @@ impl Planner<'_> {
                 (sampling, "cell_surface", k.enforcement.as_ref())
             }
             Some(Method::Curve(k)) => (of_curve, "curve", k.enforcement.as_ref()),
-            Some(Method::GaussPoint(k)) => (Sampling::GaussPoints, "gauss_point", k.enforcement.as_ref()),
+            Some(Method::GaussPoint(k)) => {
+                let word = if matches!(kind, Kind::Cells) { "cell_surface" } else { "gauss_point" };
+                (Sampling::GaussPoints, word, k.enforcement.as_ref())
+            }
             Some(Method::Node(k)) => (Sampling::Nodes, "node", k.enforcement.as_ref()),
             Some(other) => {
                 return Err(problem

@@ -334,6 +334,11 @@ impl<const D: usize> Body for CellSolid<D> {
         })
     }
 
+    fn points_apart(&self, on: Option<&str>) -> Vec<(Point<3>, f64)> {
+        let points = self.surface(on).map_or(&[][..], |surface| self.points_of(surface));
+        points.iter().map(|p| (spatial(&p.x), self.distance_of_points(p.cell))).collect()
+    }
+
     fn test_at_least_every(&mut self, on: Option<&str>, apart: &dyn Fn(&Point<3>) -> f64) {
         self.divide(on, apart);
     }

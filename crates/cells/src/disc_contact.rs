@@ -200,6 +200,15 @@ impl DiscPairs {
         self.surfaces.iter().flat_map(|s| s.discs.iter().map(move |d| (s, d)))
     }
 
+    /// How far discs overlap before anything moves; not positive where none do, or they are neighbours.
+    pub fn overlap_at_start(&self) -> f64 {
+        let at_rest = |(_, d): (&Surface, &Disc)| Now { x: d.start - d.arm, centre: d.start, functions: Vec::new() };
+        let now: Vec<Now> = self.discs().map(at_rest).collect();
+        // Surfaces that touch meet up to rounding.
+        let rounding = 1e-9 * self.surfaces.iter().map(|s| s.radius).fold(0.0, f64::max);
+        self.overlaps(&now).iter().map(|o| o.depth).fold(0.0, f64::max) - rounding
+    }
+
     fn now(&self, at: Bodies<'_>) -> Vec<Now> {
         self.discs()
             .map(|(surface, disc)| {

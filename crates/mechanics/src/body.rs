@@ -218,6 +218,12 @@ pub trait Body: Send + Sync {
     /// points cannot be more leave them.
     fn test_at_least_every(&mut self, _on: Option<&str>, _apart: &dyn Fn(&Point<3>) -> f64) {}
 
+    /// Places on a surface without faces, and how far apart forces near each may act so that its functions follow them: as the
+    /// points of its own quadrature. None where that is not known.
+    fn points_apart(&self, _on: Option<&str>) -> Vec<(Point<3>, f64)> {
+        Vec::new()
+    }
+
     /// A site where it is now.
     fn placed(&self, state: &BodyState, site: &Site) -> Placed;
 

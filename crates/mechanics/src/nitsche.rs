@@ -44,7 +44,8 @@ impl Stress {
         [t.dot(normal), -t.dot(&axes[0]), -t.dot(&axes[1])]
     }
 
-    /// The change of that in an unknown of the pair.
+    /// The change of that in an unknown of the pair. Normal and axes vary as seen from a rigid master, and so does the stress
+    /// here: what turns the master turns the stress backwards.
     pub fn change(
         &self,
         k: usize,
@@ -52,7 +53,8 @@ impl Stress {
         pair: &Pair,
         d: &[[Vector<3>; 2]],
     ) -> [f64; 3] {
-        let (t, dt) = (&self.vector, &self.columns[k]);
+        let t = &self.vector;
+        let dt = self.columns[k] - pair.turn.get(k).map_or_else(Vector::<3>::zeros, |turn| turn.cross(t));
         let along = |i: usize| {
             let turned = d.get(k).map_or(0.0, |d| t.dot(&d[i]));
             -dt.dot(&axes[i]) - turned

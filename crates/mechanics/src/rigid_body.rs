@@ -23,6 +23,8 @@ pub enum Motion {
     Prescribed(PrescribedMotion),
     /// Freely in space, or in the plane along x and y and about z.
     Free { plane: bool },
+    /// Freely along y, the axis of a body of revolution.
+    FreeAlongAxis,
 }
 
 /// A point of a rigid body that is tested for contact, or a ball about it.
@@ -83,6 +85,7 @@ impl RigidBody {
     fn unknown(&self, component: usize) -> Option<u32> {
         match self.motion {
             Motion::Prescribed(_) => None,
+            Motion::FreeAlongAxis => (component == 1).then_some(0),
             Motion::Free { plane: false } => Some(component as u32),
             Motion::Free { plane: true } => [Some(0), Some(1), None, None, None, Some(2)][component],
         }

@@ -193,7 +193,7 @@ pub enum FrontModes {
 #[serde(deny_unknown_fields)]
 pub struct SolidMethod {
     /// How the conditions of contact are enforced; by multipliers if left out, at quadrature points by
-    /// penalties, of cells without friction after Nitsche.
+    /// penalties, of cells after Nitsche.
     pub enforcement: Option<Enforcement>,
 }
 

@@ -79,6 +79,11 @@ impl<const D: usize> CellSolid<D> {
         (sums.iter().zip(&middle).map(site).collect(), far)
     }
 
+    /// How far apart the points of a cell are.
+    pub(super) fn distance_of_points(&self, cell: usize) -> f64 {
+        self.body.bounds_of(cell).size().max() / self.body.points_along() as f64
+    }
+
     /// Replaces the points of a place by those of parts of their cells, where these are farther apart than told.
     pub(super) fn divide(&mut self, on: Option<&str>, apart: &dyn Fn(&Point<3>) -> f64) {
         let name = on.unwrap_or(BOUNDARY);
@@ -86,8 +91,9 @@ impl<const D: usize> CellSolid<D> {
         let points = self.points_of(surface);
         let mut parts: BTreeMap<usize, usize> = BTreeMap::new();
         for p in points {
-            let between = self.body.bounds_of(p.cell).size().max() / self.body.points_along() as f64;
-            let wanted = (between / apart(&spatial(&p.x))).ceil().clamp(1.0, MOST_PARTS as f64) as usize;
+            // As dense as wanted up to rounding.
+            let times = self.distance_of_points(p.cell) / apart(&spatial(&p.x)) - 1e-6;
+            let wanted = times.ceil().clamp(1.0, MOST_PARTS as f64) as usize;
             if wanted > 1 {
                 parts.entry(p.cell).and_modify(|most| *most = wanted.max(*most)).or_insert(wanted);
             }

@@ -162,6 +162,7 @@ impl<'a> AtRigid<'a> {
             unknowns: columns.iter().map(|c| c.unknown).collect(),
             d_gap: columns.iter().map(|c| normal.dot(&c.d)).collect(),
             d_normal: columns.iter().map(|c| hessian * c.d).collect(),
+            turn: if self.foot.unknowns == [None; 6] { Vec::new() } else { columns.iter().map(|c| c.turn).collect() },
             ..Pair::default()
         };
         if order == Order::Second {

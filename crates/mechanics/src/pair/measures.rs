@@ -68,6 +68,8 @@ pub struct Pair {
     pub d_opening: Vec<f64>,
     /// Variation of the normal (seen from the master if that is rigid).
     pub d_normal: Vec<Vector<3>>,
+    /// Turn of the axes from which variations are seen: of a rigid master that is free, else empty.
+    pub turn: Vec<Vector<3>>,
     /// Variation of the slip.
     pub slip: Vec<Vector<3>>,
     /// Slip since the anchor and its variation.
@@ -109,7 +111,7 @@ impl Pair {
         if let SecondVariation::Full(parts) = &mut self.second {
             parts.iter_mut().for_each(widen);
         }
-        let lists = [&mut self.d_normal, &mut self.slip, &mut self.d_elastic, &mut self.axis.variation];
+        let lists = [&mut self.d_normal, &mut self.turn, &mut self.slip, &mut self.d_elastic, &mut self.axis.variation];
         lists.into_iter().filter(|l| !l.is_empty()).for_each(|l| l.resize(m, zero));
     }
 

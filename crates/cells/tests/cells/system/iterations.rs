@@ -39,7 +39,9 @@ fn pressed(solver: LinearSolver, enforcement: Enforcement, mu: Option<f64>) -> (
 #[test]
 fn iterations_find_what_a_factorisation_finds() {
     let penalty = Enforcement::Penalty { wanted_penetration: None };
-    for (enforcement, mu) in [(penalty, None), (Enforcement::Nitsche, None), (penalty, Some(0.2))] {
+    for (enforcement, mu) in
+        [(penalty, None), (Enforcement::Nitsche, None), (penalty, Some(0.2)), (Enforcement::Nitsche, Some(0.2))]
+    {
         let (_, one, by_factor) = pressed(LinearSolver::Direct, enforcement, mu);
         let (_, other, found) = pressed(LinearSolver::Iterative, enforcement, mu);
         assert_eq!(by_factor.solved, Solved::Direct);

@@ -6,7 +6,7 @@ use signorini_cells::facets::FacetBody;
 use signorini_cells::shapes::{HalfSpace, ball, cuboid};
 use signorini_contact::Coulomb;
 use signorini_geometry::mesh::TriangleMesh;
-use signorini_geometry::rigid_shape::Sphere;
+use signorini_geometry::rigid_shape::{Ellipsoid, Sphere};
 use signorini_rope::centreline::{Closure, Continuity};
 use signorini_rope::chain::{Chain, body::Rest};
 use signorini_rope::path::Path;
@@ -48,8 +48,11 @@ fn check(
         let start = system.start();
         let n = system.linearise(&start, 1.0).unwrap().0.len();
         let seed = &mut 5u64;
-        let step: Vec<f64> = (0..n).map(|_| size * noise(seed)).collect();
-        let state = system.advance(&start, &step, 1.0);
+        let mut step = || (0..n).map(|_| size * noise(seed)).collect::<Vec<f64>>();
+        // Slips count from the state before.
+        let before = system.advance(&start, &step(), 1.0);
+        system.accept(&before).unwrap();
+        let state = system.advance(&before, &step(), 1.0);
         let error = tangent_error(&system, &state, 2e-7, columns);
         let with = system.linearise(&state, 1.0).unwrap().0;
         let kept = std::mem::take(&mut system.contacts);
@@ -81,6 +84,14 @@ pub(super) fn disc(name: &str, y: f64, degree: usize) -> CellSolid<2> {
     solid(name, shape, (b, [5, 3]), degree, Space::PlaneStrain, places)
 }
 
+fn block(y: f64, up: f64) -> SolidBody<2> {
+    let rows = [y, y + 0.3 * up];
+    let axes = [vec![-0.5, -0.2, 0.1, 0.5], vec![rows[0].min(rows[1]), rows[0].max(rows[1])]];
+    let mesh = signorini_fem::block::block::<2>(&axes, 1, |x| x);
+    let groups = mesh.groups().clone();
+    SolidBody::new("block", Arc::new(mesh), 2, (ELASTIC, StressLaw::LinearElastic), Space::PlaneStrain, groups).unwrap()
+}
+
 #[test]
 fn tangents_and_balance_in_the_plane() {
     check(
@@ -93,17 +104,6 @@ fn tangents_and_balance_in_the_plane() {
         (2e-3, 20),
         &ALL,
     );
-    let block = |y: f64, up: f64| {
-        let rows = [y, y + 0.3 * up];
-        let mesh = signorini_fem::block::block::<2>(
-            &[vec![-0.5, -0.2, 0.1, 0.5], vec![rows[0].min(rows[1]), rows[0].max(rows[1])]],
-            1,
-            |x| x,
-        );
-        let groups = mesh.groups().clone();
-        SolidBody::new("block", Arc::new(mesh), 2, (ELASTIC, StressLaw::LinearElastic), Space::PlaneStrain, groups)
-            .unwrap()
-    };
     check(
         "elements on cells",
         &|| {
@@ -170,6 +170,71 @@ fn tangents_and_balance_in_space() {
             (vec![Box::new(ball), Box::new(lower)], contact)
         },
         (1e-4, 8),
+        &ALL,
+    );
+}
+
+/// By Nitsche's method, of which the traction is that of the stress of the cells: on other cells, on elements, on a rigid body
+/// that is free to turn.
+#[test]
+fn tangents_and_balance_by_stress() {
+    const NITSCHE: Enforcement = Enforcement::Nitsche;
+    check(
+        "discs",
+        &|| {
+            let (upper, lower) = (disc("upper", 0.985, 3), disc("lower", -1.0, 3));
+            let contact = contact(("skin", &upper), ("skin", &lower), Sampling::GaussPoints, NITSCHE);
+            (vec![Box::new(upper), Box::new(lower)], contact)
+        },
+        (2e-3, 20),
+        &ALL,
+    );
+    check(
+        "cells on elements",
+        &|| {
+            let (upper, lower) = (disc("upper", 0.985, 3), block(0.0, -1.0));
+            let contact = contact(("skin", &upper), ("boundary", &lower), Sampling::GaussPoints, NITSCHE);
+            (vec![Box::new(upper), Box::new(lower)], contact)
+        },
+        (2e-3, 20),
+        &ALL,
+    );
+    check(
+        "a free ellipse",
+        &|| {
+            let shape = Ellipsoid::new(v(0.1, 0.18, 0.0), [0.4, 0.2, 1.0]).unwrap();
+            let (lower, ellipse) = (disc("lower", -1.0, 3), rigid("ellipse", shape, Motion::Free { plane: true }));
+            let contact = contact(("skin", &lower), ("", &ellipse), Sampling::GaussPoints, NITSCHE);
+            (vec![Box::new(lower), Box::new(ellipse)], contact)
+        },
+        (2e-3, 20),
+        &ALL,
+    );
+    check(
+        "a ball free along an axis",
+        &|| {
+            let sphere = Sphere { center: v(0.0, 0.19, 0.0), radius: 0.2 };
+            // Beside the axis, where all unknowns are free.
+            let b = aabb([0.01, -0.9], [1.0, 0.1]);
+            let places = vec![("skin", Place::boundary(|p| p.normal[1] > 0.5))];
+            let shape = Domain::shape(ball(-Point::<2>::y(), 1.0));
+            let lower = solid("lower", shape, (b, [3, 3]), 3, Space::Axisymmetric, places);
+            let upper = rigid("ball", sphere, Motion::FreeAlongAxis);
+            let contact = contact(("skin", &lower), ("", &upper), Sampling::GaussPoints, NITSCHE);
+            (vec![Box::new(lower), Box::new(upper)], contact)
+        },
+        (2e-3, 20),
+        &ALL,
+    );
+    check(
+        "a free ellipsoid",
+        &|| {
+            let shape = Ellipsoid::new(v(0.03, 0.04, 0.18), [0.5, 0.4, 0.2]).unwrap();
+            let (lower, stone) = (cap("lower", -1.0), rigid("stone", shape, Motion::Free { plane: false }));
+            let contact = contact(("skin", &lower), ("", &stone), Sampling::GaussPoints, NITSCHE);
+            (vec![Box::new(lower), Box::new(stone)], contact)
+        },
+        (2e-3, 8),
         &ALL,
     );
 }

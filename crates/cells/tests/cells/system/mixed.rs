@@ -1,7 +1,7 @@
 //! Cells pressed on finer elements: force and pressure by Nitsche's method, with points as dense as these need.
 
 use super::*;
-use signorini_cells::shapes::ball;
+use signorini_cells::shapes::{HalfSpace, ball};
 use signorini_solid::{SolidBody, StressLaw};
 
 /// A quarter of a disc below the origin in elements, fine where it is touched.
@@ -85,4 +85,40 @@ fn pressure_on_finer_elements_does_not_ripple() {
     let (force, peak, scatter) = press(true);
     assert!(force.abs() < 2e-3 && peak.abs() < 1e-2 && scatter < 1e-2);
     assert!(press(false).2 > 5.0 * scatter);
+}
+
+/// Half of a disc pressed on a block of cells half as large: with points as dense as those of the block Newton's method ends; with
+/// its own it opens and closes the same sites for ever.
+#[test]
+fn coarse_cells_on_finer_ones_converge() {
+    let b = aabb([-1.0, 0.0], [1.0, 1.0]);
+    let skin = Place::boundary(|p| p.x[1] < 0.3);
+    let places = vec![("middle", Place::high(1)), ("skin", skin)];
+    let disc = Domain::shape(ball(Point::<2>::y(), 1.0));
+    let upper = solid("upper", disc, (b, [10, 5]), 3, Space::PlaneStrain, places);
+    let below = Domain::shape(HalfSpace { point: Point::<2>::zeros(), normal: Vector::<2>::y() });
+    let b = aabb([-1.0, -1.0], [1.0, 0.05]);
+    let lower = solid("lower", below, (b, [20, 11]), 3, Space::PlaneStrain, vec![("base", Place::low(1))]);
+    let mut bodies: Vec<Box<dyn Body>> = vec![Box::new(upper), Box::new(lower)];
+    let [a, b] = [part(0, "skin"), part(1, "boundary")];
+    let count = bodies[0].sites(Some("skin"), Sampling::GaussPoints).unwrap().len();
+    test_densely(&mut bodies, [&a, &b]);
+    let touch = ((a, &*bodies[0]), (b, &*bodies[1]));
+    let contact = Contact::new("touch", touch.0, touch.1, Sampling::GaussPoints, Enforcement::Nitsche).unwrap();
+    assert!(contact.sites().len() > 3 * count / 2, "{} of {count}", contact.sites().len());
+    let mut system = System {
+        supports: vec![
+            support(0, "middle", [constant(0.0), constant(-0.02), None]),
+            support(1, "base", [constant(0.0), constant(0.0), None]),
+        ],
+        bodies,
+        contacts: vec![Box::new(contact)],
+        ..System::default()
+    };
+    let (_, found) = solve(&mut system);
+    println!("{} iterations, {:?}", found.iterations, found.support_forces);
+    assert!(found.iterations <= 12, "{}", found.iterations);
+    assert!((found.support_forces[0][0] + found.support_forces[1][0]).norm() < 1e-10);
+    // That of cells as large as those of the block.
+    assert!((-found.support_forces[0][0][1] / 0.006057 - 1.0).abs() < 2e-3);
 }

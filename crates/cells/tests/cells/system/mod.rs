@@ -4,6 +4,7 @@ mod bodies;
 mod contacts;
 mod descriptions;
 mod discs;
+mod friction;
 mod images;
 mod iterations;
 mod large;

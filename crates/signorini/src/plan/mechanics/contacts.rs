@@ -68,10 +68,16 @@ impl Planner<'_> {
         let body = |part: &Part| system.bodies[part.body].as_ref();
         let points = |part: &Part| body(part).sites(part.group.as_deref(), Sampling::Nodes);
         // A body without points of its own is touched by the other; and the faces of a body that deforms follow a rigid one
-        // better than points on it follow them.
-        let is_driven = |part: &Part| matches!(kinds[part.body], Kind::Rigid { is_free: false, .. });
-        let deforms = |part: &Part| matches!(kinds[part.body], Kind::Solid | Kind::Cells);
-        let has_points = points(&parts[0]).is_ok() && !(is_driven(&parts[0]) && deforms(&parts[1]));
+        // better than points on it follow them. Cells also one that is free, unless its points are asked for. A curve passes
+        // between the points of a surface: its own are tested.
+        let is_edge = body(&parts[0]).curve(parts[0].group.as_deref()).is_some();
+        let follows = match (&kinds[parts[0].body], &kinds[parts[1].body]) {
+            (Kind::Solid | Kind::Cells, Kind::Curve { .. }) => !is_edge,
+            (Kind::Rigid { is_free, .. }, Kind::Cells) => !is_free || !matches!(key.method, Some(Method::Node(_))),
+            (Kind::Rigid { is_free, .. }, Kind::Solid) => !is_free,
+            _ => false,
+        };
+        let has_points = points(&parts[0]).is_ok() && !follows;
         if !has_points && points(&parts[1]).is_ok() {
             parts.swap(0, 1);
             on.swap(0, 1);
@@ -94,15 +100,11 @@ impl Planner<'_> {
             Some(problem::Body::Rope(rope)) => rope.continuity != Some(problem::Continuity::C1),
             _ => false,
         };
-        let by_stress = self.takes_stress(key, [&slave, &master], (system, kinds));
+        // The stress of cells keeps them from what they touch, if nothing else is stated: their pressure then does not ripple.
+        // Lines of load have penalties.
+        let by_stress = !matches!(kinds[master.body], Kind::Curve { .. });
         let is_rigid = body(&slave).is_rigid();
         let (sampling, enforcement, method) = self.system_method(key, (is_rigid, by_stress), straight, kind)?;
-        // The turn of a free body would have to turn the stress of the other with it.
-        if enforcement == Kept::Nitsche && body(&master).is_rigid() && body(&master).unknowns() > 0 {
-            return Err(problem
-                .error(key, "Nitsche's method is not for contact with a free rigid body")
-                .help("enforcement.penalty = {}"));
-        }
         if sampling == Sampling::GaussPoints {
             test_densely(&mut system.bodies, [&slave, &master]);
         }
@@ -129,20 +131,6 @@ impl Planner<'_> {
         let along_a_curve = matches!(kind, Kind::Curve { .. });
         let tested = Tested { along_a_curve, ..Tested::by(method, contact.axis) };
         Ok((Box::new(contact), tested))
-    }
-
-    /// Whether the stress of cells is what keeps them from what they touch, if nothing else is stated: their pressure then does
-    /// not ripple. Friction, free rigid bodies, lines of load and pairs within one body, which stay symmetric, have penalties.
-    fn takes_stress(
-        &self,
-        key: &problem::Contact,
-        [slave, master]: [&Part; 2],
-        (system, kinds): (&System, &[Kind]),
-    ) -> bool {
-        let other = &system.bodies[master.body];
-        let is_free = other.is_rigid() && other.unknowns() > 0;
-        let is_surface = !matches!(kinds[master.body], Kind::Curve { .. });
-        key.friction.is_none() && slave.body != master.body && is_surface && !is_free
     }
 
     /// Contact between two curves, or of one with itself, where no other method is stated.
@@ -233,6 +221,13 @@ impl Planner<'_> {
         let (pairs, found) = DiscPairs::new(name, body(first), other, &cover, wanted)
             .map_err(|e| problem.error(key, e.to_string()).help("method.cell_surface = {}"))?;
         let (mut notes, mut warnings) = (Vec::new(), Vec::new());
+        let overlap = pairs.overlap_at_start();
+        if overlap > 0.0 {
+            warnings.push(format!(
+                "contact `{name}`: discs overlap by {overlap:.3e} before anything moves, and push at once: bodies whose discs \
+                 have their centres on the boundary have to start two radii apart (centres = \"within\")"
+            ));
+        }
         for (f, part) in found.iter().zip([first, second]) {
             let body = system.bodies[part.body].name();
             let CoverFindings { discs, radius, spacing, thickness } = *f;
@@ -304,7 +299,10 @@ impl Planner<'_> {
                 (sampling, "cell_surface", k.enforcement.as_ref())
             }
             Some(Method::Curve(k)) => (of_curve, "curve", k.enforcement.as_ref()),
-            Some(Method::GaussPoint(k)) => (Sampling::GaussPoints, "gauss_point", k.enforcement.as_ref()),
+            Some(Method::GaussPoint(k)) => {
+                let word = if matches!(kind, Kind::Cells) { "cell_surface" } else { "gauss_point" };
+                (Sampling::GaussPoints, word, k.enforcement.as_ref())
+            }
             Some(Method::Node(k)) => (Sampling::Nodes, "node", k.enforcement.as_ref()),
             Some(other) => {
                 return Err(problem

@@ -211,23 +211,20 @@ impl Planner<'_> {
         })
     }
 
-    /// Ropes and beams lie in space; free rigid bodies in space or in the plane.
+    /// Ropes and beams lie in space.
     fn check_space(&self) -> Result<(), CaseError> {
         let problem = self.problem;
         for (name, body) in &problem.bodies {
             let fits = match body {
                 Body::Rope(_) | Body::Beam(_) => self.space == Space::ThreeD,
                 Body::Solid(_) | Body::Cells(_) => !matches!(self.space, Space::Line | Space::Plane),
-                // Around an axis a body can be at rest or moved, but is no body that moves freely.
-                Body::Rigid(rigid) if self.space == Space::Axisymmetric => {
-                    !matches!(rigid.motion, Some(Motion::Free(_)))
-                }
+                Body::Rigid(_) if self.space == Space::Axisymmetric => true,
                 _ => matches!(self.space, Space::ThreeD | Space::PlaneStrain | Space::PlaneStress),
             };
             if !fits {
                 return Err(problem
                     .error(&problem.space, format!("the body `{name}` does not lie in this space"))
-                    .help("ropes and beams: space = \"3d\"; free rigid bodies: \"3d\" or \"plane_strain\""));
+                    .help("ropes and beams: space = \"3d\""));
             }
         }
         Ok(())

@@ -31,7 +31,7 @@ impl Planner<'_> {
             (Some(method @ Method::Mortar(_)), Some((part, what))) => {
                 return Err(problem
                     .error(method, format!("`{}` {what}", body(part).name()))
-                    .help("method.gauss_point = {}  or  method.node = {}, or leave the method out"));
+                    .help("method.gauss_point = {}  or  method.node = {}, of cells  method.cell_surface = {}, or leave the method out"));
             }
             // The axis of friction that turns with a free body is known at single points only.
             (None, None) if !matches!(kinds[master.body], Kind::Rigid { is_free: true, .. }) => None,

@@ -37,7 +37,10 @@ impl Planner<'_> {
                 if let Some(stated) = &free.center {
                     centre = self.position(stated, LENGTH)?;
                 }
-                Motion::Free { plane: self.space != Space::ThreeD }
+                match self.space {
+                    Space::Axisymmetric => Motion::FreeAlongAxis,
+                    space => Motion::Free { plane: space != Space::ThreeD },
+                }
             }
             _ => {
                 let wrong = wrong.clone();

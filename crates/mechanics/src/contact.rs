@@ -118,7 +118,8 @@ impl Contact {
         } else {
             sites.iter().map(|s| slave.1.site_stiffness(s) / s.weight).collect()
         };
-        if enforcement.takes_stress() && slave.0.body == master.0.body {
+        // Of a place that touches itself both sides are tested, and each carries one half.
+        if slave.0 == master.0 {
             sites.iter_mut().for_each(|s| s.weight *= 0.5);
         }
         let both_rigid = slave.1.is_rigid() && master.1.is_rigid();

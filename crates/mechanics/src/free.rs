@@ -4,13 +4,82 @@ use crate::equilibrium::Problem;
 use crate::increment_error::IncrementError;
 use crate::linear_solver::Stiffness;
 use crate::points::Order;
-use crate::system::SystemState;
+use crate::system::{AssemblyError, System, SystemState};
+use nalgebra::{DMatrix, DVector};
 use signorini_geometry::Vector;
 
 /// What holds a body when springs a hundred times weaker than its load per size carry so much of it: nothing else does.
 const CARRIES: f64 = 0.1;
 /// A body that weak springs let go so many sizes away is not held.
 pub(crate) const AWAY: f64 = 10.0;
+
+/// Share of what holds a body most that rounding leaves of what does not hold it, and share of its own stiffness.
+const NOT_HELD: f64 = 1e-10;
+const ROUNDING: f64 = 1e3 * f64::EPSILON;
+
+impl System {
+    /// A body of small strains that no contact can hold, by its number, and a rigid motion of it against which nothing else
+    /// holds it.
+    ///
+    /// # Errors
+    /// Supports and loads that cannot act.
+    pub fn unheld(&self) -> Result<Option<(usize, String)>, AssemblyError> {
+        let may_touch = |k: usize| self.contacts.iter().any(|c| c.bodies().contains(&k));
+        let alone = |k: &usize| self.bodies[*k].is_linear() && self.bodies[*k].unknowns() > 0 && !may_touch(*k);
+        for k in (0..self.bodies.len()).filter(alone) {
+            if let Some(motion) = self.free_motion(k)? {
+                return Ok(Some((k, motion)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// A rigid motion of a body against which nothing holds it at rest: neither supports nor springs.
+    fn free_motion(&self, k: usize) -> Result<Option<String>, AssemblyError> {
+        let at = self.start();
+        let (first, count) = self.numbering();
+        let range = first[k] as usize..first[k] as usize + self.bodies[k].unknowns();
+        let modes = self.bodies[k].rigid_modes(&at.bodies[k]);
+        // Turns about the origin are almost translations of a body far from it: only what they add counts.
+        let mut basis: Vec<(usize, DVector<f64>)> = Vec::new();
+        for (number, mode) in modes.iter().enumerate() {
+            let mut x = DVector::from_column_slice(mode);
+            let whole = x.norm();
+            (0..2).for_each(|_| basis.iter().for_each(|(_, b)| x -= b * b.dot(&x)));
+            if x.norm() > NOT_HELD * whole {
+                basis.push((number, x.normalize()));
+            }
+        }
+        let out = self.assemble_with(&at, 0.0, Order::Second, Stiffness::KeptByBodies)?;
+        let equations: Vec<Vec<(u32, f64)>> =
+            out.single.iter().chain(&out.coupled).map(|held| held.constraint.terms.clone()).collect();
+        let scale = self.row_sizes(&out, Stiffness::KeptByBodies)[range.clone()].iter().fold(0.0f64, |m, s| m.max(*s));
+        let in_all = |x: &DVector<f64>| {
+            let mut all = vec![0.0; count];
+            all[range.clone()].copy_from_slice(x.as_slice());
+            all
+        };
+        let in_all: Vec<Vec<f64>> = basis.iter().map(|(_, x)| in_all(x)).collect();
+        let forces = self.products(out, &in_all);
+        let work = |i: usize, j: usize| in_all[i].iter().zip(&forces[j]).map(|(x, f)| x * f).sum::<f64>();
+        let mut held = DMatrix::from_fn(basis.len(), basis.len(), |i, j| work(i, j) / scale);
+        for terms in equations {
+            let size: f64 = terms.iter().map(|t| t.1 * t.1).sum();
+            let along = |x: &Vec<f64>| terms.iter().map(|(u, c)| c * x[*u as usize]).sum::<f64>();
+            let row = DVector::from_iterator(basis.len(), in_all.iter().map(along));
+            held.ger(1.0 / size.max(f64::MIN_POSITIVE), &row, &row, 1.0);
+        }
+        let nothing = (NOT_HELD * held.clone().symmetric_eigenvalues().max()).max(ROUNDING);
+        let is_free = |i: usize| held.column(i).amax() <= nothing;
+        // What is free by itself is named first; otherwise some combination is.
+        if let Some(i) = (0..basis.len()).find(|i| is_free(*i)) {
+            let (kind, axis) = (["moving along", "turning about"][basis[i].0 / 3], ["x", "y", "z"][basis[i].0 % 3]);
+            return Ok(Some(format!("{kind} {axis}")));
+        }
+        let least = held.symmetric_eigenvalues().min();
+        Ok((least <= nothing).then(|| "a turn about some axis".to_string()))
+    }
+}
 
 impl Problem<'_> {
     /// The body that springs let go, or that nothing but springs holds.
@@ -98,7 +167,7 @@ impl Problem<'_> {
                 let moved = match &matrix {
                     Some(matrix) => matrix.multiply(&x),
                     None => match assemble() {
-                        Ok(again) => self.system.product(again, &x),
+                        Ok(again) => self.system.products(again, &[x]).concat(),
                         Err(_) => return error,
                     },
                 };

@@ -58,6 +58,19 @@ fn linear_field<const D: usize>(space: Space, degree: usize, n: usize) -> [f64; 
         let n = turned * Vector::<3>::from_fn(|k, _| if k < D { normal[k] } else { 0.0 });
         errors[1] = errors[1].max((now.outward.unwrap() - n.normalize()).norm());
     }
+    let samples = system.bodies[0].samples(&state.bodies[0]).unwrap();
+    let [material, displacement, stresses, _] = &samples.data[..] else { panic!() };
+    let place = |i: usize| {
+        [i % samples.counts[0], i / samples.counts[0] % samples.counts[1], i / samples.counts[0] / samples.counts[1]]
+    };
+    for (i, there) in material.2.iter().enumerate() {
+        let x = Point::<3>::from_fn(|k, _| samples.origin[k] + (place(i)[k] as f64 + 0.5) * samples.spacing[k]);
+        let is_in = (0..D).map(|k| normal[k] * x[k]).sum::<f64>() < 0.62;
+        assert_eq!(*there, f64::from(u8::from(is_in)));
+        let wanted = Vector::<3>::from_fn(|k, _| if k < D { exact(&x)[k] } else { 0.0 }) * *there;
+        errors[0] = errors[0].max((Vector::<3>::from_column_slice(&displacement.2[3 * i..3 * i + 3]) - wanted).norm());
+        errors[0] = errors[0].max((stresses.2[6 * i + 3] - stress[(0, 1)] * there).abs() / ELASTIC.youngs_modulus);
+    }
     println!("{space:?}, degree {degree}: displacement {:e}, normal {:e}", errors[0], errors[1]);
     let error = errors[0].max(errors[1]);
     let forces: Vector<3> = found.support_forces.iter().map(|f| f[0]).sum();
@@ -189,6 +202,10 @@ fn rigid_motions_and_resultants_on_refined_cells() {
         .sum();
     assert!((shown / area - 1.0).abs() < 3e-3, "{shown} {area}");
     assert_eq!(fields.point_data[0].2.len(), 6 * fields.points.len());
+    // So is its image.
+    let samples = system.bodies[0].samples(&state.bodies[0]).unwrap();
+    let sampled = samples.data[0].2.iter().sum::<f64>() * samples.spacing[0] * samples.spacing[1];
+    assert!((sampled / area - 1.0).abs() < 0.05, "{sampled} {area}");
 }
 
 /// Springs on the recovered boundary and a support there make the tangent that differences tell.
@@ -230,4 +247,26 @@ fn what_cannot_be_is_told() {
     let force = Load::BodyForce(&|_| Vector::<3>::x());
     let on = Some("boundary");
     assert!(refused(body.load(on, &force, &start, Order::First, &mut out).unwrap_err()).contains("no volume"));
+}
+
+/// What supports and springs leave free is told before anything is solved, also of a body far from the origin.
+#[test]
+fn a_body_that_nothing_holds_is_told() {
+    for far in [0.0, 1e3] {
+        let disc = Domain::shape(ball(Point::<2>::new(far, 0.0), 0.8));
+        let b = aabb([far - 1.0, -1.0], [far + 1.0, 1.0]);
+        let places = vec![("right", Place::boundary(move |p| p.x[0] > far + 0.6))];
+        let body = solid("disc", disc, (b, [4, 4]), 2, Space::PlaneStrain, places);
+        let mut system = System { bodies: vec![Box::new(body)], ..System::default() };
+        let told = |system: &System| system.unheld().unwrap().map(|found| found.1);
+        assert_eq!(told(&system).as_deref(), Some("moving along x"));
+        system.supports = vec![support(0, "right", [constant(0.0), None, None])];
+        assert_eq!(told(&system).as_deref(), Some("moving along y"));
+        let spring = TimedLoad::Springs(v(0.0, 2.0, 0.0));
+        system.loads = vec![PlacedLoad { name: "bed".into(), part: part(0, "right"), load: spring }];
+        assert_eq!(told(&system), None);
+        system.supports = vec![support(0, "right", [constant(0.0), constant(0.0), None])];
+        system.loads.clear();
+        assert_eq!(told(&system), None);
+    }
 }

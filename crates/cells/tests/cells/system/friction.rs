@@ -12,7 +12,7 @@ fn half(name: &str, up: f64) -> CellSolid<2> {
     let b = if up > 0.0 { aabb([-1.0, 0.0], [1.0, 1.0]) } else { aabb([-1.0, -1.0], [1.0, 0.0]) };
     let mut tree = CellTree::new(b, [8, 4]).unwrap();
     for reach in [0.3, 0.25] {
-        tree.refine(|leaf| leaf.bounds.clamp(&Point::<2>::zeros()).norm() < reach);
+        tree.refine(|leaf| leaf.bounds.clamp(&Point::<2>::zeros()).norm() < reach).unwrap();
     }
     let middle = if up > 0.0 { Place::high(1) } else { Place::low(1) };
     let skin = Place::boundary(move |p| p.normal[1] * up < -0.8);

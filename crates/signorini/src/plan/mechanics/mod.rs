@@ -180,6 +180,7 @@ impl Planner<'_> {
         let (acting, contacts) = self.system_contacts(&numbers, &mut system, &kinds)?;
         system.contacts = acting;
         system.prepare().map_err(|e| problem.error(&problem.space, e.to_string()))?;
+        self.check_held(&system)?;
         self.check_start(&system, &kinds, &contacts)?;
         self.check_crossings(&system, &kinds, &contacts)?;
         self.tell_stretched(&system, &numbers, &mut warnings)?;
@@ -228,6 +229,22 @@ impl Planner<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Whether something holds each body of small strains.
+    fn check_held(&self, system: &System) -> Result<(), CaseError> {
+        let problem = self.problem;
+        let Some((body, motion)) = system.unheld().map_err(|e| problem.error(&problem.space, e.to_string()))? else {
+            return Ok(());
+        };
+        let name = system.bodies[body].name();
+        let message = format!("nothing holds `{name}` against {motion}");
+        let help = "a support of a place of it, springs, or a contact that it takes part in";
+        Err(match problem.bodies.get(name) {
+            Some(key) => problem.error(key, message),
+            None => problem.error(&problem.space, message),
+        }
+        .help(help))
     }
 
     /// Whether curves start outside of what they touch: as far as their radius and half of their cells may reach in.

@@ -33,6 +33,8 @@ pub(crate) struct Problem<'a> {
     pub(crate) solved: Solved,
     /// Parts of its preconditioner, by which those of the next step may be known.
     pub(crate) inverses: Inverses,
+    /// Whether a body may move freely where no contact holds it, in systems that are factorised.
+    pub(crate) is_free: bool,
     /// Springs on all unknowns of bodies.
     pub(crate) springs: f64,
     /// A share of forces on the unknowns of bodies, and of what constraints lack, that is not there yet.
@@ -162,6 +164,12 @@ impl Equations for Problem<'_> {
     type Error = IncrementError;
 
     fn measure(&mut self, at: &SystemState) -> Result<Measured, IncrementError> {
+        // Without this a body that nothing stops is sought on and on.
+        if self.is_free
+            && let Some(told) = self.carried_away(at)
+        {
+            return Err(IncrementError::NotConverged { history: vec![f64::INFINITY], worst: Some(told) });
+        }
         let out = self.assemble(at, Order::First)?;
         let count = self.is_spin.len();
         let size = self.system.size();
@@ -225,12 +233,12 @@ impl Equations for Problem<'_> {
         let matrix = out.tangent.matrix(n);
         let sizes = matrix.row_sizes();
         let size = self.system.size();
-        if !self.system.has_free_rigid_body()
+        if !self.is_free
             && let Ok(found) = self.analysis.factor(matrix).and_then(|lu| lu.solve(&right))
         {
             return Ok(found);
         }
-        // A ball without friction may turn, a slack rope has no stiffness: a grain of it in the matrix alone keeps them where
+        // A ball without friction may turn, a block on a plane slide, a slack rope has no stiffness: a grain of it in the matrix alone keeps them where
         // they are and changes no solution.
         let mut most = [0.0f64; 2];
         for k in (0..count).filter(|k| !held[*k]) {

@@ -1,10 +1,11 @@
 //! Which body is free to move, and what lacked most where nothing was found.
 
+use crate::body::Contribution;
 use crate::equilibrium::Problem;
 use crate::increment_error::IncrementError;
 use crate::linear_solver::Stiffness;
 use crate::points::Order;
-use crate::system::{AssemblyError, System, SystemState};
+use crate::system::{AssemblyError, System, SystemState, TimedLoad};
 use nalgebra::{DMatrix, DVector};
 use signorini_geometry::Vector;
 
@@ -13,9 +14,8 @@ const CARRIES: f64 = 0.1;
 /// A body that weak springs let go so many sizes away is not held.
 pub(crate) const AWAY: f64 = 10.0;
 
-/// Share of what holds a body most that rounding leaves of what does not hold it, and share of its own stiffness.
+/// Share of what holds a body most that rounding leaves of what does not hold it.
 const NOT_HELD: f64 = 1e-10;
-const ROUNDING: f64 = 1e3 * f64::EPSILON;
 
 impl System {
     /// A body of small strains that no contact can hold, by its number, and a rigid motion of it against which nothing else
@@ -34,10 +34,34 @@ impl System {
         Ok(None)
     }
 
+    /// Whether a body may move freely where no contact holds it: a rigid one, or one of small strains that neither supports
+    /// nor springs hold.
+    pub(crate) fn has_free_body(&self) -> bool {
+        let is_free = |k: usize| {
+            let body = &self.bodies[k];
+            body.is_rigid() || (body.is_linear() && matches!(self.free_motion(k), Ok(Some(_))))
+        };
+        (0..self.bodies.len()).any(|k| self.bodies[k].unknowns() > 0 && is_free(k))
+    }
+
+    /// The derivative of what holds places of a body by terms in its unknowns, and of its springs.
+    fn springs_of(&self, k: usize, at: &SystemState) -> Result<Vec<(Vec<u32>, Vec<f64>)>, AssemblyError> {
+        let (body, state) = (self.bodies[k].as_ref(), &at.bodies[k]);
+        let mut out = Contribution::new(body.unknowns());
+        for load in self.loads.iter().filter(|l| l.part.body == k && matches!(l.load, TimedLoad::Springs(_))) {
+            load.act(body, state, 0.0, Order::Second, &mut out)?;
+        }
+        for support in self.supports.iter().filter(|s| s.part.body == k) {
+            let on = support.part.group.as_deref();
+            support.at(0.0, |hold| body.hold_weakly(on, hold, state, Order::Second, &mut out))?;
+        }
+        Ok(out.blocks)
+    }
+
     /// A rigid motion of a body against which nothing holds it at rest: neither supports nor springs.
     fn free_motion(&self, k: usize) -> Result<Option<String>, AssemblyError> {
         let at = self.start();
-        let (first, count) = self.numbering();
+        let (first, _) = self.numbering();
         let range = first[k] as usize..first[k] as usize + self.bodies[k].unknowns();
         let modes = self.bodies[k].rigid_modes(&at.bodies[k]);
         // Turns about the origin are almost translations of a body far from it: only what they add counts.
@@ -50,26 +74,25 @@ impl System {
                 basis.push((number, x.normalize()));
             }
         }
-        let out = self.assemble_with(&at, 0.0, Order::Second, Stiffness::KeptByBodies)?;
-        let equations: Vec<Vec<(u32, f64)>> =
-            out.single.iter().chain(&out.coupled).map(|held| held.constraint.terms.clone()).collect();
-        let scale = self.row_sizes(&out, Stiffness::KeptByBodies)[range.clone()].iter().fold(0.0f64, |m, s| m.max(*s));
-        let in_all = |x: &DVector<f64>| {
-            let mut all = vec![0.0; count];
-            all[range.clone()].copy_from_slice(x.as_slice());
-            all
-        };
-        let in_all: Vec<Vec<f64>> = basis.iter().map(|(_, x)| in_all(x)).collect();
-        let forces = self.products(out, &in_all);
-        let work = |i: usize, j: usize| in_all[i].iter().zip(&forces[j]).map(|(x, f)| x * f).sum::<f64>();
-        let mut held = DMatrix::from_fn(basis.len(), basis.len(), |i, j| work(i, j) / scale);
-        for terms in equations {
+        let mut held = DMatrix::zeros(basis.len(), basis.len());
+        let (single, coupled) = self.held(&at, 0.0)?;
+        for terms in single.iter().chain(&coupled).map(|held| &held.constraint.terms) {
             let size: f64 = terms.iter().map(|t| t.1 * t.1).sum();
-            let along = |x: &Vec<f64>| terms.iter().map(|(u, c)| c * x[*u as usize]).sum::<f64>();
-            let row = DVector::from_iterator(basis.len(), in_all.iter().map(along));
+            let own =
+                |(u, c): &(u32, f64)| Some((range.contains(&(*u as usize)).then(|| *u as usize - range.start)?, *c));
+            let own: Vec<(usize, f64)> = terms.iter().filter_map(own).collect();
+            let along = |x: &DVector<f64>| own.iter().map(|(u, c)| c * x[*u]).sum::<f64>();
+            let row = DVector::from_iterator(basis.len(), basis.iter().map(|b| along(&b.1)));
             held.ger(1.0 / size.max(f64::MIN_POSITIVE), &row, &row, 1.0);
         }
-        let nothing = (NOT_HELD * held.clone().symmetric_eigenvalues().max()).max(ROUNDING);
+        let springs = self.springs_of(k, &at)?;
+        let largest = springs.iter().flat_map(|s| &s.1).fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
+        for (unknowns, block) in &springs {
+            let n = unknowns.len();
+            let part = DMatrix::from_fn(n, basis.len(), |i, j| basis[j].1[unknowns[i] as usize]);
+            held += part.transpose() * (DMatrix::from_row_slice(n, n, block) * &part) / largest;
+        }
+        let nothing = NOT_HELD * held.clone().symmetric_eigenvalues().max();
         let is_free = |i: usize| held.column(i).amax() <= nothing;
         // What is free by itself is named first; otherwise some combination is.
         if let Some(i) = (0..basis.len()).find(|i| is_free(*i)) {
@@ -167,7 +190,7 @@ impl Problem<'_> {
                 let moved = match &matrix {
                     Some(matrix) => matrix.multiply(&x),
                     None => match assemble() {
-                        Ok(again) => self.system.products(again, &[x]).concat(),
+                        Ok(again) => self.system.product(again, &x),
                         Err(_) => return error,
                     },
                 };

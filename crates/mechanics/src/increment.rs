@@ -229,6 +229,7 @@ impl System {
             solved: *solved,
             inverses: Inverses::default(),
             analysis: Analysis::default(),
+            is_free: !iterates && self.has_free_body(),
             springs: 0.0,
             held_back: None,
             is_spin,
@@ -254,7 +255,7 @@ impl System {
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
         // A free body needs springs until it touches; what is held may take what is out of balance bit by bit.
-        if !self.has_free_rigid_body() {
+        if !problem.is_free {
             match problem.bit_by_bit(start, report) {
                 Err(failed) if is_curable(&failed) => {}
                 found => return found,
@@ -264,16 +265,12 @@ impl System {
             return Err(problem.named(error, start));
         }
         match problem.with_springs(start, error, report) {
-            Err(error) if error != IncrementError::Interrupted && !self.has_free_rigid_body() => {
+            Err(error) if error != IncrementError::Interrupted && !problem.is_free => {
                 problem.springs = 0.0;
                 problem.settling(start, error, report)
             }
             found => found,
         }
-    }
-
-    pub(crate) fn has_free_rigid_body(&self) -> bool {
-        self.bodies.iter().any(|b| b.is_rigid() && b.unknowns() > 0)
     }
 
     /// What rounding of positions leaves of forces.

@@ -117,13 +117,12 @@ impl System {
         sizes
     }
 
-    /// What the tangent at a state makes of displacements of the bodies, iterations or not.
-    pub(crate) fn products(&self, out: Assembled, list: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    /// What the tangent at a state makes of a displacement of the bodies, iterations or not.
+    pub(crate) fn product(&self, out: Assembled, x: &[f64]) -> Vec<f64> {
         let (_, count) = self.numbering();
         let condensed = Condensed::new(out, count);
         let (blocks, _) = self.blocks_and_sets(&condensed);
-        let sum = BlockSum::new(blocks, vec![true; count]);
-        list.iter().map(|x| sum.multiply_all(&x[..count])).collect()
+        BlockSum::new(blocks, vec![true; count]).multiply_all(&x[..count])
     }
 
     /// The matrices of bodies and of what is between them, and the sets of the preconditioner.

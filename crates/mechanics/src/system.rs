@@ -30,7 +30,7 @@ pub struct Support {
 
 impl Support {
     /// What is held at a time.
-    fn at<T>(&self, time: f64, with: impl FnOnce(&Hold<'_>) -> T) -> T {
+    pub(crate) fn at<T>(&self, time: f64, with: impl FnOnce(&Hold<'_>) -> T) -> T {
         let at = |field: &TimeField| {
             let field = Arc::clone(field);
             move |x: &Point<3>| field(x, time)

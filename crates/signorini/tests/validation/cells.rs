@@ -55,6 +55,13 @@ fn each_mistake_of_a_body_of_cells_is_told_at_its_place() {
         ("hertz_cells", "material.linear_elastic", "material.neo_hooke", "linear elastic", "material"),
         ("foam", "spacing = [\"0.25 mm\", \"0.25 mm\", \"0.25 mm\"], ", "", "how large its voxels are", "foam.npy"),
         ("foam", "\"0.25 mm\", \"0.25 mm\", \"0.25 mm\"", "1, 1", "expected 3", "1, 1"),
+        (
+            "plate_holes",
+            "displacement = [0, \"free\"]",
+            "displacement = [\"free\", 0]",
+            "holds `plate` against",
+            "cells",
+        ),
         ("foam", "axes = \"zyx\"", "axes = \"zyz\"", "no order of the directions", "zyz"),
         ("foam", "threshold = 550", "threshold = 99999", "nothing or everything", "geometry"),
         ("foam", ", threshold = 550", "", "neither `threshold` nor", "foam.npy"),

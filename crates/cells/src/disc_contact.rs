@@ -309,13 +309,15 @@ impl Interaction for DiscPairs {
                 deepest[disc] = deepest[disc].max(depth);
             }
         }
+        // Of a surface that touches itself both sides are told, each for one half of the area that touches.
+        let share = if self.surfaces.len() == 1 { 0.5 } else { 1.0 };
         let result = |(k, (_, disc)): (usize, (&Surface, &Disc))| {
             let size = forces[k].norm();
             let touches = deepest[k] > 0.0;
             SiteResult {
                 x: now[k].x,
                 normal: if size > 0.0 { forces[k] / size } else { -disc.normal },
-                weight: disc.site.weight,
+                weight: share * disc.site.weight,
                 gap: touches.then_some(-deepest[k]),
                 pressure: size / disc.site.weight,
                 status: if touches { Status::Slip } else { Status::Open },

@@ -136,6 +136,10 @@ fn the_force_of_a_pore_that_closes_is_that_of_fitted_elements() {
     let (force, closed) = close(0.12, Centres::Within, None);
     println!("pore .12: {force} {}", of(0.12));
     assert!(closed.sites[0].iter().any(|s| s.pressure > 0.0) && (force / of(0.12) - 1.0).abs() < 3e-3);
+    // The length that touches is that of one face, which ends at x = 0.5.
+    let length: f64 = closed.sites[0].iter().filter(|s| s.pressure > 0.0).map(|s| s.weight).sum();
+    println!("touches over {length}");
+    assert!(length > 0.25 && length < 0.5);
     // Action and reaction: discs of both faces carry the same.
     let sum: Vector<3> = closed.sites[0].iter().map(SiteResult::force).sum();
     assert!(sum.norm() < 1e-9, "{sum:e}");

@@ -3,7 +3,8 @@
 //! What a slave carries at a point acts on the functions of the face that the point lies on. Points `s` apart integrate a function
 //! that varies over a length `l` up to a share of the order of `(s/l)²`; what they leave dents the faces one by one, and the
 //! pressure, by penalties or by Nitsche's method, ripples with the dents. Faces of degree `p` and length `h` have
-//! `l = h/p`. Cells tell how far apart their own points are. Between faces on both sides a mortar cuts the pieces; a slave of another kind takes more points.
+//! `l = h/p`. Cells tell how far apart their own points are. Between faces on both sides a mortar cuts the pieces; a slave of
+//! another kind takes more points.
 
 use crate::body::Body;
 use crate::part::Part;
@@ -16,7 +17,8 @@ use signorini_geometry::{Aabb, Point};
 const POINTS: f64 = 6.0;
 
 /// Tests the slave where it is at the start so densely that forces at its points follow the faces of the master. To be called
-/// before the contact is made; of a master that is rigid or a curve, and of a slave with points of its own number, nothing is changed.
+/// before the contact is made; of a master that is rigid or a curve, and of a slave with points of its own number, nothing is
+/// changed.
 pub fn test_densely(bodies: &mut [Box<dyn Body>], [slave, master]: [&Part; 2]) {
     if slave.body == master.body {
         return;

@@ -238,8 +238,8 @@ impl Equations for Problem<'_> {
         {
             return Ok(found);
         }
-        // A ball without friction may turn, a block on a plane slide, a slack rope has no stiffness: a grain of it in the matrix alone keeps them where
-        // they are and changes no solution.
+        // A ball without friction may turn, a block on a plane slide, a slack rope has no stiffness: a grain of it in the matrix
+        // alone keeps them where they are and changes no solution.
         let mut most = [0.0f64; 2];
         for k in (0..count).filter(|k| !held[*k]) {
             let kind = usize::from(self.is_spin[k]);

@@ -15,7 +15,7 @@ macro_rules! example {
 }
 
 /// Cases with mechanics, simplest first.
-pub const GALLERY: [Example; 46] = [
+pub const GALLERY: [Example; 47] = [
     example!("string", "a string on a flat floor, beside the exact solution"),
     example!("axisymmetric", "a round membrane by its radius, beside the exact solution"),
     example!("snap_in", "a sticky membrane: snap-in, pull-off, and the loop between them"),
@@ -53,6 +53,7 @@ pub const GALLERY: [Example; 46] = [
     example!("clasp", "two rods hook into each other and are pulled"),
     example!("knot", "a trefoil knot drawn tight, with friction"),
     example!("hertz_cells", "half a disc of finite cells on a plane: no mesh follows its edge"),
+    example!("hertz_published", "discs of finite cells by both published discretisations, with chords and exact edges"),
     example!("plate_holes", "a plate with a hole in cells of degree 6, beside the solution of Kirsch"),
     example!("ball_cells", "a ball of finite cells between two plates, in space"),
     example!("two_balls", "a ball of finite cells pressed on a ball of finite elements"),

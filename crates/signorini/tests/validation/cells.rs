@@ -60,7 +60,7 @@ fn each_mistake_of_a_body_of_cells_is_told_at_its_place() {
             "displacement = [0, \"free\"]",
             "displacement = [\"free\", 0]",
             "holds `plate` against",
-            "cells",
+            "plate",
         ),
         ("foam", "axes = \"zyx\"", "axes = \"zyz\"", "no order of the directions", "zyz"),
         ("foam", "threshold = 550", "threshold = 99999", "nothing or everything", "geometry"),

@@ -11,6 +11,7 @@ use crate::tree::{CellTree, Leaf};
 use rayon::prelude::*;
 use signorini_fem::QuadraturePoint;
 use signorini_geometry::Aabb;
+use signorini_mechanics::iterative::BESIDE;
 
 /// One cell of so many is looked at beforehand, which costs as much time less.
 const ONE_OF: usize = 16;
@@ -55,7 +56,7 @@ fn bytes_by_sample<const D: usize>(
         Ok(bytes_of(region, tree, leaf, discretisation))
     };
     let bytes = (1..=count).into_par_iter().map(of_sample).collect::<Result<Vec<f64>, CellsError>>()?;
-    Ok(bytes.iter().sum::<f64>() / count.max(1) as f64 * leaves.len() as f64)
+    Ok(BESIDE * bytes.iter().sum::<f64>() / count.max(1) as f64 * leaves.len() as f64)
 }
 
 /// Bytes that a leaf takes: its points, its functions, its matrix, and the inverses of the preconditioner: around one of its

@@ -43,6 +43,16 @@ impl<const D: usize> CellBody<D> {
         PointState { displacement, gradient, stress: self.stress_at(x, &in_space) }
     }
 
+    /// The same with the stress of a neighbour in a cell with little material.
+    pub(crate) fn shown_at(&self, cell: usize, x: &Point<D>, u: &[f64]) -> PointState<D> {
+        let mut state = self.state_at(cell, x, u);
+        let stress_cell = self.cells()[cell].stress_cell;
+        if stress_cell != cell {
+            state.stress = self.state_at(stress_cell, x, u).stress;
+        }
+        state
+    }
+
     /// The body as a piece of a material that fills its box; none around an axis, where a box is a ring.
     pub fn means(&self, u: &[f64]) -> Option<Means> {
         if self.space() == Space::Axisymmetric {
@@ -95,12 +105,7 @@ impl<const D: usize> CellBody<D> {
                 (i as f64 + 0.5) / counts[k] as f64
             }));
             let cell = self.cell_at(&x).filter(|_| self.region.contains(&x))?;
-            let mut state = self.state_at(cell, &x, u);
-            let stress_cell = self.cells()[cell].stress_cell;
-            if stress_cell != cell {
-                state.stress = self.state_at(stress_cell, &x, u).stress;
-            }
-            Some(state)
+            Some(self.shown_at(cell, &x, u))
         };
         let states: Vec<Option<PointState<D>>> = (0..counts.iter().product()).into_par_iter().map(state_in).collect();
         let mut out = Samples {
@@ -119,9 +124,14 @@ impl<const D: usize> CellBody<D> {
             let s = state.as_ref().map_or(Matrix3::zeros(), |s| s.stress);
             out.data[0].2.push(f64::from(u8::from(state.is_some())));
             out.data[1].2.extend(&u);
-            out.data[2].2.extend([s[(0, 0)], s[(1, 1)], s[(2, 2)], s[(0, 1)], s[(1, 2)], s[(0, 2)]]);
+            out.data[2].2.extend(components(&s));
             out.data[3].2.push(von_mises(&s));
         }
         out
     }
+}
+
+/// Stress as it is shown: xx, yy, zz, xy, yz, xz.
+pub(crate) fn components(s: &Matrix3<f64>) -> [f64; 6] {
+    [s[(0, 0)], s[(1, 1)], s[(2, 2)], s[(0, 1)], s[(1, 2)], s[(0, 2)]]
 }

@@ -6,7 +6,7 @@
 //! that coincide.
 
 use crate::body::CellBody;
-use crate::fields::PointState;
+use crate::fields::{PointState, components};
 use crate::region::Filling;
 use crate::shapes::spatial;
 use rayon::prelude::*;
@@ -46,20 +46,8 @@ impl<const D: usize> Shown<D> {
 
     /// Displacement and stress at the points; the stress of a cell with little material is that of its neighbour.
     pub fn fields(&self, body: &CellBody<D>, u: &[f64]) -> BodyFields {
-        let states: Vec<PointState<D>> = (self.points.par_iter())
-            .map(|(cell, x)| {
-                let mut state = body.state_at(*cell, x, u);
-                let stress_cell = body.cells()[*cell].stress_cell;
-                if stress_cell != *cell {
-                    state.stress = body.state_at(stress_cell, x, u).stress;
-                }
-                state
-            })
-            .collect();
-        let mut stress = Vec::with_capacity(6 * states.len());
-        for s in states.iter().map(|s| &s.stress) {
-            stress.extend([s[(0, 0)], s[(1, 1)], s[(2, 2)], s[(0, 1)], s[(1, 2)], s[(0, 2)]]);
-        }
+        let states: Vec<PointState<D>> = self.points.par_iter().map(|(cell, x)| body.shown_at(*cell, x, u)).collect();
+        let stress = states.iter().flat_map(|s| components(&s.stress)).collect();
         let equivalent = states.iter().map(|s| von_mises(&s.stress)).collect();
         BodyFields {
             points: self.points.iter().map(|(_, x)| spatial(x)).collect(),

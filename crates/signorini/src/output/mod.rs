@@ -23,6 +23,7 @@ pub mod solid_state;
 pub mod system;
 pub(crate) mod system_bodies;
 mod system_contacts;
+pub mod system_files;
 pub mod system_pictures;
 pub mod tables;
 pub mod vtk;

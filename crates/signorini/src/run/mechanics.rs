@@ -9,7 +9,7 @@ use super::record::Record;
 use crate::fields::ShownState;
 use crate::output::film::Film;
 use crate::output::system::SystemShown;
-use crate::output::{Folder, OutputError, system, system_pictures};
+use crate::output::{Folder, OutputError, system_files, system_pictures};
 use crate::plan::Head;
 use crate::plan::mechanics::MechanicsPlan;
 use crate::problem::CaseError;
@@ -239,14 +239,15 @@ impl Model for MechanicsModel {
         let units = record.units.clone();
         let number = format!("{index:05}");
         let folder = &record.folder;
-        folder.write(&format!("fields/fields_{number}.vtu"), &system::vtu(&shown.bodies, units.as_ref())?)?;
+        folder.write(&format!("fields/fields_{number}.vtu"), &system_files::vtu(&shown.bodies, units.as_ref())?)?;
         let names: Vec<&str> = self.plan.system.contacts.iter().map(|c| c.name()).collect();
         for (contact, name) in shown.contacts.iter().zip(&names) {
-            folder.write(&format!("contact/{name}_{number}.vtp"), &system::vtp(&contact.fields, units.as_ref())?)?;
-            folder.write(&format!("contact/{name}_{number}.csv"), system::csv(&contact.fields).as_bytes())?;
+            folder
+                .write(&format!("contact/{name}_{number}.vtp"), &system_files::vtp(&contact.fields, units.as_ref())?)?;
+            folder.write(&format!("contact/{name}_{number}.csv"), system_files::csv(&contact.fields).as_bytes())?;
         }
         let mut rigid = Vec::new();
-        for (name, file) in system::rigid_files(&self.plan, shown)? {
+        for (name, file) in system_files::rigid_files(&self.plan, shown)? {
             folder.write(&format!("rigid/{name}_{number}.vtp"), &file)?;
             rigid.push(name);
         }
@@ -254,7 +255,7 @@ impl Model for MechanicsModel {
         for (body, state) in self.plan.system.bodies.iter().zip(&self.state.bodies) {
             if let Some(samples) = body.samples(state) {
                 let file = format!("volume/{}_{number}.vti", body.name());
-                folder.write(&file, &system::vti(&samples, units.as_ref())?)?;
+                folder.write(&file, &system_files::vti(&samples, units.as_ref())?)?;
                 volumes.push(body.name().to_string());
             }
         }

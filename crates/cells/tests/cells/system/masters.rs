@@ -31,6 +31,17 @@ pub(super) fn contact(
     Contact::new("touch", (part(0, slave.0), slave.1), (part(1, master.0), master.1), sampling, how).unwrap()
 }
 
+/// The bodies of a contact, the slave first, and the contact.
+fn pair<S: Body + 'static, M: Body + 'static>(
+    slave: (&str, S),
+    master: (&str, M),
+    sampling: Sampling,
+    how: Enforcement,
+) -> (Vec<Box<dyn Body>>, Contact) {
+    let contact = contact((slave.0, &slave.1), (master.0, &master.1), sampling, how);
+    (vec![Box::new(slave.1), Box::new(master.1)], contact)
+}
+
 /// Moves both bodies at random, and compares the tangent with differences without friction, sticking and slipping; the
 /// forces of the contact have neither resultant nor moment.
 fn check(
@@ -98,8 +109,7 @@ fn tangents_and_balance_in_the_plane() {
         "discs",
         &|| {
             let (upper, lower) = (disc("upper", 0.985, 3), disc("lower", -1.0, 3));
-            let contact = contact(("skin", &upper), ("skin", &lower), Sampling::Nodes, PENALTY);
-            (vec![Box::new(upper), Box::new(lower)], contact)
+            pair(("skin", upper), ("skin", lower), Sampling::Nodes, PENALTY)
         },
         (2e-3, 20),
         &ALL,
@@ -108,8 +118,7 @@ fn tangents_and_balance_in_the_plane() {
         "elements on cells",
         &|| {
             let (upper, lower) = (block(-0.03, 1.0), disc("lower", -1.0, 3));
-            let contact = contact(("boundary", &upper), ("skin", &lower), Sampling::GaussPoints, PENALTY);
-            (vec![Box::new(upper), Box::new(lower)], contact)
+            pair(("boundary", upper), ("skin", lower), Sampling::GaussPoints, PENALTY)
         },
         (2e-3, 20),
         &ALL,
@@ -118,8 +127,7 @@ fn tangents_and_balance_in_the_plane() {
         "cells on elements",
         &|| {
             let (upper, lower) = (disc("upper", 0.985, 3), block(0.0, -1.0));
-            let contact = contact(("skin", &upper), ("boundary", &lower), Sampling::Nodes, PENALTY);
-            (vec![Box::new(upper), Box::new(lower)], contact)
+            pair(("skin", upper), ("boundary", lower), Sampling::Nodes, PENALTY)
         },
         (2e-3, 20),
         &ALL,
@@ -140,8 +148,7 @@ fn tangents_and_balance_in_space() {
         "caps",
         &|| {
             let (upper, lower) = (cap("upper", 0.95), cap("lower", -1.0));
-            let contact = contact(("skin", &upper), ("skin", &lower), Sampling::Nodes, PENALTY);
-            (vec![Box::new(upper), Box::new(lower)], contact)
+            pair(("skin", upper), ("skin", lower), Sampling::Nodes, PENALTY)
         },
         (2e-3, 8),
         &ALL,
@@ -153,8 +160,7 @@ fn tangents_and_balance_in_space() {
             let path = Path::points(&points, Closure::Open).unwrap().sample(6, Continuity::C0).unwrap();
             let rope = Chain::new("rope", &path, 5.0, Rest::Pretension(0.3), 0.05).unwrap();
             let lower = cap("lower", -1.0);
-            let contact = contact(("", &rope), ("skin", &lower), Sampling::Nodes, PENALTY);
-            (vec![Box::new(rope), Box::new(lower)], contact)
+            pair(("", rope), ("skin", lower), Sampling::Nodes, PENALTY)
         },
         (2e-3, 8),
         &ALL,
@@ -166,8 +172,7 @@ fn tangents_and_balance_in_space() {
             let mut ball = rigid("ball", sphere, Motion::Free { plane: false });
             ball.sites = vec![RigidSite { x: v(0.03, 0.04, 0.19), outward: None, radius: 0.2, weight: 1.0 }];
             let lower = cap("lower", -1.0);
-            let contact = contact(("", &ball), ("skin", &lower), Sampling::Nodes, PENALTY);
-            (vec![Box::new(ball), Box::new(lower)], contact)
+            pair(("", ball), ("skin", lower), Sampling::Nodes, PENALTY)
         },
         (1e-4, 8),
         &ALL,
@@ -183,8 +188,7 @@ fn tangents_and_balance_by_stress() {
         "discs",
         &|| {
             let (upper, lower) = (disc("upper", 0.985, 3), disc("lower", -1.0, 3));
-            let contact = contact(("skin", &upper), ("skin", &lower), Sampling::GaussPoints, NITSCHE);
-            (vec![Box::new(upper), Box::new(lower)], contact)
+            pair(("skin", upper), ("skin", lower), Sampling::GaussPoints, NITSCHE)
         },
         (2e-3, 20),
         &ALL,
@@ -193,8 +197,7 @@ fn tangents_and_balance_by_stress() {
         "cells on elements",
         &|| {
             let (upper, lower) = (disc("upper", 0.985, 3), block(0.0, -1.0));
-            let contact = contact(("skin", &upper), ("boundary", &lower), Sampling::GaussPoints, NITSCHE);
-            (vec![Box::new(upper), Box::new(lower)], contact)
+            pair(("skin", upper), ("boundary", lower), Sampling::GaussPoints, NITSCHE)
         },
         (2e-3, 20),
         &ALL,
@@ -204,8 +207,7 @@ fn tangents_and_balance_by_stress() {
         &|| {
             let shape = Ellipsoid::new(v(0.1, 0.18, 0.0), [0.4, 0.2, 1.0]).unwrap();
             let (lower, ellipse) = (disc("lower", -1.0, 3), rigid("ellipse", shape, Motion::Free { plane: true }));
-            let contact = contact(("skin", &lower), ("", &ellipse), Sampling::GaussPoints, NITSCHE);
-            (vec![Box::new(lower), Box::new(ellipse)], contact)
+            pair(("skin", lower), ("", ellipse), Sampling::GaussPoints, NITSCHE)
         },
         (2e-3, 20),
         &ALL,
@@ -220,8 +222,7 @@ fn tangents_and_balance_by_stress() {
             let shape = Domain::shape(ball(-Point::<2>::y(), 1.0));
             let lower = solid("lower", shape, (b, [3, 3]), 3, Space::Axisymmetric, places);
             let upper = rigid("ball", sphere, Motion::FreeAlongAxis);
-            let contact = contact(("skin", &lower), ("", &upper), Sampling::GaussPoints, NITSCHE);
-            (vec![Box::new(lower), Box::new(upper)], contact)
+            pair(("skin", lower), ("", upper), Sampling::GaussPoints, NITSCHE)
         },
         (2e-3, 20),
         &ALL,
@@ -231,8 +232,7 @@ fn tangents_and_balance_by_stress() {
         &|| {
             let shape = Ellipsoid::new(v(0.03, 0.04, 0.18), [0.5, 0.4, 0.2]).unwrap();
             let (lower, stone) = (cap("lower", -1.0), rigid("stone", shape, Motion::Free { plane: false }));
-            let contact = contact(("skin", &lower), ("", &stone), Sampling::GaussPoints, NITSCHE);
-            (vec![Box::new(lower), Box::new(stone)], contact)
+            pair(("skin", lower), ("", stone), Sampling::GaussPoints, NITSCHE)
         },
         (2e-3, 8),
         &ALL,

@@ -1,4 +1,5 @@
 use super::*;
+use signorini_geometry::ImplicitShape;
 use std::f64::consts::PI;
 
 /// A shape from a function with its gradient.

@@ -4,6 +4,7 @@ pub(crate) mod cells;
 pub(super) mod contacts;
 mod curves;
 mod fields;
+mod images;
 mod mortar;
 mod places;
 mod rigid;

@@ -1,0 +1,196 @@
+//! Files of a state of a system: its bodies, its contacts and its rigid bodies for ParaView, contacts as tables.
+
+use super::OutputError;
+use super::level::surface;
+use super::system::{STRESS, SystemShown};
+use super::vtk::{to_bytes, with_units};
+use crate::fields::{FieldArray, Fields};
+use crate::plan::mechanics::MechanicsPlan;
+use crate::report::UnitNames;
+use signorini_fem::CellShape;
+use signorini_mechanics::Samples;
+use vtkio::model::{
+    Attribute, Attributes, CellType, Cells, DataSet, Extent, ImageDataPiece, Piece, PolyDataPiece,
+    UnstructuredGridPiece, VertexNumbers,
+};
+
+fn attributes(fields: &Fields) -> Vec<Attribute> {
+    let attribute = |array: &FieldArray| match array.components {
+        3 => Attribute::vectors(array.name).with_data(array.values.clone()),
+        n => Attribute::scalars(array.name, n as u32).with_data(array.values.clone()),
+    };
+    fields.arrays.iter().map(attribute).collect()
+}
+
+fn topology<'a>(cells: impl Iterator<Item = &'a Vec<u32>> + Clone) -> VertexNumbers {
+    let connectivity: Vec<u64> = cells.clone().flatten().map(|&k| u64::from(k)).collect();
+    let offsets = cells
+        .scan(0, |at, c| {
+            *at += c.len() as u64;
+            Some(*at)
+        })
+        .collect();
+    VertexNumbers::XML { connectivity, offsets }
+}
+
+/// All bodies in one VTU; what a body does not have is zero there, and `body` tells them apart.
+///
+/// # Errors
+/// What `vtkio` cannot write.
+pub fn vtu(bodies: &[Fields], units: Option<&UnitNames>) -> Result<Vec<u8>, OutputError> {
+    let mut all = Fields { name: "bodies".into(), ..Fields::default() };
+    let mut body = Vec::new();
+    for (number, fields) in bodies.iter().enumerate() {
+        let (first, total) = (all.points.len(), all.points.len() + fields.points.len());
+        all.points.extend(&fields.points);
+        body.extend(std::iter::repeat_n(number as f64, fields.points.len()));
+        let moved = |list: &[u32]| list.iter().map(|k| k + first as u32).collect::<Vec<_>>();
+        all.cells.extend(fields.cells.iter().map(|(shape, list)| (*shape, moved(list))));
+        for array in &fields.arrays {
+            if !all.arrays.iter().any(|a| a.name == array.name) {
+                let values = vec![0.0; first * array.components];
+                all.arrays.push(FieldArray { name: array.name, components: array.components, values });
+            }
+        }
+        for own in &mut all.arrays {
+            match fields.arrays.iter().find(|a| a.name == own.name && a.components == own.components) {
+                Some(array) => own.values.extend(&array.values),
+                None => own.values.resize(total * own.components, 0.0),
+            }
+        }
+    }
+    let all = all.scalar("body", body);
+    let kind = |shape: &Option<CellShape>| match shape {
+        Some(CellShape::Line) => CellType::Line,
+        Some(CellShape::Triangle) => CellType::Triangle,
+        Some(CellShape::Quadrilateral) => CellType::Quad,
+        Some(CellShape::Hexahedron) => CellType::Hexahedron,
+        _ => CellType::Polygon,
+    };
+    let piece = UnstructuredGridPiece {
+        points: all.points.iter().flatten().copied().collect::<Vec<f64>>().into(),
+        cells: Cells {
+            cell_verts: topology(all.cells.iter().map(|c| &c.1)),
+            types: all.cells.iter().map(|c| kind(&c.0)).collect(),
+        },
+        data: Attributes { point: attributes(&all), cell: Vec::new() },
+    };
+    with_units("bodies", DataSet::inline(piece), units)
+}
+
+/// A body in the equal boxes of an image as a VTI, values in the boxes.
+///
+/// # Errors
+/// What `vtkio` cannot write.
+pub fn vti(samples: &Samples, units: Option<&UnitNames>) -> Result<Vec<u8>, OutputError> {
+    let attribute = |(name, components, values): &(String, usize, Vec<f64>)| {
+        let name = if name == STRESS[0] { STRESS[1] } else { name };
+        match components {
+            3 => Attribute::vectors(name).with_data(values.clone()),
+            n => Attribute::scalars(name, *n as u32).with_data(values.clone()),
+        }
+    };
+    let extent = Extent::Ranges(samples.counts.map(|n| 0..=n as i32));
+    let piece = ImageDataPiece {
+        extent: extent.clone(),
+        data: Attributes { point: Vec::new(), cell: samples.data.iter().map(attribute).collect() },
+    };
+    // Boxes without extent along z would have no size there.
+    let spacing = samples.spacing.map(|h| if h > 0.0 { h as f32 } else { 1.0 });
+    let data = DataSet::ImageData {
+        extent,
+        origin: samples.origin.map(|x| x as f32),
+        spacing,
+        meta: None,
+        pieces: vec![Piece::Inline(Box::new(piece))],
+    };
+    with_units("volume", data, units)
+}
+
+/// The tested points of a contact as a VTP.
+///
+/// # Errors
+/// What `vtkio` cannot write.
+pub fn vtp(fields: &Fields, units: Option<&UnitNames>) -> Result<Vec<u8>, OutputError> {
+    let mut piece = PolyDataPiece {
+        points: fields.points.iter().flatten().copied().collect::<Vec<f64>>().into(),
+        data: Attributes { point: attributes(fields), cell: Vec::new() },
+        ..PolyDataPiece::default()
+    };
+    if fields.cells.is_empty() {
+        let single: Vec<Vec<u32>> = (0..fields.points.len() as u32).map(|k| vec![k]).collect();
+        piece.verts = Some(topology(single.iter()));
+    } else {
+        piece.lines = Some(topology(fields.cells.iter().map(|c| &c.1)));
+    }
+    with_units("contact", DataSet::inline(piece), units)
+}
+
+/// The tested points of a contact as a table, a line each.
+pub fn csv(fields: &Fields) -> String {
+    let mut head = vec!["x".to_string(), "y".into(), "z".into()];
+    for array in &fields.arrays {
+        match array.components {
+            3 => head.extend(["x", "y", "z"].map(|c| format!("{}_{c}", array.name))),
+            _ => head.push(array.name.to_string()),
+        }
+    }
+    let mut text = head.join(",") + "\n";
+    for (k, x) in fields.points.iter().enumerate() {
+        let mut line: Vec<String> = x.iter().map(f64::to_string).collect();
+        for array in &fields.arrays {
+            let own = &array.values[k * array.components..(k + 1) * array.components];
+            line.extend(own.iter().map(|v| if v.is_finite() { v.to_string() } else { String::new() }));
+        }
+        text += &(line.join(",") + "\n");
+    }
+    text
+}
+
+/// The names and VTP files of the rigid bodies, around what is shown.
+///
+/// # Errors
+/// What `vtkio` cannot write.
+pub fn rigid_files(plan: &MechanicsPlan, shown: &SystemShown) -> Result<Vec<(String, Vec<u8>)>, OutputError> {
+    if plan.space != crate::problem::Space::ThreeD {
+        return Ok(Vec::new());
+    }
+    let room = shown.room();
+    (shown.rigid.iter())
+        .map(|body| {
+            let (points, _, triangles) = surface(body.gap.as_ref(), room);
+            let triangles: Vec<Vec<u32>> = triangles.iter().map(|t| t.to_vec()).collect();
+            let piece = PolyDataPiece {
+                points: points.iter().flat_map(|x| [x.x, x.y, x.z]).collect::<Vec<f64>>().into(),
+                polys: Some(topology(triangles.iter())),
+                ..PolyDataPiece::default()
+            };
+            Ok((body.name.clone(), to_bytes("rigid", DataSet::inline(piece))?))
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_body_as_an_image_has_its_boxes_and_units() {
+        let stress = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].repeat(6);
+        let samples = Samples {
+            origin: [-1.0, 0.5, 0.0],
+            spacing: [0.25, 0.5, 0.0],
+            counts: [3, 2, 0],
+            data: vec![("material".into(), 1, vec![1.0; 6]), ("stress".into(), 6, stress)],
+        };
+        let [length, area, force, pressure, energy, time] = ["mm", "mm²", "N", "kPa", "mJ", "s"].map(String::from);
+        let units = UnitNames { length, area, force, pressure, energy, time };
+        let text = String::from_utf8(vti(&samples, Some(&units)).unwrap()).unwrap();
+        for part in ["<ImageData ", "WholeExtent=\"0 3 0 2 0 0\"", "Origin=\"-1 0.5 0\"", "Spacing=\"0.25 0.5 1\""] {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+        let stress = text.split("Name=\"stress_xx_yy_zz_xy_yz_xz\"").nth(1).unwrap();
+        assert!(stress.split("</DataArray>").next().unwrap().contains("kPa"));
+        assert!(text.find("<CellData").unwrap() < text.find("Name=\"material\"").unwrap());
+    }
+}

@@ -33,6 +33,10 @@ pub struct IncrementResult {
     pub lost_sites: usize,
     /// What solved the linear equations.
     pub solved: Solved,
+    /// Of rigid bodies: whether other contact forces would balance the loads as well.
+    pub is_indeterminate: bool,
+    /// Of rigid bodies: how often an unstable state was left on the way.
+    pub left_unstable: usize,
 }
 
 /// Force relative to the largest with which no state is taken for one, whatever rounding may say.
@@ -82,7 +86,11 @@ impl System {
         time: f64,
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<(SystemState, IncrementResult), IncrementError> {
+        if self.is_rigid() {
+            return self.solve_rigid(from, time, report);
+        }
         let mut start = from.clone();
+        start.time = time;
         start.travel.iter_mut().for_each(|t| *t = 0.0);
         for (body, state) in self.bodies.iter().zip(&mut start.bodies) {
             body.prescribe(time, state);
@@ -323,6 +331,7 @@ impl System {
             imbalance,
             lost_sites: at.lost,
             solved: Solved::default(),
+            ..IncrementResult::default()
         })
     }
 }

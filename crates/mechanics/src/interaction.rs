@@ -10,6 +10,7 @@
 //! - a *history*, numbers that count from the last state that was accepted.
 
 use crate::body::{Body, BodyState, PlaceError};
+use crate::contact::Contact;
 use crate::part::Part;
 use crate::simpler::SimplerFriction;
 use crate::site_result::SiteResult;
@@ -86,6 +87,15 @@ pub trait Interaction: Send + Sync {
 
     /// Numbers of the bodies: that on which the reported forces act first. Twice the same within a body.
     fn bodies(&self) -> [usize; 2];
+
+    /// A contact of points, as such.
+    fn as_points(&self) -> Option<&Contact> {
+        None
+    }
+
+    fn as_points_mut(&mut self) -> Option<&mut Contact> {
+        None
+    }
 
     /// The law of friction; none if there is none.
     fn law(&self) -> Option<&dyn Law>;

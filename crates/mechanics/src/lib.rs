@@ -3,6 +3,7 @@
 //! - [`body`]: what a body is to the system.
 //! - [`curve`]: what a curve is to contact between curves.
 //! - [`rigid_body`]: rigid bodies, moved or free.
+//! - `rigid_system`: systems in which all that moves is rigid.
 //! - [`pair`]: gap and slip of a contact pair in the unknowns of its bodies.
 //! - [`surface`]: what a surface of faces is to contact by mortar, which is [`mortar`].
 //! - `density`: how densely a body is tested against faces.
@@ -36,6 +37,7 @@ pub mod passage;
 pub mod points;
 mod prepare;
 pub mod rigid_body;
+mod rigid_system;
 pub mod saved;
 mod simpler;
 mod site_result;

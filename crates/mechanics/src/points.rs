@@ -193,6 +193,11 @@ pub trait Master: Sync {
     /// next to that site along the body is left out: contact of a body with itself.
     fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<Met>;
 
+    /// All places that a ball about `x` may touch at once, the nearest first: of rigid bodies that curve around it.
+    fn places(&self, x: &Point<3>) -> Vec<Met> {
+        self.nearest(x, f64::INFINITY, None).into_iter().collect()
+    }
+
     /// The distance of that point, negative inside, where it is found with less work than what moves the point.
     fn gap(&self, _x: &Point<3>, _reach: f64, _except: Option<&Site>) -> Option<f64> {
         None

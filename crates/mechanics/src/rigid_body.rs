@@ -68,7 +68,7 @@ impl Pose {
         }
     }
 
-    fn state(&self) -> BodyState {
+    pub(crate) fn state(&self) -> BodyState {
         let q = self.rotation.quaternion();
         let configuration = vec![self.centre[0], self.centre[1], self.centre[2], q.w, q.i, q.j, q.k];
         BodyState { configuration, internal: Vec::new() }
@@ -346,29 +346,44 @@ struct RigidMaster<'a> {
     pose: Pose,
 }
 
-impl Master for RigidMaster<'_> {
-    fn nearest(&self, x: &Point<3>, reach: f64, _: Option<&Site>) -> Option<Met> {
-        let rotation = self.pose.matrix();
-        let own = self.body.centre + rotation.transpose() * (x - self.pose.centre);
-        let jet = self.body.shape.gap(&own);
-        let near = jet.gap.abs() <= reach;
+impl RigidMaster<'_> {
+    /// A place of the shape that the point `own`, in the axes of the body, sees with a gap.
+    fn met(&self, own: &Point<3>, rotation: &Matrix<3>, jet: GapJet<3>) -> Met {
         let foot = own - jet.normal * jet.gap;
-        let point = MaterialPoint { patch: 0, xi: foot.into() };
-        let jet = GapJet {
-            gap: jet.gap,
-            normal: rotation * jet.normal,
-            hessian: rotation * jet.hessian * rotation.transpose(),
-        };
-        let foot = RigidFoot {
-            point,
-            jet,
+        Met::Rigid(Box::new(RigidFoot {
+            point: MaterialPoint { patch: 0, xi: foot.into() },
+            jet: GapJet {
+                gap: jet.gap,
+                normal: rotation * jet.normal,
+                hessian: rotation * jet.hessian * rotation.transpose(),
+            },
             shape: Arc::clone(&self.body.shape),
             origin: self.body.centre,
             centre: self.pose.centre,
-            rotation,
+            rotation: *rotation,
             unknowns: std::array::from_fn(|c| self.body.unknown(c)),
-        };
-        near.then(|| Met::Rigid(Box::new(foot)))
+        }))
+    }
+
+    /// A point in the axes of the body, and the rotation of these.
+    fn seen(&self, x: &Point<3>) -> (Point<3>, Matrix<3>) {
+        let rotation = self.pose.matrix();
+        (self.body.centre + rotation.transpose() * (x - self.pose.centre), rotation)
+    }
+}
+
+impl Master for RigidMaster<'_> {
+    fn nearest(&self, x: &Point<3>, reach: f64, _: Option<&Site>) -> Option<Met> {
+        let (own, rotation) = self.seen(x);
+        let jet = self.body.shape.gap(&own);
+        (jet.gap.abs() <= reach).then(|| self.met(&own, &rotation, jet))
+    }
+
+    fn places(&self, x: &Point<3>) -> Vec<Met> {
+        let (own, rotation) = self.seen(x);
+        let around = self.body.shape.around(&own);
+        let all = std::iter::once(self.body.shape.gap(&own)).chain(around);
+        all.map(|jet| self.met(&own, &rotation, jet)).collect()
     }
 
     fn at(&self, point: &MaterialPoint) -> Anchor {

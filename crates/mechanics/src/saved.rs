@@ -11,6 +11,7 @@ pub struct Saved {
     pub bodies: Vec<[Vec<f64>; 2]>,
     pub multipliers: Vec<f64>,
     pub reactions: Vec<f64>,
+    pub time: f64,
     /// History and scales of each contact.
     pub contacts: Vec<[Vec<f64>; 2]>,
 }
@@ -22,6 +23,7 @@ impl System {
             bodies: state.bodies.iter().map(|b| [b.configuration.clone(), b.internal.clone()]).collect(),
             multipliers: state.multipliers.clone(),
             reactions: state.reactions.clone(),
+            time: state.time,
             contacts: self.contacts.iter().map(|c| c.history()).collect(),
         }
     }
@@ -39,7 +41,7 @@ impl System {
         }
         let body = |[configuration, internal]: [Vec<f64>; 2]| BodyState { configuration, internal };
         state.bodies = saved.bodies.into_iter().map(body).collect();
-        (state.multipliers, state.reactions) = (saved.multipliers, saved.reactions);
+        (state.multipliers, state.reactions, state.time) = (saved.multipliers, saved.reactions, saved.time);
         let before = self.histories();
         for (contact, history) in self.contacts.iter_mut().zip(&saved.contacts) {
             if contact.restore(history).is_err() {

@@ -113,6 +113,8 @@ pub struct SystemState {
     pub(crate) predictions: Vec<Vec<f64>>,
     /// Steps of the unknowns of the bodies since the last state that was accepted.
     pub(crate) travel: Vec<f64>,
+    /// The time that it was solved for.
+    pub time: f64,
 }
 
 /// Why a system cannot be assembled.
@@ -180,6 +182,7 @@ impl System {
             reactions: Vec::new(),
             predictions: self.contacts.iter().map(|c| c.prediction()).collect(),
             travel: vec![0.0; count],
+            time: 0.0,
         }
     }
 
@@ -260,7 +263,7 @@ impl System {
         let predictions = (self.contacts.iter().zip(self.own(at)))
             .map(|(contact, own)| contact.predict(now, own, step, share))
             .collect();
-        SystemState { bodies, multipliers, reactions, predictions, travel }
+        SystemState { bodies, multipliers, reactions, predictions, travel, time: at.time }
     }
 
     /// The residual at a state and a time, without the reactions of supports, and its derivative.

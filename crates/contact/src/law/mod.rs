@@ -67,6 +67,11 @@ pub trait Law: std::fmt::Debug + Send + Sync {
         self.friction(trial, pressure)
     }
 
+    /// Whether friction depends on the velocity of slip.
+    fn is_rate_dependent(&self) -> bool {
+        false
+    }
+
     /// How much of the available friction a traction uses: 1 where it slips.
     fn utilisation(&self, traction: [f64; 2], pressure: f64) -> f64;
 
@@ -110,6 +115,9 @@ impl<L: Law + ?Sized> Law for std::sync::Arc<L> {
     }
     fn friction_in_time(&self, trial: [f64; 2], pressure: f64, per_velocity: f64) -> Friction {
         (**self).friction_in_time(trial, pressure, per_velocity)
+    }
+    fn is_rate_dependent(&self) -> bool {
+        (**self).is_rate_dependent()
     }
     fn utilisation(&self, traction: [f64; 2], pressure: f64) -> f64 {
         (**self).utilisation(traction, pressure)

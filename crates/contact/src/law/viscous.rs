@@ -86,6 +86,10 @@ impl Law for Viscous {
         }
     }
 
+    fn is_rate_dependent(&self) -> bool {
+        true
+    }
+
     fn utilisation(&self, traction: [f64; 2], pressure: f64) -> f64 {
         self.limit.utilisation(traction, pressure)
     }

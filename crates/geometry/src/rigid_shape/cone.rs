@@ -1,7 +1,7 @@
 //! A round cone without end.
 
 use super::height::{points_away, rising, sqrt, squared_distance};
-use super::{GapJet, NoHeight, RigidShape, any_normal, curvature, unit};
+use super::{GapJet, NoHeight, RigidShape, any_normal, curvature, directions_around, gap_to_line, unit};
 use crate::height_field::{HeightField, View};
 use crate::{Jet, Point, Real, Vector};
 use std::sync::Arc;
@@ -32,6 +32,19 @@ impl RigidShape for Cone {
         let around = axis.cross(&e);
         let hessian = around * around.transpose() * (cos * curvature(r));
         GapJet { gap: r * cos - along * sin, normal: e * cos - axis * sin, hessian }
+    }
+
+    fn around(&self, x: &Point<3>) -> Vec<GapJet<3>> {
+        let (sin, cos) = self.half_angle.sin_cos();
+        let d = x - self.apex;
+        let across = d - self.axis * self.axis.dot(&d);
+        let meridians = directions_around(&self.axis, &across).map(|e| self.axis * cos + e * sin);
+        meridians
+            .map(|along| match along.dot(&d) > 0.0 {
+                true => gap_to_line(x, &self.apex, &along),
+                false => GapJet::ball(x, &self.apex, 0.0),
+            })
+            .collect()
     }
 
     fn centre(&self) -> Point<3> {

@@ -1,7 +1,7 @@
 //! A round cylinder without ends.
 
 use super::height::{circle, is_flat, rising};
-use super::{GapJet, NoHeight, RigidShape, any_normal, curvature, unit};
+use super::{GapJet, NoHeight, RigidShape, any_normal, curvature, directions_around, gap_to_line, unit};
 use crate::height_field::{HeightField, View};
 use crate::{Jet, Point, Real, Vector};
 use std::sync::Arc;
@@ -25,6 +25,13 @@ impl RigidShape for Cylinder {
         let around = axis.cross(&normal);
         let hessian = around * around.transpose() * curvature(across.norm());
         GapJet { gap: across.norm() - self.radius, normal, hessian }
+    }
+
+    fn around(&self, x: &Point<3>) -> Vec<GapJet<3>> {
+        let d = x - self.point;
+        let across = d - self.axis * self.axis.dot(&d);
+        let meridian = |e: Vector<3>| gap_to_line(x, &(self.point + e * self.radius), &self.axis);
+        directions_around(&self.axis, &across).map(meridian).collect()
     }
 
     fn centre(&self) -> Point<3> {

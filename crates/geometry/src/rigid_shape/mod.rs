@@ -60,6 +60,13 @@ pub trait RigidShape: Send + Sync {
         Jet { value: gap, gradient: normal, hessian }
     }
 
+    /// Gaps to other parts of the surface that a ball about `x` might touch at once: of a surface of revolution its meridians
+    /// in other half-planes through the axis, as many as hold a ball in any direction across it. Each is a bound for
+    /// itself: no ball that is in nothing is nearer to any of them than its radius.
+    fn around(&self, _x: &Point<3>) -> Vec<GapJet<3>> {
+        Vec::new()
+    }
+
     /// The point about which the body turns.
     fn centre(&self) -> Point<3>;
 
@@ -87,6 +94,27 @@ fn curvature(radius: f64) -> f64 {
 /// The unit vector along another one, or `otherwise` where that has no length.
 fn unit(v: Vector<3>, otherwise: Vector<3>) -> Vector<3> {
     v.try_normalize(0.0).unwrap_or(otherwise)
+}
+
+/// Unit vectors across an axis that, with the one along `across`, part a turn into equal parts: a ball that is held by a ring is
+/// held by so many of its points.
+fn directions_around(axis: &Vector<3>, across: &Vector<3>) -> impl Iterator<Item = Vector<3>> {
+    const PARTS: usize = 6;
+    let e = unit(*across, any_normal(axis));
+    let f = axis.cross(&e);
+    (1..PARTS).map(move |k| {
+        let (sin, cos) = (std::f64::consts::TAU * k as f64 / PARTS as f64).sin_cos();
+        e * cos + f * sin
+    })
+}
+
+/// The gap of a point to a line along a unit vector through another point.
+fn gap_to_line(x: &Point<3>, through: &Point<3>, along: &Vector<3>) -> GapJet<3> {
+    let d = x - through;
+    let across = d - along * along.dot(&d);
+    let (gap, normal) = (across.norm(), unit(across, any_normal(along)));
+    let tangent = along.cross(&normal);
+    GapJet { gap, normal, hessian: tangent * tangent.transpose() * curvature(gap) }
 }
 
 /// Some unit vector across a unit vector.

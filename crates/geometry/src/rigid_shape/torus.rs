@@ -1,7 +1,7 @@
 //! A ring.
 
 use super::height::{circle, is_upright, rising, sqrt, squared_distance};
-use super::{GapJet, NoHeight, RigidShape, any_normal, curvature, unit};
+use super::{GapJet, NoHeight, RigidShape, any_normal, curvature, directions_around, unit};
 use crate::height_field::{HeightField, View};
 use crate::{Aabb, Jet, Matrix, Point, Real, Vector};
 use std::sync::Arc;
@@ -58,6 +58,17 @@ impl RigidShape for Torus {
             gradient: (e * beyond + self.axis * z) * inverse,
             hessian: (in_plane * ratio + Matrix::<3>::identity() * (1.0 - ratio)) * inverse,
         }
+    }
+
+    fn around(&self, x: &Point<3>) -> Vec<GapJet<3>> {
+        // From within the tube the other meridians are no bounds.
+        if self.gap(x).gap < 0.0 {
+            return Vec::new();
+        }
+        let d = x - self.center;
+        let across = d - self.axis * self.axis.dot(&d);
+        let meridian = |e: Vector<3>| GapJet::ball(x, &(self.center + e * self.major), self.minor);
+        directions_around(&self.axis, &across).map(meridian).collect()
     }
 
     fn centre(&self) -> Point<3> {

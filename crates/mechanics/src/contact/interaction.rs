@@ -43,6 +43,14 @@ impl Interaction for Contact {
         [self.slave.body, self.master.body]
     }
 
+    fn as_points(&self) -> Option<&Contact> {
+        Some(self)
+    }
+
+    fn as_points_mut(&mut self) -> Option<&mut Contact> {
+        Some(self)
+    }
+
     fn law(&self) -> Option<&dyn Law> {
         self.friction.as_deref()
     }

@@ -77,7 +77,7 @@ const AT_LIMIT: f64 = 1e-7;
 pub(super) const STEEP: f64 = 1e-8;
 
 /// The axes of friction of a pair, and their variations.
-pub(super) fn axes(pair: &Pair) -> ([Vector<3>; 2], Vec<[Vector<3>; 2]>) {
+pub(crate) fn axes(pair: &Pair) -> ([Vector<3>; 2], Vec<[Vector<3>; 2]>) {
     let normal = pair.normal;
     let along = pair.axis.direction - normal * normal.dot(&pair.axis.direction);
     let length = along.norm();

@@ -43,6 +43,10 @@ impl RigidShape for Hole {
         GapJet { gap: -found.gap, normal: -found.normal, hessian: -found.hessian }
     }
 
+    fn around(&self, x: &Point<3>) -> Vec<GapJet<3>> {
+        self.0.around(x)
+    }
+
     fn centre(&self) -> Point<3> {
         self.0.centre()
     }

@@ -304,9 +304,9 @@ impl Model for MechanicsModel {
         if let Some(time) = self.last.as_ref().filter(|_| self.plan.head.pictures).map(|shown| shown.time) {
             Frame { time, bodies: self.state.bodies.clone() }.write(folder, next - 1)?;
         }
-        let Saved { bodies, multipliers, reactions, contacts } = self.plan.system.save(&self.state);
+        let Saved { bodies, multipliers, reactions, time, contacts } = self.plan.system.save(&self.state);
         Ok(Some(json!({
-            "bodies": bodies, "multipliers": multipliers, "reactions": reactions, "contacts": contacts,
+            "bodies": bodies, "multipliers": multipliers, "reactions": reactions, "time": time, "contacts": contacts,
         })))
     }
 
@@ -319,6 +319,7 @@ impl Model for MechanicsModel {
                 bodies: take(&mut state["bodies"])?,
                 multipliers: take(&mut state["multipliers"])?,
                 reactions: take(&mut state["reactions"])?,
+                time: state["time"].as_f64()?,
                 contacts: take(&mut state["contacts"])?,
             })
         };

@@ -1,0 +1,275 @@
+//! Frictional contact of a linearised system as a second-order cone complementarity problem.
+//!
+//! | symbol | meaning |
+//! |---|---|
+//! | `r` | contact forces of all rows: by contact the normal force, then friction along its axes |
+//! | `u = W r + q` | gap, and slip against the axes, that they leave; `W` is the compliance of the bodies (Delassus) |
+//! | `r = Π(r - ρ u)` | contact and friction, with the projection `Π` of the law (Alart & Curnier 1991) |
+//!
+//! Nonlinear Gauss-Seidel sweeps over the contacts (Jean 1999) come near to a solution from anywhere; Newton's method with the
+//! generalised derivative of `Π` ends it. Forces that are not unique, as those of a stack of many contacts, are those that
+//! a small compliance of all contacts alike would leave: the least of all in the sum of squares. That compliance is taken
+//! back by a proximal iteration (Rockafellar 1976), so that nothing is left of it.
+
+use nalgebra::{DMatrix, DVector};
+use signorini_contact::Law;
+use signorini_solve::dense::Lu;
+
+/// What a few rows state together.
+#[derive(Clone, Copy, Debug)]
+pub enum Kind<'a> {
+    /// One row with a force of any sign: what a support asks for.
+    Bilateral,
+    /// A gap, and `rows - 1` components of slip with the law of friction per `weight`.
+    Contact { law: Option<&'a dyn Law>, weight: f64 },
+}
+
+/// Rows of one contact or support.
+#[derive(Clone, Copy, Debug)]
+pub struct Block<'a> {
+    pub kind: Kind<'a>,
+    pub first: usize,
+    pub rows: usize,
+    /// Which axis of friction each row after the first is.
+    pub axes: [usize; 2],
+}
+
+/// The forces of a block with their derivative in the trial, row by row.
+pub struct Projection {
+    pub force: [f64; 3],
+    pub derivative: [[f64; 3]; 3],
+}
+
+impl Block<'_> {
+    /// The admissible forces for a trial.
+    pub fn project(&self, trial: [f64; 3]) -> Projection {
+        match self.kind {
+            Kind::Bilateral => {
+                let derivative = [[1.0, 0.0, 0.0], [0.0; 3], [0.0; 3]];
+                Projection { force: trial, derivative }
+            }
+            Kind::Contact { law: None, .. } => {
+                let closed = trial[0] > 0.0;
+                let derivative = [[f64::from(u8::from(closed)), 0.0, 0.0], [0.0; 3], [0.0; 3]];
+                Projection { force: [trial[0].max(0.0), 0.0, 0.0], derivative }
+            }
+            Kind::Contact { law: Some(law), weight } => {
+                let mut full = [trial[0] / weight, 0.0, 0.0];
+                (1..self.rows).for_each(|k| full[1 + self.axes[k - 1]] = trial[k] / weight);
+                let found = law.project(full);
+                let place = |k: usize| if k == 0 { 0 } else { 1 + self.axes[k - 1] };
+                let mut out = Projection { force: [0.0; 3], derivative: [[0.0; 3]; 3] };
+                for i in 0..self.rows {
+                    out.force[i] = found.traction[place(i)] * weight;
+                    (0..self.rows).for_each(|j| out.derivative[i][j] = found.derivative[place(i)][place(j)]);
+                }
+                out
+            }
+        }
+    }
+}
+
+/// The problem: compliance and what is left without forces.
+pub struct Complementarity<'a> {
+    pub blocks: Vec<Block<'a>>,
+    /// Symmetric.
+    pub w: DMatrix<f64>,
+    pub q: DVector<f64>,
+}
+
+/// Compliance of all contacts relative to the mean of the bodies: far from both roundings.
+const PROXIMAL: f64 = 1e-7;
+/// Change of the forces, relative to the largest, that ends the proximal iteration.
+const SAME: f64 = 1e-13;
+const MOST_PROXIMAL: usize = 40;
+/// Residual relative to the largest force that ends Newton's method: that of `r` itself.
+const TOLERANCE: f64 = 1e-13;
+const MOST_NEWTON: usize = 25;
+/// Sweeps between two tries of Newton's method, and how often both take turns.
+const SWEEPS: usize = 60;
+const MOST_TURNS: usize = 60;
+/// Steps on one contact within a sweep.
+const MOST_LOCAL: usize = 30;
+
+impl Complementarity<'_> {
+    /// Forces that solve the problem, from a guess; none where the iterations come to no end.
+    pub fn solve(&self, start: &DVector<f64>) -> Option<DVector<f64>> {
+        let n = self.q.len();
+        if n == 0 {
+            return Some(DVector::zeros(0));
+        }
+        let mean = self.w.diagonal().iter().map(|d| d.abs()).sum::<f64>() / n as f64;
+        let compliance = PROXIMAL * mean;
+        let mut w = self.w.clone();
+        (0..n).for_each(|k| w[(k, k)] += compliance);
+        let scale: Vec<f64> = self.scales(&w);
+        let mut centre = DVector::zeros(n);
+        let mut guess = start.clone();
+        let mut before = f64::INFINITY;
+        for _ in 0..MOST_PROXIMAL {
+            let q = &self.q - &centre * compliance;
+            let problem = Inner { blocks: &self.blocks, w: &w, q: &q, scale: &scale };
+            let found = problem.solve(guess)?;
+            let change = (&found - &centre).amax();
+            centre = found.clone();
+            guess = found;
+            if change <= SAME * centre.amax() || change >= before {
+                return Some(centre);
+            }
+            before = change;
+        }
+        Some(centre)
+    }
+
+    /// The scale `ρ` of the trials of each row: the inverse of the largest compliance of its block.
+    fn scales(&self, w: &DMatrix<f64>) -> Vec<f64> {
+        let mut out = vec![0.0; self.q.len()];
+        for b in &self.blocks {
+            let range = b.first..b.first + b.rows;
+            let largest = range.clone().map(|i| range.clone().map(|j| w[(i, j)].abs()).sum()).fold(0.0f64, f64::max);
+            range.for_each(|i| out[i] = 1.0 / largest.max(f64::MIN_POSITIVE));
+        }
+        out
+    }
+}
+
+/// One proximal step.
+struct Inner<'a> {
+    blocks: &'a [Block<'a>],
+    w: &'a DMatrix<f64>,
+    q: &'a DVector<f64>,
+    scale: &'a [f64],
+}
+
+impl Inner<'_> {
+    fn solve(&self, start: DVector<f64>) -> Option<DVector<f64>> {
+        let mut r = start;
+        for _ in 0..MOST_TURNS {
+            if let Some(found) = self.newton(&r) {
+                return Some(found);
+            }
+            for _ in 0..SWEEPS {
+                self.sweep(&mut r);
+            }
+        }
+        None
+    }
+
+    /// `r - Π(r - ρ u)` of all rows, with the trials.
+    fn residual(&self, r: &DVector<f64>) -> (DVector<f64>, Vec<Projection>) {
+        let u = self.w * r + self.q;
+        let mut out = DVector::zeros(r.len());
+        let mut projections = Vec::with_capacity(self.blocks.len());
+        for b in self.blocks {
+            let mut trial = [0.0; 3];
+            for i in 0..b.rows {
+                trial[i] = r[b.first + i] - self.scale[b.first + i] * u[b.first + i];
+            }
+            let found = b.project(trial);
+            (0..b.rows).for_each(|i| out[b.first + i] = r[b.first + i] - found.force[i]);
+            projections.push(found);
+        }
+        (out, projections)
+    }
+
+    /// What a residual may be: that of rounding in `u`, too.
+    fn tolerance(&self, r: &DVector<f64>) -> f64 {
+        let size = r.amax();
+        let rounding = (0..r.len()).map(|i| self.scale[i] * self.q[i].abs()).fold(0.0f64, f64::max);
+        TOLERANCE * size.max(rounding).max(f64::MIN_POSITIVE)
+    }
+
+    fn newton(&self, start: &DVector<f64>) -> Option<DVector<f64>> {
+        let n = start.len();
+        let mut r = start.clone();
+        let (mut residual, mut found) = self.residual(&r);
+        for _ in 0..MOST_NEWTON {
+            if residual.amax() <= self.tolerance(&r) {
+                return Some(r);
+            }
+            // J = I - Π' (I - ρ W), columns one after the other.
+            let mut j = DMatrix::<f64>::identity(n, n);
+            for (b, p) in self.blocks.iter().zip(&found) {
+                for i in 0..b.rows {
+                    for k in 0..b.rows {
+                        let d = p.derivative[i][k];
+                        if d == 0.0 {
+                            continue;
+                        }
+                        let (row, from) = (b.first + i, b.first + k);
+                        j[(row, from)] -= d;
+                        let factor = d * self.scale[from];
+                        for c in 0..n {
+                            j[(row, c)] += factor * self.w[(from, c)];
+                        }
+                    }
+                }
+            }
+            let mut step = -&residual;
+            Lu::new(n, j.as_slice()).solve_in_place(step.as_mut_slice());
+            if !step.iter().all(|v| v.is_finite()) {
+                return None;
+            }
+            let merit = residual.norm();
+            let mut share = 1.0;
+            let mut best: Option<(f64, DVector<f64>, DVector<f64>, Vec<Projection>)> = None;
+            for _ in 0..6 {
+                let next = &r + &step * share;
+                let (of_next, projections) = self.residual(&next);
+                let size = of_next.norm();
+                if best.as_ref().is_none_or(|b| size < b.0) {
+                    best = Some((size, next, of_next, projections));
+                }
+                if size <= (1.0 - 0.1 * share) * merit {
+                    break;
+                }
+                share *= 0.5;
+            }
+            let (size, next, of_next, projections) = best?;
+            if size >= merit {
+                return (residual.amax() <= 1e2 * self.tolerance(&r)).then_some(r);
+            }
+            (r, residual, found) = (next, of_next, projections);
+        }
+        (residual.amax() <= self.tolerance(&r)).then_some(r)
+    }
+
+    /// One sweep: each block takes the forces that suit those of all others.
+    fn sweep(&self, r: &mut DVector<f64>) {
+        for b in self.blocks {
+            let mut free = [0.0; 3];
+            for i in 0..b.rows {
+                let row = b.first + i;
+                let own: f64 = (0..b.rows).map(|k| self.w[(row, b.first + k)] * r[b.first + k]).sum();
+                free[i] = self.w.column(row).dot(r) + self.q[row] - own;
+            }
+            let found = self.local(b, free, r);
+            (0..b.rows).for_each(|i| r[b.first + i] = found[i]);
+        }
+    }
+
+    /// The forces of one block, with `free` gap and slip without them, by `r ← Π(r - ρ u)`.
+    fn local(&self, b: &Block<'_>, free: [f64; 3], r: &DVector<f64>) -> [f64; 3] {
+        let mut own = [0.0; 3];
+        (0..b.rows).for_each(|i| own[i] = r[b.first + i]);
+        let w = |i: usize, k: usize| self.w[(b.first + i, b.first + k)];
+        if matches!(b.kind, Kind::Bilateral) {
+            own[0] = -free[0] / w(0, 0);
+            return own;
+        }
+        for _ in 0..MOST_LOCAL {
+            let mut trial = [0.0; 3];
+            for i in 0..b.rows {
+                let u: f64 = free[i] + (0..b.rows).map(|k| w(i, k) * own[k]).sum::<f64>();
+                trial[i] = own[i] - self.scale[b.first + i] * u;
+            }
+            let next = b.project(trial).force;
+            let change = (0..b.rows).map(|i| (next[i] - own[i]).abs()).fold(0.0, f64::max);
+            own = next;
+            if change <= 1e-12 * own.iter().fold(0.0f64, |m, v| m.max(v.abs())) {
+                break;
+            }
+        }
+        own
+    }
+}

@@ -1,0 +1,239 @@
+//! From one state of rest to the next.
+
+use super::motion::{FARTHEST, FIRST, LONGEST, Motion, SHORTEST, Stepped};
+use super::touching::{Id, Twists, twists};
+use crate::increment_error::IncrementError;
+use crate::system::{AssemblyError, SystemState};
+use signorini_geometry::Vector;
+use std::collections::BTreeMap;
+
+/// The force that still moves bodies, relative to the loads, with which they rest.
+const RESTS: f64 = 1e-12;
+/// Steps on one leg of an increment.
+const MOST_STEPS: usize = 2000;
+/// A body that has gone so many sizes, or turned so often, is not held.
+const AWAY: f64 = 10.0;
+/// Longer and shorter pseudo-times, and the part of the longest step below which they may be longer.
+const LONGER: f64 = 4.0;
+const SHORTER: f64 = 0.25;
+const SHORT: f64 = 0.3;
+/// Halvings of a leg of prescribed motion, and the most legs.
+const MOST_HALVINGS: usize = 10;
+const MOST_LEGS: f64 = 4000.0;
+/// Step relative to the sizes by which an unstable state is left, and how often.
+const DISTURBED: f64 = 1e-4;
+const MOST_DISTURBANCES: usize = 12;
+
+/// What a site has slipped in an increment, and the work of its friction.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Slipped {
+    pub slip: Vector<3>,
+    pub path: f64,
+    pub work: f64,
+}
+
+/// What happened on the way.
+#[derive(Default)]
+pub struct SoFar {
+    pub slipped: BTreeMap<(usize, usize), Slipped>,
+    pub forces: BTreeMap<Id, [f64; 3]>,
+    /// Steps of all unknowns.
+    pub travel: Vec<f64>,
+    pub iterations: usize,
+    pub history: Vec<f64>,
+    /// How often an unstable state was left.
+    pub disturbances: usize,
+}
+
+/// An increment on its way.
+pub struct Increment<'a, 'b> {
+    motion: &'b Motion<'a>,
+    report: &'b mut dyn FnMut(usize, f64) -> bool,
+    pub so_far: SoFar,
+}
+
+impl<'a, 'b> Increment<'a, 'b> {
+    pub fn new(motion: &'b Motion<'a>, report: &'b mut dyn FnMut(usize, f64) -> bool) -> Self {
+        let so_far = SoFar { travel: vec![0.0; motion.turns.len()], ..SoFar::default() };
+        Increment { motion, report, so_far }
+    }
+
+    /// The state of rest at a time.
+    pub fn solve(&mut self, from: &SystemState, time: f64) -> Result<(SystemState, Stepped<'a>), IncrementError> {
+        let legs = self.legs(from, time)?;
+        let mut state = from.clone();
+        for k in 1..legs {
+            let to = from.time + (time - from.time) * k as f64 / legs as f64;
+            self.leg(&mut state, to, 0)?;
+        }
+        let found = self.leg(&mut state, time, 0)?;
+        Ok((state, found))
+    }
+
+    /// In how many legs prescribed motions and supports are followed.
+    fn legs(&self, from: &SystemState, time: f64) -> Result<usize, IncrementError> {
+        let mut way = 0.0f64;
+        let mut state = from.clone();
+        const SAMPLES: usize = 16;
+        for k in 1..=SAMPLES {
+            let at = from.time + (time - from.time) * k as f64 / SAMPLES as f64;
+            let next = self.prescribed(&state, at);
+            let moved = twists(self.motion.bodies_of(&state.bodies), &state, &next);
+            let far = |t: &[Vector<3>; 2]| t[0].norm() / self.motion.size + t[1].norm();
+            way += moved.iter().flatten().map(far).fold(0.0, f64::max);
+            state = next;
+        }
+        let (single, coupled) = self.motion.held(&from.bodies, time)?;
+        for held in single.iter().chain(&coupled) {
+            let (unknown, factor) = held.constraint.terms[0];
+            way = way.max(self.motion.relative(unknown as usize, held.constraint.lack / factor));
+        }
+        Ok((way / (0.5 * FARTHEST)).ceil().clamp(1.0, MOST_LEGS) as usize)
+    }
+
+    fn prescribed(&self, state: &SystemState, time: f64) -> SystemState {
+        let mut out = state.clone();
+        for (body, own) in self.motion.system.bodies.iter().zip(&mut out.bodies) {
+            body.prescribe(time, own);
+        }
+        out.time = time;
+        out
+    }
+
+    /// Follows what is prescribed to a time, and the bodies to rest.
+    fn leg(&mut self, state: &mut SystemState, to: f64, depth: usize) -> Result<Stepped<'a>, IncrementError> {
+        let target = self.prescribed(state, to);
+        let moved = twists(self.motion.bodies_of(&state.bodies), state, &target);
+        let still: Twists = moved.iter().map(|t| t.map(|_| [Vector::<3>::zeros(); 2])).collect();
+        let mut drives = moved != still || self.motion.is_pulled(&state.bodies, to)?;
+        if !drives {
+            *state = target.clone();
+        }
+        let mut tau = FIRST;
+        for _ in 0..MOST_STEPS {
+            if !drives && let Some(found) = self.motion.at_rest(&state.bodies, to)? {
+                if !self.leave(state, &found, to)? {
+                    return Ok(found);
+                }
+                tau = FIRST;
+                continue;
+            }
+            let twists = if drives { &moved } else { &still };
+            let found = self.motion.step(state, twists, (to, tau), &self.so_far.forces)?;
+            let found = match found {
+                Some(found) if self.passes(state, &found)? => None,
+                found => found,
+            };
+            let Some(found) = found else {
+                tau *= SHORTER;
+                if tau >= SHORTEST {
+                    continue;
+                }
+                if !drives || depth == MOST_HALVINGS {
+                    return Err(self.lost());
+                }
+                let middle = 0.5 * (state.time + to);
+                self.leg(state, middle, depth + 1)?;
+                return self.leg(state, to, depth + 1);
+            };
+            self.take(state, &found, &target);
+            drives = false;
+            let moving = self.motion.moving(&found.step, tau);
+            self.so_far.history.push(moving / RESTS);
+            if !(self.report)(self.so_far.iterations, moving / RESTS) {
+                return Err(IncrementError::Interrupted);
+            }
+            if moving <= RESTS {
+                if !self.leave(state, &found, to)? {
+                    return Ok(found);
+                }
+                tau = FIRST;
+                continue;
+            }
+            if let Some(error) = self.away(state) {
+                return Err(error);
+            }
+            let far = found.step.iter().enumerate().map(|(k, s)| self.motion.relative(k, *s)).fold(0.0f64, f64::max);
+            if far < SHORT * FARTHEST {
+                tau = (LONGER * tau).min(LONGEST);
+            }
+        }
+        Err(self.lost())
+    }
+
+    fn lost(&self) -> IncrementError {
+        IncrementError::NotConverged { history: self.so_far.history.clone(), worst: None }
+    }
+
+    /// Whether something would pass through something else on a step.
+    fn passes(&self, from: &SystemState, found: &Stepped<'_>) -> Result<bool, AssemblyError> {
+        let to = SystemState { bodies: found.bodies.clone(), ..from.clone() };
+        Ok(self.motion.system.first_passage(from, &to)?.is_some())
+    }
+
+    /// Takes a step.
+    fn take(&mut self, state: &mut SystemState, found: &Stepped<'_>, target: &SystemState) {
+        state.bodies = found.bodies.clone();
+        state.time = target.time;
+        for (k, body) in self.motion.system.bodies.iter().enumerate().filter(|(_, b)| b.unknowns() == 0) {
+            let _ = body;
+            state.bodies[k] = target.bodies[k].clone();
+        }
+        self.so_far.iterations += found.iterations;
+        self.so_far.travel.iter_mut().zip(&found.step).for_each(|(t, s)| *t += s);
+        self.so_far.forces = found.loaded.iter().map(|l| (l.point.id, l.force)).collect();
+        for l in found.loaded.iter().filter(|l| l.force[0] > 0.0 && l.point.law.is_some()) {
+            let own = self.so_far.slipped.entry((l.point.id.contact, l.point.id.site)).or_default();
+            own.slip += l.slip;
+            own.path += l.slip.norm();
+            own.work += l.friction().dot(&l.slip);
+        }
+    }
+
+    /// Whether a state is unstable, and was left for that.
+    fn leave(&mut self, state: &mut SystemState, found: &Stepped<'_>, time: f64) -> Result<bool, IncrementError> {
+        if self.so_far.disturbances == MOST_DISTURBANCES {
+            return Ok(false);
+        }
+        let Some(direction) = self.motion.unstable(&state.bodies, found, time)? else { return Ok(false) };
+        let moved: Vec<f64> = direction.iter().map(|d| DISTURBED * d).collect();
+        let at = self.motion.bodies_of(&state.bodies);
+        let still: Twists = (0..state.bodies.len())
+            .map(|k| (at.bodies[k].unknowns() == 0).then(|| [Vector::<3>::zeros(); 2]))
+            .collect();
+        let bodies = super::touching::along(at, state, (&moved, &still), 1.0);
+        state.bodies = bodies;
+        self.so_far.disturbances += 1;
+        Ok(true)
+    }
+
+    /// A body that nothing holds.
+    fn away(&self, state: &SystemState) -> Option<IncrementError> {
+        let travel = &self.so_far.travel;
+        let turn = std::f64::consts::TAU;
+        let far = |k: &usize| {
+            let size = if self.motion.turns[*k] { turn } else { self.motion.size / self.motion.extent[*k] };
+            self.motion.relative(*k, travel[*k]) / size
+        };
+        let unknown = (0..travel.len()).max_by(|a, b| far(a).total_cmp(&far(b))).filter(|k| far(k) > AWAY)?;
+        let bodies = &self.motion.system.bodies;
+        let k = (0..bodies.len()).rev().find(|k| self.motion.first[*k] as usize <= unknown && bodies[*k].unknowns() > 0)?;
+        let first = self.motion.first[k] as usize;
+        let own = &travel[first..first + bodies[k].unknowns()];
+        let modes = bodies[k].rigid_modes(&state.bodies[k]);
+        let along = |mode: &Vec<f64>, turns: bool| {
+            let kept = |i: &usize| self.motion.turns[first + i] == turns;
+            let product: f64 = (0..own.len()).filter(kept).map(|i| mode[i] * own[i]).sum();
+            let square: f64 = (0..own.len()).filter(kept).map(|i| mode[i] * mode[i]).sum();
+            if square > 0.0 { product / square } else { 0.0 }
+        };
+        let turns = self.motion.turns[unknown];
+        let part = if turns { &modes[3..] } else { &modes[..3] };
+        let direction = Vector::<3>::from_fn(|i, _| along(&part[i], turns)).normalize();
+        // What is rounded to zero has no sign.
+        let d = direction.map(|c| if c.abs() < 5e-4 { 0.0 } else { c });
+        let kind = if turns { "turning about" } else { "moving along" };
+        let motion = format!("{kind} ({:.3}, {:.3}, {:.3})", d[0], d[1], d[2]);
+        Some(IncrementError::Free { body: bodies[k].name().to_string(), motion })
+    }
+}

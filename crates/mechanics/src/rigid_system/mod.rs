@@ -1,0 +1,65 @@
+//! Systems in which all that moves is rigid: contact and friction as a cone complementarity problem.
+//!
+//! - `touching`: points that may touch, their gaps and slips;
+//! - `complementarity`: contact forces of a linearised system;
+//! - `rest`: whether bodies may rest where they are;
+//! - `motion`: implicit steps of an overdamped motion in pseudo-time;
+//! - `stability`: whether the state that they lead to is stable;
+//! - `increment`: from one state of rest to the next; `results`: what is told of it.
+//!
+//! What can rest where it is rests. Else bodies move, prescribed motions bit by bit, until they rest. No elastic body gives
+//! a scale here, and none is needed: sizes and loads do.
+
+mod complementarity;
+mod increment;
+mod motion;
+mod rest;
+mod results;
+mod stability;
+#[cfg(test)]
+mod tests;
+mod touching;
+
+use crate::contact::Contact;
+use crate::enforcement::Enforcement;
+use crate::increment::IncrementResult;
+use crate::increment_error::IncrementError;
+use crate::system::{System, SystemState};
+use increment::Increment;
+use motion::Motion;
+
+impl System {
+    /// Whether all that moves is rigid and touches in points, with friction that knows no time.
+    pub fn is_rigid(&self) -> bool {
+        let suits = |c: &Contact| {
+            let in_time = c.friction.as_ref().is_some_and(|law| law.is_rate_dependent());
+            c.enforcement == Enforcement::AugmentedLagrangian && !in_time && self.bodies[c.master.body].is_rigid()
+        };
+        self.bodies.iter().all(|b| b.is_rigid())
+            && self.bodies.iter().any(|b| b.unknowns() > 0)
+            && self.contacts.iter().all(|c| c.as_points().is_some_and(suits))
+    }
+
+    /// Equilibrium of rigid bodies at a time.
+    pub(crate) fn solve_rigid(
+        &mut self,
+        from: &SystemState,
+        time: f64,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<(SystemState, IncrementResult), IncrementError> {
+        let motion = Motion::new(self, from, time)?;
+        let mut run = Increment::new(&motion, report);
+        let (mut state, found) = run.solve(from, time)?;
+        let result = motion.result(&state, time, (&found, &run.so_far))?;
+        let memory = motion.memory(&found, &run.so_far);
+        state.multipliers =
+            self.contacts.iter().zip(&memory).flat_map(|(c, own)| c.as_points().map(|c| c.values(own))).flatten().collect();
+        state.reactions = found.reactions;
+        for (contact, own) in self.contacts.iter_mut().zip(memory) {
+            if let Some(contact) = contact.as_points_mut() {
+                contact.memory = own;
+            }
+        }
+        Ok((state, result))
+    }
+}

@@ -1,0 +1,343 @@
+//! Quasi-static motion of rigid bodies: implicit steps of an overdamped motion in pseudo-time.
+//!
+//! With the step `v` of all unknowns from the last state, the pseudo-time step `τ` and the metric `M` of the bodies,
+//!
+//! `M v/τ = f(q + v) + Gᵀ r`,  `0 ≤ g(q + v) ⟂ r_N ≥ 0`,  friction by its law against the slip of the step
+//!
+//! (Moreau 1988, without inertia). Energy falls from step to step, what can rest rests, and with growing `τ` the steps become those
+//! of Newton's method on the equilibrium, in which nothing is left of `M`. Loads and lengths of the problem are its only
+//! scales. Within a step gaps, slips along the way and loads are linearised about the last iterate until it changes no more;
+//! of the geometric stiffness the part that resists is kept, so that every linear problem has one solution.
+
+use super::complementarity::{Block, Complementarity, Kind};
+use super::rest::rest;
+use super::touching::{Id, Touching, Twists, along, touching};
+use crate::body::{BodyState, Contribution};
+use crate::contact::Contact;
+use crate::interaction::Bodies;
+use crate::points::Order;
+use crate::system::{AssemblyError, Held, System, SystemState};
+use nalgebra::{DMatrix, DVector};
+use signorini_geometry::Vector;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A body moves by no more than this part of its size in a step, and turns by no more radians: gaps are linearised.
+pub const FARTHEST: f64 = 0.2;
+/// The pseudo-time of the first step, in which a load moves a body by this part of its size, the longest, and the shortest.
+pub const FIRST: f64 = 0.1;
+pub const LONGEST: f64 = 1e6;
+pub const SHORTEST: f64 = 1e-7;
+/// Gap, relative to the size of the largest free body, with which points touch.
+const TOUCHES: f64 = 1e-9;
+/// Gap, relative to that size, from which a point is looked at before it is needed.
+const NEAR: f64 = 1e-3;
+/// Change of a step, relative to the sizes, that ends its iterations, and what rounding leaves at worst.
+const SAME: f64 = 1e-13;
+const ROUNDING: f64 = 1e-10;
+const MOST_ITERATIONS: usize = 40;
+
+/// Rigid bodies in contact at a time.
+pub struct Motion<'a> {
+    pub system: &'a System,
+    pub contacts: Vec<&'a Contact>,
+    pub first: Vec<u32>,
+    /// Of the largest free body.
+    pub size: f64,
+    /// The largest force that acts.
+    pub load: f64,
+    /// Of each unknown: whether it turns, and the size of its body.
+    pub turns: Vec<bool>,
+    pub extent: Vec<f64>,
+}
+
+/// A point with the forces on it, gap and friction along its axes.
+pub struct Loaded<'a> {
+    pub point: Touching<'a>,
+    pub force: [f64; 3],
+    /// Slip of the step along its axes.
+    pub slip: Vector<3>,
+}
+
+/// A step that was found.
+pub struct Stepped<'a> {
+    pub step: Vec<f64>,
+    pub bodies: Vec<BodyState>,
+    pub loaded: Vec<Loaded<'a>>,
+    /// Forces of the supports that couple unknowns.
+    pub reactions: Vec<f64>,
+    pub iterations: usize,
+}
+
+/// Loads on all unknowns, and the derivative of what resists.
+pub struct Loads {
+    pub forces: Vec<f64>,
+    pub stiffness: DMatrix<f64>,
+}
+
+impl<'a> Motion<'a> {
+    pub fn bodies_of<'b>(&'b self, states: &'b [BodyState]) -> Bodies<'b> {
+        Bodies { bodies: &self.system.bodies, states, first: &self.first }
+    }
+
+    fn count(&self) -> usize {
+        self.turns.len()
+    }
+
+    /// Force per step, of each unknown, of a step in a unit of pseudo-time.
+    fn metric(&self, unknown: usize) -> f64 {
+        let translation = self.load / self.size;
+        if self.turns[unknown] { translation * 0.25 * self.extent[unknown].powi(2) } else { translation }
+    }
+
+    /// A step relative to the sizes of the bodies.
+    pub fn relative(&self, unknown: usize, value: f64) -> f64 {
+        if self.turns[unknown] { value.abs() } else { value.abs() / self.extent[unknown] }
+    }
+
+    /// What acts on the bodies without contact.
+    pub fn loads(&self, bodies: &[BodyState], time: f64) -> Result<Loads, AssemblyError> {
+        let n = self.count();
+        let mut out = Loads { forces: vec![0.0; n], stiffness: DMatrix::zeros(n, n) };
+        for load in &self.system.loads {
+            let k = load.part.body;
+            let (body, first) = (&self.system.bodies[k], self.first[k] as usize);
+            let mut own = Contribution::new(body.unknowns());
+            load.act(body.as_ref(), &bodies[k], time, Order::Second, &mut own)?;
+            own.forces.iter().enumerate().for_each(|(i, f)| out.forces[first + i] -= f);
+            for (unknowns, block) in &own.blocks {
+                let n = unknowns.len();
+                for (i, row) in unknowns.iter().enumerate() {
+                    for (j, column) in unknowns.iter().enumerate() {
+                        // The part that is symmetric: what else moments do vanishes with their residual.
+                        let value = 0.5 * (block[i * n + j] + block[j * n + i]);
+                        out.stiffness[(first + *row as usize, first + *column as usize)] += value;
+                    }
+                }
+            }
+        }
+        Ok(out)
+    }
+
+    /// Supports at a time.
+    pub fn held(&self, bodies: &[BodyState], time: f64) -> Result<(Vec<Held>, Vec<Held>), AssemblyError> {
+        let state = SystemState { bodies: bodies.to_vec(), ..SystemState::default() };
+        self.system.held(&state, time)
+    }
+
+    /// Rows of points and of supports that couple unknowns, with their blocks.
+    pub fn rows<'b>(&self, points: &[Touching<'b>], coupled: &[Held]) -> (Vec<Block<'b>>, DMatrix<f64>) {
+        let mut blocks = Vec::new();
+        let mut count = 0;
+        for p in points {
+            let kind = Kind::Contact { law: p.law.filter(|_| p.rows() > 1), weight: p.weight };
+            blocks.push(Block { kind, first: count, rows: p.rows(), axes: p.slip_axes() });
+            count += p.rows();
+        }
+        for _ in coupled {
+            blocks.push(Block { kind: Kind::Bilateral, first: count, rows: 1, axes: [0, 1] });
+            count += 1;
+        }
+        let mut rows = DMatrix::zeros(count, self.count());
+        for (b, p) in blocks.iter().zip(points) {
+            for (a, unknown) in p.pair.unknowns.iter().enumerate() {
+                rows[(b.first, *unknown as usize)] += p.pair.opening[a];
+                for k in 1..b.rows {
+                    rows[(b.first + k, *unknown as usize)] -= p.axes[b.axes[k - 1]].dot(&p.pair.slip[a]);
+                }
+            }
+        }
+        for (b, held) in blocks[points.len()..].iter().zip(coupled) {
+            held.constraint.terms.iter().for_each(|(unknown, factor)| rows[(b.first, *unknown as usize)] += factor);
+        }
+        (blocks, rows)
+    }
+
+    /// The stiffness of a loaded point: pressure on curved sides, and friction on turned ones; symmetric.
+    pub fn geometric(&self, point: &Touching<'_>, force: &[f64; 3]) -> DMatrix<f64> {
+        let n = point.pair.unknowns.len();
+        let axes = point.slip_axes();
+        let friction: Vector<3> = (1..point.rows()).map(|k| point.axes[axes[k - 1]] * force[k]).sum();
+        let mut out = DMatrix::from_row_slice(n, n, &point.pair.d_opening) * -force[0];
+        if point.law.is_some() {
+            out += DMatrix::from_row_slice(n, n, &point.pair.slip_hessian(&friction));
+        }
+        (&out + out.transpose()) * 0.5
+    }
+
+    /// The slips of a step by point, along the way: by the rule of Simpson where the place is known all along.
+    fn slips(&self, from: &SystemState, (step, twists): (&[f64], &Twists), points: &[Touching<'_>]) -> Vec<Vector<3>> {
+        let ids: BTreeSet<Id> = points.iter().filter(|p| p.law.is_some()).map(|p| p.id).collect();
+        let at = |share: f64| -> BTreeMap<Id, Vector<3>> {
+            if ids.is_empty() {
+                return BTreeMap::new();
+            }
+            let own = self.bodies_of(&from.bodies);
+            let bodies = along(own, from, (step, twists), share);
+            let wanted = |id: Id, _: f64| ids.contains(&id) && id.place == 0;
+            let found = touching(&self.contacts, self.bodies_of(&bodies), twists, Order::First, &wanted);
+            found.into_iter().map(|p| (p.id, p.slip_of(step))).collect()
+        };
+        let (start, middle) = (at(0.0), at(0.5));
+        (points.iter())
+            .map(|p| {
+                let end = p.slip_of(step);
+                let slip = match (start.get(&p.id), middle.get(&p.id)) {
+                    (Some(a), Some(b)) => (a + b * 4.0 + end) / 6.0,
+                    _ => end,
+                };
+                slip - p.pair.normal * p.pair.normal.dot(&slip)
+            })
+            .collect()
+    }
+
+    /// An implicit step; none where its iterations come to no end, or where it leads too far.
+    pub fn step(
+        &self,
+        from: &SystemState,
+        twists: &Twists,
+        (time, tau): (f64, f64),
+        guess: &BTreeMap<Id, [f64; 3]>,
+    ) -> Result<Option<Stepped<'a>>, AssemblyError> {
+        let n = self.count();
+        let mut step = vec![0.0; n];
+        let mut forces = guess.clone();
+        let mut seen: BTreeSet<Id> = guess.iter().filter(|(_, f)| f[0] > 0.0).map(|(id, _)| *id).collect();
+        let mut before = f64::INFINITY;
+        for iteration in 1..=MOST_ITERATIONS {
+            let bodies = along(self.bodies_of(&from.bodies), from, (&step, twists), 1.0);
+            let now = self.bodies_of(&bodies);
+            let wanted = |id: Id, gap: f64| gap < NEAR * self.size || seen.contains(&id);
+            let points = touching(&self.contacts, now, twists, Order::Second, &wanted);
+            seen.extend(points.iter().map(|p| p.id));
+            let slips = self.slips(from, (&step, twists), &points);
+            let loads = self.loads(&bodies, time)?;
+            let (single, coupled) = self.held(&bodies, time)?;
+            let (blocks, rows) = self.rows(&points, &coupled);
+
+            let mut matrix = loads.stiffness;
+            resisting(&mut matrix);
+            for p in &points {
+                let Some(force) = forces.get(&p.id) else { continue };
+                let mut own = self.geometric(p, force);
+                resisting(&mut own);
+                for (i, row) in p.pair.unknowns.iter().enumerate() {
+                    for (j, column) in p.pair.unknowns.iter().enumerate() {
+                        matrix[(*row as usize, *column as usize)] += own[(i, j)];
+                    }
+                }
+            }
+            let mut right = DVector::from_column_slice(&loads.forces);
+            for k in 0..n {
+                let metric = self.metric(k) / tau;
+                matrix[(k, k)] += metric;
+                right[k] -= metric * step[k];
+            }
+            // What supports prescribe by itself is known.
+            let mut change = DVector::zeros(n);
+            let mut is_free = vec![true; n];
+            for held in &single {
+                let (unknown, factor) = held.constraint.terms[0];
+                is_free[unknown as usize] = false;
+                change[unknown as usize] = -held.constraint.lack / factor;
+            }
+            right -= &matrix * &change;
+            let free: Vec<usize> = (0..n).filter(|k| is_free[*k]).collect();
+            let reduced = matrix.select_rows(&free).select_columns(&free);
+            let Some(factor) = reduced.cholesky() else { return Ok(None) };
+            let across = rows.select_columns(&free);
+            let compliance = factor.solve(&across.transpose());
+            let alone = factor.solve(&right.select_rows(&free));
+            let mut q = &across * &alone + &rows * &change;
+            for ((b, p), slip) in blocks.iter().zip(&points).zip(&slips) {
+                q[b.first] += p.pair.gap;
+                (1..b.rows).for_each(|k| q[b.first + k] -= p.axes[b.axes[k - 1]].dot(slip));
+            }
+            for (b, held) in blocks[points.len()..].iter().zip(&coupled) {
+                q[b.first] += held.constraint.lack;
+            }
+            let mut start = DVector::zeros(q.len());
+            for (b, p) in blocks.iter().zip(&points) {
+                let Some(force) = forces.get(&p.id) else { continue };
+                (0..b.rows).for_each(|k| start[b.first + k] = force[k]);
+            }
+            let w = &across * &compliance;
+            let w = (&w + w.transpose()) * 0.5;
+            let Some(r) = (Complementarity { blocks: blocks.clone(), w, q }).solve(&start) else { return Ok(None) };
+            let moved = alone + compliance * &r;
+            free.iter().zip(moved.iter()).for_each(|(k, v)| change[*k] = *v);
+            forces = (blocks.iter().zip(&points))
+                .map(|(b, p)| (p.id, std::array::from_fn(|k| if k < b.rows { r[b.first + k] } else { 0.0 })))
+                .collect();
+
+            let size = (0..n).map(|k| self.relative(k, change[k])).fold(0.0f64, f64::max);
+            step.iter_mut().zip(change.iter()).for_each(|(s, c)| *s += c);
+            let far = (0..n).map(|k| self.relative(k, step[k])).fold(0.0f64, f64::max);
+            // Iterates may lie beyond what is taken in the end.
+            if !far.is_finite() || far > 4.0 * FARTHEST {
+                return Ok(None);
+            }
+            if size <= SAME || (size <= ROUNDING && size >= 0.5 * before) {
+                if far > FARTHEST {
+                    return Ok(None);
+                }
+                let bodies = along(self.bodies_of(&from.bodies), from, (&step, twists), 1.0);
+                let loaded = (points.into_iter().zip(slips))
+                    .map(|(point, slip)| Loaded { force: forces[&point.id], point, slip })
+                    .collect();
+                let reactions = blocks[blocks.len() - coupled.len()..].iter().map(|b| -r[b.first]).collect();
+                return Ok(Some(Stepped { step, bodies, loaded, reactions, iterations: iteration }));
+            }
+            before = size;
+        }
+        Ok(None)
+    }
+
+    /// The forces with which the bodies rest where they are; none where there are none, or where something is to move.
+    pub fn at_rest(&self, bodies: &[BodyState], time: f64) -> Result<Option<Stepped<'a>>, AssemblyError> {
+        let n = self.count();
+        let still: Twists = vec![None; bodies.len()];
+        let touches = TOUCHES * self.size;
+        let points =
+            touching(&self.contacts, self.bodies_of(bodies), &still, Order::Second, &|_, gap| gap <= touches);
+        let (single, coupled) = self.held(bodies, time)?;
+        let lacks = |h: &Held| h.constraint.lack.abs() > touches;
+        if points.iter().any(|p| p.pair.gap < -touches) || single.iter().chain(&coupled).any(lacks) {
+            return Ok(None);
+        }
+        let mut is_free = vec![true; n];
+        single.iter().for_each(|h| is_free[h.constraint.terms[0].0 as usize] = false);
+        let free: Vec<usize> = (0..n).filter(|k| is_free[*k]).collect();
+        let (blocks, rows) = self.rows(&points, &coupled);
+        // Forces and moments in one unit.
+        let unit = |k: usize| (self.metric(k) * self.size / self.load).sqrt().recip();
+        let scale = DMatrix::from_diagonal(&DVector::from_iterator(free.len(), free.iter().map(|k| unit(*k))));
+        let loads = self.loads(bodies, time)?.forces;
+        let load = DVector::from_iterator(free.len(), free.iter().map(|k| loads[*k] * unit(*k)));
+        let Some(r) = rest(&blocks, &(rows.select_columns(&free) * scale), &load) else { return Ok(None) };
+        let force = |b: &Block<'_>| std::array::from_fn(|k| if k < b.rows { r[b.first + k] } else { 0.0 });
+        let reactions = blocks[points.len()..].iter().map(|b| -r[b.first]).collect();
+        let loaded = (points.into_iter().zip(&blocks))
+            .map(|(point, b)| Loaded { point, force: force(b), slip: Vector::<3>::zeros() })
+            .collect();
+        Ok(Some(Stepped { step: vec![0.0; n], bodies: bodies.to_vec(), loaded, reactions, iterations: 0 }))
+    }
+
+    /// The largest force that the motion still takes, relative to the loads.
+    pub fn moving(&self, step: &[f64], tau: f64) -> f64 {
+        let force = |k: usize| self.metric(k) * step[k].abs() / tau / if self.turns[k] { self.extent[k] } else { 1.0 };
+        (0..step.len()).map(force).fold(0.0f64, f64::max) / self.load
+    }
+}
+
+/// Leaves of a symmetric matrix the part that resists.
+fn resisting(matrix: &mut DMatrix<f64>) {
+    if matrix.iter().all(|v| *v == 0.0) {
+        return;
+    }
+    let eigen = matrix.clone().symmetric_eigen();
+    if eigen.eigenvalues.iter().all(|v| *v >= 0.0) {
+        return;
+    }
+    let kept = eigen.eigenvalues.map(|v| v.max(0.0));
+    *matrix = &eigen.eigenvectors * DMatrix::from_diagonal(&kept) * eigen.eigenvectors.transpose();
+}

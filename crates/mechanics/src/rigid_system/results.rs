@@ -1,0 +1,242 @@
+//! What is told of rigid bodies at rest, and what their contacts remember.
+
+use super::increment::SoFar;
+use super::motion::{Loaded, Motion, Stepped};
+use super::touching::{Twists, touching};
+use crate::body::BodyState;
+use crate::contact::{Contact, SiteMemory};
+use crate::increment::IncrementResult;
+use crate::interaction::Interaction;
+use crate::points::Order;
+use crate::site_result::SiteResult;
+use crate::system::{AssemblyError, Held, System, SystemState};
+use nalgebra::DMatrix;
+use signorini_contact::Status;
+use signorini_geometry::Vector;
+
+/// Share of the limit of friction from which a point slips.
+const AT_LIMIT: f64 = 1e-8;
+/// Eigenvalues relative to the largest that are rounding.
+const RANK: f64 = 1e-12;
+
+impl Loaded<'_> {
+    /// Friction on the slave's partner along the slip: that on the slave is its opposite.
+    pub fn friction(&self) -> Vector<3> {
+        let axes = self.point.slip_axes();
+        (1..self.point.rows()).map(|k| self.point.axes[axes[k - 1]] * self.force[k]).sum()
+    }
+
+    /// Friction along both axes, per weight.
+    fn tractions(&self) -> [f64; 2] {
+        let axes = self.point.slip_axes();
+        let mut out = [0.0; 2];
+        (1..self.point.rows()).for_each(|k| out[axes[k - 1]] = self.force[k] / self.point.weight);
+        out
+    }
+
+    fn utilisation(&self) -> f64 {
+        let pressure = self.force[0] / self.point.weight;
+        self.point.law.map_or(0.0, |law| law.utilisation(self.tractions(), pressure))
+    }
+}
+
+impl<'a> Motion<'a> {
+    /// Rigid bodies on their way to a time.
+    ///
+    /// # Errors
+    /// Loads that cannot act.
+    pub fn new(system: &'a System, from: &SystemState, time: f64) -> Result<Self, AssemblyError> {
+        let (first, count) = system.numbering();
+        let mut motion = Motion {
+            system,
+            contacts: system.contacts.iter().filter_map(|c| c.as_points()).collect(),
+            first,
+            size: 0.0,
+            load: 1.0,
+            turns: vec![false; count],
+            extent: vec![1.0; count],
+        };
+        for (k, body) in system.bodies.iter().enumerate().filter(|(_, b)| b.unknowns() > 0) {
+            motion.size = motion.size.max(body.size());
+            let modes = body.rigid_modes(&from.bodies[k]);
+            for unknown in 0..body.unknowns() {
+                let place = motion.first[k] as usize + unknown;
+                motion.turns[place] = modes[..3].iter().all(|m| m[unknown] == 0.0);
+                motion.extent[place] = body.size();
+            }
+        }
+        let forces = motion.loads(&from.bodies, time)?.forces;
+        let force = |k: usize| forces[k].abs() / if motion.turns[k] { motion.extent[k] } else { 1.0 };
+        let load = (0..count).map(force).fold(0.0f64, f64::max);
+        // Without loads there are no forces, whatever their unit.
+        if load > 0.0 {
+            motion.load = load;
+        }
+        Ok(motion)
+    }
+
+    /// Whether a support asks for a motion.
+    ///
+    /// # Errors
+    /// Supports that cannot act.
+    pub fn is_pulled(&self, bodies: &[BodyState], time: f64) -> Result<bool, AssemblyError> {
+        let (single, coupled) = self.held(bodies, time)?;
+        let lacks = |h: &Held| {
+            let (unknown, factor) = h.constraint.terms[0];
+            self.relative(unknown as usize, h.constraint.lack / factor) > 1e-12
+        };
+        Ok(single.iter().chain(&coupled).any(lacks))
+    }
+
+    /// The points of all contacts, and what holds the bodies.
+    ///
+    /// # Errors
+    /// Loads and supports that cannot act.
+    pub fn result(
+        &self,
+        state: &SystemState,
+        time: f64,
+        (found, so_far): (&Stepped<'_>, &SoFar),
+    ) -> Result<IncrementResult, AssemblyError> {
+        let loads = self.loads(&state.bodies, time)?.forces;
+        let mut residual: Vec<f64> = loads.iter().map(|f| -f).collect();
+        let mut sizes: Vec<f64> = loads.iter().map(|f| f.abs()).collect();
+        for l in &found.loaded {
+            let friction = l.friction();
+            for (a, unknown) in l.point.pair.unknowns.iter().enumerate() {
+                let mut force = -l.force[0] * l.point.pair.opening[a];
+                if l.point.law.is_some() {
+                    force += friction.dot(&l.point.pair.slip[a]);
+                }
+                residual[*unknown as usize] += force;
+                sizes[*unknown as usize] += force.abs();
+            }
+        }
+        let (single, coupled) = self.held(&state.bodies, time)?;
+        let mut support_forces = vec![[Vector::<3>::zeros(); 2]; self.system.supports.len()];
+        for (held, reaction) in coupled.iter().zip(&found.reactions) {
+            let component = held.constraint.component;
+            support_forces[held.support][component / 3][component % 3] -= reaction;
+            held.constraint.terms.iter().for_each(|(u, f)| residual[*u as usize] += f * reaction);
+        }
+        for held in &single {
+            let ((unknown, factor), component) = (held.constraint.terms[0], held.constraint.component);
+            support_forces[held.support][component / 3][component % 3] += residual[unknown as usize] / factor;
+            residual[unknown as usize] = 0.0;
+        }
+        let force = |k: usize, v: f64| v.abs() / if self.turns[k] { self.extent[k] } else { 1.0 };
+        let most = (0..sizes.len()).map(|k| force(k, sizes[k])).fold(f64::MIN_POSITIVE, f64::max);
+        let lacks = (0..sizes.len()).map(|k| force(k, residual[k])).fold(0.0f64, f64::max);
+        Ok(IncrementResult {
+            iterations: so_far.iterations,
+            history: so_far.history.clone(),
+            sites: (0..self.contacts.len()).map(|c| self.sites(c, state, (found, so_far))).collect(),
+            support_forces,
+            unknowns: sizes.len(),
+            imbalance: lacks / most,
+            is_indeterminate: self.is_indeterminate(found),
+            left_unstable: so_far.disturbances,
+            ..IncrementResult::default()
+        })
+    }
+
+    /// The points of a contact; those that touch in several places are told once for each that carries.
+    fn sites(&self, contact: usize, state: &SystemState, (found, so_far): (&Stepped<'_>, &SoFar)) -> Vec<SiteResult> {
+        let still: Twists = vec![None; state.bodies.len()];
+        let only = [self.contacts[contact]];
+        let nearest = touching(&only, self.bodies_of(&state.bodies), &still, Order::First, &|id, _| id.place == 0);
+        let mut out = Vec::new();
+        for p in nearest {
+            let site = p.id.site;
+            let open = SiteResult {
+                x: p.x,
+                normal: p.pair.normal,
+                weight: p.weight,
+                gap: Some(p.pair.gap),
+                ..SiteResult::default()
+            };
+            let own = |l: &&Loaded<'_>| l.point.id.contact == contact && l.point.id.site == site && l.force[0] > 0.0;
+            let before = out.len();
+            for l in found.loaded.iter().filter(own) {
+                let slipped = so_far.slipped.get(&(contact, site)).copied().unwrap_or_default();
+                let utilisation = l.utilisation();
+                let has_law = l.point.law.is_some();
+                out.push(SiteResult {
+                    x: l.point.x,
+                    normal: l.point.pair.normal,
+                    gap: Some(l.point.pair.gap),
+                    pressure: l.force[0] / p.weight,
+                    friction: -l.friction() / p.weight,
+                    status: if has_law && utilisation < 1.0 - AT_LIMIT { Status::Stick } else { Status::Slip },
+                    increment: slipped.slip,
+                    slip: self.contacts[contact].memory[site].slip[0] + slipped.path,
+                    utilisation,
+                    ..open
+                });
+            }
+            if out.len() == before {
+                out.push(open);
+            }
+        }
+        out
+    }
+
+    /// What the sites of each contact remember.
+    pub fn memory(&self, found: &Stepped<'_>, so_far: &SoFar) -> Vec<Vec<SiteMemory>> {
+        let mut out: Vec<Vec<SiteMemory>> =
+            self.contacts.iter().map(|c| vec![SiteMemory::default(); c.sites().len()]).collect();
+        for l in found.loaded.iter().filter(|l| l.force[0] > 0.0) {
+            let id = l.point.id;
+            let own = &mut out[id.contact][id.site];
+            own.traction[0] += l.force[0] / l.point.weight;
+            if id.place == 0 {
+                let [a, b] = l.tractions();
+                own.traction = [own.traction[0], a, b];
+                own.stuck = l.point.pair.stuck;
+            }
+            let slipped = so_far.slipped.get(&(id.contact, id.site)).map_or(0.0, |s| s.path);
+            own.slip = [self.contacts[id.contact].memory[id.site].slip[0] + slipped, 0.0];
+        }
+        out
+    }
+
+    /// Whether other forces of the points that carry and stick would do as well.
+    fn is_indeterminate(&self, found: &Stepped<'_>) -> bool {
+        let inside = |l: &&Loaded<'_>| l.force[0] > 0.0;
+        let n = self.turns.len();
+        let mut rows: Vec<Vec<f64>> = Vec::new();
+        for l in found.loaded.iter().filter(inside) {
+            let axes = l.point.slip_axes();
+            let sticks = l.utilisation() < 1.0 - AT_LIMIT;
+            let count = if sticks { l.point.rows() } else { 1 };
+            for k in 0..count {
+                let mut row = vec![0.0; n];
+                for (a, unknown) in l.point.pair.unknowns.iter().enumerate() {
+                    let u = *unknown as usize;
+                    let value = match k {
+                        0 => l.point.pair.opening[a],
+                        k => l.point.axes[axes[k - 1]].dot(&l.point.pair.slip[a]),
+                    };
+                    row[u] += value / if self.turns[u] { self.extent[u] } else { 1.0 };
+                }
+                rows.push(row);
+            }
+        }
+        let m = rows.len();
+        if m == 0 {
+            return false;
+        }
+        let rows = DMatrix::from_fn(m, n, |i, j| rows[i][j]);
+        let gram = if m < n { &rows * rows.transpose() } else { rows.tr_mul(&rows) };
+        let eigen = gram.symmetric_eigenvalues();
+        let rank = eigen.iter().filter(|v| **v > RANK * eigen.amax()).count();
+        rank < m
+    }
+}
+
+impl Contact {
+    /// The values of its own unknowns that are remembered so.
+    pub(super) fn values(&self, memory: &[SiteMemory]) -> Vec<f64> {
+        memory.iter().flat_map(|m| m.traction[..self.rows().len() / memory.len().max(1)].to_vec()).collect()
+    }
+}

@@ -1,0 +1,144 @@
+//! The points where rigid bodies may touch in a state: gaps, slips and what moves them.
+
+use crate::contact::{Contact, axes};
+use crate::interaction::Bodies;
+use crate::pair::{Encounter, Pair, Stuck};
+use crate::points::{Met, Order};
+use crate::rigid_body::Pose;
+use crate::system::SystemState;
+use nalgebra::UnitQuaternion;
+use signorini_contact::Law;
+use signorini_geometry::{Point, Vector};
+
+/// Which point of a contact it is: contact, site, and number of the place that the site may touch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Id {
+    pub contact: usize,
+    pub site: usize,
+    pub place: usize,
+}
+
+/// A point that may touch.
+pub struct Touching<'a> {
+    pub id: Id,
+    pub law: Option<&'a dyn Law>,
+    pub weight: f64,
+    /// Where the slave touches.
+    pub x: Point<3>,
+    pub pair: Pair,
+    /// Axes of friction.
+    pub axes: [Vector<3>; 2],
+    /// Whether anything slips along each axis: in the plane nothing moves across it.
+    pub moves: [bool; 2],
+    /// Slip per step of the motions that are prescribed.
+    pub driven: Vector<3>,
+}
+
+impl Touching<'_> {
+    /// Rows: gap, and slip.
+    pub fn rows(&self) -> usize {
+        1 + if self.law.is_some() { self.moves.iter().filter(|m| **m).count() } else { 0 }
+    }
+
+    /// The axis of each row of slip.
+    pub fn slip_axes(&self) -> [usize; 2] {
+        if self.moves[0] { [0, 1] } else { [1, 1] }
+    }
+
+    /// The slip of a step of all unknowns.
+    pub fn slip_of(&self, step: &[f64]) -> Vector<3> {
+        let terms = self.pair.unknowns.iter().zip(&self.pair.slip);
+        self.driven + terms.map(|(u, s)| s * step[*u as usize]).sum::<Vector<3>>()
+    }
+}
+
+/// The motion of every body in a step as it is prescribed: of the centre, and the rotation vector; none of those that are free.
+pub type Twists = Vec<Option<[Vector<3>; 2]>>;
+
+/// The prescribed motions between two states.
+pub fn twists(at: Bodies<'_>, from: &SystemState, to: &SystemState) -> Twists {
+    let of = |k: usize| {
+        if at.bodies[k].unknowns() > 0 {
+            return None;
+        }
+        let [a, b] = [from, to].map(|s| Pose::of(&s.bodies[k]));
+        Some([b.centre - a.centre, (b.rotation * a.rotation.inverse()).scaled_axis()])
+    };
+    (0..at.bodies.len()).map(of).collect()
+}
+
+/// A state a share of a step after another: bodies as they move, prescribed ones by their twists.
+pub fn along(
+    at: Bodies<'_>,
+    from: &SystemState,
+    (step, twists): (&[f64], &Twists),
+    share: f64,
+) -> Vec<crate::body::BodyState> {
+    (at.bodies.iter().zip(&from.bodies).enumerate())
+        .map(|(k, (body, state))| match &twists[k] {
+            Some([moved, turned]) => {
+                let pose = Pose::of(state);
+                let rotation = UnitQuaternion::from_scaled_axis(turned * share) * pose.rotation;
+                Pose { centre: pose.centre + moved * share, rotation }.state()
+            }
+            None => {
+                let first = at.first[k] as usize;
+                body.advance(state, &step[first..first + body.unknowns()], share)
+            }
+        })
+        .collect()
+}
+
+/// Sine below which a direction does not move.
+const STILL: f64 = 1e-8;
+
+/// The points of all contacts that are `wanted` by their gap.
+pub fn touching<'a>(
+    contacts: &[&'a Contact],
+    at: Bodies<'_>,
+    twists: &Twists,
+    order: Order,
+    wanted: &dyn Fn(Id, f64) -> bool,
+) -> Vec<Touching<'a>> {
+    let mut out = Vec::new();
+    for (number, contact) in contacts.iter().enumerate() {
+        let sides = at.sides(contact);
+        let Ok(master) = sides.master.0.master(contact.master.group.as_deref(), sides.master.1) else { continue };
+        let friction = contact.friction.is_some();
+        for (k, site) in contact.sites().iter().enumerate() {
+            let placed = sides.slave.0.placed(sides.slave.1, site);
+            for (place, met) in master.places(&placed.x).into_iter().enumerate() {
+                let id = Id { contact: number, site: k, place };
+                let Met::Rigid(foot) = &met else { continue };
+                if !wanted(id, foot.jet.gap - placed.radius) {
+                    continue;
+                }
+                let stuck = Stuck { point: foot.point, ..Stuck::default() };
+                let anchor = master.at(&foot.point);
+                let encounter = Encounter {
+                    slave: &placed,
+                    met: &met,
+                    first: sides.first,
+                    stuck: Some((&stuck, &anchor)),
+                    friction,
+                    axis: contact.axis,
+                };
+                let Ok(pair) = encounter.measure(order) else { continue };
+                let x = placed.x - pair.normal * placed.radius;
+                let velocity = |body: usize| match &twists[body] {
+                    Some([moved, turned]) => moved + turned.cross(&(x - Pose::of(&at.states[body]).centre)),
+                    None => Vector::<3>::zeros(),
+                };
+                let driven = velocity(contact.slave.body) - velocity(contact.master.body);
+                let driven = driven - pair.normal * pair.normal.dot(&driven);
+                let axes = if friction { axes(&pair).0 } else { [Vector::<3>::zeros(); 2] };
+                let most = pair.slip.iter().map(|s| s.norm()).fold(0.0, f64::max);
+                let moves = axes.map(|e| pair.slip.iter().any(|s| e.dot(s).abs() > STILL * most));
+                let law = contact.friction.as_deref();
+                let weight = site.weight;
+                out.push(Touching { id, law, weight, x, pair, axes, moves, driven });
+            }
+        }
+    }
+    out
+}

@@ -3,7 +3,7 @@
 //! | symbol | meaning |
 //! |---|---|
 //! | `r` | contact forces of all rows: by contact the normal force, then friction along its axes |
-//! | `u = W r + q` | gap, and slip against the axes, that they leave; `W` is the compliance of the bodies (Delassus) |
+//! | `u = W (r - r_0) + q` | gap, and slip against the axes, that they leave; `W` is the compliance of the bodies (Delassus), and `q` what the forces `r_0` leave |
 //! | `r = Π(r - ρ u)` | contact and friction, with the projection `Π` of the law (Alart & Curnier 1991) |
 //!
 //! Nonlinear Gauss-Seidel sweeps over the contacts (Jean 1999) come near to a solution from anywhere; Newton's method with the
@@ -69,31 +69,37 @@ impl Block<'_> {
     }
 }
 
-/// The problem: compliance and what is left without forces.
+/// The problem: compliance, and what known forces leave: those of the last iterate, so that nothing cancels.
 pub struct Complementarity<'a> {
     pub blocks: Vec<Block<'a>>,
     /// Symmetric.
     pub w: DMatrix<f64>,
     pub q: DVector<f64>,
+    pub known: DVector<f64>,
 }
 
-/// Compliance of all contacts relative to the mean of the bodies: far from both roundings.
-const PROXIMAL: f64 = 1e-7;
+/// Compliance of all contacts relative to the mean of the bodies: small enough that few iterations take it back, large enough that
+/// Newton's method is sure where forces are not unique.
+const PROXIMAL: f64 = 1e-3;
 /// Change of the forces, relative to the largest, that ends the proximal iteration.
 const SAME: f64 = 1e-13;
-const MOST_PROXIMAL: usize = 40;
+const MOST_PROXIMAL: usize = 200;
+/// Change that rounding leaves at worst.
+const NEARLY_SAME: f64 = 1e-10;
 /// Residual relative to the largest force that ends Newton's method: that of `r` itself.
 const TOLERANCE: f64 = 1e-13;
+/// What rounding leaves of it at worst.
+const ROUNDED: f64 = 1e2;
 const MOST_NEWTON: usize = 25;
 /// Sweeps between two tries of Newton's method, and how often both take turns.
-const SWEEPS: usize = 60;
-const MOST_TURNS: usize = 60;
+const SWEEPS: usize = 20;
+const MOST_TURNS: usize = 100;
 /// Steps on one contact within a sweep.
 const MOST_LOCAL: usize = 30;
 
 impl Complementarity<'_> {
-    /// Forces that solve the problem, from a guess; none where the iterations come to no end.
-    pub fn solve(&self, start: &DVector<f64>) -> Option<DVector<f64>> {
+    /// Forces that solve the problem, from the known ones; none where the iterations come to no end.
+    pub fn solve(&self) -> Option<DVector<f64>> {
         let n = self.q.len();
         if n == 0 {
             return Some(DVector::zeros(0));
@@ -103,17 +109,19 @@ impl Complementarity<'_> {
         let mut w = self.w.clone();
         (0..n).for_each(|k| w[(k, k)] += compliance);
         let scale: Vec<f64> = self.scales(&w);
+        // The least forces, from none.
         let mut centre = DVector::zeros(n);
-        let mut guess = start.clone();
+        let mut guess = self.known.clone();
         let mut before = f64::INFINITY;
         for _ in 0..MOST_PROXIMAL {
-            let q = &self.q - &centre * compliance;
-            let problem = Inner { blocks: &self.blocks, w: &w, q: &q, scale: &scale };
+            let q = &self.q + (&self.known - &centre) * compliance;
+            let problem = Inner { blocks: &self.blocks, w: &w, q: &q, known: &self.known, scale: &scale };
             let found = problem.solve(guess)?;
             let change = (&found - &centre).amax();
             centre = found.clone();
             guess = found;
-            if change <= SAME * centre.amax() || change >= before {
+            let most = centre.amax();
+            if change <= SAME * most || (change <= NEARLY_SAME * most && change >= 0.5 * before) {
                 return Some(centre);
             }
             before = change;
@@ -138,6 +146,7 @@ struct Inner<'a> {
     blocks: &'a [Block<'a>],
     w: &'a DMatrix<f64>,
     q: &'a DVector<f64>,
+    known: &'a DVector<f64>,
     scale: &'a [f64],
 }
 
@@ -157,7 +166,7 @@ impl Inner<'_> {
 
     /// `r - Π(r - ρ u)` of all rows, with the trials.
     fn residual(&self, r: &DVector<f64>) -> (DVector<f64>, Vec<Projection>) {
-        let u = self.w * r + self.q;
+        let u = self.w * (r - self.known) + self.q;
         let mut out = DVector::zeros(r.len());
         let mut projections = Vec::with_capacity(self.blocks.len());
         for b in self.blocks {
@@ -183,9 +192,14 @@ impl Inner<'_> {
         let n = start.len();
         let mut r = start.clone();
         let (mut residual, mut found) = self.residual(&r);
+        // A last step after the tolerance is met: gaps are as good as rounding then.
+        let mut is_last = false;
         for _ in 0..MOST_NEWTON {
             if residual.amax() <= self.tolerance(&r) {
-                return Some(r);
+                if is_last || residual.amax() == 0.0 {
+                    return Some(r);
+                }
+                is_last = true;
             }
             // J = I - Π' (I - ρ W), columns one after the other.
             let mut j = DMatrix::<f64>::identity(n, n);
@@ -210,38 +224,26 @@ impl Inner<'_> {
             if !step.iter().all(|v| v.is_finite()) {
                 return None;
             }
-            let merit = residual.norm();
-            let mut share = 1.0;
-            let mut best: Option<(f64, DVector<f64>, DVector<f64>, Vec<Projection>)> = None;
-            for _ in 0..6 {
-                let next = &r + &step * share;
-                let (of_next, projections) = self.residual(&next);
-                let size = of_next.norm();
-                if best.as_ref().is_none_or(|b| size < b.0) {
-                    best = Some((size, next, of_next, projections));
-                }
-                if size <= (1.0 - 0.1 * share) * merit {
-                    break;
-                }
-                share *= 0.5;
-            }
-            let (size, next, of_next, projections) = best?;
-            if size >= merit {
-                return (residual.amax() <= 1e2 * self.tolerance(&r)).then_some(r);
+            // Whole steps: as of an active set, each goes at once to where its rows meet.
+            let next = &r + &step;
+            let (of_next, projections) = self.residual(&next);
+            if is_last && of_next.amax() >= residual.amax() {
+                return Some(r);
             }
             (r, residual, found) = (next, of_next, projections);
         }
-        (residual.amax() <= self.tolerance(&r)).then_some(r)
+        (residual.amax() <= ROUNDED * self.tolerance(&r)).then_some(r)
     }
 
     /// One sweep: each block takes the forces that suit those of all others.
     fn sweep(&self, r: &mut DVector<f64>) {
         for b in self.blocks {
+            let change = &*r - self.known;
             let mut free = [0.0; 3];
             for i in 0..b.rows {
                 let row = b.first + i;
                 let own: f64 = (0..b.rows).map(|k| self.w[(row, b.first + k)] * r[b.first + k]).sum();
-                free[i] = self.w.column(row).dot(r) + self.q[row] - own;
+                free[i] = self.w.column(row).dot(&change) + self.q[row] - own;
             }
             let found = self.local(b, free, r);
             (0..b.rows).for_each(|i| r[b.first + i] = found[i]);

@@ -1,6 +1,6 @@
 //! From one state of rest to the next.
 
-use super::motion::{FARTHEST, FIRST, LONGEST, Motion, SHORTEST, Stepped};
+use super::motion::{FIRST, LONGEST, Motion, SHORTEST, Stepped};
 use super::touching::{Id, Twists, twists};
 use crate::increment_error::IncrementError;
 use crate::system::{AssemblyError, SystemState};
@@ -9,6 +9,8 @@ use std::collections::BTreeMap;
 
 /// The force that still moves bodies, relative to the loads, with which they rest.
 const RESTS: f64 = 1e-12;
+/// Rounding of positions, relative to the sizes, beyond which a state is no answer.
+const ROUNDED: f64 = 1e-10;
 /// Steps on one leg of an increment.
 const MOST_STEPS: usize = 2000;
 /// A body that has gone so many sizes, or turned so often, is not held.
@@ -16,10 +18,11 @@ const AWAY: f64 = 10.0;
 /// Longer and shorter pseudo-times, and the part of the longest step below which they may be longer.
 const LONGER: f64 = 4.0;
 const SHORTER: f64 = 0.25;
+const MUCH_SHORTER: f64 = 1e-3;
 const SHORT: f64 = 0.3;
 /// Halvings of a leg of prescribed motion, and the most legs.
 const MOST_HALVINGS: usize = 10;
-const MOST_LEGS: f64 = 4000.0;
+const MOST_LEGS: f64 = 1e5;
 /// Step relative to the sizes by which an unstable state is left, and how often.
 const DISTURBED: f64 = 1e-4;
 const MOST_DISTURBANCES: usize = 12;
@@ -37,7 +40,7 @@ pub struct Slipped {
 pub struct SoFar {
     pub slipped: BTreeMap<(usize, usize), Slipped>,
     pub forces: BTreeMap<Id, [f64; 3]>,
-    /// Steps of all unknowns.
+    /// Steps of all unknowns that nothing prescribed.
     pub travel: Vec<f64>,
     pub iterations: usize,
     pub history: Vec<f64>,
@@ -67,7 +70,10 @@ impl<'a, 'b> Increment<'a, 'b> {
             self.leg(&mut state, to, 0)?;
         }
         let found = self.leg(&mut state, time, 0)?;
-        Ok((state, found))
+        match self.carried_away(from, &state) {
+            Some(error) => Err(error),
+            None => Ok((state, found)),
+        }
     }
 
     /// In how many legs prescribed motions and supports are followed.
@@ -88,7 +94,7 @@ impl<'a, 'b> Increment<'a, 'b> {
             let (unknown, factor) = held.constraint.terms[0];
             way = way.max(self.motion.relative(unknown as usize, held.constraint.lack / factor));
         }
-        Ok((way / (0.5 * FARTHEST)).ceil().clamp(1.0, MOST_LEGS) as usize)
+        Ok((way / (0.5 * self.motion.farthest())).ceil().clamp(1.0, MOST_LEGS) as usize)
     }
 
     fn prescribed(&self, state: &SystemState, time: f64) -> SystemState {
@@ -109,7 +115,7 @@ impl<'a, 'b> Increment<'a, 'b> {
         if !drives {
             *state = target.clone();
         }
-        let mut tau = FIRST;
+        let mut tau = LONGEST;
         for _ in 0..MOST_STEPS {
             if !drives && let Some(found) = self.motion.at_rest(&state.bodies, to)? {
                 if !self.leave(state, &found, to)? {
@@ -125,7 +131,7 @@ impl<'a, 'b> Increment<'a, 'b> {
                 found => found,
             };
             let Some(found) = found else {
-                tau *= SHORTER;
+                tau = if tau > FIRST { FIRST.max(MUCH_SHORTER * tau) } else { SHORTER * tau };
                 if tau >= SHORTEST {
                     continue;
                 }
@@ -137,6 +143,9 @@ impl<'a, 'b> Increment<'a, 'b> {
                 return self.leg(state, to, depth + 1);
             };
             self.take(state, &found, &target);
+            if !drives {
+                self.so_far.travel.iter_mut().zip(&found.step).for_each(|(t, s)| *t += s);
+            }
             drives = false;
             let moving = self.motion.moving(&found.step, tau);
             self.so_far.history.push(moving / RESTS);
@@ -154,11 +163,25 @@ impl<'a, 'b> Increment<'a, 'b> {
                 return Err(error);
             }
             let far = found.step.iter().enumerate().map(|(k, s)| self.motion.relative(k, *s)).fold(0.0f64, f64::max);
-            if far < SHORT * FARTHEST {
+            if far < SHORT * self.motion.farthest() {
                 tau = (LONGER * tau).min(LONGEST);
             }
         }
         Err(self.lost())
+    }
+
+    /// A body so far away that rounding of its position spoils gaps by more than they are told to.
+    fn carried_away(&self, from: &SystemState, state: &SystemState) -> Option<IncrementError> {
+        let bodies = self.motion.system.bodies.iter().enumerate().filter(|(_, b)| b.unknowns() > 0);
+        let away = bodies.map(|(k, b)| {
+            let [a, c] = [from, state].map(|s| Vector::<3>::from_column_slice(&s.bodies[k].configuration[..3]));
+            ((c - a).norm() / self.motion.size, b.name())
+        });
+        let (away, name) = away.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        (away * f64::EPSILON > ROUNDED).then(|| {
+            let told = format!(": `{name}` was carried away, {away:.0e} times the size of all bodies: does anything hold it?");
+            IncrementError::NotConverged { history: vec![f64::INFINITY], worst: Some(told) }
+        })
     }
 
     fn lost(&self) -> IncrementError {
@@ -175,12 +198,10 @@ impl<'a, 'b> Increment<'a, 'b> {
     fn take(&mut self, state: &mut SystemState, found: &Stepped<'_>, target: &SystemState) {
         state.bodies = found.bodies.clone();
         state.time = target.time;
-        for (k, body) in self.motion.system.bodies.iter().enumerate().filter(|(_, b)| b.unknowns() == 0) {
-            let _ = body;
+        for (k, _) in self.motion.system.bodies.iter().enumerate().filter(|(_, b)| b.unknowns() == 0) {
             state.bodies[k] = target.bodies[k].clone();
         }
         self.so_far.iterations += found.iterations;
-        self.so_far.travel.iter_mut().zip(&found.step).for_each(|(t, s)| *t += s);
         self.so_far.forces = found.loaded.iter().map(|l| (l.point.id, l.force)).collect();
         for l in found.loaded.iter().filter(|l| l.force[0] > 0.0 && l.point.law.is_some()) {
             let own = self.so_far.slipped.entry((l.point.id.contact, l.point.id.site)).or_default();

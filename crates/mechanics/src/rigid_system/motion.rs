@@ -22,17 +22,20 @@ use signorini_geometry::Vector;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A body moves by no more than this part of its size in a step, and turns by no more radians: gaps are linearised.
-pub const FARTHEST: f64 = 0.2;
-/// The pseudo-time of the first step, in which a load moves a body by this part of its size, the longest, and the shortest.
+const FARTHEST: f64 = 0.2;
+/// Pseudo-times: the longest, with which a step is one of Newton's method on the equilibrium; one in which a load moves a body
+/// by this part of its size; and the shortest.
 pub const FIRST: f64 = 0.1;
 pub const LONGEST: f64 = 1e6;
 pub const SHORTEST: f64 = 1e-7;
 /// Gap, relative to the size of the largest free body, with which points touch.
-const TOUCHES: f64 = 1e-9;
+const TOUCHES: f64 = 1e-11;
 /// Gap, relative to that size, from which a point is looked at before it is needed.
 const NEAR: f64 = 1e-3;
-/// Change of a step, relative to the sizes, that ends its iterations, and what rounding leaves at worst.
+/// Change of a step, relative to the sizes, that ends its iterations, or relative to the step itself: the next one mends that;
+/// and what rounding leaves at worst.
 const SAME: f64 = 1e-13;
+const SHARE: f64 = 1e-5;
 const ROUNDING: f64 = 1e-10;
 const MOST_ITERATIONS: usize = 40;
 
@@ -77,6 +80,11 @@ pub struct Loads {
 impl<'a> Motion<'a> {
     pub fn bodies_of<'b>(&'b self, states: &'b [BodyState]) -> Bodies<'b> {
         Bodies { bodies: &self.system.bodies, states, first: &self.first }
+    }
+
+    /// The longest step; nothing bounds it where nothing may touch.
+    pub fn farthest(&self) -> f64 {
+        if self.contacts.is_empty() { f64::INFINITY } else { FARTHEST }
     }
 
     fn count(&self) -> usize {
@@ -246,7 +254,12 @@ impl<'a> Motion<'a> {
             let Some(factor) = reduced.cholesky() else { return Ok(None) };
             let across = rows.select_columns(&free);
             let compliance = factor.solve(&across.transpose());
-            let alone = factor.solve(&right.select_rows(&free));
+            let mut known = DVector::zeros(rows.nrows());
+            for (b, p) in blocks.iter().zip(&points) {
+                let Some(force) = forces.get(&p.id) else { continue };
+                (0..b.rows).for_each(|k| known[b.first + k] = force[k]);
+            }
+            let alone = factor.solve(&(right.select_rows(&free) + across.tr_mul(&known)));
             let mut q = &across * &alone + &rows * &change;
             for ((b, p), slip) in blocks.iter().zip(&points).zip(&slips) {
                 q[b.first] += p.pair.gap;
@@ -255,15 +268,11 @@ impl<'a> Motion<'a> {
             for (b, held) in blocks[points.len()..].iter().zip(&coupled) {
                 q[b.first] += held.constraint.lack;
             }
-            let mut start = DVector::zeros(q.len());
-            for (b, p) in blocks.iter().zip(&points) {
-                let Some(force) = forces.get(&p.id) else { continue };
-                (0..b.rows).for_each(|k| start[b.first + k] = force[k]);
-            }
             let w = &across * &compliance;
             let w = (&w + w.transpose()) * 0.5;
-            let Some(r) = (Complementarity { blocks: blocks.clone(), w, q }).solve(&start) else { return Ok(None) };
-            let moved = alone + compliance * &r;
+            let problem = Complementarity { blocks: blocks.clone(), w, q, known };
+            let Some(r) = problem.solve() else { return Ok(None) };
+            let moved = alone + compliance * (&r - &problem.known);
             free.iter().zip(moved.iter()).for_each(|(k, v)| change[*k] = *v);
             forces = (blocks.iter().zip(&points))
                 .map(|(b, p)| (p.id, std::array::from_fn(|k| if k < b.rows { r[b.first + k] } else { 0.0 })))
@@ -273,11 +282,11 @@ impl<'a> Motion<'a> {
             step.iter_mut().zip(change.iter()).for_each(|(s, c)| *s += c);
             let far = (0..n).map(|k| self.relative(k, step[k])).fold(0.0f64, f64::max);
             // Iterates may lie beyond what is taken in the end.
-            if !far.is_finite() || far > 4.0 * FARTHEST {
+            if !far.is_finite() || far > 4.0 * self.farthest() {
                 return Ok(None);
             }
-            if size <= SAME || (size <= ROUNDING && size >= 0.5 * before) {
-                if far > FARTHEST {
+            if size <= SAME.max(SHARE * far) || (size <= ROUNDING && size >= 0.5 * before) {
+                if far > self.farthest() {
                     return Ok(None);
                 }
                 let bodies = along(self.bodies_of(&from.bodies), from, (&step, twists), 1.0);

@@ -16,6 +16,8 @@ use signorini_geometry::Vector;
 
 /// Share of the limit of friction from which a point slips.
 const AT_LIMIT: f64 = 1e-8;
+/// Slip relative to the size of the bodies that is more than rounding.
+const MOVED: f64 = 1e-10;
 /// Eigenvalues relative to the largest that are rounding.
 const RANK: f64 = 1e-12;
 
@@ -160,14 +162,14 @@ impl<'a> Motion<'a> {
             for l in found.loaded.iter().filter(own) {
                 let slipped = so_far.slipped.get(&(contact, site)).copied().unwrap_or_default();
                 let utilisation = l.utilisation();
-                let has_law = l.point.law.is_some();
+                let slips = l.point.law.is_none() || (utilisation > 1.0 - AT_LIMIT && slipped.path > MOVED * self.size);
                 out.push(SiteResult {
                     x: l.point.x,
                     normal: l.point.pair.normal,
                     gap: Some(l.point.pair.gap),
                     pressure: l.force[0] / p.weight,
                     friction: -l.friction() / p.weight,
-                    status: if has_law && utilisation < 1.0 - AT_LIMIT { Status::Stick } else { Status::Slip },
+                    status: if slips { Status::Slip } else { Status::Stick },
                     increment: slipped.slip,
                     slip: self.contacts[contact].memory[site].slip[0] + slipped.path,
                     utilisation,

@@ -6,8 +6,8 @@
 //! | `u = W (r - r_0) + q` | gap, and slip against the axes, that they leave; `W` is the compliance of the bodies (Delassus), and `q` what the forces `r_0` leave |
 //! | `r = Π(r - ρ u)` | contact and friction, with the projection `Π` of the law (Alart & Curnier 1991) |
 //!
-//! Nonlinear Gauss-Seidel sweeps over the contacts (Jean 1999) come near to a solution from anywhere; Newton's method with the
-//! generalised derivative of `Π` ends it. Forces that are not unique, as those of a stack of many contacts, are those that
+//! Newton's method with the generalised derivative of `Π` finds them; where it does not, sweeps over the contacts, each solved for
+//! itself, come nearer (after the nonlinear Gauss-Seidel method of Jean 1999). Forces that are not unique, as those of a stack of many contacts, are those that
 //! a small compliance of all contacts alike would leave: the least of all in the sum of squares. That compliance is taken
 //! back by a proximal iteration (Rockafellar 1976), so that nothing is left of it.
 
@@ -78,22 +78,32 @@ pub struct Complementarity<'a> {
     pub known: DVector<f64>,
 }
 
-/// Compliance of all contacts relative to the mean of the bodies: small enough that few iterations take it back, large enough that
-/// Newton's method is sure where forces are not unique.
-const PROXIMAL: f64 = 1e-3;
+/// Compliances of all contacts relative to the mean of the bodies, one tried after the other: small enough that few iterations take
+/// them back, large enough that Newton's method is sure where forces are not unique. Where contacts have to squeeze each
+/// other before friction holds them, forces grow from iteration to iteration, faster with less compliance.
+const PROXIMAL: [f64; 5] = [1e-3, 1e-5, 1e-4, 1e-2, 1e-1];
 /// Change of the forces, relative to the largest, that ends the proximal iteration.
 const SAME: f64 = 1e-13;
+/// Compliances, relative to the same mean, by which a solution is approached where Newton's method does not find it at once.
+const LADDER: [f64; 11] = [3.0, 1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 1e-3, 3e-4, 1e-4, 3e-5];
 const MOST_PROXIMAL: usize = 200;
 /// Change that rounding leaves at worst.
 const NEARLY_SAME: f64 = 1e-10;
+/// Change of forces that may be left when the iterations end: the next step mends the gaps that it means.
+const LEFT: f64 = 1e-6;
 /// Residual relative to the largest force that ends Newton's method: that of `r` itself.
 const TOLERANCE: f64 = 1e-13;
 /// What rounding leaves of it at worst.
 const ROUNDED: f64 = 1e2;
-const MOST_NEWTON: usize = 25;
+const MOST_NEWTON: usize = 40;
+/// Whole steps at first, and the shares that are tried after them.
+const WHOLE: usize = 12;
+const SHARES: [f64; 5] = [1.0, 0.5, 0.25, 0.1, 0.03];
+/// Part of the way that a block goes in a sweep: a body is held by some three others.
+const RELAXED: f64 = 0.3;
 /// Sweeps between two tries of Newton's method, and how often both take turns.
-const SWEEPS: usize = 20;
-const MOST_TURNS: usize = 100;
+const SWEEPS: usize = 40;
+const MOST_TURNS: usize = 20;
 /// Steps on one contact within a sweep.
 const MOST_LOCAL: usize = 30;
 
@@ -105,18 +115,23 @@ impl Complementarity<'_> {
             return Some(DVector::zeros(0));
         }
         let mean = self.w.diagonal().iter().map(|d| d.abs()).sum::<f64>() / n as f64;
-        let compliance = PROXIMAL * mean;
-        let mut w = self.w.clone();
-        (0..n).for_each(|k| w[(k, k)] += compliance);
-        let scale: Vec<f64> = self.scales(&w);
-        // The least forces, from none.
-        let mut centre = DVector::zeros(n);
+        PROXIMAL.iter().find_map(|share| self.solve_by(share * mean, mean))
+    }
+
+    /// Proximal iterations with a compliance.
+    fn solve_by(&self, compliance: f64, mean: f64) -> Option<DVector<f64>> {
+        // The least forces: from none.
+        let mut centre = DVector::zeros(self.q.len());
         let mut guess = self.known.clone();
         let mut before = f64::INFINITY;
         for _ in 0..MOST_PROXIMAL {
-            let q = &self.q + (&self.known - &centre) * compliance;
-            let problem = Inner { blocks: &self.blocks, w: &w, q: &q, known: &self.known, scale: &scale };
-            let found = problem.solve(guess)?;
+            let found = match self.proximal(compliance, &centre, |inner| inner.newton(&guess)) {
+                Some(found) => found,
+                None => {
+                    let near = self.from_compliant([compliance, mean], &guess)?;
+                    self.proximal(compliance, &centre, |inner| inner.solve(near))?
+                }
+            };
             let change = (&found - &centre).amax();
             centre = found.clone();
             guess = found;
@@ -126,7 +141,30 @@ impl Complementarity<'_> {
             }
             before = change;
         }
-        Some(centre)
+        (before <= LEFT * centre.amax()).then_some(centre)
+    }
+
+    /// Forces near a solution: by contacts that give way, less and less.
+    fn from_compliant(&self, [least, mean]: [f64; 2], start: &DVector<f64>) -> Option<DVector<f64>> {
+        let mut r = start.clone();
+        for share in LADDER.iter().filter(|share| **share * mean > least) {
+            let centre = r.clone();
+            r = self.proximal(share * mean, &centre, |inner| inner.solve(centre.clone()))?;
+        }
+        Some(r)
+    }
+
+    /// One proximal step, solved by a method.
+    fn proximal(
+        &self,
+        compliance: f64,
+        centre: &DVector<f64>,
+        by: impl FnOnce(&Inner<'_>) -> Option<DVector<f64>>,
+    ) -> Option<DVector<f64>> {
+        let mut w = self.w.clone();
+        (0..self.q.len()).for_each(|k| w[(k, k)] += compliance);
+        let q = &self.q + (&self.known - centre) * compliance;
+        by(&Inner { blocks: &self.blocks, q: &q, known: &self.known, scale: &self.scales(&w), w: &w })
     }
 
     /// The scale `ρ` of the trials of each row: the inverse of the largest compliance of its block.
@@ -194,7 +232,7 @@ impl Inner<'_> {
         let (mut residual, mut found) = self.residual(&r);
         // A last step after the tolerance is met: gaps are as good as rounding then.
         let mut is_last = false;
-        for _ in 0..MOST_NEWTON {
+        for iteration in 0..MOST_NEWTON {
             if residual.amax() <= self.tolerance(&r) {
                 if is_last || residual.amax() == 0.0 {
                     return Some(r);
@@ -224,9 +262,15 @@ impl Inner<'_> {
             if !step.iter().all(|v| v.is_finite()) {
                 return None;
             }
-            // Whole steps: as of an active set, each goes at once to where its rows meet.
-            let next = &r + &step;
-            let (of_next, projections) = self.residual(&next);
+            // Whole steps at first: as of an active set, each goes at once to where its rows meet. What comes round in circles takes
+            // the best of several shares.
+            let shares: &[f64] = if iteration < WHOLE { &SHARES[..1] } else { &SHARES };
+            let tried = shares.iter().map(|share| {
+                let next = &r + &step * *share;
+                let (of_next, projections) = self.residual(&next);
+                (of_next.norm(), next, of_next, projections)
+            });
+            let (_, next, of_next, projections) = tried.min_by(|a, b| a.0.total_cmp(&b.0))?;
             if is_last && of_next.amax() >= residual.amax() {
                 return Some(r);
             }
@@ -235,18 +279,20 @@ impl Inner<'_> {
         (residual.amax() <= ROUNDED * self.tolerance(&r)).then_some(r)
     }
 
-    /// One sweep: each block takes the forces that suit those of all others.
+    /// One sweep: each block goes a part of the way to the forces that suit those of all others, all at once, so that their order
+    /// changes nothing.
     fn sweep(&self, r: &mut DVector<f64>) {
+        let u = self.w * (&*r - self.known) + self.q;
+        let before = r.clone();
         for b in self.blocks {
-            let change = &*r - self.known;
             let mut free = [0.0; 3];
             for i in 0..b.rows {
                 let row = b.first + i;
-                let own: f64 = (0..b.rows).map(|k| self.w[(row, b.first + k)] * r[b.first + k]).sum();
-                free[i] = self.w.column(row).dot(&change) + self.q[row] - own;
+                let own: f64 = (0..b.rows).map(|k| self.w[(row, b.first + k)] * before[b.first + k]).sum();
+                free[i] = u[row] - own;
             }
-            let found = self.local(b, free, r);
-            (0..b.rows).for_each(|i| r[b.first + i] = found[i]);
+            let found = self.local(b, free, &before);
+            (0..b.rows).for_each(|i| r[b.first + i] += RELAXED * (found[i] - before[b.first + i]));
         }
     }
 

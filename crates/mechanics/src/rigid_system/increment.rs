@@ -162,7 +162,7 @@ impl<'a, 'b> Increment<'a, 'b> {
             if let Some(error) = self.away(state) {
                 return Err(error);
             }
-            let far = found.step.iter().enumerate().map(|(k, s)| self.motion.relative(k, *s)).fold(0.0f64, f64::max);
+            let far = self.motion.largest(&found.step);
             if far < SHORT * self.motion.farthest() {
                 tau = (LONGER * tau).min(LONGEST);
             }
@@ -179,7 +179,8 @@ impl<'a, 'b> Increment<'a, 'b> {
         });
         let (away, name) = away.max_by(|a, b| a.0.total_cmp(&b.0))?;
         (away * f64::EPSILON > ROUNDED).then(|| {
-            let told = format!(": `{name}` was carried away, {away:.0e} times the size of all bodies: does anything hold it?");
+            let told =
+                format!(": `{name}` was carried away, {away:.0e} times the size of all bodies: does anything hold it?");
             IncrementError::NotConverged { history: vec![f64::INFINITY], worst: Some(told) }
         })
     }
@@ -238,7 +239,8 @@ impl<'a, 'b> Increment<'a, 'b> {
         };
         let unknown = (0..travel.len()).max_by(|a, b| far(a).total_cmp(&far(b))).filter(|k| far(k) > AWAY)?;
         let bodies = &self.motion.system.bodies;
-        let k = (0..bodies.len()).rev().find(|k| self.motion.first[*k] as usize <= unknown && bodies[*k].unknowns() > 0)?;
+        let k =
+            (0..bodies.len()).rev().find(|k| self.motion.first[*k] as usize <= unknown && bodies[*k].unknowns() > 0)?;
         let first = self.motion.first[k] as usize;
         let own = &travel[first..first + bodies[k].unknowns()];
         let modes = bodies[k].rigid_modes(&state.bodies[k]);

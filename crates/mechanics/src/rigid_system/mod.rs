@@ -52,8 +52,13 @@ impl System {
         let (mut state, found) = run.solve(from, time)?;
         let result = motion.result(&state, time, (&found, &run.so_far))?;
         let memory = motion.memory(&found, &run.so_far);
-        state.multipliers =
-            self.contacts.iter().zip(&memory).flat_map(|(c, own)| c.as_points().map(|c| c.values(own))).flatten().collect();
+        state.multipliers = self
+            .contacts
+            .iter()
+            .zip(&memory)
+            .flat_map(|(c, own)| c.as_points().map(|c| c.values(own)))
+            .flatten()
+            .collect();
         state.reactions = found.reactions;
         for (contact, own) in self.contacts.iter_mut().zip(memory) {
             if let Some(contact) = contact.as_points_mut() {

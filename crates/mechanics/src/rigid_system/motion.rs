@@ -97,7 +97,17 @@ impl<'a> Motion<'a> {
         if self.turns[unknown] { translation * 0.25 * self.extent[unknown].powi(2) } else { translation }
     }
 
-    /// A step relative to the sizes of the bodies.
+    /// The largest motion of a step, relative to the sizes: of all bodies the translation, and the rotation; in any axes.
+    pub fn largest(&self, step: &[f64]) -> f64 {
+        let mut squares = BTreeMap::<(u32, bool), f64>::new();
+        for (k, value) in step.iter().enumerate() {
+            let body = self.first.partition_point(|f| *f as usize <= k) as u32;
+            *squares.entry((body, self.turns[k])).or_default() += self.relative(k, *value).powi(2);
+        }
+        squares.values().fold(0.0f64, |m, s| if s.is_nan() { f64::NAN } else { m.max(*s) }).sqrt()
+    }
+
+    /// One unknown of a step relative to the size of its body.
     pub fn relative(&self, unknown: usize, value: f64) -> f64 {
         if self.turns[unknown] { value.abs() } else { value.abs() / self.extent[unknown] }
     }
@@ -278,9 +288,9 @@ impl<'a> Motion<'a> {
                 .map(|(b, p)| (p.id, std::array::from_fn(|k| if k < b.rows { r[b.first + k] } else { 0.0 })))
                 .collect();
 
-            let size = (0..n).map(|k| self.relative(k, change[k])).fold(0.0f64, f64::max);
+            let size = self.largest(change.as_slice());
             step.iter_mut().zip(change.iter()).for_each(|(s, c)| *s += c);
-            let far = (0..n).map(|k| self.relative(k, step[k])).fold(0.0f64, f64::max);
+            let far = self.largest(&step);
             // Iterates may lie beyond what is taken in the end.
             if !far.is_finite() || far > 4.0 * self.farthest() {
                 return Ok(None);
@@ -306,8 +316,7 @@ impl<'a> Motion<'a> {
         let n = self.count();
         let still: Twists = vec![None; bodies.len()];
         let touches = TOUCHES * self.size;
-        let points =
-            touching(&self.contacts, self.bodies_of(bodies), &still, Order::Second, &|_, gap| gap <= touches);
+        let points = touching(&self.contacts, self.bodies_of(bodies), &still, Order::Second, &|_, gap| gap <= touches);
         let (single, coupled) = self.held(bodies, time)?;
         let lacks = |h: &Held| h.constraint.lack.abs() > touches;
         if points.iter().any(|p| p.pair.gap < -touches) || single.iter().chain(&coupled).any(lacks) {
@@ -333,8 +342,9 @@ impl<'a> Motion<'a> {
 
     /// The largest force that the motion still takes, relative to the loads.
     pub fn moving(&self, step: &[f64], tau: f64) -> f64 {
-        let force = |k: usize| self.metric(k) * step[k].abs() / tau / if self.turns[k] { self.extent[k] } else { 1.0 };
-        (0..step.len()).map(force).fold(0.0f64, f64::max) / self.load
+        let force = |k: usize| self.metric(k) * step[k] / tau;
+        let as_step = |k: usize| if self.turns[k] { force(k) / self.extent[k] } else { force(k) * self.extent[k] };
+        self.largest(&(0..step.len()).map(as_step).collect::<Vec<_>>()) / self.load
     }
 }
 

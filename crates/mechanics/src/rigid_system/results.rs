@@ -68,8 +68,11 @@ impl<'a> Motion<'a> {
             }
         }
         let forces = motion.loads(&from.bodies, time)?.forces;
-        let force = |k: usize| forces[k].abs() / if motion.turns[k] { motion.extent[k] } else { 1.0 };
-        let load = (0..count).map(force).fold(0.0f64, f64::max);
+        // As a step, in units in which a force is a step by the size, and a moment one by a turn.
+        let step: Vec<f64> = (0..count)
+            .map(|k| forces[k] * if motion.turns[k] { 1.0 / motion.extent[k] } else { motion.extent[k] })
+            .collect();
+        let load = motion.largest(&step);
         // Without loads there are no forces, whatever their unit.
         if load > 0.0 {
             motion.load = load;

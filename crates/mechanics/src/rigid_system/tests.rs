@@ -15,7 +15,13 @@ use signorini_geometry::rigid_shape::{Cone, GapJet, RigidShape, Torus};
 use std::sync::Arc;
 
 /// Free discs or balls with a weight each, bodies at rest, and all contacts of what is free.
-fn system(free: &[(Vector<3>, f64)], plane: bool, fixed: Vec<RigidBody>, weight: &dyn Fn(f64) -> Vector<3>, mu: f64) -> System {
+fn system(
+    free: &[(Vector<3>, f64)],
+    plane: bool,
+    fixed: Vec<RigidBody>,
+    weight: &dyn Fn(f64) -> Vector<3>,
+    mu: f64,
+) -> System {
     let mut system = System::default();
     for (k, (x, r)) in free.iter().enumerate() {
         let mut body = ball(*x, *r, Motion::Free { plane });
@@ -90,7 +96,8 @@ fn three_discs_rest_if_friction_holds_them() {
             }
         }
         // Less than that, and it sinks between them until it lies on the floor.
-        let (state, found) = solve(system(&discs, true, vec![floor()], &|_| v(0.0, -1.0, 0.0), 0.999 * needed)).unwrap();
+        let (state, found) =
+            solve(system(&discs, true, vec![floor()], &|_| v(0.0, -1.0, 0.0), 0.999 * needed)).unwrap();
         let upper = order.iter().position(|k| *k == 2).unwrap();
         assert!((centre(&state, upper)[1] - 1.0).abs() < 1e-6, "{}", centre(&state, upper));
         assert!(found.imbalance < 1e-9);
@@ -101,7 +108,8 @@ fn three_discs_rest_if_friction_holds_them() {
 #[test]
 fn discs_in_a_tube_rest_on_each_other() {
     let discs: Vec<_> = (0..5).map(|k| (v(1.0 + 1.2 * f64::from(k % 2), 1.0 + 1.6 * f64::from(k), 0.0), 1.0)).collect();
-    let walls = || vec![floor(), plane(Vector::<3>::zeros(), v(1.0, 0.0, 0.0)), plane(v(3.2, 0.0, 0.0), v(-1.0, 0.0, 0.0))];
+    let walls =
+        || vec![floor(), plane(Vector::<3>::zeros(), v(1.0, 0.0, 0.0)), plane(v(3.2, 0.0, 0.0), v(-1.0, 0.0, 0.0))];
     let (state, found) = solve(system(&discs, true, walls(), &|_| v(0.0, -2.0, 0.0), 0.0)).unwrap();
     let most = found.sites.iter().flatten().map(|s| s.pressure).fold(0.0, f64::max);
     assert!((most - 0.75 * 2.0 * (4.0 + 3.0)).abs() < 1e-9, "{most}");
@@ -116,7 +124,8 @@ fn discs_in_a_tube_rest_on_each_other() {
 #[test]
 fn an_upright_stack_falls() {
     let stack = [(v(0.0, 1.0, 0.0), 1.0), (v(0.0, 3.0, 0.0), 1.0)];
-    let walls = || vec![floor(), plane(v(-1.2, 0.0, 0.0), v(1.0, 0.0, 0.0)), plane(v(1.2, 0.0, 0.0), v(-1.0, 0.0, 0.0))];
+    let walls =
+        || vec![floor(), plane(v(-1.2, 0.0, 0.0), v(1.0, 0.0, 0.0)), plane(v(1.2, 0.0, 0.0), v(-1.0, 0.0, 0.0))];
     let (state, found) = solve(system(&stack, true, walls(), &|_| v(0.0, -1.0, 0.0), 0.0)).unwrap();
     assert!(found.left_unstable > 0);
     // Wedged: centres apart by 0.4 across, 2 in all.
@@ -148,7 +157,8 @@ fn a_ball_is_held_by_a_circle() {
 /// A heap of unlike discs between walls: in balance, within its cones, and the same in other units and another order.
 #[test]
 fn heaps_do_not_depend_on_units_and_orders() {
-    let places = [[1.0, 0.9, 0.9], [2.9, 0.75, 0.7], [4.4, 0.65, 0.6], [1.7, 2.6, 0.8], [3.4, 2.3, 0.75], [2.5, 4.2, 0.9]];
+    let places =
+        [[1.0, 0.9, 0.9], [2.9, 0.75, 0.7], [4.4, 0.65, 0.6], [1.7, 2.6, 0.8], [3.4, 2.3, 0.75], [2.5, 4.2, 0.9]];
     let heap = |length: f64, force: f64, order: &[usize], mu: f64| {
         let discs: Vec<_> =
             order.iter().map(|k| places[*k]).map(|[x, y, r]| (v(x, y, 0.0) * length, r * length)).collect();

@@ -38,8 +38,8 @@ use crate::pair::{AxisChoice, Encounter, NoPair, Pair, Stuck};
 use crate::points::{Anchor, Master, Met, Order, Placed, Sampling, Site};
 use crate::simpler::SetAside;
 use partners::Partners;
-pub(crate) use traction::axes;
 use signorini_contact::Law;
+pub(crate) use traction::axes;
 
 /// Two sides that may touch.
 pub struct Contact {

@@ -9,10 +9,10 @@ use crate::system::{AssemblyError, System, SystemState, TimedLoad};
 use nalgebra::{DMatrix, DVector};
 use signorini_geometry::Vector;
 
-/// What holds a body when springs a hundred times weaker than its load per size carry so much of it: nothing else does.
-const CARRIES: f64 = 0.1;
-/// A body that weak springs let go so many sizes away is not held.
-pub(crate) const AWAY: f64 = 10.0;
+/// A body that went so many sizes away, or turned so often, is not held.
+const AWAY: f64 = 10.0;
+/// A free body that moves by more of its size, or turns by more radians, is followed in smaller steps.
+const LEAP: f64 = 0.5;
 
 /// Share of what holds a body most that rounding leaves of what does not hold it.
 const NOT_HELD: f64 = 1e-10;
@@ -105,20 +105,43 @@ impl System {
 }
 
 impl Problem<'_> {
-    /// The body that springs let go, or that nothing but springs holds.
-    pub(crate) fn away(&self, at: &SystemState, load: f64) -> Option<IncrementError> {
-        let size = self.system.size();
-        let extent = |k: usize| if self.is_spin[k] { 1.0 } else { size };
-        let goes = |k: usize| at.travel[k].abs() > AWAY * extent(k);
-        let carries = |k: usize| self.spring(k) * at.travel[k].abs() / load * extent(k) / size;
-        let most = (0..at.travel.len()).max_by(|a, b| carries(*a).total_cmp(&carries(*b)))?;
-        let far = (0..at.travel.len()).find(|&k| goes(k) || at.travel[k].is_nan());
-        let unknown = far.or_else(|| (carries(most) > CARRIES).then_some(most))?;
-        Some(self.free(unknown, at))
+    /// Whether a body has gone so far that nothing holds it.
+    pub(crate) fn is_far(&self, travel: &[f64]) -> bool {
+        travel.iter().enumerate().any(|(k, t)| t.is_nan() || self.sizes_gone(k, *t) > AWAY)
     }
 
-    /// A body that moves as a state did, and most in one unknown.
-    fn free(&self, unknown: usize, at: &SystemState) -> IncrementError {
+    fn sizes_gone(&self, unknown: usize, travel: f64) -> f64 {
+        travel.abs() / if self.is_spin[unknown] { std::f64::consts::TAU } else { self.system.size() }
+    }
+
+    /// Whether a free rigid body went so far in one solve that nothing tells what it passed.
+    pub(crate) fn leaps(&self, from: &SystemState, to: &SystemState) -> bool {
+        let bodies = self.system.bodies.iter().enumerate();
+        bodies.filter(|(_, b)| b.is_rigid() && b.unknowns() > 0).any(|(k, body)| {
+            let [a, b] = [from, to].map(|s| &s.bodies[k].configuration);
+            let away = (0..3).map(|i| (b[i] - a[i]).powi(2)).sum::<f64>().sqrt();
+            let cosine: f64 = (3..7).map(|i| a[i] * b[i]).sum();
+            away > LEAP * body.size() || cosine.abs() < (0.5 * LEAP).cos()
+        })
+    }
+
+    /// Whether a support pulls a rigid body.
+    pub(crate) fn is_pulled(&self, at: &SystemState) -> bool {
+        let lacks = |h: &crate::system::Held| {
+            let (body, lack) = (self.system.supports[h.support].part.body, h.constraint.lack.abs());
+            let size = self.system.bodies[body].size();
+            self.system.bodies[body].is_rigid()
+                && lack > 0.5 * LEAP * if h.constraint.component < 3 { size } else { 1.0 }
+        };
+        self.system.held(at, self.time).is_ok_and(|(single, coupled)| single.iter().chain(&coupled).any(lacks))
+    }
+
+    /// The body that moved farthest, and how.
+    pub(crate) fn free(&self, at: &SystemState) -> IncrementError {
+        let gone = |k: &usize| self.sizes_gone(*k, at.travel[*k]);
+        let Some(unknown) = (0..at.travel.len()).max_by(|a, b| gone(a).total_cmp(&gone(b))) else {
+            return IncrementError::Interrupted;
+        };
         let (first, _) = self.system.numbering();
         let Some(k) = first.iter().rposition(|f| *f as usize <= unknown) else { return IncrementError::Interrupted };
         let body = &self.system.bodies[k];

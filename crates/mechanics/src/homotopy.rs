@@ -5,21 +5,20 @@
 //! end shows what holds nothing.
 
 use crate::equilibrium::Problem;
-use crate::free::AWAY;
 use crate::increment::is_curable;
 use crate::increment_error::IncrementError;
 use crate::points::Order;
 use crate::system::SystemState;
 use signorini_solve::newton::Converged;
 
-/// Stiffness of the springs that hold free bodies at first, in largest loads per size, and what they are taken back to. The
-/// first let a body move by a hundredth of its size: contact reaches farther.
-const SPRINGS: [f64; 7] = [1e2, 1.0, 1e-2, 1e-4, 1e-6, 1e-8, 0.0];
-/// Springs to the last state: how they are weakened, below what the bodies are let go, in largest loads per size, and how
-/// often.
-const WEAKER: f64 = 0.25;
-const SETTLED: f64 = 1e-2;
-const MOST_SETTLING: usize = 300;
+/// Stiffness of the springs to the last state, in largest loads per size: at first, when a body moves by a hundredth of its size;
+/// below what they are let go, and beyond what nothing moves any more.
+const STIFFEST: f64 = 1e2;
+const SOFTEST: f64 = 1e-6;
+const STIFFER_THAN_ALL: f64 = 1e8;
+/// How they are weakened, and the most steps.
+const WEAKER: f64 = 0.1;
+const MOST_STEPS: usize = 300;
 /// States of an iteration that came soon to its end.
 const SOON: usize = 12;
 /// The first bit of what is out of balance that is let go, and the least.
@@ -58,89 +57,47 @@ impl Problem<'_> {
         }
     }
 
-    /// Solves with weak springs that hold all bodies where they were, and are taken back step by step.
-    pub(crate) fn with_springs(
+    /// Follows the bodies to rest in pseudo-time: each solve is held by springs to the state that the last one found, weaker after a
+    /// success and stiffer after a failure: implicit steps of a motion without inertia (proximal point method, Rockafellar
+    /// 1976; Kelley & Keyes 1998). In the end nothing is left of the springs.
+    pub(crate) fn pseudo_time(
         &mut self,
         start: &SystemState,
         error: IncrementError,
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
         let load = self.load(start)?;
-        let mut state = start.clone();
-        let mut last = None;
-        let mut before = 0.0;
-        for factor in SPRINGS {
-            self.springs = factor * load / self.system.size();
-            match self.solve(&state, report) {
-                Ok(found) => {
-                    if factor < 1.0
-                        && let Some(body) = self.away(&found.state, load)
-                    {
-                        return Err(body);
-                    }
-                    state = found.state.clone();
-                    last = Some(found);
-                }
-                Err(IncrementError::Interrupted) => return Err(IncrementError::Interrupted),
-                Err(_) => {
-                    // What the last springs carried tells what nothing else does.
-                    self.springs = before;
-                    let free = last.is_some().then(|| self.away(&state, load)).flatten();
-                    return Err(free.unwrap_or_else(|| self.named(error, &state)));
-                }
-            }
-            before = self.springs;
-        }
-        last.ok_or(error)
-    }
-
-    /// Follows the bodies to rest: each solve is held by springs to the state that the last one found, weaker after a success
-    /// and stiffer after a failure: implicit steps of a motion without inertia (proximal point method, Rockafellar 1976;
-    /// Kelley & Keyes 1998). For ropes without tension that fall until they hang.
-    pub(crate) fn settling(
-        &mut self,
-        start: &SystemState,
-        error: IncrementError,
-        report: &mut dyn FnMut(usize, f64) -> bool,
-    ) -> Result<Converged<SystemState>, IncrementError> {
-        let load = self.load(start)?;
-        // What is not slack does not fall: that it has no equilibrium is no matter of the way.
-        if !self.system.is_slack(start) || load == f64::MIN_POSITIVE {
-            return Err(error);
-        }
         let unit = load / self.system.size();
         let mut state = start.clone();
         let mut total = vec![0.0; start.travel.len()];
-        let mut factor = SPRINGS[0];
-        for _ in 0..MOST_SETTLING {
-            self.springs = factor * unit;
+        let mut factor = STIFFEST;
+        for _ in 0..MOST_STEPS {
+            self.springs = if factor >= SOFTEST { factor * unit } else { 0.0 };
             let held = SystemState { travel: vec![0.0; total.len()], ..state.clone() };
             let found = self.solve(&held, report);
-            self.springs = 0.0;
+            let ends = std::mem::replace(&mut self.springs, 0.0) == 0.0;
             match found {
-                Ok(found) => {
+                // A body that leaps is not followed.
+                Ok(found) if self.leaps(&held, &found.state) => factor = factor.max(SOFTEST) / WEAKER,
+                Ok(mut found) => {
                     total.iter_mut().zip(&found.state.travel).for_each(|(t, s)| *t += s);
-                    let soon = found.history.len() <= SOON;
-                    state = found.state;
-                    let far = |(k, t): (usize, &f64)| !self.is_spin[k] && t.abs() > AWAY * self.system.size();
-                    if total.iter().enumerate().any(far) {
-                        return Err(error);
+                    found.state.travel.clone_from(&total);
+                    if self.is_far(&total) {
+                        return Err(self.free(&found.state));
                     }
-                    if soon {
-                        factor *= WEAKER;
-                    }
-                    if factor < SETTLED
-                        && let Ok(mut found) = self.solve(&state, report)
-                    {
-                        found.state.travel = total;
+                    if ends {
                         return Ok(found);
                     }
+                    let soon = found.history.len() <= SOON;
+                    state = found.state;
+                    factor *= if soon { WEAKER * WEAKER } else { WEAKER };
                 }
                 Err(IncrementError::Interrupted) => return Err(IncrementError::Interrupted),
-                Err(_) => factor /= WEAKER,
+                Err(_) if factor > STIFFER_THAN_ALL => break,
+                Err(_) => factor = factor.max(SOFTEST) / WEAKER,
             }
         }
-        Err(error)
+        Err(self.named(error, &state))
     }
 
     /// The largest force that acts.

@@ -248,7 +248,14 @@ impl System {
             worst: 0,
         };
         let found = match way {
-            Way::Straight => problem.solve(start, report),
+            Way::Straight => match problem.solve(start, report) {
+                // Newton's method may find a body far away, where it touches nothing.
+                Ok(found) if problem.leaps(start, &found.state) && !problem.is_pulled(start) => {
+                    let history = found.history;
+                    Err(IncrementError::NotConverged { history, worst: None })
+                }
+                found => found,
+            },
             Way::Round(error) => self.by_another_way(&mut problem, start, error, report),
         };
         *solved = problem.solved;
@@ -272,13 +279,7 @@ impl System {
         if self.contacts.is_empty() {
             return Err(problem.named(error, start));
         }
-        match problem.with_springs(start, error, report) {
-            Err(error) if error != IncrementError::Interrupted && !problem.is_free => {
-                problem.springs = 0.0;
-                problem.settling(start, error, report)
-            }
-            found => found,
-        }
+        problem.pseudo_time(start, error, report)
     }
 
     /// What rounding of positions leaves of forces.

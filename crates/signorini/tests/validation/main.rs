@@ -18,6 +18,7 @@ mod meshes;
 mod published;
 mod refinement;
 mod resume;
+mod rigid_bodies;
 mod scenes;
 mod schema;
 mod solid_theory;

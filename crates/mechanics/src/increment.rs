@@ -26,6 +26,8 @@ pub struct IncrementResult {
     /// Force and moment (of unknowns that turn) of each support on the bodies.
     pub support_forces: Vec<[Vector<3>; 2]>,
     pub energy: f64,
+    /// Energy that the friction of each contact took in the increment.
+    pub dissipated: Vec<f64>,
     pub unknowns: usize,
     /// Largest unbalanced force relative to the largest of all.
     pub imbalance: f64,
@@ -312,13 +314,15 @@ impl System {
         // Where no force acts what is left is the rounding of the positions.
         let most = most.max(1e10 * rounding);
         let imbalance = residual[..count].iter().fold(0.0f64, |m, r| m.max(r.abs())) / most;
-        let sites = (0..self.contacts.len()).map(|k| self.sites(k, state)).collect::<Result<_, _>>()?;
+        let sites = (0..self.contacts.len()).map(|k| self.sites(k, state)).collect::<Result<Vec<_>, _>>()?;
+        let dissipated = sites.iter().map(|list| list.iter().map(SiteResult::dissipated).sum()).collect();
         Ok(IncrementResult {
             iterations,
             history,
             sites,
             support_forces,
             energy: at.energy,
+            dissipated,
             unknowns: at.residual.len(),
             imbalance,
             lost_sites: at.lost,

@@ -25,7 +25,7 @@ pub struct Bodies<'a> {
     pub first: &'a [u32],
 }
 
-/// A way between two states of all bodies, on which positions change in proportion.
+/// A way between two states of all bodies, on which positions and turns change in proportion.
 #[derive(Clone, Copy)]
 pub struct Way<'a> {
     pub from: Bodies<'a>,
@@ -36,13 +36,11 @@ impl Way<'_> {
     /// A body on the way: `t` from 0 to 1.
     pub fn at(&self, body: usize, t: f64) -> BodyState {
         let [from, to] = [self.from, self.to].map(|b| &b.states[body]);
-        let between = |(a, b): (&f64, &f64)| a + t * (b - a);
-        let configuration = from.configuration.iter().zip(&to.configuration).map(between).collect();
-        BodyState { configuration, internal: from.internal.clone() }
+        self.from.bodies[body].between(from, to, t)
     }
 
     pub(crate) fn moves(&self, body: usize) -> bool {
-        self.from.states[body].configuration != self.to.states[body].configuration
+        self.from.states[body] != self.to.states[body]
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! - [`body`]: what a body is to the system.
 //! - [`curve`]: what a curve is to contact between curves.
-//! - [`rigid_body`]: rigid bodies, moved or free.
+//! - [`rigid_body`]: rigid bodies, moved or free; `rotation`: their rotation vectors.
 //! - [`pair`]: gap and slip of a contact pair in the unknowns of its bodies.
 //! - [`surface`]: what a surface of faces is to contact by mortar, which is [`mortar`].
 //! - `density`: how densely a body is tested against faces.
@@ -36,6 +36,7 @@ pub mod passage;
 pub mod points;
 mod prepare;
 pub mod rigid_body;
+mod rotation;
 pub mod saved;
 mod simpler;
 mod site_result;
@@ -59,7 +60,7 @@ pub use pair::AxisChoice;
 pub use part::Part;
 pub use points::{
     Anchor, Bend, Direction, Foot, Function, Master, MaterialPoint, Met, NormalField, Order, Placed, RigidFoot,
-    Sampling, Site,
+    Sampling, Site, Turning,
 };
 pub use rigid_body::{Motion, RigidBody, RigidSite};
 pub use saved::Saved;

@@ -61,6 +61,8 @@ pub struct Mortar {
     memory: Vec<NodeMemory>,
     /// Points matched at the last state.
     matched: Vec<Matched>,
+    /// The rotation vector of the master at the last state, if it is rigid.
+    turned: Vector<3>,
     /// Times of the last state and of the one that is looked for.
     times: [f64; 2],
     /// What is stated, while a start is looked for with something simpler.
@@ -135,6 +137,7 @@ impl Mortar {
             stiffness,
             softness: enforcement.softness(),
             matched: Vec::new(),
+            turned: Vector::<3>::zeros(),
             times: [0.0; 2],
             set_aside: None,
         })

@@ -14,6 +14,8 @@ pub use crate::interaction::Way;
 use crate::body::{Body, BodyState, PlaceError};
 use crate::contact::Contact;
 use crate::points::Master;
+use crate::rigid_body::Pose;
+use crate::rotation;
 use crate::system::{AssemblyError, System, SystemState};
 use signorini_geometry::{Point, Vector};
 use std::cell::OnceCell;
@@ -193,13 +195,13 @@ const MOST_BETWEEN: f64 = 100.0;
 
 /// No point of a body goes farther than this on a way.
 fn longest(body: &dyn Body, way: Way<'_>, number: usize) -> f64 {
-    let [from, to] = [way.from, way.to].map(|end| &end.states[number].configuration);
-    let norm = |of: std::ops::Range<usize>| of.map(|k| (to[k] - from[k]).powi(2)).sum::<f64>().sqrt();
-    match body.is_rigid() {
-        // A turn by an angle, of which a quaternion changes by half, moves points by no more than the size for each radian.
-        true => norm(0..3) + 2.0 * body.size() * norm(3..from.len()),
-        false => norm(0..from.len()),
+    let [from, to] = [way.from, way.to].map(|end| &end.states[number]);
+    if body.is_rigid() {
+        let [from, to] = [from, to].map(Pose::of);
+        return (to.centre - from.centre).norm() + body.size() * rotation::between(&from.turn, &to.turn).norm();
     }
+    let change = from.configuration.iter().zip(&to.configuration).map(|(a, b)| (b - a).powi(2));
+    change.sum::<f64>().sqrt()
 }
 
 /// The place on a way of a given length from which a site would be pushed on to another side: half way from where it enters

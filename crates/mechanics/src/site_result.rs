@@ -42,6 +42,11 @@ impl SiteResult {
         (self.normal * self.pressure + self.friction) * self.weight
     }
 
+    /// Energy that its friction took in the last increment.
+    pub fn dissipated(&self) -> f64 {
+        if self.status == Status::Open { 0.0 } else { -self.weight * self.friction.dot(&self.increment) }
+    }
+
     /// The pressure there.
     pub fn shown_pressure(&self) -> f64 {
         self.of_surface.map_or(self.pressure, |own| own.pressure)

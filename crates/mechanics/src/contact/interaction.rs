@@ -197,18 +197,20 @@ impl Interaction for Contact {
     }
 
     fn history(&self) -> [Vec<f64>; 2] {
-        let scales = self.stiffness.iter().copied().chain([self.times[0]]).collect();
+        let turned = self.turned.iter().flat_map(|t| t.iter().copied());
+        let scales = self.stiffness.iter().copied().chain([self.times[0]]).chain(turned).collect();
         [self.memory.iter().flat_map(numbers).collect(), scales]
     }
 
     fn restore(&mut self, [sites, scales]: &[Vec<f64>; 2]) -> Result<(), NotItsHistory> {
         let count = self.stiffness.len();
-        if sites.len() != NUMBERS * self.memory.len() || scales.len() != count + 1 {
+        if sites.len() != NUMBERS * self.memory.len() || scales.len() != count + 7 {
             return Err(NotItsHistory { contact: self.name.clone() });
         }
         self.memory = sites.chunks(NUMBERS).map(memory).collect();
         self.stiffness.copy_from_slice(&scales[..count]);
         self.times = [scales[count]; 2];
+        self.turned = [1, 4].map(|k| Vector::<3>::from_column_slice(&scales[count + k..count + k + 3]));
         Ok(())
     }
 }

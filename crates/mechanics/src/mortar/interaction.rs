@@ -210,6 +210,8 @@ impl Interaction for Mortar {
                 self.matched.push(Matched { face: point.face, s: point.s, on, shares: point.shares.clone() });
             }
         }
+        let turned = found.sides.turn();
+        self.turned = turned;
         self.times[0] = self.times[1];
         Ok(())
     }

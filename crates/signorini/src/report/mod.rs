@@ -169,7 +169,7 @@ pub struct CellsReport {
 pub struct Pose {
     /// Displacement of its centre since the start.
     pub displacement: [f64; 3],
-    /// Rotation vector in radians since the start.
+    /// Rotation vector in radians since the start, whole turns included.
     pub rotation: [f64; 3],
 }
 

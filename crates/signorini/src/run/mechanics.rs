@@ -96,6 +96,8 @@ impl MechanicsModel {
     ) -> Result<Result<IncrementResult, Failure>, CaseError> {
         let (mut reached, mut size) = (before, time - before);
         let (mut iterations, mut residuals) = (0, Vec::new());
+        // Of the parts of the increment before the last one, by contact.
+        let mut dissipated = vec![0.0; self.plan.system.contacts.len()];
         loop {
             let last = time - before <= 0.0 || reached + size >= time - 1e-9 * (time - before);
             let target = if last { time } else { reached + size };
@@ -122,9 +124,10 @@ impl MechanicsModel {
             match found {
                 Ok((state, result)) => {
                     iterations += result.iterations;
+                    dissipated.iter_mut().zip(&result.dissipated).for_each(|(sum, own)| *sum += own);
                     if last {
                         self.state = state;
-                        return Ok(Ok(IncrementResult { iterations, history: residuals, ..result }));
+                        return Ok(Ok(IncrementResult { iterations, history: residuals, dissipated, ..result }));
                     }
                     if let Err(error) = self.plan.system.accept(&state) {
                         return Ok(Err(failed(&error, residuals)));

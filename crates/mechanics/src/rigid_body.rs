@@ -9,8 +9,8 @@ use crate::pair::{any_tangent, axis};
 use crate::points::{
     Anchor, Bend, Function, Master, MaterialPoint, Met, Order, Placed, RigidFoot, Sampling, Site, Turning,
 };
-use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
 use crate::rotation;
+use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::{GapJet, RigidShape};
 use signorini_geometry::{Matrix, Point, Vector};

@@ -105,7 +105,7 @@ impl Interaction for Mortar {
     }
 
     fn rows(&self) -> Vec<[f64; 2]> {
-        let list = self.stiffness.iter().zip(&self.whole);
+        let list = self.stiffness.iter().zip(&self.weights);
         list.flat_map(|(c, w)| vec![[*c, *w]; self.components()]).collect()
     }
 
@@ -143,6 +143,7 @@ impl Interaction for Mortar {
             self.folded[k] = !placed.functions.iter().any(|f| pushed(&f.value) && moves(f));
         }
         self.whole = self.nodes.whole(sides.slave.as_ref(), &self.folded).weight;
+        self.weights = super::weights(&self.whole);
     }
 
     fn add_to(&self, at: Bodies<'_>, own: Own<'_>, out: &mut Target<'_>) -> Result<usize, PlaceError> {

@@ -91,9 +91,7 @@ pub(super) fn least_turn(from: &Varied, to: &Varied) -> Varied {
         let sine = sine.max(f64::MIN_POSITIVE.sqrt());
         (angle / sine, (angle * cosine / sine - 1.0) / (sine * sine))
     };
-    let of = |(da, db): (&V, &V)| {
-        across * (slope * (da.dot(&b) + a.dot(db))) + (da.cross(&b) + a.cross(db)) * ratio
-    };
+    let of = |(da, db): (&V, &V)| across * (slope * (da.dot(&b) + a.dot(db))) + (da.cross(&b) + a.cross(db)) * ratio;
     Varied { value: across * ratio, variation: from.variation.iter().zip(&to.variation).map(of).collect() }
 }
 

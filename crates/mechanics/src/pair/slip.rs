@@ -200,7 +200,8 @@ impl AtRigid<'_> {
         let radius = radius.unwrap_or(0.0);
         let over_slave = (radius != 0.0).then(|| {
             let before = slave.frame * stuck.on_slave;
-            let before = Varied { value: before, variation: columns.iter().map(|c| c.spin[0].cross(&before)).collect() };
+            let before =
+                Varied { value: before, variation: columns.iter().map(|c| c.spin[0].cross(&before)).collect() };
             let psi = match &own {
                 Some(own) => axes.against(&own.value, &own.variation),
                 None => least_turn(&before, &contact_normal),

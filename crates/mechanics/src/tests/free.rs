@@ -167,8 +167,12 @@ fn slip_is_measured_along_the_arc_by_whatever_angle_a_body_turns() {
         system.bodies.push(Box::new(ball(v(0.0, 0.5, 0.0), 0.5, Motion::Free { plane: true })));
         let master: Box<dyn crate::body::Body> = match wheel == 0.0 {
             true => Box::new(plane(zero, v(0.0, 1.0, 0.0))),
-            false => Box::new(rigid("wheel", Sphere { center: v(0.0, -2.0, 0.0), radius: 2.0 }, Motion::Prescribed(Arc::new(
-                move |t| RigidMotion::new(motion(t).turn, v(0.0, -2.0, 0.0), zero))), Vec::new())),
+            false => Box::new(rigid(
+                "wheel",
+                Sphere { center: v(0.0, -2.0, 0.0), radius: 2.0 },
+                Motion::Prescribed(Arc::new(move |t| RigidMotion::new(motion(t).turn, v(0.0, -2.0, 0.0), zero))),
+                Vec::new(),
+            )),
         };
         system.bodies.push(master);
         system.loads.push(PlacedLoad {

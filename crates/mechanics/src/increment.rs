@@ -96,12 +96,30 @@ impl System {
         start.predictions = self.contacts.iter().map(|c| c.prediction()).collect();
         let kept = self.histories();
         self.contacts.iter_mut().for_each(|c| c.begin(time));
-        let found = self.outer(&start, time, report);
+        let found =
+            self.outer(&start, time, report).and_then(|found| self.check_inside(&found.0, false).map(|()| found));
         self.contacts.iter_mut().for_each(|c| c.end());
         if found.is_err() {
             self.put_back(&kept);
         }
         found
+    }
+
+    /// Tells what lies inside of a rigid body in a state: where nothing sees it, or at the start deeper than an interference.
+    ///
+    /// # Errors
+    /// The deepest point of the first contact that has one.
+    pub fn check_inside(&self, state: &SystemState, is_start: bool) -> Result<(), IncrementError> {
+        let (first, _) = self.numbering();
+        let at = self.bodies_in(state, &first);
+        for contact in &self.contacts {
+            if let Some(found) = contact.inside(at, is_start).map_err(AssemblyError::from)? {
+                let body = self.bodies[contact.bodies()[0]].name().to_string();
+                let (contact, depth, x) = (contact.name().to_string(), found.depth, found.x.into());
+                return Err(IncrementError::Inside { contact, body, depth, x });
+            }
+        }
+        Ok(())
     }
 
     /// Outer iterations: of augmented Lagrangians, and of penalties that are to leave a given penetration.

@@ -10,7 +10,9 @@
 //! - a *history*, numbers that count from the last state that was accepted.
 
 use crate::body::{Body, BodyState, PlaceError};
+use crate::inside::{self, Inside};
 use crate::part::Part;
+use crate::points::Placed;
 use crate::simpler::SimplerFriction;
 use crate::site_result::SiteResult;
 use signorini_contact::{Law, Status};
@@ -163,6 +165,15 @@ pub trait Interaction: Send + Sync {
         Ok(1.0)
     }
 
+    /// What lies inside of a rigid body in a state where nothing sees it; at the start also what lies in it deeper than an
+    /// interference that contact could undo.
+    ///
+    /// # Errors
+    /// Bodies that cannot be tested or touched.
+    fn inside(&self, _at: Bodies<'_>, _is_start: bool) -> Result<Option<Inside>, PlaceError> {
+        Ok(None)
+    }
+
     /// Takes a state as the one from which slips count and the next increment starts.
     ///
     /// # Errors
@@ -242,6 +253,24 @@ pub(crate) fn towards(wanted: f64, found: &[SiteResult], penalties: &mut [f64]) 
 pub const NEAR_WANTED: f64 = 1e-2;
 
 impl<'a> Bodies<'a> {
+    /// [`Interaction::inside`] of the sites of a slave.
+    pub(crate) fn inside(
+        &self,
+        [slave, master]: [&Part; 2],
+        sites: &[Placed],
+        is_start: bool,
+    ) -> Result<Option<Inside>, PlaceError> {
+        let (body, state) = self.side(master);
+        if !body.is_rigid() || slave.body == master.body || sites.iter().all(|s| s.outward.is_none()) {
+            return Ok(None);
+        }
+        let met = body.master(master.group.as_deref(), state)?;
+        Ok(match is_start {
+            true => inside::at_start(met.as_ref(), sites, self.bodies[slave.body].size()),
+            false => inside::unseen(met.as_ref(), sites),
+        })
+    }
+
     pub(crate) fn side(&self, part: &Part) -> (&'a dyn Body, &'a BodyState) {
         (self.bodies[part.body].as_ref(), &self.states[part.body])
     }

@@ -10,7 +10,7 @@
 //! - [`interaction`]: what acts between bodies, as the system sees it.
 //! - [`system`]: bodies, supports, loads and contacts, assembled.
 //! - [`iterative`]: Newton's step of large systems by iterations.
-//! - [`passage`]: how far steps may be followed so that nothing passes through.
+//! - [`passage`]: how far steps may be followed so that nothing passes through; `inside`: what lies inside of a rigid body.
 //! - [`increment`]: equilibrium at one time, by Newton's method (`equilibrium`), other ways where that fails (`homotopy`,
 //!   `free`), and outer iterations (`augmentation`); [`saved`]: what it goes on from.
 
@@ -25,6 +25,7 @@ mod free;
 mod homotopy;
 pub mod increment;
 pub mod increment_error;
+mod inside;
 pub mod interaction;
 pub mod iterative;
 pub mod linear_solver;
@@ -53,6 +54,7 @@ pub use density::test_densely;
 pub use enforcement::Enforcement;
 pub use increment::IncrementResult;
 pub use increment_error::IncrementError;
+pub use inside::Inside;
 pub use interaction::{Bodies, Interaction, Own, Target};
 pub use linear_solver::{Coarse, LinearSolver, Solved, Subspaces};
 pub use mortar::Mortar;

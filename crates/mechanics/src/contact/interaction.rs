@@ -5,6 +5,7 @@ use super::{Contact, Sides, SiteMemory};
 use crate::body::Body;
 use crate::body::PlaceError;
 use crate::enforcement::{Outer, SOFTER, WAVE};
+use crate::inside::Inside;
 use crate::interaction::{Around, Bodies, Interaction, NotItsHistory, Own, Target, Way, hardened, take_over, towards};
 use crate::pair::Stuck;
 use crate::points::{MaterialPoint, Sampling, Site};
@@ -143,7 +144,13 @@ impl Interaction for Contact {
     }
 
     fn free_way(&self, way: Way<'_>) -> Result<f64, PlaceError> {
-        self.share_of_way(way)
+        Ok(self.share_of_way(way))
+    }
+
+    fn inside(&self, at: Bodies<'_>, is_start: bool) -> Result<Option<Inside>, PlaceError> {
+        let (body, state) = at.side(&self.slave);
+        let sites: Vec<_> = self.sites().iter().map(|site| body.placed(state, site)).collect();
+        at.inside([&self.slave, &self.master], &sites, is_start)
     }
 
     fn accept(&mut self, at: Bodies<'_>, own: Own<'_>) -> Result<(), PlaceError> {

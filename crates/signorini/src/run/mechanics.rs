@@ -175,7 +175,9 @@ impl MechanicsModel {
                     if has_ropes { ", or a pretension where a rope is slack" } else { "" },
                 ),
             ),
-            IncrementError::PassesThrough { .. } => (Reason::Increment, format!("{error}; try more increments")),
+            IncrementError::PassesThrough { .. } | IncrementError::Inside { .. } => {
+                (Reason::Increment, format!("{error}; try more increments"))
+            }
             IncrementError::Augmentation { history: list, .. } => (
                 Reason::Contact,
                 format!(

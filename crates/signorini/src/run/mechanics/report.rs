@@ -256,9 +256,14 @@ pub fn warn(plan: &MechanicsPlan, result: &IncrementResult, shown: &SystemShown,
         if !plan.head.problem.contacts.contains_key(contact.name()) || sites.iter().any(|s| s.status != Status::Open) {
             continue;
         }
+        // Once for each contact.
+        let opening = format!("contact `{}`: the bodies do not touch", contact.name());
+        if record.warnings.iter().any(|w| w.kind == WarningKind::Apart && w.message.starts_with(&opening)) {
+            continue;
+        }
         let gap = sites.iter().filter_map(|s| s.gap).reduce(f64::min);
         let gap = gap.map_or("nothing is within reach".to_string(), |g| format!("smallest gap {g:.6e}"));
-        let message = format!("contact `{}`: the bodies do not touch at t = {time} ({gap})", contact.name());
+        let message = format!("{opening} at t = {time} ({gap})");
         record.warnings.push(Warning::new(WarningKind::Apart, message).at_time(time));
     }
     if let Some((body, strained)) = most_strained(plan, shown) {

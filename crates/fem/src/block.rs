@@ -30,7 +30,8 @@ pub fn side_names(dimension: usize) -> &'static [[&'static str; 2]] {
     }
 }
 
-/// A box of cells of the given order with groups for its sides and the whole `boundary`; `map` moves every node.
+/// A box of cells of the given order with groups for its sides and the whole `boundary`; `map` moves every node. Opposite sides
+/// that come to lie on each other node by node are joined and are no sides any more: a ring is closed.
 pub fn block<const D: usize>(axes: &Axes<D>, order: usize, mut map: impl FnMut(Point<D>) -> Point<D>) -> Mesh<D> {
     let shape = if D == 2 { CellShape::Quadrilateral } else { CellShape::Hexahedron };
     let line = super::lagrange::gauss_lobatto(order);
@@ -56,8 +57,9 @@ pub fn block<const D: usize>(axes: &Axes<D>, order: usize, mut map: impl FnMut(P
             }))
         })
         .collect();
-    let mut mesh = Mesh::new(nodes);
     let cells: [usize; D] = std::array::from_fn(|k| axes[k].len() - 1);
+    let (nodes, number_of, closed) = joined(nodes, &counts, &cells);
+    let mut mesh = Mesh::new(nodes);
     let per_cell = (order + 1).pow(D as u32);
     for number in 0..cells.iter().product() {
         let mut rest = number;
@@ -75,11 +77,11 @@ pub fn block<const D: usize>(axes: &Axes<D>, order: usize, mut map: impl FnMut(P
                     i /= order + 1;
                     stride *= counts[k];
                 }
-                node as u32
+                number_of[node]
             })
             .collect();
         let cell = mesh.add_cell(shape, order, &list);
-        for k in 0..D {
+        for k in (0..D).filter(|k| !closed[*k]) {
             for high in 0..2 {
                 if index[k] != if high == 0 { 0 } else { cells[k] - 1 } {
                     continue;
@@ -91,6 +93,43 @@ pub fn block<const D: usize>(axes: &Axes<D>, order: usize, mut map: impl FnMut(P
         }
     }
     mesh
+}
+
+/// Distance of two nodes relative to the size of the mesh at which they are one.
+const SAME: f64 = 1e-10;
+
+/// Nodes without those of the high sides that lie on their partners of the low ones, the number that each node of the grid
+/// then has, and the directions in which the mesh closes.
+fn joined<const D: usize>(
+    nodes: Vec<Point<D>>,
+    counts: &[usize; D],
+    cells: &[usize; D],
+) -> (Vec<Point<D>>, Vec<u32>, [bool; D]) {
+    let strides: [usize; D] = std::array::from_fn(|k| counts[..k].iter().product());
+    let place = |node: usize, k: usize| node / strides[k] % counts[k];
+    let Some(first) = nodes.first() else { return (nodes, Vec::new(), [false; D]) };
+    let (low, high) = nodes.iter().fold((*first, *first), |(l, h), x| (l.inf(x), h.sup(x)));
+    let near = SAME * (high - low).norm();
+    // A side that shrinks to a point lies on everything.
+    let closed: [bool; D] = std::array::from_fn(|k| {
+        let mut pairs = (0..nodes.len()).filter(|n| place(*n, k) == 0).map(|n| [n, n + (counts[k] - 1) * strides[k]]);
+        cells[k] > 2 && pairs.all(|[a, b]| (nodes[a] - nodes[b]).norm() <= near)
+    });
+    let mut kept = Vec::with_capacity(nodes.len());
+    let mut number_of = vec![0; nodes.len()];
+    for n in 0..nodes.len() {
+        let partner =
+            (0..D).filter(|k| closed[*k] && place(n, *k) == counts[*k] - 1).map(|k| (counts[k] - 1) * strides[k]);
+        match n - partner.sum::<usize>() {
+            own if own == n => {
+                number_of[n] = kept.len() as u32;
+                kept.push(nodes[n]);
+            }
+            // It comes first.
+            partner => number_of[n] = number_of[partner],
+        }
+    }
+    (kept, number_of, closed)
 }
 
 /// The side of a tensor cell low or high in one direction.
@@ -122,6 +161,16 @@ mod tests {
                 assert!((x[0] - 2.0).abs() < 1e-14 && a.cross(&b)[0] > 0.0);
             }
         }
+        let turn = std::f64::consts::TAU;
+        let ring = block::<2>(&[vec![1.0, 1.5, 2.0], (0..=8).map(|k| turn * f64::from(k) / 8.0).collect()], 2, |x| {
+            Point::<2>::new(x[0] * x[1].cos(), x[0] * x[1].sin())
+        });
+        ring.check().unwrap();
+        assert_eq!((ring.nodes().len(), ring.cell_count()), (5 * 16, 16));
+        assert!(!ring.groups().contains_key("bottom") && !ring.groups().contains_key("top"));
+        let mut sides = ring.groups()["boundary"].sides.clone();
+        sides.sort_unstable();
+        assert_eq!((sides.len(), sides), (16, ring.boundary()));
         let flat = block::<2>(&[vec![0.0, 1.0], vec![0.0, 1.0]], 1, |x| Point::<2>::new(x[1], x[0]));
         assert!(flat.check().unwrap_err().to_string().contains("inverted"));
     }

@@ -59,6 +59,11 @@ pub fn position<const D: usize>(x: &Point<D>) -> String {
     format!("({})", list.join(", "))
 }
 
+/// Sine of the angle between the sides of a cell below which it is flat.
+const FLAT: f64 = 1e-6;
+/// Where a gradient is shown of a cell that is flat at a point: this part of the way to its middle.
+const INWARDS: f64 = 0.1;
+
 impl<const D: usize> Mesh<D> {
     pub fn new(nodes: Vec<Point<D>>) -> Self {
         Mesh {
@@ -175,6 +180,24 @@ impl<const D: usize> Mesh<D> {
             }
         }
         (x, jacobian)
+    }
+
+    /// Whether the map flattens a cell at a point, as where two sides of a square become one arc: no gradient exists there.
+    pub fn is_flat(&self, cell: usize, at: &Values) -> bool {
+        let (_, jacobian) = self.jacobian(cell, at);
+        let sides: f64 = jacobian.column_iter().map(|c| c.norm()).product();
+        crate::small::determinant(&jacobian).abs() <= FLAT * sides
+    }
+
+    /// Where gradients are shown for a point of a cell: there, or farther in where the cell is flat.
+    pub fn shown_at(&self, cell: usize, xi: &Local) -> Local {
+        let mut at = Values::default();
+        self.map(cell).tabulate(xi, &mut at);
+        if !self.is_flat(cell, &at) {
+            return *xi;
+        }
+        let middle = self.shape(cell).centre();
+        std::array::from_fn(|k| xi[k] + INWARDS * (middle[k] - xi[k]))
     }
 
     /// Position and tangents of a point of a side.

@@ -11,13 +11,16 @@ use crate::{Matrix, Point, Vector};
 pub struct RigidMotion {
     pub rotation: Matrix<3>,
     pub translation: Vector<3>,
+    /// The rotation vector as stated, whole turns included.
+    pub turn: Vector<3>,
 }
 
 impl RigidMotion {
     /// The rotation by the length of `rotation` about its direction through `centre`, then a displacement.
     pub fn new(rotation: Vector<3>, centre: Point<3>, displacement: Vector<3>) -> Self {
-        let rotation = nalgebra::Rotation3::new(rotation).into_inner();
-        RigidMotion { rotation, translation: centre + displacement - rotation * centre }
+        let turn = rotation;
+        let rotation = nalgebra::Rotation3::new(turn).into_inner();
+        RigidMotion { rotation, translation: centre + displacement - rotation * centre, turn }
     }
 
     /// Where a position goes.

@@ -145,6 +145,13 @@ pub trait Body: Send + Sync {
     /// The state after `share` of a step of the unknowns: a retraction, exact to second order along straight steps.
     fn advance(&self, state: &BodyState, step: &[f64], share: f64) -> BodyState;
 
+    /// The state at a share of the way from one state to another.
+    fn between(&self, from: &BodyState, to: &BodyState, share: f64) -> BodyState {
+        let at = |(a, b): (&f64, &f64)| a + share * (b - a);
+        let configuration = from.configuration.iter().zip(&to.configuration).map(at).collect();
+        BodyState { configuration, internal: from.internal.clone() }
+    }
+
     /// Adds internal forces, and their derivative if asked for; the energy stored.
     ///
     /// # Errors

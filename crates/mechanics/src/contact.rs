@@ -40,6 +40,7 @@ use crate::simpler::SetAside;
 use partners::Partners;
 use signorini_contact::Law;
 pub(crate) use traction::axes;
+use signorini_geometry::Vector;
 
 /// Two sides that may touch.
 pub struct Contact {
@@ -63,6 +64,8 @@ pub struct Contact {
     pub(crate) softness: f64,
     /// What the sites remember of the last state.
     pub(crate) memory: Vec<SiteMemory>,
+    /// The rotation vectors of slave and master at the last state, of rigid bodies.
+    pub(crate) turned: [Vector<3>; 2],
     /// Times of the last state and of the one that is looked for.
     pub(crate) times: [f64; 2],
     /// What is stated, while a start is looked for with something simpler.
@@ -142,6 +145,7 @@ impl Contact {
             sites,
             stiffness,
             softness: enforcement.softness(),
+            turned: [Vector::<3>::zeros(); 2],
             times: [0.0; 2],
             set_aside: None,
         })
@@ -236,6 +240,7 @@ impl Contact {
             met: &met,
             first: sides.first,
             stuck: anchor.as_ref().map(|(s, a)| (s, a)),
+            since: self.turned,
             friction,
             axis: self.axis,
         };

@@ -26,6 +26,8 @@ pub struct IncrementResult {
     /// Force and moment (of unknowns that turn) of each support on the bodies.
     pub support_forces: Vec<[Vector<3>; 2]>,
     pub energy: f64,
+    /// Energy that the friction of each contact took in the increment.
+    pub dissipated: Vec<f64>,
     pub unknowns: usize,
     /// Largest unbalanced force relative to the largest of all.
     pub imbalance: f64,
@@ -102,12 +104,30 @@ impl System {
         start.predictions = self.contacts.iter().map(|c| c.prediction()).collect();
         let kept = self.histories();
         self.contacts.iter_mut().for_each(|c| c.begin(time));
-        let found = self.outer(&start, time, report);
+        let found =
+            self.outer(&start, time, report).and_then(|found| self.check_inside(&found.0, false).map(|()| found));
         self.contacts.iter_mut().for_each(|c| c.end());
         if found.is_err() {
             self.put_back(&kept);
         }
         found
+    }
+
+    /// Tells what lies inside of a rigid body in a state: where nothing sees it, or at the start deeper than an interference.
+    ///
+    /// # Errors
+    /// The deepest point of the first contact that has one.
+    pub fn check_inside(&self, state: &SystemState, is_start: bool) -> Result<(), IncrementError> {
+        let (first, _) = self.numbering();
+        let at = self.bodies_in(state, &first);
+        for contact in &self.contacts {
+            if let Some(found) = contact.inside(at, is_start).map_err(AssemblyError::from)? {
+                let body = self.bodies[contact.bodies()[0]].name().to_string();
+                let (contact, depth, x) = (contact.name().to_string(), found.depth, found.x.into());
+                return Err(IncrementError::Inside { contact, body, depth, x });
+            }
+        }
+        Ok(())
     }
 
     /// Outer iterations: of augmented Lagrangians, and of penalties that are to leave a given penetration.
@@ -321,13 +341,15 @@ impl System {
         // Where no force acts what is left is the rounding of the positions.
         let most = most.max(1e10 * rounding);
         let imbalance = residual[..count].iter().fold(0.0f64, |m, r| m.max(r.abs())) / most;
-        let sites = (0..self.contacts.len()).map(|k| self.sites(k, state)).collect::<Result<_, _>>()?;
+        let sites = (0..self.contacts.len()).map(|k| self.sites(k, state)).collect::<Result<Vec<_>, _>>()?;
+        let dissipated = sites.iter().map(|list| list.iter().map(SiteResult::dissipated).sum()).collect();
         Ok(IncrementResult {
             iterations,
             history,
             sites,
             support_forces,
             energy: at.energy,
+            dissipated,
             unknowns: at.residual.len(),
             imbalance,
             lost_sites: at.lost,

@@ -19,6 +19,13 @@ pub enum IncrementError {
     /// A prescribed motion that is too long for one increment.
     #[error("contact `{contact}`: what moves as prescribed passes through what it touches after {:.0} % of its way", 100.0 * share)]
     PassesThrough { contact: String, share: f64 },
+    /// What lies inside of a rigid body, where no contact sees it.
+    #[error(
+        "contact `{contact}`: a point of `{body}` lies {depth:.4e} deep inside the rigid body, at ({:.4}, {:.4}, {:.4}), where \
+         nothing pushes it out",
+        x[0], x[1], x[2]
+    )]
+    Inside { contact: String, body: String, depth: f64, x: [f64; 3] },
     #[error("interrupted")]
     Interrupted,
 }

@@ -11,7 +11,9 @@
 
 use crate::body::{Body, BodyState, PlaceError};
 use crate::contact::Contact;
+use crate::inside::{self, Inside};
 use crate::part::Part;
+use crate::points::Placed;
 use crate::simpler::SimplerFriction;
 use crate::site_result::SiteResult;
 use signorini_contact::{Law, Status};
@@ -26,7 +28,7 @@ pub struct Bodies<'a> {
     pub first: &'a [u32],
 }
 
-/// A way between two states of all bodies, on which positions change in proportion.
+/// A way between two states of all bodies, on which positions and turns change in proportion.
 #[derive(Clone, Copy)]
 pub struct Way<'a> {
     pub from: Bodies<'a>,
@@ -37,13 +39,11 @@ impl Way<'_> {
     /// A body on the way: `t` from 0 to 1.
     pub fn at(&self, body: usize, t: f64) -> BodyState {
         let [from, to] = [self.from, self.to].map(|b| &b.states[body]);
-        let between = |(a, b): (&f64, &f64)| a + t * (b - a);
-        let configuration = from.configuration.iter().zip(&to.configuration).map(between).collect();
-        BodyState { configuration, internal: from.internal.clone() }
+        self.from.bodies[body].between(from, to, t)
     }
 
     pub(crate) fn moves(&self, body: usize) -> bool {
-        self.from.states[body].configuration != self.to.states[body].configuration
+        self.from.states[body] != self.to.states[body]
     }
 }
 
@@ -175,6 +175,15 @@ pub trait Interaction: Send + Sync {
         Ok(1.0)
     }
 
+    /// What lies inside of a rigid body in a state where nothing sees it; at the start also what lies in it deeper than an
+    /// interference that contact could undo.
+    ///
+    /// # Errors
+    /// Bodies that cannot be tested or touched.
+    fn inside(&self, _at: Bodies<'_>, _is_start: bool) -> Result<Option<Inside>, PlaceError> {
+        Ok(None)
+    }
+
     /// Takes a state as the one from which slips count and the next increment starts.
     ///
     /// # Errors
@@ -254,6 +263,24 @@ pub(crate) fn towards(wanted: f64, found: &[SiteResult], penalties: &mut [f64]) 
 pub const NEAR_WANTED: f64 = 1e-2;
 
 impl<'a> Bodies<'a> {
+    /// [`Interaction::inside`] of the sites of a slave.
+    pub(crate) fn inside(
+        &self,
+        [slave, master]: [&Part; 2],
+        sites: &[Placed],
+        is_start: bool,
+    ) -> Result<Option<Inside>, PlaceError> {
+        let (body, state) = self.side(master);
+        if !body.is_rigid() || slave.body == master.body || sites.iter().all(|s| s.outward.is_none()) {
+            return Ok(None);
+        }
+        let met = body.master(master.group.as_deref(), state)?;
+        Ok(match is_start {
+            true => inside::at_start(met.as_ref(), sites, self.bodies[slave.body].size()),
+            false => inside::unseen(met.as_ref(), sites),
+        })
+    }
+
     pub(crate) fn side(&self, part: &Part) -> (&'a dyn Body, &'a BodyState) {
         (self.bodies[part.body].as_ref(), &self.states[part.body])
     }

@@ -2,8 +2,8 @@
 //!
 //! - [`body`]: what a body is to the system.
 //! - [`curve`]: what a curve is to contact between curves.
-//! - [`rigid_body`]: rigid bodies, moved or free.
 //! - `rigid_system`: systems in which all that moves is rigid.
+//! - [`rigid_body`]: rigid bodies, moved or free; `rotation`: their rotation vectors.
 //! - [`pair`]: gap and slip of a contact pair in the unknowns of its bodies.
 //! - [`surface`]: what a surface of faces is to contact by mortar, which is [`mortar`].
 //! - `density`: how densely a body is tested against faces.
@@ -11,7 +11,7 @@
 //! - [`interaction`]: what acts between bodies, as the system sees it.
 //! - [`system`]: bodies, supports, loads and contacts, assembled.
 //! - [`iterative`]: Newton's step of large systems by iterations.
-//! - [`passage`]: how far steps may be followed so that nothing passes through.
+//! - [`passage`]: how far steps may be followed so that nothing passes through; `inside`: what lies inside of a rigid body.
 //! - [`increment`]: equilibrium at one time, by Newton's method (`equilibrium`), other ways where that fails (`homotopy`,
 //!   `free`), and outer iterations (`augmentation`); [`saved`]: what it goes on from.
 
@@ -26,6 +26,7 @@ mod free;
 mod homotopy;
 pub mod increment;
 pub mod increment_error;
+mod inside;
 pub mod interaction;
 pub mod iterative;
 pub mod linear_solver;
@@ -38,6 +39,7 @@ pub mod points;
 mod prepare;
 pub mod rigid_body;
 mod rigid_system;
+mod rotation;
 pub mod saved;
 mod simpler;
 mod site_result;
@@ -54,6 +56,7 @@ pub use density::test_densely;
 pub use enforcement::Enforcement;
 pub use increment::IncrementResult;
 pub use increment_error::IncrementError;
+pub use inside::Inside;
 pub use interaction::{Bodies, Interaction, Own, Target};
 pub use linear_solver::{Coarse, LinearSolver, Solved, Subspaces};
 pub use mortar::Mortar;
@@ -61,7 +64,7 @@ pub use pair::AxisChoice;
 pub use part::Part;
 pub use points::{
     Anchor, Bend, Direction, Foot, Function, Master, MaterialPoint, Met, NormalField, Order, Placed, RigidFoot,
-    Sampling, Site,
+    Sampling, Site, Turning,
 };
 pub use rigid_body::{Motion, RigidBody, RigidSite};
 pub use saved::Saved;

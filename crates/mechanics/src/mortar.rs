@@ -54,6 +54,8 @@ pub struct Mortar {
     folded: Vec<bool>,
     /// Integral of the dual function of each node over all of the slave side.
     whole: Vec<f64>,
+    /// The area by which the equations of each node are weighted: that integral, or the mean of all where it has none.
+    weights: Vec<f64>,
     /// Traction per unit of gap, and of slip, of each node: the scale of the trial, not the penalty.
     stiffness: Vec<f64>,
     /// That scale over the penalty.
@@ -61,6 +63,8 @@ pub struct Mortar {
     memory: Vec<NodeMemory>,
     /// Points matched at the last state.
     matched: Vec<Matched>,
+    /// The rotation vector of the master at the last state, if it is rigid.
+    turned: Vector<3>,
     /// Times of the last state and of the one that is looked for.
     times: [f64; 2],
     /// What is stated, while a start is looked for with something simpler.
@@ -83,6 +87,13 @@ const COVERED: f64 = 1e-3;
 
 /// Share of the limit of friction within which a node is at it, as of a site of [`Contact`](crate::contact::Contact).
 const AT_LIMIT: f64 = 1e-8;
+
+/// The integrals of the dual functions, and their mean for those that have none: a node that shares the pressure of another,
+/// one on the axis of revolution, has the equation that its own traction vanishes.
+fn weights(whole: &[f64]) -> Vec<f64> {
+    let mean = whole.iter().map(|w| w.abs()).sum::<f64>() / whole.len().max(1) as f64;
+    whole.iter().map(|w| if *w > COVERED * mean { *w } else { mean }).collect()
+}
 
 fn no_surface(body: &dyn Body, part: &Part) -> PlaceError {
     let message = match &part.group {
@@ -131,10 +142,12 @@ impl Mortar {
             nodes,
             places,
             folded,
+            weights: weights(&whole),
             whole,
             stiffness,
             softness: enforcement.softness(),
             matched: Vec::new(),
+            turned: Vector::<3>::zeros(),
             times: [0.0; 2],
             set_aside: None,
         })

@@ -11,7 +11,7 @@
 //! | `g = D·n - R_s - R_m` | gap between the sections or balls of the given radii |
 //! | `X^a` | variation of the coordinates of the closest point |
 //! | `S` | variation of the slip of the slave along the master, at the point where they touch |
-//! | `e` | slip since both sides had a common point, the anchor |
+//! | `e` | slip since both sides had a common point, the anchor: along the arc where bodies turn (`arc`) |
 //!
 //! On a surface, without sections that turn, `S = ρ_a X^a` is the motion of the closest point along the surface, with
 //! exact second variations. Everywhere else `S = δD - R_s θ_s × n - R_m θ_m × n - g δn`, which turns into the same where
@@ -19,6 +19,7 @@
 //! have neither resultant nor moment.
 
 mod along;
+mod arc;
 mod cut;
 mod gap;
 mod measures;

@@ -11,9 +11,12 @@
 
 pub use crate::interaction::Way;
 
-use crate::body::{Body, BodyState, PlaceError};
+use crate::body::{Body, BodyState};
 use crate::contact::Contact;
+use crate::part::Part;
 use crate::points::Master;
+use crate::rigid_body::Pose;
+use crate::rotation;
 use crate::system::{AssemblyError, System, SystemState};
 use signorini_geometry::{Point, Vector};
 use std::cell::OnceCell;
@@ -94,53 +97,60 @@ impl Stages {
     }
 }
 
+/// The share of a way on which no point of a slave passes through its master.
+pub(crate) fn share_of_way(parts: [&Part; 2], tested: Vec<Tested>, way: Way<'_>) -> f64 {
+    let [slave, master] = [parts[0].body, parts[1].body];
+    let bodies = way.from.bodies;
+    let is_rigid = bodies[master].is_rigid();
+    if slave == master || !(way.moves(slave) || way.moves(master)) {
+        return 1.0;
+    }
+    let on = parts[1].group.as_deref();
+    let ends = [0, 1].map(|k| if k == 0 { way.from } else { way.to });
+    let masters = [ends[0], ends[1]].map(|end| bodies[master].master(on, &end.states[master]));
+    let [Ok(first), Ok(last)] = &masters else { return 1.0 };
+    let of_master = longest(bodies[master].as_ref(), way, master);
+    let stages = Stages::new(way, master, of_master, tested.iter().map(|point| point.spacing));
+    let known: Known<'_> = stages.states.iter().map(|_| OnceCell::new()).collect();
+    let mut share = 1.0f64;
+    for point in tested {
+        let Tested { from, to, radius, is_surface, spacing } = point;
+        let length = (to - from).norm() + of_master;
+        // Surfaces of two solids see each other only where they face each other.
+        if (is_surface && !is_rigid) || !length.is_finite() {
+            continue;
+        }
+        let Some(start) = meeting(first.as_ref(), &from, radius) else { continue };
+        if length <= start.0 {
+            continue;
+        }
+        let is_short = length <= spacing.max(radius);
+        if is_short && meeting(last.as_ref(), &to, radius).is_none_or(|end| end.1.dot(&start.1) > 0.0) {
+            continue;
+        }
+        let met = |t: f64| -> Option<Meeting> {
+            let x = from + (to - from) * t;
+            if !way.moves(master) {
+                return meeting(first.as_ref(), &x, radius);
+            }
+            if is_rigid {
+                let state = way.at(master, t);
+                return meeting(bodies[master].master(on, &state).ok()?.as_ref(), &x, radius);
+            }
+            meeting(stages.at((bodies[master].as_ref(), on), &known, t)?, &x, radius)
+        };
+        share = share.min(passage(&met, start, length, spacing).unwrap_or(1.0));
+    }
+    share
+}
+
 impl Contact {
     /// The share of a way on which no site passes through the master.
-    pub(crate) fn share_of_way(&self, way: Way<'_>) -> Result<f64, PlaceError> {
-        let [slave, master] = [self.slave.body, self.master.body];
-        let bodies = way.from.bodies;
-        let is_rigid = bodies[master].is_rigid();
-        if slave == master || !(way.moves(slave) || way.moves(master)) {
-            return Ok(1.0);
+    pub(crate) fn share_of_way(&self, way: Way<'_>) -> f64 {
+        if !(way.moves(self.slave.body) || way.moves(self.master.body)) {
+            return 1.0;
         }
-        let on = self.master.group.as_deref();
-        let ends = [0, 1].map(|k| if k == 0 { way.from } else { way.to });
-        let masters = [ends[0], ends[1]].map(|end| bodies[master].master(on, &end.states[master]));
-        let [Ok(first), Ok(last)] = &masters else { return Ok(1.0) };
-        let of_master = longest(bodies[master].as_ref(), way, master);
-        let tested = self.tested(way);
-        let stages = Stages::new(way, master, of_master, tested.iter().map(|point| point.spacing));
-        let known: Known<'_> = stages.states.iter().map(|_| OnceCell::new()).collect();
-        let mut share = 1.0f64;
-        for point in tested {
-            let Tested { from, to, radius, is_surface, spacing } = point;
-            let length = (to - from).norm() + of_master;
-            // Surfaces of two solids see each other only where they face each other.
-            if (is_surface && !is_rigid) || !length.is_finite() {
-                continue;
-            }
-            let Some(start) = meeting(first.as_ref(), &from, radius) else { continue };
-            if length <= start.0 {
-                continue;
-            }
-            let is_short = length <= spacing.max(radius);
-            if is_short && meeting(last.as_ref(), &to, radius).is_none_or(|end| end.1.dot(&start.1) > 0.0) {
-                continue;
-            }
-            let met = |t: f64| -> Option<Meeting> {
-                let x = from + (to - from) * t;
-                if !way.moves(master) {
-                    return meeting(first.as_ref(), &x, radius);
-                }
-                if is_rigid {
-                    let state = way.at(master, t);
-                    return meeting(bodies[master].master(on, &state).ok()?.as_ref(), &x, radius);
-                }
-                meeting(stages.at((bodies[master].as_ref(), on), &known, t)?, &x, radius)
-            };
-            share = share.min(passage(&met, start, length, spacing).unwrap_or(1.0));
-        }
-        Ok(share)
+        share_of_way([&self.slave, &self.master], self.tested(way), way)
     }
 
     /// The points of the slave that are followed: its sites, and on a curve that is stretched on the way as many between
@@ -178,14 +188,14 @@ impl Contact {
 
 /// A point that is followed.
 #[derive(Clone, Copy)]
-struct Tested {
-    from: Point<3>,
-    to: Point<3>,
-    radius: f64,
+pub(crate) struct Tested {
+    pub from: Point<3>,
+    pub to: Point<3>,
+    pub radius: f64,
     /// Whether it is one of a surface.
-    is_surface: bool,
+    pub is_surface: bool,
     /// Distance of such points.
-    spacing: f64,
+    pub spacing: f64,
 }
 
 /// Points between two sites of a curve: a step that stretches it more is none that is followed far.
@@ -193,13 +203,13 @@ const MOST_BETWEEN: f64 = 100.0;
 
 /// No point of a body goes farther than this on a way.
 fn longest(body: &dyn Body, way: Way<'_>, number: usize) -> f64 {
-    let [from, to] = [way.from, way.to].map(|end| &end.states[number].configuration);
-    let norm = |of: std::ops::Range<usize>| of.map(|k| (to[k] - from[k]).powi(2)).sum::<f64>().sqrt();
-    match body.is_rigid() {
-        // A turn by an angle, of which a quaternion changes by half, moves points by no more than the size for each radian.
-        true => norm(0..3) + 2.0 * body.size() * norm(3..from.len()),
-        false => norm(0..from.len()),
+    let [from, to] = [way.from, way.to].map(|end| &end.states[number]);
+    if body.is_rigid() {
+        let [from, to] = [from, to].map(Pose::of);
+        return (to.centre - from.centre).norm() + body.size() * rotation::between(&from.turn, &to.turn).norm();
     }
+    let change = from.configuration.iter().zip(&to.configuration).map(|(a, b)| (b - a).powi(2));
+    change.sum::<f64>().sqrt()
 }
 
 /// The place on a way of a given length from which a site would be pushed on to another side: half way from where it enters

@@ -92,6 +92,8 @@ pub struct Placed {
     pub spin_bends: Vec<Vector<3>>,
     /// How the section or ball is turned; the identity where nothing turns.
     pub frame: Matrix<3>,
+    /// The rotation vector since the start, whole turns included, of a rigid body.
+    pub turn: Option<Vector<3>>,
     /// Second derivatives of `x`; empty where it is linear in the unknowns.
     pub bends: Vec<Bend>,
 }
@@ -182,6 +184,19 @@ pub struct Anchor {
     /// What turns the section there, and how it is turned.
     pub spin: Vec<Function>,
     pub frame: Matrix<3>,
+    /// Of a rigid body.
+    pub turning: Option<Turning>,
+}
+
+/// How a rigid body turns that is touched at a point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Turning {
+    /// The rotation vector since the start, whole turns included.
+    pub turn: Vector<3>,
+    /// The point about which the body turns, where it is now.
+    pub about: Point<3>,
+    /// The outward normal of the body at the material point.
+    pub normal: Vector<3>,
 }
 
 /// What may be touched of a body, where it is now.

@@ -6,7 +6,10 @@
 
 use crate::body::{Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Hold, Load, PlaceError};
 use crate::pair::{any_tangent, axis};
-use crate::points::{Anchor, Bend, Function, Master, MaterialPoint, Met, Order, Placed, RigidFoot, Sampling, Site};
+use crate::points::{
+    Anchor, Bend, Function, Master, MaterialPoint, Met, Order, Placed, RigidFoot, Sampling, Site, Turning,
+};
+use crate::rotation;
 use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::{GapJet, RigidShape};
@@ -56,22 +59,32 @@ pub struct RigidBody {
 pub struct Pose {
     pub centre: Point<3>,
     pub rotation: UnitQuaternion<f64>,
+    /// The rotation vector since the start, whole turns included.
+    pub turn: Vector<3>,
 }
 
 impl Pose {
     /// The pose that a state tells.
     pub fn of(state: &BodyState) -> Self {
-        let c = &state.configuration;
+        let (c, turn) = (&state.configuration, &state.internal);
         Pose {
             centre: Point::<3>::new(c[0], c[1], c[2]),
             rotation: UnitQuaternion::new_normalize(Quaternion::new(c[3], c[4], c[5], c[6])),
+            turn: Vector::<3>::new(turn[0], turn[1], turn[2]),
         }
     }
 
     pub(crate) fn state(&self) -> BodyState {
         let q = self.rotation.quaternion();
         let configuration = vec![self.centre[0], self.centre[1], self.centre[2], q.w, q.i, q.j, q.k];
-        BodyState { configuration, internal: Vec::new() }
+        BodyState { configuration, internal: self.turn.as_slice().to_vec() }
+    }
+
+    /// The pose after a displacement of the centre and a turn.
+    fn moved(&self, displacement: &Vector<3>, turn: &Vector<3>) -> Pose {
+        let rotation = UnitQuaternion::from_scaled_axis(*turn) * self.rotation;
+        let turn = rotation::unwrapped(&rotation, &(self.turn + turn));
+        Pose { centre: self.centre + displacement, rotation, turn }
     }
 
     /// The rotation as a matrix.
@@ -100,7 +113,7 @@ impl RigidBody {
     pub fn moved(&self, state: &BodyState) -> RigidMotion {
         let pose = Pose::of(state);
         let rotation = pose.matrix();
-        RigidMotion { rotation, translation: pose.centre - rotation * self.centre }
+        RigidMotion { rotation, translation: pose.centre - rotation * self.centre, turn: pose.turn }
     }
 
     /// Functions of a point at `arm` from the centre, with its second derivatives.
@@ -145,7 +158,7 @@ impl Body for RigidBody {
     }
 
     fn start(&self) -> BodyState {
-        Pose { centre: self.centre, rotation: UnitQuaternion::identity() }.state()
+        Pose { centre: self.centre, rotation: UnitQuaternion::identity(), turn: Vector::<3>::zeros() }.state()
     }
 
     fn prescribe(&self, time: f64, state: &mut BodyState) {
@@ -153,7 +166,7 @@ impl Body for RigidBody {
             let motion = motion(time);
             let rotation = Rotation3::from_matrix_unchecked(motion.rotation);
             let rotation = UnitQuaternion::from_rotation_matrix(&rotation);
-            *state = Pose { centre: motion.point(&self.centre), rotation }.state();
+            *state = Pose { centre: motion.point(&self.centre), rotation, turn: motion.turn }.state();
         }
     }
 
@@ -166,12 +179,14 @@ impl Body for RigidBody {
         if parts == [0.0; 6] {
             return state.clone();
         }
-        let spin = Vector::<3>::new(parts[3], parts[4], parts[5]);
-        Pose {
-            centre: pose.centre + Vector::<3>::new(parts[0], parts[1], parts[2]),
-            rotation: UnitQuaternion::from_scaled_axis(spin) * pose.rotation,
-        }
-        .state()
+        let [displacement, spin] = [0, 3].map(|k| Vector::<3>::new(parts[k], parts[k + 1], parts[k + 2]));
+        pose.moved(&displacement, &spin).state()
+    }
+
+    fn between(&self, from: &BodyState, to: &BodyState, share: f64) -> BodyState {
+        let [from, to] = [from, to].map(Pose::of);
+        let turn = rotation::between(&from.turn, &to.turn);
+        from.moved(&((to.centre - from.centre) * share), &(turn * share)).state()
     }
 
     fn internal(&self, _: &BodyState, _: Order, _: &mut Contribution) -> Result<f64, BodyError> {
@@ -185,8 +200,8 @@ impl Body for RigidBody {
             return Err(PlaceError::Unsuitable { body: self.name.clone(), message });
         }
         let pose = Pose::of(state);
-        let rotation = pose.rotation.scaled_axis();
-        let turn = spin_to_rotation_vector(&rotation);
+        let rotation = pose.turn;
+        let turn = rotation::of_spin(&rotation);
         let mut out = Vec::new();
         for i in 0..3 {
             if let (Some(field), Some(unknown)) = (hold.displacement[i], self.unknown(i)) {
@@ -276,6 +291,7 @@ impl Body for RigidBody {
             rests: false,
             tangent: None,
             radius: own.radius,
+            turn: Some(pose.turn),
             functions,
             spin,
             spin_bends: Vec::new(),
@@ -327,20 +343,6 @@ impl Body for RigidBody {
     }
 }
 
-/// The derivative of the rotation vector `ψ` of `exp(ψ)` in the spin `θ` of `exp(θ) exp(ψ)`.
-fn spin_to_rotation_vector(psi: &Vector<3>) -> Matrix<3> {
-    let square = psi.norm_squared();
-    // (1 - (ψ/2) cot(ψ/2)) / ψ², by its series where the difference cancels.
-    let factor = if square < 1e-4 {
-        1.0 / 12.0 + square / 720.0 + square * square / 30240.0
-    } else {
-        let half = 0.5 * square.sqrt();
-        (1.0 - half / half.tan()) / square
-    };
-    let cross = psi.cross_matrix();
-    Matrix::<3>::identity() - cross * 0.5 + cross * cross * factor
-}
-
 struct RigidMaster<'a> {
     body: &'a RigidBody,
     pose: Pose,
@@ -389,12 +391,14 @@ impl Master for RigidMaster<'_> {
     fn at(&self, point: &MaterialPoint) -> Anchor {
         let own = Point::<3>::from(point.xi);
         let frame = self.pose.matrix();
+        let normal = self.body.shape.gap(&own).normal;
         Anchor {
             x: self.pose.centre + frame * (own - self.body.centre),
-            tangent: frame * any_tangent(&self.body.shape.gap(&own).normal),
+            tangent: frame * any_tangent(&normal),
             functions: Vec::new(),
             spin: Vec::new(),
             frame,
+            turning: Some(Turning { turn: self.pose.turn, about: self.pose.centre, normal: frame * normal }),
         }
     }
 }

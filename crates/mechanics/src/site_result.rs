@@ -28,8 +28,9 @@ pub struct SiteResult {
 /// What a surface tells of the place of a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OfSurface {
-    /// The recovered pressure.
+    /// The recovered pressure, and friction with it: as large a part of what is available as that of the multipliers.
     pub pressure: f64,
+    pub friction: Vector<3>,
     /// The part of the area in contact that counts for the node: zones end within faces.
     pub area: f64,
     /// The number of its connected zone of contact.
@@ -42,9 +43,19 @@ impl SiteResult {
         (self.normal * self.pressure + self.friction) * self.weight
     }
 
+    /// Energy that its friction took in the last increment.
+    pub fn dissipated(&self) -> f64 {
+        if self.status == Status::Open { 0.0 } else { -self.weight * self.friction.dot(&self.increment) }
+    }
+
     /// The pressure there.
     pub fn shown_pressure(&self) -> f64 {
         self.of_surface.map_or(self.pressure, |own| own.pressure)
+    }
+
+    /// The friction there.
+    pub fn shown_friction(&self) -> Vector<3> {
+        self.of_surface.map_or(self.friction, |own| own.friction)
     }
 
     /// The area in contact that it stands for; the length or number where sites stand for those.

@@ -89,7 +89,8 @@ pub struct BoxMesh {
     pub cells: Option<List<i64>>,
     /// Graded directions, in place of `min`, `max` and `cells`.
     pub axes: Option<List<MeshAxis>>,
-    /// Expressions of x, y and z for the place of every point.
+    /// Expressions of x, y and z for the place of every point. Opposite sides that come to lie on each other are joined, and are
+    /// no sides any more: a ring is closed.
     pub map: Option<List<Value>>,
 }
 

@@ -137,6 +137,7 @@ pub fn placed(body: &dyn CurveBody, state: &BodyState, site: &Site) -> Placed {
         spin,
         spin_bends: body.spin_bends(&state.configuration, element, xi),
         frame,
+        turn: None,
         bends: Vec::new(),
     }
 }

@@ -150,6 +150,12 @@ fn result<const D: usize>(
         let sums = (body.resultant(&of_friction), result.area);
         result.friction = Some(friction_result(contact, &of_rows, found, sums));
     }
-    result.nodes.iter_mut().for_each(|node| node.pressure = pressure[node.number as usize]);
+    for node in &mut result.nodes {
+        node.pressure = pressure[node.number as usize];
+        // As large a part of what is available as that of the multipliers.
+        if let (Some(friction), true) = (&contact.friction, node.active) {
+            node.rubbing.traction *= friction.law.gain(node.pressure, node.multiplier);
+        }
+    }
     result
 }

@@ -256,7 +256,10 @@ impl Lu {
             }
             (x, error, r) = (next, next_error, next_r);
         }
-        if error.is_nan() || error > RESIDUAL || x.iter().any(|x| !x.is_finite()) {
+        if error.is_nan() || x.iter().any(|x| !x.is_finite()) {
+            return Err(SolveError::Singular { size });
+        }
+        if error > RESIDUAL {
             return Err(SolveError::Inaccurate { size, residual: error });
         }
         Ok(x)

@@ -257,8 +257,8 @@ impl<const D: usize> Master for BoundaryMaster<'_, D> {
             x: spatial(&at.now()),
             tangent: spatial(&(at.deformation() * tangent)),
             functions,
-            spin: Vec::new(),
             frame: Matrix::<3>::identity(),
+            ..Anchor::default()
         }
     }
 }

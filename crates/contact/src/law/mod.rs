@@ -75,6 +75,12 @@ pub trait Law: std::fmt::Debug + Send + Sync {
     /// How much of the available friction a traction uses: 1 where it slips.
     fn utilisation(&self, traction: [f64; 2], pressure: f64) -> f64;
 
+    /// How much more friction there is at one pressure than at another.
+    fn gain(&self, pressure: f64, instead_of: f64) -> f64 {
+        let used = [instead_of, pressure].map(|p| self.utilisation([1.0, 0.0], p).max(self.utilisation([0.0, 1.0], p)));
+        if used[0].is_finite() && used[0] > 0.0 { used[0] / used[1] } else { 1.0 }
+    }
+
     /// The most friction per pressure along the axes, the semi-axes of an ellipse; none where friction is not in
     /// proportion to the pressure.
     fn per_pressure(&self) -> Option<[f64; 2]>;

@@ -5,6 +5,7 @@ use super::{Contact, Sides, SiteMemory};
 use crate::body::Body;
 use crate::body::PlaceError;
 use crate::enforcement::{Outer, SOFTER, WAVE};
+use crate::inside::Inside;
 use crate::interaction::{Around, Bodies, Interaction, NotItsHistory, Own, Target, Way, hardened, take_over, towards};
 use crate::pair::Stuck;
 use crate::points::{MaterialPoint, Sampling, Site};
@@ -151,7 +152,13 @@ impl Interaction for Contact {
     }
 
     fn free_way(&self, way: Way<'_>) -> Result<f64, PlaceError> {
-        self.share_of_way(way)
+        Ok(self.share_of_way(way))
+    }
+
+    fn inside(&self, at: Bodies<'_>, is_start: bool) -> Result<Option<Inside>, PlaceError> {
+        let (body, state) = at.side(&self.slave);
+        let sites: Vec<_> = self.sites().iter().map(|site| body.placed(state, site)).collect();
+        at.inside([&self.slave, &self.master], &sites, is_start)
     }
 
     fn accept(&mut self, at: Bodies<'_>, own: Own<'_>) -> Result<(), PlaceError> {
@@ -205,18 +212,20 @@ impl Interaction for Contact {
     }
 
     fn history(&self) -> [Vec<f64>; 2] {
-        let scales = self.stiffness.iter().copied().chain([self.times[0]]).collect();
+        let turned = self.turned.iter().flat_map(|t| t.iter().copied());
+        let scales = self.stiffness.iter().copied().chain([self.times[0]]).chain(turned).collect();
         [self.memory.iter().flat_map(numbers).collect(), scales]
     }
 
     fn restore(&mut self, [sites, scales]: &[Vec<f64>; 2]) -> Result<(), NotItsHistory> {
         let count = self.stiffness.len();
-        if sites.len() != NUMBERS * self.memory.len() || scales.len() != count + 1 {
+        if sites.len() != NUMBERS * self.memory.len() || scales.len() != count + 7 {
             return Err(NotItsHistory { contact: self.name.clone() });
         }
         self.memory = sites.chunks(NUMBERS).map(memory).collect();
         self.stiffness.copy_from_slice(&scales[..count]);
         self.times = [scales[count]; 2];
+        self.turned = [1, 4].map(|k| Vector::<3>::from_column_slice(&scales[count + k..count + k + 3]));
         Ok(())
     }
 }

@@ -3,9 +3,11 @@
 use super::traction::axes;
 use super::{Contact, Sides, SiteMemory};
 use crate::body::PlaceError;
+use crate::points::{Master, MaterialPoint};
 use crate::site_result::SiteResult;
 use rayon::prelude::*;
 use signorini_contact::Status;
+use signorini_geometry::Vector;
 
 impl Contact {
     /// The sites as they are found in a state, with their tractions along the axes.
@@ -38,12 +40,20 @@ impl Contact {
         Ok((0..self.sites.len()).into_par_iter().map(of).collect())
     }
 
+    /// The rotation vectors of slave and master, of rigid bodies.
+    fn turns(&self, sides: &Sides<'_>, master: &dyn Master) -> [Vector<3>; 2] {
+        let slave = self.sites.first().and_then(|site| sides.slave.0.placed(sides.slave.1, site).turn);
+        let master = sides.master.0.is_rigid().then(|| master.at(&MaterialPoint::default()).turning).flatten();
+        [slave.unwrap_or_default(), master.map_or(Vector::<3>::zeros(), |own| own.turn)]
+    }
+
     /// Takes a state as the one that slips count from.
     ///
     /// # Errors
     /// A master that cannot be touched.
     pub(crate) fn accept_sites(&mut self, sides: &Sides<'_>, lambda: &[f64]) -> Result<(), PlaceError> {
         let master = self.met(sides)?;
+        let now = self.turns(sides, master.as_ref());
         let mut memory = Vec::with_capacity(self.sites.len());
         for k in 0..self.sites.len() {
             let Some(Ok(touch)) = self.pair(k, sides, (master.as_ref(), f64::INFINITY), |_| false).1 else {
@@ -59,17 +69,19 @@ impl Contact {
                 // Friction is kept along the axes of the new anchor.
                 let on_slave = found.axes[0] * own.traction[1] + found.axes[1] * own.traction[2];
                 let slipped = found.axes[0] * own.slip[0] + found.axes[1] * own.slip[1];
-                self.memory[k].stuck = own.stuck;
+                let (anchored, turned) = (self.memory[k].stuck, self.turned);
+                (self.memory[k].stuck, self.turned) = (own.stuck, now);
                 if let (_, Some(Ok(again))) = self.pair(k, sides, (master.as_ref(), f64::INFINITY), |_| false) {
                     let (new, _) = axes(&again.pair);
                     own.traction[1] = new[0].dot(&on_slave);
                     own.traction[2] = new[1].dot(&on_slave);
                     own.slip = new.map(|e| e.dot(&slipped));
                 }
+                (self.memory[k].stuck, self.turned) = (anchored, turned);
             }
             memory.push(own);
         }
-        self.memory = memory;
+        (self.memory, self.turned) = (memory, now);
         self.times[0] = self.times[1];
         Ok(())
     }

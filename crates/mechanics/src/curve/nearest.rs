@@ -166,6 +166,13 @@ impl Master for CurveMaster<'_> {
 
     fn at(&self, point: &MaterialPoint) -> Anchor {
         let foot = self.curve.foot(self.configuration, point.patch as usize, point.xi[0], 1);
-        Anchor { x: foot.jet.x, tangent: foot.jet.u, functions: foot.functions, spin: foot.spin, frame: foot.frame }
+        Anchor {
+            x: foot.jet.x,
+            tangent: foot.jet.u,
+            functions: foot.functions,
+            spin: foot.spin,
+            frame: foot.frame,
+            turning: None,
+        }
     }
 }

@@ -61,7 +61,7 @@ impl Assembly<'_> {
         for (node, projected) in (0u32..).zip(self.projected) {
             let k = node as usize;
             let lambda = contact.multiplier(k, self.own.multipliers);
-            let scale = contact.whole[k] / contact.stiffness[k];
+            let scale = contact.weights[k] / contact.stiffness[k];
             let parts = contact.slots();
             for (i, &slot) in parts.iter().enumerate() {
                 let row = self.row(node, i);
@@ -159,9 +159,12 @@ impl Assembly<'_> {
         }
         for ((node, _), line) in sorted(rows) {
             let k = node as usize;
+            if self.projected[k].status == Status::Open {
+                continue;
+            }
             for (i, &slot) in contact.slots().iter().enumerate() {
                 // ζ_n = λ - c g: the scale of the equation has 1/c.
-                let factor = -contact.whole[k] / self.measures[k].weight * self.projected[k].derivative[slot][0];
+                let factor = -contact.weights[k] / self.measures[k].weight * self.projected[k].derivative[slot][0];
                 if factor != 0.0 {
                     let row = self.row(node, i);
                     block.unknowns.iter().zip(&line).for_each(|(u, v)| tangent.add(row, *u, factor * v));
@@ -201,7 +204,7 @@ impl Assembly<'_> {
             for ((node, by), line) in sorted(rows) {
                 let k = node as usize;
                 for (i, &slot) in contact.slots().iter().enumerate() {
-                    let factor = contact.whole[k] / self.measures[k].matched * self.projected[k].derivative[slot][by];
+                    let factor = contact.weights[k] / self.measures[k].matched * self.projected[k].derivative[slot][by];
                     if factor != 0.0 {
                         let row = self.row(node, i);
                         block.unknowns.iter().zip(&line).for_each(|(u, v)| tangent.add(row, *u, factor * v));

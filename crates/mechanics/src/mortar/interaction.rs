@@ -6,9 +6,11 @@ use super::shown::show;
 use super::{Mortar, NodeMemory};
 use crate::body::{Body, PlaceError};
 use crate::enforcement::{Outer, WAVE};
-use crate::interaction::{Around, Bodies, Interaction, NotItsHistory, Own, Target, hardened, take_over, towards};
+use crate::inside::Inside;
+use crate::interaction::{Around, Bodies, Interaction, NotItsHistory, Own, Target, Way, hardened, take_over, towards};
 use crate::pair::{AxisChoice, Pair, any_tangent};
-use crate::points::MaterialPoint;
+use crate::passage::{Tested, share_of_way};
+use crate::points::{MaterialPoint, Placed};
 use crate::simpler::{SetAside, SimplerFriction};
 use crate::site_result::SiteResult;
 use signorini_contact::law::Projected;
@@ -36,6 +38,14 @@ impl Mortar {
         let of = |(k, measure)| self.traction(k, measure, self.multiplier(k, multipliers));
         let projected = measures.iter().enumerate().map(of).collect();
         Ok(Found { sides, cover, pairs, separations, measures, projected, lost })
+    }
+
+    /// The nodes where they are in a state.
+    fn placed(&self, at: Bodies<'_>) -> Result<Vec<Placed>, PlaceError> {
+        let (body, state) = at.side(&self.slave);
+        let surface = body.surface(self.slave.group.as_deref(), state);
+        let surface = surface.ok_or_else(|| super::no_surface(body, &self.slave))?;
+        Ok(self.places.iter().map(|(face, s)| surface.placed(*face, s)).collect())
     }
 
     /// The nodes as they are found.
@@ -77,7 +87,7 @@ impl Mortar {
             out
         };
         let mut results: Vec<SiteResult> = (0..self.whole.len()).map(of).collect();
-        show(&self.nodes, found.sides.slave.faces().0, (&found.cover, &found.pairs), &mut results);
+        show(&self.nodes, found.sides.slave.faces().0, (&found.cover, &found.pairs), self.law(), &mut results);
         results
     }
 
@@ -105,7 +115,7 @@ impl Interaction for Mortar {
     }
 
     fn rows(&self) -> Vec<[f64; 2]> {
-        let list = self.stiffness.iter().zip(&self.whole);
+        let list = self.stiffness.iter().zip(&self.weights);
         list.flat_map(|(c, w)| vec![[*c, *w]; self.components()]).collect()
     }
 
@@ -143,6 +153,7 @@ impl Interaction for Mortar {
             self.folded[k] = !placed.functions.iter().any(|f| pushed(&f.value) && moves(f));
         }
         self.whole = self.nodes.whole(sides.slave.as_ref(), &self.folded).weight;
+        self.weights = super::weights(&self.whole);
     }
 
     fn add_to(&self, at: Bodies<'_>, own: Own<'_>, out: &mut Target<'_>) -> Result<usize, PlaceError> {
@@ -164,6 +175,23 @@ impl Interaction for Mortar {
 
     fn results(&self, at: Bodies<'_>, own: Own<'_>) -> Result<Vec<SiteResult>, PlaceError> {
         Ok(self.node_results(&self.found(at, own.multipliers)?))
+    }
+
+    /// Solids see each other only where they face each other: what a step takes through a rigid body is followed.
+    fn free_way(&self, way: Way<'_>) -> Result<f64, PlaceError> {
+        if !way.from.bodies[self.master.body].is_rigid() || !(way.moves(self.slave.body) || way.moves(self.master.body))
+        {
+            return Ok(1.0);
+        }
+        let body = &way.from.bodies[self.slave.body];
+        let spacing = body.size() / (self.places.len() as f64).sqrt();
+        let [from, to] = [self.placed(way.from)?, self.placed(way.to)?];
+        let point = |(a, b): (&Placed, &Placed)| Tested { from: a.x, to: b.x, radius: 0.0, is_surface: true, spacing };
+        Ok(share_of_way([&self.slave, &self.master], from.iter().zip(&to).map(point).collect(), way))
+    }
+
+    fn inside(&self, at: Bodies<'_>, is_start: bool) -> Result<Option<Inside>, PlaceError> {
+        at.inside([&self.slave, &self.master], &self.placed(at)?, is_start)
     }
 
     fn accept(&mut self, at: Bodies<'_>, own: Own<'_>) -> Result<(), PlaceError> {
@@ -210,6 +238,8 @@ impl Interaction for Mortar {
                 self.matched.push(Matched { face: point.face, s: point.s, on, shares: point.shares.clone() });
             }
         }
+        let turned = found.sides.turn();
+        self.turned = turned;
         self.times[0] = self.times[1];
         Ok(())
     }

@@ -26,6 +26,8 @@ pub(super) struct Sides<'a> {
     pub master: Opposite<'a>,
     /// First unknowns of both bodies.
     pub first: [u32; 2],
+    /// The rotation vector of a rigid master at the last state.
+    since: Vector<3>,
 }
 
 /// What the slave side meets.
@@ -68,7 +70,7 @@ impl<'a> Sides<'a> {
             None => Opposite::Rigid(master.master(group, other)?),
         };
         let first = [at.first[contact.slave.body], at.first[contact.master.body]];
-        Ok(Sides { slave: slave_surface, master, first })
+        Ok(Sides { slave: slave_surface, master, first, since: contact.turned })
     }
 
     /// What sees the master now.
@@ -95,7 +97,16 @@ impl<'a> Sides<'a> {
             _ => return Err(NoPair::NoCoordinates),
         };
         let axis = AxisChoice::Material;
-        Encounter { slave: &slave, met: &met, first: self.first, stuck: None, friction, axis }.measure(order)
+        let since = [self.since; 2];
+        Encounter { slave: &slave, met: &met, first: self.first, stuck: None, since, friction, axis }.measure(order)
+    }
+
+    /// The rotation vector of a rigid master.
+    pub fn turn(&self) -> Vector<3> {
+        match &self.master {
+            Opposite::Surface(_) => Vector::<3>::zeros(),
+            Opposite::Rigid(master) => master.at(&MaterialPoint::default()).turning.unwrap_or_default().turn,
+        }
     }
 
     /// How far a matched pair is apart now.
@@ -140,6 +151,7 @@ impl<'a> Sides<'a> {
                     met: &met,
                     first: self.first,
                     stuck: Some((&stuck, &anchor)),
+                    since: [self.since; 2],
                     friction: true,
                     axis: AxisChoice::Material,
                 };

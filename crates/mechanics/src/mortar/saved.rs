@@ -26,14 +26,14 @@ impl Mortar {
             own.push(m.shares.len() as f64);
             own.extend(m.shares.iter().flat_map(|(node, share)| [f64::from(*node), *share]));
         }
-        let scales = self.stiffness.iter().copied().chain([self.times[0]]).collect();
+        let scales = self.stiffness.iter().chain(&[self.times[0]]).chain(self.turned.iter()).copied().collect();
         [own, scales]
     }
 
     /// Takes numbers that [`Mortar::numbers`] gave; none of something else.
     pub(super) fn take_numbers(&mut self, [own, scales]: &[Vec<f64>; 2]) -> Option<()> {
         let count = self.memory.len();
-        if scales.len() != count + 1 || own.len() < NUMBERS * count {
+        if scales.len() != count + 4 || own.len() < NUMBERS * count {
             return None;
         }
         let (nodes, mut rest) = own.split_at(NUMBERS * count);
@@ -59,6 +59,7 @@ impl Mortar {
         self.matched = matched;
         self.stiffness.copy_from_slice(&scales[..count]);
         self.times = [scales[count]; 2];
+        self.turned = Vector::<3>::from_column_slice(&scales[count + 1..]);
         Some(())
     }
 }

@@ -5,16 +5,22 @@ use super::cover::{Cover, Nodes};
 use crate::pair::Pair;
 use crate::site_result::{OfSurface, SiteResult};
 use crate::surface::Faces;
-use signorini_contact::{ContactSurface, NodeState, Pressed, PressureNodes, Status, connected, recovered, zone};
+use signorini_contact::{ContactSurface, Law, NodeState, Pressed, PressureNodes, Status, connected, recovered, zone};
 
 /// The points of the slave side, and of each what it met, face by face.
 type Points<'a> = (&'a Cover, &'a [Vec<Option<Pair>>]);
 
 /// Completes the results of the nodes.
-pub(super) fn show(nodes: &Nodes, faces: Faces<'_>, points: Points<'_>, results: &mut [SiteResult]) {
+pub(super) fn show(
+    nodes: &Nodes,
+    faces: Faces<'_>,
+    points: Points<'_>,
+    law: Option<&dyn Law>,
+    results: &mut [SiteResult],
+) {
     match (nodes, faces) {
-        (Nodes::Plane(nodes), Faces::Plane(faces)) => show_on(nodes, faces, points, results),
-        (Nodes::Space(nodes), Faces::Space(faces)) => show_on(nodes, faces, points, results),
+        (Nodes::Plane(nodes), Faces::Plane(faces)) => show_on(nodes, faces, points, law, results),
+        (Nodes::Space(nodes), Faces::Space(faces)) => show_on(nodes, faces, points, law, results),
         _ => {}
     }
 }
@@ -23,6 +29,7 @@ fn show_on<const D: usize>(
     nodes: &PressureNodes<D>,
     faces: &dyn ContactSurface<D>,
     (cover, pairs): Points<'_>,
+    law: Option<&dyn Law>,
     results: &mut [SiteResult],
 ) {
     let is_active = |r: &SiteResult| r.status != Status::Open;
@@ -59,6 +66,9 @@ fn show_on<const D: usize>(
     }
     let zones = connected(nodes, &active);
     for (((result, pressure), area), zone) in results.iter_mut().zip(pressure).zip(area).zip(zones) {
-        result.of_surface = zone.filter(|_| is_active(result)).map(|zone| OfSurface { pressure, area, zone });
+        result.of_surface = zone.filter(|_| is_active(result)).map(|zone| {
+            let gain = law.map_or(1.0, |law| law.gain(pressure, result.pressure));
+            OfSurface { pressure, friction: result.friction * gain, area, zone }
+        });
     }
 }

@@ -136,6 +136,8 @@ pub struct Encounter<'a> {
     pub first: [u32; 2],
     /// Where slips count from, with what moves it.
     pub stuck: Option<(&'a Stuck, &'a Anchor)>,
+    /// The rotation vectors that slave and master had then, of rigid bodies.
+    pub since: [Vector<3>; 2],
     /// Whether slip is wanted.
     pub friction: bool,
     pub axis: AxisChoice,

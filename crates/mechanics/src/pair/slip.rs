@@ -1,8 +1,10 @@
 //! The slip of a pair: variation, second variation, and what has slipped since the anchor.
 
+use super::arc::{ContactAxes, Varied, arc, least_turn};
 use super::gap::{AtFoot, AtRigid};
 use super::measures::{Column, Pair, SecondVariation, Stuck, any_tangent, axis};
-use crate::points::{Order, RigidFoot};
+use crate::points::{Anchor, Order, RigidFoot};
+use crate::rotation;
 use nalgebra::{SMatrix, SVector};
 use signorini_geometry::{Matrix, Point, Vector};
 
@@ -18,7 +20,7 @@ impl<const N: usize> AtFoot<'_, N> {
         // Variations of the base vectors of the master, and of the motion of the foot along it.
         let d_base = |k: usize, a: usize| (0..N).fold(-columns[k].d_a[a], |sum, b| sum + second[a + b] * xi[k][b]);
         let foot_motion = |k: usize| (0..N).fold(Vector::<3>::zeros(), |sum, a| sum + base[a] * xi[k][a]);
-        let turns = !slave.spin.is_empty() || !foot.spin.is_empty();
+        let turns = !slave.spin.is_empty() || slave.turn.is_some() || !foot.spin.is_empty();
         let exact = N == 2 && !turns;
         // The part of the gap that turns with the normal; where sections cannot turn forces act on the lines themselves.
         let lever = if turns || radii == [0.0; 2] { 1.0 } else { 0.0 };
@@ -92,43 +94,131 @@ impl<const N: usize> AtFoot<'_, N> {
             on_slave: slave.frame.transpose() * normal,
             on_master: foot.frame.transpose() * normal,
         });
-        if let Some((stuck, anchor)) = self.encounter.stuck {
-            // Material points that were in touch: x_s - R_s Q_s m_s and x_m + R_m Q_m m_m; with an exact motion of the
-            // foot along the master it is that of the foot.
-            let arms = if turns {
-                [slave.frame * stuck.on_slave * radii[0], anchor.frame * stuck.on_master * radii[1]]
-            } else {
-                [Vector::<3>::zeros(); 2]
-            };
-            let from = if exact { foot.jet.x } else { slave.x };
-            pair.elastic = from - arms[0] - anchor.x - arms[1];
-            pair.d_elastic = (0..n)
-                .map(|k| {
-                    let c = &columns[k];
-                    if exact {
-                        // The material of the master at the foot moves by -δD of its own functions.
-                        let own = if k >= self.encounter.slave_count() { -c.d } else { Vector::<3>::zeros() };
-                        own + foot_motion(k) - c.anchor
-                    } else {
-                        let slave_side = if k < self.encounter.slave_count() { c.d } else { Vector::<3>::zeros() };
-                        slave_side - c.spin[0].cross(&arms[0]) - c.anchor - c.anchor_spin.cross(&arms[1])
-                    }
-                })
-                .collect();
-        } else {
-            pair.d_elastic = vec![Vector::<3>::zeros(); n];
-        }
+        (pair.elastic, pair.d_elastic) = match self.encounter.stuck {
+            Some(anchor) if turns => self.rolled(anchor, pair),
+            Some(anchor) => self.slid(anchor, exact, &foot_motion),
+            None => (Vector::<3>::zeros(), vec![Vector::<3>::zeros(); n]),
+        };
         pair.axis = self.encounter.axis(columns, foot.jet.u);
     }
 }
 
+impl<const N: usize> AtFoot<'_, N> {
+    /// The slip since material points were in touch, without sections that turn: how far they are apart, or with an exact
+    /// motion of the foot along the master how far that is from where it was.
+    fn slid(
+        &self,
+        (_, anchor): (&Stuck, &Anchor),
+        exact: bool,
+        foot_motion: &dyn Fn(usize) -> Vector<3>,
+    ) -> (Vector<3>, Vec<Vector<3>>) {
+        let of_slave = self.encounter.slave_count();
+        let from = if exact { self.foot.jet.x } else { self.encounter.slave.x };
+        let of = |(k, c): (usize, &Column)| match (exact, k < of_slave) {
+            // The material of the master at the foot moves by -δD of its own functions.
+            (true, true) => foot_motion(k) - c.anchor,
+            (true, false) => foot_motion(k) - c.d - c.anchor,
+            (false, true) => c.d - c.anchor,
+            (false, false) => -c.anchor,
+        };
+        (from - anchor.x, self.columns.iter().enumerate().map(of).collect())
+    }
+
+    /// The slip of sections that turn: how far the points of contact are apart, less their ways over both sections.
+    fn rolled(&self, (stuck, anchor): (&Stuck, &Anchor), pair: &Pair) -> (Vector<3>, Vec<Vector<3>>) {
+        let (slave, columns, [r_s, r_m]) = (self.encounter.slave, &self.columns, self.radii());
+        let normal = Varied { value: self.normal, variation: pair.d_normal.clone() };
+        let turned = |own: Vector<3>, spin: &dyn Fn(&Column) -> Vector<3>| Varied {
+            value: own,
+            variation: columns.iter().map(|c| spin(c).cross(&own)).collect(),
+        };
+        let on_slave = turned(slave.frame * stuck.on_slave, &|c| c.spin[0]);
+        let on_master = turned(anchor.frame * stuck.on_master, &|c| c.anchor_spin);
+        let spins: Vec<Vector<3>> = columns.iter().map(|c| c.spin[0]).collect();
+        let against_slave = match slave.turn {
+            Some(now) => {
+                let turn = rotation::between(&self.encounter.since[0], &now);
+                let before = rotation::turn(&-turn) * on_slave.value;
+                ContactAxes { before, normal: &normal, turned: None }.against(&turn, &spins)
+            }
+            None => least_turn(&on_slave, &normal),
+        };
+        let around = |from: &Varied, psi: &Varied, radius: f64| {
+            arc(&normal.less(from).times(radius), psi, &normal.times(radius))
+        };
+        let over_slave = around(&on_slave, &against_slave, r_s);
+        let over_master = around(&on_master, &least_turn(&on_master, &normal), r_m);
+        let apart = |k: usize| {
+            let own = if k < self.encounter.slave_count() { columns[k].d } else { Vector::<3>::zeros() };
+            own - columns[k].anchor - normal.variation[k] * (r_s + r_m)
+        };
+        let value = slave.x - anchor.x - normal.value * (r_s + r_m) + over_slave.value + over_master.value;
+        let of = |k: usize| apart(k) + over_slave.variation[k] + over_master.variation[k];
+        (value, (0..columns.len()).map(of).collect())
+    }
+}
+
 impl AtRigid<'_> {
+    /// The slip since the anchor: the way of the point of contact over the master, less that over a section of the given
+    /// radius that turns. Variations are seen from the master.
+    fn wandered(
+        &self,
+        (stuck, anchor): (&Stuck, &Anchor),
+        pair: &Pair,
+        radius: Option<f64>,
+    ) -> (Vector<3>, Vec<Vector<3>>) {
+        let (slave, columns, normal) = (self.encounter.slave, &self.columns, self.foot.jet.normal);
+        let turning = anchor.turning.unwrap_or_default();
+        let since = self.encounter.since;
+        // In space, of what is seen from the master.
+        let in_space = |value: Vector<3>, seen: &dyn Fn(usize) -> Vector<3>| Varied {
+            value,
+            variation: (0..columns.len()).map(|k| seen(k) + columns[k].turn.cross(&value)).collect(),
+        };
+        let contact_normal = in_space(normal, &|k| pair.d_normal[k]);
+        let spun = |value: Vector<3>, spin: &dyn Fn(&Column) -> Vector<3>| Varied {
+            value,
+            variation: columns.iter().map(spin).collect(),
+        };
+        let master = spun(rotation::between(&since[1], &turning.turn), &|c| c.turn);
+        let own = slave.turn.map(|now| spun(rotation::between(&since[0], &now), &|c| c.spin[0]));
+        let axes = ContactAxes {
+            before: rotation::turn(&-master.value) * turning.normal,
+            normal: &contact_normal,
+            turned: own.as_ref().map(|own| [own, &master]),
+        };
+        let point = slave.x - normal * radius.unwrap_or(self.foot.jet.gap);
+        let moved = |k: usize| match radius {
+            Some(radius) => columns[k].d - pair.d_normal[k] * radius,
+            None => pair.slip[k],
+        };
+        let over_master = arc(
+            &in_space(point - anchor.x, &moved),
+            &axes.against(&master.value, &master.variation),
+            &in_space(point - turning.about, &moved),
+        );
+        let radius = radius.unwrap_or(0.0);
+        let over_slave = (radius != 0.0).then(|| {
+            let before = slave.frame * stuck.on_slave;
+            let before =
+                Varied { value: before, variation: columns.iter().map(|c| c.spin[0].cross(&before)).collect() };
+            let psi = match &own {
+                Some(own) => axes.against(&own.value, &own.variation),
+                None => least_turn(&before, &contact_normal),
+            };
+            arc(&contact_normal.less(&before).times(radius), &psi, &contact_normal.times(radius))
+        });
+        let way = over_slave.map_or(over_master.clone(), |over| over_master.plus(&over));
+        let seen = |k: usize| way.variation[k] - columns[k].turn.cross(&way.value);
+        (way.value, (0..columns.len()).map(seen).collect())
+    }
+
     /// Adds slip to the measures of a pair that has its gap.
     pub fn add_slip(&self, order: Order, pair: &mut Pair) {
         let (slave, foot, columns) = (self.encounter.slave, self.foot, &self.columns);
         let (normal, hessian) = (foot.jet.normal, foot.jet.hessian);
         let (n, gap) = (columns.len(), pair.gap);
-        let turns = !slave.spin.is_empty();
+        let turns = !slave.spin.is_empty() || slave.turn.is_some();
         // Without a section that turns the ball about the slave point moves with the foot.
         let distance = if turns { gap } else { foot.jet.gap };
         let lever = if turns { slave.radius } else { 0.0 };
@@ -171,20 +261,10 @@ impl AtRigid<'_> {
             on_slave: slave.frame.transpose() * normal,
             on_master: Vector::<3>::zeros(),
         });
-        if let Some((stuck, anchor)) = self.encounter.stuck {
-            if turns {
-                let contact = slave.frame * stuck.on_slave * lever;
-                pair.elastic = slave.x - contact - anchor.x;
-                let seen = |c: &Column| c.d - c.spin[0].cross(&contact);
-                // The anchor turns with the body, and so does what is compared with it.
-                pair.d_elastic = (columns.iter()).map(|c| seen(c) + c.turn.cross(&contact)).collect();
-            } else {
-                pair.elastic = slave.x - normal * foot.jet.gap - anchor.x;
-                pair.d_elastic = pair.slip.clone();
-            }
-        } else {
-            pair.d_elastic = vec![Vector::<3>::zeros(); n];
-        }
+        (pair.elastic, pair.d_elastic) = match self.encounter.stuck {
+            Some(anchor) => self.wandered(anchor, pair, turns.then_some(lever)),
+            None => (Vector::<3>::zeros(), vec![Vector::<3>::zeros(); n]),
+        };
         pair.axis = self.encounter.axis(columns, any_tangent(&normal));
     }
 }

@@ -153,6 +153,57 @@ fn a_moved_body_drags_one_that_springs_hold() {
     assert!((moved - 0.05).abs() < 2e-3, "{moved}");
 }
 
+/// What turns rubs along the arc: a disc that a hand moves over a floor rolls by the way over its radius, a disc on a wheel that
+/// is turned by the way of the wheel, a block on a turntable is dragged along the circle; all in one increment.
+#[test]
+fn slip_is_measured_along_the_arc_by_whatever_angle_a_body_turns() {
+    let held = |by: f64| -> Option<crate::system::TimeField> { Some(Arc::new(move |_, t| by * (t - 1.0).max(0.0))) };
+    // How far the disc turns, and friction takes, as the hand moves it and the wheel turns.
+    let turned = |way: f64, wheel: f64, spins: bool| {
+        let zero = Vector::<3>::zeros();
+        let motion: crate::rigid_body::PrescribedMotion =
+            Arc::new(move |t| RigidMotion::new(v(0.0, 0.0, wheel * (t - 1.0).max(0.0)), zero, zero));
+        let mut system = System::default();
+        system.bodies.push(Box::new(ball(v(0.0, 0.5, 0.0), 0.5, Motion::Free { plane: true })));
+        let master: Box<dyn crate::body::Body> = match wheel == 0.0 {
+            true => Box::new(plane(zero, v(0.0, 1.0, 0.0))),
+            false => Box::new(rigid(
+                "wheel",
+                Sphere { center: v(0.0, -2.0, 0.0), radius: 2.0 },
+                Motion::Prescribed(Arc::new(move |t| RigidMotion::new(motion(t).turn, v(0.0, -2.0, 0.0), zero))),
+                Vec::new(),
+            )),
+        };
+        system.bodies.push(master);
+        system.loads.push(PlacedLoad {
+            name: "weight".into(),
+            part: part(0),
+            load: TimedLoad::Force(Arc::new(|_, _| v(0.0, -1.0, 0.0))),
+        });
+        let rotation = if spins { [None, None, None] } else { [None, None, held(0.0)] };
+        let support = Support { name: "hand".into(), part: part(0), displacement: [held(way), None, None], rotation };
+        system.supports.push(support);
+        let contact = touching(&system, 0, 1, Enforcement::Multiplier, Some(0.5));
+        system.contacts.push(Box::new(contact));
+        system.prepare().unwrap();
+        let (state, _) = system.solve(&system.start(), 1.0, &mut |_, _| true).unwrap();
+        system.accept(&state).unwrap();
+        let (state, result) = system.solve(&state, 2.0, &mut |_, _| true).unwrap();
+        (crate::rigid_body::Pose::of(&state.bodies[0]).turn.z, result.dissipated[0], result.sites[0][0].force())
+    };
+    for way in [0.1, 0.45, 2.5, -7.0] {
+        let (angle, taken, _) = turned(way, 0.0, true);
+        assert!((angle + way / 0.5).abs() < 1e-8 && taken.abs() < 1e-9, "{way}: {angle}, {taken}");
+    }
+    for wheel in [0.5, 4.0, -15.0] {
+        let (angle, taken, _) = turned(0.0, wheel, true);
+        assert!((angle + 4.0 * wheel).abs() < 1e-7 && taken.abs() < 1e-9, "{wheel}: {angle}, {taken}");
+        let (_, taken, force) = turned(0.0, wheel, false);
+        assert!((taken - 0.5 * 2.0 * wheel.abs()).abs() < 1e-9, "{wheel}: {taken}");
+        assert!((force - v(-0.5 * wheel.signum(), 1.0, 0.0)).norm() < 1e-9, "{force}");
+    }
+}
+
 /// With friction by velocity a ball that may not turn creeps down an incline, at the velocity of which the friction is its
 /// weight along it, however time is divided.
 #[test]

@@ -203,6 +203,7 @@ impl Master for SheetMaster<'_> {
             functions: self.sheet.functions(xi),
             spin: Vec::new(),
             frame: Matrix::<3>::identity(),
+            turning: None,
         }
     }
 }

@@ -176,6 +176,23 @@ fn a_rope_on_a_free_torus_is_exact_with_the_axis_along_it() {
 }
 
 #[test]
+fn a_ball_that_rolls_far_over_a_body_that_turns_is_exact() {
+    let shape = |which: usize| -> RigidBody {
+        match which {
+            0 => rigid("floor", Plane { point: v(0.2, 0.1, 0.0), normal: v(0.0, 0.0, 1.0) }, free(), Vec::new()),
+            _ => rigid("wheel", Sphere { center: v(0.3, -0.2, -1.4), radius: 1.5 }, free(), Vec::new()),
+        }
+    };
+    for which in 0..2 {
+        for (law, name) in laws() {
+            let ball = ball(v(0.2, 0.1, 0.1), 0.3, free());
+            let error = check(ball, shape(which), Enforcement::Multiplier, law, AxisChoice::Material, 0.25);
+            assert!(error < 2e-7, "{which}, {name}: {error:e}");
+        }
+    }
+}
+
+#[test]
 fn a_free_ball_that_rolls_errs_only_with_the_gap() {
     for (law, name) in laws() {
         let error = |law, height: f64| {

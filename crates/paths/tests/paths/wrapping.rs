@@ -153,6 +153,7 @@ fn derivatives_by_the_motion_of_every_body() {
                 moved[body] = RigidMotion {
                     rotation: motion.rotation * places[body].rotation,
                     translation: motion.point(&places[body].translation),
+                    ..motion
                 };
                 three(&moved).unwrap().length
             };

@@ -209,6 +209,11 @@ impl<const D: usize> SolidDisplay<D> {
                 if k == 0 {
                     displacement = moved;
                 }
+                let inner = body.mesh.shown_at(*cell as usize, xi);
+                let gradient = match inner == *xi {
+                    true => gradient,
+                    false => displacement_at(&body.mesh, &body.dofs, model.bodies.space, *cell as usize, &inner, own).2,
+                };
                 stress += body.material.stress(model.bodies.space, &gradient) / list.len() as f64;
                 strain += (gradient + gradient.transpose()) * (0.5 / list.len() as f64);
             }

@@ -240,7 +240,7 @@ fn of_contact(name: &str, sites: &[SiteResult], rubs: bool, is_curve: bool) -> F
         };
         fields = fields
             .scalar("friction_status", sites.iter().map(word).collect())
-            .vector("friction_traction", sites.iter().flat_map(|s| vector(&s.friction)).collect())
+            .vector("friction_traction", sites.iter().flat_map(|s| vector(&s.shown_friction())).collect())
             .vector("slip", sites.iter().flat_map(|s| vector(&s.increment)).collect())
             .scalar("friction_utilisation", sites.iter().map(|s| s.utilisation).collect());
     }

@@ -37,7 +37,7 @@ impl Planner<'_> {
             }
         }
         let shift = Vector::<3>::from_fn(|k, _| if k < D { shift[k] } else { 0.0 });
-        let RigidMotion { rotation, translation } = RigidMotion::new(rotation, Point::<3>::zeros(), shift);
+        let RigidMotion { rotation, translation, .. } = RigidMotion::new(rotation, Point::<3>::zeros(), shift);
         Ok(Some(Similarity { factor: scale, rotation, translation }))
     }
 }

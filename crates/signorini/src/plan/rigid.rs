@@ -99,18 +99,22 @@ impl RigidBody {
         Ok([vector(&self.displacement), rotation])
     }
 
-    /// How far a point of the body has come at a time, by where it lay before.
+    /// How far the body has come at a time along its way, where it is nearest to a position at the start: where sides slide
+    /// little, a body that turns rubs by the angle times the distance from the axis, in the direction that it starts with.
     ///
     /// # Errors
     /// A motion that is not a number then.
-    pub fn displacement_at(
+    pub fn way_at(
         &self,
         problem: &Problem,
         time: f64,
     ) -> Result<impl Fn(&Point<3>) -> Vector<3> + Sync + Send + 'static, CaseError> {
         let [moved, turned] = self.motion_at(problem, time)?;
-        let forth = RigidMotion::new(turned, self.shape.centre(), moved);
-        Ok(move |x: &Point<3>| forth.point(x) - x)
+        let shape = Arc::clone(&self.shape);
+        Ok(move |x: &Point<3>| {
+            let found = shape.gap(x);
+            moved + turned.cross(&(x - found.normal * found.gap - shape.centre()))
+        })
     }
 
     /// The gap of a point with its derivatives at a time.

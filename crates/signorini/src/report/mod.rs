@@ -107,7 +107,7 @@ pub struct StepReport {
     pub linear_iterations: Option<usize>,
     /// Residual of each solve, relative to its tolerance; for solids with small sliding the nodes that changed their state.
     pub residual_history: Vec<f64>,
-    /// Elastic energy less the work of the load.
+    /// Elastic energy that the bodies store; of a membrane its potential energy, which is that less the work of the load.
     pub energy: Option<f64>,
     /// `energy` less what adhesion gives back.
     pub energy_total: Option<f64>,
@@ -169,7 +169,7 @@ pub struct CellsReport {
 pub struct Pose {
     /// Displacement of its centre since the start.
     pub displacement: [f64; 3],
-    /// Rotation vector in radians since the start.
+    /// Rotation vector in radians since the start, whole turns included.
     pub rotation: [f64; 3],
 }
 
@@ -221,7 +221,7 @@ pub struct ContactReport {
     pub max_friction_utilisation: Option<f64>,
     /// Part of the force that is friction.
     pub friction_force: Option<[f64; 3]>,
-    /// Energy that friction took in the increment.
+    /// Energy that friction took in the increment, in all parts of one that was cut.
     pub dissipation: Option<f64>,
     /// What friction could hold of a rope where it lies; null for other bodies.
     #[serde(default)]

@@ -11,7 +11,7 @@ use crate::output::film::Film;
 use crate::output::system::SystemShown;
 use crate::output::{Folder, OutputError, system_files, system_pictures};
 use crate::plan::Head;
-use crate::plan::mechanics::MechanicsPlan;
+use crate::plan::mechanics::{Kind, MechanicsPlan};
 use crate::problem::CaseError;
 use crate::report::{Reason, StepReport};
 use serde_json::{Value, json};
@@ -96,6 +96,8 @@ impl MechanicsModel {
     ) -> Result<Result<IncrementResult, Failure>, CaseError> {
         let (mut reached, mut size) = (before, time - before);
         let (mut iterations, mut residuals) = (0, Vec::new());
+        // Of the parts of the increment before the last one, by contact.
+        let mut dissipated = vec![0.0; self.plan.system.contacts.len()];
         loop {
             let last = time - before <= 0.0 || reached + size >= time - 1e-9 * (time - before);
             let target = if last { time } else { reached + size };
@@ -122,12 +124,13 @@ impl MechanicsModel {
             match found {
                 Ok((state, result)) => {
                     iterations += result.iterations;
+                    dissipated.iter_mut().zip(&result.dissipated).for_each(|(sum, own)| *sum += own);
                     if last {
                         self.state = state;
-                        return Ok(Ok(IncrementResult { iterations, history: residuals, ..result }));
+                        return Ok(Ok(IncrementResult { iterations, history: residuals, dissipated, ..result }));
                     }
                     if let Err(error) = self.plan.system.accept(&state) {
-                        return Ok(Err(failed(&error, residuals)));
+                        return Ok(Err(self.failed(&error, residuals)));
                     }
                     self.state = state;
                     reached = target;
@@ -136,43 +139,56 @@ impl MechanicsModel {
                 Err(error) => {
                     let curable = !matches!(error, IncrementError::Interrupted | IncrementError::Free { .. });
                     if !curable || size <= SMALLEST_INCREMENT * (time - before) || time <= before {
-                        return Ok(Err(failed(&error, residuals)));
+                        return Ok(Err(self.failed(&error, residuals)));
                     }
                     size *= CUT;
                 }
             }
         }
     }
-}
 
-/// What an error of the solver means, and what to try.
-fn failed(error: &IncrementError, residuals: Vec<f64>) -> Failure {
-    let history = |h: &[f64]| h.iter().map(|r| format!("{r:.1e}")).collect::<Vec<_>>().join(", ");
-    let (reason, text) = match error {
-        IncrementError::Interrupted => (Reason::Interrupted, "interrupted".to_string()),
-        IncrementError::Free { .. } => {
-            (Reason::FreeBody, format!("{error}; add a support, a spring, or contact that holds it"))
-        }
-        IncrementError::Solve(_) => (
-            Reason::LinearSolver,
-            format!("{error}; is every body held, and does every rope have tension? try a pretension, or a support"),
-        ),
-        IncrementError::NotConverged { history: list, .. } => (
-            Reason::Newton,
-            format!(
-                "{error}; what was left after each, in tolerances: {}; try more increments, more cells, or a pretension \
-                 where a rope is slack",
-                history(list)
+    /// What an error of the solver means, and what to try.
+    fn failed(&self, error: &IncrementError, residuals: Vec<f64>) -> Failure {
+        let has = |which: fn(&Kind) -> bool| self.plan.kinds.iter().any(which);
+        let has_ropes = has(|kind| matches!(kind, Kind::Curve { .. }));
+        let history = |h: &[f64]| h.iter().map(|r| format!("{r:.1e}")).collect::<Vec<_>>().join(", ");
+        let (reason, text) = match error {
+            IncrementError::Interrupted => (Reason::Interrupted, "interrupted".to_string()),
+            IncrementError::Free { .. } => {
+                (Reason::FreeBody, format!("{error}; add a support, a spring, or contact that holds it"))
+            }
+            IncrementError::Solve(_) => (
+                Reason::LinearSolver,
+                match has_ropes {
+                    true => format!(
+                        "{error}; is every body held, and does every rope have tension? try a pretension, or a support"
+                    ),
+                    false => format!("{error}; is every body held? try a support, a spring, or contact that holds it"),
+                },
             ),
-        ),
-        IncrementError::PassesThrough { .. } => (Reason::Increment, format!("{error}; try more increments")),
-        IncrementError::Augmentation { history: list, .. } => (
-            Reason::Contact,
-            format!("{error}: {}; try  enforcement.multiplier = {{}}  or  enforcement.penalty = {{}}", history(list)),
-        ),
-        IncrementError::Assembly(_) => (Reason::Input, error.to_string()),
-    };
-    Failure { reason, text, residuals }
+            IncrementError::NotConverged { history: list, .. } => (
+                Reason::Newton,
+                format!(
+                    "{error}; what was left after each, in tolerances: {}; try more increments{}{}",
+                    history(list),
+                    if has(|kind| !matches!(kind, Kind::Rigid { .. })) { ", or more cells" } else { "" },
+                    if has_ropes { ", or a pretension where a rope is slack" } else { "" },
+                ),
+            ),
+            IncrementError::PassesThrough { .. } | IncrementError::Inside { .. } => {
+                (Reason::Increment, format!("{error}; try more increments"))
+            }
+            IncrementError::Augmentation { history: list, .. } => (
+                Reason::Contact,
+                format!(
+                    "{error}: {}; try  enforcement.multiplier = {{}}  or  enforcement.penalty = {{}}",
+                    history(list)
+                ),
+            ),
+            IncrementError::Assembly(_) => (Reason::Input, error.to_string()),
+        };
+        Failure { reason, text, residuals }
+    }
 }
 
 impl Model for MechanicsModel {
@@ -227,7 +243,7 @@ impl Model for MechanicsModel {
         }
         // What slips count from next.
         if let Err(error) = self.plan.system.accept(&self.state) {
-            let Failure { reason, text, .. } = failed(&error, Vec::new());
+            let Failure { reason, text, .. } = self.failed(&error, Vec::new());
             self.failure = Some(text);
             return Ok(Advanced::Failed(reason));
         }

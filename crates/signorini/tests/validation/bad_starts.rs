@@ -80,3 +80,39 @@ fn bad_starts_are_told_with_the_remedy() {
         assert!(words.iter().all(|word| told.contains(word)), "{name}, {changes:?}: {told}");
     }
 }
+
+/// A punch at a height over a block, at finite strain; a body of cells over or in a half space.
+fn punched(height: f64, contact: &str) -> String {
+    format!(
+        "space = \"plane_strain\"\n[bodies.block.solid]\nstrain = \"finite\"\ndegree = 1\n\
+         material.neo_hooke = {{ youngs_modulus = 10, poissons_ratio = 0.4 }}\n\
+         mesh.box = {{ min = [-2, 0], max = [2, 2], cells = [8, 4] }}\n\
+         [bodies.punch.rigid]\nshape.cylinder = {{ point = [0.1, {height}], radius = 2 }}\n\
+         motion.prescribed = {{ displacement = [0, \"-3*t\"] }}\n[supports.base]\non = \"block:bottom\"\ndisplacement = [0, 0]\n\
+         [contacts.press]\nbetween = [\"block:top\", \"punch\"]\n{contact}\n[[steps]]\nto = 0.2\n"
+    )
+}
+
+#[test]
+fn surfaces_that_start_inside_a_rigid_body_are_told() {
+    let egg = "space = \"3d\"\n[bodies.egg.cells]\ngeometry.ellipsoid = { center = [0, 0, 0], semi_axes = [10, 8, 12] }\n\
+               mesh.grid = { cells = [3, 3, 3] }\ndegree = 1\n\
+               material.linear_elastic = { youngs_modulus = 100, poissons_ratio = 0.35 }\ngroups.low = \"z < -11\"\n\
+               [bodies.high.rigid]\nshape.plane = { point = [0, 0, 12], normal = [0, 0, 1] }\n\
+               [supports.base]\non = \"egg:low\"\ndisplacement = [0, 0, 0]\n[contacts.high]\nbetween = [\"egg\", \"high\"]\n\
+               [[steps]]\nto = 1\n";
+    for (case, wanted) in [
+        (punched(1.0, ""), "`block` starts 9.9"),
+        (punched(1.0, "method.node = {}"), "`block` starts 9.9"),
+        (egg.to_string(), "`egg` starts 2"),
+    ] {
+        let error = super::error(&case);
+        assert!(error.message.contains(wanted) && error.message.contains("deep inside"), "{}", error.message);
+    }
+    // A jump into the block is cut, and ends where it does with more increments.
+    for contact in ["", "method.node = {}"] {
+        let found = super::summary(&punched(4.01, contact), &super::set(&[]));
+        let depth = super::number(&super::last_step(&found)["contacts"]["press"]["force"][1]);
+        assert!(depth < 0.0, "{depth}");
+    }
+}

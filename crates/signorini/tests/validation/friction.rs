@@ -115,3 +115,37 @@ increments = {increments}
         assert!((stick - sticks).abs() < 0.05, "μ = {mu}, {increments} increments: {stick} sticks, not {sticks}");
     }
 }
+
+/// A drum that turns under a held block rubs along the arc by any angle in one increment or many, whatever measures the contact,
+/// and friction takes the force times the way.
+#[test]
+fn a_brake_drum_rubs_by_the_angle_times_the_radius() {
+    let block = "[bodies.b.solid]\nmesh.box = { min = [-0.1, 1.0], max = [0.1, 1.2], cells = [4, 4] }\ndegree = 1\n";
+    let cells = "[bodies.b.cells]\ngeometry.box = { min = [-0.1, 1.0], max = [0.1, 1.2] }\nmesh.grid = { cells = [3, 3] }\n\
+                 degree = 2\n";
+    let rubbed = |body: &str, contact: &str, angle: f64, increments: usize| {
+        let case = format!(
+            "space = \"plane_strain\"\n{body}material.linear_elastic = {{ youngs_modulus = 1e4, poissons_ratio = 0.3 }}\n\
+             [bodies.d.rigid]\nshape.sphere = {{ center = [0, 0], radius = 1 }}\n\
+             motion.prescribed = {{ rotation = [\"{angle}*max(t-1,0)\"] }}\n\
+             [supports.s]\non = \"b:top\"\ndisplacement = [0, \"-0.001*min(t,1)\"]\n\
+             [contacts.c]\nbetween = [\"b:bottom\", \"d\"]\nfriction.coulomb = {{ mu = 0.3 }}\n{contact}\n\
+             [[steps]]\nto = 1\n[[steps]]\nto = 2\nincrements = {increments}\n"
+        );
+        let found = summary(&case, &set(&[]));
+        let last = &last_step(&found)["contacts"]["c"];
+        let steps = found["steps"].as_array().expect("steps");
+        let taken: f64 = steps.iter().map(|s| number(&s["contacts"]["c"]["dissipation"])).sum();
+        let along = steps[1..].iter().map(|s| number(&s["contacts"]["c"]["force"][0]));
+        assert!(along.clone().all(|f| f * angle < 0.0), "{contact}: {:?}", along.collect::<Vec<_>>());
+        let exact = 0.3 * number(&last["force"][1]) * angle.abs();
+        assert!((taken / exact - 1.0).abs() < 0.012, "{contact}, {angle} in {increments}: {taken}, not {exact}");
+    };
+    rubbed(block, "", 4.0, 2);
+    for angle in [4.0, -14.0] {
+        rubbed(block, "sliding = \"finite\"", angle, 1);
+        rubbed(block, "sliding = \"finite\"\nmethod.node = {}", angle, 2);
+    }
+    // This one is cut.
+    rubbed(cells, "", 1.5, 1);
+}

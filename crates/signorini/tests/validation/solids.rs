@@ -332,3 +332,28 @@ pictures = false
     );
     assert!(of_quadratic > 1e-6 * quadratic && of_quadratic < 0.3 * of_linear, "{of_quadratic}, {of_linear}");
 }
+
+/// A box that a map bends to a ring is closed: a shaft that is too thick presses on it as Lame says, all around.
+#[test]
+fn a_ring_by_a_map_is_closed() {
+    let case = "space = \"plane_strain\"\n[bodies.hub.solid]\ndegree = 2\n\
+                material.linear_elastic = { youngs_modulus = 210e3, poissons_ratio = 0.3 }\n\
+                mesh.box = { min = [10, 0], max = [20, \"2*pi\"], cells = [4, 24], map = [\"x*cos(y)\", \"x*sin(y)\"] }\n\
+                [bodies.shaft.rigid]\nshape.cylinder = { point = [0, 0], radius = 10.02 }\n\
+                [supports.rim]\non = \"hub:right\"\ndisplacement = [0, 0]\n\
+                [contacts.fit]\nbetween = [\"hub:left\", \"shaft\"]\n[[steps]]\nto = 1\n";
+    let found = summary(case, &set(&[]));
+    let fit = &last_step(&found)["contacts"]["fit"];
+    // u = A r + B / r with u(10) = 0.02, u(20) = 0; the pressure is -sigma_r there.
+    let (e, nu) = (210e3, 0.3);
+    let b = 0.02 / (1.0 / 10.0 - 10.0 / 400.0);
+    let a = -b / 400.0;
+    let stiffness = e / ((1.0 + nu) * (1.0 - 2.0 * nu));
+    let exact = -stiffness * (a - (1.0 - 2.0 * nu) * b / 100.0);
+    for key in ["max_pressure", "min_pressure"] {
+        let pressure = number(&fit[key]);
+        assert!((pressure / exact - 1.0).abs() < 0.01, "{key}: {pressure}, not {exact}");
+    }
+    let force = (0..2).map(|k| number(&fit["force"][k]).abs()).fold(0.0, f64::max);
+    assert!(force < 1e-6 * exact * 60.0, "{force}");
+}

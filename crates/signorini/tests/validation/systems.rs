@@ -354,3 +354,28 @@ fn a_body_that_nothing_holds_is_named() {
     assert!(found["converged"] == false && found["reason"] == "free_body", "{}", found["verdict"]);
     assert!(found["verdict"].as_str().unwrap().contains("`ball` is free"), "{}", found["verdict"]);
 }
+
+/// Mortar contact where nodes have no function of their own: on the axis of revolution at degree 2, and at a corner that a
+/// support holds, which a roller touches first. Fields of friction stay within the cone.
+#[test]
+fn a_mortar_has_an_equation_for_every_node() {
+    let ball = "space = \"axisymmetric\"\n[bodies.b.solid]\n\
+                mesh.box = { axes = [{ from = 0, to = [0.2, 4], cells = [8, 8], growth = [1, 1.5] }, \
+                { from = -4, to = [-0.2, 0], cells = [8, 5], growth = [0.65, 1] }] }\ndegree = 2\n\
+                material.linear_elastic = { youngs_modulus = 1, poissons_ratio = 0.3 }\n\
+                [bodies.s.rigid]\nshape.sphere = { center = [0, 1], radius = 1 }\n\
+                motion.prescribed = { displacement = [0, \"-0.01*t\"] }\n[supports.b]\non = \"b:bottom\"\ndisplacement = [0, 0]\n\
+                [contacts.c]\nbetween = [\"b:top\", \"s\"]\nsliding = \"finite\"\n[[steps]]\nto = 1\n";
+    let found = summary(ball, &set(&[]));
+    let force = -number(&last_step(&found)["contacts"]["c"]["force"][1]);
+    let hertz = 4.0 / 3.0 / (1.0 - 0.09) * 1e-3;
+    assert!((force / hertz - 1.03).abs() < 0.03, "{force}, {hertz}");
+    let hook = "space = \"plane_strain\"\n[bodies.hook.solid]\nstrain = \"finite\"\ndegree = 1\n\
+                material.saint_venant_kirchhoff = { youngs_modulus = 2000, poissons_ratio = 0.38 }\n\
+                mesh.box = { min = [0, 0], max = [20, 2], cells = [10, 2] }\n\
+                [bodies.catch.rigid]\nshape.cylinder = { point = [22.5, 3], radius = 2 }\n\
+                motion.prescribed = { displacement = [\"-t\", 0] }\n[supports.root]\non = \"hook:left\"\ndisplacement = [0, 0]\n\
+                [contacts.slide]\nbetween = [\"hook:top\", \"catch\"]\n[[steps]]\nto = 1.2\nincrements = 3\n";
+    let found = summary(hook, &set(&[]));
+    assert!(number(&last_step(&found)["contacts"]["slide"]["force"][1]) < 0.0);
+}

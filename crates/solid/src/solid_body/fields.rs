@@ -40,7 +40,12 @@ impl<const D: usize> SolidBody<D> {
         for (cell, points) in found.into_iter().enumerate() {
             let first = out.points.len() as u32;
             out.cells.extend(of(cell).cells.iter().map(|c| c.iter().map(|k| first + k).collect()));
-            for (x, moved, s) in points {
+            for (q, (x, moved, mut s)) in points.into_iter().enumerate() {
+                let xi = of(cell).table.points[q].0;
+                let inner = body.mesh.shown_at(cell, &xi);
+                if inner != xi {
+                    s = self.points_of(cell, &self.table_at(cell, &[inner]), u)[0].2;
+                }
                 out.points.push(x);
                 out.displacement.push(moved);
                 stress.extend([s[(0, 0)], s[(1, 1)], s[(2, 2)], s[(0, 1)], s[(1, 2)], s[(0, 2)]]);
@@ -113,8 +118,12 @@ impl<const D: usize> SolidBody<D> {
     fn division(&self, cell: usize) -> Division {
         let body = self.body();
         let (map, basis) = (body.mesh.map(cell), body.dofs.basis(cell));
-        let n = map.order().max(basis.degree());
-        let (points, cells) = divided(map.shape(), n);
+        let (points, cells) = divided(map.shape(), map.order().max(basis.degree()));
+        Division { table: self.table_at(cell, &points), cells }
+    }
+
+    fn table_at(&self, cell: usize, points: &[Local]) -> Table {
+        let (map, basis) = (self.body().mesh.map(cell), self.body().dofs.basis(cell));
         let tabulate = |f: &dyn Fn(&Local, &mut Values)| -> Vec<Values> {
             (points.iter())
                 .map(|x| {
@@ -125,8 +134,7 @@ impl<const D: usize> SolidBody<D> {
                 .collect()
         };
         let (of_map, of_basis) = (tabulate(&|x, at| map.tabulate(x, at)), tabulate(&|x, at| basis.tabulate(x, at)));
-        let points = points.into_iter().map(|x| (x, 0.0)).collect();
-        Division { table: Table { points, map: of_map, basis: of_basis }, cells }
+        Table { points: points.iter().map(|x| (*x, 0.0)).collect(), map: of_map, basis: of_basis }
     }
 }
 

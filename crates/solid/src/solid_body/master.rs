@@ -325,8 +325,8 @@ impl<const D: usize> Master for SurfaceMaster<'_, D> {
             x: spatial(&at.x),
             tangent: spatial(&at.tangents[0]),
             functions: functions::<D>(&list, |d| [d[1], d[2], 0.0, 0.0, 0.0]),
-            spin: Vec::new(),
             frame: Matrix::<3>::identity(),
+            ..Anchor::default()
         }
     }
 }

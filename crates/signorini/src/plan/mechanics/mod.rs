@@ -24,7 +24,7 @@ use signorini_geometry::Point;
 use signorini_geometry::rigid_shape::RigidShape;
 use signorini_mechanics::contact::Part;
 use signorini_mechanics::system::TimeField;
-use signorini_mechanics::{AxisChoice, PlacedLoad, Support, System};
+use signorini_mechanics::{AxisChoice, IncrementError, PlacedLoad, Support, System};
 use signorini_rope::curve_pair::search::{Between, Searched, crossings};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -183,6 +183,7 @@ impl Planner<'_> {
         system.prepare().map_err(|e| problem.error(&problem.space, e.to_string()))?;
         self.check_held(&system)?;
         self.check_start(&system, &kinds, &contacts)?;
+        self.check_inside(&system)?;
         self.check_crossings(&system, &kinds, &contacts)?;
         self.tell_stretched(&system, &numbers, &mut warnings)?;
         notes.extend(contacts.iter().flat_map(|c| c.notes.iter().cloned()));
@@ -269,6 +270,28 @@ impl Planner<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Whether surfaces start outside of the rigid bodies that they may touch, but for an interference that contact undoes.
+    fn check_inside(&self, system: &System) -> Result<(), CaseError> {
+        let problem = self.problem;
+        let mut start = system.start();
+        system.bodies.iter().zip(&mut start.bodies).for_each(|(body, state)| body.prescribe(0.0, state));
+        match system.check_inside(&start, true) {
+            Ok(()) => Ok(()),
+            Err(IncrementError::Inside { contact, body, depth, x }) => {
+                let of = system.contacts.iter().find(|c| c.name() == contact).map(|c| c.bodies());
+                let names = of.map(|bodies| bodies.map(|b| system.bodies[b].name()));
+                let other = names.map_or("the rigid body", |[_, master]| master);
+                let at: Vec<String> = x.iter().map(|v| format!("{v:.4}")).collect();
+                let place = problem.contacts.get(&contact).map_or(self.key(&problem.space), |key| self.key(key));
+                let message = format!("`{body}` starts {depth:.4e} deep inside `{other}`, at ({})", at.join(", "));
+                Err(problem.error(&place, message).help(
+                    "move them apart; or does the normal of a rigid plane point into it, or `side` name the wrong side?",
+                ))
+            }
+            Err(error) => Err(problem.error(&problem.space, error.to_string())),
+        }
     }
 
     /// A curve that starts inside of another body, or of another curve.

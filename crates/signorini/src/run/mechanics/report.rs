@@ -88,7 +88,7 @@ pub fn step_report(
         let Kind::Rigid { centre, is_free: true, .. } = kind else { return None };
         let pose = rigid_body::Pose::of(state);
         let displacement = vector(&(pose.centre - centre));
-        Some((body.name().to_string(), Pose { displacement, rotation: vector(&pose.rotation.scaled_axis()) }))
+        Some((body.name().to_string(), Pose { displacement, rotation: vector(&pose.turn) }))
     });
     let means = system.bodies.iter().zip(&state.bodies).filter_map(|(body, state)| {
         let own = body.means(state)?;
@@ -108,8 +108,11 @@ pub fn step_report(
         support_forces: supports.iter().map(|(name, force)| (name.clone(), vector(force))).collect(),
         load_forces: loads,
         contacts: (system.contacts.iter().zip(&plan.contacts).zip(&result.sites))
-            .map(|((contact, tested), sites)| {
-                (contact.name().to_string(), contact_report(plan, (contact.as_ref(), tested), sites))
+            .zip(&result.dissipated)
+            .map(|(((contact, tested), sites), dissipated)| {
+                let report = contact_report(plan, (contact.as_ref(), tested), sites);
+                let dissipation = contact.law().map(|_| *dissipated);
+                (contact.name().to_string(), ContactReport { dissipation, ..report })
             })
             .collect(),
         probes: plan.probes.iter().map(|(name, x)| (name.clone(), probe(x))).collect(),
@@ -204,7 +207,6 @@ fn contact_report(
         max_friction_utilisation: rubs.then(|| closed().map(|s| s.utilisation).fold(0.0, f64::max)),
         friction_force: rubs.then(|| vector(&resultant(closed().map(|s| s.friction * s.weight)))),
         rope: tested.along_a_curve.then(|| rope_limits((contact, tested), sites)).flatten(),
-        dissipation: rubs.then(|| closed().map(|s| -s.weight * s.friction.dot(&s.increment)).sum()),
         ..ContactReport::default()
     }
 }
@@ -254,9 +256,14 @@ pub fn warn(plan: &MechanicsPlan, result: &IncrementResult, shown: &SystemShown,
         if !plan.head.problem.contacts.contains_key(contact.name()) || sites.iter().any(|s| s.status != Status::Open) {
             continue;
         }
+        // Once for each contact.
+        let opening = format!("contact `{}`: the bodies do not touch", contact.name());
+        if record.warnings.iter().any(|w| w.kind == WarningKind::Apart && w.message.starts_with(&opening)) {
+            continue;
+        }
         let gap = sites.iter().filter_map(|s| s.gap).reduce(f64::min);
         let gap = gap.map_or("nothing is within reach".to_string(), |g| format!("smallest gap {g:.6e}"));
-        let message = format!("contact `{}`: the bodies do not touch at t = {time} ({gap})", contact.name());
+        let message = format!("{opening} at t = {time} ({gap})");
         record.warnings.push(Warning::new(WarningKind::Apart, message).at_time(time));
     }
     if let Some((body, strained)) = most_strained(plan, shown) {

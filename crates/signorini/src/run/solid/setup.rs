@@ -126,7 +126,7 @@ pub fn at_time<const D: usize, R>(
     let motion: Vec<Option<RigidMotion<D>>> = (plan.contacts.iter())
         .map(|c| match (&c.opposite, &c.friction) {
             (Opposite::Rigid(body), Some(_)) => {
-                let moved = body.displacement_at(problem, time)?;
+                let moved = body.way_at(problem, time)?;
                 let of = move |x: &Point<D>| {
                     let u = moved(&Point::<3>::from(vector(x)));
                     Point::<D>::from_fn(|k, _| u[k])

@@ -37,6 +37,8 @@ pub(crate) struct Problem<'a> {
     pub(crate) is_free: bool,
     /// Springs on all unknowns of bodies.
     pub(crate) springs: f64,
+    /// What their stiffness is multiplied by at each unknown; without it 1, and the square of the size for spins.
+    pub(crate) metric: Vec<f64>,
     /// A share of forces on the unknowns of bodies, and of what constraints lack, that is not there yet.
     pub(crate) held_back: Option<(f64, Vec<f64>, Vec<f64>)>,
     /// Unknowns that are spins.
@@ -154,6 +156,9 @@ impl Problem<'_> {
     }
 
     pub(crate) fn spring(&self, unknown: usize) -> f64 {
+        if let Some(own) = self.metric.get(unknown) {
+            return self.springs * own;
+        }
         let size = if self.is_spin[unknown] { self.system.size() } else { 1.0 };
         self.springs * size * size
     }

@@ -9,6 +9,7 @@ use crate::increment_error::IncrementError;
 use crate::linear_solver::{Solved, Stiffness};
 use crate::points::Order;
 use crate::site_result::SiteResult;
+use crate::stability::{Stability, UnstableMode};
 use crate::system::{AssemblyError, System, SystemState};
 use signorini_geometry::Vector;
 use signorini_solve::general::Analysis;
@@ -33,6 +34,8 @@ pub struct IncrementResult {
     pub lost_sites: usize,
     /// What solved the linear equations.
     pub solved: Solved,
+    /// None of systems that cannot be unstable, or whose tangent is never factorised.
+    pub stability: Option<Stability>,
 }
 
 /// Force relative to the largest with which no state is taken for one, whatever rounding may say.
@@ -42,11 +45,13 @@ const AUGMENTED: f64 = 1e-9;
 const MOST_AUGMENTATIONS: usize = 60;
 
 /// How Newton's method goes.
-pub(crate) enum Way {
+pub(crate) enum Way<'a> {
     /// From the last state.
     Straight,
     /// Round what failed so.
     Round(IncrementError),
+    /// From an unstable state, along a direction or against it.
+    Along(&'a UnstableMode, f64),
 }
 
 /// Whether another way to the same state may help.
@@ -82,7 +87,25 @@ impl System {
         time: f64,
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<(SystemState, IncrementResult), IncrementError> {
-        let mut start = from.clone();
+        let kept = self.histories();
+        let start = self.begin(from, time)?;
+        let found = self.outer(&start, time, report).and_then(|found| self.on_a_stable_branch(found, time, report));
+        self.end();
+        match found {
+            Ok((state, mut result)) => {
+                self.locate_instability(from, (time, &kept), &mut result, report)?;
+                Ok((state, result))
+            }
+            Err(error) => {
+                self.put_back(&kept);
+                Err(error)
+            }
+        }
+    }
+
+    /// The state from which an increment to a time starts, what is prescribed brought there.
+    pub(crate) fn begin(&mut self, from: &SystemState, time: f64) -> Result<SystemState, IncrementError> {
+        let mut start = SystemState { time, ..from.clone() };
         start.travel.iter_mut().for_each(|t| *t = 0.0);
         for (body, state) in self.bodies.iter().zip(&mut start.bodies) {
             body.prescribe(time, state);
@@ -92,18 +115,16 @@ impl System {
         }
         start.multipliers = self.contacts.iter().flat_map(|c| c.remembered()).collect();
         start.predictions = self.contacts.iter().map(|c| c.prediction()).collect();
-        let kept = self.histories();
         self.contacts.iter_mut().for_each(|c| c.begin(time));
-        let found = self.outer(&start, time, report);
+        Ok(start)
+    }
+
+    pub(crate) fn end(&mut self) {
         self.contacts.iter_mut().for_each(|c| c.end());
-        if found.is_err() {
-            self.put_back(&kept);
-        }
-        found
     }
 
     /// Outer iterations: of augmented Lagrangians, and of penalties that are to leave a given penetration.
-    fn outer(
+    pub(crate) fn outer(
         &mut self,
         start: &SystemState,
         time: f64,
@@ -209,7 +230,7 @@ impl System {
     /// Newton's method by one way.
     pub(crate) fn by(
         &self,
-        way: Way,
+        way: Way<'_>,
         start: &SystemState,
         time: f64,
         solved: &mut Solved,
@@ -231,6 +252,7 @@ impl System {
             analysis: Analysis::default(),
             is_free: !iterates && self.has_free_body(),
             springs: 0.0,
+            metric: Vec::new(),
             held_back: None,
             is_spin,
             rows,
@@ -242,6 +264,7 @@ impl System {
         let found = match way {
             Way::Straight => problem.solve(start, report),
             Way::Round(error) => self.by_another_way(&mut problem, start, error, report),
+            Way::Along(mode, sign) => problem.along(mode, sign, start, report),
         };
         *solved = problem.solved;
         found
@@ -323,6 +346,7 @@ impl System {
             imbalance,
             lost_sites: at.lost,
             solved: Solved::default(),
+            stability: None,
         })
     }
 }

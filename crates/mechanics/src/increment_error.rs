@@ -19,6 +19,13 @@ pub enum IncrementError {
     /// A prescribed motion that is too long for one increment.
     #[error("contact `{contact}`: what moves as prescribed passes through what it touches after {:.0} % of its way", 100.0 * share)]
     PassesThrough { contact: String, share: f64 },
+    /// No stable state was found near one that is not stable.
+    #[error(
+        "`{body}` is unstable ({negative_eigenvalues} negative eigenvalue{} of the tangent), and once disturbed it comes to no \
+         state that is stable",
+        if *negative_eigenvalues == 1 { "" } else { "s" }
+    )]
+    Unstable { body: String, negative_eigenvalues: usize },
     #[error("interrupted")]
     Interrupted,
 }

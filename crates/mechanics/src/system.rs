@@ -9,6 +9,7 @@ use crate::interaction::{Bodies, Interaction, Own, Target};
 use crate::linear_solver::{LinearSolver, Stiffness};
 use crate::part::Part;
 use crate::points::Order;
+use crate::stability::Unstable;
 use signorini_geometry::{Point, Vector};
 use signorini_solve::general::{Entries, Matrix};
 use std::sync::Arc;
@@ -99,11 +100,14 @@ pub struct System {
     pub loads: Vec<PlacedLoad>,
     pub contacts: Vec<Box<dyn Interaction>>,
     pub solver: LinearSolver,
+    /// What is done with states that are not stable.
+    pub unstable: Unstable,
 }
 
 /// A state of the system.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SystemState {
+    pub time: f64,
     pub bodies: Vec<BodyState>,
     /// Tractions that are unknowns, of all contacts.
     pub multipliers: Vec<f64>,
@@ -175,6 +179,7 @@ impl System {
     pub fn start(&self) -> SystemState {
         let (_, count) = self.numbering();
         SystemState {
+            time: 0.0,
             bodies: self.bodies.iter().map(|b| b.start()).collect(),
             multipliers: vec![0.0; self.contacts.iter().map(|c| c.rows().len()).sum()],
             reactions: Vec::new(),
@@ -260,7 +265,7 @@ impl System {
         let predictions = (self.contacts.iter().zip(self.own(at)))
             .map(|(contact, own)| contact.predict(now, own, step, share))
             .collect();
-        SystemState { bodies, multipliers, reactions, predictions, travel }
+        SystemState { time: at.time, bodies, multipliers, reactions, predictions, travel }
     }
 
     /// The residual at a state and a time, without the reactions of supports, and its derivative.

@@ -5,6 +5,7 @@
 //! where its residual stays large.
 
 use crate::cholesky::SolveError;
+use crate::sparse::SymmetricMatrix;
 use faer::linalg::solvers::SolveCore;
 use faer::sparse::linalg::solvers::{Lu as Numeric, SymbolicLu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
@@ -79,6 +80,11 @@ impl Entries {
         self.list.retain(|e| !is_left_out(e.0));
     }
 
+    /// Leaves out the rows and columns for which `is_left_out` holds.
+    pub fn without(&mut self, is_left_out: impl Fn(u32) -> bool) {
+        self.list.retain(|e| !is_left_out(e.0) && !is_left_out(e.1));
+    }
+
     /// The matrix of `n` unknowns, without blocks that are kept apart; entries at the same place are summed in the order in
     /// which they were added.
     pub fn matrix(&self, n: usize) -> Matrix {
@@ -128,6 +134,25 @@ impl Matrix {
             self.column(j).for_each(|(i, v)| out[i] += v * x[j]);
         }
         out
+    }
+
+    /// `½ (A + Aᵀ)`.
+    pub fn symmetric_part(&self) -> SymmetricMatrix {
+        let size = self.size();
+        let mut columns: Vec<Vec<(usize, f64)>> = vec![Vec::new(); size];
+        for j in 0..size {
+            self.column(j).for_each(|(i, v)| columns[i.min(j)].push((i.max(j), if i == j { v } else { 0.5 * v })));
+        }
+        SymmetricMatrix::from_columns(size, |j, out| {
+            let column = &mut columns[j];
+            column.sort_by_key(|e| e.0);
+            for &(i, v) in column.iter() {
+                match out.last_mut() {
+                    Some(last) if last.0 == i => last.1 += v,
+                    _ => out.push((i, v)),
+                }
+            }
+        })
     }
 
     /// The largest entry of each row.

@@ -117,6 +117,9 @@ pub struct StepReport {
     pub max_slope: Option<f64>,
     /// Largest principal strain of solids: the theory is that of small strains.
     pub max_strain: Option<f64>,
+    /// Whether the state is stable, of systems whose bodies deform by more than small strains; null for others.
+    #[serde(default)]
+    pub stability: Option<StabilityReport>,
     /// Sum of all forces, relative to the largest: round-off where all is well.
     pub equilibrium_residual: Option<f64>,
     /// Force of each support on the body, by its name.
@@ -136,6 +139,21 @@ pub struct StepReport {
     /// Free rigid bodies by their names.
     #[serde(default)]
     pub free_bodies: BTreeMap<String, Pose>,
+}
+
+/// Whether an equilibrium is stable: by the second variation of the energy on what supports and contacts admit.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct StabilityReport {
+    /// Whether no disturbance makes the energy fall.
+    pub stable: bool,
+    /// Negative eigenvalues of the tangent on what may move: none of a stable state.
+    pub negative_eigenvalues: usize,
+    /// Number of unstable states that were left on the way to this one.
+    pub followed: usize,
+    /// The body that moves most as the first unstable state is left; null where all were stable.
+    pub body: Option<String>,
+    /// When stability was lost, where that was in this increment.
+    pub critical_time: Option<f64>,
 }
 
 /// A rope or beam at the end of an increment: its axial force, of a rope never negative.

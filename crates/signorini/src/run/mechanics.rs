@@ -15,7 +15,7 @@ use crate::plan::mechanics::MechanicsPlan;
 use crate::problem::CaseError;
 use crate::report::{Reason, StepReport};
 use serde_json::{Value, json};
-use signorini_mechanics::{BodyState, IncrementError, IncrementResult, Saved, SystemState};
+use signorini_mechanics::{BodyState, IncrementError, IncrementResult, Saved, Stability, SystemState};
 use signorini_solve::{Iteration, Progress};
 use std::path::Path;
 
@@ -96,6 +96,7 @@ impl MechanicsModel {
     ) -> Result<Result<IncrementResult, Failure>, CaseError> {
         let (mut reached, mut size) = (before, time - before);
         let (mut iterations, mut residuals) = (0, Vec::new());
+        let mut lost: Option<Stability> = None;
         loop {
             let last = time - before <= 0.0 || reached + size >= time - 1e-9 * (time - before);
             let target = if last { time } else { reached + size };
@@ -120,8 +121,15 @@ impl MechanicsModel {
             }
             residuals.append(&mut seen);
             match found {
-                Ok((state, result)) => {
+                Ok((state, mut result)) => {
                     iterations += result.iterations;
+                    // An increment that was cut tells of the first part that lost its stability.
+                    if let Some(told) = &mut result.stability {
+                        if let Some(before) = lost.take() {
+                            told.since(before);
+                        }
+                        lost = Some(told.clone());
+                    }
                     if last {
                         self.state = state;
                         return Ok(Ok(IncrementResult { iterations, history: residuals, ..result }));
@@ -134,7 +142,10 @@ impl MechanicsModel {
                     size *= GROWTH;
                 }
                 Err(error) => {
-                    let curable = !matches!(error, IncrementError::Interrupted | IncrementError::Free { .. });
+                    let curable = !matches!(
+                        error,
+                        IncrementError::Interrupted | IncrementError::Free { .. } | IncrementError::Unstable { .. }
+                    );
                     if !curable || size <= SMALLEST_INCREMENT * (time - before) || time <= before {
                         return Ok(Err(failed(&error, residuals)));
                     }
@@ -169,6 +180,10 @@ fn failed(error: &IncrementError, residuals: Vec<f64>) -> Failure {
         IncrementError::Augmentation { history: list, .. } => (
             Reason::Contact,
             format!("{error}: {}; try  enforcement.multiplier = {{}}  or  enforcement.penalty = {{}}", history(list)),
+        ),
+        IncrementError::Unstable { .. } => (
+            Reason::UnstableState,
+            format!("{error}; add a support, or contact that holds it; `stability = \"tell\"` keeps such states"),
         ),
         IncrementError::Assembly(_) => (Reason::Input, error.to_string()),
     };
@@ -324,6 +339,7 @@ impl Model for MechanicsModel {
         };
         let restored = { saved }().and_then(|saved| self.plan.system.restore(saved));
         self.state = restored.ok_or_else(|| checkpoint::damaged(folder))?;
+        self.state.time = next.checked_sub(1).map_or(0.0, |last| self.plan.times[last]);
         Ok(())
     }
 }

@@ -18,13 +18,13 @@ use super::head::Head;
 use super::memory::check_memory;
 use super::planner::Planner;
 use crate::problem::units::LENGTH;
-use crate::problem::{self, Body, CaseError, Material, Motion, Problem, Space};
+use crate::problem::{self, Body, CaseError, Material, Motion, Problem, Space, UnstableStates};
 use crate::report::Warning;
 use signorini_geometry::Point;
 use signorini_geometry::rigid_shape::RigidShape;
 use signorini_mechanics::contact::Part;
 use signorini_mechanics::system::TimeField;
-use signorini_mechanics::{AxisChoice, PlacedLoad, Support, System};
+use signorini_mechanics::{AxisChoice, PlacedLoad, Support, System, Unstable};
 use signorini_rope::curve_pair::search::{Between, Searched, crossings};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -125,7 +125,11 @@ impl Planner<'_> {
         let problem = self.problem;
         self.check_space()?;
         let wrong = Wrong::default();
-        let mut system = System::default();
+        let unstable = match problem.stability {
+            None | Some(UnstableStates::Follow) => Unstable::Follow,
+            Some(UnstableStates::Tell) => Unstable::Tell,
+        };
+        let mut system = System { unstable, ..System::default() };
         let mut kinds = Vec::new();
         let mut warnings = Vec::new();
         let mut notes = Vec::new();

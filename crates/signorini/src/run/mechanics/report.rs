@@ -5,7 +5,8 @@ use crate::output::system::{SystemShown, frames};
 use crate::plan::mechanics::{AXIS_SUPPORT, Kind, MechanicsPlan, Tested};
 use crate::problem::Space;
 use crate::report::{
-    CellsReport, Component, ContactReport, CurveReport, Pose, Probe, Reason, RopeLimits, StepReport, UnitNames,
+    CellsReport, Component, ContactReport, CurveReport, Pose, Probe, Reason, RopeLimits, StabilityReport, StepReport,
+    UnitNames,
     Warning, WarningKind, vector,
 };
 use crate::run::contact_verdict::contact_verdict;
@@ -14,7 +15,7 @@ use crate::run::strain::{self, Strained};
 use signorini_contact::Status;
 use signorini_geometry::Vector;
 use signorini_mechanics::{
-    AxisChoice, Coarse, IncrementResult, Interaction, SiteResult, Solved, SystemState, rigid_body,
+    AxisChoice, Coarse, IncrementResult, Interaction, SiteResult, Solved, Stability, System, SystemState, rigid_body,
 };
 use signorini_paths::darboux::Darboux;
 use signorini_paths::friction::Friction;
@@ -104,6 +105,7 @@ pub fn step_report(
         linear_iterations: solver(result.solved).1,
         residual_history: result.history.clone(),
         energy: Some(result.energy),
+        stability: result.stability.as_ref().map(|told| stability_report(system, told)),
         equilibrium_residual: Some(result.imbalance),
         support_forces: supports.iter().map(|(name, force)| (name.clone(), vector(force))).collect(),
         load_forces: loads,
@@ -119,6 +121,33 @@ pub fn step_report(
         max_strain: most_strained(plan, shown).map(|(_, strained)| strained.strain),
         ..StepReport::default()
     }
+}
+
+fn stability_report(system: &System, told: &Stability) -> StabilityReport {
+    StabilityReport {
+        stable: told.negative_eigenvalues == 0,
+        negative_eigenvalues: told.negative_eigenvalues,
+        followed: told.followed,
+        body: told.body.map(|k| system.bodies[k].name().to_string()),
+        critical_time: told.critical_time,
+    }
+}
+
+/// Warns of states that are not stable, and of those that were left.
+fn warn_of_stability(told: &StabilityReport, time: f64, record: &mut Record) {
+    let Some(body) = &told.body else { return };
+    let when = told.critical_time.map_or(String::new(), |t| format!(", lost at t = {t:.6}"));
+    let message = if told.stable {
+        format!("`{body}` became unstable{when}: a disturbance was followed to the stable state at t = {time}")
+    } else {
+        let count = told.negative_eigenvalues;
+        let plural = if count == 1 { "" } else { "s" };
+        format!(
+            "`{body}` is unstable at t = {time}{when}: {count} negative eigenvalue{plural}; `stability = \"follow\"` goes on \
+             to a stable state"
+        )
+    };
+    record.warn_once(Warning::new(WarningKind::Unstable, message).at_time(time));
 }
 
 fn curve_report(forces: &[f64], unstrained_length: Option<f64>) -> CurveReport {
@@ -250,6 +279,9 @@ fn most_strained<'a>(plan: &MechanicsPlan, shown: &'a SystemShown) -> Option<(&'
 /// Warns of what looks wrong with a state.
 pub fn warn(plan: &MechanicsPlan, result: &IncrementResult, shown: &SystemShown, record: &mut Record) {
     let time = shown.time;
+    if let Some(told) = &result.stability {
+        warn_of_stability(&stability_report(&plan.system, told), time, record);
+    }
     for (contact, sites) in plan.system.contacts.iter().zip(&result.sites) {
         if !plan.head.problem.contacts.contains_key(contact.name()) || sites.iter().any(|s| s.status != Status::Open) {
             continue;

@@ -8,7 +8,7 @@
 use crate::equilibrium::Problem;
 use crate::increment::{IncrementResult, Way};
 use crate::increment_error::IncrementError;
-use crate::stability::{Stability, Unstable, UnstableMode};
+use crate::stability::{Stability, Tested, Unstable, UnstableMode};
 use crate::system::{System, SystemState};
 use signorini_solve::newton::Converged;
 
@@ -25,6 +25,8 @@ const MOST_BRANCHES: usize = 8;
 /// Part of an increment to which the loss of stability is located, and the most states on the way.
 const LOCATED: f64 = 1e-5;
 const MOST_LOCATING: usize = 12;
+/// Part of the largest force out of balance on the way at which Newton's method takes over.
+const AT_REST: f64 = 0.1;
 /// Part of the disturbance within which a state has come back.
 const BACK: f64 = 0.5;
 
@@ -43,7 +45,17 @@ impl System {
             return Ok((state, result));
         }
         let mut told = Stability::default();
-        while let Some(mode) = self.unstable_mode(&state, time)? {
+        let mut count = result.iterations;
+        let report = &mut |_: usize, residual: f64| {
+            count += 1;
+            report(count, residual)
+        };
+        loop {
+            let mode = match self.test_stability(&state, time)? {
+                Tested::Unknown if told.followed == 0 => return Ok((state, result)),
+                Tested::Unknown | Tested::Stable => break,
+                Tested::Unstable(mode) => mode,
+            };
             let (body, direction) = self.most_moved(&mode.direction);
             if told.body.is_none() {
                 (told.body, told.direction) = (Some(body), direction);
@@ -76,12 +88,11 @@ impl System {
                 told.negative_eigenvalues = 0;
                 break;
             }
-            let before = result.iterations;
             (state, result) = self.outer(&next, time, report)?;
-            result.iterations += before;
             told.followed += 1;
             told.negative_eigenvalues = 0;
         }
+        result.iterations = count;
         result.stability = Some(told);
         Ok((state, result))
     }
@@ -215,7 +226,8 @@ impl Problem<'_> {
         self.metric.clone_from(&mode.metric);
         let norm = |travel: &[f64]| travel.iter().zip(&mode.metric).map(|(t, m)| m * t * t).sum::<f64>().sqrt();
         let mut springs = SPRINGS * mode.value.abs();
-        let mut before = 0.0;
+        let (mut before, mut most) = (0.0, 0.0f64);
+        let mut is_back = false;
         for _ in 0..MOST_STEPS {
             self.springs = springs;
             let held = SystemState { travel: vec![0.0; total.len()], ..state.clone() };
@@ -227,15 +239,23 @@ impl Problem<'_> {
                     total.iter_mut().zip(&found.state.travel).for_each(|(t, s)| *t += s);
                     state = found.state;
                     // The force of the springs is what is out of balance: it rises as the state falls, then it fades.
+                    most = most.max(moved);
                     if moved < before {
                         springs *= WEAKER;
-                        if let Ok(mut found) = self.solve(&state, report) {
-                            found.state.travel.iter_mut().zip(&state.travel).for_each(|(s, t)| *s -= t);
-                            found.state.travel.iter_mut().zip(&total).for_each(|(s, t)| *s += t);
+                    }
+                    before = moved;
+                    if moved > AT_REST * most {
+                        continue;
+                    }
+                    let rest = SystemState { travel: total.clone(), ..state.clone() };
+                    if let Ok(found) = self.solve(&rest, report) {
+                        // Newton's method may lead back to where the energy is not least.
+                        let was_back = is_back;
+                        is_back = system.apart(start, &found.state) < BACK * DISTURBANCE;
+                        if !is_back || was_back || system.apart(start, &rest) < BACK * DISTURBANCE {
                             return Ok(found);
                         }
                     }
-                    before = moved;
                 }
                 Err(IncrementError::Interrupted) => return Err(IncrementError::Interrupted),
                 Err(_) => springs *= STIFFER,

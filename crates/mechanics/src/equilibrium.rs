@@ -63,7 +63,8 @@ impl Problem<'_> {
     ) -> Result<Converged<SystemState>, IncrementError> {
         self.begin(start)?;
         let predicts = start.bodies.iter().any(|b| !b.internal.is_empty());
-        let search = if predicts { Search::Watchdog { patience: PATIENCE } } else { Search::Monotone };
+        // What leaves an unstable state turns by more than it bends: its residual rises before it falls, too.
+        let search = if predicts || !self.metric.is_empty() { Search::Watchdog { patience: PATIENCE } } else { Search::Monotone };
         let options = Newton { most_iterations: MOST_ITERATIONS, search };
         let found = newton(self, start, &options, report).map_err(|failure| match failure {
             NewtonFailure::NotConverged { history, .. } => {
@@ -124,8 +125,9 @@ impl Problem<'_> {
         let free = (0..count).filter(|k| !held[*k]).map(|k| out.residual[k].powi(2) / self.scales[k]);
         let rows = self.rows.iter().enumerate().map(|(k, [c, w])| out.residual[count + k].powi(2) * c / w);
         let lacks = out.single.iter().chain(&out.coupled).map(|h| {
-            let of = |(unknown, factor): &(u32, f64)| self.scales[*unknown as usize] / (factor * factor);
-            h.constraint.lack.powi(2) * h.constraint.terms.iter().map(of).fold(0.0f64, f64::max)
+            // The unknowns give way together: springs in a row.
+            let gives_way = |(unknown, factor): &(u32, f64)| factor * factor / self.scales[*unknown as usize];
+            h.constraint.lack.powi(2) / h.constraint.terms.iter().map(gives_way).sum::<f64>()
         });
         free.chain(rows).chain(lacks).sum::<f64>().sqrt()
     }

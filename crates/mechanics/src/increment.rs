@@ -8,7 +8,7 @@ use crate::equilibrium::Problem;
 use crate::increment_error::IncrementError;
 use crate::linear_solver::{Solved, Stiffness};
 use crate::points::Order;
-use crate::site_result::SiteResult;
+use crate::site_result::{SiteResult, with_rest};
 use crate::stability::{Stability, UnstableMode};
 use crate::system::{AssemblyError, System, SystemState};
 use signorini_geometry::Vector;
@@ -70,6 +70,17 @@ impl System {
     /// # Errors
     /// Places that are not there.
     pub fn sites(&self, contact: usize, state: &SystemState) -> Result<Vec<SiteResult>, IncrementError> {
+        let found = self.sites_at_limit(contact, state)?;
+        let rubs = self.contacts[contact].law().is_some();
+        Ok(if rubs { with_rest(found, self.size()) } else { found })
+    }
+
+    /// The same, where all that is at the limit of its friction slips.
+    pub(crate) fn sites_at_limit(
+        &self,
+        contact: usize,
+        state: &SystemState,
+    ) -> Result<Vec<SiteResult>, IncrementError> {
         let (first, _) = self.numbering();
         let own = self.own(state)[contact];
         let found = self.contacts[contact].results(self.bodies_in(state, &first), own);

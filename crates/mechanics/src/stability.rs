@@ -1,23 +1,26 @@
 //! Stability of an equilibrium: the second variation of the energy on what may move.
 //!
-//! A state is stable where the symmetric part of its tangent `K`, on the variations that supports admit, has no negative
-//! eigenvalue. Contact that is closed counts as a constraint: its multipliers have as many negative pivots in the saddle point
-//! matrix as there are, and penalties have none. Where friction sticks it is a constraint too; where it slips its force is
-//! taken as given, as it follows the pressure along no potential (Nguyen 2000, Stability and nonlinear solid mechanics). So such
-//! states may be stable all the same: a disturbance tells.
+//! A state is stable where the overdamped motion `S u' = -R(u)` comes back to it from every small disturbance: where no
+//! eigenvalue of `K v = θ S v`, with the tangent `K` on the variations that supports admit, has a negative real part. `S` is
+//! the stiffness of each unknown by itself, so that eigenvalues are numbers without units.
 //!
-//! Eigenvalues are those of `K v = θ S v`, with the stiffness of each unknown by itself as `S`: numbers without units.
+//! First the symmetric part of the tangent is looked at. Contact that is closed counts as a constraint: its multipliers have as
+//! many negative pivots in the saddle point matrix as there are, and penalties have none. Where friction sticks it is a
+//! constraint too; where it slips its force is taken as given, as it follows the pressure along no potential (Nguyen 2000,
+//! Stability and nonlinear solid mechanics). Without negative eigenvalues the state is stable. With some it is not, if the
+//! tangent is symmetric; otherwise, as with loads that follow, the eigenvalues of the tangent itself decide, and where friction
+//! slips nothing is known.
 
 use crate::admissible::Admissible;
 use crate::increment_error::IncrementError;
 use crate::points::Order;
 use crate::system::{Assembled, System, SystemState};
-use nalgebra::DMatrix;
-use signorini_contact::Law;
+use nalgebra::{DMatrix, DVector};
 use signorini_contact::law::Friction;
-use signorini_solve::SolveError;
-use signorini_solve::SymmetricMatrix;
+use signorini_contact::{Law, Status};
+use signorini_solve::general::{Analysis, Entries, Matrix};
 use signorini_solve::ldlt::Ldlt;
+use signorini_solve::{SolveError, SymmetricMatrix};
 use std::sync::Arc;
 
 /// What is done with a state that is not stable.
@@ -55,7 +58,16 @@ impl Stability {
     }
 }
 
-/// A direction in which the energy falls.
+/// What is known of the stability of a state.
+#[derive(Clone, Debug)]
+pub(crate) enum Tested {
+    /// A pivot was zero, or a matrix singular.
+    Unknown,
+    Stable,
+    Unstable(UnstableMode),
+}
+
+/// A direction in which a state is left.
 #[derive(Clone, Debug)]
 pub(crate) struct UnstableMode {
     /// Number of negative eigenvalues.
@@ -75,6 +87,8 @@ const SLACK: f64 = 1e-8;
 /// Lanczos: most steps, and residual of an eigenvalue of the inverse relative to it that ends them.
 const MOST_STEPS: usize = 60;
 const CONVERGED: f64 = 1e-7;
+/// Largest difference of an entry from its mirror image, relative to the diagonal, that is rounding.
+const ASYMMETRY: f64 = 1e-9;
 /// What of the first vector is none of where the state came from.
 const ELSEWHERE: f64 = 1e-6;
 
@@ -85,29 +99,42 @@ impl System {
         Ok(moves.into_iter().any(|b| !b.is_rigid() && !b.is_linear()) && !self.is_iterative(at)?)
     }
 
-    /// A direction in which the energy of a state falls to second order, as near as may be to where it came from; none where
-    /// it is stable.
+    /// Whether a state is stable, with a direction in which it is left as near as may be to where it came from.
     ///
     /// # Errors
     /// Places that are not there.
-    pub(crate) fn unstable_mode(
-        &mut self,
-        at: &SystemState,
-        time: f64,
-    ) -> Result<Option<UnstableMode>, IncrementError> {
+    pub(crate) fn test_stability(&mut self, at: &SystemState, time: f64) -> Result<Tested, IncrementError> {
         let out = self.with_given_friction(|system| system.assemble(at, time, Order::Second))?;
         let pencil = Pencil::new(self, out);
         // A pivot that is zero tells nothing.
-        let Ok(factor) = Ldlt::factor(&pencil.shifted) else { return Ok(None) };
+        let Ok(factor) = Ldlt::factor(&pencil.symmetric()) else { return Ok(Tested::Unknown) };
         let negative = factor.negative_eigenvalues().saturating_sub(pencil.multipliers);
         if negative == 0 {
-            return Ok(None);
+            return Ok(Tested::Stable);
         }
+        let pencil = Pencil::new(self, self.assemble(at, time, Order::Second)?);
         let toward: Vec<f64> = at.travel.iter().map(|t| -t).collect();
-        let found = pencil.nearest_to_zero(&factor, &toward, -1.0)?;
-        let Some((value, y)) = found.filter(|(value, _)| *value < -NEUTRAL) else { return Ok(None) };
-        let direction = pencil.admissible.expand(&y)[..pencil.count].to_vec();
-        Ok(Some(UnstableMode { negative, value, direction, metric: pencil.metric }))
+        let found = match pencil.is_symmetric() {
+            true => pencil.nearest_to_zero(&|x| factor.solve(x), &toward, Sign::Negative)?,
+            // How friction that slips answers to a disturbance depends on which way it goes.
+            false if self.slips(at)? => return Ok(Tested::Unknown),
+            false => {
+                let Ok(factor) = Analysis::default().factor(pencil.shifted.clone()) else {
+                    return Ok(Tested::Unknown);
+                };
+                let solve = |x: &mut [f64]| factor.solve(x).map(|found| x.copy_from_slice(&found));
+                match pencil.nearest_to_zero(&solve, &toward, Sign::Negative) {
+                    Ok(found) => found,
+                    Err(_) => return Ok(Tested::Unknown),
+                }
+            }
+        };
+        let Some(Eigenpair { value, vector, count }) = found.filter(|f| f.value < -NEUTRAL) else {
+            return Ok(Tested::Stable);
+        };
+        let negative = if pencil.is_symmetric() { negative } else { count };
+        let direction = pencil.admissible.expand(&vector)[..pencil.count].to_vec();
+        Ok(Tested::Unstable(UnstableMode { negative, value, direction, metric: pencil.metric }))
     }
 
     /// The eigenvalue that tells how far a state is from the loss of stability: the least of a stable one, the negative one
@@ -116,13 +143,25 @@ impl System {
     /// # Errors
     /// Places that are not there.
     pub(crate) fn critical_eigenvalue(&mut self, at: &SystemState, time: f64) -> Result<Option<f64>, IncrementError> {
-        if let Some(mode) = self.unstable_mode(at, time)? {
-            return Ok(Some(mode.value));
+        match self.test_stability(at, time)? {
+            Tested::Unknown => return Ok(None),
+            Tested::Unstable(mode) => return Ok(Some(mode.value)),
+            Tested::Stable => {}
         }
-        let out = self.with_given_friction(|system| system.assemble(at, time, Order::Second))?;
-        let pencil = Pencil::new(self, out);
-        let Ok(factor) = Ldlt::factor(&pencil.shifted) else { return Ok(None) };
-        Ok(pencil.nearest_to_zero(&factor, &at.travel, 1.0)?.map(|(value, _)| value))
+        let pencil = Pencil::new(self, self.assemble(at, time, Order::Second)?);
+        let Ok(factor) = Ldlt::factor(&pencil.symmetric()) else { return Ok(None) };
+        let found = pencil.nearest_to_zero(&|x| factor.solve(x), &at.travel, Sign::Positive)?;
+        Ok(found.filter(|_| pencil.is_symmetric()).map(|found| found.value))
+    }
+
+    /// Whether a site of a contact with friction slips.
+    fn slips(&self, at: &SystemState) -> Result<bool, IncrementError> {
+        for (k, _) in self.contacts.iter().enumerate().filter(|(_, contact)| contact.law().is_some()) {
+            if self.sites_at_limit(k, at)?.iter().any(|site| site.status == Status::Slip) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     /// What is done while friction that slips is a given force.
@@ -179,33 +218,72 @@ struct Pencil {
     multipliers: usize,
     metric: Vec<f64>,
     /// `Tᵀ (K + εS) T`: what is free to move does not count.
-    shifted: SymmetricMatrix,
+    shifted: Matrix,
+}
+
+/// Which eigenvalues are looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sign {
+    Positive,
+    Negative,
+}
+
+/// An eigenvalue with its vector of size 1, and how many of the same sign were seen.
+struct Eigenpair {
+    value: f64,
+    vector: Vec<f64>,
+    count: usize,
 }
 
 impl Pencil {
-    fn new(system: &System, mut out: Assembled) -> Self {
-        let (_, count) = system.numbering();
+    fn new(system: &System, out: Assembled) -> Self {
+        let (first, count) = system.numbering();
         let size = out.residual.len() - out.coupled.len();
         let multipliers = size - count;
-        out.tangent.without(|unknown| unknown as usize >= size);
-        let matrix = out.tangent.matrix(size);
-        let rows = matrix.row_sizes();
+        let admissible = Admissible::new(size, &out.single, &out.coupled);
         let mut is_spin = vec![false; count];
-        let (first, _) = system.numbering();
         for (body, first) in system.bodies.iter().zip(first) {
             body.spins().iter().flatten().for_each(|s| is_spin[(first + s) as usize] = true);
         }
+        let whole = out.tangent.matrix(out.residual.len());
+        let rows = whole.row_sizes();
+        // Multipliers that give way act by a part of themselves, their equations by the whole gap: scaled, both are the same.
+        let of_columns: Vec<f64> = (count..size)
+            .map(|k| {
+                let own: Vec<[f64; 2]> =
+                    whole.column(k).filter(|(i, _)| *i < count).map(|(i, v)| [v, whole.get(k, i)]).collect();
+                let square: f64 = own.iter().map(|[b, _]| b * b).sum();
+                let product: f64 = own.iter().map(|[b, c]| b * c).sum();
+                if product > 0.0 { product / square } else { 1.0 }
+            })
+            .collect();
         let mut most = [f64::MIN_POSITIVE; 2];
         (0..count).for_each(|k| most[usize::from(is_spin[k])] = most[usize::from(is_spin[k])].max(rows[k]));
         let metric: Vec<f64> = (0..count).map(|k| rows[k].max(SLACK * most[usize::from(is_spin[k])])).collect();
-        let admissible = Admissible::new(size, &out.single, &out.coupled);
-        out.single.clear();
-        for (k, s) in metric.iter().enumerate() {
-            out.tangent.add(k as u32, k as u32, NEUTRAL * s);
+        let mut entries = Entries::default();
+        let mut add = |i: usize, j: usize, value: f64| {
+            for (a, of_a) in &admissible.rows[i] {
+                admissible.rows[j].iter().for_each(|(b, of_b)| entries.add(*a, *b, of_a * of_b * value));
+            }
+        };
+        let within = |i: &u32| (*i as usize) < size;
+        let (list, _) = out.tangent.into_parts();
+        for &(i, j, v) in list.iter().filter(|(i, j, _)| within(i) && within(j)) {
+            let scale = (j as usize).checked_sub(count).map_or(1.0, |k| of_columns[k]);
+            add(i as usize, j as usize, scale * v);
         }
-        let symmetric = out.tangent.matrix(size).symmetric_part();
-        let shifted = symmetric.transformed(admissible.columns, |k| &admissible.rows[k]);
+        metric.iter().enumerate().for_each(|(k, s)| add(k, k, NEUTRAL * s));
+        let shifted = entries.matrix(admissible.columns);
         Pencil { admissible, count, multipliers, metric, shifted }
+    }
+
+    fn symmetric(&self) -> SymmetricMatrix {
+        self.shifted.symmetric_part()
+    }
+
+    /// Whether the tangent has a potential, but for rounding.
+    fn is_symmetric(&self) -> bool {
+        self.shifted.asymmetry() < ASYMMETRY
     }
 
     /// `Tᵀ S T y`.
@@ -215,14 +293,16 @@ impl Pencil {
         self.admissible.gather(&v)
     }
 
-    /// Of the eigenvalues of a sign the one nearest to zero, with its vector of size 1, by Lanczos' method for the inverse from
-    /// what a direction has of it; none where there is none of this sign.
+    /// Of the eigenvalues of a sign the one nearest to zero, by Arnoldi's method (that of Lanczos where all is symmetric) for the
+    /// inverse from what a direction has of it; none where there is none of this sign. Of a pair the real parts are taken.
     fn nearest_to_zero(
         &self,
-        factor: &Ldlt,
+        solve: &dyn Fn(&mut [f64]) -> Result<(), SolveError>,
         toward: &[f64],
-        sign: f64,
-    ) -> Result<Option<(f64, Vec<f64>)>, SolveError> {
+        wanted: Sign,
+    ) -> Result<Option<Eigenpair>, SolveError> {
+        let sign = if wanted == Sign::Positive { 1.0 } else { -1.0 };
+        let symmetric = self.is_symmetric();
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let unit = |v: &dyn Fn(usize) -> f64| {
             let mut y = self.admissible.coordinates(v);
@@ -243,7 +323,7 @@ impl Pencil {
             }
             q.iter_mut().chain(&mut measured).for_each(|v| *v /= size);
             let mut next = measured.clone();
-            factor.solve(&mut next)?;
+            solve(&mut next)?;
             basis.push((q, measured));
             for _ in 0..2 {
                 for (k, (own, measured)) in basis.iter().enumerate() {
@@ -255,15 +335,9 @@ impl Pencil {
             let rest = dot(&next, &self.measure(&next)).max(0.0).sqrt();
             let n = step + 1;
             let own = projected.view((0, 0), (n, n)).into_owned();
-            let eigen = (0.5 * (&own + own.transpose())).symmetric_eigen();
-            let outermost = (sign * &eigen.eigenvalues).imax();
-            let value = eigen.eigenvalues[outermost];
-            let vector = eigen.eigenvectors.column(outermost);
+            let (value, vector, count) = outermost(own, sign, symmetric);
             let left = rest * vector[step].abs();
-            if (sign * value > 0.0 && left < CONVERGED * value.abs()) || n == MOST_STEPS.min(self.admissible.columns) {
-                if sign * value <= 0.0 {
-                    return Ok(None);
-                }
+            if sign * value > 0.0 && left < CONVERGED * value.abs() {
                 let mut y = vec![0.0; self.admissible.columns];
                 for (k, (own, _)) in basis.iter().enumerate() {
                     y.iter_mut().zip(own).for_each(|(y, o)| *y += vector[k] * o);
@@ -272,10 +346,50 @@ impl Pencil {
                 if vector[0] < 0.0 {
                     y.iter_mut().for_each(|y| *y = -*y);
                 }
-                return Ok(Some((1.0 / value - NEUTRAL, y)));
+                return Ok(Some(Eigenpair { value: 1.0 / value - NEUTRAL, vector: y, count }));
             }
             q = next;
         }
         Ok(None)
+    }
+}
+
+/// The eigenvalue of a matrix that lies farthest to one side, its vector of size 1, and how many lie on that side of zero.
+fn outermost(matrix: DMatrix<f64>, sign: f64, symmetric: bool) -> (f64, DVector<f64>, usize) {
+    let n = matrix.nrows();
+    if symmetric {
+        let eigen = (0.5 * (&matrix + matrix.transpose())).symmetric_eigen();
+        let k = (sign * &eigen.eigenvalues).imax();
+        let count = eigen.eigenvalues.iter().filter(|v| sign * **v > 0.0).count();
+        return (eigen.eigenvalues[k], eigen.eigenvectors.column(k).into_owned(), count);
+    }
+    let values = matrix.complex_eigenvalues();
+    let value = values.iter().map(|v| v.re).max_by(|a, b| (sign * a).total_cmp(&(sign * b))).unwrap_or(0.0);
+    let count = values.iter().filter(|v| sign * v.re > 0.0).count();
+    // Inverse iteration, a little beside the eigenvalue.
+    let beside = value * (1.0 + 1e-10) + f64::MIN_POSITIVE;
+    let factor = (matrix - DMatrix::identity(n, n) * beside).lu();
+    let mut vector = DVector::from_element(n, 1.0);
+    for _ in 0..3 {
+        match factor.solve(&vector) {
+            Some(next) if next.norm().is_finite() && next.norm() > 0.0 => vector = next.normalize(),
+            _ => break,
+        }
+    }
+    (value, vector, count)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_outermost_eigenvalue_of_a_matrix_that_is_not_symmetric() {
+        // Of (1 2; 0 -3) the vector of -3 is (1, -2)/√5.
+        let matrix = DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 0.0, -3.0]);
+        let (value, vector, count) = outermost(matrix.clone(), -1.0, false);
+        assert!((value + 3.0).abs() < 1e-12 && count == 1);
+        assert!((vector[0] * -2.0 - vector[1]).abs() < 1e-8, "{vector}");
+        assert!((outermost(matrix, 1.0, false).0 - 1.0).abs() < 1e-12);
     }
 }

@@ -51,7 +51,7 @@ pub enum TimedLoad {
     BodyForce(TimeVectorField),
     Traction(TimeVectorField),
     Pressure(TimeField),
-    /// Resultants, at the time only: the place is not read.
+    /// Resultants: at the place where it is a point, at the time only elsewhere.
     Force(TimeVectorField),
     Moment(TimeVectorField),
     FollowerMoment(TimeVectorField),
@@ -77,16 +77,16 @@ impl PlacedLoad {
         order: Order,
         out: &mut Contribution,
     ) -> Result<(), PlaceError> {
-        let zero = Point::<3>::zeros();
+        let place = body.point(self.part.group.as_deref()).unwrap_or_default();
         let mut act = |what: &Load<'_>| body.load(self.part.group.as_deref(), what, state, order, out);
         match &self.load {
             TimedLoad::BodyForce(f) => act(&Load::BodyForce(&|x| f(x, time))),
             TimedLoad::Traction(f) => act(&Load::Traction(&|x| f(x, time))),
             TimedLoad::Pressure(f) => act(&Load::Pressure(&|x| f(x, time))),
-            TimedLoad::Force(f) => act(&Load::Force(f(&zero, time))),
-            TimedLoad::Moment(f) => act(&Load::Moment(f(&zero, time))),
-            TimedLoad::FollowerMoment(f) => act(&Load::FollowerMoment(f(&zero, time))),
-            TimedLoad::Tension(f) => act(&Load::Tension(f(&zero, time))),
+            TimedLoad::Force(f) => act(&Load::Force(f(&place, time))),
+            TimedLoad::Moment(f) => act(&Load::Moment(f(&place, time))),
+            TimedLoad::FollowerMoment(f) => act(&Load::FollowerMoment(f(&place, time))),
+            TimedLoad::Tension(f) => act(&Load::Tension(f(&place, time))),
             TimedLoad::Springs(k) => act(&Load::Springs(*k)),
         }
     }

@@ -80,11 +80,6 @@ impl Entries {
         self.list.retain(|e| !is_left_out(e.0));
     }
 
-    /// Leaves out the rows and columns for which `is_left_out` holds.
-    pub fn without(&mut self, is_left_out: impl Fn(u32) -> bool) {
-        self.list.retain(|e| !is_left_out(e.0) && !is_left_out(e.1));
-    }
-
     /// The matrix of `n` unknowns, without blocks that are kept apart; entries at the same place are summed in the order in
     /// which they were added.
     pub fn matrix(&self, n: usize) -> Matrix {
@@ -123,7 +118,8 @@ impl Matrix {
         self.column_start.len().saturating_sub(1)
     }
 
-    fn column(&self, j: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+    /// Rows and entries of a column.
+    pub fn column(&self, j: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         (self.column_start[j]..self.column_start[j + 1]).map(|k| (self.row[k], self.value[k]))
     }
 
@@ -155,16 +151,30 @@ impl Matrix {
         })
     }
 
+    /// The largest `|a_ij - a_ji|` relative to the geometric mean of the largest entries of both rows.
+    pub fn asymmetry(&self) -> f64 {
+        let sizes = self.row_sizes();
+        let mut most = 0.0f64;
+        for j in 0..self.size() {
+            for (i, v) in self.column(j) {
+                let mirrored = self.get(j, i);
+                most = most.max((v - mirrored).abs() / (sizes[i] * sizes[j]).sqrt().max(f64::MIN_POSITIVE));
+            }
+        }
+        most
+    }
+
+    /// The entry of a row and column, by bisection.
+    pub fn get(&self, i: usize, j: usize) -> f64 {
+        let range = self.column_start[j]..self.column_start[j + 1];
+        self.row[range.clone()].binary_search(&i).map_or(0.0, |k| self.value[range.start + k])
+    }
+
     /// The largest entry of each row.
     pub fn row_sizes(&self) -> Vec<f64> {
         let mut out = vec![0.0f64; self.size()];
         (0..self.size()).flat_map(|j| self.column(j)).for_each(|(i, v)| out[i] = out[i].max(v.abs()));
         out
-    }
-
-    /// The entry of a row and column.
-    pub fn get(&self, i: usize, j: usize) -> f64 {
-        self.column(j).find(|(row, _)| *row == i).map_or(0.0, |(_, v)| v)
     }
 }
 

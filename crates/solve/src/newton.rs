@@ -90,6 +90,10 @@ pub enum NewtonFailure<S, E> {
     Interrupted,
 }
 
+/// Iterations without a merit that is less by a tenth: the method goes round, or creeps.
+const CIRCLES: usize = 20;
+const LESS: f64 = 0.9;
+
 /// Shares of a step that are tried.
 const SHARES: [f64; 7] = [1.0, 0.6, 0.35, 0.2, 0.1, 0.05, 0.02];
 
@@ -117,6 +121,7 @@ pub fn newton<E: Equations>(
     history.push(measure.error);
     let mut best = (state.clone(), measure);
     let mut behind = 0;
+    let mut fell = (0, measure.merit);
     // Until what is prescribed has been brought along.
     let mut brings = true;
     for iteration in 1..=options.most_iterations {
@@ -156,6 +161,11 @@ pub fn newton<E: Equations>(
         history.push(measure.error);
         if !report(iteration, measure.error) {
             return Err(NewtonFailure::Interrupted);
+        }
+        if measure.merit < LESS * fell.1 || driven {
+            fell = (iteration, measure.merit);
+        } else if iteration - fell.0 >= CIRCLES {
+            break;
         }
         if measure.merit < best.1.merit || driven {
             best = (state.clone(), measure);

@@ -169,8 +169,28 @@ pub struct CurveReport {
     pub min_tension: f64,
     /// Number of cells without tension.
     pub slack_cells: usize,
+    /// Bending moments, shear forces and torque, of what resists bending; null for others.
+    #[serde(default)]
+    pub section: Option<SectionReport>,
     /// Length without tension of the rope that is out, where it has straight elements: a winch changes it.
     pub unstrained_length: Option<f64>,
+}
+
+/// What the sections of a beam carry: sizes of vectors across it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SectionReport {
+    /// Bending moment at the start.
+    pub start_bending_moment: f64,
+    /// Bending moment at the end.
+    pub end_bending_moment: f64,
+    /// Largest bending moment.
+    pub max_bending_moment: f64,
+    /// Where along the beam that is.
+    pub max_bending_moment_at: f64,
+    /// Largest shear force; null where the model has no shear.
+    pub max_shear_force: Option<f64>,
+    /// Largest torque, with its sign; null where the model has no torsion.
+    pub max_torque: Option<f64>,
 }
 
 /// A body of cells as a piece of a material that fills its box: its stress-strain curve, step by step.

@@ -25,6 +25,9 @@ const SMALLEST_INCREMENT: f64 = 1e-3;
 const CUT: f64 = 0.25;
 const GROWTH: f64 = 1.5;
 
+/// Iterations of Newton's method for one increment, with all its parts and all ways to its states: then it is given up.
+const MOST_ITERATIONS: usize = 1000;
+
 /// A system on its way through its history.
 pub struct MechanicsModel {
     plan: MechanicsPlan,
@@ -97,11 +100,12 @@ impl MechanicsModel {
         let (mut reached, mut size) = (before, time - before);
         let (mut iterations, mut residuals) = (0, Vec::new());
         let mut lost: Option<Stability> = None;
+        let mut reason: Option<IncrementError> = None;
         loop {
             let last = time - before <= 0.0 || reached + size >= time - 1e-9 * (time - before);
             let target = if last { time } else { reached + size };
             let mut seen = Vec::new();
-            let mut stopped = false;
+            let mut is_given_up = false;
             let mut report = |iteration: usize, residual: f64| {
                 progress.iteration(&Iteration {
                     step: index,
@@ -112,8 +116,8 @@ impl MechanicsModel {
                     figures: &[("residual", residual)],
                 });
                 seen.push(residual);
-                stopped = progress.interrupted();
-                !stopped
+                is_given_up = residuals.len() + seen.len() >= MOST_ITERATIONS;
+                !is_given_up && !progress.interrupted()
             };
             let found = self.plan.system.solve(&self.state, target, &mut report);
             if let Some(error) = self.plan.wrong.take(&self.plan.head.problem) {
@@ -141,6 +145,9 @@ impl MechanicsModel {
                     reached = target;
                     size *= GROWTH;
                 }
+                Err(IncrementError::Interrupted) if is_given_up => {
+                    return Ok(Err(given_up(reason.as_ref(), target, residuals)));
+                }
                 Err(error) => {
                     let curable = !matches!(
                         error,
@@ -149,11 +156,30 @@ impl MechanicsModel {
                     if !curable || size <= SMALLEST_INCREMENT * (time - before) || time <= before {
                         return Ok(Err(failed(&error, residuals)));
                     }
+                    reason = Some(error);
                     size *= CUT;
                 }
             }
         }
     }
+}
+
+/// An increment that is given up, with what went wrong before.
+fn given_up(before: Option<&IncrementError>, time: f64, residuals: Vec<f64>) -> Failure {
+    let recent = &residuals[residuals.len().saturating_sub(MOST_ITERATIONS / 10)..];
+    let [low, high] = [(f64::min as fn(f64, f64) -> f64, f64::INFINITY), (f64::max, 0.0)]
+        .map(|(choose, start)| recent.iter().copied().fold(start, choose));
+    let count = residuals.len();
+    let round = format!(
+        "no state at t = {time} in {count} iterations of Newton's method: what is left goes round between {low:.1e} and \
+         {high:.1e} tolerances; there may be no equilibrium: does anything hold what is loaded? try more increments, or more \
+         cells"
+    );
+    let (reason, text) = match before {
+        Some(IncrementError::NotConverged { worst: Some(worst), .. }) => (Reason::Newton, format!("{round}{worst}")),
+        _ => (Reason::Newton, round),
+    };
+    Failure { reason, text, residuals }
 }
 
 /// What an error of the solver means, and what to try.

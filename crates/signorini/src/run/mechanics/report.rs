@@ -1,13 +1,12 @@
 //! What is told of a state of a system.
 
 use crate::output::figure::{told, told_vector};
-use crate::output::system::{SystemShown, frames};
+use crate::output::system::{CurveShown, SystemShown, frames};
 use crate::plan::mechanics::{AXIS_SUPPORT, Kind, MechanicsPlan, Tested};
 use crate::problem::Space;
 use crate::report::{
-    CellsReport, Component, ContactReport, CurveReport, Pose, Probe, Reason, RopeLimits, StabilityReport, StepReport,
-    UnitNames,
-    Warning, WarningKind, vector,
+    CellsReport, Component, ContactReport, CurveReport, Pose, Probe, Reason, RopeLimits, SectionReport,
+    StabilityReport, StepReport, UnitNames, Warning, WarningKind, vector,
 };
 use crate::run::contact_verdict::contact_verdict;
 use crate::run::record::Record;
@@ -115,7 +114,7 @@ pub fn step_report(
             })
             .collect(),
         probes: plan.probes.iter().map(|(name, x)| (name.clone(), probe(x))).collect(),
-        curves: shown.curves.iter().map(|c| (c.name.clone(), curve_report(&c.forces, c.unstrained_length))).collect(),
+        curves: shown.curves.iter().map(|c| (c.name.clone(), curve_report(c))).collect(),
         cells: means.collect(),
         free_bodies: poses.collect(),
         max_strain: most_strained(plan, shown).map(|(_, strained)| strained.strain),
@@ -150,15 +149,34 @@ fn warn_of_stability(told: &StabilityReport, time: f64, record: &mut Record) {
     record.warn_once(Warning::new(WarningKind::Unstable, message).at_time(time));
 }
 
-fn curve_report(forces: &[f64], unstrained_length: Option<f64>) -> CurveReport {
+fn curve_report(curve: &CurveShown) -> CurveReport {
+    let forces = &curve.forces;
     CurveReport {
         start_tension: forces.first().copied().unwrap_or(0.0),
         end_tension: forces.last().copied().unwrap_or(0.0),
         max_tension: forces.iter().copied().fold(f64::NEG_INFINITY, f64::max),
         min_tension: forces.iter().copied().fold(f64::INFINITY, f64::min),
-        slack_cells: forces.iter().filter(|t| **t == 0.0).count(),
-        unstrained_length,
+        slack_cells: curve.slack_cells(),
+        section: section_report(curve),
+        unstrained_length: curve.unstrained_length,
     }
+}
+
+fn section_report(curve: &CurveShown) -> Option<SectionReport> {
+    let moments = &curve.bending_moments;
+    let (at, most) = moments.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
+    if curve.is_rope && *most == 0.0 {
+        return None;
+    }
+    let largest = |list: &[f64]| list.iter().copied().max_by(|a, b| a.abs().total_cmp(&b.abs()));
+    Some(SectionReport {
+        start_bending_moment: *moments.first()?,
+        end_bending_moment: *moments.last()?,
+        max_bending_moment: *most,
+        max_bending_moment_at: curve.arc.get(at).copied().unwrap_or(0.0),
+        max_shear_force: largest(&curve.shear_forces),
+        max_torque: largest(&curve.torques),
+    })
 }
 
 /// Runs of neighbouring sites that carry: along a curve these are the zones of contact.
@@ -296,12 +314,11 @@ pub fn warn(plan: &MechanicsPlan, result: &IncrementResult, shown: &SystemShown,
         strained.warning(body, time, dimension).into_iter().for_each(|w| record.warn_once(w));
     }
     for curve in &shown.curves {
-        let slack = curve.forces.iter().filter(|t| **t == 0.0).count();
+        let slack = curve.slack_cells();
         if slack > 0 {
             let message = format!(
                 "`{}` is slack at t = {time}: {slack} of {} cells carry nothing, and where they lie is not determined",
-                curve.name,
-                curve.forces.len()
+                curve.name, curve.elements
             );
             record.warn_once(Warning::new(WarningKind::NotUnique, message).at_time(time));
         }
@@ -353,6 +370,10 @@ pub fn verdict(plan: &MechanicsPlan, record: &Record) -> String {
             n => format!(", {n} cell{} slack", if n == 1 { "" } else { "s" }),
         };
         list.push(format!("`{name}` is pulled by {} at its start and {} at its end{slack}", ends[0], ends[1]));
+    }
+    for (name, section) in step.curves.iter().filter_map(|(name, c)| Some((name, c.section.as_ref()?))) {
+        let moment = told(section.max_bending_moment, None, unit(|u| &u.energy));
+        list.push(format!("the bending moment of `{name}` is {moment} at most"));
     }
     for (name, pose) in &step.free_bodies {
         let moved = told_vector(&pose.displacement[..space], None, unit(|u| &u.length));

@@ -8,6 +8,7 @@
 use crate::equilibrium::Problem;
 use crate::increment::{IncrementResult, Way};
 use crate::increment_error::IncrementError;
+use crate::linear_solver::Solved;
 use crate::stability::{Stability, Tested, Unstable, UnstableMode};
 use crate::system::{System, SystemState};
 use signorini_solve::newton::Converged;
@@ -127,8 +128,13 @@ impl System {
     ) -> Result<Option<f64>, IncrementError> {
         let mut eigenvalue_at = |system: &mut Self, at: f64| {
             system.put_back(kept);
-            let found = system.begin(from, at).and_then(|start| system.outer(&start, at, report));
-            let value = found.and_then(|(state, _)| system.critical_eigenvalue(&state, at));
+            // By Newton's method alone: other ways lead to other branches.
+            let mut solved = Solved::default();
+            let found = system.begin(from, at).and_then(|start| {
+                let found = system.by(Way::Straight, &start, at, &mut solved, report)?;
+                if system.contacts.is_empty() { Ok(found.state) } else { Ok(system.outer(&found.state, at, report)?.0) }
+            });
+            let value = found.and_then(|state| system.critical_eigenvalue(&state, at));
             system.end();
             value
         };
@@ -166,7 +172,8 @@ impl System {
                     }
                 }
                 Err(IncrementError::Interrupted) => return Err(IncrementError::Interrupted),
-                _ => break,
+                // Where no state is found the branch that is stable has ended.
+                _ => high = (next, high.1),
             }
             last = next;
         }

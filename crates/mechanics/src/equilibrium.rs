@@ -39,6 +39,8 @@ pub(crate) struct Problem<'a> {
     pub(crate) springs: f64,
     /// What their stiffness is multiplied by at each unknown; without it 1, and the square of the size for spins.
     pub(crate) metric: Vec<f64>,
+    /// Whether the energy is convex, and tells how far to go.
+    pub(crate) goes_down: bool,
     /// A share of forces on the unknowns of bodies, and of what constraints lack, that is not there yet.
     pub(crate) held_back: Option<(f64, Vec<f64>, Vec<f64>)>,
     /// Unknowns that are spins.
@@ -64,7 +66,13 @@ impl Problem<'_> {
         self.begin(start)?;
         let predicts = start.bodies.iter().any(|b| !b.internal.is_empty());
         // What leaves an unstable state turns by more than it bends: its residual rises before it falls, too.
-        let search = if predicts || !self.metric.is_empty() { Search::Watchdog { patience: PATIENCE } } else { Search::Monotone };
+        let search = if self.goes_down {
+            Search::Energy
+        } else if predicts || !self.metric.is_empty() {
+            Search::Watchdog { patience: PATIENCE }
+        } else {
+            Search::Monotone
+        };
         let options = Newton { most_iterations: MOST_ITERATIONS, search };
         let found = newton(self, start, &options, report).map_err(|failure| match failure {
             NewtonFailure::NotConverged { history, .. } => {
@@ -268,6 +276,13 @@ impl Equations for Problem<'_> {
         let size = self.system.size();
         let lacks = |h: &crate::system::Held| h.constraint.lack.abs() > ROUNDING * size;
         self.system.held(at, self.time).is_ok_and(|(single, coupled)| single.iter().chain(&coupled).any(lacks))
+    }
+
+    fn slope(&mut self, at: &SystemState, step: &[f64]) -> Result<f64, IncrementError> {
+        let mut out = self.assemble(at, Order::First)?;
+        out.single.iter().for_each(|h| out.residual[h.constraint.terms[0].0 as usize] = 0.0);
+        let count = self.is_spin.len();
+        Ok(out.residual[..count].iter().zip(step).map(|(r, s)| r * s).sum())
     }
 
     fn farthest(&self, at: &SystemState, step: &[f64]) -> f64 {

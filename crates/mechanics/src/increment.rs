@@ -48,6 +48,8 @@ const MOST_AUGMENTATIONS: usize = 60;
 pub(crate) enum Way<'a> {
     /// From the last state.
     Straight,
+    /// From the last state, down a convex energy.
+    Down,
     /// Round what failed so.
     Round(IncrementError),
     /// From an unstable state, along a direction or against it.
@@ -264,6 +266,7 @@ impl System {
             is_free: !iterates && self.has_free_body(),
             springs: 0.0,
             metric: Vec::new(),
+            goes_down: matches!(way, Way::Down),
             held_back: None,
             is_spin,
             rows,
@@ -273,7 +276,7 @@ impl System {
             worst: 0,
         };
         let found = match way {
-            Way::Straight => problem.solve(start, report),
+            Way::Straight | Way::Down => problem.solve(start, report),
             Way::Round(error) => self.by_another_way(&mut problem, start, error, report),
             Way::Along(mode, sign) => problem.along(mode, sign, start, report),
         };

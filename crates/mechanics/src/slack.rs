@@ -49,6 +49,11 @@ impl System {
         found
     }
 
+    /// The energy of ropes under dead loads is convex; with tractions that are unknowns it is no measure.
+    fn way(&self) -> Way<'static> {
+        if self.contacts.is_empty() { Way::Down } else { Way::Straight }
+    }
+
     /// The stiffest of what may be slack, of which all is as soft as a part of it.
     fn soften(&mut self, share: f64) -> f64 {
         self.bodies.iter_mut().map(|body| body.soften(share)).fold(0.0, f64::max)
@@ -72,7 +77,7 @@ impl System {
         while share < 1.0 {
             let next = (share * stiffer).min(1.0);
             self.soften(next);
-            match self.by(Way::Straight, &found.state, time, solved, report) {
+            match self.by(self.way(), &found.state, time, solved, report) {
                 Ok(stiff) => (found, share) = (stiff, next),
                 Err(error) if !is_curable(&error) || stiffer < LEAST_STIFFER => return Err(error),
                 Err(_) => stiffer = stiffer.sqrt(),
@@ -93,7 +98,7 @@ impl System {
         let (mut reached, mut force, mut left) = (f64::INFINITY, FIRST * acts, LEFT);
         loop {
             self.bodies.iter_mut().for_each(|body| body.tighten(force));
-            match self.by(Way::Straight, &state, time, solved, report) {
+            match self.by(self.way(), &state, time, solved, report) {
                 Ok(found) if force == 0.0 => return Ok(found),
                 Ok(found) => {
                     (state, reached) = (found.state, force);

@@ -372,7 +372,8 @@ pub fn verdict(plan: &MechanicsPlan, record: &Record) -> String {
         list.push(format!("`{name}` is pulled by {} at its start and {} at its end{slack}", ends[0], ends[1]));
     }
     for (name, section) in step.curves.iter().filter_map(|(name, c)| Some((name, c.section.as_ref()?))) {
-        let moment = told(section.max_bending_moment, None, unit(|u| &u.energy));
+        let of_moments = units.as_ref().map_or(String::new(), |u| format!("{} {}", u.force, u.length));
+        let moment = told(section.max_bending_moment, None, &of_moments);
         list.push(format!("the bending moment of `{name}` is {moment} at most"));
     }
     for (name, pose) in &step.free_bodies {

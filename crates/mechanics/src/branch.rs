@@ -110,6 +110,8 @@ impl System {
             let found = self.histories();
             told.critical_time = self.critical_time(from, time, kept, report)?;
             self.put_back(&found);
+            self.contacts.iter_mut().for_each(|c| c.begin(time));
+            self.end();
         }
         Ok(())
     }

@@ -82,8 +82,9 @@ pub(crate) struct UnstableMode {
 
 /// Eigenvalue below which a state is not stable: rounding of free motions makes less.
 const NEUTRAL: f64 = 1e-13;
-/// Stiffness of an unknown that has none, relative to the largest.
-const SLACK: f64 = 1e-8;
+/// Least stiffness of an unknown as a measure, relative to the largest: rounding of what has none stays below
+/// [`NEUTRAL`].
+const SLACK: f64 = 1e-4;
 /// Lanczos: most steps, and residual of an eigenvalue of the inverse relative to it that ends them.
 const MOST_STEPS: usize = 60;
 const CONVERGED: f64 = 1e-7;
@@ -259,6 +260,9 @@ impl Pencil {
             .collect();
         let mut most = [f64::MIN_POSITIVE; 2];
         (0..count).for_each(|k| most[usize::from(is_spin[k])] = most[usize::from(is_spin[k])].max(rows[k]));
+        let extent = system.size();
+        most[0] = most[0].max(most[1] / (extent * extent));
+        most[1] = most[1].max(most[0] * extent * extent);
         let metric: Vec<f64> = (0..count).map(|k| rows[k].max(SLACK * most[usize::from(is_spin[k])])).collect();
         let mut entries = Entries::default();
         let mut add = |i: usize, j: usize, value: f64| {

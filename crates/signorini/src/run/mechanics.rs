@@ -25,8 +25,11 @@ const SMALLEST_INCREMENT: f64 = 1e-3;
 const CUT: f64 = 0.25;
 const GROWTH: f64 = 1.5;
 
-/// Iterations of Newton's method for one increment, with all its parts and all ways to its states: then it is given up.
+/// Iterations of Newton's method for one increment, with all its parts and all ways to its states, after which it is given up:
+/// as many as take about as long in small systems, and in large ones never less than a hard increment may take.
 const MOST_ITERATIONS: usize = 1000;
+const LEAST_ITERATIONS: usize = 300;
+const MOST_SOLVED: usize = 800_000;
 
 /// A system on its way through its history.
 pub struct MechanicsModel {
@@ -99,6 +102,8 @@ impl MechanicsModel {
     ) -> Result<Result<IncrementResult, Failure>, CaseError> {
         let (mut reached, mut size) = (before, time - before);
         let (mut iterations, mut residuals) = (0, Vec::new());
+        let unknowns: usize = self.plan.system.bodies.iter().map(|b| b.unknowns()).sum();
+        let most = (MOST_SOLVED / unknowns.max(1)).clamp(LEAST_ITERATIONS, MOST_ITERATIONS);
         let mut lost: Option<Stability> = None;
         let mut reason: Option<IncrementError> = None;
         loop {
@@ -116,7 +121,7 @@ impl MechanicsModel {
                     figures: &[("residual", residual)],
                 });
                 seen.push(residual);
-                is_given_up = residuals.len() + seen.len() >= MOST_ITERATIONS;
+                is_given_up = residuals.len() + seen.len() >= most;
                 !is_given_up && !progress.interrupted()
             };
             let found = self.plan.system.solve(&self.state, target, &mut report);
@@ -166,7 +171,7 @@ impl MechanicsModel {
 
 /// An increment that is given up, with what went wrong before.
 fn given_up(before: Option<&IncrementError>, time: f64, residuals: Vec<f64>) -> Failure {
-    let recent = &residuals[residuals.len().saturating_sub(MOST_ITERATIONS / 10)..];
+    let recent = &residuals[residuals.len().saturating_sub(LEAST_ITERATIONS / 3)..];
     let [low, high] = [(f64::min as fn(f64, f64) -> f64, f64::INFINITY), (f64::max, 0.0)]
         .map(|(choose, start)| recent.iter().copied().fold(start, choose));
     let count = residuals.len();

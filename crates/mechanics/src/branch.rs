@@ -87,6 +87,9 @@ impl System {
             let apart = self.apart(&state, &next);
             if apart < BACK * DISTURBANCE {
                 told.negative_eigenvalues = 0;
+                if told.followed == 0 {
+                    told = Stability::default();
+                }
                 break;
             }
             (state, result) = self.outer(&next, time, report)?;

@@ -82,6 +82,8 @@ pub(crate) struct UnstableMode {
 
 /// Eigenvalue below which a state is not stable: rounding of free motions makes less.
 const NEUTRAL: f64 = 1e-13;
+/// Eigenvalues of the inverse beyond are those of motions that nothing holds.
+const LIMIT: f64 = 0.1 / NEUTRAL;
 /// Least stiffness of an unknown as a measure, relative to the largest: rounding of what has none stays below
 /// [`NEUTRAL`].
 const SLACK: f64 = 1e-4;
@@ -339,9 +341,9 @@ impl Pencil {
             let rest = dot(&next, &self.measure(&next)).max(0.0).sqrt();
             let n = step + 1;
             let own = projected.view((0, 0), (n, n)).into_owned();
-            let (value, vector, count) = outermost(own, sign, symmetric);
-            let left = rest * vector[step].abs();
-            if sign * value > 0.0 && left < CONVERGED * value.abs() {
+            if let Some((value, vector, count)) = outermost(own, sign, symmetric)
+                && rest * vector[step].abs() < CONVERGED * value.abs()
+            {
                 let mut y = vec![0.0; self.admissible.columns];
                 for (k, (own, _)) in basis.iter().enumerate() {
                     y.iter_mut().zip(own).for_each(|(y, o)| *y += vector[k] * o);
@@ -358,21 +360,24 @@ impl Pencil {
     }
 }
 
-/// The eigenvalue of a matrix that lies farthest to one side, its vector of size 1, and how many lie on that side of zero.
-fn outermost(matrix: DMatrix<f64>, sign: f64, symmetric: bool) -> (f64, DVector<f64>, usize) {
+/// The eigenvalue of a matrix that lies farthest to one side, but for those beyond a limit, with its vector of size 1 and how
+/// many lie on that side of zero; none where none does.
+fn outermost(matrix: DMatrix<f64>, sign: f64, symmetric: bool) -> Option<(f64, DVector<f64>, usize)> {
     let n = matrix.nrows();
+    let counts = |v: f64| sign * v > 0.0 && v.abs() < LIMIT;
     if symmetric {
         let eigen = (0.5 * (&matrix + matrix.transpose())).symmetric_eigen();
-        let k = (sign * &eigen.eigenvalues).imax();
-        let count = eigen.eigenvalues.iter().filter(|v| sign * **v > 0.0).count();
-        return (eigen.eigenvalues[k], eigen.eigenvectors.column(k).into_owned(), count);
+        let wanted: Vec<usize> = (0..n).filter(|k| counts(eigen.eigenvalues[*k])).collect();
+        let k = wanted
+            .iter()
+            .copied()
+            .max_by(|a, b| (sign * eigen.eigenvalues[*a]).total_cmp(&(sign * eigen.eigenvalues[*b])))?;
+        return Some((eigen.eigenvalues[k], eigen.eigenvectors.column(k).into_owned(), wanted.len()));
     }
-    let values = matrix.complex_eigenvalues();
-    let value = values.iter().map(|v| v.re).max_by(|a, b| (sign * a).total_cmp(&(sign * b))).unwrap_or(0.0);
-    let count = values.iter().filter(|v| sign * v.re > 0.0).count();
+    let values: Vec<f64> = matrix.complex_eigenvalues().iter().map(|v| v.re).filter(|v| counts(*v)).collect();
+    let value = values.iter().copied().max_by(|a, b| (sign * a).total_cmp(&(sign * b)))?;
     // Inverse iteration, a little beside the eigenvalue.
-    let beside = value * (1.0 + 1e-10) + f64::MIN_POSITIVE;
-    let factor = (matrix - DMatrix::identity(n, n) * beside).lu();
+    let factor = (matrix - DMatrix::identity(n, n) * (value * (1.0 + 1e-10))).lu();
     let mut vector = DVector::from_element(n, 1.0);
     for _ in 0..3 {
         match factor.solve(&vector) {
@@ -380,7 +385,7 @@ fn outermost(matrix: DMatrix<f64>, sign: f64, symmetric: bool) -> (f64, DVector<
             _ => break,
         }
     }
-    (value, vector, count)
+    Some((value, vector, values.len()))
 }
 
 #[cfg(test)]
@@ -391,9 +396,9 @@ mod tests {
     fn the_outermost_eigenvalue_of_a_matrix_that_is_not_symmetric() {
         // Of (1 2; 0 -3) the vector of -3 is (1, -2)/√5.
         let matrix = DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 0.0, -3.0]);
-        let (value, vector, count) = outermost(matrix.clone(), -1.0, false);
+        let (value, vector, count) = outermost(matrix.clone(), -1.0, false).unwrap();
         assert!((value + 3.0).abs() < 1e-12 && count == 1);
         assert!((vector[0] * -2.0 - vector[1]).abs() < 1e-8, "{vector}");
-        assert!((outermost(matrix, 1.0, false).0 - 1.0).abs() < 1e-12);
+        assert!((outermost(matrix, 1.0, false).unwrap().0 - 1.0).abs() < 1e-12);
     }
 }

@@ -215,6 +215,11 @@ pub trait Body: Send + Sync {
         out: &mut Contribution,
     ) -> Result<(), PlaceError>;
 
+    /// Where a place is that is a single point, before the body deforms.
+    fn point(&self, _on: Option<&str>) -> Option<Point<3>> {
+        None
+    }
+
     /// The points of a place that are tested for contact.
     ///
     /// # Errors
@@ -291,6 +296,12 @@ pub trait Body: Send + Sync {
     /// Until the next call what may be slack is also a spring of no length at rest, with this force at the unstrained length of
     /// the body: to find a shape from which it hangs soon.
     fn tighten(&mut self, _force: f64) {}
+
+    /// Until the next call what may be slack is as stiff as a part of its stiffness: to find a shape near the one that it has
+    /// when it hardly stretches. The stiffness itself, as a force; 0 of what is never slack.
+    fn soften(&mut self, _share: f64) -> f64 {
+        0.0
+    }
 
     /// Whether what a support holds of the body changes with time.
     fn holds_change(&self) -> bool {

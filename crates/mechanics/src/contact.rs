@@ -39,8 +39,8 @@ use crate::points::{Anchor, Master, Met, Order, Placed, Sampling, Site};
 use crate::simpler::SetAside;
 use partners::Partners;
 use signorini_contact::Law;
-pub(crate) use traction::axes;
 use signorini_geometry::Vector;
+pub(crate) use traction::axes;
 
 /// Two sides that may touch.
 pub struct Contact {

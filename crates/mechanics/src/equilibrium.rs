@@ -37,6 +37,10 @@ pub(crate) struct Problem<'a> {
     pub(crate) is_free: bool,
     /// Springs on all unknowns of bodies.
     pub(crate) springs: f64,
+    /// What their stiffness is multiplied by at each unknown; without it 1, and the square of the size for spins.
+    pub(crate) metric: Vec<f64>,
+    /// Whether the energy is convex, and tells how far to go.
+    pub(crate) goes_down: bool,
     /// A share of forces on the unknowns of bodies, and of what constraints lack, that is not there yet.
     pub(crate) held_back: Option<(f64, Vec<f64>, Vec<f64>)>,
     /// Unknowns that are spins.
@@ -61,7 +65,14 @@ impl Problem<'_> {
     ) -> Result<Converged<SystemState>, IncrementError> {
         self.begin(start)?;
         let predicts = start.bodies.iter().any(|b| !b.internal.is_empty());
-        let search = if predicts { Search::Watchdog { patience: PATIENCE } } else { Search::Monotone };
+        // What leaves an unstable state turns by more than it bends: its residual rises before it falls, too.
+        let search = if self.goes_down {
+            Search::Energy
+        } else if predicts || !self.metric.is_empty() {
+            Search::Watchdog { patience: PATIENCE }
+        } else {
+            Search::Monotone
+        };
         let options = Newton { most_iterations: MOST_ITERATIONS, search };
         let found = newton(self, start, &options, report).map_err(|failure| match failure {
             NewtonFailure::NotConverged { history, .. } => {
@@ -122,8 +133,9 @@ impl Problem<'_> {
         let free = (0..count).filter(|k| !held[*k]).map(|k| out.residual[k].powi(2) / self.scales[k]);
         let rows = self.rows.iter().enumerate().map(|(k, [c, w])| out.residual[count + k].powi(2) * c / w);
         let lacks = out.single.iter().chain(&out.coupled).map(|h| {
-            let of = |(unknown, factor): &(u32, f64)| self.scales[*unknown as usize] / (factor * factor);
-            h.constraint.lack.powi(2) * h.constraint.terms.iter().map(of).fold(0.0f64, f64::max)
+            // The unknowns give way together: springs in a row.
+            let gives_way = |(unknown, factor): &(u32, f64)| factor * factor / self.scales[*unknown as usize];
+            h.constraint.lack.powi(2) / h.constraint.terms.iter().map(gives_way).sum::<f64>()
         });
         free.chain(rows).chain(lacks).sum::<f64>().sqrt()
     }
@@ -154,6 +166,9 @@ impl Problem<'_> {
     }
 
     pub(crate) fn spring(&self, unknown: usize) -> f64 {
+        if let Some(own) = self.metric.get(unknown) {
+            return self.springs * own;
+        }
         let size = if self.is_spin[unknown] { self.system.size() } else { 1.0 };
         self.springs * size * size
     }
@@ -261,6 +276,13 @@ impl Equations for Problem<'_> {
         let size = self.system.size();
         let lacks = |h: &crate::system::Held| h.constraint.lack.abs() > ROUNDING * size;
         self.system.held(at, self.time).is_ok_and(|(single, coupled)| single.iter().chain(&coupled).any(lacks))
+    }
+
+    fn slope(&mut self, at: &SystemState, step: &[f64]) -> Result<f64, IncrementError> {
+        let mut out = self.assemble(at, Order::First)?;
+        out.single.iter().for_each(|h| out.residual[h.constraint.terms[0].0 as usize] = 0.0);
+        let count = self.is_spin.len();
+        Ok(out.residual[..count].iter().zip(step).map(|(r, s)| r * s).sum())
     }
 
     fn farthest(&self, at: &SystemState, step: &[f64]) -> f64 {

@@ -5,7 +5,7 @@ use crate::equilibrium::Problem;
 use crate::increment_error::IncrementError;
 use crate::linear_solver::Stiffness;
 use crate::points::Order;
-use crate::system::{AssemblyError, System, SystemState, TimedLoad};
+use crate::system::{AssemblyError, Held, System, SystemState, TimedLoad};
 use nalgebra::{DMatrix, DVector};
 use signorini_geometry::Vector;
 
@@ -207,7 +207,9 @@ impl Problem<'_> {
                 let range = first[k] as usize..first[k] as usize + motion.len();
                 x[range].copy_from_slice(motion);
                 let size = motion.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-                if size == 0.0 || held.iter().any(|h| x[*h] != 0.0) {
+                let along = |h: &Held| h.constraint.terms.iter().map(|(u, f)| f * x[*u as usize]).sum::<f64>();
+                let is_held = |h: &Held| along(h).abs() > NOT_HELD * size;
+                if size == 0.0 || held.iter().any(|h| x[*h] != 0.0) || assembled.coupled.iter().any(is_held) {
                     continue;
                 }
                 let moved = match &matrix {

@@ -8,7 +8,8 @@ use crate::equilibrium::Problem;
 use crate::increment_error::IncrementError;
 use crate::linear_solver::{Solved, Stiffness};
 use crate::points::Order;
-use crate::site_result::SiteResult;
+use crate::site_result::{SiteResult, with_rest};
+use crate::stability::{Stability, UnstableMode};
 use crate::system::{AssemblyError, System, SystemState};
 use signorini_geometry::Vector;
 use signorini_solve::general::Analysis;
@@ -39,6 +40,8 @@ pub struct IncrementResult {
     pub is_indeterminate: bool,
     /// Of rigid bodies: how often an unstable state was left on the way.
     pub left_unstable: usize,
+    /// None of systems that cannot be unstable, or whose tangent is never factorised.
+    pub stability: Option<Stability>,
 }
 
 /// Force relative to the largest with which no state is taken for one, whatever rounding may say.
@@ -48,11 +51,15 @@ const AUGMENTED: f64 = 1e-9;
 const MOST_AUGMENTATIONS: usize = 60;
 
 /// How Newton's method goes.
-pub(crate) enum Way {
+pub(crate) enum Way<'a> {
     /// From the last state.
     Straight,
+    /// From the last state, down a convex energy.
+    Down,
     /// Round what failed so.
     Round(IncrementError),
+    /// From an unstable state, along a direction or against it.
+    Along(&'a UnstableMode, f64),
 }
 
 /// Whether another way to the same state may help.
@@ -71,6 +78,17 @@ impl System {
     /// # Errors
     /// Places that are not there.
     pub fn sites(&self, contact: usize, state: &SystemState) -> Result<Vec<SiteResult>, IncrementError> {
+        let found = self.sites_at_limit(contact, state)?;
+        let rubs = self.contacts[contact].law().is_some();
+        Ok(if rubs { with_rest(found, self.size()) } else { found })
+    }
+
+    /// The same, where all that is at the limit of its friction slips.
+    pub(crate) fn sites_at_limit(
+        &self,
+        contact: usize,
+        state: &SystemState,
+    ) -> Result<Vec<SiteResult>, IncrementError> {
         let (first, _) = self.numbering();
         let own = self.own(state)[contact];
         let found = self.contacts[contact].results(self.bodies_in(state, &first), own);
@@ -91,8 +109,28 @@ impl System {
         if self.is_rigid() {
             return self.solve_rigid(from, time, report);
         }
-        let mut start = from.clone();
-        start.time = time;
+        let kept = self.histories();
+        let start = self.begin(from, time)?;
+        let found = self
+            .outer(&start, time, report)
+            .and_then(|found| self.check_inside(&found.0, false).map(|()| found))
+            .and_then(|found| self.on_a_stable_branch(found, time, report));
+        self.end();
+        match found {
+            Ok((state, mut result)) => {
+                self.locate_instability(from, (time, &kept), &mut result, report)?;
+                Ok((state, result))
+            }
+            Err(error) => {
+                self.put_back(&kept);
+                Err(error)
+            }
+        }
+    }
+
+    /// The state from which an increment to a time starts, what is prescribed brought there.
+    pub(crate) fn begin(&mut self, from: &SystemState, time: f64) -> Result<SystemState, IncrementError> {
+        let mut start = SystemState { time, ..from.clone() };
         start.travel.iter_mut().for_each(|t| *t = 0.0);
         for (body, state) in self.bodies.iter().zip(&mut start.bodies) {
             body.prescribe(time, state);
@@ -102,15 +140,12 @@ impl System {
         }
         start.multipliers = self.contacts.iter().flat_map(|c| c.remembered()).collect();
         start.predictions = self.contacts.iter().map(|c| c.prediction()).collect();
-        let kept = self.histories();
         self.contacts.iter_mut().for_each(|c| c.begin(time));
-        let found =
-            self.outer(&start, time, report).and_then(|found| self.check_inside(&found.0, false).map(|()| found));
+        Ok(start)
+    }
+
+    pub(crate) fn end(&mut self) {
         self.contacts.iter_mut().for_each(|c| c.end());
-        if found.is_err() {
-            self.put_back(&kept);
-        }
-        found
     }
 
     /// Tells what lies inside of a rigid body in a state: where nothing sees it, or at the start deeper than an interference.
@@ -131,7 +166,7 @@ impl System {
     }
 
     /// Outer iterations: of augmented Lagrangians, and of penalties that are to leave a given penetration.
-    fn outer(
+    pub(crate) fn outer(
         &mut self,
         start: &SystemState,
         time: f64,
@@ -237,7 +272,7 @@ impl System {
     /// Newton's method by one way.
     pub(crate) fn by(
         &self,
-        way: Way,
+        way: Way<'_>,
         start: &SystemState,
         time: f64,
         solved: &mut Solved,
@@ -259,6 +294,8 @@ impl System {
             analysis: Analysis::default(),
             is_free: !iterates && self.has_free_body(),
             springs: 0.0,
+            metric: Vec::new(),
+            goes_down: matches!(way, Way::Down),
             held_back: None,
             is_spin,
             rows,
@@ -276,7 +313,9 @@ impl System {
                 }
                 found => found,
             },
+            Way::Down => problem.solve(start, report),
             Way::Round(error) => self.by_another_way(&mut problem, start, error, report),
+            Way::Along(mode, sign) => problem.along(mode, sign, start, report),
         };
         *solved = problem.solved;
         found

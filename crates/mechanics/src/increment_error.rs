@@ -26,6 +26,13 @@ pub enum IncrementError {
         x[0], x[1], x[2]
     )]
     Inside { contact: String, body: String, depth: f64, x: [f64; 3] },
+    /// No stable state was found near one that is not stable.
+    #[error(
+        "`{body}` is unstable ({negative_eigenvalues} negative eigenvalue{} of the tangent), and once disturbed it comes to no \
+         state that is stable",
+        if *negative_eigenvalues == 1 { "" } else { "s" }
+    )]
+    Unstable { body: String, negative_eigenvalues: usize },
     #[error("interrupted")]
     Interrupted,
 }

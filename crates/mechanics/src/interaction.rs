@@ -100,6 +100,11 @@ pub trait Interaction: Send + Sync {
     /// The law of friction; none if there is none.
     fn law(&self) -> Option<&dyn Law>;
 
+    /// The same, to put another in its place; none of what never rubs.
+    fn friction_mut(&mut self) -> Option<&mut Option<Box<dyn Law>>> {
+        None
+    }
+
     /// Unknowns of its own: of each the traction per gap, which scales its equation, and the weight of its site.
     fn rows(&self) -> Vec<[f64; 2]> {
         Vec::new()

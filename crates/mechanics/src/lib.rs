@@ -12,11 +12,14 @@
 //! - [`system`]: bodies, supports, loads and contacts, assembled.
 //! - [`iterative`]: Newton's step of large systems by iterations.
 //! - [`passage`]: how far steps may be followed so that nothing passes through; `inside`: what lies inside of a rigid body.
+//! - [`stability`]: whether a state is stable, on what may move (`admissible`); `branch`: from an unstable state to a stable one.
 //! - [`increment`]: equilibrium at one time, by Newton's method (`equilibrium`), other ways where that fails (`homotopy`,
 //!   `free`), and outer iterations (`augmentation`); [`saved`]: what it goes on from.
 
+mod admissible;
 mod augmentation;
 pub mod body;
+mod branch;
 pub mod contact;
 pub mod curve;
 mod density;
@@ -44,6 +47,7 @@ pub mod saved;
 mod simpler;
 mod site_result;
 mod slack;
+pub mod stability;
 pub mod surface;
 pub mod system;
 
@@ -70,6 +74,7 @@ pub use rigid_body::{Motion, RigidBody, RigidSite};
 pub use saved::Saved;
 pub use simpler::SimplerFriction;
 pub use site_result::{OfSurface, SiteResult};
+pub use stability::{Stability, Unstable};
 pub use surface::Surface;
 pub use system::{AssemblyError, PlacedLoad, Support, System, SystemState, TimedLoad};
 

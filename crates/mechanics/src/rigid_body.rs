@@ -81,7 +81,7 @@ impl Pose {
     }
 
     /// The pose after a displacement of the centre and a turn.
-    fn moved(&self, displacement: &Vector<3>, turn: &Vector<3>) -> Pose {
+    pub(crate) fn moved(&self, displacement: &Vector<3>, turn: &Vector<3>) -> Pose {
         let rotation = UnitQuaternion::from_scaled_axis(*turn) * self.rotation;
         let turn = rotation::unwrapped(&rotation, &(self.turn + turn));
         Pose { centre: self.centre + displacement, rotation, turn }

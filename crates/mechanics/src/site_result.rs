@@ -25,6 +25,19 @@ pub struct SiteResult {
     pub of_surface: Option<OfSurface>,
 }
 
+/// Slip of an increment that is rounding: relative to the largest of the contact, and to the size of the bodies.
+const RESTS: f64 = 1e-8;
+const ROUNDING: f64 = 1e-12;
+
+/// Sites at the limit of their friction that did not slip in the increment stick.
+pub(crate) fn with_rest(mut sites: Vec<SiteResult>, size: f64) -> Vec<SiteResult> {
+    let slips = |s: &SiteResult| s.status == Status::Slip;
+    let most = sites.iter().filter(|s| slips(s)).map(|s| s.increment.norm()).fold(0.0, f64::max);
+    let rests = (RESTS * most).max(ROUNDING * size);
+    sites.iter_mut().filter(|s| slips(s) && s.increment.norm() <= rests).for_each(|s| s.status = Status::Stick);
+    sites
+}
+
 /// What a surface tells of the place of a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OfSurface {

@@ -9,6 +9,7 @@ use crate::interaction::{Bodies, Interaction, Own, Target};
 use crate::linear_solver::{LinearSolver, Stiffness};
 use crate::part::Part;
 use crate::points::Order;
+use crate::stability::Unstable;
 use signorini_geometry::{Point, Vector};
 use signorini_solve::general::{Entries, Matrix};
 use std::sync::Arc;
@@ -50,7 +51,7 @@ pub enum TimedLoad {
     BodyForce(TimeVectorField),
     Traction(TimeVectorField),
     Pressure(TimeField),
-    /// Resultants, at the time only: the place is not read.
+    /// Resultants: at the place where it is a point, at the time only elsewhere.
     Force(TimeVectorField),
     Moment(TimeVectorField),
     FollowerMoment(TimeVectorField),
@@ -76,16 +77,16 @@ impl PlacedLoad {
         order: Order,
         out: &mut Contribution,
     ) -> Result<(), PlaceError> {
-        let zero = Point::<3>::zeros();
+        let place = body.point(self.part.group.as_deref()).unwrap_or_default();
         let mut act = |what: &Load<'_>| body.load(self.part.group.as_deref(), what, state, order, out);
         match &self.load {
             TimedLoad::BodyForce(f) => act(&Load::BodyForce(&|x| f(x, time))),
             TimedLoad::Traction(f) => act(&Load::Traction(&|x| f(x, time))),
             TimedLoad::Pressure(f) => act(&Load::Pressure(&|x| f(x, time))),
-            TimedLoad::Force(f) => act(&Load::Force(f(&zero, time))),
-            TimedLoad::Moment(f) => act(&Load::Moment(f(&zero, time))),
-            TimedLoad::FollowerMoment(f) => act(&Load::FollowerMoment(f(&zero, time))),
-            TimedLoad::Tension(f) => act(&Load::Tension(f(&zero, time))),
+            TimedLoad::Force(f) => act(&Load::Force(f(&place, time))),
+            TimedLoad::Moment(f) => act(&Load::Moment(f(&place, time))),
+            TimedLoad::FollowerMoment(f) => act(&Load::FollowerMoment(f(&place, time))),
+            TimedLoad::Tension(f) => act(&Load::Tension(f(&place, time))),
             TimedLoad::Springs(k) => act(&Load::Springs(*k)),
         }
     }
@@ -99,11 +100,15 @@ pub struct System {
     pub loads: Vec<PlacedLoad>,
     pub contacts: Vec<Box<dyn Interaction>>,
     pub solver: LinearSolver,
+    /// What is done with states that are not stable.
+    pub unstable: Unstable,
 }
 
 /// A state of the system.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SystemState {
+    /// The time that it was solved for.
+    pub time: f64,
     pub bodies: Vec<BodyState>,
     /// Tractions that are unknowns, of all contacts.
     pub multipliers: Vec<f64>,
@@ -113,8 +118,6 @@ pub struct SystemState {
     pub(crate) predictions: Vec<Vec<f64>>,
     /// Steps of the unknowns of the bodies since the last state that was accepted.
     pub(crate) travel: Vec<f64>,
-    /// The time that it was solved for.
-    pub time: f64,
 }
 
 /// Why a system cannot be assembled.
@@ -177,12 +180,12 @@ impl System {
     pub fn start(&self) -> SystemState {
         let (_, count) = self.numbering();
         SystemState {
+            time: 0.0,
             bodies: self.bodies.iter().map(|b| b.start()).collect(),
             multipliers: vec![0.0; self.contacts.iter().map(|c| c.rows().len()).sum()],
             reactions: Vec::new(),
             predictions: self.contacts.iter().map(|c| c.prediction()).collect(),
             travel: vec![0.0; count],
-            time: 0.0,
         }
     }
 
@@ -263,7 +266,7 @@ impl System {
         let predictions = (self.contacts.iter().zip(self.own(at)))
             .map(|(contact, own)| contact.predict(now, own, step, share))
             .collect();
-        SystemState { bodies, multipliers, reactions, predictions, travel, time: at.time }
+        SystemState { time: at.time, bodies, multipliers, reactions, predictions, travel }
     }
 
     /// The residual at a state and a time, without the reactions of supports, and its derivative.

@@ -81,6 +81,8 @@ pub struct Problem {
     /// The history, part by part; without steps one state is computed, at t = 0.
     #[serde(default)]
     pub steps: List<Step>,
+    /// What is done with a state of a system of bodies that is not stable; `follow` if left out.
+    pub stability: Option<UnstableStates>,
     /// What to write.
     #[serde(default)]
     pub output: Output,
@@ -119,6 +121,7 @@ impl Problem {
             loads: Named::default(),
             contacts: Named::default(),
             steps: List::default(),
+            stability: None,
             output: Output::default(),
             frames: None,
             view: None,
@@ -254,6 +257,15 @@ pub enum Space {
     #[default]
     #[serde(rename = "3d")]
     ThreeD,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum UnstableStates {
+    /// They are left along the direction in which their energy falls, to a stable state at the same loads.
+    Follow,
+    /// They are kept, and told.
+    Tell,
 }
 
 /// A function of one argument: a table, or an expression in `t`.

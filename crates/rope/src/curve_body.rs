@@ -1,7 +1,7 @@
 //! What ropes and beams have in common as bodies that touch: the curve with its sections, and sites along it.
 
 use crate::centreline::{Centreline, Closure, Continuity};
-use crate::hermite::gauss;
+use crate::hermite::{gauss, lobatto};
 use crate::place::{self, Part};
 use signorini_geometry::shape::CurveJet;
 use signorini_geometry::{Matrix, Point, Vector};
@@ -109,10 +109,13 @@ pub fn sites(body: &dyn CurveBody, on: Option<&str>, sampling: Sampling) -> Resu
         (Part::Nodes(nodes), _) => nodes.into_iter().map(|n| Site { weight: 1.0, ..node_site(n) }).collect(),
         (Part::Whole, Sampling::Nodes) => (0..line.nodes()).map(node_site).collect(),
         (Part::Whole, Sampling::GaussPoints) => {
-            let rule = gauss(body.contact_points());
-            (0..line.elements())
+            let rules = [gauss(body.contact_points()), lobatto(body.contact_points() + 1)];
+            let last = line.elements() - 1;
+            // Free ends touch first.
+            let has_end = |e: usize| line.closure == Closure::Open && (e == 0 || e == last);
+            (0..=last)
                 .flat_map(|e| {
-                    let h = line.lengths[e];
+                    let (h, rule) = (line.lengths[e], &rules[usize::from(has_end(e))]);
                     rule.iter().map(move |(xi, w)| Site { patch: e as u32, xi: [*xi, 0.0], weight: w * h })
                 })
                 .collect()

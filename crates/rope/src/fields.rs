@@ -39,6 +39,35 @@ pub fn of_curve(line: &Centreline, start: &[f64], now: &[f64]) -> BodyFields {
     fields
 }
 
+/// Adds values along the elements, each by its number and `ξ`, as values of points: at nodes the mean of both sides.
+pub fn add_point_data(
+    fields: &mut BodyFields,
+    (line, name, components): (&Centreline, &str, usize),
+    of: impl Fn(usize, f64) -> Vec<f64>,
+) {
+    let count = pieces(line);
+    let points = fields.points.len();
+    let mut sums = vec![0.0; points * components];
+    let mut counts = vec![0.0; points];
+    for e in 0..line.elements() {
+        for k in 0..=count {
+            let point = (e * count + k) % points;
+            counts[point] += 1.0;
+            let values = of(e, k as f64 / count as f64);
+            values.iter().enumerate().for_each(|(i, v)| sums[point * components + i] += v);
+        }
+    }
+    let values = sums.iter().enumerate().map(|(k, sum)| sum / counts[k / components]).collect();
+    fields.point_data.push((name.to_string(), components, values));
+}
+
+/// A polynomial through values at points.
+pub fn through<const N: usize>(points: [f64; N], values: [f64; N], xi: f64) -> f64 {
+    let weight =
+        |k: usize| (0..N).filter(|j| *j != k).map(|j| (xi - points[j]) / (points[k] - points[j])).product::<f64>();
+    (0..N).map(|k| weight(k) * values[k]).sum()
+}
+
 /// Adds values of elements as values of the cells that show them.
 pub fn add_element_data(fields: &mut BodyFields, name: &str, components: usize, values: Vec<f64>) {
     let count = fields.cells.len() * components / values.len().max(1);

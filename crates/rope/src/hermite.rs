@@ -81,6 +81,37 @@ pub fn gauss(count: usize) -> Vec<(f64, f64)> {
         .collect()
 }
 
+/// Lobatto points of `[0, 1]` with their weights, as many as wanted, both ends among them: exact to the degree of one Gauss
+/// point less. Roots of the derivative of the Legendre polynomial by Newton's method.
+pub fn lobatto(count: usize) -> Vec<(f64, f64)> {
+    let count = count.max(2);
+    let n = (count - 1) as f64;
+    (0..count)
+        .map(|k| {
+            let mut x = -(std::f64::consts::PI * k as f64 / n).cos();
+            let mut p = 1.0;
+            for _ in 0..40 {
+                let before = legendre(count - 2, x);
+                p = legendre(count - 1, x);
+                let dx = (x * p - before) / ((n + 1.0) * p);
+                x -= dx;
+                if dx.abs() < 1e-15 {
+                    break;
+                }
+            }
+            (0.5 * (1.0 + x), 1.0 / (n * (n + 1.0) * p * p))
+        })
+        .collect()
+}
+
+fn legendre(degree: usize, x: f64) -> f64 {
+    let (mut p, mut before) = (1.0, 0.0);
+    for j in (0..degree).map(|j| j as f64) {
+        (p, before) = (((2.0 * j + 1.0) * x * p - j * before) / (j + 1.0), p);
+    }
+    p
+}
+
 /// `Σ N_i x_i`.
 pub fn sum(n: &[f64; 4], x: &[Vector<3>; 4]) -> Point<3> {
     x[0] * n[0] + x[1] * n[1] + x[2] * n[2] + x[3] * n[3]
@@ -122,6 +153,14 @@ mod tests {
             for degree in 0..2 * n {
                 let sum: f64 = gauss(n).iter().map(|(x, w)| w * x.powi(degree as i32)).sum();
                 assert!((sum - 1.0 / (degree as f64 + 1.0)).abs() < 1e-14);
+            }
+        }
+        for n in 2..=8 {
+            let rule = lobatto(n);
+            assert!(rule[0].0.abs() < 1e-15 && (rule[n - 1].0 - 1.0).abs() < 1e-15);
+            for degree in 0..2 * n - 2 {
+                let sum: f64 = rule.iter().map(|(x, w)| w * x.powi(degree as i32)).sum();
+                assert!((sum - 1.0 / (degree as f64 + 1.0)).abs() < 1e-14, "{n} {degree}");
             }
         }
         for (written, computed) in [(&TWO[..], gauss(2)), (&THREE[..], gauss(3)), (&FOUR[..], gauss(4))] {

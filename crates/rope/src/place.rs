@@ -39,6 +39,14 @@ pub fn part(body: &str, line: &Centreline, on: Option<&str>) -> Result<Part, Pla
     }
 }
 
+/// Where a part is that is a single node.
+pub fn point(line: &Centreline, start: &[f64], part: &Part) -> Option<Point<3>> {
+    match part {
+        Part::Nodes(nodes) if nodes.len() == 1 => Some(line.position(start, nodes[0])),
+        _ => None,
+    }
+}
+
 /// The nodes of a part.
 pub fn nodes(line: &Centreline, part: &Part) -> Vec<usize> {
     match part {

@@ -53,6 +53,11 @@ pub fn plan(problem: &Problem) -> Result<Plan, CaseError> {
     if mechanics::is_system(problem) {
         return Ok(Plan::Mechanics(Box::new(Planner::new(problem)?.mechanics()?)));
     }
+    if let Some(stability) = &problem.stability {
+        let message =
+            "`stability` is for systems of bodies: with ropes, beams, free bodies, finite strain or finite sliding";
+        return Err(problem.error(stability, message));
+    }
     match problem.space {
         Space::PlaneStrain | Space::PlaneStress => {
             Ok(Plan::PlaneSolids(Box::new(Planner::new(problem)?.solids::<2>()?)))

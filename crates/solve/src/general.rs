@@ -5,6 +5,7 @@
 //! where its residual stays large.
 
 use crate::cholesky::SolveError;
+use crate::sparse::SymmetricMatrix;
 use faer::linalg::solvers::SolveCore;
 use faer::sparse::linalg::solvers::{Lu as Numeric, SymbolicLu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
@@ -117,7 +118,8 @@ impl Matrix {
         self.column_start.len().saturating_sub(1)
     }
 
-    fn column(&self, j: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+    /// Rows and entries of a column.
+    pub fn column(&self, j: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         (self.column_start[j]..self.column_start[j + 1]).map(|k| (self.row[k], self.value[k]))
     }
 
@@ -130,16 +132,49 @@ impl Matrix {
         out
     }
 
+    /// `½ (A + Aᵀ)`.
+    pub fn symmetric_part(&self) -> SymmetricMatrix {
+        let size = self.size();
+        let mut columns: Vec<Vec<(usize, f64)>> = vec![Vec::new(); size];
+        for j in 0..size {
+            self.column(j).for_each(|(i, v)| columns[i.min(j)].push((i.max(j), if i == j { v } else { 0.5 * v })));
+        }
+        SymmetricMatrix::from_columns(size, |j, out| {
+            let column = &mut columns[j];
+            column.sort_by_key(|e| e.0);
+            for &(i, v) in column.iter() {
+                match out.last_mut() {
+                    Some(last) if last.0 == i => last.1 += v,
+                    _ => out.push((i, v)),
+                }
+            }
+        })
+    }
+
+    /// The largest `|a_ij - a_ji|` relative to the geometric mean of the largest entries of both rows.
+    pub fn asymmetry(&self) -> f64 {
+        let sizes = self.row_sizes();
+        let mut most = 0.0f64;
+        for j in 0..self.size() {
+            for (i, v) in self.column(j) {
+                let mirrored = self.get(j, i);
+                most = most.max((v - mirrored).abs() / (sizes[i] * sizes[j]).sqrt().max(f64::MIN_POSITIVE));
+            }
+        }
+        most
+    }
+
+    /// The entry of a row and column, by bisection.
+    pub fn get(&self, i: usize, j: usize) -> f64 {
+        let range = self.column_start[j]..self.column_start[j + 1];
+        self.row[range.clone()].binary_search(&i).map_or(0.0, |k| self.value[range.start + k])
+    }
+
     /// The largest entry of each row.
     pub fn row_sizes(&self) -> Vec<f64> {
         let mut out = vec![0.0f64; self.size()];
         (0..self.size()).flat_map(|j| self.column(j)).for_each(|(i, v)| out[i] = out[i].max(v.abs()));
         out
-    }
-
-    /// The entry of a row and column.
-    pub fn get(&self, i: usize, j: usize) -> f64 {
-        self.column(j).find(|(row, _)| *row == i).map_or(0.0, |(_, v)| v)
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! - [`sparse`]: symmetric sparse matrices assembled from element matrices.
 //! - [`cholesky`]: sparse factorisation with a residual check on every solve.
+//! - [`ldlt`]: factors of symmetric matrices that need not be positive definite, for the signs of their eigenvalues.
 //! - [`acceleration`]: Anderson's for fixed-point iterations.
 //! - [`dissection`]: an order of elimination for meshes in space.
 //! - [`dense`]: small dense systems.
@@ -16,6 +17,7 @@ pub mod dense;
 pub mod dissection;
 pub mod general;
 pub mod krylov;
+pub mod ldlt;
 pub mod multigrid;
 pub mod newton;
 pub mod progress;

@@ -4,10 +4,11 @@
 //! one. It follows the size of the forces of the state, so that it hardly tells a bad state from a worse one. The merit is
 //! a norm of the residual itself, in one unit, and decides how far a step is followed.
 //!
-//! Two searches along the step are known. The monotone one (Armijo 1966) takes the first share of a step that lowers the
+//! Three searches along the step are known. The monotone one (Armijo 1966) takes the first share of a step that lowers the
 //! merit, or the best of all. The watchdog (Chamberlain, Powell, Lemarechal & Pedersen 1982) takes whole steps as they come,
 //! and goes back to the best state, and from there by shares, only when none of several was better: for equations whose
-//! residual rises before it falls, as that of thin beams, and that of contacts that open and close.
+//! residual rises before it falls, as that of thin beams, and that of contacts that open and close. A third goes down an energy
+//! that is convex.
 
 /// How far a state is from a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +47,14 @@ pub trait Equations {
         1.0
     }
 
+    /// The slope of the energy along a step, of equations that have one.
+    ///
+    /// # Errors
+    /// States that cannot be.
+    fn slope(&mut self, _at: &Self::State, _step: &[f64]) -> Result<f64, Self::Error> {
+        Ok(0.0)
+    }
+
     /// The state after a share of the step.
     fn advance(&self, at: &Self::State, step: &[f64], share: f64) -> Self::State;
 }
@@ -58,7 +67,12 @@ pub enum Search {
     Watchdog {
         patience: usize,
     },
+    /// Down the energy: the first share at whose end it hardly rises. For energies that are convex, as of ropes.
+    Energy,
 }
+
+/// Slope of the energy at the end of a step, relative to minus the one at its start, that hardly rises.
+const HARDLY: f64 = 0.5;
 
 /// How the equations are solved.
 #[derive(Clone, Copy, Debug)]
@@ -90,6 +104,10 @@ pub enum NewtonFailure<S, E> {
     Interrupted,
 }
 
+/// Iterations without a merit that is less by a tenth: the method goes round, or creeps.
+const CIRCLES: usize = 20;
+const LESS: f64 = 0.9;
+
 /// Shares of a step that are tried.
 const SHARES: [f64; 7] = [1.0, 0.6, 0.35, 0.2, 0.1, 0.05, 0.02];
 
@@ -117,6 +135,7 @@ pub fn newton<E: Equations>(
     history.push(measure.error);
     let mut best = (state.clone(), measure);
     let mut behind = 0;
+    let mut fell = (0, measure.merit);
     // Until what is prescribed has been brought along.
     let mut brings = true;
     for iteration in 1..=options.most_iterations {
@@ -128,9 +147,11 @@ pub fn newton<E: Equations>(
         let driven = brings && equations.is_driven(&state);
         brings = driven && farthest < 1.0;
         let whole_steps = match options.search {
-            Search::Monotone => driven,
+            Search::Monotone | Search::Energy => driven,
             Search::Watchdog { patience } => driven || behind < patience,
         };
+        let by_energy = options.search == Search::Energy && !driven;
+        let falls = if by_energy { -told!(equations.slope(&state, &step)) } else { 0.0 };
         let mut reached: Option<(E::State, Measured)> = None;
         for (tried, share) in SHARES.map(|share| farthest * share).into_iter().enumerate() {
             let next = equations.advance(&state, &step, share);
@@ -142,6 +163,14 @@ pub fn newton<E: Equations>(
                 }
                 Err(_) => continue,
             };
+            if by_energy {
+                let is_down = equations.slope(&next, &step).is_ok_and(|slope| slope <= HARDLY * falls);
+                reached = Some((next, of_next));
+                if is_down || of_next.error <= 1.0 {
+                    break;
+                }
+                continue;
+            }
             let better = reached.as_ref().is_none_or(|(_, m)| of_next.merit < m.merit);
             if better && !of_next.merit.is_nan() {
                 reached = Some((next, of_next));
@@ -156,6 +185,11 @@ pub fn newton<E: Equations>(
         history.push(measure.error);
         if !report(iteration, measure.error) {
             return Err(NewtonFailure::Interrupted);
+        }
+        if measure.merit < LESS * fell.1 || driven {
+            fell = (iteration, measure.merit);
+        } else if iteration - fell.0 >= CIRCLES && options.search != Search::Energy {
+            break;
         }
         if measure.merit < best.1.merit || driven {
             best = (state.clone(), measure);
@@ -195,6 +229,41 @@ mod tests {
         fn advance(&self, at: &f64, step: &[f64], share: f64) -> f64 {
             at + share * step[0]
         }
+    }
+
+    /// A convex energy: whole steps go round, and the residual says little.
+    struct Valley;
+
+    impl Equations for Valley {
+        type State = f64;
+        type Error = ();
+        fn measure(&mut self, at: &f64) -> Result<Measured, ()> {
+            let r = Self::slope_at(*at).abs();
+            Ok(Measured { merit: r, error: r / 1e-12 })
+        }
+        fn step(&mut self, at: &f64) -> Result<Vec<f64>, ()> {
+            Ok(vec![-Self::slope_at(*at) / (1.0 / (1.0 + at * at).powf(1.5) + 1e-3)])
+        }
+        fn slope(&mut self, at: &f64, step: &[f64]) -> Result<f64, ()> {
+            Ok(Self::slope_at(*at) * step[0])
+        }
+        fn advance(&self, at: &f64, step: &[f64], share: f64) -> f64 {
+            at + share * step[0]
+        }
+    }
+
+    impl Valley {
+        /// Of the energy `√(1 + x²) + x²/2000`.
+        fn slope_at(x: f64) -> f64 {
+            x / (1.0 + x * x).sqrt() + 1e-3 * x
+        }
+    }
+
+    #[test]
+    fn the_way_down_a_convex_energy_is_found_from_afar() {
+        let options = Newton { most_iterations: 60, search: Search::Energy };
+        let found = newton(&mut Valley, &40.0, &options, &mut |_, _| true);
+        assert!(found.unwrap().state.abs() < 1e-9);
     }
 
     #[test]

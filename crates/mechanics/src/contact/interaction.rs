@@ -56,6 +56,10 @@ impl Interaction for Contact {
         self.friction.as_deref()
     }
 
+    fn friction_mut(&mut self) -> Option<&mut Option<Box<dyn Law>>> {
+        Some(&mut self.friction)
+    }
+
     fn rows(&self) -> Vec<[f64; 2]> {
         let list = self.stiffness.iter().zip(self.sites());
         list.flat_map(|(c, site)| vec![[*c, site.weight]; self.components()]).collect()

@@ -114,6 +114,10 @@ impl Interaction for Mortar {
         self.friction.as_deref()
     }
 
+    fn friction_mut(&mut self) -> Option<&mut Option<Box<dyn Law>>> {
+        Some(&mut self.friction)
+    }
+
     fn rows(&self) -> Vec<[f64; 2]> {
         let list = self.stiffness.iter().zip(&self.weights);
         list.flat_map(|(c, w)| vec![[*c, *w]; self.components()]).collect()

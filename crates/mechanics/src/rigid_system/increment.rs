@@ -48,6 +48,13 @@ pub struct SoFar {
     pub disturbances: usize,
 }
 
+impl SoFar {
+    /// What friction of a contact took.
+    pub fn work(&self, contact: usize) -> f64 {
+        self.slipped.iter().filter(|(id, _)| id.0 == contact).map(|(_, own)| own.work).sum()
+    }
+}
+
 /// An increment on its way.
 pub struct Increment<'a, 'b> {
     motion: &'b Motion<'a>,

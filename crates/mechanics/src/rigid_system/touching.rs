@@ -5,8 +5,8 @@ use crate::interaction::Bodies;
 use crate::pair::{Encounter, Pair, Stuck};
 use crate::points::{Met, Order};
 use crate::rigid_body::Pose;
+use crate::rotation;
 use crate::system::SystemState;
-use nalgebra::UnitQuaternion;
 use signorini_contact::Law;
 use signorini_geometry::{Point, Vector};
 
@@ -62,7 +62,7 @@ pub fn twists(at: Bodies<'_>, from: &SystemState, to: &SystemState) -> Twists {
             return None;
         }
         let [a, b] = [from, to].map(|s| Pose::of(&s.bodies[k]));
-        Some([b.centre - a.centre, (b.rotation * a.rotation.inverse()).scaled_axis()])
+        Some([b.centre - a.centre, rotation::between(&a.turn, &b.turn)])
     };
     (0..at.bodies.len()).map(of).collect()
 }
@@ -78,8 +78,7 @@ pub fn along(
         .map(|(k, (body, state))| match &twists[k] {
             Some([moved, turned]) => {
                 let pose = Pose::of(state);
-                let rotation = UnitQuaternion::from_scaled_axis(turned * share) * pose.rotation;
-                Pose { centre: pose.centre + moved * share, rotation }.state()
+                pose.moved(&(moved * share), &(turned * share)).state()
             }
             None => {
                 let first = at.first[k] as usize;
@@ -120,6 +119,7 @@ pub fn touching<'a>(
                     met: &met,
                     first: sides.first,
                     stuck: Some((&stuck, &anchor)),
+                    since: [contact.slave.body, contact.master.body].map(|body| Pose::of(&at.states[body]).turn),
                     friction,
                     axis: contact.axis,
                 };

@@ -7,10 +7,11 @@
 use super::element::{Element, Forces, Nodes, SPINS, STRESSES, Stresses, UNKNOWNS};
 use crate::centreline::Centreline;
 use crate::curve_body::{self, CurveBody, SectionMotion};
-use crate::hermite;
+use crate::fields::{add_element_data, add_point_data, through};
+use crate::hermite::{self, THREE, TWO};
 use crate::place::{self, Line, Part};
 use crate::quaternion::{self, Quaternion, spin_map};
-use signorini_geometry::Vector;
+use signorini_geometry::{Point, Vector};
 use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
     Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Function, Hold, Load, Master, Order, PlaceError,
@@ -342,6 +343,10 @@ impl Body for Beam {
         of_nodes.chain((0..self.elements.len()).map(|e| three(NODE * nodes + 3 * e))).collect()
     }
 
+    fn point(&self, on: Option<&str>) -> Option<Point<3>> {
+        place::point(&self.line, &self.start, &place::part(&self.name, &self.line, on).ok()?)
+    }
+
     fn sites(&self, on: Option<&str>, sampling: Sampling) -> Result<Vec<Site>, PlaceError> {
         curve_body::sites(self, on, sampling)
     }
@@ -382,15 +387,17 @@ impl Body for Beam {
         let stresses: Vec<Stresses> = (self.elements.iter().enumerate())
             .map(|(e, element)| element.stresses(&self.nodes_of(&state.configuration, e)))
             .collect();
-        // Means over each element: of forces at two points, of moments at three.
-        let forces = |a: usize| stresses.iter().map(move |s| 0.5 * (s[0][a] + s[1][a]));
-        let moments = |a: usize| stresses.iter().map(move |s| (5.0 * (s[5][a] + s[7][a]) + 8.0 * s[6][a]) / 18.0);
-        let pairs = |a: Vec<f64>, b: Vec<f64>| a.into_iter().zip(b).flat_map(|(x, y)| [x, y]).collect::<Vec<f64>>();
-        crate::fields::add_element_data(&mut fields, "axial_force", 1, forces(0).collect());
-        crate::fields::add_element_data(&mut fields, "shear_force", 2, pairs(forces(1).collect(), forces(2).collect()));
-        crate::fields::add_element_data(&mut fields, "torque", 1, moments(0).collect());
-        let bending = pairs(moments(1).collect(), moments(2).collect());
-        crate::fields::add_element_data(&mut fields, "bending_moment", 2, bending);
+        // Forces are linear through two points, moments quadratic through three.
+        let force = |a: usize, e: usize, xi: f64| through(TWO.map(|p| p.0), [0, 1].map(|k| stresses[e][k][a]), xi);
+        let moment =
+            |a: usize, e: usize, xi: f64| through(THREE.map(|p| p.0), [5, 6, 7].map(|k| stresses[e][k][a]), xi);
+        let axial = (0..stresses.len()).map(|e| force(0, e, 0.5)).collect();
+        add_element_data(&mut fields, "axial_force", 1, axial);
+        add_point_data(&mut fields, (&self.line, "shear_force", 2), |e, xi| vec![force(1, e, xi), force(2, e, xi)]);
+        add_point_data(&mut fields, (&self.line, "torque", 1), |e, xi| vec![moment(0, e, xi)]);
+        add_point_data(&mut fields, (&self.line, "bending_moment", 2), |e, xi| {
+            vec![moment(1, e, xi), moment(2, e, xi)]
+        });
         fields
     }
 }

@@ -7,10 +7,12 @@ use super::element::{Carries, Element, Forces, STRESSES, Stresses, UNKNOWNS};
 use crate::centreline::{Centreline, Continuity};
 use crate::chain::body::{ChainError, Rest, check_radius, positive};
 use crate::curve_body::{self, CurveBody};
+use crate::fields::{add_point_data, through};
+use crate::hermite::THREE;
 use crate::path::Sampled;
 use crate::place::{self, Line};
 use crate::quaternion;
-use signorini_geometry::Vector;
+use signorini_geometry::{Point, Vector};
 use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
     Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Hold, Load, Master, Order, PlaceError, Placed,
@@ -35,6 +37,8 @@ pub struct Cable {
     radius: f64,
     contact_points: usize,
     start: Vec<f64>,
+    /// The stiffness that is stated.
+    stiffness: f64,
 }
 
 impl Cable {
@@ -73,7 +77,7 @@ impl Cable {
         let elements = (0..line.elements())
             .map(|e| Element::new(line.lengths[e], axial, bending, carries, &line.nodal(&start, e)))
             .collect();
-        Ok(Cable { name: name.to_string(), line, elements, radius, contact_points: 4, start })
+        Ok(Cable { name: name.to_string(), line, elements, radius, contact_points: 4, start, stiffness: axial })
     }
 
     /// Tests contact at so many points of Gauss of each element instead of four.
@@ -162,6 +166,13 @@ impl Body for Cable {
         self.elements.iter_mut().filter(is_cable).for_each(|e| e.tightened = force);
     }
 
+    fn soften(&mut self, share: f64) -> f64 {
+        let axial = share * self.stiffness;
+        let is_cable = |e: &&mut Element| e.carries == Carries::TensionOnly;
+        let softened = self.elements.iter_mut().filter(is_cable).map(|e| e.axial = axial).count();
+        if softened > 0 { self.stiffness } else { 0.0 }
+    }
+
     fn name(&self) -> &str {
         &self.name
     }
@@ -247,6 +258,10 @@ impl Body for Cable {
         self.line_of(state).load(&place::part(&self.name, &self.line, on)?, load, order, out)
     }
 
+    fn point(&self, on: Option<&str>) -> Option<Point<3>> {
+        place::point(&self.line, &self.start, &place::part(&self.name, &self.line, on).ok()?)
+    }
+
     fn sites(&self, on: Option<&str>, sampling: Sampling) -> Result<Vec<Site>, PlaceError> {
         curve_body::sites(self, on, sampling)
     }
@@ -282,10 +297,13 @@ impl Body for Cable {
     fn fields(&self, state: &BodyState) -> BodyFields {
         let mut fields = crate::fields::of_curve(&self.line, &self.start, &state.configuration);
         crate::fields::add_element_data(&mut fields, "tension", 1, self.tensions(state));
-        let moments = (0..self.elements.len())
-            .map(|e| self.elements[e].stresses(&self.line.nodal(&state.configuration, e)).moments[1].norm())
+        let moments: Vec<[Vector<3>; 3]> = (0..self.elements.len())
+            .map(|e| self.elements[e].stresses(&self.line.nodal(&state.configuration, e)).moments)
             .collect();
-        crate::fields::add_element_data(&mut fields, "bending_moment", 1, moments);
+        let component = |e: usize, xi: f64, i: usize| through(THREE.map(|p| p.0), moments[e].map(|m| m[i]), xi);
+        add_point_data(&mut fields, (&self.line, "bending_moment", 1), |e, xi| {
+            vec![Vector::<3>::from_fn(|i, _| component(e, xi, i)).norm()]
+        });
         fields
     }
 }

@@ -14,7 +14,7 @@ use crate::curve_body::{self, CurveBody};
 use crate::path::Sampled;
 use crate::place::{self, Line, Part};
 use crate::quaternion::axis;
-use signorini_geometry::{Matrix, Vector};
+use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
     Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Function, Hold, Load, Master, Order, PlaceError,
@@ -84,6 +84,8 @@ pub struct Chain {
     pub(super) stiffness: f64,
     /// A spring beside, by its force at the unstrained length, for now.
     tightened: f64,
+    /// The part of its stiffness that it has for now.
+    softened: f64,
     pub(super) radius: f64,
     pub(super) drives: Vec<Drive>,
     /// Nodes through which the rope runs without friction.
@@ -115,6 +117,7 @@ impl Chain {
             line: Centreline::new(lengths, path.closure, Continuity::C0, [3, 3]),
             stiffness,
             tightened: 0.0,
+            softened: 1.0,
             radius,
             pulleys: Vec::new(),
             winch: None,
@@ -195,7 +198,7 @@ impl Chain {
     fn element(&self, state: &BodyState, element: usize) -> (Vector<3>, Stretched) {
         let [a, b] = self.line.ends(element).map(|n| self.line.position(&state.configuration, n));
         let unstrained = self.unstrained_length(state, element);
-        let mut found = stretched(&(b - a), self.stiffness, unstrained, self.drives[element]);
+        let mut found = stretched(&(b - a), self.softened * self.stiffness, unstrained, self.drives[element]);
         if self.tightened > 0.0 {
             let density = self.tightened / unstrained;
             found.energy += 0.5 * density * (b - a).norm_squared();
@@ -312,6 +315,11 @@ impl Body for Chain {
         self.tightened = force;
     }
 
+    fn soften(&mut self, share: f64) -> f64 {
+        self.softened = share;
+        self.stiffness
+    }
+
     fn name(&self) -> &str {
         &self.name
     }
@@ -339,7 +347,7 @@ impl Body for Chain {
     }
 
     fn internal(&self, state: &BodyState, order: Order, out: &mut Contribution) -> Result<f64, BodyError> {
-        let floor = self.stiffness * f64::EPSILON.sqrt();
+        let floor = self.softened * self.stiffness * f64::EPSILON.sqrt();
         let slack_tension = self.tensions(state).into_iter().fold(floor, f64::max);
         let mut energy = 0.0;
         for e in self.active(state) {
@@ -360,7 +368,8 @@ impl Body for Chain {
             if order == Order::First {
                 continue;
             }
-            let is_slack = s.tension == 0.0;
+            // With the spring beside, nothing is without stiffness.
+            let is_slack = s.tension == 0.0 && self.tightened == 0.0;
             let own = self.line.lengths[e];
             let stiffness = if is_slack { Matrix::<3>::identity() * (slack_tension / own) } else { s.stiffness };
             let second = if is_slack { self.stiffness / own } else { s.by_length.1 };
@@ -425,6 +434,10 @@ impl Body for Chain {
         out: &mut Contribution,
     ) -> Result<(), PlaceError> {
         self.line_of(state).load(&self.part(on)?, load, order, out)
+    }
+
+    fn point(&self, on: Option<&str>) -> Option<Point<3>> {
+        place::point(&self.line, &self.start, &self.part(on).ok()?)
     }
 
     fn sites(&self, on: Option<&str>, sampling: Sampling) -> Result<Vec<Site>, PlaceError> {

@@ -131,6 +131,10 @@ impl Interaction for CurveContact {
         self.friction.as_deref()
     }
 
+    fn friction_mut(&mut self) -> Option<&mut Option<Box<dyn Law>>> {
+        Some(&mut self.friction)
+    }
+
     fn begin(&mut self, time: f64) {
         self.times[1] = time;
     }

@@ -26,6 +26,10 @@ impl Labels {
         self.0.as_ref().map_or_else(|| what.to_string(), |units| format!("{what} [{}/{}]", units.force, units.length))
     }
 
+    pub fn moment(&self, what: &str) -> String {
+        self.0.as_ref().map_or_else(|| what.to_string(), |units| format!("{what} [{} {}]", units.force, units.length))
+    }
+
     pub fn pressure(&self, what: &str) -> String {
         self.with(what, |u| &u.pressure)
     }

@@ -2,6 +2,7 @@
 
 use crate::fields::{FieldArray, Fields};
 use crate::plan::mechanics::{Kind, MechanicsPlan};
+use crate::problem::Body;
 use crate::report::vector;
 use signorini_contact::{GapJet, Status};
 use signorini_fem::CellShape;
@@ -22,8 +23,15 @@ pub struct CurveShown {
     pub points: Vec<Vector<3>>,
     pub arc: Vec<f64>,
     pub cells: Vec<[u32; 2]>,
-    /// Axial force of each cell.
+    /// Axial force of each piece that is shown, and the number of cells.
     pub forces: Vec<f64>,
+    pub elements: usize,
+    /// Whether it carries tension only.
+    pub is_rope: bool,
+    /// Bending moment, shear force and torque of its points, where it has them: their sizes, the torque with its sign.
+    pub bending_moments: Vec<f64>,
+    pub shear_forces: Vec<f64>,
+    pub torques: Vec<f64>,
     /// Length without tension, of a rope of straight elements.
     pub unstrained_length: Option<f64>,
 }
@@ -90,7 +98,8 @@ impl SystemShown {
             match kind {
                 Kind::Curve { radius } => {
                     let fields = body.fields(state);
-                    shown.curves.push(curve(body.name(), *radius, &fields));
+                    let is_rope = matches!(plan.head.problem.bodies.get(body.name()), Some(Body::Rope(_)));
+                    shown.curves.push(CurveShown { is_rope, ..curve(body.name(), *radius, &fields) });
                     shown.bodies.push(of_body(body.name(), &fields));
                 }
                 Kind::Solid | Kind::Cells => shown.bodies.push(of_body(body.name(), &body.fields(state))),
@@ -158,9 +167,23 @@ pub fn moved(fields: &Fields) -> Vec<Vector<3>> {
         .collect()
 }
 
+impl CurveShown {
+    /// Cells without tension, of a rope.
+    pub fn slack_cells(&self) -> usize {
+        let pieces = self.forces.len() / self.elements.max(1);
+        let slack = self.forces.iter().filter(|t| self.is_rope && **t == 0.0).count();
+        slack / pieces.max(1)
+    }
+}
+
 fn curve(name: &str, radius: f64, fields: &BodyFields) -> CurveShown {
     let cell = |name: &str| fields.cell_data.iter().find(|d| d.0 == name).map(|d| d.2.clone());
     let arc = fields.point_data.iter().find(|d| d.0 == "arc_length").map(|d| d.2.clone());
+    let size = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let sizes = |name: &str| -> Vec<f64> {
+        let found = fields.point_data.iter().find(|d| d.0 == name);
+        found.map_or_else(Vec::new, |(_, components, values)| values.chunks(*components).map(size).collect())
+    };
     CurveShown {
         name: name.to_string(),
         radius,
@@ -168,6 +191,11 @@ fn curve(name: &str, radius: f64, fields: &BodyFields) -> CurveShown {
         arc: arc.unwrap_or_default(),
         cells: fields.cells.iter().map(|c| [c[0], c[1]]).collect(),
         forces: cell("tension").or_else(|| cell("axial_force")).unwrap_or_default(),
+        elements: cell("element").map_or(0, |list| list.last().map_or(0, |e| *e as usize + 1)),
+        is_rope: false,
+        bending_moments: sizes("bending_moment"),
+        shear_forces: sizes("shear_force"),
+        torques: fields.point_data.iter().find(|d| d.0 == "torque").map(|d| d.2.clone()).unwrap_or_default(),
         unstrained_length: cell("unstrained_length").map(|list| list.iter().sum()),
     }
 }

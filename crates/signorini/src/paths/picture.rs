@@ -44,6 +44,11 @@ fn pieces(line: &Line, keep: &dyn Fn(&LinePoint, &LinePoint) -> bool, scale: &Sc
         arc: Vec::new(),
         cells,
         forces: Vec::new(),
+        elements: 0,
+        is_rope: false,
+        bending_moments: Vec::new(),
+        shear_forces: Vec::new(),
+        torques: Vec::new(),
         unstrained_length: None,
     };
     tube(&curve, radius, &colours)

@@ -117,6 +117,9 @@ pub struct StepReport {
     pub max_slope: Option<f64>,
     /// Largest principal strain of solids: the theory is that of small strains.
     pub max_strain: Option<f64>,
+    /// Whether the state is stable, of systems whose bodies deform by more than small strains; null for others.
+    #[serde(default)]
+    pub stability: Option<StabilityReport>,
     /// Sum of all forces, relative to the largest: round-off where all is well.
     pub equilibrium_residual: Option<f64>,
     /// Force of each support on the body, by its name.
@@ -138,6 +141,21 @@ pub struct StepReport {
     pub free_bodies: BTreeMap<String, Pose>,
 }
 
+/// Whether an equilibrium is stable: by the second variation of the energy on what supports and contacts admit.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct StabilityReport {
+    /// Whether no disturbance makes the energy fall.
+    pub stable: bool,
+    /// Negative eigenvalues of the tangent on what may move: none of a stable state.
+    pub negative_eigenvalues: usize,
+    /// Number of unstable states that were left on the way to this one.
+    pub followed: usize,
+    /// The body that moves most as the first unstable state is left; null where all were stable.
+    pub body: Option<String>,
+    /// When stability was lost, where that was in this increment.
+    pub critical_time: Option<f64>,
+}
+
 /// A rope or beam at the end of an increment: its axial force, of a rope never negative.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CurveReport {
@@ -151,8 +169,28 @@ pub struct CurveReport {
     pub min_tension: f64,
     /// Number of cells without tension.
     pub slack_cells: usize,
+    /// Bending moments, shear forces and torque, of what resists bending; null for others.
+    #[serde(default)]
+    pub section: Option<SectionReport>,
     /// Length without tension of the rope that is out, where it has straight elements: a winch changes it.
     pub unstrained_length: Option<f64>,
+}
+
+/// What the sections of a beam carry: sizes of vectors across it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SectionReport {
+    /// Bending moment at the start.
+    pub start_bending_moment: f64,
+    /// Bending moment at the end.
+    pub end_bending_moment: f64,
+    /// Largest bending moment.
+    pub max_bending_moment: f64,
+    /// Where along the beam that is.
+    pub max_bending_moment_at: f64,
+    /// Largest shear force; null where the model has no shear.
+    pub max_shear_force: Option<f64>,
+    /// Largest torque, with its sign; null where the model has no torsion.
+    pub max_torque: Option<f64>,
 }
 
 /// A body of cells as a piece of a material that fills its box: its stress-strain curve, step by step.

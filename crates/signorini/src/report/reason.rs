@@ -26,6 +26,8 @@ pub enum Reason {
     Input,
     /// A body can move without resistance in the way that is named, or its load pulls it away: hold it, or press it into contact.
     FreeBody,
+    /// An equilibrium is unstable, and once disturbed nothing comes to rest near it: what is to hold the body that is named? `stability = "tell"` keeps such states.
+    UnstableState,
     /// The iteration on large sliding did not end. Try smaller increments.
     Newton,
     /// The state of contact alternates at the places that are named. Try smaller increments or finer cells there.

@@ -15,7 +15,7 @@ use crate::plan::mechanics::{Kind, MechanicsPlan};
 use crate::problem::CaseError;
 use crate::report::{Reason, StepReport};
 use serde_json::{Value, json};
-use signorini_mechanics::{BodyState, IncrementError, IncrementResult, Saved, SystemState};
+use signorini_mechanics::{BodyState, IncrementError, IncrementResult, Saved, Stability, SystemState};
 use signorini_solve::{Iteration, Progress};
 use std::path::Path;
 
@@ -24,6 +24,12 @@ const SMALLEST_INCREMENT: f64 = 1e-3;
 /// An increment is cut to this part of itself, and grows by this factor after a success.
 const CUT: f64 = 0.25;
 const GROWTH: f64 = 1.5;
+
+/// Iterations of Newton's method for one increment, with all its parts and all ways to its states, after which it is given up:
+/// as many as take about as long in small systems, and in large ones never less than a hard increment may take.
+const MOST_ITERATIONS: usize = 1000;
+const LEAST_ITERATIONS: usize = 300;
+const MOST_SOLVED: usize = 800_000;
 
 /// A system on its way through its history.
 pub struct MechanicsModel {
@@ -98,11 +104,15 @@ impl MechanicsModel {
         let (mut iterations, mut residuals) = (0, Vec::new());
         // Of the parts of the increment before the last one, by contact.
         let mut dissipated = vec![0.0; self.plan.system.contacts.len()];
+        let unknowns: usize = self.plan.system.bodies.iter().map(|b| b.unknowns()).sum();
+        let most = (MOST_SOLVED / unknowns.max(1)).clamp(LEAST_ITERATIONS, MOST_ITERATIONS);
+        let mut lost: Option<Stability> = None;
+        let mut reason: Option<IncrementError> = None;
         loop {
             let last = time - before <= 0.0 || reached + size >= time - 1e-9 * (time - before);
             let target = if last { time } else { reached + size };
             let mut seen = Vec::new();
-            let mut stopped = false;
+            let mut is_given_up = false;
             let mut report = |iteration: usize, residual: f64| {
                 progress.iteration(&Iteration {
                     step: index,
@@ -113,8 +123,8 @@ impl MechanicsModel {
                     figures: &[("residual", residual)],
                 });
                 seen.push(residual);
-                stopped = progress.interrupted();
-                !stopped
+                is_given_up = residuals.len() + seen.len() >= most;
+                !is_given_up && !progress.interrupted()
             };
             let found = self.plan.system.solve(&self.state, target, &mut report);
             if let Some(error) = self.plan.wrong.take(&self.plan.head.problem) {
@@ -122,9 +132,16 @@ impl MechanicsModel {
             }
             residuals.append(&mut seen);
             match found {
-                Ok((state, result)) => {
+                Ok((state, mut result)) => {
                     iterations += result.iterations;
                     dissipated.iter_mut().zip(&result.dissipated).for_each(|(sum, own)| *sum += own);
+                    // An increment that was cut tells of the first part that lost its stability.
+                    if let Some(told) = &mut result.stability {
+                        if let Some(before) = lost.take() {
+                            told.since(before);
+                        }
+                        lost = Some(told.clone());
+                    }
                     if last {
                         self.state = state;
                         return Ok(Ok(IncrementResult { iterations, history: residuals, dissipated, ..result }));
@@ -136,11 +153,18 @@ impl MechanicsModel {
                     reached = target;
                     size *= GROWTH;
                 }
+                Err(IncrementError::Interrupted) if is_given_up => {
+                    return Ok(Err(given_up(reason.as_ref(), target, residuals)));
+                }
                 Err(error) => {
-                    let curable = !matches!(error, IncrementError::Interrupted | IncrementError::Free { .. });
+                    let curable = !matches!(
+                        error,
+                        IncrementError::Interrupted | IncrementError::Free { .. } | IncrementError::Unstable { .. }
+                    );
                     if !curable || size <= SMALLEST_INCREMENT * (time - before) || time <= before {
                         return Ok(Err(self.failed(&error, residuals)));
                     }
+                    reason = Some(error);
                     size *= CUT;
                 }
             }
@@ -185,10 +209,32 @@ impl MechanicsModel {
                     history(list)
                 ),
             ),
+            IncrementError::Unstable { .. } => (
+                Reason::UnstableState,
+                format!("{error}; add a support, or contact that holds it; `stability = \"tell\"` keeps such states"),
+            ),
             IncrementError::Assembly(_) => (Reason::Input, error.to_string()),
         };
         Failure { reason, text, residuals }
     }
+}
+
+/// An increment that is given up, with what went wrong before.
+fn given_up(before: Option<&IncrementError>, time: f64, residuals: Vec<f64>) -> Failure {
+    let recent = &residuals[residuals.len().saturating_sub(LEAST_ITERATIONS / 3)..];
+    let [low, high] = [(f64::min as fn(f64, f64) -> f64, f64::INFINITY), (f64::max, 0.0)]
+        .map(|(choose, start)| recent.iter().copied().fold(start, choose));
+    let count = residuals.len();
+    let round = format!(
+        "no state at t = {time} in {count} iterations of Newton's method: what is left goes round between {low:.1e} and \
+         {high:.1e} tolerances; there may be no equilibrium: does anything hold what is loaded? try more increments, or more \
+         cells"
+    );
+    let (reason, text) = match before {
+        Some(IncrementError::NotConverged { worst: Some(worst), .. }) => (Reason::Newton, format!("{round}{worst}")),
+        _ => (Reason::Newton, round),
+    };
+    Failure { reason, text, residuals }
 }
 
 impl Model for MechanicsModel {
@@ -341,6 +387,7 @@ impl Model for MechanicsModel {
         };
         let restored = { saved }().and_then(|saved| self.plan.system.restore(saved));
         self.state = restored.ok_or_else(|| checkpoint::damaged(folder))?;
+        self.state.time = next.checked_sub(1).map_or(0.0, |last| self.plan.times[last]);
         Ok(())
     }
 }

@@ -30,6 +30,10 @@ impl Planner<'_> {
                 return Err(self.unavailable(adhesion, "adhesion in a system of bodies"));
             }
             let pairs: Vec<(String, [&String; 2])> = match (&key.between, &key.within, &key.all) {
+                (Some(pair), None, None) if pair.len() == 2 && pair[0].trim() == pair[1].trim() => {
+                    let message = format!("`between` names `{}` twice", pair[0].trim());
+                    return Err(problem.error(pair, message).help(format!("within = \"{}\"", pair[0].trim())));
+                }
                 (Some(pair), None, None) if pair.len() == 2 => vec![(name.clone(), [&pair[0], &pair[1]])],
                 (None, Some(body), None) => vec![(name.clone(), [body, body])],
                 (None, None, Some(true)) => {

@@ -52,6 +52,19 @@ impl Planner<'_> {
         Ok(Arc::new(move |x, t| wrong.evaluate(&expression, &key, x, t)))
     }
 
+    /// The tension at the end of a rope as a field: one that pushes is remembered, and stops the solver.
+    pub(super) fn pull(&self, value: &Value, dimension: Dimension, wrong: &Wrong) -> Result<TimeField, CaseError> {
+        let (tension, key, wrong) = (self.field(value, dimension, wrong)?, self.key(value), wrong.clone());
+        Ok(Arc::new(move |x, t| {
+            let pull = tension(x, t);
+            if pull < 0.0 {
+                wrong.note(&key, format!("`{key}` is {pull:.6} at t = {t}: a rope cannot be pushed"));
+                return f64::NAN;
+            }
+            pull
+        }))
+    }
+
     /// Values as a vector field; in the plane the third component is zero.
     pub(super) fn vector_field(
         &self,

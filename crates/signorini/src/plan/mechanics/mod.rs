@@ -18,13 +18,13 @@ use super::head::Head;
 use super::memory::check_memory;
 use super::planner::Planner;
 use crate::problem::units::LENGTH;
-use crate::problem::{self, Body, CaseError, Material, Motion, Problem, Space};
+use crate::problem::{self, Body, CaseError, Material, Motion, Problem, Space, UnstableStates};
 use crate::report::Warning;
 use signorini_geometry::Point;
 use signorini_geometry::rigid_shape::RigidShape;
 use signorini_mechanics::contact::Part;
 use signorini_mechanics::system::TimeField;
-use signorini_mechanics::{AxisChoice, IncrementError, PlacedLoad, Support, System};
+use signorini_mechanics::{AxisChoice, IncrementError, PlacedLoad, Support, System, Unstable};
 use signorini_rope::curve_pair::search::{Between, Searched, crossings};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -114,6 +114,9 @@ fn size_of(problem: &Problem, system: &System) -> Result<String, CaseError> {
     Ok(format!("{unknowns} unknowns, solved by {how}, in about {:.2} GiB", needed / f64::from(1u32 << 30)))
 }
 
+/// Part of its radius that a curve may start deep inside of what it touches without a word.
+const DEEP: f64 = 0.1;
+
 /// The name of what holds solids on the axis of rotation, which nobody stated.
 pub const AXIS_SUPPORT: &str = "axis";
 
@@ -125,7 +128,11 @@ impl Planner<'_> {
         let problem = self.problem;
         self.check_space()?;
         let wrong = Wrong::default();
-        let mut system = System::default();
+        let unstable = match problem.stability {
+            None | Some(UnstableStates::Follow) => Unstable::Follow,
+            Some(UnstableStates::Tell) => Unstable::Tell,
+        };
+        let mut system = System { unstable, ..System::default() };
         let mut kinds = Vec::new();
         let mut warnings = Vec::new();
         let mut notes = Vec::new();
@@ -182,7 +189,7 @@ impl Planner<'_> {
         system.contacts = acting;
         system.prepare().map_err(|e| problem.error(&problem.space, e.to_string()))?;
         self.check_held(&system)?;
-        self.check_start(&system, &kinds, &contacts)?;
+        self.check_start(&system, &kinds, &contacts, &mut warnings)?;
         self.check_inside(&system)?;
         self.check_crossings(&system, &kinds, &contacts)?;
         self.tell_stretched(&system, &numbers, &mut warnings)?;
@@ -250,7 +257,13 @@ impl Planner<'_> {
     }
 
     /// Whether curves start outside of what they touch: as far as their radius and half of their cells may reach in.
-    fn check_start(&self, system: &System, kinds: &[Kind], contacts: &[Tested]) -> Result<(), CaseError> {
+    fn check_start(
+        &self,
+        system: &System,
+        kinds: &[Kind],
+        contacts: &[Tested],
+        warnings: &mut Vec<Warning>,
+    ) -> Result<(), CaseError> {
         let problem = self.problem;
         let start = system.start();
         for (k, contact) in system.contacts.iter().enumerate() {
@@ -267,6 +280,17 @@ impl Planner<'_> {
                 return Err(self
                     .deep_inside(names, -gap, &site.x)
                     .help("a path outside of the body, by the radius at least"));
+            }
+            if -gap > DEEP * radius.max(0.5 * site.weight) {
+                let [name, other] = [slave, master].map(|b| system.bodies[b].name());
+                warnings.push(
+                    format!(
+                        "`{name}` starts {:.4e} deep inside `{other}`, of a radius of {radius:.4e}: it is pushed out at once; a \
+                         path outside of the body by the radius at least starts without",
+                        -gap
+                    )
+                    .into(),
+                );
             }
         }
         Ok(())

@@ -4,7 +4,7 @@ use super::{Kind, Numbers, Wrong};
 use crate::plan::planner::Planner;
 use crate::plan::solid::loads::no_spring;
 use crate::problem::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE};
-use crate::problem::{CaseError, List, Space, Value, suggestion};
+use crate::problem::{Body, CaseError, List, Space, Value, suggestion};
 use signorini_contact::ContactSurface;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::contact::Part;
@@ -189,6 +189,7 @@ impl Planner<'_> {
                 list.push(TimedLoad::Traction(self.vector_field(v, PRESSURE, wrong)?));
             }
             if let Some(v) = &key.force {
+                self.check_resultant(v, &part, system)?;
                 list.push(TimedLoad::Force(self.vector_field(v, force, wrong)?));
             }
             if let Some(v) = &key.body_force {
@@ -196,10 +197,14 @@ impl Planner<'_> {
                 list.push(TimedLoad::BodyForce(self.vector_field(v, per, wrong)?));
             }
             if let Some(v) = &key.moment {
+                self.check_resultant(v, &part, system)?;
                 list.push(TimedLoad::Moment(self.moment_field(v, moment, wrong)?));
             }
             if let Some(v) = &key.tension {
-                list.push(TimedLoad::Tension(self.field(v, force, wrong)?));
+                self.check_resultant(std::slice::from_ref(v), &part, system)?;
+                let is_rope = matches!(problem.bodies.get(system.bodies[part.body].name()), Some(Body::Rope(_)));
+                let pull = if is_rope { self.pull(v, force, wrong)? } else { self.field(v, force, wrong)? };
+                list.push(TimedLoad::Tension(pull));
             }
             let [load] = <[_; 1]>::try_from(list).map_err(|list: Vec<_>| {
                 problem
@@ -231,6 +236,26 @@ impl Planner<'_> {
             springs.push((name.clone(), part, load));
         }
         Ok((out, springs))
+    }
+
+    /// Whether a resultant varies in space: it may where its place is a point, such as the end of a rope.
+    fn check_resultant(&self, values: &[Value], part: &Part, system: &System) -> Result<(), CaseError> {
+        let body = &system.bodies[part.body];
+        if body.point(part.group.as_deref()).is_some() {
+            return Ok(());
+        }
+        for value in values {
+            if !matches!(value, Value::Text(_)) {
+                continue;
+            }
+            let (expression, _) = self.reader.any(value, self.variables())?;
+            if let Some(axis) = (0..3).find(|axis| expression.uses_position(*axis)) {
+                let name = ["x", "y", "z"][axis];
+                let message = format!("`{name}` in a resultant, which is one for all of `{}`", body.name());
+                return Err(self.problem.error(value, message).help("an expression in t alone"));
+            }
+        }
+        Ok(())
     }
 
     /// Whether a load can act where it is stated.

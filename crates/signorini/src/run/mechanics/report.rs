@@ -1,12 +1,12 @@
 //! What is told of a state of a system.
 
 use crate::output::figure::{told, told_vector};
-use crate::output::system::{SystemShown, frames};
+use crate::output::system::{CurveShown, SystemShown, frames};
 use crate::plan::mechanics::{AXIS_SUPPORT, Kind, MechanicsPlan, Tested};
 use crate::problem::Space;
 use crate::report::{
-    CellsReport, Component, ContactReport, CurveReport, Pose, Probe, Reason, RopeLimits, StepReport, UnitNames,
-    Warning, WarningKind, vector,
+    CellsReport, Component, ContactReport, CurveReport, Pose, Probe, Reason, RopeLimits, SectionReport,
+    StabilityReport, StepReport, UnitNames, Warning, WarningKind, vector,
 };
 use crate::run::contact_verdict::contact_verdict;
 use crate::run::record::Record;
@@ -14,7 +14,7 @@ use crate::run::strain::{self, Strained};
 use signorini_contact::Status;
 use signorini_geometry::Vector;
 use signorini_mechanics::{
-    AxisChoice, Coarse, IncrementResult, Interaction, SiteResult, Solved, SystemState, rigid_body,
+    AxisChoice, Coarse, IncrementResult, Interaction, SiteResult, Solved, Stability, System, SystemState, rigid_body,
 };
 use signorini_paths::darboux::Darboux;
 use signorini_paths::friction::Friction;
@@ -104,6 +104,7 @@ pub fn step_report(
         linear_iterations: solver(result.solved).1,
         residual_history: result.history.clone(),
         energy: Some(result.energy),
+        stability: result.stability.as_ref().map(|told| stability_report(system, told)),
         equilibrium_residual: Some(result.imbalance),
         support_forces: supports.iter().map(|(name, force)| (name.clone(), vector(force))).collect(),
         load_forces: loads,
@@ -116,7 +117,7 @@ pub fn step_report(
             })
             .collect(),
         probes: plan.probes.iter().map(|(name, x)| (name.clone(), probe(x))).collect(),
-        curves: shown.curves.iter().map(|c| (c.name.clone(), curve_report(&c.forces, c.unstrained_length))).collect(),
+        curves: shown.curves.iter().map(|c| (c.name.clone(), curve_report(c))).collect(),
         cells: means.collect(),
         free_bodies: poses.collect(),
         max_strain: most_strained(plan, shown).map(|(_, strained)| strained.strain),
@@ -124,15 +125,61 @@ pub fn step_report(
     }
 }
 
-fn curve_report(forces: &[f64], unstrained_length: Option<f64>) -> CurveReport {
+fn stability_report(system: &System, told: &Stability) -> StabilityReport {
+    StabilityReport {
+        stable: told.negative_eigenvalues == 0,
+        negative_eigenvalues: told.negative_eigenvalues,
+        followed: told.followed,
+        body: told.body.map(|k| system.bodies[k].name().to_string()),
+        critical_time: told.critical_time,
+    }
+}
+
+/// Warns of states that are not stable, and of those that were left.
+fn warn_of_stability(told: &StabilityReport, time: f64, record: &mut Record) {
+    let Some(body) = &told.body else { return };
+    let when = told.critical_time.map_or(String::new(), |t| format!(", lost at t = {t:.6}"));
+    let message = if told.stable {
+        format!("`{body}` became unstable{when}: a disturbance was followed to the stable state at t = {time}")
+    } else {
+        let count = told.negative_eigenvalues;
+        let plural = if count == 1 { "" } else { "s" };
+        format!(
+            "`{body}` is unstable at t = {time}{when}: {count} negative eigenvalue{plural}; `stability = \"follow\"` goes on \
+             to a stable state"
+        )
+    };
+    record.warn_once(Warning::new(WarningKind::Unstable, message).at_time(time));
+}
+
+fn curve_report(curve: &CurveShown) -> CurveReport {
+    let forces = &curve.forces;
     CurveReport {
         start_tension: forces.first().copied().unwrap_or(0.0),
         end_tension: forces.last().copied().unwrap_or(0.0),
         max_tension: forces.iter().copied().fold(f64::NEG_INFINITY, f64::max),
         min_tension: forces.iter().copied().fold(f64::INFINITY, f64::min),
-        slack_cells: forces.iter().filter(|t| **t == 0.0).count(),
-        unstrained_length,
+        slack_cells: curve.slack_cells(),
+        section: section_report(curve),
+        unstrained_length: curve.unstrained_length,
     }
+}
+
+fn section_report(curve: &CurveShown) -> Option<SectionReport> {
+    let moments = &curve.bending_moments;
+    let (at, most) = moments.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
+    if curve.is_rope && *most == 0.0 {
+        return None;
+    }
+    let largest = |list: &[f64]| list.iter().copied().max_by(|a, b| a.abs().total_cmp(&b.abs()));
+    Some(SectionReport {
+        start_bending_moment: *moments.first()?,
+        end_bending_moment: *moments.last()?,
+        max_bending_moment: *most,
+        max_bending_moment_at: curve.arc.get(at).copied().unwrap_or(0.0),
+        max_shear_force: largest(&curve.shear_forces),
+        max_torque: largest(&curve.torques),
+    })
 }
 
 /// Runs of neighbouring sites that carry: along a curve these are the zones of contact.
@@ -252,6 +299,9 @@ fn most_strained<'a>(plan: &MechanicsPlan, shown: &'a SystemShown) -> Option<(&'
 /// Warns of what looks wrong with a state.
 pub fn warn(plan: &MechanicsPlan, result: &IncrementResult, shown: &SystemShown, record: &mut Record) {
     let time = shown.time;
+    if let Some(told) = &result.stability {
+        warn_of_stability(&stability_report(&plan.system, told), time, record);
+    }
     for (contact, sites) in plan.system.contacts.iter().zip(&result.sites) {
         if !plan.head.problem.contacts.contains_key(contact.name()) || sites.iter().any(|s| s.status != Status::Open) {
             continue;
@@ -271,12 +321,11 @@ pub fn warn(plan: &MechanicsPlan, result: &IncrementResult, shown: &SystemShown,
         strained.warning(body, time, dimension).into_iter().for_each(|w| record.warn_once(w));
     }
     for curve in &shown.curves {
-        let slack = curve.forces.iter().filter(|t| **t == 0.0).count();
+        let slack = curve.slack_cells();
         if slack > 0 {
             let message = format!(
                 "`{}` is slack at t = {time}: {slack} of {} cells carry nothing, and where they lie is not determined",
-                curve.name,
-                curve.forces.len()
+                curve.name, curve.elements
             );
             record.warn_once(Warning::new(WarningKind::NotUnique, message).at_time(time));
         }
@@ -338,6 +387,11 @@ pub fn verdict(plan: &MechanicsPlan, record: &Record) -> String {
             n => format!(", {n} cell{} slack", if n == 1 { "" } else { "s" }),
         };
         list.push(format!("`{name}` is pulled by {} at its start and {} at its end{slack}", ends[0], ends[1]));
+    }
+    for (name, section) in step.curves.iter().filter_map(|(name, c)| Some((name, c.section.as_ref()?))) {
+        let of_moments = units.as_ref().map_or(String::new(), |u| format!("{} {}", u.force, u.length));
+        let moment = told(section.max_bending_moment, None, &of_moments);
+        list.push(format!("the bending moment of `{name}` is {moment} at most"));
     }
     for (name, pose) in &step.free_bodies {
         let moved = told_vector(&pose.displacement[..space], None, unit(|u| &u.length));

@@ -1,0 +1,404 @@
+//! Stability of an equilibrium: the second variation of the energy on what may move.
+//!
+//! A state is stable where the overdamped motion `S u' = -R(u)` comes back to it from every small disturbance: where no
+//! eigenvalue of `K v = θ S v`, with the tangent `K` on the variations that supports admit, has a negative real part. `S` is
+//! the stiffness of each unknown by itself, so that eigenvalues are numbers without units.
+//!
+//! First the symmetric part of the tangent is looked at. Contact that is closed counts as a constraint: its multipliers have as
+//! many negative pivots in the saddle point matrix as there are, and penalties have none. Where friction sticks it is a
+//! constraint too; where it slips its force is taken as given, as it follows the pressure along no potential (Nguyen 2000,
+//! Stability and nonlinear solid mechanics). Without negative eigenvalues the state is stable. With some it is not, if the
+//! tangent is symmetric; otherwise, as with loads that follow, the eigenvalues of the tangent itself decide, and where friction
+//! slips nothing is known.
+
+use crate::admissible::Admissible;
+use crate::increment_error::IncrementError;
+use crate::points::Order;
+use crate::system::{Assembled, System, SystemState};
+use nalgebra::{DMatrix, DVector};
+use signorini_contact::law::Friction;
+use signorini_contact::{Law, Status};
+use signorini_solve::general::{Analysis, Entries, Matrix};
+use signorini_solve::ldlt::Ldlt;
+use signorini_solve::{SolveError, SymmetricMatrix};
+use std::sync::Arc;
+
+/// What is done with a state that is not stable.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Unstable {
+    /// It is disturbed, and what follows is followed to a state that is stable.
+    #[default]
+    Follow,
+    /// It is told.
+    Tell,
+}
+
+/// How stable a state is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Stability {
+    /// Negative eigenvalues of the tangent on what may move.
+    pub negative_eigenvalues: usize,
+    /// Of the unstable states at this time, how many were left behind on the way to this one.
+    pub followed: usize,
+    /// When stability was lost, if the last state was stable.
+    pub critical_time: Option<f64>,
+    /// The body that moves most as the first unstable state is left, by its number.
+    pub body: Option<usize>,
+    /// How it moves: by its unknowns, the largest of size 1.
+    pub direction: Vec<f64>,
+}
+
+impl Stability {
+    /// Takes over what was told of an earlier part of the same increment.
+    pub fn since(&mut self, earlier: Stability) {
+        self.followed += earlier.followed;
+        if earlier.body.is_some() {
+            (self.body, self.direction, self.critical_time) = (earlier.body, earlier.direction, earlier.critical_time);
+        }
+    }
+}
+
+/// What is known of the stability of a state.
+#[derive(Clone, Debug)]
+pub(crate) enum Tested {
+    /// A pivot was zero, or a matrix singular.
+    Unknown,
+    Stable,
+    Unstable(UnstableMode),
+}
+
+/// A direction in which a state is left.
+#[derive(Clone, Debug)]
+pub(crate) struct UnstableMode {
+    /// Number of negative eigenvalues.
+    pub negative: usize,
+    /// The one nearest to zero.
+    pub value: f64,
+    /// Its eigenvector in the unknowns of the bodies, towards where the state came from.
+    pub direction: Vec<f64>,
+    /// The metric `S`.
+    pub metric: Vec<f64>,
+}
+
+/// Eigenvalue below which a state is not stable: rounding of free motions makes less.
+const NEUTRAL: f64 = 1e-13;
+/// Eigenvalues of the inverse beyond are those of motions that nothing holds.
+const LIMIT: f64 = 0.1 / NEUTRAL;
+/// Least stiffness of an unknown as a measure, relative to the largest: rounding of what has none stays below
+/// [`NEUTRAL`].
+const SLACK: f64 = 1e-4;
+/// Lanczos: most steps, and residual of an eigenvalue of the inverse relative to it that ends them.
+const MOST_STEPS: usize = 60;
+const CONVERGED: f64 = 1e-7;
+/// Largest difference of an entry from its mirror image, relative to the diagonal, that is rounding.
+const ASYMMETRY: f64 = 1e-9;
+/// What of the first vector is none of where the state came from.
+const ELSEWHERE: f64 = 1e-6;
+
+impl System {
+    /// Whether states may be unstable: bodies that deform, and not by small strains alone, in equations that are factorised.
+    pub(crate) fn may_be_unstable(&self, at: &SystemState) -> Result<bool, IncrementError> {
+        let moves = self.bodies.iter().filter(|b| b.unknowns() > 0);
+        Ok(moves.into_iter().any(|b| !b.is_rigid() && !b.is_linear()) && !self.is_iterative(at)?)
+    }
+
+    /// Whether a state is stable, with a direction in which it is left as near as may be to where it came from.
+    ///
+    /// # Errors
+    /// Places that are not there.
+    pub(crate) fn test_stability(&mut self, at: &SystemState, time: f64) -> Result<Tested, IncrementError> {
+        let out = self.with_given_friction(|system| system.assemble(at, time, Order::Second))?;
+        let pencil = Pencil::new(self, out);
+        // A pivot that is zero tells nothing.
+        let Ok(factor) = Ldlt::factor(&pencil.symmetric()) else { return Ok(Tested::Unknown) };
+        let negative = factor.negative_eigenvalues().saturating_sub(pencil.multipliers);
+        if negative == 0 {
+            return Ok(Tested::Stable);
+        }
+        let pencil = Pencil::new(self, self.assemble(at, time, Order::Second)?);
+        let toward: Vec<f64> = at.travel.iter().map(|t| -t).collect();
+        let found = match pencil.is_symmetric() {
+            true => pencil.nearest_to_zero(&|x| factor.solve(x), &toward, Sign::Negative)?,
+            // How friction that slips answers to a disturbance depends on which way it goes.
+            false if self.slips(at)? => return Ok(Tested::Unknown),
+            false => {
+                let Ok(factor) = Analysis::default().factor(pencil.shifted.clone()) else {
+                    return Ok(Tested::Unknown);
+                };
+                let solve = |x: &mut [f64]| factor.solve(x).map(|found| x.copy_from_slice(&found));
+                match pencil.nearest_to_zero(&solve, &toward, Sign::Negative) {
+                    Ok(found) => found,
+                    Err(_) => return Ok(Tested::Unknown),
+                }
+            }
+        };
+        let Some(Eigenpair { value, vector, count }) = found.filter(|f| f.value < -NEUTRAL) else {
+            return Ok(Tested::Stable);
+        };
+        let negative = if pencil.is_symmetric() { negative } else { count };
+        let direction = pencil.admissible.expand(&vector)[..pencil.count].to_vec();
+        Ok(Tested::Unstable(UnstableMode { negative, value, direction, metric: pencil.metric }))
+    }
+
+    /// The eigenvalue that tells how far a state is from the loss of stability: the least of a stable one, the negative one
+    /// nearest to zero of an unstable one; none where nothing is known.
+    ///
+    /// # Errors
+    /// Places that are not there.
+    pub(crate) fn critical_eigenvalue(&mut self, at: &SystemState, time: f64) -> Result<Option<f64>, IncrementError> {
+        match self.test_stability(at, time)? {
+            Tested::Unknown => return Ok(None),
+            Tested::Unstable(mode) => return Ok(Some(mode.value)),
+            Tested::Stable => {}
+        }
+        let pencil = Pencil::new(self, self.assemble(at, time, Order::Second)?);
+        let Ok(factor) = Ldlt::factor(&pencil.symmetric()) else { return Ok(None) };
+        let found = pencil.nearest_to_zero(&|x| factor.solve(x), &at.travel, Sign::Positive)?;
+        Ok(found.filter(|_| pencil.is_symmetric()).map(|found| found.value))
+    }
+
+    /// Whether a site of a contact with friction slips.
+    fn slips(&self, at: &SystemState) -> Result<bool, IncrementError> {
+        for (k, _) in self.contacts.iter().enumerate().filter(|(_, contact)| contact.law().is_some()) {
+            if self.sites_at_limit(k, at)?.iter().any(|site| site.status == Status::Slip) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// What is done while friction that slips is a given force.
+    fn with_given_friction<T>(&mut self, of: impl FnOnce(&Self) -> T) -> T {
+        let stated: Vec<Option<Arc<Box<dyn Law>>>> = (self.contacts.iter_mut())
+            .map(|contact| {
+                let law = contact.friction_mut()?;
+                let stated = Arc::new(law.take()?);
+                *law = Some(Box::new(Given(Arc::clone(&stated))));
+                Some(stated)
+            })
+            .collect();
+        let found = of(self);
+        for (contact, stated) in self.contacts.iter_mut().zip(stated) {
+            if let (Some(law), Some(stated)) = (contact.friction_mut(), stated) {
+                *law = None;
+                *law = Arc::into_inner(stated);
+            }
+        }
+        found
+    }
+}
+
+/// Friction whose force does not follow the pressure.
+#[derive(Debug)]
+struct Given(Arc<Box<dyn Law>>);
+
+impl Given {
+    fn without_pressure(friction: Friction) -> Friction {
+        Friction { by_pressure: [0.0; 2], ..friction }
+    }
+}
+
+impl Law for Given {
+    fn friction(&self, trial: [f64; 2], pressure: f64) -> Friction {
+        Self::without_pressure(self.0.friction(trial, pressure))
+    }
+    fn friction_in_time(&self, trial: [f64; 2], pressure: f64, per_velocity: f64) -> Friction {
+        Self::without_pressure(self.0.friction_in_time(trial, pressure, per_velocity))
+    }
+    fn utilisation(&self, traction: [f64; 2], pressure: f64) -> f64 {
+        self.0.utilisation(traction, pressure)
+    }
+    fn per_pressure(&self) -> Option<[f64; 2]> {
+        self.0.per_pressure()
+    }
+}
+
+/// `K` and `S` on what may move, with the multipliers of contacts.
+struct Pencil {
+    admissible: Admissible,
+    /// Unknowns of the bodies.
+    count: usize,
+    multipliers: usize,
+    metric: Vec<f64>,
+    /// `Tᵀ (K + εS) T`: what is free to move does not count.
+    shifted: Matrix,
+}
+
+/// Which eigenvalues are looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sign {
+    Positive,
+    Negative,
+}
+
+/// An eigenvalue with its vector of size 1, and how many of the same sign were seen.
+struct Eigenpair {
+    value: f64,
+    vector: Vec<f64>,
+    count: usize,
+}
+
+impl Pencil {
+    fn new(system: &System, out: Assembled) -> Self {
+        let (first, count) = system.numbering();
+        let size = out.residual.len() - out.coupled.len();
+        let multipliers = size - count;
+        let admissible = Admissible::new(size, &out.single, &out.coupled);
+        let mut is_spin = vec![false; count];
+        for (body, first) in system.bodies.iter().zip(first) {
+            body.spins().iter().flatten().for_each(|s| is_spin[(first + s) as usize] = true);
+        }
+        let whole = out.tangent.matrix(out.residual.len());
+        let rows = whole.row_sizes();
+        // Multipliers that give way act by a part of themselves, their equations by the whole gap: scaled, both are the same.
+        let of_columns: Vec<f64> = (count..size)
+            .map(|k| {
+                let own: Vec<[f64; 2]> =
+                    whole.column(k).filter(|(i, _)| *i < count).map(|(i, v)| [v, whole.get(k, i)]).collect();
+                let square: f64 = own.iter().map(|[b, _]| b * b).sum();
+                let product: f64 = own.iter().map(|[b, c]| b * c).sum();
+                if product > 0.0 { product / square } else { 1.0 }
+            })
+            .collect();
+        let mut most = [f64::MIN_POSITIVE; 2];
+        (0..count).for_each(|k| most[usize::from(is_spin[k])] = most[usize::from(is_spin[k])].max(rows[k]));
+        let extent = system.size();
+        most[0] = most[0].max(most[1] / (extent * extent));
+        most[1] = most[1].max(most[0] * extent * extent);
+        let metric: Vec<f64> = (0..count).map(|k| rows[k].max(SLACK * most[usize::from(is_spin[k])])).collect();
+        let mut entries = Entries::default();
+        let mut add = |i: usize, j: usize, value: f64| {
+            for (a, of_a) in &admissible.rows[i] {
+                admissible.rows[j].iter().for_each(|(b, of_b)| entries.add(*a, *b, of_a * of_b * value));
+            }
+        };
+        let within = |i: &u32| (*i as usize) < size;
+        let (list, _) = out.tangent.into_parts();
+        for &(i, j, v) in list.iter().filter(|(i, j, _)| within(i) && within(j)) {
+            let scale = (j as usize).checked_sub(count).map_or(1.0, |k| of_columns[k]);
+            add(i as usize, j as usize, scale * v);
+        }
+        metric.iter().enumerate().for_each(|(k, s)| add(k, k, NEUTRAL * s));
+        let shifted = entries.matrix(admissible.columns);
+        Pencil { admissible, count, multipliers, metric, shifted }
+    }
+
+    fn symmetric(&self) -> SymmetricMatrix {
+        self.shifted.symmetric_part()
+    }
+
+    /// Whether the tangent has a potential, but for rounding.
+    fn is_symmetric(&self) -> bool {
+        self.shifted.asymmetry() < ASYMMETRY
+    }
+
+    /// `Tᵀ S T y`.
+    fn measure(&self, y: &[f64]) -> Vec<f64> {
+        let mut v = self.admissible.expand(y);
+        v.iter_mut().enumerate().for_each(|(k, v)| *v *= self.metric.get(k).copied().unwrap_or(0.0));
+        self.admissible.gather(&v)
+    }
+
+    /// Of the eigenvalues of a sign the one nearest to zero, by Arnoldi's method (that of Lanczos where all is symmetric) for the
+    /// inverse from what a direction has of it; none where there is none of this sign. Of a pair the real parts are taken.
+    fn nearest_to_zero(
+        &self,
+        solve: &dyn Fn(&mut [f64]) -> Result<(), SolveError>,
+        toward: &[f64],
+        wanted: Sign,
+    ) -> Result<Option<Eigenpair>, SolveError> {
+        let sign = if wanted == Sign::Positive { 1.0 } else { -1.0 };
+        let symmetric = self.is_symmetric();
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let unit = |v: &dyn Fn(usize) -> f64| {
+            let mut y = self.admissible.coordinates(v);
+            let size = dot(&y, &self.measure(&y)).sqrt();
+            y.iter_mut().for_each(|y| *y = if size > 0.0 { *y / size } else { 0.0 });
+            y
+        };
+        let given = unit(&|k| toward.get(k).copied().unwrap_or(0.0));
+        let elsewhere = unit(&|k| self.metric.get(k).map_or(0.0, |m| (1.0 + k as f64 / self.count as f64) / m.sqrt()));
+        let mut q: Vec<f64> = given.iter().zip(&elsewhere).map(|(a, b)| a + ELSEWHERE * b).collect();
+        let mut basis: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
+        let mut projected = DMatrix::<f64>::zeros(MOST_STEPS, MOST_STEPS);
+        for step in 0..MOST_STEPS.min(self.admissible.columns) {
+            let mut measured = self.measure(&q);
+            let size = dot(&q, &measured).max(0.0).sqrt();
+            if size == 0.0 || !size.is_finite() {
+                return Ok(None);
+            }
+            q.iter_mut().chain(&mut measured).for_each(|v| *v /= size);
+            let mut next = measured.clone();
+            solve(&mut next)?;
+            basis.push((q, measured));
+            for _ in 0..2 {
+                for (k, (own, measured)) in basis.iter().enumerate() {
+                    let share = dot(&next, measured);
+                    projected[(k, step)] += share;
+                    next.iter_mut().zip(own).for_each(|(n, o)| *n -= share * o);
+                }
+            }
+            let rest = dot(&next, &self.measure(&next)).max(0.0).sqrt();
+            let n = step + 1;
+            let own = projected.view((0, 0), (n, n)).into_owned();
+            if let Some((value, vector, count)) = outermost(own, sign, symmetric)
+                && rest * vector[step].abs() < CONVERGED * value.abs()
+            {
+                let mut y = vec![0.0; self.admissible.columns];
+                for (k, (own, _)) in basis.iter().enumerate() {
+                    y.iter_mut().zip(own).for_each(|(y, o)| *y += vector[k] * o);
+                }
+                // The first vector says which way.
+                if vector[0] < 0.0 {
+                    y.iter_mut().for_each(|y| *y = -*y);
+                }
+                return Ok(Some(Eigenpair { value: 1.0 / value - NEUTRAL, vector: y, count }));
+            }
+            q = next;
+        }
+        Ok(None)
+    }
+}
+
+/// The eigenvalue of a matrix that lies farthest to one side, but for those beyond a limit, with its vector of size 1 and how
+/// many lie on that side of zero; none where none does.
+fn outermost(matrix: DMatrix<f64>, sign: f64, symmetric: bool) -> Option<(f64, DVector<f64>, usize)> {
+    let n = matrix.nrows();
+    let counts = |v: f64| sign * v > 0.0 && v.abs() < LIMIT;
+    if symmetric {
+        let eigen = (0.5 * (&matrix + matrix.transpose())).symmetric_eigen();
+        let wanted: Vec<usize> = (0..n).filter(|k| counts(eigen.eigenvalues[*k])).collect();
+        let k = wanted
+            .iter()
+            .copied()
+            .max_by(|a, b| (sign * eigen.eigenvalues[*a]).total_cmp(&(sign * eigen.eigenvalues[*b])))?;
+        return Some((eigen.eigenvalues[k], eigen.eigenvectors.column(k).into_owned(), wanted.len()));
+    }
+    let values: Vec<f64> = matrix.complex_eigenvalues().iter().map(|v| v.re).filter(|v| counts(*v)).collect();
+    let value = values.iter().copied().max_by(|a, b| (sign * a).total_cmp(&(sign * b)))?;
+    // Inverse iteration, a little beside the eigenvalue.
+    let factor = (matrix - DMatrix::identity(n, n) * (value * (1.0 + 1e-10))).lu();
+    let mut vector = DVector::from_element(n, 1.0);
+    for _ in 0..3 {
+        match factor.solve(&vector) {
+            Some(next) if next.norm().is_finite() && next.norm() > 0.0 => vector = next.normalize(),
+            _ => break,
+        }
+    }
+    Some((value, vector, values.len()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_outermost_eigenvalue_of_a_matrix_that_is_not_symmetric() {
+        // Of (1 2; 0 -3) the vector of -3 is (1, -2)/√5.
+        let matrix = DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 0.0, -3.0]);
+        let (value, vector, count) = outermost(matrix.clone(), -1.0, false).unwrap();
+        assert!((value + 3.0).abs() < 1e-12 && count == 1);
+        assert!((vector[0] * -2.0 - vector[1]).abs() < 1e-8, "{vector}");
+        assert!((outermost(matrix, 1.0, false).unwrap().0 - 1.0).abs() < 1e-12);
+    }
+}

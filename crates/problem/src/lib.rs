@@ -84,6 +84,9 @@ pub struct Problem {
     /// What to write.
     #[serde(default)]
     pub output: Output,
+    /// How much a run may take.
+    #[serde(default)]
+    pub limits: Limits,
     /// With `analysis = "wrapping"`, the number of times in [0, 1]; 2 if left out.
     pub frames: Option<i64>,
     /// From where pictures of paths are drawn.
@@ -120,6 +123,7 @@ impl Problem {
             contacts: Named::default(),
             steps: List::default(),
             output: Output::default(),
+            limits: Limits::default(),
             frames: None,
             view: None,
             paths: Named::default(),
@@ -314,6 +318,16 @@ pub struct Load {
     pub moment: Option<List<Value>>,
     /// A force along the end of a rope or beam, pulling.
     pub tension: Option<Value>,
+}
+
+/// How much a run may take: at the first of the limits it stops after the iteration at hand, and keeps what is there.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Limits {
+    /// Time of the clock in seconds.
+    pub max_time: Option<f64>,
+    /// Iterations of all increments together.
+    pub max_iterations: Option<i64>,
 }
 
 /// What to write.

@@ -4,6 +4,7 @@
 //! from above `[x, y, z]` with z upward, in the plane and around an axis `[x, y, 0]`, x the radius around an axis. A figure
 //! that a model does not have is null. The comments on the fields are what `signorini explain` and the reference tell.
 
+mod paths;
 mod reason;
 mod table;
 pub mod words;
@@ -11,6 +12,7 @@ pub mod words;
 use crate::plan::reader::Interpreted;
 use crate::problem::Space;
 use crate::problem::units::{self, Units};
+pub use paths::*;
 pub use reason::{Reason, Warning, WarningKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -49,6 +51,9 @@ pub struct Summary {
     pub steps: Vec<StepReport>,
     /// Changes of topology, in steps that ask for `events`.
     pub events: Vec<Event>,
+    /// What was found of paths on rigid bodies.
+    #[serde(flatten)]
+    pub of_paths: PathReports,
     /// Where and when it ran: all that differs between two runs of one case.
     pub environment: Environment,
 }
@@ -64,6 +69,9 @@ pub struct UnitNames {
     pub force: String,
     /// Of pressures and stresses.
     pub pressure: String,
+    /// Of forces per length, that ropes, beams and edges carry.
+    #[serde(default)]
+    pub line_load: String,
     /// Of energies.
     pub energy: String,
     /// Of times that stand for times.
@@ -79,6 +87,7 @@ impl UnitNames {
             area: units.written(if is_length { units::LENGTH } else { units::AREA }),
             force: units.written(units::FORCE),
             pressure: units.written(units::PRESSURE),
+            line_load: units.written(units::FORCE_PER_LENGTH),
             energy: units.written(units::ENERGY),
             time: units.written(units::TIME),
         }
@@ -178,7 +187,10 @@ pub struct Pose {
 pub struct ContactReport {
     /// Force of the contact on the first body that it names; for a round membrane, on the whole of it.
     pub force: [f64; 3],
-    /// Area of contact; a length for a string and in the plane.
+    /// What `area` measures, and pressures are forces per.
+    #[serde(default)]
+    pub carries: Carried,
+    /// Area of contact; a length for a string, in the plane, and where `carries` says `line_load`.
     pub area: f64,
     /// Number of connected zones of contact.
     pub zones: usize,
@@ -226,6 +238,30 @@ pub struct ContactReport {
     /// What friction could hold of a rope where it lies; null for other bodies.
     #[serde(default)]
     pub rope: Option<RopeLimits>,
+}
+
+/// What a contact carries: what its `area` measures, and what its pressures are forces per.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Carried {
+    /// Forces per area of a surface (per length of a line in the plane).
+    #[default]
+    Pressure,
+    /// Forces per length of a curve, of ropes, beams and edges: `area` is a length.
+    LineLoad,
+    /// Forces at points: rods that cross, balls, corners of rigid bodies; `area` is their number or what they stand for.
+    Force,
+}
+
+impl Carried {
+    /// The units of extent and largest pressure.
+    pub fn units(self, names: &UnitNames) -> [&str; 2] {
+        match self {
+            Self::Pressure => [&names.area, &names.pressure],
+            Self::LineLoad => [&names.length, &names.line_load],
+            Self::Force => ["", &names.force],
+        }
+    }
 }
 
 /// What friction could hold of a rope that lies on a surface, by the theorem of Euler and Eytelwein for curves on surfaces.

@@ -1,6 +1,6 @@
 //! The summary as text: the table of the terminal, and the history as CSV.
 
-use super::{ContactReport, ErrorEstimate, StepReport, Summary, UnitNames, signed_size};
+use super::{Carried, ContactReport, ErrorEstimate, StepReport, Summary, UnitNames, signed_size};
 use crate::output::figure::figure;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,34 +13,52 @@ pub fn table(summary: &Summary) -> String {
             if of.is_empty() { vec![(step, None)] } else { of }
         })
         .collect();
+    type Line<'a> = (&'a StepReport, Option<(&'a str, &'a ContactReport)>);
     type Cell = fn(&StepReport, Option<(&str, &ContactReport)>) -> Option<String>;
-    let unit = |of: fn(&UnitNames) -> &String| summary.units.as_ref().map_or("", |u| of(u));
-    let columns: [(&str, &str, Cell); 10] = [
-        ("t", "", |s, _| Some(format!("{:.6}", s.time))),
-        ("solves", "", |s, _| Some(s.solves().to_string())),
-        ("contact", "", |_, c| Some(c?.0.to_string())),
-        ("area", unit(|u| &u.area), |_, c| c.map(|(_, c)| figure(c.area, c.error_estimate.map(|e| e.area)))),
-        ("force", unit(|u| &u.force), |_, c| {
-            c.map(|(_, c)| figure(signed_size(&c.force), c.error_estimate.map(|e| e.force)))
-        }),
-        ("max pressure", unit(|u| &u.pressure), |_, c| {
-            c.map(|(_, c)| figure(c.max_pressure, c.error_estimate.and_then(|e| e.max_pressure)))
-        }),
-        ("radius", unit(|u| &u.length), |_, c| c.and_then(|(_, c)| c.radius.map(|r| figure(r, radius_error(c, r))))),
-        ("zones", "", |_, c| Some(c?.1.zones.to_string())),
-        ("holes", "", |_, c| Some(c?.1.holes?.to_string())),
-        ("balance", "", |s, _| Some(format!("{:.1e}", s.equilibrium_residual?))),
+    /// The unit of the figures of a contact, or of all of them.
+    type Unit = fn(&UnitNames, Carried) -> &str;
+    let columns: [(&str, Unit, Cell); 10] = [
+        ("t", |_, _| "", |s, _| Some(format!("{:.6}", s.time))),
+        ("solves", |_, _| "", |s, _| Some(s.solves().to_string())),
+        ("contact", |_, _| "", |_, c| Some(c?.0.to_string())),
+        ("area", |u, c| c.units(u)[0], |_, c| c.map(|(_, c)| figure(c.area, c.error_estimate.map(|e| e.area)))),
+        (
+            "force",
+            |u, _| &u.force,
+            |_, c| c.map(|(_, c)| figure(signed_size(&c.force), c.error_estimate.map(|e| e.force))),
+        ),
+        (
+            "max pressure",
+            |u, c| c.units(u)[1],
+            |_, c| c.map(|(_, c)| figure(c.max_pressure, c.error_estimate.and_then(|e| e.max_pressure))),
+        ),
+        ("radius", |u, _| &u.length, |_, c| c.and_then(|(_, c)| c.radius.map(|r| figure(r, radius_error(c, r))))),
+        ("zones", |_, _| "", |_, c| Some(c?.1.zones.to_string())),
+        ("holes", |_, _| "", |_, c| Some(c?.1.holes?.to_string())),
+        ("balance", |_, _| "", |s, _| Some(format!("{:.1e}", s.equilibrium_residual?))),
     ];
     let several = summary.steps.iter().any(|s| s.contacts.len() > 1);
     let mut rows: Vec<String> = vec![String::new(); lines.len() + 1];
+    let carried = |line: &Line| line.1.map_or(Carried::Pressure, |(_, c)| c.carries);
     for (title, unit, cell) in columns {
         let cells: Vec<Option<String>> = lines.iter().map(|(s, c)| cell(s, *c)).collect();
         if cells.iter().all(Option::is_none) || (title == "contact" && !several) {
             continue;
         }
-        let cells: Vec<String> = cells.into_iter().map(|c| c.unwrap_or("-".into())).collect();
-        let heading = headed(title, unit);
-        let width = cells.iter().map(String::len).chain([heading.chars().count()]).max().unwrap_or(0);
+        // A unit that all lines have stands above them, others behind the figures.
+        let unit_of = |line: &Line| summary.units.as_ref().map_or("", |u| unit(u, carried(line)));
+        let units: Vec<&str> = lines.iter().map(unit_of).collect();
+        let shared = units.first().copied().filter(|first| units.iter().all(|u| u == first));
+        let behind = |unit: &str| if shared.is_some() || unit.is_empty() { String::new() } else { format!(" {unit}") };
+        let written = |(text, unit): (Option<String>, &&str)| text.map_or("-".into(), |text| text + &behind(unit));
+        let cells: Vec<String> = cells.into_iter().zip(&units).map(written).collect();
+        let title = match (title, lines.iter().all(|line| carried(line) == Carried::LineLoad)) {
+            ("area", true) => "length",
+            ("max pressure", true) => "max line load",
+            (title, _) => title,
+        };
+        let heading = headed(title, shared.unwrap_or_default());
+        let width = cells.iter().map(|c| c.chars().count()).chain([heading.chars().count()]).max().unwrap_or(0);
         for (row, text) in
             rows.iter_mut().zip(std::iter::once(heading.as_str()).chain(cells.iter().map(String::as_str)))
         {
@@ -112,8 +130,9 @@ pub fn history(steps: &[StepReport], units: Option<&UnitNames>) -> String {
             add(format!("{name}:force_{axis}"), unit(|u| &u.force), &|s| Some(of(s)?.force[k]));
         }
         type Reading = fn(&ContactReport) -> Option<f64>;
-        let (area, length) = (unit(|u| &u.area), unit(|u| &u.length));
-        let (force, pressure) = (unit(|u| &u.force), unit(|u| &u.pressure));
+        let (force, length) = (unit(|u| &u.force), unit(|u| &u.length));
+        let carries = steps.iter().find_map(of).map_or(Carried::Pressure, |c| c.carries);
+        let [area, pressure] = units.map_or([""; 2], |u| carries.units(u));
         let readings: [(&str, &str, Reading); 12] = [
             ("area", area, |c| Some(c.area)),
             ("radius", length, |c| c.radius),

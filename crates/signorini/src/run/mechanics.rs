@@ -288,7 +288,8 @@ impl Model for MechanicsModel {
             Reason::Interrupted => format!("Interrupted: {done} of {count} increments are done and on disk."),
             reason if !reason.is_converged() => {
                 let why = self.failure.as_deref().unwrap_or("a value became invalid along the way");
-                format!("Increment {} of {count} has no solution: {why}.", done + 1)
+                let time = self.plan.times.get(done).map_or(String::new(), |t| format!(", to t = {t},"));
+                format!("Increment {} of {count}{time} has no solution: {why}.", done + 1)
             }
             _ => report::verdict(&self.plan, record),
         }

@@ -49,6 +49,7 @@ fn every_path_gives_its_expected_numbers() {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let summary = signorini::paths::run(&case, &folder.path().join("out"), &mut signorini::run::Silent)
             .unwrap_or_else(|e| panic!("{}: {e:?}", example.name));
+        let summary = serde_json::json!(summary);
         for (place, figure) in expected["figures"].as_object().expect("figures") {
             let found = number(summary.pointer(place).unwrap_or(&Value::Null));
             let (value, tolerance) = (number(&figure["value"]), number(&figure["relative_tolerance"]));

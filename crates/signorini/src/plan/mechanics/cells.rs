@@ -88,6 +88,13 @@ impl Planner<'_> {
         };
         for (group, value) in &key.groups {
             let expression = self.reader.expression(value, NONE, self.places())?;
+            if !expression.is_condition() {
+                let message =
+                    format!("the group `{group}` is no condition, which holds at a point of the surface or not");
+                return Err(problem
+                    .error(value, message)
+                    .help("a comparison:  z < 0.1,  or several:  x > 0 && z > 0.9"));
+            }
             let holds = move |x: &Point<3>, _: &Vector<3>| {
                 expression.evaluate(&Scope { position: [x.x, x.y, x.z], time: 0.0 }) > 0.0
             };

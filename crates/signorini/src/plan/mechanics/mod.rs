@@ -19,7 +19,7 @@ use super::memory::check_memory;
 use super::planner::Planner;
 use crate::problem::units::LENGTH;
 use crate::problem::{self, Body, CaseError, Material, Motion, Problem, Space};
-use crate::report::Warning;
+use crate::report::{Carried, Warning};
 use signorini_geometry::Point;
 use signorini_geometry::rigid_shape::RigidShape;
 use signorini_mechanics::contact::Part;
@@ -55,6 +55,8 @@ pub struct Tested {
     pub axis: AxisChoice,
     /// Whether its points are those of a curve, in order.
     pub along_a_curve: bool,
+    /// What the first body carries.
+    pub carries: Carried,
     /// What was found out about it.
     pub notes: Vec<String>,
     pub warnings: Vec<String>,
@@ -63,7 +65,8 @@ pub struct Tested {
 impl Tested {
     /// By a method, at points in no order, with nothing to say of it.
     fn by(method: &'static str, axis: AxisChoice) -> Self {
-        Tested { method, axis, along_a_curve: false, notes: Vec::new(), warnings: Vec::new() }
+        let carries = Carried::Pressure;
+        Tested { method, axis, along_a_curve: false, carries, notes: Vec::new(), warnings: Vec::new() }
     }
 }
 
@@ -180,7 +183,7 @@ impl Planner<'_> {
         system.loads.extend(springs.into_iter().map(|(name, part, load)| PlacedLoad { name, part, load }));
         let (acting, contacts) = self.system_contacts(&numbers, &mut system, &kinds)?;
         system.contacts = acting;
-        system.prepare().map_err(|e| problem.error(&problem.space, e.to_string()))?;
+        system.prepare().map_err(|e| self.unprepared(&e))?;
         self.check_held(&system)?;
         self.check_start(&system, &kinds, &contacts)?;
         self.check_crossings(&system, &kinds, &contacts)?;
@@ -235,7 +238,7 @@ impl Planner<'_> {
     /// Whether something holds each body of small strains.
     fn check_held(&self, system: &System) -> Result<(), CaseError> {
         let problem = self.problem;
-        let Some((body, motion)) = system.unheld().map_err(|e| problem.error(&problem.space, e.to_string()))? else {
+        let Some((body, motion)) = system.unheld().map_err(|e| self.unprepared(&e.into()))? else {
             return Ok(());
         };
         let name = system.bodies[body].name();

@@ -9,8 +9,10 @@ use signorini_contact::ContactSurface;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::contact::Part;
 use signorini_mechanics::surface::Faces;
-use signorini_mechanics::system::TimeField;
-use signorini_mechanics::{Contribution, Hold, Load, Order, PlaceError, PlacedLoad, Support, System, TimedLoad};
+use signorini_mechanics::system::{AssemblyError, TimeField};
+use signorini_mechanics::{
+    Contribution, Hold, IncrementError, Load, Order, PlaceError, PlacedLoad, Sampling, Support, System, TimedLoad,
+};
 use std::sync::Arc;
 
 /// Springs that a support states: its name, its place, and the load that they are.
@@ -62,7 +64,34 @@ impl Planner<'_> {
 
     /// The error of a place, at its key.
     pub(super) fn misplaced(&self, on: &String, error: &PlaceError) -> CaseError {
-        self.problem.error(on, error.to_string())
+        let told = self.problem.error(on, error.to_string());
+        match error {
+            PlaceError::Unknown { group, known, .. } => {
+                told.help(suggestion(group, &known.iter().map(String::as_str).collect::<Vec<_>>()))
+            }
+            PlaceError::Unsuitable { .. } => told,
+        }
+    }
+
+    /// Whether a body has the place that is stated.
+    pub(super) fn check_group(&self, part: &Part, on: &String, system: &System) -> Result<(), CaseError> {
+        match system.bodies[part.body].sites(part.group.as_deref(), Sampling::Nodes) {
+            Err(error @ PlaceError::Unknown { .. }) => Err(self.misplaced(on, &error)),
+            _ => Ok(()),
+        }
+    }
+
+    /// Why a system cannot be assembled at its start, at the key that is to be changed.
+    pub(super) fn unprepared(&self, error: &IncrementError) -> CaseError {
+        let problem = self.problem;
+        let IncrementError::Assembly(AssemblyError::Contradiction { second, .. }) = error else {
+            return problem.error(&problem.space, error.to_string());
+        };
+        match problem.supports.get(second) {
+            Some(support) => problem.error(support, error.to_string()),
+            None => problem.error(&problem.space, error.to_string()),
+        }
+        .help("what is held twice is held alike, or \"free\" in one of them")
     }
 
     pub(super) fn system_supports(

@@ -191,6 +191,7 @@ fn contact_report(
     let area = |status: Status| closed().filter(|s| s.status == status).map(|s| s.contact_area()).sum::<f64>() + 0.0;
     ContactReport {
         force: vector(&resultant(closed().map(|s| s.force()))),
+        carries: tested.carries,
         area: sites.iter().map(SiteResult::contact_area).sum(),
         zones: components.len(),
         components,

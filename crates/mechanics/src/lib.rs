@@ -35,6 +35,7 @@ pub mod part;
 pub mod passage;
 pub mod points;
 mod prepare;
+mod resultants;
 pub mod rigid_body;
 pub mod saved;
 mod simpler;

@@ -341,6 +341,8 @@ pub struct Output {
     /// Points whose histories are recorded.
     #[serde(default)]
     pub probes: Named<List<Value>>,
+    /// The point about which moments of supports, loads and contacts are told, lengths; the origin if left out.
+    pub moments_about: Option<List<Value>>,
 }
 
 #[cfg(test)]

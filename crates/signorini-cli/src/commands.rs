@@ -13,7 +13,7 @@ use signorini::paths::{self, PathCase};
 use signorini::plan::plan;
 use signorini::problem::{CaseError, Limits, Problem};
 use signorini::queries::{Query, answer_file, answer_points};
-use signorini::report::{Summary, UnitNames, table};
+use signorini::report::{Summary, UnitNames, resultants, table};
 use signorini::run::{Begun, Ending, RunError, begun, preview, resume, run, sizes};
 use signorini::scene::{self, Scene, SceneError};
 use std::path::{Path, PathBuf};
@@ -420,6 +420,10 @@ fn execute(name: &str, text: &str, folder: &Path, wanted: &Wanted, json: bool) -
 fn show(summary: &Summary) {
     say!("{}\n", summary.case);
     say!("{}", table(summary));
+    let resultants = resultants(summary);
+    if !resultants.is_empty() {
+        say!("{resultants}");
+    }
     let unit = |of: fn(&UnitNames) -> &String| summary.units.as_ref().map_or("", |u| of(u));
     for event in &summary.events {
         let place = format!("{} {}", figures(&event.at, None), unit(|u| &u.length));

@@ -316,8 +316,8 @@ fn routes_over_bodies_anywhere() {
 /// In whatever order the bodies of a path stand, it goes through none of them; the order in which it meets them is told.
 #[test]
 fn a_path_goes_through_no_body_in_whatever_order_they_stand() {
-    let sphere = |x: f64, z: f64, radius: f64| Sphere { center: point([x, 0.1, z]), radius };
-    let (first, second, third) = (sphere(-3.0, -0.2, 1.0), sphere(0.0, 0.1, 0.8), sphere(3.0, -0.1, 1.2));
+    let roller = |x: f64, z: f64, radius: f64| Cylinder { point: point([x, 0.0, z]), axis: Vector::<3>::y(), radius };
+    let (first, second, third) = (roller(-3.0, -0.5, 1.0), roller(0.0, 0.9, 0.8), roller(3.0, -0.9, 1.2));
     let bodies = [Body::fixed(&first), Body::fixed(&second), Body::fixed(&third)];
     let (from, to) = ([-6.0, 0.0, 0.3], [6.0, 0.2, 0.2]);
     let solve = |order: [usize; 3], motion: f64| {
@@ -342,7 +342,7 @@ fn a_path_goes_through_no_body_in_whatever_order_they_stand() {
         assert!(path.events.is_empty(), "{order:?}: {:?}", path.events);
     }
     // A body that is no station is not gone around: where the path goes through it is told.
-    let mut search = Wrapping::new(route([-6.0, 0.1, -0.2], [-1.0, 0.1, -0.2], around(0)));
+    let mut search = Wrapping::new(route([-6.0, 0.1, -0.3], [-1.0, 0.1, -0.3], around(0)));
     let (x, depth) = search.solve(&bodies).unwrap().crosses(&bodies, 0).unwrap().unwrap();
-    assert!((x - first.center).norm() < 1e-6 && depth > 0.0, "{x} {depth}");
+    assert!((x - point([-3.0, 0.1, -0.3])).norm() < 1e-6 && depth > 0.5, "{x} {depth}");
 }

@@ -17,7 +17,7 @@ pub use reason::{Reason, Warning, WarningKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-pub use table::{history, table};
+pub use table::{history, resultants, table};
 
 /// Version of the keys of the summary.
 pub const SCHEMA: u32 = 2;
@@ -72,6 +72,9 @@ pub struct UnitNames {
     /// Of forces per length, that ropes, beams and edges carry.
     #[serde(default)]
     pub line_load: String,
+    /// Of moments.
+    #[serde(default)]
+    pub moment: String,
     /// Of energies.
     pub energy: String,
     /// Of times that stand for times.
@@ -88,6 +91,7 @@ impl UnitNames {
             force: units.written(units::FORCE),
             pressure: units.written(units::PRESSURE),
             line_load: units.written(units::FORCE_PER_LENGTH),
+            moment: format!("{}·{}", units.written(units::FORCE), units.written(units::LENGTH)),
             energy: units.written(units::ENERGY),
             time: units.written(units::TIME),
         }
@@ -132,6 +136,15 @@ pub struct StepReport {
     pub support_forces: BTreeMap<String, [f64; 3]>,
     /// Resultant of each load, by its name.
     pub load_forces: BTreeMap<String, [f64; 3]>,
+    /// The point about which moments are told: the origin, or `output.moments_about`; null where none are.
+    #[serde(default)]
+    pub moments_about: Option<[f64; 3]>,
+    /// Moment of each support on the body, by its name, where bodies are now.
+    #[serde(default)]
+    pub support_moments: BTreeMap<String, [f64; 3]>,
+    /// Resultant moment of each load, by its name.
+    #[serde(default)]
+    pub load_moments: BTreeMap<String, [f64; 3]>,
     /// Results by the name of the contact.
     pub contacts: BTreeMap<String, ContactReport>,
     /// Values at the probes of `output.probes`, by their names; null outside the body.
@@ -187,6 +200,9 @@ pub struct Pose {
 pub struct ContactReport {
     /// Force of the contact on the first body that it names; for a round membrane, on the whole of it.
     pub force: [f64; 3],
+    /// Moment of the contact on that body about `moments_about`.
+    #[serde(default)]
+    pub moment: Option<[f64; 3]>,
     /// What `area` measures, and pressures are forces per.
     #[serde(default)]
     pub carries: Carried,

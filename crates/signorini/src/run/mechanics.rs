@@ -136,7 +136,11 @@ impl MechanicsModel {
                 Err(error) => {
                     let curable = !matches!(error, IncrementError::Interrupted | IncrementError::Free { .. });
                     if !curable || size <= SMALLEST_INCREMENT * (time - before) || time <= before {
-                        return Ok(Err(failed(&error, residuals)));
+                        let mut failure = failed(&error, residuals);
+                        if reached > before {
+                            failure.text += &format!(" (equilibrium was found up to t = {reached:.6})");
+                        }
+                        return Ok(Err(failure));
                     }
                     size *= CUT;
                 }

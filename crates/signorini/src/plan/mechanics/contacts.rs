@@ -74,6 +74,12 @@ impl Planner<'_> {
         let problem = self.problem;
         let mut parts: [Part; 2] = [self.part(on[0], numbers)?, self.part(on[1], numbers)?];
         let mut on = on;
+        // A body of cells touches others with the sides of its grid too.
+        for part in parts.iter_mut().filter(|_| on[0] != on[1]) {
+            if matches!(kinds[part.body], Kind::Cells) && part.group.is_none() {
+                part.group = Some(super::cells::SURFACE.to_string());
+            }
+        }
         for (part, on) in parts.iter().zip(on) {
             if part.group.is_some() {
                 self.check_group(part, on, system)?;

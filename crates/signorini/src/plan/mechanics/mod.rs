@@ -79,6 +79,8 @@ pub struct MechanicsPlan {
     pub kinds: Vec<Kind>,
     pub times: Vec<f64>,
     pub probes: BTreeMap<String, Point<3>>,
+    /// The point about which moments are told.
+    pub moments_about: Point<3>,
     /// Values of the case that were no numbers.
     pub wrong: Wrong,
     /// What each contact of the system is.
@@ -210,6 +212,10 @@ impl Planner<'_> {
             kinds,
             times: self.times()?,
             probes,
+            moments_about: match &problem.output.moments_about {
+                Some(at) => self.position(at, LENGTH)?,
+                None => Point::<3>::zeros(),
+            },
             wrong,
             contacts,
             notes,

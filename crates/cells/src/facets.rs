@@ -140,7 +140,7 @@ impl FacetBody {
 }
 
 impl Region<3> for FacetBody {
-    fn rule(&self, b: &Aabb<3>, _: &Integration, degree: usize) -> MaterialRule<3> {
+    fn rule(&self, b: &Aabb<3>, integration: &Integration, degree: usize) -> MaterialRule<3> {
         let line = gauss_legendre(2 * degree + 1);
         let (n, size) = (line.len(), b.size());
         let nodes: Vec<f64> = line.iter().map(|p| p.0).collect();
@@ -170,11 +170,11 @@ impl Region<3> for FacetBody {
             }
             for part in fan(&within) {
                 if on_material_side(&part, b, &normal) {
-                    // As many points per area whatever the size of the facets.
+                    // As many points per area as a smooth surface has, whatever the size of the facets.
                     let [a, c, d] = part;
                     let extent = (c - a).norm().max((d - c).norm()).max((a - d).norm());
-                    let share = (extent / size.max()).min(1.0);
-                    let along = ((degree + 2) as f64 * share).ceil().max(1.0) as usize;
+                    let wanted = (integration.points(degree) as f64 * extent / size.max()).ceil();
+                    let along = wanted.clamp(1.0, (degree + 2) as f64) as usize;
                     let points = triangle_points(&part, along);
                     boundary.extend(points.into_iter().map(|(x, weight)| BoundaryPoint { x, weight, normal }));
                 }
@@ -476,9 +476,11 @@ mod tests {
     fn points_are_by_area_and_not_by_triangle() {
         let n = 12;
         let flat = |i: usize, j: usize, z: f64| Point::<3>::new(i as f64 / n as f64, j as f64 / n as f64, z);
-        let mut vertices: Vec<Point<3>> = Vec::new();
-        let mut triangles: Vec<[u32; 3]> = Vec::new();
         // The lid in small triangles, the rest of the cube in large ones: only the lid is looked at.
+        let whole = cube([0.0; 3], [1.0; 3]);
+        let mut vertices: Vec<Point<3>> = whole.vertices().to_vec();
+        let mut triangles: Vec<[u32; 3]> =
+            whole.triangles().iter().copied().filter(|t| t.iter().any(|v| *v < 4)).collect();
         for i in 0..n {
             for j in 0..n {
                 let at = vertices.len() as u32;
@@ -494,7 +496,7 @@ mod tests {
             assert!((area - 1.0).abs() < 1e-12, "{area}");
             lid.len()
         };
-        let [fine, coarse] = [TriangleMesh::new(vertices, &triangles).unwrap(), cube([0.0; 3], [1.0; 3])].map(count);
+        let [fine, coarse] = [TriangleMesh::new(vertices, &triangles).unwrap(), whole].map(count);
         // Of each of 288 triangles one, in place of 16.
         assert!(fine <= 2 * n * n && coarse <= 32, "{fine} {coarse}");
     }

@@ -65,9 +65,15 @@ impl<const D: usize> CellBody<D> {
         if sites.is_empty() {
             return Err(self.empty_place(what));
         }
-        // Sides are held by their functions; elsewhere strains at the axis would divide by the radius.
-        sites.retain(|s| matches!(place, Place::Side { .. }) || !self.is_on_axis(&s.x));
+        self.leave_axis(place, &mut sites);
         Ok(sites)
+    }
+
+    /// Sides are held by their functions; elsewhere strains at the axis would divide by the radius.
+    fn leave_axis(&self, place: &Place<D>, sites: &mut Vec<Site<D>>) {
+        if !matches!(place, Place::Side { .. }) {
+            sites.retain(|s| !self.is_on_axis(&s.x));
+        }
     }
 
     /// Whether a point lies on the axis around which the body turns, where a boundary has no area.
@@ -111,6 +117,7 @@ impl<const D: usize> CellBody<D> {
                 }
             }
         }
+        self.leave_axis(place, &mut out);
         out
     }
 

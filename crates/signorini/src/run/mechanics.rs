@@ -1,6 +1,7 @@
 //! Bodies of any kind in one system as a model: ropes, beams, free rigid bodies.
 
 mod accuracy;
+mod recovered;
 mod report;
 
 use super::checkpoint;
@@ -124,7 +125,11 @@ impl MechanicsModel {
                     iterations += result.iterations;
                     if last {
                         self.state = state;
-                        return Ok(Ok(IncrementResult { iterations, history: residuals, ..result }));
+                        let mut found = IncrementResult { iterations, history: residuals, ..result };
+                        let of_contacts = found.sites.iter_mut().zip(&self.plan.contacts);
+                        let at_nodes = of_contacts.filter(|(_, tested)| tested.at_nodes);
+                        at_nodes.for_each(|(sites, _)| recovered::recover(sites));
+                        return Ok(Ok(found));
                     }
                     if let Err(error) = self.plan.system.accept(&state) {
                         return Ok(Err(failed(&error, residuals)));

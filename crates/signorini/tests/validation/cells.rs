@@ -111,6 +111,14 @@ fn a_body_as_a_whole_touches_with_the_sides_of_its_grid() {
     let (whole, top) = (force(case), force(&case.replace("[\"post\"", "[\"post:top\"")));
     assert!((top.1 - 0.74).abs() < 1e-9 && top.0 < -0.05, "{top:?}");
     assert!((whole.0 / top.0 - 1.0).abs() < 1e-9 && (whole.1 / top.1 - 1.0).abs() < 1e-9, "{whole:?} {top:?}");
+    // The same where the base is held along its normal, and aside by its middle.
+    let normal =
+        case.replace("displacement = [0, 0]", "normal = 0\n[supports.side]\non = \"post\"\nspring = [1e-6, 0]");
+    let free = case.replace(
+        "displacement = [0, 0]",
+        "displacement = [\"free\", 0]\n[supports.side]\non = \"post\"\nspring = [1e-6, 0]",
+    );
+    assert_eq!(force(&normal), force(&free));
     // Moments about a point: of the support and the plate they cancel, as the forces do.
     let about = case.to_string() + "[output]\nmoments_about = [2, 0]\n";
     let found = summary(&about, &set(&[]));
@@ -123,7 +131,9 @@ fn a_body_as_a_whole_touches_with_the_sides_of_its_grid() {
 /// Cells of degree 1 lock where the material hardly compresses, which is told.
 #[test]
 fn cells_that_lock_are_told() {
-    let case = example("hertz_cells").replace("degree = 2", "degree = 1").replace("poissons_ratio = 0.3", "poissons_ratio = 0.499");
+    let case = example("hertz_cells")
+        .replace("degree = 2", "degree = 1")
+        .replace("poissons_ratio = 0.3", "poissons_ratio = 0.499");
     let warned = |case: &str| {
         let problem = signorini::case::read("case.toml", case, &[]).expect("a case");
         signorini::run::sizes(&signorini::plan::plan(&problem).expect("a plan")).expect("sizes")["warnings"].to_string()

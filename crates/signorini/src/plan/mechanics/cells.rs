@@ -223,6 +223,18 @@ impl Planner<'_> {
         Ok(out)
     }
 
+    /// The axis of the side of a grid of cells that a word names, and on which end of it the side is.
+    pub(super) fn side_of_cells(&self, side: &str) -> Option<(usize, End)> {
+        let direction = SIDES.iter().position(|ends| ends.contains(&side))?;
+        let axis = match (self.space, direction) {
+            (In::ThreeD, k) => k,
+            (_, 0) => 0,
+            (_, 2) => 1,
+            _ => return None,
+        };
+        Some((axis, if SIDES[direction][0] == side { End::Low } else { End::High }))
+    }
+
     /// Sides of the grid that supports, loads or contacts name, and the whole surface where contacts name the body. A side that
     /// a support holds is where the body is cut off, by symmetry or at its base: nothing else touches it.
     fn sides_that_are_used(&self, name: &str, made: &mut Description) {
@@ -236,20 +248,15 @@ impl Planner<'_> {
         let places = problem.loads.values().map(|l| &l.on).chain(in_contacts);
         let used: Vec<String> = places.filter_map(of_body).chain(held.iter().cloned()).collect();
         let mut without = Vec::new();
-        for (direction, ends) in SIDES.iter().enumerate() {
-            for (word, end) in ends.iter().zip([End::Low, End::High]) {
-                let axis = match (self.space, direction) {
-                    (In::ThreeD, k) => k,
-                    (_, 0) => 0,
-                    (_, 2) => 1,
-                    _ => continue,
-                };
-                if held.iter().any(|side| side == word) {
-                    without.push((axis, end));
-                }
-                if used.iter().any(|u| u == word) && !made.places.contains_key(*word) {
-                    made.places.insert((*word).to_string(), Part::Side { axis, end });
-                }
+        for word in SIDES.as_flattened() {
+            let Some((axis, end)) = self.side_of_cells(word) else { continue };
+            // A group of the case may have the name.
+            let is_free = !made.places.contains_key(*word);
+            if held.iter().any(|side| side == word) && is_free {
+                without.push((axis, end));
+            }
+            if used.iter().any(|u| u == word) && is_free {
+                made.places.insert((*word).to_string(), Part::Side { axis, end });
             }
         }
         let touches = |c: &Contact| {

@@ -161,7 +161,8 @@ impl Planner<'_> {
             _ if is_curve => Carried::LineLoad,
             _ => Carried::Pressure,
         };
-        let tested = Tested { along_a_curve, carries, ..Tested::by(method, contact.axis) };
+        let at_nodes = matches!(kind, Kind::Cells) && sampling == Sampling::Nodes;
+        let tested = Tested { along_a_curve, carries, at_nodes, ..Tested::by(method, contact.axis) };
         Ok((Box::new(contact), tested))
     }
 

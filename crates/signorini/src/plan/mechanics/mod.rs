@@ -57,6 +57,8 @@ pub struct Tested {
     pub along_a_curve: bool,
     /// What the first body carries.
     pub carries: Carried,
+    /// Whether it is kept at single nodes of a surface that has none by nature.
+    pub at_nodes: bool,
     /// What was found out about it.
     pub notes: Vec<String>,
     pub warnings: Vec<String>,
@@ -66,7 +68,7 @@ impl Tested {
     /// By a method, at points in no order, with nothing to say of it.
     fn by(method: &'static str, axis: AxisChoice) -> Self {
         let carries = Carried::Pressure;
-        Tested { method, axis, along_a_curve: false, carries, notes: Vec::new(), warnings: Vec::new() }
+        Tested { method, axis, along_a_curve: false, carries, at_nodes: false, notes: Vec::new(), warnings: Vec::new() }
     }
 }
 

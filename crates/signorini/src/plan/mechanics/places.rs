@@ -4,7 +4,7 @@ use super::{Kind, Numbers, Wrong};
 use crate::plan::planner::Planner;
 use crate::plan::solid::loads::no_spring;
 use crate::problem::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE};
-use crate::problem::{CaseError, List, Space, Value, suggestion};
+use crate::problem::{Body, CaseError, List, Space, Value, suggestion};
 use signorini_contact::ContactSurface;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::contact::Part;
@@ -67,7 +67,9 @@ impl Planner<'_> {
         let told = self.problem.error(on, error.to_string());
         match error {
             PlaceError::Unknown { group, known, .. } => {
-                told.help(suggestion(group, &known.iter().map(String::as_str).collect::<Vec<_>>()))
+                let nearest = suggestion(group, &known.iter().map(String::as_str).collect::<Vec<_>>());
+                // The message lists them all.
+                if nearest.starts_with("did you mean") { told.help(nearest) } else { told }
             }
             PlaceError::Unsuitable { .. } => told,
         }
@@ -112,7 +114,15 @@ impl Planner<'_> {
                 None => [None, None, None],
             };
             if let Some(normal) = &key.normal {
-                let (component, sign) = normal_axis(system, &part)
+                let of_cells = match problem.bodies.get(system.bodies[part.body].name()) {
+                    Some(Body::Cells(cells)) => (part.group.as_deref())
+                        .filter(|side| !cells.groups.contains_key(*side))
+                        .and_then(|side| self.side_of_cells(side))
+                        .map(|(axis, end)| (axis, end.sign())),
+                    _ => None,
+                };
+                let (component, sign) = of_cells
+                    .map_or_else(|| normal_axis(system, &part), Ok)
                     .map_err(|message| problem.error(normal, message).help("displacement = [0, \"free\", 0]"))?;
                 if displacement[component].is_some() {
                     return Err(problem.error(normal, "`displacement` prescribes this direction too"));

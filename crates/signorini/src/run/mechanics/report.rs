@@ -350,5 +350,8 @@ pub fn verdict(plan: &MechanicsPlan, record: &Record) -> String {
         list.push(format!("`{name}` moved by {moved}{turned}"));
     }
     let balance = step.equilibrium_residual.unwrap_or(f64::NAN);
+    if list.is_empty() {
+        list.push("The bodies are in equilibrium".into());
+    }
     format!("{}; forces balance to {balance:.0e}.", list.join("; "))
 }

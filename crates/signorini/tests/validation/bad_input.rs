@@ -350,7 +350,7 @@ fn rigid_bodies_without_points_are_not_tested_against_each_other() {
     assert!(told.contains("`inner` and `outer` are not tested against each other"), "{told}");
     let error = error(&case.replace("all = true", "between = [\"inner\", \"outer\"]"));
     assert!(error.message.contains("neither of two rigid bodies"), "{}", error.message);
-    assert_eq!(error.place.expect("a place").line_and_column().0, 17);
+    assert_eq!(error.place.expect("a place").line_and_column().0, 18);
 }
 
 /// Where a function has no value is told at its key; where its derivative alone has none, away from the surface, it serves.

@@ -64,15 +64,22 @@ impl Planner<'_> {
 
     /// The error of a place, at its key.
     pub(super) fn misplaced(&self, on: &String, error: &PlaceError) -> CaseError {
-        let told = self.problem.error(on, error.to_string());
-        match error {
-            PlaceError::Unknown { group, known, .. } => {
-                let nearest = suggestion(group, &known.iter().map(String::as_str).collect::<Vec<_>>());
-                // The message lists them all.
-                if nearest.starts_with("did you mean") { told.help(nearest) } else { told }
-            }
-            PlaceError::Unsuitable { .. } => told,
+        let PlaceError::Unknown { body, group, known } = error else {
+            return self.problem.error(on, error.to_string());
+        };
+        let mut known = known.clone();
+        if matches!(self.problem.bodies.get(body), Some(Body::Cells(_))) {
+            // Sides of grids are made where they are named.
+            let sides = ["left", "right", "front", "back", "bottom", "top"].into_iter();
+            known.extend(sides.filter(|side| self.side_of_cells(side).is_some()).map(String::from));
+            known.sort();
+            known.dedup();
         }
+        let nearest = suggestion(group, &known.iter().map(String::as_str).collect::<Vec<_>>());
+        let all = PlaceError::Unknown { body: body.clone(), group: group.clone(), known };
+        let told = self.problem.error(on, all.to_string());
+        // The message lists them all.
+        if nearest.starts_with("did you mean") { told.help(nearest) } else { told }
     }
 
     /// Whether a body has the place that is stated.

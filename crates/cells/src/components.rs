@@ -249,7 +249,7 @@ fn touching_of<const D: usize>(
                     })
                     .collect()
             } else {
-                region.side_rule(&b, axis, end, 3).iter().map(|p| p.x).collect()
+                region.places_on_side(&b, axis, end)
             };
             for x in points {
                 let mut beyond = x;

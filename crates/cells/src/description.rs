@@ -77,6 +77,8 @@ pub enum Part {
     Boundary(Holds),
     /// Points of the recovered boundary and of the material on sides of the box.
     Surface(Holds),
+    /// The whole surface but these sides of the box, on which the body is cut off.
+    Whole { without: Vec<(usize, End)> },
 }
 
 /// A body of finite cells.
@@ -174,7 +176,7 @@ fn in_dimension<const D: usize>(d: &Description) -> Result<Built, CellsError> {
         }
     };
     // What fills its box has no boundary in it, and is meant where a place lies on a side of the box.
-    let on_box = |p: &Part| matches!(p, Part::Side { .. } | Part::Surface(_));
+    let on_box = |p: &Part| matches!(p, Part::Side { .. } | Part::Surface(_) | Part::Whole { .. });
     if d.places.values().any(on_box) {
         optional = Boundary::Optional;
     }
@@ -278,6 +280,7 @@ impl Part {
             Part::Side { axis, end } => Place::Side { axis: *axis, end: *end },
             Part::Boundary(holds) => Place::Boundary(lifted(holds)),
             Part::Surface(holds) => Place::Surface(lifted(holds)),
+            Part::Whole { without } => Place::Whole { without: without.clone() },
         }
     }
 }

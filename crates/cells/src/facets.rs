@@ -140,7 +140,7 @@ impl FacetBody {
 }
 
 impl Region<3> for FacetBody {
-    fn rule(&self, b: &Aabb<3>, _: &Integration, degree: usize) -> MaterialRule<3> {
+    fn rule(&self, b: &Aabb<3>, integration: &Integration, degree: usize) -> MaterialRule<3> {
         let line = gauss_legendre(2 * degree + 1);
         let (n, size) = (line.len(), b.size());
         let nodes: Vec<f64> = line.iter().map(|p| p.0).collect();
@@ -170,7 +170,12 @@ impl Region<3> for FacetBody {
             }
             for part in fan(&within) {
                 if on_material_side(&part, b, &normal) {
-                    let points = triangle_points(&part, degree + 2);
+                    // As many points per area as a smooth surface has, whatever the size of the facets.
+                    let [a, c, d] = part;
+                    let extent = (c - a).norm().max((d - c).norm()).max((a - d).norm());
+                    let wanted = (integration.points(degree) as f64 * extent / size.max()).ceil();
+                    let along = wanted.clamp(1.0, (degree + 2) as f64) as usize;
+                    let points = triangle_points(&part, along);
                     boundary.extend(points.into_iter().map(|(x, weight)| BoundaryPoint { x, weight, normal }));
                 }
                 if lies_on_end {
@@ -235,6 +240,35 @@ impl Region<3> for FacetBody {
         out
     }
 
+    /// Points inside, and the middle of what each facet cuts out of the side: the section of a body that is small against a
+    /// side ends within it.
+    fn places_on_side(&self, b: &Aabb<3>, axis: usize, end: End) -> Vec<Point<3>> {
+        let mut out: Vec<Point<3>> = self.side_rule(b, axis, end, 0).iter().map(|p| p.x).collect();
+        let at = end.of(b, axis);
+        // Off the corners of facets that lie in the side.
+        let height = at - 1e-9 * end.sign() * b.size()[axis];
+        for k in 0..self.mesh.triangles().len() {
+            let corners = self.mesh.corners(k);
+            let cuts: Vec<Point<3>> = [[0, 1], [1, 2], [2, 0]]
+                .iter()
+                .map(|[i, j]| [corners[*i], corners[*j]])
+                .filter(|[p, q]| (p[axis] >= height) != (q[axis] >= height))
+                .map(|[p, q]| p + (q - p) * ((height - p[axis]) / (q[axis] - p[axis])))
+                .collect();
+            let [p, q] = cuts[..] else { continue };
+            let mut line = vec![p, q];
+            for k in (0..3).filter(|k| *k != axis) {
+                line = clip_line(&clip_line(&line, k, b.min[k], 1.0), k, b.max[k], -1.0);
+            }
+            if let [p, q] = line[..] {
+                let mut middle = p + (q - p) * 0.5;
+                middle[axis] = at;
+                out.push(middle);
+            }
+        }
+        out
+    }
+
     fn contains(&self, x: &Point<3>) -> bool {
         let foot = self.mesh.closest(x, 0.0)[0];
         foot.gap.unwrap_or_else(|| (x - foot.point).dot(&foot.normal)) < 0.0
@@ -290,6 +324,19 @@ fn clip(polygon: Vec<Point<3>>, axis: usize, at: f64, sign: f64) -> Vec<Point<3>
     out
 }
 
+/// The part of a line with `sign (x_axis - at) ≥ 0`; nothing of one that has none.
+fn clip_line(line: &[Point<3>], axis: usize, at: f64, sign: f64) -> Vec<Point<3>> {
+    let [p, q] = line[..] else { return Vec::new() };
+    let [a, b] = [p, q].map(|x| sign * (x[axis] - at));
+    let cut = || p + (q - p) * (a / (a - b));
+    match (a >= 0.0, b >= 0.0) {
+        (true, true) => vec![p, q],
+        (true, false) => vec![p, cut()],
+        (false, true) => vec![cut(), q],
+        (false, false) => Vec::new(),
+    }
+}
+
 fn fan(polygon: &[Point<3>]) -> impl Iterator<Item = [Point<3>; 3]> + '_ {
     (2..polygon.len()).map(|i| [polygon[0], polygon[i - 1], polygon[i]])
 }
@@ -314,6 +361,9 @@ fn triangle_points([a, b, c]: &[Point<3>; 3], n: usize) -> Vec<(Point<3>, f64)> 
     let area = u.cross(&v).norm();
     if area == 0.0 {
         return Vec::new();
+    }
+    if n == 1 {
+        return vec![(a + (u + v) / 3.0, 0.5 * area)];
     }
     let line = gauss_legendre(n);
     let mut out = Vec::with_capacity(n * n);
@@ -407,6 +457,48 @@ mod tests {
             assert!((sums[0] - exact[0]).abs() < 1e-14 && (sums[1] - exact[1]).abs() < 1e-14, "{sums:?} {exact:?}");
             assert!((area - 2.0 * (d[0] * d[1] + d[1] * d[2] + d[2] * d[0])).abs() < 1e-13 && closed.norm() < 1e-13);
         }
+    }
+
+    /// A piece that is small against a side of its cell touches the cell beside it there.
+    #[test]
+    fn small_sections_of_sides_are_found() {
+        let body = FacetBody::new(cube([0.0; 3], [1.0; 3])).unwrap();
+        let cell = Aabb::new(Point::<3>::repeat(-1.0), Point::<3>::new(0.01, 0.02, 0.03));
+        assert!(body.side_rule(&cell, 0, End::High, 0).is_empty());
+        for axis in 0..3 {
+            assert!(!body.places_on_side(&cell, axis, End::High).is_empty(), "{axis}");
+            assert!(body.places_on_side(&cell, axis, End::Low).is_empty(), "{axis}");
+        }
+    }
+
+    /// The surface has as many points whatever the number of its triangles, and the same area.
+    #[test]
+    fn points_are_by_area_and_not_by_triangle() {
+        let n = 12;
+        let flat = |i: usize, j: usize, z: f64| Point::<3>::new(i as f64 / n as f64, j as f64 / n as f64, z);
+        // The lid in small triangles, the rest of the cube in large ones: only the lid is looked at.
+        let whole = cube([0.0; 3], [1.0; 3]);
+        let mut vertices: Vec<Point<3>> = whole.vertices().to_vec();
+        let mut triangles: Vec<[u32; 3]> =
+            whole.triangles().iter().copied().filter(|t| t.iter().any(|v| *v < 4)).collect();
+        for i in 0..n {
+            for j in 0..n {
+                let at = vertices.len() as u32;
+                vertices.extend([flat(i, j, 1.0), flat(i + 1, j, 1.0), flat(i + 1, j + 1, 1.0), flat(i, j + 1, 1.0)]);
+                triangles.extend([[at, at + 1, at + 2], [at, at + 2, at + 3]]);
+            }
+        }
+        let count = |mesh: TriangleMesh| {
+            let cell = Aabb::new(Point::<3>::new(0.0, 0.0, 0.5), Point::<3>::new(1.0, 1.0, 1.5));
+            let rule = FacetBody { mesh }.rule(&cell, &Integration::Exact { points: None }, 2);
+            let lid: Vec<&BoundaryPoint<3>> = rule.boundary.iter().filter(|p| p.normal[2] > 0.9).collect();
+            let area: f64 = lid.iter().map(|p| p.weight).sum();
+            assert!((area - 1.0).abs() < 1e-12, "{area}");
+            lid.len()
+        };
+        let [fine, coarse] = [TriangleMesh::new(vertices, &triangles).unwrap(), whole].map(count);
+        // Of each of 288 triangles one, in place of 16.
+        assert!(fine <= 2 * n * n && coarse <= 32, "{fine} {coarse}");
     }
 
     #[test]

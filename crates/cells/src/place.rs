@@ -22,6 +22,8 @@ pub enum Place<const D: usize> {
     Boundary(Arc<Holds<D>>),
     /// The points for which this holds of the whole surface: the recovered boundary, and the material on sides of the box.
     Surface(Arc<Holds<D>>),
+    /// The whole surface but these sides of the box, on which the body is cut off.
+    Whole { without: Vec<(usize, End)> },
 }
 
 /// Whether a point belongs to a place.
@@ -57,14 +59,21 @@ impl<const D: usize> CellBody<D> {
                 }
                 (self.side_sites(*axis, *end), "a side of the box")
             }
-            Place::Surface(holds) => (self.surface_sites(&**holds), "a place on the surface"),
+            Place::Surface(holds) => (self.surface_sites(&**holds, &[]), "a place on the surface"),
+            Place::Whole { without } => (self.surface_sites(&|_| true, without), "the surface"),
         };
         if sites.is_empty() {
             return Err(self.empty_place(what));
         }
-        // Sides are held by their functions; elsewhere strains at the axis would divide by the radius.
-        sites.retain(|s| matches!(place, Place::Side { .. }) || !self.is_on_axis(&s.x));
+        self.leave_axis(place, &mut sites);
         Ok(sites)
+    }
+
+    /// Sides are held by their functions; elsewhere strains at the axis would divide by the radius.
+    fn leave_axis(&self, place: &Place<D>, sites: &mut Vec<Site<D>>) {
+        if !matches!(place, Place::Side { .. }) {
+            sites.retain(|s| !self.is_on_axis(&s.x));
+        }
     }
 
     /// Whether a point lies on the axis around which the body turns, where a boundary has no area.
@@ -103,16 +112,12 @@ impl<const D: usize> CellBody<D> {
                     Place::Boundary(holds) => {
                         out.extend(self.on_boundary(cell, &part).into_iter().filter(|s| holds(&point_of(s))));
                     }
-                    Place::Surface(holds) => {
-                        let own = self.on_boundary(cell, &part);
-                        for (axis, end) in self.sides_of(&part) {
-                            out.extend(self.beside(cell, &part, (axis, end), &own, &**holds));
-                        }
-                        out.extend(own.into_iter().filter(|s| holds(&point_of(s))));
-                    }
+                    Place::Surface(holds) => out.extend(self.on_surface(cell, &part, &**holds, &[])),
+                    Place::Whole { without } => out.extend(self.on_surface(cell, &part, &|_| true, without)),
                 }
             }
         }
+        self.leave_axis(place, &mut out);
         out
     }
 
@@ -162,12 +167,21 @@ impl<const D: usize> CellBody<D> {
         self.on_side(cell, part, axis, end).into_iter().filter(is_new).collect()
     }
 
-    /// The points of boundary and sides of the box.
-    fn surface_sites(&self, holds: &Holds<D>) -> Vec<Site<D>> {
+    /// The points of boundary and sides of the box, without some of these, in a part of the box of a cell.
+    fn on_surface(&self, cell: usize, part: &Aabb<D>, holds: &Holds<D>, without: &[(usize, End)]) -> Vec<Site<D>> {
+        let own = self.on_boundary(cell, part);
+        let sides = self.sides_of(part).into_iter().filter(|side| !without.contains(side));
+        let mut out: Vec<Site<D>> = sides.flat_map(|side| self.beside(cell, part, side, &own, holds)).collect();
+        out.extend(own.into_iter().filter(|s| holds(&point_of(s))));
+        out
+    }
+
+    /// The points of boundary and sides of the box, without some of these.
+    fn surface_sites(&self, holds: &Holds<D>, without: &[(usize, End)]) -> Vec<Site<D>> {
         let all = self.sites(&|_| true);
         let mut out: Vec<Site<D>> = self.sites(&|p| holds(p));
         for axis in 0..D {
-            for end in End::BOTH {
+            for end in End::BOTH.into_iter().filter(|end| !without.contains(&(axis, *end))) {
                 for cell in self.cells_on(axis, end) {
                     let first = all.partition_point(|s| s.cell < cell);
                     let own = &all[first..all.partition_point(|s| s.cell <= cell)];

@@ -125,6 +125,11 @@ pub trait Region<const D: usize>: Send + Sync {
     /// Quadrature of the material on a side of a box.
     fn side_rule(&self, b: &Aabb<D>, axis: usize, end: End, points: usize) -> Vec<QuadraturePoint<D>>;
 
+    /// Places on a side of a box at which material lies on both sides of it, one at least where there is any.
+    fn places_on_side(&self, b: &Aabb<D>, axis: usize, end: End) -> Vec<Point<D>> {
+        self.side_rule(b, axis, end, 3).iter().map(|p| p.x).collect()
+    }
+
     fn contains(&self, x: &Point<D>) -> bool;
 
     /// Whether the points of its rules lie in the material and can be counted to one piece of it or another.

@@ -187,6 +187,11 @@ impl Expression {
         })
     }
 
+    /// Whether the value says yes or no: a comparison, or what is put together from such.
+    pub fn is_condition(&self) -> bool {
+        self.root.is_condition()
+    }
+
     /// The expression at a fixed time.
     pub fn at_time(&self, time: f64) -> Self {
         Self { root: self.root.with_time(time).folded() }
@@ -200,6 +205,19 @@ impl Node {
             Node::Negate(a) | Node::Not(a) | Node::Call(_, a) | Node::User(_, a) => vec![a],
             Node::Binary(_, a, b) | Node::Compare(_, a, b) | Node::Pair(_, a, b) => vec![a, b],
             Node::If(a, b, c) => vec![a, b, c],
+        }
+    }
+
+    fn is_condition(&self) -> bool {
+        match self {
+            Node::Compare(Compare::And | Compare::Or, a, b) | Node::If(_, a, b) => a.is_condition() && b.is_condition(),
+            // Products and sums of conditions are used as `and` and `or`.
+            Node::Binary(Binary::Multiply | Binary::Add, a, b)
+            | Node::Pair(PairFunction::Min | PairFunction::Max, a, b) => a.is_condition() && b.is_condition(),
+            Node::Not(a) => a.is_condition(),
+            Node::Compare(..) | Node::Field(_) => true,
+            Node::User(f, _) => matches!(&**f, Definition::Formula(body) if body.is_condition()),
+            _ => false,
         }
     }
 
@@ -357,6 +375,9 @@ pub(super) fn pair<R: Real>(f: PairFunction, a: R, b: R) -> R {
         PairFunction::Atan2 => {
             // The angle of (b, a), by the quotient that is regular there; the branch only adds a constant.
             let (y, x) = (a.value(), b.value());
+            if x == 0.0 && y == 0.0 {
+                return a.chain(y.atan2(x), f64::NAN, f64::NAN);
+            }
             let angle = if x.abs() > y.abs() { call(Function::Atan, a / b) } else { -call(Function::Atan, b / a) };
             angle + R::constant(y.atan2(x) - angle.value())
         }

@@ -40,6 +40,7 @@ pub mod part;
 pub mod passage;
 pub mod points;
 mod prepare;
+mod resultants;
 pub mod rigid_body;
 mod rigid_system;
 mod rotation;

@@ -18,6 +18,8 @@ pub enum PathError {
     NoTangent { at: Point<3> },
     #[error("the {place} of the path lies inside body {body}, {depth:.4e} deep: move it outside by that much at least")]
     Inside { place: Place, body: usize, depth: f64 },
+    #[error("it goes through body {body}, {depth:.4e} deep at ({:.6}, {:.6}, {:.6})", .at.x, .at.y, .at.z)]
+    Crosses { body: usize, depth: f64, at: Point<3> },
     #[error("station {station} names body {body}; there are {count}")]
     NoBody { station: usize, body: usize, count: usize },
     #[error(

@@ -31,7 +31,8 @@ pub struct CellsBody {
     /// What the body is made of: linear elastic.
     pub material: Material,
     /// Parts of the surface by names of your own: where an expression of x, y and z holds, such as `z > 0.9`. The recovered
-    /// boundary is `boundary`, the sides of the grid are left, right, front, back, bottom and top.
+    /// boundary is `boundary`, the sides of the grid are left, right, front, back, bottom and top. The body as a whole touches
+    /// others with both, but for the sides that a support names.
     #[serde(default)]
     pub groups: Named<Value>,
 }

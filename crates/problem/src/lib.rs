@@ -86,6 +86,9 @@ pub struct Problem {
     /// What to write.
     #[serde(default)]
     pub output: Output,
+    /// How much a run may take.
+    #[serde(default)]
+    pub limits: Limits,
     /// With `analysis = "wrapping"`, the number of times in [0, 1]; 2 if left out.
     pub frames: Option<i64>,
     /// From where pictures of paths are drawn.
@@ -123,6 +126,7 @@ impl Problem {
             steps: List::default(),
             stability: None,
             output: Output::default(),
+            limits: Limits::default(),
             frames: None,
             view: None,
             paths: Named::default(),
@@ -328,6 +332,16 @@ pub struct Load {
     pub tension: Option<Value>,
 }
 
+/// How much a run may take: at the first of the limits it stops after the iteration at hand, and keeps what is there.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Limits {
+    /// Time of the clock in seconds.
+    pub max_time: Option<f64>,
+    /// Iterations of all increments together.
+    pub max_iterations: Option<i64>,
+}
+
 /// What to write.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -339,6 +353,8 @@ pub struct Output {
     /// Points whose histories are recorded.
     #[serde(default)]
     pub probes: Named<List<Value>>,
+    /// The point about which moments of supports, loads and contacts are told, lengths; the origin if left out.
+    pub moments_about: Option<List<Value>>,
 }
 
 #[cfg(test)]

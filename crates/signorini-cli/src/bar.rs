@@ -13,6 +13,10 @@ pub struct Bar {
     json: bool,
     started: std::time::Instant,
     spoke: std::time::Instant,
+    /// The increment with which the run began.
+    first: Option<usize>,
+    /// About how long the run still takes, in words.
+    left: String,
 }
 
 impl Bar {
@@ -21,7 +25,7 @@ impl Bar {
         let style = ProgressStyle::with_template("{bar:24.cyan/blue} {pos}/{len}  {msg}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         let now = std::time::Instant::now();
-        Self { bar, stop: stop_flag(), json, started: now, spoke: now }
+        Self { bar, stop: stop_flag(), json, started: now, spoke: now, first: None, left: String::new() }
     }
 
     pub fn finish(&self) {
@@ -79,13 +83,22 @@ impl Progress for Bar {
     fn step(&mut self, index: usize, count: usize, time: f64) {
         self.bar.set_length(count as u64);
         self.bar.set_position(index as u64);
-        self.bar.set_message(format!("t = {time}"));
+        let done = index.saturating_sub(*self.first.get_or_insert(index));
+        self.left = match done {
+            0 => String::new(),
+            done => {
+                let each = self.started.elapsed().as_secs_f64() / done as f64;
+                format!("about {} left  ", in_words(each * count.saturating_sub(index) as f64))
+            }
+        };
+        self.bar.set_message(format!("{}t = {time}", self.left));
     }
 
     fn iteration(&mut self, i: &Iteration) {
         let figures: Vec<String> = i.figures.iter().map(|(n, v)| format!("{n} {v}")).collect();
         let line = format!(
-            "t = {}  solve {}  residual {:.1e}  {}  {}",
+            "{}t = {}  solve {}  residual {:.1e}  {}  {}",
+            self.left,
             i.time,
             i.iteration,
             i.residual,
@@ -102,5 +115,24 @@ impl Progress for Bar {
 
     fn interrupted(&self) -> bool {
         self.stop.load(Ordering::SeqCst)
+    }
+}
+
+/// A time in words, as exactly as one can be told that is not known well.
+fn in_words(seconds: f64) -> String {
+    match seconds {
+        s if s < 100.0 => format!("{:.0} s", s.ceil()),
+        s if s < 6000.0 => format!("{:.0} min", (s / 60.0).ceil()),
+        s => format!("{:.0} h", (s / 3600.0).ceil()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_words;
+
+    #[test]
+    fn times_are_told_in_units_of_their_size() {
+        assert_eq!([0.2, 61.0, 130.0, 7300.0].map(in_words), ["1 s", "61 s", "3 min", "3 h"]);
     }
 }

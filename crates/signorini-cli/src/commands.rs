@@ -11,9 +11,9 @@ use signorini::output::figure::{figures, told};
 use signorini::output::{Earlier, OutputError};
 use signorini::paths::{self, PathCase};
 use signorini::plan::plan;
-use signorini::problem::{CaseError, Problem};
+use signorini::problem::{CaseError, Limits, Problem};
 use signorini::queries::{Query, answer_file, answer_points};
-use signorini::report::{Summary, UnitNames, table};
+use signorini::report::{Summary, UnitNames, resultants, table};
 use signorini::run::{Begun, Ending, RunError, begun, preview, resume, run, sizes};
 use signorini::scene::{self, Scene, SceneError};
 use std::path::{Path, PathBuf};
@@ -23,12 +23,23 @@ pub const WRONG_INPUT: u8 = 1;
 pub const NOT_CONVERGED: u8 = 2;
 pub const INTERRUPTED: u8 = 130;
 
-pub fn run_file(case: &Path, output: Option<PathBuf>, set: &[String], resumed: bool, json: bool) -> u8 {
+/// How a case is to be run.
+pub struct Wanted {
+    pub output: Option<PathBuf>,
+    /// Keys that replace or add others.
+    pub set: Vec<String>,
+    /// What stands in place of the limits of the case.
+    pub limits: Limits,
+    pub resume: bool,
+}
+
+pub fn run_file(case: &Path, wanted: &Wanted, json: bool) -> u8 {
     let (name, text) = match read(case) {
         Ok(read) => read,
         Err(error) => return report(&error, json),
     };
-    execute(&name, &text, &output.unwrap_or_else(|| default_folder(case)), set, resumed, json)
+    let folder = wanted.output.clone().unwrap_or_else(|| default_folder(case));
+    execute(&name, &text, &folder, wanted, json)
 }
 
 pub fn fit_file(case: &Path, output: Option<PathBuf>, set: &[String], json: bool) -> u8 {
@@ -78,11 +89,11 @@ fn default_folder(case: &Path) -> PathBuf {
     PathBuf::from(if Path::new(&default).is_file() { format!("{default}.results") } else { default })
 }
 
-pub fn run_example(name: &str, output: Option<PathBuf>, set: &[String], json: bool) -> u8 {
+pub fn run_example(name: &str, wanted: &Wanted, json: bool) -> u8 {
     match find(name) {
         Some(example) => {
-            let folder = output.unwrap_or_else(|| PathBuf::from(name));
-            execute(&format!("{name}.toml"), example.case, &folder, set, false, json)
+            let folder = wanted.output.clone().unwrap_or_else(|| PathBuf::from(name));
+            execute(&format!("{name}.toml"), example.case, &folder, wanted, json)
         }
         None => report(&unknown_example(name), json),
     }
@@ -118,6 +129,11 @@ pub fn check(case: &Path, set: &[String], picture: Option<&Path>, json: bool) ->
     {
         return match read_scene(&name, &text, set) {
             Err(error) => report(&error, json),
+            Ok(_) if picture.is_some() => {
+                let error =
+                    CaseError::new("a scene has no preview").help("run it: pictures/scene.png shows its frames");
+                report(&error, json)
+            }
             Ok(scene) => {
                 let sizes = json!({"bodies": scene.bodies.len(), "frames": scene.times.len()});
                 if json {
@@ -131,8 +147,15 @@ pub fn check(case: &Path, set: &[String], picture: Option<&Path>, json: bool) ->
     }
     let checked = read(case).and_then(|(name, text)| signorini::case::read(&name, &text, set)).and_then(|problem| {
         if paths::is_of_paths(&problem) {
-            let paths = PathCase::new(&problem)?.paths();
-            return Ok((problem, json!({"paths": paths})));
+            let case = PathCase::new(&problem)?;
+            if let Some(file) = picture {
+                let drawn = paths::preview(&case).map_err(|error| match error {
+                    SceneError::Case(error) => error,
+                    SceneError::Output(error) => output_error(&error),
+                })?;
+                save_as(file, &drawn).map_err(|e| output_error(&e))?;
+            }
+            return Ok((problem, json!({"paths": case.paths()})));
         }
         let plan = plan(&problem)?;
         let sizes = sizes(&plan)?;
@@ -220,7 +243,7 @@ fn execute_paths(problem: &Problem, folder: &Path, json: bool) -> u8 {
     let mut bar = Bar::new(json);
     let result = paths::run(&case, folder, &mut bar);
     bar.finish();
-    conclude(result, json, |summary| {
+    conclude(result, json.then_some(|summary| json!(summary)), |summary| {
         paths::sentences(summary).iter().for_each(|line| say!("{line}"));
         say!(
             "\nResults in {}: open pictures/paths.png, bodies.pvd and the paths in ParaView; numbers in summary.json and a CSV per path.",
@@ -231,15 +254,14 @@ fn execute_paths(problem: &Problem, folder: &Path, json: bool) -> u8 {
 }
 
 /// The end of a command: its summary, or what went wrong.
-fn conclude(result: Result<Value, SceneError>, json: bool, tell: impl FnOnce(&Value)) -> u8 {
+fn conclude<S>(result: Result<S, SceneError>, json: Option<fn(&S) -> Value>, tell: impl FnOnce(&S)) -> u8 {
     match result {
-        Err(SceneError::Case(error)) => report(&error, json),
-        Err(SceneError::Output(error)) => report(&output_error(&error), json),
+        Err(SceneError::Case(error)) => report(&error, json.is_some()),
+        Err(SceneError::Output(error)) => report(&output_error(&error), json.is_some()),
         Ok(summary) => {
-            if json {
-                say!("{summary}");
-            } else {
-                tell(&summary);
+            match json {
+                Some(json) => say!("{}", json(&summary)),
+                None => tell(&summary),
             }
             DONE
         }
@@ -255,7 +277,7 @@ fn execute_scene(name: &str, text: &str, folder: &Path, set: &[String], json: bo
     let mut bar = Bar::new(json);
     let result = scene::run(&scene, folder, &mut bar);
     bar.finish();
-    conclude(result, json, |summary| {
+    conclude(result, json.then_some(Value::clone), |summary| {
         say!("{}: {} frames", scene.title, summary["frames"]);
         for (kind, count) in summary["contact_pair_kinds"].as_object().into_iter().flatten() {
             say!("  {kind:18} the contact in {count} frames");
@@ -333,7 +355,9 @@ pub fn closest(queries: &Path, to: Option<&Path>, output: &Path, local_minima: b
     }
 }
 
-fn execute(name: &str, text: &str, folder: &Path, set: &[String], resumed: bool, json: bool) -> u8 {
+fn execute(name: &str, text: &str, folder: &Path, wanted: &Wanted, json: bool) -> u8 {
+    let Wanted { set, resume: resumed, limits, .. } = wanted;
+    let resumed = *resumed;
     if scene::is_scene(text) {
         if resumed {
             let error = CaseError::new("a scene cannot be resumed").help("run it from the beginning, without --resume");
@@ -341,10 +365,12 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], resumed: bool,
         }
         return execute_scene(name, text, folder, set, json);
     }
-    let problem = match signorini::case::read(name, text, set) {
+    let mut problem = match signorini::case::read(name, text, set) {
         Ok(problem) => problem,
         Err(error) => return report(&error, json),
     };
+    problem.limits.max_time = limits.max_time.or(problem.limits.max_time);
+    problem.limits.max_iterations = limits.max_iterations.or(problem.limits.max_iterations);
     if paths::is_of_paths(&problem) {
         if resumed {
             let error = CaseError::new("paths cannot be resumed").help("run them from the beginning, without --resume");
@@ -394,6 +420,10 @@ fn execute(name: &str, text: &str, folder: &Path, set: &[String], resumed: bool,
 fn show(summary: &Summary) {
     say!("{}\n", summary.case);
     say!("{}", table(summary));
+    let resultants = resultants(summary);
+    if !resultants.is_empty() {
+        say!("{resultants}");
+    }
     let unit = |of: fn(&UnitNames) -> &String| summary.units.as_ref().map_or("", |u| of(u));
     for event in &summary.events {
         let place = format!("{} {}", figures(&event.at, None), unit(|u| &u.length));

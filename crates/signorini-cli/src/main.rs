@@ -10,6 +10,7 @@ mod console;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use console::tell;
+use signorini::problem::Limits;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -61,6 +62,8 @@ enum Command {
         case: PathBuf,
         #[command(flatten)]
         options: RunOptions,
+        #[command(flatten)]
+        limits: LimitOptions,
         /// Go on with a run that was interrupted or killed, to the same digits
         #[arg(long)]
         resume: bool,
@@ -170,6 +173,29 @@ struct RunOptions {
     set: Vec<String>,
 }
 
+#[derive(clap::Args)]
+struct LimitOptions {
+    /// Stop after so many seconds, keep what is there, and end with status 2
+    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    max_time: Option<f64>,
+    /// Stop after so many iterations of all increments together
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(i64).range(1..))]
+    max_iterations: Option<i64>,
+}
+
+impl RunOptions {
+    fn wanted(self, limits: &LimitOptions, resume: bool) -> commands::Wanted {
+        let limits = Limits { max_time: limits.max_time, max_iterations: limits.max_iterations };
+        commands::Wanted { output: self.output, set: self.set, limits, resume }
+    }
+}
+
+/// A positive number.
+fn positive(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().map_err(|e| e.to_string())?;
+    if number > 0.0 { Ok(number) } else { Err("it must be positive".into()) }
+}
+
 #[derive(Subcommand)]
 enum GalleryAction {
     /// Run a case of the gallery
@@ -178,6 +204,8 @@ enum GalleryAction {
         name: String,
         #[command(flatten)]
         options: RunOptions,
+        #[command(flatten)]
+        limits: LimitOptions,
     },
     /// Print a case of the gallery
     #[command(after_help = "Example:\n  signorini gallery show string > case.toml")]
@@ -206,7 +234,9 @@ fn main() -> ExitCode {
     let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     let json = arguments.json;
     let result = std::panic::catch_unwind(|| match arguments.command {
-        Command::Run { case, options, resume } => commands::run_file(&case, options.output, &options.set, resume, json),
+        Command::Run { case, options, limits, resume } => {
+            commands::run_file(&case, &options.wanted(&limits, resume), json)
+        }
         Command::Check { case, set, picture } => commands::check(&case, &set, picture.as_deref(), json),
         Command::Fit { case, options } => commands::fit_file(&case, options.output, &options.set, json),
         Command::Closest { queries, to, output, local_minima } => {
@@ -224,8 +254,8 @@ fn main() -> ExitCode {
             commands::DONE
         }
         Command::Gallery { action: None } => commands::gallery(json),
-        Command::Gallery { action: Some(GalleryAction::Run { name, options }) } => {
-            commands::run_example(&name, options.output, &options.set, json)
+        Command::Gallery { action: Some(GalleryAction::Run { name, options, limits }) } => {
+            commands::run_example(&name, &options.wanted(&limits, false), json)
         }
         Command::Gallery { action: Some(GalleryAction::Show { name }) } => commands::show_example(&name, json),
     });

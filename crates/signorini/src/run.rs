@@ -3,7 +3,7 @@
 mod checkpoint;
 mod contact_verdict;
 mod driver;
-mod environment;
+pub(crate) mod environment;
 mod mechanics;
 mod membrane;
 pub(crate) mod outcome;

@@ -15,7 +15,7 @@ use signorini_fem::{CellShape, DofMap, Local, Mesh};
 use signorini_geometry::Point;
 
 /// Poisson's ratio from which the divergence is projected on cells of any degree.
-const NEARLY_INCOMPRESSIBLE: f64 = 0.4;
+pub const NEARLY_INCOMPRESSIBLE: f64 = 0.4;
 
 /// Functions at the quadrature points of one shape of cells.
 #[derive(Clone)]

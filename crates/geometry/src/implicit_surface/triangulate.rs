@@ -20,7 +20,7 @@ pub fn triangulate(body: &ImplicitBody<3>, bounds: &Aabb<3>, cell: f64) -> Resul
                 let x = at(i, j, k);
                 let value = body.value(&x);
                 if !value.is_finite() {
-                    let message = format!("{value} at ({}, {}, {}); it must be finite in the box", x.x, x.y, x.z);
+                    let message = format!("it is {value} at ({}, {}, {}): it must be finite in the box", x.x, x.y, x.z);
                     return Err(ShapeError::new("value", message));
                 }
                 values.push(value);

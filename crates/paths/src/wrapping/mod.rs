@@ -27,9 +27,22 @@ use touch::Touch;
 #[derive(Clone, Debug)]
 pub struct Wrapping {
     route: Route,
-    /// Touches of each leg, once a path is known.
-    known: Option<Vec<Vec<Touch>>>,
+    /// What is known of each leg, once a path is.
+    known: Option<Vec<Known>>,
     work: Workspace,
+}
+
+/// A leg of a path that was found: the stations of its bodies in the order of the path, and its touches.
+#[derive(Clone, Debug)]
+struct Known {
+    stations: Vec<usize>,
+    touches: Vec<Touch>,
+}
+
+impl Known {
+    fn touches(&self, station: usize) -> bool {
+        self.touches.iter().any(|t| self.stations[t.order] == station)
+    }
 }
 
 impl Wrapping {
@@ -68,21 +81,29 @@ impl Wrapping {
         self.known = None;
     }
 
-    /// The shortest path over the bodies where they are now. After an error the path known before is kept.
+    /// The shortest path over the bodies where they are now. After an error the path known before is kept. Where a path in the
+    /// stated order of the bodies would go through one of them, they are taken in the order of an elastic band over them
+    /// ([`WrappedPath::order`]).
     ///
     /// # Errors
-    /// A body that does not exist; a fixed point inside a body that its leg goes around; no path found.
+    /// A body that does not exist; a fixed point inside a body that its leg goes around; no path found, or none that goes
+    /// through no body.
     pub fn solve(&mut self, bodies: &[Body<'_>]) -> Result<WrappedPath, PathError> {
         self.route.check(bodies.len())?;
         let mut found = Vec::new();
         let mut iterations = 0;
         for (k, mut leg) in self.route.legs(bodies).into_iter().enumerate() {
             leg.pin(bodies)?;
-            let known = self.known.as_ref().map(|touches| touches[k].clone());
-            let warm = known.map(|touches| settle(&leg, bodies, touches, &mut self.work));
-            let (chain, steps) = match warm {
-                Some(Ok(found)) => found,
-                _ => first(&leg, bodies, &mut self.work)?,
+            let warm = self.known.as_ref().and_then(|known| {
+                let mut leg = leg.clone();
+                leg.arrange(&known[k].stations);
+                leg.pin(bodies).ok()?;
+                let (chain, steps) = settle(&leg, bodies, known[k].touches.clone(), &mut self.work).ok()?;
+                topology::crossing(&leg, bodies, &chain).is_none().then_some((leg, chain, steps))
+            });
+            let (leg, chain, steps) = match warm {
+                Some(found) => found,
+                None => anew(leg, bodies, &mut self.work)?,
             };
             iterations += steps;
             found.push((leg, chain));
@@ -90,7 +111,8 @@ impl Wrapping {
         let mut path = WrappedPath::new(&self.route, &found);
         path.iterations = iterations;
         path.events = self.events(&found);
-        self.known = Some(found.into_iter().map(|(_, chain)| chain.touches).collect());
+        let known = |(leg, chain): (Leg, Chain)| Known { stations: leg.stations(), touches: chain.touches };
+        self.known = Some(found.into_iter().map(known).collect());
         Ok(path)
     }
 
@@ -100,7 +122,7 @@ impl Wrapping {
         let mut events = Vec::new();
         for ((leg, chain), before) in found.iter().zip(known) {
             for (order, around) in leg.around.iter().enumerate() {
-                let was = before.iter().any(|t| t.order == order);
+                let was = before.touches(around.station);
                 let is = chain.touches.iter().any(|t| t.order == order);
                 let kind = match (was, is) {
                     (false, true) => EventKind::Touchdown,
@@ -149,6 +171,28 @@ fn settle(
     Err(failed(history, most))
 }
 
+/// A path without one to start from that goes through no body: in the stated order, or else in that of a band.
+fn anew(leg: Leg, bodies: &[Body<'_>], work: &mut Workspace) -> Result<(Leg, Chain, usize), PathError> {
+    let mut search = |leg: &Leg| {
+        let (chain, steps) = first(leg, bodies, work)?;
+        match topology::crossing(leg, bodies, &chain) {
+            None => Ok((chain, steps)),
+            Some(error) => Err(error),
+        }
+    };
+    let error = match search(&leg) {
+        Ok((chain, steps)) => return Ok((leg, chain, steps)),
+        Err(error) => error,
+    };
+    let mut other = leg.clone();
+    other.arrange(&start::order(&leg, bodies));
+    other.pin(bodies)?;
+    match search(&other) {
+        Ok((chain, steps)) => Ok((other, chain, steps)),
+        Err(_) => Err(error),
+    }
+}
+
 /// A path without one to start from: by a band over the bodies, then with the turns that the route asks for.
 fn first(leg: &Leg, bodies: &[Body<'_>], work: &mut Workspace) -> Result<(Chain, usize), PathError> {
     let straight = settle(leg, bodies, Vec::new(), work);
@@ -160,11 +204,8 @@ fn first(leg: &Leg, bodies: &[Body<'_>], work: &mut Workspace) -> Result<(Chain,
     // Both are local minima: the shorter one is the answer.
     let (chain, mut iterations) = match (straight, banded) {
         (Ok(a), Ok(b)) => {
-            if length(&a.0) < length(&b.0) * (1.0 - 1e-12) {
-                a
-            } else {
-                b
-            }
+            let crosses = |found: &(Chain, usize)| topology::crossing(leg, bodies, &found.0).is_some();
+            if !crosses(&a) && (crosses(&b) || length(&a.0) < length(&b.0) * (1.0 - 1e-12)) { a } else { b }
         }
         (Ok(one), Err(_)) | (Err(_), Ok(one)) => one,
         (Err(_), Err(error)) => return Err(error),

@@ -4,8 +4,9 @@
 //! `e` along the lines, `∂L/∂A = -e_first`, `∂L/∂B = e_last`, by a shift of a body `Σ(e_in - e_out)`, by a turn of it about
 //! `c` `Σ((x_P - c) × e_in - (x_Q - c) × e_out)`. The moment arm of a tension on a motion is `-∂L/∂q`.
 
-use super::newton::{Chain, pinned};
+use super::newton::{Chain, Line, pinned};
 use super::route::{Anchor, Body, Leg, Route, Station};
+use super::topology;
 use crate::PathError;
 use crate::darboux::{Along, Darboux};
 use crate::geodesic::geodesic;
@@ -76,6 +77,9 @@ pub struct WrappedPath {
     /// The largest residual, the sine of an angle.
     pub residual: f64,
     pub events: Vec<Event>,
+    /// Stations of the bodies, touched or not, in the order in which the path goes along them: that of the route, unless a path
+    /// in that order goes through a body.
+    pub order: Vec<usize>,
     fixed: Vec<Fixed>,
 }
 
@@ -96,6 +100,7 @@ impl WrappedPath {
             iterations: 0,
             residual: 0.0,
             events: Vec::new(),
+            order: legs.iter().flat_map(|(leg, _)| leg.stations()).collect(),
             fixed: Vec::with_capacity(legs.len() + 1),
         };
         let none = Vector::<3>::zeros();
@@ -150,6 +155,37 @@ impl WrappedPath {
             path.fixed.push(end);
         }
         path
+    }
+
+    /// Where the path goes through a body, whether it is one of its stations or not: a place of the deepest, in space, and the
+    /// depth to first order.
+    ///
+    /// # Errors
+    /// A geodesic that cannot be followed, which the search has followed.
+    pub fn crosses(&self, bodies: &[Body<'_>], number: usize) -> Result<Option<(Point<3>, f64)>, PathError> {
+        let points = self.points(bodies, 24)?;
+        let mut worst: Option<(Point<3>, f64)> = None;
+        let mut meets = |x: Point<3>, depth: f64| {
+            if depth > topology::CROSSES * self.length && worst.is_none_or(|w| depth > w.1) {
+                worst = Some((x, depth));
+            }
+        };
+        for pair in points.windows(2) {
+            let [a, b] = [&pair[0], &pair[1]];
+            if let (Some((on, _)), Some((same, _))) = (&a.contact, &b.contact)
+                && on == same
+            {
+                // Chords of its own body lie in it.
+                if *on != number {
+                    meets(b.x, -bodies[number].near_gap(&b.x));
+                }
+            } else if (b.x - a.x).norm() > 0.0
+                && let Some(found) = topology::deepest(&bodies[number], &Line { from: a.x, to: b.x })
+            {
+                meets(found.x, found.depth);
+            }
+        }
+        Ok(worst)
     }
 
     /// `∂L/∂A` by the start and `∂L/∂B` by the end.

@@ -140,6 +140,16 @@ impl Route {
 }
 
 impl Leg {
+    /// The stations of its bodies, in the order in which the path meets them.
+    pub fn stations(&self) -> Vec<usize> {
+        self.around.iter().map(|a| a.station).collect()
+    }
+
+    /// Takes the bodies in the order of their stations in a list.
+    pub fn arrange(&mut self, stations: &[usize]) {
+        self.around.sort_by_key(|a| stations.iter().position(|s| *s == a.station));
+    }
+
     /// Which ends lie on bodies; neither may lie inside one.
     pub fn pin(&mut self, bodies: &[Body<'_>]) -> Result<(), PathError> {
         let size = (self.to.1 - self.from.1).norm();

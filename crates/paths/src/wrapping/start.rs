@@ -20,6 +20,26 @@ const BOW: f64 = 1e-3;
 
 /// Touches from a band between the ends of a leg.
 pub(crate) fn band(leg: &Leg, bodies: &[Body<'_>]) -> Vec<Touch> {
+    let (nodes, on) = relaxed(leg, bodies);
+    touches(leg, bodies, &nodes, &on)
+}
+
+/// The stations of a leg in the order in which a band comes nearest to their bodies.
+pub(crate) fn order(leg: &Leg, bodies: &[Body<'_>]) -> Vec<usize> {
+    let (nodes, on) = relaxed(leg, bodies);
+    let place = |order: usize| {
+        let touching: Vec<usize> = (0..nodes.len()).filter(|&k| on[k] == Some(order)).collect();
+        let gap = |k: &usize| bodies[leg.around[order].body].near_gap(&nodes[*k]);
+        let nearest = || (0..nodes.len()).min_by(|a, b| gap(a).total_cmp(&gap(b))).unwrap_or_default();
+        touching.get(touching.len() / 2).copied().unwrap_or_else(nearest)
+    };
+    let mut found: Vec<usize> = (0..leg.around.len()).collect();
+    found.sort_by_key(|&order| place(order));
+    found.into_iter().map(|order| leg.around[order].station).collect()
+}
+
+/// The nodes of a band between the ends of a leg, and on which of its bodies each lies.
+fn relaxed(leg: &Leg, bodies: &[Body<'_>]) -> (Vec<Point<3>>, Vec<Option<usize>>) {
     let (from, to) = (leg.from.1, leg.to.1);
     let way = to - from;
     let mut across = Vector::<3>::zeros();
@@ -53,7 +73,7 @@ pub(crate) fn band(leg: &Leg, bodies: &[Body<'_>]) -> Vec<Touch> {
             break;
         }
     }
-    touches(leg, bodies, &nodes, &on)
+    (nodes, on)
 }
 
 /// The foot of a point inside a body, in two Newton steps: the next sweep goes on from there.

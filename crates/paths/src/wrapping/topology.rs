@@ -7,6 +7,7 @@
 use super::newton::{Chain, Line};
 use super::route::{Body, Leg};
 use super::touch::Touch;
+use crate::PathError;
 use crate::darboux::Along;
 use crate::geodesic::{GeodesicState, geodesic};
 use signorini_geometry::{Point, Vector};
@@ -15,6 +16,8 @@ use signorini_geometry::{Point, Vector};
 const PLACES: usize = 16;
 /// Depth relative to the length of a line from which on a body is in the way: above the error of a path.
 const DEPTH: f64 = 1e-10;
+/// Depth relative to the length of a leg from which on a path goes through a body: well above the error of a path.
+pub(crate) const CROSSES: f64 = 1e-8;
 /// Normal curvature times the length of a touch from which on it is divided.
 const BENT_AWAY: f64 = 1e-9;
 
@@ -105,6 +108,35 @@ pub(crate) fn touchdown(leg: &Leg, bodies: &[Body<'_>], chain: &Chain) -> Option
     let mut touches = chain.touches.clone();
     touches.insert(k, pinned_start(leg, bodies, k, touches.len(), touch));
     Some(touches)
+}
+
+/// Where a path goes through a body of its leg, before or after its place in the order: the deepest place.
+pub(crate) fn crossing(leg: &Leg, bodies: &[Body<'_>], chain: &Chain) -> Option<PathError> {
+    let size = (leg.to.1 - leg.from.1).norm() + chain.touches.iter().map(|t| t.length).sum::<f64>();
+    let mut worst: Option<(f64, usize, Point<3>)> = None;
+    let mut meets = |body: usize, depth: f64, x: Point<3>| {
+        if depth > CROSSES * size && worst.is_none_or(|w| depth > w.0) {
+            worst = Some((depth, body, x));
+        }
+    };
+    let lines = (0..=chain.touches.len()).map(|k| chain.line(leg, k)).filter(|line| line.length() > 0.0);
+    for line in lines {
+        for around in &leg.around {
+            if let Some(found) = deepest(&bodies[around.body], &line) {
+                meets(around.body, found.depth, found.x);
+            }
+        }
+    }
+    for touch in &chain.touches {
+        let own = leg.around[touch.order].body;
+        let Ok(way) = geodesic(bodies[own].shape, &touch.x, &touch.tau, touch.length) else { continue };
+        for state in &way.states {
+            let x = bodies[own].motion.point(&state.x);
+            let others = leg.around.iter().filter(|other| other.body != own);
+            others.for_each(|other| meets(other.body, -bodies[other.body].near_gap(&x), x));
+        }
+    }
+    worst.map(|(depth, body, at)| PathError::Crosses { body, depth, at })
 }
 
 /// A first touch on the body on which the path starts begins there.

@@ -313,3 +313,37 @@ fn routes_over_bodies_anywhere() {
     assert!(lost.is_empty(), "{} lost: {:?}", lost.len(), &lost[..lost.len().min(5)]);
     assert!(touched > 300, "{touched}");
 }
+
+/// In whatever order the bodies of a path stand, it goes through none of them; the order in which it meets them is told.
+#[test]
+fn a_path_goes_through_no_body_in_whatever_order_they_stand() {
+    let roller = |x: f64, z: f64, radius: f64| Cylinder { point: point([x, 0.0, z]), axis: Vector::<3>::y(), radius };
+    let (first, second, third) = (roller(-3.0, -0.5, 1.0), roller(0.0, 0.9, 0.8), roller(3.0, -0.9, 1.2));
+    let bodies = [Body::fixed(&first), Body::fixed(&second), Body::fixed(&third)];
+    let (from, to) = ([-6.0, 0.0, 0.3], [6.0, 0.2, 0.2]);
+    let solve = |order: [usize; 3], motion: f64| {
+        let stations = order.map(|body| Station::Around { body, turns: 0 }).to_vec();
+        let mut search = Wrapping::new(route(from, to, stations));
+        search.solve(&bodies).unwrap();
+        // What was found is followed.
+        let end = point([to[0], to[1] + motion, to[2]]);
+        search.set_end(Anchor::fixed(end));
+        search.solve(&bodies).unwrap()
+    };
+    let right = solve([0, 1, 2], 0.1);
+    assert!(right.contacts.len() == 3 && right.order == [0, 1, 2]);
+    for order in [[0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+        let path = solve(order, 0.1);
+        for body in 0..3 {
+            assert!(path.crosses(&bodies, body).unwrap().is_none(), "{order:?} goes through {body}");
+        }
+        assert!((path.length / right.length - 1.0).abs() < 1e-12, "{order:?}: {} {}", path.length, right.length);
+        let met: Vec<usize> = path.order.iter().map(|station| order[*station]).collect();
+        assert_eq!(met, [0, 1, 2], "{order:?}");
+        assert!(path.events.is_empty(), "{order:?}: {:?}", path.events);
+    }
+    // A body that is no station is not gone around: where the path goes through it is told.
+    let mut search = Wrapping::new(route([-6.0, 0.1, -0.3], [-1.0, 0.1, -0.3], around(0)));
+    let (x, depth) = search.solve(&bodies).unwrap().crosses(&bodies, 0).unwrap().unwrap();
+    assert!((x - point([-3.0, 0.1, -0.3])).norm() < 1e-6 && depth > 0.5, "{x} {depth}");
+}

@@ -1,7 +1,7 @@
 //! `--set KEY=VALUE`: replaces or adds a key of the case file before it is read.
 
 use super::origin::Origins;
-use crate::CaseError;
+use crate::{CaseError, suggestion};
 use std::str::FromStr;
 use toml_edit::{DocumentMut, Item, Table, Value};
 
@@ -14,6 +14,7 @@ pub fn apply(name: &str, text: &str, overrides: &[String]) -> Result<(String, Or
     let mut document = DocumentMut::from_str(text)
         .map_err(|e| CaseError::new(e.message().to_string()).at(name, text, e.span().unwrap_or(0..0)))?;
     let mut before = document.to_string();
+    let stated = document.clone();
     for setting in overrides {
         let (key, value) = setting.split_once('=').ok_or_else(|| {
             CaseError::new(format!("`--set {setting}` has no `=`")).help("write  --set loads.press.normal=-0.3")
@@ -23,6 +24,9 @@ pub fn apply(name: &str, text: &str, overrides: &[String]) -> Result<(String, Or
         let after = document.to_string();
         origins.set(setting, [&before, &after]);
         before = after;
+    }
+    for setting in overrides {
+        check_entry(&stated, &document, setting)?;
     }
     origins.finish(&before);
     Ok((before, origins))
@@ -65,9 +69,91 @@ fn set(table: &mut Table, key: &str, value: Value) -> Result<(), String> {
     Ok(())
 }
 
+/// The tables of names that a case gives, what one is called, and the keys of which each needs one at least.
+const NAMED: [(&str, &str, &[&str]); 9] = [
+    ("bodies", "body", &[]),
+    ("supports", "support", &["on"]),
+    ("loads", "load", &["on"]),
+    ("contacts", "contact", &["between", "within", "all"]),
+    ("paths", "path", &["from"]),
+    ("winding", "winding", &["on"]),
+    ("ropes", "rope", &["on"]),
+    ("functions", "function", &["table", "expression"]),
+    ("constants", "constant", &[]),
+];
+
+/// A setting of a key of something that the case does not have, by a name near to one that it has or without what makes it
+/// whole, is a misspelt one.
+fn check_entry(stated: &DocumentMut, document: &DocumentMut, setting: &str) -> Result<(), CaseError> {
+    let key = setting.split_once('=').map_or("", |(key, _)| key);
+    let parts: Vec<&str> = key.split('.').map(str::trim).collect();
+    let Some((section, what, needs)) = NAMED.iter().find(|(section, ..)| parts[0] == *section) else { return Ok(()) };
+    let Some(&name) = parts.get(1) else { return Ok(()) };
+    let names: Vec<&str> = match stated.get(section).and_then(Item::as_table_like) {
+        Some(table) => table.iter().map(|(name, _)| name).collect(),
+        None => Vec::new(),
+    };
+    if names.contains(&name) {
+        return Ok(());
+    }
+    let is_whole = match *section {
+        // One that nothing uses changes nothing.
+        "constants" => uses(&document.to_string(), name) > 1,
+        "bodies" => document["bodies"][name].as_table_like().is_some_and(|kinds| {
+            let is_near = suggestion(name, &names).starts_with("did you mean");
+            kinds.iter().all(|(_, keys)| keys.as_table_like().is_some_and(|keys| keys.len() > 1)) || !is_near
+        }),
+        _ => {
+            let entry = document.get(section).and_then(|table| table.get(name)).and_then(Item::as_table_like);
+            entry.is_some_and(|entry| needs.iter().any(|key| entry.contains_key(key)))
+        }
+    };
+    if is_whole {
+        return Ok(());
+    }
+    let help = match names.is_empty() {
+        true => format!("the case has no `{section}`"),
+        false => suggestion(name, &names),
+    };
+    let place = setting.find(name).unwrap_or(0);
+    Err(CaseError::new(format!("there is no {what} `{name}`")).help(help).at(
+        "--set",
+        setting,
+        place..place + name.len(),
+    ))
+}
+
+/// How often a word stands in a text.
+fn uses(text: &str, word: &str) -> usize {
+    text.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|w| *w == word).count()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn settings_of_what_is_not_there_are_refused() {
+        let text = "[bodies.film.membrane]\ntension = 1\n[loads.press]\non = \"film\"\nnormal = \"a\"\n[contacts.touch]\n\
+            between = [\"film\", \"floor\"]\n";
+        let set = |settings: &[&str]| {
+            let list: Vec<String> = settings.iter().map(|s| (*s).to_string()).collect();
+            apply("case", text, &list).map(|(text, _)| text)
+        };
+        for (setting, message, help) in [
+            ("loads.pres.normal=-0.5", "there is no load `pres`", "did you mean `press`?"),
+            ("bodies.fylm.membrane.degree=3", "there is no body `fylm`", "did you mean `film`?"),
+            ("contacts.toch.friction.coulomb.mu=0.1", "there is no contact `toch`", "did you mean `touch`?"),
+            ("supports.rim.displacement=0", "there is no support `rim`", "no `supports`"),
+            ("constants.b=3", "there is no constant `b`", "no `constants`"),
+        ] {
+            let error = set(&[setting]).expect_err(setting);
+            assert_eq!(error.message, message);
+            assert!(error.help.is_some_and(|h| h.contains(help)), "{setting}");
+        }
+        assert!(set(&["loads.second.on=film", "loads.second.normal=1", "constants.a=3"]).is_ok());
+        assert!(set(&["loads.press.normal=-2"]).is_ok());
+    }
 
     #[test]
     fn keys_are_replaced_added_and_refused() {

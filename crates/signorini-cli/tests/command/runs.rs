@@ -201,3 +201,34 @@ fn results_of_the_readme_are_ignored_by_git() {
         .collect();
     assert!(!commands.is_empty() && commands.iter().all(|c| c.contains(" -o out/")), "{commands:?}");
 }
+
+/// A run that may take no more iterations keeps what is there, says so, and ends as one that has no answer.
+#[test]
+fn a_run_ends_at_its_limit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = |limit: &[&str]| {
+        let arguments = ["gallery", "run", "string", "-o", "out"];
+        signorini(folder.path()).args(arguments).args(limit).output().expect("a run")
+    };
+    let output = run(&["--max-iterations", "1"]);
+    assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("Stopped at the limit of 1 iterations"), "{}", text(&output.stdout));
+    let summary = std::fs::read_to_string(folder.path().join("out/summary.json")).expect("a summary");
+    let summary: Value = serde_json::from_str(&summary).expect("JSON");
+    assert_eq!(summary["reason"], "limit_reached");
+    assert_eq!(run(&["--max-time", "0"]).status.code(), Some(1));
+    assert_eq!(run(&["--max-time", "1000"]).status.code(), Some(0));
+}
+
+/// Pictures of paths are drawn where `check` says so; what has none is refused.
+#[test]
+fn a_picture_that_is_told_is_there() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("case.toml"), example("geodesic")).expect("a file");
+    let check =
+        || signorini(folder.path()).args(["check", "case.toml", "--picture", "p.svg"]).output().expect("a check");
+    let output = check();
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("Picture in p.svg"));
+    assert!(std::fs::read_to_string(folder.path().join("p.svg")).expect("a picture").contains("<svg"));
+}

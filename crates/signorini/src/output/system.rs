@@ -3,6 +3,7 @@
 use crate::fields::{FieldArray, Fields};
 use crate::plan::mechanics::{Kind, MechanicsPlan};
 use crate::problem::Body;
+use crate::report::Carried;
 use crate::report::vector;
 use signorini_contact::{GapJet, Status};
 use signorini_fem::CellShape;
@@ -47,17 +48,6 @@ pub struct RigidShown {
     pub is_free: bool,
 }
 
-/// What the pressure and friction of a contact are per.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Carried {
-    /// Per tested point: rods that cross, balls, corners of rigid bodies.
-    Force,
-    /// Per length of a curve on something else.
-    LineLoad,
-    /// Per area of a surface.
-    Traction,
-}
-
 /// A contact as it is shown: its tested points.
 #[derive(Clone)]
 pub struct ContactShown {
@@ -80,11 +70,7 @@ impl SystemShown {
         let mut shown = SystemShown { time, ..Self::of_bodies(plan, &state.bodies) };
         for ((contact, tested), sites) in plan.system.contacts.iter().zip(&plan.contacts).zip(&result.sites) {
             let fields = of_contact(contact.name(), sites, contact.law().is_some(), tested.along_a_curve);
-            let carries = match &plan.kinds[contact.bodies()[0]] {
-                Kind::Curve { .. } if tested.along_a_curve => Carried::LineLoad,
-                Kind::Curve { .. } | Kind::Rigid { .. } => Carried::Force,
-                Kind::Solid | Kind::Cells => Carried::Traction,
-            };
+            let carries = tested.carries;
             shown.contacts.push(ContactShown { fields, carries });
         }
         shown

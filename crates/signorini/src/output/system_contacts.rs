@@ -6,7 +6,8 @@ use super::labels::Labels;
 use super::page::{Page, Sign, three_digits};
 use super::panel::{Axis, Dots, Panel};
 use super::solid_state::FRONT;
-use super::system::{Carried, ContactShown, SystemShown};
+use super::system::{ContactShown, SystemShown};
+use crate::report::Carried;
 use signorini_geometry::Vector;
 
 /// The largest force or traction of a contact is drawn as a line of this part of the extent of the picture.
@@ -63,7 +64,7 @@ impl ContactShown {
         match self.carries {
             Carried::Force => labels.force(what),
             Carried::LineLoad => labels.force_per_length(what),
-            Carried::Traction => labels.pressure(what),
+            Carried::Pressure => labels.pressure(what),
         }
     }
 }
@@ -99,7 +100,7 @@ pub fn draw(page: &mut Page, shown: &SystemShown, camera: &Camera, extent: f64, 
         let what = match contact.carries {
             Carried::Force => format!("forces of {on}"),
             Carried::LineLoad => format!("force per length of {on}"),
-            Carried::Traction => format!("traction of {on}"),
+            Carried::Pressure => format!("traction of {on}"),
         };
         key.push((Sign::Line(viridis(0.15)), contact.unit(labels, &format!("{what}, up to {}", three_digits(most)))));
     }
@@ -129,7 +130,7 @@ fn order(contact: &ContactShown, plane: bool, labels: &Labels) -> Option<Order> 
         return Some(Order { places, name: labels.length("length along the tested points") });
     }
     let closed = contact.closed();
-    if !plane || contact.carries != Carried::Traction || closed.len() < 3 {
+    if !plane || contact.carries != Carried::Pressure || closed.len() < 3 {
         return None;
     }
     let normals = contact.fields.array("normal")?;
@@ -163,7 +164,7 @@ pub fn chart(contact: &ContactShown, plane: bool, time: f64, labels: &Labels) ->
     let title = format!("Contact of `{}`, t = {}", contact.fields.name, label(time));
     let mut page = Page::new((WIDTH, 460.0), &title, "");
     let high = normal.iter().chain(friction.iter().flatten()).map(|p| p.1).fold(0.0f64, f64::max);
-    let what = contact.unit(labels, if contact.carries == Carried::Traction { "traction" } else { "force per length" });
+    let what = contact.unit(labels, if contact.carries == Carried::Pressure { "traction" } else { "force per length" });
     let range = (places.first()?.0, places.last()?.0);
     let (x, y) = (Axis::around(&name, range), Axis::from_zero(&what, (0.0, high)));
     let mut panel = Panel::new(&mut page.svg, [0.0, 46.0, WIDTH, 456.0], x, y);

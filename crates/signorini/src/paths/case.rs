@@ -1,7 +1,6 @@
 //! A problem of paths that was read.
 
 use crate::plan::paths::{PathPlan, Task, plan_paths};
-use crate::problem::units::Dimension;
 use crate::problem::{CaseError, KeyPath, Problem};
 use signorini_paths::PathError;
 
@@ -52,11 +51,13 @@ impl PathCase {
             let message = format!("the {place} of the path `{name}` lies inside `{}`, {depth:.4e} deep", body.name);
             return self.problem().error(key, message).help("a point outside of the body");
         }
+        if let PathError::Crosses { body, depth, at } = error
+            && let Some(body) = self.plan.bodies.get(*body)
+        {
+            let at = at.iter().map(|v| format!("{v:.4}")).collect::<Vec<_>>().join(", ");
+            let message = format!("the path `{name}` goes through `{}`, {depth:.4e} deep at ({at})", body.name);
+            return self.problem().error(key, message).help("`around` names bodies in the order of the path");
+        }
         self.problem().error(key, format!("the path `{name}`: {error}"))
-    }
-
-    /// The name of the base unit of a dimension; empty where no units are stated.
-    pub(super) fn unit(&self, dimension: Dimension) -> String {
-        self.plan.head.units.map_or(String::new(), |u| u.written(dimension))
     }
 }

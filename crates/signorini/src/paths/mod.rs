@@ -12,115 +12,181 @@ mod wrapping;
 use crate::output::Folder;
 use crate::output::figure::exact;
 use crate::plan::paths::Task;
-use crate::problem::units::{FORCE, LENGTH};
 use crate::problem::{Analysis, Problem};
-use crate::run::Progress;
+use crate::report::{
+    PathEventKind, PathReport, PathReports, Reason, RopeReport, SCHEMA, StepReport, Summary, UnitNames, Warning,
+    WindingReport,
+};
+use crate::run::{Progress, environment};
 use crate::scene::SceneError;
 pub use case::PathCase;
-use serde_json::{Value, json};
+use output::Line;
 use std::path::Path;
+use std::time::Instant;
 
 /// Whether a problem is about paths rather than equilibrium.
 pub fn is_of_paths(problem: &Problem) -> bool {
     problem.analysis.is_some_and(|a| a != Analysis::Equilibrium)
 }
 
+/// What an analysis of paths found.
+#[derive(Default)]
+struct Found {
+    reports: PathReports,
+    /// One for each time.
+    steps: Vec<StepReport>,
+    /// Unknowns that were solved for, at most.
+    unknowns: usize,
+    warnings: Vec<Warning>,
+}
+
+impl Found {
+    /// Results of one time.
+    fn at_once(reports: PathReports) -> Self {
+        Found { reports, steps: vec![StepReport { converged: true, ..StepReport::default() }], ..Found::default() }
+    }
+}
+
 /// Runs a case into a folder and returns its summary.
 ///
 /// # Errors
 /// A path that is not found, a motion that is not finite, files that cannot be written.
-pub fn run(case: &PathCase, folder: &Path, progress: &mut dyn Progress) -> Result<Value, SceneError> {
+pub fn run(case: &PathCase, folder: &Path, progress: &mut dyn Progress) -> Result<Summary, SceneError> {
+    let start = Instant::now();
     let folder = Folder::create(folder)?;
-    folder.write("case.toml", crate::case::text(case.problem()).as_bytes())?;
-    let mut summary = match &case.plan.task {
-        Task::Wrapping { frames, paths } => wrapping::run(case, (*frames, paths), &folder, progress)?,
-        Task::Winding(list) => winding::run(case, list, &folder, progress)?,
-        Task::EulerEytelwein(list) => rope::run(case, list, &folder, progress)?,
+    let text = crate::case::text(case.problem());
+    folder.write("case.toml", text.as_bytes())?;
+    let (method, found) = match &case.plan.task {
+        Task::Wrapping { frames, paths } => ("wrapping", wrapping::run(case, (*frames, paths), &folder, progress)?),
+        Task::Winding(list) => ("winding", winding::run(case, list, &folder, progress)?),
+        Task::EulerEytelwein(list) => ("euler_eytelwein", rope::run(case, list, &folder, progress)?),
     };
-    summary["units"] = match case.plan.head.units {
-        Some(_) => json!({"length": case.unit(LENGTH), "force": case.unit(FORCE)}),
-        None => Value::Null,
+    let head = &case.plan.head;
+    let mut summary = Summary {
+        schema: SCHEMA,
+        case: case.name().to_string(),
+        converged: true,
+        reason: Reason::Converged,
+        verdict: String::new(),
+        method: method.into(),
+        unknowns: found.unknowns,
+        units: head.unit_names(),
+        first_picture: Some("pictures/paths.png".into()),
+        warnings: head.warnings.iter().cloned().chain(found.warnings).collect(),
+        interpreted: head.interpreted.clone(),
+        steps: found.steps,
+        events: Vec::new(),
+        of_paths: found.reports,
+        environment: environment::describe(start, rayon::current_num_threads(), &text),
     };
-    summary["verdict"] = sentences(&summary).join("; ").into();
-    summary["warnings"] = json!(case.plan.head.warnings);
-    folder.write("summary.json", format!("{summary:#}\n").as_bytes())?;
+    summary.verdict = sentences(&summary).join("; ");
+    folder.write("summary.json", summary.to_json().as_bytes())?;
     Ok(summary)
 }
 
+/// A picture of the bodies with the paths at their first time, as SVG.
+///
+/// # Errors
+/// A path that is not found, a picture that cannot be drawn.
+pub fn preview(case: &PathCase) -> Result<String, SceneError> {
+    let lines = match &case.plan.task {
+        Task::Wrapping { paths, .. } => wrapping::at_start(case, paths)?,
+        Task::Winding(list) => winding::all(case, list, &mut |_| {})?.0,
+        Task::EulerEytelwein(list) => rope::all(case, list, &mut |_| {})?.0,
+    };
+    let around = surface::box_around(points(&lines), 0.15);
+    let bodies = surface::surfaces(case, &[0.0], &around)?;
+    Ok(picture::of_paths(case, &bodies[0], &lines)?)
+}
+
+/// The points of all lines.
+fn points(lines: &[Line]) -> impl Iterator<Item = signorini_geometry::Point<3>> {
+    lines.iter().flat_map(|l| l.points.iter().map(|p| p.x))
+}
+
+/// Numbers with the units of length and force of a case.
+struct Units<'a>(Option<&'a UnitNames>);
+
+impl Units<'_> {
+    fn length(&self, v: f64) -> String {
+        exact(v, self.0.map_or("", |u| &u.length))
+    }
+
+    fn forces(&self, v: [f64; 2]) -> [String; 2] {
+        v.map(|v| exact(v, self.0.map_or("", |u| &u.force)))
+    }
+}
+
 /// What a summary says, in sentences.
-pub fn sentences(summary: &Value) -> Vec<String> {
+pub fn sentences(summary: &Summary) -> Vec<String> {
+    let units = Units(summary.units.as_ref());
+    let PathReports { paths, winding, ropes } = &summary.of_paths;
+    let found = paths.iter().flat_map(|p| of_path(p, &units));
+    let found = found.chain(winding.iter().flat_map(|w| of_yarn(w, &units)));
+    let found = found.chain(ropes.iter().flat_map(|r| of_rope(r, &units)));
+    found.chain(summary.warnings.iter().map(|w| format!("warning: {w}"))).collect()
+}
+
+fn of_path(path: &PathReport, units: &Units) -> Vec<String> {
+    let name = &path.name;
     let mut out = Vec::new();
-    let unit = |of: &str| summary["units"][of].as_str().unwrap_or_default().to_string();
-    let (length, force) = (unit("length"), unit("force"));
-    let number = |v: &Value| v.as_f64().map_or("-".to_string(), |v| exact(v, ""));
-    let long = |v: &Value| v.as_f64().map_or("-".to_string(), |v| exact(v, &length));
-    let strong = |v: &Value| v.as_f64().map_or("-".to_string(), |v| exact(v, &force));
-    for path in summary["paths"].as_array().into_iter().flatten() {
-        let name = path["name"].as_str().unwrap_or_default();
-        let frames = path["frames"].as_array().map_or(&[][..], Vec::as_slice);
-        if let (Some(first), Some(last)) = (frames.first(), frames.last()) {
-            let touched = last["contacts"].as_array().map_or(0, Vec::len);
-            let times = if touched == 1 { "once".to_string() } else { format!("{touched} times") };
-            out.push(format!(
-                "`{name}`: length {} at t = {}, {} at t = {}, where it touches {times}",
-                long(&first["length"]),
-                number(&first["time"]),
-                long(&last["length"]),
-                number(&last["time"]),
-            ));
-            if let Some(limits) = last["tension_limits"].as_array() {
-                let [low, high] = [0, 1].map(|k| limits.get(k).map_or("-".into(), strong));
-                out.push(format!("friction holds tensions from {low} to {high} at the end of `{name}`"));
-            }
-            if last["slips"] == true {
-                let used = last["utilisation"].as_f64().unwrap_or(f64::NAN);
-                out.push(format!("`{name}` slips: {:.0} % of the friction is used", 100.0 * used));
-            }
-        }
-        for event in path["events"].as_array().into_iter().flatten() {
-            let text = |key: &str| event[key].as_str().unwrap_or_default().replace('_', " ");
-            out.push(format!("{} of `{name}` and `{}` at t = {}", text("kind"), text("body"), number(&event["time"])));
-        }
-    }
-    for path in summary["winding"].as_array().into_iter().flatten() {
-        let name = path["name"].as_str().unwrap_or_default();
+    if let (Some(first), Some(last)) = (path.frames.first(), path.frames.last()) {
+        let touched = last.contacts.len();
+        let times = if touched == 1 { "once".to_string() } else { format!("{touched} times") };
         out.push(format!(
-            "`{name}`: length {}, largest slippage {}",
-            long(&path["length"]),
-            number(&path["largest_slippage"])
+            "`{name}`: length {} at t = {}, {} at t = {}, where it touches {times}",
+            units.length(first.length),
+            exact(first.time, ""),
+            units.length(last.length),
+            exact(last.time, ""),
         ));
-        if let Some(pattern) = path["pattern"].as_object() {
-            out.push(format!(
-                "pattern of {} circuits, {} places on after each, dwell {} rad; {} of the mandrel covered",
-                pattern["n"],
-                pattern["k"],
-                number(&pattern["dwell"]),
-                number(&path["coverage"]["covered"])
-            ));
+        if let Some(limits) = last.tension_limits {
+            let [low, high] = units.forces(limits);
+            out.push(format!("friction holds tensions from {low} to {high} at the end of `{name}`"));
         }
-        let parts = |key: &str| path[key].as_array().into_iter().flatten().map(|p| [long(&p[0]), long(&p[1])]);
-        out.extend(parts("bridges").map(|[from, to]| {
-            let remedy = "the mandrel is hollow along it: another angle, or a slippage that leads round";
-            format!("`{name}` bridges from s = {from} to {to}: {remedy}")
-        }));
-        out.extend(parts("slips").map(|[from, to]| {
-            let remedy = "its slippage is beyond the friction: less of it, or a rougher yarn";
-            format!("`{name}` slips from s = {from} to {to}: {remedy}")
-        }));
+        if let (Some(true), Some(used)) = (last.slips, last.utilisation) {
+            out.push(format!("`{name}` slips: {:.0} % of the friction is used", 100.0 * used));
+        }
     }
-    for rope in summary["ropes"].as_array().into_iter().flatten() {
+    out.extend(path.events.iter().map(|event| {
+        let kind = if event.kind == PathEventKind::Touchdown { "touchdown" } else { "lift off" };
+        format!("{kind} of `{name}` and `{}` at t = {}", event.body, exact(event.time, ""))
+    }));
+    out
+}
+
+fn of_yarn(yarn: &WindingReport, units: &Units) -> Vec<String> {
+    let name = &yarn.name;
+    let (length, slippage) = (units.length(yarn.length), exact(yarn.largest_slippage, ""));
+    let mut out = vec![format!("`{name}`: length {length}, largest slippage {slippage}")];
+    if let (Some(pattern), Some(coverage)) = (&yarn.pattern, &yarn.coverage) {
         out.push(format!(
-            "`{}`: {}",
-            rope["name"].as_str().unwrap_or_default(),
-            rope["verdict"].as_str().unwrap_or("-")
+            "pattern of {} circuits, {} places on after each, dwell {} rad; {} of the mandrel covered",
+            pattern.n,
+            pattern.k,
+            exact(pattern.dwell, ""),
+            exact(coverage.covered, "")
         ));
-        if let Some(limits) = rope["tension_limits"].as_array() {
-            let [low, high] = [0, 1].map(|k| limits.get(k).map_or("-".into(), strong));
-            out.push(format!("with {} at its start it holds {low} to {high} at its end", strong(&rope["tension"])));
-        }
     }
-    let warnings = summary["warnings"].as_array().into_iter().flatten();
-    out.extend(warnings.filter_map(|w| Some(format!("warning: {}", w["message"].as_str()?))));
+    let parts = |list: &[[f64; 2]], what: &str, remedy: &str| -> Vec<String> {
+        let part = |[from, to]: &[f64; 2]| {
+            format!("`{name}` {what} from s = {} to {}: {remedy}", units.length(*from), units.length(*to))
+        };
+        list.iter().map(part).collect()
+    };
+    let hollow = "the mandrel is hollow along it: another angle, or a slippage that leads round";
+    out.extend(parts(&yarn.bridges, "bridges", hollow));
+    out.extend(parts(&yarn.slips, "slips", "its slippage is beyond the friction: less of it, or a rougher yarn"));
+    out
+}
+
+fn of_rope(rope: &RopeReport, units: &Units) -> Vec<String> {
+    let mut out = vec![format!("`{}`: {}", rope.name, rope.verdict)];
+    if let Some(limits) = rope.tension_limits {
+        let [low, high] = units.forces(limits);
+        let [tension, _] = units.forces([rope.tension; 2]);
+        out.push(format!("with {tension} at its start it holds {low} to {high} at its end"));
+    }
     out
 }
 
@@ -128,6 +194,7 @@ pub fn sentences(summary: &Value) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::run::Silent;
+    use serde_json::{Value, json};
 
     const WRAPPING: &str = "analysis = \"wrapping\"\nframes = 2\nconstants.height = 0.3\n\
         [bodies.egg.rigid]\nshape.ellipsoid = { center = [0, 0, 0], semi_axes = [2, 1.5, 1] }\n\
@@ -148,7 +215,11 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let case = PathCase::parse("case.toml", text, &[]).unwrap();
         let summary = run(&case, &folder.path().join("out"), &mut Silent).unwrap();
-        (folder, summary)
+        assert!(!sentences(&summary).is_empty() && summary.steps.iter().all(|s| s.converged));
+        let written = std::fs::read_to_string(folder.path().join("out/summary.json")).unwrap();
+        let written: Value = serde_json::from_str(&written).unwrap();
+        assert_eq!(written["case"], summary.case);
+        (folder, json!(summary))
     }
 
     #[test]
@@ -171,7 +242,6 @@ mod tests {
         ] {
             assert!(out.join(file).exists(), "{file}");
         }
-        assert!(sentences(&summary).len() > 2);
         // The folder may be written again.
         let case = PathCase::parse("case.toml", WRAPPING, &[]).unwrap();
         assert!(run(&case, &out, &mut Silent).is_ok());

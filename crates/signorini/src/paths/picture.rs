@@ -135,6 +135,11 @@ fn places(lines: &[&Line], camera: &Camera) -> Vec<(f64, f64)> {
 
 /// Draws paths over bodies into a folder.
 pub fn draw(case: &PathCase, surfaces: &[Surface], lines: &[Line], folder: &Folder) -> Result<(), OutputError> {
+    save(folder, "paths", &of_paths(case, surfaces, lines)?)
+}
+
+/// Paths over bodies, as SVG.
+pub fn of_paths(case: &PathCase, surfaces: &[Surface], lines: &[Line]) -> Result<String, OutputError> {
     let [from, up] = case.plan.view;
     let seen: Vec<Vector<3>> = (surfaces.iter().flat_map(|s| &s.points).copied())
         .chain(lines.iter().flat_map(|l| l.points.iter().map(|p| p.x)))
@@ -222,7 +227,7 @@ pub fn draw(case: &PathCase, surfaces: &[Surface], lines: &[Line], folder: &Fold
         key.push((Sign::Line(SLIPS), "slips or bridges".into()));
     }
     page.key(&key);
-    save(folder, "paths", &page.finish())
+    Ok(page.finish())
 }
 
 /// A value of each path in time as lines.

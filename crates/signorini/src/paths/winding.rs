@@ -4,11 +4,12 @@ use super::case::PathCase;
 use super::output::{self, Line, LinePoint};
 use super::picture;
 use super::surface::{box_around, surfaces};
+use super::{Found, points};
 use crate::output::Folder;
 use crate::plan::paths::PlannedWinding;
+use crate::report::{CircuitReport, CoverageReport, PathReports, PatternReport, TurnReport, WindingReport};
 use crate::run::Progress;
 use crate::scene::SceneError;
-use serde_json::{Value, json};
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::{Point, Vector};
 use signorini_paths::winding::{
@@ -59,34 +60,44 @@ pub(super) fn run(
     list: &[PlannedWinding],
     folder: &Folder,
     progress: &mut dyn Progress,
-) -> Result<Value, SceneError> {
+) -> Result<Found, SceneError> {
     let count = list.len();
-    let mut lines = Vec::new();
-    let mut summaries = Vec::new();
-    for (k, yarn) in list.iter().enumerate() {
-        progress.step(k, count, 0.0);
-        let (line, summary) = one(case, yarn)?;
-        let circuits = other_circuits(case, yarn, &line, &summary);
-        lines.push(line);
-        lines.extend(circuits);
-        summaries.push(summary);
-    }
+    let (lines, winding) = all(case, list, &mut |k| progress.step(k, count, 0.0))?;
     output::write_winding(&lines, folder)?;
-    let around = box_around(lines.iter().flat_map(|l| l.points.iter().map(|p| p.x)), 0.1);
+    let around = box_around(points(&lines), 0.1);
     let bodies = surfaces(case, &[0.0], &around)?;
     output::write_bodies(&[0.0], &bodies, folder)?;
     picture::draw(case, &bodies[0], &lines, folder)?;
     progress.step(count, count, 0.0);
-    Ok(json!({"title": case.name(), "analysis": "winding", "status": "done", "winding": summaries}))
+    Ok(Found::at_once(PathReports { winding, ..PathReports::default() }))
+}
+
+/// All yarns as lines, with the other circuits of their patterns, and what is told of them.
+pub(super) fn all(
+    case: &PathCase,
+    list: &[PlannedWinding],
+    begun: &mut dyn FnMut(usize),
+) -> Result<(Vec<Line>, Vec<WindingReport>), SceneError> {
+    let mut lines = Vec::new();
+    let mut reports = Vec::new();
+    for (k, yarn) in list.iter().enumerate() {
+        begun(k);
+        let (line, report) = one(case, yarn)?;
+        let circuits = other_circuits(case, yarn, &line, &report);
+        lines.push(line);
+        lines.extend(circuits);
+        reports.push(report);
+    }
+    Ok((lines, reports))
 }
 
 /// The other circuits of a pattern: the first one turned about the axis, `k` places of `n` after each.
-fn other_circuits(case: &PathCase, key: &PlannedWinding, line: &Line, summary: &Value) -> Vec<Line> {
-    let Some(n) = summary["pattern"]["n"].as_u64() else { return Vec::new() };
+fn other_circuits(case: &PathCase, key: &PlannedWinding, line: &Line, report: &WindingReport) -> Vec<Line> {
+    let Some(n) = report.pattern.as_ref().map(|p| p.n) else { return Vec::new() };
     let origin = case.plan.bodies[key.body].shape().centre();
     (1..n)
         .map(|k| {
-            let angle = TAU * k as f64 / n as f64;
+            let angle = TAU * f64::from(k) / f64::from(n);
             let turn = RigidMotion::new(key.axis * angle, origin, Vector::<3>::zeros());
             let turned =
                 |p: &LinePoint| LinePoint { x: turn.point(&p.x), frame: p.frame.map(|v| turn.rotation * v), ..*p };
@@ -95,7 +106,7 @@ fn other_circuits(case: &PathCase, key: &PlannedWinding, line: &Line, summary: &
         .collect()
 }
 
-fn one(case: &PathCase, key: &PlannedWinding) -> Result<(Line, Value), SceneError> {
+fn one(case: &PathCase, key: &PlannedWinding) -> Result<(Line, WindingReport), SceneError> {
     let name = &key.name;
     let failed = |e| case.failed(&key.key, name, &e);
     let body = &case.plan.bodies[key.body];
@@ -112,7 +123,12 @@ fn one(case: &PathCase, key: &PlannedWinding) -> Result<(Line, Value), SceneErro
     let longest = key.length.unwrap_or(TURNS * TAU * radius);
     let spacing = key.spacing.unwrap_or(TAU * radius / POINTS * 4.0);
     let half_band = 0.5 * key.band.unwrap_or(0.0);
-    let mut summary = json!({"name": name, "start_radius": radius, "start_angle": start.angle});
+    let mut report = WindingReport {
+        name: name.clone(),
+        start_radius: radius,
+        start_angle: start.angle,
+        ..WindingReport::default()
+    };
     let slippage = match (key.slippage.clone(), key.opening) {
         (Some(slippage), _) => slippage,
         (None, None) => Slippage::Constant(0.0),
@@ -120,7 +136,7 @@ fn one(case: &PathCase, key: &PlannedWinding) -> Result<(Line, Value), SceneErro
             let most = key.friction.unwrap_or(SOUGHT);
             let middle = opening + half_band;
             let found = slippage_for_opening(&mandrel, &start, middle, [-most, most], longest).map_err(failed)?;
-            summary["slippage_sought"] = found.slippage.into();
+            report.slippage_sought = Some(found.slippage);
             Slippage::Constant(found.slippage)
         }
     };
@@ -145,12 +161,28 @@ fn one(case: &PathCase, key: &PlannedWinding) -> Result<(Line, Value), SceneErro
         let best = patterns(found.angle, range).map_err(failed)?[0];
         let laid = cover(found.angle + best.dwell, best.n)?;
         let lead = if best.lead == Lead::Leading { "leading" } else { "lagging" };
-        summary["circuit"] = json!({"angle": found.angle, "length": found.length, "mismatch": found.mismatch,
-            "turn_radii": found.turns.map(|t| t.radius), "opening_radii": found.turns.map(|t| t.radius - half_band)});
-        summary["pattern"] = json!({"n": best.n, "k": best.k, "m": best.m, "dwell": best.dwell,
-            "neighbour_after": best.neighbour_after, "lead": lead});
-        summary["coverage"] = json!({"circuits_for_full": laid.circuits, "covered": laid.covered, "gap": laid.gap * radius,
-            "overlap": laid.overlap * radius, "length_of_all": found.length * f64::from(best.n)});
+        report.circuit = Some(CircuitReport {
+            angle: found.angle,
+            length: found.length,
+            mismatch: found.mismatch,
+            turn_radii: found.turns.map(|t| t.radius),
+            opening_radii: found.turns.map(|t| t.radius - half_band),
+        });
+        report.pattern = Some(PatternReport {
+            n: best.n,
+            k: best.k,
+            m: best.m,
+            dwell: best.dwell,
+            neighbour_after: best.neighbour_after,
+            lead: lead.into(),
+        });
+        report.coverage = Some(CoverageReport {
+            circuits_for_full: laid.circuits,
+            covered: laid.covered,
+            gap: laid.gap * radius,
+            overlap: laid.overlap * radius,
+            length_of_all: found.length * f64::from(best.n),
+        });
         let [up, down] = &found.halves;
         let shifted = down.points.iter().skip(1).map(|p| WindingPoint {
             theta: p.theta + up.end().theta,
@@ -165,8 +197,12 @@ fn one(case: &PathCase, key: &PlannedWinding) -> Result<(Line, Value), SceneErro
         if until == Until::Turn {
             let end = path.end();
             let reached = path.ended == Ended::AsAsked;
-            summary["turn"] = json!({"reached": reached, "radius": end.radius, "opening_radius": end.radius - half_band,
-                "theta": end.theta});
+            report.turn = Some(TurnReport {
+                reached,
+                radius: end.radius,
+                opening_radius: end.radius - half_band,
+                theta: end.theta,
+            });
         }
         points = path.points.clone();
         halves = vec![path];
@@ -182,13 +218,13 @@ fn one(case: &PathCase, key: &PlannedWinding) -> Result<(Line, Value), SceneErro
         offset += half.end().frame.s;
     }
     let largest = halves.iter().map(|h| h.largest_slippage().0).fold(0.0, f64::max);
-    summary["length"] = points[points.len() - 1].frame.s.into();
-    summary["theta"] = points[points.len() - 1].theta.into();
-    summary["largest_slippage"] = largest.into();
-    summary["utilisation"] = key.friction.map(|mu| largest / mu).into();
-    summary["stable"] = (bridges.is_empty() && slipping.is_empty()).into();
-    summary["bridges"] = json!(bridges);
-    summary["slips"] = json!(slipping);
+    report.length = points[points.len() - 1].frame.s;
+    report.theta = points[points.len() - 1].theta;
+    report.largest_slippage = largest;
+    report.utilisation = key.friction.map(|mu| largest / mu);
+    report.stable = bridges.is_empty() && slipping.is_empty();
+    report.bridges = bridges;
+    report.slips = slipping;
     let points = points.iter().map(|p| LinePoint::of_winding(p, key.friction)).collect();
-    Ok((Line { name: name.clone(), points }, summary))
+    Ok((Line { name: name.clone(), points }, report))
 }

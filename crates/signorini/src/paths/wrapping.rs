@@ -1,5 +1,6 @@
 //! Shortest paths over moving bodies, frame by frame.
 
+use super::Found;
 use super::case::PathCase;
 use super::output::{self, Line, LinePoint};
 use super::picture;
@@ -8,15 +9,21 @@ use crate::output::Folder;
 use crate::plan::Placed;
 use crate::plan::paths::{PlannedEnd, PlannedPath, PlannedStation};
 use crate::problem::CaseError;
+use crate::report::{
+    MomentArm, PathContact, PathEvent, PathEventKind, PathFrame, PathReport, SidewaysReport, StepReport, Warning,
+    WarningKind,
+};
 use crate::run::Progress;
 use crate::scene::SceneError;
-use serde_json::{Map, Value, json};
 use signorini_geometry::{Point, Vector};
-use signorini_paths::wrapping::{Anchor, Body, EventKind, Minimal, Route, Station, WrappedPath, Wrapping};
+use signorini_paths::wrapping::{Anchor, Body, EventKind, Minimal, Route, Sideways, Station, WrappedPath, Wrapping};
 use std::fmt::Write as _;
 
 /// Pieces of each contact that are written and drawn.
 const PIECES: usize = 24;
+/// Unknowns of a contact: where it begins along and across, its direction and its length.
+const UNKNOWNS: usize = 4;
+
 impl PathCase {
     fn anchor(&self, end: &PlannedEnd, time: f64) -> Result<Anchor, CaseError> {
         match end {
@@ -51,18 +58,20 @@ pub(super) fn run(
     (frames, paths): (usize, &[PlannedPath]),
     folder: &Folder,
     progress: &mut dyn Progress,
-) -> Result<Value, SceneError> {
+) -> Result<Found, SceneError> {
     let times: Vec<f64> = (0..frames).map(|k| if frames > 1 { k as f64 / (frames - 1) as f64 } else { 0.0 }).collect();
     let mut searches: Vec<Wrapping> =
         paths.iter().map(|p| Ok(Wrapping::new(case.route(p, 0.0)?))).collect::<Result<_, CaseError>>()?;
     let mut written: Vec<Vec<Line>> = Vec::new();
-    let mut summaries: Vec<Map<String, Value>> = vec![Map::new(); searches.len()];
-    let mut rows: Vec<Vec<Value>> = vec![Vec::new(); searches.len()];
-    let mut events: Vec<Vec<Value>> = vec![Vec::new(); searches.len()];
+    let named = |p: &PlannedPath| PathReport { name: p.name.clone(), ..PathReport::default() };
+    let mut found = Found::default();
+    found.reports.paths = paths.iter().map(named).collect();
     for (frame, &time) in times.iter().enumerate() {
         progress.step(frame, frames, time);
         let bodies = case.places(time)?;
         let mut lines = Vec::new();
+        let mut step = StepReport { index: frame, time, converged: true, ..StepReport::default() };
+        let mut unknowns = 0;
         for (k, key) in paths.iter().enumerate() {
             let route = case.route(key, time)?;
             let same = route.stations == searches[k].route().stations;
@@ -74,18 +83,26 @@ pub(super) fn run(
                 searches[k].set_route(route);
             }
             let path = searches[k].solve(&bodies).map_err(|e| case.failed(&key.key, &key.name, &e))?;
-            let line = line(case, key, &path, &bodies, time)?;
-            rows[k].push(line.1);
-            lines.push(line.0);
-            events[k].extend(path.events.iter().map(|e| {
-                let kind = if e.kind == EventKind::Touchdown { "touchdown" } else { "lift_off" };
+            odd(case, key, &path, &bodies, time, &mut found.warnings)?;
+            let (line, row) = line(case, key, &path, &bodies, time)?;
+            step.iterations += row.iterations;
+            unknowns += UNKNOWNS * row.contacts.len();
+            let report = &mut found.reports.paths[k];
+            report.iterations += row.iterations;
+            report.frames.push(row);
+            lines.push(line);
+            report.events.extend(path.events.iter().map(|e| {
+                let touches = e.kind == EventKind::Touchdown;
+                let kind = if touches { PathEventKind::Touchdown } else { PathEventKind::LiftOff };
                 let body = match searches[k].route().stations[e.station] {
-                    Station::Around { body, .. } => case.plan.bodies[body].name.as_str(),
-                    Station::Via(_) => "",
+                    Station::Around { body, .. } => case.plan.bodies[body].name.clone(),
+                    Station::Via(_) => String::new(),
                 };
-                json!({"kind": kind, "time": time, "frame": frame, "body": body})
+                PathEvent { kind, time, frame, body }
             }));
         }
+        found.unknowns = found.unknowns.max(unknowns);
+        found.steps.push(step);
         written.push(lines);
     }
     output::write_lines(&times, &written, folder)?;
@@ -98,32 +115,68 @@ pub(super) fn run(
         picture::draw(case, surfaces, lines, folder)?;
     }
     if frames > 1 {
-        histories(case, &times, paths, &rows, folder)?;
+        histories(case, &times, &found.reports.paths, folder)?;
     }
     progress.step(frames, frames, times[frames - 1]);
-    for (k, (summary, (rows, events))) in summaries.iter_mut().zip(rows.into_iter().zip(events)).enumerate() {
-        let iterations: u64 = rows.iter().filter_map(|r| r["iterations"].as_u64()).sum();
-        summary.insert("name".into(), paths[k].name.clone().into());
-        summary.insert("iterations".into(), iterations.into());
-        summary.insert("events".into(), events.into());
-        summary.insert("frames".into(), rows.into());
+    Ok(found)
+}
+
+/// The paths at the first time.
+pub(super) fn at_start(case: &PathCase, paths: &[PlannedPath]) -> Result<Vec<Line>, SceneError> {
+    let bodies = case.places(0.0)?;
+    let each = paths.iter().map(|key| {
+        let path = Wrapping::new(case.route(key, 0.0)?).solve(&bodies);
+        let path = path.map_err(|e| case.failed(&key.key, &key.name, &e))?;
+        Ok(line(case, key, &path, &bodies, 0.0)?.0)
+    });
+    each.collect()
+}
+
+/// Warns, once for each path, where its bodies do not stand in the order in which it meets them, and where it goes through one
+/// that it is not said to go around.
+fn odd(
+    case: &PathCase,
+    key: &PlannedPath,
+    path: &WrappedPath,
+    bodies: &[Body<'_>],
+    time: f64,
+    warnings: &mut Vec<Warning>,
+) -> Result<(), CaseError> {
+    let name = &key.name;
+    let body_of =
+        |station: &PlannedStation| if let PlannedStation::Around { body, .. } = station { Some(*body) } else { None };
+    let mut told = |message: String, start: &str| {
+        if !warnings.iter().any(|w| w.message.starts_with(start)) {
+            warnings.push(Warning::new(WarningKind::Path, message).at_time(time));
+        }
+    };
+    if !path.order.is_sorted() {
+        let met = path.order.iter().filter_map(|station| body_of(&key.stations[*station]));
+        let met: Vec<String> = met.map(|body| format!("`{}`", case.plan.bodies[body].name)).collect();
+        let start = format!("`{name}` meets its bodies in another order");
+        told(format!("{start} than `around` states, in which it would go through one: {}", met.join(", ")), &start);
     }
-    Ok(json!({"title": case.name(), "analysis": "wrapping", "status": "done", "frames": frames, "paths": summaries}))
+    for (number, body) in case.plan.bodies.iter().enumerate() {
+        if key.stations.iter().any(|station| body_of(station) == Some(number)) {
+            continue;
+        }
+        let crosses = path.crosses(bodies, number).map_err(|e| case.failed(&key.key, name, &e))?;
+        if let Some((x, depth)) = crosses {
+            let start = format!("`{name}` goes through `{}`", body.name);
+            let at = x.iter().map(|v| format!("{v:.4}")).collect::<Vec<_>>().join(", ");
+            let remedy = "its `around` does not name that body";
+            told(format!("{start}, {depth:.4e} deep at ({at}), t = {time}: {remedy}"), &start);
+        }
+    }
+    Ok(())
 }
 
 /// The lengths of paths in time, and what their changes do at a turn of the unit time: a table, and a picture.
-fn histories(
-    case: &PathCase,
-    times: &[f64],
-    paths: &[PlannedPath],
-    rows: &[Vec<Value>],
-    folder: &Folder,
-) -> Result<(), SceneError> {
+fn histories(case: &PathCase, times: &[f64], paths: &[PathReport], folder: &Folder) -> Result<(), SceneError> {
     let (mut curves, mut arms) = (Vec::new(), Vec::new());
     let mut text = String::from("path,time,length,length_rate\n");
-    for (path, rows) in paths.iter().zip(rows) {
-        let lengths: Vec<(f64, f64)> =
-            times.iter().zip(rows).map(|(t, row)| (*t, row["length"].as_f64().unwrap_or(f64::NAN))).collect();
+    for path in paths {
+        let lengths: Vec<(f64, f64)> = path.frames.iter().map(|f| (f.time, f.length)).collect();
         let last = lengths.len() - 1;
         for (k, (time, length)) in lengths.iter().enumerate() {
             // Central differences, one-sided at the ends.
@@ -133,11 +186,8 @@ fn histories(
         curves.push((path.name.clone(), lengths));
         for body in case.plan.bodies.iter().filter(|b| !b.rotation.is_empty()) {
             let axis = rotation_axis(case, body, times)?;
-            let arm = |row: &Value| {
-                let turn = &row["moment_arms"][&body.name]["turn"];
-                (0..3).map(|k| turn[k].as_f64().unwrap_or(f64::NAN) * axis[k]).sum::<f64>()
-            };
-            let values = times.iter().zip(rows).map(|(t, row)| (*t, arm(row))).collect();
+            let arm = |f: &PathFrame| Vector::<3>::from(f.moment_arms[&body.name].turn).dot(&axis);
+            let values = path.frames.iter().map(|f| (f.time, arm(f))).collect();
             arms.push((format!("{} about {}", path.name, body.name), values));
         }
     }
@@ -175,54 +225,52 @@ fn tension(case: &PathCase, value: Option<&Placed>, time: f64) -> Result<Option<
     Err(case.problem().error(&value.key, message))
 }
 
-/// A path as it is written, and its row of the summary.
+/// A path as it is written, and what is told of it.
 fn line(
     case: &PathCase,
     key: &PlannedPath,
     path: &WrappedPath,
     bodies: &[Body<'_>],
     time: f64,
-) -> Result<(Line, Value), CaseError> {
+) -> Result<(Line, PathFrame), CaseError> {
     let failed = |e| case.failed(&key.key, &key.name, &e);
     let start = tension(case, key.tension.as_ref(), time)?;
     let end = tension(case, key.end_tension.as_ref(), time)?;
-    let array = |v: &Vector<3>| json!([v.x, v.y, v.z]);
-    let contacts: Vec<Value> = (path.contacts.iter())
-        .map(|c| {
-            let minimal = c.minimal == Minimal::Locally;
-            json!({"body": case.plan.bodies[c.body].name, "from": c.s, "to": c.s + c.length, "length": c.length,
-                "start": array(&c.p), "end": array(&c.q), "minimal": minimal})
-        })
-        .collect();
-    let arms: Map<String, Value> = (case.plan.bodies.iter().enumerate())
-        .map(|(k, b)| {
-            let centre = bodies[k].motion.point(&b.shape().centre());
-            let found = path.body_gradient(k, &centre);
-            let arms = json!({"about": array(&centre), "shift": array(&-found.shift), "turn": array(&-found.turn)});
-            (b.name.clone(), arms)
-        })
-        .collect();
-    let mut row = json!({"time": time, "length": path.length, "iterations": path.iterations, "residual": path.residual,
-        "contacts": contacts, "moment_arms": arms});
-    let mut slips = false;
+    let contacts = path.contacts.iter().map(|c| PathContact {
+        body: case.plan.bodies[c.body].name.clone(),
+        from: c.s,
+        to: c.s + c.length,
+        length: c.length,
+        start: c.p.into(),
+        end: c.q.into(),
+        minimal: c.minimal == Minimal::Locally,
+    });
+    let arms = case.plan.bodies.iter().enumerate().map(|(k, b)| {
+        let centre = bodies[k].motion.point(&b.shape().centre());
+        let found = path.body_gradient(k, &centre);
+        (b.name.clone(), MomentArm { about: centre.into(), shift: (-found.shift).into(), turn: (-found.turn).into() })
+    });
+    let mut frame = PathFrame {
+        time,
+        length: path.length,
+        iterations: path.iterations,
+        residual: path.residual,
+        contacts: contacts.collect(),
+        moment_arms: arms.collect(),
+        ..PathFrame::default()
+    };
     if let Some(friction) = &key.friction {
         let found = path.tensions(bodies, friction).map_err(failed)?;
-        row["log_ratio"] = json!(found.log_ratio);
-        let sideways =
-            found.contacts.iter().map(|c| c.1.as_ref().map(|s| json!({"drift": s.drift, "rotation": s.rotation})));
-        row["sideways"] = sideways.collect::<Vec<_>>().into();
-        if let Some(start) = start {
-            row["tension_limits"] = json!(found.end_tensions(start));
-            if let Some(end) = end {
-                let utilisation = found.utilisation(start, end);
-                slips = utilisation > 1.0;
-                row["utilisation"] = utilisation.into();
-                row["slips"] = slips.into();
-            }
-        }
+        frame.log_ratio = Some(found.log_ratio);
+        let sideways = |s: &Sideways| SidewaysReport { drift: s.drift, rotation: s.rotation };
+        frame.sideways = Some(found.contacts.iter().map(|c| c.1.as_ref().map(sideways)).collect());
+        frame.tension_limits = start.map(|start| found.end_tensions(start));
+        frame.utilisation = start.zip(end).map(|(start, end)| found.utilisation(start, end));
+        frame.slips = frame.utilisation.map(|used| used > 1.0);
     }
+    let slips = frame.slips == Some(true);
     let points = path.points(bodies, PIECES).map_err(failed)?;
     let start = start.unwrap_or(1.0);
     let points = points.into_iter().map(|p| LinePoint::of_path(&p, start, slips)).collect();
-    Ok((Line { name: key.name.clone(), points }, row))
+    Ok((Line { name: key.name.clone(), points }, frame))
 }

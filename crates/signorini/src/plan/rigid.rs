@@ -295,6 +295,11 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
                     expression.evaluate(&Scope { position, time: Jet::<3>::constant(0.0) })
                 };
                 let bounds = flat_box::<D>(low, high);
+                let wrong = |error: ShapeError| match error.field {
+                    "box" => problem.error(&key.max, error.to_string()),
+                    "value" => problem.error(&key.negative_inside, format!("`negative_inside`: {}", error.message)),
+                    _ => wrong(error),
+                };
                 Arc::new(ImplicitSurface::new(Function(field).into(), bounds, cells).map_err(wrong)?)
             }
             Shape::Height(value) => {

@@ -4,6 +4,7 @@
 //! from above `[x, y, z]` with z upward, in the plane and around an axis `[x, y, 0]`, x the radius around an axis. A figure
 //! that a model does not have is null. The comments on the fields are what `signorini explain` and the reference tell.
 
+mod paths;
 mod reason;
 mod table;
 pub mod words;
@@ -11,11 +12,12 @@ pub mod words;
 use crate::plan::reader::Interpreted;
 use crate::problem::Space;
 use crate::problem::units::{self, Units};
+pub use paths::*;
 pub use reason::{Reason, Warning, WarningKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-pub use table::{history, table};
+pub use table::{history, resultants, table};
 
 /// Version of the keys of the summary.
 pub const SCHEMA: u32 = 2;
@@ -49,6 +51,9 @@ pub struct Summary {
     pub steps: Vec<StepReport>,
     /// Changes of topology, in steps that ask for `events`.
     pub events: Vec<Event>,
+    /// What was found of paths on rigid bodies.
+    #[serde(flatten)]
+    pub of_paths: PathReports,
     /// Where and when it ran: all that differs between two runs of one case.
     pub environment: Environment,
 }
@@ -64,6 +69,12 @@ pub struct UnitNames {
     pub force: String,
     /// Of pressures and stresses.
     pub pressure: String,
+    /// Of forces per length, that ropes, beams and edges carry.
+    #[serde(default)]
+    pub line_load: String,
+    /// Of moments.
+    #[serde(default)]
+    pub moment: String,
     /// Of energies.
     pub energy: String,
     /// Of times that stand for times.
@@ -79,6 +90,8 @@ impl UnitNames {
             area: units.written(if is_length { units::LENGTH } else { units::AREA }),
             force: units.written(units::FORCE),
             pressure: units.written(units::PRESSURE),
+            line_load: units.written(units::FORCE_PER_LENGTH),
+            moment: format!("{}·{}", units.written(units::FORCE), units.written(units::LENGTH)),
             energy: units.written(units::ENERGY),
             time: units.written(units::TIME),
         }
@@ -126,6 +139,15 @@ pub struct StepReport {
     pub support_forces: BTreeMap<String, [f64; 3]>,
     /// Resultant of each load, by its name.
     pub load_forces: BTreeMap<String, [f64; 3]>,
+    /// The point about which moments are told: the origin, or `output.moments_about`; null where none are.
+    #[serde(default)]
+    pub moments_about: Option<[f64; 3]>,
+    /// Moment of each support on the body, by its name, where bodies are now.
+    #[serde(default)]
+    pub support_moments: BTreeMap<String, [f64; 3]>,
+    /// Resultant moment of each load, by its name.
+    #[serde(default)]
+    pub load_moments: BTreeMap<String, [f64; 3]>,
     /// Results by the name of the contact.
     pub contacts: BTreeMap<String, ContactReport>,
     /// Values at the probes of `output.probes`, by their names; null outside the body.
@@ -216,7 +238,13 @@ pub struct Pose {
 pub struct ContactReport {
     /// Force of the contact on the first body that it names; for a round membrane, on the whole of it.
     pub force: [f64; 3],
-    /// Area of contact; a length for a string and in the plane.
+    /// Moment of the contact on that body about `moments_about`.
+    #[serde(default)]
+    pub moment: Option<[f64; 3]>,
+    /// What `area` measures, and pressures are forces per.
+    #[serde(default)]
+    pub carries: Carried,
+    /// Area of contact; a length for a string, in the plane, and where `carries` says `line_load`.
     pub area: f64,
     /// Number of connected zones of contact.
     pub zones: usize,
@@ -264,6 +292,30 @@ pub struct ContactReport {
     /// What friction could hold of a rope where it lies; null for other bodies.
     #[serde(default)]
     pub rope: Option<RopeLimits>,
+}
+
+/// What a contact carries: what its `area` measures, and what its pressures are forces per.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Carried {
+    /// Forces per area of a surface (per length of a line in the plane).
+    #[default]
+    Pressure,
+    /// Forces per length of a curve, of ropes, beams and edges: `area` is a length.
+    LineLoad,
+    /// Forces at points: rods that cross, balls, corners of rigid bodies; `area` is their number or what they stand for.
+    Force,
+}
+
+impl Carried {
+    /// The units of extent and largest pressure.
+    pub fn units(self, names: &UnitNames) -> [&str; 2] {
+        match self {
+            Self::Pressure => [&names.area, &names.pressure],
+            Self::LineLoad => [&names.length, &names.line_load],
+            Self::Force => ["", &names.force],
+        }
+    }
 }
 
 /// What friction could hold of a rope that lies on a surface, by the theorem of Euler and Eytelwein for curves on surfaces.

@@ -22,6 +22,8 @@ pub enum Reason {
     LinearSolver,
     /// Stopped by Ctrl-C; the increments done are on disk. Go on with signorini run CASE --resume.
     Interrupted,
+    /// Stopped at `limits`, or at --max-time or --max-iterations of the command; the increments done are on disk. Go on with signorini run CASE --resume.
+    LimitReached,
     /// A value became invalid along the way, for example a tension that is not positive at some time.
     Input,
     /// A body can move without resistance in the way that is named, or its load pulls it away: hold it, or press it into contact.

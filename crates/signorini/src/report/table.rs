@@ -1,7 +1,7 @@
 //! The summary as text: the table of the terminal, and the history as CSV.
 
-use super::{ContactReport, ErrorEstimate, StepReport, Summary, UnitNames, signed_size};
-use crate::output::figure::figure;
+use super::{Carried, ContactReport, ErrorEstimate, StepReport, Summary, UnitNames, signed_size};
+use crate::output::figure::{figure, told_vector};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The increments as a table, one line for each contact; the columns of what no increment has are left out.
@@ -13,34 +13,52 @@ pub fn table(summary: &Summary) -> String {
             if of.is_empty() { vec![(step, None)] } else { of }
         })
         .collect();
+    type Line<'a> = (&'a StepReport, Option<(&'a str, &'a ContactReport)>);
     type Cell = fn(&StepReport, Option<(&str, &ContactReport)>) -> Option<String>;
-    let unit = |of: fn(&UnitNames) -> &String| summary.units.as_ref().map_or("", |u| of(u));
-    let columns: [(&str, &str, Cell); 10] = [
-        ("t", "", |s, _| Some(format!("{:.6}", s.time))),
-        ("solves", "", |s, _| Some(s.solves().to_string())),
-        ("contact", "", |_, c| Some(c?.0.to_string())),
-        ("area", unit(|u| &u.area), |_, c| c.map(|(_, c)| figure(c.area, c.error_estimate.map(|e| e.area)))),
-        ("force", unit(|u| &u.force), |_, c| {
-            c.map(|(_, c)| figure(signed_size(&c.force), c.error_estimate.map(|e| e.force)))
-        }),
-        ("max pressure", unit(|u| &u.pressure), |_, c| {
-            c.map(|(_, c)| figure(c.max_pressure, c.error_estimate.and_then(|e| e.max_pressure)))
-        }),
-        ("radius", unit(|u| &u.length), |_, c| c.and_then(|(_, c)| c.radius.map(|r| figure(r, radius_error(c, r))))),
-        ("zones", "", |_, c| Some(c?.1.zones.to_string())),
-        ("holes", "", |_, c| Some(c?.1.holes?.to_string())),
-        ("balance", "", |s, _| Some(format!("{:.1e}", s.equilibrium_residual?))),
+    /// The unit of the figures of a contact, or of all of them.
+    type Unit = fn(&UnitNames, Carried) -> &str;
+    let columns: [(&str, Unit, Cell); 10] = [
+        ("t", |_, _| "", |s, _| Some(format!("{:.6}", s.time))),
+        ("solves", |_, _| "", |s, _| Some(s.solves().to_string())),
+        ("contact", |_, _| "", |_, c| Some(c?.0.to_string())),
+        ("area", |u, c| c.units(u)[0], |_, c| c.map(|(_, c)| figure(c.area, c.error_estimate.map(|e| e.area)))),
+        (
+            "force",
+            |u, _| &u.force,
+            |_, c| c.map(|(_, c)| figure(signed_size(&c.force), c.error_estimate.map(|e| e.force))),
+        ),
+        (
+            "max pressure",
+            |u, c| c.units(u)[1],
+            |_, c| c.map(|(_, c)| figure(c.max_pressure, c.error_estimate.and_then(|e| e.max_pressure))),
+        ),
+        ("radius", |u, _| &u.length, |_, c| c.and_then(|(_, c)| c.radius.map(|r| figure(r, radius_error(c, r))))),
+        ("zones", |_, _| "", |_, c| Some(c?.1.zones.to_string())),
+        ("holes", |_, _| "", |_, c| Some(c?.1.holes?.to_string())),
+        ("balance", |_, _| "", |s, _| Some(format!("{:.1e}", s.equilibrium_residual?))),
     ];
     let several = summary.steps.iter().any(|s| s.contacts.len() > 1);
     let mut rows: Vec<String> = vec![String::new(); lines.len() + 1];
+    let carried = |line: &Line| line.1.map_or(Carried::Pressure, |(_, c)| c.carries);
     for (title, unit, cell) in columns {
         let cells: Vec<Option<String>> = lines.iter().map(|(s, c)| cell(s, *c)).collect();
         if cells.iter().all(Option::is_none) || (title == "contact" && !several) {
             continue;
         }
-        let cells: Vec<String> = cells.into_iter().map(|c| c.unwrap_or("-".into())).collect();
-        let heading = headed(title, unit);
-        let width = cells.iter().map(String::len).chain([heading.chars().count()]).max().unwrap_or(0);
+        // A unit that all lines have stands above them, others behind the figures.
+        let unit_of = |line: &Line| summary.units.as_ref().map_or("", |u| unit(u, carried(line)));
+        let units: Vec<&str> = lines.iter().map(unit_of).collect();
+        let shared = units.first().copied().filter(|first| units.iter().all(|u| u == first));
+        let behind = |unit: &str| if shared.is_some() || unit.is_empty() { String::new() } else { format!(" {unit}") };
+        let written = |(text, unit): (Option<String>, &&str)| text.map_or("-".into(), |text| text + &behind(unit));
+        let cells: Vec<String> = cells.into_iter().zip(&units).map(written).collect();
+        let title = match (title, lines.iter().all(|line| carried(line) == Carried::LineLoad)) {
+            ("area", true) => "length",
+            ("max pressure", true) => "max line load",
+            (title, _) => title,
+        };
+        let heading = headed(title, shared.unwrap_or_default());
+        let width = cells.iter().map(|c| c.chars().count()).chain([heading.chars().count()]).max().unwrap_or(0);
         for (row, text) in
             rows.iter_mut().zip(std::iter::once(heading.as_str()).chain(cells.iter().map(String::as_str)))
         {
@@ -80,7 +98,54 @@ fn headed(title: &str, unit: &str) -> String {
     if unit.is_empty() { title.to_string() } else { format!("{title} [{unit}]") }
 }
 
-/// One line per increment as CSV: contacts, supports, loads, bodies of cells and probes by their names; what there is not is left empty.
+/// The resultants of the last increment, and where free bodies have come: empty where there are neither moments nor free
+/// bodies.
+pub fn resultants(summary: &Summary) -> String {
+    let Some(step) = summary.steps.last() else { return String::new() };
+    let unit = |of: fn(&UnitNames) -> &String| summary.units.as_ref().map_or("", |u| of(u));
+    let vector = |v: &[f64; 3]| told_vector(v, None, "");
+    let mut out = String::new();
+    if let Some(about) = step.moments_about {
+        let contacts = step.contacts.iter().filter_map(|(name, c)| Some((name, &c.force, c.moment.as_ref()?)));
+        let supports = step.support_forces.iter().filter_map(|(n, f)| Some((n, f, step.support_moments.get(n)?)));
+        let loads = step.load_forces.iter().filter_map(|(n, f)| Some((n, f, step.load_moments.get(n)?)));
+        let titles = [
+            "".to_string(),
+            headed("force on the body", unit(|u| &u.force)),
+            headed(&format!("moment about {}", vector(&about)), unit(|u| &u.moment)),
+        ];
+        let line = |name: String, force: &[f64; 3], moment: &[f64; 3]| [name, vector(force), vector(moment)];
+        let rows = (supports.map(|(n, f, m)| line(format!("support {n}"), f, m)))
+            .chain(loads.map(|(n, f, m)| line(format!("load {n}"), f, m)))
+            .chain(contacts.map(|(n, f, m)| line(format!("contact {n}"), f, m)));
+        out += &aligned(titles, rows.collect());
+    }
+    if !step.free_bodies.is_empty() {
+        let titles = ["".to_string(), headed("displacement", unit(|u| &u.length)), headed("rotation vector", "rad")];
+        let rows = step.free_bodies.iter();
+        let rows =
+            rows.map(|(n, p)| [format!("free body {n}"), vector(&p.displacement), vector(&p.rotation)]).collect();
+        out += &aligned(titles, rows);
+    }
+    out
+}
+
+/// Columns of text below their titles; nothing without rows.
+fn aligned(titles: [String; 3], rows: Vec<[String; 3]>) -> String {
+    if rows.is_empty() {
+        return String::new();
+    }
+    let all: Vec<[String; 3]> = std::iter::once(titles).chain(rows).collect();
+    let width = |k: usize| all.iter().map(|row| row[k].chars().count()).max().unwrap_or(0);
+    let widths = [0, 1, 2].map(width);
+    let line = |row: &[String; 3]| {
+        let cells: Vec<String> = row.iter().zip(widths).map(|(cell, width)| format!("{cell:width$}")).collect();
+        format!("  {}\n", cells.join("  ").trim_end())
+    };
+    all.iter().map(line).collect()
+}
+
+/// One line per increment as CSV: contacts, supports, loads, free bodies, bodies of cells and probes by their names; what there is not is left empty.
 /// With the units of the case in the header, where it states some.
 pub fn history(steps: &[StepReport], units: Option<&UnitNames>) -> String {
     let unit = |of: fn(&UnitNames) -> &String| units.map_or("", |u| of(u));
@@ -112,8 +177,9 @@ pub fn history(steps: &[StepReport], units: Option<&UnitNames>) -> String {
             add(format!("{name}:force_{axis}"), unit(|u| &u.force), &|s| Some(of(s)?.force[k]));
         }
         type Reading = fn(&ContactReport) -> Option<f64>;
-        let (area, length) = (unit(|u| &u.area), unit(|u| &u.length));
-        let (force, pressure) = (unit(|u| &u.force), unit(|u| &u.pressure));
+        let (force, length) = (unit(|u| &u.force), unit(|u| &u.length));
+        let carries = steps.iter().find_map(of).map_or(Carried::Pressure, |c| c.carries);
+        let [area, pressure] = units.map_or([""; 2], |u| carries.units(u));
         let readings: [(&str, &str, Reading); 12] = [
             ("area", area, |c| Some(c.area)),
             ("radius", length, |c| c.radius),
@@ -132,13 +198,35 @@ pub fn history(steps: &[StepReport], units: Option<&UnitNames>) -> String {
             add(format!("{name}:{key}"), unit, &|s| read(&of(s)?));
         }
     }
-    type Forces = fn(&StepReport) -> &BTreeMap<String, [f64; 3]>;
-    let forces: [Forces; 2] = [|s| &s.support_forces, |s| &s.load_forces];
-    for of in forces {
+    type Vectors = fn(&StepReport) -> &BTreeMap<String, [f64; 3]>;
+    let vectors: [(&str, &str, Vectors); 4] = [
+        ("force", unit(|u| &u.force), |s| &s.support_forces),
+        ("force", unit(|u| &u.force), |s| &s.load_forces),
+        ("moment", unit(|u| &u.moment), |s| &s.support_moments),
+        ("moment", unit(|u| &u.moment), |s| &s.load_moments),
+    ];
+    for (what, unit, of) in vectors {
         for name in names(steps, of) {
             for (k, axis) in AXES.iter().enumerate() {
-                add(format!("{name}:force_{axis}"), unit(|u| &u.force), &|s| of(s).get(name).map(|f| f[k]));
+                add(format!("{name}:{what}_{axis}"), unit, &|s| of(s).get(name).map(|f| f[k]));
             }
+        }
+    }
+    for name in names(steps, |s| &s.contacts) {
+        if steps.iter().any(|s| s.contacts.get(name).is_some_and(|c| c.moment.is_some())) {
+            for (k, axis) in AXES.iter().enumerate() {
+                add(format!("{name}:moment_{axis}"), unit(|u| &u.moment), &|s| Some(s.contacts.get(name)?.moment?[k]));
+            }
+        }
+    }
+    for name in names(steps, |s| &s.free_bodies) {
+        for (k, axis) in AXES.iter().enumerate() {
+            add(format!("{name}:displacement_{axis}"), unit(|u| &u.length), &|s| {
+                Some(s.free_bodies.get(name)?.displacement[k])
+            });
+        }
+        for (k, axis) in AXES.iter().enumerate() {
+            add(format!("{name}:rotation_{axis}"), "rad", &|s| Some(s.free_bodies.get(name)?.rotation[k]));
         }
     }
     for name in names(steps, |s| &s.cells) {

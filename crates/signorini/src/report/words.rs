@@ -1,6 +1,6 @@
 //! The words of the summary: its schema, its keys and what they mean, from the types.
 
-use super::{EventKind, LocatedBy, Reason, Summary, WarningKind};
+use super::{Carried, EventKind, LocatedBy, PathEventKind, Reason, RopeCondition, Summary, WarningKind};
 use crate::case::schema::{Key, keys_of};
 use serde_json::{Value, json};
 
@@ -41,6 +41,9 @@ pub fn words() -> Vec<Word> {
     of("reason", schemars::schema_for!(Reason))
         .chain(of("event", schemars::schema_for!(EventKind)))
         .chain(of("warning", schemars::schema_for!(WarningKind)))
+        .chain(of("event of a path", schemars::schema_for!(PathEventKind)))
+        .chain(of("condition of a rope", schemars::schema_for!(RopeCondition)))
+        .chain(of("kind of contact forces", schemars::schema_for!(Carried)))
         .chain(of("way to locate an event", schemars::schema_for!(LocatedBy)))
         .collect()
 }
@@ -53,7 +56,7 @@ mod tests {
     fn every_key_and_word_says_what_it_means() {
         let silent: Vec<Key> = keys().into_iter().filter(|k| k.about.is_empty() || k.kind.is_empty()).collect();
         assert!(silent.is_empty() && keys().len() > 60, "{silent:#?}");
-        assert_eq!(words().iter().filter(|w| w.kind == "reason").count(), 12);
+        assert_eq!(words().iter().filter(|w| w.kind == "reason").count(), 13);
         assert_eq!(words().iter().filter(|w| w.kind == "event").count(), 8);
     }
 }

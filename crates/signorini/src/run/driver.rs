@@ -7,11 +7,13 @@ use super::record::Record;
 use crate::fields::ShownState;
 use crate::output::{Folder, OutputError};
 use crate::plan::Head;
-use crate::problem::CaseError;
-use crate::report::{Reason, SCHEMA, Summary, history};
+use crate::problem::{CaseError, Limits};
+use crate::report::{PathReports, Reason, SCHEMA, Summary, history};
 use serde_json::{Value, json};
 use signorini_solve::{Iteration, Progress};
+use std::cell::Cell;
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 /// What came of an increment.
 pub enum Advanced {
@@ -92,6 +94,33 @@ pub trait Model {
 struct Logged<'a> {
     folder: &'a Folder,
     inner: &'a mut dyn Progress,
+    budget: &'a Budget,
+}
+
+/// What a run may take, and what it has taken.
+struct Budget {
+    /// When its time is over.
+    until: Option<Instant>,
+    /// The most iterations.
+    iterations: Option<usize>,
+    used: Cell<usize>,
+}
+
+impl Budget {
+    fn new(limits: &Limits, start: Instant) -> Self {
+        // A time too long to be told is none.
+        let after = |seconds: f64| start.checked_add(Duration::try_from_secs_f64(seconds).ok()?);
+        Budget {
+            until: limits.max_time.and_then(after),
+            iterations: limits.max_iterations.map(|n| usize::try_from(n).unwrap_or(0)),
+            used: Cell::new(0),
+        }
+    }
+
+    fn is_spent(&self) -> bool {
+        self.until.is_some_and(|until| Instant::now() >= until)
+            || self.iterations.is_some_and(|most| self.used.get() >= most)
+    }
 }
 
 impl Progress for Logged<'_> {
@@ -108,10 +137,11 @@ impl Progress for Logged<'_> {
         }
         // A log that cannot be written will be told by the files that follow.
         let _ = self.folder.log(&line);
+        self.budget.used.set(self.budget.used.get() + 1);
         self.inner.iteration(i);
     }
     fn interrupted(&self) -> bool {
-        self.inner.interrupted()
+        self.inner.interrupted() || self.budget.is_spent()
     }
 }
 
@@ -123,20 +153,29 @@ pub fn drive(
     model: &mut dyn Model,
     mut record: Record,
     first: usize,
-    start: std::time::Instant,
+    start: Instant,
     progress: &mut dyn Progress,
 ) -> Result<Outcome, RunError> {
     let count = model.increments();
     let mut reason = Reason::Converged;
+    let budget = Budget::new(&model.head().problem.limits, start);
+    // What ends a run that nobody interrupted is its limit.
+    let named = |reason: Reason, by_user: bool| match reason {
+        Reason::Interrupted if !by_user && budget.is_spent() => Reason::LimitReached,
+        other => other,
+    };
     for index in first..count {
         progress.step(index, count, model.time(index));
         let folder = record.folder.clone();
-        let mut logged = Logged { folder: &folder, inner: progress };
+        let mut logged = Logged { folder: &folder, inner: progress, budget: &budget };
         match model.advance(index, &mut record, &mut logged) {
             Ok(Advanced::State) => {}
             Ok(Advanced::Nothing) => continue,
             Ok(Advanced::Failed(why)) => {
-                reason = why;
+                reason = named(why, progress.interrupted());
+                if let Some(step) = record.steps.last_mut().filter(|step| step.reason == why) {
+                    step.reason = reason;
+                }
                 break;
             }
             Err(error) => {
@@ -144,6 +183,9 @@ pub fn drive(
                 finish(&record, model, Reason::Input, start)?;
                 return Err(error.into());
             }
+        }
+        if let Some(step) = record.steps.last_mut() {
+            step.reason = named(step.reason, progress.interrupted());
         }
         let found = record.steps.last().map_or(reason, |step| step.reason);
         let last = index + 1 == count;
@@ -184,7 +226,7 @@ pub fn go_on(
     model: &mut dyn Model,
     record: Record,
     path: &Path,
-    start: std::time::Instant,
+    start: Instant,
     progress: &mut dyn Progress,
 ) -> Result<Outcome, RunError> {
     let Checkpoint { next, state, record } = checkpoint::read(path, record).map_err(not_resumed)?;
@@ -195,16 +237,22 @@ pub fn go_on(
     drive(model, record, next, start, progress)
 }
 
+/// What is said of a run that reached its limit.
+fn stopped(record: &Record, model: &dyn Model) -> String {
+    let (done, count) = (record.done(), model.increments());
+    let Limits { max_time, max_iterations } = model.head().problem.limits;
+    let limits: Vec<String> = (max_time.map(|t| format!("{t} s")).into_iter())
+        .chain(max_iterations.map(|n| format!("{n} iterations")))
+        .collect();
+    let next = if done < count { format!(", the next one to t = {}", model.time(done)) } else { String::new() };
+    format!("Stopped at the limit of {}: {done} of {count} increments are done and on disk{next}.", limits.join(" or "))
+}
+
 /// Writes history, pictures and summary.
 ///
 /// # Errors
 /// Files that cannot be written.
-fn finish(
-    record: &Record,
-    model: &dyn Model,
-    reason: Reason,
-    start: std::time::Instant,
-) -> Result<Summary, OutputError> {
+fn finish(record: &Record, model: &dyn Model, reason: Reason, start: Instant) -> Result<Summary, OutputError> {
     let states = record.history(model.begins_at_rest());
     record.folder.write("history.csv", history(&states, record.units.as_ref()).as_bytes())?;
     if record.pictures && record.folder.path().is_some() {
@@ -215,7 +263,10 @@ fn finish(
         case: record.case.clone(),
         converged: reason.is_converged(),
         reason,
-        verdict: model.verdict(record, reason),
+        verdict: match reason {
+            Reason::LimitReached => stopped(record, model),
+            reason => model.verdict(record, reason),
+        },
         method: model.method(),
         unknowns: record.unknowns,
         units: record.units.clone(),
@@ -224,6 +275,7 @@ fn finish(
         interpreted: record.interpreted.clone(),
         steps: record.steps.clone(),
         events: record.events.clone(),
+        of_paths: PathReports::default(),
         environment: environment::describe(start, rayon::current_num_threads(), &record.text),
     };
     record.folder.write("summary.json", summary.to_json().as_bytes())?;

@@ -1,6 +1,7 @@
 //! Bodies of any kind in one system as a model: ropes, beams, free rigid bodies.
 
 mod accuracy;
+mod recovered;
 mod report;
 
 use super::checkpoint;
@@ -144,7 +145,11 @@ impl MechanicsModel {
                     }
                     if last {
                         self.state = state;
-                        return Ok(Ok(IncrementResult { iterations, history: residuals, dissipated, ..result }));
+                        let mut found = IncrementResult { iterations, history: residuals, dissipated, ..result };
+                        let of_contacts = found.sites.iter_mut().zip(&self.plan.contacts);
+                        let at_nodes = of_contacts.filter(|(_, tested)| tested.at_nodes);
+                        at_nodes.for_each(|(sites, _)| recovered::recover(sites));
+                        return Ok(Ok(found));
                     }
                     if let Err(error) = self.plan.system.accept(&state) {
                         return Ok(Err(self.failed(&error, residuals)));
@@ -162,7 +167,11 @@ impl MechanicsModel {
                         IncrementError::Interrupted | IncrementError::Free { .. } | IncrementError::Unstable { .. }
                     );
                     if !curable || size <= SMALLEST_INCREMENT * (time - before) || time <= before {
-                        return Ok(Err(self.failed(&error, residuals)));
+                        let mut failure = self.failed(&error, residuals);
+                        if reached > before {
+                            failure.text += &format!(" (equilibrium was found up to t = {reached:.6})");
+                        }
+                        return Ok(Err(failure));
                     }
                     reason = Some(error);
                     size *= CUT;
@@ -350,7 +359,8 @@ impl Model for MechanicsModel {
             Reason::Interrupted => format!("Interrupted: {done} of {count} increments are done and on disk."),
             reason if !reason.is_converged() => {
                 let why = self.failure.as_deref().unwrap_or("a value became invalid along the way");
-                format!("Increment {} of {count} has no solution: {why}.", done + 1)
+                let time = self.plan.times.get(done).map_or(String::new(), |t| format!(", to t = {t},"));
+                format!("Increment {} of {count}{time} has no solution: {why}.", done + 1)
             }
             _ => report::verdict(&self.plan, record),
         }

@@ -4,8 +4,9 @@ use crate::fields::ShownState;
 use crate::output::{Folder, OutputError, vtk};
 use crate::plan::Head;
 use crate::plan::reader::Interpreted;
-use crate::report::{ContactReport, Event, Probe, Reason, StepReport, UnitNames, Warning};
+use crate::report::{ContactReport, Event, Pose, Probe, Reason, StepReport, UnitNames, Warning};
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
 /// The number of the fields at t = 0 in the names of their files.
 pub const START: &str = "start";
@@ -118,13 +119,23 @@ fn at_rest(later: &StepReport) -> StepReport {
             von_mises: p.von_mises.map(|_| 0.0),
         })
     };
+    let open = |c: &ContactReport| ContactReport {
+        carries: c.carries,
+        moment: c.moment.map(|_| [0.0; 3]),
+        ..ContactReport::default()
+    };
+    let none = |of: &BTreeMap<String, [f64; 3]>| of.keys().map(|name| (name.clone(), [0.0; 3])).collect();
     StepReport {
         converged: true,
         reason: Reason::Converged,
         energy: later.energy.map(|_| 0.0),
-        contacts: later.contacts.keys().map(|name| (name.clone(), ContactReport::default())).collect(),
-        support_forces: later.support_forces.keys().map(|name| (name.clone(), [0.0; 3])).collect(),
-        load_forces: later.load_forces.keys().map(|name| (name.clone(), [0.0; 3])).collect(),
+        contacts: later.contacts.iter().map(|(name, c)| (name.clone(), open(c))).collect(),
+        support_forces: none(&later.support_forces),
+        load_forces: none(&later.load_forces),
+        moments_about: later.moments_about,
+        support_moments: none(&later.support_moments),
+        load_moments: none(&later.load_moments),
+        free_bodies: later.free_bodies.keys().map(|name| (name.clone(), Pose::default())).collect(),
         probes: later.probes.iter().map(|(name, p)| (name.clone(), probe(p))).collect(),
         ..StepReport::default()
     }

@@ -266,7 +266,8 @@ impl<const D: usize> Model for SolidModel<D> {
             Reason::Interrupted => format!("Interrupted: {done} of {count} increments are done and on disk."),
             reason if !reason.is_converged() => {
                 let why = self.failure.as_ref().map_or("a value became invalid along the way", |f| &f.text);
-                format!("Increment {} of {count} has no solution: {why}.", done + 1)
+                let time = self.plan.times.get(done).map_or(String::new(), |t| format!(", to t = {t},"));
+                format!("Increment {} of {count}{time} has no solution: {why}.", done + 1)
             }
             _ => {
                 let Some(step) = record.steps.last() else { return "Nothing was asked.".into() };

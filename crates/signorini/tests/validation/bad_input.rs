@@ -300,3 +300,87 @@ fn a_surface_inside_out_is_turned_round_and_told() {
     assert_eq!(right.0, turned.0);
     assert!(turned.1.contains("inside out") && !right.1.contains("inside out"), "{}", turned.1);
 }
+
+const ROPE: &str = "space = \"3d\"\n[bodies.drum.rigid]\nshape.cylinder = { point = [0, 0, 0], axis = [0, 0, 1], radius = 1 }\n\
+    [bodies.line.rope]\npath.helix = { radius = 1, pitch = 0.2, turns = 0.5 }\ncells = 20\nstiffness = 400\npretension = 1\n\
+    [supports.hold]\non = \"line:start\"\ndisplacement = [0, 0, 0]\n[loads.pull]\non = \"line:end\"\ntension = 2\n\
+    [contacts.grip]\nbetween = [\"line\", \"drum\"]\n";
+
+const CELLS: &str = "space = \"plane_strain\"\n[bodies.egg.cells]\ngeometry.box = { min = [0, 0], max = [1, 1] }\n\
+    mesh.grid = { cells = [2, 2] }\ndegree = 1\nmaterial.linear_elastic = { youngs_modulus = 1, poissons_ratio = 0.3 }\n\
+    groups.low = \"y < 0.1\"\n[bodies.plate.rigid]\nshape.plane = { point = [0, 1], normal = [0, -1] }\n\
+    motion.prescribed = { displacement = [0, \"-0.01*t\"] }\n[supports.base]\non = \"egg:low\"\ndisplacement = [0, 0]\n\
+    [contacts.press]\nbetween = [\"egg:top\", \"plate\"]\n";
+
+#[test]
+fn mistakes_in_systems_are_told_at_their_places() {
+    let twice = "[supports.two]\non = \"line:start\"\ndisplacement = [1, 0, 0]\n[loads.pull]";
+    let table = [
+        // the case, what stands, what a user writes, a word of the message, the text pointed at, a word of the help
+        (ROPE, "[\"line\", ", "[\"line:strat\", ", "no group `strat`", "\"line:strat\"", "did you mean `start`"),
+        (CELLS, "egg:top", "egg:tpo", "no group `tpo`", "\"egg:tpo\"", "did you mean `top`"),
+        (CELLS, "\"egg:low\"", "\"egg:lwo\"", "no group `lwo`", "\"egg:lwo\"", "did you mean `low`"),
+        (ROPE, "[loads.pull]", twice, "`hold` and `two` contradict each other", "[supports.two]", "held alike"),
+        (ROPE, "displacement = [0, 0, 0]", "displacement = [0, 0]", "expected 3 components", "[0, 0]", "free"),
+        (ROPE, "displacement = [0, 0, 0]", "displacement = 0", "expected 3 components", "0", "free"),
+        (ROPE, "cells = 20", "cells = 1000000000", "between 1 and 1000000", "1000000000", ""),
+        (CELLS, "\"y < 0.1\"", "\"y + 11\"", "no condition", "\"y + 11\"", "a comparison"),
+        (CELLS, "\"y < 0.1\"", "\"y > 0 && x\"", "no condition", "\"y > 0 && x\"", "a comparison"),
+    ];
+    for (case, from, to, word, at, help) in table {
+        assert!(case.contains(from), "`{from}` is not in the case");
+        let error = error(&case.replace(from, to));
+        let place = error.place.clone().unwrap_or_else(|| panic!("no place: {}", error.message));
+        assert!(error.message.contains(word), "{to}: {}", error.message);
+        assert_eq!(&place.text[place.span.clone()], at, "{to}");
+        assert!(error.help.unwrap_or_default().contains(help), "{to}");
+    }
+    assert!(checked(&CELLS.replace("\"y < 0.1\"", "\"(y < 0.1)*(x > 0)\"")).is_ok());
+}
+
+/// With `all = true` what cannot be tested is left out, and said; stated, it is refused.
+#[test]
+fn rigid_bodies_without_points_are_not_tested_against_each_other() {
+    let case = "space = \"plane_strain\"\n[bodies.inner.rigid]\nshape.ellipsoid = { center = [0, 0], semi_axes = [1, 1] }\n\
+        motion.free = { center = [0, 0] }\n[bodies.outer.rigid]\nshape.ellipsoid = { center = [0, 0], semi_axes = [3, 3] }\n\
+        side = \"inside\"\n[bodies.roller.solid]\nmaterial.linear_elastic = { youngs_modulus = 100, poissons_ratio = 0.3 }\n\
+        mesh.box = { min = [-0.5, -3], max = [0.5, -1], cells = [2, 4] }\n[supports.cage]\non = \"roller\"\nspring = [1, 1]\n\
+        [supports.axle]\non = \"inner\"\ndisplacement = [\"free\", \"free\"]\nrotation = [0]\n[contacts.touch]\nall = true\n";
+    let told = checked(case).expect("a case that runs");
+    assert!(told.contains("`inner` and `outer` are not tested against each other"), "{told}");
+    let error = error(&case.replace("all = true", "between = [\"inner\", \"outer\"]"));
+    assert!(error.message.contains("neither of two rigid bodies"), "{}", error.message);
+    assert_eq!(error.place.expect("a place").line_and_column().0, 18);
+}
+
+/// Where a function has no value is told at its key; where its derivative alone has none, away from the surface, it serves.
+#[test]
+fn level_sets_need_derivatives_at_the_surface_only() {
+    let case = "analysis = \"euler_eytelwein\"\n[bodies.drum.rigid]\nshape.level_set = { negative_inside = \
+        \"hypot(x, y) - (1 + 0.05*cos(3*atan2(y, x)))\", min = [-1.5, -1.5, -1.0], max = [1.5, 1.5, 1.0], cells = 12 }\n\
+        [ropes.rope]\non = \"drum\"\npath.formula = { position = [\"(1 + 0.05*cos(3*u))*cos(u)\", \
+        \"(1 + 0.05*cos(3*u))*sin(u)\", \"0\"], from = 0, to = 1 }\nfriction.coulomb = { mu = 0.3 }\n";
+    let read = |case: &str| signorini::paths::PathCase::parse("case.toml", case, &[]);
+    assert!(read(case).is_ok());
+    let error = read(&case.replace("hypot(x, y)", "sqrt(x - y)")).err().expect("no value where x < y");
+    assert!(error.message.contains("`negative_inside`: it is NaN at ("), "{}", error.message);
+    let place = error.place.expect("a place");
+    assert!(place.text[place.span.clone()].starts_with("\"sqrt(x - y)"), "{:?}", place.span);
+}
+
+/// A membrane that a body touches and leaves again is not said to touch nothing.
+#[test]
+fn what_touches_in_between_is_not_said_to_touch_nothing() {
+    let case = "space = \"line\"\n[bodies.film.membrane]\ndomain.interval = [0, 1]\nmesh.grid = { cells = [8] }\ndegree = 2\n\
+        tension = 1\n[bodies.ball.rigid]\nshape.sphere = { center = [0.5, -0.55], radius = 0.5 }\n\
+        motion.prescribed = { displacement = [0, \"0.1*min(t, 2 - t)\"] }\n[supports.rim]\non = \"film:boundary\"\n\
+        displacement = 0\n[contacts.touch]\nbetween = [\"film\", \"ball\"]\n[[steps]]\nto = 1\nincrements = 2\n\
+        [[steps]]\nto = 2\nincrements = 2\n";
+    assert!(!checked(case).expect("a case that runs").contains("touches nothing"));
+    let found = super::summary(case, &super::set(&[]));
+    let verdict = found["verdict"].to_string();
+    assert!(verdict.contains("it was in contact at t = 1"), "{verdict}");
+    // A body that stays away is told.
+    let away = case.replace("0.1*min", "0.01*min");
+    assert!(checked(&away).expect("a case that runs").contains("touches nothing"));
+}

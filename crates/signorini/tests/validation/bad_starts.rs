@@ -19,7 +19,7 @@ fn said(case: &str) -> String {
     };
     let folder = tempfile::tempdir().expect("a folder");
     match signorini::paths::run(&paths, &folder.path().join("out"), &mut signorini::run::Silent) {
-        Ok(summary) => summary["verdict"].to_string(),
+        Ok(summary) => summary.verdict,
         Err(signorini::scene::SceneError::Case(error)) => of(error),
         Err(other) => other.to_string(),
     }

@@ -93,3 +93,51 @@ fn each_mistake_of_a_body_of_cells_is_told_at_its_place() {
         assert!(shown.contains(at), "{to}: points at `{shown}`, not `{at}`");
     }
 }
+
+/// A body that its grid cuts off touches with that side, named or not; where a support holds a side, the body is cut off.
+#[test]
+fn a_body_as_a_whole_touches_with_the_sides_of_its_grid() {
+    let case = "space = \"plane_strain\"\n[bodies.post.cells]\n\
+        geometry.implicit = { negative_inside = \"abs(x) - 0.37\", min = [-0.5, 0], max = [0.5, 1] }\n\
+        mesh.grid = { cells = [2, 2] }\ndegree = 2\nmaterial.linear_elastic = { youngs_modulus = 10, poissons_ratio = 0.3 }\n\
+        [bodies.plate.rigid]\nshape.plane = { point = [0, 1], normal = [0, -1] }\n\
+        motion.prescribed = { displacement = [0, \"-0.01*t\"] }\n[supports.base]\non = \"post:bottom\"\n\
+        displacement = [0, 0]\n[contacts.press]\nbetween = [\"post\", \"plate\"]\n[[steps]]\nto = 1\n";
+    let force = |case: &str| {
+        let found = summary(case, &set(&[]));
+        let contact = last_step(&found)["contacts"]["press"].clone();
+        (number(&contact["force"][1]), number(&contact["area"]))
+    };
+    let (whole, top) = (force(case), force(&case.replace("[\"post\"", "[\"post:top\"")));
+    assert!((top.1 - 0.74).abs() < 1e-9 && top.0 < -0.05, "{top:?}");
+    assert!((whole.0 / top.0 - 1.0).abs() < 1e-9 && (whole.1 / top.1 - 1.0).abs() < 1e-9, "{whole:?} {top:?}");
+    // The same where the base is held along its normal, and aside by its middle.
+    let normal =
+        case.replace("displacement = [0, 0]", "normal = 0\n[supports.side]\non = \"post\"\nspring = [1e-6, 0]");
+    let free = case.replace(
+        "displacement = [0, 0]",
+        "displacement = [\"free\", 0]\n[supports.side]\non = \"post\"\nspring = [1e-6, 0]",
+    );
+    assert_eq!(force(&normal), force(&free));
+    // Moments about a point: of the support and the plate they cancel, as the forces do.
+    let about = case.to_string() + "[output]\nmoments_about = [2, 0]\n";
+    let found = summary(&about, &set(&[]));
+    let step = last_step(&found);
+    let [plate, base] = [&step["contacts"]["press"]["moment"], &step["support_moments"]["base"]].map(|m| number(&m[2]));
+    assert!((plate + 2.0 * top.0).abs() < 1e-9 && (base + plate).abs() < 1e-9, "{plate} {base} {}", top.0);
+    assert_eq!(number(&step["moments_about"][0]), 2.0);
+}
+
+/// Cells of degree 1 lock where the material hardly compresses, which is told.
+#[test]
+fn cells_that_lock_are_told() {
+    let case = example("hertz_cells")
+        .replace("degree = 2", "degree = 1")
+        .replace("poissons_ratio = 0.3", "poissons_ratio = 0.499");
+    let warned = |case: &str| {
+        let problem = signorini::case::read("case.toml", case, &[]).expect("a case");
+        signorini::run::sizes(&signorini::plan::plan(&problem).expect("a plan")).expect("sizes")["warnings"].to_string()
+    };
+    assert!(case.contains("0.499") && warned(&case).contains("lock with Poisson's ratio 0.499"), "{}", warned(&case));
+    assert!(!warned(example("hertz_cells")).contains("lock"));
+}

@@ -39,9 +39,10 @@ fn every_case_gives_its_expected_numbers() {
     }
 }
 
-/// Of paths by their place in the summary.
+/// Of paths by their place in the summary, which is one as those of all models.
 #[test]
 fn every_path_gives_its_expected_numbers() {
+    let validator = jsonschema::validator_for(&signorini::report::words::schema()).expect("a schema");
     for example in signorini::gallery::PATHS {
         let expected = expected(example.name);
         let case = signorini::paths::PathCase::parse("case.toml", example.case, &[])
@@ -49,6 +50,10 @@ fn every_path_gives_its_expected_numbers() {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let summary = signorini::paths::run(&case, &folder.path().join("out"), &mut signorini::run::Silent)
             .unwrap_or_else(|e| panic!("{}: {e:?}", example.name));
+        let summary = serde_json::json!(summary);
+        let errors: Vec<String> =
+            validator.iter_errors(&summary).map(|e| format!("{}: {e}", e.instance_path())).collect();
+        assert!(errors.is_empty(), "{}: {errors:#?}", example.name);
         for (place, figure) in expected["figures"].as_object().expect("figures") {
             let found = number(summary.pointer(place).unwrap_or(&Value::Null));
             let (value, tolerance) = (number(&figure["value"]), number(&figure["relative_tolerance"]));

@@ -6,7 +6,7 @@ use crate::plan::planner::Planner;
 use crate::plan::rigid;
 use crate::problem::units::{LENGTH, NONE, PRESSURE};
 use crate::problem::{
-    CaseError, CellFunctions, CellIntegration, CellsBody, Composed, Geometry, IslandsKey, List, Material,
+    CaseError, CellFunctions, CellIntegration, CellsBody, Composed, Contact, Geometry, IslandsKey, List, Material,
     Shape as Stated, Space as In, Value,
 };
 use signorini_cells::description::{
@@ -15,12 +15,16 @@ use signorini_cells::description::{
 use signorini_cells::{CellsError, Elastic, End, Integration, Islands, Products, Space};
 use signorini_geometry::rigid_shape::{ClosestPoints, Normals};
 use signorini_geometry::{Aabb, Jet, Point, Real, Vector};
+use signorini_solid::stiffness::NEARLY_INCOMPRESSIBLE;
 use std::sync::Arc;
 
 /// Degree of the functions where it is not stated.
 pub const DEGREE: usize = 3;
 /// Names of the sides of the grid by direction, the lower one first; in the plane the second direction is up.
 const SIDES: [[&str; 2]; 3] = [["left", "right"], ["front", "back"], ["bottom", "top"]];
+
+/// The name of the whole surface: the recovered boundary, and the sides of the grid.
+pub(super) const SURFACE: &str = "surface";
 
 impl Planner<'_> {
     /// A body of finite cells.
@@ -61,6 +65,10 @@ impl Planner<'_> {
             Some(n) if (1..=8).contains(n) => *n as usize,
             Some(n) => return Err(problem.error(n, format!("degree {n} is not between 1 and 8"))),
         };
+        if degree == 1 && space != Space::PlaneStress && elastic.poissons_ratio > NEARLY_INCOMPRESSIBLE {
+            let ratio = elastic.poissons_ratio;
+            self.warn(format!("`{name}`: cells of degree 1 lock with Poisson's ratio {ratio}: use degree 2 or more"));
+        }
         let mut made = Description::new(name, geometry, space, self.grid_of_cells(key)?, degree, elastic);
         made.bounds = bounds;
         made.memory = memory_at_hand();
@@ -88,6 +96,13 @@ impl Planner<'_> {
         };
         for (group, value) in &key.groups {
             let expression = self.reader.expression(value, NONE, self.places())?;
+            if !expression.is_condition() {
+                let message =
+                    format!("the group `{group}` is no condition, which holds at a point of the surface or not");
+                return Err(problem
+                    .error(value, message)
+                    .help("a comparison:  z < 0.1,  or several:  x > 0 && z > 0.9"));
+            }
             let holds = move |x: &Point<3>, _: &Vector<3>| {
                 expression.evaluate(&Scope { position: [x.x, x.y, x.z], time: 0.0 }) > 0.0
             };
@@ -208,29 +223,47 @@ impl Planner<'_> {
         Ok(out)
     }
 
-    /// Sides of the grid that supports, loads or contacts name.
+    /// The axis of the side of a grid of cells that a word names, and on which end of it the side is.
+    pub(super) fn side_of_cells(&self, side: &str) -> Option<(usize, End)> {
+        let direction = SIDES.iter().position(|ends| ends.contains(&side))?;
+        let axis = match (self.space, direction) {
+            (In::ThreeD, k) => k,
+            (_, 0) => 0,
+            (_, 2) => 1,
+            _ => return None,
+        };
+        Some((axis, if SIDES[direction][0] == side { End::Low } else { End::High }))
+    }
+
+    /// Sides of the grid that supports, loads or contacts name, and the whole surface where contacts name the body. A side that
+    /// a support holds is where the body is cut off, by symmetry or at its base: nothing else touches it.
     fn sides_that_are_used(&self, name: &str, made: &mut Description) {
         let problem = self.problem;
-        let places = (problem.supports.values().map(|s| &s.on))
-            .chain(problem.loads.values().map(|l| &l.on))
-            .chain(problem.contacts.values().flat_map(|c| c.between.iter().flatten()));
-        let used: Vec<String> = places
-            .filter_map(|on| on.split_once(':'))
-            .filter(|(b, _)| b.trim() == name)
-            .map(|p| p.1.trim().into())
-            .collect();
-        for (direction, ends) in SIDES.iter().enumerate() {
-            for (word, end) in ends.iter().zip([End::Low, End::High]) {
-                let axis = match (self.space, direction) {
-                    (In::ThreeD, k) => k,
-                    (_, 0) => 0,
-                    (_, 2) => 1,
-                    _ => continue,
-                };
-                if used.iter().any(|u| u == word) && !made.places.contains_key(*word) {
-                    made.places.insert((*word).to_string(), Part::Side { axis, end });
-                }
+        let of_body = |on: &String| {
+            let (body, group) = on.split_once(':')?;
+            (body.trim() == name).then(|| group.trim().to_string())
+        };
+        let held: Vec<String> = problem.supports.values().filter_map(|s| of_body(&s.on)).collect();
+        let in_contacts = problem.contacts.values().flat_map(|c| c.between.iter().flatten());
+        let places = problem.loads.values().map(|l| &l.on).chain(in_contacts);
+        let used: Vec<String> = places.filter_map(of_body).chain(held.iter().cloned()).collect();
+        let mut without = Vec::new();
+        for word in SIDES.as_flattened() {
+            let Some((axis, end)) = self.side_of_cells(word) else { continue };
+            // A group of the case may have the name.
+            let is_free = !made.places.contains_key(*word);
+            if held.iter().any(|side| side == word) && is_free {
+                without.push((axis, end));
             }
+            if used.iter().any(|u| u == word) && is_free {
+                made.places.insert((*word).to_string(), Part::Side { axis, end });
+            }
+        }
+        let touches = |c: &Contact| {
+            c.all == Some(true) || c.between.as_ref().is_some_and(|pair| pair.iter().any(|on| on.trim() == name))
+        };
+        if problem.contacts.values().any(touches) || used.iter().any(|u| u == SURFACE) {
+            made.places.entry(SURFACE.to_string()).or_insert(Part::Whole { without });
         }
     }
 

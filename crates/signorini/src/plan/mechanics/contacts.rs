@@ -4,6 +4,7 @@ use super::{Kind, Numbers, Tested};
 use crate::plan::planner::Planner;
 use crate::problem::units::{LENGTH, NONE};
 use crate::problem::{self, AxisOn, CaseError, Components, CurveForm, Enforcement, Method, Value};
+use crate::report::Carried;
 use signorini_cells::disc_contact::{Centres, Cover, CoverFindings, DiscPairs};
 use signorini_geometry::Vector;
 use signorini_mechanics::contact::Part;
@@ -42,7 +43,15 @@ impl Planner<'_> {
                     let all = (0..names.len()).flat_map(|k| (k + 1..names.len()).map(move |l| [k, l]));
                     let all = all.map(|[k, l]| [names[k], names[l]]);
                     let moving = all.filter(|[first, second]| !(fixed(first) && fixed(second)));
-                    moving.map(|pair| (format!("{name}_{}_{}", pair[0], pair[1]), pair)).collect()
+                    let (tested, untested): (Vec<_>, Vec<_>) =
+                        moving.partition(|pair| !cannot_meet(system, numbers, pair));
+                    for [first, second] in untested {
+                        self.warn(format!(
+                            "contact `{name}`: `{first}` and `{second}` are not tested against each other: rigid bodies of \
+                             these shapes have no points that could be (spheres and triangle meshes have)"
+                        ));
+                    }
+                    tested.into_iter().map(|pair| (format!("{name}_{}_{}", pair[0], pair[1]), pair)).collect()
                 }
                 _ => {
                     return Err(problem
@@ -69,6 +78,17 @@ impl Planner<'_> {
         let problem = self.problem;
         let mut parts: [Part; 2] = [self.part(on[0], numbers)?, self.part(on[1], numbers)?];
         let mut on = on;
+        // A body of cells touches others with the sides of its grid too.
+        for part in parts.iter_mut().filter(|_| on[0] != on[1]) {
+            if matches!(kinds[part.body], Kind::Cells) && part.group.is_none() {
+                part.group = Some(super::cells::SURFACE.to_string());
+            }
+        }
+        for (part, on) in parts.iter().zip(on) {
+            if part.group.is_some() {
+                self.check_group(part, on, system)?;
+            }
+        }
         let body = |part: &Part| system.bodies[part.body].as_ref();
         let points = |part: &Part| body(part).sites(part.group.as_deref(), Sampling::Nodes);
         // A body without points of its own is touched by the other; and the faces of a body that deforms follow a rigid one
@@ -116,6 +136,11 @@ impl Planner<'_> {
         let mut contact =
             Contact::new(name, (slave.clone(), body(&slave)), (master.clone(), body(&master)), sampling, enforcement)
                 .map_err(|error| {
+                if cannot_meet(system, numbers, &on) {
+                    return problem
+                        .error(key, format!("contact `{name}`: neither of two rigid bodies of these shapes has points"))
+                        .help("one of them as a sphere or a triangle mesh, whose points are tested; or a solid of a stiff material");
+                }
                 let side = on.iter().find(|on| on.split(':').next().is_some_and(|name| name.trim() == error.body()));
                 self.misplaced(side.unwrap_or(&on[0]), &error)
             })?;
@@ -133,7 +158,15 @@ impl Planner<'_> {
             contact.pairing = Pairing::AtStart;
         }
         let along_a_curve = matches!(kind, Kind::Curve { .. });
-        let tested = Tested { along_a_curve, ..Tested::by(method, contact.axis) };
+        let is_curve = self::is_curve(system, &slave);
+        let carries = match kind {
+            Kind::Rigid { .. } => Carried::Force,
+            Kind::Curve { .. } => Carried::LineLoad,
+            _ if is_curve => Carried::LineLoad,
+            _ => Carried::Pressure,
+        };
+        let at_nodes = matches!(kind, Kind::Cells) && sampling == Sampling::Nodes;
+        let tested = Tested { along_a_curve, carries, at_nodes, ..Tested::by(method, contact.axis) };
         Ok((Box::new(contact), tested))
     }
 
@@ -192,7 +225,7 @@ impl Planner<'_> {
                 .error(&at, "between curves the axis of friction is the tangent of the first")
                 .help("axis = \"tangent\", or leave it out"));
         }
-        Ok(Some((Box::new(contact), Tested::by("curve", axis))))
+        Ok(Some((Box::new(contact), Tested { carries: Carried::Force, ..Tested::by("curve", axis) })))
     }
 
     /// Contact by discs on both surfaces.
@@ -340,6 +373,20 @@ impl Planner<'_> {
             _ => AxisChoice::OnSlave(direction),
         })
     }
+}
+
+/// Whether a place is a curve: a rope, a beam, an edge of a solid.
+fn is_curve(system: &System, part: &Part) -> bool {
+    system.bodies[part.body].curve(part.group.as_deref()).is_some()
+}
+
+/// Whether two bodies are both rigid, and neither has points that could be tested against the other.
+fn cannot_meet(system: &System, numbers: &Numbers, pair: &[&String; 2]) -> bool {
+    pair.iter().all(|on| {
+        let name = on.split(':').next().unwrap_or_default().trim();
+        let body = numbers.get(name).map(|number| &system.bodies[*number]);
+        body.is_some_and(|body| body.is_rigid() && body.sites(None, Sampling::Nodes).is_err())
+    })
 }
 
 /// Whether an axis is that of a curve.

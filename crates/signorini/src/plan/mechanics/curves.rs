@@ -24,6 +24,8 @@ const FORCE: [i32; 3] = [0, 1, 0];
 /// Elements of a rope and of a beam whose number is not stated.
 const ROPE_CELLS: usize = 50;
 const BEAM_CELLS: usize = 20;
+/// Elements of a curve, or points of one: more fit into no memory.
+const MOST_CELLS: i64 = 1_000_000;
 /// Pieces of the spline that follows a formula: their error is below 1e-9 of the size of a curve that turns a few times.
 const FORMULA: usize = 1000;
 
@@ -182,8 +184,7 @@ impl Planner<'_> {
     fn count(&self, key: Option<&i64>, otherwise: usize) -> Result<usize, CaseError> {
         match key {
             None => Ok(otherwise),
-            Some(n) if (1..=1_000_000).contains(n) => Ok(*n as usize),
-            Some(n) => Err(self.problem.error(n, format!("{n} is no number of cells or points")).help("1 or more")),
+            Some(n) => self.between(n, 1, MOST_CELLS),
         }
     }
 

@@ -19,7 +19,7 @@ use super::memory::check_memory;
 use super::planner::Planner;
 use crate::problem::units::LENGTH;
 use crate::problem::{self, Body, CaseError, Material, Motion, Problem, Space, UnstableStates};
-use crate::report::Warning;
+use crate::report::{Carried, Warning};
 use signorini_geometry::Point;
 use signorini_geometry::rigid_shape::RigidShape;
 use signorini_mechanics::contact::Part;
@@ -55,6 +55,10 @@ pub struct Tested {
     pub axis: AxisChoice,
     /// Whether its points are those of a curve, in order.
     pub along_a_curve: bool,
+    /// What the first body carries.
+    pub carries: Carried,
+    /// Whether it is kept at single nodes of a surface that has none by nature.
+    pub at_nodes: bool,
     /// What was found out about it.
     pub notes: Vec<String>,
     pub warnings: Vec<String>,
@@ -63,7 +67,8 @@ pub struct Tested {
 impl Tested {
     /// By a method, at points in no order, with nothing to say of it.
     fn by(method: &'static str, axis: AxisChoice) -> Self {
-        Tested { method, axis, along_a_curve: false, notes: Vec::new(), warnings: Vec::new() }
+        let carries = Carried::Pressure;
+        Tested { method, axis, along_a_curve: false, carries, at_nodes: false, notes: Vec::new(), warnings: Vec::new() }
     }
 }
 
@@ -76,6 +81,8 @@ pub struct MechanicsPlan {
     pub kinds: Vec<Kind>,
     pub times: Vec<f64>,
     pub probes: BTreeMap<String, Point<3>>,
+    /// The point about which moments are told.
+    pub moments_about: Point<3>,
     /// Values of the case that were no numbers.
     pub wrong: Wrong,
     /// What each contact of the system is.
@@ -187,7 +194,7 @@ impl Planner<'_> {
         system.loads.extend(springs.into_iter().map(|(name, part, load)| PlacedLoad { name, part, load }));
         let (acting, contacts) = self.system_contacts(&numbers, &mut system, &kinds)?;
         system.contacts = acting;
-        system.prepare().map_err(|e| problem.error(&problem.space, e.to_string()))?;
+        system.prepare().map_err(|e| self.unprepared(&e))?;
         self.check_held(&system)?;
         self.check_start(&system, &kinds, &contacts, &mut warnings)?;
         self.check_inside(&system)?;
@@ -215,6 +222,10 @@ impl Planner<'_> {
             kinds,
             times: self.times()?,
             probes,
+            moments_about: match &problem.output.moments_about {
+                Some(at) => self.position(at, LENGTH)?,
+                None => Point::<3>::zeros(),
+            },
             wrong,
             contacts,
             notes,
@@ -243,7 +254,7 @@ impl Planner<'_> {
     /// Whether something holds each body of small strains.
     fn check_held(&self, system: &System) -> Result<(), CaseError> {
         let problem = self.problem;
-        let Some((body, motion)) = system.unheld().map_err(|e| problem.error(&problem.space, e.to_string()))? else {
+        let Some((body, motion)) = system.unheld().map_err(|e| self.unprepared(&e.into()))? else {
             return Ok(());
         };
         let name = system.bodies[body].name();

@@ -9,8 +9,10 @@ use signorini_contact::ContactSurface;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::contact::Part;
 use signorini_mechanics::surface::Faces;
-use signorini_mechanics::system::TimeField;
-use signorini_mechanics::{Contribution, Hold, Load, Order, PlaceError, PlacedLoad, Support, System, TimedLoad};
+use signorini_mechanics::system::{AssemblyError, TimeField};
+use signorini_mechanics::{
+    Contribution, Hold, IncrementError, Load, Order, PlaceError, PlacedLoad, Sampling, Support, System, TimedLoad,
+};
 use std::sync::Arc;
 
 /// Springs that a support states: its name, its place, and the load that they are.
@@ -62,7 +64,43 @@ impl Planner<'_> {
 
     /// The error of a place, at its key.
     pub(super) fn misplaced(&self, on: &String, error: &PlaceError) -> CaseError {
-        self.problem.error(on, error.to_string())
+        let PlaceError::Unknown { body, group, known } = error else {
+            return self.problem.error(on, error.to_string());
+        };
+        let mut known = known.clone();
+        if matches!(self.problem.bodies.get(body), Some(Body::Cells(_))) {
+            // Sides of grids are made where they are named.
+            let sides = ["left", "right", "front", "back", "bottom", "top"].into_iter();
+            known.extend(sides.filter(|side| self.side_of_cells(side).is_some()).map(String::from));
+            known.sort();
+            known.dedup();
+        }
+        let nearest = suggestion(group, &known.iter().map(String::as_str).collect::<Vec<_>>());
+        let all = PlaceError::Unknown { body: body.clone(), group: group.clone(), known };
+        let told = self.problem.error(on, all.to_string());
+        // The message lists them all.
+        if nearest.starts_with("did you mean") { told.help(nearest) } else { told }
+    }
+
+    /// Whether a body has the place that is stated.
+    pub(super) fn check_group(&self, part: &Part, on: &String, system: &System) -> Result<(), CaseError> {
+        match system.bodies[part.body].sites(part.group.as_deref(), Sampling::Nodes) {
+            Err(error @ PlaceError::Unknown { .. }) => Err(self.misplaced(on, &error)),
+            _ => Ok(()),
+        }
+    }
+
+    /// Why a system cannot be assembled at its start, at the key that is to be changed.
+    pub(super) fn unprepared(&self, error: &IncrementError) -> CaseError {
+        let problem = self.problem;
+        let IncrementError::Assembly(AssemblyError::Contradiction { second, .. }) = error else {
+            return problem.error(&problem.space, error.to_string());
+        };
+        match problem.supports.get(second) {
+            Some(support) => problem.error(support, error.to_string()),
+            None => problem.error(&problem.space, error.to_string()),
+        }
+        .help("what is held twice is held alike, or \"free\" in one of them")
     }
 
     pub(super) fn system_supports(
@@ -83,7 +121,15 @@ impl Planner<'_> {
                 None => [None, None, None],
             };
             if let Some(normal) = &key.normal {
-                let (component, sign) = normal_axis(system, &part)
+                let of_cells = match problem.bodies.get(system.bodies[part.body].name()) {
+                    Some(Body::Cells(cells)) => (part.group.as_deref())
+                        .filter(|side| !cells.groups.contains_key(*side))
+                        .and_then(|side| self.side_of_cells(side))
+                        .map(|(axis, end)| (axis, end.sign())),
+                    _ => None,
+                };
+                let (component, sign) = of_cells
+                    .map_or_else(|| normal_axis(system, &part), Ok)
                     .map_err(|message| problem.error(normal, message).help("displacement = [0, \"free\", 0]"))?;
                 if displacement[component].is_some() {
                     return Err(problem.error(normal, "`displacement` prescribes this direction too"));

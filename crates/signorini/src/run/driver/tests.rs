@@ -40,6 +40,14 @@ impl Model for Spring {
         record: &mut Record,
         progress: &mut dyn Progress,
     ) -> Result<Advanced, CaseError> {
+        progress.iteration(&Iteration {
+            step: index,
+            time: self.time(index),
+            iteration: 0,
+            residual: 0.0,
+            action: "pressed",
+            figures: &[],
+        });
         if progress.interrupted() {
             return Ok(Advanced::Failed(Reason::Interrupted));
         }
@@ -114,4 +122,30 @@ fn a_model_runs_fails_goes_on_draws_and_reports() {
     assert!(!path.join("checkpoint.json").exists());
     // There is nothing to go on with any more.
     assert!(go_on(&mut Spring::new(None), of_earlier_run(head, &path), &path, start, &mut Silent).is_err());
+}
+
+/// A run that reaches its limit keeps what it has, says so, and goes on from there.
+#[test]
+fn a_run_stops_at_its_limit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("limited");
+    let start = Instant::now();
+    let mut spring = Spring::new(None);
+    spring.head.problem.limits.max_iterations = Some(3);
+    let record = begin(spring.head(), &path).expect("a folder");
+    let stopped = drive(&mut spring, record, 0, start, &mut Silent).expect("a run");
+    assert!(stopped.ending == Ending::NotConverged && stopped.summary.reason == Reason::LimitReached);
+    assert_eq!(stopped.summary.steps.len(), 2);
+    let verdict = &stopped.summary.verdict;
+    assert!(verdict.contains("limit of 3 iterations: 2 of 4 increments") && verdict.contains("t = 0.75"), "{verdict}");
+    let mut rest = Spring::new(None);
+    let record = of_earlier_run(rest.head(), &path);
+    let rest = go_on(&mut rest, record, &path, start, &mut Silent).expect("a run");
+    assert!(rest.ending == Ending::Converged && rest.summary.steps.len() == 4);
+    // A time that is over at once.
+    let mut late = Spring::new(None);
+    late.head.problem.limits.max_time = Some(f64::MIN_POSITIVE);
+    let record = begin(late.head(), &folder.path().join("late")).expect("a folder");
+    let stopped = drive(&mut late, record, 0, start, &mut Silent).expect("a run");
+    assert!(stopped.summary.reason == Reason::LimitReached && stopped.summary.steps.is_empty());
 }

@@ -55,15 +55,28 @@ pub fn step_report(
         }
         *supports.entry(support.name.clone()).or_insert_with(Vector::<3>::zeros) += forces[0];
     }
+    // Around an axis all moments vanish.
+    let about = (plan.space != Space::Axisymmetric).then_some(plan.moments_about);
+    let shifted = |force: &Vector<3>, moment: &Vector<3>| moment - plan.moments_about.cross(force);
+    let mut support_moments: BTreeMap<String, Vector<3>> = BTreeMap::new();
+    let moments = about.and_then(|_| system.support_moments(state, shown.time).ok()).unwrap_or_default();
+    for ((support, forces), moment) in system.supports.iter().zip(&result.support_forces).zip(&moments) {
+        let moment = shifted(&forces[0], moment);
+        *support_moments.entry(support.name.clone()).or_insert_with(Vector::<3>::zeros) += moment;
+    }
+    let mut load_moments: BTreeMap<String, [f64; 3]> = BTreeMap::new();
     let is_spring = |name: &str| !plan.head.problem.loads.contains_key(name);
     let mut loads: BTreeMap<String, [f64; 3]> = BTreeMap::new();
     for (k, load) in system.loads.iter().enumerate() {
-        let Ok([force, _]) = system.load_resultant(k, state, shown.time) else { continue };
+        let Ok([force, moment]) = system.load_resultant(k, state, shown.time) else { continue };
+        let moment = shifted(&force, &moment);
         if is_spring(&load.name) {
             // A spring is part of a support.
             *supports.entry(load.name.clone()).or_insert_with(Vector::<3>::zeros) += force;
+            *support_moments.entry(load.name.clone()).or_insert_with(Vector::<3>::zeros) += moment;
         } else {
             loads.insert(load.name.clone(), vector(&force));
+            load_moments.insert(load.name.clone(), vector(&moment));
         }
     }
     let probe = |x: &Vector<3>| {
@@ -108,6 +121,11 @@ pub fn step_report(
         equilibrium_residual: Some(result.imbalance),
         support_forces: supports.iter().map(|(name, force)| (name.clone(), vector(force))).collect(),
         load_forces: loads,
+        moments_about: about.map(|x| vector(&x)),
+        support_moments: (support_moments.iter().filter(|_| about.is_some()))
+            .map(|(name, moment)| (name.clone(), vector(moment)))
+            .collect(),
+        load_moments: if about.is_some() { load_moments } else { BTreeMap::new() },
         contacts: (system.contacts.iter().zip(&plan.contacts).zip(&result.sites))
             .zip(&result.dissipated)
             .map(|(((contact, tested), sites), dissipated)| {
@@ -241,6 +259,9 @@ fn contact_report(
     let area = |status: Status| closed().filter(|s| s.status == status).map(|s| s.contact_area()).sum::<f64>() + 0.0;
     ContactReport {
         force: vector(&resultant(closed().map(|s| s.force()))),
+        moment: (plan.space != Space::Axisymmetric)
+            .then(|| vector(&resultant(closed().map(|s| (s.x - plan.moments_about).cross(&s.force()))))),
+        carries: tested.carries,
         area: sites.iter().map(SiteResult::contact_area).sum(),
         zones: components.len(),
         components,
@@ -395,8 +416,13 @@ pub fn verdict(plan: &MechanicsPlan, record: &Record) -> String {
     }
     for (name, pose) in &step.free_bodies {
         let moved = told_vector(&pose.displacement[..space], None, unit(|u| &u.length));
-        list.push(format!("`{name}` moved by {moved}"));
+        let turned = Vector::<3>::from(pose.rotation).norm();
+        let turned = if turned > 0.0 { format!(" and turned by {}", told(turned, None, "rad")) } else { String::new() };
+        list.push(format!("`{name}` moved by {moved}{turned}"));
     }
     let balance = step.equilibrium_residual.unwrap_or(f64::NAN);
+    if list.is_empty() {
+        list.push("The bodies are in equilibrium".into());
+    }
     format!("{}; forces balance to {balance:.0e}.", list.join("; "))
 }

@@ -8,6 +8,7 @@ use crate::run::outcome::Ending;
 use crate::run::record::Record;
 use crate::run::sizes;
 use signorini_membrane::obstacle::Side;
+use std::collections::BTreeMap;
 
 /// The result in a sentence, with what to try where there is none.
 pub fn verdict<const D: usize>(plan: &MembranePlan<D>, record: &Record, reason: Reason) -> String {
@@ -36,7 +37,10 @@ pub fn verdict<const D: usize>(plan: &MembranePlan<D>, record: &Record, reason: 
                 true => String::new(),
                 false => format!(" (last residuals relative to the tolerance: {})", last.join(", ")),
             };
-            format!("Not converged in increment {} of {count}{history}: {advice}.", record.steps.len().max(1))
+            let number = record.steps.len().max(1);
+            let time = record.steps.last().map(|s| s.time).or_else(|| Some(plan.increments.get(number - 1)?.time));
+            let time = time.map_or(String::new(), |t| format!(", at t = {t}"));
+            format!("Not converged in increment {number} of {count}{time}{history}: {advice}.")
         }
         Ending::Converged => {
             let Some(step) = record.steps.last() else { return "Nothing was asked.".into() };
@@ -50,6 +54,13 @@ pub fn verdict<const D: usize>(plan: &MembranePlan<D>, record: &Record, reason: 
             let unstable = told.iter().any(|(_, found)| found.stable == Some(false));
             let sentences: Vec<String> = told.iter().map(|(c, found)| of_contact(plan, c, found)).collect();
             match sentences.is_empty() {
+                true if !was_touched(record).is_empty() => {
+                    let times = was_touched(record);
+                    let [first, last] = [times.first(), times.last()].map(|t| t.copied().unwrap_or_default());
+                    let when =
+                        if first == last { format!("at t = {first}") } else { format!("from t = {first} to {last}") };
+                    format!("At the end the membrane touches nothing; it was in contact {when}.")
+                }
                 true => {
                     let why = sizes::clearance(plan, step.time);
                     // A hint may be a question.
@@ -66,6 +77,12 @@ pub fn verdict<const D: usize>(plan: &MembranePlan<D>, record: &Record, reason: 
             }
         }
     }
+}
+
+/// The times at which there was contact.
+fn was_touched(record: &Record) -> Vec<f64> {
+    let touches = |contacts: &BTreeMap<String, ContactReport>| contacts.values().any(|c| c.zones > 0);
+    record.steps.iter().filter(|s| touches(&s.contacts)).map(|s| s.time).collect()
 }
 
 /// One contact in a clause.

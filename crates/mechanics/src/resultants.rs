@@ -1,0 +1,44 @@
+//! Resultants of the supports on the bodies where they are: what each gives to the unknowns of its body, along the unit motions
+//! of that body.
+
+use crate::body::{Contribution, Order};
+use crate::increment_error::IncrementError;
+use crate::system::{AssemblyError, System, SystemState};
+use signorini_geometry::Vector;
+
+impl System {
+    /// The moment of each support on its body about the origin, in a state at a time.
+    ///
+    /// # Errors
+    /// States and places that cannot be.
+    pub fn support_moments(&self, state: &SystemState, time: f64) -> Result<Vec<Vector<3>>, IncrementError> {
+        let (first, _) = self.numbering();
+        let at = self.assemble(state, time, Order::First)?;
+        let mut forces: Vec<Vec<f64>> =
+            self.supports.iter().map(|s| vec![0.0; self.bodies[s.part.body].unknowns()]).collect();
+        let mut add = |support: usize, unknown: u32, force: f64| {
+            let own = unknown - first[self.supports[support].part.body];
+            forces[support][own as usize] += force;
+        };
+        for held in &at.single {
+            let (unknown, _) = held.constraint.terms[0];
+            add(held.support, unknown, at.residual[unknown as usize]);
+        }
+        for (held, reaction) in at.coupled.iter().zip(&state.reactions) {
+            held.constraint.terms.iter().for_each(|(unknown, factor)| add(held.support, *unknown, -factor * reaction));
+        }
+        let moment = |(support, mut forces): (&crate::Support, Vec<f64>)| {
+            let (body, own) = (&self.bodies[support.part.body], &state.bodies[support.part.body]);
+            let mut out = Contribution::new(body.unknowns());
+            let on = support.part.group.as_deref();
+            support
+                .at(time, |hold| body.hold_weakly(on, hold, own, Order::First, &mut out))
+                .map_err(AssemblyError::from)?;
+            forces.iter_mut().zip(&out.forces).for_each(|(f, weak)| *f -= weak);
+            let modes = body.rigid_modes(own);
+            let about = |axis: usize| forces.iter().zip(&modes[3 + axis]).map(|(f, m)| f * m).sum::<f64>();
+            Ok(Vector::<3>::from_fn(|axis, _| about(axis)))
+        };
+        self.supports.iter().zip(forces).map(moment).collect()
+    }
+}

@@ -1,16 +1,18 @@
 //! What may differ between two runs of one case: time, memory, version.
 
+use super::record::Record;
 use crate::report::Environment;
 
 /// The `environment` of a summary.
-pub fn describe(start: std::time::Instant, threads: usize, input: &str) -> Environment {
+pub fn describe(start: std::time::Instant, threads: usize, record: &Record) -> Environment {
     Environment {
         version: env!("CARGO_PKG_VERSION").into(),
         wall_seconds: start.elapsed().as_secs_f64(),
         cpu_seconds: cpu_seconds(),
         peak_memory: peak_memory(),
         threads,
-        input_hash: format!("{:016x}", fnv1a(input.as_bytes())),
+        audit_seconds: record.audit_seconds,
+        input_hash: format!("{:016x}", fnv1a(record.text.as_bytes())),
     }
 }
 

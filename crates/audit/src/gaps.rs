@@ -1,0 +1,196 @@
+//! Whether bodies lie outside of each other: global closest points from both sides, of whole bodies.
+//!
+//! A penetration is explained by the penetration that was asked for, by the sagitta `h² κ / 8` of cells of size `h` on a
+//! surface of curvature `κ`, and where forces act near by, by a part of a cell: conditions of contact hold at points, or in the
+//! mean over cells. Where nothing carries only the sagitta explains it: nothing keeps the bodies apart there.
+
+use crate::finding::{Check, Finding, Outcome};
+use crate::nearest::of_segments;
+use crate::obstacle::{Found, Obstacle};
+use crate::samples::{self, Sample, thickness, turns};
+use crate::state::{Contact, Curve, Form, Placement, Setting, Space, State};
+use rayon::prelude::*;
+use signorini_geometry::bvh::Bvh;
+use signorini_geometry::{Aabb, Point};
+
+/// Penetration as a share of a cell where forces act, from which it is told: by as much forces come out wrong about.
+const TOLD: f64 = 0.05;
+/// And from which the state is none: the point in the middle of a cell is on the other side.
+const REFUSED: f64 = 0.5;
+/// The same where nothing carries: far above rounding and what iterations leave, far below what could be meant.
+const NOWHERE: f64 = 0.01;
+/// Cells around forces within which these act.
+const NEAR: f64 = 2.0;
+/// Sagittae are those of smooth curves: cells may be unlike.
+const UNLIKE: f64 = 1.5;
+/// Bodies that touch themselves do so farther along than this many cells.
+const APART: f64 = 3.0;
+
+/// Checks the gaps of all pairs that contacts name.
+pub fn check(setting: &Setting, state: &State) -> Vec<Finding> {
+    let mut out = Vec::new();
+    for (number, contact) in setting.contacts.iter().enumerate() {
+        let [a, b] = contact.bodies;
+        let forms = [a, b].map(|k| &setting.bodies[k].form);
+        let found = match forms {
+            [Form::Curve(c), Form::Curve(d)] => between_curves(state, number, contact, [c, d]),
+            _ => {
+                let sides = if a == b { vec![[a, b]] } else { vec![[a, b], [b, a]] };
+                sides.into_iter().filter_map(|side| deepest(setting, state, number, side)).max_by(by_excess)
+            }
+        };
+        out.extend(found.map(|deepest| told(setting, contact, &deepest)));
+    }
+    out
+}
+
+/// The deepest place of a pair, by what explains it.
+struct Deepest {
+    x: Point<3>,
+    depth: f64,
+    cell: f64,
+    told: f64,
+    refused: f64,
+    /// Whether forces act near by.
+    carries: bool,
+    bodies: [usize; 2],
+}
+
+fn by_excess(a: &Deepest, b: &Deepest) -> std::cmp::Ordering {
+    (a.depth / a.refused).total_cmp(&(b.depth / b.refused)).then((a.depth / a.told).total_cmp(&(b.depth / b.told)))
+}
+
+/// How deep the points of one body reach into another.
+fn deepest(setting: &Setting, state: &State, contact: usize, bodies: [usize; 2]) -> Option<Deepest> {
+    let [own, other] = bodies;
+    let in_space = setting.space == Space::ThreeD;
+    let obstacle = Obstacle::new(&setting.bodies[other].form, &state.bodies[other], in_space)?;
+    let rigid = matches!(obstacle, Obstacle::Rigid { .. });
+    let form = &setting.bodies[own].form;
+    let list = samples::of_body(form, &state.bodies[own], rigid, &|x| if own == other { 0.0 } else { obstacle.at_least(x) });
+    let closed = closed_places(state, contact);
+    let wanted = setting.contacts[contact].wanted_penetration;
+    let judged = list.par_iter().filter_map(|s| {
+        let except = (own == other).then_some((s.rest, APART * s.cell));
+        let found = obstacle.find(&s.x, s.radius, except)?;
+        let depth = s.radius - found.gap;
+        (depth > 0.0).then(|| judge(s, &found, (depth, wanted), &closed, bodies))
+    });
+    judged.max_by(by_excess)
+}
+
+/// Places of a contact that carry.
+fn closed_places(state: &State, contact: usize) -> Vec<Point<3>> {
+    let touches = state.contacts.get(contact).map_or(&[][..], Vec::as_slice);
+    touches.iter().filter(|t| t.is_closed).flat_map(|t| [t.x, t.foot]).collect()
+}
+
+fn judge(s: &Sample, found: &Found, (depth, wanted): (f64, f64), closed: &[Point<3>], bodies: [usize; 2]) -> Deepest {
+    let (cell, part) = if found.cell > s.cell { (found.cell, found.cell) } else { (s.cell, s.part) };
+    let sagitta = cell * cell * found.curvature.min(1.0 / cell.max(f64::MIN_POSITIVE)) / 8.0;
+    let explained = UNLIKE * (wanted + sagitta + s.off + found.off);
+    let reach = NEAR * cell + s.radius;
+    let carries = closed.iter().any(|x| (x - s.x).norm() <= reach);
+    let (told, refused) = if carries {
+        (explained + TOLD * cell, 2.0 * explained + REFUSED * cell)
+    } else {
+        (explained + NOWHERE * part, explained + NOWHERE * part)
+    };
+    Deepest { x: s.x, depth, cell, told, refused, carries, bodies }
+}
+
+fn told(setting: &Setting, contact: &Contact, deepest: &Deepest) -> Finding {
+    let [own, other] = deepest.bodies.map(|k| &setting.bodies[k].name);
+    let Deepest { depth, cell, told, refused, carries, x, .. } = deepest;
+    let (outcome, limit) = match (depth > refused, depth > told) {
+        (true, _) => (Outcome::Refused, *refused),
+        (_, true) => (Outcome::Doubt, *told),
+        _ => (Outcome::Fine, *told),
+    };
+    let share = depth / cell.max(f64::MIN_POSITIVE);
+    let what = format!("`{own}` reaches {depth:.3e} into `{other}`, {share:.2e} of a cell");
+    let (message, remedy) = match (outcome, carries) {
+        (Outcome::Fine, _) => (what, None),
+        (_, true) => (format!("{what}, beside where forces act"), Some("finer cells there, or another method of contact")),
+        (_, false) => (
+            format!("{what}, where nothing keeps them apart"),
+            Some("start outside of each other, take more increments, and let the contact name the whole bodies"),
+        ),
+    };
+    let finding = Finding::new(Check::Gaps, outcome, message).measured(*depth, limit).at(*x).on(&contact.name);
+    Finding { remedy: remedy.map(str::to_string), ..finding }
+}
+
+/// Share of the radii that curves may reach into each other where they carry, and from which the state is none.
+fn between_curves(state: &State, number: usize, contact: &Contact, [c, d]: [&Curve; 2]) -> Option<Deepest> {
+    let radius = c.radius + d.radius;
+    let [a, b] = contact.bodies;
+    let points = [a, b].map(|k| state.bodies[k].points());
+    let boxes = |curve: &Curve, x: &[Point<3>]| -> Vec<Aabb<3>> {
+        curve.pieces.iter().map(|p| {
+            let [u, v] = p.map(|k| x[k as usize]);
+            Aabb::new(u.inf(&v), u.sup(&v))
+        }).collect()
+    };
+    let (own, other) = (boxes(c, points[0]), boxes(d, points[1]));
+    let pairs = Bvh::new(&own).pairs_within(&Bvh::new(&other), (&own, &other), radius);
+    let angles = [turns(c, points[0]), turns(d, points[1])];
+    let closed = closed_places(state, number);
+    let count = c.pieces.len();
+    let near = |i: usize, j: usize, length: f64| {
+        let along = i.abs_diff(j).min(count - i.abs_diff(j)) as f64 * length;
+        a == b && along < (std::f64::consts::PI * radius).max(APART * length)
+    };
+    let judged = pairs.into_iter().filter_map(|(i, j)| {
+        let [p, q] = c.pieces[i].map(|k| points[0][k as usize]);
+        let [r, s] = d.pieces[j].map(|k| points[1][k as usize]);
+        let lengths = [(q - p).norm(), (s - r).norm()];
+        if near(i, j, lengths[0].max(lengths[1])) {
+            return None;
+        }
+        let [u, v] = of_segments([&p, &q], [&r, &s]);
+        let x = p + (q - p) * u;
+        let depth = radius - (x - (r + (s - r) * v)).norm();
+        let angle = |k: usize, piece: &[u32; 2]| angles[k][piece[0] as usize].max(angles[k][piece[1] as usize]);
+        let off = (lengths[0] * angle(0, &c.pieces[i]) + lengths[1] * angle(1, &d.pieces[j])) / 8.0;
+        let explained = UNLIKE * (contact.wanted_penetration + off);
+        let carries = closed.iter().any(|y| (y - x).norm() <= radius + NEAR * lengths[0].max(lengths[1]) * c.parts);
+        let (told, refused) = (explained + TOLD * radius, explained + REFUSED * radius);
+        let refused = if carries { refused } else { told };
+        (depth > 0.0).then_some(Deepest { x, depth, cell: radius, told, refused, carries, bodies: contact.bodies })
+    });
+    judged.max_by(by_excess)
+}
+
+/// Checks the state at the start: what reaches into another body by half of its thickness finds no way out.
+pub fn check_start(setting: &Setting, state: &State) -> Vec<Finding> {
+    let mut out = Vec::new();
+    for (number, contact) in setting.contacts.iter().enumerate() {
+        let [a, b] = contact.bodies;
+        if a == b {
+            continue;
+        }
+        for side in [[a, b], [b, a]] {
+            let thick = side.map(|k| thickness_of(&setting.bodies[k].form, &state.bodies[k], setting.space));
+            let Some(found) = deepest(setting, state, number, side) else { continue };
+            let limit = 0.5 * thick[0].min(thick[1]);
+            if found.depth > limit {
+                let [own, other] = side.map(|k| &setting.bodies[k].name);
+                let message = format!("`{own}` starts {:.4e} deep inside `{other}`", found.depth);
+                let finding = Finding::new(Check::Gaps, Outcome::Refused, message).measured(found.depth, limit);
+                let remedy = "a start outside of each other; is the normal of a plane, or the side of a hole, turned round?";
+                out.push(finding.at(found.x).on(&contact.name).remedy(remedy));
+            }
+        }
+    }
+    out
+}
+
+fn thickness_of(form: &Form, placement: &Placement, space: Space) -> f64 {
+    let directions: &[usize] = if space == Space::ThreeD { &[0, 1, 2] } else { &[0, 1] };
+    match form {
+        Form::Solid(_) => thickness(placement.points(), directions),
+        Form::Rigid(rigid) if rigid.size > 0.0 => rigid.size,
+        Form::Rigid(_) | Form::Curve(_) => f64::INFINITY,
+    }
+}

@@ -1,0 +1,91 @@
+//! Whether energy goes where it should: with `W` the work of loads, supports and prescribed motions in an increment, `ΔE` what
+//! bodies store more and `D ≥ 0` what friction takes, `W - ΔE - D = 0`.
+//!
+//! Work is taken by the mean of the forces before and after; it is off by half of what the forces changed, times the motion, at
+//! most where they change steadily. What vanishes beyond that was lost in a jump, or the dissipation is told wrongly; energy
+//! that appears makes the state none.
+
+use crate::balance::of_contact;
+use crate::finding::{Check, Finding, Outcome};
+use crate::state::{Form, Setting, State};
+use signorini_geometry::Vector;
+
+/// Part of the energies that rounding, iterations and penalties may leave.
+const LEFT: f64 = 1e-2;
+
+/// Checks the energy of an increment.
+pub fn check(setting: &Setting, before: &State, now: &State) -> Vec<Finding> {
+    let mut out = Vec::new();
+    for ((contact, dissipated), touches) in setting.contacts.iter().zip(&now.dissipated).zip(&now.contacts) {
+        let Some(d) = *dissipated else { continue };
+        let taken: f64 = touches.iter().map(|t| t.weight * t.friction.norm() * t.slip.norm()).sum();
+        if d < -LEFT * taken.max(-d * 0.5) {
+            let message = format!("friction of `{}` gives energy: {:.3e}", contact.name, -d);
+            let finding = Finding::new(Check::Path, Outcome::Refused, message).measured(-d, LEFT * taken);
+            out.push(finding.on(&contact.name).remedy("smaller increments"));
+        }
+    }
+    out.extend(of_increment(setting, before, now));
+    out
+}
+
+fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Finding> {
+    let stored = now.stored? - before.stored?;
+    let dissipated: f64 = now.dissipated.iter().flatten().sum();
+    let (mut work, mut off, mut size) = (0.0, 0.0, 0.0);
+    let mut add = |[w, o]: [f64; 2]| {
+        work += w;
+        off += o;
+        size += w.abs();
+    };
+    for acting in &now.forces {
+        add(acting.work?);
+    }
+    for (body, own) in setting.bodies.iter().enumerate() {
+        if let Form::Rigid(rigid) = &own.form
+            && !rigid.is_free
+        {
+            add(of_motion(setting, [before, now], body, &rigid.centre));
+        }
+    }
+    // What penalties store: half of the force times the penetration, before and after.
+    let kept: f64 = [before, now]
+        .iter()
+        .flat_map(|s| s.contacts.iter().flatten())
+        .filter(|t| t.is_closed)
+        .map(|t| t.weight * t.pressure.abs() * (t.x - t.foot).norm())
+        .sum();
+    let size = size + stored.abs() + dissipated.abs();
+    let limit = off + kept + LEFT * size + 1e-6 * now.stored?.abs();
+    let missing = work - stored - dissipated;
+    if size == 0.0 || !limit.is_finite() {
+        return None;
+    }
+    let (outcome, what, remedy) = match missing {
+        m if m < -limit => (Outcome::Refused, "energy appears", Some("smaller increments")),
+        m if m > limit => (Outcome::Doubt, "energy vanishes that friction does not take", Some("smaller increments where it jumps")),
+        _ => (Outcome::Fine, "work, stored and dissipated energy agree", None),
+    };
+    let message = format!(
+        "{what}: work {work:.4e}, stored {stored:.4e}, dissipated {dissipated:.4e} in the increment, known to {limit:.1e}"
+    );
+    let finding = Finding::new(Check::Path, outcome, message).measured(missing.abs(), limit);
+    Some(Finding { remedy: remedy.map(str::to_string), ..finding })
+}
+
+/// The work that the prescribed motion of a rigid body does against its contacts, and how far it may be off.
+fn of_motion(setting: &Setting, states: [&State; 2], body: usize, centre: &Vector<3>) -> [f64; 2] {
+    let motions = states.map(|s| s.bodies[body].motion());
+    let centres = motions.map(|m| m.point(centre));
+    let turn = nalgebra::Rotation3::from_matrix_unchecked(motions[1].rotation * motions[0].rotation.transpose());
+    let (moved, turned) = (centres[1] - centres[0], turn.scaled_axis());
+    let resultants = [0, 1].map(|k| {
+        let lists = (0..setting.contacts.len()).map(|c| of_contact(setting, states[k], c, body));
+        lists.flatten().fold([Vector::<3>::zeros(); 2], |[f, m], (x, force)| {
+            [f + force, m + (x - centres[k]).cross(&force)]
+        })
+    });
+    let power = |[f, m]: [Vector<3>; 2]| -(f.dot(&moved) + m.dot(&turned));
+    let [first, last] = resultants.map(power);
+    [0.5 * (first + last), 0.5 * (last - first).abs()]
+}

@@ -1,6 +1,6 @@
 //! The boundary of cells: sides that belong to one cell only.
 
-use crate::nearest::{centre, area_normal};
+use crate::nearest::{area_normal, centre};
 use signorini_geometry::Point;
 use std::collections::{BTreeMap, HashMap};
 
@@ -20,10 +20,14 @@ pub struct Boundary {
     /// Every point of a facet, once, and a facet that it is of.
     pub points: Vec<u32>,
     first: Vec<u32>,
+    /// The length of each facet in the plane, the side of a square of its area in space; and the largest.
+    pub sides: Vec<f64>,
+    pub largest: f64,
 }
 
 /// Sides of a hexahedron, tetrahedron and wedge by their corners.
-const OF_HEXAHEDRON: [&[usize]; 6] = [&[0, 3, 2, 1], &[4, 5, 6, 7], &[0, 1, 5, 4], &[1, 2, 6, 5], &[2, 3, 7, 6], &[3, 0, 4, 7]];
+const OF_HEXAHEDRON: [&[usize]; 6] =
+    [&[0, 3, 2, 1], &[4, 5, 6, 7], &[0, 1, 5, 4], &[1, 2, 6, 5], &[2, 3, 7, 6], &[3, 0, 4, 7]];
 const OF_TETRAHEDRON: [&[usize]; 4] = [&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]];
 const OF_WEDGE: [&[usize]; 5] = [&[0, 2, 1], &[3, 4, 5], &[0, 1, 4, 3], &[1, 2, 5, 4], &[2, 0, 3, 5]];
 
@@ -86,13 +90,19 @@ impl Boundary {
         let mut own: Vec<u32> = of_point.keys().copied().collect();
         own.sort_unstable();
         let first = own.iter().map(|p| of_point[p][0]).collect();
-        Boundary { facets, turn, points: own, first }
+        let side = |f: &Vec<u32>| {
+            let size = area_normal(points, f).norm();
+            if f.len() == 2 { size } else { size.sqrt() }
+        };
+        let sides: Vec<f64> = facets.iter().map(side).collect();
+        let largest = sides.iter().copied().fold(0.0, f64::max);
+        Boundary { facets, turn, points: own, first, sides, largest }
     }
 
     /// A facet at one of its points.
-    pub fn facet_at(&self, point: u32) -> Option<&Vec<u32>> {
+    pub fn facet_at(&self, point: u32) -> Option<usize> {
         let k = self.points.binary_search(&point).ok()?;
-        self.facets.get(self.first[k] as usize)
+        Some(self.first[k] as usize)
     }
 
     /// The middle of a facet.

@@ -99,7 +99,8 @@ impl Finding {
 pub fn worst(findings: Vec<Finding>) -> Vec<Finding> {
     let mut out: Vec<Finding> = Vec::new();
     for finding in findings {
-        match out.iter_mut().find(|f| f.check == finding.check && (f.outcome, &f.on) == (finding.outcome, &finding.on)) {
+        match out.iter_mut().find(|f| f.check == finding.check && (f.outcome, &f.on) == (finding.outcome, &finding.on))
+        {
             Some(kept) if finding.excess() > kept.excess() => *kept = finding,
             Some(_) => {}
             None => out.push(finding),

@@ -8,7 +8,7 @@ use crate::finding::{Check, Finding, Outcome};
 use crate::nearest::of_segments;
 use crate::obstacle::{Found, Obstacle};
 use crate::samples::{self, Sample, thickness, turns};
-use crate::state::{Contact, Curve, Form, Placement, Setting, Space, State};
+use crate::state::{Contact, Curve, Form, Placement, Setting, Space, State, Touch};
 use rayon::prelude::*;
 use signorini_geometry::bvh::Bvh;
 use signorini_geometry::{Aabb, Point};
@@ -40,8 +40,38 @@ pub fn check(setting: &Setting, state: &State) -> Vec<Finding> {
             }
         };
         out.extend(found.map(|deepest| told(setting, contact, &deepest)));
+        out.extend(across(setting, state, number));
+    }
+    if out.is_empty() && !setting.contacts.is_empty() {
+        out.push(Finding::new(Check::Gaps, Outcome::Fine, "no body reaches into another").measured(0.0, 1.0));
     }
     out
+}
+
+/// Where a contact carries across a gap to a rigid body; none where it does not.
+fn across(setting: &Setting, state: &State, number: usize) -> Option<Finding> {
+    let contact = &setting.contacts[number];
+    let [own, other] = contact.bodies;
+    let Form::Rigid(rigid) = &setting.bodies[other].form else { return None };
+    let cell = match &setting.bodies[own].form {
+        Form::Solid(solid) => solid.largest_cell(),
+        Form::Rigid(rigid) => samples::OF_RIGID * rigid.size,
+        Form::Curve(curve) => {
+            let length = |p: &[u32; 2]| (curve.rest[p[1] as usize] - curve.rest[p[0] as usize]).norm();
+            curve.parts * curve.pieces.iter().map(length).fold(0.0, f64::max)
+        }
+    };
+    let motion = state.bodies[other].motion();
+    let gap = |t: &Touch| {
+        let jet = rigid.gap_now(&motion, &t.x);
+        let sagitta = cell * cell * jet.hessian.norm().min(1.0 / cell.max(f64::MIN_POSITIVE)) / 2.0;
+        (jet.gap, 2.0 * UNLIKE * sagitta + REFUSED * cell, t.x)
+    };
+    let carrying = state.contacts[number].iter().filter(|t| t.is_closed && t.pressure > 0.0);
+    let (gap, limit, x) = carrying.map(gap).max_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)))?;
+    let outcome = if gap > limit { Outcome::Refused } else { return None };
+    let message = format!("`{}` carries across a gap of {gap:.3e}", contact.name);
+    Some(Finding::new(Check::Gaps, outcome, message).measured(gap, limit).at(x).on(&contact.name))
 }
 
 /// The deepest place of a pair, by what explains it.
@@ -67,11 +97,13 @@ fn deepest(setting: &Setting, state: &State, contact: usize, bodies: [usize; 2])
     let obstacle = Obstacle::new(&setting.bodies[other].form, &state.bodies[other], in_space)?;
     let rigid = matches!(obstacle, Obstacle::Rigid { .. });
     let form = &setting.bodies[own].form;
-    let list = samples::of_body(form, &state.bodies[own], rigid, &|x| if own == other { 0.0 } else { obstacle.at_least(x) });
+    let list =
+        samples::of_body(form, &state.bodies[own], rigid, &|x| if own == other { 0.0 } else { obstacle.at_least(x) });
     let closed = closed_places(state, contact);
     let wanted = setting.contacts[contact].wanted_penetration;
+    let largest = if let Form::Solid(solid) = form { solid.largest_cell() } else { 0.0 };
     let judged = list.par_iter().filter_map(|s| {
-        let except = (own == other).then_some((s.rest, APART * s.cell));
+        let except = (own == other).then_some((s.rest, APART * largest));
         let found = obstacle.find(&s.x, s.radius, except)?;
         let depth = s.radius - found.gap;
         (depth > 0.0).then(|| judge(s, &found, (depth, wanted), &closed, bodies))
@@ -111,7 +143,9 @@ fn told(setting: &Setting, contact: &Contact, deepest: &Deepest) -> Finding {
     let what = format!("`{own}` reaches {depth:.3e} into `{other}`, {share:.2e} of a cell");
     let (message, remedy) = match (outcome, carries) {
         (Outcome::Fine, _) => (what, None),
-        (_, true) => (format!("{what}, beside where forces act"), Some("finer cells there, or another method of contact")),
+        (_, true) => {
+            (format!("{what}, beside where forces act"), Some("finer cells there, or another method of contact"))
+        }
         (_, false) => (
             format!("{what}, where nothing keeps them apart"),
             Some("start outside of each other, take more increments, and let the contact name the whole bodies"),
@@ -127,10 +161,14 @@ fn between_curves(state: &State, number: usize, contact: &Contact, [c, d]: [&Cur
     let [a, b] = contact.bodies;
     let points = [a, b].map(|k| state.bodies[k].points());
     let boxes = |curve: &Curve, x: &[Point<3>]| -> Vec<Aabb<3>> {
-        curve.pieces.iter().map(|p| {
-            let [u, v] = p.map(|k| x[k as usize]);
-            Aabb::new(u.inf(&v), u.sup(&v))
-        }).collect()
+        curve
+            .pieces
+            .iter()
+            .map(|p| {
+                let [u, v] = p.map(|k| x[k as usize]);
+                Aabb::new(u.inf(&v), u.sup(&v))
+            })
+            .collect()
     };
     let (own, other) = (boxes(c, points[0]), boxes(d, points[1]));
     let pairs = Bvh::new(&own).pairs_within(&Bvh::new(&other), (&own, &other), radius);
@@ -178,7 +216,8 @@ pub fn check_start(setting: &Setting, state: &State) -> Vec<Finding> {
                 let [own, other] = side.map(|k| &setting.bodies[k].name);
                 let message = format!("`{own}` starts {:.4e} deep inside `{other}`", found.depth);
                 let finding = Finding::new(Check::Gaps, Outcome::Refused, message).measured(found.depth, limit);
-                let remedy = "a start outside of each other; is the normal of a plane, or the side of a hole, turned round?";
+                let remedy =
+                    "a start outside of each other; is the normal of a plane, or the side of a hole, turned round?";
                 out.push(finding.at(found.x).on(&contact.name).remedy(remedy));
             }
         }

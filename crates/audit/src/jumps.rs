@@ -43,7 +43,8 @@ pub fn check(setting: &Setting, before: &State, now: &State) -> Vec<Finding> {
             };
             let crossed = points.iter().find_map(|k| through(rigid, &motions, [from[*k as usize], to[*k as usize]]));
             if let Some(x) = crossed {
-                let message = format!("a point of `{}` came to the other side of `{}` within the increment", names[0], names[1]);
+                let message =
+                    format!("a point of `{}` came to the other side of `{}` within the increment", names[0], names[1]);
                 let finding = Finding::new(Check::Gaps, Outcome::Doubt, message);
                 out.push(finding.at(x).on(&contact.name).remedy(remedy));
             }

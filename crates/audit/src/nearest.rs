@@ -80,7 +80,8 @@ mod tests {
 
     #[test]
     fn nearest_points_are_no_farther_than_any_other() {
-        let corners = [Point::<3>::new(0.0, 0.1, 0.2), Point::<3>::new(1.0, -0.3, 0.4), Point::<3>::new(0.3, 0.9, -0.2)];
+        let corners =
+            [Point::<3>::new(0.0, 0.1, 0.2), Point::<3>::new(1.0, -0.3, 0.4), Point::<3>::new(0.3, 0.9, -0.2)];
         let [a, b, c] = corners;
         for p in [[0.4, 0.2, 1.0], [-1.0, 0.0, 0.3], [0.9, 0.8, 0.1], [0.5, -2.0, 0.0]].map(Point::<3>::from) {
             let found = (on_triangle(&p, [&a, &b, &c]) - p).norm();

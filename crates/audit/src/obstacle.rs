@@ -1,7 +1,7 @@
 //! How deep a point lies in a body, where that is now.
 
-use crate::nearest::{area_normal, extent, on_facet};
 use crate::boundary::sides;
+use crate::nearest::{area_normal, extent, on_facet};
 use crate::state::{Form, Placement, Rigid, Solid};
 use signorini_geometry::bvh::Bvh;
 use signorini_geometry::rigid::RigidMotion;
@@ -158,13 +158,7 @@ impl<'a> SolidNow<'a> {
             normal,
             curvature: 0.0,
             off: size * self.solid.boundary.turn[facet] / 8.0,
-            cell: side_length(self.points, list) * self.solid.parts,
+            cell: self.solid.cell_at(facet)[0],
         })
     }
-}
-
-/// The length of a facet in the plane, the side of a square of its area in space.
-pub fn side_length(points: &[Point<3>], facet: &[u32]) -> f64 {
-    let size = area_normal(points, facet).norm();
-    if facet.len() == 2 { size } else { size.sqrt() }
 }

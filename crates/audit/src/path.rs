@@ -7,7 +7,7 @@
 
 use crate::balance::of_contact;
 use crate::finding::{Check, Finding, Outcome};
-use crate::state::{Form, Setting, State};
+use crate::state::{Form, Setting, State, Touch};
 use signorini_geometry::Vector;
 
 /// Part of the energies that rounding, iterations and penalties may leave.
@@ -30,6 +30,10 @@ pub fn check(setting: &Setting, before: &State, now: &State) -> Vec<Finding> {
 }
 
 fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Finding> {
+    // Loads that are there from the start act at once: what they give too much there goes nowhere.
+    if before.forces.is_empty() && !now.forces.is_empty() {
+        return None;
+    }
     let stored = now.stored? - before.stored?;
     let dissipated: f64 = now.dissipated.iter().flatten().sum();
     let (mut work, mut off, mut size) = (0.0, 0.0, 0.0);
@@ -48,6 +52,16 @@ fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Findin
             add(of_motion(setting, [before, now], body, &rigid.centre));
         }
     }
+    // Friction that changed with the slip, of points that came and went too.
+    let slips = now.contacts.iter().flatten().filter(|t| t.is_closed).map(|t| t.slip.norm()).fold(0.0, f64::max);
+    let changed = |(a, b): (&Vec<Touch>, &Vec<Touch>)| -> f64 {
+        let rubs = |t: &Touch| t.friction * t.weight;
+        if a.len() != b.len() {
+            return a.iter().chain(b).map(|t| rubs(t).norm()).sum();
+        }
+        a.iter().zip(b).map(|(a, b)| (rubs(a) - rubs(b)).norm()).sum()
+    };
+    off += 0.5 * slips * before.contacts.iter().zip(&now.contacts).map(changed).sum::<f64>();
     // What penalties store: half of the force times the penetration, before and after.
     let kept: f64 = [before, now]
         .iter()
@@ -63,7 +77,9 @@ fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Findin
     }
     let (outcome, what, remedy) = match missing {
         m if m < -limit => (Outcome::Refused, "energy appears", Some("smaller increments")),
-        m if m > limit => (Outcome::Doubt, "energy vanishes that friction does not take", Some("smaller increments where it jumps")),
+        m if m > limit => {
+            (Outcome::Doubt, "energy vanishes that friction does not take", Some("smaller increments where it jumps"))
+        }
         _ => (Outcome::Fine, "work, stored and dissipated energy agree", None),
     };
     let message = format!(
@@ -81,9 +97,9 @@ fn of_motion(setting: &Setting, states: [&State; 2], body: usize, centre: &Vecto
     let (moved, turned) = (centres[1] - centres[0], turn.scaled_axis());
     let resultants = [0, 1].map(|k| {
         let lists = (0..setting.contacts.len()).map(|c| of_contact(setting, states[k], c, body));
-        lists.flatten().fold([Vector::<3>::zeros(); 2], |[f, m], (x, force)| {
-            [f + force, m + (x - centres[k]).cross(&force)]
-        })
+        lists
+            .flatten()
+            .fold([Vector::<3>::zeros(); 2], |[f, m], (x, force)| [f + force, m + (x - centres[k]).cross(&force)])
     });
     let power = |[f, m]: [Vector<3>; 2]| -(f.dot(&moved) + m.dot(&turned));
     let [first, last] = resultants.map(power);

@@ -1,9 +1,9 @@
 //! Whether strains, slips and rotations are those for which the theory holds.
 
 use crate::finding::{Check, Finding, Outcome};
-use crate::obstacle::side_length;
-use crate::samples::turns;
 use crate::nearest::centre;
+use crate::resolution::width;
+use crate::samples::turns;
 use crate::state::{Curve, Form, Setting, Solid, State};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
@@ -14,11 +14,15 @@ use signorini_geometry::{Aabb, Point, Vector};
 const FAR: f64 = 4.0;
 /// Directions in which a cell is thinner than this part of its size tell nothing of a gradient.
 const FLAT: f64 = 1e-3;
+/// Cells smaller than this part of their place are left out.
+const SMALL: f64 = 1e-7;
 /// Slip against small sliding as a share of a cell, and rotation of a rigid body in radians: the pairs of points and the
 /// directions of friction are off by as much.
 const SLIP_TOLD: f64 = 0.1;
 const SLIP_REFUSED: f64 = 1.0;
 const TURN: f64 = 0.1;
+/// Cells smaller than this part of the zone of contact are there for its edge: slips as long as they are change little.
+const OF_ZONE: f64 = 0.25;
 /// Angle between normals below which a surface is flat.
 const PLANE: f64 = 1e-6;
 
@@ -53,7 +57,8 @@ pub fn check(setting: &Setting, state: &State) -> Vec<Finding> {
             && !rigid.is_free
             && state.contacts[number].iter().any(|t| t.is_closed)
         {
-            let rotation = nalgebra::Rotation3::from_matrix_unchecked(state.bodies[contact.bodies[1]].motion().rotation);
+            let rotation =
+                nalgebra::Rotation3::from_matrix_unchecked(state.bodies[contact.bodies[1]].motion().rotation);
             let angle = rotation.angle();
             let name = &setting.bodies[contact.bodies[1]].name;
             let outcome = if angle > TURN { Outcome::Refused } else { Outcome::Fine };
@@ -82,6 +87,11 @@ fn strain_of(rest: &[Point<3>], now: &[Point<3>], cell: &[u32]) -> Option<f64> {
         let d = rest[*k as usize] - from;
         extent += d * d.transpose();
         moved += (now[*k as usize] - to - d) * d.transpose();
+    }
+    // What is as small as the rounding of places has no strain.
+    let small = SMALL * rest[cell[0] as usize].amax();
+    if extent.symmetric_eigenvalues().amax() <= small * small {
+        return None;
     }
     let thin = FLAT * FLAT * extent.symmetric_eigenvalues().amax();
     let gradient: Matrix3<f64> = moved * extent.pseudo_inverse(thin.max(f64::MIN_POSITIVE)).ok()?;
@@ -113,7 +123,7 @@ fn slip(setting: &Setting, state: &State, number: usize) -> Option<Finding> {
         Form::Solid(solid) => Some(Displacements::new(solid, state.bodies[other].points())),
         _ => None,
     };
-    let slid = |x: &Point<3>, normal: &Vector<3>| {
+    let slid = |x: &Point<3>, normal: &Vector<3>, zone: f64| {
         let (u, mut cell) = moved.at(x)?;
         let (by, matters) = match (&opposite, &setting.bodies[other].form) {
             (Some(opposite), _) => {
@@ -131,10 +141,14 @@ fn slip(setting: &Setting, state: &State, number: usize) -> Option<Finding> {
             _ => return None,
         };
         let relative = u - by;
-        Some((if matters { (relative - normal * normal.dot(&relative)).norm() / cell } else { 0.0 }, *x))
+        Some((
+            if matters { (relative - normal * normal.dot(&relative)).norm() / cell.max(OF_ZONE * zone) } else { 0.0 },
+            *x,
+        ))
     };
     let closed = state.contacts[number].iter().filter(|t| t.is_closed);
-    let (share, x) = closed.filter_map(|t| slid(&t.x, &t.normal)).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let zone = width(setting.space, &closed.clone().collect::<Vec<_>>());
+    let (share, x) = closed.filter_map(|t| slid(&t.x, &t.normal, zone)).max_by(|a, b| a.0.total_cmp(&b.0))?;
     let (outcome, limit) = match share {
         s if s > SLIP_REFUSED => (Outcome::Refused, SLIP_REFUSED),
         s if s > SLIP_TOLD => (Outcome::Doubt, SLIP_TOLD),
@@ -171,8 +185,7 @@ impl<'a> Displacements<'a> {
             best
         });
         let point = found?;
-        let facet = self.solid.boundary.facet_at(point)?;
-        let cell = side_length(&self.solid.rest, facet) * self.solid.parts;
+        let [cell, _] = self.solid.cell_at(self.solid.boundary.facet_at(point)?);
         Some((self.points[point as usize] - self.solid.rest[point as usize], cell))
     }
 }

@@ -3,7 +3,6 @@
 
 use crate::finding::{Check, Finding, Outcome};
 use crate::nearest::{centre, extent};
-use crate::obstacle::side_length;
 use crate::state::{Carries, Contact, Form, Setting, Space, State, Touch};
 use signorini_geometry::{Point, Vector};
 
@@ -28,18 +27,17 @@ pub fn check(setting: &Setting, before: Option<&State>, now: &State) -> Vec<Find
 fn of_contact(setting: &Setting, state: &State, contact: &Contact, [before, now]: [&[Touch]; 2]) -> Option<Finding> {
     let closed: Vec<&Touch> = now.iter().filter(|t| t.is_closed).collect();
     // What touches all over ends where the body does.
-    if contact.carries != Carries::Traction || closed.is_empty() || closed.len() == now.iter().filter(|t| t.weight > 0.0).count() {
+    if contact.carries != Carries::Traction
+        || closed.is_empty()
+        || closed.len() == now.iter().filter(|t| t.weight > 0.0).count()
+    {
         return None;
     }
     let most = closed.iter().max_by(|a, b| a.pressure.total_cmp(&b.pressure))?;
     let sizes = contact.bodies.iter().filter_map(|k| cell_at(setting, state, *k, &most.x));
     let cell = sizes.reduce(f64::max)?;
     let area: f64 = closed.iter().map(|t| t.area).sum();
-    let width = match setting.space {
-        Space::ThreeD => area.sqrt(),
-        Space::Plane => area,
-        Space::Axisymmetric => spread(&closed),
-    };
+    let width = width(setting.space, &closed);
     let cells = width / cell;
     let force = |list: &[Touch]| list.iter().filter(|t| t.is_closed).map(Touch::force).sum::<Vector<3>>().norm();
     let earlier: f64 = before.iter().filter(|t| t.is_closed).map(|t| t.area).sum();
@@ -63,6 +61,17 @@ fn of_contact(setting: &Setting, state: &State, contact: &Contact, [before, now]
     Some(finding(Outcome::Doubt, why).remedy(remedy))
 }
 
+/// How wide a zone of contact is.
+pub fn width(space: Space, closed: &[&Touch]) -> f64 {
+    let area: f64 = closed.iter().map(|t| t.area).sum();
+    match space {
+        Space::ThreeD => area.sqrt(),
+        Space::Plane => area,
+        Space::Axisymmetric if closed.is_empty() => 0.0,
+        Space::Axisymmetric => spread(closed),
+    }
+}
+
 /// The largest distance of places from the first and farthest of them.
 fn spread(list: &[&Touch]) -> f64 {
     let far = |from: &Point<3>| {
@@ -77,6 +86,7 @@ pub fn cell_at(setting: &Setting, state: &State, body: usize, x: &Point<3>) -> O
     let Form::Solid(solid) = &setting.bodies[body].form else { return None };
     let points = state.bodies[body].points();
     let distance = |facet: &&Vec<u32>| (centre(points, facet) - x).norm() - 0.5 * extent(points, facet);
-    let nearest = solid.boundary.facets.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
-    Some(side_length(points, nearest) * solid.parts)
+    let facets = solid.boundary.facets.iter().enumerate();
+    let nearest = facets.min_by(|a, b| distance(&a.1).total_cmp(&distance(&b.1)))?;
+    Some(solid.cell_at(nearest.0)[0])
 }

@@ -1,7 +1,6 @@
 //! Points on bodies, four times as dense along each direction as the cells that show them where something is near.
 
 use crate::nearest::{centre, extent};
-use crate::obstacle::side_length;
 use crate::state::{Curve, Form, Placement, Rigid, Solid};
 use rayon::prelude::*;
 use signorini_geometry::Point;
@@ -26,7 +25,12 @@ const DENSE: usize = 4;
 pub const OF_RIGID: f64 = 0.1;
 
 /// The points of a body. `at_least` tells a distance that nothing that may be touched is nearer than.
-pub fn of_body(form: &Form, placement: &Placement, rigid_too: bool, at_least: &(dyn Fn(&Point<3>) -> f64 + Sync)) -> Vec<Sample> {
+pub fn of_body(
+    form: &Form,
+    placement: &Placement,
+    rigid_too: bool,
+    at_least: &(dyn Fn(&Point<3>) -> f64 + Sync),
+) -> Vec<Sample> {
     match form {
         Form::Solid(solid) => of_solid(solid, placement.points(), at_least),
         Form::Curve(curve) => of_curve(curve, placement.points()),
@@ -40,16 +44,16 @@ fn of_solid(solid: &Solid, points: &[Point<3>], at_least: &(dyn Fn(&Point<3>) ->
     let found: Vec<f64> = boundary.points.par_iter().map(|k| at_least(&points[*k as usize])).collect();
     boundary.points.iter().zip(found).for_each(|(k, gap)| near[*k as usize] = gap);
     let mut out = Vec::new();
-    for (facet, turn) in boundary.facets.iter().zip(&boundary.turn) {
+    for (k, (facet, turn)) in boundary.facets.iter().zip(&boundary.turn).enumerate() {
         let size = extent(points, facet);
         if facet.iter().all(|k| near[*k as usize] > size) {
             continue;
         }
-        let part = side_length(points, facet);
+        let [cell, part] = solid.cell_at(k);
         for shares in lattice(facet.len()) {
             let at = |list: &[Point<3>]| facet.iter().zip(&shares).map(|(k, s)| list[*k as usize] * *s).sum();
             let (x, rest) = (at(points), at(&solid.rest));
-            out.push(Sample { x, rest, radius: 0.0, cell: part * solid.parts, part, off: size * turn / 8.0 });
+            out.push(Sample { x, rest, radius: 0.0, cell, part, off: size * turn / 8.0 });
         }
     }
     out
@@ -105,8 +109,13 @@ pub fn turns(curve: &Curve, points: &[Point<3>]) -> Vec<f64> {
 fn of_rigid(rigid: &Rigid, placement: &Placement, balls: bool) -> Vec<Sample> {
     let motion = placement.motion();
     let cell = OF_RIGID * rigid.size;
-    let sample = |rest: &Point<3>, radius: f64| {
-        Sample { x: motion.point(rest), rest: *rest, radius, cell, part: cell, off: 0.0 }
+    let sample = |rest: &Point<3>, radius: f64| Sample {
+        x: motion.point(rest),
+        rest: *rest,
+        radius,
+        cell,
+        part: cell,
+        off: 0.0,
     };
     if balls && !rigid.balls.is_empty() {
         return rigid.balls.iter().map(|(x, radius)| sample(x, *radius)).collect();

@@ -49,6 +49,8 @@ impl Space {
 pub struct Body {
     pub name: String,
     pub form: Form,
+    /// The force that rounding of its places leaves, about: none of a body that does not deform.
+    pub rounding: f64,
 }
 
 #[derive(Clone)]
@@ -68,8 +70,24 @@ pub struct Solid {
     pub boundary: Boundary,
     /// How many of these cells lie side by side in a cell of the solver.
     pub parts: f64,
+    /// Whether cells are cut, so that what is shown of one may be much smaller than it.
+    pub is_cut: bool,
     /// Strain beyond which the law or the theory is off; none where it holds for any.
     pub strain_limit: Option<f64>,
+}
+
+impl Solid {
+    /// The size of the cell of the solver at a facet, and of what of it is shown there: the length of a facet in the plane, the
+    /// side of a square of its area in space; of cut cells those of the largest.
+    pub fn cell_at(&self, facet: usize) -> [f64; 2] {
+        let part = if self.is_cut { self.boundary.largest } else { self.boundary.sides[facet] };
+        [part * self.parts, part]
+    }
+
+    /// The size of the largest cell.
+    pub fn largest_cell(&self) -> f64 {
+        self.boundary.largest * self.parts
+    }
 }
 
 /// A rope or beam.

@@ -27,7 +27,10 @@ fn of_contact(contact: &Contact, touches: &[Touch]) -> Vec<Finding> {
     }
     let name = &contact.name;
     if touches.iter().any(|t| !t.force().iter().all(|v| v.is_finite())) {
-        out.push(Finding::new(Check::Tractions, Outcome::Refused, format!("`{name}` has forces that are no numbers")).on(name));
+        out.push(
+            Finding::new(Check::Tractions, Outcome::Refused, format!("`{name}` has forces that are no numbers"))
+                .on(name),
+        );
         return out;
     }
     let mut tell = |part: Part, limits: [f64; 2], what: &str| {
@@ -38,7 +41,8 @@ fn of_contact(contact: &Contact, touches: &[Touch]) -> Vec<Finding> {
         };
         let message = format!("`{name}`: {:.2e} of {what}", part.share);
         let finding = Finding::new(Check::Tractions, outcome, message).measured(part.share, limit).on(name);
-        let finding = if outcome == Outcome::Fine { finding } else { finding.remedy("another method or enforcement of contact") };
+        let finding =
+            if outcome == Outcome::Fine { finding } else { finding.remedy("another method or enforcement of contact") };
         out.push(match part.worst {
             Some(t) => finding.at(t.x),
             None => finding,
@@ -46,7 +50,8 @@ fn of_contact(contact: &Contact, touches: &[Touch]) -> Vec<Finding> {
     };
     tell(part(touches, |t| (-t.pressure).max(0.0), |_| size), [TOLD, REFUSED], "the contact force pulls");
     let available = |t: &Touch| contact.law.map_or(0.0, |law| law.most(t.pressure.max(0.0)));
-    let whole = |_: f64| if contact.law.is_some() { touches.iter().map(|t| t.weight * available(t)).sum() } else { size };
+    let whole =
+        |_: f64| if contact.law.is_some() { touches.iter().map(|t| t.weight * available(t)).sum() } else { size };
     let beyond = |t: &Touch| (t.friction.norm() - available(t)).max(0.0);
     tell(part(touches, beyond, whole), [TOLD, REFUSED], "the friction available is exceeded");
     let slipping: Vec<Touch> = touches.iter().filter(|t| t.slips && t.slip.norm() > 0.0).copied().collect();

@@ -26,7 +26,8 @@ pub fn check(setting: &Setting, state: &State) -> Vec<Finding> {
     let mut out = Vec::new();
     for own in 0..setting.bodies.len() {
         let members: Vec<usize> = (0..setting.bodies.len()).filter(|k| free(*k) && group[*k] == own).collect();
-        let touching = |k: usize| setting.contacts[k].bodies.iter().any(|b| members.contains(b)) && carrying(k).next().is_some();
+        let touching =
+            |k: usize| setting.contacts[k].bodies.iter().any(|b| members.contains(b)) && carrying(k).next().is_some();
         let contacts: Vec<usize> = (0..setting.contacts.len()).filter(|k| touching(*k)).collect();
         let elastic = contacts.iter().any(|k| setting.contacts[*k].bodies.iter().any(|b| !rigid(*b)));
         if members.is_empty() || contacts.is_empty() || elastic || members.iter().any(|k| is_held(*k)) {
@@ -34,7 +35,9 @@ pub fn check(setting: &Setting, state: &State) -> Vec<Finding> {
         }
         let unknowns: usize = contacts
             .iter()
-            .flat_map(|k| carrying(*k).map(|t| if setting.contacts[*k].law.is_some() && !t.slips { components } else { 1 }))
+            .flat_map(|k| {
+                carrying(*k).map(|t| if setting.contacts[*k].law.is_some() && !t.slips { components } else { 1 })
+            })
             .sum();
         let count = equations * members.len();
         let names: Vec<String> = members.iter().map(|k| format!("`{}`", setting.bodies[*k].name)).collect();
@@ -44,7 +47,9 @@ pub fn check(setting: &Setting, state: &State) -> Vec<Finding> {
             "{unknowns} components of force at {places} places hold {}, and balance gives {count} equations",
             names.join(", ")
         );
-        let finding = |outcome, message| Finding::new(Check::Uniqueness, outcome, message).measured(unknowns as f64, count as f64);
+        let finding = |outcome, message| {
+            Finding::new(Check::Uniqueness, outcome, message).measured(unknowns as f64, count as f64)
+        };
         out.push(if unknowns > count {
             let why = if rubs { "friction leaves others, by the path" } else { "others balance too" };
             finding(Outcome::Doubt, format!("{message}: the forces are one of many possible, {why}"))

@@ -1,6 +1,6 @@
 //! What the findings come to.
 
-use crate::finding::{Finding, Outcome};
+use crate::finding::{Check, Finding, Outcome};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -37,17 +37,22 @@ impl Verdict {
 }
 
 impl Answer {
-    /// What the findings of increments, each with its time, come to. `within` says within what the figures are right.
-    pub fn new(steps: &[(f64, &[Finding])], within: &str) -> Self {
-        let all = || steps.iter().flat_map(|(time, list)| list.iter().map(move |f| (*time, f)));
-        let verdict = Verdict::of(all().map(|(_, f)| f));
+    /// What the findings of increments, each with its time, come to. `within` says within what the figures are right. Zones grow
+    /// from nothing: whether cells are small enough counts for the last increment.
+    pub fn new<'a>(steps: &[(f64, &'a [Finding])], within: &str) -> Self {
+        let count = steps.len();
+        let counts = move |k: usize, f: &Finding| k + 1 == count || f.check != Check::Resolution;
+        let of = move |(k, (time, list)): (usize, &(f64, &'a [Finding]))| {
+            let time = *time;
+            list.iter().filter(move |f| counts(k, f)).map(move |f| (time, f))
+        };
+        let verdict = Verdict::of(steps.iter().enumerate().flat_map(of).map(|(_, f)| f));
         let told = |outcome: Outcome| {
             let mut seen: Vec<(_, Option<&String>)> = Vec::new();
             let mut list = Vec::new();
             // The same of several increments is told once, as it is in the last.
-            let mut reversed: Vec<(f64, &Finding)> = all().filter(|(_, f)| f.outcome == outcome).collect();
-            reversed.reverse();
-            for (time, f) in reversed {
+            let backwards = steps.iter().enumerate().rev().flat_map(of);
+            for (time, f) in backwards.filter(|(_, f)| f.outcome == outcome) {
                 if seen.contains(&(f.check, f.on.as_ref())) {
                     continue;
                 }

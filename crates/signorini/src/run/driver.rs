@@ -11,7 +11,7 @@ use crate::plan::Head;
 use crate::problem::CaseError;
 use crate::report::{Reason, SCHEMA, StepReport, Summary, history};
 use serde_json::{Value, json};
-use signorini_audit::{Finding, Verdict, worst};
+use signorini_audit::{Check, Finding, Verdict, worst};
 use signorini_solve::{Iteration, Progress};
 use std::path::Path;
 use std::time::Instant;
@@ -211,6 +211,7 @@ fn check(model: &mut dyn Model, record: &mut Record, last: bool) {
     let mut findings = model.audit(step);
     findings.extend(audit::of_warnings(&record.warnings, step.time));
     if last {
+        findings.retain(|f| f.check != Check::Resolution || !audit::is_resolved(step, f.on.as_ref()));
         findings.extend(audit::of_errors(step));
     }
     record.audit_seconds += start.elapsed().as_secs_f64();

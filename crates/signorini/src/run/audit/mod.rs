@@ -4,7 +4,7 @@ mod report;
 pub mod solid;
 pub mod system;
 
-pub use report::{answer, of_errors, of_warnings, of_membrane};
+pub use report::{answer, is_resolved, of_errors, of_membrane, of_warnings};
 
 use serde_json::{Value, json};
 use signorini_audit::{Acting, Placement, State, Touch};
@@ -14,6 +14,8 @@ use signorini_geometry::{Aabb, Point, Vector};
 /// Strain from which the theory of small strains, and the linear law of a section, are off by as much of the result.
 const STRAIN: f64 = super::strain::LARGE;
 
+/// Part of the size of a body that rounding moves its places by, over many operations.
+const ROUNDING: f64 = 1e-12;
 /// Points along each side of the box of a rigid body from which points on its surface are found: in the plane, in space.
 const ALONG: [usize; 2] = [64, 12];
 
@@ -106,6 +108,12 @@ fn mean_work(before: &Vector<3>, now: &Vector<3>, moved: &Vector<3>) -> [f64; 2]
     [0.5 * (before + now).dot(moved), 0.5 * (now - before).dot(moved).abs()]
 }
 
+/// The box of points; none without points.
+fn around(points: &[Point<3>]) -> Option<Aabb<3>> {
+    let first = *points.first()?;
+    Some(points.iter().fold(Aabb::new(first, first), |b, x| Aabb::new(b.min.inf(x), b.max.sup(x))))
+}
+
 /// The largest side of a box.
 fn extent(bounds: &Aabb<3>, in_space: bool) -> f64 {
     let size = bounds.size();
@@ -117,7 +125,8 @@ fn law_of(law: &dyn signorini_contact::Law, problem: &crate::problem::Problem, n
     use crate::problem::Friction;
     use signorini_audit::Law;
     // Contacts of all pairs have names that begin with that of their key.
-    let key = problem.contacts.iter().filter(|(key, _)| name.starts_with(key.as_str())).max_by_key(|(key, _)| key.len());
+    let key =
+        problem.contacts.iter().filter(|(key, _)| name.starts_with(key.as_str())).max_by_key(|(key, _)| key.len());
     let is_viscous = key.is_some_and(|(_, contact)| matches!(contact.friction, Some(Friction::Viscous(_))));
     match law.per_pressure() {
         Some(mu) if is_viscous => Law::AtMost(mu),

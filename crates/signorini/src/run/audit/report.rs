@@ -38,10 +38,13 @@ fn within(step: &StepReport, problem: &Problem) -> String {
         );
     }
     let deforms = |b: &Body| matches!(b, Body::Solid(_) | Body::Cells(_));
+    let of_membrane = problem.bodies.values().any(|b| matches!(b, Body::Membrane(_)));
     let why = if step.contacts.values().all(|c| c.zones == 0) {
         "nothing touches, and there is no force of contact to be uncertain"
     } else if problem.bodies.values().any(|b| matches!(b, Body::Rope(_) | Body::Beam(_))) {
         "what the cells of ropes and beams leave uncertain is not estimated: run it with twice as many to see"
+    } else if of_membrane {
+        "what the cells leave uncertain is not estimated by this method: use smaller ones to see"
     } else if problem.bodies.values().any(deforms) {
         "what the cells leave uncertain is not estimated, as that would take longer than the run: use smaller ones to see"
     } else {
@@ -63,7 +66,9 @@ pub fn of_errors(step: &StepReport) -> Vec<Finding> {
     for (name, c) in &step.contacts {
         let Some(errors) = &c.error_estimate else { continue };
         let found = shares(&c.force, c.area, c.max_pressure, errors);
-        for ((share, limit), what) in found.into_iter().zip([FORCE, PEAK, PEAK]).zip(["force", "area", "largest pressure"]) {
+        for ((share, limit), what) in
+            found.into_iter().zip([FORCE, PEAK, PEAK]).zip(["force", "area", "largest pressure"])
+        {
             if share > limit {
                 let message = format!("the {what} of `{name}` is known to ± {:.0} % only", 100.0 * share);
                 let finding = Finding::new(Check::Resolution, Outcome::Doubt, message).measured(share, limit);
@@ -73,6 +78,13 @@ pub fn of_errors(step: &StepReport) -> Vec<Finding> {
         }
     }
     out
+}
+
+/// Whether the ± of a contact is known and small, so that its cells are small enough however few they are.
+pub fn is_resolved(step: &StepReport, name: Option<&String>) -> bool {
+    let Some(c) = name.and_then(|name| step.contacts.get(name)) else { return false };
+    let Some(errors) = &c.error_estimate else { return false };
+    shares(&c.force, c.area, c.max_pressure, errors).into_iter().zip([FORCE, PEAK, PEAK]).all(|(s, limit)| s <= limit)
 }
 
 /// What the solvers themselves warn of, as findings about the increment that ends at a time.

@@ -1,6 +1,6 @@
 //! Linear solids as plain data.
 
-use super::{STRAIN, extent, law_of, mean_work, restored, saved, surface};
+use super::{ROUNDING, STRAIN, around, extent, law_of, mean_work, restored, saved, surface};
 use crate::output::solid_fields::{ContactDisplay, SolidDisplay, SolidFields};
 use crate::plan::Placed;
 use crate::plan::solid::{Opposite, SolidPlan, evaluate};
@@ -120,11 +120,15 @@ fn setting<const D: usize>(of: &Looked<'_, D>) -> Setting {
         let fields = of.display.of_body(&body.name, k as u32, &rest);
         let points: Vec<Point<3>> = fields.points.iter().map(|x| Point::<3>::from(*x)).collect();
         let cells: Vec<Vec<u32>> = fields.cells.into_iter().map(|c| c.1).collect();
+        let around = around(&points);
         let boundary = Boundary::new(&points, &cells, in_space);
         let order = (0..body.mesh.cell_count()).map(|c| body.mesh.map(c).order()).max().unwrap_or(1);
         let parts = body.degree.max(order) as f64;
-        let form = Form::Solid(Solid { rest: points, cells, boundary, parts, strain_limit: Some(STRAIN) });
-        bodies.push(Body { name: body.name.clone(), form });
+        let form =
+            Form::Solid(Solid { rest: points, cells, boundary, parts, is_cut: false, strain_limit: Some(STRAIN) });
+        let size = around.map_or(0.0, |b| extent(&b, in_space));
+        let rounding = ROUNDING * body.material.youngs_modulus * size.powi(D as i32 - 1);
+        bodies.push(Body { name: body.name.clone(), form, rounding });
     }
     let tools = rigid_bodies(plan);
     for body in &tools {
@@ -135,7 +139,7 @@ fn setting<const D: usize>(of: &Looked<'_, D>) -> Setting {
         let size = bounds.map_or(0.0, |b| extent(&b, in_space));
         let gap = Arc::new(move |x: &Point<3>| shape.gap(x));
         let form = Form::Rigid(Rigid { gap, surface: points, balls: Vec::new(), centre, is_free: false, size });
-        bodies.push(Body { name: body.name.clone(), form });
+        bodies.push(Body { name: body.name.clone(), form, rounding: 0.0 });
     }
     let contact = |c: &crate::plan::solid::SolidContact<D>| {
         let other = match &c.opposite {
@@ -161,10 +165,14 @@ fn placements<const D: usize>(of: &Looked<'_, D>, fields: &SolidFields<D>, time:
     let display = of.display;
     let deformed = |k: usize| {
         let own = (0..display.points.len()).filter(|p| display.body[*p] as usize == k);
-        Placement::Points(own.map(|p| Point::<3>::from(vector(&(display.points[p] + fields.displacement[p])))).collect())
+        Placement::Points(
+            own.map(|p| Point::<3>::from(vector(&(display.points[p] + fields.displacement[p])))).collect(),
+        )
     };
     let tools = rigid_bodies(of.plan).into_iter().map(|body| {
-        let rest = || signorini_geometry::rigid::RigidMotion::new(Vector::<3>::zeros(), Point::<3>::zeros(), Vector::<3>::zeros());
+        let rest = || {
+            signorini_geometry::rigid::RigidMotion::new(Vector::<3>::zeros(), Point::<3>::zeros(), Vector::<3>::zeros())
+        };
         Placement::Moved(body.motion(&of.plan.head.problem, time).unwrap_or_else(|_| rest()))
     });
     (0..of.plan.bodies.len()).map(deformed).chain(tools).collect()
@@ -199,7 +207,12 @@ fn touches<const D: usize>(solved: &Solved<D>, contact: usize, shown: &ContactDi
 }
 
 /// Supports and loads with their work since the state before, of which the displacements are told too.
-fn forces<const D: usize>(of: &Looked<'_, D>, solved: &Solved<D>, time: f64, before: Option<(&State, &[f64])>) -> Vec<Acting> {
+fn forces<const D: usize>(
+    of: &Looked<'_, D>,
+    solved: &Solved<D>,
+    time: f64,
+    before: Option<(&State, &[f64])>,
+) -> Vec<Acting> {
     let (plan, bodies) = (of.plan, &of.model.bodies);
     let mut out: Vec<Acting> = Vec::new();
     let spatial = |x: &Point<D>| Vector::<3>::from(vector(x));
@@ -232,7 +245,11 @@ fn forces<const D: usize>(of: &Looked<'_, D>, solved: &Solved<D>, time: f64, bef
 
 /// The displacement that a support prescribes where it is the same all over the body; none where it differs, or where what is
 /// held is no component.
-fn uniform<const D: usize>(plan: &SolidPlan<D>, support: &crate::plan::solid::SolidSupport, time: f64) -> Option<Vector<3>> {
+fn uniform<const D: usize>(
+    plan: &SolidPlan<D>,
+    support: &crate::plan::solid::SolidSupport,
+    time: f64,
+) -> Option<Vector<3>> {
     if !matches!(support.kind, SupportKind::Components(_)) {
         return None;
     }

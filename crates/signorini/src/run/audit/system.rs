@@ -1,6 +1,6 @@
 //! A system of bodies as plain data.
 
-use super::{STRAIN, extent, law_of, mean_work, restored, saved, surface};
+use super::{ROUNDING, STRAIN, around, extent, law_of, mean_work, restored, saved, surface};
 use crate::plan::mechanics::{Kind, MechanicsPlan};
 use crate::plan::planner::Planner;
 use crate::problem::units::LENGTH;
@@ -13,10 +13,11 @@ use signorini_audit::{
 };
 use signorini_contact::Status;
 use signorini_geometry::rigid::RigidMotion;
-use signorini_geometry::{Aabb, Point, Vector};
+use signorini_geometry::{Point, Vector};
 use signorini_mechanics::system::{TimeField, TimedLoad};
 use signorini_mechanics::{
-    BodyFields, BodyState, Contribution, IncrementResult, Load, Order, Sampling, SiteResult, System, SystemState, rigid_body,
+    BodyFields, BodyState, Contribution, IncrementResult, Load, Order, Sampling, SiteResult, System, SystemState,
+    rigid_body,
 };
 use std::sync::Arc;
 
@@ -51,10 +52,16 @@ impl SystemAudit {
     ) -> Vec<Finding> {
         let setting = self.setting.get_or_insert_with(|| setting(plan));
         let bodies = placements(plan, setting, &state.bodies);
-        let contacts: Vec<Vec<Touch>> = plan.system.contacts.iter().zip(&result.sites).map(|(contact, sites)| {
-            let radius = radius_of(plan, contact.bodies()[0]);
-            sites.iter().map(|s| touch(s, radius)).collect()
-        }).collect();
+        let contacts: Vec<Vec<Touch>> = plan
+            .system
+            .contacts
+            .iter()
+            .zip(&result.sites)
+            .map(|(contact, sites)| {
+                let radius = radius_of(plan, contact.bodies()[0]);
+                sites.iter().map(|s| touch(s, radius)).collect()
+            })
+            .collect();
         let before = self.before.take();
         let forces = forces(plan, (state, result), step.time, before.as_ref());
         let dissipated = plan.system.contacts.iter().map(|c| step.contacts.get(c.name()).and_then(|c| c.dissipation));
@@ -109,15 +116,14 @@ fn setting(plan: &MechanicsPlan) -> Setting {
             Kind::Curve { radius } => Form::Curve(curve(plan, body.name(), *radius, &body.fields(state))),
             Kind::Solid | Kind::Cells => Form::Solid(solid(plan, body.name(), body.fields(state), space)),
         };
-        Body { name: body.name().to_string(), form }
+        // The force that moves a place by a unit of length, times what rounding moves it by.
+        let groups = [None, Some("boundary")].into_iter();
+        let site = groups.filter_map(|on| body.sites(on, Sampling::Nodes).ok()?.first().copied()).next();
+        let stiffness = site.map_or(0.0, |site| body.site_stiffness(&site));
+        let rounding = if stiffness.is_finite() { ROUNDING * stiffness * body.size() } else { 0.0 };
+        Body { name: body.name().to_string(), form, rounding }
     });
     Setting { space, bodies: bodies.collect(), contacts: contacts(plan) }
-}
-
-/// The box of points; none without points.
-fn around(points: &[Point<3>]) -> Option<Aabb<3>> {
-    let first = *points.first()?;
-    Some(points.iter().fold(Aabb::new(first, first), |b, x| Aabb::new(b.min.inf(x), b.max.sup(x))))
 }
 
 fn solid(plan: &MechanicsPlan, name: &str, fields: BodyFields, space: Space) -> Solid {
@@ -128,7 +134,8 @@ fn solid(plan: &MechanicsPlan, name: &str, fields: BodyFields, space: Space) -> 
         _ => 1,
     };
     let strain_limit = crate::run::strain::is_small(&plan.head.problem, name).then_some(STRAIN);
-    Solid { rest: fields.points, cells: fields.cells, boundary, parts: parts.max(1) as f64, strain_limit }
+    let is_cut = matches!(plan.head.problem.bodies.get(name), Some(Key::Cells(_)));
+    Solid { rest: fields.points, cells: fields.cells, boundary, parts: parts.max(1) as f64, is_cut, strain_limit }
 }
 
 fn curve(plan: &MechanicsPlan, name: &str, radius: f64, fields: &BodyFields) -> Curve {
@@ -156,7 +163,8 @@ fn contacts(plan: &MechanicsPlan) -> Vec<Contact> {
             Kind::Solid | Kind::Cells => Carries::Traction,
         };
         let penalty = problem.contacts.get(contact.name()).and_then(|key| penalty_of(key.method.as_ref()?));
-        let wanted = penalty.and_then(|p| planner.as_ref()?.reader.positive(p.wanted_penetration.as_ref()?, LENGTH).ok());
+        let wanted =
+            penalty.and_then(|p| planner.as_ref()?.reader.positive(p.wanted_penetration.as_ref()?, LENGTH).ok());
         Contact {
             name: contact.name().to_string(),
             bodies,
@@ -252,7 +260,9 @@ fn forces(
         let turns = support.rotation.iter().any(Option::is_some);
         // A rigid body is held at its centre.
         let moment = match &plan.kinds[body] {
-            Kind::Rigid { .. } if !turns => Some(rigid_body::Pose::of(&state.bodies[body]).centre.cross(force) + turning),
+            Kind::Rigid { .. } if !turns => {
+                Some(rigid_body::Pose::of(&state.bodies[body]).centre.cross(force) + turning)
+            }
             _ => None,
         };
         let work = before.filter(|_| !turns).and_then(|(was, _)| {

@@ -21,6 +21,8 @@ const REFUSED: f64 = 0.5;
 const NOWHERE: f64 = 0.01;
 /// Cells around forces within which these act.
 const NEAR: f64 = 2.0;
+/// Penetration as a share of the zone of contact that is not yet refused: cells may be tiny where a corner presses.
+const OF_ZONE: f64 = 0.025;
 /// Sagittae are those of smooth curves: cells may be unlike.
 const UNLIKE: f64 = 1.5;
 /// Bodies that touch themselves do so farther along than this many cells.
@@ -101,12 +103,13 @@ fn deepest(setting: &Setting, state: &State, contact: usize, bodies: [usize; 2])
         samples::of_body(form, &state.bodies[own], rigid, &|x| if own == other { 0.0 } else { obstacle.at_least(x) });
     let closed = closed_places(state, contact);
     let wanted = setting.contacts[contact].wanted_penetration;
+    let zone = extent_of(&closed);
     let largest = if let Form::Solid(solid) = form { solid.largest_cell() } else { 0.0 };
     let judged = list.par_iter().filter_map(|s| {
         let except = (own == other).then_some((s.rest, APART * largest));
         let found = obstacle.find(&s.x, s.radius, except)?;
         let depth = s.radius - found.gap;
-        (depth > 0.0).then(|| judge(s, &found, (depth, wanted), &closed, bodies))
+        (depth > 0.0).then(|| judge(s, &found, (depth, wanted), (&closed, zone), bodies))
     });
     judged.max_by(by_excess)
 }
@@ -117,14 +120,27 @@ fn closed_places(state: &State, contact: usize) -> Vec<Point<3>> {
     touches.iter().filter(|t| t.is_closed).flat_map(|t| [t.x, t.foot]).collect()
 }
 
-fn judge(s: &Sample, found: &Found, (depth, wanted): (f64, f64), closed: &[Point<3>], bodies: [usize; 2]) -> Deepest {
+/// The largest extent of places along the axes.
+fn extent_of(places: &[Point<3>]) -> f64 {
+    let Some(first) = places.first() else { return 0.0 };
+    let (low, high) = places.iter().fold((*first, *first), |(l, h), x| (l.inf(x), h.sup(x)));
+    (high - low).max()
+}
+
+fn judge(
+    s: &Sample,
+    found: &Found,
+    (depth, wanted): (f64, f64),
+    (closed, zone): (&[Point<3>], f64),
+    bodies: [usize; 2],
+) -> Deepest {
     let (cell, part) = if found.cell > s.cell { (found.cell, found.cell) } else { (s.cell, s.part) };
     let sagitta = cell * cell * found.curvature.min(1.0 / cell.max(f64::MIN_POSITIVE)) / 8.0;
     let explained = UNLIKE * (wanted + sagitta + s.off + found.off);
     let reach = NEAR * cell + s.radius;
     let carries = closed.iter().any(|x| (x - s.x).norm() <= reach);
     let (told, refused) = if carries {
-        (explained + TOLD * cell, 2.0 * explained + REFUSED * cell)
+        (explained + TOLD * cell, 2.0 * explained + (REFUSED * cell).max(OF_ZONE * zone))
     } else {
         (explained + NOWHERE * part, explained + NOWHERE * part)
     };

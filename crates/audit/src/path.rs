@@ -13,15 +13,24 @@ use signorini_geometry::Vector;
 /// Part of the energies that rounding, iterations and penalties may leave.
 const LEFT: f64 = 1e-2;
 
+/// Part of forces times sizes that is rounding, and of the stored energy what iterations leave.
+const ROUNDING: f64 = 1e-9;
+const STORED: f64 = 1e-6;
+/// Rotation in an increment, in radians, beyond which a rotation the other way round is as likely.
+const TURN: f64 = 1.5;
+
 /// Checks the energy of an increment.
 pub fn check(setting: &Setting, before: &State, now: &State) -> Vec<Finding> {
     let mut out = Vec::new();
     for ((contact, dissipated), touches) in setting.contacts.iter().zip(&now.dissipated).zip(&now.contacts) {
         let Some(d) = *dissipated else { continue };
         let taken: f64 = touches.iter().map(|t| t.weight * t.friction.norm() * t.slip.norm()).sum();
-        if d < -LEFT * taken.max(-d * 0.5) {
+        let rubs: f64 = touches.iter().map(|t| t.weight * t.friction.norm()).sum();
+        let size = contact.bodies.iter().map(|k| setting.bodies[*k].form.size()).fold(0.0, f64::max);
+        let limit = LEFT * taken + elastic(touches) + ROUNDING * rubs * size;
+        if d < -limit {
             let message = format!("friction of `{}` gives energy: {:.3e}", contact.name, -d);
-            let finding = Finding::new(Check::Path, Outcome::Refused, message).measured(-d, LEFT * taken);
+            let finding = Finding::new(Check::Path, Outcome::Refused, message).measured(-d, limit);
             out.push(finding.on(&contact.name).remedy("smaller increments"));
         }
     }
@@ -29,12 +38,26 @@ pub fn check(setting: &Setting, before: &State, now: &State) -> Vec<Finding> {
     out
 }
 
+/// The sum of the sizes of all forces, times the largest size of a body.
+fn forces(setting: &Setting, now: &State) -> f64 {
+    let acting: f64 = now.forces.iter().map(|f| f.force.norm()).sum();
+    let touching: f64 = now.contacts.iter().flatten().filter(|t| t.is_closed).map(|t| t.force().norm()).sum();
+    (acting + touching) * setting.bodies.iter().map(|b| b.form.size()).fold(0.0, f64::max)
+}
+
+/// Energy that what sticks may store in its penalties, as friction along elastic slips, and as pressure on penetrations.
+fn elastic(touches: &[Touch]) -> f64 {
+    let of = |t: &Touch| {
+        let slip = if t.slips { 0.0 } else { t.slip.norm() };
+        t.weight * (t.friction.norm() * slip + (t.pressure.abs() + t.friction.norm()) * (t.x - t.foot).norm())
+    };
+    touches.iter().filter(|t| t.is_closed).map(of).sum()
+}
+
 fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Finding> {
-    // Loads that are there from the start act at once: what they give too much there goes nowhere.
-    if before.forces.is_empty() && !now.forces.is_empty() {
-        return None;
-    }
     let stored = now.stored? - before.stored?;
+    // Loads that are there from the start act at once on what is elastic: what they give too much goes nowhere.
+    let at_once = before.forces.is_empty() && now.stored? != 0.0;
     let dissipated: f64 = now.dissipated.iter().flatten().sum();
     let (mut work, mut off, mut size) = (0.0, 0.0, 0.0);
     let mut add = |[w, o]: [f64; 2]| {
@@ -49,7 +72,7 @@ fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Findin
         if let Form::Rigid(rigid) = &own.form
             && !rigid.is_free
         {
-            add(of_motion(setting, [before, now], body, &rigid.centre));
+            add(of_motion(setting, [before, now], body, &rigid.centre)?);
         }
     }
     // Friction that changed with the slip, of points that came and went too.
@@ -62,21 +85,16 @@ fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Findin
         a.iter().zip(b).map(|(a, b)| (rubs(a) - rubs(b)).norm()).sum()
     };
     off += 0.5 * slips * before.contacts.iter().zip(&now.contacts).map(changed).sum::<f64>();
-    // What penalties store: half of the force times the penetration, before and after.
-    let kept: f64 = [before, now]
-        .iter()
-        .flat_map(|s| s.contacts.iter().flatten())
-        .filter(|t| t.is_closed)
-        .map(|t| t.weight * t.pressure.abs() * (t.x - t.foot).norm())
-        .sum();
+    let kept: f64 = [before, now].iter().flat_map(|s| &s.contacts).map(|list| elastic(list)).sum();
     let size = size + stored.abs() + dissipated.abs();
-    let limit = off + kept + LEFT * size + 1e-6 * now.stored?.abs();
+    let limit = off + kept + LEFT * size + STORED * now.stored?.abs() + ROUNDING * forces(setting, now);
     let missing = work - stored - dissipated;
     if size == 0.0 || !limit.is_finite() {
         return None;
     }
     let (outcome, what, remedy) = match missing {
         m if m < -limit => (Outcome::Refused, "energy appears", Some("smaller increments")),
+        m if m > limit && at_once => return None,
         m if m > limit => {
             (Outcome::Doubt, "energy vanishes that friction does not take", Some("smaller increments where it jumps"))
         }
@@ -90,11 +108,14 @@ fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Findin
 }
 
 /// The work that the prescribed motion of a rigid body does against its contacts, and how far it may be off.
-fn of_motion(setting: &Setting, states: [&State; 2], body: usize, centre: &Vector<3>) -> [f64; 2] {
+fn of_motion(setting: &Setting, states: [&State; 2], body: usize, centre: &Vector<3>) -> Option<[f64; 2]> {
     let motions = states.map(|s| s.bodies[body].motion());
     let centres = motions.map(|m| m.point(centre));
     let turn = nalgebra::Rotation3::from_matrix_unchecked(motions[1].rotation * motions[0].rotation.transpose());
     let (moved, turned) = (centres[1] - centres[0], turn.scaled_axis());
+    if turned.norm() > TURN {
+        return None;
+    }
     let resultants = [0, 1].map(|k| {
         let lists = (0..setting.contacts.len()).map(|c| of_contact(setting, states[k], c, body));
         lists
@@ -103,5 +124,5 @@ fn of_motion(setting: &Setting, states: [&State; 2], body: usize, centre: &Vecto
     });
     let power = |[f, m]: [Vector<3>; 2]| -(f.dot(&moved) + m.dot(&turned));
     let [first, last] = resultants.map(power);
-    [0.5 * (first + last), 0.5 * (last - first).abs()]
+    Some([0.5 * (first + last), 0.5 * (last - first).abs()])
 }

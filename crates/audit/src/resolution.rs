@@ -54,8 +54,10 @@ fn of_contact(setting: &Setting, state: &State, contact: &Contact, [before, now]
     }
     let why = if stays {
         format!("{what}: its area stays the same while the force goes from {f:.3e} to {g:.3e}")
-    } else {
+    } else if few {
         format!("{what}: its area and pressure are those of cells")
+    } else {
+        format!("{what}, and how far its area and pressure are off by that is not known")
     };
     let remedy = format!("cells of {:.2e} there instead of {cell:.2e}, or less", width.min(cell) / WANTED);
     Some(finding(Outcome::Doubt, why).remedy(remedy))

@@ -60,6 +60,20 @@ pub enum Form {
     Rigid(Rigid),
 }
 
+impl Form {
+    /// The largest extent along the axes at the start; zero where there is no end.
+    pub fn size(&self) -> f64 {
+        let points = match self {
+            Form::Solid(solid) => &solid.rest,
+            Form::Curve(curve) => &curve.rest,
+            Form::Rigid(rigid) => return rigid.size,
+        };
+        let Some(first) = points.first() else { return 0.0 };
+        let (low, high) = points.iter().fold((*first, *first), |(l, h), x| (l.inf(x), h.sup(x)));
+        (high - low).max()
+    }
+}
+
 /// A body that fills cells.
 #[derive(Clone)]
 pub struct Solid {

@@ -221,7 +221,9 @@ fn forces<const D: usize>(
         let force = spatial(force);
         let work = before.and_then(|(was, _)| {
             let moved = uniform(plan, support, time)? - uniform(plan, support, was.time)?;
-            Some(mean_work(&earlier(out.len()), &force, &moved))
+            // The radial forces around an axis have no resultant that does work.
+            let known = plan.space != Stated::Axisymmetric || moved[0] == 0.0;
+            known.then(|| mean_work(&earlier(out.len()), &force, &moved))
         });
         out.push(Acting { name: support.name.clone(), body: support.body, force, moment: None, work });
     }

@@ -14,6 +14,7 @@ use signorini_audit::{
 use signorini_contact::Status;
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::{Point, Vector};
+use signorini_mechanics::body::Body as MechanicalBody;
 use signorini_mechanics::system::{TimeField, TimedLoad};
 use signorini_mechanics::{
     BodyFields, BodyState, Contribution, IncrementResult, Load, Order, Sampling, SiteResult, System, SystemState,
@@ -36,7 +37,11 @@ impl SystemAudit {
             body.prescribe(0.0, state);
         }
         let setting = self.setting.get_or_insert_with(|| setting(plan));
-        let state = State { bodies: placements(plan, setting, &start.bodies), ..State::default() };
+        let state = State {
+            bodies: placements(plan, setting, &start.bodies),
+            stored: stored(plan, &start),
+            ..State::default()
+        };
         let found = gaps::check_start(setting, &state);
         let contacts = vec![Vec::new(); plan.system.contacts.len()];
         self.before = Some((State { contacts, ..state }, start));
@@ -221,6 +226,14 @@ fn touch(s: &SiteResult, radius: f64) -> Touch {
     }
 }
 
+/// The energy that bodies store as they start: of a pretension.
+fn stored(plan: &MechanicsPlan, start: &SystemState) -> Option<f64> {
+    let of = |(body, state): (&Box<dyn MechanicalBody>, &BodyState)| {
+        body.internal(state, Order::First, &mut Contribution::new(body.unknowns())).ok()
+    };
+    plan.system.bodies.iter().zip(&start.bodies).map(of).sum()
+}
+
 /// Where the bodies are. What of a rope is on a winch is not shown: its points are taken anew.
 fn placements(plan: &MechanicsPlan, setting: &mut Setting, states: &[BodyState]) -> Vec<Placement> {
     let mut out = Vec::new();
@@ -267,10 +280,23 @@ fn forces(
         };
         let work = before.filter(|_| !turns).and_then(|(was, _)| {
             let fields = [was.time, time].map(|t| uniform(&support.displacement, system, body, t));
-            Some(mean_work(&earlier(out.len()), force, &(fields[1]? - fields[0]?)))
+            let moved = fields[1]? - fields[0]?;
+            // The radial forces around an axis have no resultant that does work.
+            let known = plan.space != Stated::Axisymmetric || moved[0] == 0.0;
+            known.then(|| mean_work(&earlier(out.len()), force, &moved))
         });
         out.push(Acting { name: support.name.clone(), body, force: *force, moment, work });
     }
+    // What a winch does, and where a rope runs through pulleys, is not told.
+    let hauls = |k: usize| matches!(plan.head.problem.bodies.get(system.bodies[k].name()), Some(Key::Rope(r)) if r.winch.is_some() || r.pulleys.is_some());
+    let force = Vector::<3>::zeros();
+    out.extend((0..system.bodies.len()).filter(|k| hauls(*k)).map(|body| Acting {
+        name: "winch".into(),
+        body,
+        force,
+        moment: Some(force),
+        work: None,
+    }));
     for (k, load) in system.loads.iter().enumerate() {
         let Ok([force, moment]) = system.load_resultant(k, state, time) else { continue };
         let body = load.part.body;
@@ -280,7 +306,8 @@ fn forces(
             }
             let [start, end] = [from, state].map(|s| rigid_body::Pose::of(&s.bodies[body]).centre);
             let turns = matches!(load.load, TimedLoad::Moment(_) | TimedLoad::FollowerMoment(_));
-            (!turns).then(|| mean_work(&earlier(out.len()), &force, &(end - start)))
+            let [was, _] = system.load_resultant(k, from, was.time).ok()?;
+            (!turns).then(|| mean_work(&was, &force, &(end - start)))
         });
         out.push(Acting { name: load.name.clone(), body: load.part.body, force, moment: Some(moment), work });
     }

@@ -101,23 +101,45 @@ fn deepest(setting: &Setting, state: &State, contact: usize, bodies: [usize; 2])
     let form = &setting.bodies[own].form;
     let list =
         samples::of_body(form, &state.bodies[own], rigid, &|x| if own == other { 0.0 } else { obstacle.at_least(x) });
-    let closed = closed_places(state, contact);
+    let closed = Closed::new(state, contact);
     let wanted = setting.contacts[contact].wanted_penetration;
-    let zone = extent_of(&closed);
+    let zone = extent_of(&closed.places);
     let largest = if let Form::Solid(solid) = form { solid.largest_cell() } else { 0.0 };
-    let judged = list.par_iter().filter_map(|s| {
+    let judge_one = |s: &Sample| {
         let except = (own == other).then_some((s.rest, APART * largest));
         let found = obstacle.find(&s.x, s.radius, except)?;
         let depth = s.radius - found.gap;
         (depth > 0.0).then(|| judge(s, &found, (depth, wanted), (&closed, zone), bodies))
-    });
-    judged.max_by(by_excess)
+    };
+    // In order, so that of equal ones it is always the same that is told.
+    let judged: Vec<Deepest> = list.par_iter().filter_map(judge_one).collect();
+    judged.into_iter().max_by(by_excess)
 }
 
 /// Places of a contact that carry.
-fn closed_places(state: &State, contact: usize) -> Vec<Point<3>> {
-    let touches = state.contacts.get(contact).map_or(&[][..], Vec::as_slice);
-    touches.iter().filter(|t| t.is_closed).flat_map(|t| [t.x, t.foot]).collect()
+struct Closed {
+    places: Vec<Point<3>>,
+    tree: Bvh,
+}
+
+impl Closed {
+    fn new(state: &State, contact: usize) -> Self {
+        let touches = state.contacts.get(contact).map_or(&[][..], Vec::as_slice);
+        let places: Vec<_> = touches.iter().filter(|t| t.is_closed).flat_map(|t| [t.x, t.foot]).collect();
+        let tree = Bvh::new(&places.iter().map(|x| Aabb::new(*x, *x)).collect::<Vec<_>>());
+        Closed { places, tree }
+    }
+
+    /// Whether one is within a distance.
+    fn is_near(&self, x: &Point<3>, reach: f64) -> bool {
+        let mut near = false;
+        self.tree.nearest(x, reach * reach, |k| {
+            near = near || (self.places[k] - x).norm() <= reach;
+            // Nothing more is to be found then.
+            if near { -1.0 } else { reach * reach }
+        });
+        near
+    }
 }
 
 /// The largest extent of places along the axes.
@@ -131,14 +153,14 @@ fn judge(
     s: &Sample,
     found: &Found,
     (depth, wanted): (f64, f64),
-    (closed, zone): (&[Point<3>], f64),
+    (closed, zone): (&Closed, f64),
     bodies: [usize; 2],
 ) -> Deepest {
     let (cell, part) = if found.cell > s.cell { (found.cell, found.cell) } else { (s.cell, s.part) };
     let sagitta = cell * cell * found.curvature.min(1.0 / cell.max(f64::MIN_POSITIVE)) / 8.0;
     let explained = UNLIKE * (wanted + sagitta + s.off + found.off);
     let reach = NEAR * cell + s.radius;
-    let carries = closed.iter().any(|x| (x - s.x).norm() <= reach);
+    let carries = closed.is_near(&s.x, reach);
     let (told, refused) = if carries {
         (explained + TOLD * cell, 2.0 * explained + (REFUSED * cell).max(OF_ZONE * zone))
     } else {
@@ -189,7 +211,7 @@ fn between_curves(state: &State, number: usize, contact: &Contact, [c, d]: [&Cur
     let (own, other) = (boxes(c, points[0]), boxes(d, points[1]));
     let pairs = Bvh::new(&own).pairs_within(&Bvh::new(&other), (&own, &other), radius);
     let angles = [turns(c, points[0]), turns(d, points[1])];
-    let closed = closed_places(state, number);
+    let closed = Closed::new(state, number);
     let count = c.pieces.len();
     let near = |i: usize, j: usize, length: f64| {
         let along = i.abs_diff(j).min(count - i.abs_diff(j)) as f64 * length;
@@ -208,7 +230,7 @@ fn between_curves(state: &State, number: usize, contact: &Contact, [c, d]: [&Cur
         let angle = |k: usize, piece: &[u32; 2]| angles[k][piece[0] as usize].max(angles[k][piece[1] as usize]);
         let off = (lengths[0] * angle(0, &c.pieces[i]) + lengths[1] * angle(1, &d.pieces[j])) / 8.0;
         let explained = UNLIKE * (contact.wanted_penetration + off);
-        let carries = closed.iter().any(|y| (y - x).norm() <= radius + NEAR * lengths[0].max(lengths[1]) * c.parts);
+        let carries = closed.is_near(&x, radius + NEAR * lengths[0].max(lengths[1]) * c.parts);
         let (told, refused) = (explained + TOLD * radius, explained + REFUSED * radius);
         let refused = if carries { refused } else { told };
         (depth > 0.0).then_some(Deepest { x, depth, cell: radius, told, refused, carries, bodies: contact.bodies })

@@ -193,7 +193,7 @@ fn told(setting: &Setting, contact: &Contact, deepest: &Deepest) -> Finding {
     Finding { remedy: remedy.map(str::to_string), ..finding }
 }
 
-/// Share of the radii that curves may reach into each other where they carry, and from which the state is none.
+/// How deep two curves, or parts of one, reach into each other, by their radii.
 fn between_curves(state: &State, number: usize, contact: &Contact, [c, d]: [&Curve; 2]) -> Option<Deepest> {
     let radius = c.radius + d.radius;
     let [a, b] = contact.bodies;

@@ -82,9 +82,12 @@ fn through(rigid: &Rigid, motions: &[RigidMotion; 2], places: [Point<3>; 2]) -> 
     // As far as a point of the body at that distance may have come by turning.
     let arm = (places[0] - centres[0]).norm();
     let way = (ways[0] - ways[1]).norm();
+    if way == 0.0 {
+        return None;
+    }
     let start = rigid.gap_now(&motions[0], &places[0]);
     // What lies farther away than that was not met.
-    if start.gap < 0.0 || start.gap > way + turn.norm() * arm || way == 0.0 {
+    if start.gap < 0.0 || start.gap > way + turn.norm() * arm {
         return None;
     }
     let end = rigid.gap_now(&motions[1], &places[1]);

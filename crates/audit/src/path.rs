@@ -2,8 +2,9 @@
 //! bodies store more and `D ≥ 0` what friction takes, `W - ΔE - D = 0`.
 //!
 //! Work is taken by the mean of the forces before and after; it is off by half of what the forces changed, times the motion, at
-//! most where they change steadily. What vanishes beyond that was lost in a jump, or the dissipation is told wrongly; energy
-//! that appears makes the state none.
+//! most where they change steadily. What vanishes beyond that was lost in a jump, or the dissipation is told wrongly. Energy
+//! that appears makes the state none where nothing moves as prescribed: what does so may push harder on the way than before
+//! and after.
 
 use crate::balance::of_contact;
 use crate::finding::{Check, Finding, Outcome};
@@ -65,14 +66,18 @@ fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Findin
         off += o;
         size += w.abs();
     };
+    let mut driven = false;
     for acting in &now.forces {
         add(acting.work?);
+        driven |= acting.drives;
     }
     for (body, own) in setting.bodies.iter().enumerate() {
         if let Form::Rigid(rigid) = &own.form
             && !rigid.is_free
         {
-            add(of_motion(setting, [before, now], body, &rigid.centre)?);
+            let (own, moves) = of_motion(setting, [before, now], body, &rigid.centre)?;
+            add(own);
+            driven |= moves;
         }
     }
     // Friction that changed with the slip, of points that came and went too.
@@ -93,6 +98,11 @@ fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Findin
         return None;
     }
     let (outcome, what, remedy) = match missing {
+        m if m < -limit && driven => (
+            Outcome::Doubt,
+            "more energy than the forces before and after the increment give",
+            Some("smaller increments"),
+        ),
         m if m < -limit => (Outcome::Refused, "energy appears", Some("smaller increments")),
         m if m > limit && at_once => return None,
         m if m > limit => {
@@ -107,8 +117,8 @@ fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Findin
     Some(Finding { remedy: remedy.map(str::to_string), ..finding })
 }
 
-/// The work that the prescribed motion of a rigid body does against its contacts, and how far it may be off.
-fn of_motion(setting: &Setting, states: [&State; 2], body: usize, centre: &Vector<3>) -> Option<[f64; 2]> {
+/// The work that the prescribed motion of a rigid body does against its contacts, how far it may be off, and whether it moves.
+fn of_motion(setting: &Setting, states: [&State; 2], body: usize, centre: &Vector<3>) -> Option<([f64; 2], bool)> {
     let motions = states.map(|s| s.bodies[body].motion());
     let centres = motions.map(|m| m.point(centre));
     let turn = nalgebra::Rotation3::from_matrix_unchecked(motions[1].rotation * motions[0].rotation.transpose());
@@ -124,5 +134,6 @@ fn of_motion(setting: &Setting, states: [&State; 2], body: usize, centre: &Vecto
     });
     let power = |[f, m]: [Vector<3>; 2]| -(f.dot(&moved) + m.dot(&turned));
     let [first, last] = resultants.map(power);
-    Some([0.5 * (first + last), 0.5 * (last - first).abs()])
+    let moves = moved.norm() > 0.0 || turned.norm() > 0.0;
+    Some(([0.5 * (first + last), 0.5 * (last - first).abs()], moves))
 }

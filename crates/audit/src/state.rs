@@ -248,4 +248,6 @@ pub struct Acting {
     pub moment: Option<Vector<3>>,
     /// The work that it did in the increment, and how far that may be off as the force changed; none where it is not known.
     pub work: Option<[f64; 2]>,
+    /// Whether its place moved as prescribed in the increment: the force may have been any on the way.
+    pub drives: bool,
 }

@@ -91,8 +91,14 @@ fn restored(value: &Value, time: f64, bodies: Vec<Placement>) -> Option<State> {
     let lists: Vec<Vec<Vec<f64>>> = serde_json::from_value(value["touches"].clone()).ok()?;
     let touches = lists.iter().map(|list| list.iter().map(|n| of_numbers(n)).collect::<Option<Vec<_>>>());
     let forces: Vec<[f64; 3]> = serde_json::from_value(value["forces"].clone()).ok()?;
-    let acting =
-        |f: [f64; 3]| Acting { name: String::new(), body: 0, force: Vector::<3>::from(f), moment: None, work: None };
+    let acting = |f: [f64; 3]| Acting {
+        name: String::new(),
+        body: 0,
+        force: Vector::<3>::from(f),
+        moment: None,
+        work: None,
+        drives: false,
+    };
     Some(State {
         time,
         bodies,

@@ -219,13 +219,12 @@ fn forces<const D: usize>(
     let earlier = |k: usize| before.and_then(|b| b.0.forces.get(k)).map_or(Vector::<3>::zeros(), |f| f.force);
     for (support, force) in plan.supports.iter().zip(&solved.support_forces) {
         let force = spatial(force);
-        let work = before.and_then(|(was, _)| {
-            let moved = uniform(plan, support, time)? - uniform(plan, support, was.time)?;
-            // The radial forces around an axis have no resultant that does work.
-            let known = plan.space != Stated::Axisymmetric || moved[0] == 0.0;
-            known.then(|| mean_work(&earlier(out.len()), &force, &moved))
-        });
-        out.push(Acting { name: support.name.clone(), body: support.body, force, moment: None, work });
+        let moved = before.and_then(|(was, _)| Some(uniform(plan, support, time)? - uniform(plan, support, was.time)?));
+        // The radial forces around an axis have no resultant that does work.
+        let known = moved.filter(|m| plan.space != Stated::Axisymmetric || m[0] == 0.0);
+        let work = known.map(|m| mean_work(&earlier(out.len()), &force, &m));
+        let drives = moved.is_none_or(|m| m.norm() > 0.0);
+        out.push(Acting { name: support.name.clone(), body: support.body, force, moment: None, work, drives });
     }
     for l in &plan.loads {
         let at = |t: f64| {
@@ -240,7 +239,7 @@ fn forces<const D: usize>(
             let [first, last] = [power(&at(was.time)), power(&own)];
             [0.5 * (first + last), 0.5 * (last - first).abs()]
         });
-        out.push(Acting { name: l.name.clone(), body: l.body, force, moment: None, work });
+        out.push(Acting { name: l.name.clone(), body: l.body, force, moment: None, work, drives: false });
     }
     out
 }

@@ -278,14 +278,15 @@ fn forces(
             }
             _ => None,
         };
-        let work = before.filter(|_| !turns).and_then(|(was, _)| {
-            let fields = [was.time, time].map(|t| uniform(&support.displacement, system, body, t));
-            let moved = fields[1]? - fields[0]?;
-            // The radial forces around an axis have no resultant that does work.
-            let known = plan.space != Stated::Axisymmetric || moved[0] == 0.0;
-            known.then(|| mean_work(&earlier(out.len()), force, &moved))
+        let moved = before.filter(|_| !turns).and_then(|(was, _)| {
+            let [start, end] = [was.time, time].map(|t| uniform(&support.displacement, system, body, t));
+            Some(end? - start?)
         });
-        out.push(Acting { name: support.name.clone(), body, force: *force, moment, work });
+        // The radial forces around an axis have no resultant that does work.
+        let known = moved.filter(|m| plan.space != Stated::Axisymmetric || m[0] == 0.0);
+        let work = known.map(|m| mean_work(&earlier(out.len()), force, &m));
+        let drives = moved.is_none_or(|m| m.norm() > 0.0);
+        out.push(Acting { name: support.name.clone(), body, force: *force, moment, work, drives });
     }
     // What a winch does, and where a rope runs through pulleys, is not told.
     let hauls = |k: usize| matches!(plan.head.problem.bodies.get(system.bodies[k].name()), Some(Key::Rope(r)) if r.winch.is_some() || r.pulleys.is_some());
@@ -296,6 +297,7 @@ fn forces(
         force,
         moment: Some(force),
         work: None,
+        drives: true,
     }));
     for (k, load) in system.loads.iter().enumerate() {
         let Ok([force, moment]) = system.load_resultant(k, state, time) else { continue };
@@ -309,7 +311,14 @@ fn forces(
             let [was, _] = system.load_resultant(k, from, was.time).ok()?;
             (!turns).then(|| mean_work(&was, &force, &(end - start)))
         });
-        out.push(Acting { name: load.name.clone(), body: load.part.body, force, moment: Some(moment), work });
+        out.push(Acting {
+            name: load.name.clone(),
+            body: load.part.body,
+            force,
+            moment: Some(moment),
+            work,
+            drives: false,
+        });
     }
     out
 }

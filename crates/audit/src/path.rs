@@ -8,6 +8,7 @@
 
 use crate::balance::of_contact;
 use crate::finding::{Check, Finding, Outcome};
+use crate::gaps;
 use crate::state::{Form, Setting, State, Touch};
 use signorini_geometry::Vector;
 
@@ -59,6 +60,10 @@ fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Findin
     let stored = now.stored? - before.stored?;
     // Loads that are there from the start act at once on what is elastic: what they give too much goes nowhere.
     let at_once = before.forces.is_empty() && now.stored? != 0.0;
+    // And bodies that start a little in each other, to be pressed together, bring the energy of that.
+    if at_once && gaps::check(setting, before).iter().any(|f| f.value.is_none_or(|depth| depth > 0.0)) {
+        return None;
+    }
     let dissipated: f64 = now.dissipated.iter().flatten().sum();
     let (mut work, mut off, mut size) = (0.0, 0.0, 0.0);
     let mut add = |[w, o]: [f64; 2]| {

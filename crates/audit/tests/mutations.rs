@@ -433,3 +433,15 @@ fn findings_are_the_same_in_other_units() {
         assert!((a.2 - b.2).abs() <= 1e-9 * a.2.abs() + 1e-9, "{a:?} {b:?}");
     }
 }
+
+#[test]
+fn bodies_that_start_in_each_other_bring_energy() {
+    let mut case = block();
+    (case.now.stored, case.before.forces) = (Some(0.1), Vec::new());
+    let path = |case: &Case| case.verdict().1.contains(&Check::Path);
+    assert!(path(&case));
+    if let Placement::Points(points) = &mut case.before.bodies[0] {
+        points.iter_mut().for_each(|x| x.y -= 1e-4);
+    }
+    assert!(!path(&case));
+}

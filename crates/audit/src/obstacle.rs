@@ -51,7 +51,7 @@ impl<'a> Obstacle<'a> {
     pub fn at_least(&self, x: &Point<3>) -> f64 {
         match self {
             Obstacle::Rigid { body, motion } => body.gap_now(motion, x).gap,
-            Obstacle::Solid(solid) => (x - solid.bounds().clamp(x)).norm(),
+            Obstacle::Solid(solid) => solid.distance_of_box(x),
         }
     }
 
@@ -91,8 +91,9 @@ impl<'a> SolidNow<'a> {
         SolidNow { solid, points, in_space, cells: boxes(&solid.cells), facets: boxes(&solid.boundary.facets) }
     }
 
-    pub fn bounds(&self) -> &Aabb<3> {
-        self.facets.bounds()
+    /// The distance of a point from the box around the body; of a body that shows nothing all is far away.
+    fn distance_of_box(&self, x: &Point<3>) -> f64 {
+        if self.facets.is_empty() { f64::INFINITY } else { (x - self.facets.bounds().clamp(x)).norm() }
     }
 
     /// Whether a point lies in a cell, other than those that are left out.
@@ -127,7 +128,7 @@ impl<'a> SolidNow<'a> {
     }
 
     fn find(&self, x: &Point<3>, reach: f64, except: Option<(Point<3>, f64)>) -> Option<Found> {
-        if (x - self.bounds().clamp(x)).norm() > reach {
+        if self.distance_of_box(x) > reach {
             return None;
         }
         let inside = self.is_in(x, except);

@@ -445,3 +445,20 @@ fn bodies_that_start_in_each_other_bring_energy() {
     }
     assert!(!path(&case));
 }
+
+#[test]
+fn a_body_that_shows_nothing_is_no_panic() {
+    let mut case = block();
+    case.setting.contacts[0].bodies = [1, 0];
+    if let Form::Solid(solid) = &mut case.setting.bodies[0].form {
+        (solid.rest, solid.cells) = (Vec::new(), Vec::new());
+        solid.boundary = Boundary::new(&solid.rest, &solid.cells, false);
+    }
+    let sphere = Sphere { center: v(0.0, 1.0, 0.0), radius: 1.0 };
+    case.setting.bodies[1] = rigid("ball", sphere, true, 2.0);
+    for state in [&mut case.before, &mut case.now] {
+        state.bodies[0] = Placement::Points(Vec::new());
+    }
+    assert!(gaps::check_start(&case.setting, &case.now).is_empty());
+    case.verdict();
+}

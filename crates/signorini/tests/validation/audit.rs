@@ -188,12 +188,12 @@ fn contact_on_a_few_points_of_coarse_cells_is_told_with_the_cells_that_it_needs(
         space = "3d"
         [bodies.plate.cells]
         geometry.box = { min = [0, 0, 0], max = [40, 40, 9] }
-        mesh.grid = { min = [0, 0, 0], max = [40, 40, 10], cells = [4, 4, 1] }
-        degree = 1
+        mesh.grid = { min = [0, 0, 0], max = [40, 40, 10], cells = [5, 5, 2] }
+        degree = 2
         material.linear_elastic = { youngs_modulus = 7e4, poissons_ratio = 0.3 }
         [bodies.ball.rigid]
         shape.sphere = { center = [21, 20, 14], radius = 5 }
-        motion.prescribed = { displacement = [0, 0, "-0.02*t"] }
+        motion.prescribed = { displacement = [0, 0, "-0.4*t"] }
         [supports.base]
         on = "plate:bottom"
         displacement = [0, 0, 0]

@@ -433,7 +433,12 @@ fn show(summary: &Summary) {
     for warning in &summary.warnings {
         say!("warning: {warning}");
     }
-    say!("{}", summary.verdict);
+    if let Some(answer) = &summary.answer {
+        say!("{}", answer.text);
+    }
+    if summary.answer.as_ref().is_none_or(|answer| answer.text != summary.verdict) {
+        say!("{}", summary.verdict);
+    }
 }
 
 fn read(case: &Path) -> Result<(String, String), CaseError> {

@@ -25,7 +25,7 @@ const EXAMPLES: &str = "Examples:
   signorini new flat_disc                             a case of your own to begin with
   signorini explain iteration_limit                   what a word means, and what to do
 
-Exit status: 0 done, 1 the input is wrong or the output cannot be written, 2 not converged (results so far are on disk),
+Exit status: 0 done, 1 the input is wrong or the output cannot be written, 2 not converged, or not an answer (results so far are on disk),
 3 a fault of ours, 130 interrupted.";
 
 const CLOSEST_HELP: &str = r#"Examples:

@@ -1,5 +1,6 @@
 //! From a plan to results: one driver for all models.
 
+mod audit;
 mod checkpoint;
 mod contact_verdict;
 mod driver;

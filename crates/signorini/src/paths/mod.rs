@@ -67,6 +67,7 @@ pub fn run(case: &PathCase, folder: &Path, progress: &mut dyn Progress) -> Resul
         case: case.name().to_string(),
         converged: true,
         reason: Reason::Converged,
+        answer: None,
         verdict: String::new(),
         method: method.into(),
         unknowns: found.unknowns,
@@ -77,7 +78,7 @@ pub fn run(case: &PathCase, folder: &Path, progress: &mut dyn Progress) -> Resul
         steps: found.steps,
         events: Vec::new(),
         of_paths: found.reports,
-        environment: environment::describe(start, rayon::current_num_threads(), &text),
+        environment: environment::describe(start, rayon::current_num_threads(), (&text, 0.0)),
     };
     summary.verdict = sentences(&summary).join("; ");
     folder.write("summary.json", summary.to_json().as_bytes())?;

@@ -16,6 +16,7 @@ pub use paths::*;
 pub use reason::{Reason, Warning, WarningKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use signorini_audit::{Answer, Finding};
 use std::collections::BTreeMap;
 pub use table::{history, resultants, table};
 
@@ -33,6 +34,9 @@ pub struct Summary {
     pub converged: bool,
     /// Why the run or the increment ended as it did: a word of its own, which `explain` knows.
     pub reason: Reason,
+    /// What an independent check of the increments came to; null where the run has not come to its end.
+    #[serde(default)]
+    pub answer: Option<Answer>,
     /// The result in a sentence.
     pub verdict: String,
     /// How the contact was found; as in `contacts.NAME.method`.
@@ -109,6 +113,10 @@ pub struct StepReport {
     pub converged: bool,
     /// Why the run or the increment ended as it did: a word of its own, which `explain` knows.
     pub reason: Reason,
+    /// What an independent check of the state found: all that is in doubt or refused, and of each other check what came nearest to
+    /// its limit.
+    #[serde(default)]
+    pub audit: Vec<Finding>,
     /// Equilibrium solves on the cells of the state; for solids the steps of the active set or of Newton's method.
     pub iterations: usize,
     /// Equilibrium solves on larger cells, and on the way to the state.
@@ -499,6 +507,9 @@ pub struct Environment {
     pub cpu_seconds: Option<f64>,
     /// Most memory in use, in bytes.
     pub peak_memory: Option<u64>,
+    /// Part of the wall time that the independent checks took.
+    #[serde(default)]
+    pub audit_seconds: f64,
     /// Number of threads; results do not depend on it.
     pub threads: usize,
     /// Fingerprint of the text of the case.

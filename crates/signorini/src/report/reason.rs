@@ -34,6 +34,8 @@ pub enum Reason {
     Newton,
     /// The state of contact alternates at the places that are named. Try smaller increments or finer cells there.
     Contact,
+    /// The equations were solved, and the state is no answer: an independent check found that bodies lie in each other, that forces do not balance or break a law, or that the theory does not hold. `answer` and `audit` say what, where, and what to do; the results are on disk.
+    Refused,
     /// The increment brings bodies far too deep into each other. Try more increments, or a smaller motion.
     Increment,
 }

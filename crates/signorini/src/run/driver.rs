@@ -1,5 +1,6 @@
 //! One driver for all models: increments, files, what a later run goes on from, and the end.
 
+use super::audit;
 use super::checkpoint::{self, Checkpoint};
 use super::environment;
 use super::outcome::{Ending, Outcome, RunError, not_resumed};
@@ -8,8 +9,9 @@ use crate::fields::ShownState;
 use crate::output::{Folder, OutputError};
 use crate::plan::Head;
 use crate::problem::{CaseError, Limits};
-use crate::report::{PathReports, Reason, SCHEMA, Summary, history};
+use crate::report::{PathReports, Reason, SCHEMA, StepReport, Summary, history};
 use serde_json::{Value, json};
+use signorini_audit::{Check, Finding, Verdict, worst};
 use signorini_solve::{Iteration, Progress};
 use std::cell::Cell;
 use std::path::Path;
@@ -52,6 +54,14 @@ pub trait Model {
         record: &mut Record,
         progress: &mut dyn Progress,
     ) -> Result<Advanced, CaseError>;
+
+    /// Checks the bodies as they start, from plain data and without what solves for them.
+    fn audit_start(&mut self) -> Vec<Finding> {
+        Vec::new()
+    }
+
+    /// Checks the last state in the same way; `step` is what is told of it.
+    fn audit(&mut self, step: &StepReport) -> Vec<Finding>;
 
     /// Writes the fields of the last state.
     ///
@@ -164,12 +174,16 @@ pub fn drive(
         Reason::Interrupted if !by_user && budget.is_spent() => Reason::LimitReached,
         other => other,
     };
-    for index in first..count {
+    if first == 0 && count > 0 && !checked_start(model, &mut record) {
+        reason = Reason::Refused;
+    }
+    let end = if reason == Reason::Refused { first } else { count };
+    for index in first..end {
         progress.step(index, count, model.time(index));
         let folder = record.folder.clone();
         let mut logged = Logged { folder: &folder, inner: progress, budget: &budget };
         match model.advance(index, &mut record, &mut logged) {
-            Ok(Advanced::State) => {}
+            Ok(Advanced::State) => check(model, &mut record, index + 1 == count),
             Ok(Advanced::Nothing) => continue,
             Ok(Advanced::Failed(why)) => {
                 reason = named(why, progress.interrupted());
@@ -218,6 +232,39 @@ pub fn drive(
     Ok(Outcome { summary, ending, states })
 }
 
+/// Checks the bodies as they start; whether there may be a state that follows.
+fn checked_start(model: &mut dyn Model, record: &mut Record) -> bool {
+    let start = Instant::now();
+    let findings = model.audit_start();
+    record.audit_seconds += start.elapsed().as_secs_f64();
+    let refused = Verdict::of(&findings) == Verdict::NotAnAnswer;
+    if refused {
+        let reason = Reason::Refused;
+        record.steps.push(StepReport { reason, audit: findings, ..StepReport::default() });
+    }
+    !refused
+}
+
+/// Checks the last state of a record, and enters what was found.
+fn check(model: &mut dyn Model, record: &mut Record, last: bool) {
+    let Some(step) = record.steps.last().filter(|s| s.reason.is_converged()) else { return };
+    let start = Instant::now();
+    let mut findings = model.audit(step);
+    findings.extend(audit::of_warnings(&record.warnings, step.time));
+    if last {
+        findings.retain(|f| f.check != Check::Resolution || !audit::is_resolved(step, f.on.as_ref()));
+        findings.extend(audit::of_errors(step));
+    }
+    record.audit_seconds += start.elapsed().as_secs_f64();
+    let findings = worst(findings);
+    if let Some(step) = record.steps.last_mut() {
+        if Verdict::of(&findings) == Verdict::NotAnAnswer {
+            step.reason = Reason::Refused;
+        }
+        step.audit = findings;
+    }
+}
+
 /// Goes on with an earlier run in its folder.
 ///
 /// # Errors
@@ -258,15 +305,23 @@ fn finish(record: &Record, model: &dyn Model, reason: Reason, start: Instant) ->
     if record.pictures && record.folder.path().is_some() {
         model.draw(record)?;
     }
+    let answer = match reason {
+        Reason::Refused => audit::answer(&record.steps, &model.head().problem),
+        reason if reason.is_converged() => audit::answer(&record.steps, &model.head().problem),
+        _ => None,
+    };
+    let verdict = match &answer {
+        Some(answer) if reason == Reason::Refused => answer.text.clone(),
+        _ if reason == Reason::LimitReached => stopped(record, model),
+        _ => model.verdict(record, reason),
+    };
     let summary = Summary {
         schema: SCHEMA,
         case: record.case.clone(),
         converged: reason.is_converged(),
         reason,
-        verdict: match reason {
-            Reason::LimitReached => stopped(record, model),
-            reason => model.verdict(record, reason),
-        },
+        answer,
+        verdict,
         method: model.method(),
         unknowns: record.unknowns,
         units: record.units.clone(),
@@ -276,7 +331,7 @@ fn finish(record: &Record, model: &dyn Model, reason: Reason, start: Instant) ->
         steps: record.steps.clone(),
         events: record.events.clone(),
         of_paths: PathReports::default(),
-        environment: environment::describe(start, rayon::current_num_threads(), &record.text),
+        environment: environment::describe(start, rayon::current_num_threads(), (&record.text, record.audit_seconds)),
     };
     record.folder.write("summary.json", summary.to_json().as_bytes())?;
     Ok(summary)

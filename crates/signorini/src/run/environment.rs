@@ -2,15 +2,16 @@
 
 use crate::report::Environment;
 
-/// The `environment` of a summary.
-pub fn describe(start: std::time::Instant, threads: usize, input: &str) -> Environment {
+/// The `environment` of a summary: of a run since its start, of a case with a text, whose states took so long to check.
+pub fn describe(start: std::time::Instant, threads: usize, (text, audit_seconds): (&str, f64)) -> Environment {
     Environment {
         version: env!("CARGO_PKG_VERSION").into(),
         wall_seconds: start.elapsed().as_secs_f64(),
         cpu_seconds: cpu_seconds(),
         peak_memory: peak_memory(),
         threads,
-        input_hash: format!("{:016x}", fnv1a(input.as_bytes())),
+        audit_seconds,
+        input_hash: format!("{:016x}", fnv1a(text.as_bytes())),
     }
 }
 

@@ -4,6 +4,7 @@ mod accuracy;
 mod recovered;
 mod report;
 
+use super::audit::system::SystemAudit;
 use super::checkpoint;
 use super::driver::{Advanced, Model};
 use super::record::Record;
@@ -16,6 +17,7 @@ use crate::plan::mechanics::{Kind, MechanicsPlan};
 use crate::problem::CaseError;
 use crate::report::{Reason, StepReport};
 use serde_json::{Value, json};
+use signorini_audit::Finding;
 use signorini_mechanics::{BodyState, IncrementError, IncrementResult, Saved, Stability, SystemState};
 use signorini_solve::{Iteration, Progress};
 use std::path::Path;
@@ -40,6 +42,9 @@ pub struct MechanicsModel {
     film: Film<Frame>,
     /// Why there is no state after it.
     failure: Option<String>,
+    /// What the last increment came to, and what checks it.
+    result: IncrementResult,
+    audit: SystemAudit,
 }
 
 /// What a frame of the film shows: the bodies as they are.
@@ -91,7 +96,15 @@ impl MechanicsModel {
         let state = plan.system.start();
         let mut film = Film::default();
         film.add(&Frame { time: 0.0, bodies: state.bodies.clone() });
-        Self { plan, state, last: None, film, failure: None }
+        Self {
+            plan,
+            state,
+            last: None,
+            film,
+            failure: None,
+            result: IncrementResult::default(),
+            audit: SystemAudit::default(),
+        }
     }
 
     /// Solves for the end of an increment, which is cut where it has no solution at once.
@@ -293,6 +306,7 @@ impl Model for MechanicsModel {
         record.steps.push(step);
         report::warn(&self.plan, &result, &shown, record);
         self.last = Some(shown);
+        self.result = result;
         if self.plan.head.pictures && self.plan.times.len() > 1 {
             self.film.add(&Frame { time, bodies: self.state.bodies.clone() });
         }
@@ -303,6 +317,14 @@ impl Model for MechanicsModel {
             return Ok(Advanced::Failed(reason));
         }
         Ok(Advanced::State)
+    }
+
+    fn audit_start(&mut self) -> Vec<Finding> {
+        self.audit.start(&self.plan)
+    }
+
+    fn audit(&mut self, step: &StepReport) -> Vec<Finding> {
+        self.audit.increment(&self.plan, (&self.state, &self.result), step)
     }
 
     fn write_fields(&mut self, index: usize, record: &mut Record) -> Result<(), OutputError> {
@@ -379,6 +401,7 @@ impl Model for MechanicsModel {
         let Saved { bodies, multipliers, reactions, time, contacts } = self.plan.system.save(&self.state);
         Ok(Some(json!({
             "bodies": bodies, "multipliers": multipliers, "reactions": reactions, "time": time, "contacts": contacts,
+            "audit": self.audit.save(),
         })))
     }
 
@@ -397,7 +420,9 @@ impl Model for MechanicsModel {
         };
         let restored = { saved }().and_then(|saved| self.plan.system.restore(saved));
         self.state = restored.ok_or_else(|| checkpoint::damaged(folder))?;
-        self.state.time = next.checked_sub(1).map_or(0.0, |last| self.plan.times[last]);
+        let time = next.checked_sub(1).map_or(0.0, |last| self.plan.times[last]);
+        self.state.time = time;
+        self.audit.restore(&state["audit"], &self.plan, &self.state, time);
         Ok(())
     }
 }

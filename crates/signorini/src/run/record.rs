@@ -31,6 +31,8 @@ pub struct Record {
     pub frames: Vec<(f64, String)>,
     /// The most unknowns solved for.
     pub unknowns: usize,
+    /// Time that the checks of states took.
+    pub audit_seconds: f64,
     /// What is kept in memory, where there is no folder.
     pub states: Vec<ShownState>,
 }
@@ -52,6 +54,7 @@ impl Record {
             events: Vec::new(),
             frames: Vec::new(),
             unknowns: 0,
+            audit_seconds: 0.0,
             states: Vec::new(),
         }
     }

@@ -5,6 +5,7 @@ mod report;
 mod saved;
 mod setup;
 
+use super::audit::solid::{Looked, SolidAudit};
 use super::checkpoint;
 use super::driver::{Advanced, Model};
 use super::record::{Record, START};
@@ -20,8 +21,9 @@ use crate::report::{ErrorEstimate, Reason, StepReport};
 use failure::{Failure, explained};
 use report::{SOLVER, Shown};
 use serde_json::Value;
-pub(super) use setup::{OPERATIONS_PER_SECOND, cost, judge, memory, model};
+pub(super) use setup::{OPERATIONS_PER_SECOND, cost, judge, load, memory, model};
 use setup::{at_time, blamed};
+use signorini_audit::Finding;
 use signorini_geometry::Point;
 use signorini_solid::{Circumstances, ContactResult, Model as Solids, RigidGap, State};
 use signorini_solve::cholesky::Cost;
@@ -44,6 +46,9 @@ pub struct SolidModel<const D: usize> {
     film: Film<SolidFrame<D>>,
     /// Whether the state at t = 0 is that of rest.
     rests: bool,
+    /// What the last increment came to, and what checks it.
+    state: Option<State<D>>,
+    audit: SolidAudit,
 }
 
 impl<const D: usize> SolidModel<D> {
@@ -62,7 +67,8 @@ impl<const D: usize> SolidModel<D> {
         if rests && plan.head.pictures && plan.times.len() > 1 {
             film.add(&SolidFrame::new(0.0, &display.at_rest(), &[]));
         }
-        Ok(Self { plan, solids, display, last: None, failure: None, film, rests })
+        let audit = SolidAudit::default();
+        Ok(Self { plan, solids, display, last: None, failure: None, film, rests, state: None, audit })
     }
 
     /// Writes the rigid bodies around solids with these displacements, and returns their names.
@@ -213,7 +219,18 @@ impl<const D: usize> Model for SolidModel<D> {
             self.film.add(&SolidFrame::new(time, &shown.fields, &shown.contacts));
         }
         self.last = Some(shown);
+        self.state = Some(state);
         Ok(Advanced::State)
+    }
+
+    fn audit_start(&mut self) -> Vec<Finding> {
+        self.audit.start(&Looked { plan: &self.plan, model: &self.solids, display: &self.display })
+    }
+
+    fn audit(&mut self, step: &StepReport) -> Vec<Finding> {
+        let (Some(state), Some(shown)) = (&self.state, &self.last) else { return Vec::new() };
+        let looked = Looked { plan: &self.plan, model: &self.solids, display: &self.display };
+        self.audit.increment(&looked, state, (&shown.fields, &shown.contacts), step)
     }
 
     fn write_fields(&mut self, index: usize, record: &mut Record) -> Result<(), OutputError> {
@@ -290,18 +307,25 @@ impl<const D: usize> Model for SolidModel<D> {
         if let Some(Shown { time, fields, contacts, .. }) = self.last.as_ref().filter(|_| self.plan.head.pictures) {
             saved::write_frame(folder, next - 1, &SolidFrame::new(*time, fields, contacts))?;
         }
-        Ok(Some(saved::to_json(self.solids.save())))
+        let mut value = saved::to_json(self.solids.save());
+        value["audit"] = self.audit.save();
+        Ok(Some(value))
     }
 
-    fn restore(&mut self, state: Value, folder: &Path, next: usize) -> Result<(), String> {
+    fn restore(&mut self, mut state: Value, folder: &Path, next: usize) -> Result<(), String> {
         for frame in saved::frames(folder, next).ok_or_else(|| checkpoint::damaged(folder))? {
             self.film.add(&frame);
         }
         let damaged = || checkpoint::damaged(folder);
+        let kept = state["audit"].take();
         let memory = saved::from_json(state).filter(|memory| self.solids.fits(memory)).ok_or_else(damaged)?;
         let first = self.plan.times[0];
         at_time(&self.plan, &mut self.solids, first, |solids, now| solids.restore(memory, now))
             .map_err(|e| e.one_line())?
-            .map_err(|e| e.to_string())
+            .map_err(|e| e.to_string())?;
+        let time = next.checked_sub(1).map_or(0.0, |last| self.plan.times[last]);
+        let looked = Looked { plan: &self.plan, model: &self.solids, display: &self.display };
+        self.audit.restore(&kept, &looked, time);
+        Ok(())
     }
 }

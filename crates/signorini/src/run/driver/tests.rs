@@ -11,8 +11,9 @@ use signorini_solve::Silent;
 struct Spring {
     head: Head,
     force: f64,
-    /// The increment in which it fails.
+    /// The increment in which it fails, and the one whose state is no answer.
     fails_in: Option<usize>,
+    refused_in: Option<usize>,
 }
 
 impl Spring {
@@ -20,7 +21,7 @@ impl Spring {
         let problem = crate::case::read("spring.toml", crate::gallery::GALLERY[0].case, &[]).expect("a case");
         let head =
             Head { problem, units: None, interpreted: Vec::new(), warnings: Vec::new(), every: 2, pictures: true };
-        Spring { head, force: 0.0, fails_in }
+        Spring { head, force: 0.0, fails_in, refused_in: None }
     }
 }
 
@@ -68,6 +69,14 @@ impl Model for Spring {
             ..StepReport::default()
         });
         Ok(Advanced::State)
+    }
+    fn audit(&mut self, step: &StepReport) -> Vec<Finding> {
+        let outcome = if self.refused_in == Some(step.index) {
+            signorini_audit::Outcome::Refused
+        } else {
+            signorini_audit::Outcome::Fine
+        };
+        vec![Finding::new(Check::Balance, outcome, "the spring pulls").remedy("push it")]
     }
     fn write_fields(&mut self, index: usize, record: &mut Record) -> Result<(), OutputError> {
         record.add_frame(self.time(index), format!("{index:05}"), &[])
@@ -148,4 +157,18 @@ fn a_run_stops_at_its_limit() {
     let record = begin(late.head(), &folder.path().join("late")).expect("a folder");
     let stopped = drive(&mut late, record, 0, start, &mut Silent).expect("a run");
     assert!(stopped.summary.reason == Reason::LimitReached && stopped.summary.steps.is_empty());
+}
+
+#[test]
+fn a_state_that_is_no_answer_ends_the_run_and_stays() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("refused");
+    let mut spring = Spring { refused_in: Some(2), ..Spring::new(None) };
+    let record = begin(spring.head(), &path).expect("a folder");
+    let run = drive(&mut spring, record, 0, std::time::Instant::now(), &mut Silent).expect("a run");
+    assert!(run.ending == Ending::NotConverged && run.summary.reason == Reason::Refused && !run.summary.converged);
+    assert_eq!(run.summary.steps.iter().map(|s| s.reason.is_converged()).collect::<Vec<_>>(), [true, true, false]);
+    assert_eq!(run.summary.verdict, "Not an answer: the spring pulls at t = 0.75 (push it).");
+    assert_eq!(run.summary.answer.map(|a| a.verdict), Some(Verdict::NotAnAnswer));
+    assert!(std::fs::read_to_string(path.join("fields.pvd")).expect("fields").contains("fields_00002"));
 }

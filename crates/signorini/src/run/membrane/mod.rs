@@ -4,6 +4,7 @@ mod report;
 mod saved;
 mod verdict;
 
+use super::audit;
 use super::checkpoint;
 use super::driver::{Advanced, Model};
 use super::record::{Record, START};
@@ -12,9 +13,10 @@ use crate::output::film::Film;
 use crate::output::{Folder, OutputError, pictures, tables, vtk};
 use crate::plan::{Control, Head, MembranePlan};
 use crate::problem::CaseError;
-use crate::report::{OtherState, Reason};
+use crate::report::{OtherState, Reason, StepReport};
 use crate::snapshot::{DisplayMesh, Snapshot};
 use serde_json::Value;
+use signorini_audit::Finding;
 use signorini_geometry::Point;
 use signorini_membrane::coexisting;
 use signorini_membrane::history::{self, History, RemarkKind, Sample};
@@ -137,6 +139,10 @@ impl<const D: usize> Model for MembraneModel<D> {
         }
         self.last = snapshot.or(self.last.take());
         Ok(if found.interrupted { Advanced::Failed(Reason::Interrupted) } else { Advanced::State })
+    }
+
+    fn audit(&mut self, step: &StepReport) -> Vec<Finding> {
+        audit::of_membrane(step)
     }
 
     fn write_fields(&mut self, index: usize, record: &mut Record) -> Result<(), OutputError> {

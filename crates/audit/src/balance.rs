@@ -1,0 +1,108 @@
+//! Whether the forces that were told balance, body by body: of supports, of loads, of contacts on both sides; moments where
+//! all parts of them are known.
+
+use crate::finding::{Check, Finding, Outcome};
+use crate::state::{Contact, Form, Setting, State};
+use signorini_geometry::{Point, Vector};
+
+/// Part of the forces on a body that iterations may leave, and from which the state is none.
+const TOLD: f64 = 1e-4;
+const REFUSED: f64 = 1e-3;
+
+/// Checks the balance of all bodies that are not moved as prescribed.
+pub fn check(setting: &Setting, state: &State) -> Vec<Finding> {
+    let moves = |k: &usize| !matches!(&setting.bodies[*k].form, Form::Rigid(rigid) if !rigid.is_free);
+    (0..setting.bodies.len()).filter(moves).filter_map(|body| of_body(setting, state, body)).collect()
+}
+
+/// Force and moment about the origin of a contact on a body.
+pub fn of_contact(setting: &Setting, state: &State, contact: usize, body: usize) -> Vec<(Point<3>, Vector<3>)> {
+    let [first, second] = setting.contacts[contact].bodies;
+    if first == second {
+        return Vec::new();
+    }
+    let closed = state.contacts.get(contact).into_iter().flatten().filter(|t| t.is_closed);
+    match body {
+        b if b == first => closed.map(|t| (t.x, t.force())).collect(),
+        b if b == second => closed.map(|t| (t.foot, -t.force())).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// How far the points of a body are from its surface.
+fn radius_of(form: &Form) -> f64 {
+    if let Form::Curve(curve) = form { curve.radius } else { 0.0 }
+}
+
+/// The curvature of the rigid one of two bodies.
+fn curvature(setting: &Setting, state: &State, contact: &Contact, x: &Point<3>) -> f64 {
+    let of = |k: &usize| match &setting.bodies[*k].form {
+        Form::Rigid(rigid) => rigid.gap_now(&state.bodies[*k].motion(), x).hessian.norm(),
+        _ => 0.0,
+    };
+    let found = contact.bodies.iter().map(of).fold(0.0, f64::max);
+    if found.is_finite() { found } else { 0.0 }
+}
+
+fn of_body(setting: &Setting, state: &State, body: usize) -> Option<Finding> {
+    let name = &setting.bodies[body].name;
+    let (mut force, mut size) = (Vector::<3>::zeros(), 0.0);
+    let (mut moment, mut arms, mut off, mut known) = (Vector::<3>::zeros(), 0.0, 0.0, true);
+    let mut bent = 0.0;
+    for acting in state.forces.iter().filter(|a| a.body == body) {
+        force += acting.force;
+        size += acting.force.norm();
+        match acting.moment {
+            Some(own) => {
+                moment += own;
+                arms += own.norm();
+            }
+            None => known = false,
+        }
+    }
+    for (number, contact) in setting.contacts.iter().enumerate() {
+        if !contact.bodies.contains(&body) || contact.bodies[0] == contact.bodies[1] {
+            continue;
+        }
+        for touch in state.contacts[number].iter().filter(|t| t.is_closed) {
+            let (x, f) =
+                if contact.bodies[0] == body { (touch.x, touch.force()) } else { (touch.foot, -touch.force()) };
+            let gap = (touch.x - touch.foot).norm();
+            force += f;
+            size += f.norm();
+            let own = x.cross(&f);
+            moment += own;
+            arms += own.norm();
+            off += gap * f.norm();
+            known &= contact.at_places;
+            // What slides along a surface of some curvature at a distance from it goes another way than its foot there, and so
+            // the friction on it is another one by as much.
+            let arm = gap + radius_of(&setting.bodies[contact.bodies[0]].form);
+            bent += arm * curvature(setting, state, contact, &touch.foot) * touch.friction.norm() * touch.weight;
+        }
+    }
+    if !size.is_finite() {
+        let message = format!("forces on `{name}` are no numbers");
+        return Some(Finding::new(Check::Balance, Outcome::Refused, message).on(name));
+    }
+    if size <= setting.bodies[body].rounding {
+        return None;
+    }
+    let lack = setting.space.directions().iter().map(|i| force[*i].abs()).fold(0.0, f64::max);
+    let lack = (lack - bent - setting.bodies[body].rounding).max(0.0) / size;
+    let turns = setting.space.axes().iter().map(|i| moment[*i].abs()).fold(0.0, f64::max);
+    let turning = if known && arms > 0.0 { (turns - off).max(0.0) / arms } else { 0.0 };
+    let (value, what) = if turning > lack { (turning, "moments") } else { (lack, "forces") };
+    let (outcome, limit) = match value {
+        v if v > REFUSED => (Outcome::Refused, REFUSED),
+        v if v > TOLD => (Outcome::Doubt, TOLD),
+        _ => (Outcome::Fine, TOLD),
+    };
+    let message = format!("{what} on `{name}` sum to {value:.1e} of their sizes");
+    let finding = Finding::new(Check::Balance, outcome, message).measured(value, limit).on(name);
+    Some(if outcome == Outcome::Fine {
+        finding
+    } else {
+        finding.remedy("more increments, or another method of contact")
+    })
+}

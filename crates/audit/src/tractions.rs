@@ -1,0 +1,103 @@
+//! Whether the tractions that were told are those of contact: pressure pushes, friction stays within its limit, is at it where
+//! bodies slip, and acts against the slip. All in the mean over a contact, by what each place stands for.
+
+use crate::finding::{Check, Finding, Outcome};
+use crate::state::{Contact, Law, Setting, State, Touch};
+
+/// Part of the forces that iterations may leave, and from which the state is none.
+const TOLD: f64 = 1e-3;
+const REFUSED: f64 = 1e-2;
+/// Part of the friction that may be missing where bodies slip: on a curved face its directions differ, and sums of them are
+/// shorter than their parts.
+const TOLD_MISSING: f64 = 0.05;
+const REFUSED_MISSING: f64 = 0.2;
+/// Part of the dissipation that may have the wrong sign: slips of penalties are elastic in part.
+const REFUSED_SIGN: f64 = 0.05;
+
+/// Checks the tractions of all contacts.
+pub fn check(setting: &Setting, state: &State) -> Vec<Finding> {
+    setting.contacts.iter().zip(&state.contacts).flat_map(|(contact, touches)| of_contact(contact, touches)).collect()
+}
+
+fn of_contact(contact: &Contact, touches: &[Touch]) -> Vec<Finding> {
+    let mut out = Vec::new();
+    let size: f64 = touches.iter().map(|t| t.weight * t.force_size()).sum();
+    if size == 0.0 {
+        return out;
+    }
+    let name = &contact.name;
+    if touches.iter().any(|t| !t.force().iter().all(|v| v.is_finite())) {
+        out.push(
+            Finding::new(Check::Tractions, Outcome::Refused, format!("`{name}` has forces that are no numbers"))
+                .on(name),
+        );
+        return out;
+    }
+    let mut tell = |part: Part, limits: [f64; 2], what: &str| {
+        let (outcome, limit) = match part.share {
+            s if s > limits[1] => (Outcome::Refused, limits[1]),
+            s if s > limits[0] => (Outcome::Doubt, limits[0]),
+            _ => (Outcome::Fine, limits[0]),
+        };
+        let message = format!("`{name}`: {:.2e} of {what}", part.share);
+        let finding = Finding::new(Check::Tractions, outcome, message).measured(part.share, limit).on(name);
+        let finding =
+            if outcome == Outcome::Fine { finding } else { finding.remedy("another method or enforcement of contact") };
+        out.push(match part.worst {
+            Some(t) => finding.at(t.x),
+            None => finding,
+        });
+    };
+    tell(part(touches, |t| (-t.pressure).max(0.0), |_| size), [TOLD, REFUSED], "the contact force pulls");
+    let available = |t: &Touch| contact.law.map_or(0.0, |law| law.most(t.pressure.max(0.0)));
+    let whole =
+        |_: f64| if contact.law.is_some() { touches.iter().map(|t| t.weight * available(t)).sum() } else { size };
+    let beyond = |t: &Touch| (t.friction.norm() - available(t)).max(0.0);
+    tell(part(touches, beyond, whole), [TOLD, REFUSED], "the friction available is exceeded");
+    let slipping: Vec<Touch> = touches.iter().filter(|t| t.slips && t.slip.norm() > 0.0).copied().collect();
+    let taken = |t: &Touch| t.friction.norm() * t.slip.norm();
+    let wrong = |t: &Touch| t.friction.dot(&t.slip).max(0.0);
+    let all: f64 = slipping.iter().map(|t| t.weight * taken(t)).sum();
+    tell(part(&slipping, wrong, |_| all), [TOLD, REFUSED_SIGN], "the friction acts along the slip, not against it");
+    if let Some(Law::PerPressure([a, b])) = contact.law
+        && a == b
+    {
+        let could = |t: &Touch| available(t) * t.slip.norm();
+        let all: f64 = slipping.iter().map(|t| t.weight * could(t)).sum();
+        let lacks = |t: &Touch| (could(t) - taken(t)).max(0.0);
+        let limits = [TOLD_MISSING, REFUSED_MISSING];
+        tell(part(&slipping, lacks, |_| all), limits, "the friction is missing where bodies slip");
+    }
+    out
+}
+
+/// A part of a whole, and where most of it is.
+struct Part<'a> {
+    share: f64,
+    worst: Option<&'a Touch>,
+}
+
+fn part(touches: &[Touch], value: impl Fn(&Touch) -> f64, whole: impl Fn(f64) -> f64) -> Part<'_> {
+    let sum: f64 = touches.iter().map(|t| t.weight * value(t)).sum();
+    let worst = touches.iter().max_by(|a, b| (a.weight * value(a)).total_cmp(&(b.weight * value(b))));
+    let whole = whole(sum);
+    let share = if sum == 0.0 { 0.0 } else { sum / whole.max(f64::MIN_POSITIVE) };
+    Part { share, worst: worst.filter(|_| sum > 0.0) }
+}
+
+impl Law {
+    /// The most friction under a pressure: of an ellipse along its longer axis.
+    pub fn most(&self, pressure: f64) -> f64 {
+        match self {
+            Law::PerPressure(mu) | Law::AtMost(mu) => mu[0].max(mu[1]) * pressure,
+            Law::Limit(limit) if pressure > 0.0 => *limit,
+            Law::Limit(_) => 0.0,
+        }
+    }
+}
+
+impl Touch {
+    fn force_size(&self) -> f64 {
+        self.pressure.hypot(self.friction.norm())
+    }
+}

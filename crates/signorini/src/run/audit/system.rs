@@ -1,0 +1,372 @@
+//! A system of bodies as plain data.
+
+use super::{ROUNDING, STRAIN, around, extent, law_of, mean_work, restored, saved, surface};
+use crate::plan::mechanics::{Kind, MechanicsPlan};
+use crate::plan::planner::Planner;
+use crate::problem::units::LENGTH;
+use crate::problem::{Body as Key, Enforcement, Method, Penalty, Space as Stated};
+use crate::report::StepReport;
+use serde_json::Value;
+use signorini_audit::{
+    Acting, Body, Boundary, Carries, Contact, Curve, Finding, Form, Placement, Rigid, Setting, Solid, Space, Stability,
+    State, Touch, audit, gaps,
+};
+use signorini_contact::Status;
+use signorini_geometry::rigid::RigidMotion;
+use signorini_geometry::{Point, Vector};
+use signorini_mechanics::body::Body as MechanicalBody;
+use signorini_mechanics::system::{TimeField, TimedLoad};
+use signorini_mechanics::{
+    BodyFields, BodyState, Contribution, IncrementResult, Load, Order, Sampling, SiteResult, System, SystemState,
+    rigid_body,
+};
+use std::sync::Arc;
+
+/// What the check of a system remembers from increment to increment.
+#[derive(Default)]
+pub struct SystemAudit {
+    setting: Option<Setting>,
+    before: Option<(State, SystemState)>,
+}
+
+impl SystemAudit {
+    /// Checks the state at the start.
+    pub fn start(&mut self, plan: &MechanicsPlan) -> Vec<Finding> {
+        let mut start = plan.system.start();
+        for (body, state) in plan.system.bodies.iter().zip(&mut start.bodies) {
+            body.prescribe(0.0, state);
+        }
+        let setting = self.setting.get_or_insert_with(|| setting(plan));
+        let state = State {
+            bodies: placements(plan, setting, &start.bodies),
+            stored: stored(plan, &start),
+            ..State::default()
+        };
+        let found = gaps::check_start(setting, &state);
+        let contacts = vec![Vec::new(); plan.system.contacts.len()];
+        self.before = Some((State { contacts, ..state }, start));
+        found
+    }
+
+    /// Checks the end of an increment.
+    pub fn increment(
+        &mut self,
+        plan: &MechanicsPlan,
+        (state, result): (&SystemState, &IncrementResult),
+        step: &StepReport,
+    ) -> Vec<Finding> {
+        let setting = self.setting.get_or_insert_with(|| setting(plan));
+        let bodies = placements(plan, setting, &state.bodies);
+        let contacts: Vec<Vec<Touch>> = plan
+            .system
+            .contacts
+            .iter()
+            .zip(&result.sites)
+            .map(|(contact, sites)| {
+                let radius = radius_of(plan, contact.bodies()[0]);
+                sites.iter().map(|s| touch(s, radius)).collect()
+            })
+            .collect();
+        let before = self.before.take();
+        let forces = forces(plan, (state, result), step.time, before.as_ref());
+        let dissipated = plan.system.contacts.iter().map(|c| step.contacts.get(c.name()).and_then(|c| c.dissipation));
+        let now = State {
+            time: step.time,
+            bodies,
+            contacts,
+            forces,
+            stored: Some(result.energy),
+            dissipated: dissipated.collect(),
+        };
+        let found = audit(setting, before.as_ref().map(|b| &b.0), &now, &Stability::NotTested);
+        self.before = Some((now, state.clone()));
+        found
+    }
+
+    /// What a later run needs to go on.
+    pub fn save(&self) -> Value {
+        self.before.as_ref().map_or(Value::Null, |(before, _)| saved(before))
+    }
+
+    /// Goes on from a state that was saved, at its time.
+    pub fn restore(&mut self, value: &Value, plan: &MechanicsPlan, state: &SystemState, time: f64) {
+        let setting = self.setting.get_or_insert_with(|| setting(plan));
+        let bodies = placements(plan, setting, &state.bodies);
+        self.before = restored(value, time, bodies).map(|before| (before, state.clone()));
+    }
+}
+
+fn setting(plan: &MechanicsPlan) -> Setting {
+    let space = match plan.space {
+        Stated::ThreeD => Space::ThreeD,
+        Stated::Axisymmetric => Space::Axisymmetric,
+        _ => Space::Plane,
+    };
+    let start = plan.system.start();
+    let bodies = (plan.system.bodies.iter().zip(&plan.kinds).zip(&start.bodies)).map(|((body, kind), state)| {
+        let form = match kind {
+            Kind::Rigid { shape, centre, is_free } => {
+                let placed = body.sites(None, Sampling::Nodes).unwrap_or_default();
+                let placed: Vec<_> = placed.iter().map(|site| body.placed(state, site)).collect();
+                let balls = placed.iter().filter(|p| p.radius > 0.0).map(|p| (p.x, p.radius)).collect();
+                let mut points: Vec<Point<3>> = placed.iter().filter(|p| p.radius == 0.0).map(|p| p.x).collect();
+                let around = shape.bounds().or_else(|| around(&points));
+                let in_space = space == Space::ThreeD;
+                points.extend(around.iter().flat_map(|bounds| surface(shape.as_ref(), bounds, in_space)));
+                let size = around.map_or(0.0, |b| extent(&b, in_space));
+                let shape = Arc::clone(shape);
+                let gap = Arc::new(move |x: &Point<3>| shape.gap(x));
+                Form::Rigid(Rigid { gap, surface: points, balls, centre: *centre, is_free: *is_free, size })
+            }
+            Kind::Curve { radius } => Form::Curve(curve(plan, body.name(), *radius, &body.fields(state))),
+            Kind::Solid | Kind::Cells => Form::Solid(solid(plan, body.name(), body.fields(state), space)),
+        };
+        // The force that moves a place by a unit of length, times what rounding moves it by.
+        let groups = [None, Some("boundary")].into_iter();
+        let site = groups.filter_map(|on| body.sites(on, Sampling::Nodes).ok()?.first().copied()).next();
+        let stiffness = site.map_or(0.0, |site| body.site_stiffness(&site));
+        let rounding = if stiffness.is_finite() { ROUNDING * stiffness * body.size() } else { 0.0 };
+        Body { name: body.name().to_string(), form, rounding }
+    });
+    Setting { space, bodies: bodies.collect(), contacts: contacts(plan) }
+}
+
+fn solid(plan: &MechanicsPlan, name: &str, fields: BodyFields, space: Space) -> Solid {
+    let boundary = Boundary::new(&fields.points, &fields.cells, space == Space::ThreeD);
+    let parts = match plan.head.problem.bodies.get(name) {
+        Some(Key::Cells(cells)) => cells.degree.unwrap_or(crate::plan::mechanics::cells::DEGREE as i64),
+        Some(Key::Solid(solid)) => solid.degree.unwrap_or(1),
+        _ => 1,
+    };
+    let strain_limit = crate::run::strain::is_small(&plan.head.problem, name).then_some(STRAIN);
+    let is_cut = matches!(plan.head.problem.bodies.get(name), Some(Key::Cells(_)));
+    Solid { rest: fields.points, cells: fields.cells, boundary, parts: parts.max(1) as f64, is_cut, strain_limit }
+}
+
+fn curve(plan: &MechanicsPlan, name: &str, radius: f64, fields: &BodyFields) -> Curve {
+    let is_beam = matches!(plan.head.problem.bodies.get(name), Some(Key::Beam(_)));
+    let elements = fields.cell_data.iter().find(|d| d.0 == "element").and_then(|d| d.2.last()).map_or(0.0, |e| e + 1.0);
+    Curve {
+        rest: fields.points.clone(),
+        pieces: fields.cells.iter().map(|c| [c[0], c[1]]).collect(),
+        parts: if elements > 0.0 { fields.cells.len() as f64 / elements } else { 1.0 },
+        radius,
+        strain_limit: is_beam.then_some(STRAIN),
+        bends: is_beam,
+    }
+}
+
+fn contacts(plan: &MechanicsPlan) -> Vec<Contact> {
+    let problem = &plan.head.problem;
+    let planner = Planner::new(problem).ok();
+    let contact = |k: usize| {
+        let (contact, tested) = (&plan.system.contacts[k], &plan.contacts[k]);
+        let bodies = contact.bodies();
+        let carries = match &plan.kinds[bodies[0]] {
+            Kind::Curve { .. } if tested.along_a_curve => Carries::LineLoad,
+            Kind::Curve { .. } | Kind::Rigid { .. } => Carries::Force,
+            Kind::Solid | Kind::Cells => Carries::Traction,
+        };
+        let penalty = problem.contacts.get(contact.name()).and_then(|key| penalty_of(key.method.as_ref()?));
+        let wanted =
+            penalty.and_then(|p| planner.as_ref()?.reader.positive(p.wanted_penetration.as_ref()?, LENGTH).ok());
+        Contact {
+            name: contact.name().to_string(),
+            bodies,
+            law: contact.law().map(|law| law_of(law, problem, contact.name())),
+            is_small_sliding: false,
+            carries,
+            wanted_penetration: wanted.unwrap_or(0.0),
+            at_places: !["mortar", "discrete_cell"].contains(&tested.method),
+        }
+    };
+    (0..plan.system.contacts.len()).map(contact).collect()
+}
+
+/// The penalty that a method states.
+fn penalty_of(method: &Method) -> Option<&Penalty> {
+    let enforcement = match method {
+        Method::Mortar(m) | Method::GaussPoint(m) | Method::Node(m) | Method::CellSurface(m) => m.enforcement.as_ref(),
+        Method::Curve(m) => m.enforcement.as_ref(),
+        Method::DiscreteCell(m) => return m.penalty.as_ref(),
+        _ => None,
+    };
+    match enforcement {
+        Some(Enforcement::Penalty(penalty)) => Some(penalty),
+        _ => None,
+    }
+}
+
+/// The radius about the points of a body that touches in their place.
+fn radius_of(plan: &MechanicsPlan, body: usize) -> f64 {
+    match &plan.kinds[body] {
+        Kind::Curve { radius } => *radius,
+        Kind::Rigid { .. } => {
+            let (body, start) = (&plan.system.bodies[body], plan.system.bodies[body].start());
+            let sites = body.sites(None, Sampling::Nodes).unwrap_or_default();
+            sites.first().map_or(0.0, |site| body.placed(&start, site).radius)
+        }
+        Kind::Solid | Kind::Cells => 0.0,
+    }
+}
+
+fn touch(s: &SiteResult, radius: f64) -> Touch {
+    let n = s.normal;
+    Touch {
+        x: s.x - n * radius,
+        foot: s.x - n * (radius + s.gap.unwrap_or(0.0)),
+        normal: n,
+        weight: s.weight,
+        area: s.contact_area(),
+        is_closed: s.status != Status::Open,
+        slips: s.status == Status::Slip,
+        pressure: if s.status == Status::Open { 0.0 } else { s.pressure },
+        friction: if s.status == Status::Open { Vector::<3>::zeros() } else { s.friction },
+        slip: s.increment,
+    }
+}
+
+/// The energy that bodies store as they start: of a pretension.
+fn stored(plan: &MechanicsPlan, start: &SystemState) -> Option<f64> {
+    let of = |(body, state): (&Box<dyn MechanicalBody>, &BodyState)| {
+        body.internal(state, Order::First, &mut Contribution::new(body.unknowns())).ok()
+    };
+    plan.system.bodies.iter().zip(&start.bodies).map(of).sum()
+}
+
+/// Where the bodies are. What of a rope is on a winch is not shown: its points are taken anew.
+fn placements(plan: &MechanicsPlan, setting: &mut Setting, states: &[BodyState]) -> Vec<Placement> {
+    let mut out = Vec::new();
+    for (k, (body, state)) in plan.system.bodies.iter().zip(states).enumerate() {
+        out.push(match &plan.kinds[k] {
+            Kind::Rigid { centre, .. } => {
+                let pose = rigid_body::Pose::of(state);
+                Placement::Moved(RigidMotion::new(pose.rotation.scaled_axis(), *centre, pose.centre - centre))
+            }
+            kind => {
+                let fields = body.fields(state);
+                if let (Form::Curve(known), Kind::Curve { radius }) = (&setting.bodies[k].form, kind)
+                    && known.rest.len() != fields.points.len()
+                {
+                    setting.bodies[k].form = Form::Curve(curve(plan, body.name(), *radius, &fields));
+                }
+                Placement::Points(fields.points.iter().zip(&fields.displacement).map(|(x, u)| x + u).collect())
+            }
+        });
+    }
+    out
+}
+
+/// Supports and loads with their work since the state before.
+fn forces(
+    plan: &MechanicsPlan,
+    (state, result): (&SystemState, &IncrementResult),
+    time: f64,
+    before: Option<&(State, SystemState)>,
+) -> Vec<Acting> {
+    let system = &plan.system;
+    let mut out: Vec<Acting> = Vec::new();
+    // Forces that were not there before, at the start, were none.
+    let earlier = |k: usize| before.and_then(|b| b.0.forces.get(k)).map_or(Vector::<3>::zeros(), |f| f.force);
+    for (support, [force, turning]) in system.supports.iter().zip(&result.support_forces) {
+        let body = support.part.body;
+        let turns = support.rotation.iter().any(Option::is_some);
+        // A rigid body is held at its centre.
+        let moment = match &plan.kinds[body] {
+            Kind::Rigid { .. } if !turns => {
+                Some(rigid_body::Pose::of(&state.bodies[body]).centre.cross(force) + turning)
+            }
+            _ => None,
+        };
+        let moved = before.filter(|_| !turns).and_then(|(was, _)| {
+            let [start, end] = [was.time, time].map(|t| uniform(&support.displacement, system, body, t));
+            Some(end? - start?)
+        });
+        // The radial forces around an axis have no resultant that does work.
+        let known = moved.filter(|m| plan.space != Stated::Axisymmetric || m[0] == 0.0);
+        let work = known.map(|m| mean_work(&earlier(out.len()), force, &m));
+        let drives = moved.is_none_or(|m| m.norm() > 0.0);
+        out.push(Acting { name: support.name.clone(), body, force: *force, moment, work, drives });
+    }
+    // What a winch does, and where a rope runs through pulleys, is not told.
+    let hauls = |k: usize| matches!(plan.head.problem.bodies.get(system.bodies[k].name()), Some(Key::Rope(r)) if r.winch.is_some() || r.pulleys.is_some());
+    let force = Vector::<3>::zeros();
+    out.extend((0..system.bodies.len()).filter(|k| hauls(*k)).map(|body| Acting {
+        name: "winch".into(),
+        body,
+        force,
+        moment: Some(force),
+        work: None,
+        drives: true,
+    }));
+    for (k, load) in system.loads.iter().enumerate() {
+        let Ok([force, moment]) = system.load_resultant(k, state, time) else { continue };
+        let body = load.part.body;
+        let work = before.and_then(|(was, from)| {
+            if !system.bodies[body].is_rigid() {
+                return load_work(system, k, [(from, was.time), (state, time)]);
+            }
+            let [start, end] = [from, state].map(|s| rigid_body::Pose::of(&s.bodies[body]).centre);
+            let turns = matches!(load.load, TimedLoad::Moment(_) | TimedLoad::FollowerMoment(_));
+            let [was, _] = system.load_resultant(k, from, was.time).ok()?;
+            (!turns).then(|| mean_work(&was, &force, &(end - start)))
+        });
+        out.push(Acting {
+            name: load.name.clone(),
+            body: load.part.body,
+            force,
+            moment: Some(moment),
+            work,
+            drives: false,
+        });
+    }
+    out
+}
+
+/// A displacement that is the same all over a body; none of one that differs.
+fn uniform(fields: &[Option<TimeField>; 3], system: &System, body: usize, time: f64) -> Option<Vector<3>> {
+    let shown = system.bodies[body].fields(&system.bodies[body].start());
+    let last = shown.points.len().saturating_sub(1);
+    let at = |k: usize| shown.points.get(k).copied().unwrap_or_default();
+    let value = |i: usize, x: &Point<3>| fields[i].as_ref().map_or(0.0, |f| f(x, time));
+    let first = Vector::<3>::from_fn(|i, _| value(i, &at(0)));
+    let same = |k: usize| (0..3).all(|i| value(i, &at(k)) == first[i]);
+    [last, last / 2, last / 3].into_iter().all(same).then_some(first)
+}
+
+/// The work of a load between two states by the mean of its forces, and how far it may be off.
+fn load_work(system: &System, load: usize, states: [(&SystemState, f64); 2]) -> Option<[f64; 2]> {
+    let own = system.loads[load].part.body;
+    let body = &system.bodies[own];
+    let ends = states.map(|(state, _)| &state.bodies[own]);
+    let [from, to] = ends.map(|s| &s.configuration);
+    if from.len() != body.unknowns() {
+        return None;
+    }
+    let step: Vec<f64> = to.iter().zip(from).map(|(a, b)| a - b).collect();
+    let power = |k: usize| -> Option<f64> {
+        let mut out = Contribution::new(body.unknowns());
+        act(system, load, ends[k], states[k].1, &mut out)?;
+        Some(-out.forces.iter().zip(&step).map(|(f, s)| f * s).sum::<f64>())
+    };
+    let [first, last] = [power(0)?, power(1)?];
+    Some([0.5 * (first + last), 0.5 * (last - first).abs()])
+}
+
+/// The forces of a load on the unknowns of its body.
+fn act(system: &System, load: usize, state: &BodyState, time: f64, out: &mut Contribution) -> Option<()> {
+    let load = &system.loads[load];
+    let (body, on) = (&system.bodies[load.part.body], load.part.group.as_deref());
+    let nowhere = Point::<3>::zeros();
+    let mut act = |what: &Load<'_>| body.load(on, what, state, Order::First, out).ok();
+    match &load.load {
+        TimedLoad::BodyForce(f) => act(&Load::BodyForce(&|x| f(x, time))),
+        TimedLoad::Traction(f) => act(&Load::Traction(&|x| f(x, time))),
+        TimedLoad::Pressure(f) => act(&Load::Pressure(&|x| f(x, time))),
+        TimedLoad::Force(f) => act(&Load::Force(f(&nowhere, time))),
+        TimedLoad::Moment(f) => act(&Load::Moment(f(&nowhere, time))),
+        TimedLoad::FollowerMoment(f) => act(&Load::FollowerMoment(f(&nowhere, time))),
+        TimedLoad::Tension(f) => act(&Load::Tension(f(&nowhere, time))),
+        TimedLoad::Springs(k) => act(&Load::Springs(*k)),
+    }
+}

@@ -117,7 +117,14 @@ fn advance(system: &System, at: &SystemState, step: &[f64], share: f64) -> Syste
         .map(|((b, s), f)| b.advance(s, &step[f as usize..f as usize + b.unknowns()], share))
         .collect();
     let multipliers = at.multipliers.iter().zip(&step[count..]).map(|(m, s)| m + share * s).collect();
-    SystemState { bodies, multipliers, reactions: Vec::new(), predictions: Vec::new(), travel: vec![0.0; count] }
+    SystemState {
+        time: 0.0,
+        bodies,
+        multipliers,
+        reactions: Vec::new(),
+        predictions: Vec::new(),
+        travel: vec![0.0; count],
+    }
 }
 
 fn free() -> Motion {

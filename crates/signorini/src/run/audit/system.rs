@@ -14,7 +14,6 @@ use signorini_audit::{
 use signorini_contact::Status;
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::{Point, Vector};
-use signorini_mechanics::body::Body as MechanicalBody;
 use signorini_mechanics::system::{TimeField, TimedLoad};
 use signorini_mechanics::{
     BodyFields, BodyState, Contribution, IncrementResult, Load, Order, Sampling, SiteResult, System, SystemState,
@@ -228,10 +227,8 @@ fn touch(s: &SiteResult, radius: f64) -> Touch {
 
 /// The energy that bodies store as they start: of a pretension.
 fn stored(plan: &MechanicsPlan, start: &SystemState) -> Option<f64> {
-    let of = |(body, state): (&Box<dyn MechanicalBody>, &BodyState)| {
-        body.internal(state, Order::First, &mut Contribution::new(body.unknowns())).ok()
-    };
-    plan.system.bodies.iter().zip(&start.bodies).map(of).sum()
+    let bodies = plan.system.bodies.iter().zip(&start.bodies);
+    bodies.map(|(b, state)| b.internal(state, Order::First, &mut Contribution::new(b.unknowns())).ok()).sum()
 }
 
 /// Where the bodies are. What of a rope is on a winch is not shown: its points are taken anew.

@@ -20,6 +20,8 @@ const ROUNDING: f64 = 1e-9;
 const STORED: f64 = 1e-6;
 /// Rotation in an increment, in radians, beyond which a rotation the other way round is as likely.
 const TURN: f64 = 1.5;
+/// Rotations that differ by less, in radians, are the same.
+const SAME_TURN: f64 = 1e-6;
 
 /// Checks the energy of an increment.
 pub fn check(setting: &Setting, before: &State, now: &State) -> Vec<Finding> {
@@ -127,8 +129,11 @@ fn of_motion(setting: &Setting, states: [&State; 2], body: usize, centre: &Vecto
     let motions = states.map(|s| s.bodies[body].motion());
     let centres = motions.map(|m| m.point(centre));
     let turn = nalgebra::Rotation3::from_matrix_unchecked(motions[1].rotation * motions[0].rotation.transpose());
-    let (moved, turned) = (centres[1] - centres[0], turn.scaled_axis());
-    if turned.norm() > TURN {
+    // Whole turns are known where both tell them about one axis.
+    let told = motions[1].turn - motions[0].turn;
+    let agrees = nalgebra::Rotation3::new(told).angle_to(&turn) < SAME_TURN;
+    let (moved, turned) = (centres[1] - centres[0], if agrees { told } else { turn.scaled_axis() });
+    if !agrees && turned.norm() > TURN {
         return None;
     }
     let resultants = [0, 1].map(|k| {

@@ -9,6 +9,8 @@ pub struct SiteResult {
     /// Where the site is, and the outward normal of the master there.
     pub x: Point<3>,
     pub normal: Vector<3>,
+    /// Of the ball or the section about it: it touches so far from `x`, against the normal.
+    pub radius: f64,
     pub weight: f64,
     /// None where nothing is within reach.
     pub gap: Option<f64>,
@@ -51,6 +53,11 @@ pub struct OfSurface {
 }
 
 impl SiteResult {
+    /// Where the slave touches.
+    pub fn touches_at(&self) -> Point<3> {
+        self.x - self.normal * self.radius
+    }
+
     /// The force on the slave.
     pub fn force(&self) -> Vector<3> {
         (self.normal * self.pressure + self.friction) * self.weight

@@ -18,7 +18,8 @@ impl Contact {
         let master = self.met(sides)?;
         let of = |k: usize| {
             let (placed, pair) = self.pair(k, sides, (master.as_ref(), f64::INFINITY), |_| false);
-            let mut out = SiteResult { x: placed.x, weight: self.sites[k].weight, ..SiteResult::default() };
+            let (x, radius) = (placed.x, placed.radius);
+            let mut out = SiteResult { x, radius, weight: self.sites[k].weight, ..SiteResult::default() };
             let Some(Ok(touch)) = pair else { return (out, [0.0; 3]) };
             let found = self.traction(k, &touch, self.multiplier(k, lambda), [0.0; 2]);
             let pair = &touch.pair;

@@ -155,7 +155,8 @@ impl<'a> Motion<'a> {
         for p in nearest {
             let site = p.id.site;
             let open = SiteResult {
-                x: p.x,
+                x: p.centre,
+                radius: (p.centre - p.x).norm(),
                 normal: p.pair.normal,
                 weight: p.weight,
                 gap: Some(p.pair.gap),
@@ -168,7 +169,7 @@ impl<'a> Motion<'a> {
                 let utilisation = l.utilisation();
                 let slips = l.point.law.is_none() || (utilisation > 1.0 - AT_LIMIT && slipped.path > MOVED * self.size);
                 out.push(SiteResult {
-                    x: l.point.x,
+                    x: l.point.centre,
                     normal: l.point.pair.normal,
                     gap: Some(l.point.pair.gap),
                     pressure: l.force[0] / p.weight,

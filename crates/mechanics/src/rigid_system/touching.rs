@@ -23,7 +23,8 @@ pub struct Touching<'a> {
     pub id: Id,
     pub law: Option<&'a dyn Law>,
     pub weight: f64,
-    /// Where the slave touches.
+    /// The middle of the slave's ball, and where that touches.
+    pub centre: Point<3>,
     pub x: Point<3>,
     pub pair: Pair,
     /// Axes of friction.
@@ -136,7 +137,7 @@ pub fn touching<'a>(
                 let moves = axes.map(|e| pair.slip.iter().any(|s| e.dot(s).abs() > STILL * most));
                 let law = contact.friction.as_deref();
                 let weight = site.weight;
-                out.push(Touching { id, law, weight, x, pair, axes, moves, driven });
+                out.push(Touching { id, law, weight, centre: placed.x, x, pair, axes, moves, driven });
             }
         }
     }

@@ -173,7 +173,9 @@ impl Interaction for CurveContact {
             let result = |c: &Touch| {
                 let CurvePoint { element, xi, .. } = c.points[0];
                 let x = sides[0].curve.jet(sides[0].configuration, element, xi).x;
-                site_result(c, x, self.tangential(c, sides, first, Order::First).as_ref(), self.law())
+                let rubs = self.tangential(c, sides, first, Order::First);
+                let found = site_result(c, x, rubs.as_ref(), self.law());
+                SiteResult { radius: sides[0].curve.radius(), ..found }
             };
             touches.iter().map(result).collect()
         })

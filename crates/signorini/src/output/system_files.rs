@@ -184,7 +184,8 @@ mod tests {
             data: vec![("material".into(), 1, vec![1.0; 6]), ("stress".into(), 6, stress)],
         };
         let [length, area, force, pressure, energy, time] = ["mm", "mm²", "N", "kPa", "mJ", "s"].map(String::from);
-        let units = UnitNames { length, area, force, pressure, energy, time };
+        let (line_load, moment) = (String::new(), String::new());
+        let units = UnitNames { length, area, force, line_load, moment, pressure, energy, time };
         let text = String::from_utf8(vti(&samples, Some(&units)).unwrap()).unwrap();
         for part in ["<ImageData ", "WholeExtent=\"0 3 0 2 0 0\"", "Origin=\"-1 0.5 0\"", "Spacing=\"0.25 0.5 1\""] {
             assert!(text.contains(part), "{part}: {text}");

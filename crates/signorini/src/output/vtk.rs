@@ -135,7 +135,8 @@ mod tests {
             ..PolyDataPiece::default()
         };
         let [length, area, force, pressure, energy, time] = ["mm", "mm²", "N", "kPa", "mJ", "s"].map(String::from);
-        let units = UnitNames { length, area, force, pressure, energy, time };
+        let (line_load, moment) = (String::new(), String::new());
+        let units = UnitNames { length, area, force, line_load, moment, pressure, energy, time };
         let file = with_units("test", DataSet::inline(piece), Some(&units)).unwrap();
         let text = String::from_utf8(file.clone()).unwrap();
         let gap = text.split("Name=\"gap\"").nth(1).unwrap().split("</DataArray>").next().unwrap();

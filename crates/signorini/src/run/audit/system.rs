@@ -17,7 +17,7 @@ use signorini_geometry::{Point, Vector};
 use signorini_mechanics::system::{TimeField, TimedLoad};
 use signorini_mechanics::{
     BodyFields, BodyState, Contribution, IncrementResult, Load, Order, Sampling, SiteResult, System, SystemState,
-    rigid_body,
+    Unstable, rigid_body,
 };
 use std::sync::Arc;
 
@@ -56,16 +56,7 @@ impl SystemAudit {
     ) -> Vec<Finding> {
         let setting = self.setting.get_or_insert_with(|| setting(plan));
         let bodies = placements(plan, setting, &state.bodies);
-        let contacts: Vec<Vec<Touch>> = plan
-            .system
-            .contacts
-            .iter()
-            .zip(&result.sites)
-            .map(|(contact, sites)| {
-                let radius = radius_of(plan, contact.bodies()[0]);
-                sites.iter().map(|s| touch(s, radius)).collect()
-            })
-            .collect();
+        let contacts: Vec<Vec<Touch>> = result.sites.iter().map(|sites| sites.iter().map(touch).collect()).collect();
         let before = self.before.take();
         let forces = forces(plan, (state, result), step.time, before.as_ref());
         let dissipated = plan.system.contacts.iter().map(|c| step.contacts.get(c.name()).and_then(|c| c.dissipation));
@@ -77,7 +68,7 @@ impl SystemAudit {
             stored: Some(result.energy),
             dissipated: dissipated.collect(),
         };
-        let found = audit(setting, before.as_ref().map(|b| &b.0), &now, &Stability::NotTested);
+        let found = audit(setting, before.as_ref().map(|b| &b.0), &now, &stability(plan, step));
         self.before = Some((now, state.clone()));
         found
     }
@@ -196,24 +187,11 @@ fn penalty_of(method: &Method) -> Option<&Penalty> {
     }
 }
 
-/// The radius about the points of a body that touches in their place.
-fn radius_of(plan: &MechanicsPlan, body: usize) -> f64 {
-    match &plan.kinds[body] {
-        Kind::Curve { radius } => *radius,
-        Kind::Rigid { .. } => {
-            let (body, start) = (&plan.system.bodies[body], plan.system.bodies[body].start());
-            let sites = body.sites(None, Sampling::Nodes).unwrap_or_default();
-            sites.first().map_or(0.0, |site| body.placed(&start, site).radius)
-        }
-        Kind::Solid | Kind::Cells => 0.0,
-    }
-}
-
-fn touch(s: &SiteResult, radius: f64) -> Touch {
+fn touch(s: &SiteResult) -> Touch {
     let n = s.normal;
     Touch {
-        x: s.x - n * radius,
-        foot: s.x - n * (radius + s.gap.unwrap_or(0.0)),
+        x: s.touches_at(),
+        foot: s.touches_at() - n * s.gap.unwrap_or(0.0),
         normal: n,
         weight: s.weight,
         area: s.contact_area(),
@@ -222,6 +200,17 @@ fn touch(s: &SiteResult, radius: f64) -> Touch {
         pressure: if s.status == Status::Open { 0.0 } else { s.pressure },
         friction: if s.status == Status::Open { Vector::<3>::zeros() } else { s.friction },
         slip: s.increment,
+    }
+}
+
+/// How stable the state is, where that is known; unstable states that are asked for are warned of elsewhere.
+fn stability(plan: &MechanicsPlan, step: &StepReport) -> Stability {
+    match &step.stability {
+        Some(told) if told.stable => Stability::Stable,
+        Some(told) if plan.system.unstable == Unstable::Follow => {
+            Stability::Unstable { negative: told.negative_eigenvalues, body: told.body.clone().unwrap_or_default() }
+        }
+        _ => Stability::NotTested,
     }
 }
 

@@ -260,7 +260,7 @@ fn contact_report(
     ContactReport {
         force: vector(&resultant(closed().map(|s| s.force()))),
         moment: (plan.space != Space::Axisymmetric)
-            .then(|| vector(&resultant(closed().map(|s| (s.x - plan.moments_about).cross(&s.force()))))),
+            .then(|| vector(&resultant(closed().map(|s| (s.touches_at() - plan.moments_about).cross(&s.force()))))),
         carries: tested.carries,
         area: sites.iter().map(SiteResult::contact_area).sum(),
         zones: components.len(),

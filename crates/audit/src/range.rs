@@ -4,10 +4,11 @@ use crate::finding::{Check, Finding, Outcome};
 use crate::nearest::centre;
 use crate::resolution::width;
 use crate::samples::turns;
-use crate::state::{Curve, Form, Setting, Solid, State};
+use crate::state::{Curve, Form, Rigid, Setting, Solid, State};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use signorini_geometry::bvh::Bvh;
+use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::{Aabb, Point, Vector};
 
 /// Where half of the cells are beyond so many times the limit, the state is none.
@@ -55,7 +56,10 @@ pub fn check(setting: &Setting, state: &State) -> Vec<Finding> {
         if let Form::Rigid(rigid) = &setting.bodies[contact.bodies[1]].form
             && contact.law.is_some()
             && !rigid.is_free
-            && state.contacts[number].iter().any(|t| t.is_closed)
+            && let Some(size) = cell_size(setting, contact.bodies[0])
+            && state.contacts[number].iter().any(|t| {
+                t.is_closed && !turns_into_itself(rigid, &state.bodies[contact.bodies[1]].motion(), &t.x, size)
+            })
         {
             let rotation =
                 nalgebra::Rotation3::from_matrix_unchecked(state.bodies[contact.bodies[1]].motion().rotation);
@@ -113,6 +117,27 @@ fn of_curve(curve: &Curve, points: &[Point<3>]) -> Option<(f64, f64, Point<3>, b
     Some((most.0, limit, points[most.1[0] as usize], false))
 }
 
+/// The mean size of the cells of a solid.
+fn cell_size(setting: &Setting, body: usize) -> Option<f64> {
+    let Form::Solid(solid) = &setting.bodies[body].form else { return None };
+    let facets = &solid.boundary.points;
+    let sizes: Vec<f64> = facets.iter().filter_map(|p| Some(solid.cell_at(solid.boundary.facet_at(*p)?)[0])).collect();
+    (!sizes.is_empty()).then(|| sizes.iter().sum::<f64>() / sizes.len() as f64)
+}
+
+/// Whether a rigid body that turned about its centre is about a place as if it had not: a body of revolution about its axis.
+fn turns_into_itself(rigid: &Rigid, motion: &RigidMotion, x: &Point<3>, size: f64) -> bool {
+    let moved = motion.point(&rigid.centre) - rigid.centre;
+    let axes = [Vector::<3>::x(), Vector::<3>::y(), Vector::<3>::z()];
+    let around = axes.iter().flat_map(|e| [x - e * size, x + e * size]);
+    std::iter::once(*x).chain(around).all(|y| {
+        let still = (rigid.gap)(&(y - moved));
+        let turned = (rigid.gap)(&(motion.rotation.transpose() * (y - motion.translation)));
+        (still.gap - turned.gap).abs() <= PLANE * size
+            && (still.normal - motion.rotation * turned.normal).norm() <= PLANE
+    })
+}
+
 /// How far the places of a contact of small sliding have slid since the start, as a share of a cell.
 fn slip(setting: &Setting, state: &State, number: usize) -> Option<Finding> {
     let contact = &setting.contacts[number];
@@ -133,6 +158,14 @@ fn slip(setting: &Setting, state: &State, number: usize) -> Option<Finding> {
             }
             (None, Form::Rigid(rigid)) => {
                 let motion = state.bodies[other].motion();
+                let motion = match turns_into_itself(rigid, &motion, x, cell) {
+                    true => RigidMotion::new(
+                        Vector::<3>::zeros(),
+                        Point::<3>::zeros(),
+                        motion.point(&rigid.centre) - rigid.centre,
+                    ),
+                    false => motion,
+                };
                 let was = motion.rotation.transpose() * (x - motion.translation);
                 // On a plane it makes no difference where.
                 let [a, b] = [(rigid.gap)(&(x - u)).normal, motion.rotation * (rigid.gap)(&was).normal];

@@ -11,6 +11,8 @@ const REFUSED: f64 = 1e-2;
 /// shorter than their parts.
 const TOLD_MISSING: f64 = 0.05;
 const REFUSED_MISSING: f64 = 0.2;
+/// Part of the friction of a contact below which what slips is its edge.
+const EDGE: f64 = 0.1;
 /// Part of the dissipation that may have the wrong sign: slips of penalties are elastic in part.
 const REFUSED_SIGN: f64 = 0.05;
 
@@ -63,7 +65,10 @@ fn of_contact(contact: &Contact, touches: &[Touch]) -> Vec<Finding> {
         && a == b
     {
         let could = |t: &Touch| available(t) * t.slip.norm();
+        // At the edge little is available, and what has just closed slipped before it touched.
+        let farthest = slipping.iter().map(|t| t.slip.norm()).fold(0.0, f64::max);
         let all: f64 = slipping.iter().map(|t| t.weight * could(t)).sum();
+        let all = all.max(EDGE * farthest * touches.iter().map(|t| t.weight * available(t)).sum::<f64>());
         let lacks = |t: &Touch| (could(t) - taken(t)).max(0.0);
         let limits = [TOLD_MISSING, REFUSED_MISSING];
         tell(part(&slipping, lacks, |_| all), limits, "the friction is missing where bodies slip");

@@ -101,7 +101,7 @@ impl<'a, 'b> Increment<'a, 'b> {
             let (unknown, factor) = held.constraint.terms[0];
             way = way.max(self.motion.relative(unknown as usize, held.constraint.lack / factor));
         }
-        Ok((way / (0.5 * self.motion.farthest())).ceil().clamp(1.0, MOST_LEGS) as usize)
+        Ok((way / (0.25 * self.motion.farthest())).ceil().clamp(1.0, MOST_LEGS) as usize)
     }
 
     fn prescribed(&self, state: &SystemState, time: f64) -> SystemState {
@@ -139,10 +139,12 @@ impl<'a, 'b> Increment<'a, 'b> {
             };
             let Some(found) = found else {
                 tau = if tau > FIRST { FIRST.max(MUCH_SHORTER * tau) } else { SHORTER * tau };
-                if tau >= SHORTEST {
+                // What is prescribed is followed without delay, in shorter legs.
+                let halves = drives && tau <= FIRST && depth < MOST_HALVINGS;
+                if !halves && tau >= SHORTEST {
                     continue;
                 }
-                if !drives || depth == MOST_HALVINGS {
+                if !halves {
                     return Err(self.lost());
                 }
                 let middle = 0.5 * (state.time + to);

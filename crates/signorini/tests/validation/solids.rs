@@ -338,7 +338,7 @@ pictures = false
 fn a_ring_by_a_map_is_closed() {
     let case = "space = \"plane_strain\"\n[bodies.hub.solid]\ndegree = 2\n\
                 material.linear_elastic = { youngs_modulus = 210e3, poissons_ratio = 0.3 }\n\
-                mesh.box = { min = [10, 0], max = [20, \"2*pi\"], cells = [4, 24], map = [\"x*cos(y)\", \"x*sin(y)\"] }\n\
+                mesh.box = { min = [10, 0], max = [20, \"2*pi\"], cells = [4, 48], map = [\"x*cos(y)\", \"x*sin(y)\"] }\n\
                 [bodies.shaft.rigid]\nshape.cylinder = { point = [0, 0], radius = 10.02 }\n\
                 [supports.rim]\non = \"hub:right\"\ndisplacement = [0, 0]\n\
                 [contacts.fit]\nbetween = [\"hub:left\", \"shaft\"]\n[[steps]]\nto = 1\n";

@@ -322,7 +322,7 @@ fn each_mistake_is_told_at_its_place() {
         ("pretension = 1.0", "pretension = nan", "not a finite number", "nan"),
         ("pretension = 1.0", "pretension = 1.0\nunstrained_length = 4.0", "two ways", "4.0"),
         ("radius = 0.02", "radius = -0.02", "the radius is -0.02", "-0.02"),
-        ("cells = 60", "cells = 0", "no number of cells", "0"),
+        ("cells = 60", "cells = 0", "is not between 1 and", "0"),
         ("radius = \"R + 0.02\"", "radius = \"0.5*R\"", "deep inside `drum`", "path"),
         ("\"rope:start\"", "\"rope:begin\"", "has no group `begin`", "rope:begin"),
         ("\"rope:end\"", "\"ripe:end\"", "no body `ripe`", "ripe:end"),

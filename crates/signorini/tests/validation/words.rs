@@ -6,7 +6,7 @@ use signorini_solve::Silent;
 
 /// The keys of a table and of all within it, but for those of tables whose keys are names of the case.
 fn words(v: &serde_json::Value, out: &mut std::collections::BTreeSet<String>) {
-    const NAMED: [&str; 4] = ["contacts", "probes", "support_forces", "load_forces"];
+    const NAMED: [&str; 6] = ["contacts", "probes", "support_forces", "load_forces", "support_moments", "load_moments"];
     match v {
         serde_json::Value::Object(table) => {
             for (key, inner) in table {

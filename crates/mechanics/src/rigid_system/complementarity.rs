@@ -128,7 +128,7 @@ impl Complementarity<'_> {
             let found = match self.proximal(compliance, &centre, |inner| inner.newton(&guess)) {
                 Some(found) => found,
                 None => {
-                    let near = self.from_compliant([compliance, mean], &guess)?;
+                    let near = self.soften_first([compliance, mean], &guess)?;
                     self.proximal(compliance, &centre, |inner| inner.solve(near))?
                 }
             };
@@ -145,7 +145,7 @@ impl Complementarity<'_> {
     }
 
     /// Forces near a solution: by contacts that give way, less and less.
-    fn from_compliant(&self, [least, mean]: [f64; 2], start: &DVector<f64>) -> Option<DVector<f64>> {
+    fn soften_first(&self, [least, mean]: [f64; 2], start: &DVector<f64>) -> Option<DVector<f64>> {
         let mut r = start.clone();
         for share in LADDER.iter().filter(|share| **share * mean > least) {
             let centre = r.clone();

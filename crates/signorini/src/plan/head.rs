@@ -36,7 +36,7 @@ impl Planner<'_> {
             Some(n) if *n >= 1 => *n as usize,
             Some(n) => return Err(self.problem.error(n, "`every` must be at least 1")),
         };
-        if let Some(seconds) = self.problem.limits.max_time.as_ref().filter(|s| !(**s > 0.0)) {
+        if let Some(seconds) = self.problem.limits.max_time.as_ref().filter(|s| **s <= 0.0 || s.is_nan()) {
             return Err(self.problem.error(seconds, format!("a run of {seconds} s")).help("more than 0 seconds"));
         }
         if let Some(n) = self.problem.limits.max_iterations.as_ref().filter(|n| **n < 1) {

@@ -58,7 +58,7 @@ mod tests {
             x: Point::<3>::new(0.1 * k as f64, 0.0, 0.0),
             normal: Vector::<3>::y(),
             weight: 0.1,
-            pressure: 2.0 + if k % 2 == 0 { 1.5 } else { -1.5 },
+            pressure: 2.0 + if k.is_multiple_of(2) { 1.5 } else { -1.5 },
             status: Status::Slip,
             ..SiteResult::default()
         };

@@ -1,7 +1,7 @@
 //! What acts between bodies of a system: forces and tangent, what is kept from increment to increment, and how both are
 //! enforced.
 //!
-//! A [`Contact`](crate::contact::Contact) tests points of one body against another; contact between curves, in the crate of ropes, finds its points
+//! A [`Contact`] tests points of one body against another; contact between curves, in the crate of ropes, finds its points
 //! anew in every state. To the system both are interactions. An interaction may have
 //!
 //! - *multipliers*, unknowns of its own: as many in all states;

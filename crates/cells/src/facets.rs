@@ -140,7 +140,7 @@ impl FacetBody {
 }
 
 impl Region<3> for FacetBody {
-    fn rule(&self, b: &Aabb<3>, integration: &Integration, degree: usize) -> MaterialRule<3> {
+    fn rule(&self, b: &Aabb<3>, _: &Integration, degree: usize) -> MaterialRule<3> {
         let line = gauss_legendre(2 * degree + 1);
         let (n, size) = (line.len(), b.size());
         let nodes: Vec<f64> = line.iter().map(|p| p.0).collect();
@@ -170,13 +170,7 @@ impl Region<3> for FacetBody {
             }
             for part in fan(&within) {
                 if on_material_side(&part, b, &normal) {
-                    // As many points per area as a smooth surface has, whatever the size of the facets; on each enough that linear
-                    // fields are held exactly.
-                    let [a, c, d] = part;
-                    let extent = (c - a).norm().max((d - c).norm()).max((a - d).norm());
-                    let wanted = (integration.points(degree) as f64 * extent / size.max()).ceil();
-                    let along = wanted.clamp(2.0, (degree + 2) as f64) as usize;
-                    let points = triangle_points(&part, along);
+                    let points = triangle_points(&part, degree + 2);
                     boundary.extend(points.into_iter().map(|(x, weight)| BoundaryPoint { x, weight, normal }));
                 }
                 if lies_on_end {
@@ -467,36 +461,6 @@ mod tests {
             assert!(!body.places_on_side(&cell, axis, End::High).is_empty(), "{axis}");
             assert!(body.places_on_side(&cell, axis, End::Low).is_empty(), "{axis}");
         }
-    }
-
-    /// The surface has as many points whatever the number of its triangles, and the same area.
-    #[test]
-    fn points_are_by_area_and_not_by_triangle() {
-        let n = 12;
-        let flat = |i: usize, j: usize, z: f64| Point::<3>::new(i as f64 / n as f64, j as f64 / n as f64, z);
-        // The lid in small triangles, the rest of the cube in large ones: only the lid is looked at.
-        let whole = cube([0.0; 3], [1.0; 3]);
-        let mut vertices: Vec<Point<3>> = whole.vertices().to_vec();
-        let mut triangles: Vec<[u32; 3]> =
-            whole.triangles().iter().copied().filter(|t| t.iter().any(|v| *v < 4)).collect();
-        for i in 0..n {
-            for j in 0..n {
-                let at = vertices.len() as u32;
-                vertices.extend([flat(i, j, 1.0), flat(i + 1, j, 1.0), flat(i + 1, j + 1, 1.0), flat(i, j + 1, 1.0)]);
-                triangles.extend([[at, at + 1, at + 2], [at, at + 2, at + 3]]);
-            }
-        }
-        let count = |mesh: TriangleMesh| {
-            let cell = Aabb::new(Point::<3>::new(0.0, 0.0, 0.5), Point::<3>::new(1.0, 1.0, 1.5));
-            let rule = FacetBody { mesh }.rule(&cell, &Integration::Exact { points: None }, 2);
-            let lid: Vec<&BoundaryPoint<3>> = rule.boundary.iter().filter(|p| p.normal[2] > 0.9).collect();
-            let area: f64 = lid.iter().map(|p| p.weight).sum();
-            assert!((area - 1.0).abs() < 1e-12, "{area}");
-            lid.len()
-        };
-        let [fine, coarse] = [TriangleMesh::new(vertices, &triangles).unwrap(), whole].map(count);
-        // Of each of 288 triangles four, in place of 16.
-        assert!(fine <= 8 * n * n && coarse <= 32, "{fine} {coarse}");
     }
 
     #[test]

@@ -34,10 +34,6 @@ impl System {
     /// # Errors
     /// Places that are not there.
     pub fn accept(&mut self, state: &crate::system::SystemState) -> Result<(), IncrementError> {
-        // Contacts of rigid bodies remember a state as it is found.
-        if self.is_rigid() {
-            return Ok(());
-        }
         let (first, _) = self.numbering();
         let own = self.own(state);
         let at = Bodies { bodies: &self.bodies, states: &state.bodies, first: &first };

@@ -176,7 +176,7 @@ impl<'a> Motion<'a> {
                     friction: -l.friction() / p.weight,
                     status: if slips { Status::Slip } else { Status::Stick },
                     increment: slipped.slip,
-                    slip: self.contacts[contact].memory[site].slip[0] + slipped.path,
+                    slip: slipped_before(self.contacts[contact], site) + slipped.path,
                     utilisation,
                     ..open
                 });
@@ -202,7 +202,7 @@ impl<'a> Motion<'a> {
                 own.stuck = l.point.pair.stuck;
             }
             let slipped = so_far.slipped.get(&(id.contact, id.site)).map_or(0.0, |s| s.path);
-            own.slip = [self.contacts[id.contact].memory[id.site].slip[0] + slipped, 0.0];
+            own.slip = [slipped_before(self.contacts[id.contact], id.site) + slipped, 0.0];
         }
         out
     }
@@ -239,6 +239,12 @@ impl<'a> Motion<'a> {
         let rank = eigen.iter().filter(|v| **v > RANK * eigen.amax()).count();
         rank < m
     }
+}
+
+/// How far a site has slipped in all before the increment.
+fn slipped_before(contact: &Contact, site: usize) -> f64 {
+    let [a, b] = contact.memory[site].slip;
+    a.hypot(b)
 }
 
 impl Contact {

@@ -331,7 +331,7 @@ fn each_mistake_is_told_at_its_place() {
         ("{ mu = \"mu\" }", "{ mu = -0.1 }", "no less than zero", "-0.1"),
         ("space = \"3d\"", "space = \"plane_strain\"", "does not lie in this space", "plane_strain"),
         ("friction.coulomb", "method.mortar = {}\nfriction.coulomb", "has no faces", "method"),
-        ("[\"rope\", \"drum\"]", "[\"drum\", \"drum\"]", "can move", "[contacts.wrap]"),
+        ("[\"rope\", \"drum\"]", "[\"drum\", \"drum\"]", "names `drum` twice", "drum"),
     ];
     for (from, to, message, at) in table {
         let case = example("capstan");

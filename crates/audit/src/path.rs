@@ -102,7 +102,7 @@ fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Findin
     let limit = off + kept + LEFT * size + STORED * now.stored?.abs() + ROUNDING * forces(setting, now);
     let missing = work - stored - dissipated;
     // What is prescribed from the start moves at once too.
-    if at_once && driven && missing.abs() > limit {
+    if at_once && (driven || now.time == before.time) && missing.abs() > limit {
         return None;
     }
     if size == 0.0 || !limit.is_finite() {

@@ -1,6 +1,7 @@
 //! What a system goes on from, as plain numbers: enough for the same digits.
 
-use crate::body::BodyState;
+use crate::body::{BodyState, Contribution, PlaceError};
+use crate::points::Order;
 use crate::system::{System, SystemState};
 use signorini_geometry::Vector;
 
@@ -68,19 +69,23 @@ impl System {
     ///
     /// # Errors
     /// A load that cannot act where it is.
-    pub fn load_resultant(
-        &self,
-        load: usize,
-        state: &SystemState,
-        time: f64,
-    ) -> Result<[Vector<3>; 2], crate::body::PlaceError> {
+    pub fn load_resultant(&self, load: usize, state: &SystemState, time: f64) -> Result<[Vector<3>; 2], PlaceError> {
+        let body = self.loads[load].part.body;
+        let forces = self.load_forces(load, state, time)?;
+        let modes = self.bodies[body].rigid_modes(&state.bodies[body]);
+        let along = |k: usize| forces.iter().zip(&modes[k]).map(|(f, m)| f * m).sum::<f64>();
+        Ok([Vector::<3>::from_fn(|i, _| along(i)), Vector::<3>::from_fn(|i, _| along(3 + i))])
+    }
+
+    /// The force of a load at a time on each unknown of its body.
+    ///
+    /// # Errors
+    /// A load that cannot act where it is.
+    pub fn load_forces(&self, load: usize, state: &SystemState, time: f64) -> Result<Vec<f64>, PlaceError> {
         let load = &self.loads[load];
         let body = &self.bodies[load.part.body];
-        let own = &state.bodies[load.part.body];
-        let mut out = crate::body::Contribution::new(body.unknowns());
-        load.act(body.as_ref(), own, time, crate::points::Order::First, &mut out)?;
-        let modes = body.rigid_modes(own);
-        let along = |k: usize| -out.forces.iter().zip(&modes[k]).map(|(f, m)| f * m).sum::<f64>();
-        Ok([Vector::<3>::from_fn(|i, _| along(i)), Vector::<3>::from_fn(|i, _| along(3 + i))])
+        let mut out = Contribution::new(body.unknowns());
+        load.act(body.as_ref(), &state.bodies[load.part.body], time, Order::First, &mut out)?;
+        Ok(out.forces.into_iter().map(|f| -f).collect())
     }
 }

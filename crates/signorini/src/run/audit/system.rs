@@ -5,7 +5,7 @@ use crate::plan::mechanics::{Kind, MechanicsPlan};
 use crate::plan::planner::Planner;
 use crate::problem::units::LENGTH;
 use crate::problem::{Body as Key, Enforcement, Method, Penalty, Space as Stated};
-use crate::report::StepReport;
+use crate::report::{Carried, StepReport};
 use serde_json::Value;
 use signorini_audit::{
     Acting, Body, Boundary, Carries, Contact, Curve, Finding, Form, Placement, Rigid, Setting, Solid, Space, Stability,
@@ -16,8 +16,8 @@ use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::system::{TimeField, TimedLoad};
 use signorini_mechanics::{
-    BodyFields, BodyState, Contribution, IncrementResult, Load, Order, Sampling, SiteResult, System, SystemState,
-    Unstable, rigid_body,
+    BodyFields, BodyState, Contribution, IncrementResult, Order, Sampling, SiteResult, System, SystemState, Unstable,
+    rigid_body,
 };
 use std::sync::Arc;
 
@@ -152,10 +152,10 @@ fn contacts(plan: &MechanicsPlan) -> Vec<Contact> {
     let contact = |k: usize| {
         let (contact, tested) = (&plan.system.contacts[k], &plan.contacts[k]);
         let bodies = contact.bodies();
-        let carries = match &plan.kinds[bodies[0]] {
-            Kind::Curve { .. } if tested.along_a_curve => Carries::LineLoad,
-            Kind::Curve { .. } | Kind::Rigid { .. } => Carries::Force,
-            Kind::Solid | Kind::Cells => Carries::Traction,
+        let carries = match tested.carries {
+            Carried::LineLoad => Carries::LineLoad,
+            Carried::Force => Carries::Force,
+            Carried::Pressure => Carries::Traction,
         };
         let penalty = problem.contacts.get(contact.name()).and_then(|key| penalty_of(key.method.as_ref()?));
         let wanted =
@@ -227,7 +227,7 @@ fn placements(plan: &MechanicsPlan, setting: &mut Setting, states: &[BodyState])
         out.push(match &plan.kinds[k] {
             Kind::Rigid { centre, .. } => {
                 let pose = rigid_body::Pose::of(state);
-                Placement::Moved(RigidMotion::new(pose.rotation.scaled_axis(), *centre, pose.centre - centre))
+                Placement::Moved(RigidMotion::new(pose.turn, *centre, pose.centre - centre))
             }
             kind => {
                 let fields = body.fields(state);
@@ -331,28 +331,10 @@ fn load_work(system: &System, load: usize, states: [(&SystemState, f64); 2]) -> 
     }
     let step: Vec<f64> = to.iter().zip(from).map(|(a, b)| a - b).collect();
     let power = |k: usize| -> Option<f64> {
-        let mut out = Contribution::new(body.unknowns());
-        act(system, load, ends[k], states[k].1, &mut out)?;
-        Some(-out.forces.iter().zip(&step).map(|(f, s)| f * s).sum::<f64>())
+        let (state, time) = states[k];
+        let forces = system.load_forces(load, state, time).ok()?;
+        Some(forces.iter().zip(&step).map(|(f, s)| f * s).sum())
     };
     let [first, last] = [power(0)?, power(1)?];
     Some([0.5 * (first + last), 0.5 * (last - first).abs()])
-}
-
-/// The forces of a load on the unknowns of its body.
-fn act(system: &System, load: usize, state: &BodyState, time: f64, out: &mut Contribution) -> Option<()> {
-    let load = &system.loads[load];
-    let (body, on) = (&system.bodies[load.part.body], load.part.group.as_deref());
-    let nowhere = Point::<3>::zeros();
-    let mut act = |what: &Load<'_>| body.load(on, what, state, Order::First, out).ok();
-    match &load.load {
-        TimedLoad::BodyForce(f) => act(&Load::BodyForce(&|x| f(x, time))),
-        TimedLoad::Traction(f) => act(&Load::Traction(&|x| f(x, time))),
-        TimedLoad::Pressure(f) => act(&Load::Pressure(&|x| f(x, time))),
-        TimedLoad::Force(f) => act(&Load::Force(f(&nowhere, time))),
-        TimedLoad::Moment(f) => act(&Load::Moment(f(&nowhere, time))),
-        TimedLoad::FollowerMoment(f) => act(&Load::FollowerMoment(f(&nowhere, time))),
-        TimedLoad::Tension(f) => act(&Load::Tension(f(&nowhere, time))),
-        TimedLoad::Springs(k) => act(&Load::Springs(*k)),
-    }
 }

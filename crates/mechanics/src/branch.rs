@@ -194,16 +194,12 @@ impl System {
 
     /// What each unknown is measured by: the size of the bodies, or a radian.
     fn extents(&self) -> Vec<f64> {
-        let (first, count) = self.numbering();
-        let mut out = vec![self.size(); count];
-        for (body, first) in self.bodies.iter().zip(first) {
-            body.spins().iter().flatten().for_each(|s| out[(first + s) as usize] = 1.0);
-        }
-        out
+        let size = self.size();
+        self.is_spin().into_iter().map(|turns| if turns { 1.0 } else { size }).collect()
     }
 
     /// The body that moves most, and how: its unknowns, the largest of size 1.
-    fn most_moved(&self, direction: &[f64]) -> (usize, Vec<f64>) {
+    pub(crate) fn most_moved(&self, direction: &[f64]) -> (usize, Vec<f64>) {
         let (first, _) = self.numbering();
         let sizes = self.extents();
         let most = |range: &std::ops::Range<usize>| {
@@ -241,11 +237,7 @@ impl Problem<'_> {
         let (mut before, mut most) = (0.0, 0.0f64);
         let mut is_back = false;
         for _ in 0..MOST_STEPS {
-            self.springs = springs;
-            let held = SystemState { travel: vec![0.0; total.len()], ..state.clone() };
-            let found = self.solve(&held, report);
-            self.springs = 0.0;
-            match found {
+            match self.held_step(springs, &state, report) {
                 Ok(found) => {
                     let moved = norm(&found.state.travel) * springs;
                     total.iter_mut().zip(&found.state.travel).for_each(|(t, s)| *t += s);

@@ -57,6 +57,13 @@ pub(crate) struct Problem<'a> {
     pub(crate) worst: usize,
 }
 
+/// What is told of a body that went so many sizes, if rounding of its position spoils its shape by more than forces may lack.
+pub(crate) fn carried_away(body: &str, away: f64) -> Option<String> {
+    (away * f64::EPSILON > TOLERANCE).then(|| {
+        format!(": `{body}` was carried away, {away:.0e} times the size of all bodies: does anything hold it?")
+    })
+}
+
 impl Problem<'_> {
     pub(crate) fn solve(
         &mut self,
@@ -93,10 +100,7 @@ impl Problem<'_> {
         let moved = |k: &usize| if self.is_spin[*k] { 0.0 } else { at.travel[*k].abs() };
         let farthest = (0..self.is_spin.len()).max_by(|a, b| moved(a).total_cmp(&moved(b)))?;
         let away = moved(&farthest) / self.system.size();
-        let (body, _) = self.body_of(farthest)?;
-        (away * f64::EPSILON > TOLERANCE).then(|| {
-            format!(": `{body}` was carried away, {away:.0e} times the size of all bodies: does anything hold it?")
-        })
+        carried_away(self.body_of(farthest)?.0, away)
     }
 
     /// Measures residuals by the tangent of a state: further ones may be anywhere.
@@ -275,7 +279,7 @@ impl Equations for Problem<'_> {
         }
         let size = self.system.size();
         let lacks = |h: &crate::system::Held| h.constraint.lack.abs() > ROUNDING * size;
-        self.system.held(at, self.time).is_ok_and(|(single, coupled)| single.iter().chain(&coupled).any(lacks))
+        self.system.held(&at.bodies, self.time).is_ok_and(|(single, coupled)| single.iter().chain(&coupled).any(lacks))
     }
 
     fn slope(&mut self, at: &SystemState, step: &[f64]) -> Result<f64, IncrementError> {

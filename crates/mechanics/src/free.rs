@@ -1,6 +1,6 @@
 //! Which body is free to move, and what lacked most where nothing was found.
 
-use crate::body::Contribution;
+use crate::body::{Body, BodyState, Contribution};
 use crate::equilibrium::Problem;
 use crate::increment_error::IncrementError;
 use crate::linear_solver::Stiffness;
@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 use signorini_geometry::Vector;
 
 /// A body that went so many sizes away, or turned so often, is not held.
-const AWAY: f64 = 10.0;
+pub(crate) const AWAY: f64 = 10.0;
 /// A free body that moves by more of its size, or turns by more radians, is followed in smaller steps.
 const LEAP: f64 = 0.5;
 
@@ -75,7 +75,7 @@ impl System {
             }
         }
         let mut held = DMatrix::zeros(basis.len(), basis.len());
-        let (single, coupled) = self.held(&at, 0.0)?;
+        let (single, coupled) = self.held(&at.bodies, 0.0)?;
         for terms in single.iter().chain(&coupled).map(|held| &held.constraint.terms) {
             let size: f64 = terms.iter().map(|t| t.1 * t.1).sum();
             let own =
@@ -102,6 +102,26 @@ impl System {
         let least = held.symmetric_eigenvalues().min();
         Ok((least <= nothing).then(|| "a turn about some axis".to_string()))
     }
+}
+
+/// In words, how a body moves in a step of its unknowns: along the mean of its translation, or about that of its spins.
+pub(crate) fn motion_in_words(
+    (body, state): (&dyn Body, &BodyState),
+    (step, is_spin): (&[f64], &[bool]),
+    turns: bool,
+) -> String {
+    let modes = body.rigid_modes(state);
+    let along = |mode: &[f64]| {
+        let kept = (0..step.len()).filter(|k| is_spin[*k] == turns);
+        let [product, square] = kept.fold([0.0; 2], |[p, s], k| [p + mode[k] * step[k], s + mode[k] * mode[k]]);
+        if square > 0.0 { product / square } else { 0.0 }
+    };
+    let part = if turns { &modes[3..] } else { &modes[..3] };
+    let direction = Vector::<3>::from_fn(|i, _| along(&part[i]));
+    // What is rounded to zero has no sign.
+    let d = direction.try_normalize(0.0).unwrap_or_default().map(|c| if c.abs() < 5e-4 { 0.0 } else { c });
+    let kind = if turns { "turning about" } else { "moving along" };
+    format!("{kind} ({:.3}, {:.3}, {:.3})", d[0], d[1], d[2])
 }
 
 impl Problem<'_> {
@@ -133,7 +153,7 @@ impl Problem<'_> {
             self.system.bodies[body].is_rigid()
                 && lack > 0.5 * LEAP * if h.constraint.component < 3 { size } else { 1.0 }
         };
-        self.system.held(at, self.time).is_ok_and(|(single, coupled)| single.iter().chain(&coupled).any(lacks))
+        self.system.held(&at.bodies, self.time).is_ok_and(|(single, coupled)| single.iter().chain(&coupled).any(lacks))
     }
 
     /// The body that moved farthest, and how.
@@ -145,20 +165,9 @@ impl Problem<'_> {
         let (first, _) = self.system.numbering();
         let Some(k) = first.iter().rposition(|f| *f as usize <= unknown) else { return IncrementError::Interrupted };
         let body = &self.system.bodies[k];
-        let travel = &at.travel[first[k] as usize..first[k] as usize + body.unknowns()];
-        let modes = body.rigid_modes(&at.bodies[k]);
-        let along = |mode: &Vec<f64>| {
-            let square: f64 = mode.iter().map(|m| m * m).sum();
-            let product: f64 = mode.iter().zip(travel).map(|(m, t)| m * t).sum();
-            if square > 0.0 { product / square } else { 0.0 }
-        };
-        let turns = self.is_spin[unknown];
-        let part = if turns { &modes[3..] } else { &modes[..3] };
-        let direction = Vector::<3>::from_fn(|i, _| along(&part[i]));
-        // What is rounded to zero has no sign.
-        let d = direction.try_normalize(0.0).unwrap_or_default().map(|c| if c.abs() < 5e-4 { 0.0 } else { c });
-        let kind = if turns { "turning about" } else { "moving along" };
-        let motion = format!("{kind} ({:.3}, {:.3}, {:.3})", d[0], d[1], d[2]);
+        let own = first[k] as usize..first[k] as usize + body.unknowns();
+        let (travel, is_spin) = (&at.travel[own.clone()], &self.is_spin[own]);
+        let motion = motion_in_words((body.as_ref(), &at.bodies[k]), (travel, is_spin), self.is_spin[unknown]);
         IncrementError::Free { body: body.name().to_string(), motion }
     }
 

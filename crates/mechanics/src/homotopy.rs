@@ -1,8 +1,7 @@
 //! Other ways to the same state, where Newton's method does not find it from the last one.
 //!
 //! What is out of balance may be let go bit by bit. A body that nothing but contact holds has no stiffness until it
-//! touches: weak springs hold all bodies where they were and are taken back step by step; what they still carried in the
-//! end shows what holds nothing.
+//! touches: it is followed in pseudo-time, held by springs to where it was a step before, until it is at rest or far away.
 
 use crate::equilibrium::Problem;
 use crate::increment::is_curable;
@@ -57,6 +56,20 @@ impl Problem<'_> {
         }
     }
 
+    /// A solve that springs hold to a state: an implicit step of a motion without inertia. Its travel counts from there.
+    pub(crate) fn held_step(
+        &mut self,
+        springs: f64,
+        from: &SystemState,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<Converged<SystemState>, IncrementError> {
+        self.springs = springs;
+        let held = SystemState { travel: vec![0.0; from.travel.len()], ..from.clone() };
+        let found = self.solve(&held, report);
+        self.springs = 0.0;
+        found
+    }
+
     /// Follows the bodies to rest in pseudo-time: each solve is held by springs to the state that the last one found, weaker after a
     /// success and stiffer after a failure: implicit steps of a motion without inertia (proximal point method, Rockafellar
     /// 1976; Kelley & Keyes 1998). In the end nothing is left of the springs.
@@ -72,13 +85,11 @@ impl Problem<'_> {
         let mut total = vec![0.0; start.travel.len()];
         let mut factor = STIFFEST;
         for _ in 0..MOST_STEPS {
-            self.springs = if factor >= SOFTEST { factor * unit } else { 0.0 };
-            let held = SystemState { travel: vec![0.0; total.len()], ..state.clone() };
-            let found = self.solve(&held, report);
-            let ends = std::mem::replace(&mut self.springs, 0.0) == 0.0;
+            let ends = factor < SOFTEST;
+            let found = self.held_step(if ends { 0.0 } else { factor * unit }, &state, report);
             match found {
                 // A body that leaps is not followed.
-                Ok(found) if self.leaps(&held, &found.state) => factor = factor.max(SOFTEST) / WEAKER,
+                Ok(found) if self.leaps(&state, &found.state) => factor = factor.max(SOFTEST) / WEAKER,
                 Ok(mut found) => {
                     total.iter_mut().zip(&found.state.travel).for_each(|(t, s)| *t += s);
                     found.state.travel.clone_from(&total);

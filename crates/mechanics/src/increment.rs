@@ -38,8 +38,6 @@ pub struct IncrementResult {
     pub solved: Solved,
     /// Of rigid bodies: whether other contact forces would balance the loads as well.
     pub is_indeterminate: bool,
-    /// Of rigid bodies: how often an unstable state was left on the way.
-    pub left_unstable: usize,
     /// None of systems that cannot be unstable, or whose tangent is never factorised.
     pub stability: Option<Stability>,
 }
@@ -278,11 +276,6 @@ impl System {
         solved: &mut Solved,
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
-        let (first, count) = self.numbering();
-        let mut is_spin = vec![false; count];
-        for (body, first) in self.bodies.iter().zip(first) {
-            body.spins().iter().flatten().for_each(|s| is_spin[(first + s) as usize] = true);
-        }
         let rows = self.contacts.iter().flat_map(|c| c.rows()).collect();
         let iterates = self.is_iterative(start)?;
         let mut problem = Problem {
@@ -297,7 +290,7 @@ impl System {
             metric: Vec::new(),
             goes_down: matches!(way, Way::Down),
             held_back: None,
-            is_spin,
+            is_spin: self.is_spin(),
             rows,
             scales: Vec::new(),
             first: None,

@@ -17,7 +17,7 @@ impl System {
         self.contacts.iter_mut().for_each(|contact| contact.prepare(&self.bodies, scale));
         // What cannot move carries nothing: supports carry there, and what the contact would carry is not determined.
         let start = self.start();
-        let (single, _) = self.held(&start, 0.0).map_err(IncrementError::Assembly)?;
+        let (single, _) = self.held(&start.bodies, 0.0).map_err(IncrementError::Assembly)?;
         let (first, count) = self.numbering();
         let mut held = vec![false; count];
         single.iter().for_each(|h| held[h.constraint.terms[0].0 as usize] = true);

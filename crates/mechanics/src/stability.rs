@@ -240,14 +240,11 @@ struct Eigenpair {
 
 impl Pencil {
     fn new(system: &System, out: Assembled) -> Self {
-        let (first, count) = system.numbering();
+        let (_, count) = system.numbering();
         let size = out.residual.len() - out.coupled.len();
         let multipliers = size - count;
         let admissible = Admissible::new(size, &out.single, &out.coupled);
-        let mut is_spin = vec![false; count];
-        for (body, first) in system.bodies.iter().zip(first) {
-            body.spins().iter().flatten().for_each(|s| is_spin[(first + s) as usize] = true);
-        }
+        let is_spin = system.is_spin();
         let whole = out.tangent.matrix(out.residual.len());
         let rows = whole.row_sizes();
         // Multipliers that give way act by a part of themselves, their equations by the whole gap: scaled, both are the same.

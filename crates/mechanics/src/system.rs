@@ -171,6 +171,16 @@ impl System {
         (first, count)
     }
 
+    /// Which unknowns of the bodies are spins.
+    pub(crate) fn is_spin(&self) -> Vec<bool> {
+        let (first, count) = self.numbering();
+        let mut out = vec![false; count];
+        for (body, first) in self.bodies.iter().zip(first) {
+            body.spins().iter().flatten().for_each(|s| out[(first + s) as usize] = true);
+        }
+        out
+    }
+
     /// The largest extent of a body.
     pub fn size(&self) -> f64 {
         self.bodies.iter().map(|b| b.size()).fold(0.0, f64::max)
@@ -210,13 +220,13 @@ impl System {
     }
 
     /// The equations of all supports.
-    pub(crate) fn held(&self, state: &SystemState, time: f64) -> Result<(Vec<Held>, Vec<Held>), AssemblyError> {
+    pub(crate) fn held(&self, bodies: &[BodyState], time: f64) -> Result<(Vec<Held>, Vec<Held>), AssemblyError> {
         let (first, count) = self.numbering();
         let mut by_unknown: Vec<Option<usize>> = vec![None; count];
         let (mut single, mut coupled): (Vec<Held>, Vec<Held>) = (Vec::new(), Vec::new());
         for (number, support) in self.supports.iter().enumerate() {
             let body = &self.bodies[support.part.body];
-            let (on, own) = (support.part.group.as_deref(), &state.bodies[support.part.body]);
+            let (on, own) = (support.part.group.as_deref(), &bodies[support.part.body]);
             let list = support.at(time, |hold| body.hold(on, hold, own))?;
             for mut constraint in list {
                 constraint.terms.iter_mut().for_each(|t| t.0 += first[support.part.body]);
@@ -294,7 +304,7 @@ impl System {
     ) -> Result<Assembled, AssemblyError> {
         let (first, count) = self.numbering();
         let multipliers = state.multipliers.len();
-        let (single, coupled) = self.held(state, time)?;
+        let (single, coupled) = self.held(&state.bodies, time)?;
         let size = count + multipliers + coupled.len();
         let mut residual = vec![0.0; size];
         let mut sizes = vec![0.0; size];

@@ -1,20 +1,20 @@
 //! From one state of rest to the next.
 
 use super::motion::{FIRST, LONGEST, Motion, SHORTEST, Stepped};
-use super::touching::{Id, Twists, twists};
+use super::stability::Leaving;
+use super::touching::{Id, along, twists};
+use crate::equilibrium::carried_away;
+use crate::free::{AWAY, motion_in_words};
 use crate::increment_error::IncrementError;
+use crate::stability::{Stability, Unstable};
 use crate::system::{AssemblyError, SystemState};
 use signorini_geometry::Vector;
 use std::collections::BTreeMap;
 
 /// The force that still moves bodies, relative to the loads, with which they rest.
 const RESTS: f64 = 1e-12;
-/// Rounding of positions, relative to the sizes, beyond which a state is no answer.
-const ROUNDED: f64 = 1e-10;
 /// Steps on one leg of an increment.
 const MOST_STEPS: usize = 2000;
-/// A body that has gone so many sizes, or turned so often, is not held.
-const AWAY: f64 = 10.0;
 /// Longer and shorter pseudo-times, and the part of the longest step below which they may be longer.
 const LONGER: f64 = 4.0;
 const SHORTER: f64 = 0.25;
@@ -44,8 +44,8 @@ pub struct SoFar {
     pub travel: Vec<f64>,
     pub iterations: usize,
     pub history: Vec<f64>,
-    /// How often an unstable state was left.
-    pub disturbances: usize,
+    /// Unstable states that were met, and left.
+    pub stability: Stability,
 }
 
 impl SoFar {
@@ -96,7 +96,7 @@ impl<'a, 'b> Increment<'a, 'b> {
             way += moved.iter().flatten().map(far).fold(0.0, f64::max);
             state = next;
         }
-        let (single, coupled) = self.motion.held(&from.bodies, time)?;
+        let (single, coupled) = self.motion.system.held(&from.bodies, time)?;
         for held in single.iter().chain(&coupled) {
             let (unknown, factor) = held.constraint.terms[0];
             way = way.max(self.motion.relative(unknown as usize, held.constraint.lack / factor));
@@ -117,7 +117,7 @@ impl<'a, 'b> Increment<'a, 'b> {
     fn leg(&mut self, state: &mut SystemState, to: f64, depth: usize) -> Result<Stepped<'a>, IncrementError> {
         let target = self.prescribed(state, to);
         let moved = twists(self.motion.bodies_of(&state.bodies), state, &target);
-        let still: Twists = moved.iter().map(|t| t.map(|_| [Vector::<3>::zeros(); 2])).collect();
+        let still = twists(self.motion.bodies_of(&state.bodies), state, state);
         let mut drives = moved != still || self.motion.is_pulled(&state.bodies, to)?;
         if !drives {
             *state = target.clone();
@@ -187,11 +187,8 @@ impl<'a, 'b> Increment<'a, 'b> {
             ((c - a).norm() / self.motion.size, b.name())
         });
         let (away, name) = away.max_by(|a, b| a.0.total_cmp(&b.0))?;
-        (away * f64::EPSILON > ROUNDED).then(|| {
-            let told =
-                format!(": `{name}` was carried away, {away:.0e} times the size of all bodies: does anything hold it?");
-            IncrementError::NotConverged { history: vec![f64::INFINITY], worst: Some(told) }
-        })
+        let told = carried_away(name, away)?;
+        Some(IncrementError::NotConverged { history: vec![f64::INFINITY], worst: Some(told) })
     }
 
     fn lost(&self) -> IncrementError {
@@ -223,18 +220,27 @@ impl<'a, 'b> Increment<'a, 'b> {
 
     /// Whether a state is unstable, and was left for that.
     fn leave(&mut self, state: &mut SystemState, found: &Stepped<'_>, time: f64) -> Result<bool, IncrementError> {
-        if self.so_far.disturbances == MOST_DISTURBANCES {
+        let told = &mut self.so_far.stability;
+        told.negative_eigenvalues = 0;
+        let Some(Leaving { negative, direction }) = self.motion.unstable(&state.bodies, found, time)? else {
+            return Ok(false);
+        };
+        told.negative_eigenvalues = negative;
+        let (body, own) = self.motion.system.most_moved(&direction);
+        if told.body.is_none() {
+            (told.body, told.direction) = (Some(body), own);
+        }
+        if self.motion.system.unstable == Unstable::Tell {
             return Ok(false);
         }
-        let Some(direction) = self.motion.unstable(&state.bodies, found, time)? else { return Ok(false) };
+        if told.followed == MOST_DISTURBANCES {
+            let body = self.motion.system.bodies[body].name().to_string();
+            return Err(IncrementError::Unstable { body, negative_eigenvalues: negative });
+        }
+        told.followed += 1;
         let moved: Vec<f64> = direction.iter().map(|d| DISTURBED * d).collect();
         let at = self.motion.bodies_of(&state.bodies);
-        let still: Twists = (0..state.bodies.len())
-            .map(|k| (at.bodies[k].unknowns() == 0).then(|| [Vector::<3>::zeros(); 2]))
-            .collect();
-        let bodies = super::touching::along(at, state, (&moved, &still), 1.0);
-        state.bodies = bodies;
-        self.so_far.disturbances += 1;
+        state.bodies = along(at, state, (&moved, &twists(at, state, state)), 1.0);
         Ok(true)
     }
 
@@ -250,22 +256,9 @@ impl<'a, 'b> Increment<'a, 'b> {
         let bodies = &self.motion.system.bodies;
         let k =
             (0..bodies.len()).rev().find(|k| self.motion.first[*k] as usize <= unknown && bodies[*k].unknowns() > 0)?;
-        let first = self.motion.first[k] as usize;
-        let own = &travel[first..first + bodies[k].unknowns()];
-        let modes = bodies[k].rigid_modes(&state.bodies[k]);
-        let along = |mode: &Vec<f64>, turns: bool| {
-            let kept = |i: &usize| self.motion.turns[first + i] == turns;
-            let product: f64 = (0..own.len()).filter(kept).map(|i| mode[i] * own[i]).sum();
-            let square: f64 = (0..own.len()).filter(kept).map(|i| mode[i] * mode[i]).sum();
-            if square > 0.0 { product / square } else { 0.0 }
-        };
-        let turns = self.motion.turns[unknown];
-        let part = if turns { &modes[3..] } else { &modes[..3] };
-        let direction = Vector::<3>::from_fn(|i, _| along(&part[i], turns)).normalize();
-        // What is rounded to zero has no sign.
-        let d = direction.map(|c| if c.abs() < 5e-4 { 0.0 } else { c });
-        let kind = if turns { "turning about" } else { "moving along" };
-        let motion = format!("{kind} ({:.3}, {:.3}, {:.3})", d[0], d[1], d[2]);
+        let own = self.motion.first[k] as usize..self.motion.first[k] as usize + bodies[k].unknowns();
+        let (step, turns) = (&travel[own.clone()], &self.motion.turns[own]);
+        let motion = motion_in_words((bodies[k].as_ref(), &state.bodies[k]), (step, turns), self.motion.turns[unknown]);
         Some(IncrementError::Free { body: bodies[k].name().to_string(), motion })
     }
 }

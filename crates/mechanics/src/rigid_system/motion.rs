@@ -136,14 +136,8 @@ impl<'a> Motion<'a> {
         Ok(out)
     }
 
-    /// Supports at a time.
-    pub fn held(&self, bodies: &[BodyState], time: f64) -> Result<(Vec<Held>, Vec<Held>), AssemblyError> {
-        let state = SystemState { bodies: bodies.to_vec(), ..SystemState::default() };
-        self.system.held(&state, time)
-    }
-
     /// Rows of points and of supports that couple unknowns, with their blocks.
-    pub fn rows<'b>(&self, points: &[Touching<'b>], coupled: &[Held]) -> (Vec<Block<'b>>, DMatrix<f64>) {
+    pub fn rows<'b>(&self, points: &[&Touching<'b>], coupled: &[Held]) -> (Vec<Block<'b>>, DMatrix<f64>) {
         let mut blocks = Vec::new();
         let mut count = 0;
         for p in points {
@@ -182,25 +176,41 @@ impl<'a> Motion<'a> {
         (&out + out.transpose()) * 0.5
     }
 
-    /// The slips of a step by point, along the way: by the rule of Simpson where the place is known all along.
-    fn slips(&self, from: &SystemState, (step, twists): (&[f64], &Twists), points: &[Touching<'_>]) -> Vec<Vector<3>> {
-        let ids: BTreeSet<Id> = points.iter().filter(|p| p.law.is_some()).map(|p| p.id).collect();
-        let at = |share: f64| -> BTreeMap<Id, Vector<3>> {
-            if ids.is_empty() {
-                return BTreeMap::new();
-            }
-            let own = self.bodies_of(&from.bodies);
-            let bodies = along(own, from, (step, twists), share);
-            let wanted = |id: Id, _: f64| ids.contains(&id) && id.place == 0;
-            let found = touching(&self.contacts, self.bodies_of(&bodies), twists, Order::First, &wanted);
-            found.into_iter().map(|p| (p.id, p.slip_of(step))).collect()
-        };
-        let (start, middle) = (at(0.0), at(0.5));
+    /// The points of some contacts with friction at a share of a step.
+    fn rubbing(
+        &self,
+        from: &SystemState,
+        (step, twists): (&[f64], &Twists),
+        (share, ids): (f64, &BTreeSet<Id>),
+    ) -> BTreeMap<Id, Touching<'a>> {
+        if ids.is_empty() {
+            return BTreeMap::new();
+        }
+        let bodies = along(self.bodies_of(&from.bodies), from, (step, twists), share);
+        let wanted = |id: Id, _: f64| ids.contains(&id);
+        let found = touching(&self.contacts, self.bodies_of(&bodies), twists, Order::First, &wanted);
+        found.into_iter().map(|p| (p.id, p)).collect()
+    }
+
+    /// The slips of a step by point, along the way: by the rule of Simpson where the place is known all along. `start` keeps the
+    /// points of the state before, which are the same for all iterates.
+    fn slips(
+        &self,
+        from: &SystemState,
+        way: (&[f64], &Twists),
+        points: &[Touching<'_>],
+        start: &mut BTreeMap<Id, Touching<'a>>,
+    ) -> Vec<Vector<3>> {
+        let (step, _) = way;
+        let ids: BTreeSet<Id> = points.iter().filter(|p| p.law.is_some() && p.id.place == 0).map(|p| p.id).collect();
+        let unknown = ids.iter().filter(|id| !start.contains_key(id)).copied().collect();
+        start.extend(self.rubbing(from, way, (0.0, &unknown)));
+        let middle = self.rubbing(from, way, (0.5, &ids));
         (points.iter())
             .map(|p| {
                 let end = p.slip_of(step);
                 let slip = match (start.get(&p.id), middle.get(&p.id)) {
-                    (Some(a), Some(b)) => (a + b * 4.0 + end) / 6.0,
+                    (Some(a), Some(b)) => (a.slip_of(step) + b.slip_of(step) * 4.0 + end) / 6.0,
                     _ => end,
                 };
                 slip - p.pair.normal * p.pair.normal.dot(&slip)
@@ -220,6 +230,7 @@ impl<'a> Motion<'a> {
         let mut step = vec![0.0; n];
         let mut forces = guess.clone();
         let mut seen: BTreeSet<Id> = guess.iter().filter(|(_, f)| f[0] > 0.0).map(|(id, _)| *id).collect();
+        let mut start = BTreeMap::new();
         let mut before = f64::INFINITY;
         for iteration in 1..=MOST_ITERATIONS {
             let bodies = along(self.bodies_of(&from.bodies), from, (&step, twists), 1.0);
@@ -227,10 +238,10 @@ impl<'a> Motion<'a> {
             let wanted = |id: Id, gap: f64| gap < NEAR * self.size || seen.contains(&id);
             let points = touching(&self.contacts, now, twists, Order::Second, &wanted);
             seen.extend(points.iter().map(|p| p.id));
-            let slips = self.slips(from, (&step, twists), &points);
+            let slips = self.slips(from, (&step, twists), &points, &mut start);
             let loads = self.loads(&bodies, time)?;
-            let (single, coupled) = self.held(&bodies, time)?;
-            let (blocks, rows) = self.rows(&points, &coupled);
+            let (single, coupled) = self.system.held(&bodies, time)?;
+            let (blocks, rows) = self.rows(&points.iter().collect::<Vec<_>>(), &coupled);
 
             let mut matrix = loads.stiffness;
             resisting(&mut matrix);
@@ -238,11 +249,7 @@ impl<'a> Motion<'a> {
                 let Some(force) = forces.get(&p.id) else { continue };
                 let mut own = self.geometric(p, force);
                 resisting(&mut own);
-                for (i, row) in p.pair.unknowns.iter().enumerate() {
-                    for (j, column) in p.pair.unknowns.iter().enumerate() {
-                        matrix[(*row as usize, *column as usize)] += own[(i, j)];
-                    }
-                }
+                p.add_to(&mut matrix, &own);
             }
             let mut right = DVector::from_column_slice(&loads.forces);
             for k in 0..n {
@@ -317,7 +324,7 @@ impl<'a> Motion<'a> {
         let still: Twists = vec![None; bodies.len()];
         let touches = TOUCHES * self.size;
         let points = touching(&self.contacts, self.bodies_of(bodies), &still, Order::Second, &|_, gap| gap <= touches);
-        let (single, coupled) = self.held(bodies, time)?;
+        let (single, coupled) = self.system.held(bodies, time)?;
         let lacks = |h: &Held| h.constraint.lack.abs() > touches;
         if points.iter().any(|p| p.pair.gap < -touches) || single.iter().chain(&coupled).any(lacks) {
             return Ok(None);
@@ -325,7 +332,7 @@ impl<'a> Motion<'a> {
         let mut is_free = vec![true; n];
         single.iter().for_each(|h| is_free[h.constraint.terms[0].0 as usize] = false);
         let free: Vec<usize> = (0..n).filter(|k| is_free[*k]).collect();
-        let (blocks, rows) = self.rows(&points, &coupled);
+        let (blocks, rows) = self.rows(&points.iter().collect::<Vec<_>>(), &coupled);
         // Forces and moments in one unit.
         let unit = |k: usize| (self.metric(k) * self.size / self.load).sqrt().recip();
         let scale = DMatrix::from_diagonal(&DVector::from_iterator(free.len(), free.iter().map(|k| unit(*k))));

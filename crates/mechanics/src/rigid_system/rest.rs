@@ -98,7 +98,7 @@ impl<'a> Balance<'a> {
 fn in_cones(blocks: &[Block<'_>], r: &DVector<f64>) -> DVector<f64> {
     let mut out = r.clone();
     for b in blocks {
-        let Kind::Contact { law, weight } = b.kind else { continue };
+        let Kind::Contact { law, .. } = b.kind else { continue };
         let normal = r[b.first];
         let Some(law) = law.filter(|_| b.rows > 1) else {
             out[b.first] = normal.max(0.0);
@@ -108,7 +108,6 @@ fn in_cones(blocks: &[Block<'_>], r: &DVector<f64>) -> DVector<f64> {
         if law.per_pressure().is_none() {
             let found = b.project([normal, r[b.first + 1], if b.rows > 2 { r[b.first + 2] } else { 0.0 }]);
             (0..b.rows).for_each(|k| out[b.first + k] = found.force[k]);
-            let _ = weight;
             continue;
         }
         let across = (1..b.rows).map(|k| r[b.first + k].powi(2)).sum::<f64>().sqrt();

@@ -1,12 +1,12 @@
 //! What is told of rigid bodies at rest, and what their contacts remember.
 
+use super::complementarity::Block;
 use super::increment::SoFar;
 use super::motion::{Loaded, Motion, Stepped};
 use super::touching::{Twists, touching};
 use crate::body::BodyState;
 use crate::contact::{Contact, SiteMemory};
 use crate::increment::IncrementResult;
-use crate::interaction::Interaction;
 use crate::points::Order;
 use crate::site_result::SiteResult;
 use crate::system::{AssemblyError, Held, System, SystemState};
@@ -85,7 +85,7 @@ impl<'a> Motion<'a> {
     /// # Errors
     /// Supports that cannot act.
     pub fn is_pulled(&self, bodies: &[BodyState], time: f64) -> Result<bool, AssemblyError> {
-        let (single, coupled) = self.held(bodies, time)?;
+        let (single, coupled) = self.system.held(bodies, time)?;
         let lacks = |h: &Held| {
             let (unknown, factor) = h.constraint.terms[0];
             self.relative(unknown as usize, h.constraint.lack / factor) > 1e-12
@@ -117,7 +117,7 @@ impl<'a> Motion<'a> {
                 sizes[*unknown as usize] += force.abs();
             }
         }
-        let (single, coupled) = self.held(&state.bodies, time)?;
+        let (single, coupled) = self.system.held(&state.bodies, time)?;
         let mut support_forces = vec![[Vector::<3>::zeros(); 2]; self.system.supports.len()];
         for (held, reaction) in coupled.iter().zip(&found.reactions) {
             let component = held.constraint.component;
@@ -141,7 +141,7 @@ impl<'a> Motion<'a> {
             unknowns: sizes.len(),
             imbalance: lacks / most,
             is_indeterminate: self.is_indeterminate(found),
-            left_unstable: so_far.disturbances,
+            stability: Some(so_far.stability.clone()),
             ..IncrementResult::default()
         })
     }
@@ -209,31 +209,18 @@ impl<'a> Motion<'a> {
 
     /// Whether other forces of the points that carry and stick would do as well.
     fn is_indeterminate(&self, found: &Stepped<'_>) -> bool {
-        let inside = |l: &&Loaded<'_>| l.force[0] > 0.0;
         let n = self.turns.len();
-        let mut rows: Vec<Vec<f64>> = Vec::new();
-        for l in found.loaded.iter().filter(inside) {
-            let axes = l.point.slip_axes();
-            let sticks = l.utilisation() < 1.0 - AT_LIMIT;
-            let count = if sticks { l.point.rows() } else { 1 };
-            for k in 0..count {
-                let mut row = vec![0.0; n];
-                for (a, unknown) in l.point.pair.unknowns.iter().enumerate() {
-                    let u = *unknown as usize;
-                    let value = match k {
-                        0 => l.point.pair.opening[a],
-                        k => l.point.axes[axes[k - 1]].dot(&l.point.pair.slip[a]),
-                    };
-                    row[u] += value / if self.turns[u] { self.extent[u] } else { 1.0 };
-                }
-                rows.push(row);
-            }
-        }
+        let carrying: Vec<&Loaded<'_>> = found.loaded.iter().filter(|l| l.force[0] > 0.0).collect();
+        let (blocks, all) = self.rows(&carrying.iter().map(|l| &l.point).collect::<Vec<_>>(), &[]);
+        let sticks = |l: &Loaded<'_>| l.utilisation() < 1.0 - AT_LIMIT;
+        let kept = |(b, l): (&Block<'_>, &&Loaded<'_>)| b.first..b.first + if sticks(l) { b.rows } else { 1 };
+        let rows: Vec<usize> = blocks.iter().zip(&carrying).flat_map(kept).collect();
         let m = rows.len();
         if m == 0 {
             return false;
         }
-        let rows = DMatrix::from_fn(m, n, |i, j| rows[i][j]);
+        let arm = |k: usize| if self.turns[k] { self.extent[k] } else { 1.0 };
+        let rows = DMatrix::from_fn(m, n, |i, j| all[(rows[i], j)] / arm(j));
         let gram = if m < n { &rows * rows.transpose() } else { rows.tr_mul(&rows) };
         let eigen = gram.symmetric_eigenvalues();
         let rank = eigen.iter().filter(|v| **v > RANK * eigen.amax()).count();
@@ -250,6 +237,6 @@ fn slipped_before(contact: &Contact, site: usize) -> f64 {
 impl Contact {
     /// The values of its own unknowns that are remembered so.
     pub(super) fn values(&self, memory: &[SiteMemory]) -> Vec<f64> {
-        memory.iter().flat_map(|m| m.traction[..self.rows().len() / memory.len().max(1)].to_vec()).collect()
+        memory.iter().flat_map(|m| m.traction[..self.components()].to_vec()).collect()
     }
 }

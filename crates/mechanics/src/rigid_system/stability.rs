@@ -1,6 +1,6 @@
 //! Whether rigid bodies in equilibrium would leave it: the second variation of the energy on the motions that contacts leave.
 
-use super::motion::{Motion, Stepped};
+use super::motion::{Loaded, Motion, Stepped};
 use crate::body::BodyState;
 use crate::system::AssemblyError;
 use nalgebra::{DMatrix, DVector};
@@ -9,10 +9,20 @@ use nalgebra::{DMatrix, DVector};
 const NEUTRAL: f64 = 1e-7;
 /// Eigenvalues relative to the largest that are rounding.
 const RANK: f64 = 1e-10;
+/// Force relative to the largest from which a point carries.
+const CARRIES: f64 = 1e-9;
+
+/// A motion in which an equilibrium is left.
+pub struct Leaving {
+    /// Number of independent ones.
+    pub negative: usize,
+    /// By unknowns, of largest part one in sizes.
+    pub direction: Vec<f64>,
+}
 
 impl Motion<'_> {
-    /// The motion, of largest part one in sizes, in which the bodies leave an equilibrium; none where it is stable or neutral.
-    /// Points that carry neither open nor, with friction, slip.
+    /// The motion in which the bodies leave an equilibrium; none where it is stable or neutral. Points that carry neither open
+    /// nor, with friction, slip.
     ///
     /// # Errors
     /// Loads and supports that cannot act.
@@ -21,48 +31,31 @@ impl Motion<'_> {
         bodies: &[BodyState],
         found: &Stepped<'_>,
         time: f64,
-    ) -> Result<Option<Vec<f64>>, AssemblyError> {
+    ) -> Result<Option<Leaving>, AssemblyError> {
         let n = self.turns.len();
         let most = found.loaded.iter().map(|l| l.force[0]).fold(0.0f64, f64::max);
         if most == 0.0 {
             return Ok(None);
         }
-        let carries = |force: f64| force > 1e-9 * most;
+        let (carrying, light): (Vec<_>, Vec<_>) = found.loaded.iter().partition(|l| l.force[0] > CARRIES * most);
         let mut stiffness = self.loads(bodies, time)?.stiffness;
-        let mut rows: Vec<DVector<f64>> = Vec::new();
-        let mut light: Vec<DVector<f64>> = Vec::new();
-        for l in &found.loaded {
-            let unknowns = &l.point.pair.unknowns;
-            let row = |values: &dyn Fn(usize) -> f64| {
-                let mut out = DVector::zeros(n);
-                unknowns.iter().enumerate().for_each(|(a, u)| out[*u as usize] += values(a));
-                out
-            };
-            let opening = row(&|a| l.point.pair.opening[a]);
-            if !carries(l.force[0]) {
-                light.push(opening);
-                continue;
-            }
-            rows.push(opening);
-            let axes = l.point.slip_axes();
-            (1..l.point.rows()).for_each(|k| rows.push(row(&|a| l.point.axes[axes[k - 1]].dot(&l.point.pair.slip[a]))));
-            let own = self.geometric(&l.point, &l.force);
-            for (i, u) in unknowns.iter().enumerate() {
-                for (j, v) in unknowns.iter().enumerate() {
-                    stiffness[(*u as usize, *v as usize)] += own[(i, j)];
-                }
-            }
+        for l in &carrying {
+            l.point.add_to(&mut stiffness, &self.geometric(&l.point, &l.force));
         }
-        let (single, coupled) = self.held(bodies, time)?;
-        for held in single.iter().chain(&coupled) {
+        let points = |list: &[&Loaded<'_>]| -> DMatrix<f64> {
+            self.rows(&list.iter().map(|l| &l.point).collect::<Vec<_>>(), &[]).1
+        };
+        let (single, coupled) = self.system.held(bodies, time)?;
+        let supports = single.iter().chain(&coupled).map(|held| {
             let mut out = DVector::zeros(n);
             held.constraint.terms.iter().for_each(|(u, f)| out[*u as usize] += f);
-            rows.push(out);
-        }
+            out
+        });
         // In units in which the sizes are one.
         let unit = DVector::from_iterator(n, (0..n).map(|k| if self.turns[k] { 1.0 } else { self.size }));
         let mut gram = DMatrix::<f64>::zeros(n, n);
-        for row in &rows {
+        let of_points = points(&carrying);
+        for row in of_points.row_iter().map(|row| row.transpose()).chain(supports) {
             let row = row.component_mul(&unit);
             let square = row.norm_squared();
             if square > 0.0 {
@@ -77,20 +70,24 @@ impl Motion<'_> {
         let basis = eigen.eigenvectors.select_columns(&free);
         let scaled = DMatrix::from_fn(n, n, |i, j| stiffness[(i, j)] * unit[i] * unit[j]);
         let modes = (basis.transpose() * scaled * &basis).symmetric_eigen();
-        let least = modes.eigenvalues.imin();
-        if modes.eigenvalues[least] >= -NEUTRAL * self.load * self.size {
+        let falls = |value: &f64| *value < -NEUTRAL * self.load * self.size;
+        let negative = modes.eigenvalues.iter().filter(|v| falls(v)).count();
+        if negative == 0 {
             return Ok(None);
         }
-        let mode = &basis * modes.eigenvectors.column(least);
+        let mode = &basis * modes.eigenvectors.column(modes.eigenvalues.imin());
         let mode = mode.component_mul(&unit);
         let largest = (0..n).map(|k| self.relative(k, mode[k])).fold(0.0f64, f64::max);
         let mode = mode / largest;
         // Both ways lead down: the one that closes no gap, and of two the one on the side of a fixed direction.
-        let opens = |d: &DVector<f64>| light.iter().all(|row| row.dot(d) >= -RANK * self.size);
-        let side: f64 = self.side(bodies, &mode);
-        let first = if side < 0.0 { -mode } else { mode };
+        let opening = |d: &DVector<f64>, l: &Loaded<'_>| -> f64 {
+            l.point.pair.unknowns.iter().zip(&l.point.pair.opening).map(|(u, o)| d[*u as usize] * o).sum()
+        };
+        let opens = |d: &DVector<f64>| light.iter().all(|l| opening(d, l) >= -RANK * self.size);
+        let first = if self.side(bodies, &mode) < 0.0 { -mode } else { mode };
         let second = -&first;
-        Ok([first, second].into_iter().find(opens).map(|d| d.as_slice().to_vec()))
+        let direction = [first, second].into_iter().find(opens).map(|d| d.as_slice().to_vec());
+        Ok(direction.map(|direction| Leaving { negative, direction }))
     }
 
     /// Which way a motion goes: its largest displacement along a direction that no problem prefers.

@@ -7,6 +7,7 @@ use crate::increment_error::IncrementError;
 use crate::part::Part;
 use crate::points::Sampling;
 use crate::rigid_body::{Motion, RigidBody};
+use crate::stability::Unstable;
 use crate::system::{PlacedLoad, System, SystemState, TimedLoad};
 use crate::tests::{at_rest, ball, plane, rigid, v};
 use signorini_contact::Coulomb;
@@ -127,9 +128,21 @@ fn an_upright_stack_falls() {
     let walls =
         || vec![floor(), plane(v(-1.2, 0.0, 0.0), v(1.0, 0.0, 0.0)), plane(v(1.2, 0.0, 0.0), v(-1.0, 0.0, 0.0))];
     let (state, found) = solve(system(&stack, true, walls(), &|_| v(0.0, -1.0, 0.0), 0.0)).unwrap();
-    assert!(found.left_unstable > 0);
+    assert!(found.stability.is_some_and(|s| s.followed > 0 && s.negative_eigenvalues == 0));
     // Wedged: centres apart by 0.4 across, 2 in all.
     assert!((centre(&state, 1)[1] - 1.0 - (4.0f64 - 0.16).sqrt()).abs() < 1e-8, "{}", centre(&state, 1));
+}
+
+/// The same stack stays where it is told only.
+#[test]
+fn an_upright_stack_is_told_where_that_is_asked_for() {
+    let stack = [(v(0.0, 1.0, 0.0), 1.0), (v(0.0, 3.0, 0.0), 1.0)];
+    let mut stack = system(&stack, true, vec![floor()], &|_| v(0.0, -1.0, 0.0), 0.0);
+    stack.unstable = Unstable::Tell;
+    let (state, found) = solve(stack).unwrap();
+    assert_eq!(centre(&state, 1), v(0.0, 3.0, 0.0));
+    let told = found.stability.unwrap();
+    assert_eq!((told.negative_eigenvalues, told.followed), (1, 0));
 }
 
 /// A ball in a cone, on a ring and in a tube of its own radius touches along circles.

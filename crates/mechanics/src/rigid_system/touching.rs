@@ -7,6 +7,7 @@ use crate::points::{Met, Order};
 use crate::rigid_body::Pose;
 use crate::rotation;
 use crate::system::SystemState;
+use nalgebra::DMatrix;
 use signorini_contact::Law;
 use signorini_geometry::{Point, Vector};
 
@@ -44,6 +45,15 @@ impl Touching<'_> {
     /// The axis of each row of slip.
     pub fn slip_axes(&self) -> [usize; 2] {
         if self.moves[0] { [0, 1] } else { [1, 1] }
+    }
+
+    /// Adds a matrix of the unknowns of the pair to one of all unknowns.
+    pub fn add_to(&self, whole: &mut DMatrix<f64>, own: &DMatrix<f64>) {
+        for (i, row) in self.pair.unknowns.iter().enumerate() {
+            for (j, column) in self.pair.unknowns.iter().enumerate() {
+                whole[(*row as usize, *column as usize)] += own[(i, j)];
+            }
+        }
     }
 
     /// The slip of a step of all unknowns.

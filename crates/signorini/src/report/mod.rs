@@ -138,7 +138,7 @@ pub struct StepReport {
     pub max_slope: Option<f64>,
     /// Largest principal strain of solids: the theory is that of small strains.
     pub max_strain: Option<f64>,
-    /// Whether the state is stable, of systems whose bodies deform by more than small strains; null for others.
+    /// Whether the state is stable, of systems whose bodies deform by more than small strains, or are all rigid; null for others.
     #[serde(default)]
     pub stability: Option<StabilityReport>,
     /// Sum of all forces, relative to the largest: round-off where all is well.

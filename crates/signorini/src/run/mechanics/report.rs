@@ -356,11 +356,6 @@ pub fn warn(plan: &MechanicsPlan, result: &IncrementResult, shown: &SystemShown,
                        as well; those told are the least in the sum of their squares";
         record.warn_once(Warning::new(WarningKind::NotUnique, message).at_time(time));
     }
-    if result.left_unstable > 0 {
-        let message =
-            format!("the bodies stood in an equilibrium that is not stable at t = {time}, and were followed from it");
-        record.warn_once(Warning::new(WarningKind::Jump, message).at_time(time));
-    }
     if result.lost_sites > 0 {
         let message = format!(
             "{} points are where the nearest point of the other body is not defined, beyond its centre of curvature: \

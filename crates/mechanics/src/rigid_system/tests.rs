@@ -90,8 +90,10 @@ fn three_discs_rest_if_friction_holds_them() {
             for (k, place) in order.iter().enumerate() {
                 assert_eq!(centre(&state, k), places[*place]);
             }
-            let on_floor = |s: &&crate::SiteResult| s.x[1].abs() < 1e-9 && s.pressure > 0.0;
+            let on_floor = |s: &&crate::SiteResult| s.touches_at()[1].abs() < 1e-9 && s.pressure > 0.0;
             for site in found.sites.iter().flatten().filter(on_floor) {
+                // The floor holds the lower discs together.
+                assert!(site.friction[0] * site.x[0] < 0.0, "{site:?}");
                 assert!((site.pressure - 1.5 * unit).abs() < 1e-9 * unit, "{site:?}");
                 assert!((site.friction.norm() - 0.5 * unit * needed).abs() < 1e-9 * unit);
             }

@@ -51,27 +51,32 @@ pub fn check(setting: &Setting, state: &State) -> Vec<Finding> {
             _ => finding.remedy("finite strain, or less load"),
         });
     }
-    for (number, contact) in setting.contacts.iter().enumerate().filter(|(_, c)| c.is_small_sliding) {
+    for (number, _) in setting.contacts.iter().enumerate().filter(|(_, c)| c.is_small_sliding) {
         out.extend(slip(setting, state, number));
-        if let Form::Rigid(rigid) = &setting.bodies[contact.bodies[1]].form
-            && contact.law.is_some()
-            && !rigid.is_free
-            && let Some(size) = cell_size(setting, contact.bodies[0])
-            && state.contacts[number].iter().any(|t| {
-                t.is_closed && !turns_into_itself(rigid, &state.bodies[contact.bodies[1]].motion(), &t.x, size)
-            })
-        {
-            let rotation =
-                nalgebra::Rotation3::from_matrix_unchecked(state.bodies[contact.bodies[1]].motion().rotation);
-            let angle = rotation.angle();
-            let name = &setting.bodies[contact.bodies[1]].name;
-            let outcome = if angle > TURN { Outcome::Refused } else { Outcome::Fine };
-            let message = format!("`{name}` turns by {angle:.3} rad, and the contact is one of small sliding");
-            let finding = Finding::new(Check::Range, outcome, message).measured(angle, TURN).on(&contact.name);
-            out.push(if outcome == Outcome::Fine { finding } else { finding.remedy("sliding = \"finite\"") });
-        }
+        out.extend(rotation(setting, state, number));
     }
     out
+}
+
+/// How far a prescribed body has turned against small sliding, unless it is as it was where it touches.
+fn rotation(setting: &Setting, state: &State, number: usize) -> Option<Finding> {
+    let contact = &setting.contacts[number];
+    let [own, other] = contact.bodies;
+    let (Form::Solid(solid), Form::Rigid(rigid)) = (&setting.bodies[own].form, &setting.bodies[other].form) else {
+        return None;
+    };
+    let motion = state.bodies[other].motion();
+    let is_as_it_was = |x: &Point<3>| turns_into_itself(rigid, &motion, x, solid.largest_cell());
+    let mut closed = state.contacts[number].iter().filter(|t| t.is_closed);
+    if contact.law.is_none() || rigid.is_free || closed.all(|t| is_as_it_was(&t.x)) {
+        return None;
+    }
+    let angle = nalgebra::Rotation3::from_matrix_unchecked(motion.rotation).angle();
+    let outcome = if angle > TURN { Outcome::Refused } else { Outcome::Fine };
+    let message =
+        format!("`{}` turns by {angle:.3} rad, and the contact is one of small sliding", setting.bodies[other].name);
+    let finding = Finding::new(Check::Range, outcome, message).measured(angle, TURN).on(&contact.name);
+    Some(if outcome == Outcome::Fine { finding } else { finding.remedy("sliding = \"finite\"") })
 }
 
 /// The largest principal strain of the cells, its limit, its place, and whether most cells are far beyond the limit.
@@ -115,14 +120,6 @@ fn of_curve(curve: &Curve, points: &[Point<3>]) -> Option<(f64, f64, Point<3>, b
     };
     let most = curve.pieces.iter().map(|p| (strain(p), p)).max_by(|a, b| a.0.total_cmp(&b.0))?;
     Some((most.0, limit, points[most.1[0] as usize], false))
-}
-
-/// The mean size of the cells of a solid.
-fn cell_size(setting: &Setting, body: usize) -> Option<f64> {
-    let Form::Solid(solid) = &setting.bodies[body].form else { return None };
-    let facets = &solid.boundary.points;
-    let sizes: Vec<f64> = facets.iter().filter_map(|p| Some(solid.cell_at(solid.boundary.facet_at(*p)?)[0])).collect();
-    (!sizes.is_empty()).then(|| sizes.iter().sum::<f64>() / sizes.len() as f64)
 }
 
 /// Whether a rigid body that turned about its centre is about a place as if it had not: a body of revolution about its axis.

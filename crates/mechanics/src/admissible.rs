@@ -4,6 +4,7 @@
 //! term by the others (Gauss-Jordan), so that `v = T y` with the unknowns that are left as `y`.
 
 use crate::system::Held;
+use signorini_solve::general::Entries;
 use std::collections::BTreeMap;
 
 /// Term of an equation below which it says the same as those before it, relative to its largest.
@@ -57,6 +58,13 @@ impl Admissible {
             })
             .collect();
         Admissible { rows, columns }
+    }
+
+    /// Adds to `Tᵀ A T` what an entry of `A` is in it.
+    pub fn add(&self, [i, j]: [usize; 2], value: f64, to: &mut Entries) {
+        for (a, of_a) in &self.rows[i] {
+            self.rows[j].iter().for_each(|(b, of_b)| to.add(*a, *b, of_a * of_b * value));
+        }
     }
 
     /// `T y`.

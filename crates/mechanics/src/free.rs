@@ -13,6 +13,8 @@ use signorini_geometry::Vector;
 pub(crate) const AWAY: f64 = 10.0;
 /// A free body that moves by more of its size, or turns by more radians, is followed in smaller steps.
 const LEAP: f64 = 0.5;
+/// Motion of a support, relative to the largest of all, that may draw bodies round one another in one increment.
+const DRIVEN: f64 = 0.1;
 
 /// Share of what holds a body most that rounding leaves of what does not hold it.
 const NOT_HELD: f64 = 1e-10;
@@ -143,6 +145,18 @@ impl Problem<'_> {
             let cosine: f64 = (3..7).map(|i| a[i] * b[i]).sum();
             away > LEAP * body.size() || cosine.abs() < (0.5 * LEAP).cos()
         })
+    }
+
+    /// Whether the straight way between two states leads through a body, though no support moves as far: a state on the
+    /// other side, which Newton's method may find by steps that are far apart.
+    pub(crate) fn passes(&self, from: &SystemState, to: &SystemState) -> bool {
+        let moved = to.travel.iter().zip(&from.travel).zip(&self.is_spin).filter(|(_, turns)| !**turns);
+        let farthest = moved.map(|((b, a), _)| (b - a).abs()).fold(0.0, f64::max);
+        let driven = self.system.held(&from.bodies, self.time).map_or(0.0, |(single, coupled)| {
+            let held = single.iter().chain(&coupled).filter(|h| h.constraint.component < 3);
+            held.map(|h| h.constraint.lack.abs()).fold(0.0, f64::max)
+        });
+        driven < DRIVEN * farthest && self.system.free_way(from, to).is_ok_and(|share| share < 1.0)
     }
 
     /// Whether a support pulls a rigid body.

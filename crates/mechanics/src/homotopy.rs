@@ -44,6 +44,12 @@ impl Problem<'_> {
             let found = self.solve(&state, report);
             self.held_back = None;
             match found {
+                Ok(found) if self.passes(&state, &found.state) => {
+                    if size < LEAST_BIT {
+                        return Err(IncrementError::NotConverged { history: found.history, worst: None });
+                    }
+                    size *= 0.25;
+                }
                 Ok(found) if to == 1.0 => return Ok(found),
                 Ok(found) => {
                     state = found.state;
@@ -89,7 +95,9 @@ impl Problem<'_> {
             let found = self.held_step(if ends { 0.0 } else { factor * unit }, &state, report);
             match found {
                 // A body that leaps is not followed.
-                Ok(found) if self.leaps(&state, &found.state) => factor = factor.max(SOFTEST) / WEAKER,
+                Ok(found) if self.leaps(&state, &found.state) || self.passes(&state, &found.state) => {
+                    factor = factor.max(SOFTEST) / WEAKER
+                }
                 Ok(mut found) => {
                     total.iter_mut().zip(&found.state.travel).for_each(|(t, s)| *t += s);
                     found.state.travel.clone_from(&total);

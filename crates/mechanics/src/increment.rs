@@ -299,8 +299,11 @@ impl System {
         };
         let found = match way {
             Way::Straight => match problem.solve(start, report) {
-                // Newton's method may find a body far away, where it touches nothing.
-                Ok(found) if problem.leaps(start, &found.state) && !problem.is_pulled(start) => {
+                // Newton's method may find a body far away, where it touches nothing, or on the other side of another.
+                Ok(found)
+                    if (problem.leaps(start, &found.state) && !problem.is_pulled(start))
+                        || problem.passes(start, &found.state) =>
+                {
                     let history = found.history;
                     Err(IncrementError::NotConverged { history, worst: None })
                 }

@@ -69,7 +69,8 @@ impl System {
         let (_, count) = self.numbering();
         let acts: f64 = self.assemble(start, time, Order::First)?.sizes[..count].iter().sum();
         let stiffest = self.soften(1.0);
-        let mut share = (SOFT * acts / stiffest).min(1.0);
+        // What is soft would sag through what it is to lie on.
+        let mut share = if self.contacts.is_empty() { (SOFT * acts / stiffest).min(1.0) } else { 1.0 };
         self.soften(share);
         let mut found = self.loosened(start, time, acts, solved, report)?;
         self.bodies.iter_mut().for_each(|body| body.tighten(0.0));

@@ -20,7 +20,6 @@ use signorini_contact::law::Friction;
 use signorini_contact::{Law, Status};
 use signorini_solve::general::{Analysis, Entries, Matrix};
 use signorini_solve::ldlt::Ldlt;
-use signorini_solve::{SolveError, SymmetricMatrix};
 use std::sync::Arc;
 
 /// What is done with a state that is not stable.
@@ -80,10 +79,12 @@ pub(crate) struct UnstableMode {
     pub metric: Vec<f64>,
 }
 
-/// Eigenvalue below which a state is not stable: rounding of free motions makes less.
-const NEUTRAL: f64 = 1e-13;
-/// Eigenvalues of the inverse beyond are those of motions that nothing holds.
-const LIMIT: f64 = 0.1 / NEUTRAL;
+/// Eigenvalues nearer to zero may be those of motions that nothing holds: a state is known to about as much.
+const NEUTRAL: f64 = 1e-9;
+/// No eigenvalue is as large: rows have fewer entries.
+const LARGEST: f64 = 1e3;
+/// An eigenvalue is counted in to this factor before inverse iteration.
+const BRACKET: f64 = 2.0;
 /// Least stiffness of an unknown as a measure, relative to the largest: rounding of what has none stays below
 /// [`NEUTRAL`].
 const SLACK: f64 = 1e-4;
@@ -107,37 +108,29 @@ impl System {
     /// # Errors
     /// Places that are not there.
     pub(crate) fn test_stability(&mut self, at: &SystemState, time: f64) -> Result<Tested, IncrementError> {
-        let out = self.with_given_friction(|system| system.assemble(at, time, Order::Second))?;
-        let pencil = Pencil::new(self, out);
+        let given = self.with_given_friction(|system| system.assemble(at, time, Order::Second))?;
         // A pivot that is zero tells nothing.
-        let Ok(factor) = Ldlt::factor(&pencil.symmetric()) else { return Ok(Tested::Unknown) };
-        let negative = factor.negative_eigenvalues().saturating_sub(pencil.multipliers);
-        if negative == 0 {
+        match Pencil::new(self, &given).below(-NEUTRAL) {
+            None => return Ok(Tested::Unknown),
+            Some(0) => return Ok(Tested::Stable),
+            Some(_) => {}
+        }
+        let pencil = Pencil::new(self, &self.assemble(at, time, Order::Second)?);
+        let toward: Vec<f64> = at.travel.iter().map(|t| -t).collect();
+        let found = if pencil.is_symmetric() {
+            pencil.nearest(-1.0, &toward)
+        } else if self.slips(at)? {
+            // How friction that slips answers to a disturbance depends on which way it goes.
+            None
+        } else {
+            pencil.leftmost(&toward)
+        };
+        let Some(Eigenpair { value, vector, count }) = found else { return Ok(Tested::Unknown) };
+        if value > -NEUTRAL {
             return Ok(Tested::Stable);
         }
-        let pencil = Pencil::new(self, self.assemble(at, time, Order::Second)?);
-        let toward: Vec<f64> = at.travel.iter().map(|t| -t).collect();
-        let found = match pencil.is_symmetric() {
-            true => pencil.nearest_to_zero(&|x| factor.solve(x), &toward, Sign::Negative)?,
-            // How friction that slips answers to a disturbance depends on which way it goes.
-            false if self.slips(at)? => return Ok(Tested::Unknown),
-            false => {
-                let Ok(factor) = Analysis::default().factor(pencil.shifted.clone()) else {
-                    return Ok(Tested::Unknown);
-                };
-                let solve = |x: &mut [f64]| factor.solve(x).map(|found| x.copy_from_slice(&found));
-                match pencil.nearest_to_zero(&solve, &toward, Sign::Negative) {
-                    Ok(found) => found,
-                    Err(_) => return Ok(Tested::Unknown),
-                }
-            }
-        };
-        let Some(Eigenpair { value, vector, count }) = found.filter(|f| f.value < -NEUTRAL) else {
-            return Ok(Tested::Stable);
-        };
-        let negative = if pencil.is_symmetric() { negative } else { count };
         let direction = pencil.admissible.expand(&vector)[..pencil.count].to_vec();
-        Ok(Tested::Unstable(UnstableMode { negative, value, direction, metric: pencil.metric }))
+        Ok(Tested::Unstable(UnstableMode { negative: count, value, direction, metric: pencil.metric }))
     }
 
     /// The eigenvalue that tells how far a state is from the loss of stability: the least of a stable one, the negative one
@@ -151,10 +144,8 @@ impl System {
             Tested::Unstable(mode) => return Ok(Some(mode.value)),
             Tested::Stable => {}
         }
-        let pencil = Pencil::new(self, self.assemble(at, time, Order::Second)?);
-        let Ok(factor) = Ldlt::factor(&pencil.symmetric()) else { return Ok(None) };
-        let found = pencil.nearest_to_zero(&|x| factor.solve(x), &at.travel, Sign::Positive)?;
-        Ok(found.filter(|_| pencil.is_symmetric()).map(|found| found.value))
+        let pencil = Pencil::new(self, &self.assemble(at, time, Order::Second)?);
+        Ok(pencil.is_symmetric().then(|| pencil.nearest(1.0, &at.travel)).flatten().map(|found| found.value))
     }
 
     /// Whether a site of a contact with friction slips.
@@ -220,15 +211,8 @@ struct Pencil {
     count: usize,
     multipliers: usize,
     metric: Vec<f64>,
-    /// `Tᵀ (K + εS) T`: what is free to move does not count.
-    shifted: Matrix,
-}
-
-/// Which eigenvalues are looked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Sign {
-    Positive,
-    Negative,
+    /// `Tᵀ K T`.
+    tangent: Entries,
 }
 
 /// An eigenvalue with its vector of size 1, and how many of the same sign were seen.
@@ -239,7 +223,7 @@ struct Eigenpair {
 }
 
 impl Pencil {
-    fn new(system: &System, out: Assembled) -> Self {
+    fn new(system: &System, out: &Assembled) -> Self {
         let (_, count) = system.numbering();
         let size = out.residual.len() - out.coupled.len();
         let multipliers = size - count;
@@ -263,30 +247,31 @@ impl Pencil {
         most[0] = most[0].max(most[1] / (extent * extent));
         most[1] = most[1].max(most[0] * extent * extent);
         let metric: Vec<f64> = (0..count).map(|k| rows[k].max(SLACK * most[usize::from(is_spin[k])])).collect();
-        let mut entries = Entries::default();
-        let mut add = |i: usize, j: usize, value: f64| {
-            for (a, of_a) in &admissible.rows[i] {
-                admissible.rows[j].iter().for_each(|(b, of_b)| entries.add(*a, *b, of_a * of_b * value));
-            }
-        };
-        let within = |i: &u32| (*i as usize) < size;
-        let (list, _) = out.tangent.into_parts();
-        for &(i, j, v) in list.iter().filter(|(i, j, _)| within(i) && within(j)) {
-            let scale = (j as usize).checked_sub(count).map_or(1.0, |k| of_columns[k]);
-            add(i as usize, j as usize, scale * v);
+        let mut tangent = Entries::default();
+        for j in 0..size {
+            let scale = j.checked_sub(count).map_or(1.0, |k| of_columns[k]);
+            let column = whole.column(j).filter(|(i, _)| *i < size);
+            column.for_each(|(i, v)| admissible.add([i, j], scale * v, &mut tangent));
         }
-        metric.iter().enumerate().for_each(|(k, s)| add(k, k, NEUTRAL * s));
-        let shifted = entries.matrix(admissible.columns);
-        Pencil { admissible, count, multipliers, metric, shifted }
+        Pencil { admissible, count, multipliers, metric, tangent }
     }
 
-    fn symmetric(&self) -> SymmetricMatrix {
-        self.shifted.symmetric_part()
+    /// `Tᵀ (K - θS) T`.
+    fn shifted(&self, value: f64) -> Matrix {
+        let mut entries = self.tangent.clone();
+        self.metric.iter().enumerate().for_each(|(k, s)| self.admissible.add([k, k], -value * s, &mut entries));
+        entries.matrix(self.admissible.columns)
+    }
+
+    /// The number of eigenvalues of the symmetric part that are less than a value; none where a pivot is zero.
+    fn below(&self, value: f64) -> Option<usize> {
+        let factor = Ldlt::factor(&self.shifted(value).symmetric_part()).ok()?;
+        Some(factor.negative_eigenvalues().saturating_sub(self.multipliers))
     }
 
     /// Whether the tangent has a potential, but for rounding.
     fn is_symmetric(&self) -> bool {
-        self.shifted.asymmetry() < ASYMMETRY
+        self.shifted(0.0).asymmetry() < ASYMMETRY
     }
 
     /// `Tᵀ S T y`.
@@ -296,37 +281,77 @@ impl Pencil {
         self.admissible.gather(&v)
     }
 
-    /// Of the eigenvalues of a sign the one nearest to zero, by Arnoldi's method (that of Lanczos where all is symmetric) for the
-    /// inverse from what a direction has of it; none where there is none of this sign. Of a pair the real parts are taken.
-    fn nearest_to_zero(
-        &self,
-        solve: &dyn Fn(&mut [f64]) -> Result<(), SolveError>,
-        toward: &[f64],
-        wanted: Sign,
-    ) -> Result<Option<Eigenpair>, SolveError> {
-        let sign = if wanted == Sign::Positive { 1.0 } else { -1.0 };
-        let symmetric = self.is_symmetric();
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    /// A vector of size 1 that a direction is almost all of, with the direction itself.
+    fn start(&self, toward: &[f64]) -> [Vec<f64>; 2] {
         let unit = |v: &dyn Fn(usize) -> f64| {
             let mut y = self.admissible.coordinates(v);
-            let size = dot(&y, &self.measure(&y)).sqrt();
-            y.iter_mut().for_each(|y| *y = if size > 0.0 { *y / size } else { 0.0 });
+            self.normalise(&mut y);
             y
         };
         let given = unit(&|k| toward.get(k).copied().unwrap_or(0.0));
         let elsewhere = unit(&|k| self.metric.get(k).map_or(0.0, |m| (1.0 + k as f64 / self.count as f64) / m.sqrt()));
-        let mut q: Vec<f64> = given.iter().zip(&elsewhere).map(|(a, b)| a + ELSEWHERE * b).collect();
+        [given.iter().zip(&elsewhere).map(|(a, b)| a + ELSEWHERE * b).collect(), given]
+    }
+
+    /// Brings a vector to size 1; its size before.
+    fn normalise(&self, y: &mut [f64]) -> f64 {
+        let size = dot(y, &self.measure(y)).max(0.0).sqrt();
+        y.iter_mut().for_each(|y| *y = if size > 0.0 { *y / size } else { 0.0 });
+        size
+    }
+
+    /// Of the eigenvalues of a sign the one nearest to zero, from what a direction has of its vectors, of a tangent that is
+    /// symmetric: counted in by the inertia of shifted matrices (Parlett, The symmetric eigenvalue problem), then by inverse
+    /// iteration. None where there is none, or where nothing is known.
+    fn nearest(&self, sign: f64, toward: &[f64]) -> Option<Eigenpair> {
+        let inner = self.below(sign * NEUTRAL)?;
+        let (mut low, mut high) = (NEUTRAL, LARGEST);
+        if self.below(sign * high)? == inner {
+            return None;
+        }
+        while high > BRACKET * low {
+            let middle = (low * high).sqrt();
+            if self.below(sign * middle)? == inner { low = middle } else { high = middle }
+        }
+        let shift = sign * (low * high).sqrt();
+        let factor = Analysis::default().factor(self.shifted(shift)).ok()?;
+        let [mut y, given] = self.start(toward);
+        let mut value = f64::NAN;
+        for _ in 0..MOST_STEPS {
+            self.normalise(&mut y);
+            let measured = self.measure(&y);
+            let mut next = factor.solve(&measured).ok()?;
+            let before = std::mem::replace(&mut value, shift + 1.0 / dot(&measured, &next));
+            self.normalise(&mut next);
+            y = next;
+            if (value - before).abs() <= CONVERGED * value.abs() {
+                break;
+            }
+        }
+        // Pivots that are far too small miscount.
+        if !(low / BRACKET..=high * BRACKET).contains(&(sign * value)) {
+            return None;
+        }
+        if dot(&y, &self.measure(&given)) < 0.0 {
+            y.iter_mut().for_each(|y| *y = -*y);
+        }
+        Some(Eigenpair { value, vector: y, count: inner })
+    }
+
+    /// The eigenvalue with a negative real part that is nearest to zero, of any tangent, by Arnoldi's method for the inverse; zero
+    /// where there is none.
+    fn leftmost(&self, toward: &[f64]) -> Option<Eigenpair> {
+        let factor = Analysis::default().factor(self.shifted(-NEUTRAL)).ok()?;
+        let [mut q, _] = self.start(toward);
         let mut basis: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
         let mut projected = DMatrix::<f64>::zeros(MOST_STEPS, MOST_STEPS);
         for step in 0..MOST_STEPS.min(self.admissible.columns) {
-            let mut measured = self.measure(&q);
-            let size = dot(&q, &measured).max(0.0).sqrt();
+            let size = self.normalise(&mut q);
             if size == 0.0 || !size.is_finite() {
-                return Ok(None);
+                break;
             }
-            q.iter_mut().chain(&mut measured).for_each(|v| *v /= size);
-            let mut next = measured.clone();
-            solve(&mut next)?;
+            let measured = self.measure(&q);
+            let mut next = factor.solve(&measured).ok()?;
             basis.push((q, measured));
             for _ in 0..2 {
                 for (k, (own, measured)) in basis.iter().enumerate() {
@@ -337,8 +362,7 @@ impl Pencil {
             }
             let rest = dot(&next, &self.measure(&next)).max(0.0).sqrt();
             let n = step + 1;
-            let own = projected.view((0, 0), (n, n)).into_owned();
-            if let Some((value, vector, count)) = outermost(own, sign, symmetric)
+            if let Some((value, vector, count)) = outermost(projected.view((0, 0), (n, n)).into_owned())
                 && rest * vector[step].abs() < CONVERGED * value.abs()
             {
                 let mut y = vec![0.0; self.admissible.columns];
@@ -349,30 +373,25 @@ impl Pencil {
                 if vector[0] < 0.0 {
                     y.iter_mut().for_each(|y| *y = -*y);
                 }
-                return Ok(Some(Eigenpair { value: 1.0 / value - NEUTRAL, vector: y, count }));
+                return Some(Eigenpair { value: 1.0 / value - NEUTRAL, vector: y, count });
             }
             q = next;
         }
-        Ok(None)
+        Some(Eigenpair { value: 0.0, vector: Vec::new(), count: 0 })
     }
 }
 
-/// The eigenvalue of a matrix that lies farthest to one side, but for those beyond a limit, with its vector of size 1 and how
-/// many lie on that side of zero; none where none does.
-fn outermost(matrix: DMatrix<f64>, sign: f64, symmetric: bool) -> Option<(f64, DVector<f64>, usize)> {
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// The eigenvalue of a matrix with the least real part, but for those whose inverse is neutral, with its vector of size 1 and
+/// how many real parts are negative; none where none is.
+fn outermost(matrix: DMatrix<f64>) -> Option<(f64, DVector<f64>, usize)> {
     let n = matrix.nrows();
-    let counts = |v: f64| sign * v > 0.0 && v.abs() < LIMIT;
-    if symmetric {
-        let eigen = (0.5 * (&matrix + matrix.transpose())).symmetric_eigen();
-        let wanted: Vec<usize> = (0..n).filter(|k| counts(eigen.eigenvalues[*k])).collect();
-        let k = wanted
-            .iter()
-            .copied()
-            .max_by(|a, b| (sign * eigen.eigenvalues[*a]).total_cmp(&(sign * eigen.eigenvalues[*b])))?;
-        return Some((eigen.eigenvalues[k], eigen.eigenvectors.column(k).into_owned(), wanted.len()));
-    }
-    let values: Vec<f64> = matrix.complex_eigenvalues().iter().map(|v| v.re).filter(|v| counts(*v)).collect();
-    let value = values.iter().copied().max_by(|a, b| (sign * a).total_cmp(&(sign * b)))?;
+    let counts = |v: &f64| *v < 0.0 && -v * NEUTRAL < 0.5;
+    let values: Vec<f64> = matrix.complex_eigenvalues().iter().map(|v| v.re).filter(counts).collect();
+    let value = values.iter().copied().min_by(f64::total_cmp)?;
     // Inverse iteration, a little beside the eigenvalue.
     let factor = (matrix - DMatrix::identity(n, n) * (value * (1.0 + 1e-10))).lu();
     let mut vector = DVector::from_element(n, 1.0);
@@ -393,9 +412,9 @@ mod tests {
     fn the_outermost_eigenvalue_of_a_matrix_that_is_not_symmetric() {
         // Of (1 2; 0 -3) the vector of -3 is (1, -2)/√5.
         let matrix = DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 0.0, -3.0]);
-        let (value, vector, count) = outermost(matrix.clone(), -1.0, false).unwrap();
+        let (value, vector, count) = outermost(matrix).unwrap();
         assert!((value + 3.0).abs() < 1e-12 && count == 1);
         assert!((vector[0] * -2.0 - vector[1]).abs() < 1e-8, "{vector}");
-        assert!((outermost(matrix, 1.0, false).unwrap().0 - 1.0).abs() < 1e-12);
+        assert!(outermost(DMatrix::identity(2, 2)).is_none());
     }
 }

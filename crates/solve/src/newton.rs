@@ -104,8 +104,10 @@ pub enum NewtonFailure<S, E> {
     Interrupted,
 }
 
-/// Iterations without a merit that is less by a tenth: the method goes round, or creeps.
+/// Iterations without a merit that is less by a tenth: the method goes round, or creeps. Of the watchdog so many rounds, each of
+/// which goes back to the best state.
 const CIRCLES: usize = 20;
+const CIRCLING_ROUNDS: usize = 3;
 const LESS: f64 = 0.9;
 
 /// Shares of a step that are tried.
@@ -136,6 +138,10 @@ pub fn newton<E: Equations>(
     let mut best = (state.clone(), measure);
     let mut behind = 0;
     let mut fell = (0, measure.merit);
+    let circles = match options.search {
+        Search::Watchdog { patience } => CIRCLING_ROUNDS * (patience + 1),
+        Search::Monotone | Search::Energy => CIRCLES,
+    };
     // Until what is prescribed has been brought along.
     let mut brings = true;
     for iteration in 1..=options.most_iterations {
@@ -188,7 +194,7 @@ pub fn newton<E: Equations>(
         }
         if measure.merit < LESS * fell.1 || driven {
             fell = (iteration, measure.merit);
-        } else if iteration - fell.0 >= CIRCLES && options.search != Search::Energy {
+        } else if iteration - fell.0 >= circles && options.search != Search::Energy {
             break;
         }
         if measure.merit < best.1.merit || driven {

@@ -4,7 +4,7 @@ use crate::common::bodies::*;
 use signorini_contact::{Coulomb, Status, Viscous};
 use signorini_geometry::Vector;
 use signorini_mechanics::body::Body;
-use signorini_mechanics::{Enforcement, IncrementResult, Part, PlacedLoad, System, TimedLoad};
+use signorini_mechanics::{Enforcement, IncrementResult, Part, PlacedLoad, System, TimedLoad, Unstable};
 use signorini_rope::curve_pair::CurveContact;
 use signorini_rope::curve_pair::contact::{Form, Penalties};
 use signorini_rope::section::Stiffness;
@@ -83,9 +83,13 @@ fn ropes_that_are_moved_far_do_not_pass_through_each_other() {
             system.supports.push(held(0, group, displacement, [None, None, None]));
             system.supports.push(held(1, group, [(); 3].map(|()| at_zero()), [None, None, None]));
         }
+        // What touches at a node may turn the tangent there with little else: so many cells as these leave it at some force.
+        system.unstable = Unstable::Tell;
         system.prepare().unwrap();
         let start = system.start();
         let (state, result) = system.solve(&start, 1.0, &mut |_, _| true).unwrap();
+        let told = result.stability.as_ref().map_or(0, |s| s.negative_eigenvalues);
+        assert_eq!(told > 0, down > 1.0, "{told}");
         let middle = |b: usize| state.bodies[b].configuration[10 * 4 + 2];
         println!(
             "{down}: middles at {:.4} and {:.4}, force {:.4}, {} iterations",
@@ -276,14 +280,27 @@ fn ends_press_on_ends_and_on_sides() {
         }
         println!("{under:?}, aside {aside}, mu {mu:?}: {told:?}");
         let (_, force, last, rubbed) = told[3];
-        let most = if status == Status::Stick { 10 } else { 30 };
-        assert!(told.iter().all(|t| t.0 <= most) && last == status);
+        // Where one end slips off the other it does so once, far.
+        let (most, slips_off) = (if status == Status::Stick { 10 } else { 30 }, mu.is_none());
+        let few = |(k, t): (usize, &(usize, f64, Status, f64))| t.0 <= most || (slips_off && k == 1 && t.0 <= 60);
+        assert!(told.iter().enumerate().all(few) && last == status);
         if status == Status::Slip {
             assert!((rubbed - mu.unwrap_or(0.0)).abs() < 1e-9);
         }
         // Half of the push each over a length of 0.95.
         let expected = push / (2.0 * (1.0 - radius)) * axial;
-        if aside == 0.0 {
+        let length = 1.0 - radius;
+        if slips_off {
+            // The first step is below, the others are above what two cantilevers bear whose ends roll off each other.
+            assert!((told[0].1 / (0.25 * expected) - 1.0).abs() < 1e-9, "{told:?}");
+            let give_way = |p: f64| (p.sqrt() * length).tan() / p.sqrt() - length + p * length / rod.shear[0];
+            let [mut low, mut critical] = [0.0, 1.0];
+            for _ in 0..50 {
+                let middle = 0.5 * (low + critical);
+                if give_way(middle) < radius { low = middle } else { critical = middle }
+            }
+            assert!(told[1..].iter().all(|t| (t.1 / critical - 1.0).abs() < 5e-3), "{told:?} {critical}");
+        } else if aside == 0.0 {
             assert!((force / expected - 1.0).abs() < 1e-9, "{force} {expected}");
         }
     }

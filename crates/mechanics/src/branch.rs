@@ -9,7 +9,8 @@ use crate::equilibrium::Problem;
 use crate::increment::{IncrementResult, Way};
 use crate::increment_error::IncrementError;
 use crate::linear_solver::Solved;
-use crate::stability::{Stability, Tested, Unstable, UnstableMode};
+use crate::points::Order;
+use crate::stability::{NEUTRAL, Stability, Tested, Unstable, UnstableMode};
 use crate::system::{System, SystemState};
 use signorini_solve::newton::Converged;
 
@@ -25,11 +26,18 @@ const MOST_STEPS: usize = 100;
 const MOST_BRANCHES: usize = 8;
 /// Part of an increment to which the loss of stability is located, and the most states on the way.
 const LOCATED: f64 = 1e-5;
-const MOST_LOCATING: usize = 12;
+const MOST_LOCATING: usize = 40;
+/// Steps of false position to the same side after which the interval is halved.
+const MOST_REPEATED: usize = 2;
 /// Part of the largest force out of balance on the way at which Newton's method takes over.
 const AT_REST: f64 = 0.1;
 /// Part of the disturbance within which a state has come back.
 const BACK: f64 = 0.5;
+/// Eigenvalues that errors of the discretisation may make of a motion that nothing holds, as the turning of a round beam about
+/// itself; the most iterations of Newton's method to another state of such a motion, and what of its energy is rounding.
+const HARDLY_ANY: f64 = 1e-7;
+const AT_ONCE: usize = 8;
+const SAME: f64 = 1e-9;
 
 impl System {
     /// The same state where it is stable; where it is not, what [`System::unstable`] asks for.
@@ -51,12 +59,18 @@ impl System {
             count += 1;
             report(count, residual)
         };
+        let mut neutral = NEUTRAL;
         loop {
-            let mode = match self.test_stability(&state, time)? {
+            let mode = match self.test_stability(&state, time, neutral)? {
                 Tested::Unknown if told.followed == 0 => return Ok((state, result)),
                 Tested::Unknown | Tested::Stable => break,
                 Tested::Unstable(mode) => mode,
             };
+            if mode.value > -HARDLY_ANY && self.is_neutral(&mode, (&state, result.energy), time, report)? {
+                neutral = -mode.value;
+                continue;
+            }
+            neutral = NEUTRAL;
             let (body, direction) = self.most_moved(&mode.direction);
             if told.body.is_none() {
                 (told.body, told.direction) = (Some(body), direction);
@@ -101,6 +115,21 @@ impl System {
         Ok((state, result))
     }
 
+    /// Whether Newton's method finds a state of the same energy at once beside another.
+    fn is_neutral(
+        &mut self,
+        mode: &UnstableMode,
+        (state, energy): (&SystemState, f64),
+        time: f64,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<bool, IncrementError> {
+        let Ok(found) = self.by(Way::Beside(mode), state, time, &mut Solved::default(), report) else {
+            return Ok(false);
+        };
+        let there = self.assemble(&found.state, time, Order::First)?.energy;
+        Ok(self.apart(state, &found.state) > BACK * DISTURBANCE && (there - energy).abs() <= SAME * energy.abs())
+    }
+
     /// Enters when stability was lost in an increment to a time, if it was.
     pub(crate) fn locate_instability(
         &mut self,
@@ -131,15 +160,27 @@ impl System {
         kept: &[[Vec<f64>; 2]],
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Option<f64>, IncrementError> {
+        // The last state that was unstable: from it Newton's method goes on along the branch that loses its stability.
+        let mut beyond: Option<SystemState> = None;
         let mut eigenvalue_at = |system: &mut Self, at: f64| {
             system.put_back(kept);
             // By Newton's method alone: other ways lead to other branches.
             let mut solved = Solved::default();
-            let found = system.begin(from, at).and_then(|start| {
+            let found = system.begin(from, at).and_then(|mut start| {
+                if let Some(beyond) = &beyond {
+                    start = SystemState { time: at, predictions: start.predictions, ..beyond.clone() };
+                    system.bodies.iter().zip(&mut start.bodies).for_each(|(body, state)| body.prescribe(at, state));
+                }
                 let found = system.by(Way::Straight, &start, at, &mut solved, report)?;
                 if system.contacts.is_empty() { Ok(found.state) } else { Ok(system.outer(&found.state, at, report)?.0) }
             });
-            let value = found.and_then(|state| system.critical_eigenvalue(&state, at));
+            let value = found.and_then(|state| {
+                let value = system.critical_eigenvalue(&state, at)?;
+                if value.is_some_and(|v| v < 0.0) {
+                    beyond = Some(state);
+                }
+                Ok(value)
+            });
             system.end();
             value
         };
@@ -157,28 +198,33 @@ impl System {
             return Ok(None);
         }
         let whole = high.0 - low.0;
-        let mut last = f64::NAN;
+        let (mut last, mut repeated) = (f64::NAN, 0);
         for _ in 0..MOST_LOCATING {
-            let next = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+            // The stable eigenvalue may be another one: then the secant hardly moves.
+            let next = if repeated < MOST_REPEATED {
+                (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1)
+            } else {
+                0.5 * (low.0 + high.0)
+            };
             if (next - last).abs() <= LOCATED * whole {
                 return Ok(Some(next));
             }
-            match eigenvalue_at(self, next) {
-                Ok(Some(value)) if value > 0.0 => {
-                    low = (next, value);
-                    if last < next {
-                        high.1 *= 0.5;
-                    }
-                }
+            let is_stable = match eigenvalue_at(self, next) {
                 Ok(Some(value)) => {
-                    high = (next, value);
-                    if last > next {
-                        low.1 *= 0.5;
-                    }
+                    let is_stable = value > 0.0;
+                    *(if is_stable { &mut low } else { &mut high }) = (next, value);
+                    is_stable
                 }
                 Err(IncrementError::Interrupted) => return Err(IncrementError::Interrupted),
                 // Where no state is found the branch that is stable has ended.
-                _ => high = (next, high.1),
+                _ => {
+                    high.0 = next;
+                    false
+                }
+            };
+            repeated = if is_stable == (last < next) { repeated + 1 } else { 0 };
+            if repeated > 0 {
+                *(if is_stable { &mut high.1 } else { &mut low.1 }) *= 0.5;
             }
             last = next;
         }
@@ -190,6 +236,16 @@ impl System {
         let sizes = self.extents();
         let moved = from.travel.iter().zip(&to.travel).zip(&sizes).map(|((a, b), size)| (b - a).abs() / size);
         moved.fold(0.0, f64::max)
+    }
+
+    /// A state a little beside another, along a direction or against it, as far as nothing is in the way.
+    fn disturbed(&self, from: &SystemState, mode: &UnstableMode, sign: f64) -> SystemState {
+        let extents = self.extents();
+        let largest = mode.direction.iter().zip(&extents).map(|(v, size)| v.abs() / size).fold(0.0f64, f64::max);
+        let mut step = vec![0.0; from.travel.len() + from.multipliers.len() + from.reactions.len()];
+        step.iter_mut().zip(&mode.direction).for_each(|(s, v)| *s = sign * DISTURBANCE / largest * v);
+        let share = self.free_way(from, &self.advance(from, &step, 1.0)).unwrap_or(1.0);
+        self.advance(from, &step, share)
     }
 
     /// What each unknown is measured by: the size of the bodies, or a radian.
@@ -214,6 +270,17 @@ impl System {
 }
 
 impl Problem<'_> {
+    /// The state that Newton's method finds at once from beside another.
+    pub(crate) fn beside(
+        &mut self,
+        mode: &UnstableMode,
+        start: &SystemState,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<Converged<SystemState>, IncrementError> {
+        let state = self.system.disturbed(start, mode, 1.0);
+        self.solve(&state, &mut |iteration, residual| report(iteration, residual) && iteration < AT_ONCE)
+    }
+
     /// Leaves an unstable state along a direction, and follows what moves until it is at rest.
     pub(crate) fn along(
         &mut self,
@@ -223,13 +290,7 @@ impl Problem<'_> {
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
         let system = self.system;
-        let sizes = system.extents();
-        let largest = mode.direction.iter().zip(&sizes).map(|(v, size)| v.abs() / size).fold(0.0f64, f64::max);
-        let unknowns = start.travel.len() + start.multipliers.len() + start.reactions.len();
-        let mut step = vec![0.0; unknowns];
-        step.iter_mut().zip(&mode.direction).for_each(|(s, v)| *s = sign * DISTURBANCE / largest * v);
-        let share = system.free_way(start, &system.advance(start, &step, 1.0)).unwrap_or(1.0);
-        let mut state = system.advance(start, &step, share);
+        let mut state = system.disturbed(start, mode, sign);
         let mut total = state.travel.clone();
         self.metric.clone_from(&mode.metric);
         let norm = |travel: &[f64]| travel.iter().zip(&mode.metric).map(|(t, m)| m * t * t).sum::<f64>().sqrt();

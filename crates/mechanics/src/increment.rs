@@ -56,6 +56,8 @@ pub(crate) enum Way<'a> {
     Down,
     /// Round what failed so.
     Round(IncrementError),
+    /// From a little beside a state: whether there is one as well.
+    Beside(&'a UnstableMode),
     /// From an unstable state, along a direction or against it.
     Along(&'a UnstableMode, f64),
 }
@@ -311,6 +313,7 @@ impl System {
             },
             Way::Down => problem.solve(start, report),
             Way::Round(error) => self.by_another_way(&mut problem, start, error, report),
+            Way::Beside(mode) => problem.beside(mode, start, report),
             Way::Along(mode, sign) => problem.along(mode, sign, start, report),
         };
         *solved = problem.solved;

@@ -79,8 +79,8 @@ pub(crate) struct UnstableMode {
     pub metric: Vec<f64>,
 }
 
-/// Eigenvalues nearer to zero may be those of motions that nothing holds: a state is known to about as much.
-const NEUTRAL: f64 = 1e-9;
+/// Eigenvalues nearer to zero are those of motions that nothing holds: rounding makes less.
+pub(crate) const NEUTRAL: f64 = 1e-13;
 /// No eigenvalue is as large: rows have fewer entries.
 const LARGEST: f64 = 1e3;
 /// An eigenvalue is counted in to this factor before inverse iteration.
@@ -103,14 +103,20 @@ impl System {
         Ok(moves.into_iter().any(|b| !b.is_rigid() && !b.is_linear()) && !self.is_iterative(at)?)
     }
 
-    /// Whether a state is stable, with a direction in which it is left as near as may be to where it came from.
+    /// Whether a state is stable, with a direction in which it is left as near as may be to where it came from; eigenvalues
+    /// nearer to zero than `neutral` do not count.
     ///
     /// # Errors
     /// Places that are not there.
-    pub(crate) fn test_stability(&mut self, at: &SystemState, time: f64) -> Result<Tested, IncrementError> {
+    pub(crate) fn test_stability(
+        &mut self,
+        at: &SystemState,
+        time: f64,
+        neutral: f64,
+    ) -> Result<Tested, IncrementError> {
         let given = self.with_given_friction(|system| system.assemble(at, time, Order::Second))?;
         // A pivot that is zero tells nothing.
-        match Pencil::new(self, &given).below(-NEUTRAL) {
+        match Pencil::new(self, &given).below(-neutral) {
             None => return Ok(Tested::Unknown),
             Some(0) => return Ok(Tested::Stable),
             Some(_) => {}
@@ -118,15 +124,15 @@ impl System {
         let pencil = Pencil::new(self, &self.assemble(at, time, Order::Second)?);
         let toward: Vec<f64> = at.travel.iter().map(|t| -t).collect();
         let found = if pencil.is_symmetric() {
-            pencil.nearest(-1.0, &toward)
+            pencil.nearest((-1.0, neutral), &toward)
         } else if self.slips(at)? {
             // How friction that slips answers to a disturbance depends on which way it goes.
             None
         } else {
-            pencil.leftmost(&toward)
+            pencil.leftmost(neutral, &toward)
         };
         let Some(Eigenpair { value, vector, count }) = found else { return Ok(Tested::Unknown) };
-        if value > -NEUTRAL {
+        if value > -neutral {
             return Ok(Tested::Stable);
         }
         let direction = pencil.admissible.expand(&vector)[..pencil.count].to_vec();
@@ -139,13 +145,13 @@ impl System {
     /// # Errors
     /// Places that are not there.
     pub(crate) fn critical_eigenvalue(&mut self, at: &SystemState, time: f64) -> Result<Option<f64>, IncrementError> {
-        match self.test_stability(at, time)? {
+        match self.test_stability(at, time, NEUTRAL)? {
             Tested::Unknown => return Ok(None),
             Tested::Unstable(mode) => return Ok(Some(mode.value)),
             Tested::Stable => {}
         }
         let pencil = Pencil::new(self, &self.assemble(at, time, Order::Second)?);
-        Ok(pencil.is_symmetric().then(|| pencil.nearest(1.0, &at.travel)).flatten().map(|found| found.value))
+        Ok(pencil.is_symmetric().then(|| pencil.nearest((1.0, NEUTRAL), &at.travel)).flatten().map(|found| found.value))
     }
 
     /// Whether a site of a contact with friction slips.
@@ -303,9 +309,9 @@ impl Pencil {
     /// Of the eigenvalues of a sign the one nearest to zero, from what a direction has of its vectors, of a tangent that is
     /// symmetric: counted in by the inertia of shifted matrices (Parlett, The symmetric eigenvalue problem), then by inverse
     /// iteration. None where there is none, or where nothing is known.
-    fn nearest(&self, sign: f64, toward: &[f64]) -> Option<Eigenpair> {
-        let inner = self.below(sign * NEUTRAL)?;
-        let (mut low, mut high) = (NEUTRAL, LARGEST);
+    fn nearest(&self, (sign, neutral): (f64, f64), toward: &[f64]) -> Option<Eigenpair> {
+        let inner = self.below(sign * neutral)?;
+        let (mut low, mut high) = (neutral, LARGEST);
         if self.below(sign * high)? == inner {
             return None;
         }
@@ -340,8 +346,8 @@ impl Pencil {
 
     /// The eigenvalue with a negative real part that is nearest to zero, of any tangent, by Arnoldi's method for the inverse; zero
     /// where there is none.
-    fn leftmost(&self, toward: &[f64]) -> Option<Eigenpair> {
-        let factor = Analysis::default().factor(self.shifted(-NEUTRAL)).ok()?;
+    fn leftmost(&self, neutral: f64, toward: &[f64]) -> Option<Eigenpair> {
+        let factor = Analysis::default().factor(self.shifted(-neutral)).ok()?;
         let [mut q, _] = self.start(toward);
         let mut basis: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
         let mut projected = DMatrix::<f64>::zeros(MOST_STEPS, MOST_STEPS);
@@ -362,7 +368,7 @@ impl Pencil {
             }
             let rest = dot(&next, &self.measure(&next)).max(0.0).sqrt();
             let n = step + 1;
-            if let Some((value, vector, count)) = outermost(projected.view((0, 0), (n, n)).into_owned())
+            if let Some((value, vector, count)) = outermost(projected.view((0, 0), (n, n)).into_owned(), neutral)
                 && rest * vector[step].abs() < CONVERGED * value.abs()
             {
                 let mut y = vec![0.0; self.admissible.columns];
@@ -373,7 +379,7 @@ impl Pencil {
                 if vector[0] < 0.0 {
                     y.iter_mut().for_each(|y| *y = -*y);
                 }
-                return Some(Eigenpair { value: 1.0 / value - NEUTRAL, vector: y, count });
+                return Some(Eigenpair { value: 1.0 / value - neutral, vector: y, count });
             }
             q = next;
         }
@@ -387,9 +393,9 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// The eigenvalue of a matrix with the least real part, but for those whose inverse is neutral, with its vector of size 1 and
 /// how many real parts are negative; none where none is.
-fn outermost(matrix: DMatrix<f64>) -> Option<(f64, DVector<f64>, usize)> {
+fn outermost(matrix: DMatrix<f64>, neutral: f64) -> Option<(f64, DVector<f64>, usize)> {
     let n = matrix.nrows();
-    let counts = |v: &f64| *v < 0.0 && -v * NEUTRAL < 0.5;
+    let counts = |v: &f64| *v < 0.0 && -v * neutral < 0.5;
     let values: Vec<f64> = matrix.complex_eigenvalues().iter().map(|v| v.re).filter(counts).collect();
     let value = values.iter().copied().min_by(f64::total_cmp)?;
     // Inverse iteration, a little beside the eigenvalue.
@@ -412,9 +418,9 @@ mod tests {
     fn the_outermost_eigenvalue_of_a_matrix_that_is_not_symmetric() {
         // Of (1 2; 0 -3) the vector of -3 is (1, -2)/√5.
         let matrix = DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 0.0, -3.0]);
-        let (value, vector, count) = outermost(matrix).unwrap();
+        let (value, vector, count) = outermost(matrix, 1e-9).unwrap();
         assert!((value + 3.0).abs() < 1e-12 && count == 1);
         assert!((vector[0] * -2.0 - vector[1]).abs() < 1e-8, "{vector}");
-        assert!(outermost(DMatrix::identity(2, 2)).is_none());
+        assert!(outermost(DMatrix::identity(2, 2), 1e-9).is_none());
     }
 }

@@ -8,6 +8,8 @@ use signorini_geometry::{Point, Vector};
 /// Part of the forces on a body that iterations may leave, and from which the state is none.
 const TOLD: f64 = 1e-4;
 const REFUSED: f64 = 1e-3;
+/// Least arm of the forces on a body, relative to how far from the origin they act: where all pass by it moments are rounding.
+const LEAST_ARM: f64 = 1e-2;
 
 /// Checks the balance of all bodies that are not moved as prescribed.
 pub fn check(setting: &Setting, state: &State) -> Vec<Finding> {
@@ -48,7 +50,7 @@ fn of_body(setting: &Setting, state: &State, body: usize) -> Option<Finding> {
     let name = &setting.bodies[body].name;
     let (mut force, mut size) = (Vector::<3>::zeros(), 0.0);
     let (mut moment, mut arms, mut off, mut known) = (Vector::<3>::zeros(), 0.0, 0.0, true);
-    let mut bent = 0.0;
+    let (mut bent, mut reach) = (0.0, 0.0f64);
     for acting in state.forces.iter().filter(|a| a.body == body) {
         force += acting.force;
         size += acting.force.norm();
@@ -73,6 +75,7 @@ fn of_body(setting: &Setting, state: &State, body: usize) -> Option<Finding> {
             let own = x.cross(&f);
             moment += own;
             arms += own.norm();
+            reach += x.norm() * f.norm();
             off += gap * f.norm();
             known &= contact.at_places;
             // What slides along a surface of some curvature at a distance from it goes another way than its foot there, and so
@@ -91,6 +94,7 @@ fn of_body(setting: &Setting, state: &State, body: usize) -> Option<Finding> {
     let lack = setting.space.directions().iter().map(|i| force[*i].abs()).fold(0.0, f64::max);
     let lack = (lack - bent - setting.bodies[body].rounding).max(0.0) / size;
     let turns = setting.space.axes().iter().map(|i| moment[*i].abs()).fold(0.0, f64::max);
+    let arms = arms.max(LEAST_ARM * reach);
     let turning = if known && arms > 0.0 { (turns - off).max(0.0) / arms } else { 0.0 };
     let (value, what) = if turning > lack { (turning, "moments") } else { (lack, "forces") };
     let (outcome, limit) = match value {

@@ -43,8 +43,11 @@ fn of_contact(contact: &Contact, touches: &[Touch]) -> Vec<Finding> {
         };
         let message = format!("`{name}`: {:.2e} of {what}", part.share);
         let finding = Finding::new(Check::Tractions, outcome, message).measured(part.share, limit).on(name);
-        let finding =
-            if outcome == Outcome::Fine { finding } else { finding.remedy("another method or enforcement of contact") };
+        let finding = if outcome == Outcome::Fine {
+            finding
+        } else {
+            finding.remedy("smaller cells at the contact, or another method or enforcement of it")
+        };
         out.push(match part.worst {
             Some(t) => finding.at(t.x),
             None => finding,

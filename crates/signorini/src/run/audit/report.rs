@@ -53,9 +53,12 @@ fn within(step: &StepReport, problem: &Problem) -> String {
     format!("as far as it was checked; {why}")
 }
 
+/// Part of the largest pressure over the whole area that a force is at least, but for what cancels in it, as around a ring.
+const NOT_CANCELLED: f64 = 0.1;
+
 /// The ± of force, area and largest pressure, relative to them.
 fn shares(force: &[f64; 3], area: f64, pressure: f64, errors: &ErrorEstimate) -> [f64; 3] {
-    let size = force.iter().map(|f| f * f).sum::<f64>().sqrt();
+    let size = force.iter().map(|f| f * f).sum::<f64>().sqrt().max(NOT_CANCELLED * area * pressure);
     let share = |error: f64, of: f64| if of > 0.0 { error / of } else { 0.0 };
     [share(errors.force, size), share(errors.area, area), share(errors.max_pressure.unwrap_or(0.0), pressure)]
 }

@@ -15,6 +15,8 @@ pub(crate) const AWAY: f64 = 10.0;
 const LEAP: f64 = 0.5;
 /// Motion of a support, relative to the largest of all, that may draw bodies round one another in one increment.
 const DRIVEN: f64 = 0.1;
+/// What friction may hold is followed to rest where it moved by more of its size.
+const SLIDES: f64 = 1e-2;
 
 /// Share of what holds a body most that rounding leaves of what does not hold it.
 const NOT_HELD: f64 = 1e-10;
@@ -44,6 +46,17 @@ impl System {
             body.is_rigid() || (body.is_linear() && matches!(self.free_motion(k), Ok(Some(_))))
         };
         (0..self.bodies.len()).any(|k| self.bodies[k].unknowns() > 0 && is_free(k))
+    }
+
+    /// Whether a body may move rigidly where no contact holds it, whatever it is like.
+    pub(crate) fn has_unheld_body(&self) -> bool {
+        let moves = (0..self.bodies.len()).filter(|k| self.bodies[*k].unknowns() > 0);
+        moves.into_iter().any(|k| matches!(self.free_motion(k), Ok(Some(_))))
+    }
+
+    /// Whether there is friction.
+    pub(crate) fn rubs(&self) -> bool {
+        self.contacts.iter().any(|contact| contact.law().is_some())
     }
 
     /// The derivative of what holds places of a body by terms in its unknowns, and of its springs.
@@ -150,13 +163,27 @@ impl Problem<'_> {
     /// Whether the straight way between two states leads through a body, though no support moves as far: a state on the
     /// other side, which Newton's method may find by steps that are far apart.
     pub(crate) fn passes(&self, from: &SystemState, to: &SystemState) -> bool {
+        self.goes_by_itself(from, to) > 0.0 && self.system.free_way(from, to).is_ok_and(|share| share < 1.0)
+    }
+
+    /// Whether a body that only contact holds moved by itself where there is friction: Newton's method may slide past where
+    /// it rests.
+    pub(crate) fn slides(&self, from: &SystemState, to: &SystemState) -> bool {
+        let far = SLIDES * self.system.size();
+        self.system.rubs() && self.goes_by_itself(from, to) > far && self.system.has_unheld_body()
+    }
+
+    /// How far something moved between two states, if no support moves about as far.
+    fn goes_by_itself(&self, from: &SystemState, to: &SystemState) -> f64 {
         let moved = to.travel.iter().zip(&from.travel).zip(&self.is_spin).filter(|(_, turns)| !**turns);
         let farthest = moved.map(|((b, a), _)| (b - a).abs()).fold(0.0, f64::max);
-        let driven = self.system.held(&from.bodies, self.time).map_or(0.0, |(single, coupled)| {
-            let held = single.iter().chain(&coupled).filter(|h| h.constraint.component < 3);
-            held.map(|h| h.constraint.lack.abs()).fold(0.0, f64::max)
-        });
-        driven < DRIVEN * farthest && self.system.free_way(from, to).is_ok_and(|share| share < 1.0)
+        let reach =
+            |h: &Held| h.constraint.lack.abs() * if h.constraint.component < 3 { 1.0 } else { self.system.size() };
+        let driven = self
+            .system
+            .held(&from.bodies, self.time)
+            .map_or(0.0, |(single, coupled)| single.iter().chain(&coupled).map(reach).fold(0.0, f64::max));
+        if driven < DRIVEN * farthest { farthest } else { 0.0 }
     }
 
     /// Whether a support pulls a rigid body.

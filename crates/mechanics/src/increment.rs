@@ -301,10 +301,12 @@ impl System {
         };
         let found = match way {
             Way::Straight => match problem.solve(start, report) {
-                // Newton's method may find a body far away, where it touches nothing, or on the other side of another.
+                // Newton's method may find a body far away, where it touches nothing, or on the other side of another, or one that
+                // slid though friction holds it.
                 Ok(found)
                     if (problem.leaps(start, &found.state) && !problem.is_pulled(start))
-                        || problem.passes(start, &found.state) =>
+                        || problem.passes(start, &found.state)
+                        || problem.slides(start, &found.state) =>
                 {
                     let history = found.history;
                     Err(IncrementError::NotConverged { history, worst: None })
@@ -328,7 +330,7 @@ impl System {
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
         // A free body needs springs until it touches; what is held may take what is out of balance bit by bit.
-        if !problem.is_free {
+        if !problem.is_free && !(self.rubs() && self.has_unheld_body()) {
             match problem.bit_by_bit(start, report) {
                 Err(failed) if is_curable(&failed) => {}
                 found => return found,

@@ -3,6 +3,16 @@
 use crate::output::figure::{told, told_vector};
 use crate::report::{ContactReport, UnitNames};
 
+/// How much of a contact with friction sticks, unless it is a point without area.
+pub fn sticking(c: &ContactReport) -> String {
+    match (c.stick_area, c.slip_area) {
+        (Some(stick), Some(slip)) if stick + slip > 0.0 => {
+            format!(", of which {:.0} % sticks", 100.0 * stick / (stick + slip))
+        }
+        _ => String::new(),
+    }
+}
+
 /// The force, over which `extent` (an area, or a length) and the largest pressure, with what the cells leave uncertain, and
 /// how much of it sticks. `zones` says in how many.
 pub fn contact_verdict(
@@ -16,14 +26,10 @@ pub fn contact_verdict(
     }
     let errors = c.error_estimate;
     let unit = |of: fn(&UnitNames) -> &String| units.map_or("", |u| of(u));
-    let rubbing = match (c.friction_force, c.stick_area, c.slip_area) {
-        (Some(force), Some(stick), Some(slip)) => format!(
-            ", {} of it by friction, of which {:.0} % sticks",
-            told_vector(&force[..dimension], None, unit(|u| &u.force)),
-            100.0 * stick / (stick + slip)
-        ),
-        _ => String::new(),
-    };
+    let rubbing = c.friction_force.map_or(String::new(), |force| {
+        let force = told_vector(&force[..dimension], None, unit(|u| &u.force));
+        format!(", {force} of it by friction{}", sticking(c))
+    });
     let zones = match (zones, c.zones) {
         (false, _) => String::new(),
         (true, n) => format!(" in {n} zone{}", if n == 1 { "" } else { "s" }),

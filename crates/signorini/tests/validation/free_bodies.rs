@@ -230,3 +230,70 @@ fn a_stack_of_three_bodies_settles() {
         }
     }
 }
+
+/// A ladder, as a beam and as a solid, that leans at 60 degrees on a smooth wall: friction on the floor holds it, as its
+/// coefficient is larger than half the cotangent, and so it stays. Moments about the foot give the force of the wall.
+#[test]
+fn what_friction_holds_leans_and_does_not_slide() {
+    let (cosine, sine, length) = (0.5, 0.75f64.sqrt(), 4.0);
+    let wall_at = cosine * length;
+    let (radius, thick) = (0.01, 0.2);
+    let beam = format!(
+        r#"
+space = "3d"
+[bodies.l.beam]
+path.points = [[0, 0, 0], [{wall_at}, 0, "4*sqrt(0.75)"]]
+cells = 10
+radius = {radius}
+section.stiffness = {{ EA = 1e5, GA = 1e5, EI = 1e4, GJ = 1e4 }}
+[bodies.floor.rigid]
+shape.plane = {{ point = [0, 0, -{radius}], normal = [0, 0, 1] }}
+[bodies.wall.rigid]
+shape.plane = {{ point = ["{wall_at} + {radius}", 0, 0], normal = [-1, 0, 0] }}
+[supports.plane]
+on = "l:boundary"
+displacement = ["free", 0, "free"]
+[loads.w]
+on = "l"
+body_force = [0, 0, -0.25]
+"#
+    );
+    let solid = format!(
+        r#"
+space = "plane_strain"
+[constants]
+s = "sqrt(0.75)"
+[bodies.l.solid]
+mesh.box = {{ min = [0, 0], max = [4, {thick}], cells = [40, 2], map = ["0.5*x - s*(y - {thick})", "s*x + 0.5*y"] }}
+degree = 2
+material.linear_elastic = {{ youngs_modulus = 1e6, poissons_ratio = 0.3 }}
+[bodies.floor.rigid]
+shape.plane = {{ point = [0, 0], normal = [0, 1] }}
+[bodies.wall.rigid]
+shape.plane = {{ point = ["{wall_at} + {thick}*s", 0], normal = [-1, 0] }}
+[loads.w]
+on = "l"
+body_force = [0, "-1/(4*{thick})"]
+"#
+    );
+    let contacts = r#"
+[contacts.foot]
+between = ["l", "floor"]
+sliding = "finite"
+friction.coulomb = { mu = 0.4 }
+[contacts.head]
+between = ["l", "wall"]
+sliding = "finite"
+[[steps]]
+to = 1
+"#;
+    // Arms of the weight and of the wall about the place where the floor is touched.
+    let of_beam = cosine * length / 2.0 / (sine * length + radius);
+    let of_solid = (cosine * length - sine * thick) / 2.0 / (sine * length);
+    for (case, exact, error) in [(beam, of_beam, 1e-4), (solid, of_solid, 1e-6)] {
+        let found = summary(&(case + contacts), &set(&[]));
+        let step = last_step(&found);
+        let [head, foot] = ["head", "foot"].map(|name| step["contacts"][name]["force"][0].as_f64().unwrap());
+        assert!((-head / exact - 1.0).abs() < error && (head + foot).abs() < 1e-8, "{head} {foot} {exact}");
+    }
+}

@@ -8,7 +8,7 @@ use crate::report::{
     CellsReport, Component, ContactReport, CurveReport, Pose, Probe, Reason, RopeLimits, SectionReport,
     StabilityReport, StepReport, UnitNames, Warning, WarningKind, vector,
 };
-use crate::run::contact_verdict::contact_verdict;
+use crate::run::contact_verdict::{contact_verdict, sticking};
 use crate::run::record::Record;
 use crate::run::strain::{self, Strained};
 use signorini_contact::Status;
@@ -385,10 +385,7 @@ pub fn verdict(plan: &MechanicsPlan, record: &Record) -> String {
             list.push(format!("`{name}` is open"));
             continue;
         }
-        let rubbing = match (c.stick_area, c.slip_area) {
-            (Some(stick), Some(slip)) => format!(", of which {:.0} % sticks", 100.0 * stick / (stick + slip)),
-            _ => String::new(),
-        };
+        let rubbing = sticking(c);
         let force = told_vector(&c.force[..space], None, unit(|u| &u.force));
         let zones = if c.zones == 1 { String::new() } else { format!(" in {} zones", c.zones) };
         list.push(format!("`{name}` carries {force}{zones}{rubbing}"));

@@ -245,8 +245,9 @@ fn execute_paths(problem: &Problem, folder: &Path, json: bool) -> u8 {
     bar.finish();
     conclude(result, json.then_some(|summary| json!(summary)), |summary| {
         paths::sentences(summary).iter().for_each(|line| say!("{line}"));
+        let picture = summary.first_picture.as_ref().map_or(String::new(), |picture| format!("open {picture}, "));
         say!(
-            "\nResults in {}: open pictures/paths.png, bodies.pvd and the paths in ParaView; numbers in summary.json and a CSV per path.",
+            "\nResults in {}: {picture}bodies.pvd and the paths in ParaView; numbers in summary.json and a CSV per path.",
             folder.display()
         );
         say_replaced(replaced);

@@ -72,7 +72,7 @@ pub fn run(case: &PathCase, folder: &Path, progress: &mut dyn Progress) -> Resul
         method: method.into(),
         unknowns: found.unknowns,
         units: head.unit_names(),
-        first_picture: Some("pictures/paths.png".into()),
+        first_picture: picture::are_wanted(case).then(|| "pictures/paths.png".into()),
         warnings: head.warnings.iter().cloned().chain(found.warnings).collect(),
         interpreted: head.interpreted.clone(),
         steps: found.steps,
@@ -243,9 +243,14 @@ mod tests {
         ] {
             assert!(out.join(file).exists(), "{file}");
         }
-        // The folder may be written again.
-        let case = PathCase::parse("case.toml", WRAPPING, &[]).unwrap();
-        assert!(run(&case, &out, &mut Silent).is_ok());
+        // The folder may be written again, without pictures.
+        let case = PathCase::parse("case.toml", &format!("{WRAPPING}\n[output]\npictures = false"), &[]).unwrap();
+        assert!(run(&case, &out, &mut Silent).is_ok_and(|summary| summary.first_picture.is_none()));
+        assert!(!out.join("pictures").exists());
+        for (key, text) in [("limits.max_time", "[limits]\nmax_time = 1"), ("output.every", "[output]\nevery = 2")] {
+            let refused = PathCase::parse("case.toml", &format!("{WRAPPING}\n{text}"), &[]);
+            assert!(refused.is_err_and(|error| error.message.contains(key)));
+        }
     }
 
     #[test]

@@ -133,8 +133,16 @@ fn places(lines: &[&Line], camera: &Camera) -> Vec<(f64, f64)> {
     taken.into_iter().map(|(at, _)| at).collect()
 }
 
+/// Whether a case asks for pictures.
+pub fn are_wanted(case: &PathCase) -> bool {
+    case.problem().output.pictures != Some(false)
+}
+
 /// Draws paths over bodies into a folder.
 pub fn draw(case: &PathCase, surfaces: &[Surface], lines: &[Line], folder: &Folder) -> Result<(), OutputError> {
+    if !are_wanted(case) {
+        return Ok(());
+    }
     save(folder, "paths", &of_paths(case, surfaces, lines)?)
 }
 
@@ -237,6 +245,9 @@ pub fn history(
     curves: &[(String, Vec<(f64, f64)>)],
     folder: &Folder,
 ) -> Result<(), OutputError> {
+    if !are_wanted(case) {
+        return Ok(());
+    }
     let all = || curves.iter().flat_map(|c| c.1.iter());
     let range = |of: fn(&(f64, f64)) -> f64| {
         all().map(of).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)))

@@ -132,10 +132,23 @@ impl Planner<'_> {
             ("contacts", problem.contacts.len()),
             ("steps", problem.steps.len()),
         ];
-        match others.into_iter().find(|(_, count)| *count > 0) {
+        let (limits, output) = (&problem.limits, &problem.output);
+        let keys = [
+            (&["limits", "max_time"][..], limits.max_time.is_some()),
+            (&["limits", "max_iterations"], limits.max_iterations.is_some()),
+            (&["output", "every"], output.every.is_some()),
+            (&["output", "probes"], !output.probes.is_empty()),
+            (&["output", "moments_about"], output.moments_about.is_some()),
+            (&["stability"], problem.stability.is_some()),
+        ];
+        let tables = others.iter().map(|(key, count)| (std::slice::from_ref(key), *count > 0));
+        match tables.chain(keys).find(|(_, is_there)| *is_there) {
             Some((key, _)) => Err(problem
-                .error(&KeyPath::of_keys(&[key]), format!("`{key}` belong to bodies in equilibrium, not to paths"))
-                .help("leave them out, or leave out `analysis`")),
+                .error(
+                    &KeyPath::of_keys(key),
+                    format!("`{}` is for bodies in equilibrium, not for paths", key.join(".")),
+                )
+                .help("leave it out, or leave out `analysis`")),
             None => Ok(()),
         }
     }

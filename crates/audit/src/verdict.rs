@@ -58,7 +58,9 @@ impl Answer {
                 }
                 seen.push((f.check, f.on.as_ref()));
                 let remedy = f.remedy.as_ref().map_or(String::new(), |r| format!(" ({r})"));
-                list.push(format!("{} at t = {time}{remedy}", f.message));
+                let when = format!(" at t = {time}");
+                let when = if f.message.ends_with(&when) { "" } else { &when };
+                list.push(format!("{}{when}{remedy}", f.message));
             }
             list.join("; ")
         };

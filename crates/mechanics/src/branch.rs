@@ -115,7 +115,7 @@ impl System {
         Ok((state, result))
     }
 
-    /// Whether Newton's method finds a state of the same energy at once beside another.
+    /// Whether Newton's method finds a state of the same energy at once beside another, along a mode.
     fn is_neutral(
         &mut self,
         mode: &UnstableMode,
@@ -127,7 +127,19 @@ impl System {
             return Ok(false);
         };
         let there = self.assemble(&found.state, time, Order::First)?.energy;
-        Ok(self.apart(state, &found.state) > BACK * DISTURBANCE && (there - energy).abs() <= SAME * energy.abs())
+        // How far along the mode, whatever else is free to move: a column comes back, but may turn about itself.
+        let along = |v: &dyn Fn(usize) -> f64| -> f64 {
+            mode.metric.iter().zip(&mode.direction).enumerate().map(|(k, (m, d))| m * d * v(k)).sum()
+        };
+        let moved = along(&|k| found.state.travel[k] - state.travel[k]);
+        let stays = moved / along(&|k| mode.direction[k]) / self.disturbance(mode);
+        Ok(stays > BACK && (there - energy).abs() <= SAME * energy.abs())
+    }
+
+    /// The size of a disturbance along a mode.
+    fn disturbance(&self, mode: &UnstableMode) -> f64 {
+        let extents = self.extents();
+        DISTURBANCE / mode.direction.iter().zip(&extents).map(|(v, size)| v.abs() / size).fold(0.0f64, f64::max)
     }
 
     /// Enters when stability was lost in an increment to a time, if it was.
@@ -240,10 +252,9 @@ impl System {
 
     /// A state a little beside another, along a direction or against it, as far as nothing is in the way.
     fn disturbed(&self, from: &SystemState, mode: &UnstableMode, sign: f64) -> SystemState {
-        let extents = self.extents();
-        let largest = mode.direction.iter().zip(&extents).map(|(v, size)| v.abs() / size).fold(0.0f64, f64::max);
+        let size = sign * self.disturbance(mode);
         let mut step = vec![0.0; from.travel.len() + from.multipliers.len() + from.reactions.len()];
-        step.iter_mut().zip(&mode.direction).for_each(|(s, v)| *s = sign * DISTURBANCE / largest * v);
+        step.iter_mut().zip(&mode.direction).for_each(|(s, v)| *s = size * v);
         let share = self.free_way(from, &self.advance(from, &step, 1.0)).unwrap_or(1.0);
         self.advance(from, &step, share)
     }

@@ -202,3 +202,50 @@ to = 1
     // Either it is told that nothing holds it, or it has come off: never the 1.4 of the equator.
     assert!(found["converged"] == false || tension < 0.1, "{tension} {}", found["verdict"]);
 }
+
+/// A column that buckles until a wall holds its middle: under twice and one and a half times Euler's load the wall carries what
+/// `w = A sin kx + Rx/P` with `w = h`, `w' = 0` in the middle says, twice `R = -P A k cos(kL/2)`.
+#[test]
+fn a_column_buckles_against_a_wall() {
+    let case = r#"
+space = "3d"
+[bodies.b.beam]
+path.points = [[0, 0, 0], [1, 0, 0]]
+cells = 32
+section.stiffness = { EA = 1e6, GA = 1e6, EI = 1.0, GJ = 1.0 }
+radius = 0.001
+[bodies.up.rigid]
+shape.plane = { point = [0, 0, 0.011], normal = [0, 0, -1] }
+[bodies.low.rigid]
+shape.plane = { point = [0, 0, -0.011], normal = [0, 0, 1] }
+[supports.ends]
+on = "b:boundary"
+displacement = ["free", 0, 0]
+[supports.start]
+on = "b:start"
+displacement = [0, 0, 0]
+[supports.plane]
+on = "b"
+displacement = ["free", 0, "free"]
+[loads.p]
+on = "b:end"
+force = ["-2*pi^2*t", 0, 0]
+[contacts.u]
+between = ["b", "up"]
+[contacts.l]
+between = ["b", "low"]
+[[steps]]
+to = 1
+increments = 4
+"#;
+    let found = summary(case, &set(&[]));
+    assert!((critical_time(&found) - 0.5).abs() < 1e-4, "{}", critical_time(&found));
+    for (step, times) in [(2, 1.5f64), (3, 2.0)] {
+        let (load, k) = (times * PI * PI, times.sqrt() * PI);
+        let amplitude = 0.01 / ((0.5 * k).sin() - 0.5 * k * (0.5 * k).cos());
+        let exact = -2.0 * load * amplitude * k * (0.5 * k).cos();
+        let carried = ["u", "l"].map(|name| number(&found["steps"][step]["contacts"][name]["force"][2]).abs());
+        assert!((carried[0].max(carried[1]) / exact - 1.0).abs() < 2e-3, "{carried:?} {exact}");
+        assert_eq!(carried[0].min(carried[1]), 0.0);
+    }
+}

@@ -330,7 +330,7 @@ impl System {
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
         // A free body needs springs until it touches; what is held may take what is out of balance bit by bit.
-        if !problem.is_free && !(self.rubs() && self.has_unheld_body()) {
+        if !(problem.is_free || self.rubs() && self.has_unheld_body()) {
             match problem.bit_by_bit(start, report) {
                 Err(failed) if is_curable(&failed) => {}
                 found => return found,

@@ -83,7 +83,7 @@ fn ropes_that_are_moved_far_do_not_pass_through_each_other() {
             system.supports.push(held(0, group, displacement, [None, None, None]));
             system.supports.push(held(1, group, [(); 3].map(|()| at_zero()), [None, None, None]));
         }
-        // What touches at a node may turn the tangent there with little else: so many cells as these leave it at some force.
+        // Bent far about each other they are unstable without friction, on finer cells too: here it is where they lie that counts.
         system.unstable = Unstable::Tell;
         system.prepare().unwrap();
         let start = system.start();

@@ -41,15 +41,14 @@ impl Problem<'_> {
         loop {
             let to = if reached + size > 1.0 - 1e-9 { 1.0 } else { reached + size };
             self.held_back = (to < 1.0).then(|| (1.0 - to, held_back.0.clone(), held_back.1.clone()));
-            let found = self.solve(&state, report);
+            let found = match self.solve(&state, report) {
+                Ok(found) if self.passes(&state, &found.state) => {
+                    Err(IncrementError::NotConverged { history: found.history, worst: None })
+                }
+                found => found,
+            };
             self.held_back = None;
             match found {
-                Ok(found) if self.passes(&state, &found.state) => {
-                    if size < LEAST_BIT {
-                        return Err(IncrementError::NotConverged { history: found.history, worst: None });
-                    }
-                    size *= 0.25;
-                }
                 Ok(found) if to == 1.0 => return Ok(found),
                 Ok(found) => {
                     state = found.state;

@@ -274,6 +274,15 @@ impl<const D: usize> Body for CellSolid<D> {
         true
     }
 
+    fn has_places(&self) -> bool {
+        true
+    }
+
+    fn places(&self) -> Vec<[f64; 3]> {
+        let functions = 0..self.body.function_count();
+        functions.flat_map(|f| [spatial(&self.body.position(f)).into(); D]).collect()
+    }
+
     fn subspaces(&self) -> Option<Subspaces<'_>> {
         let own = self.stiffness.iter().enumerate();
         let stiffness = own.map(|(c, k)| Block { unknowns: self.body.unknowns_of(c), entries: k.as_slice() }).collect();

@@ -260,8 +260,8 @@ impl Interaction for DiscPairs {
         &self.name
     }
 
-    fn bodies(&self) -> [usize; 2] {
-        [self.surfaces[0].part.body, self.surfaces[self.surfaces.len() - 1].part.body]
+    fn parts(&self) -> [&Part; 2] {
+        [&self.surfaces[0].part, &self.surfaces[self.surfaces.len() - 1].part]
     }
 
     fn law(&self) -> Option<&dyn Law> {

@@ -169,6 +169,16 @@ pub trait Body: Send + Sync {
         Vec::new()
     }
 
+    /// Whether [`places`](Body::places) are known.
+    fn has_places(&self) -> bool {
+        false
+    }
+
+    /// Where each unknown is, about, before the body deforms: for the order of elimination.
+    fn places(&self) -> Vec<[f64; 3]> {
+        Vec::new()
+    }
+
     /// What iterations need in place of a factorisation: of linear bodies that have it.
     fn subspaces(&self) -> Option<Subspaces<'_>> {
         None

@@ -107,7 +107,7 @@ impl Problem<'_> {
     fn begin(&mut self, at: &SystemState) -> Result<(), IncrementError> {
         let out = self.assemble(at, Order::Second)?;
         let count = self.is_spin.len();
-        let sizes = self.system.row_sizes(&out, self.stiffness);
+        let sizes = self.system.row_sizes(&out, self.stiffness());
         let mut held = vec![false; count];
         out.single.iter().for_each(|h| held[h.constraint.terms[0].0 as usize] = true);
         let size = self.system.size();
@@ -146,7 +146,7 @@ impl Problem<'_> {
 
     /// The residual with springs, and less what is held back.
     pub(crate) fn assemble(&self, at: &SystemState, order: Order) -> Result<Assembled, IncrementError> {
-        let mut out = self.system.assemble_with(at, self.time, order, self.stiffness)?;
+        let mut out = self.system.assemble_with(at, self.time, order, self.stiffness())?;
         if self.springs > 0.0 {
             for (k, travel) in at.travel.iter().enumerate() {
                 let stiffness = self.spring(k);
@@ -167,6 +167,43 @@ impl Problem<'_> {
             }
         }
         Ok(out)
+    }
+
+    /// Where the stiffness of bodies is: springs on all unknowns leave none to be eliminated beforehand.
+    fn stiffness(&self) -> Stiffness {
+        match self.stiffness {
+            Stiffness::Condensed if self.springs > 0.0 => Stiffness::InTangent,
+            other => other,
+        }
+    }
+
+    /// A ball without friction may turn, a block on a plane slide, a slack rope has no stiffness: a grain of it in the matrix
+    /// alone keeps them where they are and changes no solution. `sizes` are those of the rows. Linear bodies that are condensed
+    /// have one where contact changes them.
+    fn add_grain(&self, out: &mut Assembled, held: &[bool], sizes: &[f64]) {
+        let count = self.is_spin.len();
+        let size = self.system.size();
+        let mut most = [0.0f64; 2];
+        for k in (0..count).filter(|k| !held[*k]) {
+            let kind = usize::from(self.is_spin[k]);
+            most[kind] = most[kind].max(sizes[k]);
+        }
+        let mut changes = vec![self.stiffness() == Stiffness::InTangent; count];
+        out.tangent.list().for_each(|(i, ..)| {
+            if let Some(changes) = changes.get_mut(i as usize) {
+                *changes = true;
+            }
+        });
+        let (first, _) = self.system.numbering();
+        for (k, _) in self.system.is_condensed().iter().enumerate().filter(|(_, is)| !**is) {
+            let own = first[k] as usize..first[k] as usize + self.system.bodies[k].unknowns();
+            changes[own].fill(true);
+        }
+        for k in (0..count).filter(|k| !held[*k] && changes[*k]) {
+            let kind = usize::from(self.is_spin[k]);
+            let scale = if most[kind] > 0.0 { most[kind] } else { most[0].max(f64::MIN_POSITIVE) * size * size };
+            out.tangent.add(k as u32, k as u32, GRAIN * scale);
+        }
     }
 
     pub(crate) fn spring(&self, unknown: usize) -> f64 {
@@ -230,7 +267,6 @@ impl Equations for Problem<'_> {
             None => self.assemble(at, Order::Second)?,
         };
         let n = out.residual.len();
-        let count = self.is_spin.len();
         let mut right: Vec<f64> = out.residual.iter().map(|r| -r).collect();
         let mut held = vec![false; n];
         for h in &out.single {
@@ -242,33 +278,39 @@ impl Equations for Problem<'_> {
             let (step, iterations) = self.system.iterated_step(out, &held, &right, &mut self.inverses)?;
             let (systems, most, coarse) = match self.solved {
                 Solved::Iterative { systems, most_iterations, coarse } => (systems, most_iterations, coarse),
-                Solved::Direct => (0, 0, self.system.coarse()),
+                _ => (0, 0, self.system.coarse()),
             };
             self.solved = Solved::Iterative { systems: systems + 1, most_iterations: most.max(iterations), coarse };
             return Ok(step);
+        }
+        if self.stiffness() == Stiffness::Condensed {
+            if self.is_free {
+                let sizes = self.system.row_sizes(&out, self.stiffness);
+                self.add_grain(&mut out, &held, &sizes);
+            }
+            match self.system.condensed_step(&out, &held, &right) {
+                Ok(step) => {
+                    self.solved = Solved::Condensed;
+                    return Ok(step);
+                }
+                // Too many unknowns remain, or nothing holds them.
+                Err(_) => {
+                    self.stiffness = Stiffness::InTangent;
+                    self.solved = Solved::Direct;
+                    out = self.assemble(at, Order::Second)?;
+                }
+            }
         }
         out.tangent.without_rows(|row| held[row as usize]);
         (0..n).filter(|k| held[*k]).for_each(|k| out.tangent.add(k as u32, k as u32, 1.0));
         let matrix = out.tangent.matrix(n);
         let sizes = matrix.row_sizes();
-        let size = self.system.size();
         if !self.is_free
             && let Ok(found) = self.analysis.factor(matrix).and_then(|lu| lu.solve(&right))
         {
             return Ok(found);
         }
-        // A ball without friction may turn, a block on a plane slide, a slack rope has no stiffness: a grain of it in the matrix
-        // alone keeps them where they are and changes no solution.
-        let mut most = [0.0f64; 2];
-        for k in (0..count).filter(|k| !held[*k]) {
-            let kind = usize::from(self.is_spin[k]);
-            most[kind] = most[kind].max(sizes[k]);
-        }
-        for k in (0..count).filter(|k| !held[*k]) {
-            let kind = usize::from(self.is_spin[k]);
-            let scale = if most[kind] > 0.0 { most[kind] } else { most[0].max(f64::MIN_POSITIVE) * size * size };
-            out.tangent.add(k as u32, k as u32, GRAIN * scale);
-        }
+        self.add_grain(&mut out, &held, &sizes);
         let matrix = out.tangent.matrix(n);
         Ok(self.analysis.factor(matrix)?.solve(&right)?)
     }

@@ -243,14 +243,17 @@ impl Problem<'_> {
         if !matches!(error, IncrementError::Solve(_) | IncrementError::NotConverged { .. }) {
             return error;
         }
-        let assemble = || self.system.assemble_with(at, self.time, Order::Second, self.stiffness);
+        let stiffness = match self.stiffness {
+            Stiffness::KeptByBodies => Stiffness::KeptByBodies,
+            Stiffness::InTangent | Stiffness::Condensed => Stiffness::InTangent,
+        };
+        let assemble = || self.system.assemble_with(at, self.time, Order::Second, stiffness);
         let Ok(assembled) = assemble() else { return error };
         let (first, count) = self.system.numbering();
         let held: Vec<usize> = assembled.single.iter().map(|h| h.constraint.terms[0].0 as usize).collect();
         let size_of_all = assembled.residual.len();
-        let largest = self.system.row_sizes(&assembled, self.stiffness).into_iter().fold(0.0f64, f64::max);
-        let matrix =
-            (self.stiffness == Stiffness::InTangent).then(|| assembled.tangent.matrix(assembled.residual.len()));
+        let largest = self.system.row_sizes(&assembled, stiffness).into_iter().fold(0.0f64, f64::max);
+        let matrix = (stiffness == Stiffness::InTangent).then(|| assembled.tangent.matrix(assembled.residual.len()));
         for (k, body) in self.system.bodies.iter().enumerate() {
             for (mode, motion) in body.rigid_modes(&at.bodies[k]).iter().enumerate() {
                 let mut x = vec![0.0; size_of_all];

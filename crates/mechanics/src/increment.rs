@@ -279,15 +279,15 @@ impl System {
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
         let rows = self.contacts.iter().flat_map(|c| c.rows()).collect();
-        let iterates = self.is_iterative(start)?;
+        let stiffness = self.stiffness(start)?;
         let mut problem = Problem {
             system: self,
             time,
-            stiffness: if iterates { Stiffness::KeptByBodies } else { Stiffness::InTangent },
+            stiffness,
             solved: *solved,
             inverses: Inverses::default(),
             analysis: Analysis::default(),
-            is_free: !iterates && self.has_free_body(),
+            is_free: stiffness != Stiffness::KeptByBodies && self.has_free_body(),
             springs: 0.0,
             metric: Vec::new(),
             goes_down: matches!(way, Way::Down),
@@ -344,7 +344,7 @@ impl System {
 
     /// What rounding of positions leaves of forces.
     fn rounding(&self, state: &SystemState, time: f64) -> Result<f64, IncrementError> {
-        let stiffness = if self.is_iterative(state)? { Stiffness::KeptByBodies } else { Stiffness::InTangent };
+        let stiffness = self.stiffness(state)?;
         let at = self.assemble_with(state, time, Order::Second, stiffness)?;
         let (_, count) = self.numbering();
         let stiffest = self.row_sizes(&at, stiffness)[..count].iter().fold(0.0f64, |m, s| m.max(*s));

@@ -85,8 +85,13 @@ pub struct NotItsHistory {
 pub trait Interaction: Send + Sync {
     fn name(&self) -> &str;
 
-    /// Numbers of the bodies: that on which the reported forces act first. Twice the same within a body.
-    fn bodies(&self) -> [usize; 2];
+    /// The parts of bodies that may touch: that on which the reported forces act first.
+    fn parts(&self) -> [&Part; 2];
+
+    /// Numbers of their bodies. Twice the same within a body.
+    fn bodies(&self) -> [usize; 2] {
+        self.parts().map(|part| part.body)
+    }
 
     /// A contact of points, as such.
     fn as_points(&self) -> Option<&Contact> {

@@ -98,8 +98,12 @@ impl System {
     /// The largest entry of each row of a tangent that was assembled.
     pub(crate) fn row_sizes(&self, out: &Assembled, stiffness: Stiffness) -> Vec<f64> {
         let n = out.residual.len();
-        if stiffness == Stiffness::InTangent {
-            return out.tangent.matrix(n).row_sizes();
+        if stiffness != Stiffness::KeptByBodies {
+            let mut sizes = out.tangent.matrix(n).row_sizes();
+            if stiffness == Stiffness::Condensed {
+                self.condensed_row_sizes(&mut sizes);
+            }
+            return sizes;
         }
         let mut sizes = out.tangent.row_sizes(n);
         let (first, _) = self.numbering();

@@ -6,7 +6,7 @@ use signorini_solve::schwarz::Sets;
 /// How the linear equations of Newton's method are solved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LinearSolver {
-    /// By iterations where all bodies offer them and there are many unknowns.
+    /// By iterations where all bodies offer them and there are many unknowns; else linear bodies are condensed.
     #[default]
     Automatic,
     Direct,
@@ -19,6 +19,8 @@ pub enum LinearSolver {
 pub enum Solved {
     #[default]
     Direct,
+    /// By a factorisation of the linear bodies, once, and of a dense system of what is left.
+    Condensed,
     Iterative {
         /// Linear systems, and the most iterations that one of them took.
         systems: usize,
@@ -38,7 +40,10 @@ pub enum Coarse {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Stiffness {
     InTangent,
+    /// Iterations take it from the bodies.
     KeptByBodies,
+    /// The linear bodies that are condensed are factorised by themselves.
+    Condensed,
 }
 
 /// The stiffness of a linear body as small symmetric matrices, and the sets of unknowns that precondition it.

@@ -5,6 +5,7 @@
 //! its equation says so, and its residual is the reaction.
 
 use crate::body::{Body, BodyError, BodyState, Constraint, Contribution, Hold, Load, PlaceError};
+use crate::condensed::LinearBodies;
 use crate::interaction::{Bodies, Interaction, Own, Target};
 use crate::linear_solver::{LinearSolver, Stiffness};
 use crate::part::Part;
@@ -102,6 +103,8 @@ pub struct System {
     pub solver: LinearSolver,
     /// What is done with states that are not stable.
     pub unstable: Unstable,
+    /// What is known of linear bodies, from the first step on.
+    pub linear: LinearBodies,
 }
 
 /// A state of the system.
@@ -308,20 +311,26 @@ impl System {
         let size = count + multipliers + coupled.len();
         let mut residual = vec![0.0; size];
         let mut sizes = vec![0.0; size];
-        let (mut tangent, of_bodies) = match stiffness {
-            Stiffness::InTangent => (Entries::default(), order),
-            Stiffness::KeptByBodies => (Entries::in_blocks(), Order::First),
+        let mut tangent = match stiffness {
+            Stiffness::InTangent | Stiffness::Condensed => Entries::default(),
+            Stiffness::KeptByBodies => Entries::in_blocks(),
         };
+        // What of the tangent of a body is the same in all states, and what is not.
+        let is_condensed = |body: usize| stiffness == Stiffness::Condensed && self.is_condensed()[body];
+        let constant = |body: usize| if is_condensed(body) { Order::First } else { order };
         let mut energy = 0.0;
-        for (body, (state, &first)) in self.bodies.iter().zip(state.bodies.iter().zip(&first)) {
+        for (k, (body, (state, &first))) in self.bodies.iter().zip(state.bodies.iter().zip(&first)).enumerate() {
             let mut out = Contribution::new(body.unknowns());
-            energy += body.internal(state, of_bodies, &mut out)?;
+            let order = if stiffness == Stiffness::KeptByBodies { Order::First } else { constant(k) };
+            energy += body.internal(state, order, &mut out)?;
             add(&out, first, &mut residual, &mut sizes, &mut tangent);
         }
         for load in &self.loads {
-            let (body, first) = (&self.bodies[load.part.body], first[load.part.body]);
+            let k = load.part.body;
+            let (body, first) = (&self.bodies[k], first[k]);
             let mut out = Contribution::new(body.unknowns());
-            load.act(body.as_ref(), &state.bodies[load.part.body], time, order, &mut out)?;
+            let order = if load.load.is_constant() { constant(k) } else { order };
+            load.act(body.as_ref(), &state.bodies[k], time, order, &mut out)?;
             add(&out, first, &mut residual, &mut sizes, &mut tangent);
         }
         let mut weakly_held = Vec::new();
@@ -329,6 +338,7 @@ impl System {
             let (body, own) = (&self.bodies[support.part.body], &state.bodies[support.part.body]);
             let mut out = Contribution::new(body.unknowns());
             let on = support.part.group.as_deref();
+            let order = constant(support.part.body);
             if let Some(force) = support.at(time, |hold| body.hold_weakly(on, hold, own, order, &mut out))? {
                 add(&out, first[support.part.body], &mut residual, &mut sizes, &mut tangent);
                 weakly_held.push((number, force));

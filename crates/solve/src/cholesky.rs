@@ -13,7 +13,7 @@ use faer::sparse::linalg::cholesky::{
     factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, MatMut, Par, Side};
+use faer::{Conj, Mat, MatMut, Par, Side};
 use std::sync::Arc;
 
 /// A linear system that could not be solved.
@@ -46,6 +46,8 @@ const RESIDUAL: f64 = 1e-10;
 pub struct Symbolic {
     /// Where the unknowns are, for an order of elimination by nested dissection.
     places: Option<Arc<Vec<[f64; 3]>>>,
+    /// Unknowns that are eliminated last, in this sequence, if places are known.
+    last: Vec<u32>,
     cached: Option<Analysis>,
 }
 
@@ -65,7 +67,12 @@ impl Symbolic {
     /// An analysis with the order of elimination of [`crate::dissection`], by where the unknowns are. Without it the order is
     /// that of minimum degree.
     pub fn dissected(places: Vec<[f64; 3]>) -> Self {
-        Symbolic { places: Some(Arc::new(places)), cached: None }
+        Symbolic { places: Some(Arc::new(places)), ..Symbolic::default() }
+    }
+
+    /// The same with some unknowns eliminated last, in their sequence.
+    pub fn with_last(self, last: Vec<u32>) -> Self {
+        Symbolic { last, cached: None, ..self }
     }
 
     /// What a factorisation would take, from the structure of the factor.
@@ -93,7 +100,13 @@ impl Symbolic {
             return Ok(analysis.clone());
         }
         let order = self.places.as_ref().filter(|p| p.len() == size).map(|places| {
-            let order = nested_dissection(a, places);
+            let mut order = nested_dissection(a, places);
+            if !self.last.is_empty() {
+                let mut is_last = vec![false; size];
+                self.last.iter().for_each(|k| is_last[*k as usize] = true);
+                order.retain(|k| !is_last[*k]);
+                order.extend(self.last.iter().map(|k| *k as usize));
+            }
             let mut place = vec![0; size];
             order.iter().enumerate().for_each(|(new, &old)| place[old] = new);
             (order, place)
@@ -167,12 +180,39 @@ impl Factor {
         self.values.len() as f64
     }
 
+    /// The lower triangle of the factor between the unknowns that were eliminated last.
+    pub fn trailing(&self, count: usize) -> Mat<f64> {
+        let begin = self.size() - count;
+        let mut out = Mat::<f64>::zeros(count, count);
+        match self.analysis.2.raw() {
+            SymbolicCholeskyRaw::Simplicial(factor) => {
+                for j in begin..self.size() {
+                    for k in factor.col_ptr()[j]..factor.col_ptr()[j + 1] {
+                        out[(factor.row_idx()[k] - begin, j - begin)] = self.values[k];
+                    }
+                }
+            }
+            SymbolicCholeskyRaw::Supernodal(factor) => {
+                for s in 0..factor.n_supernodes() {
+                    let (own, below) = (factor.supernode_begin()[s]..factor.supernode_end()[s], factor.supernode(s));
+                    let rows: Vec<usize> = own.clone().chain(below.pattern().iter().copied()).collect();
+                    let values = &self.values[factor.col_ptr_for_val()[s]..];
+                    for (k, j) in own.enumerate().filter(|(_, j)| *j >= begin) {
+                        let column = &values[k * rows.len()..(k + 1) * rows.len()];
+                        rows.iter().zip(column).skip(k).for_each(|(i, v)| out[(i - begin, j - begin)] = *v);
+                    }
+                }
+            }
+        }
+        out
+    }
+
     /// The factor of the sum of the matrix and another one, ordered anew in the same way.
     ///
     /// # Errors
     /// Those of [`Symbolic::factor`].
     pub fn plus(&self, other: &SymmetricMatrix) -> Result<Factor, SolveError> {
-        Symbolic { places: self.places.clone(), cached: None }.factor(self.matrix.plus(other))
+        Symbolic { places: self.places.clone(), ..Symbolic::default() }.factor(self.matrix.plus(other))
     }
 
     /// The entries of the matrix between some unknowns, in ascending order, one row after the other.

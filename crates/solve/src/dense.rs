@@ -91,6 +91,49 @@ impl Lu {
     }
 }
 
+/// [`Lu`] of a matrix whose rows and columns are scaled by powers of two first, so that units do not choose the pivots.
+pub struct Equilibrated {
+    rows: Vec<f64>,
+    columns: Vec<f64>,
+    lu: Lu,
+}
+
+/// The power of two nearest to an inverse.
+pub(crate) fn inverse_power(size: f64) -> f64 {
+    if size > 0.0 && size.is_finite() { (-size.log2().round()).exp2() } else { 1.0 }
+}
+
+impl Equilibrated {
+    /// Factorises a matrix of so many rows given by its columns, one after the other.
+    pub fn new(n: usize, mut a: Vec<f64>) -> Self {
+        let mut largest = vec![0.0f64; n];
+        for column in a.chunks(n.max(1)) {
+            largest.iter_mut().zip(column).for_each(|(l, v)| *l = l.max(v.abs()));
+        }
+        let rows: Vec<f64> = largest.into_iter().map(inverse_power).collect();
+        let mut columns = Vec::with_capacity(n);
+        for column in a.chunks_mut(n.max(1)) {
+            column.iter_mut().zip(&rows).for_each(|(v, s)| *v *= s);
+            let scale = inverse_power(column.iter().fold(0.0f64, |m, v| m.max(v.abs())));
+            column.iter_mut().for_each(|v| *v *= scale);
+            columns.push(scale);
+        }
+        Equilibrated { rows, columns, lu: Lu::new(n, &a) }
+    }
+
+    /// See [`Lu::smallest_pivot`].
+    pub fn smallest_pivot(&self) -> f64 {
+        self.lu.smallest_pivot()
+    }
+
+    /// Solves `A x = b` in `x`.
+    pub fn solve_in_place(&self, x: &mut [f64]) {
+        x.iter_mut().zip(&self.rows).for_each(|(x, s)| *x *= s);
+        self.lu.solve_in_place(x);
+        x.iter_mut().zip(&self.columns).for_each(|(x, s)| *x *= s);
+    }
+}
+
 /// The lower triangle of the inverse of a symmetric matrix, row by row, by Cholesky's factor of its lower triangle and one
 /// thread; none where a pivot, a square, is not above `least`.
 pub fn positive_inverse(mut a: DMatrix<f64>, least: f64) -> Option<Vec<f64>> {

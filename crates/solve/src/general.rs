@@ -5,6 +5,7 @@
 //! where its residual stays large.
 
 use crate::cholesky::SolveError;
+use crate::dense::inverse_power;
 use crate::sparse::SymmetricMatrix;
 use faer::linalg::solvers::SolveCore;
 use faer::sparse::linalg::solvers::{Lu as Numeric, SymbolicLu};
@@ -52,6 +53,11 @@ impl Entries {
             }
         }
         out
+    }
+
+    /// Row, column and value of the entries that are not kept apart, as they were added.
+    pub fn list(&self) -> impl Iterator<Item = (u32, u32, f64)> + '_ {
+        self.list.iter().copied()
     }
 
     /// Adds to one entry.
@@ -192,11 +198,6 @@ pub struct Analysis(Option<(Vec<usize>, Vec<usize>, SymbolicLu<usize>)>);
 
 /// Relative residual that a solve must reach.
 const RESIDUAL: f64 = 1e-9;
-
-/// The power of two nearest to an inverse.
-fn inverse_power(size: f64) -> f64 {
-    if size > 0.0 && size.is_finite() { (-size.log2().round()).exp2() } else { 1.0 }
-}
 
 impl Analysis {
     /// Factorises a matrix.

@@ -2,6 +2,7 @@
 //!
 //! - [`sparse`]: symmetric sparse matrices assembled from element matrices.
 //! - [`cholesky`]: sparse factorisation with a residual check on every solve.
+//! - [`condensation`]: a matrix reduced to a few of its unknowns, factorised once.
 //! - [`ldlt`]: factors of symmetric matrices that need not be positive definite, for the signs of their eigenvalues.
 //! - [`acceleration`]: Anderson's for fixed-point iterations.
 //! - [`dissection`]: an order of elimination for meshes in space.
@@ -13,6 +14,7 @@
 pub mod acceleration;
 pub mod blocks;
 pub mod cholesky;
+pub mod condensation;
 pub mod dense;
 pub mod dissection;
 pub mod general;
@@ -26,5 +28,6 @@ pub mod sparse;
 
 pub use acceleration::Acceleration;
 pub use cholesky::{Factor, SolveError, Symbolic};
+pub use condensation::Condensation;
 pub use progress::{Iteration, Progress, Silent};
 pub use sparse::SymmetricMatrix;

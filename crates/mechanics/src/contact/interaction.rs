@@ -8,6 +8,7 @@ use crate::enforcement::{Outer, SOFTER, WAVE};
 use crate::inside::Inside;
 use crate::interaction::{Around, Bodies, Interaction, NotItsHistory, Own, Target, Way, hardened, take_over, towards};
 use crate::pair::Stuck;
+use crate::part::Part;
 use crate::points::{MaterialPoint, Sampling, Site};
 use crate::simpler::{SetAside, SimplerFriction};
 use crate::site_result::SiteResult;
@@ -40,8 +41,8 @@ impl Interaction for Contact {
         &self.name
     }
 
-    fn bodies(&self) -> [usize; 2] {
-        [self.slave.body, self.master.body]
+    fn parts(&self) -> [&Part; 2] {
+        [&self.slave, &self.master]
     }
 
     fn as_points(&self) -> Option<&Contact> {

@@ -9,6 +9,7 @@ use crate::enforcement::{Outer, WAVE};
 use crate::inside::Inside;
 use crate::interaction::{Around, Bodies, Interaction, NotItsHistory, Own, Target, Way, hardened, take_over, towards};
 use crate::pair::{AxisChoice, Pair, any_tangent};
+use crate::part::Part;
 use crate::passage::{Tested, share_of_way};
 use crate::points::{MaterialPoint, Placed};
 use crate::simpler::{SetAside, SimplerFriction};
@@ -106,8 +107,8 @@ impl Interaction for Mortar {
         &self.name
     }
 
-    fn bodies(&self) -> [usize; 2] {
-        [self.slave.body, self.master.body]
+    fn parts(&self) -> [&Part; 2] {
+        [&self.slave, &self.master]
     }
 
     fn law(&self) -> Option<&dyn Law> {

@@ -123,8 +123,8 @@ impl Interaction for CurveContact {
         &self.name
     }
 
-    fn bodies(&self) -> [usize; 2] {
-        self.parts.each_ref().map(|p| p.body)
+    fn parts(&self) -> [&Part; 2] {
+        self.parts.each_ref()
     }
 
     fn law(&self) -> Option<&dyn Law> {

@@ -123,7 +123,8 @@ pub struct StepReport {
     pub iterations: usize,
     /// Equilibrium solves on larger cells, and on the way to the state.
     pub iterations_before: usize,
-    /// `direct` by factorisation, `direct with krylov` where the tractions of a large zone of contact are found by steps of a
+    /// `direct` by factorisation, `condensed` where linear bodies are factorised once and what contact changes is solved for in a
+    /// dense system, `direct with krylov` where the tractions of a large zone of contact are found by steps of a
     /// Krylov method, each a solve with the factors, `multigrid`, or `schwarz` by iterations with a Schwarz preconditioner.
     pub solver: String,
     /// The most iterations that an iterative solver took for one linear system.

@@ -29,6 +29,7 @@ pub const SOLVER: &str = "direct";
 fn solver(solved: Solved) -> (&'static str, Option<usize>) {
     match solved {
         Solved::Direct => (SOLVER, None),
+        Solved::Condensed => ("condensed", None),
         Solved::Iterative { most_iterations, coarse, .. } => {
             let word = match coarse {
                 Coarse::Factorised => "schwarz",

@@ -12,6 +12,7 @@ use std::sync::Arc;
 
 mod blocks;
 mod bodies;
+mod condensed;
 mod contacts;
 mod groove;
 mod held;

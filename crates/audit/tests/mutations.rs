@@ -69,7 +69,7 @@ fn contact(carries: Carries, law: Option<Law>) -> Contact {
 }
 
 fn acting(body: usize, force: Vector<3>, moment: Option<Vector<3>>, work: f64) -> Acting {
-    Acting { name: "force".into(), body, force, moment, work: Some([work, 0.0]), drives: false }
+    Acting { name: "force".into(), body, force, moment, work: Some([work, 0.0]), drives: false, reacts: false }
 }
 
 /// A disc of radius 1 and weight 1 that leans on nothing but the floor.

@@ -272,7 +272,7 @@ fn forces(
         let known = moved.filter(|m| plan.space != Stated::Axisymmetric || m[0] == 0.0);
         let work = known.map(|m| mean_work(&earlier(out.len()), force, &m));
         let drives = moved.is_none_or(|m| m.norm() > 0.0);
-        out.push(Acting { name: support.name.clone(), body, force: *force, moment, work, drives });
+        out.push(Acting { name: support.name.clone(), body, force: *force, moment, work, drives, reacts: true });
     }
     // What a winch does, and where a rope runs through pulleys, is not told.
     let hauls = |k: usize| matches!(plan.head.problem.bodies.get(system.bodies[k].name()), Some(Key::Rope(r)) if r.winch.is_some() || r.pulleys.is_some());
@@ -284,6 +284,7 @@ fn forces(
         moment: Some(force),
         work: None,
         drives: true,
+        reacts: true,
     }));
     for (k, load) in system.loads.iter().enumerate() {
         let Ok([force, moment]) = system.load_resultant(k, state, time) else { continue };
@@ -304,6 +305,7 @@ fn forces(
             moment: Some(moment),
             work,
             drives: false,
+            reacts: false,
         });
     }
     out

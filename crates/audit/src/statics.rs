@@ -14,6 +14,9 @@ use signorini_geometry::{Point, Vector};
 /// them by less than what the check of balance lets pass (a part of 10⁻⁴ of the forces, at arms of 10⁻² of the distance).
 const RANK: f64 = 1e-6;
 
+/// Part of the available friction that it may exceed, as in the check of tractions.
+const BEYOND: f64 = 1e-3;
+
 /// What friction at a place may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Friction {
@@ -40,11 +43,13 @@ impl<'a> Place<'a> {
     pub fn new(setting: &Setting, contact: usize, touch: &'a Touch) -> Self {
         // Of a place that carries nothing it is not known how it will slip.
         let slips = touch.slips && touch.is_closed && touch.pressure > 0.0;
+        let along = touch.friction / touch.pressure;
         let friction = match setting.contacts[contact].law {
             None => Friction::None,
             Some(Law::Limit(_)) if slips => Friction::Given(touch.friction * touch.weight),
             Some(Law::Limit(limit)) => Friction::Disc(limit * touch.weight),
-            Some(_) if slips => Friction::Known(touch.friction / touch.pressure),
+            // A pressure that is rounding tells no direction.
+            Some(law) if slips && along.norm() <= law.most(1.0) * (1.0 + BEYOND) => Friction::Known(along),
             // The axes of an ellipse are not told: the circle around it.
             Some(law) => Friction::Cone(law.most(1.0)),
         };

@@ -29,10 +29,11 @@ struct At {
     normal: V,
     /// Normal force and friction on the first body, as told.
     told: (f64, V),
+    slips: bool,
 }
 
 fn at(contact: &'static str, x: V, normal: V) -> At {
-    At { contact, x, normal: normal.normalize(), told: (1.0, V::zeros()) }
+    At { contact, x, normal: normal.normalize(), told: (1.0, V::zeros()), slips: false }
 }
 
 /// Free bodies with a force each at a place, others that hold them, and contacts of pairs of them.
@@ -102,7 +103,8 @@ impl Case {
             normal: along(&at.normal),
             weight,
             area: weight,
-            is_closed: true,
+            is_closed: at.told.0 > 0.0,
+            slips: at.slips,
             pressure: at.told.0 * how.force / weight,
             friction: along(&at.told.1) * (how.force / weight),
             ..Touch::default()
@@ -218,6 +220,15 @@ fn walls_clamp_a_block_as_hard_as_they_like() {
     // What touches and was told to carry nothing may carry.
     on_floor.places.iter_mut().filter(|p| p.contact != "floor").for_each(|p| p.told.0 = 0.0);
     on_floor.has(&[("floor", 0.0, None), ("left", 0.0, None), ("right", 0.0, None)]);
+    let (setting, mut state) = on_floor.stated(&AS_IT_IS);
+    assert_eq!(bounds(&setting, &state).len(), 3);
+    // Across a gap nothing does, and the other one presses as far as the floor holds: `N = μ (W + μ N)`.
+    let wall = setting.contacts.iter().position(|c| c.name == "right").unwrap();
+    state.contacts[wall][0].foot[0] += 1e-6;
+    let left = |b: &signorini_audit::ForceBounds| setting.contacts[b.contact].name == "left";
+    let found = bounds(&setting, &state).into_iter().find(left).unwrap();
+    let most = mu * W / (1.0 - mu * mu);
+    assert!(found.largest.is_some_and(|f| (f - most).abs() < SOLVED * W), "{found:?}");
     let (outcome, text) = on_floor.finding();
     assert!(outcome == Outcome::Doubt && text.contains("anything from 0 on, without bound"), "{text}");
 }
@@ -249,6 +260,38 @@ fn a_disc_in_a_groove_is_clamped_by_the_side_that_carries_less() {
     let (setting, mut state) = groove([40.0, 40.0], 0.3).stated(&AS_IT_IS);
     state.contacts[0][0].slips = true;
     assert!(bounds(&setting, &state).is_empty());
+}
+
+/// A block that slides along a floor against a wall: the friction of the floor is known, that of the wall is not.
+#[test]
+fn friction_where_bodies_slip_is_known() {
+    let (mu, push) = (0.3, 2.0);
+    let mut case = Case::one(Space::Plane, mu, weight(0.0, 0.0), Vec::new());
+    case.free[0].1.push((V::zeros(), v(push, 0.0, 0.0)));
+    let floor = [-0.5, 0.5].map(|x| At {
+        told: (1.0, v(-mu, 0.0, 0.0)),
+        slips: true,
+        ..at("floor", v(x, -0.5, 0.0), v(0.0, 1.0, 0.0))
+    });
+    case.places.extend(floor);
+    case.places.push(at("wall", v(0.5, 0.0, 0.0), v(-1.0, 0.0, 0.0)));
+    case.contacts = vec![("floor", ["body", "floor"]), ("wall", ["body", "wall"])];
+    // `N = Q - μ (W - T)` at the wall, with `|T| ≤ μ N`.
+    let [least, largest] = [1.0, -1.0].map(|sign| (push - mu * W) / (1.0 + sign * mu * mu));
+    case.has(&[("floor", W - mu * largest, Some(W + mu * least)), ("wall", least, Some(largest))]);
+    // The same where it is a constant at each place, of which nothing is told by the pressure.
+    let limit = 0.4;
+    case.law = Some(Law::Limit(limit));
+    case.places.iter_mut().filter(|p| p.slips).for_each(|p| p.told.1 = v(-limit, 0.0, 0.0));
+    let wall = push - 2.0 * limit;
+    case.has(&[("floor", W - limit, Some(W + limit)), ("wall", wall, Some(wall))]);
+    // Rounding tells nothing: as if it stuck.
+    case.law = Some(Law::PerPressure([mu; 2]));
+    let rounded = |p: &mut At| p.told = (1e-14, v(0.0, -3e-13, 0.0));
+    case.places.iter_mut().filter(|p| p.slips).for_each(rounded);
+    let mut sticks = case.clone();
+    sticks.places.iter_mut().for_each(|p| (p.slips, p.told) = (false, (1.0, V::zeros())));
+    assert_eq!(case.bounds(&AS_IT_IS), sticks.bounds(&AS_IT_IS));
 }
 
 #[test]
@@ -306,20 +349,30 @@ fn what_is_about_to_slip_has_no_choice() {
     assert!(of(mu - 1e-6).is_empty());
 }
 
+/// A table on four legs at `(±1, ±1) / 2` without friction.
+fn table(load: (Point<3>, V)) -> Case {
+    let places = LEGS.map(|(name, i, j)| at(name, v(0.5 * i, 0.5 * j, 0.0), v(0.0, 0.0, 1.0)));
+    Case::one(Space::ThreeD, 0.0, load, places.to_vec())
+}
+
+const LEGS: [(&str, f64, f64); 4] = [("a", 1.0, 1.0), ("b", -1.0, 1.0), ("c", -1.0, -1.0), ("d", 1.0, -1.0)];
+
 /// Forces of the legs `(±1, ±1)` differ from those of a flexible table by `± s` in turn.
 #[test]
 fn three_legs_of_a_table_tell_the_fourth() {
-    let legs = [("a", 1.0, 1.0), ("b", -1.0, 1.0), ("c", -1.0, -1.0), ("d", 1.0, -1.0)];
     for (x, y) in [(0.0, 0.0), (0.3, 0.0), (0.4, -0.2)] {
-        let places = legs.map(|(name, i, j)| at(name, v(0.5 * i, 0.5 * j, 0.0), v(0.0, 0.0, 1.0)));
-        let load = (v(0.5 * x, 0.5 * y, 1.0), v(0.0, 0.0, -W));
-        let case = Case::one(Space::ThreeD, 0.0, load, places.to_vec());
-        let flexible = legs.map(|(_, i, j)| 0.25 * W * (1.0 + i * x + j * y));
+        let mut case = table((v(0.5 * x, 0.5 * y, 1.0), v(0.0, 0.0, -W)));
+        let flexible = LEGS.map(|(_, i, j)| 0.25 * W * (1.0 + i * x + j * y));
         let bound = |k: usize| {
             let own = flexible[k];
             let [opposite, next, last] = [2, 1, 3].map(|i| flexible[(k + i) % 4]);
-            (legs[k].0, own - own.min(opposite), Some(own + next.min(last)))
+            (LEGS[k].0, own - own.min(opposite), Some(own + next.min(last)))
         };
+        case.has(&[0, 1, 2, 3].map(bound));
+        // Rounding of normals makes no equations.
+        for (place, tilt) in case.places.iter_mut().zip([1e-10, -2e-10, 3e-10, 1e-10]) {
+            place.normal[0] = tilt;
+        }
         case.has(&[0, 1, 2, 3].map(bound));
         if x == 0.0 {
             assert_eq!(bound(0), ("a", 0.0, Some(W / 2.0)));
@@ -419,6 +472,8 @@ fn nothing_is_told_of_what_is_not_known() {
     // No forces at the places balance such a load.
     let lost = Case::one(Space::Plane, 0.3, (V::zeros(), v(0.0, W, 0.0)), groove([40.0; 2], 0.3).places);
     assert!(lost.bounds(&AS_IT_IS).is_empty());
+    let slides = table((V::zeros(), v(0.1, 0.0, -W)));
+    assert!(slides.bounds(&AS_IT_IS).is_empty());
     // Of no load and no walls that clamp nothing is left.
     let mut still = groove([40.0; 2], 0.3);
     still.free[0].1[0].1 = V::zeros();

@@ -82,31 +82,13 @@ impl<'a> Program<'a> {
         for (row, right) in balance.rows.row_iter().zip(balance.right.iter()) {
             rows.add(row.iter().copied().enumerate(), *right);
         }
-        let mut cones = vec![SupportedConeT::ZeroConeT(balance.rows.nrows())];
+        rows.cones.push(SupportedConeT::ZeroConeT(balance.rows.nrows()));
         let unit = if statics.force > 0.0 { statics.force } else { 1.0 };
-        for (place, p) in statics.places.iter().zip(&statics.first).map(|(place, first)| (place, *first)) {
-            // The normal force pushes; friction is less than its part of it, or than a constant.
-            let limit = match place.friction {
-                Friction::Cone(mu) => Some((-mu, 0.0)),
-                Friction::Disc(most) => Some((0.0, most / unit)),
-                _ => None,
-            };
-            if !matches!(place.friction, Friction::Cone(_)) {
-                rows.add([(p, -1.0)], 0.0);
-                cones.push(SupportedConeT::NonnegativeConeT(1));
-            }
-            let Some((by_force, constant)) = limit else { continue };
-            if space == Space::ThreeD {
-                rows.add([(p, by_force)], constant);
-                [1, 2].iter().for_each(|k| rows.add([(p + k, -1.0)], 0.0));
-                cones.push(SupportedConeT::SecondOrderConeT(3));
-            } else {
-                [1.0, -1.0].iter().for_each(|sign| rows.add([(p, by_force), (p + 1, *sign)], constant));
-                cones.push(SupportedConeT::NonnegativeConeT(2));
-            }
+        for (place, first) in statics.places.iter().zip(&statics.first) {
+            rows.add_place(space, *first, &place.friction, unit);
         }
         let a = CscMatrix::new_from_triplets(rows.right.len(), statics.unknowns, rows.row, rows.column, rows.value);
-        Program { statics, a, b: rows.right, cones }
+        Program { statics, a, b: rows.right, cones: rows.cones }
     }
 
     /// The bounds of a contact; none where a program could not be solved.
@@ -144,17 +126,20 @@ fn settings() -> DefaultSettings<f64> {
         reduced_tol_gap_abs: NEARLY,
         reduced_tol_gap_rel: NEARLY,
         reduced_tol_feas: NEARLY,
+        reduced_tol_infeas_abs: NEARLY,
+        reduced_tol_infeas_rel: NEARLY,
         ..DefaultSettings::default()
     }
 }
 
-/// Entries of a matrix by row, and the right side.
+/// Entries of a matrix by row, the right side, and the cones of the slacks.
 #[derive(Default)]
 struct Rows {
     row: Vec<usize>,
     column: Vec<usize>,
     value: Vec<f64>,
     right: Vec<f64>,
+    cones: Vec<SupportedConeT<f64>>,
 }
 
 impl Rows {
@@ -165,5 +150,31 @@ impl Rows {
             self.value.push(value);
         }
         self.right.push(right);
+    }
+
+    /// The normal force `first` of a place pushes, and the friction that follows is less than its part of it, or than a constant.
+    fn add_place(&mut self, space: Space, first: usize, friction: &Friction, unit: f64) {
+        let (part, constant) = match friction {
+            Friction::Cone(mu) => (*mu, 0.0),
+            Friction::Disc(most) => (0.0, most / unit),
+            _ => return self.add_push(first),
+        };
+        // A cone of friction holds no force that pulls.
+        if part == 0.0 {
+            self.add_push(first);
+        }
+        if space == Space::ThreeD {
+            self.add([(first, -part)], constant);
+            [1, 2].iter().for_each(|k| self.add([(first + k, -1.0)], 0.0));
+            self.cones.push(SupportedConeT::SecondOrderConeT(3));
+        } else {
+            [1.0, -1.0].iter().for_each(|sign| self.add([(first, -part), (first + 1, *sign)], constant));
+            self.cones.push(SupportedConeT::NonnegativeConeT(2));
+        }
+    }
+
+    fn add_push(&mut self, first: usize) {
+        self.add([(first, -1.0)], 0.0);
+        self.cones.push(SupportedConeT::NonnegativeConeT(1));
     }
 }

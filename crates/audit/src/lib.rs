@@ -8,7 +8,7 @@
 //! - [`tractions`]: pressure pushes, friction stays within its limit and acts against the slip;
 //! - [`balance`]: forces and moments on each body sum to zero;
 //! - [`path`]: friction takes the energy that is given and not stored;
-//! - [`uniqueness`]: whether statics leave one state, and else the [`bounds`] of the forces;
+//! - [`uniqueness`]: whether statics leave one state, and else the bounds of the forces ([`mod@bounds`]);
 //! - [`resolution`]: whether cells are small enough for the zone of contact;
 //! - [`range`]: whether strains, slips and rotations are those of the theory;
 //! - [`stability`]: what is known of it.

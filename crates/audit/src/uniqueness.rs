@@ -38,7 +38,7 @@ fn of_group(setting: &Setting, state: &State, group: &Group, bounds: &[ForceBoun
     }
     let names: Vec<String> = group.members.iter().map(|k| format!("`{}`", setting.bodies[*k].name)).collect();
     let mut message = format!(
-        "{} components of force at {} places hold {}, and balance gives {} equations",
+        "{} components of force at {} places hold {}, and balance gives {} independent equations",
         count.unknowns,
         count.places,
         names.join(", "),

@@ -377,7 +377,7 @@ fn three_legs_of_a_table_tell_the_fourth() {
         if x == 0.0 {
             assert_eq!(bound(0), ("a", 0.0, Some(W / 2.0)));
             let (_, text) = case.finding();
-            assert!(text.contains("4 places") && text.contains("balance gives 3 equations"), "{text}");
+            assert!(text.contains("4 places") && text.contains("balance gives 3 independent equations"), "{text}");
             assert!(text.contains("`a` may be anything from 0 to 1.5"), "{text}");
         }
     }
@@ -461,6 +461,20 @@ fn forces_outside_of_their_bounds_are_told() {
     }
     let (outcome, text) = case.finding();
     assert!(outcome == Outcome::Doubt && text.contains("was told as") && text.contains("not between"), "{text}");
+}
+
+/// A groove that all but clamps has a bound, however large, and one that just does has none.
+#[test]
+fn a_large_bound_is_a_bound() {
+    let angle = 40.0f64;
+    let k = angle.to_radians().tan();
+    let open = 0.5 * W / angle.to_radians().cos();
+    for little in [1e-2, 1e-4, 1e-6] {
+        let largest = open / little;
+        let found = groove([angle; 2], (1.0 - little) / k).bounds(&AS_IT_IS)["left"].1.expect("a bound");
+        assert!((found / largest - 1.0).abs() < SOLVED / little, "{found} for {largest}");
+        assert_eq!(groove([angle; 2], (1.0 + little) / k).bounds(&AS_IT_IS)["left"].1, None);
+    }
 }
 
 #[test]

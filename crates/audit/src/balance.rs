@@ -8,7 +8,8 @@ use signorini_geometry::{Point, Vector};
 /// Part of the forces on a body that iterations may leave, and from which the state is none.
 const TOLD: f64 = 1e-4;
 const REFUSED: f64 = 1e-3;
-/// Least arm of the forces on a body, relative to how far from the origin they act: where all pass by it moments are rounding.
+/// Least arm of the forces on a body, relative to how far from the origin they act and to its size: where all pass by it moments
+/// are rounding.
 const LEAST_ARM: f64 = 1e-2;
 
 /// Checks the balance of all bodies that are not moved as prescribed.
@@ -94,7 +95,7 @@ fn of_body(setting: &Setting, state: &State, body: usize) -> Option<Finding> {
     let lack = setting.space.directions().iter().map(|i| force[*i].abs()).fold(0.0, f64::max);
     let lack = (lack - bent - setting.bodies[body].rounding).max(0.0) / size;
     let turns = setting.space.axes().iter().map(|i| moment[*i].abs()).fold(0.0, f64::max);
-    let arms = arms.max(LEAST_ARM * reach);
+    let arms = arms.max(LEAST_ARM * reach.max(setting.bodies[body].form.size() * size));
     let turning = if known && arms > 0.0 { (turns - off).max(0.0) / arms } else { 0.0 };
     let (value, what) = if turning > lack { (turning, "moments") } else { (lack, "forces") };
     let (outcome, limit) = match value {

@@ -8,7 +8,7 @@
 //! - [`tractions`]: pressure pushes, friction stays within its limit and acts against the slip;
 //! - [`balance`]: forces and moments on each body sum to zero;
 //! - [`path`]: friction takes the energy that is given and not stored;
-//! - [`uniqueness`]: whether statics leave one state;
+//! - [`uniqueness`]: whether statics leave one state, and else the bounds of the forces ([`mod@bounds`]);
 //! - [`resolution`]: whether cells are small enough for the zone of contact;
 //! - [`range`]: whether strains, slips and rotations are those of the theory;
 //! - [`stability`]: what is known of it.
@@ -17,8 +17,10 @@
 
 pub mod balance;
 pub mod boundary;
+pub mod bounds;
 pub mod finding;
 pub mod gaps;
+pub mod groups;
 pub mod jumps;
 pub mod nearest;
 pub mod obstacle;
@@ -28,11 +30,13 @@ pub mod resolution;
 pub mod samples;
 pub mod stability;
 pub mod state;
+pub mod statics;
 pub mod tractions;
 pub mod uniqueness;
 pub mod verdict;
 
 pub use boundary::Boundary;
+pub use bounds::{ForceBounds, bounds};
 pub use finding::{Check, Finding, Outcome, worst};
 pub use stability::Stability;
 pub use state::{
@@ -40,8 +44,22 @@ pub use state::{
 };
 pub use verdict::{Answer, Verdict};
 
+/// What was found of the end of an increment.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Audited {
+    pub findings: Vec<Finding>,
+    /// Of contacts whose forces are not unique.
+    pub bounds: Vec<ForceBounds>,
+}
+
 /// Checks the end of an increment, from the state before it, or the start.
 pub fn audit(setting: &Setting, before: Option<&State>, now: &State, stability: &Stability) -> Vec<Finding> {
+    audited(setting, before, now, stability).findings
+}
+
+/// The same, with the bounds of forces that are not unique.
+pub fn audited(setting: &Setting, before: Option<&State>, now: &State, stability: &Stability) -> Audited {
+    let bounds = bounds(setting, now);
     let mut out = gaps::check(setting, now);
     if let Some(before) = before {
         out.extend(jumps::check(setting, before, now));
@@ -49,9 +67,9 @@ pub fn audit(setting: &Setting, before: Option<&State>, now: &State, stability: 
     }
     out.extend(tractions::check(setting, now));
     out.extend(balance::check(setting, now));
-    out.extend(uniqueness::check(setting, now));
+    out.extend(uniqueness::check(setting, now, &bounds));
     out.extend(resolution::check(setting, before, now));
     out.extend(range::check(setting, now));
     out.extend(stability::check(stability));
-    worst(out)
+    Audited { findings: worst(out), bounds }
 }

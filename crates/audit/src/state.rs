@@ -250,4 +250,6 @@ pub struct Acting {
     pub work: Option<[f64; 2]>,
     /// Whether its place moved as prescribed in the increment: the force may have been any on the way.
     pub drives: bool,
+    /// Whether it is the reaction of a support, that is whatever holds its place.
+    pub reacts: bool,
 }

@@ -16,15 +16,26 @@ const EDGE: f64 = 0.1;
 /// Part of the dissipation that may have the wrong sign: slips of penalties are elastic in part.
 const REFUSED_SIGN: f64 = 0.05;
 
+/// Part of the largest force below which the force of a contact is what iterations leave of none.
+const NOTHING: f64 = 1e-8;
+
 /// Checks the tractions of all contacts.
 pub fn check(setting: &Setting, state: &State) -> Vec<Finding> {
-    setting.contacts.iter().zip(&state.contacts).flat_map(|(contact, touches)| of_contact(contact, touches)).collect()
+    let of_contacts = state.contacts.iter().map(|touches| size_of(touches));
+    let largest = of_contacts.chain(state.forces.iter().map(|a| a.force.norm())).fold(0.0, f64::max);
+    let list = setting.contacts.iter().zip(&state.contacts);
+    list.flat_map(|(contact, touches)| of_contact(contact, touches, NOTHING * largest)).collect()
 }
 
-fn of_contact(contact: &Contact, touches: &[Touch]) -> Vec<Finding> {
+fn size_of(touches: &[Touch]) -> f64 {
+    touches.iter().map(|t| t.weight * t.force_size()).sum()
+}
+
+/// Checks the tractions of a contact; forces up to `nothing` are rounding.
+fn of_contact(contact: &Contact, touches: &[Touch], nothing: f64) -> Vec<Finding> {
     let mut out = Vec::new();
-    let size: f64 = touches.iter().map(|t| t.weight * t.force_size()).sum();
-    if size == 0.0 {
+    let size = size_of(touches);
+    if size <= nothing {
         return out;
     }
     let name = &contact.name;

@@ -1,63 +1,130 @@
 //! Whether statics leave one state: forces between rigid bodies are unknowns that nothing but balance determines. Where there
 //! are more of them than equations of balance, those that were told are one of many; with friction they depend on the path.
 
+use crate::bounds::ForceBounds;
 use crate::finding::{Check, Finding, Outcome};
-use crate::state::{Form, Setting, Space, State};
+use crate::groups::{Group, carrying, groups, touching};
+use crate::state::{Setting, State};
+use crate::statics::{Place, Statics};
 
-/// Counts the forces on free rigid bodies that touch nothing that deforms.
-pub fn check(setting: &Setting, state: &State) -> Vec<Finding> {
-    let free = |k: usize| matches!(&setting.bodies[k].form, Form::Rigid(rigid) if rigid.is_free);
-    let rigid = |k: usize| matches!(&setting.bodies[k].form, Form::Rigid(_));
-    let is_held = |k: usize| state.forces.iter().any(|a| a.body == k && a.moment.is_none());
-    let [components, equations] = match setting.space {
-        Space::ThreeD => [3, 6],
-        Space::Plane => [2, 3],
-        Space::Axisymmetric => [1, 1],
+/// Places of a group beyond which equations are counted only, whether they are the same or not: to tell takes the cube of it.
+const MOST: usize = 300;
+/// Part of the forces by which bounds that are apart tell of other forces, and by which forces may lie outside of them: what
+/// the check of tractions lets pass.
+const TOLD: f64 = 1e-3;
+
+/// Counts the forces on free rigid bodies that touch nothing that deforms. With the bounds of the forces that are known.
+pub fn check(setting: &Setting, state: &State, bounds: &[ForceBounds]) -> Vec<Finding> {
+    let of = |group: &Group| {
+        let own: Vec<ForceBounds> = bounds.iter().filter(|b| group.contacts.contains(&b.contact)).copied().collect();
+        of_group(setting, state, group, &own)
     };
-    // Bodies that hang together are counted together.
-    let mut group: Vec<usize> = (0..setting.bodies.len()).collect();
-    let carrying = |k: usize| state.contacts[k].iter().filter(|t| t.is_closed && t.pressure > 0.0);
-    for (k, contact) in setting.contacts.iter().enumerate() {
-        let [a, b] = contact.bodies.map(|body| group[body]);
-        if contact.bodies.iter().all(|body| free(*body)) && carrying(k).next().is_some() {
-            group.iter_mut().filter(|g| **g == b).for_each(|g| *g = a);
+    groups(setting, state).iter().filter_map(of).collect()
+}
+
+fn of_group(setting: &Setting, state: &State, group: &Group, bounds: &[ForceBounds]) -> Option<Finding> {
+    let carries = Count::new(setting, state, group, group.places(setting, |k| carrying(state, k)));
+    let size: f64 = group.contacts.iter().map(|k| told(state, *k)).sum();
+    let widest = widest(setting, bounds).filter(|b| b.width() > TOLD * size.max(b.least));
+    // Others may lie where bodies touch and carry nothing.
+    let count = match widest {
+        Some(_) if !carries.leaves_others() => {
+            Count::new(setting, state, group, group.places(setting, |k| touching(setting, state, k)))
         }
+        _ => carries,
+    };
+    if count.places == 0 {
+        return None;
     }
-    let mut out = Vec::new();
-    for own in 0..setting.bodies.len() {
-        let members: Vec<usize> = (0..setting.bodies.len()).filter(|k| free(*k) && group[*k] == own).collect();
-        let touching =
-            |k: usize| setting.contacts[k].bodies.iter().any(|b| members.contains(b)) && carrying(k).next().is_some();
-        let contacts: Vec<usize> = (0..setting.contacts.len()).filter(|k| touching(*k)).collect();
-        let elastic = contacts.iter().any(|k| setting.contacts[*k].bodies.iter().any(|b| !rigid(*b)));
-        if members.is_empty() || contacts.is_empty() || elastic || members.iter().any(|k| is_held(*k)) {
-            continue;
+    let names: Vec<String> = group.members.iter().map(|k| format!("`{}`", setting.bodies[*k].name)).collect();
+    let mut message = format!(
+        "{} components of force at {} places hold {}, and balance gives {} independent equations",
+        count.unknowns,
+        count.places,
+        names.join(", "),
+        count.equations
+    );
+    let finding = |outcome, message| {
+        Finding::new(Check::Uniqueness, outcome, message).measured(count.unknowns as f64, count.equations as f64)
+    };
+    if !count.leaves_others() {
+        return Some(finding(Outcome::Fine, message));
+    }
+    let rubs = group.contacts.iter().any(|k| setting.contacts[*k].law.is_some());
+    let why = if rubs { "friction leaves others, by the path" } else { "others balance too" };
+    message += &format!(": the forces are one of many possible, {why}");
+    if let Some(widest) = widest {
+        let to = widest.largest.map_or("on, without bound".into(), |largest| format!("to {}", number(largest)));
+        let name = &setting.contacts[widest.contact].name;
+        message += &format!("; the normal force of `{name}` may be anything from {} {to}", number(widest.least));
+    }
+    if let Some(outside) = outside(setting, state, bounds, size) {
+        message += &outside;
+    }
+    let finding = finding(Outcome::Doubt, message).on(&setting.bodies[group.members[0]].name);
+    Some(finding.remedy("take the motion for sure, and the forces as one of many"))
+}
+
+/// The forces at places of a group, and the equations for them.
+struct Count {
+    places: usize,
+    unknowns: usize,
+    equations: usize,
+}
+
+impl Count {
+    fn new(setting: &Setting, state: &State, group: &Group, list: Vec<Place<'_>>) -> Self {
+        let places = list.len();
+        let statics = Statics::new(setting, state, group, list);
+        let equations = if places > MOST { statics.equations() } else { statics.independent().rows.nrows() };
+        Count { places, unknowns: statics.unknowns, equations }
+    }
+
+    fn leaves_others(&self) -> bool {
+        self.unknowns > self.equations
+    }
+}
+
+/// The normal force of a contact as it was told.
+fn told(state: &State, contact: usize) -> f64 {
+    carrying(state, contact).map(|t| t.pressure * t.weight).sum()
+}
+
+/// The bounds that are farthest apart, of those equally far the ones whose contact comes first by name.
+fn widest(setting: &Setting, bounds: &[ForceBounds]) -> Option<ForceBounds> {
+    let most = bounds.iter().map(ForceBounds::width).fold(0.0, f64::max);
+    let as_wide = bounds.iter().filter(|b| b.width() >= most * (1.0 - TOLD));
+    as_wide.min_by_key(|b| &setting.contacts[b.contact].name).copied()
+}
+
+/// What is said where a force was told outside of its bounds, by more than forces on bodies that penetrate each other may be off.
+fn outside(setting: &Setting, state: &State, bounds: &[ForceBounds], size: f64) -> Option<String> {
+    let off = |b: ForceBounds| {
+        let force = told(state, b.contact);
+        let beyond = (b.least - force).max(b.largest.map_or(0.0, |largest| force - largest));
+        let gap = carrying(state, b.contact).map(|t| (t.x - t.foot).norm()).fold(0.0, f64::max);
+        let extent = setting.contacts[b.contact].bodies.map(|k| setting.bodies[k].form.size());
+        let extent = extent.into_iter().fold(0.0, f64::max);
+        (beyond > (TOLD + if extent > 0.0 { gap / extent } else { 0.0 }) * size).then_some((beyond, force, b))
+    };
+    let (_, force, b) = bounds.iter().copied().filter_map(off).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let largest = b.largest.map_or("no bound".into(), number);
+    let name = &setting.contacts[b.contact].name;
+    let [force, least] = [force, b.least].map(number);
+    Some(format!("; that of `{name}` was told as {force}, which is not between {least} and {largest}"))
+}
+
+/// A number with four digits.
+fn number(value: f64) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
+    let digits = 3 - value.abs().log10().floor() as i32;
+    match digits {
+        -2..=6 => {
+            let text = format!("{value:.*}", digits.max(0) as usize);
+            if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
         }
-        let unknowns: usize = contacts
-            .iter()
-            .flat_map(|k| {
-                carrying(*k).map(|t| if setting.contacts[*k].law.is_some() && !t.slips { components } else { 1 })
-            })
-            .sum();
-        let count = equations * members.len();
-        let names: Vec<String> = members.iter().map(|k| format!("`{}`", setting.bodies[*k].name)).collect();
-        let places: usize = contacts.iter().map(|k| carrying(*k).count()).sum();
-        let rubs = contacts.iter().any(|k| setting.contacts[*k].law.is_some());
-        let message = format!(
-            "{unknowns} components of force at {places} places hold {}, and balance gives {count} equations",
-            names.join(", ")
-        );
-        let finding = |outcome, message| {
-            Finding::new(Check::Uniqueness, outcome, message).measured(unknowns as f64, count as f64)
-        };
-        out.push(if unknowns > count {
-            let why = if rubs { "friction leaves others, by the path" } else { "others balance too" };
-            finding(Outcome::Doubt, format!("{message}: the forces are one of many possible, {why}"))
-                .on(&setting.bodies[members[0]].name)
-                .remedy("take the motion for sure, and the forces as one of many")
-        } else {
-            finding(Outcome::Fine, message)
-        });
+        _ => format!("{value:.3e}"),
     }
-    out
 }

@@ -69,7 +69,7 @@ fn contact(carries: Carries, law: Option<Law>) -> Contact {
 }
 
 fn acting(body: usize, force: Vector<3>, moment: Option<Vector<3>>, work: f64) -> Acting {
-    Acting { name: "force".into(), body, force, moment, work: Some([work, 0.0]), drives: false }
+    Acting { name: "force".into(), body, force, moment, work: Some([work, 0.0]), drives: false, reacts: false }
 }
 
 /// A disc of radius 1 and weight 1 that leans on nothing but the floor.
@@ -231,6 +231,33 @@ fn honest_states_are_answers() {
         assert_eq!(Verdict::of(&findings), Verdict::RightWithin, "{name}: {findings:#?}");
         assert!(findings.len() >= 4, "{name}: {findings:#?}");
     }
+}
+
+#[test]
+fn a_force_that_iterations_leave_of_none_breaks_no_law() {
+    // A wall that carries next to nothing, and that beyond its friction.
+    let mut beside = disc();
+    let wall = Plane { point: v(1.0, 0.0, 0.0), normal: v(-1.0, 0.0, 0.0) };
+    beside.setting.bodies.push(rigid("wall", wall, false, 0.0));
+    beside.setting.contacts.push(Contact { name: "wall".into(), bodies: [0, 2], ..beside.setting.contacts[0].clone() });
+    for state in [&mut beside.before, &mut beside.now] {
+        state.bodies.push(moved(0.0, 0.0));
+        let x = v(1.0, 1.0, 0.0);
+        let rounding = Touch {
+            x,
+            foot: x,
+            normal: v(-1.0, 0.0, 0.0),
+            pressure: 1e-12,
+            friction: v(0.0, 1e-10, 0.0),
+            ..state.contacts[0][0]
+        };
+        state.contacts.push(vec![rounding]);
+        state.dissipated.push(Some(0.0));
+    }
+    let findings = audit(&beside.setting, Some(&beside.before), &beside.now, &beside.stability);
+    let outcome = |check| findings.iter().filter(|f| f.check == check).map(|f| f.outcome).max();
+    assert_eq!(outcome(Check::Tractions), Some(signorini_audit::Outcome::Fine), "{findings:#?}");
+    assert_eq!(outcome(Check::Balance), Some(signorini_audit::Outcome::Fine), "{findings:#?}");
 }
 
 /// A state spoilt on purpose: what, which check should see it, and how.

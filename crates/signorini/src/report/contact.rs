@@ -12,6 +12,10 @@ pub struct ContactReport {
     /// Moment of the contact on that body about `moments_about`.
     #[serde(default)]
     pub moment: Option<[f64; 3]>,
+    /// Least and largest normal force, over all its places, of all contact forces that would hold the rigid bodies as well; null
+    /// where balance determines it, where bodies deform or supports hold them, and of very many places together.
+    #[serde(default)]
+    pub force_bounds: Option<ForceBounds>,
     /// What `area` measures, and pressures are forces per.
     #[serde(default)]
     pub carries: Carried,
@@ -63,6 +67,15 @@ pub struct ContactReport {
     /// What friction could hold of a rope where it lies; null for other bodies.
     #[serde(default)]
     pub rope: Option<RopeLimits>,
+}
+
+/// Between what a normal force lies that balance does not determine.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ForceBounds {
+    /// The least normal force that holds the bodies.
+    pub least: f64,
+    /// The largest one; null where there is no bound, as of bodies that clamp each other.
+    pub largest: Option<f64>,
 }
 
 /// What a contact carries: what its `area` measures, and what its pressures are forces per.

@@ -1,6 +1,6 @@
 //! The summary as text: the table of the terminal, and the history as CSV.
 
-use super::{Carried, ContactReport, ErrorEstimate, StepReport, Summary, UnitNames, signed_size};
+use super::{Carried, ContactReport, ErrorEstimate, ForceBounds, StepReport, Summary, UnitNames, signed_size};
 use crate::output::figure::{figure, told_vector};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,7 +17,7 @@ pub fn table(summary: &Summary) -> String {
     type Cell = fn(&StepReport, Option<(&str, &ContactReport)>) -> Option<String>;
     /// The unit of the figures of a contact, or of all of them.
     type Unit = fn(&UnitNames, Carried) -> &str;
-    let columns: [(&str, Unit, Cell); 10] = [
+    let columns: [(&str, Unit, Cell); 11] = [
         ("t", |_, _| "", |s, _| Some(format!("{:.6}", s.time))),
         ("solves", |_, _| "", |s, _| Some(s.solves().to_string())),
         ("contact", |_, _| "", |_, c| Some(c?.0.to_string())),
@@ -27,6 +27,7 @@ pub fn table(summary: &Summary) -> String {
             |u, _| &u.force,
             |_, c| c.map(|(_, c)| figure(signed_size(&c.force), c.error_estimate.map(|e| e.force))),
         ),
+        ("normal force between", |u, _| &u.force, |_, c| c.and_then(|(_, c)| c.force_bounds.map(between))),
         (
             "max pressure",
             |u, c| c.units(u)[1],
@@ -67,6 +68,12 @@ pub fn table(summary: &Summary) -> String {
         }
     }
     rows.iter().map(|row| format!("{}\n", row.trim_end())).collect()
+}
+
+/// Bounds as a figure of a table.
+fn between(bounds: ForceBounds) -> String {
+    let largest = bounds.largest.map_or("∞".to_string(), |f| figure(f, None));
+    format!("{} and {largest}", figure(bounds.least, None))
 }
 
 /// The increments, those without ± of their own with those of the last, relative to its figures.
@@ -217,6 +224,14 @@ pub fn history(steps: &[StepReport], units: Option<&UnitNames>) -> String {
             for (k, axis) in AXES.iter().enumerate() {
                 add(format!("{name}:moment_{axis}"), unit(|u| &u.moment), &|s| Some(s.contacts.get(name)?.moment?[k]));
             }
+        }
+    }
+    for name in names(steps, |s| &s.contacts) {
+        let of = |s: &StepReport| s.contacts.get(name).and_then(|c| c.force_bounds);
+        // Without a bound the largest is left empty.
+        if steps.iter().any(|s| of(s).is_some()) {
+            add(format!("{name}:force_bounds_least"), unit(|u| &u.force), &|s| Some(of(s)?.least));
+            add(format!("{name}:force_bounds_largest"), unit(|u| &u.force), &|s| of(s)?.largest);
         }
     }
     for name in names(steps, |s| &s.free_bodies) {

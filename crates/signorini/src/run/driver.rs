@@ -9,7 +9,7 @@ use crate::fields::ShownState;
 use crate::output::{Folder, OutputError};
 use crate::plan::Head;
 use crate::problem::{CaseError, Limits};
-use crate::report::{PathReports, Reason, SCHEMA, StepReport, Summary, history};
+use crate::report::{ForceBounds, PathReports, Reason, SCHEMA, StepReport, Summary, history};
 use serde_json::{Value, json};
 use signorini_audit::{Check, Finding, Verdict, worst};
 use signorini_solve::{Iteration, Progress};
@@ -62,6 +62,11 @@ pub trait Model {
 
     /// Checks the last state in the same way; `step` is what is told of it.
     fn audit(&mut self, step: &StepReport) -> Vec<Finding>;
+
+    /// Bounds of the forces of contacts by name that the last state does not determine, as the check of it found them.
+    fn force_bounds(&self) -> Vec<(String, ForceBounds)> {
+        Vec::new()
+    }
 
     /// Writes the fields of the last state.
     ///
@@ -262,6 +267,9 @@ fn check(model: &mut dyn Model, record: &mut Record, last: bool) {
             step.reason = Reason::Refused;
         }
         step.audit = findings;
+        for (name, bounds) in model.force_bounds() {
+            step.contacts.entry(name).and_modify(|c| c.force_bounds = Some(bounds));
+        }
     }
 }
 

@@ -15,7 +15,7 @@ use crate::output::{Folder, OutputError, system_files, system_pictures};
 use crate::plan::Head;
 use crate::plan::mechanics::{Kind, MechanicsPlan};
 use crate::problem::CaseError;
-use crate::report::{Reason, StepReport};
+use crate::report::{ForceBounds, Reason, StepReport};
 use serde_json::{Value, json};
 use signorini_audit::Finding;
 use signorini_mechanics::{BodyState, IncrementError, IncrementResult, Saved, Stability, SystemState};
@@ -325,6 +325,12 @@ impl Model for MechanicsModel {
 
     fn audit(&mut self, step: &StepReport) -> Vec<Finding> {
         self.audit.increment(&self.plan, (&self.state, &self.result), step)
+    }
+
+    fn force_bounds(&self) -> Vec<(String, ForceBounds)> {
+        let name = |contact: usize| self.plan.system.contacts[contact].name().to_string();
+        let told = |b: &signorini_audit::ForceBounds| ForceBounds { least: b.least, largest: b.largest };
+        self.audit.bounds().iter().map(|b| (name(b.contact), told(b))).collect()
     }
 
     fn write_fields(&mut self, index: usize, record: &mut Record) -> Result<(), OutputError> {

@@ -91,9 +91,84 @@ to = 1
         // Moments about the foot: the weight in the middle, the head across and along.
         let moment = 2.0 * c * weight - 4.0 * s * number(&foot[0]) - 4.0 * c * number(&head[2]);
         assert!(moment.abs() < 1e-8 * weight, "{moment}");
+        // The head presses between the cones of foot and wall: with `|T| ≤ μ N` at each.
+        let (slope, mu) = (s / c, 0.45);
+        let least = 0.5 * weight / (slope + mu);
+        let largest = (0.5 * weight / (slope - mu)).min(0.5 * weight * mu / (1.0 - mu * slope));
+        let bounds = &step["contacts"]["head"]["force_bounds"];
+        close(&bounds["least"], least, unit);
+        close(&bounds["largest"], largest, unit);
+        assert!(number(&head[0]).abs() > least - unit && number(&head[0]).abs() < largest + unit, "{head}");
         let unique = |w: &Value| w["kind"] == "not_unique";
         assert!(found["warnings"].as_array().unwrap().iter().any(unique), "{}", found["warnings"]);
     }
+}
+
+/// A disc in a groove of two walls with friction: by moments about its centre both friction forces `T` are the same, and the
+/// normal forces `W sin β / sin(α + β) - T tan((α + β) / 2)`; the one that carries less limits `T`.
+#[test]
+fn forces_that_friction_leaves_open_are_told_by_their_bounds() {
+    let (slopes, weight, mu) = ([30.0f64, 55.0].map(f64::to_radians), 3.0, 0.4);
+    let case = |mu: f64| {
+        format!(
+            r#"
+space = "plane_strain"
+[constants]
+a = "30*pi/180"
+b = "55*pi/180"
+[bodies.slope.rigid]
+shape.plane = {{ point = [0, 0], normal = ["sin(a)", "cos(a)"] }}
+[bodies.steep.rigid]
+shape.plane = {{ point = [0, 0], normal = ["-sin(b)", "cos(b)"] }}
+[bodies.disc.rigid]
+shape.sphere = {{ center = ["(cos(b) - cos(a))/sin(a + b)", "(sin(a) + sin(b))/sin(a + b)"], radius = 1 }}
+motion.free = {{}}
+[loads.weight]
+on = "disc"
+force = [0, -{weight}]
+[contacts.left]
+between = ["disc", "slope"]
+friction.coulomb = {{ mu = {mu} }}
+[contacts.right]
+between = ["disc", "steep"]
+friction.coulomb = {{ mu = {mu} }}
+[[steps]]
+to = 1
+"#
+        )
+    };
+    let [a, b] = slopes;
+    let k = (0.5 * (a + b)).tan();
+    let open = [b, a].map(|other| weight * other.sin() / (a + b).sin());
+    let lighter = open[0].min(open[1]);
+    let found = summary(&case(mu), &set(&[]));
+    let step = last_step(&found);
+    for ((name, slope), force) in ["left", "right"].iter().zip([a, -b]).zip(open) {
+        let contact = &step["contacts"][name];
+        let bounds = &contact["force_bounds"];
+        let [least, largest] = [force - k * mu * lighter / (1.0 + mu * k), force + k * mu * lighter / (1.0 - mu * k)];
+        close(&bounds["least"], least, 1e-8);
+        close(&bounds["largest"], largest, 1e-8);
+        let [x, y] = [0, 1].map(|i| number(&contact["force"][i]));
+        let normal = x * slope.sin() + y * slope.cos();
+        assert!(normal >= least - 1e-8 && normal <= largest + 1e-8, "{name}: {normal} beyond {bounds}");
+    }
+    let text = found["answer"]["text"].as_str().unwrap();
+    assert!(text.contains("the normal force of `left` may be anything from 2.063 to 3.338"), "{text}");
+    // More friction clamps without limit, which is no number.
+    let clamped = summary(&case(1.2), &set(&[]));
+    assert!(last_step(&clamped)["contacts"]["left"]["force_bounds"]["largest"].is_null(), "{clamped}");
+    assert!(number(&last_step(&clamped)["contacts"]["left"]["force_bounds"]["least"]) > 0.0);
+    // Without friction balance tells all.
+    let smooth = summary(&case(mu).replace(&format!("friction.coulomb = {{ mu = {mu} }}"), ""), &set(&[]));
+    assert!(last_step(&smooth)["contacts"]["left"]["force_bounds"].is_null(), "{smooth}");
+    // Summaries of earlier versions have no such key.
+    let mut old = found.clone();
+    for contact in ["left", "right"] {
+        old["steps"][0]["contacts"][contact].as_object_mut().unwrap().remove("force_bounds").unwrap();
+    }
+    let old: signorini::report::Summary = serde_json::from_value(old).expect("a summary");
+    assert_eq!(old.steps[0].contacts["left"].force_bounds, None);
 }
 
 /// A ball in a groove of two blocks so stiff that Newton's method from the start loses it: forces by statics.

@@ -98,6 +98,7 @@ fn restored(value: &Value, time: f64, bodies: Vec<Placement>) -> Option<State> {
         moment: None,
         work: None,
         drives: false,
+        reacts: false,
     };
     Some(State {
         time,

@@ -224,7 +224,15 @@ fn forces<const D: usize>(
         let known = moved.filter(|m| plan.space != Stated::Axisymmetric || m[0] == 0.0);
         let work = known.map(|m| mean_work(&earlier(out.len()), &force, &m));
         let drives = moved.is_none_or(|m| m.norm() > 0.0);
-        out.push(Acting { name: support.name.clone(), body: support.body, force, moment: None, work, drives });
+        out.push(Acting {
+            name: support.name.clone(),
+            body: support.body,
+            force,
+            moment: None,
+            work,
+            drives,
+            reacts: true,
+        });
     }
     for l in &plan.loads {
         let at = |t: f64| {
@@ -239,7 +247,15 @@ fn forces<const D: usize>(
             let [first, last] = [power(&at(was.time)), power(&own)];
             [0.5 * (first + last), 0.5 * (last - first).abs()]
         });
-        out.push(Acting { name: l.name.clone(), body: l.body, force, moment: None, work, drives: false });
+        out.push(Acting {
+            name: l.name.clone(),
+            body: l.body,
+            force,
+            moment: None,
+            work,
+            drives: false,
+            reacts: false,
+        });
     }
     out
 }

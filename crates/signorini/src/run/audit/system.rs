@@ -8,8 +8,8 @@ use crate::problem::{Body as Key, Enforcement, Method, Penalty, Space as Stated}
 use crate::report::{Carried, StepReport};
 use serde_json::Value;
 use signorini_audit::{
-    Acting, Body, Boundary, Carries, Contact, Curve, Finding, Form, Placement, Rigid, Setting, Solid, Space, Stability,
-    State, Touch, audit, gaps,
+    Acting, Body, Boundary, Carries, Contact, Curve, Finding, ForceBounds, Form, Placement, Rigid, Setting, Solid,
+    Space, Stability, State, Touch, audited, gaps,
 };
 use signorini_contact::Status;
 use signorini_geometry::rigid::RigidMotion;
@@ -26,6 +26,7 @@ use std::sync::Arc;
 pub struct SystemAudit {
     setting: Option<Setting>,
     before: Option<(State, SystemState)>,
+    bounds: Vec<ForceBounds>,
 }
 
 impl SystemAudit {
@@ -68,9 +69,15 @@ impl SystemAudit {
             stored: Some(result.energy),
             dissipated: dissipated.collect(),
         };
-        let found = audit(setting, before.as_ref().map(|b| &b.0), &now, &stability(plan, step));
+        let found = audited(setting, before.as_ref().map(|b| &b.0), &now, &stability(plan, step));
         self.before = Some((now, state.clone()));
-        found
+        self.bounds = found.bounds;
+        found.findings
+    }
+
+    /// Bounds of forces that balance did not determine in the last increment.
+    pub fn bounds(&self) -> &[ForceBounds] {
+        &self.bounds
     }
 
     /// What a later run needs to go on.
@@ -272,7 +279,7 @@ fn forces(
         let known = moved.filter(|m| plan.space != Stated::Axisymmetric || m[0] == 0.0);
         let work = known.map(|m| mean_work(&earlier(out.len()), force, &m));
         let drives = moved.is_none_or(|m| m.norm() > 0.0);
-        out.push(Acting { name: support.name.clone(), body, force: *force, moment, work, drives });
+        out.push(Acting { name: support.name.clone(), body, force: *force, moment, work, drives, reacts: true });
     }
     // What a winch does, and where a rope runs through pulleys, is not told.
     let hauls = |k: usize| matches!(plan.head.problem.bodies.get(system.bodies[k].name()), Some(Key::Rope(r)) if r.winch.is_some() || r.pulleys.is_some());
@@ -284,6 +291,7 @@ fn forces(
         moment: Some(force),
         work: None,
         drives: true,
+        reacts: true,
     }));
     for (k, load) in system.loads.iter().enumerate() {
         let Ok([force, moment]) = system.load_resultant(k, state, time) else { continue };
@@ -304,6 +312,7 @@ fn forces(
             moment: Some(moment),
             work,
             drives: false,
+            reacts: false,
         });
     }
     out

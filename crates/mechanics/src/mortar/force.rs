@@ -6,6 +6,7 @@ use super::measure::{NodeMeasure, Separation, Sides};
 use crate::interaction::{Own, Target};
 use crate::pair::{NoPair, Pair};
 use crate::points::Order;
+use rayon::prelude::*;
 use signorini_contact::Status;
 use signorini_contact::law::Projected;
 use signorini_geometry::{Matrix, Vector};
@@ -225,20 +226,16 @@ fn sorted(lines: Lines) -> Vec<((u32, usize), Vec<f64>)> {
 impl Mortar {
     /// The pairs of all points, and how many could not be measured.
     pub(super) fn pairs(&self, sides: &Sides<'_>, cover: &Cover) -> (Vec<Vec<Option<Pair>>>, usize) {
-        let mut lost = 0;
-        let mut of = |point: &CoveredPoint| match sides.pair(point, self.friction.is_some(), Order::First) {
-            Ok(pair) => Some(pair),
-            Err(why) => {
-                lost += usize::from(why == NoPair::NoCoordinates);
-                None
-            }
-        };
-        let pairs = cover.points.iter().map(|list| list.iter().map(&mut of).collect()).collect();
-        (pairs, lost)
+        let of = |point: &CoveredPoint| sides.pair(point, self.friction.is_some(), Order::First);
+        let found: Vec<Vec<Result<Pair, NoPair>>> =
+            cover.points.par_iter().map(|list| list.iter().map(of).collect()).collect();
+        let is_lost = |pair: &&Result<Pair, NoPair>| matches!(pair, Err(NoPair::NoCoordinates));
+        let lost = found.iter().flatten().filter(is_lost).count();
+        (found.into_iter().map(|list| list.into_iter().map(Result::ok).collect()).collect(), lost)
     }
 
     /// How far all matched points are apart.
     pub(super) fn separations(&self, sides: &Sides<'_>) -> Vec<Option<Separation>> {
-        self.matched.iter().map(|m| sides.separation(m).ok()).collect()
+        self.matched.par_iter().map(|m| sides.separation(m).ok()).collect()
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{axis, depth, spatial};
 use crate::body::{Bodies, BodySurface};
+use rayon::prelude::*;
 use signorini_contact::{FacePoint, PressureNodes};
 use signorini_fem::hierarchic::{Derivatives, Values};
 use signorini_fem::rules::rule;
@@ -9,6 +10,8 @@ use signorini_fem::{CellShape, Group, Local, Side};
 use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::{Bend, Direction, Function, NormalField, Placed, Sampling, Site};
 use std::collections::{BTreeMap, HashMap};
+use std::ops::Range;
+use std::sync::OnceLock;
 
 /// A side of a cell.
 pub(super) struct Face<const D: usize> {
@@ -35,6 +38,7 @@ struct TestedPoint<const D: usize> {
 }
 
 /// The tangents of a face at a tested point, and how functions move them.
+#[derive(Clone)]
 pub(super) struct Tangents<const D: usize> {
     face: u32,
     at: [Point<D>; 2],
@@ -48,16 +52,29 @@ pub(super) struct Surface<const D: usize> {
     pub boundary: BodySurface<D>,
     /// Faces around each vertex.
     pub around: HashMap<u32, Vec<u32>>,
-    nodes: Vec<Site>,
-    gauss_points: Vec<Site>,
+    /// What the averaged normal at each vertex of each face is the sum of, once it is asked for.
+    normals: OnceLock<Vec<Vec<Normal<D>>>>,
+    nodes: Tested<D>,
+    gauss_points: Tested<D>,
+}
+
+/// Area normals of faces with their shares, of which an averaged normal is the sum.
+type Normal<const D: usize> = Vec<(f64, Tangents<D>)>;
+
+/// Tested points of a surface.
+struct Tested<const D: usize> {
+    /// Number of the first one among those of the body, and how many numbers there are.
+    numbers: Range<u32>,
+    /// Once they are asked for.
+    list: OnceLock<Vec<(Site, TestedPoint<D>)>>,
 }
 
 /// All faces of the groups of a body.
 pub(super) struct Faces<const D: usize> {
     bodies: Bodies<D>,
     list: Vec<Face<D>>,
-    points: Vec<TestedPoint<D>>,
-    surfaces: BTreeMap<String, Surface<D>>,
+    surfaces: Vec<Surface<D>>,
+    by_group: BTreeMap<String, usize>,
 }
 
 /// Cosine of the angle between faces at rest from which on they make one smooth surface: that between two sides of a
@@ -69,8 +86,10 @@ pub(super) const NOTHING: f64 = 1e-14;
 
 impl<const D: usize> Faces<D> {
     pub fn new(bodies: &Bodies<D>, groups: &BTreeMap<String, Group>) -> Self {
-        let mut out = Faces { bodies: bodies.clone(), list: Vec::new(), points: Vec::new(), surfaces: BTreeMap::new() };
+        let mut out =
+            Faces { bodies: bodies.clone(), list: Vec::new(), surfaces: Vec::new(), by_group: BTreeMap::new() };
         let mut numbers: HashMap<Side, u32> = HashMap::new();
+        let mut next = 0;
         for (name, group) in groups.iter().filter(|(_, g)| !g.sides.is_empty()) {
             let mut faces = Vec::with_capacity(group.sides.len());
             for side in &group.sides {
@@ -83,10 +102,17 @@ impl<const D: usize> Faces<D> {
             for &f in &faces {
                 out.list[f as usize].vertices.iter().for_each(|v| around.entry(*v).or_default().push(f));
             }
-            let nodes = out.nodes(&faces, &around, group.sides.clone());
-            let gauss_points = out.gauss_points(&faces, &around);
             let boundary = bodies.surface(0, group.sides.clone());
-            out.surfaces.insert(name.clone(), Surface { faces, boundary, around, nodes, gauss_points });
+            let gauss_points = faces.iter().map(|f| out.face(*f).rule(bodies).len()).sum::<usize>();
+            let nodes = faces.iter().map(|f| out.face(*f).lattice.len()).sum::<usize>();
+            let mut tested = |count: usize| {
+                let numbers = next..next + count as u32;
+                next = numbers.end;
+                Tested { numbers, list: OnceLock::new() }
+            };
+            let (nodes, gauss_points) = (tested(nodes), tested(gauss_points));
+            out.by_group.insert(name.clone(), out.surfaces.len());
+            out.surfaces.push(Surface { faces, boundary, around, normals: OnceLock::new(), nodes, gauss_points });
         }
         out
     }
@@ -97,37 +123,56 @@ impl<const D: usize> Faces<D> {
 
     /// The surface of a group that has sides.
     pub fn surface(&self, group: &str) -> &Surface<D> {
-        &self.surfaces[group]
+        &self.surfaces[self.by_group[group]]
     }
 
     pub fn sites(&self, group: &str, sampling: Sampling) -> Vec<Site> {
-        let surface = self.surface(group);
+        self.tested(self.surface(group), sampling).iter().map(|t| t.0).collect()
+    }
+
+    fn tested<'a>(&'a self, surface: &'a Surface<D>, sampling: Sampling) -> &'a [(Site, TestedPoint<D>)] {
         match sampling {
-            Sampling::Nodes => surface.nodes.clone(),
-            Sampling::GaussPoints => surface.gauss_points.clone(),
+            Sampling::Nodes => surface.nodes.list.get_or_init(|| self.nodes(surface)),
+            Sampling::GaussPoints => surface.gauss_points.list.get_or_init(|| self.gauss_points(surface)),
         }
+    }
+
+    /// The tested point that a site is.
+    fn point(&self, site: &Site) -> &TestedPoint<D> {
+        let number = site.patch;
+        let surface = &self.surfaces[self.surfaces.partition_point(|s| s.nodes.numbers.start <= number) - 1];
+        let (sampling, first) = match number < surface.gauss_points.numbers.start {
+            true => (Sampling::Nodes, surface.nodes.numbers.start),
+            false => (Sampling::GaussPoints, surface.gauss_points.numbers.start),
+        };
+        &self.tested(surface, sampling)[(number - first) as usize].1
     }
 
     /// Depth of the cells at a site.
     pub fn depth(&self, site: &Site) -> f64 {
-        self.points[site.patch as usize].depth
+        self.point(site).depth
     }
 
     /// The faces that a site lies on.
     pub fn faces_of(&self, site: &Site) -> impl Iterator<Item = u32> {
-        self.points[site.patch as usize].around.iter().map(|t| t.face)
+        self.point(site).around.iter().map(|t| t.face)
     }
 
-    /// A point of a face that stands for an area.
-    fn add(&mut self, at: &[(u32, Local)], around: &HashMap<u32, Vec<u32>>, weight: f64) -> Site {
+    /// A point of faces of a surface, the first of them by its place in it, that stands for an area.
+    fn tested_point(
+        &self,
+        surface: &Surface<D>,
+        (place, at): (usize, &[(u32, Local)]),
+        (patch, weight): (u32, f64),
+    ) -> (Site, TestedPoint<D>) {
         let (face, s) = at[0];
         let functions =
             (self.slopes(face, &s).into_iter()).filter(|(_, d)| d[0].abs() > NOTHING).map(|(f, d)| (f, d[0])).collect();
-        let averaged = self.averaged(face, &s, around);
+        let averaged = self.averaged(surface, place, &s);
         let around: Vec<Tangents<D>> = at.iter().map(|(face, s)| self.tangents(*face, s)).collect();
         let depth = at.iter().map(|(f, _)| self.face(*f).depth).fold(f64::INFINITY, f64::min);
-        self.points.push(TestedPoint { x: self.reference(face, &s).x, functions, around, averaged, depth });
-        Site { patch: (self.points.len() - 1) as u32, xi: [s[0], s[1]], weight }
+        let point = TestedPoint { x: self.reference(face, &s).x, functions, around, averaged, depth };
+        (Site { patch, xi: [s[0], s[1]], weight }, point)
     }
 
     fn tangents(&self, face: u32, s: &Local) -> Tangents<D> {
@@ -136,23 +181,32 @@ impl<const D: usize> Faces<D> {
         Tangents { face, at: self.reference(face, s).tangents, slopes }
     }
 
-    /// The terms of the averaged normal at a point of a face: area normals at its vertices of all faces that go on smoothly
-    /// there, over their areas at rest, with the functions of the vertices.
-    pub fn averaged(&self, face: u32, s: &Local, around: &HashMap<u32, Vec<u32>>) -> Vec<(f64, Tangents<D>)> {
-        let own = self.face(face);
+    /// The terms of the averaged normal at a point of a face of a surface: area normals at its vertices of all faces that go on
+    /// smoothly there, over their areas at rest, with the functions of the vertices.
+    fn averaged(&self, surface: &Surface<D>, place: usize, s: &Local) -> Normal<D> {
+        let shape = self.face(surface.faces[place]).shape;
         let mut out = Vec::new();
-        for (k, corner) in own.shape.vertices().iter().enumerate() {
-            let value = vertex_function(own.shape, corner, s);
+        for (corner, terms) in shape.vertices().iter().zip(&self.vertex_normals(surface)[place]) {
+            let value = vertex_function(shape, corner, s);
             if value.abs() > NOTHING {
-                let terms = self.averaged_at_vertex(face, k, around);
-                out.extend(terms.into_iter().map(|(share, tangents)| (value * share, tangents)));
+                out.extend(terms.iter().map(|(share, tangents)| (value * share, tangents.clone())));
             }
         }
         out
     }
 
-    /// The same at a vertex of the face.
-    fn averaged_at_vertex(&self, face: u32, k: usize, around: &HashMap<u32, Vec<u32>>) -> Vec<(f64, Tangents<D>)> {
+    /// The same at the vertices of all faces of a surface.
+    pub fn vertex_normals<'a>(&'a self, surface: &'a Surface<D>) -> &'a [Vec<Normal<D>>] {
+        surface.normals.get_or_init(|| {
+            let of = |face: &u32| {
+                let vertices = 0..self.face(*face).vertices.len();
+                vertices.map(|k| self.averaged_at_vertex(*face, k, &surface.around)).collect()
+            };
+            surface.faces.par_iter().map(of).collect()
+        })
+    }
+
+    fn averaged_at_vertex(&self, face: u32, k: usize, around: &HashMap<u32, Vec<u32>>) -> Normal<D> {
         let own = self.face(face);
         let vertex = own.vertices[k];
         let here = self.reference(face, &own.shape.vertices()[k]).area_normal();
@@ -170,12 +224,6 @@ impl<const D: usize> Faces<D> {
         }
         out.iter_mut().for_each(|(share, _)| *share /= total);
         out
-    }
-
-    /// The averaged normals at the vertices of a face, with what moves them.
-    pub fn vertex_normals(&self, face: u32, around: &HashMap<u32, Vec<u32>>, u: &[f64]) -> Vec<Direction> {
-        let count = self.face(face).vertices.len();
-        (0..count).map(|k| Self::direction(&self.averaged_at_vertex(face, k, around), u)).collect()
     }
 
     /// The averaged normal between the vertices of a face.
@@ -236,33 +284,40 @@ impl<const D: usize> Faces<D> {
         out
     }
 
-    fn gauss_points(&mut self, faces: &[u32], around: &HashMap<u32, Vec<u32>>) -> Vec<Site> {
+    fn gauss_points(&self, surface: &Surface<D>) -> Vec<(Site, TestedPoint<D>)> {
         let mut out = Vec::new();
-        for &f in faces {
-            for (s, w) in rule(self.face(f).shape, self.bodies.list[0].degree + 1) {
+        for (place, &f) in surface.faces.iter().enumerate() {
+            for (s, w) in self.face(f).rule(&self.bodies) {
                 let point = self.reference(f, &s);
                 let weight = w * point.area_normal().norm() * self.bodies.measure(&point.x);
-                out.push(self.add(&[(f, s)], around, weight));
+                let number = surface.gauss_points.numbers.start + out.len() as u32;
+                out.push(self.tested_point(surface, (place, &[(f, s)]), (number, weight)));
             }
         }
         out
     }
 
     /// The nodes of the contact pressure, one on each side of an edge that is a feature.
-    fn nodes(&mut self, faces: &[u32], around: &HashMap<u32, Vec<u32>>, sides: Vec<Side>) -> Vec<Site> {
-        let nodes = PressureNodes::new(&self.bodies.surface(0, sides));
+    fn nodes(&self, surface: &Surface<D>) -> Vec<(Site, TestedPoint<D>)> {
+        let nodes = PressureNodes::new(&surface.boundary);
+        debug_assert!(nodes.len() <= surface.nodes.numbers.len());
         let mut weights = vec![0.0; nodes.len()];
-        let mut places: Vec<Vec<(u32, Local)>> = vec![Vec::new(); nodes.len()];
-        for (k, &face) in faces.iter().enumerate() {
-            let own = nodes.of_face(k);
-            for ((node, _), s) in own.iter().zip(nodes.map(k).nodes()) {
-                places[*node as usize].push((face, s));
+        let mut points: Vec<(usize, Vec<(u32, Local)>)> = vec![(0, Vec::new()); nodes.len()];
+        for (place, &face) in surface.faces.iter().enumerate() {
+            let own = nodes.of_face(place);
+            for ((node, _), s) in own.iter().zip(nodes.map(place).nodes()) {
+                let (first, at) = &mut points[*node as usize];
+                if at.is_empty() {
+                    *first = place;
+                }
+                at.push((face, s));
             }
-            for ((node, _), w) in own.iter().zip(self.tributary(face, nodes.map(k))) {
+            for ((node, _), w) in own.iter().zip(self.tributary(face, nodes.map(place))) {
                 weights[*node as usize] += w;
             }
         }
-        places.iter().zip(weights).map(|(at, w)| self.add(at, around, w)).collect()
+        let list = points.iter().zip(weights).zip(surface.nodes.numbers.start..);
+        list.map(|(((first, at), w), number)| self.tested_point(surface, (*first, at), (number, w))).collect()
     }
 
     /// The area of a face as it belongs to its nodes: the integrals of their functions, or where one of these is not
@@ -343,13 +398,13 @@ impl<const D: usize> Faces<D> {
 
     /// The mean outward unit normal at a tested point.
     pub fn outward(&self, site: &Site, u: &[f64]) -> Vector<3> {
-        let point = &self.points[site.patch as usize];
+        let point = self.point(site);
         let of = |t: &Tangents<D>| spatial(&FacePoint { x: point.x, tangents: t.now(u) }.area_normal().normalize());
         point.around.iter().map(of).sum::<Vector<3>>().normalize()
     }
 
     pub fn placed(&self, site: &Site, u: &[f64]) -> Placed {
-        let point = &self.points[site.patch as usize];
+        let point = self.point(site);
         let mut x = point.x;
         let mut functions = Vec::with_capacity(D * point.functions.len());
         for (f, v) in &point.functions {
@@ -419,6 +474,11 @@ fn vertex_slopes(shape: CellShape, corner: &Local, s: &Local) -> [f64; 2] {
 }
 
 impl<const D: usize> Face<D> {
+    /// The points of Gauss that are tested.
+    fn rule(&self, bodies: &Bodies<D>) -> Vec<(Local, f64)> {
+        rule(self.shape, bodies.list[0].degree + 1)
+    }
+
     fn new(bodies: &Bodies<D>, side: Side) -> Self {
         let body = &bodies.list[0];
         let cell = side.cell as usize;

@@ -155,7 +155,8 @@ impl<const D: usize> SurfaceMaster<'_, D> {
     fn under(&self, k: usize, x: &Point<3>) -> Option<(f64, Local, NormalField)> {
         let face = self.surface.faces[k];
         let shape = self.faces.face(face).shape;
-        let known = || self.faces.vertex_normals(face, &self.surface.around, self.u);
+        let normals = || &self.faces.vertex_normals(self.surface)[k];
+        let known = || normals().iter().map(|normal| Faces::<D>::direction(normal, self.u)).collect();
         let at_vertices = self.normals[k].get_or_init(known);
         let field_at = |s: &Local| self.faces.normal_field(face, s, at_vertices);
         let mut s = shape.centre();

@@ -5,6 +5,7 @@ use super::faces::{Faces, Surface, merge, vertex_function};
 use super::master::functions;
 use super::spatial;
 use crate::body::BodySurface;
+use rayon::prelude::*;
 use signorini_contact::obstacle::strip;
 use signorini_fem::Local;
 use signorini_geometry::shape::{CurveJet, SurfaceJet};
@@ -29,14 +30,13 @@ impl<const D: usize> SolidBody<D> {
     /// The surface of a group that has sides.
     pub(super) fn placed_surface<'a>(&'a self, group: &str, u: &'a [f64]) -> PlacedSurface<'a, D> {
         let surface = self.faces.surface(group);
-        let corner = |face: u32, s: &Local| Faces::<D>::direction(&self.faces.averaged(face, s, &surface.around), u);
-        let corners = |face: &u32| self.faces.face(*face).shape.vertices().iter().map(|s| corner(*face, s)).collect();
+        let corners = |of: &Vec<_>| of.iter().map(|normal: &Vec<_>| Faces::<D>::direction(normal, u)).collect();
         let body = self.body();
         PlacedSurface {
             faces: &self.faces,
             surface,
             u,
-            corners: surface.faces.iter().map(corners).collect(),
+            corners: self.faces.vertex_normals(surface).par_iter().map(corners).collect(),
             youngs_modulus: body.material.youngs_modulus,
             degree: body.degree as f64,
         }

@@ -50,11 +50,30 @@ pub type Field<'a> = &'a dyn Fn(&Point<3>) -> f64;
 pub type VectorField<'a> = &'a dyn Fn(&Point<3>) -> Vector<3>;
 
 /// How a place is held. Components that are free are `None`.
+#[derive(Default)]
 pub struct Hold<'a> {
     /// Prescribed displacement.
     pub displacement: [Option<Field<'a>>; 3],
     /// Prescribed rotation vector of the sections of a beam or of a rigid body, against the start.
     pub rotation: [Option<Field<'a>>; 3],
+    /// Prescribed displacement along a unit vector.
+    pub along: Option<(Vector<3>, Field<'a>)>,
+    /// Components of the displacement that are the same all over the place, and free.
+    pub uniform: [bool; 3],
+}
+
+impl Hold<'_> {
+    /// Refuses what only solids can be held by.
+    ///
+    /// # Errors
+    /// A displacement along a direction, or components that are uniform.
+    pub fn check_components(&self, body: &str) -> Result<(), PlaceError> {
+        if self.along.is_none() && self.uniform == [false; 3] {
+            return Ok(());
+        }
+        let message = "only solids can be held along an inclined normal, or uniformly".to_string();
+        Err(PlaceError::Unsuitable { body: body.to_string(), message })
+    }
 }
 
 /// An equation between unknowns: the step of the unknowns times `terms`, plus `lack`, is zero.
@@ -63,8 +82,22 @@ pub struct Constraint {
     pub terms: Vec<(u32, f64)>,
     /// How far what is held is from where it should be.
     pub lack: f64,
-    /// Which component of the reaction its multiplier counts for (0..3 force, 3..6 moment), and how much.
-    pub component: usize,
+    /// Force and moment of the support on the body per unit of its multiplier.
+    pub reaction: [Vector<3>; 2],
+}
+
+impl Constraint {
+    /// Prescribes a component of displacements (0..3) or rotations (3..6), whose reaction is a force or moment along it.
+    pub fn of_component(terms: Vec<(u32, f64)>, lack: f64, component: usize) -> Self {
+        let mut reaction = [Vector::<3>::zeros(); 2];
+        reaction[component / 3][component % 3] = 1.0;
+        Constraint { terms, lack, reaction }
+    }
+
+    /// Whether it prescribes a rotation.
+    pub fn turns(&self) -> bool {
+        self.reaction[1] != Vector::<3>::zeros()
+    }
 }
 
 /// What acts on a place.

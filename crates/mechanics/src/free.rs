@@ -177,8 +177,7 @@ impl Problem<'_> {
     fn goes_by_itself(&self, from: &SystemState, to: &SystemState) -> f64 {
         let moved = to.travel.iter().zip(&from.travel).zip(&self.is_spin).filter(|(_, turns)| !**turns);
         let farthest = moved.map(|((b, a), _)| (b - a).abs()).fold(0.0, f64::max);
-        let reach =
-            |h: &Held| h.constraint.lack.abs() * if h.constraint.component < 3 { 1.0 } else { self.system.size() };
+        let reach = |h: &Held| h.constraint.lack.abs() * if h.constraint.turns() { self.system.size() } else { 1.0 };
         let driven = self
             .system
             .held(&from.bodies, self.time)
@@ -191,8 +190,7 @@ impl Problem<'_> {
         let lacks = |h: &crate::system::Held| {
             let (body, lack) = (self.system.supports[h.support].part.body, h.constraint.lack.abs());
             let size = self.system.bodies[body].size();
-            self.system.bodies[body].is_rigid()
-                && lack > 0.5 * LEAP * if h.constraint.component < 3 { size } else { 1.0 }
+            self.system.bodies[body].is_rigid() && lack > 0.5 * LEAP * if h.constraint.turns() { 1.0 } else { size }
         };
         self.system.held(&at.bodies, self.time).is_ok_and(|(single, coupled)| single.iter().chain(&coupled).any(lacks))
     }

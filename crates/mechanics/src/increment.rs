@@ -362,19 +362,14 @@ impl System {
         let (_, count) = self.numbering();
         let at = self.assemble(state, time, Order::First)?;
         let mut support_forces = vec![[Vector::<3>::zeros(); 2]; self.supports.len()];
-        let mut add = |support: usize, component: usize, value: f64| {
-            if component < 6 {
-                support_forces[support][component / 3][component % 3] += value;
-            }
-        };
         let mut residual = at.residual.clone();
         for held in &at.single {
             let (unknown, factor) = held.constraint.terms[0];
-            add(held.support, held.constraint.component, residual[unknown as usize] / factor);
+            held.add_reaction(residual[unknown as usize] / factor, &mut support_forces);
             residual[unknown as usize] = 0.0;
         }
         for (held, reaction) in at.coupled.iter().zip(&state.reactions) {
-            add(held.support, held.constraint.component, -reaction);
+            held.add_reaction(-reaction, &mut support_forces);
         }
         at.weakly_held.iter().for_each(|(support, force)| support_forces[*support][0] += force);
         let most = at.sizes[..count].iter().fold(f64::MIN_POSITIVE, |m, s| m.max(*s));

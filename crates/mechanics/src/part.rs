@@ -1,7 +1,7 @@
 //! A body, or a named part of it.
 
 /// Part of a body: its number and a group.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Part {
     pub body: usize,
     pub group: Option<String>,

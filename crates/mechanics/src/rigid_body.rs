@@ -194,6 +194,7 @@ impl Body for RigidBody {
     }
 
     fn hold(&self, on: Option<&str>, hold: &Hold<'_>, state: &BodyState) -> Result<Vec<Constraint>, PlaceError> {
+        hold.check_components(&self.name)?;
         self.no_groups(on)?;
         if matches!(self.motion, Motion::Prescribed(_)) {
             let message = "its motion is prescribed: a support holds only what is free".to_string();
@@ -206,12 +207,12 @@ impl Body for RigidBody {
         for i in 0..3 {
             if let (Some(field), Some(unknown)) = (hold.displacement[i], self.unknown(i)) {
                 let lack = pose.centre[i] - self.centre[i] - field(&self.centre);
-                out.push(Constraint { terms: vec![(unknown, 1.0)], lack, component: i });
+                out.push(Constraint::of_component(vec![(unknown, 1.0)], lack, i));
             }
             if let (Some(field), Some(_)) = (hold.rotation[i], self.unknown(3 + i)) {
                 let terms = (3..6).filter_map(|c| Some((self.unknown(c)?, turn[(i, c - 3)])));
                 let terms = terms.filter(|(_, v)| *v != 0.0).collect();
-                out.push(Constraint { terms, lack: rotation[i] - field(&self.centre), component: 3 + i });
+                out.push(Constraint::of_component(terms, rotation[i] - field(&self.centre), 3 + i));
             }
         }
         Ok(out)

@@ -13,6 +13,7 @@ use crate::points::Order;
 use crate::stability::Unstable;
 use signorini_geometry::{Point, Vector};
 use signorini_solve::general::{Entries, Matrix};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A value by place and time.
@@ -21,13 +22,17 @@ pub type TimeField = Arc<dyn Fn(&Point<3>, f64) -> f64 + Send + Sync>;
 pub type TimeVectorField = Arc<dyn Fn(&Point<3>, f64) -> Vector<3> + Send + Sync>;
 
 /// A part of a body that is held.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub struct Support {
     pub name: String,
     pub part: Part,
     /// Prescribed components; what is free is `None`.
     pub displacement: [Option<TimeField>; 3],
     pub rotation: [Option<TimeField>; 3],
+    /// Prescribed displacement along a unit vector.
+    pub along: Option<(Vector<3>, TimeField)>,
+    /// Components that are the same all over the part, and free.
+    pub uniform: [bool; 3],
 }
 
 impl Support {
@@ -39,9 +44,12 @@ impl Support {
         };
         let displacement = self.displacement.each_ref().map(|f| f.as_ref().map(at));
         let rotation = self.rotation.each_ref().map(|f| f.as_ref().map(at));
+        let along = self.along.as_ref().map(|(n, field)| (*n, at(field)));
         with(&Hold {
             displacement: displacement.each_ref().map(|f| f.as_ref().map(|f| f as &dyn Fn(&Point<3>) -> f64)),
             rotation: rotation.each_ref().map(|f| f.as_ref().map(|f| f as &dyn Fn(&Point<3>) -> f64)),
+            along: along.as_ref().map(|(n, f)| (*n, f as &dyn Fn(&Point<3>) -> f64)),
+            uniform: self.uniform,
         })
     }
 }
@@ -140,6 +148,14 @@ pub enum AssemblyError {
 pub(crate) struct Held {
     pub support: usize,
     pub constraint: Constraint,
+}
+
+impl Held {
+    /// Adds what the support does to its body at a value of the multiplier.
+    pub fn add_reaction(&self, multiplier: f64, forces: &mut [[Vector<3>; 2]]) {
+        let own = &mut forces[self.support];
+        own.iter_mut().zip(&self.constraint.reaction).for_each(|(sum, r)| *sum += r * multiplier);
+    }
 }
 
 /// The system at a state.
@@ -255,7 +271,50 @@ impl System {
                 }
             }
         }
+        let coupled = self.independent(coupled, |unknown| Some(&single[by_unknown[unknown as usize]?]))?;
         Ok((single, coupled))
+    }
+
+    /// The equations between several unknowns that are not said twice: some are by those that hold one unknown, or by the same
+    /// equation of another support.
+    fn independent<'a>(
+        &self,
+        coupled: Vec<Held>,
+        single: impl Fn(u32) -> Option<&'a Held>,
+    ) -> Result<Vec<Held>, AssemblyError> {
+        let mut out: Vec<Held> = Vec::with_capacity(coupled.len());
+        let mut by_first: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+        for held in coupled {
+            let body = &self.bodies[self.supports[held.support].part.body];
+            let terms = &held.constraint.terms;
+            let size = terms.iter().fold(0.0f64, |m, t| m.max(t.1.abs()));
+            let counts: Vec<(u32, f64)> = terms.iter().copied().filter(|t| t.1.abs() > SAME * size).collect();
+            // What others leave of what is lacking, and the support that says the same.
+            let said = if counts.iter().all(|(unknown, _)| single(*unknown).is_some()) {
+                let others = counts.iter().filter_map(|(unknown, f)| Some((f, single(*unknown)?)));
+                let done: f64 = others.map(|(f, h)| f * h.constraint.lack / h.constraint.terms[0].1).sum();
+                counts.first().and_then(|c| Some((single(c.0)?.support, held.constraint.lack - done)))
+            } else {
+                let alike = by_first.get(&counts[0].0).into_iter().flatten().map(|k| &out[*k]);
+                let mut found = alike.filter_map(|other| Some((other, ratio(terms, &other.constraint.terms)?)));
+                found.next().map(|(other, r)| (other.support, held.constraint.lack - r * other.constraint.lack))
+            };
+            match said {
+                Some((first, lack)) if lack.abs() > SAME * body.size() * size => {
+                    return Err(AssemblyError::Contradiction {
+                        first: self.supports[first].name.clone(),
+                        second: self.supports[held.support].name.clone(),
+                        body: body.name().to_string(),
+                    });
+                }
+                Some(_) => {}
+                None => {
+                    by_first.entry(counts[0].0).or_default().push(out.len());
+                    out.push(held);
+                }
+            }
+        }
+        Ok(out)
     }
 
     /// The state after a share of a step of all unknowns.
@@ -368,6 +427,14 @@ impl System {
         }
         Ok(Assembled { residual, sizes, tangent, single, coupled, weakly_held, energy, lost })
     }
+}
+
+/// By what one list of terms is to be multiplied to give another one; none if by nothing.
+fn ratio(of: &[(u32, f64)], to: &[(u32, f64)]) -> Option<f64> {
+    let (_, first) = to.iter().find(|t| t.0 == of[0].0)?;
+    let ratio = of[0].1 / first;
+    let is_alike = |((u, a), (v, b)): (&(u32, f64), &(u32, f64))| u == v && (a - ratio * b).abs() <= SAME * a.abs();
+    (of.len() == to.len() && of.iter().zip(to).all(is_alike)).then_some(ratio)
 }
 
 fn add(from: &Contribution, first: u32, residual: &mut [f64], sizes: &mut [f64], tangent: &mut Entries) {

@@ -78,11 +78,8 @@ impl Line<'_> {
             let moved = self.line.position(self.now, node) - reference;
             for i in 0..3 {
                 if let Some(value) = hold.displacement[i] {
-                    out.push(Constraint {
-                        terms: vec![((node * self.line.unknowns_per_node + i) as u32, 1.0)],
-                        lack: moved[i] - value(&reference),
-                        component: i,
-                    });
+                    let unknown = (node * self.line.unknowns_per_node + i) as u32;
+                    out.push(Constraint::of_component(vec![(unknown, 1.0)], moved[i] - value(&reference), i));
                 }
             }
         }

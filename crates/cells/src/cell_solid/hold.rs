@@ -8,7 +8,8 @@ use crate::place::side_gauss;
 use crate::shapes::spatial;
 use crate::space::Tabulation;
 use signorini_fem::cut::End;
-use signorini_geometry::Point;
+use signorini_geometry::{Point, Vector};
+use signorini_mechanics::pair::axis;
 use signorini_mechanics::{Constraint, Hold, PlaceError};
 use signorini_solve::{Factor, Symbolic, SymmetricMatrix};
 use std::collections::BTreeMap;
@@ -102,9 +103,10 @@ impl<const D: usize> CellSolid<D> {
                 let Some(unknown) = self.unknown(f, i) else { continue };
                 // Forces on the functions that add up to one make the resultant, in their shares.
                 let share = self.linear.one[f as usize];
-                let (factor, component) = if share == 0.0 { (1.0, usize::MAX) } else { (1.0 / share, i) };
+                let (factor, counts) = if share == 0.0 { (1.0, 0.0) } else { (1.0 / share, 1.0) };
                 let lack = factor * (u[unknown as usize] - wanted);
-                out.push(Constraint { terms: vec![(unknown, factor)], lack, component });
+                let reaction = [axis(i) * counts, Vector::<3>::zeros()];
+                out.push(Constraint { terms: vec![(unknown, factor)], lack, reaction });
             }
         }
         Ok(out)

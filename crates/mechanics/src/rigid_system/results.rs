@@ -120,13 +120,12 @@ impl<'a> Motion<'a> {
         let (single, coupled) = self.system.held(&state.bodies, time)?;
         let mut support_forces = vec![[Vector::<3>::zeros(); 2]; self.system.supports.len()];
         for (held, reaction) in coupled.iter().zip(&found.reactions) {
-            let component = held.constraint.component;
-            support_forces[held.support][component / 3][component % 3] -= reaction;
+            held.add_reaction(-reaction, &mut support_forces);
             held.constraint.terms.iter().for_each(|(u, f)| residual[*u as usize] += f * reaction);
         }
         for held in &single {
-            let ((unknown, factor), component) = (held.constraint.terms[0], held.constraint.component);
-            support_forces[held.support][component / 3][component % 3] += residual[unknown as usize] / factor;
+            let (unknown, factor) = held.constraint.terms[0];
+            held.add_reaction(residual[unknown as usize] / factor, &mut support_forces);
             residual[unknown as usize] = 0.0;
         }
         let force = |k: usize, v: f64| v.abs() / if self.turns[k] { self.extent[k] } else { 1.0 };

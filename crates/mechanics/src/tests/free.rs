@@ -42,6 +42,7 @@ fn a_ball_settles_in_a_groove_from_above_it() {
             part: part(0),
             displacement: [None, Some(Arc::new(|_, _| 0.0)), None],
             rotation: [None, None, None],
+            ..Support::default()
         });
         for wall in 1..3 {
             let contact = touching(&system, 0, wall, enforcement, None);
@@ -74,6 +75,7 @@ fn a_ball_on_an_incline_rolls_unless_something_holds_it_and_sticks_up_to_its_fri
                 part: part(0),
                 displacement: [None, None, None],
                 rotation: [Some(held.clone()), Some(held.clone()), Some(held)],
+                ..Support::default()
             });
         }
         let contact = touching(&system, 0, 1, Enforcement::Multiplier, Some(mu));
@@ -181,7 +183,13 @@ fn slip_is_measured_along_the_arc_by_whatever_angle_a_body_turns() {
             load: TimedLoad::Force(Arc::new(|_, _| v(0.0, -1.0, 0.0))),
         });
         let rotation = if spins { [None, None, None] } else { [None, None, held(0.0)] };
-        let support = Support { name: "hand".into(), part: part(0), displacement: [held(way), None, None], rotation };
+        let support = Support {
+            name: "hand".into(),
+            part: part(0),
+            displacement: [held(way), None, None],
+            rotation,
+            ..Support::default()
+        };
         system.supports.push(support);
         let contact = touching(&system, 0, 1, Enforcement::Multiplier, Some(0.5));
         system.contacts.push(Box::new(contact));
@@ -227,6 +235,7 @@ fn viscous_friction_creeps_down_an_incline() {
             part: part(0),
             displacement: [None, None, None],
             rotation: [Some(held.clone()), Some(held.clone()), Some(held)],
+            ..Support::default()
         });
         let mut contact = touching(&system, 0, 1, enforcement, None);
         contact.friction = Some(Box::new(Viscous::new(mu, v0).unwrap()));
@@ -262,6 +271,7 @@ fn what_is_carried_away_is_told() {
             part: part(0),
             displacement: [Some(moved), Some(held.clone()), Some(held.clone())],
             rotation: [Some(held.clone()), Some(held.clone()), Some(held)],
+            ..Support::default()
         });
         system.prepare().unwrap();
         system.solve(&system.start(), 1.0, &mut |_, _| true).map(|_| ())

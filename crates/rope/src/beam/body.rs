@@ -267,6 +267,7 @@ impl Body for Beam {
     }
 
     fn hold(&self, on: Option<&str>, hold: &Hold<'_>, state: &BodyState) -> Result<Vec<Constraint>, PlaceError> {
+        hold.check_components(&self.name)?;
         let part = place::part(&self.name, &self.line, on)?;
         let mut out = self.line_of(state).hold(&part, hold);
         if hold.rotation.iter().all(Option::is_none) {
@@ -283,7 +284,7 @@ impl Body for Beam {
                 let target = quaternion::product(&quaternion::exponential(&Vector::<3>::new(x, y, z)), &from);
                 let lack = quaternion::logarithm(&quaternion::product(&now, &quaternion::conjugate(&target)));
                 for i in 0..3 {
-                    out.push(Constraint { terms: vec![(first + i as u32, 1.0)], lack: lack[i], component: 3 + i });
+                    out.push(Constraint::of_component(vec![(first + i as u32, 1.0)], lack[i], 3 + i));
                 }
                 continue;
             }
@@ -292,7 +293,7 @@ impl Body for Beam {
             for (i, value) in wanted.iter().enumerate() {
                 if let Some(value) = value {
                     let terms = (0..3).map(|j| (first + j as u32, map[(i, j)])).collect();
-                    out.push(Constraint { terms, lack: phi[i] - value, component: 3 + i });
+                    out.push(Constraint::of_component(terms, phi[i] - value, 3 + i));
                 }
             }
         }

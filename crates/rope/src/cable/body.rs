@@ -217,6 +217,7 @@ impl Body for Cable {
     }
 
     fn hold(&self, on: Option<&str>, hold: &Hold<'_>, state: &BodyState) -> Result<Vec<Constraint>, PlaceError> {
+        hold.check_components(&self.name)?;
         let part = place::part(&self.name, &self.line, on)?;
         let mut out = self.line_of(state).hold(&part, hold);
         let [x, y, z] = match hold.rotation {
@@ -237,11 +238,8 @@ impl Body for Cable {
             let first = along.cross(&quaternion::axis(along.iamin())).normalize();
             for across in [first, along.cross(&first)] {
                 let moment = along.cross(&across);
-                out.push(Constraint {
-                    terms: (0..3).map(|i| ((6 * node + 3 + i) as u32, across[i])).collect(),
-                    lack: across.dot(&now),
-                    component: 3 + moment.iamax(),
-                });
+                let terms = (0..3).map(|i| ((6 * node + 3 + i) as u32, across[i])).collect();
+                out.push(Constraint::of_component(terms, across.dot(&now), 3 + moment.iamax()));
             }
         }
         Ok(out)

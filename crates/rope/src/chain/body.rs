@@ -399,6 +399,7 @@ impl Body for Chain {
     }
 
     fn hold(&self, on: Option<&str>, hold: &Hold<'_>, state: &BodyState) -> Result<Vec<Constraint>, PlaceError> {
+        hold.check_components(&self.name)?;
         if hold.rotation.iter().any(Option::is_some) {
             let message = "the ends of a rope turn freely: only displacements can be held".to_string();
             return Err(PlaceError::Unsuitable { body: self.name.clone(), message });
@@ -418,7 +419,7 @@ impl Body for Chain {
             for i in 0..3 {
                 if let Some(value) = hold.displacement[i] {
                     let lack = moved[i] - value(&reference);
-                    out.push(Constraint { terms: vec![((3 * node + i) as u32, 1.0)], lack, component: i });
+                    out.push(Constraint::of_component(vec![((3 * node + i) as u32, 1.0)], lack, i));
                 }
             }
         }

@@ -162,7 +162,7 @@ fn held_rotations_lack_what_is_missing() {
     let turn = [0.3, -0.8, 0.5];
     let value = |k: usize| move |_: &V| turn[k];
     let (x, y, z) = (value(0), value(1), value(2));
-    let hold = Hold { displacement: [None; 3], rotation: [Some(&x), Some(&y), Some(&z)] };
+    let hold = Hold { displacement: [None; 3], rotation: [Some(&x), Some(&y), Some(&z)], ..Hold::default() };
     // One step of the whole spin that is lacking is enough.
     let state = beam.advance(&beam.start(), &step(beam.unknowns(), 0.8), 0.3);
     let mut needed = vec![0.0; beam.unknowns()];
@@ -172,7 +172,7 @@ fn held_rotations_lack_what_is_missing() {
     let state = beam.advance(&state, &needed, 1.0);
     assert!(beam.hold(Some("end"), &hold, &state).unwrap().iter().all(|c| c.lack.abs() < 1e-14));
     // A single component: its rate is what the terms say.
-    let hold = Hold { displacement: [None; 3], rotation: [None, Some(&y), None] };
+    let hold = Hold { displacement: [None; 3], rotation: [None, Some(&y), None], ..Hold::default() };
     let v = step(beam.unknowns(), 2.9);
     let at = |share: f64| beam.hold(Some("end"), &hold, &beam.advance(&state, &v, share)).unwrap().remove(0);
     let rate: f64 = at(0.0).terms.iter().map(|(u, c)| c * v[*u as usize]).sum();

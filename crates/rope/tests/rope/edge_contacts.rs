@@ -288,7 +288,13 @@ fn the_end_of_a_rope_rests_on_an_edge() {
     system.supports = vec![
         held(1, "bottom", [(); 3].map(|()| at_zero()), none()),
         held(0, "start", [(); 3].map(|()| at_zero()), none()),
-        Support { name: "plane".into(), part: Part::from(0), displacement: plane, rotation: none() },
+        Support {
+            name: "plane".into(),
+            part: Part::from(0),
+            displacement: plane,
+            rotation: none(),
+            ..Support::default()
+        },
     ];
     let pull = V::new(1.0, 0.0, -0.5);
     let load = TimedLoad::Force(Arc::new(move |_, _| pull));

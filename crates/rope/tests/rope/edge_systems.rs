@@ -135,6 +135,7 @@ fn a_rope_slips_over_an_edge() {
             part: plane,
             displacement: [None, at_zero(), None],
             rotation: none(),
+            ..Support::default()
         });
         let load = TimedLoad::Force(Arc::new(|_, t| V::new(0.0, 0.0, -1.0 - 4.0 * t)));
         system.loads.push(PlacedLoad { name: "pull".into(), part: part(0, "end"), load });
@@ -208,7 +209,13 @@ fn a_smooth_rope_slips_over_a_rounding() {
         system.supports = vec![
             held(1, "bottom", [(); 3].map(|()| at_zero()), none()),
             held(0, "start", [(); 3].map(|()| at_zero()), none()),
-            Support { name: "plane".into(), part: plane, displacement: [None, at_zero(), None], rotation: none() },
+            Support {
+                name: "plane".into(),
+                part: plane,
+                displacement: [None, at_zero(), None],
+                rotation: none(),
+                ..Support::default()
+            },
         ];
         let load = TimedLoad::Force(Arc::new(|_, t| V::new(0.0, 0.0, -1.0 - t)));
         system.loads.push(PlacedLoad { name: "pull".into(), part: part(0, "end"), load });

@@ -82,7 +82,7 @@ fn support(group: &str, at: impl Fn(f64) -> V + Clone + Send + Sync + 'static) -
         Some(field)
     });
     let part = Part { body: 0, group: Some(group.into()) };
-    Support { name: group.into(), part, displacement, rotation: [None, None, None] }
+    Support { name: group.into(), part, displacement, rotation: [None, None, None], ..Support::default() }
 }
 
 /// `ln T₁/T₀` of a rope that is dragged along a curve at its end, with a straight cell beyond either end of it: its start is

@@ -67,7 +67,13 @@ fn system(young: f64, mu: Option<f64>, enforcement: Enforcement) -> (System, Cha
     let down = crate::common::bodies::field(|_, t| -0.1 * t);
     system.supports.push(held(0, "end", [at_zero(), down, at_zero()], none()));
     let displacement = [None, None, at_zero()];
-    system.supports.push(Support { name: "plane".into(), part: Part::from(0), displacement, rotation: none() });
+    system.supports.push(Support {
+        name: "plane".into(),
+        part: Part::from(0),
+        displacement,
+        rotation: none(),
+        ..Support::default()
+    });
     let load = TimedLoad::Force(Arc::new(|_, _| V::new(0.0, -0.1, 0.0)));
     system.loads.push(PlacedLoad { name: "weight".into(), part: part(0, "start"), load });
     system.prepare().unwrap();

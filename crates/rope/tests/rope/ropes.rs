@@ -169,8 +169,7 @@ struct OverPulley<'a> {
 
 impl Surroundings for OverPulley<'_> {
     fn hold(&self, states: &[BodyState]) -> Vec<(usize, Constraint)> {
-        let at_pulley =
-            (0..3).map(|i| Constraint { terms: vec![((3 * self.pulley + i) as u32, 1.0)], lack: 0.0, component: i });
+        let at_pulley = (0..3).map(|i| Constraint::of_component(vec![((3 * self.pulley + i) as u32, 1.0)], 0.0, i));
         pin(self.chain, "boundary", &states[0]).into_iter().chain(at_pulley).map(|c| (0, c)).collect()
     }
     fn act(&self, states: &[BodyState], first: &[u32], order: Order, out: &mut Contribution) {
@@ -241,7 +240,13 @@ fn wound(at: WinchEnd, by: f64, weight: f64, times: &[f64]) -> (Chain, BodyState
         let zero = || -> Option<system::TimeField> { Some(Arc::new(|_, _| 0.0)) };
         let part = Part { body: 0, group: Some(group.into()) };
         let displacement = [zero(), zero(), zero()];
-        system.supports.push(Support { name: group.into(), part, displacement, rotation: [None, None, None] });
+        system.supports.push(Support {
+            name: group.into(),
+            part,
+            displacement,
+            rotation: [None, None, None],
+            ..Support::default()
+        });
     }
     let load = TimedLoad::BodyForce(Arc::new(move |_, _| V::z() * -weight));
     system.loads.push(PlacedLoad { name: "weight".into(), part: Part { body: 0, group: None }, load });

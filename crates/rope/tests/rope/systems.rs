@@ -23,7 +23,7 @@ fn part(body: usize, group: &str) -> Part {
 }
 
 fn hold(group: &str, displacement: [Option<TimeField>; 3], rotation: [Option<TimeField>; 3]) -> Support {
-    Support { name: group.into(), part: part(0, group), displacement, rotation }
+    Support { name: group.into(), part: part(0, group), displacement, rotation, ..Support::default() }
 }
 
 fn zero() -> Option<TimeField> {

@@ -5,6 +5,8 @@ use crate::body::Bodies;
 use crate::supports::{Support, SupportKind, functions, project};
 use signorini_fem::Group;
 use signorini_geometry::Point;
+use signorini_geometry::Vector;
+use signorini_mechanics::pair::axis;
 use signorini_mechanics::{Constraint, Hold, PlaceError};
 
 impl<const D: usize> SolidBody<D> {
@@ -22,12 +24,7 @@ impl<const D: usize> SolidBody<D> {
             Some(_) => self.group(on)?.clone(),
             None => Group { cells: (0..body.mesh.cell_count() as u32).collect(), ..Group::default() },
         };
-        let support = Support {
-            name: String::new(),
-            body: 0,
-            group,
-            kind: SupportKind::Components((0..D).map(|i| hold.displacement[i].is_some()).collect()),
-        };
+        let support = Support { name: String::new(), body: 0, group, kind: SupportKind::Components(vec![true; D]) };
         let all = functions(&self.bodies, &support);
         if all.is_empty() {
             return Err(self.unsuitable(format!("`{}` has nothing that could be held", on.unwrap_or("all"))));
@@ -40,13 +37,39 @@ impl<const D: usize> SolidBody<D> {
         let mut is_vertex = vec![false; body.dofs.count()];
         body.vertex_unknowns().for_each(|k| is_vertex[k / D] = true);
         let mut out = Vec::new();
-        for f in all {
+        for &f in &all {
             for i in (0..D).filter(|&i| hold.displacement[i].is_some()) {
                 let unknown = D as u32 * f + i as u32;
                 let value = wanted.get(&f).map_or(0.0, |c| c[i]);
+                let (terms, lack) = (vec![(unknown, 1.0)], u[unknown as usize] - value);
                 // The functions of the vertices add up to one: forces on them make the resultant.
-                let component = if is_vertex[f as usize] { i } else { usize::MAX };
-                out.push(Constraint { terms: vec![(unknown, 1.0)], lack: u[unknown as usize] - value, component });
+                let reaction =
+                    [if is_vertex[f as usize] { axis(i) } else { Vector::<3>::zeros() }, Vector::<3>::zeros()];
+                out.push(Constraint { terms, lack, reaction });
+            }
+        }
+        if let Some((n, field)) = &hold.along {
+            let direction = Point::<D>::from_fn(|i, _| n[i]);
+            let wanted = project(&self.bodies, &support, &|x| direction * field(&spatial(x)));
+            for &f in &all {
+                let own = |i: usize| (D as u32 * f + i as u32, n[i]);
+                let terms: Vec<(u32, f64)> = (0..D).map(own).filter(|t| t.1 != 0.0).collect();
+                let lack = direction
+                    .dot(&(Self::coefficients(u, f) - wanted.get(&f).copied().unwrap_or_else(Point::<D>::zeros)));
+                let reaction = [if is_vertex[f as usize] { *n } else { Vector::<3>::zeros() }, Vector::<3>::zeros()];
+                out.push(Constraint { terms, lack, reaction });
+            }
+        }
+        let first = all.iter().copied().find(|f| is_vertex[*f as usize]);
+        for i in (0..D).filter(|i| hold.uniform[*i]) {
+            // A constant is the same at all vertices, and nothing on edges and sides.
+            for &f in all.iter().filter(|f| Some(**f) != first) {
+                let [own, other] =
+                    [Some(f), first.filter(|_| is_vertex[f as usize])].map(|f| f.map(|f| D as u32 * f + i as u32));
+                let ends = own.into_iter().zip([1.0]).chain(other.into_iter().zip([-1.0]));
+                let terms: Vec<(u32, f64)> = ends.collect();
+                let lack = terms.iter().map(|(k, s)| s * u[*k as usize]).sum();
+                out.push(Constraint { terms, lack, reaction: [Vector::<3>::zeros(); 2] });
             }
         }
         Ok(out)

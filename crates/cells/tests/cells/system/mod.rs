@@ -71,7 +71,13 @@ fn support(body: usize, group: &str, fields: [Option<Arc<dyn Fn(&Point<3>) -> f6
         Arc::new(move |x, t| t * f(x))
     };
     let displacement = fields.map(|f| f.map(timed));
-    Support { name: group.to_string(), part: part(body, group), displacement, rotation: [const { None }; 3] }
+    Support {
+        name: group.to_string(),
+        part: part(body, group),
+        displacement,
+        rotation: [const { None }; 3],
+        ..Support::default()
+    }
 }
 
 fn constant(value: f64) -> Option<Arc<dyn Fn(&Point<3>) -> f64 + Send + Sync>> {

@@ -47,7 +47,13 @@ pub fn held(
     displacement: [Option<TimeField>; 3],
     rotation: [Option<TimeField>; 3],
 ) -> Support {
-    Support { name: format!("{group} of {body}"), part: part(body, group), displacement, rotation }
+    Support {
+        name: format!("{group} of {body}"),
+        part: part(body, group),
+        displacement,
+        rotation,
+        ..Support::default()
+    }
 }
 
 pub fn at_zero() -> Option<TimeField> {

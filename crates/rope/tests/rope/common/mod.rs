@@ -52,13 +52,14 @@ pub fn load_body(
 /// Displacements and rotations held at zero.
 pub fn clamp(body: &dyn Body, on: &str, state: &BodyState) -> Vec<Constraint> {
     let zero = |_: &V| 0.0;
-    let hold = Hold { displacement: [Some(&zero); 3], rotation: [Some(&zero); 3] };
+    let hold = Hold { displacement: [Some(&zero); 3], rotation: [Some(&zero); 3], ..Hold::default() };
     body.hold(Some(on), &hold, state).unwrap()
 }
 
 pub fn pin(body: &dyn Body, on: &str, state: &BodyState) -> Vec<Constraint> {
     let zero = |_: &V| 0.0;
-    body.hold(Some(on), &Hold { displacement: [Some(&zero); 3], rotation: [None; 3] }, state).unwrap()
+    body.hold(Some(on), &Hold { displacement: [Some(&zero); 3], rotation: [None; 3], ..Hold::default() }, state)
+        .unwrap()
 }
 
 #[derive(Clone, Copy, PartialEq)]

@@ -159,7 +159,13 @@ impl Planner<'_> {
                         let part = Part { body: system.bodies.len(), group: Some(solids::AXIS.to_string()) };
                         let zero: TimeField = Arc::new(|_, _| 0.0);
                         let (displacement, rotation) = ([Some(zero), None, None], [None, None, None]);
-                        axis.push(Support { name: AXIS_SUPPORT.into(), part, displacement, rotation });
+                        axis.push(Support {
+                            name: AXIS_SUPPORT.into(),
+                            part,
+                            displacement,
+                            rotation,
+                            ..Support::default()
+                        });
                     }
                     (body, Kind::Solid)
                 }

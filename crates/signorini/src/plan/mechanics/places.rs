@@ -18,8 +18,13 @@ use std::sync::Arc;
 /// Springs that a support states: its name, its place, and the load that they are.
 pub(super) type Springs = Vec<(String, Part, TimedLoad)>;
 
-/// The component of the outward normal of a flat part of a surface along an axis, and its sign.
-fn normal_axis(system: &System, part: &Part) -> Result<(usize, f64), String> {
+/// The outward normal of a flat part of a surface; along an axis its component and sign.
+enum Normal {
+    Axis(usize, f64),
+    Inclined(Vector<3>),
+}
+
+fn normal_of(system: &System, part: &Part) -> Result<Normal, String> {
     let body = system.bodies[part.body].as_ref();
     let start = body.start();
     let surface = body.surface(part.group.as_deref(), &start).filter(|_| part.group.is_some());
@@ -29,13 +34,22 @@ fn normal_axis(system: &System, part: &Part) -> Result<(usize, f64), String> {
         Faces::Space(faces) => normals(faces),
     };
     let first = normals.first().ok_or("`normal` needs a part of the boundary of a solid")?;
-    let component = first.iamax();
-    let is_along = |n: &Vector<3>| n[component] * first[component].signum() > 1.0 - 1e-9;
-    if !normals.iter().all(is_along) {
-        return Err("in a system `normal` needs a flat part that faces along an axis".into());
+    let farthest = normals.iter().map(|n| n.dot(first)).fold(1.0, f64::min);
+    if farthest < FLAT {
+        let degrees = farthest.clamp(-1.0, 1.0).acos().to_degrees();
+        return Err(format!(
+            "`normal` needs a flat group: the normals of its sides differ by up to {degrees:.2} degrees"
+        ));
     }
-    Ok((component, first[component].signum()))
+    let component = first.iamax();
+    Ok(match first[component].abs() > FLAT {
+        true => Normal::Axis(component, first[component].signum()),
+        false => Normal::Inclined(*first),
+    })
 }
+
+/// Cosine of the angle between normals that are the same but for rounding.
+const FLAT: f64 = 1.0 - 1e-9;
 
 /// Unit normals at the vertices of all faces.
 fn normals<const D: usize>(faces: &dyn ContactSurface<D>) -> Vec<Vector<3>> {
@@ -113,29 +127,40 @@ impl Planner<'_> {
         let mut out = Vec::new();
         for (name, key) in &problem.supports {
             let part = self.part(&key.on, numbers)?;
-            if let Some(uniform) = &key.uniform {
-                return Err(problem.error(uniform, "`uniform` is a support of linear solids by themselves"));
+            let is_solid = matches!(problem.bodies.get(system.bodies[part.body].name()), Some(Body::Solid(_)));
+            if let Some(uniform) = key.uniform.as_ref().filter(|_| !is_solid) {
+                return Err(problem.error(uniform, "only solids can be held `uniform`ly"));
             }
             let mut displacement = match &key.displacement {
                 Some(values) => self.held_components(&values.0, self.dimension(), LENGTH, wrong)?,
                 None => [None, None, None],
             };
+            let mut along: Option<(Vector<3>, TimeField)> = None;
             if let Some(normal) = &key.normal {
                 let of_cells = match problem.bodies.get(system.bodies[part.body].name()) {
                     Some(Body::Cells(cells)) => (part.group.as_deref())
                         .filter(|side| !cells.groups.contains_key(*side))
                         .and_then(|side| self.side_of_cells(side))
-                        .map(|(axis, end)| (axis, end.sign())),
+                        .map(|(axis, end)| Normal::Axis(axis, end.sign())),
                     _ => None,
                 };
-                let (component, sign) = of_cells
-                    .map_or_else(|| normal_axis(system, &part), Ok)
+                let value = self.field(normal, LENGTH, wrong)?;
+                let direction = of_cells
+                    .map_or_else(|| normal_of(system, &part), Ok)
                     .map_err(|message| problem.error(normal, message).help("displacement = [0, \"free\", 0]"))?;
-                if displacement[component].is_some() {
-                    return Err(problem.error(normal, "`displacement` prescribes this direction too"));
+                match direction {
+                    Normal::Axis(component, _) if displacement[component].is_some() => {
+                        return Err(problem.error(normal, "`displacement` prescribes this direction too"));
+                    }
+                    Normal::Axis(component, sign) => {
+                        displacement[component] = Some(Arc::new(move |x, t| sign * value(x, t)));
+                    }
+                    Normal::Inclined(direction) => along = Some((direction, value)),
                 }
-                let along = self.field(normal, LENGTH, wrong)?;
-                displacement[component] = Some(Arc::new(move |x, t| sign * along(x, t)));
+            }
+            let mut uniform = [false; 3];
+            if key.uniform.as_ref().is_some_and(|u| *u) {
+                (0..self.dimension()).for_each(|k| uniform[k] = displacement[k].is_none());
             }
             let rotation = match &key.rotation {
                 Some(values) if self.space == Space::ThreeD => self.held_components(values, 3, NONE, wrong)?,
@@ -145,14 +170,15 @@ impl Planner<'_> {
                 }
                 None => [None, None, None],
             };
-            let holds = displacement.iter().chain(&rotation).any(Option::is_some);
+            let holds =
+                along.is_some() || uniform != [false; 3] || displacement.iter().chain(&rotation).any(Option::is_some);
             if !holds && key.spring.is_none() {
                 return Err(problem
                     .error(key, format!("the support `{name}` prescribes nothing"))
                     .help("add  displacement = [0, 0, 0]  or  rotation = [0, 0, 0]  or  spring = […]"));
             }
             if holds {
-                let support = Support { name: name.clone(), part, displacement, rotation };
+                let support = Support { name: name.clone(), part, displacement, rotation, along, uniform };
                 let body = &system.bodies[support.part.body];
                 let hold = at_start(&support);
                 let none: [Option<&dyn Fn(&Point<3>) -> f64>; 3] = [None; 3];
@@ -162,7 +188,13 @@ impl Planner<'_> {
                     (0..3).filter(|k| list[*k]).for_each(|k| out[k] = Some(&zero));
                     out
                 };
-                let hold = Hold { displacement: filled(&hold[0]), rotation: filled(&hold[1]) };
+                let direction = support.along.as_ref().map(|(n, _)| (*n, &zero as &dyn Fn(&Point<3>) -> f64));
+                let hold = Hold {
+                    displacement: filled(&hold[0]),
+                    rotation: filled(&hold[1]),
+                    along: direction,
+                    uniform: support.uniform,
+                };
                 let (on, start) = (support.part.group.as_deref(), body.start());
                 let misplaced = |error: PlaceError| self.misplaced(&key.on, &error);
                 let found = body.hold(on, &hold, &start).map_err(misplaced)?;

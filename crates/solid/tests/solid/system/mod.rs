@@ -68,6 +68,7 @@ fn hold(body: usize, group: &str, values: [Option<f64>; 3]) -> Support {
         part: part(body, group),
         displacement: values.map(|v| v.map(field)),
         rotation: [None, None, None],
+        ..Support::default()
     }
 }
 

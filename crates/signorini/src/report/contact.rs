@@ -1,6 +1,7 @@
 //! What is told of a contact at the end of an increment.
 
 use super::UnitNames;
+use crate::problem::Space;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -67,6 +68,17 @@ pub struct ContactReport {
     /// What friction could hold of a rope where it lies; null for other bodies.
     #[serde(default)]
     pub rope: Option<RopeLimits>,
+}
+
+impl ContactReport {
+    /// Half the length of one interval, or the radius of the disc of one area; none of several zones.
+    pub fn radius_of(space: Space, area: f64, zones: usize) -> Option<f64> {
+        match (zones, space) {
+            (1, Space::PlaneStrain | Space::PlaneStress) => Some(0.5 * area),
+            (1, _) => Some((area / std::f64::consts::PI).sqrt()),
+            _ => None,
+        }
+    }
 }
 
 /// Between what a normal force lies that balance does not determine.

@@ -301,7 +301,7 @@ impl Model for MechanicsModel {
         let shown = SystemShown::new(&self.plan, &self.state, &result, time);
         let mut step = report::step_report(&self.plan, &self.state, &result, &shown, index);
         if index + 1 == self.plan.times.len() {
-            accuracy::estimate(self, result.unknowns, &mut step, progress);
+            accuracy::estimate(self, (result.unknowns, result.solved), &record.steps, &mut step, progress);
         }
         record.steps.push(step);
         report::warn(&self.plan, &result, &shown, record);

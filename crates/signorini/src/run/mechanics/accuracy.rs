@@ -6,21 +6,30 @@ use crate::plan::Plan;
 use crate::plan::mechanics::cells;
 use crate::problem::{Body, Problem, SolidMesh, Space};
 use crate::report::{ErrorEstimate, StepReport};
-use signorini_mechanics::IncrementResult;
+use signorini_mechanics::{IncrementResult, Solved};
 use signorini_solve::{Iteration, Progress};
 
-/// The most unknowns of one degree more, times increments, for which errors are estimated in the plane: some seconds. In
-/// space unknowns cost several times as much.
-const AFFORDABLE: f64 = 15_000.0;
+/// The most unknowns of one degree more, times increments, for which errors are estimated: some seconds. Where the whole tangent
+/// is factorised in every iteration, unknowns cost several times as much, and in space again.
+const AFFORDABLE: f64 = 60_000.0;
+const FACTORISED: [f64; 2] = [0.25, 0.0625];
 
-/// Says nothing, but stops where it is asked to.
-struct Quiet<'a>(&'a dyn Progress);
+/// Iterations that the finer functions may take, in those of the run.
+const PATIENCE: usize = 4;
+
+/// Says nothing, but stops where it is asked to, or after so many iterations.
+struct Quiet<'a> {
+    of: &'a dyn Progress,
+    left: usize,
+}
 
 impl Progress for Quiet<'_> {
-    fn iteration(&mut self, _: &Iteration) {}
+    fn iteration(&mut self, _: &Iteration) {
+        self.left = self.left.saturating_sub(1);
+    }
 
     fn interrupted(&self) -> bool {
-        self.0.interrupted()
+        self.left == 0 || self.of.interrupted()
     }
 }
 
@@ -46,18 +55,27 @@ fn finer(problem: &Problem) -> Option<(Problem, i64)> {
     Some((finer, least?))
 }
 
-/// Estimates the errors of the last step of a run with so many unknowns, if that is affordable and has a solution.
-pub fn estimate(model: &MechanicsModel, unknowns: usize, step: &mut StepReport, progress: &mut dyn Progress) {
+/// Estimates the errors of the last step of a run with so many unknowns, solved in a way, if that is affordable and has a solution.
+pub fn estimate(
+    model: &MechanicsModel,
+    (unknowns, solved): (usize, Solved),
+    record: &[StepReport],
+    step: &mut StepReport,
+    progress: &mut dyn Progress,
+) {
     let plan = &model.plan;
     let in_space = plan.space == Space::ThreeD;
     let Some((problem, degree)) = finer(&plan.head.problem) else { return };
     let growth = (1.0 + 1.0 / degree as f64).powi(if in_space { 3 } else { 2 });
-    let affordable = if in_space { AFFORDABLE / 4.0 } else { AFFORDABLE };
+    let share = if solved == Solved::Condensed { 1.0 } else { FACTORISED[usize::from(in_space)] };
+    let affordable = share * AFFORDABLE;
     if plan.system.contacts.is_empty() || growth * (unknowns * plan.times.len()) as f64 > affordable {
         return;
     }
+    let taken: usize = record.iter().chain([&*step]).map(|s| s.iterations).sum();
+    let mut quiet = Quiet { of: progress, left: PATIENCE * taken };
     let Ok(Plan::Mechanics(finer)) = crate::plan::plan(&problem) else { return };
-    let Some(fine) = last_step(MechanicsModel::new(*finer), &mut Quiet(progress)) else { return };
+    let Some(fine) = last_step(MechanicsModel::new(*finer), &mut quiet) else { return };
     for (name, found) in &mut step.contacts {
         let Some(fine) = fine.contacts.get(name) else { continue };
         let force: f64 = fine.force.iter().zip(&found.force).map(|(a, b)| (a - b).powi(2)).sum();

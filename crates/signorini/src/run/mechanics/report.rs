@@ -5,7 +5,7 @@ use crate::output::system::{CurveShown, SystemShown, frames};
 use crate::plan::mechanics::{AXIS_SUPPORT, Kind, MechanicsPlan, Tested};
 use crate::problem::Space;
 use crate::report::{
-    CellsReport, Component, ContactReport, CurveReport, Pose, Probe, Reason, RopeLimits, SectionReport,
+    Carried, CellsReport, Component, ContactReport, CurveReport, Pose, Probe, Reason, RopeLimits, SectionReport,
     StabilityReport, StepReport, UnitNames, Warning, WarningKind, vector,
 };
 use crate::run::contact_verdict::{contact_verdict, sticking};
@@ -256,6 +256,7 @@ fn contact_report(
     let zones = if is_curve { runs(sites) } else { zones(sites) };
     let components: Vec<Component> = zones.iter().map(component).collect();
     let rubs = contact.law().is_some();
+    let area_of_contact: f64 = sites.iter().map(SiteResult::contact_area).sum();
     // The sum of nothing is a negative zero.
     let area = |status: Status| closed().filter(|s| s.status == status).map(|s| s.contact_area()).sum::<f64>() + 0.0;
     ContactReport {
@@ -263,8 +264,11 @@ fn contact_report(
         moment: (plan.space != Space::Axisymmetric)
             .then(|| vector(&resultant(closed().map(|s| (s.touches_at() - plan.moments_about).cross(&s.force()))))),
         carries: tested.carries,
-        area: sites.iter().map(SiteResult::contact_area).sum(),
+        area: area_of_contact,
         zones: components.len(),
+        radius: (tested.carries == Carried::Pressure)
+            .then(|| ContactReport::radius_of(plan.space, area_of_contact, components.len()))
+            .flatten(),
         components,
         max_penetration: sites.iter().filter_map(|s| s.gap).map(|g| -g).fold(0.0, f64::max),
         min_gap_outside: sites.iter().filter(|s| s.status == Status::Open).filter_map(|s| s.gap).reduce(f64::min),

@@ -182,7 +182,7 @@ fn contact_report<const D: usize>(
         force: vector(&result.force),
         area: result.area,
         zones: components.len(),
-        radius: radius(space, result.area, components.len()),
+        radius: ContactReport::radius_of(space, result.area, components.len()),
         components,
         max_penetration: result.nodes.iter().map(|n| -n.gap).fold(0.0, f64::max),
         min_gap_outside: result.nodes.iter().filter(|n| !n.active).map(|n| n.gap).reduce(f64::min),
@@ -214,13 +214,4 @@ pub fn method<const D: usize>(plan: &SolidPlan<D>) -> String {
     let mut list: Vec<&str> = plan.contacts.iter().map(|c| name(c.method)).collect();
     list.dedup();
     if list.is_empty() { "none".into() } else { list.join(", ") }
-}
-
-/// Half the length of one interval, or the radius of the disc of one area.
-fn radius(space: Stated, area: f64, zones: usize) -> Option<f64> {
-    match (zones, space) {
-        (1, Stated::PlaneStrain | Stated::PlaneStress) => Some(0.5 * area),
-        (1, _) => Some((area / std::f64::consts::PI).sqrt()),
-        _ => None,
-    }
 }

@@ -13,6 +13,10 @@ struct Facet<const D: usize> {
     x: Vec<Point<D>>,
 }
 
+/// Distance from a plane, relative to the size of a face, that is none. A face that is cut as one polygon and not in facets has
+/// points of quadrature elsewhere, which changes forces by as much: far less than what iterations leave of them.
+const FLAT: f64 = 1e-13;
+
 /// Whether a face is flat and has straight edges: its outline is then a polygon, whatever its inner map.
 fn is_polygon<const D: usize>(surface: &dyn ContactSurface<D>, face: usize) -> bool {
     let shape = surface.shape(face);
@@ -20,7 +24,7 @@ fn is_polygon<const D: usize>(surface: &dyn ContactSurface<D>, face: usize) -> b
     let corners: Vec<Point<D>> = shape.vertices().iter().map(|s| surface.at(face, s).x).collect();
     let size = (corners[1] - corners[0]).norm().max((corners[2] - corners[0]).norm());
     let normal = surface.at(face, &shape.centre()).area_normal().normalize();
-    let flat = |x: &Point<D>| normal.dot(&(x - corners[0])).abs() <= 1e-10 * size;
+    let flat = |x: &Point<D>| normal.dot(&(x - corners[0])).abs() <= FLAT * size;
     let straight = |&[a, b]: &[usize; 2]| {
         (1..=order).all(|k| {
             let t = k as f64 / (order + 1) as f64;
@@ -28,7 +32,7 @@ fn is_polygon<const D: usize>(surface: &dyn ContactSurface<D>, face: usize) -> b
             let x = surface.at(face, &std::array::from_fn(|i| p[i] + (q[i] - p[i]) * t)).x;
             let chord = (corners[b] - corners[a]).normalize();
             let off = x - corners[a];
-            flat(&x) && (off - chord * chord.dot(&off)).norm() <= 1e-10 * size
+            flat(&x) && (off - chord * chord.dot(&off)).norm() <= FLAT * size
         })
     };
     shape.edges().iter().all(straight) && flat(&surface.at(face, &shape.centre()).x)

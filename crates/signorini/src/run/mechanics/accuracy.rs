@@ -10,7 +10,8 @@ use signorini_mechanics::{IncrementResult, Solved};
 use signorini_solve::{Iteration, Progress};
 
 /// The most unknowns of one degree more, times increments, for which errors are estimated: some seconds. Where the whole tangent
-/// is factorised in every iteration, unknowns cost several times as much, and in space again.
+/// is factorised in every iteration, unknowns cost several times as much, and in space again; so they do in space where faces of
+/// two bodies that deform are cut with each other.
 const AFFORDABLE: f64 = 60_000.0;
 const FACTORISED: [f64; 2] = [0.25, 0.0625];
 
@@ -67,7 +68,9 @@ pub fn estimate(
     let in_space = plan.space == Space::ThreeD;
     let Some((problem, degree)) = finer(&plan.head.problem) else { return };
     let growth = (1.0 + 1.0 / degree as f64).powi(if in_space { 3 } else { 2 });
-    let share = if solved == Solved::Condensed { 1.0 } else { FACTORISED[usize::from(in_space)] };
+    let deforms = |body: &usize| !plan.system.bodies[*body].is_rigid();
+    let cuts = in_space && plan.system.contacts.iter().any(|c| c.bodies().iter().all(deforms));
+    let share = if solved == Solved::Condensed && !cuts { 1.0 } else { FACTORISED[usize::from(in_space)] };
     let affordable = share * AFFORDABLE;
     if plan.system.contacts.is_empty() || growth * (unknowns * plan.times.len()) as f64 > affordable {
         return;

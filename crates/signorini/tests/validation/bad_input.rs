@@ -235,14 +235,14 @@ fn what_touches_nothing_is_told_why() {
         (checked(case).expect("a case"), run)
     };
     for (case, word) in [
-        (flat("normal = -1.0", "normal = 1.0"), "away from what lies below"),
-        (flat("radius = 1.0", "radius = 0.001"), "nearer by"),
-        (flat("normal = -1.0", "normal = -0.2"), "the least gap at t = 0 is 5.0000e-2"),
+        (flat("normal = -1.0", "normal = 1.0"), "away from the bodies below"),
+        (flat("radius = 1.0", "radius = 0.001"), "reduces the gap by only"),
+        (flat("normal = -1.0", "normal = -0.2"), "the smallest gap at t = 0 is 5.0000e-2"),
     ] {
         let (check, run) = told(&case);
         assert!(check.contains(word) && run.contains(word), "{word}: {check} {run}");
     }
-    assert!(!told(example("flat_disc")).0.contains("touches nothing"));
+    assert!(!told(example("flat_disc")).0.contains("is not in contact"));
     let probe =
         |at: &str| checked(&(example("flat_disc").to_string() + "\n[output.probes]\np = " + at)).expect("a case");
     assert!(probe("[3, 0]").contains("probe `p` at (3, 0) lies outside `film`"));
@@ -262,7 +262,7 @@ fn coarse_cells_do_not_let_a_membrane_through() {
         );
         super::summary(&case, &super::set(&[]))
     };
-    assert!(verdict(1)["verdict"].to_string().contains("which degree 1 does not see"));
+    assert!(verdict(1)["verdict"].to_string().contains("which degree 1 cannot represent"));
     for cells in [2, 3] {
         let length = verdict(cells)["steps"][0]["contacts"]["touch"]["area"].as_f64().expect("a length");
         assert!((length - (1.0 - 2.0 * 0.1f64.sqrt())).abs() < 1e-3, "{length}");
@@ -376,11 +376,11 @@ fn what_touches_in_between_is_not_said_to_touch_nothing() {
         motion.prescribed = { displacement = [0, \"0.1*min(t, 2 - t)\"] }\n[supports.rim]\non = \"film:boundary\"\n\
         displacement = 0\n[contacts.touch]\nbetween = [\"film\", \"ball\"]\n[[steps]]\nto = 1\nincrements = 2\n\
         [[steps]]\nto = 2\nincrements = 2\n";
-    assert!(!checked(case).expect("a case that runs").contains("touches nothing"));
+    assert!(!checked(case).expect("a case that runs").contains("is not in contact"));
     let found = super::summary(case, &super::set(&[]));
     let verdict = found["verdict"].to_string();
     assert!(verdict.contains("it was in contact at t = 1"), "{verdict}");
     // A body that stays away is told.
     let away = case.replace("0.1*min", "0.01*min");
-    assert!(checked(&away).expect("a case that runs").contains("touches nothing"));
+    assert!(checked(&away).expect("a case that runs").contains("is not in contact"));
 }

@@ -501,7 +501,7 @@ fn a_check_says_what_it_understood() {
     assert!((number(&told("2 N/m")["value"]) - 2e-3).abs() < 1e-15);
     assert_eq!(told("2 N/m")["unit"], "N/mm");
     assert_eq!((number(&told("1 cm")["value"]), &told("1 cm")["line"]), (10.0, &5.into()));
-    assert!(sizes["warnings"].to_string().contains("bends within a cell"), "{sizes}");
+    assert!(sizes["warnings"].to_string().contains("curves within a cell"), "{sizes}");
     assert!(!check(&pushed("plane", "height = \"-0.1 - 0.2*x^2\"", 0.0))["warnings"].to_string().contains("bends"));
     let long = check(&case.replace("\"1 cm\"", "\"1000 km\""));
     assert!(long["warnings"].to_string().contains("m long"), "{long}");

@@ -123,7 +123,7 @@ fn failures_say_what_happened() {
     let far = example("hertz").replace("point = [0, 0]", "point = [0, -1]");
     let found = summary(&far, &set(&[]));
     let warnings = found["warnings"].to_string();
-    assert!(warnings.contains("do not touch") && warnings.contains("smallest gap"), "{warnings}");
+    assert!(warnings.contains("are not in contact") && warnings.contains("smallest gap"), "{warnings}");
     assert!(found["verdict"].as_str().unwrap().contains("open"));
 }
 

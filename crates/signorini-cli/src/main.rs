@@ -262,7 +262,7 @@ fn main() -> ExitCode {
     match result {
         Ok(code) => ExitCode::from(console::finish(code)),
         Err(_) => {
-            tell!("signorini has a fault of its own: please report the case and the message above.");
+            tell!("signorini has an internal fault: please report the case and the message above.");
             ExitCode::from(3)
         }
     }

@@ -298,7 +298,8 @@ const WORDS: &[Word] = &[
     word(
         "units",
         "command",
-        "Without `units` numbers are in any consistent units. With units = \"mm-N-MPa\" bare numbers stand in these, and \"0.1 um\" is converted.",
+        "Without `units` numbers are in any consistent units. With units = \"mm-N-MPa\" numbers without unit \
+             are in these units, and \"0.1 um\" is converted.",
     ),
 ];
 
@@ -356,7 +357,7 @@ pub fn explain(asked: &str) -> Result<String, CaseError> {
         }
     }
     for key in schema::find(asked.trim()) {
-        let needed = if key.required { ", needed" } else { "" };
+        let needed = if key.required { ", required" } else { "" };
         text += &format!("{} (key: {}{needed})\n  {}\n", key.path, key.kind, key.about);
         let within = schema::keys_in(&key.path);
         if !within.is_empty() {
@@ -375,7 +376,7 @@ pub fn explain(asked: &str) -> Result<String, CaseError> {
     known.dedup();
     let known: Vec<&str> = known.iter().map(String::as_str).collect();
     let word = asked.trim().rsplit('.').next().unwrap_or_default();
-    Err(CaseError::new(format!("nothing is known of `{asked}`")).help(suggestion(word, &known)))
+    Err(CaseError::new(format!("`{asked}` is not known")).help(suggestion(word, &known)))
 }
 
 /// A column of a table named after something of the case, `touch:area`, or after a component, `slip_x`; none for words that

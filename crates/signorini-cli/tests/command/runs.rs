@@ -72,7 +72,7 @@ fn a_run_that_is_done_is_left_alone_and_one_without_increments_begins_anew() {
     // As if it had been killed.
     std::fs::remove_file(folder.path().join("out/summary.json")).expect("a file");
     let anew = resumed();
-    assert!(anew.status.code() == Some(0) && text(&anew.stderr).contains("begins anew"));
+    assert!(anew.status.code() == Some(0) && text(&anew.stderr).contains("starts again"));
     assert_ne!(written(), before);
 }
 

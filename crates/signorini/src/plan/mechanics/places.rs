@@ -23,16 +23,18 @@ fn normal_axis(system: &System, part: &Part) -> Result<(usize, f64), String> {
     let body = system.bodies[part.body].as_ref();
     let start = body.start();
     let surface = body.surface(part.group.as_deref(), &start).filter(|_| part.group.is_some());
-    let surface = surface.ok_or("`normal` needs a part of the boundary of a solid")?;
+    let surface = surface.ok_or("`normal` requires a part of the boundary of a solid")?;
     let normals: Vec<Vector<3>> = match surface.faces().0 {
         Faces::Plane(faces) => normals(faces),
         Faces::Space(faces) => normals(faces),
     };
-    let first = normals.first().ok_or("`normal` needs a part of the boundary of a solid")?;
+    let first = normals.first().ok_or("`normal` requires a part of the boundary of a solid")?;
     let component = first.iamax();
     let is_along = |n: &Vector<3>| n[component] * first[component].signum() > 1.0 - 1e-9;
     if !normals.iter().all(is_along) {
-        return Err("in a system `normal` needs a flat part that faces along an axis".into());
+        return Err("in a system `normal` requires a flat part of the boundary whose normal is along a \
+             coordinate axis"
+            .into());
     }
     Ok((component, first[component].signum()))
 }
@@ -100,7 +102,7 @@ impl Planner<'_> {
             Some(support) => problem.error(support, error.to_string()),
             None => problem.error(&problem.space, error.to_string()),
         }
-        .help("what is held twice is held alike, or \"free\" in one of them")
+        .help("give the same displacement in both supports, or \"free\" in one of them")
     }
 
     pub(super) fn system_supports(
@@ -114,7 +116,7 @@ impl Planner<'_> {
         for (name, key) in &problem.supports {
             let part = self.part(&key.on, numbers)?;
             if let Some(uniform) = &key.uniform {
-                return Err(problem.error(uniform, "`uniform` is a support of linear solids by themselves"));
+                return Err(problem.error(uniform, "`uniform` is only for linear solids outside of a system"));
             }
             let mut displacement = match &key.displacement {
                 Some(values) => self.held_components(&values.0, self.dimension(), LENGTH, wrong)?,
@@ -169,10 +171,10 @@ impl Planner<'_> {
                 let mut forces = Contribution::new(body.unknowns());
                 let weakly = body.hold_weakly(on, &hold, &start, Order::First, &mut forces).map_err(misplaced)?;
                 if found.is_empty() && weakly.is_none() {
-                    let message = format!("the support `{name}` holds nothing of `{}`", body.name());
+                    let message = format!("the support `{name}` restrains no unknown of `{}`", body.name());
                     let wrong = problem.error(&key.on, message);
                     return Err(if self.space == Space::Axisymmetric {
-                        wrong.help("on the axis the radial displacement is zero by itself: leave this support out")
+                        wrong.help("on the axis the radial displacement is zero by symmetry: leave this support out")
                     } else {
                         wrong
                     });
@@ -199,7 +201,7 @@ impl Planner<'_> {
             return Err(self
                 .problem
                 .error(values, format!("expected {wanted} components, found {}", values.len()))
-                .help("numbers, expressions, or \"free\""));
+                .help("give numbers, expressions, or \"free\""));
         }
         let mut out = [None, None, None];
         for (component, value) in out.iter_mut().zip(values) {
@@ -254,8 +256,8 @@ impl Planner<'_> {
             }
             let [load] = <[_; 1]>::try_from(list).map_err(|list: Vec<_>| {
                 problem
-                    .error(key, format!("the load `{name}` says {} things", list.len()))
-                    .help("exactly one of force, moment, tension, body_force (per length), traction, pressure")
+                    .error(key, format!("the load `{name}` has {} values", list.len()))
+                    .help("give exactly one of force, moment, tension, body_force (per length), traction, pressure")
             })?;
             self.check_load(&part, &key.on, system)(&load)?;
             out.push(PlacedLoad { name: name.clone(), part, load });
@@ -297,8 +299,8 @@ impl Planner<'_> {
             let (expression, _) = self.reader.any(value, self.variables())?;
             if let Some(axis) = (0..3).find(|axis| expression.uses_position(*axis)) {
                 let name = ["x", "y", "z"][axis];
-                let message = format!("`{name}` in a resultant, which is one for all of `{}`", body.name());
-                return Err(self.problem.error(value, message).help("an expression in t alone"));
+                let message = format!("`{name}` in a resultant, which has one value for all of `{}`", body.name());
+                return Err(self.problem.error(value, message).help("give an expression of t alone"));
             }
         }
         Ok(())

@@ -91,7 +91,7 @@ pub enum Load<'a> {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BodyError {
     /// A cell is turned inside out, or a rope shrunk to a point.
-    #[error("cell {cell} of `{body}` is turned inside out or shrunk to nothing")]
+    #[error("cell {cell} of `{body}` is inverted or has no volume")]
     Inverted { body: String, cell: usize },
     #[error("cell {cell} of `{body}`: {message}")]
     Material { body: String, cell: usize, message: String },
@@ -100,7 +100,7 @@ pub enum BodyError {
 /// A place that a body does not have, or that cannot be used in this way.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PlaceError {
-    #[error("`{body}` has no group `{group}`: it has {}", known.join(", "))]
+    #[error("`{body}` has no group `{group}`; valid are {}", known.join(", "))]
     Unknown { body: String, group: String, known: Vec<String> },
     #[error("`{body}`: {message}")]
     Unsuitable { body: String, message: String },

@@ -43,7 +43,7 @@ pub enum SolidError {
     Degree { degree: usize, shape: &'static str, most: usize },
     #[error("Young's modulus {youngs_modulus} and Poisson's ratio {poissons_ratio}: valid are > 0, and > -1 and < 0.5")]
     Material { youngs_modulus: f64, poissons_ratio: f64 },
-    #[error("a body in {dimension} dimensions does not fill space as {space:?}")]
+    #[error("{space:?} is not a space for bodies in {dimension} dimensions")]
     Space { dimension: usize, space: Space },
 }
 

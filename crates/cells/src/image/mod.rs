@@ -22,7 +22,7 @@ pub enum ImageError {
     File { file: String, message: String },
     #[error("{file}: {wrong}")]
     Content { file: String, wrong: Wrong },
-    #[error("{file}: the ending is not one of {known}")]
+    #[error("{file}: the file extension is not one of {known}")]
     Ending { file: String, known: &'static str },
 }
 

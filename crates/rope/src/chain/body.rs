@@ -30,7 +30,7 @@ pub enum ChainError {
     Pulley { node: usize, reason: &'static str },
     #[error("there is no element {element}: the rope has {count}")]
     NoElement { element: usize, count: usize },
-    #[error("a rope of straight elements needs a path sampled with continuity C0")]
+    #[error("a rope of straight elements requires a path sampled with continuity C0")]
     Smooth,
 }
 

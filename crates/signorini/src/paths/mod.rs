@@ -133,9 +133,9 @@ fn of_path(path: &PathReport, units: &Units) -> Vec<String> {
     let mut out = Vec::new();
     if let (Some(first), Some(last)) = (path.frames.first(), path.frames.last()) {
         let touched = last.contacts.len();
-        let times = if touched == 1 { "once".to_string() } else { format!("{touched} times") };
+        let times = if touched == 1 { "1 contact".to_string() } else { format!("{touched} contacts") };
         out.push(format!(
-            "`{name}`: length {} at t = {}, {} at t = {}, in contact at {times}",
+            "`{name}`: length {} at t = {}, {} at t = {}, with {times}",
             units.length(first.length),
             exact(first.time, ""),
             units.length(last.length),

@@ -39,7 +39,7 @@ fn each_mistake_of_a_body_of_cells_is_told_at_its_place() {
         ("hertz_cells", "cells = [20, 20],", "", "number of cells", "min"),
         ("hertz_cells", "cells = [20, 20]", "cells = [20, 0]", "0 is not between", "0"),
         ("hertz_cells", "cells = [20, 20]", "cells = [100000, 100000]", "GiB of memory", "cells"),
-        ("hertz_cells", "max = [1.02, 1]", "max = [-1.02, 1]", "first below the second", "cells"),
+        ("hertz_cells", "max = [1.02, 1]", "max = [-1.02, 1]", "first must be below the second", "cells"),
         ("hertz_cells", "center = [0, 1]", "center = [9, 9]", "negative nowhere", "geometry"),
         ("hertz_cells", "geometry.sphere", "geometry.spere", "spere", "geometry"),
         ("hertz_cells", "\"disc:left\"", "\"disc:lift\"", "no group `lift`", "disc:lift"),

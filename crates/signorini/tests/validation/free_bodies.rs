@@ -200,8 +200,12 @@ pictures = false
             assert_eq!((&found["converged"], &found["reason"]), (&Value::from(false), &Value::from("free_body")));
             let motion = match (sliding, axis) {
                 ("small", axis) => format!("`a` is pulled away along {axis}"),
-                (_, "+y") => "`a` is free: nothing holds it against moving along (0.000, 1.000, 0.000)".into(),
-                _ => "`a` is free: nothing holds it against moving along (0.000, 0.000, 1.000)".into(),
+                (_, "+y") => {
+                    "`a` is free: no support or contact restrains it against moving along (0.000, 1.000, 0.000)".into()
+                }
+                _ => {
+                    "`a` is free: no support or contact restrains it against moving along (0.000, 0.000, 1.000)".into()
+                }
             };
             assert!(verdict.contains(&motion), "{degree} {sliding}: {verdict}");
             assert_eq!(found["steps"][0]["converged"], true, "{degree} {sliding}");

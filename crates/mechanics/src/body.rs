@@ -275,7 +275,7 @@ pub trait Body: Send + Sync {
     /// # Errors
     /// A place that is not there, or a body without such points.
     fn spread_sites(&self, _on: Option<&str>, _spacing: f64) -> Result<(Vec<Site>, f64), PlaceError> {
-        let message = "discs touch on bodies of cells only".to_string();
+        let message = "contact by discs is for bodies of finite cells only".to_string();
         Err(PlaceError::Unsuitable { body: self.name().to_string(), message })
     }
 

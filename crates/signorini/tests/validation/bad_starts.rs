@@ -71,7 +71,7 @@ fn bad_starts_are_told_with_the_remedy() {
             ["`rope` is shorter than the distance of its ends", "a longer `unstrained_length`"],
         ),
         ("capstan", &[("stiffness = 1e4", "stiffness = 0")], ["must be positive", ""]),
-        ("knot", &[("u^3 - 3*u", "0*u")], ["the path crosses itself at (", "along it"]),
+        ("knot", &[("u^3 - 3*u", "0*u")], ["the path crosses itself at (", "at the arc lengths"]),
     ];
     for (name, changes, words) in table {
         let mut case = example(name).to_string();

@@ -63,7 +63,7 @@ fn each_mistake_of_a_body_of_cells_is_told_at_its_place() {
             "plate",
         ),
         ("foam", "axes = \"zyx\"", "axes = \"zyz\"", "not an order of the directions", "zyz"),
-        ("foam", "threshold = 550", "threshold = 99999", "nothing or everything", "geometry"),
+        ("foam", "threshold = 550", "threshold = 99999", "all or none of the image", "geometry"),
         ("foam", ", threshold = 550", "", "neither `threshold` nor", "foam.npy"),
         ("foam", "threshold = 550", "threshold = 550, youngs_modulus = \"value\"", "both `threshold` and", "550"),
         ("foam", "foam.npy", "foam.xyz", "cannot be read", "foam.xyz"),

@@ -304,8 +304,13 @@ fn mistakes_of_edges_are_told_at_their_place() {
         ("radius = 0.06 }", "radios = 0.06 }", "unknown key `radios`", "radios"),
         ("edges.rim", "edges.top", "a group with this name already exists", "between"),
         ("\"block:rim\"", "\"block:rum\"", "has no group `rum`", "block:rum"),
-        ("\"block:bottom\"", "\"block:rim\"", "`rim` is an edge, which touches", "block:rim"),
-        ("[\"rope\", \"block:rim\"]", "[\"block:top\", \"block:rim\"]", "other edges of its own body", "block:top"),
+        ("\"block:bottom\"", "\"block:rim\"", "`rim` is an edge, which is only for contact", "block:rim"),
+        (
+            "[\"rope\", \"block:rim\"]",
+            "[\"block:top\", \"block:rim\"]",
+            "its own body is possible with other edges",
+            "block:top",
+        ),
     ];
     for (from, to, message, at) in table {
         let case = example("edge");

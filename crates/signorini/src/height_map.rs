@@ -174,7 +174,7 @@ mod tests {
     fn bad_maps_are_refused_in_words() {
         let read = |name: &str, bytes: &[u8]| read(Path::new(name), bytes, [0.0; 2], [1.0; 2], 1.0).unwrap_err();
         assert!(read("a.csv", b"1,2,3,4\n1,2,,4\n").contains("line 2, column 3: is empty"));
-        assert!(read("a.csv", b"1,2,3,4\n1,2,x,4\n").contains("`x` is no number"));
+        assert!(read("a.csv", b"1,2,3,4\n1,2,x,4\n").contains("`x` is not a number"));
         assert!(read("a.csv", b"1,2,3,4\n1,2\n").contains("2 numbers where the lines before have 4"));
         assert!(read("a.csv", b"1 2 3 4\n").contains("1 rows"));
         assert!(read("a.csv", b"1;2;3;4\n1;2;3,125;4\n").contains("line 2: `3,125`"));

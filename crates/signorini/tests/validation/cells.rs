@@ -59,7 +59,7 @@ fn each_mistake_of_a_body_of_cells_is_told_at_its_place() {
             "plate_holes",
             "displacement = [0, \"free\"]",
             "displacement = [\"free\", 0]",
-            "holds `plate` against",
+            "restrains `plate` against",
             "plate",
         ),
         ("foam", "axes = \"zyx\"", "axes = \"zyz\"", "not an order of the directions", "zyz"),

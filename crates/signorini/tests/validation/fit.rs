@@ -133,7 +133,7 @@ fn wrong_files_are_told() {
     let rows = |last: &str| format!("p,c\n1,0.6\n2,0.7\n3,0.8\n{last}\n");
     for (text, key, word) in [
         (rows("4,"), "radius = \"c\"", "line 5, column `c`: is empty"),
-        (rows("4,x"), "radius = \"c\"", "`x` is no number"),
+        (rows("4,x"), "radius = \"c\"", "`x` is not a number"),
         (rows("nan,0.8"), "radius = \"c\"", "not finite"),
         (rows("4,1.8"), "radius = \"c\"", "between 0 and"),
         (rows("4,0.8"), "radius = \"cc\"", "no column `cc`"),

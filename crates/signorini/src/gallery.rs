@@ -26,7 +26,7 @@ pub const GALLERY: [Example; 47] = [
     example!("cosine_disc", "four contact zones merge to a ring and fill as the load grows"),
     example!("cosine_square", "a square membrane on the same floor"),
     example!("tilted_floor", "a film in micrometres on a tilted, curved floor; tension and load vary"),
-    example!("drum", "a Gmsh mesh, clamped at rim and hub, is pulled onto a tilted plate by adhesion"),
+    example!("drum", "a Gmsh mesh, clamped at rim and hub, is pressed on a tilted plate"),
     example!("two_floors", "a membrane between a ball below and a lid above"),
     example!("active_set", "the classical nodal method, to be compared with cosine_square"),
     example!("hertz", "an elastic cylinder on a rigid plane, compared with a converged reference"),

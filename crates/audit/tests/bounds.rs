@@ -377,7 +377,10 @@ fn three_legs_of_a_table_tell_the_fourth() {
         if x == 0.0 {
             assert_eq!(bound(0), ("a", 0.0, Some(W / 2.0)));
             let (_, text) = case.finding();
-            assert!(text.contains("4 places") && text.contains("balance gives 3 independent equations"), "{text}");
+            assert!(
+                text.contains("4 contact points") && text.contains("balance gives 3 independent equations"),
+                "{text}"
+            );
             assert!(text.contains("`a` may be anything from 0 to 1.5"), "{text}");
         }
     }

@@ -282,7 +282,7 @@ pub fn read_raw(path: &Path, header: &raw::RawHeader) -> Result<ImageData, Image
 /// A stream that is damaged, or too short for as many bytes.
 pub(crate) fn unpacked(packed: &[u8], most: usize) -> Result<Vec<u8>, Wrong> {
     let short = |found: usize| {
-        let found = format!("packed, {found} bytes where {most} are wanted");
+        let found = format!("compressed, {found} bytes instead of {most}");
         Wrong::new("the data", found, "the file is truncated, or its header is wrong")
     };
     // What no stream of this length can hold is not asked for.

@@ -119,7 +119,11 @@ fn shapes_that_are_no_floor_are_told() {
         ("plane", "cylinder = { point = [0, 0, -2], radius = 2 }", "requires an `axis`"),
         ("plane", "cylinder = { point = [0, 0, -2], axis = [0, 0, 1], radius = 2 }", "must be horizontal"),
         ("plane", "paraboloid = { apex = [0, 0, 0], axis = [1, 0, -1], radius = 2 }", "vertically down"),
-        ("plane", "torus = { center = [0, 0, -1], axis = [1, 0, 0], major_radius = 1, minor_radius = 0.3 }", "upright"),
+        (
+            "plane",
+            "torus = { center = [0, 0, -1], axis = [1, 0, 0], major_radius = 1, minor_radius = 0.3 }",
+            "must be vertical",
+        ),
         ("plane", "ellipsoid = { center = [0, 0, -1], semi_axes = [1, 0, 1] }", "positive"),
         ("axisymmetric", "ellipsoid = { center = [0, 0, -1], semi_axes = [1, 2, 1] }", "must be equal"),
         ("plane", "cone = { apex = [0, 0, 0], axis = [0, 1, -1], half_angle = 1 }", "vertically down"),
@@ -502,7 +506,9 @@ fn a_check_says_what_it_understood() {
     assert_eq!(told("2 N/m")["unit"], "N/mm");
     assert_eq!((number(&told("1 cm")["value"]), &told("1 cm")["line"]), (10.0, &5.into()));
     assert!(sizes["warnings"].to_string().contains("curves within a cell"), "{sizes}");
-    assert!(!check(&pushed("plane", "height = \"-0.1 - 0.2*x^2\"", 0.0))["warnings"].to_string().contains("bends"));
+    assert!(
+        !check(&pushed("plane", "height = \"-0.1 - 0.2*x^2\"", 0.0))["warnings"].to_string().contains("curves within")
+    );
     let long = check(&case.replace("\"1 cm\"", "\"1000 km\""));
     assert!(long["warnings"].to_string().contains("m long"), "{long}");
     // Pascals where megapascals are meant.

@@ -396,7 +396,7 @@ impl Planner<'_> {
                 let by = 100.0 * (distance / length - 1.0);
                 let message = format!(
                     "`{name}` is shorter than the distance of its ends, {length} of {distance}: it starts with \
-                         a strain of {by:.3} %; give a longer `unstrained_length`, or the wanted `pretension`"
+                         a strain of {by:.3} %; give a longer `unstrained_length`, or the intended `pretension`"
                 );
                 warnings.push(Warning::from(message));
             }

@@ -254,8 +254,8 @@ pub fn check_start(setting: &Setting, state: &State) -> Vec<Finding> {
                 let [own, other] = side.map(|k| &setting.bodies[k].name);
                 let message = format!("`{own}` starts {:.4e} deep inside `{other}`", found.depth);
                 let finding = Finding::new(Check::Gaps, Outcome::Refused, message).measured(found.depth, limit);
-                let remedy = "separate the bodies at the start, and check the direction of plane normals and the `side` \
-                         of holes";
+                let remedy = "separate the bodies at the start, and check the direction of plane normals and the \
+                              `side` of holes";
                 out.push(finding.at(found.x).on(&contact.name).remedy(remedy));
             }
         }

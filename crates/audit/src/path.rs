@@ -123,7 +123,7 @@ fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Findin
     };
     let message = format!(
         "{what}: work {work:.4e}, stored energy {stored:.4e}, dissipation {dissipated:.4e} in the increment, \
-             tolerance {limit:.1e}"
+         tolerance {limit:.1e}"
     );
     let finding = Finding::new(Check::Path, outcome, message).measured(missing.abs(), limit);
     Some(Finding { remedy: remedy.map(str::to_string), ..finding })

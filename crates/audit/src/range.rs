@@ -47,10 +47,9 @@ pub fn check(setting: &Setting, state: &State) -> Vec<Finding> {
         let finding = Finding::new(Check::Range, outcome, message).measured(strain, limit).at(x).on(name);
         out.push(match (outcome, &body.form) {
             (Outcome::Fine, _) => finding,
-            (_, Form::Curve(_)) => finding.remedy(
-                "use a larger section or a smaller load: the law of the \
-                 section is linear",
-            ),
+            (_, Form::Curve(_)) => {
+                finding.remedy("use a larger section or a smaller load: the law of the section is linear")
+            }
             _ => finding.remedy("use finite strain or a smaller load"),
         });
     }

@@ -44,10 +44,7 @@ fn of_contact(contact: &Contact, touches: &[Touch], nothing: f64) -> Vec<Finding
             Finding::new(
                 Check::Tractions,
                 Outcome::Refused,
-                format!(
-                    "`{name}` has contact forces that are not \
-                 finite numbers"
-                ),
+                format!("`{name}` has contact forces that are not finite numbers"),
             )
             .on(name),
         );
@@ -84,8 +81,7 @@ fn of_contact(contact: &Contact, touches: &[Touch], nothing: f64) -> Vec<Finding
     tell(
         part(&slipping, wrong, |_| all),
         [TOLD, REFUSED_SIGN],
-        "the friction acts in the direction of slip, \
-         not against it",
+        "the friction acts in the direction of slip, not against it",
     );
     if let Some(Law::PerPressure([a, b])) = contact.law
         && a == b

@@ -38,7 +38,8 @@ fn of_group(setting: &Setting, state: &State, group: &Group, bounds: &[ForceBoun
     }
     let names: Vec<String> = group.members.iter().map(|k| format!("`{}`", setting.bodies[*k].name)).collect();
     let mut message = format!(
-        "the contact forces on {} have {} unknown components at {} contact points, and balance gives {} independent equations",
+        "the contact forces on {} have {} unknown components at {} contact points, and balance gives {} independent \
+         equations",
         names.join(", "),
         count.unknowns,
         count.places,

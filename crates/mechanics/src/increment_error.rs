@@ -21,15 +21,15 @@ pub enum IncrementError {
     PassesThrough { contact: String, share: f64 },
     /// What lies inside of a rigid body, where no contact sees it.
     #[error(
-        "contact `{contact}`: a point of `{body}` lies {depth:.4e} deep inside the rigid body, at ({:.4}, \
-             {:.4}, {:.4}), where no contact force pushes it out",
+        "contact `{contact}`: a point of `{body}` lies {depth:.4e} deep inside the rigid body, at ({:.4}, {:.4}, \
+         {:.4}), where no contact force pushes it out",
         x[0], x[1], x[2]
     )]
     Inside { contact: String, body: String, depth: f64, x: [f64; 3] },
     /// No stable state was found near one that is not stable.
     #[error(
-        "`{body}` is unstable ({negative_eigenvalues} negative eigenvalue{} of the tangent), and no stable \
-             state was found after a disturbance",
+        "`{body}` is unstable ({negative_eigenvalues} negative eigenvalue{} of the tangent), and no stable state was \
+         found after a disturbance",
         if *negative_eigenvalues == 1 { "" } else { "s" }
     )]
     Unstable { body: String, negative_eigenvalues: usize },

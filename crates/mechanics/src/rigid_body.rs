@@ -269,8 +269,8 @@ impl Body for RigidBody {
     fn sites(&self, on: Option<&str>, _: Sampling) -> Result<Vec<Site>, PlaceError> {
         self.no_groups(on)?;
         if self.sites.is_empty() {
-            let message = "a rigid body of this shape has no slave points; name the other body first, which \
-                 makes it the slave"
+            let message = "a rigid body of this shape has no slave points; name the other body first, which makes it \
+                           the slave"
                 .to_string();
             return Err(PlaceError::Unsuitable { body: self.name.clone(), message });
         }

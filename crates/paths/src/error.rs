@@ -13,13 +13,12 @@ pub enum PathError {
     #[error("the integration along the surface stops after {at} of {of}: the surface is not smooth there")]
     Stalled { at: f64, of: f64 },
     #[error("the point ({}, {}, {}) could not be projected on the surface: it is at a distance of {gap} after \
-         {iterations} iterations", .at.x, .at.y, .at.z)]
+             {iterations} iterations", .at.x, .at.y, .at.z)]
     NoFoot { at: Point<3>, gap: f64, iterations: usize },
     #[error("the direction is normal to the surface at ({}, {}, {}): a path requires a tangent", .at.x, .at.y, .at.z)]
     NoTangent { at: Point<3> },
     #[error(
-        "the {place} of the path lies inside body {body}, {depth:.4e} deep: move it outside by at least \
-         this distance"
+        "the {place} of the path lies inside body {body}, {depth:.4e} deep: move it outside by at least this distance"
     )]
     Inside { place: Place, body: usize, depth: f64 },
     #[error("it passes through body {body}, {depth:.4e} deep at ({:.6}, {:.6}, {:.6})", .at.x, .at.y, .at.z)]

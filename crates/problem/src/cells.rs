@@ -246,10 +246,9 @@ impl<'de> Deserialize<'de> for Geometry {
                 }?;
                 match map.next_key::<String>()? {
                     None => Ok(found),
-                    Some(other) => Err(A::Error::custom(format!(
-                        "`{key}` and `{other}`: a geometry has exactly \
-                         one key"
-                    ))),
+                    Some(other) => {
+                        Err(A::Error::custom(format!("`{key}` and `{other}`: a geometry has exactly one key")))
+                    }
                 }
             }
         }

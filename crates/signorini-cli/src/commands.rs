@@ -375,10 +375,8 @@ fn execute(name: &str, text: &str, folder: &Path, wanted: &Wanted, json: bool) -
     problem.limits.max_iterations = limits.max_iterations.or(problem.limits.max_iterations);
     if paths::is_of_paths(&problem) {
         if resumed {
-            let error = CaseError::new("paths cannot be resumed").help(
-                "start them from the beginning, without \
-                 --resume",
-            );
+            let error =
+                CaseError::new("paths cannot be resumed").help("start them from the beginning, without --resume");
             return report(&error, json);
         }
         return execute_paths(&problem, folder, json);

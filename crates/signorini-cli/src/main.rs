@@ -123,7 +123,8 @@ enum Command {
     },
     /// Print the JSON Schema of case files, for editors, or of the summary, for programs
     #[command(
-        after_help = "Examples:\n  signorini schema > case.schema.json\n\nand as the first line of a case\n  #:schema ./case.schema.json\n\nfor the results of a run:\n  signorini schema --summary"
+        after_help = "Examples:\n  signorini schema > case.schema.json\n\nand as the first line of a case\n  #:schema \
+                      ./case.schema.json\n\nfor the results of a run:\n  signorini schema --summary"
     )]
     Schema {
         /// Print the schema of summary.json

@@ -30,13 +30,13 @@ const WORDS: &[Word] = &[
         "front",
         "result",
         "In `error_estimate`: root mean square error of the front position. In files of outlines: number of the \
-             front.",
+         front.",
     ),
     word(
         "kind",
         "result",
-        "Of an event: nucleation, release, merge, split, hole_opened, hole_closed, snap_in or pull_off. Of a \
-             contact pair: the features that contain the closest points.",
+        "Of an event: nucleation, release, merge, split, hole_opened, hole_closed, snap_in or pull_off. Of a contact \
+         pair: the features that contain the closest points.",
     ),
     word("gap", "result", "Gap between the surfaces; negative for penetration."),
     word("contact_pressure", "result", "Contact pressure; zero outside the contact zones."),
@@ -51,8 +51,7 @@ const WORDS: &[Word] = &[
     word(
         "tan_alpha",
         "result",
-        "Of a rope: ratio of geodesic to normal curvature. Friction across the rope \
-         must be at least as large.",
+        "Of a rope: ratio of geodesic to normal curvature. Friction across the rope must be at least as large.",
     ),
     word("pulling_traction", "result", "Friction traction along a rope."),
     word("dragging_traction", "result", "Friction traction across a rope."),
@@ -66,8 +65,8 @@ const WORDS: &[Word] = &[
     word(
         "along",
         "result",
-        "Of a rope on a given curve: friction force per length along the rope, which is the \
-         derivative of the tension.",
+        "Of a rope on a given curve: friction force per length along the rope, which is the derivative of the \
+         tension.",
     ),
     word("across", "result", "Of a rope on a given curve: friction force per length across the rope, -k_g T."),
     word("utilisation", "result", "Ratio of the required friction to the friction limit. From 1 on the path slips."),
@@ -80,8 +79,7 @@ const WORDS: &[Word] = &[
     word(
         "sideways",
         "result",
-        "Of a shortest path, for each contact: largest deviation from the geodesic that \
-         friction admits.",
+        "Of a shortest path, for each contact: largest deviation from the geodesic that friction admits.",
     ),
     word("drift", "result", "In `sideways`: largest distance of the end of the contact from the geodesic."),
     word(
@@ -92,15 +90,14 @@ const WORDS: &[Word] = &[
     word(
         "moment_arms",
         "result",
-        "For each body: derivative of the length of the path with respect to a motion of the body, -∂L. It is \
-             the work of a unit tension.",
+        "For each body: derivative of the length of the path with respect to a motion of the body, -∂L. It is the \
+         work of a unit tension.",
     ),
     word("shift", "result", "In `moment_arms`: derivative for a displacement of the body along x, y, z."),
     word(
         "turn",
         "result",
-        "In `moment_arms`: derivative for a rotation of the body about axes along x, y, z \
-         through `about`.",
+        "In `moment_arms`: derivative for a rotation of the body about axes along x, y, z through `about`.",
     ),
     word("about", "result", "In `moment_arms`: centre of rotation of the body."),
     word("length_rate", "result", "Derivative of the length of a path with respect to time."),
@@ -110,8 +107,7 @@ const WORDS: &[Word] = &[
     word(
         "slides_sideways",
         "condition",
-        "The rope slides sideways: the required friction across it exceeds the \
-         limit, |tan α| > μ_g.",
+        "The rope slides sideways: the required friction across it exceeds the limit, |tan α| > μ_g.",
     ),
     word("touchdown", "event", "A path comes into contact with a body."),
     word("lift_off", "event", "A path leaves a body."),
@@ -146,16 +142,14 @@ const WORDS: &[Word] = &[
     word(
         "factorisation_about",
         "result",
-        "Estimated time of one factorisation on one core, from its number of \
-         operations.",
+        "Estimated time of one factorisation on one core, from its number of operations.",
     ),
     word("area_error", "result", "± of the contact area, as in `error_estimate`."),
     word("force_error", "result", "± of the force, as in `error_estimate`."),
     word(
         "points_tested",
         "result",
-        "Number of points of a system at which contact is tested: nodes or \
-         quadrature points.",
+        "Number of points of a system at which contact is tested: nodes or quadrature points.",
     ),
     word("max_pressure_error", "result", "± of the largest pressure, as in `error_estimate`."),
     word("increments", "result", "Number of increments."),
@@ -171,8 +165,7 @@ const WORDS: &[Word] = &[
     word(
         "nodes_changed",
         "result",
-        "Number of nodes that changed their contact status in an iteration of the \
-         active set method.",
+        "Number of nodes that changed their contact status in an iteration of the active set method.",
     ),
     word("action", "result", "Action of the solver."),
     word("event", "result", "Kind of an entry of log.jsonl."),
@@ -216,14 +209,12 @@ const WORDS: &[Word] = &[
     word(
         "feature_a",
         "answer",
-        "Feature of the first shape that contains the closest point: `interior`, \
-         `edge`, `vertex` or `point`.",
+        "Feature of the first shape that contains the closest point: `interior`, `edge`, `vertex` or `point`.",
     ),
     word(
         "feature_b",
         "answer",
-        "Feature of the second shape that contains the closest point: `interior`, \
-         `edge`, `vertex` or `point`.",
+        "Feature of the second shape that contains the closest point: `interior`, `edge`, `vertex` or `point`.",
     ),
     word(
         "entity_a",
@@ -244,14 +235,12 @@ const WORDS: &[Word] = &[
     word(
         "near-continuum",
         "answer",
-        "One pair of points is closest, in a valley of the distance that is flat \
-         to round-off.",
+        "One pair of points is closest, in a valley of the distance that is flat to round-off.",
     ),
     word(
         "continuum_dim",
         "answer",
-        "Dimension of a continuum of closest points: 1 for a curve, 2 for a \
-         surface; otherwise 0.",
+        "Dimension of a continuum of closest points: 1 for a curve, 2 for a surface; otherwise 0.",
     ),
     word("others", "answer", "Further closest points; in a table their number."),
     word(
@@ -259,12 +248,7 @@ const WORDS: &[Word] = &[
         "answer",
         "Smallest eigenvalue of the Hessian of half the squared distance: 1 - d κ for a point and a surface, 0 on a focal set.",
     ),
-    word(
-        "certified",
-        "answer",
-        "Whether it is proved that no pair of points is closer. If not, the exit status \
-         is 2.",
-    ),
+    word("certified", "answer", "Whether it is proved that no pair of points is closer. If not, the exit status is 2."),
     word("certified_to", "answer", "No pair of points is closer than the distance minus this value."),
     word("id", "answer", "Name of a query; for points from a file the number of the row, from 0."),
     word("error", "answer", "Error of a query. The other queries are answered, and the exit status is 1."),
@@ -272,23 +256,23 @@ const WORDS: &[Word] = &[
         "to",
         "option of closest",
         "signorini closest points.npy --to part.stl -o answers.npy: the shape on which the points of a file are \
-             projected. Points are an array of NumPy of shape (n, 3), or text with three numbers per line or \
-             columns named x, y, z.",
+         projected. Points are an array of NumPy of shape (n, 3), or text with three numbers per line or columns \
+         named x, y, z.",
     ),
     word("output", "option of closest", "File for the answers; .json, .csv and .npy determine the format."),
     word("local_minima", "option of closest", "Every local minimum of the distance is also reported in `others`."),
     word(
         "shapes",
         "queries of closest",
-        "Shapes that are given once, before the cases: \"shapes\": {\"part\": {…}}; a query refers to one by \
-             its name, \"b\": \"part\".",
+        "Shapes that are given once, before the cases: \"shapes\": {\"part\": {…}}; a query refers to one by its \
+         name, \"b\": \"part\".",
     ),
     word("cases", "queries of closest", "The queries: [{\"id\": …, \"a\": SHAPE, \"b\": SHAPE}, …]."),
     word(
         "exit status",
         "command",
         "0 done; 1 wrong input; 2 not converged, results so far are on disk; 3 a fault of the program; 130 \
-             interrupted.",
+         interrupted.",
     ),
     word(
         "expressions",
@@ -298,8 +282,8 @@ const WORDS: &[Word] = &[
     word(
         "units",
         "command",
-        "Without `units` numbers are in any consistent units. With units = \"mm-N-MPa\" numbers without unit \
-             are in these units, and \"0.1 um\" is converted.",
+        "Without `units` numbers are in any consistent units. With units = \"mm-N-MPa\" numbers without unit are in \
+         these units, and \"0.1 um\" is converted.",
     ),
 ];
 
@@ -315,13 +299,11 @@ pub fn reference() -> String {
     let of_summary: Vec<schema::Key> =
         words::keys().into_iter().map(|key| schema::Key { required: false, ..key }).collect();
     let mut text = format!(
-        "# Reference of the case file\n\n\
-         Generated by `signorini schema --markdown` from the types of the program. `NAME` stands for a name of your own. \
-         Keys marked * are required in their table. `signorini explain KEY` prints the same texts.\n\n\
-         {}\n# Reference of the summary\n\n\
-         The keys of summary.json. They are the same for all models; a quantity that a model does not have is null. Numbers \
-         are in the base units of the case. Vectors have three entries.\n\n{}\n\
-         ## Words in the summary\n\n| word | where | meaning |\n|---|---|---|\n",
+        "# Reference of the case file\n\nGenerated by `signorini schema --markdown` from the types of the program. \
+         `NAME` stands for a name of your own. Keys marked * are required in their table. `signorini explain KEY` \
+         prints the same texts.\n\n{}\n# Reference of the summary\n\nThe keys of summary.json. They are the same for \
+         all models; a quantity that a model does not have is null. Numbers are in the base units of the case. \
+         Vectors have three entries.\n\n{}\n## Words in the summary\n\n| word | where | meaning |\n|---|---|---|\n",
         schema::tables(&schema::keys()),
         schema::tables(&of_summary),
     );

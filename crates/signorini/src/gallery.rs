@@ -55,8 +55,7 @@ pub const GALLERY: [Example; 47] = [
     example!("hertz_cells", "half a disc of finite cells on a plane: no mesh follows its boundary"),
     example!(
         "hertz_published",
-        "discs of finite cells by both published discretisations, with chords and exact \
-         boundaries"
+        "discs of finite cells by both published discretisations, with chords and exact boundaries"
     ),
     example!("plate_holes", "a plate with a hole in cells of degree 6, compared with the solution of Kirsch"),
     example!("ball_cells", "a ball of finite cells between two plates, in space"),

@@ -80,7 +80,7 @@ fn tiff(bytes: &[u8]) -> Result<Table, String> {
         other => {
             return Err(format!(
                 "the image is {other:?}: expected one grey value of 16 bits or more; 8 bits are too coarse for \
-                     heights"
+                 heights"
             ));
         }
     }

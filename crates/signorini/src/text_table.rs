@@ -118,8 +118,8 @@ impl Numbers {
     pub fn finish(&self) -> Result<(), String> {
         match (&self.comma, &self.point) {
             (Some((line, comma)), Some((other, point))) => Err(format!(
-                "line {line}: `{comma}` has a comma and `{point}` in line {other} a point: use a decimal point \
-                     and no thousands separator"
+                "line {line}: `{comma}` has a comma and `{point}` in line {other} a point: use a decimal point and no \
+                 thousands separator"
             )),
             (Some((line, comma)), None) if !self.certain => Err(format!(
                 "line {line}: `{comma}` is `{}` or `{}`: use a decimal point and no thousands separator",

@@ -186,10 +186,8 @@ impl<const D: usize> SolidBody<D> {
     fn group(&self, on: Option<&str>) -> Result<&Group, PlaceError> {
         let name = on.unwrap_or("boundary");
         if self.edges.contains_key(name) {
-            return Err(self.unsuitable(format!(
-                "`{name}` is an edge, which is only for contact: name sides, \
-                 vertices or cells"
-            )));
+            return Err(self
+                .unsuitable(format!("`{name}` is an edge, which is only for contact: name sides, vertices or cells")));
         }
         self.groups.get(name).ok_or_else(|| PlaceError::Unknown {
             body: self.name().to_string(),

@@ -31,7 +31,7 @@ pub enum StepError {
     /// The loads ask for more friction than there is.
     #[error(
         "body `{body}` slides away {direction}: its loads require a friction force of {demanded:.6e}, but the \
-             friction limit is {available:.6e}"
+         friction limit is {available:.6e}"
     )]
     Slides { body: String, direction: String, demanded: f64, available: f64 },
     #[error("interrupted")]

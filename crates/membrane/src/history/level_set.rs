@@ -111,8 +111,8 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> Engine<D, Z> {
             warn(
                 RemarkKind::SteepSlopes,
                 format!(
-                    "slopes reach {steepest:.1}: the linear theory of the membrane is valid below about \
-                         {LINEAR}, beyond it the tension increases"
+                    "slopes reach {steepest:.1}: the linear theory of the membrane is valid below about {LINEAR}, \
+                     beyond it the tension increases"
                 ),
             );
         }
@@ -122,7 +122,7 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> Engine<D, Z> {
                 RemarkKind::SharpFront,
                 format!(
                     "a front has a radius of curvature of {:.2} cells at t = {}: below two cells its shape is \
-                         approximate; use more cells",
+                     approximate; use more cells",
                     1.0 / sharp,
                     at.1
                 ),
@@ -162,7 +162,7 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> Engine<D, Z> {
                 RemarkKind::NotResolved,
                 format!(
                     "the grid does not resolve whether zones merge at t = {}: the membrane penetrates the body \
-                         between them by {depth:.0e}",
+                     between them by {depth:.0e}",
                     at.1
                 ),
             );
@@ -174,9 +174,8 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> Engine<D, Z> {
         if let Some(kink) = solution.conditions.as_ref().and_then(|c| c.kink).filter(|_| estimated) {
             let place: Vec<String> = kink.place.iter().map(|v| format!("{v:.4}")).collect();
             let message = format!(
-                "the surface has a kink within the contact zone, near ({}): the pressure along it is a line \
-                     force, which is included neither in the results nor in the error estimate; round the kink \
-                     over a few cells",
+                "the surface has a kink within the contact zone, near ({}): the pressure along it is a line force, \
+                 which is included neither in the results nor in the error estimate; round the kink over a few cells",
                 place.join(", ")
             );
             remarks.insert(0, Remark::new(RemarkKind::Kink, message).at_time(at.1).at(kink.place.as_slice()));

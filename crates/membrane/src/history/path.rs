@@ -123,8 +123,8 @@ impl<const D: usize, Z: Zone<D>> Follower<D, Z> {
     ) -> Result<Along<D, Z>, SolveError> {
         let Some(state) = self.state.clone() else {
             return Ok(Along::Failed(
-                "control.arc_length begins at a state with contact: use a step with time or area control before \
-                     it, or `initial_zone`"
+                "control.arc_length begins at a state with contact: use a step with time or area control before it, \
+                 or `initial_zone`"
                     .into(),
             ));
         };
@@ -163,7 +163,7 @@ impl<const D: usize, Z: Zone<D>> Follower<D, Z> {
         let (time, area) = self.state.as_ref().map_or((f64::NAN, f64::NAN), |state| (state.time, state.area));
         format!(
             "the path ends near t = {time}, at a contact area of {area}: beyond this point the membrane would \
-                 penetrate a body elsewhere, or lose its support"
+             penetrate a body elsewhere, or lose its support"
         )
     }
 

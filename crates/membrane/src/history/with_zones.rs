@@ -122,7 +122,7 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> WithZones<D, Z> {
             let [_, to] = planned.range;
             let message = format!(
                 "the path goes on: its last increment is at t = {time}, and the step ends at t = {to}; use more \
-                     increments, or leave `increments` out to follow the path to its end"
+                 increments, or leave `increments` out to follow the path to its end"
             );
             self.remarks.push(Remark::new(RemarkKind::Path, message).at_time(time));
         }
@@ -144,7 +144,7 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> WithZones<D, Z> {
             let a = known.as_ref().map_or(0.0, |k| k.area);
             let message = format!(
                 "the contact jumped to another state before t = {time}: its area changed from {a:.6} to {:.6}; \
-                     `events` in the step locates the jump",
+                 `events` in the step locates the jump",
                 increment.area()
             );
             self.remarks.push(Remark::new(RemarkKind::Jump, message).at_time(time));

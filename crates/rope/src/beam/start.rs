@@ -18,7 +18,7 @@ pub enum BeamError {
     Orientation { at: [f64; 3] },
     #[error(
         "element {element} turns by {degrees:.1}° at the start, but at most 90° can be resolved: give more than \
-             {cells} cells"
+         {cells} cells"
     )]
     TurnsTooMuch { element: usize, degrees: f64, cells: usize },
     #[error("radius {0}: valid are 0 and positive numbers")]

@@ -29,8 +29,7 @@ pub enum NoPair {
     Meet,
     /// Parallel tangents, or a centre of curvature.
     #[error(
-        "the closest points of the pair do not exist: tangents are parallel, or a point is at a centre of \
-         curvature"
+        "the closest points of the pair do not exist: tangents are parallel, or a point is at a centre of curvature"
     )]
     NoCoordinates,
 }

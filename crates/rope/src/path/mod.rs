@@ -21,8 +21,8 @@ pub enum PathError {
     #[error("point {index} = ({}, {}, {}) is not finite", at[0], at[1], at[2])]
     NotFinite { index: usize, at: [f64; 3] },
     #[error(
-        "the path turns by {degrees:.3}° at ({}, {}, {}), but a smooth curve is required: give a spline through \
-             the points, or straight cells",
+        "the path turns by {degrees:.3}° at ({}, {}, {}), but a smooth curve is required: give a spline through the \
+         points, or straight cells",
         at[0], at[1], at[2]
     )]
     Kink { at: [f64; 3], degrees: f64 },

@@ -142,14 +142,14 @@ impl Estimate {
         let (adhesion, tension) = (parameter(0), with_tension.then(|| parameter(1)));
         if with_tension && !apart {
             warnings.push(format!(
-                "the data do not determine adhesion and tension separately{}: measure over a wider range of \
-                     loads, or give the tension",
+                "the data do not determine adhesion and tension separately{}: measure over a wider range of loads, or \
+                 give the tension",
                 correlation.map_or(String::new(), |c| format!(" (their errors are correlated by {c:.3})"))
             ));
         } else if adhesion.interval[1] > 4.0 * adhesion.interval[0] {
             warnings.push(
-                "the data hardly determine the adhesion energy: the ends of its interval differ by more than a \
-                     factor of four"
+                "the data hardly determine the adhesion energy: the ends of its interval differ by more than a factor \
+                 of four"
                     .into(),
             );
         }

@@ -180,8 +180,7 @@ fn of_yarn(yarn: &WindingReport, units: &Units) -> Vec<String> {
     out.extend(parts(
         &yarn.slips,
         "slips",
-        "the slippage exceeds the coefficient of friction: use less \
-         slippage, or a larger coefficient",
+        "the slippage exceeds the coefficient of friction: use less slippage, or a larger coefficient",
     ));
     out
 }
@@ -303,7 +302,7 @@ mod tests {
             assert!(error.to_string().contains(part) && place == Some(line), "{error:?}");
         };
         wrong(&WRAPPING.replace("[\"egg\"]", "[\"eg\"]"), "there is no body `eg`", 9);
-        wrong(&WRAPPING.replace("[\"egg\"]", "[[\"egg\"], []]"), "for 1 parts between fixed points", 9);
+        wrong(&WRAPPING.replace("[\"egg\"]", "[[\"egg\"], []]"), "there are 1 parts between fixed points", 9);
         wrong(&WRAPPING.replace("frames = 2", "frames = 0"), "`frames` is 0", 2);
         wrong(&WRAPPING.replace("mu = 0.3", "mu = -0.3"), "coefficient of friction", 10);
         wrong(&WRAPPING.replace("\"height\"", "\"hight\""), "unknown name `hight`", 7);

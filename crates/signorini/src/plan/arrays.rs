@@ -28,10 +28,7 @@ impl Planner<'_> {
         let file = GmshFile::from_arrays(points.clone(), &blocks).map_err(wrong)?;
         let mut mesh = file.mesh::<D>(None).map_err(|e| wrong(e.to_string()))?;
         mesh.check().map_err(|e| {
-            wrong(e.to_string()).help(
-                "every cell needs a positive volume; check the cell at the \
-                 given position",
-            )
+            wrong(e.to_string()).help("every cell needs a positive volume; check the cell at the given position")
         })?;
         if let Some(Overlap { cells: [a, b], at }) = mesh.overlap() {
             return Err(wrong(format!("the cells {a} and {b} overlap at {}", position(&at))));

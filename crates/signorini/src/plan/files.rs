@@ -109,10 +109,8 @@ impl Planner<'_> {
         if volume >= 0.0 {
             return Ok(mesh);
         }
-        let warning = format!(
-            "{what} has its normals inwards (inside out), its volume is {volume:.4e}: they \
-             are reversed"
-        );
+        let warning =
+            format!("{what} has its normals inwards (inside out), its volume is {volume:.4e}: they are reversed");
         self.warn(warning);
         let turned: Vec<[u32; 3]> = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
         TriangleMesh::new(mesh.vertices().to_vec(), &turned).map_err(|e| self.problem.error(at, e.to_string()))

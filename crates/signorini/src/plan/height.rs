@@ -83,11 +83,9 @@ impl BesideMembrane<'_, '_> {
         if let Shape::Ellipsoid(key) = shape {
             let [a, b, _] = self.semi_axes(key)?;
             if a != b {
-                return Err(problem.error(
-                    &key.semi_axes,
-                    "in an axisymmetric problem the first two semi-axes \
-                     must be equal",
-                ));
+                return Err(
+                    problem.error(&key.semi_axes, "in an axisymmetric problem the first two semi-axes must be equal")
+                );
             }
         }
         Ok(())

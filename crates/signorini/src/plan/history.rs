@@ -46,10 +46,8 @@ impl Planner<'_> {
                     Some(problem::Control::ArcLength(arc)) => {
                         let size = arc.size;
                         if (SHORTEST..LONGEST / MOST_INCREMENTS as f64).contains(&size) {
-                            let message = format!(
-                                "with increments of length {size} the path needs too many \
-                                 increments"
-                            );
+                            let message =
+                                format!("with increments of length {size} the path needs too many increments");
                             return Err(self
                                 .problem
                                 .error(&arc.size, message)

@@ -188,14 +188,11 @@ impl Planner<'_> {
         let parts = key.around.iter().filter(|a| matches!(a, Around::Part(_))).count();
         if parts != 0 && (parts != key.around.len() || parts != key.via.len() + 1) {
             let (given, wanted) = (key.around.len(), key.via.len() + 1);
-            let message = format!(
-                "{given} entries, {parts} of them lists, but there are {wanted} parts between \
-                 fixed points"
-            );
-            return Err(problem.error(&key.around, message).help(
-                "give names of bodies, or one list of names for \
-                 each part",
-            ));
+            let message =
+                format!("{given} entries, {parts} of them lists, but there are {wanted} parts between fixed points");
+            return Err(problem
+                .error(&key.around, message)
+                .help("give names of bodies, or one list of names for each part"));
         }
         for (body, turns) in &key.turns {
             self.path_body(turns, body)?;

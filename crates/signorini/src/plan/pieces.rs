@@ -8,9 +8,9 @@ use signorini_geometry::Point;
 const LISTED: usize = 4;
 
 /// What helps against pieces that should be one.
-pub(crate) const UNITE: &str = "touching pieces form one body only if they share nodes: in Gmsh use \
-     `Coherence;` or BooleanFragments before meshing, or `Coherence Mesh;` after it; for pieces that move \
-     independently, make each one a body with `group`, supports and contacts";
+pub(crate) const UNITE: &str = "touching pieces form one body only if they share nodes: in Gmsh use `Coherence;` or \
+                                BooleanFragments before meshing, or `Coherence Mesh;` after it; for pieces that move \
+                                independently, make each one a body with `group`, supports and contacts";
 
 /// The pieces of a mesh, at least two.
 pub(crate) struct Apart<const D: usize> {

@@ -82,13 +82,9 @@ impl Reader<'_> {
                 let columns = samples.values.first().map_or(0, Vec::len);
                 if let Some(row) = samples.values.iter().position(|row| row.len() != columns) {
                     let found = samples.values[row].len();
-                    return Err(self.error(
-                        value,
-                        format!(
-                            "row {row} has {found} values, but the first row has \
-                         {columns}"
-                        ),
-                    ));
+                    return Err(
+                        self.error(value, format!("row {row} has {found} values, but the first row has {columns}"))
+                    );
                 }
                 let values: Vec<f64> = samples.values.iter().flatten().copied().collect();
                 let sampled = Sampled::of_rows(samples.origin, samples.spacing, columns, &values);

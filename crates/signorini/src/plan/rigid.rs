@@ -203,11 +203,9 @@ impl<const D: usize> ShapeKeys for BesideSolids<'_, '_, D> {
         match (&key.axis, D) {
             (Some(axis), 3) => self.direction(axis),
             (None, 2) => Ok(Vector::<3>::z()),
-            (Some(axis), _) => Err(problem.error(
-                axis,
-                "in the plane the axis of a cylinder is normal to the \
-                 plane: leave `axis` out",
-            )),
+            (Some(axis), _) => {
+                Err(problem.error(axis, "in the plane the axis of a cylinder is normal to the plane: leave `axis` out"))
+            }
             (None, _) => Err(problem.error(shape, "missing key `axis`").help("axis = [0, 1, 0]")),
         }
     }
@@ -365,8 +363,8 @@ pub(super) fn smooth_body<const D: usize>(
     let smooth = SmoothMesh::new(&mesh).map_err(|e| planner.problem.error(&rigid.shape, e.to_string()))?;
     let [curvature, error] = smooth.curvature();
     let message = format!(
-        "the vertices of `{name}` scatter by {:.3e} about the smooth surface, which is {:.2} % of an edge; with \
-             fits over {:.1} edges the curvatures, {curvature:.3e} on average, are known to ±{error:.1e}",
+        "the vertices of `{name}` scatter by {:.3e} about the smooth surface, which is {:.2} % of an edge; with fits \
+         over {:.1} edges the curvatures, {curvature:.3e} on average, are known to ±{error:.1e}",
         smooth.scatter(),
         100.0 * smooth.scatter() / smooth.edge(),
         smooth.fit_radius()

@@ -7,7 +7,7 @@ use crate::report::{ContactReport, UnitNames};
 pub fn sticking(c: &ContactReport) -> String {
     match (c.stick_area, c.slip_area) {
         (Some(stick), Some(slip)) if stick + slip > 0.0 => {
-            format!(", {:.0} % of it in stick", 100.0 * stick / (stick + slip))
+            format!(", {:.0} % of the contact in stick", 100.0 * stick / (stick + slip))
         }
         _ => String::new(),
     }

@@ -207,20 +207,19 @@ impl MechanicsModel {
                 Reason::LinearSolver,
                 match has_ropes {
                     true => format!(
-                        "{error}; check that every body is supported and every rope has tension; add a \
-                             pretension or a support"
+                        "{error}; check that every body is supported and every rope has tension; add a pretension or \
+                         a support"
                     ),
-                    false => format!(
-                        "{error}; check that every body is supported; add a support, a spring, or \
-                         a contact"
-                    ),
+                    false => {
+                        format!("{error}; check that every body is supported; add a support, a spring, or a contact")
+                    }
                 },
             ),
             IncrementError::NotConverged { history: list, .. } => (
                 Reason::Newton,
                 format!(
                     "{error}; residuals of the last iterations, relative to the tolerance: {}; use more \
-                         increments{}{}",
+                     increments{}{}",
                     history(list),
                     if has(|kind| !matches!(kind, Kind::Rigid { .. })) { ", or more cells" } else { "" },
                     if has_ropes { ", or a pretension where a rope is slack" } else { "" },
@@ -239,8 +238,8 @@ impl MechanicsModel {
             IncrementError::Unstable { .. } => (
                 Reason::UnstableState,
                 format!(
-                    "{error}; add a support or a contact that restrains it; `stability = \"tell\"` retains \
-                     such states"
+                    "{error}; add a support or a contact that restrains it; `stability = \"tell\"` retains such \
+                     states"
                 ),
             ),
             IncrementError::Assembly(_) => (Reason::Input, error.to_string()),
@@ -256,9 +255,9 @@ fn given_up(before: Option<&IncrementError>, time: f64, residuals: Vec<f64>) -> 
         .map(|(choose, start)| recent.iter().copied().fold(start, choose));
     let count = residuals.len();
     let round = format!(
-        "no state at t = {time} in {count} iterations of Newton's method: the residual alternates between \
-             {low:.1e} and {high:.1e} tolerances; there may be no equilibrium: check that every loaded body is \
-             supported; use more increments, or more cells"
+        "no state at t = {time} in {count} iterations of Newton's method: the residual alternates between {low:.1e} \
+         and {high:.1e} tolerances; there may be no equilibrium: check that every loaded body is supported; use more \
+         increments, or more cells"
     );
     let (reason, text) = match before {
         Some(IncrementError::NotConverged { worst: Some(worst), .. }) => (Reason::Newton, format!("{round}{worst}")),

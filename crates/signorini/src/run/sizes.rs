@@ -256,8 +256,8 @@ fn unresolved<const D: usize>(plan: &MembranePlan<D>, time: f64) -> Vec<String> 
         if worst.0 > (BENDS * (high - low)).max(rounding) {
             let place: Vec<String> = worst.1.iter().map(|v| format!("{v:.4}")).collect();
             out.push(format!(
-                "`{}` curves within a cell, near ({}), by {:.0} % of its height: use more cells, or `refine` in \
-                     the mesh",
+                "`{}` curves within a cell, near ({}), by {:.0} % of its height: use more cells, or `refine` in the \
+                 mesh",
                 contact.body,
                 place.join(", "),
                 100.0 * worst.0 / (high - low)
@@ -288,13 +288,13 @@ pub(super) fn clearance<const D: usize>(plan: &MembranePlan<D>, time: f64) -> Op
         let size = plan.grid.bounds().size().max();
         let unit = plan.head.units.map_or(String::new(), |u| format!(" {}", u.names[0]));
         format!(
-            "; the load reduces the gap by only {nearer:.1e}: the membrane is {size:.4}{unit} wide; check that \
-                 its size, load and tension are in the units of the case"
+            "; the load reduces the gap by only {nearer:.1e}: the membrane is {size:.4}{unit} wide; check that its \
+             size, load and tension are in the units of the case"
         )
     } else if let Some(sag) = sag(&loaded, &x).filter(|sag| *sag > gap) {
         format!(
-            "; but within a cell it may sag by {sag:.1e}, which degree 1 cannot represent: use more cells, \
-             or degree 2"
+            "; but within a cell it may sag by {sag:.1e}, which degree 1 cannot represent: use more cells, or degree \
+             2"
         )
     } else {
         String::new()
@@ -346,8 +346,7 @@ fn look<const D: usize>(plan: &MembranePlan<D>, last: f64, sizes: &mut Value, wa
     if plan.head.problem.units.is_some() && steepest > LINEAR {
         warnings.push(
             format!(
-                "without contact slopes would reach {steepest:.1}; the linear theory is valid below about \
-                 {LINEAR}"
+                "without contact slopes would reach {steepest:.1}; the linear theory is valid below about {LINEAR}"
             )
             .into(),
         );

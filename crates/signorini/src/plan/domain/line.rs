@@ -49,13 +49,9 @@ impl ReadDomain<1> for Planner<'_> {
         };
         let (from, to) = (self.reader.number(&interval.from, LENGTH)?, self.reader.number(&interval.to, LENGTH)?);
         if to <= from {
-            return Err(self.problem.error(
-                &interval.to,
-                format!(
-                    "the domain is empty: {to} is not greater than \
-                 {from}"
-                ),
-            ));
+            return Err(self
+                .problem
+                .error(&interval.to, format!("the domain is empty: {to} is not greater than {from}")));
         }
         let axisymmetric = self.space == Space::Axisymmetric;
         if axisymmetric && from < 0.0 {

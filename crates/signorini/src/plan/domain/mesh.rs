@@ -66,8 +66,7 @@ impl Planner<'_> {
         let refinement = match refine {
             Some(refine) if degree > MOST_ON_TRIANGLES => {
                 return Err(problem.error(refine, format!("degree {degree} on a mesh with local refinement")).help(
-                    "such a mesh contains quadrilaterals and triangles: use degree = 1 or 2, or leave \
-                             `refine` out",
+                    "such a mesh contains quadrilaterals and triangles: use degree = 1 or 2, or leave `refine` out",
                 ));
             }
             None if degree > MOST_ON_TRIANGLES => Refinement::default(),

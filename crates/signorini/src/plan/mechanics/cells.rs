@@ -125,8 +125,7 @@ impl Planner<'_> {
         if findings.dropped > 0.0 {
             let share = findings.dropped / (built.volume + findings.dropped);
             self.warn(format!(
-                "`{name}`: pieces that are not connected to the largest one are removed, \
-                 {share:.1e} of the volume"
+                "`{name}`: pieces that are not connected to the largest one are removed, {share:.1e} of the volume"
             ));
         }
         let [low, high] = built.bounds;
@@ -300,8 +299,8 @@ impl Planner<'_> {
                     return Err(problem
                         .error(
                             stated,
-                            "the image has neither `threshold` nor `youngs_modulus`, so the material \
-                             region is not defined",
+                            "the image has neither `threshold` nor `youngs_modulus`, so the material region is not \
+                             defined",
                         )
                         .help("threshold = 1200, the value above which there is material"));
                 };

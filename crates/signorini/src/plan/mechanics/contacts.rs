@@ -49,8 +49,8 @@ impl Planner<'_> {
                         moving.partition(|pair| !cannot_meet(system, numbers, pair));
                     for [first, second] in untested {
                         self.warn(format!(
-                            "contact `{name}`: contact between `{first}` and `{second}` is not tested: rigid \
-                                 bodies of these shapes have no slave points (spheres and triangle meshes have)"
+                            "contact `{name}`: contact between `{first}` and `{second}` is not tested: rigid bodies \
+                             of these shapes have no slave points (spheres and triangle meshes have)"
                         ));
                     }
                     tested.into_iter().map(|pair| (format!("{name}_{}_{}", pair[0], pair[1]), pair)).collect()
@@ -110,13 +110,9 @@ impl Planner<'_> {
         }
         let [slave, master] = parts;
         if body(&slave).unknowns() == 0 && body(&master).unknowns() == 0 {
-            return Err(problem.error(
-                key,
-                format!(
-                    "both bodies of contact `{name}` are fixed or have a \
-                 prescribed motion"
-                ),
-            ));
+            return Err(
+                problem.error(key, format!("both bodies of contact `{name}` are fixed or have a prescribed motion"))
+            );
         }
         if let Some(found) = self.between_curves(name, key, [&slave, &master], system)? {
             return Ok(found);
@@ -205,8 +201,8 @@ impl Planner<'_> {
                     .error(
                         key,
                         format!(
-                            "form = \"{word}\" requires a radius: curves without a radius have no gap along \
-                                 each other"
+                            "form = \"{word}\" requires a radius: curves without a radius have no gap along each \
+                             other"
                         ),
                     )
                     .help("form = \"point\" for contact at crossing points; or give one of them a radius"));
@@ -270,9 +266,9 @@ impl Planner<'_> {
         let overlap = pairs.overlap_at_start();
         if overlap > 0.0 {
             warnings.push(format!(
-                "contact `{name}`: discs overlap by {overlap:.3e} at the start, and the bodies repel each other \
-                     at once: with centres on the boundary the bodies must start two radii apart (centres = \
-                     \"within\" avoids this)"
+                "contact `{name}`: discs overlap by {overlap:.3e} at the start, and the bodies repel each other at \
+                 once: with centres on the boundary the bodies must start two radii apart (centres = \"within\" \
+                 avoids this)"
             ));
         }
         for (f, part) in found.iter().zip([first, second]) {
@@ -283,16 +279,16 @@ impl Planner<'_> {
             ));
             if f.is_too_small() {
                 warnings.push(format!(
-                    "contact `{name}`: discs of radius {radius:.3e} on `{body}` have a spacing of \
-                         {spacing:.3e}, so other discs slip through: the radius should be at least the spacing \
-                         (radius = {spacing:.3e}, or a smaller spacing)"
+                    "contact `{name}`: discs of radius {radius:.3e} on `{body}` have a spacing of {spacing:.3e}, so \
+                     other discs slip through: the radius should be at least the spacing (radius = {spacing:.3e}, or \
+                     a smaller spacing)"
                 ));
             }
             if f.is_too_large() {
                 warnings.push(format!(
                     "contact `{name}`: discs of radius {radius:.3e} do not fit into `{body}`, which is \
-                         {thickness:.3e} thick: their centres lie beyond those of the opposite face (use a \
-                         radius below {:.3e})",
+                     {thickness:.3e} thick: their centres lie beyond those of the opposite face (use a radius below \
+                     {:.3e})",
                     0.5 * thickness
                 ));
             }
@@ -355,8 +351,8 @@ impl Planner<'_> {
             Some(Method::Node(k)) => (Sampling::Nodes, "node", k.enforcement.as_ref()),
             Some(other) => {
                 return Err(problem.error(other, "this method is for other bodies").help(
-                    "for ropes, beams and free bodies:  method.curve = {},  method.node = {}  or  \
-                         method.gauss_point = {}; for solids also  method.mortar = {}",
+                    "for ropes, beams and free bodies:  method.curve = {},  method.node = {}  or  method.gauss_point \
+                     = {}; for solids also  method.mortar = {}",
                 ));
             }
         };

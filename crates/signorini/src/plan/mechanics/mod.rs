@@ -296,9 +296,9 @@ impl Planner<'_> {
                 let [name, other] = [slave, master].map(|b| system.bodies[b].name());
                 warnings.push(
                     format!(
-                        "`{name}` starts {:.4e} deep inside `{other}`, with a radius of {radius:.4e}: it is \
-                             pushed out at once; to avoid this, give a path outside of the body at a distance \
-                             of at least the radius",
+                        "`{name}` starts {:.4e} deep inside `{other}`, with a radius of {radius:.4e}: it is pushed \
+                         out at once; to avoid this, give a path outside of the body at a distance of at least the \
+                         radius",
                         -gap
                     )
                     .into(),
@@ -323,8 +323,8 @@ impl Planner<'_> {
                 let place = problem.contacts.get(&contact).map_or(self.key(&problem.space), |key| self.key(key));
                 let message = format!("`{body}` starts {depth:.4e} deep inside `{other}`, at ({})", at.join(", "));
                 Err(problem.error(&place, message).help(
-                    "separate them; check whether the normal of a rigid plane points into the body, or `side` \
-                         names the wrong side",
+                    "separate them; check whether the normal of a rigid plane points into the body, or `side` names \
+                     the wrong side",
                 ))
             }
             Err(error) => Err(problem.error(&problem.space, error.to_string())),
@@ -395,8 +395,8 @@ impl Planner<'_> {
             if length < distance {
                 let by = 100.0 * (distance / length - 1.0);
                 let message = format!(
-                    "`{name}` is shorter than the distance of its ends, {length} of {distance}: it starts with \
-                         a strain of {by:.3} %; give a longer `unstrained_length`, or the intended `pretension`"
+                    "`{name}` is shorter than the distance of its ends, {length} of {distance}: it starts with a \
+                     strain of {by:.3} %; give a longer `unstrained_length`, or the intended `pretension`"
                 );
                 warnings.push(Warning::from(message));
             }

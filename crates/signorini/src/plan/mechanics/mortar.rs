@@ -30,8 +30,8 @@ impl Planner<'_> {
             (Some(Method::Mortar(stated)), None) => stated.enforcement.as_ref(),
             (Some(method @ Method::Mortar(_)), Some((part, what))) => {
                 return Err(problem.error(method, format!("`{}` {what}", body(part).name())).help(
-                    "method.gauss_point = {}  or  method.node = {}, for finite cells  method.cell_surface \
-                         = {}, or leave the method out",
+                    "method.gauss_point = {}  or  method.node = {}, for finite cells  method.cell_surface = {}, or \
+                     leave the method out",
                 ));
             }
             // The axis of friction that turns with a free body is known at single points only.
@@ -60,8 +60,7 @@ impl Planner<'_> {
                 .problem
                 .error(
                     &at(),
-                    "a surface has no tangent direction of its own: two coefficients of friction \
-                     require an axis",
+                    "a surface has no tangent direction of its own: two coefficients of friction require an axis",
                 )
                 .help("axis = [1, 0, 0]"));
         }

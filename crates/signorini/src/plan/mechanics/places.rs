@@ -32,9 +32,9 @@ fn normal_axis(system: &System, part: &Part) -> Result<(usize, f64), String> {
     let component = first.iamax();
     let is_along = |n: &Vector<3>| n[component] * first[component].signum() > 1.0 - 1e-9;
     if !normals.iter().all(is_along) {
-        return Err("in a system `normal` requires a flat part of the boundary whose normal is along a \
-             coordinate axis"
-            .into());
+        return Err(
+            "in a system `normal` requires a flat part of the boundary whose normal is along a coordinate axis".into(),
+        );
     }
     Ok((component, first[component].signum()))
 }

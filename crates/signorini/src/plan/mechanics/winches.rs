@@ -45,10 +45,10 @@ impl Planner<'_> {
         if distance(&nearest) > SAME * chain.size() {
             let at: Vec<String> = node(nearest).iter().map(|v| format!("{v:.6}")).collect();
             let message = format!("the rope has no node there; the nearest one is at ({})", at.join(", "));
-            return Err(self.problem.error(point, message).help(
-                "give a corner of  path.points, or the position \
-                 of this node",
-            ));
+            return Err(self
+                .problem
+                .error(point, message)
+                .help("give a corner of  path.points, or the position of this node"));
         }
         Ok(nearest)
     }

@@ -93,8 +93,8 @@ impl<const D: usize> MembranePlan<D> {
                         let ceiling = membrane.obstacles.index_at(Side::Above, &p.x).map(|i| &self.contacts[i]);
                         if let (true, Some(ceiling)) = (low >= high, ceiling) {
                             let what = format!(
-                                "the height of the body below reaches {low} there, and there is no \
-                                     space left for the membrane"
+                                "the height of the body below reaches {low} there, and there is no space left for the \
+                                 membrane"
                             );
                             return Err(wrong(&ceiling.height, &p.x, high, &what).help("raise this body"));
                         }
@@ -117,12 +117,12 @@ impl<const D: usize> MembranePlan<D> {
                         Side::Below => (
                             "above",
                             "lower the body there, or raise the support; for a body above the membrane:  lies = \
-                                 \"above\"",
+                             \"above\"",
                         ),
                         Side::Above => (
                             "below",
                             "raise the body there, or lower the support; for a body below the membrane:  lies = \
-                                 \"below\"",
+                             \"below\"",
                         ),
                     };
                     let what = format!(

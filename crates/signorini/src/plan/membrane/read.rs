@@ -178,8 +178,7 @@ impl Planner<'_> {
             ];
             if let Some((what, at)) = others.iter().find_map(|(w, s)| s.clone().map(|s| (*w, s))) {
                 return Err(self.problem.error(&at, format!("`{what}` is not a load of membranes")).help(
-                    "the load of a membrane is  normal = …  : force per area along +z, negative for a \
-                         downward load",
+                    "the load of a membrane is  normal = …  : force per area along +z, negative for a downward load",
                 ));
             }
             let Some(normal) = &key.normal else {

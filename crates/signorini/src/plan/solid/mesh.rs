@@ -51,8 +51,8 @@ impl Planner<'_> {
             }
             _ => {
                 return Err(problem.error(key, format!("the box of `{name}` is missing or given twice")).help(
-                    "give either min, max and cells, or axes = [{ from = 0, to = [1, 4], cells = [8, 6], growth \
-                         = [1, 1.2] }, …]",
+                    "give either min, max and cells, or axes = [{ from = 0, to = [1, 4], cells = [8, 6], growth = [1, \
+                     1.2] }, …]",
                 ));
             }
         }
@@ -63,8 +63,7 @@ impl Planner<'_> {
         let checked = |mesh: Mesh<D>| match mesh.check() {
             Ok(()) => Ok(mesh),
             Err(e) => Err(problem.error(key, format!("the mesh of `{name}`: {e}")).help(
-                "every cell needs a positive volume; check the cell at the given position, and `map` if \
-                     there is one",
+                "every cell needs a positive volume; check the cell at the given position, and `map` if there is one",
             )),
         };
         let Some(map) = &key.map else { return checked(block::<D>(&axes, 1, |x| x)) };
@@ -158,10 +157,8 @@ impl Planner<'_> {
         }
         let volume = if D == 2 { "area" } else { "volume" };
         mesh.check().map_err(|e| {
-            fail(e.to_string()).help(format!(
-                "every cell needs a positive {volume}; check the cell at the given \
-                 position"
-            ))
+            fail(e.to_string())
+                .help(format!("every cell needs a positive {volume}; check the cell at the given position"))
         })?;
         let Some(Overlap { cells, at }) = mesh.overlap() else { return Ok(mesh) };
         let of = |cell| parsed.origin::<D>(group, cell).unwrap_or_default();
@@ -171,7 +168,7 @@ impl Planner<'_> {
         let entity = if D == 2 { "Surface" } else { "Volume" };
         Err(fail(format!("{parts}: the elements {first} and {second} both cover {}", position(&at))).help(format!(
             "no two cells may overlap: in Gmsh unite them before meshing, for example with BooleanUnion{{ \
-                 {entity}{{1}}; Delete; }}{{ {entity}{{2}}; Delete; }}, or select one of them by `group`"
+             {entity}{{1}}; Delete; }}{{ {entity}{{2}}; Delete; }}, or select one of them by `group`"
         )))
     }
 }

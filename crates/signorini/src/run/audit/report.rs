@@ -46,8 +46,8 @@ fn within(step: &StepReport, problem: &Problem) -> String {
     } else if of_membrane {
         "this method has no error estimate: compare with a run with smaller cells"
     } else if problem.bodies.values().any(deforms) {
-        "the discretisation error is not estimated, as this would take longer than the run: compare with a run \
-             with smaller cells"
+        "the discretisation error is not estimated, as this would take longer than the run: compare with a run with \
+         smaller cells"
     } else {
         "the bodies have no cells, so there is no discretisation error"
     };

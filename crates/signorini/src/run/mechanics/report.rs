@@ -160,15 +160,15 @@ fn warn_of_stability(told: &StabilityReport, time: f64, record: &mut Record) {
     let when = told.critical_time.map_or(String::new(), |t| format!(", at t = {t:.6}"));
     let message = if told.stable {
         format!(
-            "`{body}` became unstable{when}: the unstable state was left, and the stable state at t = \
-             {time} is reported"
+            "`{body}` became unstable{when}: the unstable state was left, and the stable state at t = {time} is \
+             reported"
         )
     } else {
         let count = told.negative_eigenvalues;
         let plural = if count == 1 { "" } else { "s" };
         format!(
             "`{body}` is unstable at t = {time}{when}: {count} negative eigenvalue{plural}; with `stability = \
-                 \"follow\"` a stable state is computed"
+             \"follow\"` a stable state is computed"
         )
     };
     record.warn_once(Warning::new(WarningKind::Unstable, message).at_time(time));
@@ -301,8 +301,8 @@ fn rope_limits((contact, tested): (&dyn Interaction, &Tested), sites: &[SiteResu
     let [low, high] = found.log_ratio.map(f64::exp);
     let sideways = if tan_alpha > lateral { "slides sideways" } else { "is closest to sliding sideways" };
     let verdict = format!(
-        "{sideways} at s = {:.4}: |tan α| = {tan_alpha:.4}, μ_g = {lateral:.4}; friction along it admits T₁/T₀ \
-             from {low:.4} to {high:.4}",
+        "{sideways} at s = {:.4}: |tan α| = {tan_alpha:.4}, μ_g = {lateral:.4}; friction along it admits T₁/T₀ from \
+         {low:.4} to {high:.4}",
         found.steepest.s
     );
     Some(RopeLimits {
@@ -350,21 +350,21 @@ pub fn warn(plan: &MechanicsPlan, result: &IncrementResult, shown: &SystemShown,
         if slack > 0 {
             let message = format!(
                 "`{}` is slack at t = {time}: {slack} of {} cells have no tension, so their position is not \
-                     determined",
+                 determined",
                 curve.name, curve.elements
             );
             record.warn_once(Warning::new(WarningKind::NotUnique, message).at_time(time));
         }
     }
     if result.is_indeterminate {
-        let message = "the contact forces of rigid bodies are statically indeterminate: other sets of forces \
-             within the friction cones balance the loads too; those with the least sum of squares are reported";
+        let message = "the contact forces of rigid bodies are statically indeterminate: other sets of forces within \
+                       the friction cones balance the loads too; those with the least sum of squares are reported";
         record.warn_once(Warning::new(WarningKind::NotUnique, message).at_time(time));
     }
     if result.lost_sites > 0 {
         let message = format!(
-            "{} points are beyond the centre of curvature of the other body, where the closest point is not \
-                 defined: they have no contact force at t = {time}",
+            "{} points are beyond the centre of curvature of the other body, where the closest point is not defined: \
+             they have no contact force at t = {time}",
             result.lost_sites
         );
         record.warn_once(Warning::new(WarningKind::NotFacing, message).at_time(time));

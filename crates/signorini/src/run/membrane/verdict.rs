@@ -19,19 +19,18 @@ pub fn verdict<const D: usize>(plan: &MembranePlan<D>, record: &Record, reason: 
         Ending::NotConverged => {
             let advice = match reason {
                 Reason::LinearSolver => {
-                    "the linear system could not be solved; check that the membrane is supported and that the \
-                         data do not differ by many orders of magnitude"
+                    "the linear system could not be solved; check that the membrane is supported and that the data do \
+                     not differ by many orders of magnitude"
                 }
                 Reason::Input => "a value became invalid during the run",
                 Reason::NoSuchState => {
-                    "there is no equilibrium with contact near `initial_zone`; at this load an adhesive contact \
-                         may not exist; use another zone, a larger adhesion energy, or a load at which the \
-                         contact exists"
+                    "there is no equilibrium with contact near `initial_zone`; at this load an adhesive contact may \
+                     not exist; use another zone, a larger adhesion energy, or a load at which the contact exists"
                 }
                 Reason::PathLost => "the last warning states where; use smaller increments or more cells",
                 _ => {
-                    "use more cells where the zones are small or close to each other, a lower degree, or \
-                         smaller increments; method.active_set = {} gives a coarse picture of the zones"
+                    "use more cells where the zones are small or close to each other, a lower degree, or smaller \
+                     increments; method.active_set = {} gives a coarse picture of the zones"
                 }
             };
             let residuals = record.steps.last().map_or(&[][..], |s| &s.residual_history);

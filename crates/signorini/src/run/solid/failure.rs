@@ -26,29 +26,29 @@ fn failure(error: &StepError) -> Failure {
         StepError::Free { body, motion } => (
             Reason::FreeBody,
             format!(
-                "body `{body}` is free {motion}: neither its supports nor its contacts restrain this motion; \
-                     add a support or a spring"
+                "body `{body}` is free {motion}: neither its supports nor its contacts restrain this motion; add a \
+                 support or a spring"
             ),
         ),
         StepError::PulledAway { body, direction } => (
             Reason::FreeBody,
             format!(
-                "body `{body}` is pulled away {direction}: only contact restrains it in this direction, and \
-                     contact forces are compressive; reverse the load, or add a support or a spring"
+                "body `{body}` is pulled away {direction}: only contact restrains it in this direction, and contact \
+                 forces are compressive; reverse the load, or add a support or a spring"
             ),
         ),
         StepError::Solve(error) => (
             Reason::LinearSolver,
             format!(
-                "{error}; check that all bodies are supported and that their \
-                 stiffnesses do not differ by many orders of magnitude"
+                "{error}; check that all bodies are supported and that their stiffnesses do not differ by many orders \
+                 of magnitude"
             ),
         ),
         StepError::Deep { contact, depth } => (
             Reason::Increment,
             format!(
                 "the increment is too large: it leads to a penetration of {depth:.4e} between the bodies of \
-                     `{contact}`; use more increments"
+                 `{contact}`; use more increments"
             ),
         ),
         StepError::Slides { .. } => (Reason::FreeBody, error.to_string()),

@@ -217,8 +217,8 @@ pub fn blamed<const D: usize>(
                     problem
                         .error(&place, format!("the bodies of `{contact}` start {depth:.4e} deep in each other"))
                         .help(
-                            "separate them; check whether the normal of a rigid plane points into the body, or \
-                         `side` names the wrong side",
+                            "separate them; check whether the normal of a rigid plane points into the body, or `side` \
+                             names the wrong side",
                         ),
                 ),
                 _ => Some(
@@ -227,12 +227,12 @@ pub fn blamed<const D: usize>(
                             &place,
                             format!(
                                 "the first increment, to t = {time}, is too large: it leads to a penetration of \
-                             {depth:.4e} between the bodies of `{contact}`"
+                                 {depth:.4e} between the bodies of `{contact}`"
                             ),
                         )
                         .help(
-                            "use more `increments`, a smaller motion, or  sliding = \"finite\"  in the contact, \
-                         for which increments that are too large are cut back",
+                            "use more `increments`, a smaller motion, or  sliding = \"finite\"  in the contact, for \
+                             which increments that are too large are cut back",
                         ),
                 ),
             }

@@ -15,7 +15,7 @@ impl<const D: usize> SolidBody<D> {
         u: &[f64],
     ) -> Result<Vec<Constraint>, PlaceError> {
         if hold.rotation.iter().any(Option::is_some) {
-            return Err(self.unsuitable("a solid has no rotations: prescribe displacements of a group"));
+            return Err(self.unsuitable("a solid has no rotations that could be held: hold displacements of a group"));
         }
         let body = self.body();
         let group = match on {
@@ -30,7 +30,7 @@ impl<const D: usize> SolidBody<D> {
         };
         let all = functions(&self.bodies, &support);
         if all.is_empty() {
-            return Err(self.unsuitable(format!("`{}` has no unknowns that could be prescribed", on.unwrap_or("all"))));
+            return Err(self.unsuitable(format!("`{}` has nothing that could be held", on.unwrap_or("all"))));
         }
         let wanted = |x: &Point<D>| {
             let x = spatial(x);

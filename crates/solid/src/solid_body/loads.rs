@@ -35,9 +35,9 @@ impl<const D: usize> SolidBody<D> {
             Load::Moment(moment) => self.moment(on, moment, u, order, out),
             Load::FollowerMoment(_) => {
                 Err(self
-                    .unsuitable("moments that rotate with a solid are not available: use a moment about fixed axes"))
+                    .unsuitable("nothing of a solid tells how a moment turns with it: state a moment about fixed axes"))
             }
-            Load::Tension(_) => Err(self.unsuitable("a tension acts on the end of a rope")),
+            Load::Tension(_) => Err(self.unsuitable("a tension pulls the end of a rope")),
         }
     }
 

@@ -30,10 +30,10 @@ impl<const D: usize> SolidBody<D> {
         out: &mut Contribution,
     ) -> Result<(), PlaceError> {
         if self.space() == Space::Axisymmetric {
-            return Err(self.unsuitable("an axisymmetric body has no moments"));
+            return Err(self.unsuitable("a body about an axis takes no moment"));
         }
         if D == 2 && (moment[0] != 0.0 || moment[1] != 0.0) {
-            return Err(self.unsuitable("a body in the plane has moments about z only"));
+            return Err(self.unsuitable("a body in the plane takes a moment about z only"));
         }
         let moves = self.law() != StressLaw::LinearElastic;
         // Points with their areas and functions, each unknown by its place in a list.
@@ -65,7 +65,7 @@ impl<const D: usize> SolidBody<D> {
             2 => (inertia[(2, 2)], area * self.size.powi(2)),
             _ => (inertia.symmetric_eigenvalues().min(), inertia.symmetric_eigenvalues().max()),
         };
-        let thin = || self.unsuitable(format!("`{}` is too thin for a moment", on.unwrap_or("boundary")));
+        let thin = || self.unsuitable(format!("`{}` is too thin to take a moment", on.unwrap_or("boundary")));
         if least.is_nan() || least <= THIN * most {
             return Err(thin());
         }

@@ -86,7 +86,7 @@ fn of_body(setting: &Setting, state: &State, body: usize) -> Option<Finding> {
         }
     }
     if !size.is_finite() {
-        let message = format!("forces on `{name}` are no numbers");
+        let message = format!("forces on `{name}` are not finite numbers");
         return Some(Finding::new(Check::Balance, Outcome::Refused, message).on(name));
     }
     if size <= setting.bodies[body].rounding {
@@ -103,11 +103,11 @@ fn of_body(setting: &Setting, state: &State, body: usize) -> Option<Finding> {
         v if v > TOLD => (Outcome::Doubt, TOLD),
         _ => (Outcome::Fine, TOLD),
     };
-    let message = format!("{what} on `{name}` sum to {value:.1e} of their sizes");
+    let message = format!("the sum of the {what} on `{name}` is {value:.1e} of their magnitudes");
     let finding = Finding::new(Check::Balance, outcome, message).measured(value, limit).on(name);
     Some(if outcome == Outcome::Fine {
         finding
     } else {
-        finding.remedy("more increments, or another method of contact")
+        finding.remedy("use more increments, or another contact method")
     })
 }

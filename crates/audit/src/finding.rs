@@ -3,58 +3,58 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What is checked.
+/// The check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Check {
-    /// Bodies lie outside of each other, at the start, at the end of the increment and on the way.
+    /// Gaps: bodies do not penetrate at the start, at the end of the increment and on the way.
     Gaps,
-    /// Pressure pushes, friction stays within its limit and acts against the slip.
+    /// Tractions: pressure is compressive, and friction is within its limit and opposes the slip.
     Tractions,
-    /// Forces on each body sum to zero, and so do moments where all parts are known.
+    /// Balance: the forces on each body sum to zero, and so do the moments if all parts are known.
     Balance,
-    /// Friction takes energy, as much as loads and supports give and bodies do not store.
+    /// Path: energy balance of an increment. The dissipation is not negative.
     Path,
-    /// Statics and the laws of contact leave one state.
+    /// Uniqueness: equilibrium and contact laws determine one state.
     Uniqueness,
-    /// The cells are small enough for the zone of contact.
+    /// Resolution: the cells are small enough for the contact zone.
     Resolution,
-    /// Strains, slips and rotations are those for which the theory holds.
+    /// Range: strains, slips and rotations are within the range of the theory.
     Range,
-    /// The energy is least among the states near by.
+    /// Stability: no small disturbance lowers the energy.
     Stability,
 }
 
-/// What came of a check, from good to bad.
+/// Outcome of a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// Within the limit.
     Fine,
-    /// The state is one, but a figure of it is less certain than it looks.
+    /// The state is an equilibrium, but a result is less certain than it looks.
     Doubt,
-    /// The state is none.
+    /// The state is refused.
     Refused,
 }
 
-/// What a check found.
+/// A finding of the audit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Finding {
-    /// What was checked.
+    /// The check.
     pub check: Check,
-    /// What came of it.
+    /// Outcome of the check.
     pub outcome: Outcome,
-    /// What was measured; null where it is no number.
+    /// Measured value. Null if there is no number.
     pub value: Option<f64>,
-    /// What the value should not be beyond.
+    /// Limit of the value.
     pub limit: Option<f64>,
-    /// Where the worst is; null where it has no place.
+    /// Position of the largest violation. Null if it has none.
     pub place: Option<[f64; 3]>,
-    /// The body or the contact; null where it is all of them.
+    /// Name of the body or contact. Null if it is about all of them.
     pub on: Option<String>,
-    /// In a sentence.
+    /// The finding in a sentence.
     pub message: String,
-    /// What to do; null where nothing is to be done.
+    /// What to do. Null if nothing is needed.
     pub remedy: Option<String>,
 }
 

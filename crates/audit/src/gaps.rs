@@ -45,7 +45,7 @@ pub fn check(setting: &Setting, state: &State) -> Vec<Finding> {
         out.extend(across(setting, state, number));
     }
     if out.is_empty() && !setting.contacts.is_empty() {
-        out.push(Finding::new(Check::Gaps, Outcome::Fine, "no body reaches into another").measured(0.0, 1.0));
+        out.push(Finding::new(Check::Gaps, Outcome::Fine, "no body penetrates another one").measured(0.0, 1.0));
     }
     out
 }
@@ -72,7 +72,7 @@ fn across(setting: &Setting, state: &State, number: usize) -> Option<Finding> {
     let carrying = state.contacts[number].iter().filter(|t| t.is_closed && t.pressure > 0.0);
     let (gap, limit, x) = carrying.map(gap).max_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)))?;
     let outcome = if gap > limit { Outcome::Refused } else { return None };
-    let message = format!("`{}` carries across a gap of {gap:.3e}", contact.name);
+    let message = format!("`{}` has a contact force across a gap of {gap:.3e}", contact.name);
     Some(Finding::new(Check::Gaps, outcome, message).measured(gap, limit).at(x).on(&contact.name))
 }
 
@@ -178,15 +178,15 @@ fn told(setting: &Setting, contact: &Contact, deepest: &Deepest) -> Finding {
         _ => (Outcome::Fine, *told),
     };
     let share = depth / cell.max(f64::MIN_POSITIVE);
-    let what = format!("`{own}` reaches {depth:.3e} into `{other}`, {share:.2e} of a cell");
+    let what = format!("`{own}` penetrates `{other}` by {depth:.3e}, {share:.2e} of a cell");
     let (message, remedy) = match (outcome, carries) {
         (Outcome::Fine, _) => (what, None),
         (_, true) => {
-            (format!("{what}, beside where forces act"), Some("finer cells there, or another method of contact"))
+            (format!("{what}, near contact forces"), Some("use smaller cells there, or another contact method"))
         }
         (_, false) => (
-            format!("{what}, where nothing keeps them apart"),
-            Some("start outside of each other, take more increments, and let the contact name the whole bodies"),
+            format!("{what}, where no contact force acts"),
+            Some("separate the bodies at the start, use more increments, and name the whole bodies in the contact"),
         ),
     };
     let finding = Finding::new(Check::Gaps, outcome, message).measured(*depth, limit).at(*x).on(&contact.name);
@@ -254,8 +254,8 @@ pub fn check_start(setting: &Setting, state: &State) -> Vec<Finding> {
                 let [own, other] = side.map(|k| &setting.bodies[k].name);
                 let message = format!("`{own}` starts {:.4e} deep inside `{other}`", found.depth);
                 let finding = Finding::new(Check::Gaps, Outcome::Refused, message).measured(found.depth, limit);
-                let remedy =
-                    "a start outside of each other; is the normal of a plane, or the side of a hole, turned round?";
+                let remedy = "separate the bodies at the start, and check the direction of plane normals and the \
+                              `side` of holes";
                 out.push(finding.at(found.x).on(&contact.name).remedy(remedy));
             }
         }

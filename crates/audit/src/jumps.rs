@@ -34,19 +34,21 @@ pub fn check(setting: &Setting, before: &State, now: &State) -> Vec<Finding> {
             }
             let places = [before, now].map(|s| middle(form, &s.bodies[own]));
             let names = [own, other].map(|k| &setting.bodies[k].name);
-            let remedy = "more increments";
+            let remedy = "use more increments";
             let crossed = points_through(form, rigid, &motions, [before, now].map(|s| &s.bodies[own]));
             let is_full = matches!(form, Form::Rigid(own) if !own.balls.is_empty());
             // What is hollow may move along both sides of something, with its middle through it.
             if let Some(x) = through(rigid, &motions, places).filter(|_| is_full || crossed.is_some()) {
-                let message = format!("`{}` went through `{}` within the increment", names[0], names[1]);
+                let message = format!("`{}` passed through `{}` within the increment", names[0], names[1]);
                 let finding = Finding::new(Check::Gaps, Outcome::Refused, message);
                 out.push(finding.at(x).on(&contact.name).remedy(remedy));
                 continue;
             }
             if let Some(x) = crossed {
-                let message =
-                    format!("a point of `{}` came to the other side of `{}` within the increment", names[0], names[1]);
+                let message = format!(
+                    "a point of `{}` passed to the other side of `{}` within the increment",
+                    names[0], names[1]
+                );
                 let finding = Finding::new(Check::Gaps, Outcome::Doubt, message);
                 out.push(finding.at(x).on(&contact.name).remedy(remedy));
             }

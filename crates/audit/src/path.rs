@@ -33,9 +33,9 @@ pub fn check(setting: &Setting, before: &State, now: &State) -> Vec<Finding> {
         let size = contact.bodies.iter().map(|k| setting.bodies[*k].form.size()).fold(0.0, f64::max);
         let limit = LEFT * taken + elastic(touches) + ROUNDING * rubs * size;
         if d < -limit {
-            let message = format!("friction of `{}` gives energy: {:.3e}", contact.name, -d);
+            let message = format!("the dissipation of friction in `{}` is negative: -{:.3e}", contact.name, -d);
             let finding = Finding::new(Check::Path, Outcome::Refused, message).measured(-d, limit);
-            out.push(finding.on(&contact.name).remedy("smaller increments"));
+            out.push(finding.on(&contact.name).remedy("use smaller increments"));
         }
     }
     out.extend(of_increment(setting, before, now));
@@ -111,18 +111,19 @@ fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Findin
     let (outcome, what, remedy) = match missing {
         m if m < -limit && driven => (
             Outcome::Doubt,
-            "more energy than the forces before and after the increment give",
-            Some("smaller increments"),
+            "more energy appears than the mean of the forces before and after the increment explains",
+            Some("use smaller increments"),
         ),
-        m if m < -limit => (Outcome::Refused, "energy appears", Some("smaller increments")),
+        m if m < -limit => (Outcome::Refused, "energy appears", Some("use smaller increments")),
         m if m > limit && at_once => return None,
         m if m > limit => {
-            (Outcome::Doubt, "energy vanishes that friction does not take", Some("smaller increments where it jumps"))
+            (Outcome::Doubt, "energy is lost without friction", Some("use smaller increments where the state jumps"))
         }
-        _ => (Outcome::Fine, "work, stored and dissipated energy agree", None),
+        _ => (Outcome::Fine, "work, stored energy and dissipation are in balance", None),
     };
     let message = format!(
-        "{what}: work {work:.4e}, stored {stored:.4e}, dissipated {dissipated:.4e} in the increment, known to {limit:.1e}"
+        "{what}: work {work:.4e}, stored energy {stored:.4e}, dissipation {dissipated:.4e} in the increment, \
+         tolerance {limit:.1e}"
     );
     let finding = Finding::new(Check::Path, outcome, message).measured(missing.abs(), limit);
     Some(Finding { remedy: remedy.map(str::to_string), ..finding })

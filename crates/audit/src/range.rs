@@ -43,12 +43,14 @@ pub fn check(setting: &Setting, state: &State) -> Vec<Finding> {
             _ => Outcome::Fine,
         };
         let name = &body.name;
-        let message = format!("the strain of `{name}` is {:.2} % at most", 100.0 * strain);
+        let message = format!("the largest strain of `{name}` is {:.2} %", 100.0 * strain);
         let finding = Finding::new(Check::Range, outcome, message).measured(strain, limit).at(x).on(name);
         out.push(match (outcome, &body.form) {
             (Outcome::Fine, _) => finding,
-            (_, Form::Curve(_)) => finding.remedy("a larger section, or less load: the law of the section is linear"),
-            _ => finding.remedy("finite strain, or less load"),
+            (_, Form::Curve(_)) => {
+                finding.remedy("use a larger section or a smaller load: the law of the section is linear")
+            }
+            _ => finding.remedy("use finite strain or a smaller load"),
         });
     }
     for (number, _) in setting.contacts.iter().enumerate().filter(|(_, c)| c.is_small_sliding) {
@@ -74,9 +76,9 @@ fn rotation(setting: &Setting, state: &State, number: usize) -> Option<Finding> 
     let angle = nalgebra::Rotation3::from_matrix_unchecked(motion.rotation).angle();
     let outcome = if angle > TURN { Outcome::Refused } else { Outcome::Fine };
     let message =
-        format!("`{}` turns by {angle:.3} rad, and the contact is one of small sliding", setting.bodies[other].name);
+        format!("`{}` rotates by {angle:.3} rad, but the contact is for small sliding", setting.bodies[other].name);
     let finding = Finding::new(Check::Range, outcome, message).measured(angle, TURN).on(&contact.name);
-    Some(if outcome == Outcome::Fine { finding } else { finding.remedy("sliding = \"finite\"") })
+    Some(if outcome == Outcome::Fine { finding } else { finding.remedy("use sliding = \"finite\"") })
 }
 
 /// The largest principal strain of the cells, its limit, its place, and whether most cells are far beyond the limit.
@@ -185,9 +187,9 @@ fn slip(setting: &Setting, state: &State, number: usize) -> Option<Finding> {
         _ => (Outcome::Fine, SLIP_TOLD),
     };
     let name = &contact.name;
-    let message = format!("`{name}` has slid by {share:.2} cells, and is one of small sliding");
+    let message = format!("`{name}` has slipped by {share:.2} cells, but the contact is for small sliding");
     let finding = Finding::new(Check::Range, outcome, message).measured(share, limit).at(x).on(name);
-    Some(if outcome == Outcome::Fine { finding } else { finding.remedy("sliding = \"finite\"") })
+    Some(if outcome == Outcome::Fine { finding } else { finding.remedy("use sliding = \"finite\"") })
 }
 
 /// How far the boundary of a solid has moved, by where it is now.

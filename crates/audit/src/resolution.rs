@@ -45,7 +45,7 @@ fn of_contact(setting: &Setting, state: &State, contact: &Contact, [before, now]
     let stays = earlier > 0.0 && (area - earlier).abs() <= AREA * area && (g - f).abs() > FORCE * f.max(g);
     let few = closed.len() < if setting.space == Space::ThreeD { PLACES } else { CELLS as usize };
     let name = &contact.name;
-    let what = format!("`{name}` is {cells:.2} cells wide, with {} places", closed.len());
+    let what = format!("the zone of `{name}` is {cells:.2} cells wide and has {} contact points", closed.len());
     let finding = |outcome, message: String| {
         Finding::new(Check::Resolution, outcome, message).measured(CELLS / cells, 1.0).at(most.x).on(name)
     };
@@ -53,13 +53,13 @@ fn of_contact(setting: &Setting, state: &State, contact: &Contact, [before, now]
         return Some(finding(Outcome::Fine, what));
     }
     let why = if stays {
-        format!("{what}: its area stays the same while the force goes from {f:.3e} to {g:.3e}")
+        format!("{what}: its area is constant while the force changes from {f:.3e} to {g:.3e}")
     } else if few {
-        format!("{what}: its area and pressure are those of cells")
+        format!("{what}: its area and pressure are determined by the cells")
     } else {
-        format!("{what}, and how far its area and pressure are off by that is not known")
+        format!("{what}, and the error of its area and pressure is not known")
     };
-    let remedy = format!("cells of {:.2e} there instead of {cell:.2e}, or less", width.min(cell) / WANTED);
+    let remedy = format!("use cells of {:.2e} or less there instead of {cell:.2e}", width.min(cell) / WANTED);
     Some(finding(Outcome::Doubt, why).remedy(remedy))
 }
 

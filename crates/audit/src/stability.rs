@@ -22,9 +22,9 @@ pub fn check(stability: &Stability) -> Option<Finding> {
         Stability::Stable => Some(Finding::new(Check::Stability, Outcome::Fine, "the state is stable")),
         Stability::Unstable { negative, body } => {
             let message =
-                format!("the state is unstable, in {negative} direction{}", if *negative == 1 { "" } else { "s" });
+                format!("the state is unstable in {negative} direction{}", if *negative == 1 { "" } else { "s" });
             let finding = Finding::new(Check::Stability, Outcome::Refused, message).measured(*negative as f64, 0.0);
-            Some(finding.on(body).remedy("a small load aside, and smaller increments, lead to the stable branch"))
+            Some(finding.on(body).remedy("use a small lateral load and smaller increments to reach the stable branch"))
         }
     }
 }

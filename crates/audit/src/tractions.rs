@@ -41,8 +41,12 @@ fn of_contact(contact: &Contact, touches: &[Touch], nothing: f64) -> Vec<Finding
     let name = &contact.name;
     if touches.iter().any(|t| !t.force().iter().all(|v| v.is_finite())) {
         out.push(
-            Finding::new(Check::Tractions, Outcome::Refused, format!("`{name}` has forces that are no numbers"))
-                .on(name),
+            Finding::new(
+                Check::Tractions,
+                Outcome::Refused,
+                format!("`{name}` has contact forces that are not finite numbers"),
+            )
+            .on(name),
         );
         return out;
     }
@@ -57,24 +61,28 @@ fn of_contact(contact: &Contact, touches: &[Touch], nothing: f64) -> Vec<Finding
         let finding = if outcome == Outcome::Fine {
             finding
         } else {
-            finding.remedy("smaller cells at the contact, or another method or enforcement of it")
+            finding.remedy("use smaller cells at the contact, or another method or enforcement")
         };
         out.push(match part.worst {
             Some(t) => finding.at(t.x),
             None => finding,
         });
     };
-    tell(part(touches, |t| (-t.pressure).max(0.0), |_| size), [TOLD, REFUSED], "the contact force pulls");
+    tell(part(touches, |t| (-t.pressure).max(0.0), |_| size), [TOLD, REFUSED], "the contact force is tensile");
     let available = |t: &Touch| contact.law.map_or(0.0, |law| law.most(t.pressure.max(0.0)));
     let whole =
         |_: f64| if contact.law.is_some() { touches.iter().map(|t| t.weight * available(t)).sum() } else { size };
     let beyond = |t: &Touch| (t.friction.norm() - available(t)).max(0.0);
-    tell(part(touches, beyond, whole), [TOLD, REFUSED], "the friction available is exceeded");
+    tell(part(touches, beyond, whole), [TOLD, REFUSED], "the friction exceeds its limit");
     let slipping: Vec<Touch> = touches.iter().filter(|t| t.slips && t.slip.norm() > 0.0).copied().collect();
     let taken = |t: &Touch| t.friction.norm() * t.slip.norm();
     let wrong = |t: &Touch| t.friction.dot(&t.slip).max(0.0);
     let all: f64 = slipping.iter().map(|t| t.weight * taken(t)).sum();
-    tell(part(&slipping, wrong, |_| all), [TOLD, REFUSED_SIGN], "the friction acts along the slip, not against it");
+    tell(
+        part(&slipping, wrong, |_| all),
+        [TOLD, REFUSED_SIGN],
+        "the friction acts in the direction of slip, not against it",
+    );
     if let Some(Law::PerPressure([a, b])) = contact.law
         && a == b
     {
@@ -85,7 +93,7 @@ fn of_contact(contact: &Contact, touches: &[Touch], nothing: f64) -> Vec<Finding
         let all = all.max(EDGE * farthest * touches.iter().map(|t| t.weight * available(t)).sum::<f64>());
         let lacks = |t: &Touch| (could(t) - taken(t)).max(0.0);
         let limits = [TOLD_MISSING, REFUSED_MISSING];
-        tell(part(&slipping, lacks, |_| all), limits, "the friction is missing where bodies slip");
+        tell(part(&slipping, lacks, |_| all), limits, "the friction is below its limit where bodies slip");
     }
     out
 }

@@ -38,10 +38,11 @@ fn of_group(setting: &Setting, state: &State, group: &Group, bounds: &[ForceBoun
     }
     let names: Vec<String> = group.members.iter().map(|k| format!("`{}`", setting.bodies[*k].name)).collect();
     let mut message = format!(
-        "{} components of force at {} places hold {}, and balance gives {} independent equations",
+        "the contact forces on {} have {} unknown components at {} contact points, and balance gives {} independent \
+         equations",
+        names.join(", "),
         count.unknowns,
         count.places,
-        names.join(", "),
         count.equations
     );
     let finding = |outcome, message| {
@@ -51,10 +52,10 @@ fn of_group(setting: &Setting, state: &State, group: &Group, bounds: &[ForceBoun
         return Some(finding(Outcome::Fine, message));
     }
     let rubs = group.contacts.iter().any(|k| setting.contacts[*k].law.is_some());
-    let why = if rubs { "friction leaves others, by the path" } else { "others balance too" };
-    message += &format!(": the forces are one of many possible, {why}");
+    let why = if rubs { "with friction they depend on the path" } else { "other forces are in balance too" };
+    message += &format!(": the contact forces are statically indeterminate, {why}");
     if let Some(widest) = widest {
-        let to = widest.largest.map_or("on, without bound".into(), |largest| format!("to {}", number(largest)));
+        let to = widest.largest.map_or("to ∞, without bound".into(), |largest| format!("to {}", number(largest)));
         let name = &setting.contacts[widest.contact].name;
         message += &format!("; the normal force of `{name}` may be anything from {} {to}", number(widest.least));
     }
@@ -62,7 +63,7 @@ fn of_group(setting: &Setting, state: &State, group: &Group, bounds: &[ForceBoun
         message += &outside;
     }
     let finding = finding(Outcome::Doubt, message).on(&setting.bodies[group.members[0]].name);
-    Some(finding.remedy("take the motion for sure, and the forces as one of many"))
+    Some(finding.remedy("the motion is reliable; the forces are one of many possible sets"))
 }
 
 /// The forces at places of a group, and the equations for them.
@@ -111,7 +112,7 @@ fn outside(setting: &Setting, state: &State, bounds: &[ForceBounds], size: f64) 
     let largest = b.largest.map_or("no bound".into(), number);
     let name = &setting.contacts[b.contact].name;
     let [force, least] = [force, b.least].map(number);
-    Some(format!("; that of `{name}` was told as {force}, which is not between {least} and {largest}"))
+    Some(format!("; that of `{name}` was reported as {force}, which is not between {least} and {largest}"))
 }
 
 /// A number with four digits.

@@ -4,24 +4,24 @@ use crate::finding::{Check, Finding, Outcome};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What a state is.
+/// Verdict on a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// An answer, right within the ± that is told.
+    /// All checks hold. The results are right within the reported ±.
     RightWithin,
-    /// An answer, of which a figure is less certain than it looks.
+    /// The state is an equilibrium, but a result is less certain than it looks.
     RightBut,
-    /// No answer: a law of mechanics is broken.
+    /// The state violates a law of mechanics.
     NotAnAnswer,
 }
 
-/// What an independent check of all increments came to.
+/// Result of the audit over all increments.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Answer {
-    /// Whether the run is an answer.
+    /// The verdict.
     pub verdict: Verdict,
-    /// The same in a sentence, with the reason and what to do.
+    /// The verdict in a sentence, with the reason and what to do.
     pub text: String,
 }
 

@@ -230,7 +230,7 @@ fn walls_clamp_a_block_as_hard_as_they_like() {
     let most = mu * W / (1.0 - mu * mu);
     assert!(found.largest.is_some_and(|f| (f - most).abs() < SOLVED * W), "{found:?}");
     let (outcome, text) = on_floor.finding();
-    assert!(outcome == Outcome::Doubt && text.contains("anything from 0 on, without bound"), "{text}");
+    assert!(outcome == Outcome::Doubt && text.contains("anything from 0 to ∞, without bound"), "{text}");
 }
 
 /// A disc of radius 1 in a groove of two walls by their angles from the horizontal.
@@ -377,7 +377,10 @@ fn three_legs_of_a_table_tell_the_fourth() {
         if x == 0.0 {
             assert_eq!(bound(0), ("a", 0.0, Some(W / 2.0)));
             let (_, text) = case.finding();
-            assert!(text.contains("4 places") && text.contains("balance gives 3 independent equations"), "{text}");
+            assert!(
+                text.contains("4 contact points") && text.contains("balance gives 3 independent equations"),
+                "{text}"
+            );
             assert!(text.contains("`a` may be anything from 0 to 1.5"), "{text}");
         }
     }
@@ -451,7 +454,7 @@ fn forces_outside_of_their_bounds_are_told() {
     let honest = W / (2.0 * c);
     case.places.iter_mut().for_each(|p| p.told = (honest, V::zeros()));
     let (_, text) = case.finding();
-    assert!(text.contains("may be anything from") && !text.contains("was told as"), "{text}");
+    assert!(text.contains("may be anything from") && !text.contains("was reported as"), "{text}");
     // Balanced by more friction than there is.
     let friction = -0.5 * honest;
     let pressed = (W / 2.0 - friction * s) / c;
@@ -460,7 +463,7 @@ fn forces_outside_of_their_bounds_are_told() {
         p.told = (pressed, up * friction);
     }
     let (outcome, text) = case.finding();
-    assert!(outcome == Outcome::Doubt && text.contains("was told as") && text.contains("not between"), "{text}");
+    assert!(outcome == Outcome::Doubt && text.contains("was reported as") && text.contains("not between"), "{text}");
 }
 
 /// A groove that all but clamps has a bound, however large, and one that just does has none.

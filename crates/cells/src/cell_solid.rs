@@ -297,7 +297,7 @@ impl<const D: usize> Body for CellSolid<D> {
     fn hold(&self, on: Option<&str>, hold: &Hold<'_>, state: &BodyState) -> Result<Vec<Constraint>, PlaceError> {
         hold.check_components(&self.name)?;
         if hold.rotation.iter().any(Option::is_some) {
-            let message = "a body of cells has no rotations that could be held: hold displacements of a place";
+            let message = "a body of cells has no rotations: prescribe displacements of a group";
             return Err(self.unsuitable(message));
         }
         match &self.surface(on)?.held {

@@ -167,7 +167,7 @@ fn in_dimension<const D: usize>(d: &Description) -> Result<Built, CellsError> {
         Geometry::Triangles(mesh) => of_space::<D>(Arc::new(FacetBody::new((**mesh).clone())?))?,
         Geometry::Moduli(image) => {
             if modulus.is_some() {
-                let must = "must not be stated twice: by the image and as a function";
+                let must = "must be given once, by the image or as a function";
                 return Err(CellsError::Value { name: "modulus", value: f64::NAN, must });
             }
             let image = ModulusImage::new(image.clone().voxels::<D>()?)?;
@@ -241,7 +241,7 @@ fn of_space<const D: usize>(region: Arc<dyn Region<3>>) -> Result<Arc<dyn Region
     let any: Box<dyn Any> = Box::new(region);
     any.downcast::<Arc<dyn Region<D>>>().map(|r| *r).map_err(|_| CellsError::InPlane {
         what: "a surface of triangles",
-        remedy: "state the body in space, or its section by a shape",
+        remedy: "use the body in space, or give its section by a shape",
     })
 }
 

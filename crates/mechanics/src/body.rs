@@ -124,7 +124,7 @@ pub enum Load<'a> {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BodyError {
     /// A cell is turned inside out, or a rope shrunk to a point.
-    #[error("cell {cell} of `{body}` is turned inside out or shrunk to nothing")]
+    #[error("cell {cell} of `{body}` is inverted or has no volume")]
     Inverted { body: String, cell: usize },
     #[error("cell {cell} of `{body}`: {message}")]
     Material { body: String, cell: usize, message: String },
@@ -133,7 +133,7 @@ pub enum BodyError {
 /// A place that a body does not have, or that cannot be used in this way.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PlaceError {
-    #[error("`{body}` has no group `{group}`: it has {}", known.join(", "))]
+    #[error("`{body}` has no group `{group}`; valid are {}", known.join(", "))]
     Unknown { body: String, group: String, known: Vec<String> },
     #[error("`{body}`: {message}")]
     Unsuitable { body: String, message: String },
@@ -308,7 +308,7 @@ pub trait Body: Send + Sync {
     /// # Errors
     /// A place that is not there, or a body without such points.
     fn spread_sites(&self, _on: Option<&str>, _spacing: f64) -> Result<(Vec<Site>, f64), PlaceError> {
-        let message = "discs touch on bodies of cells only".to_string();
+        let message = "contact by discs is for bodies of finite cells only".to_string();
         Err(PlaceError::Unsuitable { body: self.name().to_string(), message })
     }
 

@@ -108,7 +108,7 @@ impl Contact {
         let is_edge =
             |(part, body): &(Part, &dyn Body)| part.group.is_some() && body.curve(part.group.as_deref()).is_some();
         if slave.0.body == master.0.body && (is_edge(&slave) || is_edge(&master)) {
-            let message = "an edge touches other edges of its own body, and nothing else of it".to_string();
+            let message = "contact of an edge with its own body is possible with other edges only".to_string();
             return Err(PlaceError::Unsuitable { body: slave.1.name().to_string(), message });
         }
         let mut sites = slave.1.sites(slave.0.group.as_deref(), sampling)?;

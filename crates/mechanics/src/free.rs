@@ -221,17 +221,17 @@ impl Problem<'_> {
 
     pub(crate) fn describe(&self, unknown: usize) -> Option<String> {
         match self.body_of(unknown) {
-            Some((body, _)) => Some(format!("; what lacked most is a force on `{body}`")),
+            Some((body, _)) => Some(format!("; the largest residual is a force on `{body}`")),
             None => {
                 let mut row = unknown - self.is_spin.len();
                 for contact in &self.system.contacts {
                     let rows = contact.rows().len();
                     if row < rows {
-                        return Some(format!("; what lacked most is a condition of contact `{}`", contact.name()));
+                        return Some(format!("; the largest residual is a condition of contact `{}`", contact.name()));
                     }
                     row -= rows;
                 }
-                Some("; what lacked most is a support".to_string())
+                Some("; the largest residual is a support condition".to_string())
             }
         }
     }

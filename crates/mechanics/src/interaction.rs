@@ -76,7 +76,7 @@ pub struct Around {
 
 /// Saved numbers that are not of this interaction.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the saved numbers are not those of contact `{contact}`")]
+#[error("the stored data do not belong to contact `{contact}`")]
 pub struct NotItsHistory {
     pub contact: String,
 }

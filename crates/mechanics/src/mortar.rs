@@ -97,8 +97,8 @@ fn weights(whole: &[f64]) -> Vec<f64> {
 
 fn no_surface(body: &dyn Body, part: &Part) -> PlaceError {
     let message = match &part.group {
-        Some(group) => format!("`{group}` has no faces to put a mortar on"),
-        None => "it has no faces to put a mortar on".to_string(),
+        Some(group) => format!("`{group}` has no faces for mortar"),
+        None => "it has no faces for mortar".to_string(),
     };
     PlaceError::Unsuitable { body: body.name().to_string(), message }
 }
@@ -113,7 +113,7 @@ impl Mortar {
         enforcement: Enforcement,
     ) -> Result<Self, PlaceError> {
         if enforcement.takes_stress() {
-            let message = "Nitsche's method needs no mortar: it is for single points of a surface".to_string();
+            let message = "Nitsche's method is for points of a surface, not for mortar".to_string();
             return Err(PlaceError::Unsuitable { body: slave.1.name().to_string(), message });
         }
         let state: BodyState = slave.1.start();

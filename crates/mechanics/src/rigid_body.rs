@@ -197,7 +197,7 @@ impl Body for RigidBody {
         hold.check_components(&self.name)?;
         self.no_groups(on)?;
         if matches!(self.motion, Motion::Prescribed(_)) {
-            let message = "its motion is prescribed: a support holds only what is free".to_string();
+            let message = "its motion is prescribed, so it has no free unknowns for a support".to_string();
             return Err(PlaceError::Unsuitable { body: self.name.clone(), message });
         }
         let pose = Pose::of(state);
@@ -260,7 +260,7 @@ impl Body for RigidBody {
                 }
             }
             _ => {
-                let message = "a rigid body takes forces, moments and springs".to_string();
+                let message = "a rigid body has forces, moments and springs only".to_string();
                 return Err(PlaceError::Unsuitable { body: self.name.clone(), message });
             }
         }
@@ -270,8 +270,8 @@ impl Body for RigidBody {
     fn sites(&self, on: Option<&str>, _: Sampling) -> Result<Vec<Site>, PlaceError> {
         self.no_groups(on)?;
         if self.sites.is_empty() {
-            let message = "a rigid body of this shape has no points of its own that could be tested; name the other \
-                           body first, so that its points are tested against this one"
+            let message = "a rigid body of this shape has no slave points; name the other body first, which makes it \
+                           the slave"
                 .to_string();
             return Err(PlaceError::Unsuitable { body: self.name.clone(), message });
         }

@@ -84,7 +84,7 @@ impl PointSpline {
     pub fn new(points: &[Point<3>]) -> Result<Self, PathError> {
         let n = points.len();
         if n <= DEGREE {
-            return Err(PathError::Count { what: "points of a curve", given: n, valid: "six at least" });
+            return Err(PathError::Count { what: "points of a curve", given: n, valid: "at least six" });
         }
         let mut t = vec![0.0; n];
         for k in 1..n {

@@ -10,20 +10,23 @@ pub enum PathError {
     Input { what: &'static str, value: f64, valid: &'static str },
     #[error("{what}: {given} given; {valid}")]
     Count { what: &'static str, given: usize, valid: &'static str },
-    #[error("the integration along the surface stalls after {at} of {of}: the surface is not smooth there")]
+    #[error("the integration along the surface stops after {at} of {of}: the surface is not smooth there")]
     Stalled { at: f64, of: f64 },
-    #[error("the point ({}, {}, {}) has no place on the surface: it is {gap} from it after {iterations} iterations", .at.x, .at.y, .at.z)]
+    #[error("the point ({}, {}, {}) could not be projected on the surface: it is at a distance of {gap} after \
+             {iterations} iterations", .at.x, .at.y, .at.z)]
     NoFoot { at: Point<3>, gap: f64, iterations: usize },
-    #[error("the direction is along the normal at ({}, {}, {}): a path needs a tangent", .at.x, .at.y, .at.z)]
+    #[error("the direction is normal to the surface at ({}, {}, {}): a path requires a tangent", .at.x, .at.y, .at.z)]
     NoTangent { at: Point<3> },
-    #[error("the {place} of the path lies inside body {body}, {depth:.4e} deep: move it outside by that much at least")]
+    #[error(
+        "the {place} of the path lies inside body {body}, {depth:.4e} deep: move it outside by at least this distance"
+    )]
     Inside { place: Place, body: usize, depth: f64 },
-    #[error("it goes through body {body}, {depth:.4e} deep at ({:.6}, {:.6}, {:.6})", .at.x, .at.y, .at.z)]
+    #[error("it passes through body {body}, {depth:.4e} deep at ({:.6}, {:.6}, {:.6})", .at.x, .at.y, .at.z)]
     Crosses { body: usize, depth: f64, at: Point<3> },
     #[error("station {station} names body {body}; there are {count}")]
     NoBody { station: usize, body: usize, count: usize },
     #[error(
-        "no shortest path was found between {from} and {to}: residuals {}; the last change of bodies was number {changes}",
+        "no shortest path was found between {from} and {to}: residuals {}; number of changes of bodies {changes}",
         list(.residuals)
     )]
     NoPath { from: Place, to: Place, residuals: Vec<f64>, changes: usize },

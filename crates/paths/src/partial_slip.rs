@@ -58,17 +58,21 @@ impl PartialSlip {
         };
         positive("axial stiffness", stiffness)?;
         if s.len() < 2 || tension.len() != s.len() {
-            let valid = "two at least, as many as tensions";
-            return Err(PathError::Count { what: "places along a rope", given: s.len(), valid });
+            let valid = "at least two, as many as tensions";
+            return Err(PathError::Count { what: "positions along a rope", given: s.len(), valid });
         }
         if omega.len() + 1 != s.len() {
-            return Err(PathError::Count { what: "values of ω", given: omega.len(), valid: "one between two places" });
+            return Err(PathError::Count {
+                what: "values of ω",
+                given: omega.len(),
+                valid: "one between two positions",
+            });
         }
         let mut points = Vec::with_capacity(s.len());
         let mut xi = 0.0;
         for k in 0..s.len() {
             if k > 0 {
-                let step = positive("the distance of two places", s[k] - s[k - 1])?;
+                let step = positive("the distance of two positions", s[k] - s[k - 1])?;
                 let rate = omega[k - 1];
                 if !(rate.is_finite() && rate >= 0.0) {
                     return Err(PathError::Input { what: "ω", value: rate, valid: "a number from 0 on" });

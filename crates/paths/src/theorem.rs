@@ -101,7 +101,11 @@ impl std::fmt::Display for Verdict {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Verdict::Holds { utilisation } => {
-                write!(f, "holds: {:.1} % of the friction along the rope is used", 100.0 * utilisation)
+                write!(
+                    f,
+                    "in equilibrium: {:.1} % of the friction limit along the rope is required",
+                    100.0 * utilisation
+                )
             }
             Verdict::LiftsOff { s, k_n } => write!(f, "lifts off at s = {s:.4}: k_n = {k_n:.4} >= 0"),
             Verdict::SlidesSideways { s, tan_alpha, limit } => {
@@ -321,7 +325,8 @@ pub fn loaded_end_tensions(
             Ok((_, y)) => y,
             Err(PathError::Stalled { at, .. }) => {
                 let s = quadrature::arc_length(curve, from, at);
-                let wanted = "its end: there the rope lifts off or slides sideways under its load".to_owned();
+                let wanted =
+                    "the end of the rope: there the rope lifts off or slides sideways under its load".to_owned();
                 return Err(PathError::NotReached { wanted, at: s });
             }
             Err(other) => return Err(other),

@@ -58,11 +58,11 @@ impl<T: JsonSchema> JsonSchema for Array<T> {
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Grid2 {
-    /// Where the first value is.
+    /// Position of the first value.
     pub origin: [f64; 2],
-    /// Distance of the columns (along x) and of the rows (along y).
+    /// Spacing of the columns (along x) and of the rows (along y).
     pub spacing: [f64; 2],
-    /// The values, row by row from below, as many columns in each.
+    /// The values, row by row from below. All rows have the same number of columns.
     pub values: Array<Vec<f64>>,
 }
 
@@ -70,11 +70,11 @@ pub struct Grid2 {
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshArrays {
-    /// Coordinates of the points, two of each in the plane and three in space, in the base unit of length.
+    /// Coordinates of the points in the base unit of length: two per point in the plane, three in space.
     pub points: Array<Vec<f64>>,
     /// The cells, by shape.
     pub cells: List<CellArrays>,
-    /// Named parts: the points of each; a side or a cell whose corners all are among them belongs to it.
+    /// Named groups, each a list of points. A side or cell belongs to a group if all its corners are in the list.
     #[serde(default)]
     pub groups: Named<Array<u32>>,
 }
@@ -85,12 +85,12 @@ pub struct MeshArrays {
 pub struct CellArrays {
     /// `triangle`, `quadrilateral`, `tetrahedron`, `hexahedron` or `wedge`.
     pub shape: String,
-    /// The points of each cell, counted from zero, in the order of Gmsh: first the corners, then of curved cells the nodes of
-    /// edges, faces and middles, or of the edges alone.
+    /// Points of each cell, counted from zero, in the order of Gmsh: first the corners; for curved cells then the nodes
+    /// of edges, faces and interior, or of the edges only.
     pub nodes: Array<Vec<u32>>,
 }
 
-/// A closed surface of triangles.
+/// A closed triangulated surface.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TriangleArrays {

@@ -5,21 +5,21 @@ use super::{Beam, CellsBody, Components, List, MeshArrays, Named, Rigid, Rope, V
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Things that occupy space.
+/// A body.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Body {
-    /// A film under tension, or a string.
+    /// An elastic membrane under tension, or a string.
     Membrane(Membrane),
-    /// A body that does not deform.
+    /// A rigid body.
     Rigid(Rigid),
-    /// Elastic solids by finite elements.
+    /// An elastic solid, meshed with finite elements.
     Solid(Solid),
-    /// Elastic solids on a grid of cells: implicit shapes, surfaces, images.
+    /// An elastic solid of finite cells: implicit shapes, surfaces, images.
     Cells(Box<CellsBody>),
     /// A rope, which carries tension only.
     Rope(Rope),
-    /// A beam of any shape.
+    /// A geometrically exact beam.
     Beam(Beam),
 }
 
@@ -41,15 +41,16 @@ impl Body {
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Solid {
-    /// The cells of the body.
+    /// The mesh of the body.
     pub mesh: SolidMesh,
-    /// Polynomial degree: 1 to 8 on quadrilaterals and hexahedra, 1 or 2 on other cells.
+    /// Polynomial degree: 1 to 8 on quadrilaterals and hexahedra, 1 or 2 on other cells. If left out, the order of the
+    /// mesh.
     pub degree: Option<i64>,
-    /// What the body is made of.
+    /// The material of the body.
     pub material: Material,
-    /// `small`, or `finite`.
+    /// Strain measure: `small` or `finite`; `small` if left out.
     pub strain: Option<String>,
-    /// Edges in space that touch as curves, by names of your own: `between = ["rope", "block:rim"]`.
+    /// Edges in space that are in contact as curves, by names of your own: `between = ["rope", "block:rim"]`.
     #[serde(default)]
     pub edges: Named<SolidEdge>,
 }
@@ -60,7 +61,8 @@ pub struct Solid {
 pub struct SolidEdge {
     /// Two groups of sides, such as `["top", "left"]`.
     pub between: List<String>,
-    /// Radius of a rounding about the edge, which stands out from it by as much; 0, a sharp edge, if left out.
+    /// Radius of a rounding around the edge, which extends beyond the edge by this radius; 0 (a sharp edge) if left
+    /// out.
     pub radius: Option<Value>,
 }
 
@@ -77,7 +79,7 @@ pub enum SolidMesh {
     Nurbs(toml::Table),
 }
 
-/// A box of cells: even between two corners, or graded along axes; every point may be moved by a map.
+/// A box of cells, uniform between two corners or graded along the axes. A map may move every point.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BoxMesh {
@@ -89,32 +91,33 @@ pub struct BoxMesh {
     pub cells: Option<List<i64>>,
     /// Graded directions, in place of `min`, `max` and `cells`.
     pub axes: Option<List<MeshAxis>>,
-    /// Expressions of x, y and z for the place of every point. Opposite sides that come to lie on each other are joined, and are
-    /// no sides any more: a ring is closed.
+    /// Map of the box: expressions of x, y and z for the new position of every point. Opposite sides that coincide
+    /// after mapping are joined and are no longer sides, so a ring is closed.
     pub map: Option<List<Value>>,
 }
 
-/// One direction of a box: stretches that end at `to`, with so many cells, each `growth` times as long as the one before.
+/// One direction of a graded box: segments that end at `to`, each with its number of cells. Each cell is `growth` times
+/// as long as the one before.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshAxis {
-    /// Where the direction begins, a length.
+    /// Start of the direction, a length.
     pub from: Value,
-    /// Where each stretch ends, lengths.
+    /// End of each segment, lengths.
     pub to: List<Value>,
-    /// Number of cells of each stretch.
+    /// Number of cells of each segment.
     pub cells: List<i64>,
-    /// Of each stretch the ratio of the length of a cell to that of the one before, 1 if left out.
+    /// Ratio of the length of a cell to that of the cell before it, for each segment; 1 if left out.
     pub growth: Option<List<f64>>,
 }
 
-/// A film under tension.
+/// An elastic membrane under tension.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Membrane {
-    /// Where the membrane is; left out where the mesh of a file says it.
+    /// The domain of the membrane. Left out if the mesh is read from a file.
     pub domain: Option<Domain>,
-    /// What the displacement is computed on.
+    /// The mesh or background grid.
     pub mesh: Mesh,
     /// Polynomial degree, 1 to 6.
     pub degree: Option<i64>,
@@ -133,9 +136,9 @@ pub enum Domain {
     Rectangle(Rectangle),
     /// A polygon.
     Polygon(Polygon),
-    /// Where an expression is negative.
+    /// The region in which an expression is negative.
     Implicit(Implicit),
-    /// An interval: a string, or the radii of a round membrane.
+    /// An interval: a string, or the range of the radius of an axisymmetric membrane.
     Interval(Interval),
 }
 
@@ -144,16 +147,16 @@ pub enum Domain {
 pub struct Disc {
     /// Radius, a length.
     pub radius: Value,
-    /// Centre, a length in each direction; the origin if left out.
+    /// Centre, lengths; the origin if left out.
     pub center: Option<List<Value>>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Ellipse {
-    /// Half the extent along x and y, lengths.
+    /// Semi-axes along x and y, lengths.
     pub semi_axes: List<Value>,
-    /// Centre, a length in each direction; the origin if left out.
+    /// Centre, lengths; the origin if left out.
     pub center: Option<List<Value>>,
 }
 
@@ -169,7 +172,7 @@ pub struct Rectangle {
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Polygon {
-    /// The corners in order, each a length in each direction.
+    /// The corners in order, lengths.
     pub points: List<List<Value>>,
 }
 
@@ -178,71 +181,71 @@ pub struct Polygon {
 pub struct Implicit {
     /// An expression of x and y.
     pub negative_inside: Value,
-    /// The lower corner of a box round the domain, lengths.
+    /// Lower corner of a box around the domain, lengths.
     pub min: List<Value>,
-    /// The upper corner of the box, lengths.
+    /// Upper corner of the box, lengths.
     pub max: List<Value>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Interval {
-    /// Where it begins, a length; 0 for a whole round membrane.
+    /// Start of the interval, a length; 0 for a whole disc.
     pub from: Value,
-    /// Where it ends, a length.
+    /// End of the interval, a length.
     pub to: Value,
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Mesh {
-    /// A uniform grid, which the boundary may cut.
+    /// A uniform background grid. The boundary may cut its cells.
     Grid(GridMesh),
-    /// Triangles and quadrilaterals from a file, straight or curved; in the plane.
+    /// Triangles and quadrilaterals from a Gmsh file, straight or curved, in the plane.
     Gmsh(DividedGmshMesh),
     /// A mesh from arrays, in the plane.
     Arrays(MeshArrays),
 }
 
-/// A background grid: a number of cells in each direction, or their size.
+/// A background grid, given by the number of cells in each direction or by their size.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GridMesh {
     /// Number of cells in each direction.
     pub cells: Option<List<i64>>,
-    /// Size of a cell, a length, in place of `cells`.
+    /// Size of a cell, a length; replaces `cells`.
     pub cell_size: Option<Value>,
-    /// Where cells are divided.
+    /// Refinement: which cells are divided.
     pub refine: Option<Refine>,
 }
 
-/// Where cells are divided, in the plane.
+/// Refinement of a grid in the plane: which cells are divided.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Refine {
-    /// How often cells are divided at most where fronts curve within a cell or come near each other; 8 if left out (5
-    /// of degree 1), 0 for never.
+    /// Maximum number of divisions where fronts curve within a cell or come close to each other; 8 if left out (5 at
+    /// degree 1), 0 for none.
     pub most: Option<i64>,
-    /// How often cells are divided at all fronts; 0 if left out.
+    /// Number of divisions of the cells at all fronts; 0 if left out.
     pub fronts: Option<i64>,
-    /// An expression of x and y: where it is negative, cells are divided `levels` times.
+    /// An expression of x and y. Where it is negative, cells are divided `levels` times.
     pub negative_where: Option<Value>,
-    /// How often cells are divided where `negative_where` is negative; 1 if left out.
+    /// Number of divisions of cells in which `negative_where` is negative; 1 if left out.
     pub levels: Option<i64>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GmshMesh {
-    /// A file .msh of version 2.2 or 4.1, ASCII or binary, found from the folder of the case.
+    /// A .msh file of version 2.2 or 4.1, ASCII or binary. The path is relative to the folder of the case.
     pub file: String,
-    /// The physical group that is the body; all cells if left out.
+    /// The physical group that forms the body; all cells if left out.
     pub group: Option<String>,
-    /// What one unit of length of the file is in base units, 1 if left out.
+    /// Length of one unit of the file in base units; 1 if left out.
     pub scale: Option<Value>,
-    /// Rotation vector in radians about the origin of the file, after scaling; in the plane one angle.
+    /// Rotation vector in radians about the origin of the file, applied after scaling; one angle in the plane.
     pub turn: Option<Components>,
-    /// Displacement after scaling and turning, lengths.
+    /// Translation, applied after scaling and rotation; lengths.
     #[serde(rename = "move")]
     pub moved: Option<List<Value>>,
 }
@@ -251,20 +254,20 @@ pub struct GmshMesh {
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DividedGmshMesh {
-    /// A file .msh of version 2.2 or 4.1, ASCII or binary, found from the folder of the case.
+    /// A .msh file of version 2.2 or 4.1, ASCII or binary. The path is relative to the folder of the case.
     pub file: String,
-    /// The physical group that is the body; all cells if left out.
+    /// The physical group that forms the body; all cells if left out.
     pub group: Option<String>,
-    /// What one unit of length of the file is in base units, 1 if left out.
+    /// Length of one unit of the file in base units; 1 if left out.
     pub scale: Option<Value>,
-    /// Rotation vector in radians about the origin of the file, after scaling; in the plane one angle.
+    /// Rotation vector in radians about the origin of the file, applied after scaling; one angle in the plane.
     pub turn: Option<Components>,
-    /// Displacement after scaling and turning, lengths.
+    /// Translation, applied after scaling and rotation; lengths.
     #[serde(rename = "move")]
     pub moved: Option<List<Value>>,
-    /// How often every cell is divided into four, curved sides along their curves; 0 if left out. The meshes before each
-    /// division are the coarser levels of a multigrid method.
+    /// How often every cell is divided into four; 0 if left out. Curved sides are divided along their curves. The
+    /// meshes before each division are the coarser levels of a multigrid method.
     pub divisions: Option<i64>,
-    /// Where single cells are divided, at degree 1 and 2.
+    /// Local refinement: which cells are divided, at degree 1 and 2.
     pub refine: Option<Refine>,
 }

@@ -10,59 +10,61 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::fmt;
 
-/// An elastic body on a grid of cells that need not follow its shape.
+/// An elastic body of finite cells. The cells do not follow its boundary.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CellsBody {
-    /// Where material is: a shape, shapes put together, an image.
+    /// The region filled with material: a shape, a set operation on shapes, or an image.
     pub geometry: Geometry,
-    /// The cells around it.
+    /// The grid of cells around the body.
     pub mesh: CellsMesh,
-    /// Degree of the functions, 1 to 8; 3 if left out.
+    /// Polynomial degree, 1 to 8; 3 if left out.
     pub degree: Option<i64>,
-    /// All products of functions of the degree, or those of at most that degree; products if left out.
+    /// Space of functions: all products of polynomials of the degree (`tensor`), or those of at most this total degree
+    /// (`trunk`); `tensor` if left out.
     pub functions: Option<CellFunctions>,
-    /// How cut cells are integrated; exactly if left out.
+    /// Quadrature of cut cells; `exact` if left out.
     pub integration: Option<CellIntegration>,
-    /// Stiffness outside of the material relative to that inside; 1e-8 if left out.
+    /// Stiffness of the fictitious material outside the body, relative to that of the body; 1e-8 if left out.
     pub fictitious: Option<Value>,
-    /// What becomes of pieces that do not hang together with the largest; refused if left out.
+    /// Treatment of pieces that are not connected to the largest one; `refuse` if left out.
     pub islands: Option<IslandsKey>,
-    /// What the body is made of: linear elastic.
+    /// Material of the body: linear elastic.
     pub material: Material,
-    /// Parts of the surface by names of your own: where an expression of x, y and z holds, such as `z > 0.9`. The recovered
-    /// boundary is `boundary`, the sides of the grid are left, right, front, back, bottom and top. The body as a whole touches
-    /// others with both, but for the sides that a support names.
+    /// Parts of the surface, by names of your own: where an expression of x, y and z holds, such as `z > 0.9`. The
+    /// recovered boundary is `boundary`; the sides of the grid are left, right, front, back, bottom and top. If contact
+    /// names the whole body, it includes the boundary and the sides, except those with a support.
     #[serde(default)]
     pub groups: Named<Value>,
 }
 
-/// Where material is.
+/// The region filled with material.
 #[derive(Clone, Debug, Serialize)]
 #[serde(untagged)]
 pub enum Geometry {
-    /// A shape of a rigid body.
+    /// A shape as for a rigid body.
     Shape(Shape),
     Composed(Composed),
 }
 
-/// Geometry that no rigid body has.
+/// Geometry that rigid bodies do not have.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Composed {
-    /// Where an expression of x, y and z is negative.
+    /// The region in which an expression of x, y and z is negative.
     Implicit(ImplicitGeometry),
     /// A box along the axes.
     Box(BoxGeometry),
-    /// An image: TIFF stack, NPY, NRRD, MHA, NIfTI, or numbers without a header.
+    /// An image: TIFF stack, NPY, NRRD, MHA, NIfTI, or raw numbers without a header.
     Image(ImageGeometry),
-    /// What lies in one of several.
+    /// Union: the points inside at least one of the geometries.
     Union(List<Geometry>),
-    /// What lies in all of several.
+    /// Intersection: the points inside all geometries.
     Intersection(List<Geometry>),
-    /// The first without all others.
+    /// Difference: the first geometry without all others.
     Difference(List<Geometry>),
-    /// What is nearer than a distance to another, or deeper in it where the distance is negative.
+    /// Offset: the points nearer to a geometry than a distance; if the distance is negative, the points deeper inside
+    /// it.
     Offset(OffsetGeometry),
 }
 
@@ -71,9 +73,9 @@ pub enum Composed {
 pub struct ImplicitGeometry {
     /// An expression of x, y and z.
     pub negative_inside: Value,
-    /// The lower corner of a box around it, lengths; that of the mesh if left out.
+    /// Lower corner of a box around the region, lengths; that of the grid if left out.
     pub min: Option<List<Value>>,
-    /// The upper corner.
+    /// Upper corner of the box.
     pub max: Option<List<Value>>,
 }
 
@@ -89,33 +91,34 @@ pub struct BoxGeometry {
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OffsetGeometry {
-    /// The geometry.
+    /// The geometry that is offset.
     pub of: Box<Geometry>,
-    /// The distance, a length.
+    /// The offset distance, a length.
     pub distance: Value,
 }
 
-/// An image of voxels.
+/// A voxel image.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ImageGeometry {
-    /// The file, found from the folder of the case.
+    /// The image file. The path is relative to the folder of the case.
     pub file: String,
-    /// Extent of a voxel along x, y and z, lengths; what the file says if left out, and it must say it.
+    /// Voxel size along x, y and z, lengths. If left out, it is read from the file, which must contain it.
     pub spacing: Option<List<Value>>,
-    /// The corner of the first voxel, lengths; what the file says, or the origin, if left out.
+    /// Corner of the first voxel, lengths. If left out, it is read from the file; the origin if the file has none.
     pub origin: Option<List<Value>>,
-    /// The order of the directions in the file, the one that runs slowest first; `zyx` if left out.
+    /// Order of the directions in the file, the slowest first; `zyx` if left out.
     pub axes: Option<String>,
-    /// Material is where the image, interpolated smoothly, is above this.
+    /// Threshold: material is where the smoothly interpolated image is above this value.
     pub threshold: Option<Value>,
-    /// Voxels by which the image is smoothed; 1 if left out.
+    /// Smoothing width of the image in voxels; 1 if left out.
     pub smoothing: Option<Value>,
-    /// In place of a threshold: Young's modulus by the `value` of a voxel; no material where it is zero.
+    /// Young's modulus as a function of the voxel `value`; replaces the threshold. There is no material where it is
+    /// zero.
     pub youngs_modulus: Option<Value>,
-    /// Of a file without header: the type of its numbers, such as `u16`, `f32`; then `counts` too.
+    /// For a file without header: number type, such as `u16` or `f32`. It requires `counts`.
     pub numbers: Option<String>,
-    /// Of a file without header: the number of voxels along x, y and z.
+    /// For a file without header: number of voxels along x, y and z.
     pub counts: Option<List<i64>>,
 }
 
@@ -123,7 +126,7 @@ pub struct ImageGeometry {
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CellsMesh {
-    /// Cells of a box.
+    /// A box of cells.
     pub grid: CellsGrid,
 }
 
@@ -132,25 +135,25 @@ pub struct CellsMesh {
 pub struct CellsGrid {
     /// Number of cells in each direction.
     pub cells: Option<List<i64>>,
-    /// Size of a cell, a length, in place of `cells`.
+    /// Size of a cell, a length; replaces `cells`.
     pub cell_size: Option<Value>,
-    /// The lower corner, lengths; that of the geometry if left out.
+    /// Lower corner, lengths; that of the geometry if left out.
     pub min: Option<List<Value>>,
-    /// The upper corner.
+    /// Upper corner, lengths; that of the geometry if left out.
     pub max: Option<List<Value>>,
-    /// Where cells are divided.
+    /// Refinement: which cells are divided.
     pub refine: Option<CellsRefine>,
 }
 
-/// Where cells are divided.
+/// Refinement: which cells are divided.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CellsRefine {
-    /// How often cells are divided in which the boundary faces itself: pores, gaps and tips.
+    /// Number of divisions of cells in which the boundary faces itself, as in pores, gaps and tips.
     pub narrow: Option<i64>,
-    /// How often cells are divided that the boundary cuts.
+    /// Number of divisions of cells that the boundary cuts.
     pub boundary: Option<i64>,
-    /// Cells near something.
+    /// Refinement near points, lines or other sets given by a distance.
     #[serde(default)]
     pub near: List<NearRefine>,
 }
@@ -158,54 +161,54 @@ pub struct CellsRefine {
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NearRefine {
-    /// A distance by x, y and z, such as `hypot(x, y)`.
+    /// A distance as an expression of x, y and z, such as `hypot(x, y)`.
     pub distance: Value,
-    /// Cells that come within this distance, a length.
+    /// Cells nearer than this distance are divided, a length.
     pub within: Value,
-    /// How often they are divided.
+    /// Number of divisions.
     pub levels: i64,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum CellFunctions {
-    /// All products of functions of the degree.
+    /// All products of polynomials of the degree.
     Tensor,
-    /// Products of at most the degree: fewer unknowns.
+    /// Products of at most this total degree; fewer unknowns.
     Trunk,
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CellIntegration {
-    /// By height functions, up to rounding.
+    /// With height functions, accurate to round-off.
     Exact(ExactIntegration),
-    /// By sub-cells, cut along chords.
+    /// With sub-cells, cut along chords.
     SubCells(SubCellIntegration),
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ExactIntegration {
-    /// Points of Gauss in each direction of a smooth piece; four more than the degree if left out.
+    /// Number of Gauss points in each direction of a smooth piece; four more than the degree if left out.
     pub points: Option<i64>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SubCellIntegration {
-    /// Sub-cells in each direction of a cell.
+    /// Number of sub-cells in each direction of a cell.
     pub subdivision: i64,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum IslandsKey {
-    /// They are an error, with their volume and place.
+    /// Islands are an error, which states their volume and position.
     Refuse,
-    /// They are left out.
+    /// Islands are removed.
     Drop,
-    /// They are bodies of their own, which something must hold.
+    /// Islands are retained as separate bodies. Each needs a support or contact.
     Keep,
 }
 
@@ -234,7 +237,7 @@ impl<'de> Deserialize<'de> for Geometry {
             }
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Geometry, A::Error> {
                 let Some(key) = map.next_key::<String>()? else {
-                    return Err(A::Error::custom("a geometry is missing"));
+                    return Err(A::Error::custom("the geometry is empty"));
                 };
                 let found = if COMPOSED.contains(&key.as_str()) {
                     Composed::deserialize(OneKey { key: &key, map: &mut map }.into_enum()).map(Geometry::Composed)
@@ -243,7 +246,9 @@ impl<'de> Deserialize<'de> for Geometry {
                 }?;
                 match map.next_key::<String>()? {
                     None => Ok(found),
-                    Some(other) => Err(A::Error::custom(format!("`{key}` and `{other}`: a geometry has one key"))),
+                    Some(other) => {
+                        Err(A::Error::custom(format!("`{key}` and `{other}`: a geometry has exactly one key")))
+                    }
                 }
             }
         }
@@ -275,15 +280,15 @@ impl<'de, A: MapAccess<'de>> EnumAccess<'de> for OneKey<'_, A> {
 impl<'de, A: MapAccess<'de>> VariantAccess<'de> for OneKey<'_, A> {
     type Error = A::Error;
     fn unit_variant(self) -> Result<(), A::Error> {
-        Err(A::Error::custom("a table is missing"))
+        Err(A::Error::custom("a table is required"))
     }
     fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<T::Value, A::Error> {
         self.map.next_value_seed(seed)
     }
     fn tuple_variant<V: Visitor<'de>>(self, _: usize, _: V) -> Result<V::Value, A::Error> {
-        self.unit_variant().and(Err(A::Error::custom("a table is missing")))
+        self.unit_variant().and(Err(A::Error::custom("a table is required")))
     }
     fn struct_variant<V: Visitor<'de>>(self, _: &'static [&'static str], _: V) -> Result<V::Value, A::Error> {
-        self.unit_variant().and(Err(A::Error::custom("a table is missing")))
+        self.unit_variant().and(Err(A::Error::custom("a table is required")))
     }
 }

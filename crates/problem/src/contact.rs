@@ -5,167 +5,170 @@ use super::{Components, List, Nothing, Value};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Who may touch whom.
+/// A contact between bodies.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
-    /// Two bodies, the one whose points are tested first.
+    /// The two bodies, slave first. Contact is tested at points of the slave.
     pub between: Option<List<String>>,
-    /// A rope, beam or solid that may touch itself.
+    /// Self-contact: the rope, beam or solid.
     pub within: Option<String>,
-    /// Whether all bodies may touch each other.
+    /// Whether contact is possible between all bodies.
     pub all: Option<bool>,
-    /// How the contact is found; what fits the bodies if left out.
+    /// Contact discretisation. If left out, it is chosen by the kinds of the bodies.
     pub method: Option<Method>,
-    /// How far solids slide along each other: little, or any way.
+    /// Small or finite sliding of solids.
     pub sliding: Option<Sliding>,
-    /// What the surfaces hold each other with.
+    /// Adhesion of the surfaces.
     pub adhesion: Option<Adhesion>,
-    /// What resists sliding, between solids; none if left out.
+    /// Friction law; frictionless if left out.
     pub friction: Option<Friction>,
 }
 
-/// Laws of friction.
+/// Friction laws.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Friction {
-    /// In proportion to the pressure.
+    /// Coulomb friction: the limit is proportional to the pressure.
     Coulomb(CoulombFriction),
-    /// Up to a limit, whatever the pressure.
+    /// Tresca friction: the limit does not depend on the pressure.
     Tresca(TrescaFriction),
-    /// In proportion to the pressure, regularised by the velocity of slip: nothing sticks, it creeps.
+    /// Coulomb friction, regularised by the slip velocity. There is no stick; contact points creep.
     Viscous(ViscousFriction),
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ViscousFriction {
-    /// The coefficient at high velocities.
+    /// Coefficient of friction at high slip velocities.
     pub mu: Value,
-    /// The velocity of slip at which 0.71 of it acts, a length per time.
+    /// Slip velocity at which 0.71 of the friction limit is reached, a length per time.
     pub velocity: Value,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CoulombFriction {
-    /// The coefficient; in space two where it depends on the direction: along `axis`, and across it.
+    /// Coefficient of friction. In space two if it depends on the direction: along `axis` and across it.
     pub mu: Components,
-    /// The first direction of two coefficients, projected on the surface; `"tangent"` is along a rope or beam.
+    /// Direction of the first of two coefficients, projected on the surface. `"tangent"` is the direction along a rope
+    /// or beam.
     pub axis: Option<Components>,
-    /// Which side carries the axis, `slave` if left out; while bodies slide little it is the same.
+    /// The side to which the axis is attached; `slave` if left out. For small sliding both are the same.
     pub on: Option<AxisOn>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum AxisOn {
-    /// The first body of the contact.
+    /// The slave, the first body of the contact.
     Slave,
-    /// The second one.
+    /// The master, the second body.
     Master,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TrescaFriction {
-    /// The largest friction, a force per area.
+    /// Friction limit, a force per area.
     pub limit: Value,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum Sliding {
-    /// Bodies slide by much less than a cell.
+    /// The sliding distance is much smaller than a cell.
     Small,
-    /// Bodies slide as far as they like.
+    /// Any sliding distance.
     Finite,
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
-    /// The contact zone of a membrane as a level set with exact fronts.
+    /// For membranes: the contact zone as a level set with exact fronts.
     InequalityLevelSet(Box<LevelSetMethod>),
-    /// The classical nodal method for a membrane, of degree 1.
+    /// For membranes: the classical nodal active set method, of degree 1.
     ActiveSet(ActiveSetMethod),
-    /// Between solids: dual multipliers, integrated over exact segments.
+    /// Between solids, or of a solid with a rigid body: mortar with dual multipliers, integrated over exact segments.
     Mortar(SolidMethod),
-    /// Between solids: at quadrature points.
+    /// At quadrature points.
     GaussPoint(SolidMethod),
-    /// Between solids: at nodes.
+    /// At nodes.
     Node(SolidMethod),
-    /// Of ropes and beams: at nodes of straight elements, at points of Gauss of smooth ones; between two of them where they
-    /// cross and along lines.
+    /// For ropes and beams: at the nodes of straight elements, at Gauss points of smooth elements. Between two of them,
+    /// at crossing points and along lines.
     Curve(CurveMethod),
-    /// Of finite cells: at points of the recovered boundary.
+    /// For finite cells: at points of the recovered boundary.
     CellSurface(SolidMethod),
-    /// Of finite cells, or within a body of them: discs, in space balls, on both surfaces that repel each other.
+    /// For finite cells, or self-contact of them: discs (in space balls) on both surfaces, which repel each other.
     DiscreteCell(DiscMethod),
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DiscMethod {
-    /// Radius of the discs, a length: half of their spacing at least, so that none slips through, and less than half of the
-    /// thickness of the material; the spacing if left out.
+    /// Radius of the discs, a length; the spacing if left out. At least half the spacing, so that no disc slips
+    /// through, and less than half the thickness of the material.
     pub radius: Option<Value>,
-    /// Least distance of discs, a length; half of the radius if left out, and without a radius what the functions can
-    /// follow.
+    /// Smallest distance between discs, a length. If left out, half of the radius; without a radius, the distance that
+    /// the functions can resolve.
     pub spacing: Option<Value>,
-    /// Where their centres are; `within` if left out.
+    /// Position of the disc centres; `within` if left out.
     pub centres: Option<DiscCentres>,
-    /// How hard they are; a hundred times as stiff as the bodies if left out.
+    /// Penalty between discs. If left out, a hundred times the stiffness of the bodies.
     pub penalty: Option<Penalty>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum DiscCentres {
-    /// A radius below the surface, so that surfaces touch where they are.
+    /// One radius below the surface. The surfaces themselves come into contact.
     Within,
-    /// On the surface, as published: bodies touch a radius each too early.
+    /// On the surface, as published. Bodies are in contact one radius too early each.
     OnBoundary,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LevelSetMethod {
-    /// How the equilibrium beside a contact zone is formulated; `one_sided` if left out.
+    /// Formulation of the equilibrium next to a contact zone; `one_sided` if left out.
     pub formulation: Option<FormulationKey>,
-    /// With `formulation = "published"`, the space of the multiplier in the contact zone; `h1` if left out.
+    /// With `formulation = "published"`: function space of the multiplier in the contact zone; `h1` if left out.
     pub multiplier: Option<ZoneMultiplierKey>,
-    /// With `multiplier = "h1"`, the length that weighs its gradients; the extent of the membrane if left out.
+    /// With `multiplier = "h1"`: length that weights the gradients of the multiplier; the size of the membrane if left
+    /// out.
     pub multiplier_length: Option<Value>,
-    /// With `formulation = "published"`, how fronts are moved; `exact` if left out.
+    /// With `formulation = "published"`: transport of the fronts; `exact` if left out.
     pub transport: Option<TransportKey>,
-    /// The functions by which fronts move; `local` if left out, `fourier` in the published formulation.
+    /// Functions that describe the motion of fronts; `local` if left out, `fourier` with `formulation = "published"`.
     pub modes: Option<FrontModes>,
-    /// With `modes = "fourier"`, how many of them each front has at most; where its cells tell fewer apart it has these, and the
-    /// run says so.
+    /// With `modes = "fourier"`: maximum number of modes per front. If the cells of a front resolve fewer, fewer are
+    /// used, with a warning.
     pub mode_count: Option<i64>,
-    /// Degree of the fronts as curves; not available, it follows the degree of the membrane.
+    /// Polynomial degree of the fronts; not available. The fronts have the degree of the membrane.
     pub front_degree: Option<i64>,
-    /// Where the search for the zone begins, in the shapes of a domain.
+    /// Initial contact zone of the iteration, given as a domain.
     pub initial_zone: Option<Domain>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum FormulationKey {
-    /// The free membrane alone, held along the front by Nitsche's method: any degree, any path.
+    /// Only the free part of the membrane is solved for; Nitsche's method prescribes its displacement on the front. Any
+    /// degree and any load path.
     OneSided,
-    /// Both sides of the front with multipliers, as the method was published: degree 1 in the plane, 1 to 6 along a line or a
-    /// radius.
+    /// Both sides of the front with multipliers, as published: degree 1 in the plane, 1 to 6 on a line or an
+    /// axisymmetric membrane.
     Published,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum ZoneMultiplierKey {
-    /// With gradients: carries the line force along a front that is not at rest.
+    /// With gradients (H1). It carries the line force along a front that is not in equilibrium.
     H1,
-    /// Without: oscillates along such a front, to show why not.
+    /// Without gradients (L2). It oscillates along such a front; for comparison.
     L2,
 }
 
@@ -174,89 +177,89 @@ pub enum ZoneMultiplierKey {
 pub enum TransportKey {
     /// As curves.
     Exact,
-    /// As a level set on the nodes, which becomes the distance to the moved front.
+    /// As a level set on the nodes, reinitialised to the distance to the moved front.
     Redistancing,
-    /// As a level set on the nodes, carried along by the equation of Hamilton and Jacobi.
+    /// As a level set on the nodes, transported by the Hamilton-Jacobi equation.
     HamiltonJacobi,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum FrontModes {
-    /// Periodic splines, each of which moves a short piece: for fronts of any shape.
+    /// Periodic splines with local support, for fronts of any shape.
     Local,
-    /// Sines and cosines of the arc length: few suffice where fronts are nearly circles.
+    /// Sines and cosines of the arc length. A few are sufficient for nearly circular fronts.
     Fourier,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SolidMethod {
-    /// How the conditions of contact are enforced; by multipliers if left out, at quadrature points by
-    /// penalties, of cells after Nitsche.
+    /// Enforcement of the contact conditions. If left out: `multiplier`; `penalty` at quadrature points; `nitsche` for
+    /// finite cells.
     pub enforcement: Option<Enforcement>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CurveMethod {
-    /// How the conditions of contact are enforced: between two curves by repeated penalties if left out.
+    /// Enforcement of the contact conditions. If left out, `augmented_lagrangian` between two curves.
     pub enforcement: Option<Enforcement>,
-    /// Between two curves: forces where they cross, along lines, or both as they lie; both if left out.
+    /// Contact between two curves: at crossing points, along lines, or blended; `blend` if left out.
     pub form: Option<CurveForm>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum CurveForm {
-    /// A force at each least distance.
+    /// A point force at each closest point.
     Point,
-    /// Forces at points of Gauss of the first curve.
+    /// A line load at Gauss points of the first curve.
     Line,
-    /// Both, by how far the curves lie along each other.
+    /// Both, blended by how well the curves are aligned.
     Blend,
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Enforcement {
-    /// Exactly, by multipliers.
+    /// Lagrange multipliers. The contact conditions hold exactly.
     Multiplier(Nothing),
-    /// Exactly, by repeated penalties.
+    /// Penalties with updated multipliers. The contact conditions hold exactly.
     AugmentedLagrangian(Nothing),
-    /// Weakly and consistently, without multipliers.
+    /// Nitsche's method: consistent, without multipliers.
     Nitsche(Nothing),
-    /// Approximately, by springs.
+    /// Penalties. The contact conditions hold approximately.
     Penalty(Penalty),
 }
 
-/// A penalty is stated by what it may leave, never as a number of its own.
+/// A penalty is given by the penetration that it admits, not by a stiffness.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Penalty {
-    /// The penetration to be left at the largest pressure, a length.
+    /// Penetration at the largest pressure, a length.
     pub wanted_penetration: Option<Value>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ActiveSetMethod {
-    /// Where the iteration begins; `nested` if left out.
+    /// Initial state of the iteration; `nested` if left out.
     pub start: Option<ActiveSetStart>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum ActiveSetStart {
-    /// From the solution on a coarser grid.
+    /// The solution on a coarser grid.
     Nested,
-    /// From the membrane without contact.
+    /// The membrane without contact.
     Cold,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Adhesion {
-    /// Energy per area.
+    /// Adhesion energy, an energy per area.
     pub energy: Value,
 }

@@ -8,38 +8,39 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rope {
-    /// Where it lies at the start.
+    /// Initial position of the rope.
     pub path: Path,
     /// Number of elements; 50 if left out.
     pub cells: Option<i64>,
-    /// Force per strain, EA.
+    /// Axial stiffness EA, a force.
     pub stiffness: Value,
-    /// Radius of its section, for contact; 0 if left out.
+    /// Radius of the section, used in contact; 0 if left out.
     pub radius: Option<Value>,
-    /// Tension along the path at the start, a force.
+    /// Initial tension along the path, a force.
     pub pretension: Option<Value>,
-    /// Length without tension, in place of `pretension`; that of the path if both are left out.
+    /// Unstrained length; replaces `pretension`. The length of the path if both are left out.
     pub unstrained_length: Option<Value>,
-    /// Straight elements, or smooth ones; straight if left out.
+    /// Straight elements (`C0`) or smooth ones (`C1`); `C0` if left out.
     pub continuity: Option<Continuity>,
-    /// Moment per curvature, EI, of a smooth rope; 0 if left out.
+    /// Bending stiffness EI of a smooth rope; 0 if left out.
     pub bending_stiffness: Option<Value>,
-    /// Points of Gauss in each element of a smooth rope at which contact is tested; 4 if left out.
+    /// Number of Gauss points in each element of a smooth rope at which contact is tested; 4 if left out.
     pub contact_points: Option<i64>,
-    /// Points of the path, lengths, at which the rope runs through a pulley without friction: its length is the same in all.
-    /// Supports and loads know them as `ROPE:pulleys`, or one by one as `ROPE:pulley_1`. Of straight elements only.
+    /// Points of the path, lengths, at which the rope runs through a pulley without friction. The tension is the same
+    /// on both sides. Supports and loads name them `ROPE:pulleys`, or one by one `ROPE:pulley_1`. Only for straight
+    /// elements.
     pub pulleys: Option<List<List<Value>>>,
-    /// A winch at an end that a support holds. Of straight elements only.
+    /// A winch at a supported end. Only for straight elements.
     pub winch: Option<Winch>,
 }
 
-/// A winch pays rope out and takes it in.
+/// A winch, which pays out rope and takes it in.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Winch {
-    /// The end of the rope at which it is.
+    /// The end of the rope with the winch.
     pub at: RopeEnd,
-    /// The unstrained length paid out since the start, by `t`; negative where it is taken in.
+    /// Unstrained length paid out since the start, as an expression of `t`; negative if rope is taken in.
     pub paid_out: Value,
 }
 
@@ -54,29 +55,30 @@ pub enum RopeEnd {
 pub enum Continuity {
     /// Straight elements, joined at nodes.
     C0,
-    /// Cubic elements with common tangents.
+    /// Cubic elements with common tangents at nodes.
     C1,
 }
 
-/// A beam, which bends, twists, shears and stretches by any amount.
+/// A geometrically exact beam with bending, torsion, shear and extension.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Beam {
-    /// Where it lies without stress.
+    /// The stress-free path of the beam.
     pub path: Path,
     /// Number of elements; 20 if left out.
     pub cells: Option<i64>,
     /// The shape of its section, or its stiffness.
     pub section: Section,
-    /// What it is made of; left out where the section states its stiffness.
+    /// Material. Left out if the section gives the stiffness.
     pub material: Option<Material>,
-    /// With shear and torsion, or free of torsion: for yarns and nets, round, straight at the start. With shear if left out.
+    /// With shear and torsion, or free of torsion. The latter is for yarns and nets: round sections, initially
+    /// straight. `shear` if left out.
     pub model: Option<BeamModel>,
-    /// A direction near the first axis across the section at the start of the path.
+    /// A direction near the first axis of the section at the start of the path.
     pub orientation: Option<List<Value>>,
-    /// Radius that touches; that of a round section if left out.
+    /// Radius used in contact; that of a circular section if left out.
     pub radius: Option<Value>,
-    /// Points of Gauss in each element at which contact is tested; 4 if left out.
+    /// Number of Gauss points in each element at which contact is tested; 4 if left out.
     pub contact_points: Option<i64>,
 }
 
@@ -92,24 +94,24 @@ pub enum BeamModel {
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Path {
-    /// Straight from point to point.
+    /// Straight segments from point to point.
     Points(List<List<Value>>),
-    /// A smooth curve through points.
+    /// A spline through points.
     Spline(SplinePath),
-    /// Points from a file, straight or as a spline.
+    /// Points from a file, joined by straight segments or a spline.
     File(PathFile),
     /// An arc of a circle through three points.
     Arc(ArcPath),
     /// A helix.
     Helix(HelixPath),
-    /// A curve by a parameter.
+    /// A parametric curve.
     Formula(FormulaPath),
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FormulaPath {
-    /// The position by the parameter `u`, lengths.
+    /// Position as expressions of the parameter `u`, lengths.
     pub position: List<Value>,
     /// The first value of `u`.
     pub from: Value,
@@ -122,24 +124,24 @@ pub struct FormulaPath {
 pub struct SplinePath {
     /// Points in order, lengths.
     pub points: List<List<Value>>,
-    /// Whether the curve returns to its first point.
+    /// Whether the curve is closed.
     pub closed: Option<bool>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PathFile {
-    /// A CSV file with columns x, y, z, found from the folder of the case.
+    /// A CSV file with columns x, y, z. The path is relative to the folder of the case.
     pub file: String,
-    /// Whether a spline leads through the points; it does not if left out.
+    /// Whether the points are joined by a spline; false if left out.
     pub spline: Option<bool>,
-    /// Whether the curve returns to its first point.
+    /// Whether the curve is closed.
     pub closed: Option<bool>,
-    /// What one unit of length of the file is in base units, 1 if left out.
+    /// Length of one unit of the file in base units; 1 if left out.
     pub scale: Option<Value>,
-    /// Rotation vector in radians about the origin of the file, after scaling.
+    /// Rotation vector in radians about the origin of the file, applied after scaling.
     pub turn: Option<Components>,
-    /// Displacement after scaling and turning, lengths.
+    /// Translation, applied after scaling and rotation; lengths.
     #[serde(rename = "move")]
     pub moved: Option<List<Value>>,
 }
@@ -147,7 +149,7 @@ pub struct PathFile {
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ArcPath {
-    /// Where it begins, a point between, and where it ends, lengths.
+    /// Start point, a point between, and end point, lengths.
     pub points: List<List<Value>>,
 }
 
@@ -158,11 +160,11 @@ pub struct HelixPath {
     pub center: Option<List<Value>>,
     /// Direction of the axis; z if left out.
     pub axis: Option<List<Value>>,
-    /// A direction from the axis towards the start; any if left out.
+    /// A direction from the axis towards the start point; any if left out.
     pub towards: Option<List<Value>>,
     /// Radius, a length.
     pub radius: Value,
-    /// Advance along the axis in a turn, a length; 0 makes a circle.
+    /// Pitch: advance along the axis per turn, a length; 0 for a circle.
     pub pitch: Value,
     /// Number of turns.
     pub turns: Value,
@@ -171,11 +173,11 @@ pub struct HelixPath {
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Section {
-    /// A round section.
+    /// A circular section.
     Circle(CircleSection),
     /// A rectangle.
     Rectangle(RectangleSection),
-    /// The stiffness itself.
+    /// The stiffness of the section.
     Stiffness(SectionStiffness),
 }
 
@@ -189,25 +191,25 @@ pub struct CircleSection {
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RectangleSection {
-    /// Along the first axis across the section, a length.
+    /// Width along the first axis of the section, a length.
     pub width: Value,
-    /// Along the second one, a length.
+    /// Height along the second axis of the section, a length.
     pub height: Value,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SectionStiffness {
-    /// Force per strain.
+    /// Axial stiffness, a force.
     #[serde(rename = "EA")]
     pub axial: Value,
-    /// Force per shear along both axes; large if left out: `EA` then.
+    /// Shear stiffness along both axes, forces; large if left out: `EA` then.
     #[serde(rename = "GA")]
     pub shear: Option<Components>,
-    /// Moment per curvature about both axes, or one for both.
+    /// Bending stiffness about both axes; one value for both is allowed.
     #[serde(rename = "EI")]
     pub bending: Components,
-    /// Moment per twist; `EI` if left out.
+    /// Torsional stiffness; `EI` if left out.
     #[serde(rename = "GJ")]
     pub torsion: Option<Value>,
 }

@@ -3,14 +3,14 @@
 use crate::KeyPath;
 use std::ops::Range;
 
-/// Something in a problem that cannot be used.
+/// An error in a problem.
 #[derive(Clone, Debug, thiserror::Error)]
 #[error("{message}")]
 pub struct CaseError {
     pub message: String,
     /// What to do about it.
     pub help: Option<String>,
-    /// The key that it is about.
+    /// The key that contains the error.
     pub key: Option<Box<KeyPath>>,
     /// Where: file, its text, and the bytes.
     pub place: Option<Place>,

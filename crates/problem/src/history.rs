@@ -4,45 +4,45 @@ use super::{Nothing, Value};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A part of the history.
+/// A load step.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Step {
-    /// Time at its end.
+    /// Time at the end of the step.
     pub to: Value,
-    /// Number of increments, 1 if left out.
+    /// Number of increments; 1 if left out.
     pub increments: Option<i64>,
-    /// What is prescribed along the step; the time if left out.
+    /// The path parameter of the step; the time if left out.
     pub control: Option<Control>,
-    /// Changes of topology and jumps are located to so much of the time; they are not sought if left out.
+    /// Time tolerance to which changes of topology and jumps are located; not located if left out.
     pub events: Option<f64>,
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Control {
-    /// The time.
+    /// Time.
     Time(Nothing),
-    /// Along the path of equilibria, through its folds.
+    /// Arc-length control along the equilibrium path, through folds.
     ArcLength(ArcLength),
-    /// The area of contact.
+    /// Area control: the contact area is prescribed and the time is an unknown.
     Area(AreaControl),
 }
 
-/// A step along a path of equilibria.
+/// Arc-length control.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ArcLength {
-    /// Length of an increment, where the area of the membrane and the time that the step takes have length one.
+    /// Arc length of an increment. The area of the membrane and the duration of the step have length one.
     pub size: f64,
 }
 
-/// A step in which the area of contact is given, and the time at which it is reached is sought.
+/// Area control: the contact area is prescribed and the time is an unknown.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AreaControl {
     /// Name of the contact.
     pub of: String,
-    /// The area at the end of the step.
+    /// Contact area at the end of the step.
     pub to: Value,
 }

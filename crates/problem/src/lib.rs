@@ -48,61 +48,61 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// A whole problem.
+/// A problem.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Problem {
-    /// Free text, repeated in the results.
+    /// Free text, copied to the results.
     pub title: Option<String>,
-    /// Base units; without them numbers are in any consistent units.
+    /// Base units. If left out, numbers are in any consistent units.
     pub units: Option<UnitSystem>,
-    /// What is computed; equilibrium if left out.
+    /// Kind of analysis; `equilibrium` if left out.
     pub analysis: Option<Analysis>,
-    /// In how many dimensions, and what the coordinates mean; `3d` if left out.
+    /// Dimension and meaning of the coordinates; `3d` if left out.
     #[serde(default)]
     pub space: Space,
-    /// Named numbers for expressions.
+    /// Named numbers for use in expressions.
     #[serde(default)]
     pub constants: Named<Value>,
-    /// Named functions of one argument, `t`.
+    /// Named functions of one argument, `t`, for use in expressions.
     #[serde(default)]
     pub functions: Named<TimeFunction>,
-    /// The things that occupy space, by names of your own.
+    /// Bodies, by names of your own.
     pub bodies: Named<Body>,
-    /// What holds bodies, by names of your own.
+    /// Supports and prescribed displacements, by names of your own.
     #[serde(default)]
     pub supports: Named<Support>,
-    /// What pushes and pulls bodies, by names of your own.
+    /// Loads, by names of your own.
     #[serde(default)]
     pub loads: Named<Load>,
-    /// Which bodies may touch, by names of your own.
+    /// Contacts between bodies, by names of your own.
     #[serde(default)]
     pub contacts: Named<Contact>,
-    /// The history, part by part; without steps one state is computed, at t = 0.
+    /// Load steps. Without steps one state is computed at t = 0.
     #[serde(default)]
     pub steps: List<Step>,
-    /// What is done with a state of a system of bodies that is not stable; `follow` if left out.
+    /// Treatment of unstable states of a system; `follow` if left out.
     pub stability: Option<UnstableStates>,
-    /// What to write.
+    /// What is written to disk.
     #[serde(default)]
     pub output: Output,
-    /// How much a run may take.
+    /// Limits of the computation.
     #[serde(default)]
     pub limits: Limits,
-    /// With `analysis = "wrapping"`, the number of times in [0, 1]; 2 if left out.
+    /// With `analysis = "wrapping"`: number of times in [0, 1]; 2 if left out.
     pub frames: Option<i64>,
-    /// From where pictures of paths are drawn.
+    /// View direction of pictures of paths.
     pub view: Option<View>,
-    /// With `analysis = "wrapping"`, shortest paths by names of your own.
+    /// With `analysis = "wrapping"`: shortest paths, by names of your own.
     #[serde(default)]
     pub paths: Named<ShortestPath>,
-    /// With `analysis = "winding"`, paths of yarns by names of your own.
+    /// With `analysis = "winding"`: paths of yarns, by names of your own.
     #[serde(default)]
     pub winding: Named<Winding>,
-    /// With `analysis = "euler_eytelwein"`, ropes on given curves by names of your own.
+    /// With `analysis = "euler_eytelwein"`: ropes on given curves, by names of your own.
     #[serde(default)]
     pub ropes: Named<RopeOnSurface>,
-    /// What `signorini fit` is to find out from measurements.
+    /// Parameters that `signorini fit` computes from measurements.
     pub fit: Option<Fit>,
     /// Where it was read from.
     #[serde(skip)]
@@ -249,15 +249,15 @@ impl<'de> Deserialize<'de> for UnitSystem {
 pub enum Space {
     /// A string: one coordinate, x.
     Line,
-    /// A round membrane: x is the radius.
+    /// An axisymmetric membrane: x is the radius.
     Axisymmetric,
     /// A membrane seen from above.
     Plane,
-    /// A slice of a long body: no strain across.
+    /// Plane strain.
     PlaneStrain,
-    /// A thin plate: no stress across.
+    /// Plane stress.
     PlaneStress,
-    /// Space itself.
+    /// Three-dimensional space.
     #[default]
     #[serde(rename = "3d")]
     ThreeD,
@@ -266,9 +266,9 @@ pub enum Space {
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum UnstableStates {
-    /// They are left along the direction in which their energy falls, to a stable state at the same loads.
+    /// Unstable states are left along the eigenvector, and a stable state at the same loads is computed.
     Follow,
-    /// They are kept, and told.
+    /// Unstable states are retained and reported.
     Tell,
 }
 
@@ -286,74 +286,74 @@ pub struct TimeFunction {
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Table {
-    /// Arguments, ascending.
+    /// Arguments in ascending order.
     pub t: List<f64>,
-    /// Values, one for each argument.
+    /// Function values, one for each argument.
     pub value: List<f64>,
 }
 
-/// Where something is held or moved.
+/// A support: degrees of freedom that are fixed, prescribed or elastically supported.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Support {
-    /// `BODY` or `BODY:GROUP`.
+    /// Body or group of a body: `BODY` or `BODY:GROUP`.
     pub on: String,
-    /// A value for a membrane, a vector with `"free"` where free for a solid.
+    /// Prescribed displacement: a value for a membrane, otherwise a vector with `"free"` for free components.
     pub displacement: Option<Components>,
-    /// The rotation vector in radians of a section of a beam or of a free rigid body, with `"free"` where free.
+    /// Prescribed rotation vector in radians of a beam section or a free rigid body, with `"free"` for free components.
     pub rotation: Option<List<Value>>,
-    /// The displacement along the outward normal alone.
+    /// Prescribed displacement along the outward normal; the tangential components are free.
     pub normal: Option<Value>,
-    /// All points share one displacement in the components that are not prescribed.
+    /// All points share one unknown displacement in the components that are not prescribed.
     pub uniform: Option<bool>,
-    /// Stiffness per area of an elastic bed; of ropes, beams and rigid bodies force per displacement.
+    /// Stiffness per area of an elastic foundation; for ropes, beams and rigid bodies force per displacement.
     pub spring: Option<List<Value>>,
 }
 
-/// What pushes.
+/// A load.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Load {
-    /// A body, or `BODY:GROUP`.
+    /// Body or group of a body: `BODY` or `BODY:GROUP`.
     pub on: String,
-    /// Force per area along +z for a membrane.
+    /// For a membrane: force per area along +z.
     pub normal: Option<Value>,
     /// Force per area along each axis.
     pub traction: Option<List<Value>>,
-    /// Force per area against the outer normal.
+    /// Force per area against the outward normal.
     pub pressure: Option<Value>,
-    /// A resultant force along each axis, spread evenly.
+    /// Resultant force along each axis, distributed uniformly.
     pub force: Option<List<Value>>,
-    /// Force per volume along each axis; of a rope or beam per length.
+    /// Force per volume along each axis; per length for a rope or beam.
     pub body_force: Option<List<Value>>,
-    /// A resultant moment about each axis, on a beam, a free rigid body, or a solid of a system.
+    /// Resultant moment about each axis, on a beam, a free rigid body, or a solid of a system.
     pub moment: Option<List<Value>>,
-    /// A force along the end of a rope or beam, pulling.
+    /// Tensile force along the end of a rope or beam.
     pub tension: Option<Value>,
 }
 
-/// How much a run may take: at the first of the limits it stops after the iteration at hand, and keeps what is there.
+/// Limits of the computation. At the first limit the run stops after the current iteration and stores its results.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Limits {
-    /// Time of the clock in seconds.
+    /// Wall time in seconds.
     pub max_time: Option<f64>,
-    /// Iterations of all increments together.
+    /// Number of iterations over all increments.
     pub max_iterations: Option<i64>,
 }
 
-/// What to write.
+/// What is written to disk.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Output {
-    /// Increments between written fields.
+    /// Number of increments between stored fields.
     pub every: Option<i64>,
-    /// Whether pictures are drawn; they are if left out.
+    /// Whether pictures are drawn; true if left out.
     pub pictures: Option<bool>,
-    /// Points whose histories are recorded.
+    /// Points whose history is recorded.
     #[serde(default)]
     pub probes: Named<List<Value>>,
-    /// The point about which moments of supports, loads and contacts are told, lengths; the origin if left out.
+    /// Point about which moments of supports, loads and contacts are reported, lengths; the origin if left out.
     pub moments_about: Option<List<Value>>,
 }
 

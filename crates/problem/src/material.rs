@@ -7,11 +7,12 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Material {
-    /// Isotropic and linear.
+    /// Isotropic, linear elastic.
     LinearElastic(LinearElastic),
-    /// Isotropic at any strain, from the strain energy of Neo and Hooke; with `strain = "finite"`.
+    /// Isotropic, hyperelastic: neo-Hookean; requires `strain = "finite"`.
     NeoHooke(LinearElastic),
-    /// Isotropic and linear in the strain of Green and Lagrange: for large rotations; with `strain = "finite"`.
+    /// Isotropic, Saint-Venant-Kirchhoff: linear in the Green-Lagrange strain. For large rotations with small strains;
+    /// requires `strain = "finite"`.
     SaintVenantKirchhoff(LinearElastic),
 }
 

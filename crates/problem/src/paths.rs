@@ -10,27 +10,27 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::fmt;
 
-/// What is computed.
+/// Kind of analysis.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum Analysis {
     /// Equilibrium of bodies in contact.
     Equilibrium,
-    /// Shortest paths over rigid bodies: their length, its derivatives, the tensions that friction holds.
+    /// Shortest paths over rigid bodies: length, derivatives, and the tensions that friction admits.
     Wrapping,
     /// Paths of yarns on a mandrel.
     Winding,
-    /// Whether ropes hold on curves that are given, by the theorem of Euler and Eytelwein for curves on surfaces.
+    /// Equilibrium of ropes on given curves: theorem of Euler and Eytelwein for curves on surfaces.
     EulerEytelwein,
 }
 
-/// From where pictures in space are drawn.
+/// View direction of pictures in space.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct View {
-    /// The direction to the eye.
+    /// Direction from the object to the viewer.
     pub from: List<f64>,
-    /// The direction that is up on the page; z if left out.
+    /// Direction that points up in the picture; z if left out.
     pub up: Option<List<f64>>,
 }
 
@@ -38,28 +38,29 @@ pub struct View {
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ShortestPath {
-    /// Where it starts: a point of space, its coordinates lengths by t, or a point of a body.
+    /// Start: a point in space (lengths, expressions of t) or a point of a body.
     pub from: PathEnd,
-    /// Where it ends.
+    /// End: a point in space or a point of a body.
     pub to: PathEnd,
-    /// Bodies in the order of the path, each touched where it is in the way; between points of `via` a list for each part.
+    /// Bodies in the order of the path. The path is in contact with a body only where it is obstructed by it. With
+    /// `via`, one list for each part.
     #[serde(default)]
     pub around: List<Around>,
-    /// Further turns about bodies, by their names.
+    /// Additional turns around bodies, by their names.
     #[serde(default)]
     pub turns: Named<i64>,
-    /// Points through which it runs, in order.
+    /// Points that the path passes through, in order.
     #[serde(default)]
     pub via: List<PathEnd>,
-    /// Coefficients of friction: the same in all directions, or along the path and across it.
+    /// Coefficients of friction: one for all directions, or along the path and across it.
     pub friction: Option<PathFriction>,
-    /// Tension at the start, a force by t.
+    /// Tension at the start, a force, as an expression of t.
     pub tension: Option<Value>,
-    /// Tension at the end, a force by t: whether friction holds it is told.
+    /// Tension at the end, a force, as an expression of t. It is compared with the friction limits.
     pub end_tension: Option<Value>,
 }
 
-/// A point of space, its coordinates values by t; or a point of a body, with which it moves.
+/// A point in space (expressions of t), or a point attached to a body.
 #[derive(Clone, Debug, Serialize)]
 #[serde(untagged)]
 pub enum PathEnd {
@@ -67,13 +68,13 @@ pub enum PathEnd {
     OnBody(OnBody),
 }
 
-/// A point of a body.
+/// A point attached to a body.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OnBody {
     /// Name of the body.
     pub body: String,
-    /// Where it is before the body moves, lengths.
+    /// Position before the body moves, lengths.
     pub point: List<Value>,
 }
 
@@ -142,20 +143,21 @@ impl<'de> Deserialize<'de> for Around {
     }
 }
 
-/// Laws of friction of ropes.
+/// Friction laws of ropes.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PathFriction {
-    /// In proportion to the pressure.
+    /// Coulomb friction.
     Coulomb(PathCoulomb),
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PathCoulomb {
-    /// The coefficient; two where it depends on the direction: along the rope and across it, or along `axis` and across it.
+    /// Coefficient of friction. Two if it depends on the direction: along and across the rope, or along and across
+    /// `axis`.
     pub mu: Components,
-    /// A direction, values by x, y and z, that the surface carries, projected on it; along the rope if left out.
+    /// A direction attached to the surface (expressions of x, y and z), projected on it; along the rope if left out.
     pub axis: Option<List<Value>>,
 }
 
@@ -165,63 +167,64 @@ pub struct PathCoulomb {
 pub struct Winding {
     /// Name of the mandrel.
     pub on: String,
-    /// Where it starts, and how it runs there.
+    /// Start point and start direction.
     pub start: WindingStart,
-    /// Slippage, geodesic over normal curvature: by s, angle, r and z; sought where it is left out and an opening is given.
+    /// Slippage, the ratio of geodesic to normal curvature, as an expression of s, angle, r and z. If left out and
+    /// `polar_opening` is given, it is computed.
     pub slippage: Option<Value>,
-    /// The coefficient of friction beyond which the yarn slips.
+    /// Coefficient of friction. The yarn slips beyond it.
     pub friction: Option<Value>,
-    /// The opening at the pole that is to be reached.
+    /// Polar opening that the path has to reach.
     pub polar_opening: Option<PolarOpening>,
     /// Width of the band, a length.
     pub band: Option<Value>,
-    /// Circuits that cover the mandrel.
+    /// Winding pattern of circuits that covers the mandrel.
     pub pattern: Option<WindingPattern>,
-    /// About which the mandrel turns, through the centre of its shape; z if left out.
+    /// Rotation axis of the mandrel, through the centre of its shape; z if left out.
     pub axis: Option<List<Value>>,
-    /// Of a path without an opening or a pattern, or the greatest one to a turn.
+    /// Length of a path without opening or pattern; with these, the maximum length to a turn.
     pub length: Option<Value>,
-    /// Distance of the points that are written, a length.
+    /// Distance between the points that are written, a length.
     pub spacing: Option<Value>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WindingStart {
-    /// Along the axis, a length.
+    /// Position along the axis, a length.
     pub z: Value,
-    /// Around the axis, in radians or as "25 deg"; 0 if left out.
+    /// Angle around the axis, in radians or as "25 deg"; 0 if left out.
     pub theta: Option<Value>,
-    /// From the meridian, in radians or as "25 deg".
+    /// Angle to the meridian, in radians or as "25 deg".
     pub angle: Value,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PolarOpening {
-    /// Radius of the edge of the band, which is half its width inside of its middle.
+    /// Radius of the edge of the band. The edge is half a band width from the centreline.
     pub radius: Value,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WindingPattern {
-    /// Their number, or "auto": as few as cover the mandrel.
+    /// Number of circuits, or "auto" for the smallest number that covers the mandrel.
     pub circuits: Value,
 }
 
-/// A rope on a curve that is given.
+/// A rope on a given curve.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RopeOnSurface {
     /// Name of the body.
     pub on: String,
-    /// The curve, on its surface.
+    /// The curve on the surface of the body.
     pub path: Path,
     /// Coefficients of friction along the rope and across it, or along and across an axis of the surface.
     pub friction: PathFriction,
     /// Tension at the start, a force; 1 if left out.
     pub tension: Option<Value>,
-    /// Tension at the end, a force: whether friction holds it is told.
+    /// Tension at the end, a force. It is compared with the friction limits.
     pub end_tension: Option<Value>,
 }

@@ -5,26 +5,26 @@ use super::{List, Nothing, Value};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A body that does not deform.
+/// A rigid body.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rigid {
     /// The shape of its surface.
     pub shape: Shape,
-    /// On which side of the surface the body is free to be touched; `outside` if left out.
+    /// The side of the surface on which contact is possible; `outside` if left out.
     pub side: Option<Side>,
-    /// Of a triangle mesh: a smooth surface through its vertices in place of flat triangles, for what slides or rolls on it;
-    /// flat if left out. Paths always run on the smooth one.
+    /// For triangle meshes: a smooth surface through the vertices replaces the flat triangles, for bodies that slide or
+    /// roll on it; false if left out. Paths always use the smooth surface.
     pub smooth: Option<bool>,
-    /// Where it lies beside a membrane; if left out a plane, a cone and a paraboloid tell it by their direction, a round
-    /// body by its centre, and every other one lies below.
+    /// Position relative to a membrane. If left out, it follows from the direction of a plane, cone or paraboloid and
+    /// from the centre of a round body; all other bodies are below.
     pub lies: Option<Lies>,
-    /// How it moves; it is at rest if left out.
+    /// Motion of the body; at rest if left out.
     pub motion: Option<Motion>,
 }
 
 impl Rigid {
-    /// A body at rest that is touched from outside.
+    /// A body at rest with contact on its outside.
     pub fn new(shape: Shape) -> Self {
         Self { shape, side: None, smooth: None, lies: None, motion: None }
     }
@@ -33,18 +33,18 @@ impl Rigid {
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum Lies {
-    /// Under the membrane: it is seen from above.
+    /// Below the membrane.
     Below,
-    /// Over the membrane: it is seen from below.
+    /// Above the membrane.
     Above,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
-    /// The body fills the shape.
+    /// The body is inside the surface; contact is on the outside.
     Outside,
-    /// The shape is a hole in the body.
+    /// The surface bounds a hole in the body; contact is on the inside.
     Inside,
 }
 
@@ -53,17 +53,17 @@ pub enum Side {
 pub enum Motion {
     /// At rest.
     Fixed(Nothing),
-    /// Moved as stated.
+    /// Prescribed translation and rotation.
     Prescribed(Prescribed),
-    /// Moved by what acts on it.
+    /// A free body: its motion is unknown.
     Free(FreeMotion),
 }
 
-/// A rigid body that moves freely: in space by six unknowns, in the plane by three.
+/// A free rigid body: six unknowns in space, three in the plane.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FreeMotion {
-    /// The point that forces act on and about which the body turns, lengths; the centre of the shape if left out.
+    /// Reference point for forces and rotations, lengths; the centre of the shape if left out.
     pub center: Option<List<Value>>,
 }
 

@@ -12,23 +12,23 @@ use std::sync::Arc;
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Shape {
-    /// A floor seen from above: its height as an expression of x and y.
+    /// The body below a height, an expression of x and y.
     Height(Value),
-    /// A half space below a plane.
+    /// A half space bounded by a plane.
     Plane(Plane),
-    /// A ball.
+    /// A sphere; a circle in the plane.
     Sphere(Sphere),
-    /// A round cylinder without ends.
+    /// An infinite circular cylinder.
     Cylinder(Cylinder),
-    /// A round cone without end.
+    /// An infinite circular cone.
     Cone(Cone),
-    /// An ellipsoid along the axes.
+    /// An ellipsoid with semi-axes along the coordinate axes.
     Ellipsoid(Ellipsoid),
-    /// A ring.
+    /// A torus.
     Torus(Torus),
     /// A paraboloid of revolution.
     Paraboloid(Paraboloid),
-    /// A body of revolution of a smooth profile.
+    /// A body of revolution with a smooth profile.
     Revolution(Revolution),
     /// NURBS surfaces from a JSON file.
     Nurbs(SurfaceFile),
@@ -36,11 +36,11 @@ pub enum Shape {
     Stl(SurfaceFile),
     /// A triangle mesh from arrays.
     Triangles(TriangleArrays),
-    /// Measured heights on a grid of points, from CSV, NPY or 16-bit TIFF.
+    /// The body below measured heights on a grid of points, from CSV, NPY or 16-bit TIFF.
     HeightMap(HeightMap),
-    /// Where an expression of x, y and z is negative.
+    /// The region in which an expression of x, y and z is negative.
     LevelSet(LevelSetShape),
-    /// A shape of the program.
+    /// A shape supplied by a program.
     #[serde(skip_deserializing)]
     #[schemars(skip)]
     Custom(CustomShape),
@@ -141,7 +141,7 @@ pub trait ShapeReader {
 pub struct Plane {
     /// A point of the plane, lengths.
     pub point: List<Value>,
-    /// The normal out of the body; its length does not matter.
+    /// Normal, out of the body. Its length has no influence.
     pub normal: List<Value>,
 }
 
@@ -179,7 +179,7 @@ impl ClosedForm for Sphere {
 pub struct Cylinder {
     /// A point of the axis, lengths.
     pub point: List<Value>,
-    /// In the plane a cylinder stands across it.
+    /// Direction of the axis. Left out in the plane, where the axis is normal to the plane.
     pub axis: Option<List<Value>>,
     /// Radius, a length.
     pub radius: Value,
@@ -199,11 +199,11 @@ impl ClosedForm for Cylinder {
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Cone {
-    /// The tip, lengths.
+    /// Apex, lengths.
     pub apex: List<Value>,
-    /// Into the body.
+    /// Direction of the axis, into the body.
     pub axis: List<Value>,
-    /// In radians.
+    /// Half of the opening angle, in radians.
     pub half_angle: Value,
 }
 
@@ -219,7 +219,7 @@ impl ClosedForm for Cone {
             return Err(reader
                 .problem()
                 .error(&self.half_angle, format!("the half angle is {half_angle}"))
-                .help("an angle in radians below pi/2"));
+                .help("give an angle in radians between 0 and pi/2"));
         }
         let (apex, axis) = (reader.place(&self.apex)?, reader.direction(&self.axis)?);
         Ok(Arc::new(rigid_shape::Cone { apex, axis, half_angle }))
@@ -231,7 +231,7 @@ impl ClosedForm for Cone {
 pub struct Ellipsoid {
     /// Centre, lengths.
     pub center: List<Value>,
-    /// Half the extents, lengths.
+    /// Semi-axes, lengths.
     pub semi_axes: List<Value>,
 }
 
@@ -255,11 +255,11 @@ impl ClosedForm for Ellipsoid {
 pub struct Torus {
     /// Centre, lengths.
     pub center: List<Value>,
-    /// Direction of its axis; its length does not matter.
+    /// Direction of the axis. Its length has no influence.
     pub axis: List<Value>,
-    /// Radius of the ring's middle line, a length.
+    /// Radius of the centre line of the ring, a length.
     pub major_radius: Value,
-    /// Radius of its cross-section, a length.
+    /// Radius of the cross-section, a length.
     pub minor_radius: Value,
 }
 
@@ -283,11 +283,11 @@ impl ClosedForm for Torus {
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Paraboloid {
-    /// The lowest or highest point, lengths.
+    /// Apex, lengths.
     pub apex: List<Value>,
-    /// Into the body.
+    /// Direction of the axis, into the body.
     pub axis: List<Value>,
-    /// Of curvature at the apex.
+    /// Radius of curvature at the apex, a length.
     pub radius: Value,
 }
 
@@ -307,11 +307,12 @@ impl ClosedForm for Paraboloid {
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Revolution {
-    /// A table of points of the profile: distance from the axis, and place along it. A spline runs through them.
+    /// File with points of the profile: distance from the axis and position along it. They are interpolated by a
+    /// spline.
     pub profile: String,
-    /// Where places along the axis are counted from, lengths; the origin if left out.
+    /// Origin of the positions along the axis, lengths; the origin if left out.
     pub origin: Option<List<Value>>,
-    /// Along the axis, in the direction in which places increase.
+    /// Direction of the axis, towards increasing positions.
     pub axis: List<Value>,
 }
 
@@ -332,17 +333,17 @@ impl ClosedForm for Revolution {
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HeightMap {
-    /// The file, found from the folder of the case.
+    /// The file. The path is relative to the folder of the case.
     pub file: String,
-    /// Distance of the columns (along x) and of the rows (along y).
+    /// Spacing of the columns (along x) and of the rows (along y).
     pub spacing: List<Value>,
-    /// Where the first height is.
+    /// Position of the first height; the origin if left out.
     pub origin: Option<List<Value>>,
-    /// The height that one unit of the file stands for.
+    /// Height of one unit of the file; 1 if left out.
     pub scale: Option<Value>,
-    /// Angle in radians by which the map is turned about its origin.
+    /// Angle in radians by which the map is rotated about its origin.
     pub turn: Option<Value>,
-    /// Displacement after turning, lengths.
+    /// Translation, applied after rotation; lengths.
     #[serde(rename = "move")]
     pub moved: Option<List<Value>>,
 }
@@ -353,24 +354,24 @@ pub struct HeightMap {
 pub struct LevelSetShape {
     /// An expression of x, y and z.
     pub negative_inside: Value,
-    /// The lower corner of a box round what matters of it, lengths.
+    /// Lower corner of a box around the relevant part of the surface, lengths.
     pub min: List<Value>,
     /// The upper corner of the box, lengths.
     pub max: List<Value>,
-    /// Cells of the grid from which closest points are searched, along the longest side; 64 if left out.
+    /// Number of grid cells along the longest side of the box, used for the search of closest points; 64 if left out.
     pub cells: Option<i64>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SurfaceFile {
-    /// The file, found from the folder of the case.
+    /// The file. The path is relative to the folder of the case.
     pub file: String,
-    /// What one unit of length of the file is in base units, 1 if left out.
+    /// Length of one unit of the file in base units; 1 if left out.
     pub scale: Option<Value>,
-    /// Rotation vector in radians about the origin of the file, after scaling; in the plane one angle.
+    /// Rotation vector in radians about the origin of the file, applied after scaling; one angle in the plane.
     pub turn: Option<Components>,
-    /// Displacement after scaling and turning, lengths.
+    /// Translation, applied after scaling and rotation; lengths.
     #[serde(rename = "move")]
     pub moved: Option<List<Value>>,
 }

@@ -71,7 +71,7 @@ impl Units {
         let find = |list: &[(&'static str, f64)], what: &str, name: &str| {
             list.iter().find(|(n, _)| *n == plain(name)).copied().ok_or_else(|| {
                 let known: Vec<&str> = list.iter().map(|(n, _)| *n).collect();
-                format!("`{name}` is not a unit of {what}: known are {}", known.join(", "))
+                format!("`{name}` is not a unit of {what}; valid units are {}", known.join(", "))
             })
         };
         let (length, force, time) =
@@ -132,7 +132,7 @@ fn parse_unit(text: &str) -> Result<(f64, Dimension), String> {
         let (word, power) = match rest[..end].trim().split_once('^') {
             Some((word, power)) => {
                 let power = power.trim().parse::<i32>().ok().filter(|p| p.abs() <= 6);
-                (word.trim(), power.ok_or_else(|| format!("`{}` has no whole power", rest[..end].trim()))?)
+                (word.trim(), power.ok_or_else(|| format!("`{}` has no integer exponent", rest[..end].trim()))?)
             }
             None => (rest[..end].trim(), 1),
         };
@@ -153,7 +153,7 @@ fn parse_unit(text: &str) -> Result<(f64, Dimension), String> {
 /// A dimension in words, with an example.
 pub fn describe(dimension: Dimension) -> &'static str {
     match dimension {
-        NONE => "a pure number",
+        NONE => "a number without unit",
         LENGTH => "a length, such as mm",
         FORCE_PER_LENGTH => "a force per length, such as N/m",
         PRESSURE => "a force per area, such as Pa",

@@ -161,7 +161,7 @@ pub fn master<'a, B: CurveBody>(
     state: &'a BodyState,
 ) -> Result<Box<dyn Master + 'a>, PlaceError> {
     if let Part::Nodes(_) = place::part(body.name(), body.centreline(), on)? {
-        let message = "a rope or beam is touched along all of it: name it without a group".to_string();
+        let message = "contact of a rope or beam is along its whole length: name it without a group".to_string();
         return Err(PlaceError::Unsuitable { body: body.name().to_string(), message });
     }
     Ok(Box::new(CurveMaster::new(Box::new(body as &dyn CurveBody), &state.configuration)))

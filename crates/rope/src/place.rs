@@ -128,7 +128,7 @@ impl Line<'_> {
                 return Err(self.unsuitable("a curve has no area: give a force, or a force per length"));
             }
             (Load::Moment(_) | Load::FollowerMoment(_), _) => {
-                return Err(self.unsuitable("only the sections of a beam with shear take moments"));
+                return Err(self.unsuitable("only sections of beams with shear have moments"));
             }
         }
         Ok(())

@@ -72,7 +72,7 @@ fn stop_flag() -> Arc<AtomicBool> {
             if handler.swap(true, Ordering::SeqCst) {
                 std::process::exit(130);
             }
-            tell!("stopping after this iteration; what is done stays on disk");
+            tell!("stopping after this iteration; the increments computed so far are on disk");
         });
         flag
     })

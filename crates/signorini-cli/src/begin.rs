@@ -19,7 +19,7 @@ pub fn new(template: &str, folder: Option<PathBuf>, json: bool) -> u8 {
     let folder = folder.unwrap_or_else(|| PathBuf::from(template));
     let occupied = std::fs::read_dir(&folder).is_ok_and(|mut entries| entries.next().is_some());
     if occupied || folder.is_file() {
-        let error = CaseError::new(format!("`{}` is there already", folder.display()))
+        let error = CaseError::new(format!("`{}` already exists", folder.display()))
             .help(format!("signorini new {template} another_folder"));
         return report(&error, json);
     }
@@ -32,7 +32,7 @@ pub fn new(template: &str, folder: Option<PathBuf>, json: bool) -> u8 {
     files.extend(named.filter_map(|name| Some((name.to_string(), asset(name)?.to_vec()))));
     if let Err(error) = write_all(&folder, &files) {
         let error = CaseError::new(format!("cannot write `{}`: {error}", folder.display()))
-            .help("may this program write there?");
+            .help("check that this program may write there");
         return report(&error, json);
     }
     let path = folder.join("case.toml");
@@ -100,7 +100,7 @@ pub fn reproduce(names: &[String], folder: &Path) -> u8 {
     let all = names.iter().any(|n| n == "all");
     if let Some(unknown) = names.iter().find(|n| *n != "all" && FIGURES.iter().all(|f| f.name != **n)) {
         let names: Vec<&str> = FIGURES.iter().map(|f| f.name).collect();
-        tell!("there is no figure `{unknown}`; there are {} and all", names.join(", "));
+        tell!("there is no figure `{unknown}`; valid are {} and all", names.join(", "));
         return WRONG_INPUT;
     }
     for figure in FIGURES.iter().filter(|f| all || names.iter().any(|n| n == f.name)) {

@@ -139,7 +139,7 @@ pub fn check(case: &Path, set: &[String], picture: Option<&Path>, json: bool) ->
                 if json {
                     say!("{sizes}")
                 } else {
-                    say!("{name}: the scene is right: {} frames.", scene.times.len())
+                    say!("{name}: the scene is valid: {} frames.", scene.times.len())
                 }
                 DONE
             }
@@ -176,7 +176,7 @@ pub fn check(case: &Path, set: &[String], picture: Option<&Path>, json: bool) ->
             if json {
                 say!("{sizes}");
             } else {
-                say!("{}: the case is right.", problem.source.name);
+                say!("{}: the case is valid.", problem.source.name);
                 for (key, value) in sizes.as_object().into_iter().flatten() {
                     match value {
                         Value::Array(list) if list.is_empty() => {}
@@ -223,7 +223,7 @@ fn line(v: &Value) -> String {
 pub fn output_error(error: &OutputError) -> CaseError {
     let help = match error {
         OutputError::Foreign { .. } => "choose another folder with -o DIR, or empty this one",
-        _ => "is there space, and may this program write there? choose another folder with -o DIR",
+        _ => "check the free space and the permission to write; or choose another folder with -o DIR",
     };
     CaseError::new(error.to_string()).help(help)
 }
@@ -361,7 +361,8 @@ fn execute(name: &str, text: &str, folder: &Path, wanted: &Wanted, json: bool) -
     let resumed = *resumed;
     if scene::is_scene(text) {
         if resumed {
-            let error = CaseError::new("a scene cannot be resumed").help("run it from the beginning, without --resume");
+            let error =
+                CaseError::new("a scene cannot be resumed").help("start it from the beginning, without --resume");
             return report(&error, json);
         }
         return execute_scene(name, text, folder, set, json);
@@ -374,7 +375,8 @@ fn execute(name: &str, text: &str, folder: &Path, wanted: &Wanted, json: bool) -
     problem.limits.max_iterations = limits.max_iterations.or(problem.limits.max_iterations);
     if paths::is_of_paths(&problem) {
         if resumed {
-            let error = CaseError::new("paths cannot be resumed").help("run them from the beginning, without --resume");
+            let error =
+                CaseError::new("paths cannot be resumed").help("start them from the beginning, without --resume");
             return report(&error, json);
         }
         return execute_paths(&problem, folder, json);
@@ -385,10 +387,10 @@ fn execute(name: &str, text: &str, folder: &Path, wanted: &Wanted, json: bool) -
     };
     match earlier {
         Some(Begun::Anew) => {
-            tell!("note: the earlier run in {} kept no increment: it begins anew", folder.display())
+            tell!("note: the earlier run in {} stored no increment and starts again", folder.display())
         }
         Some(Begun::Done) => {
-            tell!("note: the run in {} is done: its results are left as they are", folder.display())
+            tell!("note: the run in {} is complete; its results are unchanged", folder.display())
         }
         _ => {}
     }
@@ -455,7 +457,7 @@ fn read(case: &Path) -> Result<(String, String), CaseError> {
             Err(_) => Err(CaseError::new(format!("`{name}` is not a text file")).help("a case file is TOML in UTF-8")),
         },
         Err(error) => Err(CaseError::new(format!("cannot read `{name}`: {error}"))
-            .help("signorini gallery show flat_disc > case.toml  gives a case to begin with")),
+            .help("signorini gallery show flat_disc > case.toml  gives a case to start from")),
     }
 }
 

@@ -21,12 +21,12 @@ const EXAMPLES: &str = "Examples:
   signorini run case.toml -o out --set loads.press.normal=-0.3
   signorini closest queries.json -o answers.json      closest points of pairs of shapes
   signorini fit blister.toml                          adhesion from measurements
-  signorini check case.toml                           is the case right, and how large is it?
-  signorini new flat_disc                             a case of your own to begin with
-  signorini explain iteration_limit                   what a word means, and what to do
+  signorini check case.toml                           check the case and report its size
+  signorini new flat_disc                             a new case from a template
+  signorini explain iteration_limit                   explain a word of the results
 
-Exit status: 0 done, 1 the input is wrong or the output cannot be written, 2 not converged, or not an answer (results so far are on disk),
-3 a fault of ours, 130 interrupted.";
+Exit status: 0 done, 1 wrong input or output that cannot be written, 2 not converged or refused by the audit (results so far are on
+disk), 3 a fault of the program, 130 interrupted.";
 
 const CLOSEST_HELP: &str = r#"Examples:
   signorini closest points.npy --to part.stl -o answers.npy
@@ -35,9 +35,9 @@ const CLOSEST_HELP: &str = r#"Examples:
     "b": {"type": "segment", "p0": [1, 0, 0], "p1": [3, 0, 0]}}]}' > queries.json
   signorini closest queries.json -o answers.json
 
-A wrong query gets an answer that says what is wrong, and the exit status 1; the others are answered."#;
+A wrong query is answered with an error, and the exit status is 1. The other queries are answered."#;
 
-/// Contact mechanics that puts geometry first.
+/// Computational contact mechanics.
 #[derive(Parser)]
 #[command(name = "signorini", version, after_help = EXAMPLES)]
 struct Arguments {
@@ -46,7 +46,7 @@ struct Arguments {
     /// Print results and errors as JSON
     #[arg(long, global = true)]
     json: bool,
-    /// Number of threads (default: all); results do not depend on it
+    /// Number of threads (default: all). Results do not depend on it
     #[arg(long, global = true, value_name = "N")]
     threads: Option<usize>,
 }
@@ -58,29 +58,29 @@ enum Command {
         after_help = "Examples:\n  signorini run gallery/cosine_disc/case.toml -o out --set steps.0.to=0.3\n  signorini run gallery/cosine_disc/case.toml -o out --resume"
     )]
     Run {
-        /// The case file; - reads it from standard input
+        /// The case file, or - for standard input
         case: PathBuf,
         #[command(flatten)]
         options: RunOptions,
         #[command(flatten)]
         limits: LimitOptions,
-        /// Go on with a run that was interrupted or killed, to the same digits
+        /// Continue a run that was interrupted or killed. The results are the same to the last digit
         #[arg(long)]
         resume: bool,
     },
     /// Check a case without running it
     #[command(after_help = "Example:\n  signorini check case.toml --picture preview.png")]
     Check {
-        /// The case file; - reads it from standard input
+        /// The case file, or - for standard input
         case: PathBuf,
         /// Replace or add a key
         #[arg(long = "set", value_name = "KEY=VALUE", allow_hyphen_values = true)]
         set: Vec<String>,
-        /// Draw the case before anything happens in it, as PNG or SVG
+        /// Draw the initial state of the case, as PNG or SVG
         #[arg(long, value_name = "FILE")]
         picture: Option<PathBuf>,
     },
-    /// Find out the energy of adhesion from measured loads and contact radii
+    /// Compute the adhesion energy from measured loads and contact radii
     #[command(after_help = "Example:\n  signorini fit gallery/blister/case.toml -o fitted")]
     Fit {
         /// The case file, with a table [fit]
@@ -91,58 +91,58 @@ enum Command {
     /// Closest points of pairs of shapes
     #[command(after_help = CLOSEST_HELP)]
     Closest {
-        /// The queries, JSON in the form of docs/closest-points.md, or with --to points, CSV or NPY; - reads them from
-        /// standard input
+        /// The queries as JSON (see docs/closest-points.md); with --to, points as CSV or NPY; - for standard input
         queries: PathBuf,
-        /// The shape to which the points are to be projected: STL, OBJ, PLY, or JSON as in a query
+        /// The shape on which the points are projected: STL, OBJ, PLY, or JSON as in a query
         #[arg(long, value_name = "SHAPE")]
         to: Option<PathBuf>,
         /// File for the answers: .json, .csv or .npy
         #[arg(short, long, value_name = "ANSWERS")]
         output: PathBuf,
-        /// Find every local minimiser too
+        /// Report all local minima too
         #[arg(long)]
         local_minima: bool,
     },
-    /// Begin a case: a folder with a template that explains itself
+    /// Create a folder with a new case from a commented template
     #[command(
         after_help = "Examples:\n  signorini new flat_disc\n  signorini new cosine_disc my_case\n\nThe templates are the cases of the gallery: signorini gallery lists them."
     )]
     New {
         /// A case of the gallery
         template: String,
-        /// The folder to make (default: the template's name)
+        /// The new folder (default: the template's name)
         folder: Option<PathBuf>,
     },
-    /// Explain a key of the case file, a reason, an event, a figure of the results
+    /// Explain a key of the case file or a word of the results
     #[command(
         after_help = "Examples:\n  signorini explain membrane.tension\n  signorini explain iteration_limit\n  signorini explain expressions"
     )]
     Explain {
-        /// A key or the end of one, or a word; without it, all words
+        /// A key, the end of a key, or a word. If left out, all words are listed
         word: Option<String>,
     },
     /// Print the JSON Schema of case files, for editors, or of the summary, for programs
     #[command(
-        after_help = "Examples:\n  signorini schema > case.schema.json\n\nand as the first line of a case\n  #:schema ./case.schema.json\n\nof what a run tells:\n  signorini schema --summary"
+        after_help = "Examples:\n  signorini schema > case.schema.json\n\nand as the first line of a case\n  #:schema \
+                      ./case.schema.json\n\nfor the results of a run:\n  signorini schema --summary"
     )]
     Schema {
-        /// Of summary.json
+        /// Print the schema of summary.json
         #[arg(long, conflicts_with = "markdown")]
         summary: bool,
-        /// Of both, as tables for people
+        /// Print the keys of both as Markdown tables
         #[arg(long)]
         markdown: bool,
     },
-    /// Run problems with known answers, here and now
+    /// Run problems with known solutions
     #[command(after_help = "Example:\n  signorini verify")]
     Verify,
-    /// Compute figures of the publication of the inequality level-set method anew
+    /// Reproduce figures of the publication of the inequality level-set method
     #[command(
         after_help = "Examples:\n  signorini reproduce\n  signorini reproduce front_error\n  signorini reproduce all -o docs/validation"
     )]
     Reproduce {
-        /// Names of figures, or all; without one, a list
+        /// Names of figures, or all. If left out, the figures are listed
         names: Vec<String>,
         /// The folder for pages and pictures
         #[arg(short, long, default_value = "reproduced")]
@@ -175,10 +175,10 @@ struct RunOptions {
 
 #[derive(clap::Args)]
 struct LimitOptions {
-    /// Stop after so many seconds, keep what is there, and end with status 2
+    /// Stop after this time, store the results, and exit with status 2
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     max_time: Option<f64>,
-    /// Stop after so many iterations of all increments together
+    /// Stop after this number of iterations over all increments
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(i64).range(1..))]
     max_iterations: Option<i64>,
 }
@@ -262,7 +262,7 @@ fn main() -> ExitCode {
     match result {
         Ok(code) => ExitCode::from(console::finish(code)),
         Err(_) => {
-            tell!("signorini has a fault of its own: please report the case and the message above.");
+            tell!("signorini has an internal fault: please report the case and the message above.");
             ExitCode::from(3)
         }
     }

@@ -39,16 +39,16 @@ pub fn fit(problem: &Problem, folder: &Path) -> Result<Fitted, RunError> {
     let Plan::Line(planned) = plan(problem)? else {
         let space = &problem.space;
         return Err(problem
-            .error(space, "a fit needs a zone that one number describes")
+            .error(space, "a fit requires a contact zone described by one number")
             .help("space = \"axisymmetric\" for a round membrane, \"line\" for a strip")
             .into());
     };
     if planned.contacts.len() != 1 {
         let found = planned.contacts.len();
-        return Err(problem.error(key, format!("one contact is measured, there are {found}")).into());
+        return Err(problem.error(key, format!("exactly one contact is measured, but the case has {found}")).into());
     }
     if planned.space == Space::Axisymmetric && planned.grid.bounds().min[0] != 0.0 {
-        return Err(problem.error(&problem.space, "a fit needs a disc: its radius begins at 0").into());
+        return Err(problem.error(&problem.space, "a fit requires a disc: its radius must begin at 0").into());
     }
     let confidence = key.confidence.unwrap_or(0.95);
     if let Some(c) = &key.confidence
@@ -64,7 +64,7 @@ pub fn fit(problem: &Problem, folder: &Path) -> Result<Fitted, RunError> {
     if !unknown.contains(&FitUnknown::Adhesion) {
         let at = key.unknown.as_ref().map_or_else(|| problem.key(key), |u| problem.key(u));
         return Err(problem
-            .error(&at, "the energy of adhesion is what the contact tells")
+            .error(&at, "the adhesion energy must be one of the unknowns")
             .help("unknown = [\"adhesion\"], or [\"adhesion\", \"tension\"]")
             .into());
     }
@@ -73,7 +73,7 @@ pub fn fit(problem: &Problem, folder: &Path) -> Result<Fitted, RunError> {
         (None, Some(column)) => (Quantity::Area, column),
         _ => {
             return Err(problem
-                .error(key, "the fit needs either `radius` or `area`")
+                .error(key, "the fit requires either `radius` or `area`")
                 .help("radius = \"NAME OF THE COLUMN\"")
                 .into());
         }
@@ -83,14 +83,14 @@ pub fn fit(problem: &Problem, folder: &Path) -> Result<Fitted, RunError> {
     if measured.time.len() <= parameters {
         return Err(problem
             .error(&key.data, format!("{} measurements are too few for {parameters} unknowns", measured.time.len()))
-            .help("at least one more than there are unknowns")
+            .help("give at least one more than there are unknowns")
             .into());
     }
     for &time in &measured.time {
         planned.check_fields(&planned.at(time), time)?;
     }
     let model = Model::new(&planned, quantity, &measured.time)
-        .map_err(|e| problem.error(key, format!("the membrane cannot be solved: {e}")))?;
+        .map_err(|e| problem.error(key, format!("the membrane could not be solved: {e}")))?;
     model.check(problem, key, &measured)?;
     let relative = key.noise.unwrap_or_default() == Noise::Relative;
     let estimate = Estimate::new(&model, &measured.value, with_tension, relative, confidence);

@@ -29,7 +29,7 @@ pub fn read(path: &Path, bytes: &[u8], origin: [f64; 2], spacing: [f64; 2], scal
         "csv" | "txt" => csv(bytes),
         "npy" => npy(bytes),
         "tif" | "tiff" => tiff(bytes),
-        other => Err(format!("`{other}` is no format of height maps; valid are csv, npy and tif")),
+        other => Err(format!("`{other}` is not a format of height maps; valid are csv, npy and tif")),
     }?;
     let heights: Vec<f64> = table.values.iter().map(|v| scale * v).collect();
     Sampled::of_rows(origin, spacing, table.columns, &heights)
@@ -68,7 +68,7 @@ fn npy(bytes: &[u8]) -> Result<Table, String> {
 
 /// A grey image: integers of 16 bits, or numbers of 32 or 64.
 fn tiff(bytes: &[u8]) -> Result<Table, String> {
-    let wrong = |e: tiff::TiffError| format!("no TIFF that can be read: {e}");
+    let wrong = |e: tiff::TiffError| format!("not a TIFF that can be read: {e}");
     let mut decoder = tiff::decoder::Decoder::new(std::io::Cursor::new(bytes)).map_err(wrong)?;
     let (columns, rows) = decoder.dimensions().map_err(wrong)?;
     let (columns, rows) = (columns as usize, rows as usize);
@@ -79,7 +79,8 @@ fn tiff(bytes: &[u8]) -> Result<Table, String> {
         tiff::ColorType::Gray(16 | 32 | 64) => {}
         other => {
             return Err(format!(
-                "the image is {other:?}: one grey value of 16 bits or more is wanted, 8 are too coarse for heights"
+                "the image is {other:?}: expected one grey value of 16 bits or more; 8 bits are too coarse for \
+                 heights"
             ));
         }
     }
@@ -91,13 +92,11 @@ fn tiff(bytes: &[u8]) -> Result<Table, String> {
         tiff::decoder::DecodingResult::F32(values) => values.into_iter().map(f64::from).collect(),
         tiff::decoder::DecodingResult::F64(values) => values,
         _ => {
-            return Err(
-                "the image holds numbers of a kind that is not known: save as float32 or as integers of 16 bits".into(),
-            );
+            return Err("the image has an unknown number type: save as float32 or as 16-bit integers".into());
         }
     };
     if values.len() != rows * columns {
-        return Err(format!("{} heights where {rows} x {columns} are announced", values.len()));
+        return Err(format!("{} heights, but the header states {rows} x {columns}", values.len()));
     }
     Ok(Table { columns, values })
 }
@@ -175,14 +174,14 @@ mod tests {
     fn bad_maps_are_refused_in_words() {
         let read = |name: &str, bytes: &[u8]| read(Path::new(name), bytes, [0.0; 2], [1.0; 2], 1.0).unwrap_err();
         assert!(read("a.csv", b"1,2,3,4\n1,2,,4\n").contains("line 2, column 3: is empty"));
-        assert!(read("a.csv", b"1,2,3,4\n1,2,x,4\n").contains("`x` is no number"));
+        assert!(read("a.csv", b"1,2,3,4\n1,2,x,4\n").contains("`x` is not a number"));
         assert!(read("a.csv", b"1,2,3,4\n1,2\n").contains("2 numbers where the lines before have 4"));
         assert!(read("a.csv", b"1 2 3 4\n").contains("1 rows"));
         assert!(read("a.csv", b"1;2;3;4\n1;2;3,125;4\n").contains("line 2: `3,125`"));
         assert!(read("a.csv", b"1 2 3 4\n1 2 nan 4\n1 2 3 4\n1 2 3 4\n").contains("row 2, column 3 is NaN"));
-        assert!(read("a.npy", b"1 2 3 4\n").contains("no NPY"));
+        assert!(read("a.npy", b"1 2 3 4\n").contains("not an NPY file"));
         assert!(read("a.npy", &npy_bytes("<f8", "False", &[0; 16])).contains("the file ends before"));
-        assert!(read("a.npy", &npy_bytes("<c16", "False", &[0; 480])).contains("not known"));
+        assert!(read("a.npy", &npy_bytes("<c16", "False", &[0; 480])).contains("not supported"));
         assert!(read("a.tif", b"1 2 3 4\n").contains("TIFF"));
         assert!(read("a.xyz", b"").contains("valid are csv, npy and tif"));
         let mut out = std::io::Cursor::new(Vec::new());

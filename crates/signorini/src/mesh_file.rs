@@ -51,7 +51,7 @@ pub fn parse(path: &Path, bytes: &[u8]) -> Result<TriangleMesh, MeshFileError> {
         "stl" => stl(bytes),
         "obj" => obj(bytes),
         "ply" => ply(bytes),
-        other => Err(format!("`{other}` is no mesh format; valid are stl, obj and ply")),
+        other => Err(format!("`{other}` is not a mesh format; valid are stl, obj and ply")),
     }
     .map_err(fail)?;
     let (vertices, triangles) = welded(&vertices, &triangles).map_err(fail)?;
@@ -61,7 +61,7 @@ pub fn parse(path: &Path, bytes: &[u8]) -> Result<TriangleMesh, MeshFileError> {
 fn stl(bytes: &[u8]) -> Result<Raw, String> {
     let mut cursor = Cursor::new(bytes);
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-    let reader = stl_io::create_stl_reader(&mut cursor).map_err(|e| format!("no STL: {e}"))?;
+    let reader = stl_io::create_stl_reader(&mut cursor).map_err(|e| format!("not STL: {e}"))?;
     for (k, triangle) in reader.enumerate() {
         let triangle = triangle.map_err(|e| format!("damaged at triangle {k}: {e}"))?;
         let first = vertices.len() as u32;
@@ -78,7 +78,7 @@ fn obj(bytes: &[u8]) -> Result<Raw, String> {
         tobj::LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, ..Default::default() };
     let materials = |_: &Path| Ok((Vec::new(), Default::default()));
     let (models, _) =
-        tobj::load_obj_buf(&mut Cursor::new(bytes), &options, materials).map_err(|e| format!("no OBJ: {e}"))?;
+        tobj::load_obj_buf(&mut Cursor::new(bytes), &options, materials).map_err(|e| format!("not OBJ: {e}"))?;
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     for model in models {
         let first = vertices.len() as u32;
@@ -90,7 +90,7 @@ fn obj(bytes: &[u8]) -> Result<Raw, String> {
 
 fn ply(bytes: &[u8]) -> Result<Raw, String> {
     let parser = Parser::<DefaultElement>::new();
-    let ply = parser.read_ply(&mut Cursor::new(bytes)).map_err(|e| format!("no PLY: {e}"))?;
+    let ply = parser.read_ply(&mut Cursor::new(bytes)).map_err(|e| format!("not PLY: {e}"))?;
     let mut vertices = Vec::new();
     for (k, vertex) in ply.payload.get("vertex").ok_or("no element `vertex`")?.iter().enumerate() {
         let mut x = [0.0; 3];

@@ -17,7 +17,7 @@ pub struct Array {
 /// In words: another file, a damaged one, numbers of another kind.
 pub fn read(bytes: &[u8], most: usize) -> Result<Array, String> {
     if bytes.len() < 10 || !bytes.starts_with(MAGIC) {
-        return Err("no NPY: its first bytes are not those of one".into());
+        return Err("not an NPY file: its first bytes are wrong".into());
     }
     let at = |k: usize| bytes.get(k).copied().map_or(0, usize::from);
     let (start, length): (usize, usize) = if bytes[6] == 1 {
@@ -25,26 +25,26 @@ pub fn read(bytes: &[u8], most: usize) -> Result<Array, String> {
     } else {
         (12, at(8) + (at(9) << 8) + (at(10) << 16) + (at(11) << 24))
     };
-    let header = bytes.get(start..start.saturating_add(length)).ok_or("the header is cut off")?;
-    let header = std::str::from_utf8(header).map_err(|e| format!("the header is no text: {e}"))?;
+    let header = bytes.get(start..start.saturating_add(length)).ok_or("the header is truncated")?;
+    let header = std::str::from_utf8(header).map_err(|e| format!("the header is not text: {e}"))?;
     let field = |name: &str| {
         let after = header.split(&format!("'{name}'")).nth(1)?;
         Some(after.trim_start().strip_prefix(':')?.trim_start())
     };
-    let kind = field("descr").and_then(|d| d.split('\'').nth(1)).ok_or("the header has no kind of number")?;
+    let kind = field("descr").and_then(|d| d.split('\'').nth(1)).ok_or("the header has no number type")?;
     let by_columns = field("fortran_order").is_some_and(|f| f.starts_with("True"));
     let shape = field("shape").and_then(|s| s.strip_prefix('(')?.split(')').next()).ok_or("the header has no shape")?;
     let shape: Vec<usize> = (shape.split(',').map(str::trim).filter(|s| !s.is_empty()))
-        .map(|s| s.parse().map_err(|_| format!("`{s}` is no size of an array")))
+        .map(|s| s.parse().map_err(|_| format!("`{s}` is not an array size")))
         .collect::<Result<_, _>>()?;
     let count = shape.iter().try_fold(1usize, |n, s| n.checked_mul(*s)).filter(|n| *n <= most);
-    let count = count.ok_or_else(|| format!("an array of {shape:?} numbers: at most {most} are read"))?;
-    let unknown = || format!("numbers of kind `{kind}` are not known; save as float64");
+    let count = count.ok_or_else(|| format!("an array of {shape:?} numbers: the limit is {most}"))?;
+    let unknown = || format!("numbers of type `{kind}` are not supported; save as float64");
     let width: usize =
         kind.get(2..).and_then(|w| w.parse().ok()).filter(|w| (1..=8).contains(w)).ok_or_else(unknown)?;
     let data = &bytes[start + length..];
     if data.len() < count.saturating_mul(width) {
-        return Err(format!("{count} numbers of {width} bytes are announced, the file ends before"));
+        return Err(format!("the header states {count} numbers of {width} bytes, but the file ends before"));
     }
     let big = kind.starts_with('>');
     let number = |piece: &[u8]| -> Option<f64> {

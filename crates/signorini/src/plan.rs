@@ -54,8 +54,7 @@ pub fn plan(problem: &Problem) -> Result<Plan, CaseError> {
         return Ok(Plan::Mechanics(Box::new(Planner::new(problem)?.mechanics()?)));
     }
     if let Some(stability) = &problem.stability {
-        let message =
-            "`stability` is for systems of bodies: with ropes, beams, free bodies, finite strain or finite sliding";
+        let message = "`stability` is for systems: with ropes, beams, free bodies, finite strain or finite sliding";
         return Err(problem.error(stability, message));
     }
     match problem.space {

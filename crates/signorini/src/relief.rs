@@ -159,7 +159,7 @@ impl Sampled {
     pub fn of_rows(origin: [f64; 2], spacing: [f64; 2], columns: usize, values: &[f64]) -> Result<Self, String> {
         let rows = values.len() / columns.max(1);
         if rows < 4 || columns < 4 {
-            return Err(format!("{rows} rows of {columns} heights: at least 4 of each are needed"));
+            return Err(format!("{rows} rows of {columns} heights: at least 4 of each are required"));
         }
         if let Some(k) = values.iter().position(|v| !v.is_finite()) {
             let (row, column) = (k / columns + 1, k % columns + 1);
@@ -217,7 +217,7 @@ impl Sampled {
             }
         }
         if heights.iter().all(|h| h.is_infinite()) {
-            return Err("it does not lie under the membrane".into());
+            return Err("it does not lie below the membrane".into());
         }
         fall_off(&mut heights, count, FALL * spacing);
         let values = heights.into_iter().map(|h| sign * h).collect();

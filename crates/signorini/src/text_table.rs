@@ -25,7 +25,7 @@ pub struct Row {
 /// # Errors
 /// In words: bytes that are no text in UTF-8.
 pub fn rows(bytes: &[u8]) -> Result<Vec<Row>, String> {
-    let text = std::str::from_utf8(bytes).map_err(|e| format!("no text: {e}"))?;
+    let text = std::str::from_utf8(bytes).map_err(|e| format!("not text: {e}"))?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let is_comment = |line: &str| line.trim_start().starts_with('#') || line.trim().is_empty();
     let first = text.lines().find(|l| !is_comment(l)).unwrap_or("");
@@ -105,9 +105,9 @@ impl Numbers {
         value.map_err(|_| match entry {
             "" => "is empty".to_string(),
             _ if entry.contains(',') => {
-                format!("`{entry}` is no number: write decimals with a point, and thousands without a mark")
+                format!("`{entry}` is not a number: use a decimal point and no thousands separator")
             }
-            _ => format!("`{entry}` is no number"),
+            _ => format!("`{entry}` is not a number"),
         })
     }
 
@@ -118,11 +118,11 @@ impl Numbers {
     pub fn finish(&self) -> Result<(), String> {
         match (&self.comma, &self.point) {
             (Some((line, comma)), Some((other, point))) => Err(format!(
-                "line {line}: `{comma}` has a comma and `{point}` in line {other} a point: write decimals with a point, \
-                 and thousands without a mark"
+                "line {line}: `{comma}` has a comma and `{point}` in line {other} a point: use a decimal point and no \
+                 thousands separator"
             )),
             (Some((line, comma)), None) if !self.certain => Err(format!(
-                "line {line}: `{comma}` is `{}` or `{}`: write decimals with a point, and thousands without a mark",
+                "line {line}: `{comma}` is `{}` or `{}`: use a decimal point and no thousands separator",
                 comma.replace(',', "."),
                 comma.replace(',', "")
             )),
@@ -172,8 +172,8 @@ mod tests {
             ("1,234;2\n", &["line 1: `1,234` is `1.234` or `1234`"][..]),
             ("# n\n1.5;2\n2;16,73\n", &["line 3: `16,73` has a comma", "`1.5` in line 2"]),
             ("1,5;2.5\n", &["`1,5` has a comma"]),
-            ("1,234,567;8\n", &["`1,234,567` is no number"]),
-            ("1,234.5;8\n", &["`1,234.5` is no number"]),
+            ("1,234,567;8\n", &["`1,234,567` is not a number"]),
+            ("1,234.5;8\n", &["`1,234.5` is not a number"]),
             ("1,5 2\n2.5 3\n", &["line 1: `1,5` has a comma"]),
         ] {
             let error = read(text).unwrap_err();

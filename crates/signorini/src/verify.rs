@@ -41,16 +41,16 @@ impl Verdict {
 /// The problems, quickest first.
 pub const PROBLEMS: [Problem; 9] = [
     Problem {
-        name: "a string on a flat floor: length of contact",
+        name: "a string on a flat floor: contact length",
         case: "string",
         set: &[],
         figure: "area",
         exact: || FLAT.contact_force(),
         allowed: 1e-10,
-        source: "parabolas beside a straight part",
+        source: "parabolas and a straight part",
     },
     Problem {
-        name: "a round membrane by its radius: area",
+        name: "an axisymmetric membrane: area",
         case: "axisymmetric",
         set: &[],
         figure: "area",
@@ -59,7 +59,7 @@ pub const PROBLEMS: [Problem; 9] = [
         source: "(1 - a²)/4 + a²/2 ln a = 0.1",
     },
     Problem {
-        name: "the same on a grid that its edge cuts",
+        name: "the same in the plane, on a grid that its boundary cuts",
         case: "flat_disc",
         set: &[],
         figure: "area",
@@ -74,7 +74,7 @@ pub const PROBLEMS: [Problem; 9] = [
         figure: "force/2",
         exact: || FlatFloor { kind: Kind::Round, ..FLAT }.contact_force(),
         allowed: 1e-7,
-        source: "the load above the zone",
+        source: "the load over the contact zone",
     },
     Problem {
         name: "a cosine floor, area of a zone with a small hole",
@@ -86,7 +86,7 @@ pub const PROBLEMS: [Problem; 9] = [
         source: "degree 4, 80 x 80 cells divided three times",
     },
     Problem {
-        name: "a sticky round membrane: time of pull-off",
+        name: "an adhesive axisymmetric membrane: time of pull-off",
         case: "snap_in",
         set: &[],
         figure: "event:pull_off",
@@ -106,7 +106,7 @@ pub const PROBLEMS: [Problem; 9] = [
         source: "degrees 6 and 8 on four meshes",
     },
     Problem {
-        name: "patch test: pressure at an interface of unlike meshes",
+        name: "patch test: pressure at an interface of non-matching meshes",
         case: "patch_test",
         set: &[],
         figure: "max_pressure",
@@ -141,7 +141,7 @@ pub fn verify(problem: &Problem, folder: &Path) -> Result<Verdict, String> {
     if !outcome.summary.converged {
         return Err(outcome.summary.verdict);
     }
-    let found = figure(&json!(outcome.summary), problem.figure).ok_or("the figure is not in the summary")?;
+    let found = figure(&json!(outcome.summary), problem.figure).ok_or("the summary does not contain this quantity")?;
     let exact = (problem.exact)();
     let error = (found - exact).abs() / exact.abs();
     let Problem { name, allowed, source, .. } = *problem;

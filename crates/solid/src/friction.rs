@@ -121,9 +121,9 @@ impl<const D: usize> Contact<D> {
 pub(crate) fn refuse_unsupported<const D: usize>(contacts: &[Contact<D>]) -> Result<(), StepError> {
     for contact in contacts.iter().filter(|c| c.friction.is_some()) {
         let unlike = match (contact.method, contact.enforcement) {
-            (Method::GaussPoint, Enforcement::Multiplier) => "multipliers at Gauss points are too many",
+            (Method::GaussPoint, Enforcement::Multiplier) => "multipliers at Gauss points over-constrain the surface",
             (_, Enforcement::Multiplier | Enforcement::Penalty { .. }) => continue,
-            _ => "its enforcement is another one",
+            _ => "the contact has another enforcement",
         };
         return Err(StepError::FrictionUnsupported { contact: contact.name.clone(), unlike: unlike.into() });
     }

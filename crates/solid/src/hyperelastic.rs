@@ -45,7 +45,7 @@ pub enum Volumetric {
 /// A deformation that a law does not cover.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum StrainError {
-    #[error("the material is turned inside out (J = {jacobian:.3e})")]
+    #[error("an element is inverted (J = {jacobian:.3e})")]
     Inverted { jacobian: f64 },
     #[error(
         "a principal stretch of {stretch:.3} is below {LEAST_STRETCH}: Saint-Venant-Kirchhoff softens in compression; \

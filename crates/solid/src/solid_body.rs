@@ -43,7 +43,7 @@ pub enum SolidError {
     Degree { degree: usize, shape: &'static str, most: usize },
     #[error("Young's modulus {youngs_modulus} and Poisson's ratio {poissons_ratio}: valid are > 0, and > -1 and < 0.5")]
     Material { youngs_modulus: f64, poissons_ratio: f64 },
-    #[error("a body in {dimension} dimensions does not fill space as {space:?}")]
+    #[error("{space:?} is not a space for bodies in {dimension} dimensions")]
     Space { dimension: usize, space: Space },
 }
 
@@ -186,7 +186,8 @@ impl<const D: usize> SolidBody<D> {
     fn group(&self, on: Option<&str>) -> Result<&Group, PlaceError> {
         let name = on.unwrap_or("boundary");
         if self.edges.contains_key(name) {
-            return Err(self.unsuitable(format!("`{name}` is an edge, which touches: name sides, vertices or cells")));
+            return Err(self
+                .unsuitable(format!("`{name}` is an edge, which is only for contact: name sides, vertices or cells")));
         }
         self.groups.get(name).ok_or_else(|| PlaceError::Unknown {
             body: self.name().to_string(),
@@ -292,7 +293,7 @@ impl<const D: usize> Body for SolidBody<D> {
         }
         let group = self.group(on)?;
         if group.sides.is_empty() {
-            return Err(self.unsuitable(format!("`{}` has no sides that could touch", on.unwrap_or("boundary"))));
+            return Err(self.unsuitable(format!("`{}` has no sides for contact", on.unwrap_or("boundary"))));
         }
         Ok(self.faces.sites(on.unwrap_or("boundary"), sampling))
     }
@@ -310,7 +311,7 @@ impl<const D: usize> Body for SolidBody<D> {
         }
         let group = self.group(on)?;
         if group.sides.is_empty() {
-            return Err(self.unsuitable(format!("`{}` has no sides that could be touched", on.unwrap_or("boundary"))));
+            return Err(self.unsuitable(format!("`{}` has no sides for contact", on.unwrap_or("boundary"))));
         }
         let master = self.faces.master(on.unwrap_or("boundary"), &state.configuration);
         Ok(Box::new(master.map_err(|e| self.unsuitable(e.to_string()))?))

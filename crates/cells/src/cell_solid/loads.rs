@@ -50,9 +50,9 @@ impl<const D: usize> CellSolid<D> {
                 Ok(())
             }
             Load::Moment(_) | Load::FollowerMoment(_) => {
-                Err(self.unsuitable("a body of cells takes no moments: state tractions that make one"))
+                Err(self.unsuitable("moments on bodies of cells are not available: use tractions with this moment"))
             }
-            Load::Tension(_) => Err(self.unsuitable("a tension pulls the end of a rope")),
+            Load::Tension(_) => Err(self.unsuitable("a tension acts on the end of a rope")),
         }
     }
 

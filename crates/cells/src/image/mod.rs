@@ -22,7 +22,7 @@ pub enum ImageError {
     File { file: String, message: String },
     #[error("{file}: {wrong}")]
     Content { file: String, wrong: Wrong },
-    #[error("{file}: the ending is not one of {known}")]
+    #[error("{file}: the file extension is not one of {known}")]
     Ending { file: String, known: &'static str },
 }
 
@@ -124,7 +124,7 @@ impl ImageData {
         let (Ok(spacing), true) =
             (<[f64; D]>::try_from(&self.spacing[..self.spacing.len().min(D)]), self.origin.len() >= D)
         else {
-            let must = "the extent of a voxel must be known";
+            let must = "the voxel size must be known";
             return Err(CellsError::Image { what: "an image", found: self.count, must });
         };
         Voxels::new(Point::from_fn(|k, _| self.origin[k]), spacing, count, self.values)
@@ -171,7 +171,7 @@ impl Number {
         let wanted = count.iter().try_fold(self.bytes(), |n, c| n.checked_mul(*c));
         let Some(bytes) = wanted.and_then(|n| bytes.get(..n)) else {
             let found = format!("{} bytes for {count:?} numbers of {} bytes", bytes.len(), self.bytes());
-            return Err(Wrong::new("the data", found, "the file is cut off, or its header is not its own"));
+            return Err(Wrong::new("the data", found, "the file is truncated, or its header is wrong"));
         };
         let one = |chunk: &[u8]| {
             // The value in the first bytes, lowest first.
@@ -282,8 +282,8 @@ pub fn read_raw(path: &Path, header: &raw::RawHeader) -> Result<ImageData, Image
 /// A stream that is damaged, or too short for as many bytes.
 pub(crate) fn unpacked(packed: &[u8], most: usize) -> Result<Vec<u8>, Wrong> {
     let short = |found: usize| {
-        let found = format!("packed, {found} bytes where {most} are wanted");
-        Wrong::new("the data", found, "the file is cut off, or its header is not its own")
+        let found = format!("compressed, {found} bytes instead of {most}");
+        Wrong::new("the data", found, "the file is truncated, or its header is wrong")
     };
     // What no stream of this length can hold is not asked for.
     if most / MOST_PACKED > packed.len() {
@@ -296,7 +296,7 @@ pub(crate) fn unpacked(packed: &[u8], most: usize) -> Result<Vec<u8>, Wrong> {
         flate2::read::ZlibDecoder::new(packed).take(most as u64).read_to_end(&mut out)
     };
     match read {
-        Err(e) => Err(Wrong::new("the data", format!("packed and damaged: {e}"), "save the image anew")),
+        Err(e) => Err(Wrong::new("the data", format!("compressed and damaged: {e}"), "save the image again")),
         Ok(n) if n < most => Err(short(n)),
         Ok(_) => Ok(out),
     }
@@ -337,7 +337,7 @@ pub(crate) fn check_counts(place: &str, count: &[usize]) -> Result<(), Wrong> {
         return Err(Wrong::new(
             place,
             format!("{count:?}"),
-            "2^33 voxels are the most; take a part or a coarser image",
+            "the limit is 2^33 voxels; use a part of the image or a coarser one",
         ));
     }
     Ok(())

@@ -16,7 +16,7 @@ pub fn parse(bytes: &[u8]) -> Result<ImageData, Wrong> {
         (u32::from_le_bytes([bytes[8], bytes[9], bytes[10], bytes[11]]) as usize, 12)
     };
     let Some(header) = bytes.get(start..start + length).map(text) else {
-        return Err(Wrong::new("the header", format!("{length} bytes long"), "the file is cut off"));
+        return Err(Wrong::new("the header", format!("{length} bytes long"), "the file is truncated"));
     };
     let value = |key: &str| {
         let at = header.find(&format!("'{key}'"))?;

@@ -44,7 +44,7 @@ impl Header {
                 let values: Vec<f64> = numbers("the data", &text(data))?;
                 if values.len() != count.iter().product::<usize>() {
                     let found = format!("{} numbers for {count:?} voxels", values.len());
-                    return Err(Wrong::new("the data", found, "the file is cut off, or its header is not its own"));
+                    return Err(Wrong::new("the data", found, "the file is truncated, or its header is wrong"));
                 }
                 values
             }

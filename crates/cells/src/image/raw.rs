@@ -31,8 +31,8 @@ pub fn parse(bytes: &[u8], header: &RawHeader) -> Result<ImageData, Wrong> {
     let data = bytes.get(header.skip..).unwrap_or_default();
     let wanted = header.count.iter().product::<usize>().saturating_mul(header.number.bytes());
     if data.len() != wanted {
-        let found = format!("{} bytes, {wanted} by count and type", data.len());
-        return Err(Wrong::new("the data", found, "count, type or skip are not those of this file"));
+        let found = format!("{} bytes, but {wanted} by count and type", data.len());
+        return Err(Wrong::new("the data", found, "count, type or skip do not match this file"));
     }
     let values = header.number.decode(data, header.endian, &header.count)?;
     let (count, spacing, origin) = (header.count.clone(), header.spacing.clone(), header.origin.clone());

@@ -65,7 +65,7 @@ fn in_parts(name: &str) -> Vec<(String, u128)> {
 /// # Errors
 /// Bytes that are no TIFF; layers in colour or of different sizes.
 pub fn parse(bytes: &[u8]) -> Result<ImageData, Wrong> {
-    let wrong = |e: tiff::TiffError| Wrong::new("the file", format!("no TIFF: {e}"), "save the layers as grey TIFF");
+    let wrong = |e: tiff::TiffError| Wrong::new("the file", format!("not a TIFF: {e}"), "save the layers as grey TIFF");
     let mut decoder = Decoder::new(std::io::Cursor::new(bytes)).map_err(wrong)?;
     let (width, height) = decoder.dimensions().map_err(wrong)?;
     let mut values = Vec::new();
@@ -93,7 +93,7 @@ pub fn parse(bytes: &[u8]) -> Result<ImageData, Wrong> {
             DecodingResult::I32(v) => values.extend(v.into_iter().map(f64::from)),
             DecodingResult::F32(v) => values.extend(v.into_iter().map(f64::from)),
             DecodingResult::F64(v) => values.extend(v),
-            _ => return Err(Wrong::new("the type", "not one of those known", "save integers of 16 bits or floats")),
+            _ => return Err(Wrong::new("the type", "not supported", "save integers of 16 bits or floats")),
         }
         layers += 1;
         if !decoder.more_images() {

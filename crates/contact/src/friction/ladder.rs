@@ -25,10 +25,10 @@ pub enum FrictionError {
     #[error(transparent)]
     Solve(#[from] SolveError),
     /// Tractions that satisfy no equation: the contact found does not hold the bodies, or its rows depend on each other.
-    #[error("the contact found does not hold the bodies")]
+    #[error("the computed contact does not restrain the bodies")]
     Singular,
     /// The nodes whose answers differ most from their tractions.
-    #[error("no state of stick and slip was found in {solves} solves")]
+    #[error("the stick and slip zones did not converge in {solves} solves")]
     NotFound { solves: usize, nodes: Vec<usize> },
     #[error("interrupted")]
     Interrupted,

@@ -50,7 +50,7 @@ pub struct Projected {
 
 /// Coefficients that no law can have.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("a law of friction needs finite values that are not negative, not {value}")]
+#[error("a friction law requires finite values that are not negative, not {value}")]
 pub struct LawError {
     pub value: f64,
 }

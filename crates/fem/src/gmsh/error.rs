@@ -3,17 +3,17 @@
 /// A mesh file that cannot be used, and where it is wrong.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GmshError {
-    #[error("this is no Gmsh mesh: it does not begin with $MeshFormat")]
+    #[error("not a Gmsh mesh: it does not begin with $MeshFormat")]
     NotGmsh,
-    #[error("version {found} of the format is not known: save the mesh as version 4.1 or 2.2")]
+    #[error("version {found} of the format is not supported: save the mesh as version 4.1 or 2.2")]
     Version { found: String },
     #[error("line {line}: expected {wanted}, found `{found}`")]
     Malformed { line: usize, wanted: &'static str, found: String },
     #[error("the file ends within {section}")]
     Truncated { section: &'static str },
-    #[error("{section}: {count} is no possible number here")]
+    #[error("{section}: {count} is not a valid number here")]
     Count { section: &'static str, count: i64 },
-    #[error("element {element} is a {what}, which cannot be used: only cells of order 1 and 2, no pyramids")]
+    #[error("element {element} is a {what}, which is not supported: use cells of order 1 or 2, and no pyramids")]
     Element { element: u64, what: String },
     /// `place` is the line of a text file, with what parts it from the rest; empty where there is none.
     #[error("{place}element {element} has the node {node}, which the file does not define")]
@@ -24,6 +24,6 @@ pub enum GmshError {
     NoGroup { group: String, dimension: usize, known: String },
     #[error("the file has no cells of dimension {dimension}: {hint}")]
     NoCells { dimension: usize, hint: &'static str },
-    #[error("node {node} is at z = {z}: a plane mesh lies in z = 0")]
+    #[error("node {node} is at z = {z}, but a plane mesh must lie in z = 0")]
     NotPlane { node: u64, z: f64 },
 }

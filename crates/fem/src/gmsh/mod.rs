@@ -86,8 +86,7 @@ impl GmshFile {
         }
         let cells: Vec<&Element> = self.cells(D, group).collect();
         if cells.is_empty() {
-            let hint =
-                "are the cells left out because no physical group holds them, or is the dimension of `space` another?";
+            let hint = "check whether the cells are in no physical group, or whether `space` has another dimension";
             return Err(GmshError::NoCells { dimension: D, hint });
         }
         let mut numbers: HashMap<u64, u32> = HashMap::new();

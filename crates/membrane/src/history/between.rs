@@ -13,8 +13,7 @@ use signorini_solve::Progress;
 use std::collections::{HashMap, HashSet};
 
 /// Told once where a state that was asked for is not stable.
-const UNSTABLE: &str =
-    "unstable states are among the results, where they were asked for: `stable` in the summary tells which";
+const UNSTABLE: &str = "the results contain unstable states, as requested; see `stable` in the summary";
 
 impl<const D: usize, Z: ByMultigrid<D> + 'static> WithZones<D, Z> {
     /// Locates the jump between two states, and tells where it landed; none if that is where the second state is.

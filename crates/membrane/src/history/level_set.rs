@@ -111,7 +111,8 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> Engine<D, Z> {
             warn(
                 RemarkKind::SteepSlopes,
                 format!(
-                    "slopes reach {steepest:.1}: the linear theory of the membrane holds below about {LINEAR}, beyond it the tension grows"
+                    "slopes reach {steepest:.1}: the linear theory of the membrane is valid below about {LINEAR}, \
+                     beyond it the tension increases"
                 ),
             );
         }
@@ -120,7 +121,8 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> Engine<D, Z> {
             warn(
                 RemarkKind::SharpFront,
                 format!(
-                    "a front has a radius of curvature of {:.2} cells at t = {}: below two cells its shape is approximate, use more cells",
+                    "a front has a radius of curvature of {:.2} cells at t = {}: below two cells its shape is \
+                     approximate; use more cells",
                     1.0 / sharp,
                     at.1
                 ),
@@ -129,14 +131,14 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> Engine<D, Z> {
         if solution.unrefined {
             warn(
                 RemarkKind::NotRefined,
-                format!("no state was found on smaller cells at t = {}: the one on larger cells stands", at.1),
+                format!("no state was found on smaller cells at t = {}: the state on larger cells is reported", at.1),
             );
         }
         if let Some(fewest) = solution.zone.fewer_modes(membrane.modes) {
             warn(
                 RemarkKind::FewerModes,
                 format!(
-                    "a front has {fewest} modes at t = {}, fewer than `mode_count`: its cells tell no more apart",
+                    "a front has {fewest} modes at t = {}, fewer than `mode_count`: its cells do not resolve more",
                     at.1
                 ),
             );
@@ -144,22 +146,23 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> Engine<D, Z> {
         let on_nodes = membrane.formulation.transport() != Transport::Exact;
         if let Some(step) = solution.settled_within {
             let why = if on_nodes {
-                "as far as a level set on nodes shifts them with every step: `transport = \"exact\"` does not"
+                "since a level set on nodes shifts them in every step; use `transport = \"exact\"`"
             } else if step < 1e-3 {
                 "on a jump of the discrete slope"
             } else {
-                "where they are sharper than the grid: zones, areas and forces are known to that only"
+                "where they are sharper than the grid; zones, areas and forces have this accuracy"
             };
             warn(
                 RemarkKind::FrontsAtRest,
-                format!("the fronts settled to {step:.0e} of a cell at t = {}, {why}", at.1),
+                format!("the fronts converged to {step:.0e} of a cell at t = {}, {why}", at.1),
             );
         }
         if let Some(depth) = solution.unresolved {
             warn(
                 RemarkKind::NotResolved,
                 format!(
-                    "the grid cannot tell whether zones touch at t = {}: the membrane penetrates what lies between them by {depth:.0e}",
+                    "the grid does not resolve whether zones merge at t = {}: the membrane penetrates the body \
+                     between them by {depth:.0e}",
                     at.1
                 ),
             );
@@ -171,8 +174,8 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> Engine<D, Z> {
         if let Some(kink) = solution.conditions.as_ref().and_then(|c| c.kink).filter(|_| estimated) {
             let place: Vec<String> = kink.place.iter().map(|v| format!("{v:.4}")).collect();
             let message = format!(
-                "what the membrane touches has a kink within the contact, near ({}): along it the pressure is a line force that the method \
-                 leaves out, and the error estimate does not see it; round the kink off by a few cells",
+                "the surface has a kink within the contact zone, near ({}): the pressure along it is a line force, \
+                 which is included neither in the results nor in the error estimate; round the kink over a few cells",
                 place.join(", ")
             );
             remarks.insert(0, Remark::new(RemarkKind::Kink, message).at_time(at.1).at(kink.place.as_slice()));

@@ -36,7 +36,7 @@ pub fn increment<const D: usize, Z: Zone<D>>(
         errors: None,
     };
     if membrane.obstacles.is_empty() {
-        return failed("method.active_set needs something to touch".into());
+        return failed("method.active_set requires a rigid body".into());
     }
     let solved = {
         let shared = &*progress;

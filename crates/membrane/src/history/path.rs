@@ -93,7 +93,7 @@ impl<const D: usize, Z: Zone<D>> Follower<D, Z> {
                 Some(state) => path.predict(state, &constraint),
                 None => match zone_of_area(&(path.membrane)(self.begin[1]), target)? {
                     Some(zone) => (zone, self.begin[1]),
-                    None => return Ok(Along::Failed(format!("no zone of the area {target} was found to begin with"))),
+                    None => return Ok(Along::Failed(format!("no initial zone of the area {target} was found"))),
                 },
             };
             let (found, solves) = path.correct(zone, time, constraint, [sense, 0.0], progress)?;
@@ -123,7 +123,9 @@ impl<const D: usize, Z: Zone<D>> Follower<D, Z> {
     ) -> Result<Along<D, Z>, SolveError> {
         let Some(state) = self.state.clone() else {
             return Ok(Along::Failed(
-                "control.arc_length begins at a state with contact: lead there by a step of time or of area, or by `initial_zone`".into(),
+                "control.arc_length begins at a state with contact: use a step with time or area control before it, \
+                 or `initial_zone`"
+                    .into(),
             ));
         };
         let mut ds = size;
@@ -160,8 +162,8 @@ impl<const D: usize, Z: Zone<D>> Follower<D, Z> {
     pub fn ends(&self) -> String {
         let (time, area) = self.state.as_ref().map_or((f64::NAN, f64::NAN), |state| (state.time, state.area));
         format!(
-            "the path ends near t = {time}, at a contact area of {area}: from there on the membrane would penetrate a body elsewhere, or hang \
-             where nothing holds it"
+            "the path ends near t = {time}, at a contact area of {area}: beyond this point the membrane would \
+             penetrate a body elsewhere, or lose its support"
         )
     }
 

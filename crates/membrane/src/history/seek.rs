@@ -80,7 +80,7 @@ impl Seeker {
                 return match nearest[1].abs() <= TOLD {
                     true => Ok(nearest[0]),
                     false => Err(format!(
-                        "no state has a contact area of {target}: near t = {} it goes from {} to {}",
+                        "no state has a contact area of {target}: near t = {} the area jumps from {} to {}",
                         nearest[0],
                         back(nearest[1]),
                         back(other[1])
@@ -180,7 +180,7 @@ mod tests {
     fn areas_that_are_not_there_are_told() {
         let jump = |t: f64| if t < 0.7 { 0.1 * t } else { 0.5 + 0.1 * t };
         let why = sought(0.1, 0.3, jump).0.expect_err("a jump");
-        assert!(why.contains("it goes from 0.0699") && why.contains("to 0.57000"), "{why}");
+        assert!(why.contains("the area jumps from 0.0699") && why.contains("to 0.57000"), "{why}");
         let why = sought(0.1, 0.9, |t| (4.0 * t).sin().powi(2) * 0.5).0.expect_err("a turn");
         assert!(why.contains("was found"), "{why}");
         let why = sought(0.5, 0.1, |t| 0.3 + t).0.expect_err("before the beginning");

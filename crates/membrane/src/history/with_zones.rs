@@ -121,8 +121,8 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> WithZones<D, Z> {
         {
             let [_, to] = planned.range;
             let message = format!(
-                "the path goes on: its last increment is at t = {time}, and the step ends at t = {to}; give the step more \
-                 increments, or leave them out to follow the path to its end"
+                "the path goes on: its last increment is at t = {time}, and the step ends at t = {to}; use more \
+                 increments, or leave `increments` out to follow the path to its end"
             );
             self.remarks.push(Remark::new(RemarkKind::Path, message).at_time(time));
         }
@@ -143,8 +143,8 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> WithZones<D, Z> {
         } else if by_time && increment.stability.jumped && index > 0 {
             let a = known.as_ref().map_or(0.0, |k| k.area);
             let message = format!(
-                "the contact jumped to another state on the way to t = {time}: its area went from {a:.6} to {:.6}; \
-                 `events` in the step locates where",
+                "the contact jumped to another state before t = {time}: its area changed from {a:.6} to {:.6}; \
+                 `events` in the step locates the jump",
                 increment.area()
             );
             self.remarks.push(Remark::new(RemarkKind::Jump, message).at_time(time));
@@ -212,7 +212,7 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> WithZones<D, Z> {
         engine.restore(saved);
         self.seeker = Some(seeker);
         // A value that is none beyond some time may be why.
-        let why = |why: String| invalid.map_or(why.clone(), |error| format!("{why}; on the way there: {error}"));
+        let why = |why: String| invalid.map_or(why.clone(), |error| format!("{why}; before it: {error}"));
         found.map(|time| (time, solves)).map_err(why)
     }
 
@@ -271,7 +271,7 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> WithZones<D, Z> {
                     false => self.engine.scales(),
                 };
                 let Some(scales) = scales else {
-                    return Along::Failed("no state to begin at".into());
+                    return Along::Failed("there is no initial state".into());
                 };
                 match Follower::begin(&*self.statement, planned, zone, time, scales) {
                     Ok(follower) => follower,

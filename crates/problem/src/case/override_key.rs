@@ -17,7 +17,7 @@ pub fn apply(name: &str, text: &str, overrides: &[String]) -> Result<(String, Or
     let stated = document.clone();
     for setting in overrides {
         let (key, value) = setting.split_once('=').ok_or_else(|| {
-            CaseError::new(format!("`--set {setting}` has no `=`")).help("write  --set loads.press.normal=-0.3")
+            CaseError::new(format!("`--set {setting}` contains no `=`")).help("write  --set loads.press.normal=-0.3")
         })?;
         set(document.as_table_mut(), key.trim(), parse_value(value.trim()))
             .map_err(|message| CaseError::new(format!("`--set {setting}`: {message}")))?;
@@ -58,7 +58,7 @@ fn set(table: &mut Table, key: &str, value: Value) -> Result<(), String> {
             let empty = if last { Item::Value(Value::from(0)) } else { Item::Table(Table::new()) };
             inner.insert(part, empty);
         }
-        item = inner.get_mut(part).ok_or("a table that cannot be changed")?;
+        item = inner.get_mut(part).ok_or("a table that cannot be modified")?;
     }
     let decor = item.as_value().map(|v| v.decor().clone());
     let mut value = value;

@@ -77,7 +77,7 @@ pub fn tables(keys: &[Key]) -> String {
         let star = if key.required { " *" } else { "" };
         format!("| `{}`{star} | {} | {} |\n", key.path, key.kind.replace('|', "or"), key.about.replace('|', "or"))
     };
-    const COLUMNS: &str = "| key | what may stand there | meaning |\n|---|---|---|\n";
+    const COLUMNS: &str = "| key | value | meaning |\n|---|---|---|\n";
     let mut text = format!("\n{COLUMNS}");
     keys.iter().filter(|k| alone(k)).for_each(|key| text += &row(key));
     let mut section = String::new();
@@ -158,7 +158,7 @@ fn walk_entry(root: &Value, node: &Value, path: &str, keys: &mut Walk) {
     let before = keys.keys.len();
     walk(root, node, path, keys);
     if keys.keys.len() == before && path.ends_with(".NAME") {
-        let about = "By a name of your own.".to_string();
+        let about = "Entry with a name of your own.".to_string();
         keys.keys.push(Key { path: path.to_string(), about, kind: kind(root, node), required: false });
     }
 }

@@ -19,15 +19,15 @@ pub fn from_toml(name: &str, text: &str, error: &toml::de::Error) -> CaseError {
     } else if let (true, Some(name)) =
         (message.contains("wanted exactly 1 element"), body_without_kind(text, error.span()))
     {
-        ours.message = format!("what kind of body `{name}` is, is not said, or said twice");
+        ours.message = format!("the kind of body `{name}` is missing or given more than once");
         ours.help = Some(format!(
-            "[bodies.{name}.KIND] with one of the kinds {}",
+            "write [bodies.{name}.KIND] with one of the kinds {}",
             super::schema::keys_in("bodies.NAME").join(", ")
         ));
     } else if message.contains("wanted exactly 1 element") || message.contains("wanted string or table") {
         ours.message = "expected a choice: one word in quotes, or a table with exactly one key".into();
         ours.help = key_before(text, error.span()).map(|key| {
-            let told = format!("`signorini explain {key}` tells the choices");
+            let told = format!("`signorini explain {key}` lists the choices");
             example(text, error.span(), key).map_or(told.clone(), |example| format!("{example}; {told}"))
         });
     } else if let Some((found, wanted)) = message

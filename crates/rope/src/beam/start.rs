@@ -12,12 +12,13 @@ use signorini_geometry::{Matrix, Vector};
 /// A beam that cannot be.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BeamError {
-    #[error("a beam needs a smooth path: sample it with continuity C1")]
+    #[error("a beam requires a smooth path: sample it with continuity C1")]
     NotSmooth,
-    #[error("orientation ({}, {}, {}) is along the beam at its start: give a direction across it", at[0], at[1], at[2])]
+    #[error("the orientation ({}, {}, {}) is parallel to the beam at its start: give a direction across it", at[0], at[1], at[2])]
     Orientation { at: [f64; 3] },
     #[error(
-        "element {element} turns by {degrees:.1}° at the start, at most 90° can be resolved: give more than {cells} cells"
+        "element {element} turns by {degrees:.1}° at the start, but at most 90° can be resolved: give more than \
+         {cells} cells"
     )]
     TurnsTooMuch { element: usize, degrees: f64, cells: usize },
     #[error("radius {0}: valid are 0 and positive numbers")]

@@ -22,7 +22,7 @@ use signorini_mechanics::body::{
 /// A cable that cannot be.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CableError {
-    #[error("a cable needs a smooth path: sample it with continuity C1")]
+    #[error("a cable requires a smooth path: sample it with continuity C1")]
     NotSmooth,
     #[error(transparent)]
     Number(#[from] ChainError),

@@ -30,7 +30,7 @@ pub enum ChainError {
     Pulley { node: usize, reason: &'static str },
     #[error("there is no element {element}: the rope has {count}")]
     NoElement { element: usize, count: usize },
-    #[error("a rope of straight elements needs a path sampled with continuity C0")]
+    #[error("a rope of straight elements requires a path sampled with continuity C0")]
     Smooth,
 }
 
@@ -58,7 +58,7 @@ impl Rest {
             Rest::Pretension(value) => Err(ChainError::Number {
                 name: "pretension",
                 value,
-                valid: "valid are 0 and positive numbers: a rope cannot be compressed",
+                valid: "valid are 0 and positive numbers: a rope carries tension only",
             }),
         }
     }
@@ -134,7 +134,7 @@ impl Chain {
             let reason = match self.line.closure {
                 _ if node >= self.line.nodes() => Some("there is no such node"),
                 Closure::Open if node == 0 || node + 1 == self.line.nodes() => Some("it is an end of the rope"),
-                _ if nodes[..k].contains(&node) => Some("it is one already"),
+                _ if nodes[..k].contains(&node) => Some("it is already a pulley"),
                 _ => None,
             };
             if let Some(reason) = reason {
@@ -167,7 +167,7 @@ impl Chain {
     pub fn set_tension(&mut self, element: usize, tension: f64) -> Result<(), ChainError> {
         self.check_element(element)?;
         if tension < 0.0 || !tension.is_finite() {
-            let valid = "valid are 0 and positive numbers: a rope cannot be compressed";
+            let valid = "valid are 0 and positive numbers: a rope carries tension only";
             return Err(ChainError::Number { name: "tension", value: tension, valid });
         }
         self.drives[element] = Drive::Tension(tension);
@@ -401,7 +401,7 @@ impl Body for Chain {
     fn hold(&self, on: Option<&str>, hold: &Hold<'_>, state: &BodyState) -> Result<Vec<Constraint>, PlaceError> {
         hold.check_components(&self.name)?;
         if hold.rotation.iter().any(Option::is_some) {
-            let message = "the ends of a rope turn freely: only displacements can be held".to_string();
+            let message = "the ends of a rope have no rotations: only displacements can be prescribed".to_string();
             return Err(PlaceError::Unsuitable { body: self.name.clone(), message });
         }
         let mut out = self.line_of(state).hold(&self.part(on)?, hold);

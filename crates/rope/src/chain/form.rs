@@ -52,11 +52,11 @@ pub enum FormError {
     NoNode { member: usize, node: usize, count: usize },
     #[error("member {member}: {name} = {value}, valid are positive numbers")]
     NotPositive { member: usize, name: &'static str, value: f64 },
-    #[error("node {node} is not joined to any node that is held")]
+    #[error("node {node} is not connected to a supported node")]
     Loose { node: usize },
     #[error("{given} values of {name} for {needed} nodes")]
     Count { name: &'static str, given: usize, needed: usize },
-    #[error("no equilibrium after {iterations} iterations: forces of {residual:e} are left")]
+    #[error("no equilibrium after {iterations} iterations: the residual force is {residual:e}")]
     NotConverged { iterations: usize, residual: f64 },
     #[error(transparent)]
     Solve(#[from] SolveError),

@@ -54,7 +54,7 @@ impl Chain {
     pub fn with_winch(mut self, at: WinchEnd, most: f64, paid_out: Length) -> Result<Self, ChainError> {
         let is_valid = most >= 0.0 && most.is_finite();
         if self.line.closure == Closure::Closed || self.winch.is_some() || !is_valid {
-            let valid = "valid are 0 and positive numbers, and one winch, of a rope that is open";
+            let valid = "valid are 0 and positive numbers, and one winch on an open rope";
             return Err(ChainError::Number { name: "length on the winch", value: most, valid });
         }
         let count = self.line.elements();

@@ -54,7 +54,7 @@ pub struct Penalties {
 /// Contact that cannot be.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CurveContactError {
-    #[error("`{place}` is no curve: contact between curves is for ropes, beams and edges of solids")]
+    #[error("`{place}` is not a curve: contact between curves is for ropes, beams and edges of solids")]
     NotACurve { place: String },
 }
 

@@ -239,8 +239,9 @@ impl Interaction for CurveContact {
         });
         let (left, side, x, apart) = worst.ok()?.filter(|w| w.0 < FOCAL)?;
         Some(format!(
-            "contact `{}`: at ({:.4}, {:.4}, {:.4}) `{}` curves towards `{}` with a radius of {:.3} of the distance of their axes, {apart:.4}: \
-             closer than 1 the nearest point is lost; thinner sections, or stiffer ones",
+            "contact `{}`: at ({:.4}, {:.4}, {:.4}) the curvature of `{}` towards `{}` has a radius of {:.3} times \
+             the distance of their axes, {apart:.4}; below 1 the closest point is not defined; use thinner sections, \
+             or stiffer ones",
             self.name,
             x[0],
             x[1],

@@ -25,10 +25,12 @@ use signorini_mechanics::pair::axis;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoPair {
     /// Both curves pass through the same point: there is no direction in which to part them.
-    #[error("the centrelines meet")]
+    #[error("the centrelines intersect")]
     Meet,
     /// Parallel tangents, or a centre of curvature.
-    #[error("the coordinates of the pair do not exist: tangents are parallel, or a point is at a centre of curvature")]
+    #[error(
+        "the closest points of the pair do not exist: tangents are parallel, or a point is at a centre of curvature"
+    )]
     NoCoordinates,
 }
 

@@ -14,22 +14,23 @@ use signorini_geometry::{Point, Vector};
 /// A path that cannot be followed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PathError {
-    #[error("{given} points: a {what} needs at least {needed}")]
+    #[error("{given} points: a {what} requires at least {needed}")]
     TooFewPoints { what: &'static str, given: usize, needed: usize },
     #[error("points {first} and {second} coincide at ({}, {}, {})", at[0], at[1], at[2])]
     Repeated { first: usize, second: usize, at: [f64; 3] },
     #[error("point {index} = ({}, {}, {}) is not finite", at[0], at[1], at[2])]
     NotFinite { index: usize, at: [f64; 3] },
     #[error(
-        "the path turns by {degrees:.3}° at ({}, {}, {}), where a smooth curve is wanted: give a spline through the points, or straight cells",
+        "the path turns by {degrees:.3}° at ({}, {}, {}), but a smooth curve is required: give a spline through the \
+         points, or straight cells",
         at[0], at[1], at[2]
     )]
     Kink { at: [f64; 3], degrees: f64 },
-    #[error("the path crosses itself at ({:.4}, {:.4}, {:.4}), {first:.4} and {second:.4} along it", at[0], at[1], at[2])]
+    #[error("the path crosses itself at ({:.4}, {:.4}, {:.4}), at the arc lengths {first:.4} and {second:.4}", at[0], at[1], at[2])]
     CrossesItself { at: [f64; 3], first: f64, second: f64 },
-    #[error("{given} cells: the path needs at least {needed}")]
+    #[error("{given} cells: the path requires at least {needed}")]
     TooFewCells { given: usize, needed: usize },
-    #[error("three points on a line, or coinciding, are on no arc")]
+    #[error("the three points are collinear or coincide, so they define no arc")]
     NoArc,
     #[error("{name} = {value}: {valid}")]
     Number { name: &'static str, value: f64, valid: &'static str },

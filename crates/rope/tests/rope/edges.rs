@@ -146,8 +146,8 @@ fn edges_that_cannot_touch_say_why() {
     let same = |x: V| x;
     assert_eq!(of(["left", "top"], 0.0, same), None);
     let told = |surfaces, radius, map| of(surfaces, radius, map).unwrap();
-    assert!(told(["left", "right"], 0.0, same).contains("do not meet along an edge"));
-    assert!(told(["left", "lid"], 0.0, same).contains("there is no group `lid` of sides; there are"));
+    assert!(told(["left", "right"], 0.0, same).contains("have no common edge"));
+    assert!(told(["left", "lid"], 0.0, same).contains("there is no group `lid` of sides; valid are"));
     assert!(told(["left", "top"], -1.0, same).contains("the radius is -1"));
     assert!(told(["left", "top"], f64::NAN, same).contains("the radius is NaN"));
     assert!(told(["boundary", "top"], 0.0, same).contains("branches at (0.500000, 0.000000, 1.000000)"));

@@ -67,12 +67,12 @@ fn a_run_that_is_done_is_left_alone_and_one_without_increments_begins_anew() {
     let before = written();
     let done = resumed();
     assert_eq!(done.status.code(), Some(0));
-    assert!(text(&done.stderr).contains("is done") && text(&done.stdout).contains("In contact"));
+    assert!(text(&done.stderr).contains("is complete") && text(&done.stdout).contains("In contact"));
     assert_eq!(written(), before);
     // As if it had been killed.
     std::fs::remove_file(folder.path().join("out/summary.json")).expect("a file");
     let anew = resumed();
-    assert!(anew.status.code() == Some(0) && text(&anew.stderr).contains("begins anew"));
+    assert!(anew.status.code() == Some(0) && text(&anew.stderr).contains("starts again"));
     assert_ne!(written(), before);
 }
 

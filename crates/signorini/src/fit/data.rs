@@ -37,7 +37,7 @@ pub(super) fn read(problem: &Problem, key: &Fit, column: &String) -> Result<Meas
     for Row { line, entries } in rows {
         if entries.len() != names.len() {
             let message = format!("line {line}: {} entries under {} names", entries.len(), names.len());
-            return Err(told(message).help("write decimals with a point, and texts with commas in quotes"));
+            return Err(told(message).help("use a decimal point, and put texts with commas in quotes"));
         }
         for (list, &k) in found.iter_mut().zip(&columns) {
             let place = format!("line {line}, column `{}`", names[k]);
@@ -56,7 +56,7 @@ pub(super) fn read(problem: &Problem, key: &Fit, column: &String) -> Result<Meas
     numbers.finish().map_err(told)?;
     let [time, value] = found;
     if time.is_empty() {
-        return Err(told("holds no measurements".into()));
+        return Err(told("contains no measurements".into()));
     }
     Ok(Measurements { time, value, names: columns.map(|k| names[k].to_string()) })
 }

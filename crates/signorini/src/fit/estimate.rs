@@ -142,23 +142,25 @@ impl Estimate {
         let (adhesion, tension) = (parameter(0), with_tension.then(|| parameter(1)));
         if with_tension && !apart {
             warnings.push(format!(
-                "the data cannot tell adhesion and tension apart{}: measure over a wider range of loads, or state the tension",
+                "the data do not determine adhesion and tension separately{}: measure over a wider range of loads, or \
+                 give the tension",
                 correlation.map_or(String::new(), |c| format!(" (their errors are correlated by {c:.3})"))
             ));
         } else if adhesion.interval[1] > 4.0 * adhesion.interval[0] {
             warnings.push(
-                "the data hardly determine the adhesion: the ends of its interval differ by more than a factor of four"
+                "the data hardly determine the adhesion energy: the ends of its interval differ by more than a factor \
+                 of four"
                     .into(),
             );
         }
         let lost = s.predictions.iter().filter(|p| !p.exists).count();
         if lost > 0 {
             warnings.push(format!(
-                "for {lost} of the measurements the model has no contact at all: check the load and the units of these rows"
+                "for {lost} of the measurements the model has no contact: check the load and the units of these rows"
             ));
         }
         if !converged {
-            warnings.push("the search for the least squares did not end: the values are not the best ones".into());
+            warnings.push("the least-squares iteration did not converge: the values are not the optimum".into());
         }
         Self {
             adhesion,
@@ -178,10 +180,10 @@ impl Estimate {
             let [value, low, high] = [p.value, p.interval[0], p.interval[1]].map(figure);
             format!("{what} {value} (between {low} and {high})")
         };
-        let tension = self.tension.as_ref().map_or(String::new(), |p| of(", tension over the stated one", p));
+        let tension = self.tension.as_ref().map_or(String::new(), |p| of(", tension relative to the given one", p));
         format!(
             "{}{tension}, with a confidence of {} %; the measurements scatter by {:.2e}.",
-            of("Energy of adhesion", &self.adhesion),
+            of("Adhesion energy", &self.adhesion),
             100.0 * confidence,
             self.scatter
         )

@@ -97,9 +97,9 @@ impl Model {
             Some(v) => Err(problem
                 .error(
                     &key.data,
-                    format!("`{}` is {v}: a zone of this membrane has between 0 and {largest:.6}", measured.names[1]),
+                    format!("`{}` is {v}: it must be between 0 and {largest:.6} for this membrane", measured.names[1]),
                 )
-                .help("numbers are in the base units of the case; rows without contact do not belong here")),
+                .help("numbers are in the base units of the case; remove rows without contact")),
         }
     }
 

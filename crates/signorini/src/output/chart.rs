@@ -48,7 +48,7 @@ pub fn save_as(path: &std::path::Path, svg: &str) -> Result<(), OutputError> {
     let bytes = match extension.as_str() {
         "svg" => svg.as_bytes().to_vec(),
         "png" => png(svg)?,
-        other => return Err(failed(format!("`{other}` is no kind of picture; valid are png and svg"))),
+        other => return Err(failed(format!("`{other}` is not a picture format; valid are png and svg"))),
     };
     let fail = |source| OutputError::Write { path: path.to_path_buf(), source };
     let part = path.with_extension(format!("{extension}.part"));

@@ -35,7 +35,7 @@ const OWN: [&str; 20] = [
 pub enum OutputError {
     #[error("cannot write `{path}`: {source}")]
     Write { path: PathBuf, source: io::Error },
-    #[error("the folder `{path}` holds `{entry}`, which no run has written")]
+    #[error("the folder `{path}` contains `{entry}`, which was not written by a run")]
     Foreign { path: PathBuf, entry: String },
     #[error("cannot draw a picture: {0}")]
     Picture(String),

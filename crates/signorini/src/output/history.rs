@@ -22,8 +22,8 @@ const LISTED: usize = 14;
 /// What the size of a contact is called.
 fn measure(space: Space, labels: &Labels) -> String {
     match space {
-        Space::Line | Space::PlaneStrain | Space::PlaneStress => labels.length("length of contact"),
-        _ => labels.area("area of contact"),
+        Space::Line | Space::PlaneStrain | Space::PlaneStress => labels.length("contact length"),
+        _ => labels.area("contact area"),
     }
 }
 
@@ -141,7 +141,7 @@ pub fn loop_of_states(
         (|c| c.force[2], |e| [e.force_before, e.force_after], labels.force("contact force")),
     ];
     let jumps: Vec<&Event> = events.iter().filter(|e| e.energy_released.is_some_and(|v| v != 0.0)).collect();
-    let mut page = Page::new((WIDTH, 720.0), "Contact over what drives it", "");
+    let mut page = Page::new((WIDTH, 720.0), "Contact over load or displacement", "");
     for (k, (read, ends, y)) in readings.iter().enumerate() {
         let states: Vec<(f64, f64, bool, f64)> = steps
             .iter()

@@ -160,7 +160,7 @@ impl Page {
         let ends = scale.ends;
         text(bottom + 20.0, 13, &format!("largest {}", three_digits(ends[1])));
         if ends[0].abs() > NOTHING * (ends[1] - ends[0]) && ends[0] < ends[1] {
-            text(bottom + 37.0, 13, &format!("least {}", three_digits(ends[0])));
+            text(bottom + 37.0, 13, &format!("smallest {}", three_digits(ends[0])));
         }
     }
 

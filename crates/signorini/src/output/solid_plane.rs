@@ -214,13 +214,13 @@ pub fn profile<const D: usize>(
     if let Some([friction, available]) = friction(shown, &now, axis) {
         panel.line(&available, Sign::Dashes(FRICTION), 1.4);
         panel.line(&friction, Sign::Line(FRICTION), 2.0);
-        key.push((Sign::Line(FRICTION), "friction, its size".into()));
-        key.push((Sign::Dashes(FRICTION), "friction available".into()));
+        key.push((Sign::Line(FRICTION), "friction traction, magnitude".into()));
+        key.push((Sign::Dashes(FRICTION), "friction limit".into()));
     }
     let rims: Vec<(f64, f64)> = shown.boundary.iter().map(|b| (b[0][axis], 0.0)).collect();
     if !rims.is_empty() {
         panel.dots(&rims, FRONT, 4.5, Dots::Full);
-        key.push((Sign::Dot(FRONT), "rim of contact".into()));
+        key.push((Sign::Dot(FRONT), "boundary of contact".into()));
     }
     panel.key(&key);
     page.finish()

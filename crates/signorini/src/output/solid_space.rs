@@ -202,7 +202,7 @@ pub fn pressure<const D: usize>(
         key.push((Sign::Area(FREE), "no contact".to_string()));
     }
     if !shown.boundary.is_empty() {
-        key.push((Sign::Line(FRONT), "rim of contact".into()));
+        key.push((Sign::Line(FRONT), "boundary of contact".into()));
     }
     page.key(&key);
     Ok(page.finish())

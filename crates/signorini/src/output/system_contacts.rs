@@ -98,9 +98,9 @@ pub fn draw(page: &mut Page, shown: &SystemShown, camera: &Camera, extent: f64, 
         }
         let on = if shown.contacts.len() > 1 { contact.fields.name.as_str() } else { "contact" };
         let what = match contact.carries {
-            Carried::Force => format!("forces of {on}"),
-            Carried::LineLoad => format!("force per length of {on}"),
-            Carried::Pressure => format!("traction of {on}"),
+            Carried::Force => format!("forces on {on}"),
+            Carried::LineLoad => format!("force per length on {on}"),
+            Carried::Pressure => format!("traction on {on}"),
         };
         key.push((Sign::Line(viridis(0.15)), contact.unit(labels, &format!("{what}, up to {}", three_digits(most)))));
     }
@@ -127,7 +127,7 @@ fn order(contact: &ContactShown, plane: bool, labels: &Labels) -> Option<Order> 
             length
         });
         let places = std::iter::once(0.0).chain(along).zip(0..).collect();
-        return Some(Order { places, name: labels.length("length along the tested points") });
+        return Some(Order { places, name: labels.length("length along the contact points") });
     }
     let closed = contact.closed();
     if !plane || contact.carries != Carried::Pressure || closed.len() < 3 {
@@ -147,7 +147,7 @@ fn order(contact: &ContactShown, plane: bool, labels: &Labels) -> Option<Order> 
     } else {
         let middle = closed.iter().map(|&k| points[k]).sum::<Vector<3>>() / closed.len() as f64;
         let angle = |x: Vector<3>| (x.y - middle.y).atan2(x.x - middle.x).to_degrees();
-        (closed.iter().map(|&k| (angle(points[k]), k)).collect(), "angle about the middle [°]".into())
+        (closed.iter().map(|&k| (angle(points[k]), k)).collect(), "angle about the centre [°]".into())
     };
     places.sort_by(|a, b| a.0.total_cmp(&b.0));
     Some(Order { places, name })

@@ -280,12 +280,12 @@ pub fn draw(
     let near = frame.filter(|frame| size(*frame) < SMALL * size(view.axes));
     if near.is_some() || (frame.is_some() && averted.is_some()) {
         let mut touched = View { width: view.width, ..view_of(plan, shown, &title(shown.time)) };
-        let mut note = "where it touches";
+        let mut note = "contact zone";
         if let Some(frame) = near {
             touched = View { points: corners(frame).collect(), axes: frame, room: frame, is_part: true, ..touched };
         }
         if let Some(from) = averted {
-            note = "where it touches, without rigid bodies";
+            note = "contact zone, without rigid bodies";
             touched = View { from, rigid: Rigid::LeftOut, ..touched };
         }
         drawn.push(("contact".into(), scene(plan, shown, &touched, &title(shown.time), note)?));

@@ -49,14 +49,14 @@ impl PathCase {
             && let Some(body) = self.plan.bodies.get(*body)
         {
             let message = format!("the {place} of the path `{name}` lies inside `{}`, {depth:.4e} deep", body.name);
-            return self.problem().error(key, message).help("a point outside of the body");
+            return self.problem().error(key, message).help("give a point outside of the body");
         }
         if let PathError::Crosses { body, depth, at } = error
             && let Some(body) = self.plan.bodies.get(*body)
         {
             let at = at.iter().map(|v| format!("{v:.4}")).collect::<Vec<_>>().join(", ");
-            let message = format!("the path `{name}` goes through `{}`, {depth:.4e} deep at ({at})", body.name);
-            return self.problem().error(key, message).help("`around` names bodies in the order of the path");
+            let message = format!("the path `{name}` passes through `{}`, {depth:.4e} deep at ({at})", body.name);
+            return self.problem().error(key, message).help("`around` must name bodies in the order of the path");
         }
         self.problem().error(key, format!("the path `{name}`: {error}"))
     }

@@ -133,9 +133,9 @@ fn of_path(path: &PathReport, units: &Units) -> Vec<String> {
     let mut out = Vec::new();
     if let (Some(first), Some(last)) = (path.frames.first(), path.frames.last()) {
         let touched = last.contacts.len();
-        let times = if touched == 1 { "once".to_string() } else { format!("{touched} times") };
+        let times = if touched == 1 { "1 contact".to_string() } else { format!("{touched} contacts") };
         out.push(format!(
-            "`{name}`: length {} at t = {}, {} at t = {}, where it touches {times}",
+            "`{name}`: length {} at t = {}, {} at t = {}, with {times}",
             units.length(first.length),
             exact(first.time, ""),
             units.length(last.length),
@@ -143,10 +143,10 @@ fn of_path(path: &PathReport, units: &Units) -> Vec<String> {
         ));
         if let Some(limits) = last.tension_limits {
             let [low, high] = units.forces(limits);
-            out.push(format!("friction holds tensions from {low} to {high} at the end of `{name}`"));
+            out.push(format!("friction admits end tensions from {low} to {high} for `{name}`"));
         }
         if let (Some(true), Some(used)) = (last.slips, last.utilisation) {
-            out.push(format!("`{name}` slips: {:.0} % of the friction is used", 100.0 * used));
+            out.push(format!("`{name}` slips: {:.0} % of the friction limit is required", 100.0 * used));
         }
     }
     out.extend(path.events.iter().map(|event| {
@@ -162,7 +162,7 @@ fn of_yarn(yarn: &WindingReport, units: &Units) -> Vec<String> {
     let mut out = vec![format!("`{name}`: length {length}, largest slippage {slippage}")];
     if let (Some(pattern), Some(coverage)) = (&yarn.pattern, &yarn.coverage) {
         out.push(format!(
-            "pattern of {} circuits, {} places on after each, dwell {} rad; {} of the mandrel covered",
+            "pattern of {} circuits, shifted by {} band positions each, dwell {} rad; {} of the mandrel covered",
             pattern.n,
             pattern.k,
             exact(pattern.dwell, ""),
@@ -175,9 +175,13 @@ fn of_yarn(yarn: &WindingReport, units: &Units) -> Vec<String> {
         };
         list.iter().map(part).collect()
     };
-    let hollow = "the mandrel is hollow along it: another angle, or a slippage that leads round";
+    let hollow = "the mandrel is concave along the yarn: use another angle, or a slippage that avoids this region";
     out.extend(parts(&yarn.bridges, "bridges", hollow));
-    out.extend(parts(&yarn.slips, "slips", "its slippage is beyond the friction: less of it, or a rougher yarn"));
+    out.extend(parts(
+        &yarn.slips,
+        "slips",
+        "the slippage exceeds the coefficient of friction: use less slippage, or a larger coefficient",
+    ));
     out
 }
 
@@ -186,7 +190,7 @@ fn of_rope(rope: &RopeReport, units: &Units) -> Vec<String> {
     if let Some(limits) = rope.tension_limits {
         let [low, high] = units.forces(limits);
         let [tension, _] = units.forces([rope.tension; 2]);
-        out.push(format!("with {tension} at its start it holds {low} to {high} at its end"));
+        out.push(format!("with start tension {tension} friction admits end tensions from {low} to {high}"));
     }
     out
 }
@@ -298,11 +302,11 @@ mod tests {
             assert!(error.to_string().contains(part) && place == Some(line), "{error:?}");
         };
         wrong(&WRAPPING.replace("[\"egg\"]", "[\"eg\"]"), "there is no body `eg`", 9);
-        wrong(&WRAPPING.replace("[\"egg\"]", "[[\"egg\"], []]"), "for 1 parts between fixed points", 9);
+        wrong(&WRAPPING.replace("[\"egg\"]", "[[\"egg\"], []]"), "there are 1 parts between fixed points", 9);
         wrong(&WRAPPING.replace("frames = 2", "frames = 0"), "`frames` is 0", 2);
         wrong(&WRAPPING.replace("mu = 0.3", "mu = -0.3"), "coefficient of friction", 10);
         wrong(&WRAPPING.replace("\"height\"", "\"hight\""), "unknown name `hight`", 7);
-        wrong(&WINDING.replace("25 deg", "wide deg"), "is not a number of degrees", 7);
+        wrong(&WINDING.replace("25 deg", "wide deg"), "is not an angle in degrees", 7);
         wrong(&WINDING.replace("2.57059722868 cm", "2 N"), "the unit is that of a force", 9);
         wrong(&ROPE.replace("euler_eytelwein", "winding"), "`ropes` belongs to another analysis", 4);
         wrong(&ROPE.replace("pitch = 3, ", ""), "pitch", 6);

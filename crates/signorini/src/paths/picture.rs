@@ -223,10 +223,13 @@ pub fn of_paths(case: &PathCase, surfaces: &[Surface], lines: &[Line]) -> Result
     }
     page.bar(&scale, &labels.force_per_length("normal force"));
     if largest > 0.0 {
-        key.push((Sign::Line(viridis(0.5)), "touches: colour and arrows are the normal force per length".to_string()));
+        key.push((
+            Sign::Line(viridis(0.5)),
+            "in contact: colour and arrows are the normal force per length".to_string(),
+        ));
     }
     if lines.iter().any(|l| l.points.iter().any(|p| p.body < 0)) {
-        key.push((Sign::Line(IN_THE_AIR), "in the air".into()));
+        key.push((Sign::Line(IN_THE_AIR), "without contact".into()));
     }
     if some_hidden {
         key.push((Sign::Dashes(IN_THE_AIR), "behind a body".into()));

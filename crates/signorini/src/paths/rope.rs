@@ -59,7 +59,11 @@ fn one(case: &PathCase, rope: &PlannedRope) -> Result<(Line, RopeReport), SceneE
             limits.off_surface / limits.length,
             limits.length
         );
-        return Err(case.problem().error(&rope.key, message).help("all its points have to lie on the surface").into());
+        return Err(case
+            .problem()
+            .error(&rope.key, message)
+            .help("all points of the path must lie on the surface")
+            .into());
     }
     let end = rope.end_tension.unwrap_or(rope.tension);
     let verdict = limits.verdict(rope.tension, end).map_err(failed)?;

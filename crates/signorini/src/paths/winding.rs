@@ -114,7 +114,7 @@ fn one(case: &PathCase, key: &PlannedWinding) -> Result<(Line, WindingReport), S
     let mandrel = Mandrel { surface: body.shape().as_ref(), axis: Axis { origin: body.shape().centre(), direction } };
     let [z, theta, angle] = key.start;
     let Some(point) = start_point(&mandrel, z, theta) else {
-        let message = format!("the mandrel has no surface about the axis at z = {z}");
+        let message = format!("the mandrel has no surface around the axis at z = {z}");
         return Err(case.problem().error(&key.key, message).into());
     };
     let start = Start { point, angle };

@@ -153,8 +153,8 @@ fn odd(
     if !path.order.is_sorted() {
         let met = path.order.iter().filter_map(|station| body_of(&key.stations[*station]));
         let met: Vec<String> = met.map(|body| format!("`{}`", case.plan.bodies[body].name)).collect();
-        let start = format!("`{name}` meets its bodies in another order");
-        told(format!("{start} than `around` states, in which it would go through one: {}", met.join(", ")), &start);
+        let start = format!("`{name}` is in contact with its bodies in another order");
+        told(format!("{start} than in `around`; in that order it would pass through one: {}", met.join(", ")), &start);
     }
     for (number, body) in case.plan.bodies.iter().enumerate() {
         if key.stations.iter().any(|station| body_of(station) == Some(number)) {
@@ -162,9 +162,9 @@ fn odd(
         }
         let crosses = path.crosses(bodies, number).map_err(|e| case.failed(&key.key, name, &e))?;
         if let Some((x, depth)) = crosses {
-            let start = format!("`{name}` goes through `{}`", body.name);
+            let start = format!("`{name}` passes through `{}`", body.name);
             let at = x.iter().map(|v| format!("{v:.4}")).collect::<Vec<_>>().join(", ");
-            let remedy = "its `around` does not name that body";
+            let remedy = "its `around` does not contain this body";
             told(format!("{start}, {depth:.4e} deep at ({at}), t = {time}: {remedy}"), &start);
         }
     }
@@ -221,7 +221,7 @@ fn tension(case: &PathCase, value: Option<&Placed>, time: f64) -> Result<Option<
     if found > 0.0 {
         return Ok(Some(found));
     }
-    let message = format!("the tension is {found} at t = {time}: it must be greater than zero");
+    let message = format!("the tension is {found} at t = {time}: it must be positive");
     Err(case.problem().error(&value.key, message))
 }
 

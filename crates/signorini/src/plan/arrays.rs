@@ -19,7 +19,7 @@ impl Planner<'_> {
         let mut points = Vec::new();
         for (k, x) in key.points.iter().enumerate() {
             if x.len() != D || x.iter().any(|v| !v.is_finite()) {
-                return Err(wrong(format!("point {k} is {x:?}: {D} finite coordinates are wanted")));
+                return Err(wrong(format!("point {k} is {x:?}: expected {D} finite coordinates")));
             }
             points.push(std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0)));
         }
@@ -27,8 +27,9 @@ impl Planner<'_> {
             key.cells.iter().map(|block| ListedCells { shape: &block.shape, nodes: &block.nodes }).collect();
         let file = GmshFile::from_arrays(points.clone(), &blocks).map_err(wrong)?;
         let mut mesh = file.mesh::<D>(None).map_err(|e| wrong(e.to_string()))?;
-        mesh.check()
-            .map_err(|e| wrong(e.to_string()).help("every cell needs a positive volume; look at the place named"))?;
+        mesh.check().map_err(|e| {
+            wrong(e.to_string()).help("every cell needs a positive volume; check the cell at the given position")
+        })?;
         if let Some(Overlap { cells: [a, b], at }) = mesh.overlap() {
             return Err(wrong(format!("the cells {a} and {b} overlap at {}", position(&at))));
         }
@@ -38,7 +39,7 @@ impl Planner<'_> {
             if let Some(beyond) = nodes.iter().find(|n| **n as usize >= points.len()) {
                 return Err(self
                     .problem
-                    .error(nodes, format!("the group `{name}` has a point {beyond}, which there is not")));
+                    .error(nodes, format!("the group `{name}` contains the point {beyond}, which does not exist")));
             }
             let places: BTreeSet<Vec<u64>> = nodes.iter().map(|n| place(&points[*n as usize][..D])).collect();
             let vertices: Vec<u32> = (0..mesh.nodes().len() as u32)
@@ -55,7 +56,7 @@ impl Planner<'_> {
                 .map(|c| c as u32)
                 .collect();
             if sides.is_empty() && cells.is_empty() && vertices.is_empty() {
-                return Err(self.problem.error(nodes, format!("the group `{name}` has no node of the mesh")));
+                return Err(self.problem.error(nodes, format!("the group `{name}` contains no node of the mesh")));
             }
             let group = mesh.group_mut(name);
             (group.sides, group.cells, group.vertices) = (sides, cells, vertices);

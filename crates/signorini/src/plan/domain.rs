@@ -46,7 +46,7 @@ pub(crate) trait ReadDomain<const D: usize> {
         let (shape, bounds, _) = self.shape(key)?;
         let whole = grid.bounds();
         if (0..D).any(|k| bounds.max[k] <= whole.min[k] || bounds.min[k] >= whole.max[k]) {
-            return Err(self.planner().problem.error(key, "the initial zone lies beside the membrane"));
+            return Err(self.planner().problem.error(key, "the initial zone lies outside the membrane"));
         }
         if !shape.is_box() {
             return Ok(shape);
@@ -102,8 +102,8 @@ pub(crate) trait ReadDomain<const D: usize> {
             let at = film.domain.as_ref().map_or_else(|| planner.key(film), |d| planner.key(d));
             return Err(planner
                 .problem
-                .error(&at, "the domain is empty: no point of it was found on the grid")
-                .help("check the sign (negative inside) and the bounds min, max, or use more cells"));
+                .error(&at, "the domain is empty: no point of the grid is inside it")
+                .help("check the sign (negative inside) and the bounds min and max, or use more cells"));
         }
         Ok(OnCells { cells, grid, domain, pieces, refinement })
     }
@@ -166,7 +166,7 @@ impl Planner<'_> {
                 Ok((out, self.key(size)))
             }
             _ => Err(problem
-                .error(&film.mesh, "the grid needs either `cells` or `cell_size`")
+                .error(&film.mesh, "the grid requires either `cells` or `cell_size`")
                 .help("mesh.grid = { cells = [40, 40] }")),
         }
     }

@@ -52,11 +52,11 @@ impl Planner<'_> {
         }
         if let Some((closed, distance)) = crate::mesh_file::mended(&mesh) {
             let done = if distance > 0.0 {
-                format!("corners up to {distance:.1e} apart are joined")
+                format!("corners at distances up to {distance:.1e} are joined")
             } else {
-                "triangles without area are left out".to_string()
+                "triangles with zero area are left out".to_string()
             };
-            self.warn(format!("the surface in `{}` is not quite closed: {done}", key.file));
+            self.warn(format!("the surface in `{}` is not exactly closed: {done}", key.file));
             return self.turned_outwards(closed, &key.file, &format!("the surface in `{}`", key.file));
         }
         Err(self.not_closed(&mesh, &key.file, &format!("the surface in `{}`", key.file)))
@@ -76,12 +76,12 @@ impl Planner<'_> {
         let counts = [
             (quality.open_edges, "have one triangle"),
             (quality.branching_edges, "more than two"),
-            (quality.flipped_edges, "two that disagree about the outside"),
+            (quality.flipped_edges, "two triangles with opposite orientation"),
         ];
         let told: Vec<String> =
             counts.iter().filter(|(n, _)| *n > 0).map(|(n, reason)| format!("{n} edges {reason}")).collect();
         let message = format!("{what} is not closed: {}{}", told.join(", "), wrong.unwrap_or_default());
-        self.problem.error(at, message).help("a body needs an inside: close the holes, or model it by another shape")
+        self.problem.error(at, message).help("a body needs a closed surface: close the holes, or use another shape")
     }
 
     /// Says something once.
@@ -109,7 +109,8 @@ impl Planner<'_> {
         if volume >= 0.0 {
             return Ok(mesh);
         }
-        let warning = format!("{what} is inside out, its volume is {volume:.4e}: it is turned round");
+        let warning =
+            format!("{what} has its normals inwards (inside out), its volume is {volume:.4e}: they are reversed");
         self.warn(warning);
         let turned: Vec<[u32; 3]> = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
         TriangleMesh::new(mesh.vertices().to_vec(), &turned).map_err(|e| self.problem.error(at, e.to_string()))

@@ -37,10 +37,10 @@ impl Planner<'_> {
             Some(n) => return Err(self.problem.error(n, "`every` must be at least 1")),
         };
         if let Some(seconds) = self.problem.limits.max_time.as_ref().filter(|s| **s <= 0.0 || s.is_nan()) {
-            return Err(self.problem.error(seconds, format!("a run of {seconds} s")).help("more than 0 seconds"));
+            return Err(self.problem.error(seconds, format!("a run of {seconds} s")).help("give more than 0 seconds"));
         }
         if let Some(n) = self.problem.limits.max_iterations.as_ref().filter(|n| **n < 1) {
-            return Err(self.problem.error(n, format!("a run of {n} iterations")).help("1 or more"));
+            return Err(self.problem.error(n, format!("a run of {n} iterations")).help("give 1 or more"));
         }
         warnings.append(&mut self.warnings.borrow_mut());
         Ok(Head {

@@ -53,11 +53,13 @@ fn told(planner: &Planner<'_>, shape: &Shape, side: Side, why: NoHeight) -> Case
     let (message, help) = match why {
         NoHeight::LooksAway if below => ("the normal does not point towards the membrane", "normal = [0, 0, 1]"),
         NoHeight::LooksAway => ("the normal does not point towards the membrane", "normal = [0, 0, -1]"),
-        NoHeight::AxisNotAway if below => ("the axis has to point straight down, into the body", "axis = [0, 0, -1]"),
-        NoHeight::AxisNotAway => ("the axis has to point straight up, into the body", "axis = [0, 0, 1]"),
-        NoHeight::AxisNotUpright => ("the axis has to stand upright", "axis = [0, 0, 1]"),
-        NoHeight::AxisNotFlat => ("a cylinder under a membrane lies flat", "axis = [1, 0, 0]"),
-        NoHeight::NoFormula => return planner.unavailable(&at, "this shape beside a membrane"),
+        NoHeight::AxisNotAway if below => ("the axis must point vertically down, into the body", "axis = [0, 0, -1]"),
+        NoHeight::AxisNotAway => ("the axis must point vertically up, into the body", "axis = [0, 0, 1]"),
+        NoHeight::AxisNotUpright => ("the axis must be vertical", "axis = [0, 0, 1]"),
+        NoHeight::AxisNotFlat => {
+            ("the axis of a cylinder in contact with a membrane must be horizontal", "axis = [1, 0, 0]")
+        }
+        NoHeight::NoFormula => return planner.unavailable(&at, "this shape in contact with a membrane"),
     };
     planner.problem.error(&at, message).help(help)
 }
@@ -75,13 +77,15 @@ impl BesideMembrane<'_, '_> {
         let at = self.vector(place, LENGTH)?;
         if at[0] != 0.0 || at[1] != 0.0 {
             return Err(problem
-                .error(place, "in an axisymmetric problem the shape stands on the axis")
+                .error(place, "in an axisymmetric problem the shape must be centred on the axis")
                 .help("x = y = 0"));
         }
         if let Shape::Ellipsoid(key) = shape {
             let [a, b, _] = self.semi_axes(key)?;
             if a != b {
-                return Err(problem.error(&key.semi_axes, "round an axis the first two semi-axes are equal"));
+                return Err(
+                    problem.error(&key.semi_axes, "in an axisymmetric problem the first two semi-axes must be equal")
+                );
             }
         }
         Ok(())
@@ -111,7 +115,7 @@ impl ShapeKeys for BesideMembrane<'_, '_> {
             // On a line a cylinder stands across it.
             None if self.planner.space != Space::Plane => Ok(Vector::<3>::y()),
             None => {
-                let error = self.planner.problem.error(&key.point, "the cylinder needs an `axis`");
+                let error = self.planner.problem.error(&key.point, "the cylinder requires an `axis`");
                 Err(error.help("axis = [1, 0, 0]"))
             }
             Some(axis) => self.direction(axis),

@@ -25,7 +25,7 @@ impl Planner<'_> {
         for step in &self.problem.steps {
             match &step.control {
                 None | Some(problem::Control::Time(_)) => {}
-                Some(control) => return Err(self.unavailable(control, "control of solids by arc length or area")),
+                Some(control) => return Err(self.unavailable(control, "arc-length or area control of solids")),
             }
         }
         Ok(self.increments(0, &[])?.into_iter().map(|i| i.time).collect())
@@ -46,11 +46,12 @@ impl Planner<'_> {
                     Some(problem::Control::ArcLength(arc)) => {
                         let size = arc.size;
                         if (SHORTEST..LONGEST / MOST_INCREMENTS as f64).contains(&size) {
-                            let message = format!("with increments of {size} a path takes too many of them to its end");
+                            let message =
+                                format!("with increments of length {size} the path needs too many increments");
                             return Err(self
                                 .problem
                                 .error(&arc.size, message)
-                                .help("give the step `increments`, or make them larger: try 0.02"));
+                                .help("give the number of `increments`, or increase the size; 0.02 is a good start"));
                         }
                         ((LONGEST / size) as usize).clamp(1, MOST_INCREMENTS)
                     }
@@ -67,8 +68,8 @@ impl Planner<'_> {
             if let Some(events) = &key.events
                 && !(*events > 0.0 && events.is_finite())
             {
-                let message = format!("{} is no tolerance of time", events);
-                return Err(self.problem.error(events, message).help("a number greater than zero, such as 1e-3"));
+                let message = format!("{} is not a valid time tolerance", events);
+                return Err(self.problem.error(events, message).help("give a number greater than zero, such as 1e-3"));
             }
             for part in 1..=n {
                 // The last time is exactly the stated one.
@@ -94,7 +95,7 @@ impl Planner<'_> {
     ) -> Result<Control, CaseError> {
         let Some(control) = &key.control else { return Ok(Control::Time) };
         if let (true, problem::Control::ArcLength(_) | problem::Control::Area(_)) = (contacts.is_empty(), control) {
-            return Err(self.problem.error(control, "there is no contact to control"));
+            return Err(self.problem.error(control, "the case has no contact to control"));
         }
         match control {
             problem::Control::Time(_) => Ok(Control::Time),
@@ -104,7 +105,7 @@ impl Planner<'_> {
                     return Err(self
                         .problem
                         .error(&arc.size, format!("an increment of {size} is not between {SHORTEST} and 1"))
-                        .help("1 is the area of the membrane, or the time that the step takes: try 0.02"));
+                        .help("1 is the area of the membrane, or the duration of the step; 0.02 is a good start"));
                 }
                 Ok(Control::ArcLength(size))
             }
@@ -116,7 +117,7 @@ impl Planner<'_> {
                         .help(format!("of = \"{}\"", contacts.first().unwrap_or(&""))));
                 }
                 if contacts.len() > 1 {
-                    return Err(self.unavailable(control, "control by the area of one contact of several"));
+                    return Err(self.unavailable(control, "area control of one of several contacts"));
                 }
                 // On a line the area is a length; of a round membrane it is that of the disc.
                 let power = if self.space == problem::Space::Line { 1 } else { 2 };

@@ -28,11 +28,7 @@ impl Planner<'_> {
             .problem
             .error(
                 at,
-                format!(
-                    "{nodes:.1e} unknowns would need about {:.1} GiB, and {:.1} GiB are free",
-                    gib(bytes),
-                    gib(free)
-                ),
+                format!("{nodes:.1e} unknowns require about {:.1} GiB, but {:.1} GiB are free", gib(bytes), gib(free)),
             )
             .help("use fewer cells, or a lower degree"))
     }
@@ -74,10 +70,10 @@ pub fn check_memory(problem: &Problem, what: &str, needed: f64) -> Result<(), Ca
     if needed <= free {
         return Ok(());
     }
-    let message = format!("{what} need about {:.1} GiB, and {:.1} GiB are free for them", gib(needed), gib(free));
+    let message = format!("{what} require about {:.1} GiB, but {:.1} GiB are free", gib(needed), gib(free));
     Err(problem
         .error(&problem.space, message)
-        .help("fewer cells, a lower degree, symmetry, or cells graded towards the contact"))
+        .help("use fewer cells, a lower degree, symmetry, or cells graded towards the contact"))
 }
 
 /// Memory that is free, as the system tells; 8 GiB where it does not.

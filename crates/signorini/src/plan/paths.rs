@@ -51,9 +51,9 @@ pub(super) fn none_of_paths(problem: &Problem) -> Result<(), CaseError> {
         return Err(problem
             .error(
                 view,
-                "`view` is for pictures of paths: bodies in equilibrium are shown from where they are seen best",
+                "`view` is only for pictures of paths; for bodies in equilibrium the view is chosen automatically",
             )
-            .help("leave it out: ParaView turns the fields of the result"));
+            .help("leave it out; other views are available in ParaView"));
     }
     let other = tables(problem).into_iter().find(|(a, _, count)| problem.analysis != Some(*a) && *count > 0);
     let Some((analysis, key, _)) = other else { return Ok(()) };
@@ -91,7 +91,7 @@ impl Planner<'_> {
                 let frames = match &problem.frames {
                     None => FRAMES,
                     Some(n) if (1..=100_000).contains(n) => *n as usize,
-                    Some(n) => return Err(problem.error(n, format!("`frames` is {n}, valid are 1 to 100000"))),
+                    Some(n) => return Err(problem.error(n, format!("`frames` is {n}; valid are 1 to 100000"))),
                 };
                 let paths = problem.paths.iter().map(|(n, p)| self.shortest(n, p)).collect::<Result<Vec<_>, _>>()?;
                 let around = self.around_paths(&paths)?;
@@ -122,7 +122,7 @@ impl Planner<'_> {
         none_of_paths(problem)?;
         for (analysis, key, count) in tables(problem) {
             if problem.analysis == Some(analysis) && count == 0 {
-                let message = format!("there is no path: this analysis needs tables `[{key}.NAME]`");
+                let message = format!("the case has no path: this analysis requires tables `[{key}.NAME]`");
                 return Err(problem.error(&KeyPath::of_keys(&["analysis"]), message));
             }
         }
@@ -168,7 +168,7 @@ impl Planner<'_> {
         if from.cross(&up).norm() <= 1e-6 * from.norm() * up.norm() {
             return Err(self
                 .problem
-                .error(view, "`from` and `up` have the same direction, or none")
+                .error(view, "`from` and `up` are parallel, or one of them is zero")
                 .help("from = [1, -2, 1], and up = [0, 0, 1] or left out"));
         }
         Ok([from, up])
@@ -188,13 +188,16 @@ impl Planner<'_> {
         let parts = key.around.iter().filter(|a| matches!(a, Around::Part(_))).count();
         if parts != 0 && (parts != key.around.len() || parts != key.via.len() + 1) {
             let (given, wanted) = (key.around.len(), key.via.len() + 1);
-            let message = format!("{given} entries, {parts} of them lists, for {wanted} parts between fixed points");
-            return Err(problem.error(&key.around, message).help("names of bodies, or a list of names for every part"));
+            let message =
+                format!("{given} entries, {parts} of them lists, but there are {wanted} parts between fixed points");
+            return Err(problem
+                .error(&key.around, message)
+                .help("give names of bodies, or one list of names for each part"));
         }
         for (body, turns) in &key.turns {
             self.path_body(turns, body)?;
             if !(0..=1000).contains(turns) {
-                return Err(problem.error(turns, format!("{turns} further turns")).help("0 to 1000"));
+                return Err(problem.error(turns, format!("{turns} additional turns")).help("valid are 0 to 1000"));
             }
         }
         let station = |at: &dyn Fn(&str) -> Result<usize, CaseError>, body: &str| {
@@ -289,8 +292,8 @@ impl Planner<'_> {
             && let Some(number) = text.trim_end().strip_suffix("deg").or_else(|| text.trim_end().strip_suffix('°'))
         {
             let degrees: f64 = number.trim().parse().map_err(|_| {
-                let message = format!("`{}` is not a number of degrees", number.trim());
-                self.problem.error(value, message).help("radians, or for example \"25 deg\"")
+                let message = format!("`{}` is not an angle in degrees", number.trim());
+                self.problem.error(value, message).help("give radians, or for example \"25 deg\"")
             })?;
             return Ok(degrees.to_radians());
         }
@@ -304,7 +307,7 @@ impl Planner<'_> {
             None => None,
             Some(value) => {
                 let expression = self.reader.expression(value, NONE, &["s", "angle", "r", "z"]).map_err(|e| {
-                    e.or_help("it may contain s, angle (from the meridian), r and z of the yarn, in the base units")
+                    e.or_help("it may contain s, angle (to the meridian), r and z of the yarn, in the base units")
                 })?;
                 Some(match expression.constant() {
                     Some(value) => Slippage::Constant(value),
@@ -317,15 +320,15 @@ impl Planner<'_> {
         let pattern = match &key.pattern {
             None => None,
             Some(pattern) if key.band.is_none() => {
-                return Err(problem.error(pattern, "a pattern needs the width of the `band`"));
+                return Err(problem.error(pattern, "a pattern requires the width of the `band`"));
             }
             Some(pattern) => Some(match &pattern.circuits {
                 Value::Text(word) if word == "auto" => None,
                 value => {
                     let n = self.reader.number(value, NONE)?;
                     if n.fract() != 0.0 || !(1.0..=1e6).contains(&n) {
-                        let message = format!("{n} is no number of circuits");
-                        return Err(problem.error(value, message).help("1 to 1000000, or \"auto\""));
+                        let message = format!("{n} is not a valid number of circuits");
+                        return Err(problem.error(value, message).help("give 1 to 1000000, or \"auto\""));
                     }
                     Some(n as u32)
                 }
@@ -334,7 +337,7 @@ impl Planner<'_> {
         let axis = key.axis.as_ref().map_or(Ok([0.0, 0.0, 1.0]), |a| self.reader.numbers::<3>(a, NONE))?;
         let axis = Vector::<3>::from(axis).try_normalize(0.0).ok_or_else(|| {
             let at = key.axis.as_ref().map_or_else(|| self.key(key), |a| self.key(a));
-            problem.error(&at, "the axis has no length")
+            problem.error(&at, "the axis vector is zero")
         })?;
         Ok(PlannedWinding {
             name: name.to_string(),
@@ -421,7 +424,7 @@ impl Planner<'_> {
                 return Err(problem.error(body, message).help("[bodies.NAME.rigid]"));
             };
             if let Some(side @ Side::Inside) = &rigid.side {
-                return Err(problem.error(side, "paths run outside of bodies"));
+                return Err(problem.error(side, "paths inside of bodies"));
             }
             // Triangles have no curvature; the surface through their vertices has.
             let is_mesh = matches!(rigid.shape, Shape::Stl(_) | Shape::Triangles(_));

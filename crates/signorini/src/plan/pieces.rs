@@ -8,9 +8,9 @@ use signorini_geometry::Point;
 const LISTED: usize = 4;
 
 /// What helps against pieces that should be one.
-pub(crate) const UNITE: &str = "pieces that lie on each other are no body until they share nodes: in Gmsh `Coherence;` or BooleanFragments \
-     before meshing, or `Coherence Mesh;` after it; pieces that are to move by themselves are bodies of their own, with \
-     `group`, supports and contacts";
+pub(crate) const UNITE: &str = "touching pieces form one body only if they share nodes: in Gmsh use `Coherence;` or \
+                                BooleanFragments before meshing, or `Coherence Mesh;` after it; for pieces that move \
+                                independently, make each one a body with `group`, supports and contacts";
 
 /// The pieces of a mesh, at least two.
 pub(crate) struct Apart<const D: usize> {
@@ -60,14 +60,13 @@ impl<const D: usize> Apart<D> {
         if count > LISTED {
             list.push(format!("{} more", count - LISTED));
         }
-        let touching =
-            self.touching.map_or(String::new(), |x| format!(", two of which lie on each other at {}", position(&x)));
-        format!("the mesh of `{body}` falls into {count} pieces that share no node: {}{touching}", list.join(", "))
+        let touching = self.touching.map_or(String::new(), |x| format!(", two of which touch at {}", position(&x)));
+        format!("the mesh of `{body}` consists of {count} pieces that share no node: {}{touching}", list.join(", "))
     }
 
     /// ... where nothing holds one of the pieces.
     pub fn held_by_nothing(&self, body: &str, piece: u32) -> String {
-        format!("{}; nothing holds the {}", self.text(body), self.describe(piece))
+        format!("{}; no support restrains the {}", self.text(body), self.describe(piece))
     }
 
     /// The warning about pieces that lie on each other.

@@ -85,8 +85,8 @@ impl<'a> Planner<'a> {
                 return Err(match first_error {
                     Some(_) if circle => self
                         .problem
-                        .error(open[0].1, format!("the constant `{}` is defined in a circle", open[0].0))
-                        .help("a constant may use others, but not itself by way of them"),
+                        .error(open[0].1, format!("the constant `{}` depends on itself", open[0].0))
+                        .help("a constant may use others, but not itself, directly or indirectly"),
                     Some(error) => error,
                     None => CaseError::new("constants"),
                 });
@@ -128,7 +128,7 @@ impl<'a> Planner<'a> {
                     .find(|(_, k)| k.expression.as_ref().is_some_and(|v| self.mentions(v, names.iter().copied())));
                 return Err(match (circle, first_error) {
                     (Some((name, key)), _) => problem
-                        .error(*key, format!("the function `{name}` calls itself, directly or by way of others"))
+                        .error(*key, format!("the function `{name}` calls itself, directly or indirectly"))
                         .help("functions may use each other, but not in a circle"),
                     (None, Some(error)) => error,
                     (None, None) => CaseError::new("functions"),
@@ -148,10 +148,10 @@ impl<'a> Planner<'a> {
                         &self.key(table),
                         format!("`t` has {} entries and `value` {}", t.len(), value.len()),
                     )
-                    .help("both need the same number of entries, at least one"));
+                    .help("both require the same number of entries, at least one"));
                 }
                 if t.iter().chain(value).any(|v| !v.is_finite()) {
-                    return Err(error(&self.key(table), "the table holds a number that is not finite".into()));
+                    return Err(error(&self.key(table), "the table contains a number that is not finite".into()));
                 }
                 if let Some(i) = (1..t.len()).find(|&i| t[i] <= t[i - 1]) {
                     return Err(error(
@@ -162,7 +162,7 @@ impl<'a> Planner<'a> {
                 Ok(Definition::Table { t: t.0.clone(), value: value.0.clone() })
             }
             (None, Some(value)) => Ok(Definition::Formula(self.reader.any(value, &["t"])?.0)),
-            _ => Err(error(&self.key(key), format!("the function `{name}` needs either `table` or `expression`"))),
+            _ => Err(error(&self.key(key), format!("the function `{name}` requires either `table` or `expression`"))),
         }
     }
 

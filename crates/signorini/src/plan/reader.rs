@@ -61,7 +61,7 @@ impl Reader<'_> {
         match found {
             Some(found) if found != dimension => Err(self
                 .error(value, format!("the unit is that of {}", describe(found)))
-                .help(format!("here stands {}", describe(dimension)))),
+                .help(format!("expected is {}", describe(dimension)))),
             _ => Ok(expression),
         }
     }
@@ -75,14 +75,16 @@ impl Reader<'_> {
             Value::Number(v) if v.is_finite() => return Ok((Expression::number(*v), None)),
             Value::Number(v) => return Err(self.error(value, format!("{v} is not a finite number"))),
             Value::Function(_) | Value::Samples(_) if !variables.contains(&"x") => {
-                return Err(self.error(value, "here stands a value that is the same everywhere, not a field"));
+                return Err(self.error(value, "give a constant value, not a field"));
             }
             Value::Function(function) => return Ok((Expression::function(function.clone()), None)),
             Value::Samples(samples) => {
                 let columns = samples.values.first().map_or(0, Vec::len);
                 if let Some(row) = samples.values.iter().position(|row| row.len() != columns) {
                     let found = samples.values[row].len();
-                    return Err(self.error(value, format!("row {row} has {found} values, and the first {columns}")));
+                    return Err(
+                        self.error(value, format!("row {row} has {found} values, but the first row has {columns}"))
+                    );
                 }
                 let values: Vec<f64> = samples.values.iter().flatten().copied().collect();
                 let sampled = Sampled::of_rows(samples.origin, samples.spacing, columns, &values);

@@ -153,7 +153,7 @@ pub(super) fn read<const D: usize>(
     around: &Aabb<3>,
 ) -> Result<RigidBody, CaseError> {
     if let Some(lies) = &rigid.lies {
-        return Err(planner.problem.error(lies, "`lies` is for bodies beside a membrane"));
+        return Err(planner.problem.error(lies, "`lies` is only for bodies in contact with a membrane"));
     }
     let keys = BesideSolids::<D> { planner };
     keys.check_round(&rigid.shape)?;
@@ -203,7 +203,9 @@ impl<const D: usize> ShapeKeys for BesideSolids<'_, '_, D> {
         match (&key.axis, D) {
             (Some(axis), 3) => self.direction(axis),
             (None, 2) => Ok(Vector::<3>::z()),
-            (Some(axis), _) => Err(problem.error(axis, "in the plane a cylinder stands across it: leave `axis` out")),
+            (Some(axis), _) => {
+                Err(problem.error(axis, "in the plane the axis of a cylinder is normal to the plane: leave `axis` out"))
+            }
             (None, _) => Err(problem.error(shape, "missing key `axis`").help("axis = [0, 1, 0]")),
         }
     }
@@ -243,8 +245,8 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
             (on_axis, _) => Err(self
                 .planner
                 .problem
-                .error(if on_axis { axis } else { place }, format!("the {what} does not stand on the axis"))
-                .help("in an axisymmetric problem its place is [0, z], and its axis [0, 1] or [0, -1]")),
+                .error(if on_axis { axis } else { place }, format!("the {what} is not centred on the axis"))
+                .help("in an axisymmetric problem its position is [0, z], and its axis [0, 1] or [0, -1]")),
         }
     }
 
@@ -311,9 +313,8 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
                     let position = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));
                     position[up] - height.evaluate(&Scope { position, time: Jet::<3>::constant(0.0) })
                 };
-                let surface = ImplicitSurface::new(Function(field).into(), *around, 64).map_err(|e| {
-                    wrong(e).help("the height must cross the box around the solids, twice as long as they are")
-                })?;
+                let surface = ImplicitSurface::new(Function(field).into(), *around, 64)
+                    .map_err(|e| wrong(e).help("the height must cross a box around the solids of twice their size"))?;
                 Arc::new(surface)
             }
             Shape::HeightMap(key) => {
@@ -326,19 +327,19 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
                     Point::<3>::new(around.max[0].min(high[0]), around.max[1].min(high[1]), around.max[2]),
                 );
                 if (0..2).any(|k| bounds.min[k] >= bounds.max[k]) {
-                    let misses = ShapeError::new("height_map", "it does not lie under the solids".to_string());
-                    return Err(wrong(misses).help("see `origin`"));
+                    let misses = ShapeError::new("height_map", "it does not lie below the solids".to_string());
+                    return Err(wrong(misses).help("check `origin`"));
                 }
                 let field = move |x: &Point<3>| {
                     let [x, y, z] = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));
                     z - height_field::evaluate(&map, x, y)
                 };
                 let surface = ImplicitSurface::new(Function(field).into(), bounds, 96).map_err(|e| {
-                    wrong(e).help("the heights must lie within the box around the solids, twice as long as they are")
+                    wrong(e).help("the heights must lie within a box around the solids of twice their size")
                 })?;
                 Arc::new(surface)
             }
-            _ => return Err(planner.unavailable(shape, "this shape beside a solid")),
+            _ => return Err(planner.unavailable(shape, "this shape in contact with a solid")),
         })
     }
 }
@@ -355,15 +356,15 @@ pub(super) fn smooth_body<const D: usize>(
         other => {
             return Err(planner
                 .problem
-                .error(other, "only triangle meshes are made smooth")
-                .help("leave `smooth` out: this shape has no facets"));
+                .error(other, "only triangle meshes can be smoothed")
+                .help("leave `smooth` out; this shape has no facets"));
         }
     };
     let smooth = SmoothMesh::new(&mesh).map_err(|e| planner.problem.error(&rigid.shape, e.to_string()))?;
     let [curvature, error] = smooth.curvature();
     let message = format!(
-        "the vertices of `{name}` scatter by {:.3e} about the smooth surface near them, by {:.2} % of an edge; from fits over \
-         {:.1} edges its curvatures, {curvature:.3e} in the mean, are known to ±{error:.1e}",
+        "the vertices of `{name}` scatter by {:.3e} about the smooth surface, which is {:.2} % of an edge; with fits \
+         over {:.1} edges the curvatures, {curvature:.3e} on average, are known to ±{error:.1e}",
         smooth.scatter(),
         100.0 * smooth.scatter() / smooth.edge(),
         smooth.fit_radius()

@@ -17,7 +17,7 @@ pub(super) trait ShapeKeys {
 
     /// The unit vector of a direction.
     fn direction(&self, values: &List<Value>) -> Result<Vector<3>, CaseError> {
-        let wrong = || self.planner().problem.error(values, "the direction has no length");
+        let wrong = || self.planner().problem.error(values, "the direction vector is zero");
         self.vector(values, NONE)?.try_normalize(0.0).ok_or_else(wrong)
     }
 
@@ -85,7 +85,10 @@ fn profile(planner: &Planner<'_>, key: &problem::Revolution) -> Result<Profile, 
             // A head of the table.
             [] if k == 0 => {}
             _ => {
-                return Err(wrong(format!("line {}: expected two numbers, radius and place along the axis", row.line)));
+                return Err(wrong(format!(
+                    "line {}: expected two numbers, radius and position along the axis",
+                    row.line
+                )));
             }
         }
     }

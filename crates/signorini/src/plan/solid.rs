@@ -47,8 +47,8 @@ impl Planner<'_> {
         let membrane = problem.bodies.values().any(|b| matches!(b, Body::Membrane(_)));
         if membrane && !problem.bodies.values().any(|b| matches!(b, Body::Solid(_))) {
             return Err(problem
-                .error(&problem.space, "this space is one of solids, and there is a membrane")
-                .help("of membranes: space = \"line\", \"axisymmetric\" or \"plane\""));
+                .error(&problem.space, "this space is for solids, but the case has a membrane")
+                .help("for membranes: space = \"line\", \"axisymmetric\" or \"plane\""));
         }
         let mut bodies = Vec::new();
         let mut warnings = Vec::new();
@@ -58,8 +58,8 @@ impl Planner<'_> {
                 Body::Rigid(_) => {}
                 _ => {
                     return Err(problem
-                        .error(body, format!("the body `{name}` cannot stand beside solids in this version"))
-                        .help("bodies here are `solid` or `rigid`"));
+                        .error(body, format!("the body `{name}` cannot be combined with solids in this version"))
+                        .help("valid bodies here are `solid` and `rigid`"));
                 }
             }
         }
@@ -93,7 +93,7 @@ impl Planner<'_> {
                 let at: Vec<String> = x.iter().map(f64::to_string).collect();
                 warnings.push(
                     format!(
-                        "the probe `{name}` at ({}) lies outside all bodies: it tells of the nearest point of `{}`",
+                        "the probe `{name}` at ({}) lies outside all bodies: the nearest point of `{}` is used",
                         at.join(", "),
                         bodies[near].name
                     )
@@ -103,7 +103,7 @@ impl Planner<'_> {
             probes.insert(name.clone(), (near, x));
         }
         if contacts.is_empty() && problem.bodies.len() > 1 {
-            warnings.push("no contact is stated: the bodies do not see each other (add [contacts.NAME])".into());
+            warnings.push("the case has no contact, so the bodies do not interact (add [contacts.NAME])".into());
         }
         if problem.steps.iter().any(|s| s.events.is_some()) {
             warnings.push("`events` are located for membranes only".into());
@@ -154,7 +154,7 @@ impl Planner<'_> {
             let at = key.degree.as_ref().map_or(at, |d| self.key(d));
             return Err(problem
                 .error(&at, format!("degree {degree} on a mesh with triangles, tetrahedra or wedges"))
-                .help("these have degree 1 or 2; quadrilaterals and hexahedra 1 to 8"));
+                .help("these have degree 1 or 2; quadrilaterals and hexahedra have degree 1 to 8"));
         }
         let locks = |c: usize| signorini_solid::stiffness::locks(mesh.shape(c), degree, &material);
         if (0..mesh.cell_count()).any(locks) {

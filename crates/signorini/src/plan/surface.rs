@@ -73,8 +73,8 @@ pub(super) fn read(
         && *side == problem::Side::Inside
     {
         return Err(problem
-            .error(side, "a body beside a membrane is touched from outside")
-            .help("a body above the membrane:  lies = \"above\""));
+            .error(side, "contact of a membrane is on the outside of a body")
+            .help("for a body above the membrane:  lies = \"above\""));
     }
     let displacement = motion(planner, rigid)?;
     let still = Placed { expression: Expression::number(0.0), key: planner.key(&rigid.shape) };
@@ -95,7 +95,7 @@ pub(super) fn read(
 /// The side of the membrane on which a body lies: as stated, or as its shape says.
 fn side(planner: &Planner<'_>, rigid: &Rigid, level: Option<f64>) -> Result<Side, CaseError> {
     if let Some(smooth) = &rigid.smooth {
-        return Err(planner.unavailable(smooth, "a smooth surface beside a membrane"));
+        return Err(planner.unavailable(smooth, "a smooth triangle mesh in contact with a membrane"));
     }
     if let Some(lies) = &rigid.lies {
         return Ok(match lies {
@@ -140,7 +140,7 @@ fn height(planner: &Planner<'_>, rigid: &Rigid, side: Side, scene: &mut Scene<'_
             Ok(placed(expression, "height_map"))
         }
         Shape::HeightMap(_) => Err(problem
-            .error(&rigid.shape, "a height map is a surface beside a membrane in the plane")
+            .error(&rigid.shape, "height maps in contact with a membrane that is not in the plane")
             .help("on a line the height is a function of x:  shape.height = \"…\"")),
         Shape::LevelSet(key) => {
             let inside = planner.reader.expression(&key.negative_inside, LENGTH, &["x", "y", "z"])?;
@@ -161,20 +161,22 @@ fn height(planner: &Planner<'_>, rigid: &Rigid, side: Side, scene: &mut Scene<'_
             let mesh = planner.closed_mesh(key)?;
             let sampled = Sampled::of_mesh(&mesh, scene.around, scene.resolution, view)
                 .map_err(|e| problem.error(&key.file, format!("`{}`: {e}", key.file)))?;
-            scene.warnings.push(format!(
-                "`{}` is sampled every {:.3e} and joined by a bicubic spline: its edges are rounded by that much, and beyond \
-                 its shadow it falls off",
-                key.file,
-                scene.resolution
-            ).into());
+            scene.warnings.push(
+                format!(
+                    "`{}` is sampled every {:.3e} and interpolated by a bicubic spline: its edges are rounded over \
+                     this distance, and outside its vertical projection the height decreases",
+                    key.file, scene.resolution
+                )
+                .into(),
+            );
             Ok(placed(Expression::height(Arc::new(sampled)), "stl"))
         }
         Shape::Stl(_) => {
-            Err(problem.error(&rigid.shape, "a triangle mesh is a surface beside a membrane in the plane"))
+            Err(problem.error(&rigid.shape, "triangle meshes in contact with a membrane that is not in the plane"))
         }
         _ => match super::height::read(planner, rigid, side, scene.around)? {
             Some((expression, shape)) => Ok(placed(expression, shape)),
-            None => Err(planner.unavailable(&rigid.shape, "this shape beside a membrane")),
+            None => Err(planner.unavailable(&rigid.shape, "this shape in contact with a membrane")),
         },
     }
 }
@@ -185,13 +187,15 @@ fn motion(planner: &Planner<'_>, rigid: &Rigid) -> Result<Vec<Placed>, CaseError
     let mut displacement = Vec::new();
     let motion = match &rigid.motion {
         None | Some(Motion::Fixed(_)) => return Ok(displacement),
-        Some(free @ Motion::Free(_)) => return Err(planner.unavailable(free, "a rigid body that moves freely")),
+        Some(free @ Motion::Free(_)) => {
+            return Err(planner.unavailable(free, "a free rigid body in contact with a membrane"));
+        }
         Some(Motion::Prescribed(motion)) => motion,
     };
     if let Some(rotation) = &motion.rotation {
         for v in rotation {
             if planner.reader.expression(v, NONE, &["t"])?.constant() != Some(0.0) {
-                return Err(planner.unavailable(v, "rotation of a body beside a membrane"));
+                return Err(planner.unavailable(v, "rotation of a body in contact with a membrane"));
             }
         }
     }
@@ -210,7 +214,7 @@ fn motion(planner: &Planner<'_>, rigid: &Rigid) -> Result<Vec<Placed>, CaseError
     }
     let sideways = |p: &Placed| p.expression.constant() != Some(0.0);
     if planner.space == Space::Axisymmetric && displacement[..2].iter().any(sideways) {
-        return Err(problem.error(values, "in an axisymmetric problem a body moves along z only"));
+        return Err(problem.error(values, "in an axisymmetric problem a body can move along z only"));
     }
     Ok(displacement)
 }

@@ -223,13 +223,13 @@ fn read(name: &str, f: &mut Fields<'_>, folder: &Path) -> Result<Shape, FieldErr
             }
             let bounds = f.required("box")?;
             let corners = f.points_of("box", bounds)?;
-            let [min, max] = corners.as_slice() else { return Err(f.error("box", "two corners wanted")) };
+            let [min, max] = corners.as_slice() else { return Err(f.error("box", "expected two corners")) };
             let bounds = Aabb::new(*min, *max);
             let cells = f.optional("cells").map_or(Ok(40), |_| f.count("cells"))?;
             let body = implicit(&inner, body, &bounds, cells, 0)?;
             ImplicitSurface::new(body, bounds, cells).map(Shape::from).map_err(|e| f.shape_error(&e))
         }
-        other => Err(f.error("type", format!("`{other}` is no shape; valid are {}", TYPES.join(", ")))),
+        other => Err(f.error("type", format!("`{other}` is not a shape; valid are {}", TYPES.join(", ")))),
     }
 }
 
@@ -260,7 +260,7 @@ fn never_closed(f: &mut Fields<'_>) -> Result<(), FieldError> {
         Some(value) => value != &Value::Bool(false),
         None => false,
     };
-    if says_so { Err(f.error("closed", "this shape is never closed")) } else { Ok(()) }
+    if says_so { Err(f.error("closed", "this shape cannot be closed")) } else { Ok(()) }
 }
 
 fn first_closed(f: &mut Fields<'_>) -> Result<bool, FieldError> {

@@ -83,7 +83,10 @@ pub(super) fn implicit(
             field.into()
         }
         _ => {
-            return Err(FieldError { path: path.into(), message: format!("one of {}, grid wanted", KINDS.join(", ")) });
+            return Err(FieldError {
+                path: path.into(),
+                message: format!("one of {}, expected grid", KINDS.join(", ")),
+            });
         }
     };
     f.finish(&[])?;

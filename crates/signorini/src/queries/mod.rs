@@ -276,7 +276,7 @@ fn read_shape(path: &Path) -> Result<Shape, QueriesError> {
             let text = String::from_utf8(read_bytes(path)?).map_err(|e| wrong(format!("no text: {e}")))?;
             shapes::build(&text, path.parent().unwrap_or(Path::new(""))).map_err(|e| wrong(e.to_string()))
         }
-        other => Err(wrong(format!("`{other}` is no format of shapes; valid are json, stl, obj and ply"))),
+        other => Err(wrong(format!("`{other}` is not a format of shapes; valid are json, stl, obj and ply"))),
     }
 }
 

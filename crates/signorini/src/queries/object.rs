@@ -36,7 +36,7 @@ impl<'a> Object<'a> {
 pub fn not_json(text: &[u8], error: &serde_json::Error) -> String {
     let text = String::from_utf8_lossy(text);
     match ["NaN", "Infinity"].into_iter().find(|word| text.contains(word)) {
-        Some(word) => format!("{word} is not a number of JSON"),
+        Some(word) => format!("{word} is not a JSON number"),
         None => format!("not JSON: {error}"),
     }
 }

@@ -22,7 +22,7 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Point<3>>, String> {
         return points.map(|(k, p)| finite(p, || format!("row {k}"))).collect();
     }
     let rows = text_table::rows(bytes)?;
-    let Some(first) = rows.first() else { return Err("holds no points".into()) };
+    let Some(first) = rows.first() else { return Err("contains no points".into()) };
     let (columns, rows) = match header(first)? {
         Some(columns) => (columns, &rows[1..]),
         None => ([0, 1, 2], &rows[..]),
@@ -41,7 +41,7 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Point<3>>, String> {
         points.push(finite(p, || format!("line {line}"))?);
     }
     numbers.finish()?;
-    if points.is_empty() { Err("holds no points".into()) } else { Ok(points) }
+    if points.is_empty() { Err("contains no points".into()) } else { Ok(points) }
 }
 
 /// The columns of the coordinates where the first row has names; without names there are three columns.
@@ -85,8 +85,8 @@ mod tests {
         let columns = [1f64, 4.0, 2.5, 5.0, -3.0, 6e-3].map(f64::to_le_bytes).concat();
         assert_eq!(read(&[head("<f8", "(2, 3)"), columns.clone()].concat()), Ok(expected));
         for (bytes, words) in [
-            (&b""[..], "holds no points"),
-            (b"x,y,z\n", "holds no points"),
+            (&b""[..], "contains no points"),
+            (b"x,y,z\n", "contains no points"),
             (b"x,y\n1,2\n", "no columns x, y and z among x, y"),
             (b"1,2\n", "line 1: 2 numbers instead of 3"),
             (b"1,2,3\n1,2\n", "line 2: 2 entries"),

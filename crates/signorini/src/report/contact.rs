@@ -8,64 +8,67 @@ use serde::{Deserialize, Serialize};
 /// A contact at the end of an increment.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ContactReport {
-    /// Force of the contact on the first body that it names; for a round membrane, on the whole of it.
+    /// Contact force on the first body of the contact. For axisymmetric membranes it is that of the whole disc.
     pub force: [f64; 3],
-    /// Moment of the contact on that body about `moments_about`.
+    /// Contact moment on the first body about `moments_about`.
     #[serde(default)]
     pub moment: Option<[f64; 3]>,
-    /// Least and largest normal force, over all its places, of all contact forces that would hold the rigid bodies as well; null
-    /// where balance determines it, where bodies deform or supports hold them, and of very many places together.
+    /// Smallest and largest normal force of the contact, summed over its contact points, over all sets of contact
+    /// forces that balance the loads, are compressive and lie within the friction cones. Null if the forces are
+    /// statically determinate, if bodies deform, if supports hold a free body in part, and for very large groups of
+    /// contact points.
     #[serde(default)]
     pub force_bounds: Option<ForceBounds>,
-    /// What `area` measures, and pressures are forces per.
+    /// Kind of contact forces. It determines the meaning of `area` and the unit of pressures.
     #[serde(default)]
     pub carries: Carried,
-    /// Area of contact; a length for a string, in the plane, and where `carries` says `line_load`.
+    /// Contact area. A length for a string, in the plane, and for `carries = "line_load"`.
     pub area: f64,
-    /// Number of connected zones of contact.
+    /// Number of connected contact zones.
     pub zones: usize,
-    /// Number of holes in the zones.
+    /// Number of holes in the contact zones.
     pub holes: Option<usize>,
-    /// The connected zones of a contact one by one.
+    /// The connected contact zones one by one.
     pub components: Vec<Component>,
-    /// Radius of a zone that is a disc; half the length of one that is an interval.
+    /// Radius of a circular zone; half the length of an interval.
     pub radius: Option<f64>,
-    /// Length of the fronts together; their number on a line.
+    /// Total length of the fronts; on a line their number.
     pub boundary_length: Option<f64>,
-    /// How deep the bodies lie in each other at worst.
+    /// Largest penetration.
     pub max_penetration: f64,
-    /// Least gap outside the zones, for membranes further than half a cell from the fronts.
+    /// Smallest gap outside the contact zones. For membranes, at a distance of more than half a cell from the fronts.
     pub min_gap_outside: Option<f64>,
     /// Largest contact pressure.
     pub max_pressure: f64,
-    /// Least contact pressure within the zones; negative only by round-off.
+    /// Smallest contact pressure within the zones; negative only by round-off.
     pub min_pressure: Option<f64>,
-    /// Part of the contact force along the fronts; it vanishes with the slope jump, and is what adhesion holds.
+    /// Part of the contact force that acts along the fronts, as a line force. Without adhesion it vanishes with the
+    /// slope jump.
     pub line_force: Option<f64>,
-    /// What adhesion gives back: the integral of its energy over the zones.
+    /// Integral of the adhesion energy over the contact zones.
     pub adhesion_energy: Option<f64>,
     /// Whether the second variation of the energy is positive.
     pub stable: Option<bool>,
-    /// Of the second variation of the energy: the state is stable where it is positive.
+    /// Smallest eigenvalue of the second variation of the energy. The state is stable if it is positive.
     pub lowest_eigenvalue: Option<f64>,
-    /// What the discretisation leaves uncertain, estimated with functions of one degree more, or cells of half the size, in
-    /// the last increment of a step.
+    /// Estimated discretisation error in the last increment of a step. It is computed with functions of one degree
+    /// more, or with cells of half the size.
     pub error_estimate: Option<ErrorEstimate>,
-    /// Other equilibria at the same load: area, energy, and whether they are stable.
+    /// Other equilibria at the same load: area, energy and stability.
     pub other_states: Vec<OtherState>,
-    /// Area in contact that sticks; null without friction, as all that follows.
+    /// Contact area in stick. Null without friction, as are the next five.
     pub stick_area: Option<f64>,
-    /// Area in contact that slips.
+    /// Contact area in slip.
     pub slip_area: Option<f64>,
-    /// Largest slip since the bodies touched.
+    /// Largest slip since first contact.
     pub max_slip: Option<f64>,
-    /// Largest share of the friction limit: 1 where it slips.
+    /// Largest ratio of the friction traction to the friction limit; 1 in slip.
     pub max_friction_utilisation: Option<f64>,
-    /// Part of the force that is friction.
+    /// Friction part of the contact force.
     pub friction_force: Option<[f64; 3]>,
-    /// Energy that friction took in the increment, in all parts of one that was cut.
+    /// Energy dissipated by friction in the increment, summed over all parts of an increment with cut-backs.
     pub dissipation: Option<f64>,
-    /// What friction could hold of a rope where it lies; null for other bodies.
+    /// Friction limits of a rope in its current position. Null for other bodies.
     #[serde(default)]
     pub rope: Option<RopeLimits>,
 }
@@ -81,25 +84,25 @@ impl ContactReport {
     }
 }
 
-/// Between what a normal force lies that balance does not determine.
+/// Bounds of a statically indeterminate normal force.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ForceBounds {
-    /// The least normal force that holds the bodies.
+    /// The smallest normal force that balances the loads.
     pub least: f64,
-    /// The largest one; null where there is no bound, as of bodies that clamp each other.
+    /// The largest normal force. Null if there is no bound, as for bodies that clamp each other.
     pub largest: Option<f64>,
 }
 
-/// What a contact carries: what its `area` measures, and what its pressures are forces per.
+/// Kind of contact forces: the meaning of `area` and the unit of pressures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Carried {
-    /// Forces per area of a surface (per length of a line in the plane).
+    /// Contact pressure, a force per area of a surface; per length of a line in the plane.
     #[default]
     Pressure,
-    /// Forces per length of a curve, of ropes, beams and edges: `area` is a length.
+    /// Line load, a force per length of a curve, for ropes, beams and edges; `area` is a length.
     LineLoad,
-    /// Forces at points: rods that cross, balls, corners of rigid bodies; `area` is their number or what they stand for.
+    /// Point forces: crossing rods, balls, corners of rigid bodies; `area` is their number or their weight.
     Force,
 }
 
@@ -114,44 +117,45 @@ impl Carried {
     }
 }
 
-/// What friction could hold of a rope that lies on a surface, by the theorem of Euler and Eytelwein for curves on surfaces.
+/// Friction limits of a rope on a surface, by the theorem of Euler and Eytelwein for curves on surfaces.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RopeLimits {
-    /// Least and largest logarithm of the ratio of the tensions at both ends of the contact.
+    /// Smallest and largest admissible logarithm of the ratio of the tensions at the ends of the contact.
     pub log_ratio: [f64; 2],
-    /// Largest angle between the force that holds the rope and the normal, as a tangent: geodesic over normal curvature.
+    /// Largest ratio of geodesic to normal curvature: the tangent of the angle between the contact force and the
+    /// normal.
     pub max_tan_alpha: f64,
-    /// Where along the rope that is.
+    /// Arc length at which this ratio occurs.
     pub at: f64,
-    /// What it must stay below, the coefficient across the rope.
+    /// Limit of this ratio: the coefficient of friction across the rope.
     pub lateral_limit: f64,
-    /// In words.
+    /// The result in a sentence.
     pub verdict: String,
 }
 
-/// One connected zone of contact.
+/// One connected contact zone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Component {
-    /// Area of contact; a length for a string and in the plane.
+    /// Contact area; a length for a string and in the plane.
     pub area: f64,
-    /// Force of the zone on the first body of the contact.
+    /// Contact force of the zone on the first body of the contact.
     pub force: [f64; 3],
-    /// Middle of a zone, weighted by area.
+    /// Centroid of the zone.
     pub centroid: [f64; 3],
-    /// Number of holes in the zones.
+    /// Number of holes in the contact zones.
     pub holes: Option<usize>,
 }
 
-/// How far figures may be off, as ±.
+/// Estimated discretisation errors, as ±.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ErrorEstimate {
-    /// In `error_estimate`: root mean square of the distance by which fronts are off; null for solids.
+    /// In `error_estimate`: root mean square error of the front position. Null for solids.
     pub front: Option<f64>,
-    /// Of the area of contact.
+    /// Error of the contact area.
     pub area: f64,
-    /// Of the size of the contact force.
+    /// Error of the magnitude of the contact force.
     pub force: f64,
-    /// Of the largest pressure.
+    /// Error of the largest pressure.
     pub max_pressure: Option<f64>,
 }
 
@@ -169,9 +173,9 @@ impl ErrorEstimate {
 /// Another equilibrium of an adhesive membrane at the same load.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct OtherState {
-    /// Area of contact.
+    /// Contact area.
     pub area: f64,
-    /// Elastic energy less the work of the load and what adhesion gives back.
+    /// Elastic energy minus the work of the load and the adhesion energy of the contact zones.
     pub energy_total: f64,
     /// Whether the second variation of the energy is positive.
     pub stable: bool,

@@ -25,65 +25,65 @@ pub use table::{history, resultants, table};
 /// Version of the keys of the summary.
 pub const SCHEMA: u32 = 2;
 
-/// The results of a run in numbers and words: the content of summary.json.
+/// Results of a run: the content of summary.json.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Summary {
     /// Version of the keys of the summary.
     pub schema: u32,
-    /// The title of the case, or the name of its file.
+    /// Title of the case, or the name of its file.
     pub case: String,
-    /// Whether all increments were solved, each to its tolerance.
+    /// Whether all increments converged.
     pub converged: bool,
-    /// Why the run or the increment ended as it did: a word of its own, which `explain` knows.
+    /// Why the run or the increment ended. `signorini explain WORD` explains the reasons.
     pub reason: Reason,
-    /// What an independent check of the increments came to; null where the run has not come to its end.
+    /// Result of the audit over all increments. Null if the run did not finish.
     #[serde(default)]
     pub answer: Option<Answer>,
     /// The result in a sentence.
     pub verdict: String,
-    /// How the contact was found; as in `contacts.NAME.method`.
+    /// Contact discretisation, as in `contacts.NAME.method`.
     pub method: String,
-    /// Number of unknowns that were solved for, at most.
+    /// Largest number of unknowns that were solved for.
     pub unknowns: usize,
-    /// The base units of the case by name; null where it states none.
+    /// Names of the base units of the case. Null if the case has none.
     pub units: Option<UnitNames>,
-    /// The picture to open first, within the folder; null without pictures.
+    /// The main picture, relative to the folder. Null without pictures.
     pub first_picture: Option<String>,
-    /// What looked wrong before or during the run.
+    /// Warnings from before or during the run.
     pub warnings: Vec<Warning>,
-    /// What the values with units were taken for: line, text, value, unit and factor.
+    /// How values with units were converted: line, text, value, unit and factor.
     pub interpreted: Vec<Interpreted>,
-    /// One entry for each increment.
+    /// One entry per increment.
     pub steps: Vec<StepReport>,
-    /// Changes of topology, in steps that ask for `events`.
+    /// Changes of topology, in steps with `events`.
     pub events: Vec<Event>,
-    /// What was found of paths on rigid bodies.
+    /// Results of paths on rigid bodies.
     #[serde(flatten)]
     pub of_paths: PathReports,
-    /// Where and when it ran: all that differs between two runs of one case.
+    /// Data of the computer and the run. Only these differ between two runs of one case.
     pub environment: Environment,
 }
 
-/// What the base units of a case are called, as people write them.
+/// Names of the base units.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct UnitNames {
-    /// Of places, displacements and gaps.
+    /// Unit of positions, displacements and gaps.
     pub length: String,
-    /// Of areas of contact: of length for a string and in the plane.
+    /// Unit of contact areas; of length for a string and in the plane.
     pub area: String,
-    /// Of forces; in the plane of a body of thickness one.
+    /// Unit of forces; in the plane for a body of thickness one.
     pub force: String,
-    /// Of pressures and stresses.
+    /// Unit of pressures and stresses.
     pub pressure: String,
-    /// Of forces per length, that ropes, beams and edges carry.
+    /// Unit of line loads, for ropes, beams and edges.
     #[serde(default)]
     pub line_load: String,
-    /// Of moments.
+    /// Unit of moments.
     #[serde(default)]
     pub moment: String,
-    /// Of energies.
+    /// Unit of energies.
     pub energy: String,
-    /// Of times that stand for times.
+    /// Unit of physical times.
     pub time: String,
 }
 
@@ -109,107 +109,110 @@ impl UnitNames {
 pub struct StepReport {
     /// Number of the increment, from 0.
     pub index: usize,
-    /// The end of the increment, in the time of the case.
+    /// Time at the end of the increment.
     pub time: f64,
-    /// Whether the increment was solved to its tolerance.
+    /// Whether the increment converged.
     pub converged: bool,
-    /// Why the run or the increment ended as it did: a word of its own, which `explain` knows.
+    /// Why the run or the increment ended. `signorini explain WORD` explains the reasons.
     pub reason: Reason,
-    /// What an independent check of the state found: all that is in doubt or refused, and of each other check what came nearest to
-    /// its limit.
+    /// Findings of the audit: all that are reported or refused. For each other check, the finding closest to its limit.
     #[serde(default)]
     pub audit: Vec<Finding>,
-    /// Equilibrium solves on the cells of the state; for solids the steps of the active set or of Newton's method.
+    /// Number of equilibrium solves on the final cells. For solids, number of iterations of the active set or of
+    /// Newton's method.
     pub iterations: usize,
-    /// Equilibrium solves on larger cells, and on the way to the state.
+    /// Number of equilibrium solves on larger cells and in cut-backs before this state.
     pub iterations_before: usize,
-    /// `direct` by factorisation, `condensed` where linear bodies are factorised once and what contact changes is solved for in a
-    /// dense system, `direct with krylov` where the tractions of a large zone of contact are found by steps of a
-    /// Krylov method, each a solve with the factors, `multigrid`, or `schwarz` by iterations with a Schwarz preconditioner.
+    /// Linear solver. `direct`: factorisation. `condensed`: linear bodies are factorised once, and a dense system
+    /// contains what contact changes. `direct with krylov`: the tractions of a large contact zone are computed by a
+    /// Krylov method, each step a solve with the factors. `multigrid`: multigrid. `schwarz`: iterative with a Schwarz
+    /// preconditioner.
     pub solver: String,
-    /// The most iterations that an iterative solver took for one linear system.
+    /// Largest number of iterations of an iterative solver for one linear system.
     pub linear_iterations: Option<usize>,
-    /// Residual of each solve, relative to its tolerance; for solids with small sliding the nodes that changed their state.
+    /// Residual of each iteration, relative to its tolerance. For solids with small sliding, the number of nodes that
+    /// changed their status.
     pub residual_history: Vec<f64>,
-    /// Elastic energy that the bodies store; of a membrane its potential energy, which is that less the work of the load.
+    /// Elastic energy of the bodies. For a membrane its potential energy, which is the elastic energy minus the work of
+    /// the load.
     pub energy: Option<f64>,
-    /// `energy` less what adhesion gives back.
+    /// `energy` minus the adhesion energy of the contact zones.
     pub energy_total: Option<f64>,
     /// Integral of the deflection of a membrane.
     pub volume: Option<f64>,
-    /// Steepest slope of the membrane: the theory is linear, for slopes well below 1.
+    /// Largest slope of the membrane. The theory is linear and valid for slopes much smaller than 1.
     pub max_slope: Option<f64>,
-    /// Largest principal strain of solids: the theory is that of small strains.
+    /// Largest principal strain of solids. Small strains are assumed.
     pub max_strain: Option<f64>,
-    /// Whether the state is stable, of systems whose bodies deform by more than small strains, or are all rigid; null for others.
+    /// Stability of the state, for systems beyond small strains and systems of rigid bodies; null for others.
     #[serde(default)]
     pub stability: Option<StabilityReport>,
-    /// Sum of all forces, relative to the largest: round-off where all is well.
+    /// Sum of all forces, relative to the largest one. Round-off in equilibrium.
     pub equilibrium_residual: Option<f64>,
-    /// Force of each support on the body, by its name.
+    /// Force of each support on the body, by the name of the support.
     pub support_forces: BTreeMap<String, [f64; 3]>,
-    /// Resultant of each load, by its name.
+    /// Resultant of each load, by the name of the load.
     pub load_forces: BTreeMap<String, [f64; 3]>,
-    /// The point about which moments are told: the origin, or `output.moments_about`; null where none are.
+    /// Point about which moments are reported: the origin, or `output.moments_about`. Null if no moments are reported.
     #[serde(default)]
     pub moments_about: Option<[f64; 3]>,
-    /// Moment of each support on the body, by its name, where bodies are now.
+    /// Moment of each support on the body in the current configuration, by the name of the support.
     #[serde(default)]
     pub support_moments: BTreeMap<String, [f64; 3]>,
-    /// Resultant moment of each load, by its name.
+    /// Resultant moment of each load, by the name of the load.
     #[serde(default)]
     pub load_moments: BTreeMap<String, [f64; 3]>,
-    /// Results by the name of the contact.
+    /// Results of each contact, by its name.
     pub contacts: BTreeMap<String, ContactReport>,
-    /// Values at the probes of `output.probes`, by their names; null outside the body.
+    /// Values at the points of `output.probes`, by their names. Null outside the body.
     pub probes: BTreeMap<String, Option<Probe>>,
-    /// Ropes and beams by their names.
+    /// Ropes and beams, by their names.
     #[serde(default)]
     pub curves: BTreeMap<String, CurveReport>,
-    /// Bodies of cells by their names, as pieces of a material that fills their box.
+    /// Bodies of finite cells by their names, as samples of a material that fills their box.
     #[serde(default)]
     pub cells: BTreeMap<String, CellsReport>,
-    /// Free rigid bodies by their names.
+    /// Free rigid bodies, by their names.
     #[serde(default)]
     pub free_bodies: BTreeMap<String, Pose>,
 }
 
-/// Whether an equilibrium is stable: by the second variation of the energy on what supports and contacts admit.
+/// Stability of an equilibrium: the second variation of the energy on the admissible motions.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StabilityReport {
-    /// Whether no disturbance makes the energy fall.
+    /// Whether no small disturbance lowers the energy.
     pub stable: bool,
-    /// Negative eigenvalues of the tangent on what may move: none of a stable state.
+    /// Number of negative eigenvalues of the tangent on the admissible motions; 0 for a stable state.
     pub negative_eigenvalues: usize,
-    /// Number of unstable states that were left on the way to this one.
+    /// Number of unstable states that were left before this state.
     pub followed: usize,
-    /// The body that moves most as the first unstable state is left; null where all were stable.
+    /// Body with the largest motion when the first unstable state is left. Null if all states were stable.
     pub body: Option<String>,
-    /// When stability was lost, where that was in this increment.
+    /// Time at which stability was lost, if it was in this increment.
     pub critical_time: Option<f64>,
 }
 
-/// A rope or beam at the end of an increment: its axial force, of a rope never negative.
+/// A rope or beam at the end of an increment. The axial force of a rope is not negative.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CurveReport {
-    /// In the first cell.
+    /// Axial force in the first cell.
     pub start_tension: f64,
-    /// In the last cell.
+    /// Axial force in the last cell.
     pub end_tension: f64,
     /// Largest axial force.
     pub max_tension: f64,
-    /// Least axial force.
+    /// Smallest axial force.
     pub min_tension: f64,
     /// Number of cells without tension.
     pub slack_cells: usize,
-    /// Bending moments, shear forces and torque, of what resists bending; null for others.
+    /// Bending moments, shear forces and torque. Null without bending stiffness.
     #[serde(default)]
     pub section: Option<SectionReport>,
-    /// Length without tension of the rope that is out, where it has straight elements: a winch changes it.
+    /// Unstrained length of the rope that is paid out, for straight elements. A winch changes it.
     pub unstrained_length: Option<f64>,
 }
 
-/// What the sections of a beam carry: sizes of vectors across it.
+/// Stress resultants of the sections of a beam: magnitudes of vectors in the section.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SectionReport {
     /// Bending moment at the start.
@@ -218,83 +221,84 @@ pub struct SectionReport {
     pub end_bending_moment: f64,
     /// Largest bending moment.
     pub max_bending_moment: f64,
-    /// Where along the beam that is.
+    /// Arc length at which it occurs.
     pub max_bending_moment_at: f64,
-    /// Largest shear force; null where the model has no shear.
+    /// Largest shear force. Null if the model has no shear.
     pub max_shear_force: Option<f64>,
-    /// Largest torque, with its sign; null where the model has no torsion.
+    /// Largest torque, with its sign. Null if the model has no torsion.
     pub max_torque: Option<f64>,
 }
 
-/// A body of cells as a piece of a material that fills its box: its stress-strain curve, step by step.
+/// A body of finite cells as a sample of a material that fills its box, for the stress-strain curve.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CellsReport {
-    /// Normal stresses along the axes, summed over the material and divided by the volume of the box.
+    /// Mean normal stresses along the axes: integral over the material, divided by the volume of the box.
     pub mean_stress: [f64; 3],
-    /// How far the material on opposite sides of the box moved apart, over their distance; null where there is none on one.
+    /// Mean strains along the axes: relative displacement of opposite sides of the box, divided by their distance. Null
+    /// if there is no material on one side.
     pub mean_strain: [Option<f64>; 3],
 }
 
-/// Where a free rigid body has come.
+/// Displacement and rotation of a free rigid body.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Pose {
-    /// Displacement of its centre since the start.
+    /// Displacement of the centre since the start.
     pub displacement: [f64; 3],
-    /// Rotation vector in radians since the start, whole turns included.
+    /// Rotation vector in radians since the start, full turns included.
     pub rotation: [f64; 3],
 }
 
-/// Values at a place that `output.probes` names.
+/// Values at a point of `output.probes`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Probe {
-    /// The place where the values stand, at rest; of solids the nearest point of the display.
+    /// Position of the point in the undeformed body. For solids the nearest point of the displayed mesh.
     pub at: [f64; 3],
-    /// How far the point has moved.
+    /// Displacement of the point.
     pub displacement: [f64; 3],
-    /// Whether the point is within a zone of contact; null for solids.
+    /// Whether the point is in a contact zone. Null for solids.
     pub in_contact: Option<bool>,
     /// Contact pressure at the point; null for solids.
     pub pressure: Option<f64>,
-    /// Equivalent stress of von Mises; null for membranes.
+    /// Equivalent stress (von Mises). Null for membranes.
     pub von_mises: Option<f64>,
 }
 
-/// One change of topology.
+/// A change of topology of the contact zones.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Event {
-    /// The contact that it changes.
+    /// Name of the contact.
     pub contact: String,
-    /// What happens.
+    /// Kind of the event.
     pub kind: EventKind,
-    /// The middle of the interval of time that holds the event.
+    /// Time of the event: the middle of the interval that contains it.
     pub time: f64,
-    /// Length of the interval of time that holds the event.
+    /// Length of the time interval that contains the event.
     pub within: f64,
     /// How the event was located.
     pub by: LocatedBy,
-    /// Where: coordinates of the place.
+    /// Position.
     pub at: [f64; 3],
-    /// Whether what the zone touches lies above the membrane.
+    /// Whether the rigid body of the zone is above the membrane.
     pub above: bool,
-    /// Zones before the event.
+    /// Number of zones before the event.
     pub zones_before: usize,
-    /// Zones after the event.
+    /// Number of zones after the event.
     pub zones_after: usize,
-    /// Holes before the event.
+    /// Number of holes before the event.
     pub holes_before: usize,
-    /// Holes after the event.
+    /// Number of holes after the event.
     pub holes_after: usize,
-    /// Area of contact before the event.
+    /// Contact area before the event.
     pub area_before: f64,
-    /// Area of contact after the event.
+    /// Contact area after the event.
     pub area_after: f64,
     /// Contact force before the event, along z.
     pub force_before: f64,
     /// Contact force after the event, along z.
     pub force_after: f64,
-    /// Resultant of all loads along z at that time.
+    /// Resultant of all loads along z at the time of the event.
     pub load_force: f64,
-    /// Energy that a jump of an adhesive contact sets free; told once where one jump is several events.
+    /// Energy released in a jump of an adhesive contact. Reported once if one jump consists of several events.
     pub energy_released: Option<f64>,
 }
 
@@ -302,21 +306,21 @@ pub struct Event {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum EventKind {
-    /// A zone of contact appears.
+    /// A contact zone appears.
     Nucleation,
-    /// A zone of contact vanishes.
+    /// A contact zone vanishes.
     Release,
-    /// Two zones become one.
+    /// Two contact zones merge.
     Merge,
-    /// A zone becomes two.
+    /// A contact zone splits in two.
     Split,
-    /// A hole appears in a zone.
+    /// A hole in a contact zone appears.
     HoleOpened,
-    /// A hole in a zone vanishes.
+    /// A hole in a contact zone vanishes.
     HoleClosed,
-    /// Adhesion draws the membrane into contact at once; `energy_released` is what is lost in the jump.
+    /// An adhesive contact jumps to the closed state. `energy_released` is the energy lost in the jump.
     SnapIn,
-    /// The contact jumps open; `energy_released` is what is lost in the jump.
+    /// An adhesive contact jumps to the open state. `energy_released` is the energy lost in the jump.
     PullOff,
 }
 
@@ -345,29 +349,30 @@ impl EventKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LocatedBy {
-    /// Way in which an event was located: the increment was halved.
+    /// The event was located by bisection of the increment.
     Bisection,
-    /// Way in which a merger was located: from how the distance before it and the neck after it vanish.
+    /// The time of a merger was extrapolated: from the distance of the zones before it and the width of the neck after
+    /// it.
     Extrapolation,
 }
 
-/// All that may differ between two runs of one case.
+/// Data that may differ between two runs of one case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Environment {
     /// Version of the program.
     pub version: String,
-    /// Time that the run took.
+    /// Wall time of the run in seconds.
     pub wall_seconds: f64,
-    /// Processor time that the run took, over all threads.
+    /// Processor time of the run in seconds, summed over all threads.
     pub cpu_seconds: Option<f64>,
-    /// Most memory in use, in bytes.
+    /// Peak memory in bytes.
     pub peak_memory: Option<u64>,
-    /// Part of the wall time that the independent checks took.
+    /// Wall time of the audit in seconds.
     #[serde(default)]
     pub audit_seconds: f64,
-    /// Number of threads; results do not depend on it.
+    /// Number of threads. Results do not depend on it.
     pub threads: usize,
-    /// Fingerprint of the text of the case.
+    /// Hash of the text of the case.
     pub input_hash: String,
 }
 

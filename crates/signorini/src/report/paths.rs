@@ -4,16 +4,16 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The results of paths; of other models there are none.
+/// Results of paths. Empty for other analyses.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PathReports {
-    /// Shortest paths, of `analysis = "wrapping"` alone.
+    /// Shortest paths, for `analysis = "wrapping"`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub paths: Vec<PathReport>,
-    /// Yarns, of `analysis = "winding"` alone.
+    /// Yarns, for `analysis = "winding"`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub winding: Vec<WindingReport>,
-    /// Ropes on given curves, of `analysis = "euler_eytelwein"` alone.
+    /// Ropes on given curves, for `analysis = "euler_eytelwein"`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ropes: Vec<RopeReport>,
 }
@@ -21,24 +21,24 @@ pub struct PathReports {
 /// A shortest path over bodies.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PathReport {
-    /// Its name.
+    /// Name of the path.
     pub name: String,
-    /// Steps of Newton's method over all times.
+    /// Number of Newton iterations over all times.
     pub iterations: usize,
-    /// Bodies that the path came to touch, or left.
+    /// Events: bodies that the path comes into contact with, or leaves.
     pub events: Vec<PathEvent>,
     /// One entry for each time.
     pub frames: Vec<PathFrame>,
 }
 
-/// A body that a path came to touch, or left.
+/// A body that a path comes into contact with, or leaves.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PathEvent {
-    /// What happens.
+    /// Kind of the event.
     pub kind: PathEventKind,
-    /// The first time at which it has happened.
+    /// First time after the event.
     pub time: f64,
-    /// Number of that time, from 0.
+    /// Number of this time, from 0.
     pub frame: usize,
     /// Name of the body.
     pub body: String,
@@ -48,7 +48,7 @@ pub struct PathEvent {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PathEventKind {
-    /// A path comes to touch a body.
+    /// A path comes into contact with a body.
     Touchdown,
     /// A path leaves a body.
     LiftOff,
@@ -61,83 +61,85 @@ pub struct PathFrame {
     pub time: f64,
     /// Length of the path.
     pub length: f64,
-    /// Steps of Newton's method.
+    /// Number of Newton iterations.
     pub iterations: usize,
-    /// The largest sine of an angle by which lines and geodesics do not join along their tangents.
+    /// Largest sine of the angles between straight segments and geodesics at their ends.
     pub residual: f64,
-    /// Pieces on bodies, in the order of the path.
+    /// Segments on bodies, in the order of the path.
     pub contacts: Vec<PathContact>,
-    /// How a unit tension acts on each body of the case, by its name.
+    /// Generalised forces of a unit tension on each body of the case, by its name.
     pub moment_arms: BTreeMap<String, MomentArm>,
-    /// Least and largest logarithm of end tension over start tension that friction holds; null without friction.
+    /// Smallest and largest logarithm of the ratio of end tension to start tension that friction admits. Null without
+    /// friction.
     pub log_ratio: Option<[f64; 2]>,
-    /// How far friction lets each contact lie aside of the shortest path; null where the axes of friction go with the surface.
+    /// Largest lateral deviation from the shortest path that friction admits, for each contact. Null if the axes of
+    /// friction are attached to the surface.
     pub sideways: Option<Vec<Option<SidewaysReport>>>,
-    /// Least and largest tension at the end that friction holds; null without friction or without a tension.
+    /// Smallest and largest end tension that friction admits. Null without friction or without a tension.
     pub tension_limits: Option<[f64; 2]>,
-    /// Share of friction that the end tensions use; above 1 the path slips.
+    /// Ratio of the end tension to the friction limit. Above 1 the path slips.
     pub utilisation: Option<f64>,
-    /// Whether the path slips along itself.
+    /// Whether the path slips along its tangent.
     pub slips: Option<bool>,
 }
 
-/// A piece of a path on a body.
+/// A segment of a path on a body.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PathContact {
     /// Name of the body.
     pub body: String,
-    /// Arc length of the path where it meets the body.
+    /// Arc length at which the segment begins.
     pub from: f64,
-    /// Arc length of the path where it leaves it.
+    /// Arc length at which the segment ends.
     pub to: f64,
-    /// Length on the body.
+    /// Length of the segment.
     pub length: f64,
-    /// Where it meets the body.
+    /// Start point of the segment.
     pub start: [f64; 3],
-    /// Where it leaves it.
+    /// End point of the segment.
     pub end: [f64; 3],
-    /// Whether the piece is a shortest one between its ends; else only its ends hold it.
+    /// Whether the segment is a shortest path between its ends. If not, it is held by its ends only.
     pub minimal: bool,
 }
 
-/// How a path of unit tension acts on a body.
+/// Generalised forces of a path of unit tension on a body.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MomentArm {
-    /// The centre of the body.
+    /// Centre of the body.
     pub about: [f64; 3],
     /// Force on the body.
     pub shift: [f64; 3],
-    /// Moment on the body about its centre: a length along each axis.
+    /// Moment on the body about its centre, divided by the tension: a length along each axis.
     pub turn: [f64; 3],
 }
 
-/// How far friction lets a rope lie aside of the shortest path.
+/// Largest lateral deviation from the shortest path that friction admits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SidewaysReport {
-    /// Largest drift across the path where it leaves the body.
+    /// Largest lateral distance at the end of the segment.
     pub drift: f64,
-    /// Largest turn of the path there, in radians.
+    /// Largest rotation of the path there, in radians.
     pub rotation: f64,
 }
 
 /// A yarn on a mandrel.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WindingReport {
-    /// Its name.
+    /// Name of the yarn.
     pub name: String,
     /// Distance from the axis at the start.
     pub start_radius: f64,
-    /// Angle from the meridian at the start, in radians.
+    /// Angle to the meridian at the start, in radians.
     pub start_angle: f64,
-    /// The slippage that reaches the polar opening; null where it is stated.
+    /// Computed slippage that reaches the polar opening. Null if the slippage is given.
     pub slippage_sought: Option<f64>,
-    /// Where the yarn turns, of a path to a polar opening.
+    /// Turning point of a path to a polar opening.
     pub turn: Option<TurnReport>,
-    /// There and back, of a pattern.
+    /// One circuit of a pattern: forth and back.
     pub circuit: Option<CircuitReport>,
-    /// How circuits follow each other.
+    /// Pattern of the circuits.
     pub pattern: Option<PatternReport>,
-    /// What the bands of all circuits cover.
+    /// Coverage of the mandrel by the bands of all circuits.
     pub coverage: Option<CoverageReport>,
     /// Length of the yarn.
     pub length: f64,
@@ -145,139 +147,140 @@ pub struct WindingReport {
     pub theta: f64,
     /// Largest ratio of geodesic to normal curvature.
     pub largest_slippage: f64,
-    /// The same as a share of the friction; null without friction.
+    /// Largest slippage divided by the coefficient of friction. Null without friction.
     pub utilisation: Option<f64>,
     /// Whether the yarn neither slips nor bridges.
     pub stable: bool,
-    /// Arc lengths from where to where it does not lie on the mandrel.
+    /// Arc-length intervals in which the yarn lifts off the mandrel.
     pub bridges: Vec<[f64; 2]>,
-    /// Arc lengths from where to where it slips.
+    /// Arc-length intervals in which the yarn slips.
     pub slips: Vec<[f64; 2]>,
 }
 
-/// Where a yarn turns.
+/// Turning point of a yarn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TurnReport {
-    /// Whether it turns at all.
+    /// Whether the yarn turns.
     pub reached: bool,
-    /// Distance of the middle of the band from the axis.
+    /// Distance of the centreline of the band from the axis.
     pub radius: f64,
-    /// Radius of the opening that the band leaves.
+    /// Radius of the opening that the band leaves free.
     pub opening_radius: f64,
     /// Angle around the axis from the start, in radians.
     pub theta: f64,
 }
 
-/// A yarn there and back.
+/// One circuit of a yarn: forth and back.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CircuitReport {
     /// Angle around the axis, in radians.
     pub angle: f64,
-    /// Its length.
+    /// Length of the circuit.
     pub length: f64,
-    /// Angle from the meridian by which its end misses its start, in radians.
+    /// Angle to the meridian between end and start of the circuit, in radians.
     pub mismatch: f64,
-    /// Distances from the axis at both turns.
+    /// Distances from the axis at both turning points.
     pub turn_radii: [f64; 2],
-    /// Radii of the openings there.
+    /// Radii of the openings at both turning points.
     pub opening_radii: [f64; 2],
 }
 
-/// How the circuits of a pattern follow each other.
+/// Pattern of the circuits.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PatternReport {
     /// Number of circuits.
     pub n: u32,
-    /// Places of a band by which a circuit goes on, beside the full turns.
+    /// Shift of a circuit in band positions, in addition to the full turns.
     pub k: u32,
-    /// Full turns of a circuit.
+    /// Number of full turns of a circuit.
     pub m: u32,
-    /// Angle that each circuit is to turn more, in radians.
+    /// Additional rotation of each circuit, in radians.
     pub dwell: f64,
-    /// Circuits after which the first neighbour is laid.
+    /// Number of circuits after which the first neighbour is laid.
     pub neighbour_after: u32,
-    /// Whether the neighbour lies ahead: `leading` or `lagging`.
+    /// Whether the neighbour is ahead (`leading`) or behind (`lagging`).
     pub lead: String,
 }
 
-/// What the bands of a pattern cover.
+/// Coverage of the mandrel by the bands of a pattern.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CoverageReport {
-    /// Least number of circuits that covers the mandrel.
+    /// Smallest number of circuits that covers the mandrel.
     pub circuits_for_full: u32,
-    /// Share of the mandrel that is covered.
+    /// Fraction of the mandrel that is covered.
     pub covered: f64,
-    /// Width that is left open between neighbours at the start.
+    /// Width of the gap between neighbouring bands at the start.
     pub gap: f64,
-    /// Width by which neighbours overlap there.
+    /// Width of the overlap of neighbouring bands at the start.
     pub overlap: f64,
-    /// Length of all circuits.
+    /// Total length of all circuits.
     pub length_of_all: f64,
 }
 
 /// A rope on a given curve, by the theorem of Euler and Eytelwein for curves on surfaces.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RopeReport {
-    /// Its name.
+    /// Name of the rope.
     pub name: String,
     /// Length of the curve.
     pub length: f64,
-    /// Least and largest logarithm of end tension over start tension that friction holds.
+    /// Smallest and largest logarithm of the ratio of end tension to start tension that friction admits.
     pub log_ratio: [f64; 2],
     /// Tension at the start.
     pub tension: f64,
-    /// Tension at the end; null where it is not stated.
+    /// Tension at the end. Null if it is not given.
     pub end_tension: Option<f64>,
-    /// Least and largest tension at the end that friction holds; null where the curve cannot be held at all.
+    /// Smallest and largest end tension that friction admits. Null if there is no equilibrium on the curve for any
+    /// tension.
     pub tension_limits: Option<[f64; 2]>,
-    /// Whether the rope is in equilibrium where it lies.
+    /// Whether the rope is in equilibrium on its curve.
     pub holds: bool,
-    /// Share of friction that the end tensions use; null where the rope does not hold.
+    /// Ratio of the end tension to the friction limit. Null if the rope is not in equilibrium.
     pub utilisation: Option<f64>,
-    /// In words.
+    /// The result in a sentence.
     pub verdict: String,
-    /// Parts of the curve on which a condition fails.
+    /// Parts of the curve in which an equilibrium condition is violated.
     pub violations: Vec<ViolationReport>,
-    /// The largest angle between the force that holds the rope and the normal, as a tangent.
+    /// Largest tangent of the angle between the contact force and the normal.
     pub largest_tan_alpha: ExtremeReport,
-    /// The largest normal curvature: below zero the rope is pressed on.
+    /// Largest normal curvature. The rope is pressed on where it is negative.
     pub largest_normal_curvature: ExtremeReport,
-    /// The largest distance of the curve from the surface.
+    /// Largest distance of the curve from the surface.
     pub off_surface: f64,
 }
 
-/// A part of a curve on which a condition fails.
+/// A part of a curve in which an equilibrium condition is violated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ViolationReport {
-    /// Which condition.
+    /// The violated condition.
     pub condition: RopeCondition,
-    /// Arc length at which it begins to fail.
+    /// Arc length at which the part begins.
     pub from: f64,
-    /// Arc length up to which it fails.
+    /// Arc length at which the part ends.
     pub to: f64,
-    /// Arc length of the worst place.
+    /// Arc length of the largest violation.
     pub at: f64,
-    /// Normal curvature there, or the tangent of the angle; null where that is infinite.
+    /// Normal curvature there, or the tangent of the angle. Null if it is infinite.
     pub value: Option<f64>,
-    /// What it must stay below.
+    /// Limit of the value.
     pub limit: Option<f64>,
 }
 
-/// How a rope fails to lie on its curve.
+/// Violated equilibrium condition of a rope on its curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RopeCondition {
-    /// The surface is hollow along the rope, which leaves it.
+    /// The surface is concave along the rope, so the rope lifts off.
     LiftsOff,
-    /// Friction across the rope does not hold it.
+    /// Friction across the rope is too small, so the rope slides sideways.
     SlidesSideways,
 }
 
-/// A value and where it is.
+/// A value and its position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ExtremeReport {
-    /// Arc length of the place.
+    /// Arc length.
     pub s: f64,
-    /// The value there; null where it is infinite.
+    /// The value. Null if it is infinite.
     pub value: Option<f64>,
 }

@@ -3,40 +3,48 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Why a run or an increment ended as it did.
+/// Why a run or an increment ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Reason {
-    /// All conditions hold within the tolerances that the problem's own scales give.
+    /// All equations and contact conditions hold within their tolerances.
     #[default]
     Converged,
-    /// In equilibrium, and nothing touches.
+    /// Equilibrium without contact.
     NoContact,
-    /// The fronts did not come to rest. Try more cells, or refine = { fronts = 2 } in the mesh, where zones are small or close to each other; smaller increments; a lower degree. method.active_set = {} shows a coarse picture of the zones.
+    /// The fronts did not converge. If zones are small or close to each other, use more cells, or refine = { fronts = 2 } in the mesh. Otherwise use smaller increments or a lower degree. method.active_set = {} gives a coarse picture of the zones.
     IterationLimit,
-    /// No equilibrium with contact near `initial_zone`: at this load adhesion may hold none. Try another zone, or a load at which the contact exists.
+    /// There is no equilibrium with contact near `initial_zone`. At this load an adhesive contact may not exist. Use
+    /// another zone, or a load at which the contact exists.
     NoSuchState,
-    /// A path by arc length or area could not be followed further; the last warning says where. Try smaller increments, or more cells.
+    /// Arc-length or area control could not follow the path further; the last warning states where. Use smaller
+    /// increments or more cells.
     PathLost,
-    /// The equations could not be solved: is the body held, and are its data of one scale? The warning tells which unknown.
+    /// The linear system could not be solved. Check the supports, and whether the data differ by many orders of
+    /// magnitude. The warning names the unknown.
     LinearSolver,
-    /// Stopped by Ctrl-C; the increments done are on disk. Go on with signorini run CASE --resume.
+    /// Stopped by Ctrl-C. The increments computed so far are on disk. Continue with signorini run CASE --resume.
     Interrupted,
-    /// Stopped at `limits`, or at --max-time or --max-iterations of the command; the increments done are on disk. Go on with signorini run CASE --resume.
+    /// Stopped at `limits`, or at --max-time or --max-iterations of the command. The increments computed so far are on
+    /// disk. Continue with signorini run CASE --resume.
     LimitReached,
-    /// A value became invalid along the way, for example a tension that is not positive at some time.
+    /// A value became invalid during the run, for example a tension that is not positive at some time.
     Input,
-    /// A body can move without resistance in the way that is named, or its load pulls it away: hold it, or press it into contact.
+    /// A body has a rigid motion without resistance, or its load pulls it away. The message names the body and the
+    /// motion. Add a support, or press the body into contact.
     FreeBody,
-    /// An equilibrium is unstable, and once disturbed nothing comes to rest near it: what is to hold the body that is named? `stability = "tell"` keeps such states.
+    /// The equilibrium is unstable, and no state at rest was found after a disturbance. Add a support to the body named
+    /// in the message. `stability = "tell"` retains unstable states.
     UnstableState,
-    /// The iteration on large sliding did not end. Try smaller increments.
+    /// Newton's method for finite sliding did not converge. Use smaller increments.
     Newton,
-    /// The state of contact alternates at the places that are named. Try smaller increments or finer cells there.
+    /// The contact status alternates at the points named in the message. Use smaller increments, or finer cells at
+    /// these points.
     Contact,
-    /// The equations were solved, and the state is no answer: an independent check found that bodies lie in each other, that forces do not balance or break a law, or that the theory does not hold. `answer` and `audit` say what, where, and what to do; the results are on disk.
+    /// The equations were solved, but the state is refused by the audit: bodies penetrate, forces are not in balance or violate a contact law, or the theory does not apply. `answer` and `audit` state what, where, and what to do. The results are on disk.
     Refused,
-    /// The increment brings bodies far too deep into each other. Try more increments, or a smaller motion.
+    /// In one increment the bodies penetrate each other far too deeply. Use more increments or a smaller prescribed
+    /// motion.
     Increment,
 }
 
@@ -47,16 +55,16 @@ impl Reason {
     }
 }
 
-/// What looked wrong, of which kind, and where.
+/// A warning: kind, message, time and position.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Warning {
-    /// Which warning it is: one of each kind is told, of the first increment that has it.
+    /// Kind of the warning. One warning of each kind is reported, from the first increment in which it occurs.
     pub kind: WarningKind,
-    /// What looked wrong, and what to try.
+    /// What is wrong, and what to do.
     pub message: String,
-    /// The end of the increment, in the time of the case; null for what concerns all of it.
+    /// Time at the end of the increment. Null if the warning is about the whole run.
     pub time: Option<f64>,
-    /// Where: coordinates of the place; null where it has none.
+    /// Position. Null if it has none.
     pub at: Option<[f64; 3]>,
 }
 
@@ -64,43 +72,44 @@ pub struct Warning {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum WarningKind {
-    /// A value of the case, or what it amounts to, is odd.
+    /// A value of the case is unusual.
     Case,
-    /// A body that the load does not bring to what it may touch.
+    /// The load does not bring a body into contact.
     Apart,
-    /// What a membrane touches has a kink within the contact: along it the pressure is a line force, which is left out.
+    /// The surface has a kink within the contact zone of a membrane. The pressure along it is a line force, which is
+    /// not included.
     Kink,
-    /// Slopes at which the theory of the membrane is not linear any more.
+    /// The slopes of the membrane are too large for the linear theory.
     SteepSlopes,
-    /// A front that bends within two cells.
+    /// The direction of a front changes strongly within two cells.
     SharpFront,
-    /// No state on smaller cells: the one on larger cells stands.
+    /// No state was found on smaller cells. The state on larger cells is reported.
     NotRefined,
-    /// A front with fewer modes than `mode_count`.
+    /// A front has fewer modes than `mode_count`.
     FewerModes,
-    /// Fronts that came to rest to a part of a cell only.
+    /// The fronts converged only to a fraction of a cell.
     FrontsAtRest,
-    /// Zones that the grid cannot tell apart.
+    /// Zones that the grid does not resolve.
     NotResolved,
-    /// The equations could not be solved.
+    /// The linear system could not be solved.
     LinearSolver,
-    /// Where a path of equilibria ended, or why it could not be followed.
+    /// The equilibrium path ended or could not be followed.
     Path,
     /// The contact jumped to another state.
     Jump,
-    /// Unstable states among the results, where they were asked for.
+    /// The results contain unstable states, as requested.
     Unstable,
-    /// An event that could not be located as closely as asked.
+    /// An event could not be located to the requested tolerance.
     EventInterval,
-    /// Strain at which the theory of small strains errs.
+    /// The strain is too large for the small-strain theory.
     LargeStrain,
-    /// Sides of a contact that do not face each other.
+    /// The sides of a contact do not face each other.
     NotFacing,
-    /// With friction more than one equilibrium may exist.
+    /// The equilibrium or the contact forces may not be unique.
     NotUnique,
-    /// Most of a contact with friction closes in one increment: its stick zones depend on the increments.
+    /// Most of a contact with friction closes in one increment. The stick zones depend on the increments.
     ClosesAtOnce,
-    /// How far the vertices of a mesh lie off the smooth surface through them.
+    /// Distance of the vertices of a mesh from the smooth surface through them.
     Scatter,
 }
 

@@ -49,10 +49,10 @@ pub fn remove(folder: &Folder) {
 pub fn read(path: &Path, record: Record) -> Result<Checkpoint, String> {
     let file = path.join(FILE);
     let text = std::fs::read_to_string(&file)
-        .map_err(|e| format!("there is no run to go on with: cannot read `{}`: {e}", file.display()))?;
+        .map_err(|e| format!("there is no run to continue: cannot read `{}`: {e}", file.display()))?;
     let mut v: Value = serde_json::from_str(&text).map_err(|e| format!("{}: {e}", damaged(path)))?;
     if v["version"] != VERSION {
-        return Err(format!("`{}` is of another version of this program", file.display()));
+        return Err(format!("`{}` was written by another version of this program", file.display()));
     }
     if v["case"] != record.text.as_str() {
         return Err(of_another_case(&file));
@@ -87,7 +87,7 @@ pub fn begun(path: &Path, case: &str) -> Result<Begun, String> {
     }
     let file = path.join("case.toml");
     let text = std::fs::read_to_string(&file)
-        .map_err(|e| format!("there is no run to go on with: cannot read `{}`: {e}", file.display()))?;
+        .map_err(|e| format!("there is no run to continue: cannot read `{}`: {e}", file.display()))?;
     if text != case {
         return Err(of_another_case(&file));
     }
@@ -106,7 +106,7 @@ pub fn summary(path: &Path) -> Result<Summary, String> {
 }
 
 fn of_another_case(file: &Path) -> String {
-    format!("`{}` is of another case, or of this one before it was changed", file.display())
+    format!("`{}` belongs to another case, or to this one before it was changed", file.display())
 }
 
 pub fn damaged(path: &Path) -> String {

@@ -7,7 +7,7 @@ use crate::report::{ContactReport, UnitNames};
 pub fn sticking(c: &ContactReport) -> String {
     match (c.stick_area, c.slip_area) {
         (Some(stick), Some(slip)) if stick + slip > 0.0 => {
-            format!(", of which {:.0} % sticks", 100.0 * stick / (stick + slip))
+            format!(", {:.0} % of the contact in stick", 100.0 * stick / (stick + slip))
         }
         _ => String::new(),
     }
@@ -28,14 +28,14 @@ pub fn contact_verdict(
     let unit = |of: fn(&UnitNames) -> &String| units.map_or("", |u| of(u));
     let rubbing = c.friction_force.map_or(String::new(), |force| {
         let force = told_vector(&force[..dimension], None, unit(|u| &u.force));
-        format!(", {force} of it by friction{}", sticking(c))
+        format!(", friction {force}{}", sticking(c))
     });
     let zones = match (zones, c.zones) {
         (false, _) => String::new(),
         (true, n) => format!(" in {n} zone{}", if n == 1 { "" } else { "s" }),
     };
     format!(
-        "`{name}` carries {} over {extent} {}{zones}, at most {}{rubbing}",
+        "`{name}` transmits {} over {extent} {}{zones}, largest pressure {}{rubbing}",
         told_vector(&c.force[..dimension], errors.map(|e| e.force), unit(|u| &u.force)),
         told(c.area, errors.map(|e| e.area), unit(|u| &u.area)),
         told(c.max_pressure, errors.and_then(|e| e.max_pressure), unit(|u| &u.pressure)),

@@ -182,7 +182,7 @@ impl MechanicsModel {
                     if !curable || size <= SMALLEST_INCREMENT * (time - before) || time <= before {
                         let mut failure = self.failed(&error, residuals);
                         if reached > before {
-                            failure.text += &format!(" (equilibrium was found up to t = {reached:.6})");
+                            failure.text += &format!(" (the last equilibrium is at t = {reached:.6})");
                         }
                         return Ok(Err(failure));
                     }
@@ -201,39 +201,46 @@ impl MechanicsModel {
         let (reason, text) = match error {
             IncrementError::Interrupted => (Reason::Interrupted, "interrupted".to_string()),
             IncrementError::Free { .. } => {
-                (Reason::FreeBody, format!("{error}; add a support, a spring, or contact that holds it"))
+                (Reason::FreeBody, format!("{error}; add a support, a spring, or a contact that restrains it"))
             }
             IncrementError::Solve(_) => (
                 Reason::LinearSolver,
                 match has_ropes {
                     true => format!(
-                        "{error}; is every body held, and does every rope have tension? try a pretension, or a support"
+                        "{error}; check that every body is supported and every rope has tension; add a pretension or \
+                         a support"
                     ),
-                    false => format!("{error}; is every body held? try a support, a spring, or contact that holds it"),
+                    false => {
+                        format!("{error}; check that every body is supported; add a support, a spring, or a contact")
+                    }
                 },
             ),
             IncrementError::NotConverged { history: list, .. } => (
                 Reason::Newton,
                 format!(
-                    "{error}; what was left after each, in tolerances: {}; try more increments{}{}",
+                    "{error}; residuals of the last iterations, relative to the tolerance: {}; use more \
+                     increments{}{}",
                     history(list),
                     if has(|kind| !matches!(kind, Kind::Rigid { .. })) { ", or more cells" } else { "" },
                     if has_ropes { ", or a pretension where a rope is slack" } else { "" },
                 ),
             ),
             IncrementError::PassesThrough { .. } | IncrementError::Inside { .. } => {
-                (Reason::Increment, format!("{error}; try more increments"))
+                (Reason::Increment, format!("{error}; use more increments"))
             }
             IncrementError::Augmentation { history: list, .. } => (
                 Reason::Contact,
                 format!(
-                    "{error}: {}; try  enforcement.multiplier = {{}}  or  enforcement.penalty = {{}}",
+                    "{error}: {}; use  enforcement.multiplier = {{}}  or  enforcement.penalty = {{}}",
                     history(list)
                 ),
             ),
             IncrementError::Unstable { .. } => (
                 Reason::UnstableState,
-                format!("{error}; add a support, or contact that holds it; `stability = \"tell\"` keeps such states"),
+                format!(
+                    "{error}; add a support or a contact that restrains it; `stability = \"tell\"` retains such \
+                     states"
+                ),
             ),
             IncrementError::Assembly(_) => (Reason::Input, error.to_string()),
         };
@@ -248,9 +255,9 @@ fn given_up(before: Option<&IncrementError>, time: f64, residuals: Vec<f64>) -> 
         .map(|(choose, start)| recent.iter().copied().fold(start, choose));
     let count = residuals.len();
     let round = format!(
-        "no state at t = {time} in {count} iterations of Newton's method: what is left goes round between {low:.1e} and \
-         {high:.1e} tolerances; there may be no equilibrium: does anything hold what is loaded? try more increments, or more \
-         cells"
+        "no state at t = {time} in {count} iterations of Newton's method: the residual alternates between {low:.1e} \
+         and {high:.1e} tolerances; there may be no equilibrium: check that every loaded body is supported; use more \
+         increments, or more cells"
     );
     let (reason, text) = match before {
         Some(IncrementError::NotConverged { worst: Some(worst), .. }) => (Reason::Newton, format!("{round}{worst}")),
@@ -386,7 +393,7 @@ impl Model for MechanicsModel {
         match reason {
             Reason::Interrupted => format!("Interrupted: {done} of {count} increments are done and on disk."),
             reason if !reason.is_converged() => {
-                let why = self.failure.as_deref().unwrap_or("a value became invalid along the way");
+                let why = self.failure.as_deref().unwrap_or("a value became invalid during the run");
                 let time = self.plan.times.get(done).map_or(String::new(), |t| format!(", to t = {t},"));
                 format!("Increment {} of {count}{time} has no solution: {why}.", done + 1)
             }

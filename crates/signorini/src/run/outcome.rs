@@ -62,5 +62,5 @@ pub enum Begun {
 
 /// Why there is nothing to go on with, for a user.
 pub fn not_resumed(why: String) -> CaseError {
-    CaseError::new(why).help("run it from the beginning, without --resume")
+    CaseError::new(why).help("start it from the beginning, without --resume")
 }

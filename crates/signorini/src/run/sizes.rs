@@ -130,7 +130,7 @@ fn of_solids<const D: usize>(plan: &SolidPlan<D>) -> Result<Value, CaseError> {
     let free: Vec<String> = model
         .free_modes()
         .iter()
-        .map(|m| format!("`{}` is free {} until contact holds it", m.body, m.motion))
+        .map(|m| format!("`{}` is free {} until it is in contact", m.body, m.motion))
         .collect();
     Ok(json!({
         "method": "mortar",
@@ -152,7 +152,7 @@ fn of_solids<const D: usize>(plan: &SolidPlan<D>) -> Result<Value, CaseError> {
 /// What is odd about the size of a body.
 fn odd_length(units: Units, length: f64, what: &str) -> Option<String> {
     let metres = length * units.length;
-    (!LENGTHS.contains(&metres)).then(|| format!("{what} is {metres:.1e} m long: are the units what they should be?"))
+    (!LENGTHS.contains(&metres)).then(|| format!("{what} is {metres:.1e} m long; check the units"))
 }
 
 /// What is odd about sizes and stiffness of solids, where their units are known.
@@ -167,7 +167,7 @@ pub(super) fn odd_solids<const D: usize>(plan: &SolidPlan<D>) -> Vec<String> {
         let pascals = body.material.youngs_modulus * units.force / units.length.powi(2);
         if !MODULI.contains(&pascals) {
             out.push(format!(
-                "the modulus of `{}` is {pascals:.1e} Pa, {} any solid: are the units what they should be?",
+                "the modulus of `{}` is {pascals:.1e} Pa, {} any solid; check the units",
                 body.name,
                 if pascals < *MODULI.start() { "softer than" } else { "stiffer than" }
             ));
@@ -256,7 +256,8 @@ fn unresolved<const D: usize>(plan: &MembranePlan<D>, time: f64) -> Vec<String> 
         if worst.0 > (BENDS * (high - low)).max(rounding) {
             let place: Vec<String> = worst.1.iter().map(|v| format!("{v:.4}")).collect();
             out.push(format!(
-                "`{}` bends within a cell, near ({}), by {:.0} % of its height: use more cells, or `refine` in the mesh",
+                "`{}` curves within a cell, near ({}), by {:.0} % of its height: use more cells, or `refine` in the \
+                 mesh",
                 contact.body,
                 place.join(", "),
                 100.0 * worst.0 / (high - low)
@@ -280,22 +281,25 @@ pub(super) fn clearance<const D: usize>(plan: &MembranePlan<D>, time: f64) -> Op
     let (gap, side, x) = least(&loaded).filter(|(gap, ..)| *gap > 0.0)?;
     let (before, ..) = least(&Membrane { load: Arc::new(Constant(0.0)), ..loaded.clone() })?;
     let nearer = before - gap;
-    let away = if side == Side::Below { "up, away from what lies below" } else { "down, away from what lies above" };
+    let away = if side == Side::Below { "up, away from the bodies below" } else { "down, away from the bodies above" };
     let hint = if nearer < 0.0 {
         format!("; the load moves it {away}: `normal` is positive upwards")
     } else if nearer < HARDLY * before {
         let size = plan.grid.bounds().size().max();
         let unit = plan.head.units.map_or(String::new(), |u| format!(" {}", u.names[0]));
         format!(
-            "; the load brings it nearer by {nearer:.1e} only: it is {size:.4}{unit} wide, are its size, load and tension in the \
-             units of the case?"
+            "; the load reduces the gap by only {nearer:.1e}: the membrane is {size:.4}{unit} wide; check that its \
+             size, load and tension are in the units of the case"
         )
     } else if let Some(sag) = sag(&loaded, &x).filter(|sag| *sag > gap) {
-        format!("; but within a cell it may sag by {sag:.1e}, which degree 1 does not see: use more cells, or degree 2")
+        format!(
+            "; but within a cell it may sag by {sag:.1e}, which degree 1 cannot represent: use more cells, or degree \
+             2"
+        )
     } else {
         String::new()
     };
-    Some(format!("the least gap at t = {time} is {gap:.4e}{hint}"))
+    Some(format!("the smallest gap at t = {time} is {gap:.4e}{hint}"))
 }
 
 /// Whether a membrane without contact would reach a body at a time before the last one; of large ones with many times only those
@@ -328,11 +332,11 @@ fn look<const D: usize>(plan: &MembranePlan<D>, last: f64, sizes: &mut Value, wa
         sizes["least_gap_before_load"] = json!(format!("{gap:.4e} at ({})", place.join(", ")));
     }
     let apart = clearance(plan, last).filter(|_| !touches_before(plan, last));
-    let apart = apart.map(|why| format!("the membrane touches nothing: {why}"));
+    let apart = apart.map(|why| format!("the membrane is not in contact: {why}"));
     warnings.extend(apart.map(|message| Warning::new(WarningKind::Apart, message).at_time(last)));
     let start = std::time::Instant::now();
     let Some(state) = free(&plan.at(last)) else {
-        warnings.push("the membrane without contact could not be solved for: is it held?".into());
+        warnings.push("the membrane without contact could not be solved for; check its supports".into());
         return;
     };
     let seconds = start.elapsed().as_secs_f64() * SOLVES[D - 1] * plan.increments.len() as f64;
@@ -341,11 +345,13 @@ fn look<const D: usize>(plan: &MembranePlan<D>, last: f64, sizes: &mut Value, wa
     sizes["steepest_slope_without_contact"] = json!(format!("{steepest:.2e}"));
     if plan.head.problem.units.is_some() && steepest > LINEAR {
         warnings.push(
-            format!("without contact slopes would reach {steepest:.1}: the linear theory holds below about {LINEAR}")
-                .into(),
+            format!(
+                "without contact slopes would reach {steepest:.1}; the linear theory is valid below about {LINEAR}"
+            )
+            .into(),
         );
     }
     if plan.head.problem.units.is_some() && steepest > 100.0 {
-        warnings.push("such slopes come from units that do not fit: are load and tension what they should be?".into());
+        warnings.push("such slopes indicate wrong units: check load and tension".into());
     }
 }

@@ -282,14 +282,14 @@ impl<const D: usize> Model for SolidModel<D> {
         match reason {
             Reason::Interrupted => format!("Interrupted: {done} of {count} increments are done and on disk."),
             reason if !reason.is_converged() => {
-                let why = self.failure.as_ref().map_or("a value became invalid along the way", |f| &f.text);
+                let why = self.failure.as_ref().map_or("a value became invalid during the run", |f| &f.text);
                 let time = self.plan.times.get(done).map_or(String::new(), |t| format!(", to t = {t},"));
                 format!("Increment {} of {count}{time} has no solution: {why}.", done + 1)
             }
             _ => {
-                let Some(step) = record.steps.last() else { return "Nothing was asked.".into() };
+                let Some(step) = record.steps.last() else { return "No increment was requested.".into() };
                 if self.plan.contacts.is_empty() {
-                    return "The bodies are in equilibrium; no contact was stated.".into();
+                    return "The bodies are in equilibrium; the case has no contact.".into();
                 }
                 let of_contact = |(name, c): (&String, _)| report::verdict(&self.plan, name, c);
                 let list: Vec<String> = step.contacts.iter().map(of_contact).collect();

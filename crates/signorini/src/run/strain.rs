@@ -28,7 +28,8 @@ impl Strained {
         }
         let x: Vec<String> = self.at[..dimension].iter().map(|v| format!("{v:.4}")).collect();
         let message = format!(
-            "the strain is not small: {:.0} % at ({}) of `{body}` at t = {time}; the theory is that of small strains, and errs by as much from {:.0} % on",
+            "the strain is not small: {:.0} % at ({}) of `{body}` at t = {time}; small strains are assumed, and the \
+             error is of that size from {:.0} % on",
             100.0 * self.strain,
             x.join(", "),
             100.0 * LARGE,

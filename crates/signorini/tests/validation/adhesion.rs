@@ -413,12 +413,12 @@ fn a_path_of_the_cosine_floor_to_its_end() {
 fn mistakes_are_told() {
     let plain = || round("-1", 0.1, "0.01", None, "");
     let table = [
-        ("adhesion.energy = \"0.01\"", "adhesion.energy = -0.01", "not negative"),
+        ("adhesion.energy = \"0.01\"", "adhesion.energy = -0.01", "not be negative"),
         ("adhesion.energy = \"0.01\"", "adhesion.energy = nan", "finite"),
-        ("adhesion.energy = \"0.01\"", "adhesion.energy = \"0.01 - x\"", "not negative"),
+        ("adhesion.energy = \"0.01\"", "adhesion.energy = \"0.01 - x\"", "not be negative"),
         ("method.inequality_level_set = {  }", "method.active_set = {}", "no adhesion"),
         ("level_set = {  }", "level_set = { initial_zone.disc = { radius = 0.1 } }", "an interval"),
-        ("level_set = {  }", "level_set = { initial_zone.interval = { from = 2, to = 3 } }", "beside the membrane"),
+        ("level_set = {  }", "level_set = { initial_zone.interval = { from = 2, to = 3 } }", "outside the membrane"),
     ];
     for (from, to, word) in table {
         assert!(plain().contains(from), "{from}");

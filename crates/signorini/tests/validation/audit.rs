@@ -132,7 +132,7 @@ fn small_sliding_is_refused_where_bodies_slide_or_turn_far() {
         [[steps]]
         to = 2
         increments = 2"#;
-    is_refused(shoe, "has slid by");
+    is_refused(shoe, "has slipped by");
 }
 
 #[test]

@@ -50,16 +50,20 @@ fn bad_starts_are_told_with_the_remedy() {
             ["is not closed: 3 edges have one triangle, such as that at (0.5000, 0", "close"],
         ),
         ("geodesic", &[("to = [2.2,", "to = [nan,")], ["not a finite number", ""]),
-        ("dome", &[(opening, "slippage = 0.4\nlength = 60")], ["`to_the_opening` slips from s = ", "a rougher yarn"]),
+        (
+            "dome",
+            &[(opening, "slippage = 0.4\nlength = 60")],
+            ["`to_the_opening` slips from s = ", "a larger coefficient"],
+        ),
         (
             "dome",
             &[(mandrel, ring), (opening, "slippage = 0\nlength = 200"), ("25 deg", "85 deg"), (pattern, "length = 50")],
-            ["`to_the_opening` bridges from s = ", "the mandrel is hollow along it"],
+            ["`to_the_opening` bridges from s = ", "the mandrel is concave along the yarn"],
         ),
         (
             "crossing",
             &[("0.11],[0,2,0.11]", "0.02],[0,2,0.02]")],
-            ["starts 8.0000e-2 deep inside", "by both radii at least"],
+            ["starts 8.0000e-2 deep inside", "at least the sum of the radii"],
         ),
         (
             "capstan",
@@ -67,7 +71,7 @@ fn bad_starts_are_told_with_the_remedy() {
             ["`rope` is shorter than the distance of its ends", "a longer `unstrained_length`"],
         ),
         ("capstan", &[("stiffness = 1e4", "stiffness = 0")], ["must be positive", ""]),
-        ("knot", &[("u^3 - 3*u", "0*u")], ["the path crosses itself at (", "along it"]),
+        ("knot", &[("u^3 - 3*u", "0*u")], ["the path crosses itself at (", "at the arc lengths"]),
     ];
     for (name, changes, words) in table {
         let mut case = example(name).to_string();

@@ -250,7 +250,7 @@ fn points_of_a_file_are_answered_in_every_format() {
     let error = answer("points.csv", "body.json", "none.npy").unwrap_err().to_string();
     assert!(error.contains("points.csv: line 2: 2 entries") && !path("none.npy").exists(), "{error}");
     let error = answer("points.csv", "body.step", "none.npy").unwrap_err().to_string();
-    assert!(error.contains("body.step: `step` is no format of shapes"), "{error}");
+    assert!(error.contains("body.step: `step` is not a format of shapes"), "{error}");
 }
 
 #[test]

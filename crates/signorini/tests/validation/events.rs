@@ -231,5 +231,5 @@ pictures = false
 fn tolerances_are_positive() {
     let case = example("string").to_string() + "\n[[steps]]\nto = 1\nevents = 0\n";
     let found = error(&case);
-    assert!(found.one_line().contains("no tolerance"));
+    assert!(found.one_line().contains("not a valid time tolerance"));
 }

@@ -121,7 +121,7 @@ fn data_that_cannot_tell_are_said_to() {
         .map(|f| format!("{f},{}\n", radius(f, 0.02, 1.0) * (1.0 + 0.01 * (40.0 * f).sin())))
         .collect();
     let both = fitted(&format!("p,c\n{rows}"), "radius = \"c\"\nunknown = [\"adhesion\", \"tension\"]").expect("a fit");
-    assert!(both["warnings"].to_string().contains("cannot tell adhesion and tension apart"), "{both}");
+    assert!(both["warnings"].to_string().contains("do not determine adhesion and tension separately"), "{both}");
     let one = fitted(&format!("p,c\n{rows}"), "radius = \"c\"").expect("a fit");
     assert_eq!(one["warnings"].as_array().map(Vec::len), Some(0), "{one}");
     let range = &one["adhesion_energy"]["interval"];
@@ -133,7 +133,7 @@ fn wrong_files_are_told() {
     let rows = |last: &str| format!("p,c\n1,0.6\n2,0.7\n3,0.8\n{last}\n");
     for (text, key, word) in [
         (rows("4,"), "radius = \"c\"", "line 5, column `c`: is empty"),
-        (rows("4,x"), "radius = \"c\"", "`x` is no number"),
+        (rows("4,x"), "radius = \"c\"", "`x` is not a number"),
         (rows("nan,0.8"), "radius = \"c\"", "not finite"),
         (rows("4,1.8"), "radius = \"c\"", "between 0 and"),
         (rows("4,0.8"), "radius = \"cc\"", "no column `cc`"),
@@ -144,7 +144,7 @@ fn wrong_files_are_told() {
         (String::new(), "radius = \"c\"", "is empty"),
         (rows("4,0.8"), "", "`radius` or `area`"),
         (rows("4,0.8"), "radius = \"c\"\nconfidence = 1.5", "between 0 and 1"),
-        (rows("4,0.8"), "radius = \"c\"\nunknown = [\"tension\"]", "adhesion is what the contact tells"),
+        (rows("4,0.8"), "radius = \"c\"\nunknown = [\"tension\"]", "adhesion energy must be one of the unknowns"),
         (rows("4,0.8"), "radius = \"c\"\nunknown = [\"colour\"]", "colour"),
     ] {
         let found = fitted(&text, key).expect_err(word);

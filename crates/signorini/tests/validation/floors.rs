@@ -116,13 +116,17 @@ fn shapes_that_are_no_floor_are_told() {
     for (space, shape, word) in [
         ("axisymmetric", "sphere = { center = [0.1, 0, -2], radius = 2 }", "on the axis"),
         ("plane", "sphere = { center = [0, 0, -2], radius = -2 }", "must be positive"),
-        ("plane", "cylinder = { point = [0, 0, -2], radius = 2 }", "needs an `axis`"),
-        ("plane", "cylinder = { point = [0, 0, -2], axis = [0, 0, 1], radius = 2 }", "lies flat"),
-        ("plane", "paraboloid = { apex = [0, 0, 0], axis = [1, 0, -1], radius = 2 }", "straight down"),
-        ("plane", "torus = { center = [0, 0, -1], axis = [1, 0, 0], major_radius = 1, minor_radius = 0.3 }", "upright"),
+        ("plane", "cylinder = { point = [0, 0, -2], radius = 2 }", "requires an `axis`"),
+        ("plane", "cylinder = { point = [0, 0, -2], axis = [0, 0, 1], radius = 2 }", "must be horizontal"),
+        ("plane", "paraboloid = { apex = [0, 0, 0], axis = [1, 0, -1], radius = 2 }", "vertically down"),
+        (
+            "plane",
+            "torus = { center = [0, 0, -1], axis = [1, 0, 0], major_radius = 1, minor_radius = 0.3 }",
+            "must be vertical",
+        ),
         ("plane", "ellipsoid = { center = [0, 0, -1], semi_axes = [1, 0, 1] }", "positive"),
-        ("axisymmetric", "ellipsoid = { center = [0, 0, -1], semi_axes = [1, 2, 1] }", "are equal"),
-        ("plane", "cone = { apex = [0, 0, 0], axis = [0, 1, -1], half_angle = 1 }", "straight down"),
+        ("axisymmetric", "ellipsoid = { center = [0, 0, -1], semi_axes = [1, 2, 1] }", "must be equal"),
+        ("plane", "cone = { apex = [0, 0, 0], axis = [0, 1, -1], half_angle = 1 }", "vertically down"),
         ("plane", "cone = { apex = [0, 0, 0], axis = [0, 0, -1], half_angle = 2 }", "half angle"),
         ("plane", "level_set = { negative_inside = \"z\", min = [-1, -1, 1], max = [1, 1, -1] }", "box is empty"),
         ("plane", "level_set = { negative_inside = \"z + 0/0\", min = [-1, -1, -1], max = [1, 1, 1] }", "finite"),
@@ -451,7 +455,7 @@ fn wrong_neighbours_are_told() {
     let lid = "[bodies.lid.rigid]\nlies = \"above\"\nshape.height = \"HEIGHT\"\n[contacts.upper]\nbetween = [\"film\", \"lid\"]\n";
     let with = |height: &str| case.clone() + &lid.replace("HEIGHT", height);
     for (text, word) in [
-        (with("-0.2"), "no room is left"),
+        (with("-0.2"), "no space left"),
         (with("-0.05"), "below the displacement"),
         (with("0.1").replace("\"above\"", "\"beside\""), "beside"),
         (
@@ -459,7 +463,7 @@ fn wrong_neighbours_are_told() {
                 "[contacts.upper]\nbetween = [\"film\", \"lid\"]",
                 "[contacts.upper]\nbetween = [\"film\", \"die\"]",
             ),
-            "already touched",
+            "already has the contact",
         ),
         (
             with("0.1")
@@ -501,8 +505,10 @@ fn a_check_says_what_it_understood() {
     assert!((number(&told("2 N/m")["value"]) - 2e-3).abs() < 1e-15);
     assert_eq!(told("2 N/m")["unit"], "N/mm");
     assert_eq!((number(&told("1 cm")["value"]), &told("1 cm")["line"]), (10.0, &5.into()));
-    assert!(sizes["warnings"].to_string().contains("bends within a cell"), "{sizes}");
-    assert!(!check(&pushed("plane", "height = \"-0.1 - 0.2*x^2\"", 0.0))["warnings"].to_string().contains("bends"));
+    assert!(sizes["warnings"].to_string().contains("curves within a cell"), "{sizes}");
+    assert!(
+        !check(&pushed("plane", "height = \"-0.1 - 0.2*x^2\"", 0.0))["warnings"].to_string().contains("curves within")
+    );
     let long = check(&case.replace("\"1 cm\"", "\"1000 km\""));
     assert!(long["warnings"].to_string().contains("m long"), "{long}");
     // Pascals where megapascals are meant.

@@ -181,9 +181,9 @@ fn what_does_not_go_together_is_told() {
     let length = told(&linear.replace("\"published\"", "\"published\", multiplier_length = -2"));
     assert!(length.contains("must be positive"), "{length}");
     let splines = told(&linear.replace("\"published\"", "\"one_sided\", mode_count = 5"));
-    assert!(splines.contains("as many as its cells can tell apart"), "{splines}");
+    assert!(splines.contains("is determined by its cells"), "{splines}");
     let none = told(&linear.replace("\"published\"", "\"published\", mode_count = 0"));
-    assert!(none.contains("one mode at least, not 0"), "{none}");
+    assert!(none.contains("must be at least one, not 0"), "{none}");
     let controlled = told(&(linear + "\n[[steps]]\nto = 1.0\ncontrol.arc_length = { size = 0.1 }\n"));
     assert!(controlled.contains("follows time only"), "{controlled}");
 }

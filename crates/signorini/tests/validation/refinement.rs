@@ -80,7 +80,7 @@ fn mistakes_are_told() {
         ("{ most = 9 }", "0 to 8"),
         ("{ fronts = -1 }", "0 to 8"),
         ("{ fronts = 2, most = 1 }", "more than 1"),
-        ("{ levels = 2 }", "nothing says where"),
+        ("{ levels = 2 }", "without a region"),
         ("{ negative_where = \"x / 0 - x / 0\" }", "not a number"),
         ("{ negative_where = \"radius - 1\" }", "radius"),
         ("{ where = \"x\" }", "where"),

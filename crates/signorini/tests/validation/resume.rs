@@ -77,7 +77,7 @@ fn what_cannot_be_resumed_is_told() {
     let parse =
         |pairs: &[(&str, String)]| signorini::case::read("case.toml", example("snap_in"), &set(pairs)).expect("a case");
     let case = parse(&[]);
-    assert!(message(&case).contains("no run to go on with"));
+    assert!(message(&case).contains("no run to continue"));
     // Stopped before its first increment was kept it begins anew.
     run(&case, &path, &mut Until(1.into())).expect("a run");
     assert_eq!(begun(&case, &path).expect("a run"), Begun::Anew);

@@ -281,8 +281,8 @@ fn shapes_stand_on_the_axis_and_come_in_any_order() {
         assert!(force(other, pair).abs() > 0.1, "{other}");
     }
     for (off, word) in [
-        ("cone = { apex = [1, 0], axis = [0, 1], half_angle = 1.4 }", "stand on the axis"),
-        ("torus = { center = [0, 1], axis = [1, 1], major_radius = 2, minor_radius = 1 }", "stand on the axis"),
+        ("cone = { apex = [1, 0], axis = [0, 1], half_angle = 1.4 }", "centred on the axis"),
+        ("torus = { center = [0, 1], axis = [1, 1], major_radius = 2, minor_radius = 1 }", "centred on the axis"),
     ] {
         let case = format!(
             "space = \"axisymmetric\"\n[bodies.block.solid]\nmesh.box = {{ min = [0, -4], max = [4, 0], cells = [4, 4] }}\n\

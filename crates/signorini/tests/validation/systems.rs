@@ -119,7 +119,7 @@ to = 1
 increments = 2
 "#;
     let slanted = case.replace("cells = [2, 1, 1]", "cells = [2, 1, 1], map = [\"x + 0.2*y\", \"y\", \"z\"]");
-    assert!(error(&slanted).message.contains("a flat part that faces along an axis"));
+    assert!(error(&slanted).message.contains("a flat part of the boundary whose normal is along"));
     let found = summary(case, &set(&[]));
     let force = number(&last_step(&found)["support_forces"]["pull"][0]);
     // μ = 1, λ = 1.5: the stretch across makes its stress vanish.
@@ -218,11 +218,11 @@ fn winches_and_pulleys_keep_account_of_the_rope() {
     assert!((number(&rope["unstrained_length"]) - 4.0).abs() < 1e-12, "{rope}");
     // The mistakes that can be made with them.
     let table = [
-        (WINCH, "\"rope:end\"", "\"rope:start\"", "no support holds the end", "end"),
+        (WINCH, "\"rope:end\"", "\"rope:start\"", "has a winch but no support", "end"),
         (WINCH, "-0.3*t", "-6*t", "are taken in", "-6*t"),
         (WINCH, "-0.3*t", "1/(t - t)", "not a finite number", "1/(t - t)"),
         (WINCH, "cells = 20", "cells = 20\ncontinuity = \"C1\"", "straight elements", "end"),
-        (PULLEY, "[[3, 0, 0]]", "[[2.9, 0, 0]]", "the nearest is at (3.0", "[2.9, 0, 0]"),
+        (PULLEY, "[[3, 0, 0]]", "[[2.9, 0, 0]]", "the nearest one is at (3.0", "[2.9, 0, 0]"),
         (PULLEY, "[[3, 0, 0]]", "[[0, 0, 0]]", "an end of the rope", "[[0, 0, 0]]"),
         (PULLEY, "pulley_1", "pulley_2", "it has start, end, boundary, pulleys, pulley_1", "pulley_2"),
     ];
@@ -244,7 +244,7 @@ fn told(case: &str, to: &str, message: &str, at: &str) {
 fn mistakes_of_curves_are_told_at_their_place() {
     let friction = "friction.coulomb = { mu = 0.2 }";
     let table = [
-        (friction, "friction.viscous = { mu = -0.1, velocity = 0.01 }", "no less than zero", "-0.1"),
+        (friction, "friction.viscous = { mu = -0.1, velocity = 0.01 }", "must not be negative", "-0.1"),
         (friction, "friction.viscous = { mu = 0.1, velocity = 0 }", "must be positive", "0"),
         (friction, "friction.viscous = { mu = 0.1, velocity = nan }", "not a finite number", "nan"),
         (friction, "friction.viscous = { mu = 0.1 }", "missing key `velocity`", "{ mu = 0.1 }"),
@@ -269,8 +269,8 @@ fn mistakes_of_curves_are_told_at_their_place() {
 fn what_would_do_nothing_is_told() {
     let held = "on = \"rope:start\"\ndisplacement = [0, 0, 0]";
     let table = [
-        (held, "on = \"rope:start\"\nspring = [0, 0, 0]", "without stiffness holds nothing", "[0, 0, 0]"),
-        ("space = \"3d\"", "space = \"3d\"\nview.from = [1, 1, 1]", "`view` is for pictures of paths", "view"),
+        (held, "on = \"rope:start\"\nspring = [0, 0, 0]", "all stiffnesses of the spring are zero", "[0, 0, 0]"),
+        ("space = \"3d\"", "space = \"3d\"\nview.from = [1, 1, 1]", "`view` is only for pictures of paths", "view"),
     ];
     for (from, to, message, at) in table {
         let case = example("edge");
@@ -278,7 +278,7 @@ fn what_would_do_nothing_is_told() {
         told(&case.replacen(from, to, 1), to, message, at);
     }
     for (to, message) in [
-        ("from = [0, 0, 0]", "the same direction, or none"),
+        ("from = [0, 0, 0]", "are parallel, or one of them is zero"),
         ("from = [0, 0, nan]", "three finite components"),
         ("from = [1, 0]", "three finite components"),
     ] {
@@ -296,16 +296,21 @@ fn mistakes_of_edges_are_told_at_their_place() {
     let table = [
         (between, "[\"top\"]", "between 2 groups of sides, found 1", "[\"top\"]"),
         ("\"right\"", "\"rihgt\"", "no group `rihgt`", "rihgt"),
-        (between, "[\"left\", \"right\"]", "do not meet along an edge", "[\"left\", \"right\"]"),
+        (between, "[\"left\", \"right\"]", "have no common edge", "[\"left\", \"right\"]"),
         (between, "[\"top\", \"boundary\"]", "it branches at", "[\"top\", \"boundary\"]"),
-        (between, "[\"top\", \"top\"]", "do not meet along an edge", "[\"top\", \"top\"]"),
+        (between, "[\"top\", \"top\"]", "have no common edge", "[\"top\", \"top\"]"),
         ("radius = 0.06 }", "radius = -0.2 }", "valid are 0 and larger", "-0.2"),
         ("radius = 0.06 }", "radius = nan }", "not a finite number", "nan"),
         ("radius = 0.06 }", "radios = 0.06 }", "unknown key `radios`", "radios"),
-        ("edges.rim", "edges.top", "there is a group of that name", "between"),
+        ("edges.rim", "edges.top", "a group with this name already exists", "between"),
         ("\"block:rim\"", "\"block:rum\"", "has no group `rum`", "block:rum"),
-        ("\"block:bottom\"", "\"block:rim\"", "`rim` is an edge, which touches", "block:rim"),
-        ("[\"rope\", \"block:rim\"]", "[\"block:top\", \"block:rim\"]", "other edges of its own body", "block:top"),
+        ("\"block:bottom\"", "\"block:rim\"", "`rim` is an edge, which is only for contact", "block:rim"),
+        (
+            "[\"rope\", \"block:rim\"]",
+            "[\"block:top\", \"block:rim\"]",
+            "its own body is possible with other edges",
+            "block:top",
+        ),
     ];
     for (from, to, message, at) in table {
         let case = example("edge");
@@ -318,9 +323,9 @@ fn mistakes_of_edges_are_told_at_their_place() {
 fn each_mistake_is_told_at_its_place() {
     let table = [
         ("stiffness = 1e4", "stiffness = -1e4", "must be positive", "-1e4"),
-        ("pretension = 1.0", "pretension = -1.0", "cannot be compressed", "-1.0"),
+        ("pretension = 1.0", "pretension = -1.0", "carries tension only", "-1.0"),
         ("pretension = 1.0", "pretension = nan", "not a finite number", "nan"),
-        ("pretension = 1.0", "pretension = 1.0\nunstrained_length = 4.0", "two ways", "4.0"),
+        ("pretension = 1.0", "pretension = 1.0\nunstrained_length = 4.0", "are alternatives", "4.0"),
         ("radius = 0.02", "radius = -0.02", "the radius is -0.02", "-0.02"),
         ("cells = 60", "cells = 0", "is not between 1 and", "0"),
         ("radius = \"R + 0.02\"", "radius = \"0.5*R\"", "deep inside `drum`", "path"),
@@ -328,8 +333,8 @@ fn each_mistake_is_told_at_its_place() {
         ("\"rope:end\"", "\"ripe:end\"", "no body `ripe`", "ripe:end"),
         ("tension = \"1 + (pull - 1)*t\"", "force = [0, 0]", "expected 3 components", "[0, 0]"),
         ("tension = \"1 + (pull - 1)*t\"", "tension = \"1/(t - t)\"", "not a finite number", "1/(t - t)"),
-        ("{ mu = \"mu\" }", "{ mu = -0.1 }", "no less than zero", "-0.1"),
-        ("space = \"3d\"", "space = \"plane_strain\"", "does not lie in this space", "plane_strain"),
+        ("{ mu = \"mu\" }", "{ mu = -0.1 }", "must not be negative", "-0.1"),
+        ("space = \"3d\"", "space = \"plane_strain\"", "is not possible in this space", "plane_strain"),
         ("friction.coulomb", "method.mortar = {}\nfriction.coulomb", "has no faces", "method"),
         ("[\"rope\", \"drum\"]", "[\"drum\", \"drum\"]", "names `drum` twice", "drum"),
     ];

@@ -28,7 +28,7 @@ pub struct Support {
 /// Supports that cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SupportError {
-    #[error("`normal` needs a flat group: the normals of its sides differ by up to {degrees:.2} degrees")]
+    #[error("`normal` requires a flat group, but the normals of its sides differ by up to {degrees:.2} degrees")]
     NotFlat { support: String, degrees: f64 },
     #[error(
         "the supports `{first}` and `{second}` prescribe different displacements of the same point {position}: {a} and {b}"

@@ -98,7 +98,7 @@ fn the_image_of_a_ball() {
     );
     assert!((volume / expected - 1.0).abs() < 4e-3 && (area / (4.0 * PI * expected.powi(2)) - 1.0).abs() < 8e-3);
     assert!(tilt.sqrt() < 0.015, "{}", tilt.sqrt());
-    for (threshold, text) in [(1.5, "nothing or everything"), (-0.5, "go from 0 to 1")] {
+    for (threshold, text) in [(1.5, "all or none of the image"), (-0.5, "are between 0 and 1")] {
         let error = voxels.above(threshold, 1.0).err().unwrap().to_string();
         assert!(error.contains(text), "{error}");
     }

@@ -32,7 +32,7 @@ impl ReadDomain<1> for Planner<'_> {
             Some(refine) => Err(self
                 .problem
                 .error(refine, "cells are divided in the plane only")
-                .help("leave `refine` out: in one dimension fronts are points, and more cells cost little")),
+                .help("leave `refine` out; in one dimension use more cells, which cost little")),
         }
     }
 
@@ -44,12 +44,14 @@ impl ReadDomain<1> for Planner<'_> {
         let Domain::Interval(interval) = key else {
             return Err(self
                 .problem
-                .error(key, "in one dimension this is an interval")
+                .error(key, "in one dimension the domain is an interval")
                 .help("interval = { from = -1.0, to = 1.0 }, or space = \"plane\""));
         };
         let (from, to) = (self.reader.number(&interval.from, LENGTH)?, self.reader.number(&interval.to, LENGTH)?);
         if to <= from {
-            return Err(self.problem.error(&interval.to, format!("the domain is empty: {to} does not exceed {from}")));
+            return Err(self
+                .problem
+                .error(&interval.to, format!("the domain is empty: {to} is not greater than {from}")));
         }
         let axisymmetric = self.space == Space::Axisymmetric;
         if axisymmetric && from < 0.0 {
@@ -70,7 +72,7 @@ impl Planner<'_> {
     /// What belongs to a membrane in the plane.
     fn in_the_plane(&self, at: &impl Location, what: &str) -> CaseError {
         self.problem
-            .error(at, format!("{what} belongs to a membrane in the plane"))
+            .error(at, format!("{what} is for a membrane in the plane"))
             .help("space = \"plane\", or mesh.grid = { cells = [100] }")
     }
 }

@@ -27,7 +27,9 @@ impl Planner<'_> {
     ) -> Result<OnCells<2>, CaseError> {
         let problem = self.problem;
         if let Some(domain) = &film.domain {
-            return Err(problem.error(domain, "the mesh is the domain").help("leave `domain` out, or take mesh.grid"));
+            return Err(problem
+                .error(domain, "the mesh defines the domain")
+                .help("leave `domain` out, or use mesh.grid"));
         }
         let order = (0..mesh.cell_count()).map(|c| mesh.map(c).order()).max().unwrap_or(1);
         let degree = self.degree(film)?.unwrap_or(order);
@@ -41,7 +43,7 @@ impl Planner<'_> {
         let divisions = divided.copied().unwrap_or(0);
         let at = divided.map_or_else(|| place.clone(), |d| self.key(d));
         if !(0..=MOST_MESH_DIVISIONS).contains(&divisions) {
-            let message = format!("cells are divided 0 to {MOST_MESH_DIVISIONS} times, not {divisions}");
+            let message = format!("the number of divisions must be 0 to {MOST_MESH_DIVISIONS}, not {divisions}");
             return Err(problem.error(&at, message));
         }
         // Triangles are twice as many as their vertices.
@@ -63,11 +65,9 @@ impl Planner<'_> {
         let grid = cells.grid();
         let refinement = match refine {
             Some(refine) if degree > MOST_ON_TRIANGLES => {
-                return Err(problem
-                    .error(refine, format!("degree {degree} on a mesh that is divided here and there"))
-                    .help(
-                        "quadrilaterals and triangles lie side by side there: degree = 1 or 2, or leave `refine` out",
-                    ));
+                return Err(problem.error(refine, format!("degree {degree} on a mesh with local refinement")).help(
+                    "such a mesh contains quadrilaterals and triangles: use degree = 1 or 2, or leave `refine` out",
+                ));
             }
             None if degree > MOST_ON_TRIANGLES => Refinement::default(),
             refine => self.refinement(refine, &grid)?,

@@ -45,7 +45,7 @@ impl ReadDomain<2> for Planner<'_> {
         let times = |key: &Option<i64>, otherwise: usize| match key {
             None => Ok(otherwise),
             Some(n) if (0..=8).contains(n) => Ok(*n as usize),
-            Some(n) => Err(self.problem.error(n, format!("cells are divided 0 to 8 times, not {}", n))),
+            Some(n) => Err(self.problem.error(n, format!("the number of divisions must be 0 to 8, not {}", n))),
         };
         refinement.fronts = times(&refine.fronts, 0)?;
         refinement.most = times(&refine.most, most.max(refinement.fronts))?;
@@ -53,10 +53,7 @@ impl ReadDomain<2> for Planner<'_> {
             let at = refine.most.as_ref().map_or_else(|| self.key(refine), |m| self.key(m));
             return Err(self.problem.error(
                 &at,
-                format!(
-                    "at fronts cells are divided {} times, which is more than {}",
-                    refinement.fronts, refinement.most
-                ),
+                format!("`fronts` divides cells {} times, which is more than {}", refinement.fronts, refinement.most),
             ));
         }
         let levels = times(&refine.levels, 1)?;
@@ -80,7 +77,7 @@ impl ReadDomain<2> for Planner<'_> {
         } else if let Some(levels) = &refine.levels {
             return Err(self
                 .problem
-                .error(levels, "`levels` says how often, but nothing says where")
+                .error(levels, "`levels` is given without a region")
                 .help("add negative_where = \"hypot(x, y) - 0.3\", or use `fronts`"));
         }
         Ok(refinement)
@@ -188,22 +185,20 @@ impl Planner<'_> {
             corners.push(Point::<2>::from(self.reader.numbers::<2>(p, LENGTH)?));
         }
         if corners.len() < 3 {
-            return Err(self
-                .problem
-                .error(points, format!("{} points make no polygon: there must be at least 3", corners.len())));
+            return Err(self.problem.error(points, format!("{} points: a polygon requires at least 3", corners.len())));
         }
         let n = corners.len();
         if let Some(i) = (0..n).find(|&i| (corners[i] - corners[(i + 1) % n]).norm() == 0.0) {
             return Err(self
                 .problem
                 .error(&points[i], "two corners in a row are the same point")
-                .help("leave one out; the last corner is joined to the first by itself"));
+                .help("leave one out; the last corner is joined to the first automatically"));
         }
         if let Some((i, j)) = polygon::self_crossing(&corners) {
             return Err(self
                 .problem
                 .error(points, format!("the sides {} and {} cross each other", i + 1, j + 1))
-                .help("list the corners in the order in which one walks round the domain"));
+                .help("list the corners in order around the domain"));
         }
         if polygon::signed_area(&corners) == 0.0 {
             return Err(self.problem.error(points, "the domain is empty: the polygon has no area"));

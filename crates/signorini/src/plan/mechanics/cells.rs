@@ -39,7 +39,7 @@ impl Planner<'_> {
         let bounds = match corners {
             [Some(min), Some(max)] => Some([self.position(min, LENGTH)?.into(), self.position(max, LENGTH)?.into()]),
             [None, None] => None,
-            _ => return Err(problem.error(grid, "a box has two corners").help("min = [...], max = [...]")),
+            _ => return Err(problem.error(grid, "a box is given by two corners").help("min = [...], max = [...]")),
         };
         let around = match bounds {
             Some([min, max]) => Aabb::new(Point::<3>::from(min), Point::<3>::from(max)),
@@ -97,11 +97,10 @@ impl Planner<'_> {
         for (group, value) in &key.groups {
             let expression = self.reader.expression(value, NONE, self.places())?;
             if !expression.is_condition() {
-                let message =
-                    format!("the group `{group}` is no condition, which holds at a point of the surface or not");
+                let message = format!("the group `{group}` must be a condition on the points of the surface");
                 return Err(problem
                     .error(value, message)
-                    .help("a comparison:  z < 0.1,  or several:  x > 0 && z > 0.9"));
+                    .help("give a comparison:  z < 0.1,  or several:  x > 0 && z > 0.9"));
             }
             let holds = move |x: &Point<3>, _: &Vector<3>| {
                 expression.evaluate(&Scope { position: [x.x, x.y, x.z], time: 0.0 }) > 0.0
@@ -125,7 +124,9 @@ impl Planner<'_> {
         let findings = &built.findings;
         if findings.dropped > 0.0 {
             let share = findings.dropped / (built.volume + findings.dropped);
-            self.warn(format!("`{name}`: pieces apart from the largest are left out, {share:.1e} of the whole volume"));
+            self.warn(format!(
+                "`{name}`: pieces that are not connected to the largest one are removed, {share:.1e} of the volume"
+            ));
         }
         let [low, high] = built.bounds;
         notes.push(format!(
@@ -133,17 +134,17 @@ impl Planner<'_> {
             built.cells,
             built.volume,
             if findings.facing_cells > 0 {
-                format!(", {} cells see two faces of it (refine.narrow divides them)", findings.facing_cells)
+                format!(", {} cells contain two faces of it (refine.narrow divides them)", findings.facing_cells)
             } else {
                 String::new()
             },
             if findings.split_leaves > 0 {
-                format!(", {} of them in pieces of their own", findings.split_leaves)
+                format!(", {} of them in separate pieces", findings.split_leaves)
             } else {
                 String::new()
             },
             if findings.dropped > 0.0 {
-                format!(", islands of volume {:.3e} dropped", findings.dropped)
+                format!(", islands of volume {:.3e} removed", findings.dropped)
             } else {
                 String::new()
             },
@@ -167,7 +168,7 @@ impl Planner<'_> {
         let Material::LinearElastic(constants) = &key.material else {
             return Err(self
                 .problem
-                .error(&key.material, "finite cells are linear elastic, at small strain")
+                .error(&key.material, "finite cells are linear elastic with small strain")
                 .help("material.linear_elastic = { youngs_modulus = …, poissons_ratio = … }"));
         };
         let youngs_modulus = self.reader.positive(&constants.youngs_modulus, PRESSURE)?;
@@ -199,7 +200,7 @@ impl Planner<'_> {
             (None, Some(size)) => Ok(Cells::Size(self.reader.positive(size, LENGTH)?)),
             _ => Err(self
                 .problem
-                .error(grid, "the number of cells is not said, or said twice")
+                .error(grid, "the number of cells is missing or given twice")
                 .help("cells = [20, 20, 20], or cell_size = 0.1")),
         }
     }
@@ -296,14 +297,18 @@ impl Planner<'_> {
                 let image = self.image(stated, notes)?;
                 let Some(threshold) = &stated.threshold else {
                     return Err(problem
-                        .error(stated, "the image says where material is by neither `threshold` nor `youngs_modulus`")
+                        .error(
+                            stated,
+                            "the image has neither `threshold` nor `youngs_modulus`, so the material region is not \
+                             defined",
+                        )
                         .help("threshold = 1200, the value above which there is material"));
                 };
                 let smoothing = stated.smoothing.as_ref().map_or(Ok(1.0), |v| self.reader.number(v, NONE))?;
                 if smoothing < 0.0 {
                     return Err(problem
-                        .error(stated, format!("the image is smoothed by {smoothing} voxels"))
-                        .help("0 or more"));
+                        .error(stated, format!("the smoothing width of the image is {smoothing} voxels"))
+                        .help("give 0 or more"));
                 }
                 Shape::Image { image, threshold: self.reader.number(threshold, NONE)?, smoothing }
             }

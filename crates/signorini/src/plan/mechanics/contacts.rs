@@ -33,7 +33,9 @@ impl Planner<'_> {
             let pairs: Vec<(String, [&String; 2])> = match (&key.between, &key.within, &key.all) {
                 (Some(pair), None, None) if pair.len() == 2 && pair[0].trim() == pair[1].trim() => {
                     let message = format!("`between` names `{}` twice", pair[0].trim());
-                    return Err(problem.error(pair, message).help(format!("within = \"{}\"", pair[0].trim())));
+                    return Err(problem
+                        .error(pair, message)
+                        .help(format!("for self-contact:  within = \"{}\"", pair[0].trim())));
                 }
                 (Some(pair), None, None) if pair.len() == 2 => vec![(name.clone(), [&pair[0], &pair[1]])],
                 (None, Some(body), None) => vec![(name.clone(), [body, body])],
@@ -47,16 +49,16 @@ impl Planner<'_> {
                         moving.partition(|pair| !cannot_meet(system, numbers, pair));
                     for [first, second] in untested {
                         self.warn(format!(
-                            "contact `{name}`: `{first}` and `{second}` are not tested against each other: rigid bodies of \
-                             these shapes have no points that could be (spheres and triangle meshes have)"
+                            "contact `{name}`: contact between `{first}` and `{second}` is not tested: rigid bodies \
+                             of these shapes have no slave points (spheres and triangle meshes have)"
                         ));
                     }
                     tested.into_iter().map(|pair| (format!("{name}_{}_{}", pair[0], pair[1]), pair)).collect()
                 }
                 _ => {
                     return Err(problem
-                        .error(key, "who touches whom is not said")
-                        .help("between = [\"BODY\", \"BODY\"], the one whose points are tested first; or  within = \"BODY\"; or  all = true"));
+                        .error(key, "the bodies of the contact are missing")
+                        .help("between = [\"BODY\", \"BODY\"], slave first; or  within = \"BODY\"; or  all = true"));
                 }
             };
             for (name, pair) in pairs {
@@ -108,7 +110,9 @@ impl Planner<'_> {
         }
         let [slave, master] = parts;
         if body(&slave).unknowns() == 0 && body(&master).unknowns() == 0 {
-            return Err(problem.error(key, format!("neither body of contact `{name}` can move")));
+            return Err(
+                problem.error(key, format!("both bodies of contact `{name}` are fixed or have a prescribed motion"))
+            );
         }
         if let Some(found) = self.between_curves(name, key, [&slave, &master], system)? {
             return Ok(found);
@@ -138,8 +142,8 @@ impl Planner<'_> {
                 .map_err(|error| {
                 if cannot_meet(system, numbers, &on) {
                     return problem
-                        .error(key, format!("contact `{name}`: neither of two rigid bodies of these shapes has points"))
-                        .help("one of them as a sphere or a triangle mesh, whose points are tested; or a solid of a stiff material");
+                        .error(key, format!("contact `{name}`: neither of the two rigid bodies has slave points"))
+                        .help("use a sphere or a triangle mesh for one of them, or a solid of a stiff material");
                 }
                 let side = on.iter().find(|on| on.split(':').next().is_some_and(|name| name.trim() == error.body()));
                 self.misplaced(side.unwrap_or(&on[0]), &error)
@@ -197,10 +201,11 @@ impl Planner<'_> {
                     .error(
                         key,
                         format!(
-                            "form = \"{word}\" between two curves without a radius, which have no gap along each other"
+                            "form = \"{word}\" requires a radius: curves without a radius have no gap along each \
+                             other"
                         ),
                     )
-                    .help("form = \"point\": they touch where they cross; or give one of them a radius"));
+                    .help("form = \"point\" for contact at crossing points; or give one of them a radius"));
             }
             Some(CurveForm::Point) => contact.form = Form::Point,
             Some(CurveForm::Line) => contact.form = Form::Line,
@@ -222,7 +227,7 @@ impl Planner<'_> {
             let at = law.axis.as_ref().map_or_else(|| self.key(key), |axis| self.key(axis));
             return Err(self
                 .problem
-                .error(&at, "between curves the axis of friction is the tangent of the first")
+                .error(&at, "between curves the axis of friction is the tangent of the first curve")
                 .help("axis = \"tangent\", or leave it out"));
         }
         Ok(Some((Box::new(contact), Tested { carries: Carried::Force, ..Tested::by("curve", axis) })))
@@ -240,7 +245,7 @@ impl Planner<'_> {
         let problem = self.problem;
         if let Some(friction) = &key.friction {
             return Err(problem
-                .error(friction, "discs slide without friction")
+                .error(friction, "contact by discs is frictionless")
                 .help("method.cell_surface = {} for contact with friction"));
         }
         let length = |value: &Option<Value>| value.as_ref().map(|v| self.reader.positive(v, LENGTH)).transpose();
@@ -261,8 +266,9 @@ impl Planner<'_> {
         let overlap = pairs.overlap_at_start();
         if overlap > 0.0 {
             warnings.push(format!(
-                "contact `{name}`: discs overlap by {overlap:.3e} before anything moves, and push at once: bodies whose discs \
-                 have their centres on the boundary have to start two radii apart (centres = \"within\")"
+                "contact `{name}`: discs overlap by {overlap:.3e} at the start, and the bodies repel each other at \
+                 once: with centres on the boundary the bodies must start two radii apart (centres = \"within\" \
+                 avoids this)"
             ));
         }
         for (f, part) in found.iter().zip([first, second]) {
@@ -273,14 +279,16 @@ impl Planner<'_> {
             ));
             if f.is_too_small() {
                 warnings.push(format!(
-                    "contact `{name}`: discs of radius {radius:.3e} on `{body}` are {spacing:.3e} apart, and others slip \
-                     through between them: the radius should be that at least (radius = {spacing:.3e}, or a smaller spacing)"
+                    "contact `{name}`: discs of radius {radius:.3e} on `{body}` have a spacing of {spacing:.3e}, so \
+                     other discs slip through: the radius should be at least the spacing (radius = {spacing:.3e}, or \
+                     a smaller spacing)"
                 ));
             }
             if f.is_too_large() {
                 warnings.push(format!(
-                    "contact `{name}`: discs of radius {radius:.3e} do not fit into `{body}`, {thickness:.3e} thick: their \
-                     centres lie beyond those of the other face (a radius below {:.3e})",
+                    "contact `{name}`: discs of radius {radius:.3e} do not fit into `{body}`, which is \
+                     {thickness:.3e} thick: their centres lie beyond those of the opposite face (use a radius below \
+                     {:.3e})",
                     0.5 * thickness
                 ));
             }
@@ -305,7 +313,7 @@ impl Planner<'_> {
             Some(nitsche @ Enforcement::Nitsche(_)) => {
                 return Err(self
                     .problem
-                    .error(nitsche, "Nitsche's method is for solids of small strain and for finite cells")
+                    .error(nitsche, "Nitsche's method is for solids with small strain and for finite cells")
                     .help("enforcement.multiplier = {}"));
             }
         })
@@ -342,9 +350,10 @@ impl Planner<'_> {
             }
             Some(Method::Node(k)) => (Sampling::Nodes, "node", k.enforcement.as_ref()),
             Some(other) => {
-                return Err(problem
-                    .error(other, "this method is for other bodies")
-                    .help("ropes, beams and free bodies have  method.curve = {},  method.node = {}  and  method.gauss_point = {}; solids also  method.mortar = {}"));
+                return Err(problem.error(other, "this method is for other bodies").help(
+                    "for ropes, beams and free bodies:  method.curve = {},  method.node = {}  or  method.gauss_point \
+                     = {}; for solids also  method.mortar = {}",
+                ));
             }
         };
         let otherwise = match sampling {
@@ -367,7 +376,7 @@ impl Planner<'_> {
             return Ok(AxisChoice::Tangent);
         }
         let direction = self.position(&axis.0, NONE)?.try_normalize(0.0);
-        let direction: Vector<3> = direction.ok_or_else(|| self.problem.error(axis, "the direction has no length"))?;
+        let direction: Vector<3> = direction.ok_or_else(|| self.problem.error(axis, "the direction vector is zero"))?;
         Ok(match key.on {
             Some(AxisOn::Master) => AxisChoice::OnMaster(direction),
             _ => AxisChoice::OnSlave(direction),

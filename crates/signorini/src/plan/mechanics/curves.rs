@@ -41,14 +41,14 @@ impl Planner<'_> {
         let rest = match (&key.pretension, &key.unstrained_length) {
             (Some(_), Some(length)) => {
                 return Err(problem
-                    .error(length, "`pretension` and `unstrained_length` say the same in two ways")
+                    .error(length, "`pretension` and `unstrained_length` are alternatives")
                     .help("leave one of them out"));
             }
             (Some(tension), None) => {
                 let value = self.reader.number(tension, FORCE)?;
                 if value < 0.0 {
-                    let message = format!("the pretension is {value}: a rope cannot be compressed");
-                    return Err(problem.error(tension, message).help("0 or more"));
+                    let message = format!("the pretension is {value}, but a rope carries tension only");
+                    return Err(problem.error(tension, message).help("give 0 or more"));
                 }
                 Rest::Pretension(value)
             }
@@ -77,7 +77,7 @@ impl Planner<'_> {
             (key.winch.as_ref().map(|v| self.key(&v.at)), "a winch"),
         ] {
             if let Some(at) = stated {
-                let message = format!("{what}: for ropes of straight elements");
+                let message = format!("{what}: only for ropes of straight elements");
                 return Err(problem.error(&at, message).help("continuity = \"C0\", or leave it out"));
             }
         }
@@ -110,8 +110,8 @@ impl Planner<'_> {
         if key.model == Some(BeamModel::TorsionFree) {
             if stiffness.bending[0] != stiffness.bending[1] {
                 return Err(problem
-                    .error(&key.section, "a beam without torsion bends alike about all axes")
-                    .help("a round section, or model = \"shear\""));
+                    .error(&key.section, "a beam without torsion requires equal bending stiffness about all axes")
+                    .help("use a circular section, or model = \"shear\""));
             }
             let (axial, bending) = (stiffness.axial, stiffness.bending[0]);
             let carries = Carries::TensionAndCompression;
@@ -142,13 +142,15 @@ impl Planner<'_> {
             },
             problem::Section::Stiffness(stated) => {
                 if let Some(material) = &key.material {
-                    let message = "a section that states its stiffness needs no material";
+                    let message = "a section with given stiffness has no material";
                     return Err(problem.error(material, message));
                 }
                 let two = |values: &problem::Components, dimension| match &values.0[..] {
                     [one] => self.reader.positive(one, dimension).map(|v| [v, v]),
                     [a, b] => Ok([self.reader.positive(a, dimension)?, self.reader.positive(b, dimension)?]),
-                    list => Err(problem.error(values, format!("{} values: one, or one for each axis", list.len()))),
+                    list => {
+                        Err(problem.error(values, format!("{} values: give one, or one for each axis", list.len())))
+                    }
                 };
                 let axial = self.reader.positive(&stated.axial, FORCE)?;
                 let bending = two(&stated.bending, [2, 1, 0])?;
@@ -168,7 +170,7 @@ impl Planner<'_> {
         };
         let Some(material) = &key.material else {
             return Err(problem
-                .error(&key.section, "the section says its shape, and no material is stated")
+                .error(&key.section, "the section has a shape, so a material is required")
                 .help("material.linear_elastic = { youngs_modulus = …, poissons_ratio = … }"));
         };
         let Material::LinearElastic(elastic) = material else {
@@ -194,7 +196,7 @@ impl Planner<'_> {
         if length >= 0.0 {
             return Ok(length);
         }
-        Err(self.problem.error(value, format!("the radius is {length}")).help("0 or more"))
+        Err(self.problem.error(value, format!("the radius is {length}")).help("give 0 or more"))
     }
 
     fn sampled(&self, path: &Path, cells: usize, smooth: bool, key: &Stated) -> Result<Sampled, CaseError> {
@@ -216,7 +218,10 @@ impl Planner<'_> {
                 let [from, to] = [self.reader.number(&formula.from, NONE)?, self.reader.number(&formula.to, NONE)?];
                 if from == to {
                     let message = format!("the path begins and ends at u = {to}");
-                    return Err(self.problem.error(&formula.to, message).help("another value than that of `from`"));
+                    return Err(self
+                        .problem
+                        .error(&formula.to, message)
+                        .help("give another value than that of `from`"));
                 }
                 let list = self.formula(formula)?;
                 let coordinate = |k: usize, u: f64| {
@@ -225,7 +230,7 @@ impl Planner<'_> {
                         return Ok(value);
                     }
                     let message = format!("it is {value} at u = {u}: not a finite number");
-                    let remedy = "a formula that has a value all the way from `from` to `to`";
+                    let remedy = "give a formula with finite values from `from` to `to`";
                     Err(self.problem.error(&formula.position[k], message).help(remedy))
                 };
                 let at = |u: f64| Ok(Point::<3>::new(coordinate(0, u)?, coordinate(1, u)?, coordinate(2, u)?));
@@ -281,13 +286,13 @@ impl Planner<'_> {
                     Some(values) => self
                         .position(values, NONE)?
                         .try_normalize(0.0)
-                        .ok_or_else(|| problem.error(values, "the direction has no length")),
+                        .ok_or_else(|| problem.error(values, "the direction vector is zero")),
                 };
                 let axis = direction(&helix.axis, Vector::<3>::z())?;
                 let towards = direction(&helix.towards, signorini_mechanics::pair::any_tangent(&axis))?;
                 let across = (towards - axis * axis.dot(&towards)).try_normalize(1e-12).ok_or_else(|| {
                     let at = helix.towards.as_ref().map_or(self.key(key), |t| self.key(t));
-                    problem.error(&at, "the direction to the start is that of the axis")
+                    problem.error(&at, "the direction to the start is parallel to the axis")
                 })?;
                 let axes =
                     Axes::new(center, across, axis.cross(&across)).map_err(|e| problem.error(key, e.to_string()))?;

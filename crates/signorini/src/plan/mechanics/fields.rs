@@ -58,7 +58,7 @@ impl Planner<'_> {
         Ok(Arc::new(move |x, t| {
             let pull = tension(x, t);
             if pull < 0.0 {
-                wrong.note(&key, format!("`{key}` is {pull:.6} at t = {t}: a rope cannot be pushed"));
+                wrong.note(&key, format!("`{key}` is {pull:.6} at t = {t}, but a rope carries tension only"));
                 return f64::NAN;
             }
             pull

@@ -20,8 +20,8 @@ impl Planner<'_> {
         if let Some(threshold) = &stated.threshold {
             return Err(self
                 .problem
-                .error(threshold, "the image says where material is in two ways")
-                .help("`threshold` for a surface, or `youngs_modulus` for a modulus of every voxel"));
+                .error(threshold, "the image has both `threshold` and `youngs_modulus`")
+                .help("give `threshold` for a surface, or `youngs_modulus` for a modulus of every voxel"));
         }
         let expression = self.reader.expression(value, PRESSURE, &["value"])?;
         for v in &mut image.values {
@@ -69,20 +69,20 @@ impl Planner<'_> {
                 image::read_with(&stated.file, &first, &load).map_err(told)?
             }
             _ => {
-                return Err(problem.error(stated, "a file without header needs both `numbers` and `counts`"));
+                return Err(problem.error(stated, "a file without header requires both `numbers` and `counts`"));
             }
         };
         let mut image = self.in_order(stated, read)?;
         if stated.spacing.is_none() && image.spacing.is_empty() {
             return Err(problem
-                .error(stated, format!("`{}` does not say how large its voxels are", stated.file))
+                .error(stated, format!("`{}` does not contain the size of its voxels", stated.file))
                 .help("spacing = [0.1, 0.1, 0.1], along x, y and z"));
         }
         if let Some(spacing) = &stated.spacing {
             let found = vector(spacing)?;
             if let Some(k) = (0..dimension).find(|k| found[*k] <= 0.0) {
-                let message = format!("the extent of the voxels along {} is {}", ["x", "y", "z"][k], found[k]);
-                return Err(problem.error(spacing, message).help("positive lengths"));
+                let message = format!("the voxel size along {} is {}", ["x", "y", "z"][k], found[k]);
+                return Err(problem.error(spacing, message).help("give positive lengths"));
             }
             image.spacing = (0..dimension).map(|k| found[k]).collect();
         }
@@ -122,7 +122,7 @@ impl Planner<'_> {
             "f32" => Number::F32,
             "f64" => Number::F64,
             _ => {
-                return Err(self.problem.error(word, format!("unknown kind of numbers `{word}`")).help(
+                return Err(self.problem.error(word, format!("unknown number type `{word}`")).help(
                     "u8, i8, u16, i16, u32, i32, u64, i64, f32 or f64, with `be` at the end for the highest byte first",
                 ));
             }
@@ -140,7 +140,7 @@ impl Planner<'_> {
         }
         if n != dimension {
             let message =
-                format!("`{}` has {n} directions, {:?} voxels: {dimension} are wanted", stated.file, image.count);
+                format!("`{}` has {n} directions, {:?} voxels: expected {dimension}", stated.file, image.count);
             return Err(problem.error(&stated.file, message));
         }
         let Some(axes) = &stated.axes else { return Ok(image) };
@@ -149,7 +149,7 @@ impl Planner<'_> {
             ['x', 'y', 'z'].iter().take(n).map(|c| letters.iter().position(|l| l == c)).collect();
         let Some(place) = place.filter(|_| letters.len() == n) else {
             let known = if n == 3 { "zyx, xyz, yxz …" } else { "yx or xy" };
-            return Err(problem.error(axes, format!("`{axes}` is no order of the directions")).help(known));
+            return Err(problem.error(axes, format!("`{axes}` is not an order of the directions")).help(known));
         };
         let mut strides = vec![1; n];
         (1..n).for_each(|k| strides[k] = strides[k - 1] * image.count[k - 1]);

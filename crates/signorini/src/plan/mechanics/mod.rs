@@ -118,7 +118,7 @@ fn size_of(problem: &Problem, system: &System) -> Result<String, CaseError> {
     let how = if system.iterates() { "iterations" } else { "a factorisation" };
     let needed = system.memory();
     check_memory(problem, &format!("{unknowns} unknowns, solved by {how},"), needed)?;
-    Ok(format!("{unknowns} unknowns, solved by {how}, in about {:.2} GiB", needed / f64::from(1u32 << 30)))
+    Ok(format!("{unknowns} unknowns, solved by {how}, require about {:.2} GiB", needed / f64::from(1u32 << 30)))
 }
 
 /// Part of its radius that a curve may start deep inside of what it touches without a word.
@@ -173,8 +173,8 @@ impl Planner<'_> {
                 Body::Rigid(_) => continue,
                 _ => {
                     return Err(problem
-                        .error(body, format!("the body `{name}` cannot stand in a system of several kinds of bodies"))
-                        .help("bodies here are `solid`, `cells`, `rope`, `beam` or `rigid`"));
+                        .error(body, format!("the body `{name}` cannot be part of a system"))
+                        .help("valid bodies here are `solid`, `cells`, `rope`, `beam` and `rigid`"));
                 }
             };
             let shown = deformable.fields(&deformable.start());
@@ -212,7 +212,7 @@ impl Planner<'_> {
             notes.push(size_of(problem, &system)?);
         }
         if system.contacts.is_empty() && system.bodies.len() > 1 {
-            warnings.push("no contact is stated: the bodies do not see each other (add [contacts.NAME])".into());
+            warnings.push("the case has no contact, so the bodies do not interact (add [contacts.NAME])".into());
         }
         if problem.steps.iter().any(|s| s.events.is_some()) {
             warnings.push("`events` are located for membranes only".into());
@@ -250,8 +250,8 @@ impl Planner<'_> {
             };
             if !fits {
                 return Err(problem
-                    .error(&problem.space, format!("the body `{name}` does not lie in this space"))
-                    .help("ropes and beams: space = \"3d\""));
+                    .error(&problem.space, format!("the body `{name}` is not possible in this space"))
+                    .help("ropes and beams require  space = \"3d\""));
             }
         }
         Ok(())
@@ -264,8 +264,8 @@ impl Planner<'_> {
             return Ok(());
         };
         let name = system.bodies[body].name();
-        let message = format!("nothing holds `{name}` against {motion}");
-        let help = "a support of a place of it, springs, or a contact that it takes part in";
+        let message = format!("nothing restrains `{name}` against {motion}");
+        let help = "add a support, springs, or a contact of this body";
         Err(match problem.bodies.get(name) {
             Some(key) => problem.error(key, message),
             None => problem.error(&problem.space, message),
@@ -296,14 +296,15 @@ impl Planner<'_> {
                 let names = [slave, master].map(|b| system.bodies[b].name());
                 return Err(self
                     .deep_inside(names, -gap, &site.x)
-                    .help("a path outside of the body, by the radius at least"));
+                    .help("give a path outside of the body, at a distance of at least the radius"));
             }
             if -gap > DEEP * radius.max(0.5 * site.weight) {
                 let [name, other] = [slave, master].map(|b| system.bodies[b].name());
                 warnings.push(
                     format!(
-                        "`{name}` starts {:.4e} deep inside `{other}`, of a radius of {radius:.4e}: it is pushed out at once; a \
-                         path outside of the body by the radius at least starts without",
+                        "`{name}` starts {:.4e} deep inside `{other}`, with a radius of {radius:.4e}: it is pushed \
+                         out at once; to avoid this, give a path outside of the body at a distance of at least the \
+                         radius",
                         -gap
                     )
                     .into(),
@@ -328,7 +329,8 @@ impl Planner<'_> {
                 let place = problem.contacts.get(&contact).map_or(self.key(&problem.space), |key| self.key(key));
                 let message = format!("`{body}` starts {depth:.4e} deep inside `{other}`, at ({})", at.join(", "));
                 Err(problem.error(&place, message).help(
-                    "move them apart; or does the normal of a rigid plane point into it, or `side` name the wrong side?",
+                    "separate them; check whether the normal of a rigid plane points into the body, or `side` names \
+                     the wrong side",
                 ))
             }
             Err(error) => Err(problem.error(&problem.space, error.to_string())),
@@ -370,7 +372,7 @@ impl Planner<'_> {
                 if depth > own.min(*other) {
                     let x = a.jet(configuration(0), near.points[0].element, near.points[0].xi).x;
                     let names = bodies.map(|b| system.bodies[b].name());
-                    let help = "paths apart from each other by both radii at least";
+                    let help = "give paths at a distance of at least the sum of the radii";
                     return Err(self.deep_inside(names, depth, &x).help(help));
                 }
             }
@@ -399,8 +401,8 @@ impl Planner<'_> {
             if length < distance {
                 let by = 100.0 * (distance / length - 1.0);
                 let message = format!(
-                    "`{name}` is shorter than the distance of its ends, {length} of {distance}: it starts stretched by \
-                     {by:.3} %; a longer `unstrained_length`, or the `pretension` that is wanted"
+                    "`{name}` is shorter than the distance of its ends, {length} of {distance}: it starts with a \
+                     strain of {by:.3} %; give a longer `unstrained_length`, or the intended `pretension`"
                 );
                 warnings.push(Warning::from(message));
             }

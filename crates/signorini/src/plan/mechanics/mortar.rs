@@ -18,20 +18,21 @@ impl Planner<'_> {
         let problem = self.problem;
         let body = |part: &Part| system.bodies[part.body].as_ref();
         let unfit = if slave.body == master.body {
-            Some((slave, "touches itself: a mortar joins two bodies"))
+            Some((slave, "has self-contact, but mortar couples two bodies"))
         } else if !matches!(kinds[slave.body], Kind::Solid) {
-            Some((slave, "has no faces to put a mortar on: the first body is a solid"))
+            Some((slave, "has no faces for mortar: the slave must be a solid"))
         } else if !matches!(kinds[master.body], Kind::Solid | Kind::Rigid { .. }) {
-            Some((master, "has no faces that a mortar could cut: the second body is a solid or rigid"))
+            Some((master, "has no faces for mortar: the master must be a solid or a rigid body"))
         } else {
             None
         };
         let stated = match (&key.method, unfit) {
             (Some(Method::Mortar(stated)), None) => stated.enforcement.as_ref(),
             (Some(method @ Method::Mortar(_)), Some((part, what))) => {
-                return Err(problem
-                    .error(method, format!("`{}` {what}", body(part).name()))
-                    .help("method.gauss_point = {}  or  method.node = {}, of cells  method.cell_surface = {}, or leave the method out"));
+                return Err(problem.error(method, format!("`{}` {what}", body(part).name())).help(
+                    "method.gauss_point = {}  or  method.node = {}, for finite cells  method.cell_surface = {}, or \
+                     leave the method out",
+                ));
             }
             // The axis of friction that turns with a free body is known at single points only.
             (None, None) if !matches!(kinds[master.body], Kind::Rigid { is_free: true, .. }) => None,
@@ -57,13 +58,16 @@ impl Planner<'_> {
         if axis == AxisChoice::Tangent && self.space == problem::Space::ThreeD {
             return Err(self
                 .problem
-                .error(&at(), "a surface has no tangent of its own: two coefficients of friction need an axis")
+                .error(
+                    &at(),
+                    "a surface has no tangent direction of its own: two coefficients of friction require an axis",
+                )
                 .help("axis = [1, 0, 0]"));
         }
         if matches!((axis, master), (AxisChoice::OnMaster(_), Kind::Rigid { is_free: true, .. })) {
             return Err(self
                 .problem
-                .error(&at(), "with a mortar the axes of friction do not turn with a free body")
+                .error(&at(), "with mortar the axes of friction do not rotate with a free body")
                 .help("on = \"slave\", or method.gauss_point = {}"));
         }
         Ok(())

@@ -28,17 +28,17 @@ fn normal_of(system: &System, part: &Part) -> Result<Normal, String> {
     let body = system.bodies[part.body].as_ref();
     let start = body.start();
     let surface = body.surface(part.group.as_deref(), &start).filter(|_| part.group.is_some());
-    let surface = surface.ok_or("`normal` needs a part of the boundary of a solid")?;
+    let surface = surface.ok_or("`normal` requires a part of the boundary of a solid")?;
     let normals: Vec<Vector<3>> = match surface.faces().0 {
         Faces::Plane(faces) => normals(faces),
         Faces::Space(faces) => normals(faces),
     };
-    let first = normals.first().ok_or("`normal` needs a part of the boundary of a solid")?;
+    let first = normals.first().ok_or("`normal` requires a part of the boundary of a solid")?;
     let farthest = normals.iter().map(|n| n.dot(first)).fold(1.0, f64::min);
     if farthest < FLAT {
         let degrees = farthest.clamp(-1.0, 1.0).acos().to_degrees();
         return Err(format!(
-            "`normal` needs a flat group: the normals of its sides differ by up to {degrees:.2} degrees"
+            "`normal` requires a flat group: the normals of its sides differ by up to {degrees:.2} degrees"
         ));
     }
     let component = first.iamax();
@@ -114,7 +114,7 @@ impl Planner<'_> {
             Some(support) => problem.error(support, error.to_string()),
             None => problem.error(&problem.space, error.to_string()),
         }
-        .help("what is held twice is held alike, or \"free\" in one of them")
+        .help("give the same displacement in both supports, or \"free\" in one of them")
     }
 
     pub(super) fn system_supports(
@@ -129,7 +129,7 @@ impl Planner<'_> {
             let part = self.part(&key.on, numbers)?;
             let is_solid = matches!(problem.bodies.get(system.bodies[part.body].name()), Some(Body::Solid(_)));
             if let Some(uniform) = key.uniform.as_ref().filter(|_| !is_solid) {
-                return Err(problem.error(uniform, "only solids can be held `uniform`ly"));
+                return Err(problem.error(uniform, "`uniform` is only for solids"));
             }
             let mut displacement = match &key.displacement {
                 Some(values) => self.held_components(&values.0, self.dimension(), LENGTH, wrong)?,
@@ -201,10 +201,10 @@ impl Planner<'_> {
                 let mut forces = Contribution::new(body.unknowns());
                 let weakly = body.hold_weakly(on, &hold, &start, Order::First, &mut forces).map_err(misplaced)?;
                 if found.is_empty() && weakly.is_none() {
-                    let message = format!("the support `{name}` holds nothing of `{}`", body.name());
+                    let message = format!("the support `{name}` restrains no unknown of `{}`", body.name());
                     let wrong = problem.error(&key.on, message);
                     return Err(if self.space == Space::Axisymmetric {
-                        wrong.help("on the axis the radial displacement is zero by itself: leave this support out")
+                        wrong.help("on the axis the radial displacement is zero by symmetry: leave this support out")
                     } else {
                         wrong
                     });
@@ -231,7 +231,7 @@ impl Planner<'_> {
             return Err(self
                 .problem
                 .error(values, format!("expected {wanted} components, found {}", values.len()))
-                .help("numbers, expressions, or \"free\""));
+                .help("give numbers, expressions, or \"free\""));
         }
         let mut out = [None, None, None];
         for (component, value) in out.iter_mut().zip(values) {
@@ -286,8 +286,8 @@ impl Planner<'_> {
             }
             let [load] = <[_; 1]>::try_from(list).map_err(|list: Vec<_>| {
                 problem
-                    .error(key, format!("the load `{name}` says {} things", list.len()))
-                    .help("exactly one of force, moment, tension, body_force (per length), traction, pressure")
+                    .error(key, format!("the load `{name}` has {} values", list.len()))
+                    .help("give exactly one of force, moment, tension, body_force (per length), traction, pressure")
             })?;
             self.check_load(&part, &key.on, system)(&load)?;
             out.push(PlacedLoad { name: name.clone(), part, load });
@@ -329,8 +329,8 @@ impl Planner<'_> {
             let (expression, _) = self.reader.any(value, self.variables())?;
             if let Some(axis) = (0..3).find(|axis| expression.uses_position(*axis)) {
                 let name = ["x", "y", "z"][axis];
-                let message = format!("`{name}` in a resultant, which is one for all of `{}`", body.name());
-                return Err(self.problem.error(value, message).help("an expression in t alone"));
+                let message = format!("`{name}` in a resultant, which has one value for all of `{}`", body.name());
+                return Err(self.problem.error(value, message).help("give an expression of t alone"));
             }
         }
         Ok(())

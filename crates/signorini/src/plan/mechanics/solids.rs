@@ -89,20 +89,20 @@ impl Planner<'_> {
                     .help(suggestion(group, &known))
             }
             EdgeError::Radius { edge, .. } => {
-                let remedy = "the radius of a rounding, or 0 for a sharp edge";
+                let remedy = "give the radius of the rounding, or 0 for a sharp edge";
                 match &of(edge).radius {
                     Some(radius) => problem.error(radius, told).help(remedy),
                     None => problem.error(of(edge), told).help(remedy),
                 }
             }
             EdgeError::Apart { edge, .. } => {
-                problem.error(&of(edge).between, told).help("two groups that have cell edges in common, and no others")
+                problem.error(&of(edge).between, told).help("give two groups that have cell edges in common")
             }
-            EdgeError::Branches { edge, .. } | EdgeError::Pieces { edge, .. } | EdgeError::Kink { edge, .. } => problem
-                .error(&of(edge).between, told)
-                .help("one smooth edge at a time: give its parts names of their own"),
+            EdgeError::Branches { edge, .. } | EdgeError::Pieces { edge, .. } | EdgeError::Kink { edge, .. } => {
+                problem.error(&of(edge).between, told).help("name each smooth part of the edge separately")
+            }
             EdgeError::Reentrant { edge, .. } => {
-                problem.error(&of(edge).between, told).help("name an edge that stands out, or the faces themselves")
+                problem.error(&of(edge).between, told).help("name a convex edge, or use the faces themselves")
             }
         }
     }

@@ -24,7 +24,7 @@ impl Planner<'_> {
                 chain.with_pulleys(&nodes).map_err(|e| {
                     self.problem
                         .error(list, e.to_string())
-                        .help("points between the ends, each with rope on both sides")
+                        .help("give points between the ends, with rope on both sides of each")
                 })?
             }
             None => chain,
@@ -44,8 +44,11 @@ impl Planner<'_> {
         let nearest = (0..=chain.elements()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0);
         if distance(&nearest) > SAME * chain.size() {
             let at: Vec<String> = node(nearest).iter().map(|v| format!("{v:.6}")).collect();
-            let message = format!("the rope has no node there, the nearest is at ({})", at.join(", "));
-            return Err(self.problem.error(point, message).help("a corner of  path.points, or the place of that node"));
+            let message = format!("the rope has no node there; the nearest one is at ({})", at.join(", "));
+            return Err(self
+                .problem
+                .error(point, message)
+                .help("give a corner of  path.points, or the position of this node"));
         }
         Ok(nearest)
     }
@@ -66,7 +69,7 @@ impl Planner<'_> {
             .any(|s| holds(&s.on) && s.displacement.as_ref().is_some_and(|d| !d.0.iter().any(is_free)));
         if !held {
             return Err(problem
-                .error(&key.at, format!("no support holds the {end} of `{name}`, where the winch is"))
+                .error(&key.at, format!("the {end} of `{name}` has a winch but no support"))
                 .help(format!("[supports.winch]  on = \"{name}:{end}\"  displacement = [0, 0, 0]")));
         }
         let field = self.field(&key.paid_out, LENGTH, wrong)?;
@@ -86,7 +89,7 @@ impl Planner<'_> {
         let whole: f64 = (0..chain.elements()).map(|e| chain.unstrained_length(&start, e)).sum();
         let cell = whole / chain.elements() as f64;
         if whole + least < 0.5 * cell {
-            let message = format!("{:.4} of rope are taken in, of {whole:.4} that are out", -least);
+            let message = format!("{:.4} of rope are taken in, but only {whole:.4} are paid out", -least);
             return Err(problem.error(&key.paid_out, message).help("leave at least half a cell of rope"));
         }
         let paid_out = Arc::new(move |t: f64| field(&zero, t));

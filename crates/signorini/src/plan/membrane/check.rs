@@ -19,7 +19,7 @@ impl<const D: usize> MembranePlan<D> {
             let at: Vec<String> = x.iter().map(|c| format!("{c:.6}")).collect();
             self.head.problem.error(&p.key, format!("`{}` is {v} at ({}), t = {time}: {what}", p.key, at.join(", ")))
         };
-        let finite = "it must be a finite number everywhere in the membrane";
+        let finite = "it must be finite everywhere in the membrane";
         let fields: Vec<(&Placed, SharedField<D>, bool)> =
             std::iter::once((&self.tension, membrane.tension.clone(), true))
                 .chain(self.loads.values().map(|l| (l, field(&l.expression, time), false)))
@@ -44,7 +44,7 @@ impl<const D: usize> MembranePlan<D> {
                                 .get_or_insert_with(|| wrong(placed, &p.x, jet.value, "the tension must be positive"));
                         } else if jet.value < 0.0 && placed.key.ends_with("energy") {
                             failure.get_or_insert_with(|| {
-                                wrong(placed, &p.x, jet.value, "the energy that adhesion gives is not negative")
+                                wrong(placed, &p.x, jet.value, "the adhesion energy must not be negative")
                             });
                         }
                     }
@@ -80,7 +80,7 @@ impl<const D: usize> MembranePlan<D> {
                             .head
                             .problem
                             .error(&contact.height.key, message)
-                            .help("give a larger map, see `origin` and `spacing`, or move it less"));
+                            .help("use a larger map (check `origin` and `spacing`), or move it less"));
                     }
                 }
             }
@@ -92,9 +92,11 @@ impl<const D: usize> MembranePlan<D> {
                         let [low, high] = Side::BOTH.map(|side| membrane.obstacles.height(side, &p.x));
                         let ceiling = membrane.obstacles.index_at(Side::Above, &p.x).map(|i| &self.contacts[i]);
                         if let (true, Some(ceiling)) = (low >= high, ceiling) {
-                            let what =
-                                format!("what lies below reaches up to {low} there: no room is left for the membrane");
-                            return Err(wrong(&ceiling.height, &p.x, high, &what).help("lift it"));
+                            let what = format!(
+                                "the height of the body below reaches {low} there, and there is no space left for the \
+                                 membrane"
+                            );
+                            return Err(wrong(&ceiling.height, &p.x, high, &what).help("raise this body"));
                         }
                     }
                 }
@@ -114,11 +116,13 @@ impl<const D: usize> MembranePlan<D> {
                     let (place, help) = match obstacle.side {
                         Side::Below => (
                             "above",
-                            "lower it there, or raise the support; a body over the membrane:  lies = \"above\"",
+                            "lower the body there, or raise the support; for a body above the membrane:  lies = \
+                             \"above\"",
                         ),
                         Side::Above => (
                             "below",
-                            "raise it there, or lower the support; a body under the membrane:  lies = \"below\"",
+                            "raise the body there, or lower the support; for a body below the membrane:  lies = \
+                             \"below\"",
                         ),
                     };
                     let what = format!(

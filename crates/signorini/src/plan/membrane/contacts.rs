@@ -35,16 +35,16 @@ impl Planner<'_> {
         for (name, key) in &problem.contacts {
             let contact = key;
             if let Some(friction) = &contact.friction {
-                return Err(self.unavailable(friction, "friction of a membrane").help(
-                    "leave `friction` out: a membrane slides along bodies without resistance; it may have `adhesion`",
-                ));
+                return Err(self
+                    .unavailable(friction, "friction of a membrane")
+                    .help("leave `friction` out: contact of membranes is frictionless; `adhesion` is available"));
             }
             if let Some(own) = &contact.method
                 && self.method(contact, size)? != method
             {
                 return Err(problem
-                    .error(own, format!("`{name}` has another method than the contact before"))
-                    .help("all contacts of a membrane are solved together: state the method once"));
+                    .error(own, format!("`{name}` has another method than the contact before it"))
+                    .help("all contacts of a membrane are solved together: give the method once"));
             }
             let adhesion = match &contact.adhesion {
                 None => None,
@@ -55,14 +55,16 @@ impl Planner<'_> {
             };
             if let (Some(adhesion), MethodChoice::ActiveSet(_)) = (&adhesion, method) {
                 return Err(problem
-                    .error(&adhesion.key, "method.active_set knows no adhesion")
+                    .error(&adhesion.key, "method.active_set has no adhesion")
                     .help("method.inequality_level_set = {}"));
             }
             let touched = self.touched(body, key)?;
             for other in &touched {
                 if let Some(before) = out.iter().find(|c| c.body == *other) {
-                    let message = format!("`{other}` is already touched by the contact `{}`", before.name);
-                    return Err(problem.error(key, message).help("a body has one contact with the membrane"));
+                    let message = format!("`{other}` already has the contact `{}`", before.name);
+                    return Err(problem
+                        .error(key, message)
+                        .help("each body has at most one contact with the membrane"));
                 }
                 let Some(Body::Rigid(rigid)) = problem.bodies.get(other) else {
                     return Err(problem.error(key, format!("`{other}` is not rigid")));
@@ -103,11 +105,11 @@ impl Planner<'_> {
             (None, None, Some(all)) if *all => match rigid.is_empty() {
                 false => Ok(rigid.into_iter().map(str::to_string).collect()),
                 true => Err(problem
-                    .error(all, "there is no rigid body to touch")
+                    .error(all, "the case has no rigid body for the contact")
                     .help("add for example  [bodies.floor.rigid]  shape.height = \"-0.1\"")),
             },
             _ => Err(problem
-                .error(key, "who touches whom is not said, or said twice")
+                .error(key, "the bodies of the contact are missing or given twice")
                 .help(format!("between = [\"{body}\", \"{}\"]", rigid.first().unwrap_or(&"floor")))),
         }
     }

@@ -68,8 +68,8 @@ impl Planner<'_> {
         if let Some(refine) = refine {
             return Err(self
                 .problem
-                .error(refine, "the published formulation works on cells that are not divided")
-                .help("more cells, or  formulation = \"one_sided\""));
+                .error(refine, "the published formulation requires cells that are not divided")
+                .help("use more cells, or  formulation = \"one_sided\""));
         }
         if let problem::Mesh::Grid(_) = &film.mesh {
             if D == 2 {
@@ -100,7 +100,7 @@ impl Planner<'_> {
             Ok(most @ 1..) => Ok(Some(most)),
             _ => Err(self
                 .problem
-                .error(count, format!("a front has one mode at least, not {}", count))
+                .error(count, format!("the number of modes of a front must be at least one, not {}", count))
                 .help("mode_count = 21")),
         }
     }
@@ -121,8 +121,8 @@ impl Planner<'_> {
                         Some(count) => {
                             return Err(self
                                 .problem
-                                .error(count, "splines along a front are as many as its cells can tell apart")
-                                .help("modes = \"fourier\", or no `mode_count`"));
+                                .error(count, "the number of splines along a front is determined by its cells")
+                                .help("modes = \"fourier\", or leave `mode_count` out"));
                         }
                         None => Modes::Local,
                     },
@@ -136,7 +136,7 @@ impl Planner<'_> {
             _ => Err(self
                 .problem
                 .error(method, "this method is for solids")
-                .help("membranes have  method.inequality_level_set = {}  and  method.active_set = {}")),
+                .help("for membranes:  method.inequality_level_set = {}  or  method.active_set = {}")),
         }
     }
 }

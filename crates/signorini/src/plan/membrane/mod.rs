@@ -144,8 +144,8 @@ impl<const D: usize> MembranePlan<D> {
         let bytes = memory_estimate(unknowns, self.cells.degree(), D);
         (bytes > memory_at_hand()).then(|| {
             format!(
-                "multigrid did not find the state, and a factorisation of {unknowns:.1e} unknowns needs about {:.1} GiB: \
-                 more than are free; try fewer cells first, to see what makes the state hard to find",
+                "multigrid did not find a state, and a factorisation of {unknowns:.1e} unknowns requires about {:.1} \
+                 GiB, more than is free; start with fewer cells to find out why",
                 bytes / f64::from(1u32 << 30)
             )
         })

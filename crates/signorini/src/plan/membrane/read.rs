@@ -30,7 +30,7 @@ impl Planner<'_> {
         });
         let Some((body, _, film)) = films.next() else {
             return Err(problem
-                .error(&self.problem.space, "there is no membrane")
+                .error(&self.problem.space, "the case has no membrane")
                 .help("add a body, for example  [bodies.film.membrane]"));
         };
         if let Some((_, second, _)) = films.next() {
@@ -54,7 +54,8 @@ impl Planner<'_> {
         }
         if contacts.is_empty() && self.problem.bodies.len() > 1 {
             warnings.push(
-                "no contact is stated: rigid bodies are ignored (add [contacts.NAME] between = [film, floor])".into(),
+                "the case has no contact, so rigid bodies are ignored (add [contacts.NAME] between = [film, floor])"
+                    .into(),
             );
         }
         if method.formulation() != Formulation::OneSided {
@@ -63,11 +64,11 @@ impl Planner<'_> {
         if let MethodChoice::ActiveSet(_) = method {
             if let problem::Mesh::Gmsh(key) = &film.mesh {
                 return Err(problem
-                    .error(&key.file, "method.active_set works on a grid")
+                    .error(&key.file, "method.active_set requires a grid")
                     .help("mesh.grid = { cells = [40, 40] }, or method.inequality_level_set = {}"));
             }
             if on.grid.degree() != 1 && film.degree.is_some() {
-                warnings.push("method.active_set works with degree 1; the stated degree is not used".into());
+                warnings.push("method.active_set has degree 1; the given degree is not used".into());
             }
             on.refinement = Refinement::default();
             on.grid = Grid::new(*on.grid.bounds(), on.grid.cells(), 1);
@@ -104,8 +105,8 @@ impl Planner<'_> {
         let Some(contact) = contacts.iter().find(|c| c.name == *name) else {
             return Err(self
                 .problem
-                .error(key, format!("`{name}` has several bodies: which of them the zone touches is not said"))
-                .help("give the body a contact of its own, with `between`"));
+                .error(key, format!("`{name}` has several bodies, and `initial_zone` does not name one"))
+                .help("give this body a contact of its own, with `between`"));
         };
         Ok(Some((contact.side, zone)))
     }
@@ -159,7 +160,7 @@ impl Planner<'_> {
         let membrane = plan.at(plan.increments[0].range[0]);
         for (name, x) in plan.probes.iter().filter(|(_, x)| !membrane.contains(x)) {
             let at: Vec<String> = x.iter().map(f64::to_string).collect();
-            let message = format!("the probe `{name}` at ({}) lies outside `{body}`: it tells nothing", at.join(", "));
+            let message = format!("the probe `{name}` at ({}) lies outside `{body}` and has no values", at.join(", "));
             plan.head.warnings.push(message.into());
         }
         Ok(plan)
@@ -176,13 +177,12 @@ impl Planner<'_> {
                 ("body_force", key.body_force.as_ref().map(|v| self.key(v))),
             ];
             if let Some((what, at)) = others.iter().find_map(|(w, s)| s.clone().map(|s| (*w, s))) {
-                return Err(self
-                    .problem
-                    .error(&at, format!("a membrane has no `{what}`"))
-                    .help("its load is  normal = …  : force per area along +z, negative where it presses downwards"));
+                return Err(self.problem.error(&at, format!("`{what}` is not a load of membranes")).help(
+                    "the load of a membrane is  normal = …  : force per area along +z, negative for a downward load",
+                ));
             }
             let Some(normal) = &key.normal else {
-                return Err(self.problem.error(key, format!("the load `{name}` says nothing")).help("add  normal = …"));
+                return Err(self.problem.error(key, format!("the load `{name}` has no value")).help("add  normal = …"));
             };
             loads.insert(name.clone(), self.placed(normal, PRESSURE)?);
         }

@@ -29,7 +29,7 @@ impl Planner<'_> {
             let Some(group) = group else {
                 return Err(self
                     .problem
-                    .error(&key.on, "a membrane is held at its boundary")
+                    .error(&key.on, "a membrane is supported at its boundary")
                     .help(format!("write  on = \"{body}:boundary\"  or one of: {}", groups.join(", "))));
             };
             let others = [
@@ -38,7 +38,7 @@ impl Planner<'_> {
                 ("spring", key.spring.as_ref().map(|v| self.key(v))),
             ];
             if let Some((what, at)) = others.iter().find_map(|(w, s)| s.clone().map(|s| (*w, s))) {
-                return Err(self.unavailable(&at, &format!("`{what}` on the support of a membrane")));
+                return Err(self.unavailable(&at, &format!("`{what}` in the support of a membrane")));
             }
             let Some(displacement) = &key.displacement else {
                 return Err(self
@@ -50,8 +50,8 @@ impl Planner<'_> {
             if let Some(other) = supports.iter().find(|s| s.pieces.iter().any(|p| held.contains(p))) {
                 return Err(self
                     .problem
-                    .error(&key.on, format!("`{}` is already held by the support `{}`", key.on, other.name))
-                    .help("a part of the boundary has one support"));
+                    .error(&key.on, format!("`{}` already has the support `{}`", key.on, other.name))
+                    .help("each part of the boundary has at most one support"));
             }
             supports.push(PlannedSupport {
                 name: name.clone(),
@@ -62,7 +62,7 @@ impl Planner<'_> {
         if supports.is_empty() {
             return Err(self
                 .problem
-                .error(&self.problem.space, "nothing holds the membrane")
+                .error(&self.problem.space, "the membrane has no support")
                 .help(format!("add  [supports.rim]  on = \"{body}:boundary\"  displacement = 0.0")));
         }
         if let Some((apart, rims)) = &pieces.apart {
@@ -87,7 +87,9 @@ impl Planner<'_> {
             return Err(self.problem.error(on, format!("there is no body `{name}`")).help(suggestion(name, &bodies)));
         }
         if name != body {
-            return Err(self.problem.error(on, format!("`{name}` is rigid: only `{body}` can be held or loaded")));
+            return Err(self
+                .problem
+                .error(on, format!("`{name}` is rigid: only `{body}` can have supports and loads")));
         }
         match group {
             Some(g) if !groups.contains(&g) => {

@@ -27,7 +27,7 @@ impl Planner<'_> {
                 return Err(self
                     .problem
                     .error(method, "this method is for membranes")
-                    .help("solids have  method.mortar = {},  method.node = {}  and  method.gauss_point = {}"));
+                    .help("for solids:  method.mortar = {},  method.node = {}  or  method.gauss_point = {}"));
             }
         };
         let kept = match stated {
@@ -35,13 +35,13 @@ impl Planner<'_> {
             Some(multiplier @ Enforcement::Multiplier(_)) if which == ContactMethod::GaussPoint => {
                 return Err(self
                     .problem
-                    .error(multiplier, "a multiplier at every quadrature point holds the surface too tightly")
+                    .error(multiplier, "multipliers at every quadrature point over-constrain the surface")
                     .help("enforcement.penalty = {}, or method.mortar = {}"));
             }
             Some(nitsche @ Enforcement::Nitsche(_)) if which == ContactMethod::Node => {
                 return Err(self
                     .problem
-                    .error(nitsche, "Nitsche's method is in the mean or at quadrature points")
+                    .error(nitsche, "Nitsche's method is available for mortar and at quadrature points only")
                     .help("method.mortar = { enforcement.nitsche = {} }"));
             }
             stated => self.kept(stated.as_ref(), Kept::Multiplier, SMALL_STRAIN)?,
@@ -59,7 +59,7 @@ impl Planner<'_> {
         let whole = group.is_none();
         let sides = group.map_or_else(|| bodies[body].mesh.boundary(), |g| g.sides);
         if sides.is_empty() {
-            return Err(self.problem.error(on, "there are no sides of cells in this group"));
+            return Err(self.problem.error(on, "this group contains no sides of cells"));
         }
         Ok((body, sides, whole))
     }
@@ -73,7 +73,7 @@ impl Planner<'_> {
         let mut out = Vec::new();
         for (name, key) in &problem.contacts {
             if let Some(within) = &key.within {
-                return Err(self.unavailable(within, "contact of a body with itself"));
+                return Err(self.unavailable(within, "self-contact"));
             }
             if let Some(adhesion) = &key.adhesion
                 && self.reader.number(&adhesion.energy, [-1, 1, 0])? != 0.0
@@ -97,7 +97,7 @@ impl Planner<'_> {
                     let [first, second] = if rigid(first).is_some() { [second, first] } else { [first, second] };
                     if rigid(first).is_some() {
                         return Err(problem.error(pair, "both bodies of this contact are rigid").help(format!(
-                            "a contact is between solids, or a solid and a rigid body: `{}`, for example",
+                            "a contact is between solids, or between a solid and a rigid body: `{}`, for example",
                             bodies[0].name
                         )));
                     }
@@ -127,8 +127,8 @@ impl Planner<'_> {
                     }
                 }
                 _ => {
-                    return Err(problem.error(key, "who touches whom is not said").help(
-                        "between = [\"BODY:GROUP\", \"BODY:GROUP\"], the slave first where both are solids; or  all = true",
+                    return Err(problem.error(key, "the bodies of the contact are missing").help(
+                        "between = [\"BODY:GROUP\", \"BODY:GROUP\"], for two solids the slave first; or  all = true",
                     ));
                 }
             }

@@ -32,7 +32,7 @@ impl Planner<'_> {
             Some(axis) if is_tangent(axis) => {
                 return Err(self
                     .problem
-                    .error(axis, "a solid has no tangent of its own")
+                    .error(axis, "a solid has no tangent direction of its own")
                     .help("axis = [1, 0, 0]; `\"tangent\"` is for ropes and beams"));
             }
             Some(axis) => {
@@ -40,13 +40,13 @@ impl Planner<'_> {
                 Some(
                     direction
                         .try_normalize(0.0)
-                        .ok_or_else(|| self.problem.error(axis, "the direction has no length"))?,
+                        .ok_or_else(|| self.problem.error(axis, "the direction vector is zero"))?,
                 )
             }
             None if law.per_pressure().is_some_and(|mu| mu[0] != mu[1]) => {
                 return Err(self
                     .problem
-                    .error(&coulomb.mu, "two coefficients of friction need the direction of the first")
+                    .error(&coulomb.mu, "two coefficients of friction require the direction of the first one")
                     .help("axis = [1, 0, 0]"));
             }
             None => None,
@@ -86,7 +86,7 @@ impl Planner<'_> {
             (2, _) => {
                 return Err(self
                     .problem
-                    .error(&key.mu, "in the plane bodies slide in one direction: there is one coefficient")
+                    .error(&key.mu, "in the plane slip has one direction, so there is one coefficient")
                     .help("mu = 0.3"));
             }
             (found, _) => {
@@ -101,7 +101,7 @@ impl Planner<'_> {
     }
 
     fn not_negative(&self, value: &Value, LawError { value: found }: LawError) -> CaseError {
-        let error = self.problem.error(value, format!("the value is {found}: friction takes no less than zero"));
-        error.help("leave `friction` out where there is none")
+        let error = self.problem.error(value, format!("the value is {found}: it must not be negative"));
+        error.help("leave `friction` out for frictionless contact")
     }
 }

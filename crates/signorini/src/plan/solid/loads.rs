@@ -27,7 +27,7 @@ impl Planner<'_> {
         let all: Vec<&str> = self.problem.bodies.keys().map(String::as_str).collect();
         let Some(body) = bodies.iter().position(|b| b.name == name) else {
             if all.contains(&name) {
-                return Err(self.problem.error(on, format!("`{name}` is rigid: its motion is stated with it")));
+                return Err(self.problem.error(on, format!("`{name}` is rigid: give its motion in the body")));
             }
             return Err(self.problem.error(on, format!("there is no body `{name}`")).help(suggestion(name, &all)));
         };
@@ -95,7 +95,7 @@ impl Planner<'_> {
             if let Some(normal) = &key.normal {
                 said = true;
                 if group.sides.is_empty() {
-                    return Err(problem.error(&key.on, "`normal` needs a part of the boundary"));
+                    return Err(problem.error(&key.on, "`normal` requires a part of the boundary"));
                 }
                 let value = self.solid_value::<D>(normal, LENGTH)?;
                 add(SupportKind::Normal, vec![Some(value)]);
@@ -137,7 +137,7 @@ impl Planner<'_> {
             if let Some(normal) = &key.normal {
                 return Err(problem
                     .error(normal, "`normal` is the load of a membrane")
-                    .help("solids take pressure (positive pushes inwards), traction, force, body_force"));
+                    .help("loads of solids are pressure (positive pushes inwards), traction, force and body_force"));
             }
             let mut list: Vec<(LoadKind, Vec<Placed>)> = Vec::new();
             if let Some(v) = &key.pressure {
@@ -154,8 +154,8 @@ impl Planner<'_> {
             }
             let [(kind, values)] = <[_; 1]>::try_from(list).map_err(|list| {
                 problem
-                    .error(key, format!("the load `{name}` says {} things", list.len()))
-                    .help("exactly one of pressure, traction, force, body_force")
+                    .error(key, format!("the load `{name}` has {} values", list.len()))
+                    .help("give exactly one of pressure, traction, force, body_force")
             })?;
             let group = match (group, kind) {
                 (Some(group), LoadKind::BodyForce) if !group.cells.is_empty() => group,
@@ -166,7 +166,7 @@ impl Planner<'_> {
                 _ => {
                     let wanted = if kind == LoadKind::BodyForce { "cells" } else { "a part of the boundary" };
                     let names: Vec<&str> = bodies[body].mesh.groups().keys().map(String::as_str).collect();
-                    return Err(problem.error(&key.on, format!("this load acts on {wanted}")).help(format!(
+                    return Err(problem.error(&key.on, format!("this load requires {wanted}")).help(format!(
                         "`{}` has the groups {}",
                         bodies[body].name,
                         names.join(", ")
@@ -208,6 +208,6 @@ pub(super) fn axis_supports<const D: usize>(bodies: &[PlannedBody<D>]) -> Vec<So
 /// A spring that is none.
 pub(in crate::plan) fn no_spring(problem: &Problem, at: &impl ProblemPart) -> CaseError {
     problem
-        .error(at, "a spring without stiffness holds nothing")
-        .help("a positive stiffness along what is to be held; or leave `spring` out")
+        .error(at, "all stiffnesses of the spring are zero")
+        .help("give a positive stiffness in the supported directions, or leave `spring` out")
 }

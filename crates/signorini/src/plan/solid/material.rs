@@ -13,7 +13,9 @@ impl Planner<'_> {
             None | Some((_, "small")) => false,
             Some((_, "finite")) => true,
             Some((strain, other)) => {
-                return Err(problem.error(strain, format!("unknown word `{other}`")).help("known here: small, finite"));
+                return Err(problem
+                    .error(strain, format!("unknown word `{other}`"))
+                    .help("valid are small and finite"));
             }
         };
         let (constants, law) = match &key.material {
@@ -22,21 +24,19 @@ impl Planner<'_> {
             Material::SaintVenantKirchhoff(m) => (m, StressLaw::SaintVenantKirchhoff),
         };
         if finite && law == StressLaw::LinearElastic {
-            return Err(problem.error(&key.material, "`linear_elastic` is a material of small strains").help(
+            return Err(problem.error(&key.material, "`linear_elastic` is a material for small strain").help(
                 "with strain = \"finite\":  material.neo_hooke = {…}  or  material.saint_venant_kirchhoff = {…}",
             ));
         }
         if !finite && law != StressLaw::LinearElastic {
-            return Err(problem
-                .error(&key.material, "this material is one of finite strain")
-                .help("strain = \"finite\""));
+            return Err(problem.error(&key.material, "this material is for finite strain").help("strain = \"finite\""));
         }
         let youngs_modulus = self.reader.positive(&constants.youngs_modulus, PRESSURE)?;
         let poissons_ratio = self.reader.number(&constants.poissons_ratio, NONE)?;
         if !(poissons_ratio > -1.0 && poissons_ratio < 0.5) {
             return Err(problem
                 .error(&constants.poissons_ratio, format!("Poisson's ratio is {poissons_ratio}"))
-                .help("above -1 and below 0.5; nearly incompressible is for example 0.4999"));
+                .help("give a value above -1 and below 0.5; 0.4999, for example, is nearly incompressible"));
         }
         Ok((Elastic { youngs_modulus, poissons_ratio }, law))
     }

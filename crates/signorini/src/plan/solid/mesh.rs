@@ -34,7 +34,7 @@ impl Planner<'_> {
                 }
                 for k in 0..D {
                     if low[k] >= high[k] {
-                        return Err(problem.error(max, format!("`max` {:?} does not lie beyond `min` {:?}", high, low)));
+                        return Err(problem.error(max, format!("`max` {:?} is not greater than `min` {:?}", high, low)));
                     }
                     axes[k] = vec![low[k]];
                     axes[k].extend(graded(low[k], high[k], count(&cells[k])?, 1.0));
@@ -50,20 +50,21 @@ impl Planner<'_> {
                 }
             }
             _ => {
-                return Err(problem.error(key, format!("the box of `{name}` is not said, or said twice")).help(
-                    "either min, max and cells, or axes = [{ from = 0, to = [1, 4], cells = [8, 6], growth = [1, 1.2] }, …]",
+                return Err(problem.error(key, format!("the box of `{name}` is missing or given twice")).help(
+                    "give either min, max and cells, or axes = [{ from = 0, to = [1, 4], cells = [8, 6], growth = [1, \
+                     1.2] }, …]",
                 ));
             }
         }
         let cells: usize = axes.iter().map(|a| a.len() - 1).product();
         if cells > 20_000_000 {
-            return Err(problem.error(key, format!("{cells} cells are more than this program can take")));
+            return Err(problem.error(key, format!("{cells} cells are more than this program can handle")));
         }
         let checked = |mesh: Mesh<D>| match mesh.check() {
             Ok(()) => Ok(mesh),
-            Err(e) => Err(problem
-                .error(key, format!("the mesh of `{name}`: {e}"))
-                .help("every cell needs a positive volume; look at the place named, and at `map` where there is one")),
+            Err(e) => Err(problem.error(key, format!("the mesh of `{name}`: {e}")).help(
+                "every cell needs a positive volume; check the cell at the given position, and `map` if there is one",
+            )),
         };
         let Some(map) = &key.map else { return checked(block::<D>(&axes, 1, |x| x)) };
         if map.len() != D {
@@ -105,7 +106,7 @@ impl Planner<'_> {
         let Some(map) = &key.map else { return Ok(()) };
         let Some(Overlap { cells: [a, b], at }) = mesh.overlap() else { return Ok(()) };
         let message = format!("the mesh of `{name}`: its cells {a} and {b} overlap at {}", position(&at));
-        Err(self.problem.error(map, message).help("`map` must bring no two places to the same one"))
+        Err(self.problem.error(map, message).help("`map` must not map two points to the same position"))
     }
 
     fn axis(
@@ -127,7 +128,7 @@ impl Planner<'_> {
         for ((end, n), g) in ends.iter().zip(cells).zip(growth) {
             let to = self.reader.number(end, LENGTH)?;
             if to <= from {
-                return Err(problem.error(end, format!("the stretch ends at {to}, not after {from}")));
+                return Err(problem.error(end, format!("the segment ends at {to}, not after {from}")));
             }
             if !(g.is_finite() && (1e-3..=1e3).contains(&g)) {
                 return Err(problem.error(key, format!("a growth of {g}: give a number from 0.001 to 1000")));
@@ -156,7 +157,8 @@ impl Planner<'_> {
         }
         let volume = if D == 2 { "area" } else { "volume" };
         mesh.check().map_err(|e| {
-            fail(e.to_string()).help(format!("every cell needs a positive {volume}; look at the place named"))
+            fail(e.to_string())
+                .help(format!("every cell needs a positive {volume}; check the cell at the given position"))
         })?;
         let Some(Overlap { cells, at }) = mesh.overlap() else { return Ok(mesh) };
         let of = |cell| parsed.origin::<D>(group, cell).unwrap_or_default();
@@ -165,8 +167,8 @@ impl Planner<'_> {
             if from == other { format!("{from} overlaps itself") } else { format!("{from} and {other} overlap") };
         let entity = if D == 2 { "Surface" } else { "Volume" };
         Err(fail(format!("{parts}: the elements {first} and {second} both cover {}", position(&at))).help(format!(
-            "a body covers each place once: in Gmsh unite them before meshing, for example with BooleanUnion{{ {entity}{{1}}; \
-             Delete; }}{{ {entity}{{2}}; Delete; }}, or name the one that is meant by `group`"
+            "no two cells may overlap: in Gmsh unite them before meshing, for example with BooleanUnion{{ \
+             {entity}{{1}}; Delete; }}{{ {entity}{{2}}; Delete; }}, or select one of them by `group`"
         )))
     }
 }

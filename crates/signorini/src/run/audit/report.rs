@@ -34,21 +34,22 @@ fn within(step: &StepReport, problem: &Problem) -> String {
     if !shares.is_empty() {
         let [force, area, pressure] = [0, 1, 2].map(|k| format!("{:.1e}", most(k)));
         return format!(
-            "within ±: {force} of the force, {area} of the area, {pressure} of the largest pressure of contact"
+            "within ±: {force} of the force, {area} of the area, {pressure} of the largest contact pressure"
         );
     }
     let deforms = |b: &Body| matches!(b, Body::Solid(_) | Body::Cells(_));
     let of_membrane = problem.bodies.values().any(|b| matches!(b, Body::Membrane(_)));
     let why = if step.contacts.values().all(|c| c.zones == 0) {
-        "nothing touches, and there is no force of contact to be uncertain"
+        "there is no contact, so no contact force to estimate the error of"
     } else if problem.bodies.values().any(|b| matches!(b, Body::Rope(_) | Body::Beam(_))) {
-        "what the cells of ropes and beams leave uncertain is not estimated: run it with twice as many to see"
+        "the discretisation error of ropes and beams is not estimated: compare with a run with twice as many cells"
     } else if of_membrane {
-        "what the cells leave uncertain is not estimated by this method: use smaller ones to see"
+        "this method has no error estimate: compare with a run with smaller cells"
     } else if problem.bodies.values().any(deforms) {
-        "what the cells leave uncertain is not estimated, as that would take longer than the run: use smaller ones to see"
+        "the discretisation error is not estimated, as this would take longer than the run: compare with a run with \
+         smaller cells"
     } else {
-        "there are no cells that could leave something uncertain"
+        "the bodies have no cells, so there is no discretisation error"
     };
     format!("as far as it was checked; {why}")
 }
@@ -73,9 +74,9 @@ pub fn of_errors(step: &StepReport) -> Vec<Finding> {
             found.into_iter().zip([FORCE, PEAK, PEAK]).zip(["force", "area", "largest pressure"])
         {
             if share > limit {
-                let message = format!("the {what} of `{name}` is known to ± {:.0} % only", 100.0 * share);
+                let message = format!("the {what} of `{name}` has an error estimate of ± {:.0} %", 100.0 * share);
                 let finding = Finding::new(Check::Resolution, Outcome::Doubt, message).measured(share, limit);
-                out.push(finding.on(name).remedy("smaller cells at the contact, or a higher degree"));
+                out.push(finding.on(name).remedy("use smaller cells at the contact, or a higher degree"));
                 break;
             }
         }
@@ -122,7 +123,7 @@ pub fn of_membrane(step: &StepReport) -> Vec<Finding> {
             l if l > TOLD => (Outcome::Doubt, TOLD),
             _ => (Outcome::Fine, TOLD),
         };
-        let message = format!("forces on the membrane sum to {lack:.1e} of the largest");
+        let message = format!("the sum of the forces on the membrane is {lack:.1e} of the largest force");
         out.push(Finding::new(Check::Balance, outcome, message).measured(lack, limit));
     }
     for (name, c) in &step.contacts {
@@ -130,10 +131,10 @@ pub fn of_membrane(step: &StepReport) -> Vec<Finding> {
             let share = (-least / c.max_pressure).max(0.0);
             // What adhesion holds may pull.
             let pulls = share > PULLS && c.adhesion_energy.is_none();
-            let message = format!("the contact pressure of `{name}` is {least:.3e} at least");
+            let message = format!("the smallest contact pressure of `{name}` is {least:.3e}");
             let outcome = if pulls { Outcome::Doubt } else { Outcome::Fine };
             let finding = Finding::new(Check::Tractions, outcome, message).measured(share, PULLS).on(name);
-            out.push(if pulls { finding.remedy("smaller cells at the fronts") } else { finding });
+            out.push(if pulls { finding.remedy("use smaller cells at the fronts") } else { finding });
         }
         if let Some(stable) = c.stable {
             let (outcome, what) = if stable { (Outcome::Fine, "stable") } else { (Outcome::Doubt, "unstable") };

@@ -157,15 +157,18 @@ fn stability_report(system: &System, told: &Stability) -> StabilityReport {
 /// Warns of states that are not stable, and of those that were left.
 fn warn_of_stability(told: &StabilityReport, time: f64, record: &mut Record) {
     let Some(body) = &told.body else { return };
-    let when = told.critical_time.map_or(String::new(), |t| format!(", lost at t = {t:.6}"));
+    let when = told.critical_time.map_or(String::new(), |t| format!(", at t = {t:.6}"));
     let message = if told.stable {
-        format!("`{body}` became unstable{when}: a disturbance was followed to the stable state at t = {time}")
+        format!(
+            "`{body}` became unstable{when}: the unstable state was left, and the stable state at t = {time} is \
+             reported"
+        )
     } else {
         let count = told.negative_eigenvalues;
         let plural = if count == 1 { "" } else { "s" };
         format!(
-            "`{body}` is unstable at t = {time}{when}: {count} negative eigenvalue{plural}; `stability = \"follow\"` goes on \
-             to a stable state"
+            "`{body}` is unstable at t = {time}{when}: {count} negative eigenvalue{plural}; with `stability = \
+             \"follow\"` a stable state is computed"
         )
     };
     record.warn_once(Warning::new(WarningKind::Unstable, message).at_time(time));
@@ -300,10 +303,10 @@ fn rope_limits((contact, tested): (&dyn Interaction, &Tested), sites: &[SiteResu
     let worst = list.iter().find(|(frame, _)| frame.s == found.steepest.s)?;
     let (tan_alpha, lateral) = (found.steepest.value, friction.lateral(&worst.0));
     let [low, high] = found.log_ratio.map(f64::exp);
-    let sideways = if tan_alpha > lateral { "slides sideways" } else { "is nearest to sliding sideways" };
+    let sideways = if tan_alpha > lateral { "slides sideways" } else { "is closest to sliding sideways" };
     let verdict = format!(
-        "{sideways} at s = {:.4}: |tan α| = {tan_alpha:.4}, μ_g = {lateral:.4}; friction along it holds T₁/T₀ from {low:.4} to \
-         {high:.4}",
+        "{sideways} at s = {:.4}: |tan α| = {tan_alpha:.4}, μ_g = {lateral:.4}; friction along it admits T₁/T₀ from \
+         {low:.4} to {high:.4}",
         found.steepest.s
     );
     Some(RopeLimits {
@@ -333,12 +336,12 @@ pub fn warn(plan: &MechanicsPlan, result: &IncrementResult, shown: &SystemShown,
             continue;
         }
         // Once for each contact.
-        let opening = format!("contact `{}`: the bodies do not touch", contact.name());
+        let opening = format!("contact `{}`: the bodies are not in contact", contact.name());
         if record.warnings.iter().any(|w| w.kind == WarningKind::Apart && w.message.starts_with(&opening)) {
             continue;
         }
         let gap = sites.iter().filter_map(|s| s.gap).reduce(f64::min);
-        let gap = gap.map_or("nothing is within reach".to_string(), |g| format!("smallest gap {g:.6e}"));
+        let gap = gap.map_or("no point is within the search distance".to_string(), |g| format!("smallest gap {g:.6e}"));
         let message = format!("{opening} at t = {time} ({gap})");
         record.warnings.push(Warning::new(WarningKind::Apart, message).at_time(time));
     }
@@ -350,21 +353,22 @@ pub fn warn(plan: &MechanicsPlan, result: &IncrementResult, shown: &SystemShown,
         let slack = curve.slack_cells();
         if slack > 0 {
             let message = format!(
-                "`{}` is slack at t = {time}: {slack} of {} cells carry nothing, and where they lie is not determined",
+                "`{}` is slack at t = {time}: {slack} of {} cells have no tension, so their position is not \
+                 determined",
                 curve.name, curve.elements
             );
             record.warn_once(Warning::new(WarningKind::NotUnique, message).at_time(time));
         }
     }
     if result.is_indeterminate {
-        let message = "contact forces of rigid bodies are not determined by balance and friction: others would hold the bodies \
-                       as well; those told are the least in the sum of their squares";
+        let message = "the contact forces of rigid bodies are statically indeterminate: other sets of forces within \
+                       the friction cones balance the loads too; those with the least sum of squares are reported";
         record.warn_once(Warning::new(WarningKind::NotUnique, message).at_time(time));
     }
     if result.lost_sites > 0 {
         let message = format!(
-            "{} points are where the nearest point of the other body is not defined, beyond its centre of curvature: \
-             they carry nothing at t = {time}",
+            "{} points are beyond the centre of curvature of the other body, where the closest point is not defined: \
+             they have no contact force at t = {time}",
             result.lost_sites
         );
         record.warn_once(Warning::new(WarningKind::NotFacing, message).at_time(time));
@@ -373,7 +377,7 @@ pub fn warn(plan: &MechanicsPlan, result: &IncrementResult, shown: &SystemShown,
 
 /// The result in a sentence.
 pub fn verdict(plan: &MechanicsPlan, record: &Record) -> String {
-    let Some(step) = record.steps.last() else { return "Nothing was asked.".into() };
+    let Some(step) = record.steps.last() else { return "No increment was requested.".into() };
     let units = plan.head.unit_names();
     let unit = |of: fn(&UnitNames) -> &String| units.as_ref().map_or("", |u| of(u));
     let space = if plan.space == Space::ThreeD { 3 } else { 2 };
@@ -393,7 +397,7 @@ pub fn verdict(plan: &MechanicsPlan, record: &Record) -> String {
         let rubbing = sticking(c);
         let force = told_vector(&c.force[..space], None, unit(|u| &u.force));
         let zones = if c.zones == 1 { String::new() } else { format!(" in {} zones", c.zones) };
-        list.push(format!("`{name}` carries {force}{zones}{rubbing}"));
+        list.push(format!("`{name}` transmits {force}{zones}{rubbing}"));
         if let Some(rope) = &c.rope {
             list.push(rope.verdict.clone());
         }
@@ -404,17 +408,18 @@ pub fn verdict(plan: &MechanicsPlan, record: &Record) -> String {
             0 => String::new(),
             n => format!(", {n} cell{} slack", if n == 1 { "" } else { "s" }),
         };
-        list.push(format!("`{name}` is pulled by {} at its start and {} at its end{slack}", ends[0], ends[1]));
+        list.push(format!("the tension of `{name}` is {} at its start and {} at its end{slack}", ends[0], ends[1]));
     }
     for (name, section) in step.curves.iter().filter_map(|(name, c)| Some((name, c.section.as_ref()?))) {
         let of_moments = units.as_ref().map_or(String::new(), |u| format!("{} {}", u.force, u.length));
         let moment = told(section.max_bending_moment, None, &of_moments);
-        list.push(format!("the bending moment of `{name}` is {moment} at most"));
+        list.push(format!("the largest bending moment of `{name}` is {moment}"));
     }
     for (name, pose) in &step.free_bodies {
         let moved = told_vector(&pose.displacement[..space], None, unit(|u| &u.length));
         let turned = Vector::<3>::from(pose.rotation).norm();
-        let turned = if turned > 0.0 { format!(" and turned by {}", told(turned, None, "rad")) } else { String::new() };
+        let turned =
+            if turned > 0.0 { format!(" and rotated by {}", told(turned, None, "rad")) } else { String::new() };
         list.push(format!("`{name}` moved by {moved}{turned}"));
     }
     let balance = step.equilibrium_residual.unwrap_or(f64::NAN);

@@ -19,15 +19,18 @@ pub fn verdict<const D: usize>(plan: &MembranePlan<D>, record: &Record, reason: 
         Ending::NotConverged => {
             let advice = match reason {
                 Reason::LinearSolver => {
-                    "the equations could not be solved: check that the membrane is held and that its data are of one scale"
+                    "the linear system could not be solved; check that the membrane is supported and that the data do \
+                     not differ by many orders of magnitude"
                 }
-                Reason::Input => "a value became invalid along the way",
+                Reason::Input => "a value became invalid during the run",
                 Reason::NoSuchState => {
-                    "there is no equilibrium with contact near `initial_zone`: at this load adhesion may hold none; try another zone, a larger adhesion energy, or the load at which the contact exists"
+                    "there is no equilibrium with contact near `initial_zone`; at this load an adhesive contact may \
+                     not exist; use another zone, a larger adhesion energy, or a load at which the contact exists"
                 }
-                Reason::PathLost => "the last warning says where; try smaller increments, or more cells",
+                Reason::PathLost => "the last warning states where; use smaller increments or more cells",
                 _ => {
-                    "try more cells where the zones are small or close to each other, a lower degree, or smaller increments; method.active_set = {} shows a coarse picture of the zones"
+                    "use more cells where the zones are small or close to each other, a lower degree, or smaller \
+                     increments; method.active_set = {} gives a coarse picture of the zones"
                 }
             };
             let residuals = record.steps.last().map_or(&[][..], |s| &s.residual_history);
@@ -43,9 +46,9 @@ pub fn verdict<const D: usize>(plan: &MembranePlan<D>, record: &Record, reason: 
             format!("Not converged in increment {number} of {count}{time}{history}: {advice}.")
         }
         Ending::Converged => {
-            let Some(step) = record.steps.last() else { return "Nothing was asked.".into() };
+            let Some(step) = record.steps.last() else { return "No increment was requested.".into() };
             if plan.contacts.is_empty() {
-                return "The membrane is in equilibrium; no contact was stated.".into();
+                return "The membrane is in equilibrium; the case has no contact.".into();
             }
             let found = |c: &Contact| step.contacts.get(&c.name).filter(|found| found.zones > 0);
             let told: Vec<(&Contact, &ContactReport)> =
@@ -59,14 +62,14 @@ pub fn verdict<const D: usize>(plan: &MembranePlan<D>, record: &Record, reason: 
                     let [first, last] = [times.first(), times.last()].map(|t| t.copied().unwrap_or_default());
                     let when =
                         if first == last { format!("at t = {first}") } else { format!("from t = {first} to {last}") };
-                    format!("At the end the membrane touches nothing; it was in contact {when}.")
+                    format!("At the end the membrane is not in contact; it was in contact {when}.")
                 }
                 true => {
                     let why = sizes::clearance(plan, step.time);
                     // A hint may be a question.
-                    why.map_or("The membrane touches nothing.".into(), |why| {
+                    why.map_or("The membrane is not in contact.".into(), |why| {
                         let end = if why.ends_with('?') { "" } else { "." };
-                        format!("The membrane touches nothing: {why}{end}")
+                        format!("The membrane is not in contact: {why}{end}")
                     })
                 }
                 false => format!(
@@ -90,7 +93,7 @@ fn of_contact<const D: usize>(plan: &MembranePlan<D>, contact: &Contact, c: &Con
     let units = plan.head.unit_names();
     let unit = |of: fn(&UnitNames) -> &String| units.as_ref().map_or("", |u| of(u));
     let measure = if D == 1 && plan.space == Space::Line { "length" } else { "area" };
-    let staircase = if let MethodChoice::ActiveSet(_) = plan.method { " (a staircase of nodes)" } else { "" };
+    let staircase = if let MethodChoice::ActiveSet(_) = plan.method { " (with a staircase boundary)" } else { "" };
     format!(
         "in contact{} over {measure} {}{staircase} in {} zone{}{}, pushed {} by {}",
         if plan.contacts.len() > 1 { format!(" with {}", contact.body) } else { String::new() },

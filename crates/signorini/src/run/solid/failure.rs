@@ -26,23 +26,29 @@ fn failure(error: &StepError) -> Failure {
         StepError::Free { body, motion } => (
             Reason::FreeBody,
             format!(
-                "body `{body}` is free {motion}: neither its supports nor the contact found hold it; add a support, or a spring"
+                "body `{body}` is free {motion}: neither its supports nor its contacts restrain this motion; add a \
+                 support or a spring"
             ),
         ),
         StepError::PulledAway { body, direction } => (
             Reason::FreeBody,
             format!(
-                "body `{body}` is pulled away {direction}: only contact holds it there, and contact does not pull; turn the \
-                 load round, or add a support, or a spring"
+                "body `{body}` is pulled away {direction}: only contact restrains it in this direction, and contact \
+                 forces are compressive; reverse the load, or add a support or a spring"
             ),
         ),
-        StepError::Solve(error) => {
-            (Reason::LinearSolver, format!("{error}; are all bodies held, and are their stiffnesses of one scale?"))
-        }
+        StepError::Solve(error) => (
+            Reason::LinearSolver,
+            format!(
+                "{error}; check that all bodies are supported and that their stiffnesses do not differ by many orders \
+                 of magnitude"
+            ),
+        ),
         StepError::Deep { contact, depth } => (
             Reason::Increment,
             format!(
-                "the increment is too large: it brings the bodies of `{contact}` {depth:.4e} deep into each other; try more increments"
+                "the increment is too large: it leads to a penetration of {depth:.4e} between the bodies of \
+                 `{contact}`; use more increments"
             ),
         ),
         StepError::Slides { .. } => (Reason::FreeBody, error.to_string()),
@@ -53,7 +59,7 @@ fn failure(error: &StepError) -> Failure {
         StepError::Contact { contact, error, places } => (
             Reason::Contact,
             format!(
-                "contact `{contact}`: {error}{}; try more increments, or a finer mesh there",
+                "contact `{contact}`: {error}{}; use more increments, or a finer mesh there",
                 if places.is_empty() { String::new() } else { format!(" ({})", places.join(", ")) }
             ),
         ),

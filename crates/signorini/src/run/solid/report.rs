@@ -110,7 +110,9 @@ pub fn warn<const D: usize>(
         strained.warning(display.body_of(model, k), *time, D).into_iter().for_each(|w| record.warn_once(w));
     }
     if state.unstable {
-        let message = format!("the equilibrium with friction at t = {time} is one that a small disturbance leaves");
+        let message = format!(
+            "the equilibrium with friction at t = {time} is unstable: a small disturbance leads to another state"
+        );
         record.warn_once(Warning::new(WarningKind::Unstable, message).at_time(*time));
     }
     for (contact, result) in plan.contacts.iter().zip(&state.contacts) {
@@ -124,11 +126,12 @@ pub fn warn<const D: usize>(
         let name = &contact.name;
         let warning = if result.nodes.is_empty() {
             let message =
-                format!("contact `{name}`: no part of the slave faces the master: do the normals look at each other?");
+                format!("contact `{name}`: no part of the slave faces the master; check the directions of the normals");
             Warning::new(WarningKind::NotFacing, message)
         } else if result.nodes.iter().all(|n| !n.active) {
             let gap = result.nodes.iter().map(|n| n.gap).fold(f64::INFINITY, f64::min);
-            let message = format!("contact `{name}`: the bodies do not touch at t = {time} (smallest gap {gap:.6e})");
+            let message =
+                format!("contact `{name}`: the bodies are not in contact at t = {time} (smallest gap {gap:.6e})");
             Warning::new(WarningKind::Apart, message)
         } else {
             continue;
@@ -144,17 +147,17 @@ const CLOSES_AT_ONCE: f64 = 0.5;
 fn warn_of_friction<const D: usize>(name: &str, friction: &FrictionResult<D>, time: f64, record: &mut Record) {
     if friction.uniqueness <= 1.0 {
         let message = format!(
-            "contact `{name}`: with {:.2} times this friction each point has one state for every load, with more of it \
-             several; more than one equilibrium may exist at t = {time}, and this one was reached from that of the \
-             increment before",
+            "contact `{name}`: up to {:.2} times this friction each contact point has exactly one state for every \
+             load, beyond it several; the equilibrium at t = {time} may not be unique, and the one reported was \
+             reached from that of the increment before",
             friction.uniqueness
         );
         record.warn_once(Warning::new(WarningKind::NotUnique, message).at_time(time));
     }
     if friction.newly_closed > CLOSES_AT_ONCE {
         let message = format!(
-            "contact `{name}`: {:.0} % of the contact closes in the increment to t = {time}, and its slip counts from before \
-             it touched; take more increments where stick zones matter",
+            "contact `{name}`: {:.0} % of the contact closes in the increment to t = {time}, and its slip is measured \
+             from positions before contact; use more increments if stick zones matter",
             100.0 * friction.newly_closed
         );
         record.warn_once(Warning::new(WarningKind::ClosesAtOnce, message).at_time(time));

@@ -213,15 +213,28 @@ pub fn blamed<const D: usize>(
         StepError::Deep { contact, depth } => {
             let start = at_time(plan, model, 0.0, |model, now| model.examine(now));
             match start {
-                Ok(Err(StepError::Deep { depth, .. })) => Some(problem
-                    .error(&place, format!("the bodies of `{contact}` start {depth:.4e} deep in each other"))
-                    .help("move them apart; or does the normal of a rigid plane point into it, or `side` name the wrong side?")),
-                _ => Some(problem
-                    .error(
-                        &place,
-                        format!("the first increment, to t = {time}, is too large: it brings the bodies of `{contact}` {depth:.4e} deep into each other"),
-                    )
-                    .help("more `increments`, a smaller motion, or  sliding = \"finite\"  in the contact, which cuts increments that are too large")),
+                Ok(Err(StepError::Deep { depth, .. })) => Some(
+                    problem
+                        .error(&place, format!("the bodies of `{contact}` start {depth:.4e} deep in each other"))
+                        .help(
+                            "separate them; check whether the normal of a rigid plane points into the body, or `side` \
+                             names the wrong side",
+                        ),
+                ),
+                _ => Some(
+                    problem
+                        .error(
+                            &place,
+                            format!(
+                                "the first increment, to t = {time}, is too large: it leads to a penetration of \
+                                 {depth:.4e} between the bodies of `{contact}`"
+                            ),
+                        )
+                        .help(
+                            "use more `increments`, a smaller motion, or  sliding = \"finite\"  in the contact, for \
+                             which increments that are too large are cut back",
+                        ),
+                ),
             }
         }
         _ => None,

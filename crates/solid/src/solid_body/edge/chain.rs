@@ -11,15 +11,15 @@ use std::collections::{BTreeMap, HashMap};
 /// An edge that cannot touch as a curve.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EdgeError {
-    #[error("edges are those of bodies in space")]
+    #[error("edges are available for bodies in space only")]
     Plane,
-    #[error("edge `{edge}`: there is a group of that name")]
+    #[error("edge `{edge}`: a group with this name already exists")]
     Taken { edge: String },
-    #[error("edge `{edge}`: there is no group `{group}` of sides; there are {}", known.join(", "))]
+    #[error("edge `{edge}`: there is no group `{group}` of sides; valid are {}", known.join(", "))]
     Unknown { edge: String, group: String, known: Vec<String> },
     #[error("edge `{edge}`: the radius is {radius}; valid are 0 and larger")]
     Radius { edge: String, radius: f64 },
-    #[error("edge `{edge}`: `{}` and `{}` do not meet along an edge", surfaces[0], surfaces[1])]
+    #[error("edge `{edge}`: `{}` and `{}` have no common edge", surfaces[0], surfaces[1])]
     Apart { edge: String, surfaces: [String; 2] },
     #[error("edge `{edge}`: it branches at {at}")]
     Branches { edge: String, at: String },
@@ -27,7 +27,7 @@ pub enum EdgeError {
     Pieces { edge: String, pieces: usize, at: String },
     #[error("edge `{edge}`: it has a kink at {at}, where it turns by {angle:.0} degrees")]
     Kink { edge: String, at: String, angle: f64 },
-    #[error("edge `{edge}`: it is re-entrant at {at}: what comes near touches its faces")]
+    #[error("edge `{edge}`: it is re-entrant at {at}: contact there is with its faces")]
     Reentrant { edge: String, at: String },
 }
 

@@ -357,5 +357,13 @@ pub struct Output {
     pub moments_about: Option<List<Value>>,
 }
 
-#[cfg(test)]
-mod tests;
+/// Inner parts for the tests in `tests`; no part of the interface.
+#[doc(hidden)]
+pub mod testing {
+    use std::ops::Range;
+
+    /// The last word of the key whose value stands at a place.
+    pub fn key_before(text: &str, span: Option<Range<usize>>) -> Option<&str> {
+        crate::case::toml_error::key_before(text, span)
+    }
+}

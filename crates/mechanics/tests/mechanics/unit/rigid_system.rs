@@ -1,18 +1,18 @@
 //! Rigid bodies at rest and on their way there, against statics.
 
-use crate::contact::Contact;
-use crate::enforcement::Enforcement;
-use crate::increment::IncrementResult;
-use crate::increment_error::IncrementError;
-use crate::part::Part;
-use crate::points::Sampling;
-use crate::rigid_body::{Motion, RigidBody};
-use crate::stability::Unstable;
-use crate::system::{PlacedLoad, System, SystemState, TimedLoad};
-use crate::tests::{at_rest, ball, plane, rigid, v};
+use crate::common::{at_rest, ball, plane, rigid, v};
 use signorini_contact::Coulomb;
 use signorini_geometry::Vector;
 use signorini_geometry::rigid_shape::{Cone, GapJet, RigidShape, Torus};
+use signorini_mechanics::contact::Contact;
+use signorini_mechanics::enforcement::Enforcement;
+use signorini_mechanics::increment::IncrementResult;
+use signorini_mechanics::increment_error::IncrementError;
+use signorini_mechanics::part::Part;
+use signorini_mechanics::points::Sampling;
+use signorini_mechanics::rigid_body::{Motion, RigidBody};
+use signorini_mechanics::stability::Unstable;
+use signorini_mechanics::system::{PlacedLoad, System, SystemState, TimedLoad};
 use std::sync::Arc;
 
 /// Free discs or balls with a weight each, bodies at rest, and all contacts of what is free.
@@ -90,7 +90,7 @@ fn three_discs_rest_if_friction_holds_them() {
             for (k, place) in order.iter().enumerate() {
                 assert_eq!(centre(&state, k), places[*place]);
             }
-            let on_floor = |s: &&crate::SiteResult| s.touches_at()[1].abs() < 1e-9 && s.pressure > 0.0;
+            let on_floor = |s: &&signorini_mechanics::SiteResult| s.touches_at()[1].abs() < 1e-9 && s.pressure > 0.0;
             for site in found.sites.iter().flatten().filter(on_floor) {
                 // The floor holds the lower discs together.
                 assert!(site.friction[0] * site.x[0] < 0.0, "{site:?}");

@@ -1,13 +1,18 @@
 //! Free rigid bodies that contact, friction and springs hold, against statics.
 
-use super::*;
-use crate::contact::Contact;
-use crate::enforcement::Enforcement;
-use crate::increment_error::IncrementError;
-use crate::part::Part;
-use crate::points::Sampling;
-use crate::system::{PlacedLoad, Support, System, TimedLoad};
+use crate::common::{ball, plane, rigid, v};
 use signorini_contact::{Coulomb, Status, Viscous};
+use signorini_geometry::Vector;
+use signorini_geometry::rigid::RigidMotion;
+use signorini_geometry::rigid_shape::Sphere;
+use signorini_mechanics::contact::Contact;
+use signorini_mechanics::enforcement::Enforcement;
+use signorini_mechanics::increment_error::IncrementError;
+use signorini_mechanics::part::Part;
+use signorini_mechanics::points::Sampling;
+use signorini_mechanics::rigid_body::{Motion, RigidSite};
+use signorini_mechanics::system::{PlacedLoad, Support, System, TimedLoad};
+use std::sync::Arc;
 
 fn part(body: usize) -> Part {
     Part { body, group: None }
@@ -68,7 +73,7 @@ fn a_ball_on_an_incline_rolls_unless_something_holds_it_and_sticks_up_to_its_fri
         system.bodies.push(Box::new(plane(v(0.0, 0.0, 0.0), normal)));
         system.loads.push(force(0, v(0.0, 0.0, -1.0)));
         if !turns {
-            let held: crate::system::TimeField = Arc::new(|_, _| 0.0);
+            let held: signorini_mechanics::system::TimeField = Arc::new(|_, _| 0.0);
             system.supports.push(Support {
                 name: "spin".into(),
                 part: part(0),
@@ -139,7 +144,7 @@ fn a_moved_body_drags_one_that_springs_hold() {
     }
     system.prepare().unwrap();
     // Squeezed: the lower plate is lifted by a little.
-    let lift: crate::rigid_body::PrescribedMotion =
+    let lift: signorini_mechanics::rigid_body::PrescribedMotion =
         Arc::new(move |t| signorini_geometry::rigid::RigidMotion::new(zero, zero, v(0.0, 0.0, 0.02 * t.min(1.0))));
     let floor = signorini_geometry::rigid_shape::Plane { point: v(0.0, 0.0, 0.0), normal: v(0.0, 0.0, 1.0) };
     system.bodies[1] = Box::new(rigid("floor", floor, Motion::Prescribed(lift), Vec::new()));
@@ -157,15 +162,17 @@ fn a_moved_body_drags_one_that_springs_hold() {
 /// is turned by the way of the wheel, a block on a turntable is dragged along the circle; all in one increment.
 #[test]
 fn slip_is_measured_along_the_arc_by_whatever_angle_a_body_turns() {
-    let held = |by: f64| -> Option<crate::system::TimeField> { Some(Arc::new(move |_, t| by * (t - 1.0).max(0.0))) };
+    let held = |by: f64| -> Option<signorini_mechanics::system::TimeField> {
+        Some(Arc::new(move |_, t| by * (t - 1.0).max(0.0)))
+    };
     // How far the disc turns, and friction takes, as the hand moves it and the wheel turns.
     let turned = |way: f64, wheel: f64, spins: bool| {
         let zero = Vector::<3>::zeros();
-        let motion: crate::rigid_body::PrescribedMotion =
+        let motion: signorini_mechanics::rigid_body::PrescribedMotion =
             Arc::new(move |t| RigidMotion::new(v(0.0, 0.0, wheel * (t - 1.0).max(0.0)), zero, zero));
         let mut system = System::default();
         system.bodies.push(Box::new(ball(v(0.0, 0.5, 0.0), 0.5, Motion::Free { plane: true })));
-        let master: Box<dyn crate::body::Body> = match wheel == 0.0 {
+        let master: Box<dyn signorini_mechanics::body::Body> = match wheel == 0.0 {
             true => Box::new(plane(zero, v(0.0, 1.0, 0.0))),
             false => Box::new(rigid(
                 "wheel",
@@ -189,7 +196,11 @@ fn slip_is_measured_along_the_arc_by_whatever_angle_a_body_turns() {
         let (state, _) = system.solve(&system.start(), 1.0, &mut |_, _| true).unwrap();
         system.accept(&state).unwrap();
         let (state, result) = system.solve(&state, 2.0, &mut |_, _| true).unwrap();
-        (crate::rigid_body::Pose::of(&state.bodies[0]).turn.z, result.dissipated[0], result.sites[0][0].force())
+        (
+            signorini_mechanics::rigid_body::Pose::of(&state.bodies[0]).turn.z,
+            result.dissipated[0],
+            result.sites[0][0].force(),
+        )
     };
     for way in [0.1, 0.45, 2.5, -7.0] {
         let (angle, taken, _) = turned(way, 0.0, true);
@@ -221,7 +232,7 @@ fn viscous_friction_creeps_down_an_incline() {
             part: part(0),
             load: TimedLoad::Force(Arc::new(|_, _| v(0.0, 0.0, -1.0))),
         });
-        let held: crate::system::TimeField = Arc::new(|_, _| 0.0);
+        let held: signorini_mechanics::system::TimeField = Arc::new(|_, _| 0.0);
         system.supports.push(Support {
             name: "spin".into(),
             part: part(0),
@@ -255,8 +266,8 @@ fn what_is_carried_away_is_told() {
     let to = |distance: f64| {
         let mut system = System::default();
         system.bodies.push(Box::new(ball(v(0.0, 0.0, 0.0), 0.5, Motion::Free { plane: false })));
-        let held: crate::system::TimeField = Arc::new(|_, _| 0.0);
-        let moved: crate::system::TimeField = Arc::new(move |_, _| distance);
+        let held: signorini_mechanics::system::TimeField = Arc::new(|_, _| 0.0);
+        let moved: signorini_mechanics::system::TimeField = Arc::new(move |_, _| distance);
         system.supports.push(Support {
             name: "hand".into(),
             part: part(0),

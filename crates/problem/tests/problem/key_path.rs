@@ -1,6 +1,6 @@
 //! The way to a part of a problem.
 
-use super::*;
+use signorini_problem::{Body, Domain, GridMesh, Interval, Membrane, Mesh, Problem, Space, Step, Support};
 
 #[test]
 fn the_way_to_a_part_is_found_by_where_it_lies() {

@@ -1,14 +1,9 @@
 //! Tangents of contact against differences; free rigid bodies.
 
-mod free;
-mod patch;
-mod tangents;
-
+use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::{Plane, RigidShape, Sphere};
 use signorini_geometry::{Point, Vector};
-
-use crate::rigid_body::{Motion, RigidBody, RigidSite};
-use signorini_geometry::rigid::RigidMotion;
+use signorini_mechanics::rigid_body::{Motion, RigidBody, RigidSite};
 use std::sync::Arc;
 
 pub fn v(x: f64, y: f64, z: f64) -> Vector<3> {

@@ -1,8 +1,8 @@
 //! A sheet on an elastic foundation, quadratic in both directions: a deformable partner with nothing but geometry.
 
-use crate::body::*;
 use signorini_geometry::shape::SurfaceJet;
 use signorini_geometry::{Matrix, Point, Vector};
+use signorini_mechanics::body::*;
 
 pub struct Sheet {
     pub name: String,

@@ -1,12 +1,13 @@
-use super::PlaneZone;
-use super::extrapolation::without_waves;
-use super::motion::swept;
-use crate::method::ModeSpace;
-use crate::obstacle::Side;
-use crate::sizing::Sizing;
-use crate::zone::{Zone, ZoneFronts, ZoneMotion, ZoneSizes};
+//! Of `plane_zone`.
+
 use signorini_fem::Grid;
 use signorini_geometry::{Aabb, ClosedCurve, Point};
+use signorini_membrane::method::ModeSpace;
+use signorini_membrane::obstacle::Side;
+use signorini_membrane::plane_zone::PlaneZone;
+use signorini_membrane::sizing::Sizing;
+use signorini_membrane::testing::{swept, wanted_knots, without_waves};
+use signorini_membrane::zone::{Zone, ZoneFronts, ZoneMotion, ZoneSizes};
 use std::sync::Arc;
 
 /// Else it would go up and down with the length of the front, and the front with it.
@@ -28,7 +29,7 @@ fn the_number_of_modes_stays_while_it_will_do() {
         let step = vec![by; count(&zone)];
         zone.advanced(&grid, ModeSpace::Fine, &step, 1.0).zone
     };
-    let wanted = |zone: &PlaneZone| PlaneZone::knots(&grid, zone.relative_length(&zone.curves[0]));
+    let wanted = |zone: &PlaneZone| wanted_knots(&grid, zone);
     let modes = count(&zone);
     // Steps after which a front does not keep its parameter, and that would have it get one mode more or less.
     for (direction, other) in [(1.0, modes + 1), (-1.0, modes - 1)] {

@@ -1,15 +1,15 @@
 //! Identities of stiffness, loads, supports and free modes, on boxes small enough to know all of them.
 
-use crate::assembly::assemble;
-use crate::body::Bodies;
-use crate::loads::{Load, LoadKind, forces, resultant};
-use crate::material::{Elastic, Space};
-use crate::rigid_modes::free_modes;
-use crate::supports::{Reduction, Support, SupportError, SupportKind};
 use nalgebra::Matrix3;
 use signorini_fem::Group;
 use signorini_fem::block::block;
 use signorini_geometry::Point;
+use signorini_solid::body::Bodies;
+use signorini_solid::loads::{Load, LoadKind, forces, resultant};
+use signorini_solid::material::{Elastic, Space};
+use signorini_solid::rigid_modes::free_modes;
+use signorini_solid::supports::{Reduction, Support, SupportError, SupportKind};
+use signorini_solid::testing::assemble;
 
 const ELASTIC: Elastic = Elastic { youngs_modulus: 2.0, poissons_ratio: 0.3 };
 

@@ -1,5 +1,11 @@
-use super::*;
+//! Of `image`.
+
+use signorini_cells::image::{
+    Endian, ImageError, Number, metaimage, nifti, npy, nrrd, raw, read, read_with, tiff_stack,
+};
+use signorini_geometry::Point;
 use std::io::Write;
+use std::path::Path;
 
 /// 2 × 3 × 2 numbers 0, 1, 2, … in one format or another.
 fn values() -> Vec<f64> {

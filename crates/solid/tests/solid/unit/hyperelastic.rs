@@ -1,6 +1,8 @@
 //! Stress laws against differences and homogeneous stretches.
 
-use super::*;
+use nalgebra::Matrix3;
+use signorini_solid::hyperelastic::{StrainError, StressLaw, Volumetric};
+use signorini_solid::material::Elastic;
 
 const LAWS: [StressLaw; 4] = [
     StressLaw::LinearElastic,

@@ -1,16 +1,19 @@
 //! The tangent of a contact against central differences of its residual, for pairs of every kind.
 
-use super::patch::Sheet;
-use super::*;
-use crate::body::Body;
-use crate::contact::Contact;
-use crate::enforcement::Enforcement;
-use crate::pair::AxisChoice;
-use crate::part::Part;
-use crate::points::{Order, Sampling};
-use crate::system::{System, SystemState};
+use crate::common::{ball, rigid, v};
+use crate::patch::Sheet;
 use signorini_contact::{Coulomb, Law};
-use signorini_geometry::rigid_shape::{Ellipsoid, Torus};
+use signorini_geometry::Point;
+use signorini_geometry::rigid_shape::{Ellipsoid, Plane, Sphere, Torus};
+use signorini_mechanics::body::Body;
+use signorini_mechanics::contact::Contact;
+use signorini_mechanics::enforcement::Enforcement;
+use signorini_mechanics::pair::AxisChoice;
+use signorini_mechanics::part::Part;
+use signorini_mechanics::points::{Order, Sampling};
+use signorini_mechanics::rigid_body::{Motion, RigidBody};
+use signorini_mechanics::system::{System, SystemState};
+use signorini_mechanics::testing::{self, assembled, numbering};
 
 fn noise(seed: &mut u64) -> f64 {
     *seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
@@ -57,7 +60,7 @@ fn check(
     let mut state = system.start();
     let seed = &mut 7u64;
     let random = |state: &SystemState, size: f64, seed: &mut u64, system: &System| {
-        let (_, count) = system.numbering();
+        let (_, count) = numbering(system);
         let step: Vec<f64> =
             (0..count + state.multipliers.len()).map(|k| if k < count { size } else { 1.0 } * noise(seed)).collect();
         advance(system, state, &step, 1.0)
@@ -76,19 +79,19 @@ fn check(
         own[0] = 0.9 + 0.05 * noise(seed);
         own[1..].iter_mut().for_each(|t| *t *= 0.1);
     }
-    let at = system.assemble(&state, 0.0, Order::Second).unwrap();
-    let n = at.residual.len();
-    let matrix = at.tangent.matrix(n);
-    let closed: f64 = at.residual.iter().map(|r| r.abs()).sum();
+    let (residual, tangent) = assembled(&system, &state, Order::Second).unwrap();
+    let n = residual.len();
+    let matrix = tangent.matrix(n);
+    let closed: f64 = residual.iter().map(|r| r.abs()).sum();
     assert!(closed > 1e-3, "nothing touches");
-    let (first, count) = system.numbering();
+    let (first, count) = numbering(&system);
     let mut dense = nalgebra::DMatrix::from_fn(n, n, |i, j| matrix.get(i, j));
     // Residuals are differentiated component by component, and the tangent is symmetric in spins where forces have a
     // potential: half a turn of the moment apart.
     for (body, first) in system.bodies.iter().zip(first) {
         for spin in body.spins() {
             let spin = spin.map(|s| (s + first) as usize);
-            let moment = v(at.residual[spin[0]], at.residual[spin[1]], at.residual[spin[2]]).cross_matrix() * 0.5;
+            let moment = v(residual[spin[0]], residual[spin[1]], residual[spin[2]]).cross_matrix() * 0.5;
             for i in 0..3 {
                 (0..3).for_each(|j| dense[(spin[i], spin[j])] -= moment[(i, j)]);
             }
@@ -100,7 +103,7 @@ fn check(
         let of = |h: f64| {
             let mut step = vec![0.0; n];
             step[j] = h;
-            system.assemble(&advance(&system, &state, &step, 1.0), 0.0, Order::First).unwrap().residual
+            assembled(&system, &advance(&system, &state, &step, 1.0), Order::First).unwrap().0
         };
         let h = if j < count { 1e-6 } else { 1e-4 };
         let (plus, minus) = (of(h), of(-h));
@@ -112,19 +115,12 @@ fn check(
 }
 
 fn advance(system: &System, at: &SystemState, step: &[f64], share: f64) -> SystemState {
-    let (first, count) = system.numbering();
+    let (first, count) = numbering(system);
     let bodies = (system.bodies.iter().zip(&at.bodies).zip(first))
         .map(|((b, s), f)| b.advance(s, &step[f as usize..f as usize + b.unknowns()], share))
         .collect();
     let multipliers = at.multipliers.iter().zip(&step[count..]).map(|(m, s)| m + share * s).collect();
-    SystemState {
-        bodies,
-        multipliers,
-        reactions: Vec::new(),
-        predictions: Vec::new(),
-        travel: vec![0.0; count],
-        time: 0.0,
-    }
+    testing::state(bodies, multipliers, count)
 }
 
 fn free() -> Motion {

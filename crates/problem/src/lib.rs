@@ -22,8 +22,10 @@ pub mod paths;
 pub mod rigid;
 pub mod shape;
 pub mod source;
+mod tree;
 pub mod units;
 pub mod value;
+mod walk;
 
 pub use arrays::{Array, CellArrays, Grid2, MeshArrays, TriangleArrays};
 pub use body::*;

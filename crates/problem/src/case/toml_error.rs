@@ -5,19 +5,24 @@ use std::ops::Range;
 
 /// Turns an error of the TOML reader into ours, with the nearest valid key.
 pub fn from_toml(name: &str, text: &str, error: &toml::de::Error) -> CaseError {
-    let message = error.message().trim().replace('\n', " ");
+    told(name, text, error.message(), error.span())
+}
+
+/// The same of what a reader of TOML says, and where.
+pub(crate) fn told(name: &str, text: &str, message: &str, span: Option<Range<usize>>) -> CaseError {
+    let message = message.trim().replace('\n', " ");
     let mut ours = CaseError::new(message.clone());
     if let Some(rest) = message.strip_prefix("unknown field `").or_else(|| message.strip_prefix("unknown variant `"))
         && let Some((key, expected)) = rest.split_once('`')
     {
         let known: Vec<&str> = expected.split('`').skip(1).step_by(2).collect();
-        ours.message = format!("unknown {} `{key}`", if quoted(text, error.span()) { "word" } else { "key" });
+        ours.message = format!("unknown {} `{key}`", if quoted(text, span.clone()) { "word" } else { "key" });
         ours.help = Some(suggestion(key, &known));
     } else if let Some(key) = message.strip_prefix("missing field `").and_then(|r| r.strip_suffix('`')) {
         ours.message = format!("missing key `{key}`");
         ours.help = Some(format!("add `{key} = …` to this table"));
     } else if let (true, Some(name)) =
-        (message.contains("wanted exactly 1 element"), body_without_kind(text, error.span()))
+        (message.contains("wanted exactly 1 element"), body_without_kind(text, span.clone()))
     {
         ours.message = format!("what kind of body `{name}` is, is not said, or said twice");
         ours.help = Some(format!(
@@ -26,9 +31,9 @@ pub fn from_toml(name: &str, text: &str, error: &toml::de::Error) -> CaseError {
         ));
     } else if message.contains("wanted exactly 1 element") || message.contains("wanted string or table") {
         ours.message = "expected a choice: one word in quotes, or a table with exactly one key".into();
-        ours.help = key_before(text, error.span()).map(|key| {
+        ours.help = key_before(text, span.clone()).map(|key| {
             let told = format!("`signorini explain {key}` tells the choices");
-            example(text, error.span(), key).map_or(told.clone(), |example| format!("{example}; {told}"))
+            example(text, span.clone(), key).map_or(told.clone(), |example| format!("{example}; {told}"))
         });
     } else if let Some((found, wanted)) = message
         .strip_prefix("invalid type: ")
@@ -37,7 +42,7 @@ pub fn from_toml(name: &str, text: &str, error: &toml::de::Error) -> CaseError {
     {
         ours.message = format!("expected {}, found {}", in_words(wanted), found_in_words(found));
     }
-    let span = error.span().unwrap_or(0..0);
+    let span = span.unwrap_or(0..0);
     // An error in a table without a key of its own spans the whole table: its first line says enough.
     let end =
         text[span.start.min(text.len())..span.end.min(text.len())].find('\n').map_or(span.end, |n| span.start + n);

@@ -3,8 +3,7 @@
 use signorini_fem::Grid;
 use signorini_geometry::{Aabb, Jet, Point, Real};
 use signorini_membrane::field::{Constant, Field, Formula};
-use signorini_membrane::testing::Interior;
-use signorini_membrane::testing::{Run, runs};
+use signorini_membrane::testing::{Interior, Run, runs};
 
 /// The equations hold for the harmonic polynomials that the functions can show, on cells that are no squares, and patches
 /// leave these as they are; so too where the equations are stored.

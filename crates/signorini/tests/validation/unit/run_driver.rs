@@ -1,11 +1,16 @@
 //! The driver on the smallest model there is: a spring that is pressed on a wall.
 
-use super::*;
-use crate::fields::ShownState;
-use crate::plan::Head;
-use crate::report::{ContactReport, StepReport};
-use crate::run::record::{begin, of_earlier_run};
-use signorini_solve::Silent;
+use serde_json::{Value, json};
+use signorini::fields::ShownState;
+use signorini::output::{Folder, OutputError};
+use signorini::plan::Head;
+use signorini::problem::CaseError;
+use signorini::report::{ContactReport, Reason, StepReport};
+use signorini::testing::{Advanced, Ending, Model, Record, begin, drive, go_on, of_earlier_run};
+use signorini_audit::{Check, Finding, Verdict};
+use signorini_solve::{Iteration, Progress, Silent};
+use std::path::Path;
+use std::time::Instant;
 
 /// A spring of stiffness two whose end is pushed by the time; a wall stands at 0.3.
 struct Spring {
@@ -18,7 +23,7 @@ struct Spring {
 
 impl Spring {
     fn new(fails_in: Option<usize>) -> Self {
-        let problem = crate::case::read("spring.toml", crate::gallery::GALLERY[0].case, &[]).expect("a case");
+        let problem = signorini::case::read("spring.toml", signorini::gallery::GALLERY[0].case, &[]).expect("a case");
         let head =
             Head { problem, units: None, interpreted: Vec::new(), warnings: Vec::new(), every: 2, pictures: true };
         Spring { head, force: 0.0, fails_in, refused_in: None }

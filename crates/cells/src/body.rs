@@ -308,7 +308,8 @@ impl<const D: usize> CellBody<D> {
 }
 
 /// The tensor-product Gauss rule of a box.
-pub(crate) fn box_points<const D: usize>(b: &Aabb<D>, order: usize) -> Vec<(Point<D>, f64)> {
+#[doc(hidden)]
+pub fn box_points<const D: usize>(b: &Aabb<D>, order: usize) -> Vec<(Point<D>, f64)> {
     let gauss = signorini_geometry::rule::gauss_legendre(order);
     (0..order.pow(D as u32))
         .map(|mut i| {

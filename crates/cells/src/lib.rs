@@ -67,3 +67,9 @@ pub use tree::{CellTree, Leaf};
 
 /// Where a body has material: shapes, their unions, intersections and complements.
 pub type Domain<const D: usize> = signorini_geometry::implicit::ImplicitBody<D>;
+
+/// Inner parts for the tests in `tests`; no part of the interface.
+#[doc(hidden)]
+pub mod testing {
+    pub use crate::spread::{SAME_FACE, farthest_points};
+}

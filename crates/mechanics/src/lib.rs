@@ -81,5 +81,28 @@ pub use stability::{Stability, Unstable};
 pub use surface::Surface;
 pub use system::{AssemblyError, PlacedLoad, Support, System, SystemState, TimedLoad};
 
-#[cfg(test)]
-mod tests;
+/// Inner parts for the tests in `tests`; no part of the interface.
+#[doc(hidden)]
+pub mod testing {
+    pub use crate::admissible::Admissible;
+    use crate::body::BodyState;
+    use crate::points::Order;
+    pub use crate::rotation::{between, of_spin, of_spin_change, spin, turn, unwrapped, whole_turns};
+    use crate::system::{AssemblyError, System, SystemState};
+    use signorini_solve::general::Entries;
+
+    /// The first unknown of each body, and how many there are.
+    pub fn numbering(system: &System) -> (Vec<u32>, usize) {
+        system.numbering()
+    }
+
+    /// A state that is not predicted from others.
+    pub fn state(bodies: Vec<BodyState>, multipliers: Vec<f64>, unknowns: usize) -> SystemState {
+        SystemState { bodies, multipliers, travel: vec![0.0; unknowns], ..SystemState::default() }
+    }
+
+    /// The residual at a state at the start, and its tangent.
+    pub fn assembled(system: &System, state: &SystemState, order: Order) -> Result<(Vec<f64>, Entries), AssemblyError> {
+        system.assemble(state, 0.0, order).map(|at| (at.residual, at.tangent))
+    }
+}

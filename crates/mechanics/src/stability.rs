@@ -80,7 +80,8 @@ pub(crate) struct UnstableMode {
 }
 
 /// Eigenvalues nearer to zero are those of motions that nothing holds: rounding makes less.
-pub(crate) const NEUTRAL: f64 = 1e-13;
+#[doc(hidden)]
+pub const NEUTRAL: f64 = 1e-13;
 /// No eigenvalue is as large: rows have fewer entries.
 const LARGEST: f64 = 1e3;
 /// An eigenvalue is counted in to this factor before inverse iteration.
@@ -211,21 +212,23 @@ impl Law for Given {
 }
 
 /// `K` and `S` on what may move, with the multipliers of contacts.
-struct Pencil {
-    admissible: Admissible,
+#[doc(hidden)]
+pub struct Pencil {
+    pub admissible: Admissible,
     /// Unknowns of the bodies.
-    count: usize,
-    multipliers: usize,
-    metric: Vec<f64>,
+    pub count: usize,
+    pub multipliers: usize,
+    pub metric: Vec<f64>,
     /// `Tᵀ K T`.
-    tangent: Entries,
+    pub tangent: Entries,
 }
 
 /// An eigenvalue with its vector of size 1, and how many of the same sign were seen.
-struct Eigenpair {
-    value: f64,
-    vector: Vec<f64>,
-    count: usize,
+#[doc(hidden)]
+pub struct Eigenpair {
+    pub value: f64,
+    pub vector: Vec<f64>,
+    pub count: usize,
 }
 
 impl Pencil {
@@ -276,7 +279,7 @@ impl Pencil {
     }
 
     /// Whether the tangent has a potential, but for rounding.
-    fn is_symmetric(&self) -> bool {
+    pub fn is_symmetric(&self) -> bool {
         self.shifted(0.0).asymmetry() < ASYMMETRY
     }
 
@@ -309,7 +312,7 @@ impl Pencil {
     /// Of the eigenvalues of a sign the one nearest to zero, from what a direction has of its vectors, of a tangent that is
     /// symmetric: counted in by the inertia of shifted matrices (Parlett, The symmetric eigenvalue problem), then by inverse
     /// iteration. None where there is none, or where nothing is known.
-    fn nearest(&self, (sign, neutral): (f64, f64), toward: &[f64]) -> Option<Eigenpair> {
+    pub fn nearest(&self, (sign, neutral): (f64, f64), toward: &[f64]) -> Option<Eigenpair> {
         let inner = self.below(sign * neutral)?;
         let (mut low, mut high) = (neutral, LARGEST);
         if self.below(sign * high)? == inner {
@@ -393,7 +396,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// The eigenvalue of a matrix with the least real part, but for those whose inverse is neutral, with its vector of size 1 and
 /// how many real parts are negative; none where none is.
-fn outermost(matrix: DMatrix<f64>, neutral: f64) -> Option<(f64, DVector<f64>, usize)> {
+#[doc(hidden)]
+pub fn outermost(matrix: DMatrix<f64>, neutral: f64) -> Option<(f64, DVector<f64>, usize)> {
     let n = matrix.nrows();
     let counts = |v: &f64| *v < 0.0 && -v * neutral < 0.5;
     let values: Vec<f64> = matrix.complex_eigenvalues().iter().map(|v| v.re).filter(counts).collect();
@@ -408,40 +412,4 @@ fn outermost(matrix: DMatrix<f64>, neutral: f64) -> Option<(f64, DVector<f64>, u
         }
     }
     Some((value, vector, values.len()))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_eigenvalues_nearest_to_zero_are_found_with_their_vectors() {
-        // `K` is diagonal but for a pair, `(1.1 2.5; 2.5 1.1)` with -1.4 and 3.6; of the others `K/S` is -6, 2 and one that is
-        // neutral.
-        let mut tangent = Entries::default();
-        for (i, j, v) in [(0, 0, 1.1), (0, 1, 2.5), (1, 0, 2.5), (1, 1, 1.1), (2, 2, -3.0), (3, 3, 8.0), (4, 4, -1e-15)]
-        {
-            tangent.add(i, j, v);
-        }
-        let metric = vec![1.0, 1.0, 0.5, 4.0, 1.0];
-        let pencil = Pencil { admissible: Admissible::new(5, &[], &[]), count: 5, multipliers: 0, metric, tangent };
-        assert!(pencil.is_symmetric());
-        let found = pencil.nearest((-1.0, NEUTRAL), &[-1.0, 0.0, 0.0, 0.0, 0.0]).unwrap();
-        assert!((found.value + 1.4).abs() < 1e-6 && found.count == 2, "{}", found.value);
-        let half = 0.5f64.sqrt();
-        let expected = [-half, half, 0.0, 0.0, 0.0];
-        assert!(found.vector.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-3), "{:?}", found.vector);
-        let found = pencil.nearest((1.0, NEUTRAL), &[0.0, 0.0, 0.0, 1.0, 0.0]).unwrap();
-        assert!((found.value - 2.0).abs() < 1e-6 && (found.vector[3] - 0.5).abs() < 1e-3, "{}", found.value);
-    }
-
-    #[test]
-    fn the_outermost_eigenvalue_of_a_matrix_that_is_not_symmetric() {
-        // Of (1 2; 0 -3) the vector of -3 is (1, -2)/√5.
-        let matrix = DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 0.0, -3.0]);
-        let (value, vector, count) = outermost(matrix, 1e-9).unwrap();
-        assert!((value + 3.0).abs() < 1e-12 && count == 1);
-        assert!((vector[0] * -2.0 - vector[1]).abs() < 1e-8, "{vector}");
-        assert!(outermost(DMatrix::identity(2, 2), 1e-9).is_none());
-    }
 }

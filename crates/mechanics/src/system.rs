@@ -145,7 +145,8 @@ pub enum AssemblyError {
 
 /// An equation of a support, in the numbers of the system.
 #[derive(Clone, Debug)]
-pub(crate) struct Held {
+#[doc(hidden)]
+pub struct Held {
     pub support: usize,
     pub constraint: Constraint,
 }

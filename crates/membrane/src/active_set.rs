@@ -76,7 +76,8 @@ pub fn solve<const D: usize, Z: Zone<D>>(
 }
 
 /// The same as accurately as a state at hand.
-pub(crate) fn solve_beside<const D: usize, Z: Zone<D>>(
+#[doc(hidden)]
+pub fn solve_beside<const D: usize, Z: Zone<D>>(
     membrane: &Membrane<D>,
     start: NodalStart,
     known: Option<&Known<'_, D, Z>>,

@@ -15,7 +15,7 @@ use signorini_geometry::Point;
 const SMALLEST: f64 = 0.4;
 
 /// A state and its zone, whose fronts need not be at rest.
-pub(crate) struct Known<'a, const D: usize, Z> {
+pub struct Known<'a, const D: usize, Z> {
     pub state: &'a Equilibrium<D>,
     pub zone: &'a Z,
 }
@@ -24,7 +24,7 @@ impl<const D: usize, Z: Zone<D>> Known<'_, D, Z> {
     /// The load of linear elements under which they take the displacement of this state, at nodes in its zone under the
     /// pressure of the body, elsewhere freely: where they are not much smaller than those of the state, and away from its
     /// fronts, which may not be at rest.
-    pub fn load(&self, membrane: &Membrane<D>, system: &System<D>, nodes: &[Point<D>]) -> Vec<f64> {
+    pub(crate) fn load(&self, membrane: &Membrane<D>, system: &System<D>, nodes: &[Point<D>]) -> Vec<f64> {
         let mut displacements: Vec<Option<f64>> = nodes.iter().map(|x| self.displacement(x, x)).collect();
         for (cell, _, dofs) in system.unknowns.all() {
             let center = membrane.cells.bounds_of(cell).center();
@@ -86,74 +86,5 @@ impl<const D: usize, Z: Zone<D>> Known<'_, D, Z> {
             Some((side, _)) => Some(self.state.membrane.obstacles.height(side, x)),
             None => self.state.evaluate(self.state.membrane.cells.containing(near)?, region, x).map(|v| v.0),
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::active_set::{NodalStart, solve_beside};
-    use crate::domain::{Domain, DomainOnCells, ImplicitDomain};
-    use crate::equilibrium::Elements;
-    use crate::field::{Constant, Formula, SharedField};
-    use crate::ils::{self, Reason, Rest, Start};
-    use crate::obstacle::{Obstacle, Obstacles, Side};
-    use crate::plane_zone::PlaneZone;
-    use crate::problem::{Measure, Support};
-    use signorini_fem::Grid;
-    use signorini_geometry::{Aabb, Ellipsoid, Jet, Real};
-    use signorini_solve::Silent;
-    use std::sync::Arc;
-
-    /// A disc over a wavy floor.
-    fn membrane() -> Membrane<2> {
-        let bounds = Aabb::new(Point::<2>::new(-1.03, -1.03), Point::<2>::new(1.03, 1.03));
-        let grid = Grid::new(bounds, [16, 16], 3);
-        let domain: Arc<dyn Domain<2>> =
-            Arc::new(ImplicitDomain(Ellipsoid { center: Point::zeros(), semi_axes: [1.0, 1.0] }));
-        let c = |v: f64| Jet::<2>::constant(v);
-        let wave = move |[x, y]: [Jet<2>; 2]| {
-            c(-0.1) - c(0.01) * (c(1.0) - c(6.0) * x * x) * (c(1.0) - c(4.0) * (y - c(0.1)) * y)
-        };
-        let height: SharedField<2> = Arc::new(Formula(wave));
-        Membrane {
-            domain: DomainOnCells::new(domain, &grid),
-            cells: grid.as_cells(),
-            grid,
-            sizing: None,
-            measure: Measure::Plain,
-            tension: Arc::new(Constant(1.0)),
-            load: Arc::new(Constant(-1.0)),
-            obstacles: Obstacles(vec![Obstacle { side: Side::Below, height, adhesion: None }]),
-            supports: vec![Some(Support { index: 0, displacement: Arc::new(Constant(0.0)) })],
-            support_count: 1,
-            modes: Default::default(),
-            formulation: Default::default(),
-        }
-    }
-
-    #[test]
-    fn linear_elements_repeat_what_is_known() {
-        let membrane = membrane();
-        let mut elements = Elements::new(&membrane);
-        let found =
-            ils::solve::<2, PlaneZone>(&membrane, &mut elements, Start::Free, Rest::Final, (0, 1.0), &mut Silent);
-        assert_eq!(found.reason, Reason::Converged);
-        let state = found.equilibrium.expect("a state");
-        let known = Known { state: &state, zone: &found.zone };
-        let linear = membrane.on(membrane.cells.linear(1));
-        let off = |known: Option<&Known<'_, 2, PlaneZone>>| {
-            let nodal = solve_beside(&linear, NodalStart::Nested, known, &|| false).expect("a solution");
-            assert!(nodal.converged);
-            let nodes =
-                nodal.nodes.iter().enumerate().filter_map(|(i, node)| node.filter(|n| n.inside).map(|n| (i, n)));
-            let differ = nodes.map(|(i, node)| {
-                let u = state.displacement(&found.zone, &linear.cells.node(i)).expect("within the membrane");
-                (node.displacement - u).abs()
-            });
-            differ.fold(0.0, f64::max)
-        };
-        let (plain, corrected) = (off(None), off(Some(&known)));
-        assert!(corrected < 0.2 * plain, "{corrected:e} against {plain:e}");
     }
 }

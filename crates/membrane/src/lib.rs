@@ -34,3 +34,34 @@ pub mod sizing;
 pub mod solution;
 pub mod staircase;
 pub mod zone;
+
+/// Inner parts for the tests in `tests`; no part of the interface.
+#[doc(hidden)]
+pub mod testing {
+    pub use crate::deferred::Known;
+    pub use crate::history::bridge::nearest;
+    pub use crate::history::mergers::at_zero;
+    pub use crate::history::seek::Seeker;
+    pub use crate::history::statement::{Control, PlannedIncrement};
+    pub use crate::mode_matrix::{MANY_MODES, ModeMatrix};
+    pub use crate::multigrid::interior::Interior;
+    pub use crate::multigrid::mesh::Near;
+    pub use crate::multigrid::runs::{Run, common, dilated, find, parts, runs};
+    use crate::plane_zone::PlaneZone;
+    pub use crate::plane_zone::extrapolation::without_waves;
+    pub use crate::plane_zone::motion::swept;
+    pub use crate::published::level_set::NodalLevelSet;
+    pub use crate::raster::Raster;
+    pub use crate::rest::{Course, Rest, Sight, Verdict};
+    use signorini_fem::Grid;
+
+    /// Cells near the fronts of a zone.
+    pub fn cells_near_fronts(zone: &PlaneZone) -> impl Iterator<Item = usize> + '_ {
+        zone.cells_near_fronts()
+    }
+
+    /// The number of knots that the first front of a zone would get.
+    pub fn wanted_knots(grid: &Grid<2>, zone: &PlaneZone) -> usize {
+        zone.wanted_knots(grid)
+    }
+}

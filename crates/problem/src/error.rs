@@ -108,14 +108,3 @@ impl miette::SourceCode for Place {
         )))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn places_are_counted_in_characters() {
-        let place = Place { name: "a".into(), text: "ä = 1\nbé = 2".into(), span: 10..11 };
-        assert_eq!(place.line_and_column(), (2, 3));
-    }
-}

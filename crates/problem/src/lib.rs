@@ -22,8 +22,10 @@ pub mod paths;
 pub mod rigid;
 pub mod shape;
 pub mod source;
+mod tree;
 pub mod units;
 pub mod value;
+mod walk;
 
 pub use arrays::{Array, CellArrays, Grid2, MeshArrays, TriangleArrays};
 pub use body::*;
@@ -357,5 +359,13 @@ pub struct Output {
     pub moments_about: Option<List<Value>>,
 }
 
-#[cfg(test)]
-mod tests;
+/// Inner parts for the tests in `tests`; no part of the interface.
+#[doc(hidden)]
+pub mod testing {
+    use std::ops::Range;
+
+    /// The last word of the key whose value stands at a place.
+    pub fn key_before(text: &str, span: Option<Range<usize>>) -> Option<&str> {
+        crate::case::toml_error::key_before(text, span)
+    }
+}

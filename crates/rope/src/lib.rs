@@ -21,3 +21,11 @@ pub mod path;
 pub mod place;
 pub mod quaternion;
 pub mod section;
+
+/// Inner parts for the tests in `tests`; no part of the interface.
+#[doc(hidden)]
+pub mod testing {
+    pub use crate::curve_pair::passage::{Moved, crossing, distance, roots, touching};
+    pub use crate::curve_pair::side::in_cone;
+    pub use crate::path::read::points;
+}

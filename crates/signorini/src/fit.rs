@@ -9,6 +9,7 @@ mod data;
 mod estimate;
 mod model;
 mod picture;
+pub(crate) mod student;
 
 pub use data::Measurements;
 pub use estimate::{Estimate, Parameter};

@@ -15,7 +15,7 @@ pub(crate) mod placed;
 mod placement;
 pub(crate) mod planner;
 pub mod reader;
-mod rigid;
+pub(crate) mod rigid;
 mod rigid_shape;
 pub mod solid;
 mod surface;

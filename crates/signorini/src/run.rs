@@ -3,16 +3,16 @@
 mod audit;
 mod checkpoint;
 mod contact_verdict;
-mod driver;
+pub(crate) mod driver;
 pub(crate) mod environment;
-mod mechanics;
+pub(crate) mod mechanics;
 mod membrane;
 pub(crate) mod outcome;
 mod planned;
-mod record;
+pub(crate) mod record;
 mod sizes;
-mod solid;
-mod strain;
+pub(crate) mod solid;
+pub(crate) mod strain;
 
 use crate::plan::{Plan, plan};
 use crate::problem::{CaseError, Problem};

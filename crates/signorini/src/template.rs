@@ -59,21 +59,3 @@ fn is_path(key: &str, path: &str) -> bool {
     let (key, path): (Vec<&str>, Vec<&str>) = (key.split('.').collect(), path.split('.').collect());
     key.len() == path.len() && key.iter().zip(&path).all(|(k, p)| *k == "NAME" || k.trim_end_matches("[]") == p.trim())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gallery::GALLERY;
-
-    #[test]
-    fn templates_are_the_cases_with_comments() {
-        for example in &GALLERY {
-            let text = annotated(example);
-            let values = |text: &str| text.parse::<toml::Table>().expect("TOML");
-            assert_eq!(values(&text), values(example.case), "{}", example.name);
-            crate::case::read(example.name, &text, &[]).expect("a case");
-            let comments = text.lines().filter(|l| l.starts_with("# ")).count();
-            assert!(comments > 8, "{}: {comments}", example.name);
-        }
-    }
-}

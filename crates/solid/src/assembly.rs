@@ -48,7 +48,7 @@ pub(crate) fn graph<const D: usize>(bodies: &Bodies<D>, reduction: &Reduction<D>
 }
 
 /// The stiffness of all bodies and elastic beds.
-pub(crate) fn assemble<const D: usize>(bodies: &Bodies<D>, supports: &[Support]) -> SymmetricMatrix {
+pub fn assemble<const D: usize>(bodies: &Bodies<D>, supports: &[Support]) -> SymmetricMatrix {
     let mut cliques: Vec<Vec<u32>> = Vec::new();
     for body in &bodies.list {
         for cell in 0..body.mesh.cell_count() {

@@ -4,7 +4,7 @@
 //! counts from the displacement of the last state found, which is the whole history; after an increment that failed it
 //! is still that of the state before.
 
-mod solve;
+pub(crate) mod solve;
 pub(crate) mod statement;
 
 pub use statement::{Friction, FrictionHistory, FrictionResult, RigidMotion, Rubbing};

@@ -255,6 +255,3 @@ impl StressLaw {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

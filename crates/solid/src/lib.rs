@@ -46,5 +46,25 @@ pub use state::State;
 pub use step_error::StepError;
 pub use supports::{Support, SupportError, SupportKind};
 
-#[cfg(test)]
-mod tests;
+/// Inner parts for the tests in `tests`; no part of the interface.
+#[doc(hidden)]
+pub mod testing {
+    pub use crate::assembly::assemble;
+    pub use crate::friction::solve::separated;
+    use crate::model::Model;
+    use crate::supports::Reduction;
+    use signorini_contact::WeightedGap;
+    use signorini_solve::cholesky::Cost;
+
+    /// What a factorisation takes, by the matrix itself; none where a step has taken that matrix.
+    pub fn exact_cost<const D: usize>(model: &mut Model<D>) -> Option<Cost> {
+        model.assemble();
+        let matrix = model.reduced.take()?;
+        model.symbolic.cost(&matrix).ok()
+    }
+
+    /// A row of gaps in the free unknowns.
+    pub fn reduced<const D: usize>(row: &WeightedGap, reduction: &Reduction<D>, offset: &[f64]) -> WeightedGap {
+        crate::condensed::reduced(row, reduction, offset)
+    }
+}

@@ -99,12 +99,12 @@ impl<const D: usize> Model<D> {
     }
 
     /// Whether the stiffness is there.
-    fn is_assembled(&self) -> bool {
+    pub fn is_assembled(&self) -> bool {
         self.stiffness.size() > 0
     }
 
     /// Assembles the stiffness, once.
-    fn assemble(&mut self) {
+    pub(crate) fn assemble(&mut self) {
         if self.is_assembled() {
             return;
         }
@@ -321,51 +321,5 @@ impl<const D: usize> Model<D> {
         }
         names.dedup();
         StepError::Contact { contact: names.join("`, `"), error, places }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::material::{Elastic, Space};
-    use crate::supports::SupportKind;
-    use signorini_fem::block::block;
-    use signorini_geometry::Point;
-
-    fn column<const D: usize>(cells: usize, degree: usize) -> Model<D> {
-        let mut bodies = Bodies::<D>::new(if D == 3 { Space::Solid } else { Space::PlaneStrain });
-        let axes = std::array::from_fn(|_| (0..=cells).map(|k| k as f64).collect());
-        let mesh = block::<D>(&axes, 1, |x| x);
-        let group = mesh.groups()["bottom"].clone();
-        bodies.add("a", mesh, degree, Elastic { youngs_modulus: 1.0, poissons_ratio: 0.3 });
-        let kind = SupportKind::Components(vec![true; D]);
-        let support = Support { name: "foot".into(), body: 0, group, kind };
-        Model::new(bodies, vec![support], Vec::new()).unwrap()
-    }
-
-    /// What is told without the matrix is near to what its factorisation takes, and examining a case assembles nothing.
-    #[test]
-    fn the_cost_is_known_before_the_matrix() {
-        fn check<const D: usize>(cells: usize, degree: usize) {
-            let mut model = column::<D>(cells, degree);
-            let still = Circumstances {
-                displacement: &|_, _| Point::<D>::zeros(),
-                load: vec![0.0; model.bodies.unknowns()],
-                rigid: vec![],
-                motion: vec![],
-            };
-            model.examine(&still).unwrap();
-            let told = model.cost().unwrap();
-            assert!(!model.is_assembled());
-            model.assemble();
-            let Some(matrix) = model.reduced.take() else { panic!("no matrix") };
-            let exact = model.symbolic.cost(&matrix).unwrap();
-            for (told, exact) in [(told.bytes, exact.bytes), (told.operations, exact.operations)] {
-                assert!((told / exact - 1.0).abs() < 0.25, "in {D} dimensions, degree {degree}: {told:e}, {exact:e}");
-            }
-        }
-        check::<2>(20, 2);
-        check::<3>(12, 1);
-        check::<3>(7, 2);
     }
 }

@@ -342,6 +342,3 @@ pub(crate) fn check_counts(place: &str, count: &[usize]) -> Result<(), Wrong> {
     }
     Ok(())
 }
-
-#[cfg(test)]
-mod tests;

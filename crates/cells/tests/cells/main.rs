@@ -1,4 +1,5 @@
 //! The tests of this crate as one program: each more would link all crates again.
 
 mod system;
+mod unit;
 mod validation;

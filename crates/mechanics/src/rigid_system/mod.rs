@@ -16,8 +16,6 @@ mod motion;
 mod rest;
 mod results;
 mod stability;
-#[cfg(test)]
-mod tests;
 mod touching;
 
 use crate::contact::Contact;

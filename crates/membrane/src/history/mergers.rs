@@ -62,7 +62,7 @@ fn vanishes(known: &[(f64, f64)]) -> Option<[f64; 2]> {
 }
 
 /// The polynomial through points, at zero.
-fn at_zero(points: &[(f64, f64)]) -> f64 {
+pub fn at_zero(points: &[(f64, f64)]) -> f64 {
     let others = |k: usize| points.iter().enumerate().filter(move |(j, _)| *j != k).map(|(_, p)| p.0);
     points.iter().enumerate().map(|(k, (m, t))| t * others(k).map(|o| o / (o - m)).product::<f64>()).sum()
 }
@@ -183,17 +183,4 @@ fn estimates<const D: usize, Z: Zone<D>>(grid: &Grid<D>, trails: &[Trail<Z>; 2],
         Some(all.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], t| [l.min(t), h.max(t)]))
     };
     list.iter().map(of_bridge).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn parabolas_and_lines_vanish_where_they_do() {
-        let t = |m: f64| 0.3 - 0.7 * m + 0.2 * m * m;
-        let points: Vec<(f64, f64)> = [0.4, 0.3, 0.1].iter().map(|m| (*m, t(*m))).collect();
-        assert!((at_zero(&points) - 0.3).abs() < 1e-15);
-        assert!((at_zero(&points[1..]) - 0.3).abs() < 0.01);
-    }
 }

@@ -2,7 +2,7 @@
 //! with the changes of topology between.
 
 mod between;
-mod bridge;
+pub(crate) mod bridge;
 mod differences;
 mod engine;
 mod event;
@@ -10,13 +10,13 @@ mod events;
 mod increment;
 mod known;
 mod level_set;
-mod mergers;
+pub(crate) mod mergers;
 mod nodal;
 mod parts;
 mod path;
 mod remark;
-mod seek;
-mod statement;
+pub(crate) mod seek;
+pub(crate) mod statement;
 mod told;
 mod trail;
 mod with_zones;

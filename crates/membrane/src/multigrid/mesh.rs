@@ -258,14 +258,14 @@ impl Regular for OnMesh {
 }
 
 /// Which parts of the plane fronts are near to.
-struct Near<'a> {
+pub struct Near<'a> {
     grid: &'a Grid<2>,
     /// For each corner of the grid of a zone, cells near fronts to the left of it and below.
     sums: Vec<u32>,
 }
 
 impl<'a> Near<'a> {
-    fn new(zone: &'a PlaneZone) -> Self {
+    pub fn new(zone: &'a PlaneZone) -> Self {
         let grid = zone.grid();
         let [columns, rows] = grid.cells();
         let mut sums = vec![0u32; (columns + 1) * (rows + 1)];
@@ -282,7 +282,7 @@ impl<'a> Near<'a> {
     }
 
     /// Whether fronts are near to a box, or may be.
-    fn touches(&self, b: &Aabb<2>) -> bool {
+    pub fn touches(&self, b: &Aabb<2>) -> bool {
         let width = self.grid.cells()[0] + 1;
         let [low, high] = [b.min, b.max].map(|x| self.grid.cell_index(self.grid.cell_containing(&x)));
         let to = |i: usize, j: usize| self.sums[j * width + i];
@@ -316,40 +316,4 @@ fn states(cells: &MeshCells, zone: &PlaneZone, near: &Near) -> Vec<State> {
         state[side.cell] = State::Cut;
     }
     state
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::obstacle::Side;
-    use signorini_geometry::{ClosedCurve, Point};
-
-    #[test]
-    fn sums_tell_which_boxes_fronts_are_near_to() {
-        let bounds = Aabb::new(Point::<2>::zeros(), Point::<2>::new(1.3, 0.9));
-        let grid = Grid::new(bounds, [13, 9], 1);
-        let circle: Vec<Point<2>> = (0..24)
-            .map(|k| {
-                let (sin, cos) = (f64::from(k) * std::f64::consts::TAU / 24.0).sin_cos();
-                Point::<2>::new(0.75 + 0.25 * cos, 0.4 + 0.2 * sin)
-            })
-            .collect();
-        let zone = PlaneZone::new(&grid, vec![(Side::Below, ClosedCurve::through(&circle, 3))]);
-        let near: HashSet<usize> = zone.cells_near_fronts().collect();
-        let sums = Near::new(&zone);
-        let mut seen = [0, 0];
-        for cell in 0..grid.cell_count() {
-            let low = grid.cell_index(cell);
-            for [columns, rows] in [[1, 1], [2, 1], [1, 3], [3, 2]] {
-                let high = [(low[0] + columns).min(13), (low[1] + rows).min(9)];
-                let last = grid.cell_at([high[0] - 1, high[1] - 1]);
-                let b = Aabb::new(grid.cell_box(cell).min, grid.cell_box(last).max).scaled(0.9);
-                let mut within = (low[1]..high[1]).flat_map(|j| (low[0]..high[0]).map(move |i| [i, j]));
-                let expected = within.any(|at| near.contains(&grid.cell_at(at)));
-                assert_eq!(sums.touches(&b), expected, "{b:?}");
-                seen[usize::from(expected)] += 1;
-            }
-        }
-        assert!(seen.iter().all(|n| *n > 50), "{seen:?}");
-    }
 }

@@ -10,15 +10,15 @@
 
 mod band;
 mod grid;
-mod interior;
+pub(crate) mod interior;
 pub mod large;
 mod level;
-mod mesh;
+pub(crate) mod mesh;
 pub mod nested;
 mod patches;
 mod regular;
 mod rows;
-mod runs;
+pub(crate) mod runs;
 mod transfer;
 mod uneven;
 

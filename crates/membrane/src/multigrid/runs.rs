@@ -2,14 +2,14 @@
 
 /// Consecutive members of one row, from `begin` up to `end`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Run {
+pub struct Run {
     pub row: usize,
     pub begin: usize,
     pub end: usize,
 }
 
 /// Runs of all that a predicate holds for, row by row.
-pub(super) fn runs(rows: usize, columns: usize, holds: impl Fn(usize, usize) -> bool) -> Vec<Run> {
+pub fn runs(rows: usize, columns: usize, holds: impl Fn(usize, usize) -> bool) -> Vec<Run> {
     let mut out = Vec::new();
     for row in 0..rows {
         let mut i = 0;
@@ -28,7 +28,7 @@ pub(super) fn runs(rows: usize, columns: usize, holds: impl Fn(usize, usize) -> 
 }
 
 /// All that lies at most `reach` rows and columns away from a set, within so many rows and columns.
-pub(super) fn dilated(set: &[Run], reach: usize, [columns, rows]: [usize; 2]) -> Vec<Run> {
+pub fn dilated(set: &[Run], reach: usize, [columns, rows]: [usize; 2]) -> Vec<Run> {
     let mut all: Vec<Run> = set
         .iter()
         .flat_map(|r| {
@@ -48,7 +48,7 @@ pub(super) fn dilated(set: &[Run], reach: usize, [columns, rows]: [usize; 2]) ->
 }
 
 /// What two sets of the same rows have in common.
-pub(super) fn common(a: &[Run], b: &[Run], mut visit: impl FnMut(usize, usize)) {
+pub fn common(a: &[Run], b: &[Run], mut visit: impl FnMut(usize, usize)) {
     let (mut a, mut b) = (a.iter().peekable(), b.iter().peekable());
     while let (Some(x), Some(y)) = (a.peek(), b.peek()) {
         let (begin, end) = (x.begin.max(y.begin), x.end.min(y.end));
@@ -70,13 +70,13 @@ pub(super) fn of_row(set: &[Run], row: usize) -> &[Run] {
 }
 
 /// Which run of a set in ascending order a member of a row belongs to.
-pub(super) fn find(set: &[Run], row: usize, column: usize) -> Option<usize> {
+pub fn find(set: &[Run], row: usize, column: usize) -> Option<usize> {
     let at = set.partition_point(|r| (r.row, r.end) <= (row, column));
     set.get(at).is_some_and(|r| r.row == row && r.begin <= column).then_some(at)
 }
 
 /// For each run the number of the part of the set that it belongs to: parts meet nowhere, not even at corners.
-pub(super) fn parts(set: &[Run]) -> Vec<usize> {
+pub fn parts(set: &[Run]) -> Vec<usize> {
     let mut root: Vec<usize> = (0..set.len()).collect();
     let mut below = 0;
     for k in 0..set.len() {
@@ -102,35 +102,4 @@ pub(super) fn root_of(root: &mut [usize], mut k: usize) -> usize {
 pub(super) fn join(root: &mut [usize], a: usize, b: usize) {
     let [a, b] = [a, b].map(|k| root_of(root, k));
     root[a.max(b)] = a.min(b);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn set(picture: &[&str], member: u8) -> Vec<Run> {
-        runs(picture.len(), picture[0].len(), |i, j| picture[j].as_bytes()[i] == member)
-    }
-
-    #[test]
-    fn parts_that_touch_at_a_corner_are_one() {
-        let s = set(&["xx..x..", "..x.x.x", "..x.xx.", "......x"], b'x');
-        let part = parts(&s);
-        let of = |row: usize, column: usize| find(&s, row, column).map(|k| part[k]);
-        assert_eq!([of(0, 2), of(1, 3), of(3, 0)], [None; 3]);
-        assert_eq!(of(0, 0), of(2, 2));
-        assert_eq!(of(0, 4), of(3, 6));
-        assert_eq!(of(0, 4), of(1, 6));
-        assert_ne!(of(0, 0), of(0, 4));
-    }
-
-    #[test]
-    fn what_lies_around_a_set_and_in_common_with_another() {
-        let s = set(&[".....", "..x..", ".....", "....."], b'x');
-        assert_eq!(dilated(&s, 1, [5, 4]), set(&[".xxx.", ".xxx.", ".xxx.", "....."], b'x'));
-        assert_eq!(dilated(&s, 2, [5, 4]), set(&["xxxxx", "xxxxx", "xxxxx", "xxxxx"], b'x'));
-        let mut found = Vec::new();
-        common(&set(&["xx.xx.x"], b'x'), &set(&[".xxxx.x"], b'x'), |a, b| found.push((a, b)));
-        assert_eq!(found, [(1, 2), (3, 5), (6, 7)]);
-    }
 }

@@ -68,7 +68,7 @@ impl PlaneZone {
 }
 
 /// Values evenly round a curve without their waves of a length, given in values: they are gone, those twice as long are halved.
-pub(super) fn without_waves(values: &[f64], length: usize) -> Vec<f64> {
+pub fn without_waves(values: &[f64], length: usize) -> Vec<f64> {
     let n = values.len();
     if length == 0 || 2 * length > n {
         return values.to_vec();

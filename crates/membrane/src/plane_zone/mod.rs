@@ -1,8 +1,8 @@
 //! Contact zones in the plane, bounded by smooth closed fronts.
 
-mod extrapolation;
+pub(crate) mod extrapolation;
 mod modes;
-mod motion;
+pub(crate) mod motion;
 mod near;
 mod regions;
 mod sheets;
@@ -166,6 +166,11 @@ impl PlaneZone {
         (2 * grid.degree() + 1).max(7)
     }
 
+    /// The number of knots that the first front would get.
+    pub(crate) fn wanted_knots(&self, grid: &Grid<2>) -> usize {
+        Self::knots(grid, self.relative_length(&self.curves[0]))
+    }
+
     /// As many knots as the slope jump can tell apart modes on a front of the given length in cells. The front lives in the
     /// space of its modes: what they do not see they could not smooth either.
     fn knots(grid: &Grid<2>, relative: f64) -> usize {
@@ -236,6 +241,3 @@ fn curvatures(curve: &ClosedCurve) -> impl Iterator<Item = f64> + '_ {
 fn bounding_box(points: &[Point<2>]) -> Aabb<2> {
     points.iter().fold(Aabb::new(points[0], points[0]), |b, p| Aabb::new(b.min.inf(p), b.max.sup(p)))
 }
-
-#[cfg(test)]
-mod tests;

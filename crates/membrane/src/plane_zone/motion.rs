@@ -27,7 +27,7 @@ pub(super) const FOLD: f64 = 0.3;
 
 /// How far a tip moves away from its centre of curvature to sweep as much area as a straight front does in a step: the load on
 /// what is swept balances the slope jump.
-pub(super) fn swept(step: f64, curvature: f64) -> f64 {
+pub fn swept(step: f64, curvature: f64) -> f64 {
     2.0 * step / (1.0 + (1.0 + 2.0 * (curvature * step).max(0.0)).sqrt())
 }
 

@@ -8,3 +8,4 @@ mod mesh_slivers;
 mod multigrid;
 mod published;
 mod slivers;
+mod unit;

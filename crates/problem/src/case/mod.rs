@@ -2,17 +2,20 @@
 
 mod origin;
 pub mod override_key;
+mod reader;
 pub mod schema;
 mod spans;
 pub mod toml_error;
 
 use crate::error::Place;
 use crate::source::{Source, Text};
-use crate::{CaseError, KeyPath, Problem};
+use crate::{CaseError, KeyPath, Problem, walk};
 use origin::Origins;
+use reader::Wrong;
 use spans::Spans;
 use std::ops::Range;
 use std::sync::Arc;
+use toml::de::DeTable;
 
 /// Reads a problem from a text that is called `name`: the path of its file, by which files beside it are found. `overrides`
 /// are `KEY=VALUE` pairs that replace or add keys.
@@ -22,7 +25,9 @@ use std::sync::Arc;
 pub fn read(name: &str, text: &str, overrides: &[String]) -> Result<Problem, CaseError> {
     let (text, origins) = override_key::apply(name, text, overrides)?;
     let wrong = |e| origins.relocated(toml_error::from_toml(name, &text, &e));
-    let mut problem: Problem = toml::from_str(&text).map_err(wrong)?;
+    let table = DeTable::parse(&text).map_err(wrong)?.into_inner();
+    let wrong = |e: Wrong| origins.relocated(toml_error::told(name, &text, &e.message, e.span));
+    let mut problem: Problem = reader::read(table).map_err(wrong)?;
     problem.source = source(name, text, origins);
     Ok(problem)
 }
@@ -38,7 +43,7 @@ fn source(name: &str, text: String, origins: Origins) -> Source {
 pub fn text(problem: &Problem) -> String {
     match &problem.source.text {
         Some(text) => text.text().to_string(),
-        None => toml::to_string(problem).unwrap_or_default(),
+        None => walk::written(problem).and_then(|tree| toml::to_string(&tree).ok()).unwrap_or_default(),
     }
 }
 

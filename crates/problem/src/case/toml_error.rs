@@ -5,19 +5,24 @@ use std::ops::Range;
 
 /// Turns an error of the TOML reader into ours, with the nearest valid key.
 pub fn from_toml(name: &str, text: &str, error: &toml::de::Error) -> CaseError {
-    let message = error.message().trim().replace('\n', " ");
+    told(name, text, error.message(), error.span())
+}
+
+/// The same of what a reader of TOML says, and where.
+pub(crate) fn told(name: &str, text: &str, message: &str, span: Option<Range<usize>>) -> CaseError {
+    let message = message.trim().replace('\n', " ");
     let mut ours = CaseError::new(message.clone());
     if let Some(rest) = message.strip_prefix("unknown field `").or_else(|| message.strip_prefix("unknown variant `"))
         && let Some((key, expected)) = rest.split_once('`')
     {
         let known: Vec<&str> = expected.split('`').skip(1).step_by(2).collect();
-        ours.message = format!("unknown {} `{key}`", if quoted(text, error.span()) { "word" } else { "key" });
+        ours.message = format!("unknown {} `{key}`", if quoted(text, span.clone()) { "word" } else { "key" });
         ours.help = Some(suggestion(key, &known));
     } else if let Some(key) = message.strip_prefix("missing field `").and_then(|r| r.strip_suffix('`')) {
         ours.message = format!("missing key `{key}`");
         ours.help = Some(format!("add `{key} = …` to this table"));
     } else if let (true, Some(name)) =
-        (message.contains("wanted exactly 1 element"), body_without_kind(text, error.span()))
+        (message.contains("wanted exactly 1 element"), body_without_kind(text, span.clone()))
     {
         ours.message = format!("the kind of body `{name}` is missing or given more than once");
         ours.help = Some(format!(
@@ -26,9 +31,9 @@ pub fn from_toml(name: &str, text: &str, error: &toml::de::Error) -> CaseError {
         ));
     } else if message.contains("wanted exactly 1 element") || message.contains("wanted string or table") {
         ours.message = "expected a choice: one word in quotes, or a table with exactly one key".into();
-        ours.help = key_before(text, error.span()).map(|key| {
+        ours.help = key_before(text, span.clone()).map(|key| {
             let told = format!("`signorini explain {key}` lists the choices");
-            example(text, error.span(), key).map_or(told.clone(), |example| format!("{example}; {told}"))
+            example(text, span.clone(), key).map_or(told.clone(), |example| format!("{example}; {told}"))
         });
     } else if let Some((found, wanted)) = message
         .strip_prefix("invalid type: ")
@@ -37,7 +42,7 @@ pub fn from_toml(name: &str, text: &str, error: &toml::de::Error) -> CaseError {
     {
         ours.message = format!("expected {}, found {}", in_words(wanted), found_in_words(found));
     }
-    let span = error.span().unwrap_or(0..0);
+    let span = span.unwrap_or(0..0);
     // An error in a table without a key of its own spans the whole table: its first line says enough.
     let end =
         text[span.start.min(text.len())..span.end.min(text.len())].find('\n').map_or(span.end, |n| span.start + n);
@@ -61,7 +66,7 @@ fn quoted(text: &str, span: Option<Range<usize>>) -> bool {
 }
 
 /// The last word of the key whose value stands at a place, where both are on one line.
-fn key_before(text: &str, span: Option<Range<usize>>) -> Option<&str> {
+pub(crate) fn key_before(text: &str, span: Option<Range<usize>>) -> Option<&str> {
     let before = text.get(..span?.start)?.trim_end().strip_suffix('=')?.trim_end();
     let word = before.rsplit(|c: char| !(c.is_alphanumeric() || c == '_')).next()?;
     (!word.is_empty()).then_some(word)
@@ -116,45 +121,5 @@ fn found_in_words(found: &str) -> String {
             "sequence" => "a list".into(),
             other => other.into(),
         },
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// No name of a type of the program shows in a message.
-    #[test]
-    fn wrong_kinds_of_values_are_told_in_words() {
-        let head = "space = \"line\"\n[bodies.film.membrane]\ntension = 1.0\n";
-        for (line, expected) in [
-            ("degree = \"two\"", "expected a whole number, found the text `two`"),
-            ("degree = 0.5", "expected a whole number, found `0.5`"),
-            ("degree = [1]", "expected a whole number, found a list"),
-            ("mesh.grid = 5", "expected a table of keys, found `5`"),
-            ("mesh.grid = { cells = 40 }", "expected a list in brackets, found `40`"),
-            ("domain = 3", "choice"),
-            ("domain = {}", "choice"),
-            ("domain = { disc.radius = 1, interval.to = 2 }", "exactly one key"),
-            ("domain = \"disk\"", "unknown word `disk`"),
-            ("domain.disk.radius = 3", "unknown key `disk`"),
-            ("mesh.grid = { cells = [10], refine = 3 }", "expected a table of keys, found `3`"),
-        ] {
-            let text = format!("{head}{line}\n");
-            let error = crate::case::read("case.toml", &text, &[]).expect_err(line);
-            assert!(error.message.contains(expected), "{line}: {}", error.message);
-            assert!(!error.message.contains("i64") && !error.message.contains("Key"), "{line}: {}", error.message);
-        }
-    }
-
-    #[test]
-    fn the_choices_of_a_key_are_pointed_to() {
-        for line in ["domain = 3", "domain = { disc.radius = 1, interval.to = 2 }", "domain={}"] {
-            let text = format!("space = \"line\"\n[bodies.film.membrane]\ntension = 1.0\n{line}\n");
-            let error = crate::case::read("case.toml", &text, &[]).expect_err(line);
-            assert!(error.help.is_some_and(|h| h.contains("explain domain")), "{line}");
-        }
-        assert_eq!(key_before("a = { b.c = 1", Some(12..13)), Some("c"));
-        assert_eq!(key_before("[1, 2]", Some(4..5)), None);
     }
 }

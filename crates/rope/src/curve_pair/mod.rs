@@ -14,8 +14,8 @@ pub mod friction;
 pub mod history;
 pub mod interaction;
 pub mod measure;
-mod passage;
+pub(crate) mod passage;
 pub mod search;
-mod side;
+pub(crate) mod side;
 
 pub use contact::{CurveContact, CurveContactError, Form};

@@ -14,9 +14,9 @@ use signorini_mechanics::curve::{Closure, samples};
 
 /// A point that moves in proportion: at the start, and its whole way.
 #[derive(Clone, Copy)]
-struct Moved {
-    x: Point<3>,
-    way: Vector<3>,
+pub struct Moved {
+    pub x: Point<3>,
+    pub way: Vector<3>,
 }
 
 impl Moved {
@@ -93,7 +93,7 @@ fn swept(chord: &Chord) -> Aabb<3> {
 }
 
 /// The first place on the way at which two chords cross.
-fn crossing([a, b]: &[Chord; 2]) -> Option<f64> {
+pub fn crossing([a, b]: &[Chord; 2]) -> Option<f64> {
     let difference = |p: &Moved, q: &Moved| [p.x - q.x, p.way - q.way];
     let sides = [difference(&a[1], &a[0]), difference(&b[1], &b[0]), difference(&b[0], &a[0])];
     let triple = |i: usize, j: usize, k: usize| sides[0][i].cross(&sides[1][j]).dot(&sides[2][k]);
@@ -129,7 +129,7 @@ fn last([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> f64 {
 }
 
 /// Changes of sign of a cubic from 0 to 1, in order.
-fn roots(c: [f64; 4]) -> Vec<f64> {
+pub fn roots(c: [f64; 4]) -> Vec<f64> {
     let value = |t: f64| c[0] + t * (c[1] + t * (c[2] + t * c[3]));
     // Between zeros of its derivative it is monotone.
     let mut bounds = vec![0.0];
@@ -153,7 +153,7 @@ fn roots(c: [f64; 4]) -> Vec<f64> {
 }
 
 /// Where before they cross two chords are as near as the sections about them touch.
-fn touching(pair: &[Chord; 2], radii: f64, crossed: f64) -> f64 {
+pub fn touching(pair: &[Chord; 2], radii: f64, crossed: f64) -> f64 {
     if distance(pair, 0.0) <= radii {
         return 0.0;
     }
@@ -169,7 +169,7 @@ fn leaving(pair: &[Chord; 2], apart: f64, crossed: f64) -> f64 {
 }
 
 /// The distance of two chords (Ericson, Real-time collision detection, 2005, section 5.1.9).
-fn distance([a, b]: &[Chord; 2], t: f64) -> f64 {
+pub fn distance([a, b]: &[Chord; 2], t: f64) -> f64 {
     let [p, q] = [a, b].map(|c| [c[0].at(t), c[1].at(t)]);
     let [u, v, w] = [p[1] - p[0], q[1] - q[0], p[0] - q[0]];
     let [uu, vv, uv] = [u.norm_squared(), v.norm_squared(), u.dot(&v)];
@@ -181,37 +181,4 @@ fn distance([a, b]: &[Chord; 2], t: f64) -> f64 {
     let r = along(s);
     let s = back(r);
     (w + u * s - v * along(s)).norm()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn moved(from: [f64; 3], to: [f64; 3]) -> Moved {
-        Moved { x: from.into(), way: Vector::<3>::from(to) - Vector::<3>::from(from) }
-    }
-
-    #[test]
-    fn chords_cross_where_they_do() {
-        let still = [moved([-1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]), moved([1.0, 0.0, 0.0], [1.0, 0.0, 0.0])];
-        // It falls by 4 from a height of 1, turning.
-        let falling = |y: f64| {
-            [moved([0.2, y - 1.0, 1.0], [0.2, y - 1.0, -3.0]), moved([0.2, y + 1.0, 1.0], [0.5, y + 1.0, -3.0])]
-        };
-        let pair = [still, falling(0.0)];
-        let crossed = crossing(&pair).unwrap();
-        assert!((crossed - 0.25).abs() < 1e-12);
-        assert!((distance(&pair, 0.1) - 0.6).abs() < 1e-3);
-        let touch = touching(&pair, 0.4, crossed);
-        assert!((distance(&pair, touch) - 0.4).abs() < 1e-12 && touch < crossed);
-        assert!(crossing(&[still, falling(1.5)]).is_none());
-        // Ends that meet in the middle leave no way between.
-        let halves =
-            [[still[0], moved([0.2, 0.0, 0.0], [0.2, 0.0, 0.0])], [moved([0.2, 0.0, 0.0], [0.2, 0.0, 0.0]), still[1]]];
-        let straight = [moved([0.2, -1.0, 1.0], [0.2, -1.0, -3.0]), moved([0.2, 1.0, 1.0], [0.2, 1.0, -3.0])];
-        assert!(halves.iter().any(|half| crossing(&[*half, straight]).is_some()));
-        assert_eq!(roots([-1.0, 4.0, 0.0, 0.0]).len(), 1);
-        let three = roots([-0.048, 0.68, -1.5, 1.0].map(|c: f64| c));
-        assert!(three.iter().all(|t| (-0.048 + t * (0.68 + t * (-1.5 + t))).abs() < 1e-12), "{three:?}");
-    }
 }

@@ -2,7 +2,7 @@
 //!
 //! A path is a curve of the geometry layer or a sequence of points; [`Path::sample`] divides it by its length.
 
-mod read;
+pub(crate) mod read;
 mod sample;
 
 pub use sample::Sampled;

@@ -13,3 +13,4 @@ mod pulley;
 mod ropes;
 mod strands;
 mod systems;
+mod unit;

@@ -1,7 +1,7 @@
 //! Least squares, and how far they can be trusted.
 
 use super::model::{Model, Prediction};
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use super::student;
 
 /// Steps of the search.
 const MOST_STEPS: usize = 60;
@@ -126,11 +126,11 @@ impl Estimate {
 
     fn assess(model: &Model, x: [f64; 2], s: &Squares, with_tension: bool, confidence: f64, converged: bool) -> Self {
         let count = 1 + usize::from(with_tension);
-        let freedom = (model.len() - count) as f64;
-        let variance = s.sum / freedom;
+        let freedom = model.len().saturating_sub(count);
+        let variance = s.sum / freedom as f64;
         let (matrix, _) = normal(s, with_tension);
         let covariance = inverse(matrix).map(|m| m.map(|row| row.map(|v| variance * v)));
-        let factor = StudentsT::new(0.0, 1.0, freedom).map_or(f64::NAN, |t| t.inverse_cdf(0.5 + 0.5 * confidence));
+        let factor = student::bound(confidence, freedom);
         let parameter = |k: usize| {
             let error = covariance.map_or(f64::INFINITY, |c| c[k][k].max(0.0).sqrt());
             let bound = |sense: f64| (x[k] + sense * factor * error).exp();

@@ -72,7 +72,8 @@ fn png(svg: &str) -> Result<Vec<u8>, OutputError> {
 }
 
 /// As a PNG: with a palette where that is enough, without transparency where there is none.
-fn encoded(image: &tiny_skia::Pixmap) -> Result<Vec<u8>, OutputError> {
+#[doc(hidden)]
+pub fn encoded(image: &tiny_skia::Pixmap) -> Result<Vec<u8>, OutputError> {
     let mut bytes = Vec::new();
     let opaque = image.pixels().iter().all(|p| p.is_opaque());
     if opaque && let Some((palette, data)) = indexed(image) {
@@ -227,7 +228,8 @@ pub fn axes<'a, 'b>(part: &'a DrawingArea<SVGBackend<'b>, Shift>, axes: &Axes) -
 
 /// A raster to be laid under the axes of a chart.
 pub struct Image {
-    pixmap: tiny_skia::Pixmap,
+    #[doc(hidden)]
+    pub pixmap: tiny_skia::Pixmap,
 }
 
 impl Image {
@@ -252,7 +254,7 @@ impl Image {
         }
     }
 
-    #[cfg(test)]
+    #[doc(hidden)]
     pub fn get(&self, x: usize, y: usize) -> RGBColor {
         let pixel = self.pixmap.pixels()[y * self.width() + x].demultiply();
         RGBColor(pixel.red(), pixel.green(), pixel.blue())
@@ -422,33 +424,4 @@ pub fn ticks(low: f64, high: f64, wanted: usize) -> Vec<f64> {
     // Divided rather than multiplied where the step is below one: 0.3 and not 0.30000000000000004.
     let at = |k: i64| if step < 1.0 { k as f64 / (1.0 / step).round() } else { k as f64 * step };
     (first..=last).map(at).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_map_is_stored_by_a_palette_and_read_back_as_it_is() {
-        let mut image = Image::new(300, 2).unwrap();
-        (0..300).for_each(|x| image.set(x, 0, viridis(x as f64 / 299.0)));
-        (0..300).for_each(|x| image.set(x, 1, RGBColor(228, 228, 228)));
-        let bytes = encoded(&image.pixmap).unwrap();
-        let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
-        assert_eq!(reader.info().color_type, png::ColorType::Indexed);
-        let back = tiny_skia::Pixmap::decode_png(&bytes).unwrap();
-        assert!(back.pixels() == image.pixmap.pixels());
-        assert!(reader.next_row().is_ok());
-    }
-
-    #[test]
-    fn ticks_are_round_and_within_the_range() {
-        assert_eq!(ticks(-1.0, 1.0, 4), [-1.0, -0.5, 0.0, 0.5, 1.0]);
-        assert_eq!(ticks(0.0409, 19.5, 5), [5.0, 10.0, 15.0]);
-        assert_eq!(ticks(0.0, 0.31, 4), [0.0, 0.1, 0.2, 0.3]);
-        assert_eq!(ticks(2.0, 2.0, 4), [2.0]);
-        assert_eq!(tick_labels(&ticks(-1.0, 1.0, 4)), ["-1.0", "-0.5", "0.0", "0.5", "1.0"]);
-        assert_eq!(tick_labels(&[0.0, 5e-6, 1e-5, 1.5e-5]), ["0", "5e-6", "1.0e-5", "1.5e-5"]);
-        assert_eq!(tick_labels(&[1e5, 1.05e5]), ["1.00e5", "1.05e5"]);
-    }
 }

@@ -25,7 +25,7 @@ fn in_order<const D: usize>(mesh: &DisplayMesh<D>, values: &[f64]) -> Vec<(f64, 
 }
 
 /// The value of a line between its points.
-fn value_at(line: &[(f64, f64)], x: f64) -> f64 {
+pub fn value_at(line: &[(f64, f64)], x: f64) -> f64 {
     let after = line.partition_point(|p| p.0 < x).clamp(1, line.len().max(2) - 1);
     let (Some(a), Some(b)) = (line.get(after - 1), line.get(after)) else { return 0.0 };
     a.1 + (b.1 - a.1) * ((x - a.0) / (b.0 - a.0).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
@@ -134,7 +134,7 @@ pub fn gap_and_pressure<const D: usize>(
 }
 
 /// The pressure of every zone of contact, carried on to the fronts, where it jumps.
-fn zones(pressure: &[(f64, f64)], touching: &[(f64, f64)], ends: &[f64]) -> Vec<Vec<(f64, f64)>> {
+pub fn zones(pressure: &[(f64, f64)], touching: &[(f64, f64)], ends: &[f64]) -> Vec<Vec<(f64, f64)>> {
     let mut zones: Vec<Vec<(f64, f64)>> = Vec::new();
     let (mut zone, mut before): (Vec<(f64, f64)>, f64) = (Vec::new(), f64::NEG_INFINITY);
     // The front between two points, if there is one.
@@ -155,19 +155,4 @@ fn zones(pressure: &[(f64, f64)], touching: &[(f64, f64)], ends: &[f64]) -> Vec<
     }
     zones.extend((!zone.is_empty()).then_some(zone));
     zones
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn pressure_is_drawn_from_front_to_front() {
-        let x = |k: usize| k as f64;
-        let pressure: Vec<(f64, f64)> = (0..8).map(|k| (x(k), if (2..5).contains(&k) { 3.0 } else { 0.0 })).collect();
-        let touching: Vec<(f64, f64)> = pressure.iter().map(|p| (p.0, f64::from(u8::from(p.1 > 0.0)))).collect();
-        let found = zones(&pressure, &touching, &[1.4, 4.75]);
-        assert_eq!(found, [vec![(1.4, 3.0), (2.0, 3.0), (3.0, 3.0), (4.0, 3.0), (4.75, 3.0)]]);
-        assert_eq!(value_at(&[(0.0, 0.0), (2.0, 4.0)], 0.5), 1.0);
-    }
 }

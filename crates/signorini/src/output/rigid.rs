@@ -27,7 +27,8 @@ pub fn files<const D: usize>(
     tools(plan, time).into_iter().map(|(name, gap)| Ok((name, file::<D>(&gap, [low - pad, high + pad])?))).collect()
 }
 
-fn file<const D: usize>(gap: &Gap, corners: [Vector<3>; 2]) -> Result<Vec<u8>, OutputError> {
+#[doc(hidden)]
+pub fn file<const D: usize>(gap: &Gap, corners: [Vector<3>; 2]) -> Result<Vec<u8>, OutputError> {
     let (points, cells) = if D == 3 {
         let (points, _, triangles) = surface(gap, corners);
         (points, triangles.iter().map(|t| t.to_vec()).collect())
@@ -55,7 +56,8 @@ fn file<const D: usize>(gap: &Gap, corners: [Vector<3>; 2]) -> Result<Vec<u8>, O
 }
 
 /// Pieces with the points in which they meet, each once: points as near as `near` are one.
-fn joined(pieces: &[[Vector<3>; 2]], near: f64) -> (Vec<Vector<3>>, Vec<Vec<u32>>) {
+#[doc(hidden)]
+pub fn joined(pieces: &[[Vector<3>; 2]], near: f64) -> (Vec<Vector<3>>, Vec<Vec<u32>>) {
     let mut numbers: std::collections::HashMap<[i64; 2], u32> = std::collections::HashMap::new();
     let (mut points, mut cells) = (Vec::new(), Vec::new());
     for ends in pieces {
@@ -72,23 +74,4 @@ fn joined(pieces: &[[Vector<3>; 2]], near: f64) -> (Vec<Vector<3>>, Vec<Vec<u32>
         }
     }
     (points, cells)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use signorini_contact::GapJet;
-
-    #[test]
-    fn the_edge_of_a_disc_is_a_closed_line_in_its_file() {
-        let gap: Gap = Box::new(|x| GapJet::ball(x, &Vector::<3>::zeros(), 0.5));
-        let corner = Vector::<3>::new(1.0, 1.0, 0.0);
-        let (points, cells) = joined(&region(&gap, [-corner, corner]).1, 1e-9);
-        assert!(points.len() > 100 && points.iter().all(|x| (x.norm() - 0.5).abs() < 1e-12));
-        let mut met = vec![0; points.len()];
-        cells.iter().flatten().for_each(|&k| met[k as usize] += 1);
-        assert_eq!(met.iter().position(|m| *m != 2), None);
-        let text = String::from_utf8(file::<2>(&gap, [-corner, corner]).unwrap()).unwrap();
-        assert!(text.contains("<Lines>") && text.contains(&format!("NumberOfPoints=\"{}\"", points.len())));
-    }
 }

@@ -286,7 +286,7 @@ fn sides<const D: usize>(shown: &ContactDisplay<D>, points: Vec<Vector<3>>, most
 
 /// Pieces of the rim within a face, each with the direction across it that leads into the zone: from there a point in the
 /// zone is reached without crossing the rim, or by crossing it an even number of times.
-fn directed(rim: &[[[f64; 2]; 2]], inside: [f64; 2]) -> Vec<([[f64; 2]; 2], [f64; 2])> {
+pub fn directed(rim: &[[[f64; 2]; 2]], inside: [f64; 2]) -> Vec<([[f64; 2]; 2], [f64; 2])> {
     let long = rim.iter().filter(|[a, b]| a != b);
     long.map(|&[a, b]| {
         let across = [a[1] - b[1], b[0] - a[0]];
@@ -305,25 +305,9 @@ fn crosses([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
 }
 
 /// The distance of a point to a piece of a line.
-fn distance(x: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
+pub fn distance(x: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
     let (along, from) = ([b[0] - a[0], b[1] - a[1]], [x[0] - a[0], x[1] - a[1]]);
     let length = (along[0] * along[0] + along[1] * along[1]).max(f64::MIN_POSITIVE);
     let t = ((along[0] * from[0] + along[1] * from[1]) / length).clamp(0.0, 1.0);
     (from[0] - t * along[0]).hypot(from[1] - t * along[1])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn both_sides_of_a_rim_are_told_apart() {
-        // Two lines across a face, between which there is contact, whichever way their pieces run.
-        let rim = [[[0.0, 0.2], [0.5, 0.25]], [[1.0, 0.3], [0.5, 0.25]], [[0.0, 0.8], [1.0, 0.8]]];
-        for (piece, inwards) in directed(&rim, [0.3, 0.5]) {
-            let towards = [0.5 - piece[0][0], 0.5 - piece[0][1]];
-            assert!(towards[0] * inwards[0] + towards[1] * inwards[1] > 0.0, "{piece:?} {inwards:?}");
-        }
-        assert!((distance([2.0, 0.8], rim[2]) - 1.0).abs() < 1e-15);
-    }
 }

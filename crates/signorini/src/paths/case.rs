@@ -6,7 +6,8 @@ use signorini_paths::PathError;
 
 /// A problem of paths that was read.
 pub struct PathCase {
-    pub(super) plan: PathPlan,
+    #[doc(hidden)]
+    pub plan: PathPlan,
 }
 
 impl PathCase {

@@ -53,6 +53,12 @@ impl RigidShape for Hole {
 }
 
 impl RigidBody {
+    /// A body of a shape that is touched from outside.
+    #[doc(hidden)]
+    pub fn new(name: &str, shape: Arc<dyn RigidShape>, displacement: Vec<Placed>, rotation: Vec<Placed>) -> Self {
+        Self { name: name.into(), shape, inside: false, displacement, rotation, bounds: None }
+    }
+
     /// The shape from the side on which it is touched.
     pub fn touched(&self) -> Arc<dyn RigidShape> {
         if self.inside { Arc::new(Hole(Arc::clone(&self.shape))) } else { Arc::clone(&self.shape) }
@@ -423,31 +429,4 @@ pub(super) fn flat_box<const D: usize>(low: Vector<3>, high: Vector<3>) -> Aabb<
         (low[2], high[2]) = (-depth, depth);
     }
     Aabb::new(low, high)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::expression::Expression;
-    use crate::problem::KeyPath;
-    use signorini_geometry::rigid_shape::Plane;
-    use std::f64::consts::FRAC_PI_2;
-
-    #[test]
-    fn a_turned_body_turns_its_gap_and_normal() {
-        let number = |v: f64| Placed { expression: Expression::number(v), key: KeyPath::default() };
-        let plane = Plane { point: Point::<3>::new(1.0, 0.0, 0.0), normal: Vector::<3>::y() };
-        let body = RigidBody {
-            name: "plane".into(),
-            shape: Arc::new(plane),
-            inside: false,
-            bounds: None,
-            displacement: vec![number(0.0), number(0.5)],
-            rotation: vec![number(FRAC_PI_2)],
-        };
-        // A quarter turn lets the plane look along -x, through (1, 0.5, 0).
-        let problem = crate::case::read("case", "space = \"3d\"\n[bodies]\n", &[]).unwrap();
-        let GapJet { gap, normal, .. } = body.gap_at(&problem, 0.0).unwrap()(&Point::<3>::new(0.25, 7.0, 0.0));
-        assert!((gap - 0.75).abs() < 1e-14 && (normal + Vector::<3>::x()).norm() < 1e-14, "{gap} {normal:?}");
-    }
 }

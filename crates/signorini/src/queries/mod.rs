@@ -10,10 +10,10 @@ pub mod geometry;
 mod implicit;
 mod object;
 mod output;
-mod points;
+pub(crate) mod points;
 mod query;
 pub mod scanner;
-mod shapes;
+pub(crate) mod shapes;
 
 use std::collections::HashSet;
 use std::io::{self, BufRead, BufReader, Read};

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The most unnamed shapes that are kept. Together their texts are no longer than one query may be.
-const KEPT: usize = 64;
+pub const KEPT: usize = 64;
 
 type Built = Result<Arc<Shape>, FieldError>;
 
@@ -34,6 +34,11 @@ impl Shapes {
     /// No shapes; files that shapes name are looked for in `folder`.
     pub fn new(folder: &Path) -> Self {
         Shapes { folder: folder.to_path_buf(), named: BTreeMap::new(), kept: Vec::new() }
+    }
+
+    /// How many unnamed shapes are kept.
+    pub fn kept(&self) -> usize {
+        self.kept.len()
     }
 
     /// Builds the shapes of an object `{NAME: SHAPE, ...}`.
@@ -112,37 +117,4 @@ pub fn build(text: &str, folder: &Path) -> Result<Shape, FieldError> {
     let value: Value = serde_json::from_str(text)
         .map_err(|e| FieldError { path: String::new(), message: format!("not JSON: {e}") })?;
     geometry::shape("", &value, folder)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn sphere(r: f64) -> String {
-        format!(
-            r#"{{"type": "sphere", "o": [0,0,0], "ex": [1,0,0], "ey": [0,1,0], "r": {r}, "range": [[0, 1], [0, 1]]}}"#
-        )
-    }
-
-    #[test]
-    fn shapes_that_come_again_are_built_once_and_kept() {
-        let mut shapes = Shapes::new(Path::new(""));
-        let (twice, once) = (sphere(1.0), sphere(2.0));
-        shapes.prepare([&*twice, &*once, &*twice].into_iter());
-        let first = shapes.partner(&twice).unwrap();
-        assert_eq!(shapes.kept.len(), 1);
-        assert!(!Arc::ptr_eq(&shapes.partner(&once).unwrap(), &shapes.partner(&once).unwrap()));
-        // More shapes than are kept, two at a time: the first one is used now and then, and stays.
-        for k in 0..2 * KEPT {
-            let other = sphere(3.0 + k as f64);
-            shapes.prepare([&*other, &*other, &*twice].into_iter());
-            assert!(Arc::ptr_eq(&shapes.partner(&other).unwrap(), &shapes.partner(&other).unwrap()));
-        }
-        assert_eq!(shapes.kept.len(), KEPT);
-        assert!(Arc::ptr_eq(&shapes.partner(&twice).unwrap(), &first));
-        // What is wrong is kept too, and said each time.
-        let wrong = sphere(-1.0);
-        shapes.prepare([&*wrong, &*wrong].into_iter());
-        assert_eq!(shapes.partner(&wrong).unwrap_err().path, "r");
-    }
 }

@@ -344,6 +344,3 @@ fn finish(record: &Record, model: &dyn Model, reason: Reason, start: Instant) ->
     record.folder.write("summary.json", summary.to_json().as_bytes())?;
     Ok(summary)
 }
-
-#[cfg(test)]
-mod tests;

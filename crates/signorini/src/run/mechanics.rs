@@ -1,7 +1,7 @@
 //! Bodies of any kind in one system as a model: ropes, beams, free rigid bodies.
 
 mod accuracy;
-mod recovered;
+pub(crate) mod recovered;
 mod report;
 
 use super::audit::system::SystemAudit;

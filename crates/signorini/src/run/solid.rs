@@ -2,7 +2,7 @@
 
 mod failure;
 mod report;
-mod saved;
+pub(crate) mod saved;
 mod setup;
 
 use super::audit::solid::{Looked, SolidAudit};

@@ -4,7 +4,7 @@
 //! A scene is a TOML file with `analysis = "closest_pairs"`; the parts of its bodies are written like the partners of
 //! [queries](crate::queries).
 
-mod case;
+pub(crate) mod case;
 pub(crate) mod output;
 pub(crate) mod picture;
 

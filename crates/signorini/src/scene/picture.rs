@@ -14,10 +14,10 @@ use crate::output::page::{Page, css, escaped, sheet};
 use crate::output::render::{Body, Look, Paint, render};
 use crate::output::{Folder, OutputError};
 
-const SIZE: (f64, f64) = (900.0, 500.0);
+pub const SIZE: (f64, f64) = (900.0, 500.0);
 /// Width of the list of pairs on the right, and what of the height is the title's.
 const LIST: f64 = 270.0;
-const HEAD: f64 = 50.0;
+pub const HEAD: f64 = 50.0;
 /// Colours of the kinds of pairs, told apart with colour-blind eyes too (Okabe & Ito).
 const COLOURS: [RGBColor; 6] = [
     RGBColor(213, 94, 0),
@@ -62,18 +62,18 @@ pub fn draw(scene: &Scene, frames: &[Frame], folder: &Folder) -> Result<(), Outp
 }
 
 /// The points of a frame.
-fn seen(frame: &Frame) -> Vec<Vector<3>> {
+pub fn seen(frame: &Frame) -> Vec<Vector<3>> {
     frame.shapes.iter().flatten().flat_map(|shape| Tessellation::new(shape).points).collect()
 }
 
 /// The view of the scene that holds points.
-fn camera(scene: &Scene, points: &[Vector<3>]) -> Camera {
+pub fn camera(scene: &Scene, points: &[Vector<3>]) -> Camera {
     let area = [24.0, HEAD, SIZE.0 - LIST - 24.0, SIZE.1 - 16.0];
     Camera::new(&Vector::<3>::from(scene.camera.from), &Vector::<3>::from(scene.camera.up), points.iter(), area)
 }
 
 /// Faces, edges and points as bodies, lines as thick as they are to be on the page.
-fn bodies(frame: &Frame, camera: &Camera) -> Vec<Body> {
+pub fn bodies(frame: &Frame, camera: &Camera) -> Vec<Body> {
     let mut out = Vec::new();
     let mut edges = Body::empty(Paint::Plain(EDGE));
     let [thin, thick] = THICK.map(|t| t / camera.scale);
@@ -158,33 +158,4 @@ fn picture(scene: &Scene, camera: &Camera, frame: &Frame, look: Look) -> Result<
         text(svg, x + 16.0, y + 20.0, 12.0, "#444", &format!("{}  to  {}", part(0), part(1)));
     }
     Ok(page.finish())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const CASE: &str = "title = \"two triangles\"\nanalysis = \"closest_pairs\"\nframes = 2\n\
-        camera = { from = [0, 0, 1], up = [0, 1, 0] }\n\
-        [bodies.near]\nparts = [{ name = \"face\", type = \"tri3\", nodes = [[0, 0, 1], [2, 0, 1], [0, 2, 1]] }]\n\
-        [bodies.far]\nparts = [{ name = \"face\", type = \"tri3\", nodes = [[0, 0, 0], [4, 0, 0], [0, 4, 0]] }]\n";
-
-    #[test]
-    fn the_nearer_body_hides_the_farther_one_and_the_frame_is_filled() {
-        let scene = Scene::parse("test", CASE, std::path::Path::new(".")).unwrap();
-        let frame = scene.at(0.0).unwrap();
-        let camera = camera(&scene, &seen(&frame));
-        let [left, top, right, bottom] = camera.area;
-        // Of a triangle as wide as high the height is filled, less two units for outlines.
-        assert!((bottom - top - (SIZE.1 - 16.0 - HEAD) - 2.0).abs() < 1e-9, "{:?}", camera.area);
-        let image = render(&bodies(&frame, &camera), &camera, Look::Solid).unwrap();
-        let at = |x: f64, y: f64| {
-            let (px, py) = camera.at(&Vector::<3>::new(x, y, 0.0));
-            let share = ((px - left) / (right - left), (py - top) / (bottom - top));
-            image.get((share.0 * image.width() as f64) as usize, (share.1 * image.height() as f64) as usize)
-        };
-        // The far body is the first, more blue than red, the near one more red than blue.
-        let (near, far) = (at(0.5, 0.5), at(1.5, 1.5));
-        assert!(near.0 > near.2 && far.2 > far.0, "{near:?} {far:?}");
-    }
 }

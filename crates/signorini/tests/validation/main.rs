@@ -28,6 +28,7 @@ mod solids;
 mod stability;
 mod statement;
 mod systems;
+mod unit;
 mod words;
 
 use serde_json::Value;

@@ -201,7 +201,7 @@ impl<const D: usize> Model<D> {
 
 /// The slips of a node with their directions in its axes, and which of them supports hold altogether. Where they hold one
 /// between the axes, as on a plane of symmetry that is skew to them, the slips are those along it and across.
-fn separated(slips: Vec<WeightedGap>, limit: f64) -> (Vec<WeightedGap>, [[f64; 2]; 2], [bool; 2]) {
+pub fn separated(slips: Vec<WeightedGap>, limit: f64) -> (Vec<WeightedGap>, [[f64; 2]; 2], [bool; 2]) {
     let plain = [[1.0, 0.0], [0.0, 1.0]];
     let product = |a: &WeightedGap, b: &WeightedGap| {
         let mut sum = 0.0;
@@ -233,30 +233,4 @@ fn separated(slips: Vec<WeightedGap>, limit: f64) -> (Vec<WeightedGap>, [[f64; 2
     let mut across = combined(-s, co);
     across.terms.clear();
     (vec![combined(co, s), across], [[co, s], [-s, co]], [false, true])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn slip(gap: f64, terms: &[(u32, f64)]) -> WeightedGap {
-        WeightedGap { gap, weight: 1.0, terms: terms.to_vec(), forces: Vec::new(), node: 0 }
-    }
-
-    #[test]
-    fn slips_that_supports_hold_are_told() {
-        let [x, y] = [slip(0.3, &[(0, 1.0), (2, -0.5)]), slip(0.1, &[(1, 1.0), (3, -0.5)])];
-        let both = separated(vec![x.clone(), y.clone()], 1e-7);
-        assert_eq!(both, (vec![x.clone(), y], [[1.0, 0.0], [0.0, 1.0]], [false; 2]));
-        assert_eq!(separated(vec![x], 1e-7).2, [false; 2]);
-        assert_eq!(separated(vec![slip(0.3, &[(0, 1e-9)])], 1e-7).2, [true, false]);
-        assert_eq!(separated(vec![slip(0.3, &[]), slip(0.1, &[])], 1e-7).2, [true; 2]);
-        // On a plane of symmetry that is skew to the axes both slips are parts of one.
-        let (s, c) = 0.4f64.sin_cos();
-        let (rows, directions, held) = separated(vec![slip(0.2 * c, &[(0, c)]), slip(0.2 * s, &[(0, s)])], 1e-7);
-        assert_eq!((rows.len(), held), (2, [false, true]));
-        assert!((directions[0][0] - c).abs() < 1e-15 && (directions[0][1] - s).abs() < 1e-15);
-        assert!((rows[0].terms[0].1 - 1.0).abs() < 1e-15 && (rows[0].gap - 0.2).abs() < 1e-15);
-        assert!(rows[1].terms.is_empty() && rows[1].gap.abs() < 1e-15);
-    }
 }

@@ -117,7 +117,7 @@ impl<const D: usize> Reduction<D> {
     }
 
     /// The supports that constrain a vector function, and along which directions.
-    pub(crate) fn constraints(&self, function: u32) -> impl Iterator<Item = (usize, Point<D>)> {
+    pub fn constraints(&self, function: u32) -> impl Iterator<Item = (usize, Point<D>)> {
         self.held.get(&function).into_iter().flatten().map(|h| match h.source {
             Source::Prescribed { support } | Source::Tied { support, .. } => (support, h.direction),
         })

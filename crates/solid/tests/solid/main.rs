@@ -9,4 +9,5 @@ mod pressure;
 mod punch;
 mod routes;
 mod system;
+mod unit;
 mod zone;

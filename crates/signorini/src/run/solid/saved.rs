@@ -33,7 +33,7 @@ pub fn from_json(mut v: Value) -> Option<Memory> {
     Some(Memory { active: take(&mut v["active"])?, friction })
 }
 
-fn frame_file(index: usize) -> String {
+pub fn frame_file(index: usize) -> String {
     format!("{BESIDE}/frame_{index:05}.json")
 }
 
@@ -72,26 +72,4 @@ fn frame_from<const D: usize>(v: &Value) -> Option<SolidFrame<D>> {
         von_mises: serde_json::from_value(v["von_mises"].clone()).ok()?,
         zones: points("zones")?.chunks_exact(2).map(|ends| [ends[0], ends[1]]).collect(),
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_frame_is_read_as_it_was_written() {
-        let x = |a: f64, b: f64| Point::<2>::new(a, b);
-        let frame = SolidFrame {
-            time: 0.1 + 0.2,
-            displacement: vec![x(1.0 / 3.0, -2e-17), x(0.0, 5.0)],
-            von_mises: vec![1.0 / 7.0, 3e9],
-            zones: vec![[x(0.1, 0.2), x(0.3, 0.7)]],
-        };
-        let folder = tempfile::tempdir().unwrap();
-        let own = Folder::create(&folder.path().join("out")).unwrap();
-        write_frame(&own, 1, &frame).unwrap();
-        assert_eq!(frames::<2>(own.path().unwrap(), 2), Some(vec![frame]));
-        std::fs::write(own.path().unwrap().join(frame_file(0)), "{}").unwrap();
-        assert_eq!(frames::<2>(own.path().unwrap(), 2), None);
-    }
 }

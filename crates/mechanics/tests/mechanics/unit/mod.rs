@@ -1,0 +1,6 @@
+//! Parts by themselves.
+
+mod admissible;
+mod rigid_system;
+mod rotation;
+mod stability;

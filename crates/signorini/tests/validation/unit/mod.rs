@@ -1,0 +1,37 @@
+//! Parts by themselves.
+
+mod explain;
+mod fit_student;
+mod height_map;
+mod mesh_file;
+mod output_camera;
+mod output_chart;
+mod output_figure;
+mod output_film;
+mod output_folder;
+mod output_level;
+mod output_membrane_line;
+mod output_membrane_map;
+mod output_page;
+mod output_panel;
+mod output_render;
+mod output_rigid;
+mod output_solid_space;
+mod output_system_files;
+mod output_vtk;
+mod paths;
+mod paths_picture;
+mod plan_reader;
+mod plan_rigid;
+mod queries_points;
+mod queries_scanner;
+mod queries_shapes;
+mod relief;
+mod report_words;
+mod run_driver;
+mod run_mechanics_recovered;
+mod run_solid_saved;
+mod run_strain;
+mod scene_picture;
+mod template;
+mod text_table;

@@ -1,0 +1,6 @@
+//! Parts by themselves.
+
+mod assembly;
+mod friction_solve;
+mod hyperelastic;
+mod model;

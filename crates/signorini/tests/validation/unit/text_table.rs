@@ -30,8 +30,8 @@ fn the_decimal_mark_is_known_or_refused() {
         ("1,234;2\n", &["line 1: `1,234` is `1.234` or `1234`"][..]),
         ("# n\n1.5;2\n2;16,73\n", &["line 3: `16,73` has a comma", "`1.5` in line 2"]),
         ("1,5;2.5\n", &["`1,5` has a comma"]),
-        ("1,234,567;8\n", &["`1,234,567` is no number"]),
-        ("1,234.5;8\n", &["`1,234.5` is no number"]),
+        ("1,234,567;8\n", &["`1,234,567` is not a number"]),
+        ("1,234.5;8\n", &["`1,234.5` is not a number"]),
         ("1,5 2\n2.5 3\n", &["line 1: `1,5` has a comma"]),
     ] {
         let error = read(text).unwrap_err();

@@ -388,34 +388,32 @@ fn rings_round_an_axis_slide_along_it() {
     assert!(results.iter().all(|r| is_quadratic(&r.history)), "{}", told(&results));
 }
 
-/// Faces that are flat but for rounding are cut in one way: with quadratic functions Newton's method went round just above its
-/// tolerance.
+/// Faces that are flat but for rounding: whether they are cut as one polygon or in facets must not matter more than the
+/// tolerance of Newton's method, which went round just above it.
 #[test]
 fn quadratic_faces_that_stay_flat_converge() {
     let mut system = System::default();
-    let skewed =
-        |x: Point<3>| Point::<3>::new(x[0] + 0.05 * (3.0 * x[0]).sin(), x[1] - 0.05 * (3.0 * x[1]).sin(), x[2]);
-    system.bodies.push(Box::new(solid(
-        "lower",
-        cuboid([0.0; 3], [1.0, 1.0, 0.5], [3, 3, 1], |x| x),
-        2,
-        ELASTIC,
-        StressLaw::LinearElastic,
-    )));
-    system.bodies.push(Box::new(solid(
-        "upper",
-        cuboid([0.0, 0.0, 0.5], [1.0; 3], [4, 4, 1], skewed),
-        2,
-        ELASTIC,
-        StressLaw::LinearElastic,
-    )));
+    let pi = std::f64::consts::PI;
+    let skewed = |x: Point<3>| Point::<3>::new(x[0] + 0.05 * (pi * x[0]).sin(), x[1] - 0.05 * (pi * x[1]).sin(), x[2]);
+    let elastic = Elastic { youngs_modulus: 1000.0, poissons_ratio: 0.3 };
+    for (name, low, high, cells) in
+        [("lower", [0.0; 3], [1.0, 1.0, 0.5], [3, 3, 1]), ("upper", [0.0, 0.0, 0.5], [1.0; 3], [5, 5, 1])]
+    {
+        let mesh = cuboid(low, high, cells, |x| if name == "upper" { skewed(x) } else { x });
+        system.bodies.push(Box::new(solid(name, mesh, 2, elastic, StressLaw::LinearElastic)));
+    }
     system.supports.push(hold(0, "bottom", [None, None, Some(0.0)]));
     for body in 0..2 {
         system.supports.push(hold(body, "left", [Some(0.0), None, None]));
         system.supports.push(hold(body, "front", [None, Some(0.0), None]));
     }
-    system.loads.push(load(1, "top", TimedLoad::Pressure(Arc::new(|_, t| 0.01 * t))));
+    system.loads.push(load(1, "top", TimedLoad::Pressure(Arc::new(|_, _| 10.0))));
     touch(&mut system, [(0, "top"), (1, "bottom")], Test::Mortar(0), Enforcement::Multiplier, None);
-    let (_, results) = run(&mut system, &[1.0]);
-    assert!(results[0].iterations <= 8, "{}", told(&results));
+    system.prepare().unwrap();
+    let mut iterations = 0;
+    let found = system.solve(&system.start(), 1.0, &mut |_, _| {
+        iterations += 1;
+        iterations < 12
+    });
+    assert!(found.is_ok(), "{:?}", found.err());
 }

@@ -65,7 +65,7 @@ pub fn audited(setting: &Setting, before: Option<&State>, now: &State, stability
         out.extend(jumps::check(setting, before, now));
         out.extend(path::check(setting, before, now));
     }
-    out.extend(tractions::check(setting, now));
+    out.extend(tractions::check(setting, before, now));
     out.extend(balance::check(setting, now));
     out.extend(uniqueness::check(setting, now, &bounds));
     out.extend(resolution::check(setting, before, now));

@@ -26,12 +26,11 @@ const SAME_TURN: f64 = 1e-6;
 /// Checks the energy of an increment.
 pub fn check(setting: &Setting, before: &State, now: &State) -> Vec<Finding> {
     let mut out = Vec::new();
+    let rounding = ROUNDING * forces(setting, now);
     for ((contact, dissipated), touches) in setting.contacts.iter().zip(&now.dissipated).zip(&now.contacts) {
         let Some(d) = *dissipated else { continue };
         let taken: f64 = touches.iter().map(|t| t.weight * t.friction.norm() * t.slip.norm()).sum();
-        let rubs: f64 = touches.iter().map(|t| t.weight * t.friction.norm()).sum();
-        let size = contact.bodies.iter().map(|k| setting.bodies[*k].form.size()).fold(0.0, f64::max);
-        let limit = LEFT * taken + elastic(touches) + ROUNDING * rubs * size;
+        let limit = LEFT * taken + elastic(touches) + rounding;
         if d < -limit {
             let message = format!("the dissipation of friction in `{}` is negative: -{:.3e}", contact.name, -d);
             let finding = Finding::new(Check::Path, Outcome::Refused, message).measured(-d, limit);

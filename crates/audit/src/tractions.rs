@@ -2,7 +2,7 @@
 //! bodies slip, and acts against the slip. All in the mean over a contact, by what each place stands for.
 
 use crate::finding::{Check, Finding, Outcome};
-use crate::state::{Contact, Law, Setting, State, Touch};
+use crate::state::{Contact, Form, Law, Setting, State, Touch};
 
 /// Part of the forces that iterations may leave, and from which the state is none.
 const TOLD: f64 = 1e-3;
@@ -16,23 +16,40 @@ const EDGE: f64 = 0.1;
 /// Part of the dissipation that may have the wrong sign: slips of penalties are elastic in part.
 const REFUSED_SIGN: f64 = 0.05;
 
+/// Way of a free body in an increment, relative to its size, on which its slip may change its direction.
+const FAR: f64 = 1e-2;
 /// Part of the largest force below which the force of a contact is what iterations leave of none.
 const NOTHING: f64 = 1e-8;
 
 /// Checks the tractions of all contacts.
-pub fn check(setting: &Setting, state: &State) -> Vec<Finding> {
+///
+/// Slip is that of the whole increment. Of a free rigid body that moved far in it, the last slip may have had another direction:
+/// friction along the slip is then only reported.
+pub fn check(setting: &Setting, before: Option<&State>, state: &State) -> Vec<Finding> {
     let of_contacts = state.contacts.iter().map(|touches| size_of(touches));
     let largest = of_contacts.chain(state.forces.iter().map(|a| a.force.norm())).fold(0.0, f64::max);
     let list = setting.contacts.iter().zip(&state.contacts);
-    list.flat_map(|(contact, touches)| of_contact(contact, touches, NOTHING * largest)).collect()
+    let of = |(contact, touches): (&Contact, &Vec<Touch>)| {
+        let turns = contact.bodies.iter().any(|body| moved_far(setting, before, state, *body));
+        of_contact(contact, touches, NOTHING * largest, if turns { f64::INFINITY } else { REFUSED_SIGN })
+    };
+    list.flat_map(of).collect()
+}
+
+/// Whether a body is a free rigid one that moved far in the increment.
+fn moved_far(setting: &Setting, before: Option<&State>, now: &State, body: usize) -> bool {
+    let (Form::Rigid(rigid), Some(before)) = (&setting.bodies[body].form, before) else { return false };
+    let [from, to] = [before, now].map(|state| state.bodies[body].motion().point(&rigid.centre));
+    rigid.is_free && (to - from).norm() > FAR * rigid.size
 }
 
 fn size_of(touches: &[Touch]) -> f64 {
     touches.iter().map(|t| t.weight * t.force_size()).sum()
 }
 
-/// Checks the tractions of a contact; forces up to `nothing` are rounding.
-fn of_contact(contact: &Contact, touches: &[Touch], nothing: f64) -> Vec<Finding> {
+/// Checks the tractions of a contact; forces up to `nothing` are rounding, and beyond `refused` of the friction along the slip
+/// the state is none.
+fn of_contact(contact: &Contact, touches: &[Touch], nothing: f64, refused: f64) -> Vec<Finding> {
     let mut out = Vec::new();
     let size = size_of(touches);
     if size <= nothing {
@@ -80,7 +97,7 @@ fn of_contact(contact: &Contact, touches: &[Touch], nothing: f64) -> Vec<Finding
     let all: f64 = slipping.iter().map(|t| t.weight * taken(t)).sum();
     tell(
         part(&slipping, wrong, |_| all),
-        [TOLD, REFUSED_SIGN],
+        [TOLD, refused],
         "the friction acts in the direction of slip, not against it",
     );
     if let Some(Law::PerPressure([a, b])) = contact.law

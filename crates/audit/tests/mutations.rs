@@ -260,6 +260,34 @@ fn a_force_that_iterations_leave_of_none_breaks_no_law() {
     assert_eq!(outcome(Check::Balance), Some(signorini_audit::Outcome::Fine), "{findings:#?}");
 }
 
+/// A disc that rolled and slid to where it is: the slip of the whole increment tells nothing of the last one.
+#[test]
+fn friction_along_the_slip_of_a_body_that_moved_far_is_only_reported() {
+    let outcome = |from: Placement| {
+        let mut case = disc();
+        case.before.bodies[0] = from;
+        for touch in touches(&mut case) {
+            (touch.slips, touch.slip, touch.friction) = (true, v(0.1, 0.0, 0.0), v(MU, 0.0, 0.0));
+        }
+        let findings = audit(&case.setting, Some(&case.before), &case.now, &case.stability);
+        findings.iter().filter(|f| f.check == Check::Tractions).map(|f| f.outcome).max()
+    };
+    assert_eq!(outcome(moved(-0.1, 0.0)), Some(signorini_audit::Outcome::Doubt));
+    assert_eq!(outcome(moved(-1e-3, 0.0)), Some(signorini_audit::Outcome::Refused));
+}
+
+#[test]
+fn rounding_of_a_dissipation_is_no_energy() {
+    let refused = |dissipated: f64| {
+        let mut case = disc();
+        case.now.contacts[0].clear();
+        case.now.dissipated[0] = Some(dissipated);
+        let findings = audit(&case.setting, Some(&case.before), &case.now, &case.stability);
+        findings.iter().any(|f| f.message.contains("the dissipation of friction in"))
+    };
+    assert!(!refused(-1e-12) && refused(-1e-3));
+}
+
 /// A state spoilt on purpose: what, which check should see it, and how.
 type Spoilt = (&'static str, Check, Case);
 

@@ -29,7 +29,7 @@ fn the_hole_of_the_ring_closes() {
     let exact = 0.04 * std::f64::consts::PI.powi(2);
     let case = example("cosine_disc")
         .replace("[[steps]]\nto = 0.4\nincrements = 4", "[[steps]]\nto = 0.37\n[[steps]]\nto = 0.4\nevents = 1e-3");
-    let found = summary(&case, &set(&[]));
+    let found = summary(&case, &set(&[(CELLS, "[24, 24]".into())]));
     let events = events(&found);
     assert_eq!(events.len(), 1, "{events:?}");
     assert!(events[0].0 == "hole_closed" && (events[0].1 - exact).abs() <= 1e-3, "{events:?}");
@@ -105,7 +105,7 @@ fn a_load_that_ends_on_the_way_to_an_area_is_named() {
 fn a_hole_does_not_outlive_its_load() {
     let steps = "[[steps]]\nto = 0.385\n[[steps]]\nto = 0.3925\n[[steps]]\nto = 0.3944\n[[steps]]\nto = 0.3953";
     let case = example("cosine_disc").replace("[[steps]]\nto = 0.4\nincrements = 4", steps);
-    let found = summary(&case, &set(&[]));
+    let found = summary(&case, &set(&[(CELLS, "[24, 24]".into())]));
     assert_eq!(found["converged"], true, "{}", found["verdict"]);
     let holes: Vec<u64> = found["steps"]
         .as_array()

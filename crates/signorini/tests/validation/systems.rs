@@ -118,8 +118,17 @@ normal = "0.25*t"
 to = 1
 increments = 2
 "#;
-    let slanted = case.replace("cells = [2, 1, 1]", "cells = [2, 1, 1], map = [\"x + 0.2*y\", \"y\", \"z\"]");
-    assert!(error(&slanted).message.contains("a flat part of the boundary whose normal is along"));
+    let mapped =
+        |x: &str| case.replace("cells = [2, 1, 1]", &format!("cells = [2, 1, 1], map = [\"{x}\", \"y\", \"z\"]"));
+    assert!(
+        error(&mapped("x + 0.2*y^2").replace("cells = [2, 1, 1]", "cells = [2, 2, 1]"))
+            .message
+            .contains("`normal` requires a flat group")
+    );
+    // Pulled along the normals of slanted ends, in balance and with the work that is stored.
+    let slanted = summary(&mapped("x + 0.2*y"), &set(&[]));
+    let pull: Vec<f64> = (0..2).map(|k| number(&last_step(&slanted)["support_forces"]["pull"][k])).collect();
+    assert!(pull[0] > 0.0 && (pull[1] / pull[0] + 0.2).abs() < 1e-9, "{pull:?}");
     let found = summary(case, &set(&[]));
     let force = number(&last_step(&found)["support_forces"]["pull"][0]);
     // μ = 1, λ = 1.5: the stretch across makes its stress vanish.
@@ -224,7 +233,7 @@ fn winches_and_pulleys_keep_account_of_the_rope() {
         (WINCH, "cells = 20", "cells = 20\ncontinuity = \"C1\"", "straight elements", "end"),
         (PULLEY, "[[3, 0, 0]]", "[[2.9, 0, 0]]", "the nearest one is at (3.0", "[2.9, 0, 0]"),
         (PULLEY, "[[3, 0, 0]]", "[[0, 0, 0]]", "an end of the rope", "[[0, 0, 0]]"),
-        (PULLEY, "pulley_1", "pulley_2", "it has start, end, boundary, pulleys, pulley_1", "pulley_2"),
+        (PULLEY, "pulley_1", "pulley_2", "valid are start, end, boundary, pulleys, pulley_1", "pulley_2"),
     ];
     for (case, from, to, message, at) in table {
         told(&case.replacen(from, to, 1), to, message, at);

@@ -14,7 +14,7 @@ use signorini_audit::{
 use signorini_contact::Status;
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::{Point, Vector};
-use signorini_mechanics::system::{TimeField, TimedLoad};
+use signorini_mechanics::system::{Support, TimedLoad};
 use signorini_mechanics::{
     BodyFields, BodyState, Contribution, IncrementResult, Order, Sampling, SiteResult, System, SystemState, Unstable,
     rigid_body,
@@ -272,7 +272,7 @@ fn forces(
             _ => None,
         };
         let moved = before.filter(|_| !turns).and_then(|(was, _)| {
-            let [start, end] = [was.time, time].map(|t| uniform(&support.displacement, system, body, t));
+            let [start, end] = [was.time, time].map(|t| uniform(support, system, t));
             Some(end? - start?)
         });
         // The radial forces around an axis have no resultant that does work.
@@ -319,11 +319,13 @@ fn forces(
 }
 
 /// A displacement that is the same all over a body; none of one that differs.
-fn uniform(fields: &[Option<TimeField>; 3], system: &System, body: usize, time: f64) -> Option<Vector<3>> {
+fn uniform(support: &Support, system: &System, time: f64) -> Option<Vector<3>> {
+    let body = support.part.body;
     let shown = system.bodies[body].fields(&system.bodies[body].start());
     let last = shown.points.len().saturating_sub(1);
     let at = |k: usize| shown.points.get(k).copied().unwrap_or_default();
-    let value = |i: usize, x: &Point<3>| fields[i].as_ref().map_or(0.0, |f| f(x, time));
+    let along = |i: usize, x: &Point<3>| support.along.as_ref().map_or(0.0, |(n, f)| n[i] * f(x, time));
+    let value = |i: usize, x: &Point<3>| support.displacement[i].as_ref().map_or_else(|| along(i, x), |f| f(x, time));
     let first = Vector::<3>::from_fn(|i, _| value(i, &at(0)));
     let same = |k: usize| (0..3).all(|i| value(i, &at(k)) == first[i]);
     [last, last / 2, last / 3].into_iter().all(same).then_some(first)

@@ -47,7 +47,7 @@ fn inclined_supports_hold_as_those_along_the_axes_do() {
     let solve = |angle: f64, degree: usize| {
         let (sin, cos) = angle.sin_cos();
         let turned = move |x: Vector<3>| v(cos * x[0] - sin * x[1], sin * x[0] + cos * x[1], x[2]);
-        let mesh = cuboid([0.0; 3], [1.0, 0.8, 0.5], [3, 2, 2], |x| turned(x));
+        let mesh = cuboid([0.0; 3], [1.0, 0.8, 0.5], [3, 2, 2], turned);
         let mut system = System::default();
         system.bodies.push(Box::new(solid("block", mesh, degree, ELASTIC, StressLaw::LinearElastic)));
         for (group, normal, value) in

@@ -274,10 +274,6 @@ impl<const D: usize> Body for CellSolid<D> {
         true
     }
 
-    fn has_places(&self) -> bool {
-        true
-    }
-
     fn places(&self) -> Vec<[f64; 3]> {
         let functions = 0..self.body.function_count();
         functions.flat_map(|f| [spatial(&self.body.position(f)).into(); D]).collect()

@@ -202,12 +202,7 @@ pub trait Body: Send + Sync {
         Vec::new()
     }
 
-    /// Whether [`places`](Body::places) are known.
-    fn has_places(&self) -> bool {
-        false
-    }
-
-    /// Where each unknown is, about, before the body deforms: for the order of elimination.
+    /// Where each unknown is, about, before the body deforms: for the order of elimination. None where that is not known.
     fn places(&self) -> Vec<[f64; 3]> {
         Vec::new()
     }

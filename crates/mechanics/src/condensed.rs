@@ -62,8 +62,7 @@ impl System {
     /// Which bodies are condensed; none of a system in which others are solved for in another way or too few are linear.
     pub(crate) fn is_condensed(&self) -> &[bool] {
         self.linear.is_condensed.get_or_init(|| {
-            let of: Vec<bool> =
-                self.bodies.iter().map(|b| b.is_linear() && b.unknowns() > 0 && b.has_places()).collect();
+            let of: Vec<bool> = self.bodies.iter().map(|b| b.is_linear() && !b.places().is_empty()).collect();
             let count: usize = self.bodies.iter().zip(&of).filter(|(_, is)| **is).map(|(b, _)| b.unknowns()).sum();
             let others: usize = self.bodies.iter().zip(&of).filter(|(_, is)| !**is).map(|(b, _)| b.unknowns()).sum();
             if count < LEAST || others > MOST { vec![false; of.len()] } else { of }
@@ -200,10 +199,10 @@ impl Reduced {
             return Err(SolveError::NotFactorised { size });
         }
         kept.sort_unstable();
-        let is_held = &self.is_held;
-        let free = self.stiffness.entries().filter(|(i, j, _)| !is_held[*i] && !is_held[*j]);
-        let matrix = SymmetricMatrix::of_entries(size, free, (0..size).filter(|k| is_held[*k]));
-        self.condensation = Some(Condensation::new(&matrix, kept, self.positions.clone())?);
+        let held: Vec<Option<f64>> = self.is_held.iter().map(|is_held| is_held.then_some(0.0)).collect();
+        let mut matrix = self.stiffness.clone();
+        matrix.prescribe(&held, &mut vec![0.0; size]);
+        self.condensation = Some(Condensation::new(matrix, kept, self.positions.clone())?);
         Ok(())
     }
 

@@ -1,5 +1,6 @@
 //! What contacts need before the first increment: scales of penalties, and where slips count from.
 
+use crate::condensed::LinearBodies;
 use crate::increment_error::IncrementError;
 use crate::interaction::Bodies;
 use crate::system::{AssemblyError, System};
@@ -11,6 +12,7 @@ impl System {
     /// # Errors
     /// Places that are not there.
     pub fn prepare(&mut self) -> Result<(), IncrementError> {
+        self.linear = LinearBodies::default();
         let scale = self.contacts.iter().map(|c| c.stiffness(&self.bodies)).fold(0.0f64, f64::max);
         // Between rigid bodies any scale serves; that of one force per length is neither large nor small.
         let scale = if scale > 0.0 { scale } else { 1.0 / self.size().max(f64::MIN_POSITIVE) };

@@ -290,27 +290,32 @@ impl System {
             let terms = &held.constraint.terms;
             let size = terms.iter().fold(0.0f64, |m, t| m.max(t.1.abs()));
             let counts: Vec<(u32, f64)> = terms.iter().copied().filter(|t| t.1.abs() > SAME * size).collect();
+            // An equation without terms is nobody's twin.
+            let Some(&(first, _)) = counts.first() else {
+                out.push(held);
+                continue;
+            };
             // What others leave of what is lacking, and the support that says the same.
             let said = if counts.iter().all(|(unknown, _)| single(*unknown).is_some()) {
                 let others = counts.iter().filter_map(|(unknown, f)| Some((f, single(*unknown)?)));
                 let done: f64 = others.map(|(f, h)| f * h.constraint.lack / h.constraint.terms[0].1).sum();
-                counts.first().and_then(|c| Some((single(c.0)?.support, held.constraint.lack - done)))
+                single(first).map(|h| (h.support, held.constraint.lack - done))
             } else {
-                let alike = by_first.get(&counts[0].0).into_iter().flatten().map(|k| &out[*k]);
+                let alike = by_first.get(&first).into_iter().flatten().map(|k| &out[*k]);
                 let mut found = alike.filter_map(|other| Some((other, ratio(terms, &other.constraint.terms)?)));
                 found.next().map(|(other, r)| (other.support, held.constraint.lack - r * other.constraint.lack))
             };
             match said {
-                Some((first, lack)) if lack.abs() > SAME * body.size() * size => {
+                Some((other, lack)) if lack.abs() > SAME * body.size() * size => {
                     return Err(AssemblyError::Contradiction {
-                        first: self.supports[first].name.clone(),
+                        first: self.supports[other].name.clone(),
                         second: self.supports[held.support].name.clone(),
                         body: body.name().to_string(),
                     });
                 }
                 Some(_) => {}
                 None => {
-                    by_first.entry(counts[0].0).or_default().push(out.len());
+                    by_first.entry(first).or_default().push(out.len());
                     out.push(held);
                 }
             }

@@ -257,10 +257,6 @@ impl<const D: usize> Body for SolidBody<D> {
         (0..self.mesh().cell_count()).map(|cell| self.unknowns_of(cell).0).collect()
     }
 
-    fn has_places(&self) -> bool {
-        true
-    }
-
     fn places(&self) -> Vec<[f64; 3]> {
         let positions = self.body().function_positions();
         positions.iter().flat_map(|x| [spatial(x).into(); D]).collect()

@@ -30,13 +30,11 @@ impl Condensation {
     ///
     /// # Errors
     /// A matrix that is not positive definite on the other unknowns, or no memory.
-    pub fn new(matrix: &SymmetricMatrix, kept: Vec<u32>, places: Vec<[f64; 3]>) -> Result<Self, SolveError> {
+    pub fn new(mut matrix: SymmetricMatrix, kept: Vec<u32>, places: Vec<[f64; 3]>) -> Result<Self, SolveError> {
         let diagonal = matrix.diagonal();
         let springs: Vec<f64> = kept.iter().map(|k| diagonal[*k as usize]).collect();
-        let rows: Vec<[(u32, f64); 1]> = kept.iter().map(|k| [(*k, 1.0)]).collect();
-        let rows: Vec<(&[(u32, f64)], f64)> = rows.iter().map(|r| &r[..]).zip(springs.iter().copied()).collect();
-        let sum = matrix.plus(&SymmetricMatrix::of_squares(matrix.size(), &rows));
-        let factor = Symbolic::dissected(places).with_last(kept.clone()).factor(sum)?;
+        kept.iter().zip(&springs).for_each(|(k, d)| matrix.add(&[*k], &[*d], 1.0));
+        let factor = Symbolic::dissected(places).with_last(kept.clone()).factor(matrix)?;
         let lower = factor.trailing(kept.len());
         let mut stiffened = Mat::<f64>::zeros(kept.len(), kept.len());
         let (down, up) = (BlockStructure::TriangularLower, BlockStructure::TriangularUpper);
@@ -120,7 +118,7 @@ mod tests {
             let size = (n * n * n) as usize;
             let matrix = SymmetricMatrix::of_cliques(size, &cliques);
             let kept: Vec<u32> = (0..n * n).map(|c| at(0, c / n, c % n)).collect();
-            let condensed = Condensation::new(&matrix, kept.clone(), places).unwrap();
+            let condensed = Condensation::new(matrix.clone(), kept.clone(), places).unwrap();
             let m = kept.len();
             // Unsymmetric, as friction is.
             let extra = |i: usize, j: usize| if i == j { 2.0 } else { 0.1 * ((i + 3 * j) as f64).sin() / m as f64 };

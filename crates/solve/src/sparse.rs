@@ -56,19 +56,6 @@ impl SymmetricMatrix {
         out
     }
 
-    /// The matrix with these entries of its lower triangle, each once, in ascending columns, and with ones on the diagonal of
-    /// some unknowns that have none.
-    pub fn of_entries(
-        n: usize,
-        entries: impl Iterator<Item = (usize, usize, f64)>,
-        ones: impl Iterator<Item = usize>,
-    ) -> Self {
-        let mut columns: Vec<Vec<(usize, f64)>> = vec![Vec::new(); n];
-        entries.for_each(|(i, j, v)| columns[i.min(j)].push((i.max(j), v)));
-        ones.for_each(|k| columns[k].push((k, 1.0)));
-        Self::from_columns(n, |j, out| out.append(&mut columns[j]))
-    }
-
     /// `Σ k b bᵀ` of rows `b`, each with its `k`.
     pub fn of_squares(n: usize, rows: &[(&[(u32, f64)], f64)]) -> Self {
         let mut of_unknown: Vec<Vec<(u32, f64)>> = vec![Vec::new(); n];

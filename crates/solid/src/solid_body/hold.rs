@@ -4,8 +4,7 @@ use super::{SolidBody, spatial};
 use crate::body::Bodies;
 use crate::supports::{Support, SupportKind, functions, project};
 use signorini_fem::Group;
-use signorini_geometry::Point;
-use signorini_geometry::Vector;
+use signorini_geometry::{Point, Vector};
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{Constraint, Hold, PlaceError};
 
@@ -36,16 +35,16 @@ impl<const D: usize> SolidBody<D> {
         let wanted = project(&self.bodies, &support, &wanted);
         let mut is_vertex = vec![false; body.dofs.count()];
         body.vertex_unknowns().for_each(|k| is_vertex[k / D] = true);
+        // The functions of the vertices add up to one: forces on them make the resultant.
+        let reaction =
+            |f: u32, along: Vector<3>| [along * f64::from(u8::from(is_vertex[f as usize])), Vector::<3>::zeros()];
         let mut out = Vec::new();
         for &f in &all {
             for i in (0..D).filter(|&i| hold.displacement[i].is_some()) {
                 let unknown = D as u32 * f + i as u32;
                 let value = wanted.get(&f).map_or(0.0, |c| c[i]);
                 let (terms, lack) = (vec![(unknown, 1.0)], u[unknown as usize] - value);
-                // The functions of the vertices add up to one: forces on them make the resultant.
-                let reaction =
-                    [if is_vertex[f as usize] { axis(i) } else { Vector::<3>::zeros() }, Vector::<3>::zeros()];
-                out.push(Constraint { terms, lack, reaction });
+                out.push(Constraint { terms, lack, reaction: reaction(f, axis(i)) });
             }
         }
         if let Some((n, field)) = &hold.along {
@@ -56,8 +55,7 @@ impl<const D: usize> SolidBody<D> {
                 let terms: Vec<(u32, f64)> = (0..D).map(own).filter(|t| t.1 != 0.0).collect();
                 let lack = direction
                     .dot(&(Self::coefficients(u, f) - wanted.get(&f).copied().unwrap_or_else(Point::<D>::zeros)));
-                let reaction = [if is_vertex[f as usize] { *n } else { Vector::<3>::zeros() }, Vector::<3>::zeros()];
-                out.push(Constraint { terms, lack, reaction });
+                out.push(Constraint { terms, lack, reaction: reaction(f, *n) });
             }
         }
         let first = all.iter().copied().find(|f| is_vertex[*f as usize]);

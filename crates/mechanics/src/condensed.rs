@@ -364,10 +364,14 @@ impl<'a> Step<'a> {
     fn residual(&self, x: &[f64], right: &[f64]) -> (f64, Vec<f64>) {
         let product = self.product(x);
         let left: Vec<f64> = (0..x.len()).map(|k| if self.held[k] { 0.0 } else { right[k] - product[k] }).collect();
-        let reach = x.iter().fold(0.0f64, |m, x| m.max(x.abs()));
         let mut sizes = vec![0.0f64; x.len()];
-        self.reduced.unknowns.iter().zip(&self.reduced.row_sizes).for_each(|(u, s)| sizes[*u as usize] = s * reach);
-        self.beside.iter().for_each(|(i, j, v)| sizes[*i as usize] += (v * x[*j as usize]).abs());
+        // Displacements that vanish are known as well as the largest.
+        let mut reach: Vec<f64> = x.iter().map(|x| x.abs()).collect();
+        let own = &self.reduced.unknowns;
+        let farthest = own.iter().fold(0.0f64, |m, u| m.max(reach[*u as usize]));
+        own.iter().for_each(|u| reach[*u as usize] = farthest);
+        own.iter().zip(&self.reduced.row_sizes).for_each(|(u, s)| sizes[*u as usize] = s * farthest);
+        self.beside.iter().for_each(|(i, j, v)| sizes[*i as usize] += v.abs() * reach[*j as usize]);
         let of = |k: usize| left[k].abs() / (sizes[k] + right[k].abs()).max(f64::MIN_POSITIVE);
         let error = (0..x.len()).map(of).fold(0.0f64, |m, e| if e > m || e.is_nan() { e } else { m });
         (error, left)

@@ -29,6 +29,9 @@ struct Found<'a> {
     lost: usize,
 }
 
+/// Gap beyond the least one, relative to the size of the body, of what touches at the same time.
+const NEAREST: f64 = 1e-9;
+
 impl Mortar {
     fn found<'a>(&self, at: Bodies<'a>, multipliers: &[f64]) -> Result<Found<'a>, PlaceError> {
         let sides = Sides::new(self, at)?;
@@ -126,6 +129,23 @@ impl Interaction for Mortar {
 
     fn remembered(&self) -> Vec<f64> {
         self.memory.iter().flat_map(|m| self.slots().iter().map(|slot| m.traction[*slot])).collect()
+    }
+
+    /// A body that only contact holds is pressed on it first where the gap is least: there what is out of balance is borne.
+    fn guess(&self, at: Bodies<'_>, residual: &[f64]) -> Vec<f64> {
+        let mut out = self.remembered();
+        let Ok(found) = self.found(at, &out) else { return out };
+        let closest = found.measures.iter().enumerate().filter(|(k, m)| self.sees(*k, m.weight)).map(|(_, m)| m.gap);
+        let closest = closest.fold(f64::INFINITY, f64::min);
+        let near = NEAREST * at.bodies[self.slave.body].size();
+        let force = residual.iter().fold(0.0f64, |m, r| m.max(r.abs()));
+        let components = self.components();
+        for (k, m) in found.measures.iter().enumerate() {
+            if self.sees(k, m.weight) && m.gap <= closest + near {
+                out[k * components] = 2.0 * self.stiffness[k] * m.gap.max(0.0) + force / m.weight;
+            }
+        }
+        out
     }
 
     fn is_exact(&self) -> bool {

@@ -18,7 +18,7 @@ use super::head::Head;
 use super::memory::check_memory;
 use super::planner::Planner;
 use crate::problem::units::LENGTH;
-use crate::problem::{self, Body, CaseError, Material, Motion, Problem, Space, UnstableStates};
+use crate::problem::{self, Body, CaseError, Motion, Problem, Space, UnstableStates};
 use crate::report::{Carried, Warning};
 use signorini_geometry::Point;
 use signorini_geometry::rigid_shape::RigidShape;
@@ -91,25 +91,12 @@ pub struct MechanicsPlan {
     pub notes: Vec<String>,
 }
 
-/// Whether a problem is one of a system of bodies: with ropes, beams, free rigid bodies, finite strain or edges that touch,
-/// where solids slide any way, or with a solid that may touch itself.
+/// Whether a problem is one of bodies in space or in a plane: all but membranes.
 pub fn is_system(problem: &Problem) -> bool {
     let bodies = || problem.bodies.values();
-    let needs_one = |body: &Body| match body {
-        Body::Rope(_) | Body::Beam(_) | Body::Cells(_) => true,
-        Body::Rigid(rigid) => matches!(rigid.motion, Some(Motion::Free(_))),
-        Body::Solid(solid) => {
-            let is_linear = matches!(solid.material, Material::LinearElastic(_));
-            solid.strain.as_deref() == Some("finite") || !is_linear || !solid.edges.is_empty()
-        }
-        _ => false,
-    };
-    let slides = |c: &problem::Contact| {
-        let in_time = matches!(c.friction, Some(problem::Friction::Viscous(_)));
-        c.within.is_some() || in_time || c.sliding == Some(problem::Sliding::Finite)
-    };
-    let of_solids = bodies().any(|b| matches!(b, Body::Solid(_))) && !bodies().any(|b| matches!(b, Body::Membrane(_)));
-    bodies().any(needs_one) || (of_solids && problem.contacts.values().any(slides))
+    let deforms = |body: &Body| matches!(body, Body::Rope(_) | Body::Beam(_) | Body::Cells(_) | Body::Solid(_));
+    let is_free = |body: &Body| matches!(body, Body::Rigid(rigid) if matches!(rigid.motion, Some(Motion::Free(_))));
+    !bodies().any(|b| matches!(b, Body::Membrane(_))) && bodies().any(|b| deforms(b) || is_free(b))
 }
 
 /// Unknowns of a system, what solves its equations, and about how much memory that takes; an error where there is less.
